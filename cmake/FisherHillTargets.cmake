@@ -1,0 +1,27 @@
+# Warnings, sanitizers and the one way a library or a test is added.
+
+add_library(fisherhill_flags INTERFACE)
+target_compile_options(fisherhill_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wconversion -Wshadow
+  $<$<BOOL:${FISHERHILL_WARNINGS_AS_ERRORS}>:-Werror>)
+if(FISHERHILL_SANITIZE)
+  target_compile_options(fisherhill_flags INTERFACE
+    -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(fisherhill_flags INTERFACE -fsanitize=address,undefined)
+endif()
+
+# fisherhill_test(name [LABELS label...] LIBS lib...): tests/.../name.cc becomes one test program,
+# and every TEST in it one ctest case.
+function(fisherhill_test name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT" "LABELS;LIBS")
+  add_executable(${name} ${name}.cc)
+  target_link_libraries(${name} PRIVATE fisherhill_flags ${arg_LIBS} GTest::gmock GTest::gtest_main)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_compile_definitions(${name} PRIVATE
+    FISHERHILL_SOURCE_DIR="${PROJECT_SOURCE_DIR}" FISHERHILL_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  if(NOT arg_TIMEOUT)
+    set(arg_TIMEOUT 120)
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST
+    PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS "${arg_LABELS}")
+endfunction()

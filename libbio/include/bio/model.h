@@ -1,0 +1,234 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+/// A musculoskeletal model as plain data: what an .osim file says, nothing computed. SI units and
+/// radians throughout. Names are unique within their list and refer to each other by name.
+namespace bio {
+
+/// Placement of a frame in its parent: p_parent = R(orientation) p_frame + translation.
+struct FramePlacement {
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();  ///< [m]
+  Eigen::Vector3d orientation = Eigen::Vector3d::Zero();  ///< body-fixed x-y-z angles [rad]
+};
+
+// Functions of one variable, as files give them ---------------------------------------------------
+
+struct ConstantFunction {
+  double value = 0;
+};
+/// slope·x + intercept
+struct LinearFunction {
+  double slope = 1;
+  double intercept = 0;
+};
+/// Interpolating cubic spline with Forsythe–Malcolm–Moler ends, linear outside (curves.h).
+struct SplineFunction {
+  std::vector<double> x;  ///< strictly rising, at least 2
+  std::vector<double> y;
+};
+/// Straight lines between the points, extended outside.
+struct PiecewiseLinearFunction {
+  std::vector<double> x;  ///< strictly rising, at least 2
+  std::vector<double> y;
+};
+/// Σ_i c_i x^(n−i): highest power first, as OpenSim writes it.
+struct PolynomialFunction {
+  std::vector<double> coefficients;
+};
+
+/// scale · shape(x); nested MultiplierFunctions are multiplied out into `scale`.
+struct Function {
+  double scale = 1;
+  std::variant<ConstantFunction, LinearFunction, SplineFunction, PiecewiseLinearFunction,
+               PolynomialFunction>
+      shape;
+};
+
+// Skeleton ----------------------------------------------------------------------------------------
+
+struct Body {
+  std::string name;
+  double mass = 0;                                         ///< [kg] ≥ 0
+  Eigen::Vector3d massCenter = Eigen::Vector3d::Zero();    ///< in the body frame [m]
+  std::array<double, 6> inertia = {0, 0, 0, 0, 0, 0};      ///< xx yy zz xy xz yz about massCenter [kg m²]
+  std::vector<std::string> geometryFiles;                  ///< .vtp names, for pictures only
+};
+
+struct Coordinate {
+  std::string name;
+  bool isRotation = true;       ///< radians, else metres
+  double defaultValue = 0;      ///< [rad] or [m]
+  double rangeMin = 0;          ///< [rad] or [m]
+  double rangeMax = 0;          ///< [rad] or [m], ≥ rangeMin
+  bool locked = false;
+  bool clamped = false;
+};
+
+/// One of the six axes of a custom joint: rotation about, or translation along, `axis` by
+/// function(coordinate). Without a coordinate the function is a constant.
+struct TransformAxis {
+  std::string coordinate;  ///< empty: constant
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+  Function function;       ///< [rad] or [m]
+};
+
+enum class JointKind { weld, pin, slider, custom };
+
+/// parent body · parentFrame · motion(q) · childFrame⁻¹ = child body.
+/// A pin turns about z, a slider moves along x of the parent frame; a custom joint turns about
+/// axes[0], axes[1], axes[2] (body-fixed, in that order) and shifts along axes[3..5], all given in the
+/// parent frame.
+struct Joint {
+  std::string name;
+  JointKind kind = JointKind::weld;
+  std::string parentBody;  ///< "ground" for the ground
+  FramePlacement parentFrame;
+  std::string childBody;
+  FramePlacement childFrame;
+  std::vector<Coordinate> coordinates;
+  std::array<TransformAxis, 6> axes;  ///< used by custom joints only
+};
+
+/// dependent = function(independent)
+struct CoordinateCoupler {
+  std::string name;
+  std::string independent;
+  std::string dependent;
+  Function function;
+};
+
+// Paths -------------------------------------------------------------------------------------------
+
+enum class WrapShape { cylinder, sphere, ellipsoid, torus };
+
+struct WrapObject {
+  std::string name;
+  std::string body;
+  WrapShape shape = WrapShape::cylinder;
+  FramePlacement frame;             ///< of the shape in its body; a cylinder's axis is its z
+  std::string quadrant = "all";     ///< all, x, +x, -x, y, +y, -y, z, +z, -z
+  bool active = true;
+  double radius = 0;                ///< cylinder, sphere [m] > 0; torus: inner radius
+  double outerRadius = 0;           ///< torus [m]
+  double length = 0;                ///< cylinder [m] > 0
+  Eigen::Vector3d semiAxes = Eigen::Vector3d::Zero();  ///< ellipsoid [m] > 0
+};
+
+/// Points active only while lower ≤ coordinate ≤ upper.
+struct PointCondition {
+  std::string coordinate;
+  double lower = 0;  ///< [rad] or [m]
+  double upper = 0;
+};
+
+/// Location by three functions of coordinates.
+struct PointMotion {
+  std::array<std::string, 3> coordinate;  ///< empty: constant
+  std::array<Function, 3> location;       ///< x, y, z in the body frame [m]
+};
+
+struct PathPoint {
+  std::string name;
+  std::string body;
+  Eigen::Vector3d location = Eigen::Vector3d::Zero();  ///< in the body frame [m]
+  std::optional<PointCondition> condition;
+  std::optional<PointMotion> motion;  ///< overrides location
+};
+
+struct PathWrap {
+  std::string wrapObject;
+  int firstPoint = -1;  ///< 1-based, −1: the first point of the path
+  int lastPoint = -1;   ///< 1-based, −1: the last point
+};
+
+struct Path {
+  std::vector<PathPoint> points;  ///< at least 2
+  std::vector<PathWrap> wraps;    ///< the first one that a span penetrates wins
+};
+
+// Forces ------------------------------------------------------------------------------------------
+
+/// Parameters of a Schutte muscle (schutte_muscle.h says what they mean).
+struct SchutteParameters {
+  double maxIsometricForce = 0;    ///< F0 [N] > 0
+  double optimalFibreLength = 0;   ///< ℓ0 [m] > 0
+  double tendonSlackLength = 0;    ///< ℓs [m] > 0
+  double pennation = 0;            ///< α0 at ℓ0 [rad], 0 ≤ α0 < π/2
+  double timeScale = 0.1;          ///< t_s [s] > 0
+  double activation1 = 7.667;      ///< rate factor per excitation, rising [1]
+  double activation2 = 1.459854;   ///< rate factor [1] > 0
+  double damping = 0.1;            ///< B, normalised by F0·t_s/ℓ0 [1] > 0
+  double minControl = 0;
+  double maxControl = 1;
+  SplineFunction tendonForceLength;                    ///< F/F0 over strain
+  SplineFunction activeForceLength;                    ///< F/F0 over ℓ/ℓ0
+  std::optional<SplineFunction> passiveForceLength;    ///< F/F0 over ℓ/ℓ0; absent: exp(8(l−1))/e⁴
+};
+
+struct Muscle {
+  std::string name;
+  std::string className;                    ///< as in the file, e.g. Schutte1993Muscle_Deprecated
+  bool enabled = true;                      ///< false: appliesForce=false / isDisabled=true
+  Path path;
+  std::optional<SchutteParameters> schutte;  ///< present if the class is a Schutte muscle
+};
+
+/// Smooth one-sided springs at a coordinate's limits with a damper between (OpenSim's units are
+/// degrees; here radians).
+struct CoordinateLimitForce {
+  std::string name;
+  std::string coordinate;
+  double upperLimit = 0;      ///< [rad]
+  double upperStiffness = 0;  ///< [N m/rad] ≥ 0
+  double lowerLimit = 0;      ///< [rad] ≤ upperLimit
+  double lowerStiffness = 0;  ///< [N m/rad] ≥ 0
+  double damping = 0;         ///< [N m s/rad] ≥ 0, acts with the springs
+  double transition = 0;      ///< [rad] > 0, width over which stiffness rises from 0
+  bool enabled = true;
+};
+
+/// −stiffness·(q − restLength) − viscosity·q̇
+struct SpringGeneralizedForce {
+  std::string name;
+  std::string coordinate;
+  double stiffness = 0;   ///< [N m/rad]
+  double restLength = 0;  ///< [rad]
+  double viscosity = 0;   ///< [N m s/rad] ≥ 0
+  bool enabled = true;
+};
+
+/// Generalised force given as an expression in q and qdot.
+struct ExpressionBasedCoordinateForce {
+  std::string name;
+  std::string coordinate;
+  std::string expression;  ///< e.g. "-10*q-5*qdot" [N m]
+  bool enabled = true;
+};
+
+struct Model {
+  std::string name;
+  Eigen::Vector3d gravity = {0, -9.80665, 0};  ///< [m/s²] in ground
+  std::vector<Body> bodies;                    ///< without ground
+  std::vector<Joint> joints;                   ///< parents before children
+  std::vector<CoordinateCoupler> couplers;
+  std::vector<WrapObject> wrapObjects;
+  std::vector<Muscle> muscles;
+  std::vector<CoordinateLimitForce> limitForces;
+  std::vector<SpringGeneralizedForce> springForces;
+  std::vector<ExpressionBasedCoordinateForce> expressionForces;
+  std::vector<std::string> warnings;           ///< one line each: what was read but is not simulated
+};
+
+/// The named item, or throws std::invalid_argument that lists the names there are.
+const Body& findBody(const Model& model, const std::string& name);
+const Coordinate& findCoordinate(const Model& model, const std::string& name);
+const WrapObject& findWrapObject(const Model& model, const std::string& name);
+const Muscle& findMuscle(const Model& model, const std::string& name);
+
+}  // namespace bio
