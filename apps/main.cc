@@ -1,8 +1,5 @@
-#include <cstdio>
+#include "run_program.h"
 
-#include "info/version.h"
-
-int main() {
-  std::printf("fisherhill %s\n", info::version());
-  return 0;
+int main(int argc, char** argv) {
+  return app::runProgram({argv, argv + argc}, app::allCommands());
 }

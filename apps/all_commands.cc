@@ -1,0 +1,10 @@
+#include "command.h"
+
+namespace app {
+
+std::vector<std::unique_ptr<Command>> allCommands() {
+  std::vector<std::unique_ptr<Command>> commands;
+  return commands;
+}
+
+}  // namespace app

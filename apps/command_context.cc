@@ -1,0 +1,26 @@
+#include "command_context.h"
+
+#include <algorithm>
+#include <thread>
+
+namespace app {
+
+void addCommonOptions(CLI::App& subcommand, CommandContext& context) {
+  context.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const std::string group = "Results and running";
+  subcommand.add_option("--out", context.out, "folder for the results; created when it is missing")
+      ->type_name("DIR")
+      ->group(group);
+  subcommand.add_flag("--force", context.force, "overwrite an existing result")->group(group);
+  subcommand.add_flag("--json", context.json, "print the summary alone, as JSON")->group(group);
+  subcommand.add_option("--seed", context.seed, "start of every random sequence")
+      ->type_name("N")
+      ->capture_default_str()
+      ->group(group);
+  subcommand.add_option("--threads", context.threads, "threads to use; default: one per core")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024))
+      ->group(group);
+}
+
+}  // namespace app

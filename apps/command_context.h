@@ -1,0 +1,34 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace app {
+
+/// How the program ends; its exit status.
+enum class ExitStatus {
+  done = 0,
+  answerIsNo = 1,     ///< it ran, but a check failed or there is no solution
+  badInput = 2,       ///< wrong use or bad input, told in one line
+  interrupted = 130,  ///< Ctrl-C; finished parts are kept
+};
+
+/// What every subcommand is given: how it was called and the options that all of them have.
+struct CommandContext {
+  std::string subcommand;
+  std::vector<std::string> commandLine;      ///< as typed, program name first
+  std::optional<std::filesystem::path> out;  ///< folder for results; without it nothing is written
+  bool force = false;                        ///< overwrite an existing result
+  bool json = false;                         ///< the summary alone on standard output
+  std::uint64_t seed = 1;                    ///< same seed, same bits
+  int threads = 1;                           ///< ≥ 1
+};
+
+/// Adds --out, --force, --json, --seed and --threads to a subcommand.
+void addCommonOptions(CLI::App& subcommand, CommandContext& context);
+
+}  // namespace app

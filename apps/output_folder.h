@@ -1,0 +1,62 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <ostream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "command_context.h"
+
+namespace app {
+
+/// The folder that --out names, filled all at once.
+///
+/// A file is first written under a temporary name in that folder; commit() renames them all.
+/// Without commit() nothing stays behind, not even the folder if it was made here; only after
+/// Ctrl-C the files finished so far are kept. Without --out nothing is written and nothing is an
+/// error.
+class OutputFolder {
+ public:
+  /// @param resultNames files the subcommand is going to write, beside summary.json and report.html
+  /// @throws std::runtime_error if the folder cannot be made or written to, or if it holds one of
+  ///   those files and --force was not given
+  OutputFolder(const CommandContext& context, std::vector<std::string> resultNames);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  /// False without --out.
+  bool active() const { return !folder_.empty(); }
+
+  /// Where the file of this name is going to be; empty without --out.
+  std::filesystem::path path(std::string_view name) const;
+
+  /// Writes one file; each name once.
+  void write(const std::string& name, const std::function<void(std::ostream&)>& content);
+
+  /// For libraries that write files themselves: they are handed the temporary path, which keeps
+  /// the extension of `name`.
+  void writeFile(const std::string& name,
+                 const std::function<void(const std::filesystem::path&)>& writer);
+
+  /// Gives every file written so far its own name.
+  void commit();
+
+  /// Names of the files written so far.
+  const std::vector<std::string>& files() const { return finished_; }
+
+ private:
+  std::filesystem::path temporaryPath(const std::string& name) const;
+  void mustNotExist(const std::string& name) const;
+
+  std::filesystem::path folder_;
+  std::vector<std::filesystem::path> foldersMade_;  ///< outermost first
+  bool force_ = false;
+  std::vector<std::string> finished_;  ///< complete, maybe still under their temporary names
+  std::string unfinished_;             ///< the file being written
+  std::size_t committed_ = 0;          ///< how many of finished_ have their own name
+};
+
+}  // namespace app

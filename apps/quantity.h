@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+/// Quantities as they are typed on the command line.
+namespace app {
+
+/// A finite number, nothing before or behind it. @throws std::invalid_argument
+double parseNumber(std::string_view text);
+
+/// An angle: degrees when it ends in `deg`, else radians (`rad` may be written). "34deg" → 0.593…
+/// @return [rad]
+/// @throws std::invalid_argument
+double parseAngle(std::string_view text);
+
+/// NAME=VALUE, as --initial and --lock take it.
+struct Assignment {
+  std::string name;
+  double value;  ///< [rad] for an angle, [m] for a translation
+};
+
+/// @throws std::invalid_argument
+Assignment parseAssignment(std::string_view text);
+
+}  // namespace app

@@ -1,0 +1,182 @@
+#include "report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <ctime>
+#include <stdexcept>
+
+#include "info/version.h"
+#include "report_assets.h"
+#include "text.h"
+
+namespace app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Six significant digits are more than a screen can show.
+Json plotNumber(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  return std::stod(fmt::format("{:.6g}", value));
+}
+
+Json plotNumbers(const std::vector<double>& values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(plotNumber(value));
+  return list;
+}
+
+const char* styleName(SeriesStyle style) {
+  switch (style) {
+    case SeriesStyle::line:
+      return "line";
+    case SeriesStyle::dashed:
+      return "dashed";
+    case SeriesStyle::points:
+      return "points";
+  }
+  return "line";
+}
+
+void mustBeAsLong(const Figure& figure, const Series& series, const std::vector<double>& values,
+                  const char* what) {
+  if (values.size() == series.x.size()) return;
+  throw std::invalid_argument(
+      fmt::format("figure '{}', series '{}': {} has {} values, x has {}; they must be as many",
+                  figure.title, series.name, what, values.size(), series.x.size()));
+}
+
+Json figureJson(const Figure& figure) {
+  Json json = {{"xLabel", figure.xLabel},
+               {"yLabel", figure.yLabel},
+               {"xLog", figure.xScale == AxisScale::logarithmic},
+               {"yLog", figure.yScale == AxisScale::logarithmic},
+               {"series", Json::array()}};
+  for (const Series& series : figure.series) {
+    mustBeAsLong(figure, series, series.y, "y");
+    Json one = {{"name", series.name},
+                {"style", styleName(series.style)},
+                {"x", plotNumbers(series.x)},
+                {"y", plotNumbers(series.y)}};
+    if (!series.bandLow.empty() || !series.bandHigh.empty()) {
+      mustBeAsLong(figure, series, series.bandLow, "bandLow");
+      mustBeAsLong(figure, series, series.bandHigh, "bandHigh");
+      one["low"] = plotNumbers(series.bandLow);
+      one["high"] = plotNumbers(series.bandHigh);
+    }
+    json["series"].push_back(std::move(one));
+  }
+  return json;
+}
+
+/// JSON inside a script element must not be able to end that element.
+std::string scriptText(const Json& json) {
+  std::string text;
+  for (const char c : json.dump()) text += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  return text;
+}
+
+std::string html(const Section& section) {
+  return fmt::format("<h2>{}</h2>\n", htmlText(section.title));
+}
+
+std::string html(const Paragraph& paragraph) {
+  return fmt::format("<p>{}</p>\n", htmlText(paragraph.text));
+}
+
+std::string html(const Figure& figure) {
+  std::string text =
+      fmt::format("<figure>\n<h3>{}</h3>\n<div class=\"plot\"></div>\n", htmlText(figure.title));
+  text += fmt::format("<script type=\"application/json\">{}</script>\n",
+                      scriptText(figureJson(figure)));
+  if (!figure.caption.empty()) {
+    text += fmt::format("<figcaption>{}</figcaption>\n", htmlText(figure.caption));
+  }
+  return text + "</figure>\n";
+}
+
+std::string html(const Table& table) {
+  std::string text = "<div class=\"table\">\n";
+  if (!table.title.empty()) text += fmt::format("<h3>{}</h3>\n", htmlText(table.title));
+  text += "<table>\n<thead><tr>";
+  for (const std::string& column : table.columns) {
+    text += fmt::format("<th>{}</th>", htmlText(column));
+  }
+  text += "</tr></thead>\n<tbody>\n";
+  for (const auto& row : table.rows) {
+    if (row.size() != table.columns.size()) {
+      throw std::invalid_argument(fmt::format("table '{}': a row has {} cells, the head has {}",
+                                              table.title, row.size(), table.columns.size()));
+    }
+    text += "<tr>";
+    for (const std::string& cell : row) text += fmt::format("<td>{}</td>", htmlText(cell));
+    text += "</tr>\n";
+  }
+  return text + "</tbody>\n</table>\n</div>\n";
+}
+
+void addFigureRows(Table& table, const std::string& name, const Json& value) {
+  if (value.is_object()) {
+    for (const auto& [key, part] : value.items()) addFigureRows(table, name + "." + key, part);
+  } else if (value.is_number_float()) {
+    table.rows.push_back({name, numberText(value.get<double>(), 6)});
+  } else if (value.is_string()) {
+    table.rows.push_back({name, value.get<std::string>()});
+  } else {
+    table.rows.push_back({name, value.dump()});
+  }
+}
+
+std::string provenance(const Summary& summary) {
+  std::string text = html(Section{"Figures of this result"});
+  Table figures{"", {"name (unit at its end)", "value"}, {}};
+  addFigureRows(figures, "", summary.figures());
+  for (auto& row : figures.rows) row.front().erase(0, 1);  // the dot before a top-level name
+  text += html(figures);
+
+  text += html(Section{"Where this came from"});
+  text += fmt::format("<p>Command line</p>\n<pre>{}</pre>\n", htmlText(summary.commandLine()));
+  Table inputs{"", {"input file", "SHA-256"}, {}};
+  for (const auto& input : summary.inputs()) inputs.rows.push_back({input.path, input.sha256});
+  if (!inputs.rows.empty()) text += html(inputs);
+  text += fmt::format("<p>FisherHill {}. Plots by uPlot 1.6.32 (MIT licence).</p>\n",
+                      htmlText(info::version()));
+  return text;
+}
+
+std::string warningList(const Summary& summary) {
+  if (summary.warnings().empty()) return "";
+  std::string text = "<div class=\"warnings\"><h2>Warnings</h2>\n<ul>\n";
+  for (const std::string& warning : summary.warnings()) {
+    text += fmt::format("<li>{}</li>\n", htmlText(warning));
+  }
+  return text + "</ul></div>\n";
+}
+
+}  // namespace
+
+std::string renderReport(const Report& report, const Summary& summary) {
+  std::string text = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
+  text +=
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+      "script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
+  text += fmt::format("<title>{}</title>\n", htmlText(report.title));
+  text += fmt::format("<!-- Contains uPlot 1.6.32.\n{}-->\n", assets::uplotLicence);
+  text += fmt::format("<style>{}\n{}</style>\n", assets::uplotCss, assets::reportCss);
+  text += "</head>\n<body>\n<main>\n";
+  text += fmt::format("<header><h1>{}</h1>\n<p class=\"verdict\">{}</p></header>\n",
+                      htmlText(report.title), htmlText(report.verdict));
+  if (report.mainFigure) text += html(*report.mainFigure);
+  text += warningList(summary);
+  for (const auto& part : report.details) {
+    text += std::visit([](const auto& item) { return html(item); }, part);
+  }
+  text += provenance(summary);
+  text += "</main>\n";
+  text += fmt::format("<script>{}\n{}</script>\n", assets::uplotJs, assets::reportJs);
+  return text + "</body>\n</html>\n";
+}
+
+}  // namespace app

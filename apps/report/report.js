@@ -1,0 +1,82 @@
+"use strict";
+// Draws every figure whose numbers stand in a script element beside its div.plot.
+(() => {
+  // Okabe and Ito's palette, told apart by colour-blind readers; yellow is left out on white.
+  const colours = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#E69F00", "#56B4E9",
+    "#7A5195"];
+  const dashes = [[], [10, 5], [3, 4], [12, 4, 3, 4]];
+  const font = '14px "Source Sans 3", "Segoe UI", "Liberation Sans", Arial, sans-serif';
+
+  const text = value => value == null ? "–" : String(Number(value.toPrecision(4)));
+
+  // One table of increasing x for each curve; a value a logarithmic axis cannot show becomes a gap.
+  const tableOf = (curve, figure) => {
+    const columns = [curve.y].concat(curve.low ? [curve.low, curve.high] : []);
+    const order = curve.x.map((x, i) => i)
+      .filter(i => curve.x[i] !== null && !(figure.xLog && curve.x[i] <= 0))
+      .sort((a, b) => curve.x[a] - curve.x[b]);
+    const shown = value => value !== null && !(figure.yLog && value <= 0) ? value : null;
+    return [order.map(i => curve.x[i]), ...columns.map(column => order.map(i => shown(column[i])))];
+  };
+
+  const axis = (label, log, size) => ({
+    label, font, labelFont: "600 " + font, size, labelSize: 26, labelGap: 2,
+    stroke: "#1a1a1a", grid: { stroke: "#e2e2e2", width: 1 }, ticks: { stroke: "#888", width: 1 },
+    values: (plot, values) => values.map(v => v === null ? "" : log ? text(v) : String(+v.toFixed(10))),
+  });
+
+  const draw = (place, figure) => {
+    const tables = figure.series.map(curve => tableOf(curve, figure));
+    const data = tables.length ? uPlot.join(tables) : [[]];
+    const series = [{ label: figure.xLabel, value: (plot, v) => text(v) }];
+    const bands = [];
+    figure.series.forEach((curve, i) => {
+      const colour = colours[i % colours.length];
+      const points = curve.style === "points";
+      const turn = Math.floor(i / colours.length) + (curve.style === "dashed" ? 1 : 0);
+      series.push({
+        label: curve.name, stroke: colour, width: points ? 0 : 2, dash: dashes[turn % dashes.length],
+        points: points ? { show: true, size: 6, stroke: colour, fill: colour } : { show: figure.xLog },
+        paths: points ? () => null : undefined,
+        value: (plot, v) => text(v),
+      });
+      if (curve.low) {
+        const upper = series.length + 1;
+        const edge = { stroke: "transparent", width: 0, points: { show: false }, class: "band" };
+        series.push({ ...edge, label: "low" }, { ...edge, label: "high" });
+        bands.push({ series: [upper, upper - 1], fill: colour + "33" });
+      }
+    });
+    const plot = new uPlot({
+      width: place.clientWidth, height: 340, series, bands,
+      scales: {
+        x: { time: false, distr: figure.xLog ? 3 : 1 },
+        y: { distr: figure.yLog ? 3 : 1 },
+      },
+      axes: [axis(figure.xLabel, figure.xLog, 34), axis(figure.yLabel, figure.yLog, 62)],
+      cursor: { points: { size: 7 }, drag: { x: true, y: true, uni: 30 } },
+      legend: { live: true },
+    }, data, place);
+
+    // The edges of a band need no line of their own in the legend; dashes and points show there.
+    const rows = place.querySelectorAll(".u-legend .u-series");
+    series.forEach((one, i) => {
+      if (one.class === "band") rows[i].style.display = "none";
+      const marker = rows[i].querySelector(".u-marker");
+      if (!marker || !one.stroke || i === 0) return;
+      const points = one.width === 0;
+      const style = points ? "dotted" : one.dash && one.dash.length ? "dashed" : "solid";
+      marker.style.cssText = points
+        ? `width:8px;height:8px;border-radius:50%;border:0;background:${colours[colourIndex(i)]}`
+        : `width:22px;height:0;border:0;border-top:3px ${style} ${colours[colourIndex(i)]}`;
+    });
+    function colourIndex(row) {
+      return series.slice(1, row).filter(one => one.class !== "band").length % colours.length;
+    }
+    window.addEventListener("resize", () => plot.setSize({ width: place.clientWidth, height: 340 }));
+  };
+
+  document.querySelectorAll("figure").forEach(figure => {
+    draw(figure.querySelector(".plot"), JSON.parse(figure.querySelector("script").textContent));
+  });
+})();

@@ -1,0 +1,94 @@
+#include "simulation_options.h"
+
+#include <fmt/format.h>
+
+namespace app {
+namespace {
+
+const std::string modelGroup = "Model";
+const std::string simulationGroup = "Simulation";
+
+CLI::Option* addAssignments(CLI::App& subcommand, const std::string& name,
+                            std::vector<Assignment>& target, const std::string& description) {
+  return subcommand
+      .add_option_function<std::vector<std::string>>(
+          name,
+          [&target, name](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) {
+              try {
+                target.push_back(parseAssignment(text));
+              } catch (const std::invalid_argument& error) {
+                throw CLI::ValidationError(name, error.what());
+              }
+            }
+          },
+          description)
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+}
+
+}  // namespace
+
+double SimulationOptions::stepOrDefault() const {
+  return step.value_or(integrator == "rk4" ? 2e-4 : 0.01);
+}
+
+void addModelOptions(CLI::App& subcommand, SimulationOptions& options) {
+  subcommand
+      .add_option("--coordinate", options.coordinates,
+                  "coordinate that is free to move; may be repeated")
+      ->type_name("NAME")
+      ->allow_extra_args(false)
+      ->delimiter(',')
+      ->capture_default_str()
+      ->group(modelGroup);
+  addAssignments(subcommand, "--lock", options.locks,
+                 "where to lock another coordinate instead of at its default; 30deg or 0.52")
+      ->group(modelGroup);
+  subcommand
+      .add_option("--wrap-as-cylinder", options.wrapAsCylinder,
+                  "take this wrap ellipsoid, two of whose semi-axes are equal, as a cylinder")
+      ->type_name("NAME")
+      ->allow_extra_args(false)
+      ->delimiter(',')
+      ->group(modelGroup);
+}
+
+void addSimulationOptions(CLI::App& subcommand, SimulationOptions& options) {
+  addModelOptions(subcommand, options);
+  subcommand
+      .add_option("--integrator", options.integrator,
+                  "vi (variational, second order), vi-left (the thesis's, first order), rk4 or "
+                  "cvode (adaptive reference)")
+      ->check(CLI::IsMember({"vi", "vi-left", "rk4", "cvode"}))
+      ->capture_default_str()
+      ->group(simulationGroup);
+  subcommand
+      .add_option_function<std::string>(
+          "--step",
+          [&options](const std::string& text) {
+            double step = 0;
+            try {
+              step = parseNumber(text);
+            } catch (const std::invalid_argument& error) {
+              throw CLI::ValidationError("--step", error.what());
+            }
+            if (!(step > 0)) {
+              throw CLI::ValidationError("--step", fmt::format("{} s must be > 0", text));
+            }
+            options.step = step;
+          },
+          "time step; default 0.01 (rk4: 0.0002)")
+      ->type_name("SECONDS")
+      ->group(simulationGroup);
+  addAssignments(subcommand, "--initial", options.initial,
+                 "start value of a free coordinate, at rest; 34deg or 0.59. Default: the first "
+                 "measured value, else the model's default")
+      ->group(simulationGroup);
+  subcommand
+      .add_flag("--ignore-extra", options.ignoreExtra,
+                "pass over columns of the trial that the model does not know")
+      ->group(simulationGroup);
+}
+
+}  // namespace app

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "quantity.h"
+
+namespace app {
+
+/// The options that every subcommand with a simulation has, as they were typed; names are checked
+/// against the model later.
+struct SimulationOptions {
+  std::string integrator = "vi";                             ///< vi, vi-left, rk4 or cvode
+  std::optional<double> step;                                ///< Δt [s] > 0; see stepOrDefault
+  std::vector<std::string> coordinates = {"elbow_flexion"};  ///< the free ones
+  std::vector<Assignment> locks;            ///< locked coordinates that are not at their defaults
+  std::vector<Assignment> initial;          ///< start values of free coordinates
+  std::vector<std::string> wrapAsCylinder;  ///< ellipsoids to take as cylinders
+  bool ignoreExtra = false;                 ///< pass over a trial's unknown columns
+
+  /// Δt [s]: as given, else 0.01 for the variational integrators and for CVODE's output, 2e-4 for
+  /// RK4, which is unstable at long steps.
+  double stepOrDefault() const;
+};
+
+void addSimulationOptions(CLI::App& subcommand, SimulationOptions& options);
+
+/// Only the options that choose a model's free coordinates: --coordinate, --lock and
+/// --wrap-as-cylinder.
+void addModelOptions(CLI::App& subcommand, SimulationOptions& options);
+
+}  // namespace app

@@ -1,0 +1,56 @@
+#include "text.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace app {
+
+std::string oneLine(std::string_view text) {
+  constexpr std::string_view space = " \t\r\n";
+  std::string line;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view part = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    const std::size_t first = part.find_first_not_of(space);
+    if (first == part.npos) continue;
+    part = part.substr(first, part.find_last_not_of(space) - first + 1);
+    if (!line.empty()) line += "; ";
+    line += part;
+  }
+  return line;
+}
+
+std::string numberText(double value, int digits) {
+  if (!std::isfinite(value)) return "–";
+  return fmt::format("{:.{}g}", value, digits);
+}
+
+std::string htmlText(std::string_view text) {
+  std::string html;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        html += "&amp;";
+        break;
+      case '<':
+        html += "&lt;";
+        break;
+      case '>':
+        html += "&gt;";
+        break;
+      case '"':
+        html += "&quot;";
+        break;
+      case '\'':
+        html += "&#39;";
+        break;
+      default:
+        html += c;
+    }
+  }
+  return html;
+}
+
+}  // namespace app

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+/// How the program writes text: one-line messages, numbers for people, escapes for HTML.
+namespace app {
+
+/// The text with line breaks turned into "; " and space trimmed from both ends.
+std::string oneLine(std::string_view text);
+
+/// The number with at most `digits` significant digits; "–" when it is not finite.
+std::string numberText(double value, int digits = 4);
+
+/// & < > " ' replaced by their HTML entities.
+std::string htmlText(std::string_view text);
+
+}  // namespace app
