@@ -1,0 +1,69 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <complex>
+#include <vector>
+
+namespace bio {
+
+/// One second-order section, H(z) = (b0 + b1 z⁻¹ + b2 z⁻²) / (1 + a1 z⁻¹ + a2 z⁻²).
+/// A first-order factor has b2 = a2 = 0.
+struct SecondOrderSection {
+  double b0 = 1;
+  double b1 = 0;
+  double b2 = 0;
+  double a1 = 0;
+  double a2 = 0;
+};
+
+/// A linear filter for signals of one rate: its sections one after the other.
+struct Filter {
+  std::vector<SecondOrderSection> sections;
+  double sampleRate = 0;  ///< [Hz] > 0
+};
+
+/// How often the filter will pass over the signal. Forward and backward squares the gain, so that a
+/// filter designed for one pass would have −6 dB at its cut-off; for `forwardAndBackward` the
+/// prototype's corner is moved by (√2 − 1)^(−1/2n), so that the gain of both passes together is −3
+/// dB at the cut-off that was asked for.
+enum class Passes { once, forwardAndBackward };
+
+/// Butterworth filters by the bilinear transform with prewarped edges. With w = tan(πf/fs) the gain
+/// of one pass is exactly |H|² = 1/(1 + Ω²ⁿ), n the order of the low-pass prototype, and
+///     low-pass   Ω = w/w_c            high-pass  Ω = w_c/w
+///     band-pass  Ω = (w² − w_l w_h)/((w_h − w_l) w)          band-stop  the reciprocal
+/// so a band-pass or band-stop of order n has 2n poles and slopes of order n on both sides. Unit
+/// gain at 0 (low-pass, band-stop), fs/2 (high-pass) or the band's centre, |Ω| = 1 at every edge.
+/// Source: Butterworth 1930; Oppenheim & Schafer, Discrete-Time Signal Processing, section 7.1.
+///
+/// @param order n, 1 to 10
+/// @param cutoff,low,high edges [Hz], 0 < edge < sampleRate/2, low < high
+/// @param sampleRate fs [Hz] > 0
+/// @throws std::invalid_argument naming the edge, order or rate that breaks its rule
+Filter butterworthLowPass(int order, double cutoff, double sampleRate,
+                          Passes passes = Passes::once);
+Filter butterworthHighPass(int order, double cutoff, double sampleRate,
+                           Passes passes = Passes::once);
+Filter butterworthBandPass(int order, double low, double high, double sampleRate,
+                           Passes passes = Passes::once);
+Filter butterworthBandStop(int order, double low, double high, double sampleRate,
+                           Passes passes = Passes::once);
+
+/// H at a frequency [Hz] of one pass: z = exp(2πi f/fs).
+std::complex<double> frequencyResponse(const Filter& filter, double frequency);
+
+/// Samples until the slowest pole has decayed to `remainder` (0 < remainder < 1).
+Eigen::Index settlingSamples(const Filter& filter, double remainder = 1e-6);
+
+/// One pass forward in time. Starts in the steady state of the first sample: a constant signal goes
+/// through without a transient.
+/// @throws std::invalid_argument if the signal is empty or holds a value that is not finite
+Eigen::VectorXd filterForward(const Filter& filter, const Eigen::VectorXd& signal);
+
+/// A pass forward and a pass backward: zero phase, gain |H|². Both ends are continued by their
+/// odd reflection (2·x₀ − x), as far as the filter remembers or the signal reaches.
+/// @throws std::invalid_argument if the signal has fewer than 6·sections + 1 samples or holds a
+/// value that is not finite
+Eigen::VectorXd filterZeroPhase(const Filter& filter, const Eigen::VectorXd& signal);
+
+}  // namespace bio
