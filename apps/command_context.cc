@@ -13,8 +13,9 @@ void addCommonOptions(CLI::App& subcommand, CommandContext& context) {
       ->group(group);
   subcommand.add_flag("--force", context.force, "overwrite an existing result")->group(group);
   subcommand.add_flag("--json", context.json, "print the summary alone, as JSON")->group(group);
-  subcommand.add_option("--seed", context.seed, "start of every random sequence")
+  subcommand.add_option("--seed", context.seed, "start of every random sequence, ≥ 0")
       ->type_name("N")
+      ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
       ->group(group);
   subcommand.add_option("--threads", context.threads, "threads to use; default: one per core")

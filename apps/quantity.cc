@@ -14,8 +14,8 @@ double parseNumber(std::string_view text) {
   const char* end = text.data() + text.size();
   const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
   const auto [stop, error] = std::from_chars(digits.data(), end, value);
-  if (digits.empty() || digits.starts_with("+") || error != std::errc() || stop != end ||
-      !std::isfinite(value)) {
+  if ((digits.size() < text.size() && digits.starts_with('-')) || error != std::errc() ||
+      stop != end || !std::isfinite(value)) {
     throw std::invalid_argument(fmt::format("'{}' is not a finite number", text));
   }
   return value;

@@ -14,12 +14,12 @@ enum class SeriesStyle { line, dashed, points };
 
 /// One curve. A NaN in y means "not measured": the line has a gap there, a point is left out.
 struct Series {
-  std::string name;
-  std::vector<double> x;  ///< any order; drawn from left to right
-  std::vector<double> y;  ///< as long as x
+  std::string name = {};
+  std::vector<double> x = {};  ///< any order; drawn from left to right
+  std::vector<double> y = {};  ///< as long as x
   SeriesStyle style = SeriesStyle::line;
-  std::vector<double> bandLow;   ///< lower edge of a shaded band, as long as x; empty: no band
-  std::vector<double> bandHigh;  ///< upper edge
+  std::vector<double> bandLow = {};   ///< lower edge of a shaded band, as long as x; empty: no band
+  std::vector<double> bandHigh = {};  ///< upper edge
 };
 
 enum class AxisScale { linear, logarithmic };
@@ -27,36 +27,36 @@ enum class AxisScale { linear, logarithmic };
 /// Curves over one axis. At most eight are told apart by colour; values ≤ 0 on a logarithmic axis
 /// are left out.
 struct Figure {
-  std::string title;
-  std::string xLabel;  ///< with its unit: "Time [s]"
-  std::string yLabel;  ///< with its unit: "Elbow flexion [deg]"
-  std::vector<Series> series;
-  std::string caption;  ///< what to see, one or two sentences; may be empty
+  std::string title = {};
+  std::string xLabel = {};  ///< with its unit: "Time [s]"
+  std::string yLabel = {};  ///< with its unit: "Elbow flexion [deg]"
+  std::vector<Series> series = {};
+  std::string caption = {};  ///< what to see, one or two sentences; may be empty
   AxisScale xScale = AxisScale::linear;
   AxisScale yScale = AxisScale::linear;
 };
 
 struct Table {
-  std::string title;
-  std::vector<std::string> columns;            ///< with units
-  std::vector<std::vector<std::string>> rows;  ///< each as long as columns
+  std::string title = {};
+  std::vector<std::string> columns = {};            ///< with units
+  std::vector<std::vector<std::string>> rows = {};  ///< each as long as columns
 };
 
 struct Paragraph {
-  std::string text;
+  std::string text = {};
 };
 
 struct Section {
-  std::string title;
+  std::string title = {};
 };
 
 /// First what was run, the verdict in a sentence and the main figure; then the details in their
 /// order; then where it all came from, which is taken from the summary.
 struct Report {
-  std::string title;    ///< what was run: "Replay of trial_a.sto on elbow8.osim"
-  std::string verdict;  ///< the answer in one sentence
-  std::optional<Figure> mainFigure;
-  std::vector<std::variant<Section, Paragraph, Figure, Table>> details;
+  std::string title = {};    ///< what was run: "Replay of trial_a.sto on elbow8.osim"
+  std::string verdict = {};  ///< the answer in one sentence
+  std::optional<Figure> mainFigure = {};
+  std::vector<std::variant<Section, Paragraph, Figure, Table>> details = {};
 };
 
 /// @throws std::invalid_argument if a series' x and y, or a table's columns and row, differ in

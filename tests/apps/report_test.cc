@@ -1,0 +1,93 @@
+#include "report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <stdexcept>
+
+namespace app {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+
+Report smallReport() {
+  Report report;
+  report.title = "Replay of a.sto";
+  report.verdict = "It moves.";
+  report.mainFigure = {.title = "Angle",
+                       .xLabel = "Time [s]",
+                       .yLabel = "Elbow flexion [deg]",
+                       .series = {{.name = "measured",
+                                   .x = {0, 0.1, 0.2},
+                                   .y = {10, missing, 12},
+                                   .style = SeriesStyle::points}}};
+  return report;
+}
+
+TEST(Report, BeginsWithWhatWasRunTheVerdictAndTheFigure) {
+  Report report = smallReport();
+  report.details = {Section{"Muscles"}, Paragraph{"Eight of them."}};
+  const std::string html = renderReport(report, Summary({}));
+  const auto at = [&](const char* text) { return html.find(text); };
+  ASSERT_NE(at("<h1>Replay of a.sto</h1>"), html.npos);
+  EXPECT_LT(at("<h1>Replay of a.sto</h1>"), at("It moves."));
+  EXPECT_LT(at("It moves."), at("<figure>"));
+  EXPECT_LT(at("<figure>"), at("<h2>Muscles</h2>"));
+  EXPECT_LT(at("<h2>Muscles</h2>"), at("<p>Eight of them.</p>"));
+  EXPECT_LT(at("<p>Eight of them.</p>"), at("<h2>Where this came from</h2>"));
+}
+
+TEST(Report, KeepsWhatWasNotMeasuredAsAGap) {
+  EXPECT_THAT(renderReport(smallReport(), Summary({})), HasSubstr("\"y\":[10.0,null,12.0]"));
+}
+
+TEST(Report, NeedsNothingFromElsewhere) {
+  const std::string html = renderReport(smallReport(), Summary({}));
+  EXPECT_THAT(html,
+              AllOf(HasSubstr("default-src 'none'"), Not(HasSubstr("src=\"")),
+                    Not(HasSubstr("href=\"")), Not(HasSubstr("@import")), Not(HasSubstr("url("))));
+  EXPECT_THAT(html, HasSubstr("Copyright (c) 2022 Leon Sorokin"));
+}
+
+TEST(Report, TakesTextLiterally) {
+  Report report = smallReport();
+  report.title = "<b>&\"";
+  report.mainFigure->series[0].name = "</script><script>alert(1)</script>";
+  const std::string html = renderReport(report, Summary({}));
+  EXPECT_THAT(html, HasSubstr("<h1>&lt;b&gt;&amp;&quot;</h1>"));
+  EXPECT_THAT(html, Not(HasSubstr("<script>alert(1)")));
+}
+
+TEST(Report, ShowsFiguresWarningsAndProvenance) {
+  CommandContext context;
+  context.commandLine = {"fisherhill", "replay", "a.osim"};
+  Summary summary(context);
+  summary.set("rms_error_deg", 1.23456789);
+  summary.set("observed_order", {{"vi", 2.0}});
+  summary.warn("muscle ANC has no column");
+  EXPECT_THAT(renderReport(smallReport(), summary),
+              AllOf(HasSubstr("<td>rms_error_deg</td><td>1.23457</td>"),
+                    HasSubstr("<td>observed_order.vi</td><td>2</td>"),
+                    HasSubstr("<li>muscle ANC has no column</li>"),
+                    HasSubstr("<pre>fisherhill replay a.osim</pre>")));
+}
+
+TEST(Report, RefusesListsOfDifferentLength) {
+  Report report = smallReport();
+  report.mainFigure->series[0].y.pop_back();
+  EXPECT_THROW(renderReport(report, Summary({})), std::invalid_argument);
+  report = smallReport();
+  report.mainFigure->series[0].bandLow = {0, 0, 0};
+  EXPECT_THROW(renderReport(report, Summary({})), std::invalid_argument);
+  report = smallReport();
+  report.details = {Table{"", {"a", "b"}, {{"1"}}}};
+  EXPECT_THROW(renderReport(report, Summary({})), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace app
