@@ -15,31 +15,37 @@ namespace bio {
 struct FramePlacement {
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();  ///< [m]
   Eigen::Vector3d orientation = Eigen::Vector3d::Zero();  ///< body-fixed x-y-z angles [rad]
+  friend bool operator==(const FramePlacement&, const FramePlacement&) = default;
 };
 
 // Functions of one variable, as files give them ---------------------------------------------------
 
 struct ConstantFunction {
   double value = 0;
+  friend bool operator==(const ConstantFunction&, const ConstantFunction&) = default;
 };
 /// slope·x + intercept
 struct LinearFunction {
   double slope = 1;
   double intercept = 0;
+  friend bool operator==(const LinearFunction&, const LinearFunction&) = default;
 };
 /// Interpolating cubic spline with Forsythe–Malcolm–Moler ends, linear outside (curves.h).
 struct SplineFunction {
   std::vector<double> x;  ///< strictly rising, at least 2
   std::vector<double> y;
+  friend bool operator==(const SplineFunction&, const SplineFunction&) = default;
 };
 /// Straight lines between the points, extended outside.
 struct PiecewiseLinearFunction {
   std::vector<double> x;  ///< strictly rising, at least 2
   std::vector<double> y;
+  friend bool operator==(const PiecewiseLinearFunction&, const PiecewiseLinearFunction&) = default;
 };
 /// Σ_i c_i x^(n−i): highest power first, as OpenSim writes it.
 struct PolynomialFunction {
   std::vector<double> coefficients;
+  friend bool operator==(const PolynomialFunction&, const PolynomialFunction&) = default;
 };
 
 /// scale · shape(x); nested MultiplierFunctions are multiplied out into `scale`.
@@ -48,26 +54,30 @@ struct Function {
   std::variant<ConstantFunction, LinearFunction, SplineFunction, PiecewiseLinearFunction,
                PolynomialFunction>
       shape;
+  friend bool operator==(const Function&, const Function&) = default;
 };
 
 // Skeleton ----------------------------------------------------------------------------------------
 
 struct Body {
   std::string name;
-  double mass = 0;                                         ///< [kg] ≥ 0
-  Eigen::Vector3d massCenter = Eigen::Vector3d::Zero();    ///< in the body frame [m]
-  std::array<double, 6> inertia = {0, 0, 0, 0, 0, 0};      ///< xx yy zz xy xz yz about massCenter [kg m²]
-  std::vector<std::string> geometryFiles;                  ///< .vtp names, for pictures only
+  double mass = 0;                                       ///< [kg] ≥ 0
+  Eigen::Vector3d massCenter = Eigen::Vector3d::Zero();  ///< in the body frame [m]
+  std::array<double, 6> inertia = {0, 0, 0,
+                                   0, 0, 0};  ///< xx yy zz xy xz yz about massCenter [kg m²]
+  std::vector<std::string> geometryFiles;     ///< .vtp names, for pictures only
+  friend bool operator==(const Body&, const Body&) = default;
 };
 
 struct Coordinate {
   std::string name;
-  bool isRotation = true;       ///< radians, else metres
-  double defaultValue = 0;      ///< [rad] or [m]
-  double rangeMin = 0;          ///< [rad] or [m]
-  double rangeMax = 0;          ///< [rad] or [m], ≥ rangeMin
+  bool isRotation = true;   ///< radians, else metres
+  double defaultValue = 0;  ///< [rad] or [m]
+  double rangeMin = 0;      ///< [rad] or [m]
+  double rangeMax = 0;      ///< [rad] or [m], ≥ rangeMin
   bool locked = false;
   bool clamped = false;
+  friend bool operator==(const Coordinate&, const Coordinate&) = default;
 };
 
 /// One of the six axes of a custom joint: rotation about, or translation along, `axis` by
@@ -75,15 +85,16 @@ struct Coordinate {
 struct TransformAxis {
   std::string coordinate;  ///< empty: constant
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
-  Function function;       ///< [rad] or [m]
+  Function function;  ///< [rad] or [m]
+  friend bool operator==(const TransformAxis&, const TransformAxis&) = default;
 };
 
 enum class JointKind { weld, pin, slider, custom };
 
 /// parent body · parentFrame · motion(q) · childFrame⁻¹ = child body.
 /// A pin turns about z, a slider moves along x of the parent frame; a custom joint turns about
-/// axes[0], axes[1], axes[2] (body-fixed, in that order) and shifts along axes[3..5], all given in the
-/// parent frame.
+/// axes[0], axes[1], axes[2] (body-fixed, in that order) and shifts along axes[3..5], all given in
+/// the parent frame.
 struct Joint {
   std::string name;
   JointKind kind = JointKind::weld;
@@ -93,6 +104,7 @@ struct Joint {
   FramePlacement childFrame;
   std::vector<Coordinate> coordinates;
   std::array<TransformAxis, 6> axes;  ///< used by custom joints only
+  friend bool operator==(const Joint&, const Joint&) = default;
 };
 
 /// dependent = function(independent)
@@ -101,6 +113,7 @@ struct CoordinateCoupler {
   std::string independent;
   std::string dependent;
   Function function;
+  friend bool operator==(const CoordinateCoupler&, const CoordinateCoupler&) = default;
 };
 
 // Paths -------------------------------------------------------------------------------------------
@@ -111,26 +124,29 @@ struct WrapObject {
   std::string name;
   std::string body;
   WrapShape shape = WrapShape::cylinder;
-  FramePlacement frame;             ///< of the shape in its body; a cylinder's axis is its z
-  std::string quadrant = "all";     ///< all, x, +x, -x, y, +y, -y, z, +z, -z
+  FramePlacement frame;          ///< of the shape in its body; a cylinder's axis is its z
+  std::string quadrant = "all";  ///< all, x, +x, -x, y, +y, -y, z, +z, -z
   bool active = true;
-  double radius = 0;                ///< cylinder, sphere [m] > 0; torus: inner radius
-  double outerRadius = 0;           ///< torus [m]
-  double length = 0;                ///< cylinder [m] > 0
+  double radius = 0;       ///< cylinder, sphere [m] > 0; torus: inner radius
+  double outerRadius = 0;  ///< torus [m]
+  double length = 0;       ///< cylinder [m] > 0
   Eigen::Vector3d semiAxes = Eigen::Vector3d::Zero();  ///< ellipsoid [m] > 0
+  friend bool operator==(const WrapObject&, const WrapObject&) = default;
 };
 
-/// Points active only while lower ≤ coordinate ≤ upper.
+/// The point counts only while lower ≤ coordinate ≤ upper.
 struct PointCondition {
   std::string coordinate;
   double lower = 0;  ///< [rad] or [m]
   double upper = 0;
+  friend bool operator==(const PointCondition&, const PointCondition&) = default;
 };
 
 /// Location by three functions of coordinates.
 struct PointMotion {
   std::array<std::string, 3> coordinate;  ///< empty: constant
   std::array<Function, 3> location;       ///< x, y, z in the body frame [m]
+  friend bool operator==(const PointMotion&, const PointMotion&) = default;
 };
 
 struct PathPoint {
@@ -139,44 +155,49 @@ struct PathPoint {
   Eigen::Vector3d location = Eigen::Vector3d::Zero();  ///< in the body frame [m]
   std::optional<PointCondition> condition;
   std::optional<PointMotion> motion;  ///< overrides location
+  friend bool operator==(const PathPoint&, const PathPoint&) = default;
 };
 
 struct PathWrap {
   std::string wrapObject;
   int firstPoint = -1;  ///< 1-based, −1: the first point of the path
   int lastPoint = -1;   ///< 1-based, −1: the last point
+  friend bool operator==(const PathWrap&, const PathWrap&) = default;
 };
 
 struct Path {
   std::vector<PathPoint> points;  ///< at least 2
   std::vector<PathWrap> wraps;    ///< the first one that a span penetrates wins
+  friend bool operator==(const Path&, const Path&) = default;
 };
 
 // Forces ------------------------------------------------------------------------------------------
 
 /// Parameters of a Schutte muscle (schutte_muscle.h says what they mean).
 struct SchutteParameters {
-  double maxIsometricForce = 0;    ///< F0 [N] > 0
-  double optimalFibreLength = 0;   ///< ℓ0 [m] > 0
-  double tendonSlackLength = 0;    ///< ℓs [m] > 0
-  double pennation = 0;            ///< α0 at ℓ0 [rad], 0 ≤ α0 < π/2
-  double timeScale = 0.1;          ///< t_s [s] > 0
-  double activation1 = 7.667;      ///< rate factor per excitation, rising [1]
-  double activation2 = 1.459854;   ///< rate factor [1] > 0
-  double damping = 0.1;            ///< B, normalised by F0·t_s/ℓ0 [1] > 0
+  double maxIsometricForce = 0;   ///< F0 [N] > 0
+  double optimalFibreLength = 0;  ///< ℓ0 [m] > 0
+  double tendonSlackLength = 0;   ///< ℓs [m] > 0
+  double pennation = 0;           ///< α0 at ℓ0 [rad], 0 ≤ α0 < π/2
+  double timeScale = 0.1;         ///< t_s [s] > 0
+  double activation1 = 7.667;     ///< rate factor per excitation, rising [1]
+  double activation2 = 1.459854;  ///< rate factor [1] > 0
+  double damping = 0.1;           ///< B, normalised by F0·t_s/ℓ0 [1] > 0
   double minControl = 0;
   double maxControl = 1;
-  SplineFunction tendonForceLength;                    ///< F/F0 over strain
-  SplineFunction activeForceLength;                    ///< F/F0 over ℓ/ℓ0
-  std::optional<SplineFunction> passiveForceLength;    ///< F/F0 over ℓ/ℓ0; absent: exp(8(l−1))/e⁴
+  SplineFunction tendonForceLength;                  ///< F/F0 over strain
+  SplineFunction activeForceLength;                  ///< F/F0 over ℓ/ℓ0
+  std::optional<SplineFunction> passiveForceLength;  ///< F/F0 over ℓ/ℓ0; absent: exp(8(l−1))/e⁴
+  friend bool operator==(const SchutteParameters&, const SchutteParameters&) = default;
 };
 
 struct Muscle {
   std::string name;
-  std::string className;                    ///< as in the file, e.g. Schutte1993Muscle_Deprecated
-  bool enabled = true;                      ///< false: appliesForce=false / isDisabled=true
+  std::string className;  ///< as in the file, e.g. Schutte1993Muscle_Deprecated
+  bool enabled = true;    ///< false: appliesForce=false / isDisabled=true
   Path path;
   std::optional<SchutteParameters> schutte;  ///< present if the class is a Schutte muscle
+  friend bool operator==(const Muscle&, const Muscle&) = default;
 };
 
 /// Smooth one-sided springs at a coordinate's limits with a damper between (OpenSim's units are
@@ -191,6 +212,7 @@ struct CoordinateLimitForce {
   double damping = 0;         ///< [N m s/rad] ≥ 0, acts with the springs
   double transition = 0;      ///< [rad] > 0, width over which stiffness rises from 0
   bool enabled = true;
+  friend bool operator==(const CoordinateLimitForce&, const CoordinateLimitForce&) = default;
 };
 
 /// −stiffness·(q − restLength) − viscosity·q̇
@@ -201,6 +223,7 @@ struct SpringGeneralizedForce {
   double restLength = 0;  ///< [rad]
   double viscosity = 0;   ///< [N m s/rad] ≥ 0
   bool enabled = true;
+  friend bool operator==(const SpringGeneralizedForce&, const SpringGeneralizedForce&) = default;
 };
 
 /// Generalised force given as an expression in q and qdot.
@@ -209,10 +232,14 @@ struct ExpressionBasedCoordinateForce {
   std::string coordinate;
   std::string expression;  ///< e.g. "-10*q-5*qdot" [N m]
   bool enabled = true;
+  friend bool operator==(const ExpressionBasedCoordinateForce&,
+                         const ExpressionBasedCoordinateForce&) = default;
 };
 
 struct Model {
   std::string name;
+  std::string credits;  ///< who made it, and where its numbers come from
+  std::string publications;
   Eigen::Vector3d gravity = {0, -9.80665, 0};  ///< [m/s²] in ground
   std::vector<Body> bodies;                    ///< without ground
   std::vector<Joint> joints;                   ///< parents before children
@@ -222,7 +249,9 @@ struct Model {
   std::vector<CoordinateLimitForce> limitForces;
   std::vector<SpringGeneralizedForce> springForces;
   std::vector<ExpressionBasedCoordinateForce> expressionForces;
-  std::vector<std::string> warnings;           ///< one line each: what was read but is not simulated
+  std::vector<std::string> warnings;  ///< one line each: what was read but is not simulated
+  std::vector<std::string> remarks;   ///< one line each: what was read otherwise than written
+  friend bool operator==(const Model&, const Model&) = default;
 };
 
 /// The named item, or throws std::invalid_argument that lists the names there are.

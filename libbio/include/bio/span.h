@@ -14,10 +14,10 @@ using Mat3 = Eigen::Matrix<T, 3, 3>;
 /// stationary in the contact points, so that the gradient consists of the unit end tangents.
 template <class T>
 struct Span {
-  T length;        ///< L [m]
-  Vec3<T> dL_dP;   ///< ∂L/∂P = −(unit tangent at P, towards Q)
-  Vec3<T> dL_dQ;   ///< ∂L/∂Q = +(unit tangent at Q, away from P)
-  bool touches;    ///< false: a straight line
+  T length;       ///< L [m]
+  Vec3<T> dL_dP;  ///< ∂L/∂P = −(unit tangent at P, towards Q)
+  Vec3<T> dL_dQ;  ///< ∂L/∂Q = +(unit tangent at Q, away from P)
+  bool touches;   ///< false: a straight line
 };
 
 /// Second derivatives of a span's length [1/m].
