@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <cmath>
 
 namespace bio {
 
@@ -27,5 +28,43 @@ struct SpanHessian {
   Mat3<T> d2L_dPdQ;  ///< rows P, columns Q
   Mat3<T> d2L_dQdQ;
 };
+
+/// A span with its second derivatives, in plain numbers.
+struct SpanToSecondOrder {
+  Span<double> span;
+  SpanHessian<double> hessian;
+};
+
+/// Where a wrapped path meets and leaves its surface; for a straight span the values mean nothing.
+template <class T>
+struct WrapContact {
+  Vec3<T> p_CA;  ///< first contact, seen from P [m]
+  Vec3<T> p_CB;  ///< last contact [m]
+  T angle;       ///< wrapped angle β [rad] > 0
+};
+
+/// @throws std::domain_error: an end of a wrapped path is not outside its surface. Distances in m.
+[[noreturn]] void throwEndInside(const char* center, double distanceP, double distanceQ,
+                                 double radius);
+
+/// The straight span from P to Q. C∞ for P ≠ Q.
+template <class T>
+Span<T> straightSpan(const Vec3<T>& p_CP, const Vec3<T>& p_CQ) {
+  using std::sqrt;
+  const Vec3<T> difference = p_CQ - p_CP;
+  const T length = sqrt(T(difference.squaredNorm()));
+  const Vec3<T> tangent = difference / length;
+  return {length, Vec3<T>(-tangent), tangent, false};
+}
+
+/// straightSpan with its Hessian (1/L)(1 − t tᵀ), t the unit tangent.
+inline SpanToSecondOrder straightSpanToSecondOrder(const Vec3<double>& p_CP,
+                                                   const Vec3<double>& p_CQ) {
+  SpanToSecondOrder result{straightSpan<double>(p_CP, p_CQ), {}};
+  const Vec3<double>& t = result.span.dL_dQ;
+  const Mat3<double> across = (Mat3<double>::Identity() - t * t.transpose()) / result.span.length;
+  result.hessian = {across, -across, across};
+  return result;
+}
 
 }  // namespace bio

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <cstddef>
+#include <variant>
+#include <vector>
+
+#include "bio/model.h"
+#include "info/dual.h"
+
+namespace bio {
+
+using info::plainValue;
+
+/// A function of one variable with its first two derivatives.
+struct CurveValue {
+  double value;
+  double slope;
+  double curvature;
+};
+
+/// Cubic polynomials between knots, any polynomial of degree ≤ 3 outside them.
+///
+///     y(x) = value + t·(slope + t·(quadratic + t·cubic)),   t = x − start
+///
+/// with the coefficients of the segment that holds x. NaN in gives NaN out. No allocation, no
+/// state: safe to share between threads.
+class PiecewiseCubic {
+ public:
+  struct Segment {
+    double start = 0;
+    double value = 0;
+    double slope = 0;
+    double quadratic = 0;
+    double cubic = 0;
+  };
+
+  /// segments.size() = knots.size() + 1: before the first knot, between, after the last.
+  PiecewiseCubic(std::vector<double> knots, std::vector<Segment> segments);
+
+  /// y(x) for any scalar; derivatives flow through the scalar type.
+  template <class T>
+  T value(const T& x) const {
+    const Segment& s = segmentAt(plainValue(x));
+    const T t = x - T(s.start);
+    const T linear = T(s.quadratic) + t * T(s.cubic);
+    const T inner = T(s.slope) + t * linear;
+    return T(s.value) + t * inner;
+  }
+
+  /// y, dy/dx and d²y/dx².
+  CurveValue evaluate(double x) const {
+    const Segment& s = segmentAt(x);
+    const double t = x - s.start;
+    return {s.value + t * (s.slope + t * (s.quadratic + t * s.cubic)),
+            s.slope + t * (2 * s.quadratic + t * 3 * s.cubic), 2 * s.quadratic + 6 * t * s.cubic};
+  }
+
+  /// The segment that holds x; a knot belongs to the segment on its right.
+  const Segment& segmentAt(double x) const {
+    // Counting the knots below x has no branch to mispredict and vectorises.
+    std::ptrdiff_t count = 0;
+    for (const double knot : knots_) count += knot <= x ? 1 : 0;
+    return segments_[static_cast<std::size_t>(count)];
+  }
+
+ private:
+  std::vector<double> knots_;
+  std::vector<Segment> segments_;
+};
+
+/// Interpolating cubic spline through the points of a SplineFunction, C² between the end points.
+///
+/// End conditions of Forsythe, Malcolm and Moler (1977): the third derivative on the first and last
+/// interval is that of the cubic through the four points at that end. Three points give their
+/// parabola, two their line. Outside the points it goes on straight with the slope of the end.
+/// A point given twice (same x and y) counts once.
+///
+/// @throws std::invalid_argument for fewer than two different points, values that are not finite,
+///         knots that fall, or two values at one knot
+class CubicSpline : public PiecewiseCubic {
+ public:
+  explicit CubicSpline(const SplineFunction& points);
+};
+
+/// Straight lines through the points, C⁰, extended outside.
+/// @throws std::invalid_argument as CubicSpline does
+class PiecewiseLinear : public PiecewiseCubic {
+ public:
+  explicit PiecewiseLinear(const PiecewiseLinearFunction& points);
+};
+
+/// Evaluates any function that a model file can hold: scale·shape(x).
+class FunctionEvaluator {
+ public:
+  /// @throws std::invalid_argument for points that a spline or polyline cannot go through
+  explicit FunctionEvaluator(const Function& function);
+
+  CurveValue evaluate(double x) const;
+
+  template <class T>
+  T value(const T& x) const {
+    if (const auto* curve = std::get_if<PiecewiseCubic>(&shape_)) {
+      return T(scale_) * curve->value(x);
+    }
+    T sum(0.0);
+    for (const double c : std::get<PolynomialFunction>(shape_).coefficients) {
+      const T shifted = sum * x;
+      sum = shifted + T(c);
+    }
+    return T(scale_) * sum;
+  }
+
+ private:
+  double scale_;
+  std::variant<PiecewiseCubic, PolynomialFunction> shape_;
+};
+
+}  // namespace bio

@@ -1,0 +1,154 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include "info/dual.h"
+#include "bio/span.h"
+
+namespace bio {
+
+using info::plainValue;
+
+/// Which way a path goes round an axis from its first point to its last, seen against the axis (the
+/// axis points at the eye).
+enum class Side { counterclockwise = 1, clockwise = -1 };
+
+/// The path from P to Q round a cylinder, seen along its axis: what length, gradient and Hessian
+/// are made of.
+template <class T>
+struct CylinderGeometry {
+  T distanceP, distanceQ;  ///< ρ, of the ends from the axis [m]
+  T tangentP, tangentQ;    ///< √(ρ² − r²), from the ends to their contacts [m]
+  T eP[2], eQ[2];          ///< unit tangents at P (towards the contact) and Q (away from it)
+  T angle;                 ///< wrapped angle β ∈ (0, 2π) [rad]; meaningless if !touches
+  bool touches;            ///< β > 0
+};
+
+/// @throws std::domain_error if an end point is not outside the cylinder
+template <class T>
+CylinderGeometry<T> cylinderGeometry(const T& radius, Side side, const Vec3<T>& p_CP,
+                                     const Vec3<T>& p_CQ) {
+  using std::atan2;
+  using std::sqrt;
+  const double sigma = side == Side::counterclockwise ? 1.0 : -1.0;
+  const T r = radius * T(sigma);  // signed: all turning below follows it
+  const T rr = radius * radius;
+  const T pp = p_CP.x() * p_CP.x() + p_CP.y() * p_CP.y();
+  const T qq = p_CQ.x() * p_CQ.x() + p_CQ.y() * p_CQ.y();
+  if (!(plainValue(pp) > plainValue(rr)) || !(plainValue(qq) > plainValue(rr))) {
+    throwEndInside("cylinder's axis", std::sqrt(plainValue(pp)), std::sqrt(plainValue(qq)),
+                   plainValue(radius));
+  }
+  CylinderGeometry<T> g;
+  const T perPP = T(1.0) / pp;
+  const T perQQ = T(1.0) / qq;
+  g.distanceP = sqrt(pp);
+  g.distanceQ = sqrt(qq);
+  g.tangentP = sqrt(T(pp - rr));
+  g.tangentQ = sqrt(T(qq - rr));
+  const T& a = g.tangentP;
+  const T& b = g.tangentQ;
+
+  // Unit tangents: the ends' radial and turning directions, mixed by sin and cos of the tangent
+  // angle.
+  g.eP[0] = -(a * p_CP.x() + r * p_CP.y()) * perPP;
+  g.eP[1] = (r * p_CP.x() - a * p_CP.y()) * perPP;
+  g.eQ[0] = (b * p_CQ.x() - r * p_CQ.y()) * perQQ;
+  g.eQ[1] = (r * p_CQ.x() + b * p_CQ.y()) * perQQ;
+
+  // Walking along the path turns the tangent by β, from eP to eQ. The ends' own angle tells apart
+  // β < 0 (no contact) from β > π.
+  const T turn = (g.eP[0] * g.eQ[1] - g.eP[1] * g.eQ[0]) * T(sigma);
+  const T along = g.eP[0] * g.eQ[0] + g.eP[1] * g.eQ[1];
+  const bool halfTurn = sigma * (plainValue(p_CP.x()) * plainValue(p_CQ.y()) -
+                                 plainValue(p_CP.y()) * plainValue(p_CQ.x())) <
+                        0;  // ends more than π apart
+  g.touches = halfTurn || plainValue(turn) > 0;
+  if (g.touches) {
+    const T principal = atan2(turn, along);
+    g.angle = plainValue(principal) < 0 ? T(principal + T(2 * std::numbers::pi)) : principal;
+  } else {
+    g.angle = T(0.0);
+  }
+  return g;
+}
+
+/// Shortest path from P to Q on a given side of an endless cylinder about the z-axis of frame C.
+///
+/// Unrolled, the path is a straight line: with s its length seen along z and P, Q the distances of
+/// the ends from the axis,
+///     s = √(P² − r²) + r·β + √(Q² − r²),   L = √(s² + Δz²)
+///     β = Φ − arccos(r/P) − arccos(r/Q),   Φ ∈ [0, 2π) the angle from P to Q on the given side.
+/// L is stationary in the contact points, so their motion does not enter the gradient. The path is
+/// straight where β ≤ 0. L is C¹ at lift-off (β = 0), C∞ elsewhere, and jumps where P and Q lie on
+/// one ray from the axis (Φ = 0). β may exceed π. ∂L/∂r = β·s/L.
+///
+/// Appendix A of Wilson's thesis, which decides contact by (A.1) alone; that also fires when the
+/// axis lies beyond the segment, hence β > 0 here.
+///
+/// @param radius r [m] > 0
+/// @throws std::domain_error if an end point is not outside the cylinder
+template <class T>
+Span<T> wrapCylinder(const T& radius, Side side, const Vec3<T>& p_CP, const Vec3<T>& p_CQ) {
+  using std::sqrt;
+  const CylinderGeometry<T> g = cylinderGeometry(radius, side, p_CP, p_CQ);
+  if (!g.touches) return straightSpan(p_CP, p_CQ);
+  const T s = g.tangentP + radius * g.angle + g.tangentQ;
+  const T h = p_CQ.z() - p_CP.z();
+  const T length = sqrt(T(s * s + h * h));
+  const T around = s / length;
+  const T up = h / length;
+  const Vec3<T> dL_dP(T(-around * g.eP[0]), T(-around * g.eP[1]), T(-up));
+  const Vec3<T> dL_dQ(T(around * g.eQ[0]), T(around * g.eQ[1]), up);
+  return {length, dL_dP, dL_dQ, true};
+}
+
+/// wrapCylinder with second derivatives, in closed form: s falls apart into a part of P and one of
+/// Q, whose Hessians are (1/a) n nᵀ with a the tangent length and n across the tangent. At lift-off
+/// the Hessian jumps.
+inline SpanToSecondOrder wrapCylinderToSecondOrder(double radius, Side side,
+                                                   const Vec3<double>& p_CP,
+                                                   const Vec3<double>& p_CQ) {
+  const CylinderGeometry<double> g = cylinderGeometry(radius, side, p_CP, p_CQ);
+  if (!g.touches) return straightSpanToSecondOrder(p_CP, p_CQ);
+  const double s = g.tangentP + radius * g.angle + g.tangentQ;
+  const double h = p_CQ.z() - p_CP.z();
+  const double length = std::sqrt(s * s + h * h);
+  const double perLength = 1 / length;
+  const double around = s * perLength;
+  const double up = h * perLength;
+
+  // Gradient of s in the plane, and of L = √(s² + h²).
+  const Vec3<double> eP(g.eP[0], g.eP[1], 0), eQ(g.eQ[0], g.eQ[1], 0);
+  SpanToSecondOrder result;
+  result.span = {length, Vec3<double>(-around * eP.x(), -around * eP.y(), -up),
+                 Vec3<double>(around * eQ.x(), around * eQ.y(), up), true};
+
+  // Curvature of L over (s, h) is (1/L) m mᵀ with m = (up, −around): one dyad for both ends.
+  const Vec3<double> mP(-up * eP.x(), -up * eP.y(), around);
+  const Vec3<double> mQ(up * eQ.x(), up * eQ.y(), -around);
+  const Vec3<double> nP(-eP.y(), eP.x(), 0), nQ(-eQ.y(), eQ.x(), 0);
+  const double bendP = around / g.tangentP;
+  const double bendQ = around / g.tangentQ;
+  result.hessian.d2L_dPdP = (bendP * nP) * nP.transpose() + (perLength * mP) * mP.transpose();
+  result.hessian.d2L_dPdQ = (perLength * mP) * mQ.transpose();
+  result.hessian.d2L_dQdQ = (bendQ * nQ) * nQ.transpose() + (perLength * mQ) * mQ.transpose();
+  return result;
+}
+
+/// Contact points and wrapped angle of wrapCylinder; angle = 0 if the path is straight.
+template <class T>
+WrapContact<T> wrapCylinderContact(const T& radius, Side side, const Vec3<T>& p_CP,
+                                   const Vec3<T>& p_CQ) {
+  const CylinderGeometry<T> g = cylinderGeometry(radius, side, p_CP, p_CQ);
+  const T s = g.tangentP + radius * g.angle + g.tangentQ;
+  const T rise = (p_CQ.z() - p_CP.z()) / s;  // height gained per length seen along z
+  const Vec3<T> p_CA(T(p_CP.x() + g.tangentP * g.eP[0]), T(p_CP.y() + g.tangentP * g.eP[1]),
+                     T(p_CP.z() + g.tangentP * rise));
+  const Vec3<T> p_CB(T(p_CQ.x() - g.tangentQ * g.eQ[0]), T(p_CQ.y() - g.tangentQ * g.eQ[1]),
+                     T(p_CQ.z() - g.tangentQ * rise));
+  return {p_CA, p_CB, g.angle};
+}
+
+}  // namespace bio
