@@ -311,6 +311,9 @@ StaticEquilibrium staticEquilibrium(const SchutteMuscle<double>& muscle, double 
     result.tendonForce = muscle.tendonForce(result.fibreLength, muscleTendonLength);
     const bool loaded = result.tendonForce > 0;
     result.why = loaded ? StaticEquilibrium::Why::found : StaticEquilibrium::Why::forceFree;
+  } else if (fa >= 0 && fa < 1e-4) {
+    // The fibre does not pull where the tendon goes slack: they part without force.
+    result = {StaticEquilibrium::Why::forceFree, upper, 0, 0};
   }
   return result;
 }

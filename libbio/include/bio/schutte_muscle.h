@@ -294,8 +294,10 @@ MuscleForces muscleForces(const SchutteMuscle<double>& muscle, double activation
 /// Where a fibre comes to rest.
 struct StaticEquilibrium {
   enum class Why {
-    found,           ///< the fibre force balances the tendon force
-    forceFree,       ///< fibre and tendon carry no force; fibreLength leaves the tendon just slack
+    found,  ///< the fibre force balances the tendon force
+    /// fibre and tendon carry no force: where the tendon goes slack the fibre's curves are 0, to
+    /// within the ripple of the splines (1e-4 F0); fibreLength leaves the tendon just slack
+    forceFree,
     tendonTooShort,  ///< ℓ_MT ≤ ℓs: the tendon is slack at every fibre length, so the fibre only
                      ///< shortens
     notBracketed,  ///< no sign change of the force difference between the borders

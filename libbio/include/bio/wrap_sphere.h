@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "info/dual.h"
 #include "bio/span.h"
+#include "info/dual.h"
 
 namespace bio {
 
