@@ -208,7 +208,8 @@ Eigen::VectorXd filterForward(const Filter& filter, const Eigen::VectorXd& signa
   return out;
 }
 
-Eigen::VectorXd filterZeroPhase(const Filter& filter, const Eigen::VectorXd& signal) {
+Eigen::VectorXd filterZeroPhase(const Filter& filter, const Eigen::VectorXd& signal,
+                                Reflection reflection) {
   checkFinite(signal);
   const Eigen::Index n = signal.size();
   const auto least = static_cast<Eigen::Index>(6 * filter.sections.size() + 1);
@@ -217,12 +218,16 @@ Eigen::VectorXd filterZeroPhase(const Filter& filter, const Eigen::VectorXd& sig
         fmt::format("signal of {} samples: a zero-phase filter of {} sections needs at least {}", n,
                     filter.sections.size(), least));
   }
-  // continue both ends by point reflection
+  // continue both ends
   const Eigen::Index pad = std::min(n - 1, settlingSamples(filter));
   Eigen::VectorXd x(n + 2 * pad);
-  x.head(pad) = 2 * signal[0] - signal.segment(1, pad).reverse().array();
+  x.head(pad) = signal.segment(1, pad).reverse();
   x.segment(pad, n) = signal;
-  x.tail(pad) = 2 * signal[n - 1] - signal.segment(n - 1 - pad, pad).reverse().array();
+  x.tail(pad) = signal.segment(n - 1 - pad, pad).reverse();
+  if (reflection == Reflection::odd) {
+    x.head(pad) = (2 * signal[0] - x.head(pad).array()).matrix();
+    x.tail(pad) = (2 * signal[n - 1] - x.tail(pad).array()).matrix();
+  }
   // there and back
   pass(filter, x);
   x.reverseInPlace();

@@ -186,6 +186,18 @@ TEST(FilterZeroPhase, LeavesAStraightLineAsItIsUpToBothEnds) {
   EXPECT_LT((y - line).cwiseAbs().maxCoeff(), 1e-5);  // measured 4e-8
 }
 
+// Even reflection continues a level: what alternates about 1 comes out as 1, also at the ends,
+// where odd reflection would hold on to the single end value.
+TEST(FilterZeroPhase, HoldsTheLevelOfARestlessSignalAtItsEndsWhenReflectedEvenly) {
+  const Eigen::VectorXd restless =
+      Eigen::VectorXd::NullaryExpr(3000, [](Eigen::Index i) { return i % 2 == 0 ? 0.0 : 2.0; });
+  const Filter low = bio::butterworthLowPass(2, 5, fs);
+  const Eigen::VectorXd even = bio::filterZeroPhase(low, restless, bio::Reflection::even);
+  EXPECT_LT((even.array() - 1).abs().maxCoeff(), 0.02);
+  const Eigen::VectorXd odd = bio::filterZeroPhase(low, restless, bio::Reflection::odd);
+  EXPECT_LT(odd[0], 0.1);
+}
+
 TEST(FilterZeroPhase, TreatsAReversedSignalAsTheReverseOfTheSignal) {
   const Eigen::VectorXd x = noise(5000, 1);
   for (const Filter& filter :

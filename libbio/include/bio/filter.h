@@ -60,10 +60,16 @@ Eigen::Index settlingSamples(const Filter& filter, double remainder = 1e-6);
 /// @throws std::invalid_argument if the signal is empty or holds a value that is not finite
 Eigen::VectorXd filterForward(const Filter& filter, const Eigen::VectorXd& signal);
 
+/// How a signal goes on beyond its ends. `odd`, 2·x₀ − x, continues a value and a slope and keeps
+/// the end value itself; `even`, x, continues a level and is for what fluctuates about one, such as
+/// a rectified EMG, whose single end value says nothing.
+enum class Reflection { odd, even };
+
 /// A pass forward and a pass backward: zero phase, gain |H|². Both ends are continued by their
-/// odd reflection (2·x₀ − x), as far as the filter remembers or the signal reaches.
+/// reflection, as far as the filter remembers or the signal reaches.
 /// @throws std::invalid_argument if the signal has fewer than 6·sections + 1 samples or holds a
 /// value that is not finite
-Eigen::VectorXd filterZeroPhase(const Filter& filter, const Eigen::VectorXd& signal);
+Eigen::VectorXd filterZeroPhase(const Filter& filter, const Eigen::VectorXd& signal,
+                                Reflection reflection = Reflection::odd);
 
 }  // namespace bio
