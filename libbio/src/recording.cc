@@ -20,7 +20,7 @@ std::vector<RawColumn> readColumns(const std::string& file, RecordingFormat form
     case RecordingFormat::trigno:
       return readTrigno(file);
     default:
-      return readTable(file);
+      return readTableColumns(file);
   }
 }
 

@@ -163,8 +163,3 @@ std::vector<RawColumn> readTrigno(const std::string& file) {
 }
 
 }  // namespace bio
-namespace bio {
-std::vector<RawColumn> readTable(const std::string& file) {
-  throw FileError(file);
-}
-}  // namespace bio

@@ -35,6 +35,6 @@ std::vector<RawColumn> numberColumns(const std::string& file, const std::vector<
 /// Reads one format each.
 std::vector<RawColumn> readPlainColumns(const std::string& file);
 std::vector<RawColumn> readTrigno(const std::string& file);
-std::vector<RawColumn> readTable(const std::string& file);
+std::vector<RawColumn> readTableColumns(const std::string& file);
 
 }  // namespace bio

@@ -119,6 +119,42 @@ TEST_F(Recordings, RenamesAndRescalesAHeadedColumnByItsHeader) {
   fails(file("t.csv", trigno), layout, "declared rate 1000 Hz, but the file says 2148.1481 Hz");
 }
 
+TEST_F(Recordings, ReadsATableWithUnitsInItsNamesAndASparserColumnAtItsOwnRate) {
+  std::string text = "time,biceps_uV,elbow_flexion_deg\n";
+  for (int i = 0; i < 9; ++i) {
+    text += std::to_string(0.001 * i + 2) + "," + std::to_string(i) + "," +
+            (i % 3 == 1 && i != 4 ? std::to_string(10 * i) : "") + "\n";
+  }
+  const std::string path = file("t.csv", text);
+  EXPECT_EQ(bio::detectFormat(path), bio::RecordingFormat::table);
+  const bio::Recording r = bio::readRecording(path);
+  const bio::Channel& emg = bio::findChannel(r, "biceps_uV");
+  EXPECT_EQ(emg.unit, "uV");
+  EXPECT_EQ(emg.rate, 1000);
+  EXPECT_DOUBLE_EQ(emg.startTime, 2);
+  EXPECT_EQ(emg.values.size(), 9);
+  // filled in rows 1 and 7 only
+  const bio::Channel& angle = bio::findChannel(r, "elbow_flexion_deg");
+  EXPECT_EQ(angle.unit, "deg");
+  EXPECT_NEAR(angle.rate, 1000.0 / 6, 1e-9);
+  EXPECT_DOUBLE_EQ(angle.startTime, 2.001);
+  EXPECT_EQ(angle.values, Eigen::Vector2d(10, 70));
+}
+
+TEST_F(Recordings, ToleratesRoundedTimesButNotAMissingRow) {
+  // 1481.4815 Hz printed to 0.1 ms: single intervals are off by up to 15 %
+  std::string rounded = "time_s,e\n";
+  std::string missing = "time_s,e\n";
+  for (int i = 0; i < 400; ++i) {
+    const std::string time = std::to_string(std::round(i / 1481.4815 * 1e4) / 1e4);
+    rounded += time + ",1\n";
+    if (i != 350) missing += time + ",1\n";
+  }
+  EXPECT_NEAR(bio::readRecording(file("rounded.csv", rounded)).channels[0].rate, 1481.4815, 0.3);
+  fails(file("missing.csv", missing), {}, "intervals away from equal spacing");
+  fails(file("one.csv", "time,e\n0,1\n"), {}, "has 1 rows");
+}
+
 TEST_F(Recordings, NamesFileLineAndColumnOfWhatItCannotRead) {
   bio::RecordingLayout layout;
   layout.columns = {column(1, "x", 10, "mV")};
