@@ -1,13 +1,20 @@
 "use strict";
 // Draws every figure whose numbers stand in a script element beside its div.plot.
 (() => {
-  // Okabe and Ito's palette, told apart by colour-blind readers; yellow is left out on white.
+  // Okabe and Ito's palette, told apart by colour-blind readers; grey stands for its yellow, which
+  // is too pale on white.
   const colours = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#E69F00", "#56B4E9",
-    "#7A5195"];
+    "#808080"];
   const dashes = [[], [10, 5], [3, 4], [12, 4, 3, 4]];
   const font = '14px "Source Sans 3", "Segoe UI", "Liberation Sans", Arial, sans-serif';
 
-  const text = value => value == null ? "–" : String(Number(value.toPrecision(4)));
+  const numberText = (value, digits) => {
+    if (value == null) return "–";
+    const short = Number(value.toPrecision(digits));
+    const plain = short === 0 || (Math.abs(short) >= 1e-3 && Math.abs(short) < 1e6);
+    return (plain ? String(short) : short.toExponential()).replace("e+", "e").replace("-", "−");
+  };
+  const text = value => numberText(value, 4);
 
   // One table of increasing x for each curve; a value a logarithmic axis cannot show becomes a gap.
   const tableOf = (curve, figure) => {
@@ -19,10 +26,13 @@
     return [order.map(i => curve.x[i]), ...columns.map(column => order.map(i => shown(column[i])))];
   };
 
-  const axis = (label, log, size) => ({
-    label, font, labelFont: "600 " + font, size, labelSize: 26, labelGap: 2,
+  const axis = (label, side) => ({
+    label, font, labelFont: "600 " + font, labelSize: 26, labelGap: 2,
+    // On the left the axis is as wide as its longest number.
+    size: (plot, values) => side === "x" ? 34 :
+      18 + 8 * Math.max(2, ...(values || []).map(v => v === null ? 0 : v.length)),
     stroke: "#1a1a1a", grid: { stroke: "#e2e2e2", width: 1 }, ticks: { stroke: "#888", width: 1 },
-    values: (plot, values) => values.map(v => v === null ? "" : log ? text(v) : String(+v.toFixed(10))),
+    values: (plot, values) => values.map(v => v === null ? "" : numberText(v, 8)),
   });
 
   const draw = (place, figure) => {
@@ -53,7 +63,7 @@
         x: { time: false, distr: figure.xLog ? 3 : 1 },
         y: { distr: figure.yLog ? 3 : 1 },
       },
-      axes: [axis(figure.xLabel, figure.xLog, 34), axis(figure.yLabel, figure.yLog, 62)],
+      axes: [axis(figure.xLabel, "x"), axis(figure.yLabel, "y")],
       cursor: { points: { size: 7 }, drag: { x: true, y: true, uni: 30 } },
       legend: { live: true },
     }, data, place);
