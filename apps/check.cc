@@ -1,0 +1,150 @@
+#include "check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "bio/file_error.h"
+#include "bio/osim_file.h"
+#include "bio/table_file.h"
+#include "result.h"
+#include "text.h"
+
+namespace app {
+namespace {
+
+struct Finding {
+  std::string file;
+  std::string level;  ///< "error", "warning" or "unusual"
+  std::string message;
+};
+
+/// Error messages name their file themselves.
+std::string lineOf(const Finding& finding) {
+  const bool named = finding.message.starts_with(finding.file);
+  return fmt::format("{}: {}{}", finding.level, named ? "" : finding.file + ": ", finding.message);
+}
+
+struct Findings {
+  std::vector<Finding> list;
+
+  void add(const std::string& file, const std::string& level, const std::string& message) {
+    list.push_back({file, level, oneLine(message)});
+  }
+  auto count(std::string_view level) const {
+    return std::count_if(list.begin(), list.end(), [&](const auto& f) { return f.level == level; });
+  }
+};
+
+bool isModel(const std::string& file) {
+  return std::filesystem::path(file).extension() == ".osim";
+}
+
+/// What a file holds, for the report.
+using Contents = std::vector<std::variant<Section, Paragraph, Figure, Table>>;
+
+Contents checkModel(const std::string& file, Findings& findings) {
+  const bio::Model model = bio::readOsim(file);
+  for (const std::string& warning : model.warnings) findings.add(file, "warning", warning);
+  for (const std::string& remark : model.remarks) findings.add(file, "unusual", remark);
+  std::size_t coordinates = 0;
+  for (const bio::Joint& joint : model.joints) coordinates += joint.coordinates.size();
+  return {Section{file},
+          Paragraph{fmt::format("Model “{}”: {} bodies, {} joints with {} coordinates, {} muscles, "
+                                "{} wrap objects.",
+                                model.name, model.bodies.size(), model.joints.size(), coordinates,
+                                model.muscles.size(), model.wrapObjects.size())}};
+}
+
+Contents checkTrial(const std::string& file, Findings&) {
+  const bio::Table table = bio::readTable(file);
+  const Eigen::VectorXd times = bio::timesOf(table);
+  Table columns{"Columns", {"column", "smallest", "largest", "not measured"}, {}};
+  Figure figure{.title = "All columns", .xLabel = "Time [s]", .yLabel = "Value, as in the file"};
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    const auto column = table.values.col(static_cast<Eigen::Index>(i));
+    columns.rows.push_back({table.columns[i],
+                            numberText(column.minCoeff<Eigen::PropagateNumbers>()),
+                            numberText(column.maxCoeff<Eigen::PropagateNumbers>()),
+                            std::to_string(column.array().isNaN().count())});
+    if (table.columns[i].starts_with("time")) continue;
+    figure.series.push_back({.name = table.columns[i],
+                             .x = {times.begin(), times.end()},
+                             .y = {column.begin(), column.end()}});
+  }
+  const Eigen::Index rows = times.size();
+  const double duration = times(rows - 1) - times(0);
+  return {Section{file}, Paragraph{fmt::format("{} rows over {} s.", rows, numberText(duration))},
+          figure, columns};
+}
+
+class Check : public Command {
+ public:
+  About about() const override {
+    return {"check", "Read models and trials and list what is wrong or unusual",
+            "fisherhill check models/elbow8.osim"};
+  }
+
+  void addOptions(CLI::App& options) override {
+    options.add_option("FILE", files_, "models (.osim) and trials (.sto, .mot, .csv)")
+        ->required()
+        ->check(CLI::ExistingFile)
+        ->type_name("");
+  }
+
+  ExitStatus run(const CommandContext& context) override {
+    OutputFolder folder(context, {});
+    Summary summary(context);
+    Report report;
+    Findings findings;
+    for (const std::string& file : files_) {
+      summary.addInput(file);
+      try {
+        const Contents contents =
+            isModel(file) ? checkModel(file, findings) : checkTrial(file, findings);
+        report.details.insert(report.details.end(), contents.begin(), contents.end());
+      } catch (const bio::FileError& error) {
+        findings.add(file, "error", error.what());
+      }
+    }
+    tell(context, findings, summary, report);
+    deliver(context, summary, report, folder);
+    return findings.count("error") == 0 ? ExitStatus::done : ExitStatus::answerIsNo;
+  }
+
+ private:
+  void tell(const CommandContext& context, const Findings& findings, Summary& summary,
+            Report& report) const {
+    report.title = fmt::format("Check of {}", fmt::join(files_, ", "));
+    const auto errors = findings.count("error");
+    report.verdict = errors > 0
+                         ? fmt::format("{} cannot be used as it stands.",
+                                       errors == 1 ? "One file" : fmt::format("{} files", errors))
+                     : findings.list.empty() ? "Nothing is wrong and nothing is unusual."
+                                             : "Every file can be used; what is unusual is listed.";
+    summary.set("errors", errors);
+    summary.set("warnings_found", findings.count("warning"));
+    summary.set("unusual", findings.count("unusual"));
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    Table table{"What was found", {"file", "kind", "finding"}, {}};
+    for (const Finding& finding : findings.list) {
+      list.push_back(
+          {{"file", finding.file}, {"level", finding.level}, {"message", finding.message}});
+      table.rows.push_back({finding.file, finding.level, finding.message});
+      if (!context.json) fmt::print("{}\n", lineOf(finding));
+    }
+    summary.set("findings", list);
+    if (!table.rows.empty()) report.details.insert(report.details.begin(), table);
+  }
+
+  std::vector<std::string> files_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> checkCommand() {
+  return std::make_unique<Check>();
+}
+
+}  // namespace app

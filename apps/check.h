@@ -1,0 +1,14 @@
+#pragma once
+
+#include <memory>
+
+#include "command.h"
+
+namespace app {
+
+/// `fisherhill check FILE…`: reads models and trials and lists what is wrong or unusual.
+/// Status 0: nothing is wrong (there may be warnings); 1: a file has an error; 2: wrong use, or a
+/// file that does not exist.
+std::unique_ptr<Command> checkCommand();
+
+}  // namespace app

@@ -1,0 +1,30 @@
+# The arrows of the architecture, checked on the link lines while configuring.
+
+# Everything a target links, directly or through others: names of targets and library files.
+function(fisherhill_collect_links target seen_variable)
+  set(seen ${${seen_variable}})
+  foreach(property LINK_LIBRARIES INTERFACE_LINK_LIBRARIES)
+    get_target_property(links ${target} ${property})
+    foreach(link IN LISTS links)
+      string(REGEX REPLACE "^\\$<LINK_ONLY:(.*)>$" "\\1" link "${link}")
+      if(NOT link OR link IN_LIST seen)
+        continue()
+      endif()
+      list(APPEND seen ${link})
+      if(TARGET ${link})
+        fisherhill_collect_links(${link} seen)
+      endif()
+    endforeach()
+  endforeach()
+  set(${seen_variable} ${seen} PARENT_SCOPE)
+endfunction()
+
+# fisherhill_must_not_link(target pattern): stops if the target reaches a library that matches.
+function(fisherhill_must_not_link target pattern)
+  set(links "")
+  fisherhill_collect_links(${target} links)
+  list(FILTER links INCLUDE REGEX "${pattern}")
+  if(links)
+    message(FATAL_ERROR "${target} must not link ${links}: it points up the architecture's arrows")
+  endif()
+endfunction()

@@ -1,0 +1,187 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/run_program.h"
+#include "support/scratch_folder.h"
+
+namespace {
+
+using support::ProgramResult;
+using support::runFisherHill;
+using support::ScratchFolder;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr const char* goodTrial = "time,BIClong\n0,0.1\n0.1,0.2\n0.2,0.1\n";
+
+long lines(const std::string& text) {
+  return std::count(text.begin(), text.end(), '\n');
+}
+
+TEST(CheckCommand, AGoodTrialIsStatusZero) {
+  const ScratchFolder scratch;
+  const ProgramResult result = runFisherHill({"check", scratch.file("good.csv", goodTrial)});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+}
+
+TEST(CheckCommand, JsonIsTheSummaryAlone) {
+  const ScratchFolder scratch;
+  const std::string file = scratch.file("good.csv", goodTrial);
+  const ProgramResult result = runFisherHill({"check", file, "--json"});
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json["subcommand"], "check");
+  EXPECT_EQ(json["errors"], 0);
+  EXPECT_EQ(json["inputs"][0]["path"], file);
+  EXPECT_EQ(json["command_line"], "fisherhill check " + file + " --json");
+}
+
+TEST(CheckCommand, WritesSummaryAndReportIntoANewFolder) {
+  const ScratchFolder scratch;
+  const std::string file = scratch.file("good.csv", goodTrial);
+  const std::string out = (scratch / "a/b").string();
+  const ProgramResult result = runFisherHill({"check", file, "--out", out});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(scratch.listing(),
+              ElementsAre("a", "a/b", "a/b/report.html", "a/b/summary.json", "good.csv"));
+  const auto json = nlohmann::json::parse(support::contentOf(out + "/summary.json"));
+  EXPECT_THAT(json["files"], ElementsAre("report.html"));
+  EXPECT_THAT(result.out, HasSubstr("Report: " + out + "/report.html"));
+}
+
+TEST(CheckCommand, AnExistingResultIsKeptUnlessForced) {
+  const ScratchFolder scratch;
+  const std::string file = scratch.file("good.csv", goodTrial);
+  std::filesystem::create_directory(scratch / "out");
+  scratch.file("out/summary.json", "old");
+  const std::vector<std::string> arguments = {"check", file, "--out", (scratch / "out").string()};
+  const ProgramResult refused = runFisherHill(arguments);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("summary.json exists already; --force overwrites it"));
+  EXPECT_EQ(support::contentOf(scratch / "out/summary.json"), "old");
+  EXPECT_THAT(scratch.listing(), ElementsAre("good.csv", "out", "out/summary.json"));
+
+  std::vector<std::string> forced = arguments;
+  forced.push_back("--force");
+  EXPECT_EQ(runFisherHill(forced).status, 0);
+  EXPECT_NE(support::contentOf(scratch / "out/summary.json"), "old");
+}
+
+struct BadFile {
+  const char* name;
+  const char* content;
+  const char* message;  ///< a part of the one line
+};
+
+class CheckBadFile : public testing::TestWithParam<BadFile> {};
+
+TEST_P(CheckBadFile, IsNamedInOneLineAndIsStatusOne) {
+  const ScratchFolder scratch;
+  const std::string file = scratch.file(GetParam().name, GetParam().content);
+  const ProgramResult result = runFisherHill({"check", file, "--json"});
+  EXPECT_EQ(result.status, 1) << result.err << result.out;
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json["errors"], 1);
+  const std::string message = json["findings"][0]["message"];
+  EXPECT_THAT(message, testing::StartsWith(file));
+  EXPECT_THAT(message, HasSubstr(GetParam().message));
+  EXPECT_EQ(lines(message), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, CheckBadFile,
+    testing::Values(
+        BadFile{"empty.csv", "", "empty.csv"}, BadFile{"head_only.csv", "time,BIClong\n", "row"},
+        BadFile{"no_time.csv", "t,BIClong\n0,1\n", "time"},
+        BadFile{"back.csv", "time,BIClong\n0,0\n0.2,0\n0.1,0\n", "back.csv:4"},
+        BadFile{"same.csv", "time,BIClong\n0,0\n0,0\n", "same.csv:3"},
+        BadFile{"word.csv", "time,BIClong\n0,0\n0.1,much\n", "word.csv:3"},
+        BadFile{"short.csv", "time,BIClong\n0,0\n0.1\n", "short.csv:3"},
+        BadFile{"long.csv", "time,BIClong\n0,0\n0.1,0,0\n", "long.csv:3"},
+        BadFile{"twice.csv", "time,BIClong,BIClong\n0,0,0\n", "BIClong"},
+        BadFile{"nan_time.csv", "time,BIClong\n0,0\nnan,0\n", "nan_time.csv:3"},
+        BadFile{"no_end.sto", "trial\nnRows=1\nnColumns=2\n", "endheader"},
+        BadFile{"count.sto", "trial\nnRows=3\nnColumns=2\nendheader\ntime\ta\n0\t0\n", "count.sto"},
+        BadFile{"empty.osim", "", "empty.osim"}, BadFile{"text.osim", "hello\n", "text.osim"},
+        BadFile{"open.osim", "<OpenSimDocument Version=\"40000\">\n<Model>\n", "open.osim"},
+        BadFile{"other.osim", "<html><body/></html>\n", "other.osim"},
+        BadFile{"nomodel.osim", "<OpenSimDocument Version=\"40000\"/>\n", "nomodel.osim"}),
+    [](const auto& test) {
+      std::string name = test.param.name;
+      for (char& c : name) c = c == '.' ? '_' : c;
+      return name;
+    });
+
+struct Mistake {
+  const char* name;
+  std::vector<std::string> arguments;  ///< GOOD, HERE and OUT stand for paths
+  const char* message;
+};
+
+class CheckMistake : public testing::TestWithParam<Mistake> {};
+
+TEST_P(CheckMistake, IsOneLineStatusTwoAndLeavesNothing) {
+  const ScratchFolder scratch;
+  const std::string good = scratch.file("good.csv", goodTrial);
+  std::vector<std::string> arguments = {"check"};
+  for (std::string argument : GetParam().arguments) {
+    if (argument == "GOOD") argument = good;
+    if (argument == "HERE") argument = scratch.path().string();
+    if (argument == "OUT") argument = (scratch / "out").string();
+    arguments.push_back(argument);
+  }
+  const ProgramResult result = runFisherHill(arguments);
+  EXPECT_EQ(result.status, 2);
+  EXPECT_EQ(result.out, "");
+  EXPECT_THAT(result.err, testing::StartsWith("fisherhill check: "));
+  EXPECT_THAT(result.err, HasSubstr(GetParam().message));
+  EXPECT_EQ(lines(result.err), 1) << result.err;
+  EXPECT_THAT(scratch.listing(), ElementsAre("good.csv"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, CheckMistake,
+    testing::Values(
+        Mistake{"NoFile", {}, "FILE"},
+        Mistake{"MissingFile", {"HERE/missing.osim"}, "does not exist: HERE/missing.osim"},
+        Mistake{"Folder", {"HERE"}, "directory"},
+        Mistake{"UnknownOption", {"GOOD", "--fast"}, "--fast"},
+        Mistake{"OutWithoutFolder", {"GOOD", "--out"}, "--out"},
+        Mistake{"OutIsAFile", {"GOOD", "--out", "GOOD"}, "is not a folder"},
+        Mistake{"OutIsEmpty", {"GOOD", "--out", ""}, "--out"},
+        Mistake{"OutCannotBeMade", {"GOOD", "--out", "/dev/null/out"}, "/dev/null/out"},
+        Mistake{"OutCannotBeWritten", {"GOOD", "--out", "/proc/out"}, "/proc/out"},
+        Mistake{"OneOfTwoIsMissing", {"GOOD", "missing.csv", "--out", "OUT"}, "missing.csv"},
+        Mistake{"BadThreads", {"GOOD", "--threads", "none", "--out", "OUT"}, "--threads"},
+        Mistake{"BadSeed", {"GOOD", "--seed", "-3", "--out", "OUT"}, "--seed"}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST(FisherHill, WithoutASubcommandIsStatusTwo) {
+  const ProgramResult result = runFisherHill({});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_EQ(lines(result.err), 1);
+}
+
+TEST(FisherHill, EverySubcommandHasHelpWithAnExample) {
+  const ProgramResult help = runFisherHill({"--help"});
+  EXPECT_EQ(help.status, 0);
+  std::istringstream text(help.out.substr(help.out.find("Subcommands:")));
+  std::string line;
+  std::getline(text, line);
+  int subcommands = 0;
+  while (std::getline(text, line) && line.starts_with("  ")) {
+    if (line.starts_with("   ")) continue;  // the purpose of the one above
+    const std::string name = line.substr(2, line.find(' ', 2) - 2);
+    const ProgramResult one = runFisherHill({name, "--help"});
+    EXPECT_EQ(one.status, 0) << name;
+    EXPECT_THAT(one.out, HasSubstr("Example:\n  fisherhill " + name)) << name;
+    EXPECT_THAT(one.out, HasSubstr("--out DIR")) << name;
+    ++subcommands;
+  }
+  EXPECT_GT(subcommands, 0);
+}
+
+}  // namespace
