@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "bio/file_error.h"
+#include "support/scratch_folder.h"
 
 namespace bio {
 namespace {
@@ -21,6 +22,14 @@ std::vector<std::string> coordinateNames(const Model& model) {
     for (const Coordinate& c : joint.coordinates) names.push_back(c.name);
   }
   return names;
+}
+
+template <class Item>
+Item& findItem(std::vector<Item>& items, const std::string& name) {
+  for (Item& item : items) {
+    if (item.name == name) return item;
+  }
+  throw std::invalid_argument("no item called " + name);
 }
 
 // The shared models are not part of the project; without them these tests say so and stop.
@@ -91,6 +100,131 @@ TEST_F(SharedModel, OpenSimsArm26IsReadWhole) {
       model.warnings,
       ElementsAre("Thelen2003Muscle is not simulated, only the paths are used: TRIlong, TRIlat, "
                   "TRImed, BIClong, BICshort, BRA"));
+}
+
+// Reading, writing and reading again
+// ------------------------------------------------------------------
+
+const char* const sharedModels[] = {
+    "reference/elbow8_reference.osim", "data/models/MoBL_ARMS_v3_schutte.osim",
+    "data/models/MoBL_ARMS_v4_millard.osim", "data/models/arm26_v4_thelen.osim"};
+
+// Number of XML elements called `tag` in the text.
+std::size_t countTag(const std::string& text, const std::string& tag) {
+  std::size_t count = 0;
+  for (auto at = text.find("<" + tag); at != std::string::npos; at = text.find("<" + tag, at + 1)) {
+    const char after = text[at + 1 + tag.size()];
+    if (after == ' ' || after == '>' || after == '/') ++count;
+  }
+  return count;
+}
+
+TEST_F(SharedModel, WrittenBackUnchangedIsTheSameFile) {
+  const support::ScratchFolder folder;
+  for (const char* name : sharedModels) {
+    const Model model = readOsim(shared / name);
+    rewriteOsim(shared / name, model, folder / "copy.osim");
+    EXPECT_EQ(support::contentOf(folder / "copy.osim"), support::contentOf(shared / name)) << name;
+    EXPECT_EQ(readOsim(folder / "copy.osim"), model) << name;
+  }
+}
+
+TEST_F(SharedModel, OneChangedNumberLeavesAllElseAsItWas) {
+  const support::ScratchFolder folder;
+  for (const char* name : sharedModels) {
+    Model model = readOsim(shared / name);
+    findItem(model.bodies, model.bodies.back().name).mass *= 1.25;
+    rewriteOsim(shared / name, model, folder / "copy.osim");
+    EXPECT_EQ(readOsim(folder / "copy.osim"), model) << name;
+    // What FisherHill does not know is still there, as often as before.
+    const std::string before = support::contentOf(shared / name),
+                      after = support::contentOf(folder / "copy.osim");
+    for (const char* tag : {"Appearance", "ControlLinear", "Ligament", "mesh_file", "VisibleObject",
+                            "FrameGeometry", "TransformAxis", "prescribed_function", "Marker"}) {
+      EXPECT_EQ(countTag(after, tag), countTag(before, tag)) << name << " " << tag;
+    }
+    EXPECT_EQ(countTag(after, "!--"), countTag(before, "!--")) << name;
+  }
+}
+
+TEST_F(SharedModel, EveryKindOfChangeIsWrittenToBothFormats) {
+  const support::ScratchFolder folder;
+  for (const char* name :
+       {"reference/elbow8_reference.osim", "data/models/MoBL_ARMS_v3_schutte.osim"}) {
+    Model model = readOsim(shared / name);
+    findItem(model.bodies, "ulna").inertia[4] = -7.5e-5;
+    findItem(model.bodies, "hand").massCenter.y() = -0.05;
+    for (Joint& joint : model.joints) {
+      for (Coordinate& c : joint.coordinates) {
+        if (c.name == "elbow_flexion") c.locked = true, c.defaultValue = 0.7, c.rangeMax = 2.3;
+      }
+    }
+    WrapObject& cylinder = findItem(model.wrapObjects, "TRI");
+    cylinder.radius = 0.0171;
+    cylinder.frame.translation.x() = 0.003;
+    WrapObject& ellipsoid = findItem(model.wrapObjects, "Elbow_BIC_BRD");
+    ellipsoid.shape = WrapShape::cylinder;
+    ellipsoid.radius = ellipsoid.semiAxes.x();
+    ellipsoid.length = 0.2;
+    ellipsoid.semiAxes.setZero();
+    Muscle& muscle = findItem(model.muscles, "TRIlong");
+    muscle.schutte->tendonSlackLength = 0.15;
+    muscle.schutte->passiveForceLength->y.back() = 2.5;
+    muscle.path.points[1].location.z() = 0.01;
+    muscle.path.wraps[0].firstPoint = 3;
+    findItem(model.muscles, "BRD").enabled = false;
+    findItem(model.muscles, "BRA").path.points[1].condition->upper = 0.8;
+    model.limitForces.push_back({"stop", "elbow_flexion", 2, 100, 0.1, 50, 0.2, 0.3, true});
+    model.springForces.push_back({"spring", "elbow_flexion", 1.5, 0.4, 0.2, true});
+    model.expressionForces.push_back({"push", "elbow_flexion", "-0.1*q*q<2", false});
+    rewriteOsim(shared / name, model, folder / "copy.osim");
+    Model again = readOsim(folder / "copy.osim");
+
+    // Degrees and radians round differently in the last digit; all else is exact.
+    CoordinateLimitForce& stop = again.limitForces.back();
+    EXPECT_EQ(stop.name, "stop");
+    EXPECT_NEAR(stop.upperLimit, 2, 1e-15);
+    EXPECT_NEAR(stop.upperStiffness, 100, 1e-12);
+    EXPECT_NEAR(stop.damping, 0.2, 1e-15);
+    stop = model.limitForces.back();
+    // Rewriting the curve drops the point that was there twice, and so the remark on it.
+    again.remarks = model.remarks;
+    EXPECT_EQ(again, model) << name;
+
+    // Taking the three forces away again leaves none of them behind.
+    model.limitForces.pop_back();
+    model.springForces.clear();
+    model.expressionForces.clear();
+    rewriteOsim(folder / "copy.osim", model, folder / "copy.osim");
+    EXPECT_EQ(countTag(support::contentOf(folder / "copy.osim"), "SpringGeneralizedForce"), 0u);
+    EXPECT_EQ(readOsim(folder / "copy.osim").limitForces.size(), model.limitForces.size());
+  }
+}
+
+TEST_F(SharedModel, AFreshDocumentSaysTheSame) {
+  const support::ScratchFolder folder;
+  for (const char* name :
+       {"reference/elbow8_reference.osim", "data/models/MoBL_ARMS_v3_schutte.osim"}) {
+    const Model model = readOsim(shared / name);
+    writeOsim(model, folder / "fresh.osim");
+    Model again = readOsim(folder / "fresh.osim");
+    ASSERT_EQ(again.limitForces.size(), model.limitForces.size());
+    for (std::size_t i = 0; i < again.limitForces.size(); ++i) {
+      EXPECT_NEAR(again.limitForces[i].upperStiffness / model.limitForces[i].upperStiffness, 1,
+                  1e-14);
+      EXPECT_NEAR(again.limitForces[i].transition / model.limitForces[i].transition, 1, 1e-14);
+    }
+    again.limitForces = model.limitForces;
+    again.remarks = model.remarks;
+    EXPECT_EQ(again, model) << name;
+  }
+}
+
+TEST_F(SharedModel, MusclesOfOtherClassesAreNotWrittenAfresh) {
+  const support::ScratchFolder folder;
+  const Model model = readOsim(shared / "data/models/arm26_v4_thelen.osim");
+  EXPECT_THROW(writeOsim(model, folder / "fresh.osim"), std::invalid_argument);
+  EXPECT_FALSE(std::filesystem::exists(folder / "fresh.osim"));
 }
 
 }  // namespace

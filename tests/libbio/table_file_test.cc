@@ -3,11 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <fstream>
 #include <limits>
-#include <random>
 
 #include "bio/file_error.h"
+#include "support/scratch_folder.h"
 
 namespace bio {
 namespace {
@@ -15,21 +14,10 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// A folder of its own for each test, gone afterwards.
 class TableFile : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ =
-        std::filesystem::temp_directory_path() /
-        (std::string("fisherhill_table_") + info->name() + std::to_string(std::random_device{}()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   std::filesystem::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return folder_ / name;
+    return folder_.file(name, text);
   }
   // The one line with which reading the text fails, without the folder.
   std::string messageOf(const std::string& name, const std::string& text,
@@ -39,12 +27,12 @@ class TableFile : public testing::Test {
     } catch (const FileError& error) {
       const std::string what = error.what();
       EXPECT_EQ(what.find('\n'), std::string::npos) << what;
-      EXPECT_TRUE(what.starts_with(folder_.string())) << what;
-      return what.substr(folder_.string().size() + 1);
+      EXPECT_TRUE(what.starts_with(folder_.path().string())) << what;
+      return what.substr(folder_.path().string().size() + 1);
     }
     return "read without complaint";
   }
-  std::filesystem::path folder_;
+  support::ScratchFolder folder_;
 };
 
 const std::string header = "trial\nversion=1\nnRows=2\nnColumns=3\ninDegrees=no\nendheader\n";
@@ -124,11 +112,8 @@ TEST_F(TableFile, LeavesTheOldFileWhenItCannotWrite) {
   table.values << 0, std::numeric_limits<double>::infinity();
   EXPECT_THROW(writeTable(table, folder_ / "b.csv"), FileError);
   EXPECT_THROW(writeTable(table, folder_ / "missing" / "b.csv"), FileError);
-  std::ifstream stream(folder_ / "b.csv");
-  std::string text;
-  stream >> text;
-  EXPECT_EQ(text, "old");
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+  EXPECT_EQ(support::contentOf(folder_ / "b.csv"), "old");
+  EXPECT_THAT(folder_.listing(), ElementsAre("b.csv"));
 }
 
 TEST_F(TableFile, NamesAColumnThatIsNotThere) {
@@ -176,7 +161,7 @@ TEST_F(TableFile, SaysInOneLineWhatIsWrong) {
             "a.sto:2: holds no column names, must hold a row of them");
   EXPECT_THAT([&] { readTable(folder_ / "none.csv"); },
               testing::ThrowsMessage<FileError>(HasSubstr("none.csv: there is no such file")));
-  EXPECT_THAT([&] { readTable(folder_); },
+  EXPECT_THAT([&] { readTable(folder_.path()); },
               testing::ThrowsMessage<FileError>(HasSubstr("is a directory, must be a file")));
 }
 

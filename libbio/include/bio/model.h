@@ -154,7 +154,7 @@ struct PathPoint {
   std::string body;
   Eigen::Vector3d location = Eigen::Vector3d::Zero();  ///< in the body frame [m]
   std::optional<PointCondition> condition;
-  std::optional<PointMotion> motion;  ///< overrides location
+  std::optional<PointMotion> motion;  ///< stands for location, which is then zero
   friend bool operator==(const PathPoint&, const PathPoint&) = default;
 };
 

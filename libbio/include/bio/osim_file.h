@@ -20,4 +20,18 @@ namespace bio {
 /// @throws FileError if the file cannot be read, is not a model, or breaks a rule of model.h
 Model readOsim(const std::filesystem::path& file);
 
+/// Writes the model as a fresh OpenSim 4 document. The file appears whole or not at all.
+/// @throws FileError if it cannot be written, or the model breaks a rule of model.h
+/// @throws std::invalid_argument if a muscle is not a Schutte muscle, whose parameters Model lacks
+void writeOsim(const Model& model, const std::filesystem::path& file);
+
+/// Writes to `file` a copy of the document `original` that says what `model` says: numbers that
+/// differ are replaced, forces and wrap objects added or removed; every other byte of content –
+/// comments, pictures, controllers, classes that FisherHill does not know – stays. `file` may be
+/// `original`.
+/// @throws FileError as the two above
+/// @throws std::invalid_argument if the document's form cannot express a change
+void rewriteOsim(const std::filesystem::path& original, const Model& model,
+                 const std::filesystem::path& file);
+
 }  // namespace bio

@@ -89,10 +89,10 @@ void readWrapsOf(Reading& reading, const Element& owner, const BodyFrame& frame,
 void placePoint(const Reading& reading, const Element& element, PathPoint& point) {
   const Source& source = reading.source;
   const bool moves = std::string_view(element.Name()) == "MovingPathPoint";
-  std::optional<std::vector<double>> fallback;
-  if (moves) fallback = std::vector<double>(3, 0.0);
-  const auto l = readNumbers(source, element, "location", "m", 3, fallback);
-  point.location = {l[0], l[1], l[2]};
+  if (!moves) {
+    const auto l = readNumbers(source, element, "location", "m", 3);
+    point.location = {l[0], l[1], l[2]};
+  }
   const char* socket = element.FirstChildElement("socket_parent_frame") ? "socket_parent_frame"
                        : element.FirstChildElement("socket_parent")     ? "socket_parent"
                                                                         : nullptr;
