@@ -155,16 +155,17 @@ FunctionEvaluator::FunctionEvaluator(const Function& function)
 CurveValue FunctionEvaluator::evaluate(double x) const {
   if (const auto* curve = std::get_if<PiecewiseCubic>(&shape_)) {
     const CurveValue y = curve->evaluate(x);
-    return {scale_ * y.value, scale_ * y.slope, scale_ * y.curvature};
+    return {scale_ * y.value, scale_ * y.slope, scale_ * y.curvature, scale_ * y.third};
   }
-  // Horner's scheme for the polynomial and its first two derivatives.
-  double value = 0, slope = 0, halfCurvature = 0;
+  // Horner's scheme for the polynomial and its first three derivatives.
+  double value = 0, slope = 0, halfCurvature = 0, sixthThird = 0;
   for (const double c : std::get<PolynomialFunction>(shape_).coefficients) {
+    sixthThird = sixthThird * x + halfCurvature;
     halfCurvature = halfCurvature * x + slope;
     slope = slope * x + value;
     value = value * x + c;
   }
-  return {scale_ * value, scale_ * slope, scale_ * 2 * halfCurvature};
+  return {scale_ * value, scale_ * slope, scale_ * 2 * halfCurvature, scale_ * 6 * sixthThird};
 }
 
 }  // namespace bio

@@ -57,7 +57,7 @@ inline ForceBalance forceBalance(const SchutteMuscle<double>& muscle, double act
     passive = curves.passiveForce->evaluate(l);
   } else {
     const double value = std::exp(8 * l - 12);
-    passive = {value, 8 * value, 64 * value};
+    passive = {value, 8 * value, 64 * value, 512 * value};
   }
   const CurveValue active = curves.activeForce.evaluate(l);
   const bool floored = activation < muscle.options().activationFloor;

@@ -11,11 +11,12 @@ namespace bio {
 
 using info::plainValue;
 
-/// A function of one variable with its first two derivatives.
+/// A function of one variable with its first three derivatives.
 struct CurveValue {
   double value;
   double slope;
   double curvature;
+  double third;  ///< third derivative: piecewise constant for a cubic
 };
 
 /// Cubic polynomials between knots, any polynomial of degree ≤ 3 outside them.
@@ -47,12 +48,13 @@ class PiecewiseCubic {
     return T(s.value) + t * inner;
   }
 
-  /// y, dy/dx and d²y/dx².
+  /// y, dy/dx, d²y/dx² and d³y/dx³.
   CurveValue evaluate(double x) const {
     const Segment& s = segmentAt(x);
     const double t = x - s.start;
     return {s.value + t * (s.slope + t * (s.quadratic + t * s.cubic)),
-            s.slope + t * (2 * s.quadratic + t * 3 * s.cubic), 2 * s.quadratic + 6 * t * s.cubic};
+            s.slope + t * (2 * s.quadratic + t * 3 * s.cubic), 2 * s.quadratic + 6 * t * s.cubic,
+            6 * s.cubic};
   }
 
   /// The segment that holds x; a knot belongs to the segment on its right.

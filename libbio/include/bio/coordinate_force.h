@@ -1,0 +1,60 @@
+#pragma once
+
+#include <vector>
+
+#include "bio/expression.h"
+#include "bio/model.h"
+#include "bio/skeleton.h"
+
+namespace bio {
+
+/// A passive generalised force on one free coordinate, with derivatives.
+struct CoordinateForceValue {
+  double force = 0;         ///< τ [N m] or [N], positive along the coordinate
+  double dForce_dq = 0;     ///< ∂τ/∂q
+  double dForce_dqDot = 0;  ///< ∂τ/∂q̇
+};
+
+/// Limit springs and dampers as OpenSim's CoordinateLimitForce defines them: with the quintic step
+/// s(x) = x³(10 − 15x + 6x²) over the transition δ beyond a limit,
+///     τ = −K_u s_u (q − q_u) + K_l s_l (q_l − q) − B (s_u + s_l) q̇
+/// C² in q.
+CoordinateForceValue evaluate(const CoordinateLimitForce& law, double q, double qDot);
+
+/// τ = −k (q − q_0) − b q̇
+CoordinateForceValue evaluate(const SpringGeneralizedForce& law, double q, double qDot);
+
+/// All passive coordinate forces of a model that act on the free coordinates of a skeleton.
+class CoordinateForces {
+ public:
+  /// @throws std::invalid_argument unknown coordinate, or an expression that cannot be read
+  CoordinateForces(const Model& model, const Skeleton& skeleton);
+
+  /// Adds force and derivatives of all laws: tau += τ, tau_q += ∂τ/∂q, tau_qDot += ∂τ/∂q̇.
+  template <int N>
+  void add(const Eigen::Matrix<double, N, 1>& q, const Eigen::Matrix<double, N, 1>& qDot,
+           Eigen::Matrix<double, N, 1>& tau, Eigen::Matrix<double, N, N>& tau_q,
+           Eigen::Matrix<double, N, N>& tau_qDot) const {
+    for (const Acting& acting : acting_) {
+      const CoordinateForceValue value = evaluateLaw(acting, q[acting.index], qDot[acting.index]);
+      tau[acting.index] += value.force;
+      tau_q(acting.index, acting.index) += value.dForce_dq;
+      tau_qDot(acting.index, acting.index) += value.dForce_dqDot;
+    }
+  }
+
+  bool empty() const { return acting_.empty(); }
+  std::vector<std::string> names() const;
+
+ private:
+  struct Acting {
+    int index = 0;
+    std::variant<CoordinateLimitForce, SpringGeneralizedForce, Expression> law;
+    std::string name;
+  };
+  static CoordinateForceValue evaluateLaw(const Acting& acting, double q, double qDot);
+
+  std::vector<Acting> acting_;
+};
+
+}  // namespace bio

@@ -1,0 +1,76 @@
+#include "bio/coordinate_force.h"
+
+#include <Eigen/Dense>
+#include <unsupported/Eigen/AutoDiff>
+
+#include <fmt/format.h>
+
+namespace bio {
+namespace {
+
+/// Quintic step from 0 to 1 over 0 ≤ x ≤ 1, and its slope.
+std::pair<double, double> smoothStep(double x) {
+  if (x <= 0) return {0, 0};
+  if (x >= 1) return {1, 0};
+  return {x * x * x * (10 + x * (-15 + 6 * x)), 30 * x * x * (1 - x) * (1 - x)};
+}
+
+}  // namespace
+
+CoordinateForceValue evaluate(const CoordinateLimitForce& law, double q, double qDot) {
+  const double above = q - law.upperLimit;
+  const double below = law.lowerLimit - q;
+  const auto [up, upSlope] = smoothStep(above / law.transition);
+  const auto [low, lowSlope] = smoothStep(below / law.transition);
+  const double up_q = upSlope / law.transition;
+  const double low_q = -lowSlope / law.transition;
+  CoordinateForceValue value;
+  value.force = -law.upperStiffness * up * above + law.lowerStiffness * low * below -
+                law.damping * (up + low) * qDot;
+  value.dForce_dq = -law.upperStiffness * (up_q * above + up) +
+                    law.lowerStiffness * (low_q * below - low) -
+                    law.damping * (up_q + low_q) * qDot;
+  value.dForce_dqDot = -law.damping * (up + low);
+  return value;
+}
+
+CoordinateForceValue evaluate(const SpringGeneralizedForce& law, double q, double qDot) {
+  return {-law.stiffness * (q - law.restLength) - law.viscosity * qDot, -law.stiffness,
+          -law.viscosity};
+}
+
+CoordinateForces::CoordinateForces(const Model& model, const Skeleton& skeleton) {
+  const auto addLaws = [&](const auto& laws, auto&& lawOf) {
+    for (const auto& law : laws) {
+      findCoordinate(model, law.coordinate);
+      const int index = skeleton.indexOf(law.coordinate);
+      if (law.enabled && index >= 0) acting_.push_back({index, lawOf(law), law.name});
+    }
+  };
+  addLaws(model.limitForces, [](const CoordinateLimitForce& law) { return law; });
+  addLaws(model.springForces, [](const SpringGeneralizedForce& law) { return law; });
+  addLaws(model.expressionForces, [](const ExpressionBasedCoordinateForce& law) {
+    return Expression(law.expression, {"q", "qdot"});
+  });
+}
+
+CoordinateForceValue CoordinateForces::evaluateLaw(const Acting& acting, double q, double qDot) {
+  if (const auto* expression = std::get_if<Expression>(&acting.law)) {
+    using Ad = Eigen::AutoDiffScalar<Eigen::Vector2d>;
+    const Ad values[2] = {Ad(q, 2, 0), Ad(qDot, 2, 1)};
+    const Ad force = expression->evaluate(values);
+    return {force.value(), force.derivatives()[0], force.derivatives()[1]};
+  }
+  if (const auto* limit = std::get_if<CoordinateLimitForce>(&acting.law)) {
+    return evaluate(*limit, q, qDot);
+  }
+  return evaluate(std::get<SpringGeneralizedForce>(acting.law), q, qDot);
+}
+
+std::vector<std::string> CoordinateForces::names() const {
+  std::vector<std::string> result;
+  for (const Acting& acting : acting_) result.push_back(acting.name);
+  return result;
+}
+
+}  // namespace bio

@@ -1,0 +1,185 @@
+#include "bio/expression.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cctype>
+#include <stdexcept>
+#include <utility>
+
+namespace bio {
+
+/// Recursive descent: sum → product → sign → power → atom.
+class Expression::Parser {
+ public:
+  Parser(const std::string& text, const std::vector<std::string>& variables,
+         std::vector<Instruction>& program)
+      : text_(text), variables_(variables), program_(program) {}
+
+  void parse() {
+    sum();
+    skipSpace();
+    if (at_ != text_.size()) fail(fmt::format("unexpected '{}'", text_[at_]));
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw std::invalid_argument(
+        fmt::format("expression '{}', character {}: {}", text_, at_ + 1, what));
+  }
+  void skipSpace() {
+    while (at_ < text_.size() && std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
+  }
+  bool take(char c) {
+    skipSpace();
+    if (at_ >= text_.size() || text_[at_] != c) return false;
+    ++at_;
+    return true;
+  }
+  void emit(Code code, double number = 0, std::size_t variable = 0) {
+    program_.push_back({code, number, variable});
+    depth_ += code == Code::number || code == Code::variable ? 1
+              : code == Code::add || code == Code::subtract || code == Code::multiply ||
+                      code == Code::divide || code == Code::min || code == Code::max
+                  ? -1
+                  : 0;
+    if (depth_ > static_cast<int>(maxDepth)) fail("too deeply nested");
+  }
+
+  void sum() {
+    if (++nesting_ > 200) fail("too deeply nested");
+    product();
+    while (true) {
+      if (take('+')) {
+        product();
+        emit(Code::add);
+      } else if (take('-')) {
+        product();
+        emit(Code::subtract);
+      } else {
+        break;
+      }
+    }
+    --nesting_;
+  }
+  void product() {
+    sign();
+    while (true) {
+      if (take('*')) {
+        sign();
+        emit(Code::multiply);
+      } else if (take('/')) {
+        sign();
+        emit(Code::divide);
+      } else {
+        return;
+      }
+    }
+  }
+  void sign() {
+    bool negative = false;
+    while (true) {
+      if (take('-')) {
+        negative = !negative;
+      } else if (!take('+')) {
+        break;
+      }
+    }
+    atom();
+    while (take('^')) {
+      bool negativeExponent = false;
+      while (take('-')) negativeExponent = !negativeExponent;
+      const bool bracket = take('(');
+      while (bracket && take('-')) negativeExponent = !negativeExponent;
+      const double exponent = number("an exponent must be a number");
+      if (bracket && !take(')')) fail("')' is missing");
+      emit(Code::power, negativeExponent ? -exponent : exponent);
+    }
+    if (negative) emit(Code::negate);
+  }
+  double number(const char* otherwise) {
+    skipSpace();
+    std::size_t used = 0;
+    double value = 0;
+    if (at_ < text_.size() &&
+        (std::isdigit(static_cast<unsigned char>(text_[at_])) || text_[at_] == '.')) {
+      try {
+        value = std::stod(text_.substr(at_), &used);
+      } catch (const std::exception&) {
+        used = 0;
+      }
+    }
+    if (used == 0) fail(otherwise);
+    at_ += used;
+    return value;
+  }
+  void atom() {
+    skipSpace();
+    if (at_ >= text_.size()) fail("a value is missing at the end");
+    const char c = text_[at_];
+    if (take('(')) {
+      sum();
+      if (!take(')')) fail("')' is missing");
+    } else if (std::isdigit(static_cast<unsigned char>(c)) || c == '.') {
+      emit(Code::number, number("a number cannot be read"));
+    } else if (std::isalpha(static_cast<unsigned char>(c)) || c == '_') {
+      name();
+    } else {
+      fail(fmt::format("unexpected '{}'", c));
+    }
+  }
+  void name() {
+    const std::size_t start = at_;
+    while (at_ < text_.size() &&
+           (std::isalnum(static_cast<unsigned char>(text_[at_])) || text_[at_] == '_')) {
+      ++at_;
+    }
+    const std::string word = text_.substr(start, at_ - start);
+    for (std::size_t i = 0; i < variables_.size(); ++i) {
+      if (variables_[i] == word) return emit(Code::variable, 0, i);
+    }
+    static const std::array<std::pair<const char*, Code>, 16> functions = {{{"sqrt", Code::sqrt},
+                                                                            {"exp", Code::exp},
+                                                                            {"log", Code::log},
+                                                                            {"sin", Code::sin},
+                                                                            {"cos", Code::cos},
+                                                                            {"tan", Code::tan},
+                                                                            {"asin", Code::asin},
+                                                                            {"acos", Code::acos},
+                                                                            {"atan", Code::atan},
+                                                                            {"sinh", Code::sinh},
+                                                                            {"cosh", Code::cosh},
+                                                                            {"tanh", Code::tanh},
+                                                                            {"abs", Code::abs},
+                                                                            {"min", Code::min},
+                                                                            {"max", Code::max},
+                                                                            {"step", Code::step}}};
+    for (const auto& [known, code] : functions) {
+      if (word != known) continue;
+      if (!take('(')) fail(fmt::format("'(' is missing after '{}'", word));
+      sum();
+      if (code == Code::min || code == Code::max) {
+        if (!take(',')) fail(fmt::format("'{}' needs two arguments", word));
+        sum();
+      }
+      if (!take(')')) fail("')' is missing");
+      return emit(code);
+    }
+    at_ = start;
+    fail(fmt::format("unknown name '{}'", word));
+  }
+
+  const std::string& text_;
+  const std::vector<std::string>& variables_;
+  std::vector<Instruction>& program_;
+  std::size_t at_ = 0;
+  int depth_ = 0;
+  int nesting_ = 0;
+};
+
+Expression::Expression(const std::string& text, const std::vector<std::string>& variables)
+    : text_(text) {
+  Parser(text_, variables, program_).parse();
+}
+
+}  // namespace bio
