@@ -1,0 +1,128 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "support/run_program.h"
+#include "support/scratch_folder.h"
+
+namespace {
+
+using support::contentOf;
+using support::ScratchFolder;
+
+const std::filesystem::path source = FISHERHILL_SOURCE_DIR;
+
+/// The lines of every ```sh block of a file.
+std::vector<std::string> shellLines(const std::filesystem::path& file) {
+  std::vector<std::string> lines;
+  std::istringstream text(contentOf(file));
+  bool inside = false;
+  for (std::string line; std::getline(text, line);) {
+    if (line.starts_with("```")) {
+      inside = !inside && line == "```sh";
+    } else if (inside && !line.empty()) {
+      lines.push_back(line);
+    }
+  }
+  return lines;
+}
+
+/// Commands that build or install: they cannot run inside a test of what they built. CI runs them.
+bool isRunByCi(const std::string& line) {
+  return line.starts_with("./start") || line.starts_with("cmake ") || line.starts_with("ctest ");
+}
+
+TEST(Readme, EveryCommandOfTheProgramWorks) {
+  const ScratchFolder scratch;
+  for (const char* data : {"models", "emg_data"}) {
+    if (std::filesystem::exists(source / data)) {
+      std::filesystem::create_directory_symlink(source / data, scratch / data);
+    }
+  }
+  std::string script = "set -eux\nPATH='" + std::string(FISHERHILL_PROGRAM_FOLDER) + "':$PATH\n";
+  int commands = 0;
+  for (const std::string& line : shellLines(source / "README.md")) {
+    if (isRunByCi(line) || line.starts_with("export PATH=")) continue;
+    EXPECT_THAT(line, testing::StartsWith("fisherhill ")) << "nobody runs this command";
+    script += line + "\n";
+    ++commands;
+  }
+  EXPECT_GT(commands, 0);
+  const support::ProgramResult result = support::runProgram({"bash", "-c", script}, scratch.path());
+  EXPECT_EQ(result.status, 0) << result.err << result.out;
+}
+
+TEST(Readme, ItsTestCommandIsWhatCiRuns) {
+  const std::vector<std::string> lines = shellLines(source / "README.md");
+  const std::string ci = contentOf(source / ".ci/run");
+  int found = 0;
+  for (const std::string& line : lines) {
+    if (!line.starts_with("./start")) continue;
+    EXPECT_THAT(ci, testing::HasSubstr("\n" + line + " --yes\n"));
+    ++found;
+  }
+  EXPECT_EQ(found, 2);
+}
+
+TEST(Readme, ListsExactlyTheSubcommandsThereAre) {
+  const std::string readme = contentOf(source / "README.md");
+  const std::string help = support::runFisherHill({"--help"}).out;
+  std::istringstream text(help.substr(help.find("Subcommands:")));
+  std::string line;
+  std::getline(text, line);
+  std::size_t subcommands = 0;
+  while (std::getline(text, line) && line.starts_with("  ")) {
+    if (line.starts_with("   ")) continue;
+    const std::string name = line.substr(2, line.find(' ', 2) - 2);
+    EXPECT_THAT(readme, testing::HasSubstr("| `fisherhill " + name)) << name;
+    ++subcommands;
+  }
+  std::size_t rows = 0;
+  for (std::size_t at = 0; (at = readme.find("\n| `fisherhill ", at)) != readme.npos; ++at) ++rows;
+  EXPECT_EQ(rows, subcommands);
+}
+
+TEST(Contributing, ItsCommandsAreTheLaunchersOwn) {
+  const std::string launcher = contentOf(source / "start");
+  for (const std::string& line : shellLines(source / "CONTRIBUTING.md")) {
+    EXPECT_THAT(launcher, testing::HasSubstr("\n  " + line + "\n"));
+  }
+}
+
+TEST(Start, RefusesWhatItDoesNotKnow) {
+  const auto result = support::runProgram({(source / "start").string(), "everything"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, testing::HasSubstr("unknown argument 'everything'"));
+}
+
+TEST(Start, NamesAPackageForEveryLibraryThatIsLookedFor) {
+  const std::string launcher = contentOf(source / "start");
+  const std::string cmake = contentOf(source / "CMakeLists.txt");
+  const std::vector<std::pair<std::string, std::string>> packages = {
+      {"Eigen3", "libeigen3-dev"},
+      {"SUNDIALS", "libsundials-dev"},
+      {"TBB", "libtbb-dev"},
+      {"fmt", "libfmt-dev"},
+      {"Simbody", "libsimbody-dev"},
+      {"tinyxml2", "libtinyxml2-dev"},
+      {"CLI11", "libcli11-dev"},
+      {"OpenSSL", "libssl-dev"},
+      {"GTest", "libgtest-dev"},
+      {"benchmark", "libbenchmark-dev"},
+      {"toml11", "libtoml11-dev"},
+      {"nlohmann_json", "nlohmann-json3-dev"},
+      {"Threads", "g++"},
+      {"VTK", "libvtk9-dev"}};
+  std::size_t at = 0;
+  while ((at = cmake.find("find_package(", at)) != cmake.npos) {
+    at += std::string_view("find_package(").size();
+    const std::string library = cmake.substr(at, cmake.find_first_of(" )", at) - at);
+    const auto known = std::find_if(packages.begin(), packages.end(),
+                                    [&](const auto& pair) { return pair.first == library; });
+    ASSERT_NE(known, packages.end()) << library << ": which Debian package brings it?";
+    EXPECT_THAT(launcher, testing::HasSubstr(known->second)) << library;
+  }
+}
+
+}  // namespace
