@@ -1,0 +1,123 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <regex>
+#include <set>
+
+#include "support/scratch_folder.h"
+
+// The rules of the architecture that can be read off the source tree.
+namespace {
+
+namespace fs = std::filesystem;
+using support::contentOf;
+
+const fs::path source = FISHERHILL_SOURCE_DIR;
+
+/// Every source file below a folder, with its path from the top.
+std::vector<std::string> sourcesBelow(const std::string& folder) {
+  std::vector<std::string> files;
+  if (!fs::exists(source / folder)) return files;
+  for (const auto& entry : fs::recursive_directory_iterator(source / folder)) {
+    const std::string extension = entry.path().extension();
+    if (extension == ".h" || extension == ".cc") {
+      files.push_back(fs::relative(entry.path(), source).string());
+    }
+  }
+  return files;
+}
+
+const std::vector<std::string> folders = {"libinfo", "libbio",     "apps",
+                                          "tests",   "validation", "bench"};
+
+void expectIncludesOnly(const std::string& pattern,
+                        const std::function<bool(const std::string&)>& mayInclude) {
+  const std::regex include("#include [<\"](" + pattern + ")");
+  for (const std::string& folder : folders) {
+    for (const std::string& file : sourcesBelow(folder)) {
+      const std::string text = contentOf(source / file);
+      std::smatch match;
+      if (!mayInclude(file) && std::regex_search(text, match, include)) {
+        ADD_FAILURE() << file << " includes " << match[1];
+      }
+    }
+  }
+}
+
+TEST(SourceTree, LibinfoKnowsNoBiology) {
+  expectIncludesOnly("bio/|Simbody|SimTK|tinyxml2", [](const std::string& file) {
+    return !file.starts_with("libinfo/") && !file.starts_with("tests/libinfo/");
+  });
+}
+
+TEST(SourceTree, SimbodyIsHiddenInTheSkeleton) {
+  expectIncludesOnly("Simbody|SimTK", [](const std::string& file) {
+    return file.starts_with("libbio/src/") || file.starts_with("tests/");
+  });
+}
+
+TEST(SourceTree, OnlyTheViewKnowsVtk) {
+  expectIncludesOnly("vtk", [](const std::string& file) {
+    return file.starts_with("libbio/view/") || file.starts_with("tests/libbio/view");
+  });
+}
+
+TEST(SourceTree, OnlyTheProgramReadsCommandLines) {
+  expectIncludesOnly("CLI/", [](const std::string& file) {
+    return file.starts_with("apps/") || file.starts_with("tests/apps/");
+  });
+}
+
+TEST(SourceTree, EveryPublicHeaderIsInItsLibrarysHeaderFileSet) {
+  for (const std::string library : {"info", "bio"}) {
+    const std::string top = "lib" + library + "/";
+    const std::string cmake = contentOf(source / top / "CMakeLists.txt");
+    for (const std::string& header : sourcesBelow(top + "include")) {
+      EXPECT_THAT(cmake, testing::HasSubstr("  " + header.substr(top.size()) + "\n"));
+    }
+  }
+}
+
+TEST(SourceTree, EveryTestProgramIsBuilt) {
+  for (const std::string& file : sourcesBelow("tests")) {
+    if (!file.ends_with("_test.cc")) continue;
+    const fs::path path = file;
+    EXPECT_THAT(contentOf(source / path.parent_path() / "CMakeLists.txt"),
+                testing::HasSubstr(path.stem().string()));
+  }
+}
+
+TEST(SourceTree, NoFileOfTheProductIsLongerThanFourHundredLines) {
+  for (const std::string folder : {"libinfo", "libbio", "apps"}) {
+    for (const std::string& file : sourcesBelow(folder)) {
+      const std::string text = contentOf(source / file);
+      EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 400) << file;
+    }
+  }
+}
+
+TEST(SourceTree, NoFolderIsADrawerForAnything) {
+  const std::set<std::string> drawers = {"utils", "util", "common", "misc",
+                                         "core",  "base", "helpers"};
+  for (const std::string& folder : folders) {
+    for (const auto& entry : fs::recursive_directory_iterator(source / folder)) {
+      if (entry.is_directory()) {
+        EXPECT_EQ(drawers.count(entry.path().filename()), 0u) << entry.path();
+      }
+    }
+  }
+}
+
+TEST(SourceTree, CmakeNamesEveryFile) {
+  for (const std::string& folder : folders) {
+    for (const auto& entry : fs::recursive_directory_iterator(source / folder)) {
+      if (entry.path().filename() != "CMakeLists.txt") continue;
+      EXPECT_THAT(contentOf(entry.path()), testing::Not(testing::HasSubstr("file(GLOB")));
+    }
+  }
+}
+
+}  // namespace
