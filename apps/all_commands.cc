@@ -1,11 +1,13 @@
 #include "check.h"
 #include "command.h"
+#include "emg.h"
 
 namespace app {
 
 std::vector<std::unique_ptr<Command>> allCommands() {
   std::vector<std::unique_ptr<Command>> commands;
   commands.push_back(checkCommand());
+  commands.push_back(emgCommand());
   return commands;
 }
 

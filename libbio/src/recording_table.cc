@@ -36,7 +36,7 @@ double rateOf(const std::string& file, const Eigen::VectorXd& times) {
   return std::abs(rounded / rate - 1) < 1e-4 ? rounded : rate;
 }
 
-// "BIClong_uV" → "uV"
+// "BIClong_uV" → "uV", "envelope_mV" → "mV"
 std::string unitIn(const std::string& column) {
   constexpr std::array<std::string_view, 6> units = {"V", "mV", "uV", "deg", "rad", "g"};
   const auto mark = column.rfind('_');

@@ -1,0 +1,91 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "support/run_program.h"
+#include "support/scratch_folder.h"
+
+namespace {
+
+using support::ProgramResult;
+using support::runFisherHill;
+using support::ScratchFolder;
+using testing::Contains;
+using testing::HasSubstr;
+
+// Two columns without a header: something like an EMG at 100 Hz, an angle at 50 Hz.
+std::string columns() {
+  std::string text;
+  for (int i = 0; i < 300; ++i) {
+    text +=
+        std::to_string((i * 37) % 101 - 50) + "\t" + (i < 150 ? std::to_string(i) : "") + "\r\n";
+  }
+  return text;
+}
+
+const std::string config =
+    "[[channel]]\ncolumn = 1\nname = \"biceps\"\nrate_Hz = 100\nunit = \"mV\"\n"
+    "[[channel]]\ncolumn = 2\nname = \"angle\"\nrate_Hz = 50\nunit = \"deg\"\n"
+    "[bandpass]\nlow_Hz = 10\nhigh_Hz = 40\n"
+    "[[electrode]]\nchannel = \"biceps\"\nmuscles = [\"BRA\", \"BRD\"]\n"
+    "[measured]\nchannel = \"angle\"\n";
+
+TEST(EmgCommand, WritesATrialASummaryAndAReport) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "out").string();
+  const ProgramResult result = runFisherHill({"emg", scratch.file("raw.txt", columns()), "--config",
+                                              scratch.file("c.toml", config), "--out", out});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::string trial = support::contentOf(out + "/excitations.sto");
+  EXPECT_THAT(trial, HasSubstr("time\tBRA\tBRD\telbow_flexion_deg\n"));
+  const auto json = nlohmann::json::parse(support::contentOf(out + "/summary.json"));
+  EXPECT_EQ(json["format"], "columns");
+  EXPECT_EQ(json["rows"], 599);
+  EXPECT_EQ(json["measured_values"], 150);
+  EXPECT_EQ(json["inputs"].size(), 2u);
+  EXPECT_THAT(support::contentOf(out + "/report.html"), HasSubstr("they share one time course"));
+  // what it wrote is a trial that the program itself accepts
+  EXPECT_EQ(runFisherHill({"check", out + "/excitations.sto"}).status, 0);
+}
+
+TEST(EmgCommand, TellsBadInputInOneLineAndLeavesNothingBehind) {
+  const ScratchFolder scratch;
+  const std::string raw = scratch.file("raw.txt", columns());
+  const std::string word = scratch.file("word.txt", "1\t2\n3\tx\n");
+  const std::string good = scratch.file("c.toml", config);
+  const std::string bad = scratch.file("bad.toml", config + "unit = \"V\"\n");
+  const std::string fast = scratch.file(
+      "fast.toml", "[bandpass]\nhigh_Hz = 60\n" + config.substr(0, config.find("[bandpass]")) +
+                       config.substr(config.find("[[electrode]]")));
+  const std::string out = (scratch / "out").string();
+  const auto fails = [&](const std::vector<std::string>& arguments, const std::string& message) {
+    const ProgramResult result = runFisherHill(arguments);
+    EXPECT_EQ(result.status, 2) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(message));
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_FALSE(std::filesystem::exists(out));
+  };
+  fails({"emg", raw, "--config", bad, "--out", out}, "bad.toml:19: [measured] unknown key 'unit'");
+  fails({"emg", raw, "--config", fast, "--out", out}, "upper band edge 60 Hz");
+  fails({"emg", word, "--config", good, "--out", out}, "word.txt:2: column 2: 'x' is not a number");
+  fails({"emg", raw, "--out", out}, "--config");
+  fails({"emg", raw, "--config", (scratch / "none.toml").string(), "--out", out}, "none.toml");
+}
+
+TEST(EmgCommand, RunsOnTheGoniometerRecordingWithTheShippedConfiguration) {
+  const std::string raw =
+      std::string(FISHERHILL_SOURCE_DIR) + "/../shared/data/emg/goniometer/Carl_1.txt";
+  if (!std::filesystem::exists(raw)) GTEST_SKIP() << "no recording at " << raw;
+  const ProgramResult result =
+      runFisherHill({"emg", raw, "--config", "emg_data/configs/goniometer.toml", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_THAT(json["muscles"], testing::ElementsAre("BIClong", "BICshort", "BRA", "BRD"));
+  EXPECT_THAT(json["remarks"], Contains(HasSubstr("cannot tell how they divide the load")));
+  EXPECT_NEAR(json["measured_fraction_missing"], 0.013, 0.0005);
+}
+
+}  // namespace
