@@ -100,9 +100,10 @@ Matrix<double, M::parameterSize, M::parameterSize> alongParameters(
     const StateSensitivityOf<M>& psi) {
   const Eigen::Index n = psi.rows(), p = psi.cols(), last = hessian.rows() - p;
   const Matrix<double, M::parameterSize, M::parameterSize> cross =
-      hessian.block(last, 0, p, n) * psi;
-  return psi.transpose() * hessian.topLeftCorner(n, n) * psi + cross + cross.transpose() +
-         hessian.block(last, last, p, p);
+      hessian.template block<M::parameterSize, M::stateSize>(last, 0, p, n) * psi;
+  return psi.transpose() * hessian.template topLeftCorner<M::stateSize, M::stateSize>(n, n) * psi +
+         cross + cross.transpose() +
+         hessian.template bottomRightCorner<M::parameterSize, M::parameterSize>(p, p);
 }
 
 template <StepMap M>

@@ -51,8 +51,9 @@ Vector<double, argumentSize<M>> packArgument(const StateOf<M>& x, const InputOf<
 
 /// When a Newton iteration of an implicit step ends.
 struct NewtonOptions {
-  double tolerance =
-      1e-10;  ///< largest |δ_i|/(1 + |x_i|) of the last update; what is left is its square
+  /// Largest |δ_i|/(1 + |x_i|) of the last update; convergence is quadratic, so the error left is
+  /// about the square of it, which is rounding.
+  double tolerance = 1e-8;
   int maxIterations = 25;
 };
 
@@ -62,9 +63,11 @@ namespace detail {
 template <class M, class T, class F>
 auto withPieces(const M& map, const Vector<T, argumentSize<M>>& z, const F& function) {
   const Dimensions d = dimensionsOf(map);
-  return function(StateOf<M, T>(z.segment(0, d.state)), InputOf<M, T>(z.segment(d.state, d.input)),
-                  InputOf<M, T>(z.segment(d.state + d.input, d.input)),
-                  ParametersOf<M, T>(z.segment(d.state + 2 * d.input, d.parameter)));
+  constexpr int n = M::stateSize, m = M::inputSize, p = M::parameterSize;
+  return function(StateOf<M, T>(z.template head<n>(d.state)),
+                  InputOf<M, T>(z.template segment<m>(d.state, d.input)),
+                  InputOf<M, T>(z.template segment<m>(d.state + d.input, d.input)),
+                  ParametersOf<M, T>(z.template tail<p>(d.parameter)));
 }
 
 template <class M>
@@ -84,9 +87,9 @@ auto residualOfArgument(const M& map) {
   constexpr int size = addSizes(M::stateSize, argumentSize<M>);
   return [&map]<class T>(const Vector<T, size>& y) {
     const Eigen::Index n = dimensionsOf(map).state;
-    const StateOf<M, T> x1 = y.head(n);
+    const StateOf<M, T> x1 = y.template head<M::stateSize>(n);
     return withPieces<M, T>(
-        map, Vector<T, argumentSize<M>>(y.tail(y.size() - n)),
+        map, Vector<T, argumentSize<M>>(y.template tail<argumentSize<M>>(y.size() - n)),
         [&](const auto& x, const auto& u0, const auto& u1, const auto& theta) -> StateOf<M, T> {
           return map.residual(x1, x, u0, u1, theta);
         });
@@ -162,11 +165,14 @@ StepLinearisationOf<M> linearise(const M& map, const StateOf<M>& x, const InputO
     } else {
       solution = info::solve(map, x, u0, u1, theta);
       const auto [y, dr] = detail::residualJacobian(map, solution.x1, x, u0, u1, theta);
-      const Matrix<double, M::stateSize, M::stateSize> dr_dx1 = dr.leftCols(n);
-      dz = -dr_dx1.partialPivLu().solve(dr.rightCols(dr.cols() - n));
+      const Matrix<double, M::stateSize, M::stateSize> dr_dx1 =
+          dr.template leftCols<M::stateSize>(n);
+      dz = -dr_dx1.partialPivLu().solve(dr.template rightCols<argumentSize<M>>(dr.cols() - n));
     }
-    return {solution, dz.leftCols(n), dz.middleCols(n, m), dz.middleCols(n + m, m),
-            dz.rightCols(theta.size())};
+    return {solution, dz.template leftCols<M::stateSize>(n),
+            dz.template middleCols<M::inputSize>(n, m),
+            dz.template middleCols<M::inputSize>(n + m, m),
+            dz.template rightCols<M::parameterSize>(theta.size())};
   }
 }
 
@@ -186,11 +192,12 @@ Matrix<double, argumentSize<M>, argumentSize<M>> contractedHessian(
     const Step<M::stateSize> solution = info::solve(map, x, u0, u1, theta);
     const auto [y, dr] = detail::residualJacobian(map, solution.x1, x, u0, u1, theta);
     const Eigen::Index n = x.size(), nz = dr.cols() - n;
-    const Matrix<double, M::stateSize, M::stateSize> dr_dx1 = dr.leftCols(n);
+    const Matrix<double, M::stateSize, M::stateSize> dr_dx1 = dr.template leftCols<M::stateSize>(n);
     const StateOf<M> mu = dr_dx1.transpose().partialPivLu().solve(w);
     Matrix<double, addSizes(M::stateSize, argumentSize<M>), argumentSize<M>> W(n + nz, nz);
-    W.topRows(n) = -dr_dx1.partialPivLu().solve(dr.rightCols(nz));
-    W.bottomRows(nz).setIdentity();
+    W.template topRows<M::stateSize>(n) =
+        -dr_dx1.partialPivLu().solve(dr.template rightCols<argumentSize<M>>(nz));
+    W.template bottomRows<argumentSize<M>>(nz).setIdentity();
     return -W.transpose() * contractedHessian(detail::residualOfArgument(map), y, mu) * W;
   }
 }
