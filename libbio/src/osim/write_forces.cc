@@ -1,3 +1,7 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
 #include <numbers>
 
 #include "osim/writing.h"
@@ -28,19 +32,26 @@ void appendSchutte(Element& element, const SchutteParameters& p) {
   }
 }
 
+// value·factor, rounded to 15 digits where that is as near as doubles get, so that 85 stays 85.
+double converted(double value, double factor) {
+  const double exact = value * factor;
+  const double round = std::strtod(fmt::format("{:.15g}", exact).c_str(), nullptr);
+  return std::abs(round - exact) <= 2e-16 * std::abs(exact) ? round : exact;
+}
+
 // OpenSim wants limits of an angle in degrees, stiffness and damping per degree.
 void appendLimitForce(const Writing& writing, Element& parent, const CoordinateLimitForce& force) {
   const bool angle = findCoordinate(writing.model, force.coordinate).isRotation;
-  const double radians = angle ? std::numbers::pi / 180 : 1.0;
+  const double degrees = angle ? 180 / std::numbers::pi : 1.0;
   Element& element = append(parent, "CoordinateLimitForce", force.name);
   appendEnabled(writing, element, force.enabled);
   appendText(element, "coordinate", force.coordinate);
-  appendNumber(element, "upper_stiffness", force.upperStiffness * radians);
-  appendNumber(element, "upper_limit", force.upperLimit / radians);
-  appendNumber(element, "lower_stiffness", force.lowerStiffness * radians);
-  appendNumber(element, "lower_limit", force.lowerLimit / radians);
-  appendNumber(element, "damping", force.damping * radians);
-  appendNumber(element, "transition", force.transition / radians);
+  appendNumber(element, "upper_stiffness", converted(force.upperStiffness, 1 / degrees));
+  appendNumber(element, "upper_limit", converted(force.upperLimit, degrees));
+  appendNumber(element, "lower_stiffness", converted(force.lowerStiffness, 1 / degrees));
+  appendNumber(element, "lower_limit", converted(force.lowerLimit, degrees));
+  appendNumber(element, "damping", converted(force.damping, 1 / degrees));
+  appendNumber(element, "transition", converted(force.transition, degrees));
 }
 
 }  // namespace
