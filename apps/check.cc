@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include "bio/file_error.h"
 #include "bio/osim_file.h"
 #include "bio/table_file.h"
+#include "bio/trial.h"
 #include "result.h"
 #include "text.h"
 
@@ -20,22 +22,49 @@ struct Finding {
   std::string message;
 };
 
-/// Error messages name their file themselves.
-std::string lineOf(const Finding& finding) {
-  const bool named = finding.message.starts_with(finding.file);
-  return fmt::format("{}: {}{}", finding.level, named ? "" : finding.file + ": ", finding.message);
-}
-
 struct Findings {
   std::vector<Finding> list;
 
   void add(const std::string& file, const std::string& level, const std::string& message) {
-    list.push_back({file, level, oneLine(message)});
+    const bool named = message.starts_with(file + ":");
+    list.push_back({file, level, oneLine(named ? message : file + ": " + message)});
   }
   auto count(std::string_view level) const {
     return std::count_if(list.begin(), list.end(), [&](const auto& f) { return f.level == level; });
   }
 };
+
+/// The message without the names in quotes, to see which findings are alike.
+std::string patternOf(const Finding& finding) {
+  std::string pattern = finding.level + finding.file;
+  bool quoted = false;
+  for (const char c : finding.message) {
+    if (c == '\'') quoted = !quoted;
+    if (!quoted) pattern += c;
+  }
+  return pattern;
+}
+
+/// For people: errors first, then warnings; of many findings that differ in names only, the first.
+std::vector<Finding> shortened(std::vector<Finding> findings) {
+  std::stable_sort(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
+    const auto rank = [](const Finding& f) {
+      return f.level == "error" ? 0 : f.level == "warning" ? 1 : 2;
+    };
+    return rank(a) < rank(b);
+  });
+  std::map<std::string, int> alike;
+  for (const Finding& finding : findings) ++alike[patternOf(finding)];
+  std::vector<Finding> shown;
+  for (Finding& finding : findings) {
+    int& count = alike[patternOf(finding)];
+    if (count == 0) continue;
+    if (count > 1) finding.message += fmt::format(" (and {} more like this)", count - 1);
+    count = 0;
+    shown.push_back(std::move(finding));
+  }
+  return shown;
+}
 
 bool isModel(const std::string& file) {
   return std::filesystem::path(file).extension() == ".osim";
@@ -44,8 +73,7 @@ bool isModel(const std::string& file) {
 /// What a file holds, for the report.
 using Contents = std::vector<std::variant<Section, Paragraph, Figure, Table>>;
 
-Contents checkModel(const std::string& file, Findings& findings) {
-  const bio::Model model = bio::readOsim(file);
+Contents checkModel(const std::string& file, const bio::Model& model, Findings& findings) {
   for (const std::string& warning : model.warnings) findings.add(file, "warning", warning);
   for (const std::string& remark : model.remarks) findings.add(file, "unusual", remark);
   std::size_t coordinates = 0;
@@ -57,8 +85,15 @@ Contents checkModel(const std::string& file, Findings& findings) {
                                 model.muscles.size(), model.wrapObjects.size())}};
 }
 
-Contents checkTrial(const std::string& file, Findings&) {
+/// Reads the trial as one of each model, so that columns are matched with muscles and coordinates.
+Contents checkTrial(const std::string& file, const std::vector<bio::Model>& models,
+                    Findings& findings) {
   const bio::Table table = bio::readTable(file);
+  for (const bio::Model& model : models) {
+    for (const std::string& warning : bio::readTrial(file, model).warnings) {
+      findings.add(file, "warning", warning);
+    }
+  }
   const Eigen::VectorXd times = bio::timesOf(table);
   Table columns{"Columns", {"column", "smallest", "largest", "not measured"}, {}};
   Figure figure{.title = "All columns", .xLabel = "Time [s]", .yLabel = "Value, as in the file"};
@@ -87,7 +122,10 @@ class Check : public Command {
   }
 
   void addOptions(CLI::App& options) override {
-    options.add_option("FILE", files_, "models (.osim) and trials (.sto, .mot, .csv)")
+    options
+        .add_option(
+            "FILE", files_,
+            "models (.osim) and trials (.sto, .mot, .csv); trials are checked against the models")
         ->required()
         ->check(CLI::ExistingFile)
         ->type_name("");
@@ -98,16 +136,25 @@ class Check : public Command {
     Summary summary(context);
     Report report;
     Findings findings;
-    for (const std::string& file : files_) {
-      summary.addInput(file);
-      try {
-        const Contents contents =
-            isModel(file) ? checkModel(file, findings) : checkTrial(file, findings);
-        report.details.insert(report.details.end(), contents.begin(), contents.end());
-      } catch (const bio::FileError& error) {
-        findings.add(file, "error", error.what());
+    for (const std::string& file : files_) summary.addInput(file);
+
+    // Models first: a trial is checked against all of them.
+    std::vector<bio::Model> models;
+    const auto checkAll = [&](bool areModels) {
+      for (const std::string& file : files_) {
+        if (isModel(file) != areModels) continue;
+        try {
+          if (areModels) models.push_back(bio::readOsim(file));
+          const Contents contents = areModels ? checkModel(file, models.back(), findings)
+                                              : checkTrial(file, models, findings);
+          report.details.insert(report.details.end(), contents.begin(), contents.end());
+        } catch (const bio::FileError& error) {
+          findings.add(file, "error", error.what());
+        }
       }
-    }
+    };
+    checkAll(true);
+    checkAll(false);
     tell(context, findings, summary, report);
     deliver(context, summary, report, folder);
     return findings.count("error") == 0 ? ExitStatus::done : ExitStatus::answerIsNo;
@@ -127,14 +174,17 @@ class Check : public Command {
     summary.set("warnings_found", findings.count("warning"));
     summary.set("unusual", findings.count("unusual"));
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    Table table{"What was found", {"file", "kind", "finding"}, {}};
     for (const Finding& finding : findings.list) {
       list.push_back(
           {{"file", finding.file}, {"level", finding.level}, {"message", finding.message}});
-      table.rows.push_back({finding.file, finding.level, finding.message});
-      if (!context.json) fmt::print("{}\n", lineOf(finding));
     }
     summary.set("findings", list);
+
+    Table table{"What was found", {"kind", "finding"}, {}};
+    for (const Finding& finding : shortened(findings.list)) {
+      table.rows.push_back({finding.level, finding.message});
+      if (!context.json) fmt::print("{}: {}\n", finding.level, finding.message);
+    }
     if (!table.rows.empty()) report.details.insert(report.details.begin(), table);
   }
 

@@ -116,6 +116,7 @@ std::string html(const Table& table) {
   return text + "</tbody>\n</table>\n</div>\n";
 }
 
+/// Lists are for summary.json and for the report's own tables.
 void addFigureRows(Table& table, const std::string& name, const Json& value) {
   if (value.is_object()) {
     for (const auto& [key, part] : value.items()) addFigureRows(table, name + "." + key, part);
@@ -123,7 +124,7 @@ void addFigureRows(Table& table, const std::string& name, const Json& value) {
     table.rows.push_back({name, numberText(value.get<double>(), 6)});
   } else if (value.is_string()) {
     table.rows.push_back({name, value.get<std::string>()});
-  } else {
+  } else if (!value.is_structured()) {
     table.rows.push_back({name, value.dump()});
   }
 }
