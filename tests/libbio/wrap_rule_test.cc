@@ -1,0 +1,102 @@
+#include "bio/wrap_rule.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <stdexcept>
+
+namespace bio {
+namespace {
+
+using V = Vec3<double>;
+constexpr Side ccw = Side::counterclockwise;
+constexpr Side cw = Side::clockwise;
+
+TEST(WrapQuadrant, ReadsOpenSimsWords) {
+  EXPECT_EQ(wrapQuadrant("all"), WrapQuadrant::all);
+  EXPECT_EQ(wrapQuadrant("x"), WrapQuadrant::plusX);
+  EXPECT_EQ(wrapQuadrant("+x"), WrapQuadrant::plusX);
+  EXPECT_EQ(wrapQuadrant("-x"), WrapQuadrant::minusX);
+  EXPECT_EQ(wrapQuadrant("y"), WrapQuadrant::plusY);
+  EXPECT_EQ(wrapQuadrant("-Y"), WrapQuadrant::minusY);
+  EXPECT_EQ(wrapQuadrant("+z"), WrapQuadrant::plusZ);
+  EXPECT_EQ(wrapQuadrant("-z"), WrapQuadrant::minusZ);
+  for (const char* bad : {"", "w", "-", "xx", "+-x", "left"}) {
+    EXPECT_THROW(wrapQuadrant(bad), std::invalid_argument) << bad;
+  }
+}
+
+TEST(CylinderSide, WithoutQuadrantIsTheShorterWay) {
+  EXPECT_EQ(cylinderSide(WrapQuadrant::all, V(2, -1, 0), V(2, 1, 0)), ccw);
+  EXPECT_EQ(cylinderSide(WrapQuadrant::all, V(2, 1, 0), V(2, -1, 0)), cw);
+  EXPECT_EQ(cylinderSide(WrapQuadrant::all, V(-2, 1, 0), V(-2, -1, 3)), ccw);
+}
+
+TEST(CylinderSide, PassesTheNamedSide) {
+  // downwards past +x is clockwise, past −x counter-clockwise
+  EXPECT_EQ(cylinderSide(WrapQuadrant::plusX, V(0.2, 3, 0), V(0.1, -3, 0)), cw);
+  EXPECT_EQ(cylinderSide(WrapQuadrant::minusX, V(0.2, 3, 0), V(0.1, -3, 0)), ccw);
+  EXPECT_EQ(cylinderSide(WrapQuadrant::plusX, V(-0.2, 3, 0), V(-0.1, -3, 0)), cw);
+  EXPECT_EQ(cylinderSide(WrapQuadrant::plusY, V(-3, 0.1, 0), V(3, 0.1, 0)), cw);
+  EXPECT_EQ(cylinderSide(WrapQuadrant::minusY, V(-3, 0.1, 0), V(3, 0.1, 0)), ccw);
+  EXPECT_THROW(cylinderSide(WrapQuadrant::plusZ, V(2, 0, 0), V(0, 2, 0)), std::invalid_argument);
+}
+
+// OpenSim's cases: neither end on the side always wraps; a free line on the side does not.
+TEST(CylinderTouches, FollowsTheQuadrant) {
+  const auto touches = [](WrapQuadrant quadrant, const V& P, const V& Q) {
+    return cylinderTouches(1, 10, cylinderSide(quadrant, P, Q), P, Q);
+  };
+  EXPECT_TRUE(touches(WrapQuadrant::plusX, V(-2, 3, 0), V(-2, -3, 0)));  // neither end on the side
+  EXPECT_FALSE(touches(WrapQuadrant::plusX, V(2, 3, 0), V(2, -3, 0)));   // free, on the side
+  EXPECT_TRUE(touches(WrapQuadrant::plusX, V(0.5, 3, 0), V(0.5, -3, 0)));  // penetrates
+  EXPECT_TRUE(touches(WrapQuadrant::plusX, V(-0.5, 3, 0), V(-0.5, -3, 0)));
+  EXPECT_TRUE(touches(WrapQuadrant::all, V(-0.5, 3, 0), V(-0.5, -3, 0)));
+  EXPECT_FALSE(touches(WrapQuadrant::all, V(-1.5, 3, 0), V(-1.5, -3, 0)));  // misses
+}
+
+TEST(CylinderTouches, NotWhenAnEndIsInsideOrBothContactsAreBeyondTheEnds) {
+  EXPECT_FALSE(cylinderTouches(1, 10, cw, V(0.5, 0.5, 0), V(0.5, -3, 0)));
+  EXPECT_FALSE(cylinderTouches(1, 10, cw, V(0.5, 3, 0), V(0, 0, 0)));
+  EXPECT_TRUE(cylinderTouches(1, 10, cw, V(0.5, 3, 4.9), V(0.5, -3, 4.9)));
+  EXPECT_FALSE(cylinderTouches(1, 10, cw, V(0.5, 3, 5.1), V(0.5, -3, 5.1)));
+  EXPECT_TRUE(cylinderTouches(1, 10, cw, V(0.5, 3, -3), V(0.5, -3, 12)));
+  EXPECT_TRUE(cylinderTouches(1, 10, cw, V(0.5, 3, 12), V(0.5, -3, -3)));
+}
+
+// For "all", any segment that penetrates touches, and none that misses.
+TEST(CylinderTouches, MeansPenetrationForQuadrantAll) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> unit(-3, 3);
+  int inside = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const V P(unit(random), unit(random), unit(random)),
+        Q(unit(random), unit(random), unit(random));
+    if (P.head<2>().norm() <= 1 || Q.head<2>().norm() <= 1) continue;
+    double closest = 1e9;
+    for (int k = 0; k <= 2000; ++k) {
+      closest = std::min(closest, (P + (Q - P) * k / 2000.0).head<2>().norm());
+    }
+    if (std::abs(closest - 1) < 1e-3) continue;
+    inside += closest < 1 ? 1 : 0;
+    const Side side = cylinderSide(WrapQuadrant::all, P, Q);
+    EXPECT_EQ(cylinderTouches(1, 100, side, P, Q), closest < 1);
+    EXPECT_EQ(sphereTouches(1, sphereWay(WrapQuadrant::all, P, Q), P, Q), [&] {
+      double least = 1e9;
+      for (int k = 0; k <= 2000; ++k) least = std::min(least, (P + (Q - P) * k / 2000.0).norm());
+      return least < 1;
+    }());
+  }
+  EXPECT_GT(inside, 500);
+}
+
+TEST(SphereWay, PassesTheNamedSide) {
+  EXPECT_EQ(sphereWay(WrapQuadrant::all, V(2, 0, 0), V(0, 2, 0)), Way::shorter);
+  EXPECT_EQ(sphereWay(WrapQuadrant::plusX, V(2, 0, 0), V(0, 2, 0)), Way::shorter);
+  EXPECT_EQ(sphereWay(WrapQuadrant::minusX, V(2, 0, 0), V(0, 2, 0)), Way::longer);
+  EXPECT_EQ(sphereWay(WrapQuadrant::minusZ, V(2, 0, -1), V(0, 2, -1)), Way::shorter);
+  EXPECT_FALSE(sphereTouches(1, Way::shorter, V(0.5, 0, 0), V(0, 2, 0)));
+}
+
+}  // namespace
+}  // namespace bio
