@@ -159,6 +159,29 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"BadSeed", {"GOOD", "--seed", "-3", "--out", "OUT"}, "--seed"}),
     [](const auto& test) { return std::string(test.param.name); });
 
+TEST(CheckCommand, MatchesATrialsColumnsWithTheModel) {
+  const ScratchFolder scratch;
+  const std::string rows = "0,0.1,0.2\n0.1,0.2,0.3\n";
+  const std::string good = scratch.file("good.csv", "time,BIClong,elbow_flexion_deg\n" + rows);
+  const ProgramResult fits = runFisherHill({"check", good, "models/elbow8.osim"});
+  EXPECT_EQ(fits.status, 0) << fits.out;
+  EXPECT_THAT(fits.out, HasSubstr("'TRIlong' has no column, its excitation is 0.01 (and 6 more"));
+
+  const std::string bad = scratch.file("bad.csv", "time,BIClong,GLUTmax\n" + rows);
+  const ProgramResult differs = runFisherHill({"check", bad, "models/elbow8.osim"});
+  EXPECT_EQ(differs.status, 1);
+  EXPECT_THAT(differs.out, HasSubstr("error: " + bad));
+  EXPECT_THAT(differs.out, HasSubstr("GLUTmax"));
+}
+
+TEST(CheckCommand, TheShippedModelsHaveNoErrorAndNoWarning) {
+  for (const char* model : {"models/elbow8.osim", "models/elbow8_passive.osim"}) {
+    const ProgramResult result = runFisherHill({"check", model, "--json"});
+    EXPECT_EQ(result.status, 0) << model;
+    EXPECT_EQ(nlohmann::json::parse(result.out)["warnings_found"], 0) << model;
+  }
+}
+
 TEST(FisherHill, WithoutASubcommandIsStatusTwo) {
   const ProgramResult result = runFisherHill({});
   EXPECT_EQ(result.status, 2);
