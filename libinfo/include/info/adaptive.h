@@ -80,7 +80,7 @@ SensitivityRate<S> sensitivityRate(const S& system, const StateOf<S>& x, const I
   const auto field = [&]<class T>(const Vector<T, addSizes(n, p)>& z) {
     return StateOf<S, T>(system.f(StateOf<S, T>(z.template head<n>(size)),
                                   InputOf<S, T>(u.template cast<T>()),
-                                  ParametersOf<S, T>(z.template tail<p>(count))));
+                                  ParametersOf<S, T>(z.template segment<p>(size, count))));
   };
   Vector<double, addSizes(n, p)> z(size + count);
   z << x, theta;

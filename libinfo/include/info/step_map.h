@@ -67,7 +67,7 @@ auto withPieces(const M& map, const Vector<T, argumentSize<M>>& z, const F& func
   return function(StateOf<M, T>(z.template head<n>(d.state)),
                   InputOf<M, T>(z.template segment<m>(d.state, d.input)),
                   InputOf<M, T>(z.template segment<m>(d.state + d.input, d.input)),
-                  ParametersOf<M, T>(z.template tail<p>(d.parameter)));
+                  ParametersOf<M, T>(z.template segment<p>(d.state + 2 * d.input, d.parameter)));
 }
 
 template <class M>
@@ -89,7 +89,7 @@ auto residualOfArgument(const M& map) {
     const Eigen::Index n = dimensionsOf(map).state;
     const StateOf<M, T> x1 = y.template head<M::stateSize>(n);
     return withPieces<M, T>(
-        map, Vector<T, argumentSize<M>>(y.template tail<argumentSize<M>>(y.size() - n)),
+        map, Vector<T, argumentSize<M>>(y.template segment<argumentSize<M>>(n, y.size() - n)),
         [&](const auto& x, const auto& u0, const auto& u1, const auto& theta) -> StateOf<M, T> {
           return map.residual(x1, x, u0, u1, theta);
         });
@@ -219,7 +219,9 @@ SensitivityStep<M::stateSize, M::parameterSize> advance(
     requireSizes(map, x, u0, theta);
     constexpr int block = detail::directionBlock(M::parameterSize);
     using T = Dual<block>;
-    SensitivityStep<M::stateSize, M::parameterSize> out{{x}, psi};
+    SensitivityStep<M::stateSize, M::parameterSize> out;
+    out.solution.x1 = x;
+    out.psi1 = psi;
     const Eigen::Index p = theta.size();
     const InputOf<M, T> u0T = u0.template cast<T>(), u1T = u1.template cast<T>();
     for (Eigen::Index first = 0; first == 0 || first < p; first += block) {

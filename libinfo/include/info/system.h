@@ -94,8 +94,8 @@ template <class S>
 concept SmoothSystem = System<S> &&
     requires(const S& s, const StateOf<S, Dual<1>>& x, const InputOf<S, Dual<1>>& u,
              const ParametersOf<S, Dual<1>>& theta) {
-  { s.f(x, u, theta) } -> std::convertible_to<StateOf<S, Dual<1>>>;
-  { s.g(x, u, theta) } -> std::convertible_to<OutputOf<S, Dual<1>>>;
+  requires std::same_as<typename std::remove_cvref_t<decltype(s.f(x, u, theta))>::Scalar, Dual<1>>;
+  requires std::same_as<typename std::remove_cvref_t<decltype(s.g(x, u, theta))>::Scalar, Dual<1>>;
 };
 
 /// A discrete system x_{k+1} = Φ(x_k, u_k, u_{k+1}, θ), y_k = g(x_k, u_k, θ), in one of three

@@ -98,10 +98,10 @@ class VariationalIntegrator {
                         const Parameters& theta) const {
     constexpr int nr = S::kinematicSize;
     return {x.template head<n>(d_.coordinate),
-            x.template tail<n>(d_.coordinate),
+            x.template segment<n>(d_.coordinate, d_.coordinate),
             u0.template head<S::forceInputSize>(d_.force),
-            u0.template tail<nr>(d_.kinematic),
-            u1.template tail<nr>(d_.kinematic),
+            u0.template segment<nr>(d_.force, d_.kinematic),
+            u1.template segment<nr>(d_.force, d_.kinematic),
             theta};
   }
   Step<stateSize> solve(const State& x, const Input& u0, const Input& u1,
@@ -117,9 +117,9 @@ class VariationalIntegrator {
   template <class T>
   Vector<T, outputSize> g(const Vector<T, stateSize>& x, const Vector<T, inputSize>& u,
                           const Vector<T, parameterSize>& theta) const {
-    return system_.measure(CoordinatesOf<S, T>(x.template head<n>(d_.coordinate)),
-                           KinematicOf<S, T>(u.template tail<S::kinematicSize>(d_.kinematic)),
-                           theta);
+    return system_.measure(
+        CoordinatesOf<S, T>(x.template head<n>(d_.coordinate)),
+        KinematicOf<S, T>(u.template segment<S::kinematicSize>(d_.force, d_.kinematic)), theta);
   }
 
  private:
@@ -235,12 +235,13 @@ auto VariationalIntegrator<S>::chain(const typename Formulas::Slopes& slopes) co
   // 0 = p_k + r̂: M dq_{k+1} = −(dp_k + ∂r̂/∂z dz)
   const Square transposedM = unknown.template leftCols<n>(k);
   c.inverseM = inverse(transposedM).transpose();
-  Slope dr_dz = known.template leftCols<n>(k).transpose();
+  Slope dr_dz(k, zLength());
+  dr_dz.noalias() = known.template leftCols<n>(k).transpose();
   dr_dz.template middleCols<n>(k, k).diagonal().array() += 1.0;
   c.dq1_dz = -c.inverseM * dr_dz;
   // p_{k+1} = p̂
-  c.dp_dq1 = unknown.template rightCols<n>(k).transpose();
-  c.dp1_dz = known.template rightCols<n>(k).transpose();
+  c.dp_dq1.noalias() = unknown.template rightCols<n>(k).transpose();
+  c.dp1_dz.noalias() = known.template rightCols<n>(k).transpose();
   c.dp1_dz.noalias() += c.dp_dq1 * c.dq1_dz;
   return c;
 }
@@ -307,8 +308,8 @@ auto VariationalIntegrator<S>::contractedSecondDerivatives(const Arguments& z, c
   const int k = d_.coordinate;
   State weights(2 * k);
   weights << -c.inverseM.transpose() *
-                 (w.template head<n>(k) + c.dp_dq1.transpose() * w.template tail<n>(k)),
-      w.template tail<n>(k);
+                 (w.template head<n>(k) + c.dp_dq1.transpose() * w.template segment<n>(k, k)),
+      w.template segment<n>(k, k);
   typename Formulas::Hessian sum = weights[0] * at.hessians[0];
   for (int i = 1; i < 2 * k; ++i) sum += weights[i] * at.hessians[std::size_t(i)];
   return sandwich(sum, c.dq1_dz);
