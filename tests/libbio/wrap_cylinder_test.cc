@@ -220,7 +220,7 @@ TEST(WrapCylinder, DerivativesAgreeThreeWays) {
   int wrapped = 0;
   for (int i = 0; i < 2000; ++i) {
     const Case c = randomCase(random);
-    const SpanToSecondOrder hand = wrapCylinderToSecondOrder(c.radius, c.side, c.P, c.Q);
+    const SpanToSecondOrder<double> hand = wrapCylinderToSecondOrder(c.radius, c.side, c.P, c.Q);
     const Span<double> plain = wrap(c);
     wrapped += plain.touches ? 1 : 0;
     ASSERT_EQ(hand.span.touches, plain.touches);

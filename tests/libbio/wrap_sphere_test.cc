@@ -127,7 +127,7 @@ TEST(WrapSphere, DerivativesAgreeThreeWays) {
   for (int i = 0; i < 1000; ++i) {
     const Case c = randomCase(random);
     if (c.P.normalized().cross(c.Q.normalized()).norm() < 0.05) continue;  // plane ill defined
-    const SpanToSecondOrder hand = wrapSphereToSecondOrder(c.radius, c.way, c.P, c.Q);
+    const SpanToSecondOrder<double> hand = wrapSphereToSecondOrder(c.radius, c.way, c.P, c.Q);
     Vec6 gradient, z;
     gradient << hand.span.dL_dP, hand.span.dL_dQ;
     z << c.P, c.Q;

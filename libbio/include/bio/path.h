@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <cstddef>
 #include <string>
 #include <vector>
 
+#include "bio/compiled_path.h"
 #include "bio/model.h"
 #include "bio/rigid_motion.h"
 #include "bio/skeleton.h"
@@ -11,30 +13,78 @@
 namespace bio {
 
 /// A muscle–tendon length and how it follows N free coordinates.
-template <int N>
+template <int N, class T = double>
 struct LengthJet {
-  double length = 0;                      ///< ℓ_MT [m]
-  Eigen::Matrix<double, N, 1> dL_dq;      ///< [m/rad]; the moment arm is its negative
-  Eigen::Matrix<double, N, N> d2L_dq2;    ///< [m/rad²]
-  bool wrapped = false;                   ///< a moving span touches a wrap object
+  T length = T(0.0);               ///< ℓ_MT [m]
+  Eigen::Matrix<T, N, 1> dL_dq;    ///< [m/rad]; the moment arm is its negative
+  Eigen::Matrix<T, N, N> d2L_dq2;  ///< [m/rad²]
+  bool wrapped = false;            ///< a moving span touches a wrap object
+};
+
+/// The numbers of a path that identification may differentiate in.
+template <class T>
+struct PathParameters {
+  std::vector<Vec3<T>>
+      points;  ///< of Path::points, in their bodies' frames [m]; moving points keep their functions
+  std::vector<T> radii;  ///< of Path::wraps [m]; unused for a wrap that is left out
 };
 
 /// The path of one muscle, compiled for a skeleton: the constant length of the spans that cannot
 /// move, and the spans that do. Evaluation is pure and allocates nothing.
+///
+/// A span goes straight from point to point, or over one wrap object. The first span that touches
+/// an object gets it, the first object that a span touches wins. Which way round an object a span
+/// goes is decided here, once (wrap_rule.h); the default posture and the coordinates' ranges tell.
+/// Between switches of conditional points and beyond lift-off, the length is C¹.
+///
+/// Departures from OpenSim: paths over spheres and cylinders are exact geodesics, they never change
+/// sides, and an object that no span meets within the coordinates' ranges, nor lies within its
+/// radius of, is left out.
 class MusclePath {
  public:
+  /// @param wrapAsCylinder names of ellipsoids with two equal semi-axes to be taken as cylinders
+  /// about the third
+  /// @throws std::invalid_argument for an ellipsoid or torus that a moving span can touch, an
+  /// ellipsoid in wrapAsCylinder
+  ///   without two equal semi-axes, names that the model lacks, a path that has less than two
+  ///   points in some posture
   MusclePath(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
              const std::vector<std::string>& wrapAsCylinder);
 
   /// False if no free coordinate changes the length.
   bool moves() const;
   /// One line each: wraps of fixed spans taken as straight, wraps out of reach.
-  const std::vector<std::string>& notes() const;
+  const std::vector<std::string>& notes() const { return compiled_.notes; }
 
   /// `moved` is what Skeleton::motions(q, ·) returned.
   template <int N>
   LengthJet<N> length(const Eigen::Matrix<double, N, 1>& q,
                       const RigidMotion<double, N>* moved) const;
+
+  /// The parameters as the model has them.
+  const PathParameters<double>& parameters() const { return parameters_; }
+
+  /// length for other parameters, all spans computed anew; T is double or an AD scalar.
+  template <class T, int N>
+  LengthJet<N, T> length(const PathParameters<T>& parameters, const Eigen::Matrix<T, N, 1>& q,
+                         const RigidMotion<T, N>* moved) const;
+
+  /// The path in ground as a polyline, for pictures: every active point, and on wrap objects points
+  /// at most `step` [rad] apart along the arc.
+  template <int N>
+  std::vector<Eigen::Vector3d> pathPoints(const Eigen::Matrix<double, N, 1>& q,
+                                          const RigidMotion<double, N>* moved,
+                                          double step = 0.1) const;
+
+ private:
+  std::vector<Eigen::Vector3d> polyline(const std::vector<double>& q,
+                                        const std::vector<Placement<double>>& placements,
+                                        double step) const;
+
+  CompiledPath compiled_;
+  PathParameters<double> parameters_;
 };
 
 }  // namespace bio
+
+#include "bio/path_length.h"  // template bodies

@@ -29,10 +29,11 @@ struct SpanHessian {
   Mat3<T> d2L_dQdQ;
 };
 
-/// A span with its second derivatives, in plain numbers.
+/// A span with its second derivatives.
+template <class T>
 struct SpanToSecondOrder {
-  Span<double> span;
-  SpanHessian<double> hessian;
+  Span<T> span;
+  SpanHessian<T> hessian;
 };
 
 /// Where a wrapped path meets and leaves its surface; for a straight span the values mean nothing.
@@ -58,12 +59,15 @@ Span<T> straightSpan(const Vec3<T>& p_CP, const Vec3<T>& p_CQ) {
 }
 
 /// straightSpan with its Hessian (1/L)(1 − t tᵀ), t the unit tangent.
-inline SpanToSecondOrder straightSpanToSecondOrder(const Vec3<double>& p_CP,
-                                                   const Vec3<double>& p_CQ) {
-  SpanToSecondOrder result{straightSpan<double>(p_CP, p_CQ), {}};
-  const Vec3<double>& t = result.span.dL_dQ;
-  const Mat3<double> across = (Mat3<double>::Identity() - t * t.transpose()) / result.span.length;
-  result.hessian = {across, -across, across};
+template <class T>
+SpanToSecondOrder<T> straightSpanToSecondOrder(const Vec3<T>& p_CP, const Vec3<T>& p_CQ) {
+  SpanToSecondOrder<T> result{straightSpan(p_CP, p_CQ), {}};
+  const Vec3<T>& t = result.span.dL_dQ;
+  const Vec3<T> tPerLength = t / result.span.length;
+  Mat3<T> across = -tPerLength * t.transpose();
+  const T perLength = T(1.0) / result.span.length;
+  for (int i = 0; i < 3; ++i) across(i, i) += perLength;
+  result.hessian = {across, Mat3<T>(-across), across};
   return result;
 }
 

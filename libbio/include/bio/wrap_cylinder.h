@@ -107,33 +107,38 @@ Span<T> wrapCylinder(const T& radius, Side side, const Vec3<T>& p_CP, const Vec3
 /// wrapCylinder with second derivatives, in closed form: s falls apart into a part of P and one of
 /// Q, whose Hessians are (1/a) n nᵀ with a the tangent length and n across the tangent. At lift-off
 /// the Hessian jumps.
-inline SpanToSecondOrder wrapCylinderToSecondOrder(double radius, Side side,
-                                                   const Vec3<double>& p_CP,
-                                                   const Vec3<double>& p_CQ) {
-  const CylinderGeometry<double> g = cylinderGeometry(radius, side, p_CP, p_CQ);
+template <class T>
+SpanToSecondOrder<T> wrapCylinderToSecondOrder(const T& radius, Side side, const Vec3<T>& p_CP,
+                                               const Vec3<T>& p_CQ) {
+  using std::sqrt;
+  const CylinderGeometry<T> g = cylinderGeometry(radius, side, p_CP, p_CQ);
   if (!g.touches) return straightSpanToSecondOrder(p_CP, p_CQ);
-  const double s = g.tangentP + radius * g.angle + g.tangentQ;
-  const double h = p_CQ.z() - p_CP.z();
-  const double length = std::sqrt(s * s + h * h);
-  const double perLength = 1 / length;
-  const double around = s * perLength;
-  const double up = h * perLength;
+  const T s = g.tangentP + radius * g.angle + g.tangentQ;
+  const T h = p_CQ.z() - p_CP.z();
+  const T length = sqrt(T(s * s + h * h));
+  const T perLength = T(1.0) / length;
+  const T around = s * perLength;
+  const T up = h * perLength;
 
   // Gradient of s in the plane, and of L = √(s² + h²).
-  const Vec3<double> eP(g.eP[0], g.eP[1], 0), eQ(g.eQ[0], g.eQ[1], 0);
-  SpanToSecondOrder result;
-  result.span = {length, Vec3<double>(-around * eP.x(), -around * eP.y(), -up),
-                 Vec3<double>(around * eQ.x(), around * eQ.y(), up), true};
+  SpanToSecondOrder<T> result;
+  result.span = {length, Vec3<T>(T(-around * g.eP[0]), T(-around * g.eP[1]), T(-up)),
+                 Vec3<T>(T(around * g.eQ[0]), T(around * g.eQ[1]), up), true};
 
   // Curvature of L over (s, h) is (1/L) m mᵀ with m = (up, −around): one dyad for both ends.
-  const Vec3<double> mP(-up * eP.x(), -up * eP.y(), around);
-  const Vec3<double> mQ(up * eQ.x(), up * eQ.y(), -around);
-  const Vec3<double> nP(-eP.y(), eP.x(), 0), nQ(-eQ.y(), eQ.x(), 0);
-  const double bendP = around / g.tangentP;
-  const double bendQ = around / g.tangentQ;
-  result.hessian.d2L_dPdP = (bendP * nP) * nP.transpose() + (perLength * mP) * mP.transpose();
-  result.hessian.d2L_dPdQ = (perLength * mP) * mQ.transpose();
-  result.hessian.d2L_dQdQ = (bendQ * nQ) * nQ.transpose() + (perLength * mQ) * mQ.transpose();
+  const Vec3<T> mP(T(-up * g.eP[0]), T(-up * g.eP[1]), around);
+  const Vec3<T> mQ(T(up * g.eQ[0]), T(up * g.eQ[1]), T(-around));
+  const Vec3<T> mPPerLength = mP * perLength;
+  const Vec3<T> mQPerLength = mQ * perLength;
+  const T bendP = around / g.tangentP;
+  const T bendQ = around / g.tangentQ;
+  const Vec3<T> nP(T(-g.eP[1]), g.eP[0], T(0.0));
+  const Vec3<T> nQ(T(-g.eQ[1]), g.eQ[0], T(0.0));
+  const Vec3<T> nPBent = nP * bendP;
+  const Vec3<T> nQBent = nQ * bendQ;
+  result.hessian.d2L_dPdP = nPBent * nP.transpose() + mPPerLength * mP.transpose();
+  result.hessian.d2L_dPdQ = mPPerLength * mQ.transpose();
+  result.hessian.d2L_dQdQ = nQBent * nQ.transpose() + mQPerLength * mQ.transpose();
   return result;
 }
 

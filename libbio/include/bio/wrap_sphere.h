@@ -89,24 +89,29 @@ Span<T> wrapSphere(const T& radius, Way way, const Vec3<T>& p_CP, const Vec3<T>&
 
 /// wrapSphere with second derivatives in closed form: within the plane (1/a) m mᵀ as for a
 /// cylinder; across it the plane itself turns, which also couples the ends.
-inline SpanToSecondOrder wrapSphereToSecondOrder(double radius, Way way, const Vec3<double>& p_CP,
-                                                 const Vec3<double>& p_CQ) {
-  const SphereGeometry<double> g = sphereGeometry(radius, way, p_CP, p_CQ);
+template <class T>
+SpanToSecondOrder<T> wrapSphereToSecondOrder(const T& radius, Way way, const Vec3<T>& p_CP,
+                                             const Vec3<T>& p_CQ) {
+  const SphereGeometry<T> g = sphereGeometry(radius, way, p_CP, p_CQ);
   if (!g.touches) return straightSpanToSecondOrder(p_CP, p_CQ);
-  SpanToSecondOrder result;
-  result.span = {g.tangentP + radius * g.angle + g.tangentQ, -g.eP, g.eQ, true};
-  const Vec3<double>& b = g.normal;
-  const Vec3<double> mP = b.cross(g.eP);
-  const Vec3<double> mQ = b.cross(g.eQ);
-  const double perP = 1 / g.distanceP;
-  const double perQ = 1 / g.distanceQ;
-  const double cotangent = g.cosPhi / g.sinPhi;
-  const Mat3<double> across = b * b.transpose();
-  result.hessian.d2L_dPdP =
-      mP * mP.transpose() / g.tangentP + (g.tangentP + radius * cotangent) * perP * perP * across;
-  result.hessian.d2L_dQdQ =
-      mQ * mQ.transpose() / g.tangentQ + (g.tangentQ + radius * cotangent) * perQ * perQ * across;
-  result.hessian.d2L_dPdQ = -radius * perP * perQ / g.sinPhi * across;
+  SpanToSecondOrder<T> result;
+  const T length = g.tangentP + radius * g.angle + g.tangentQ;
+  result.span = {length, Vec3<T>(-g.eP), g.eQ, true};
+  const Vec3<T>& b = g.normal;
+  const Vec3<T> mP = b.cross(g.eP);
+  const Vec3<T> mQ = b.cross(g.eQ);
+  const T perP = T(1.0) / g.distanceP;
+  const T perQ = T(1.0) / g.distanceQ;
+  const T turning = radius * g.cosPhi / g.sinPhi;
+  const T acrossP = (g.tangentP + turning) * perP * perP;
+  const T acrossQ = (g.tangentQ + turning) * perQ * perQ;
+  const T coupling = -radius * perP * perQ / g.sinPhi;
+  const Vec3<T> mPBent = mP / g.tangentP;
+  const Vec3<T> mQBent = mQ / g.tangentQ;
+  const Mat3<T> bb = b * b.transpose();
+  result.hessian.d2L_dPdP = mPBent * mP.transpose() + bb * acrossP;
+  result.hessian.d2L_dQdQ = mQBent * mQ.transpose() + bb * acrossQ;
+  result.hessian.d2L_dPdQ = bb * coupling;
   return result;
 }
 

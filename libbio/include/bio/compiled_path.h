@@ -1,0 +1,122 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "bio/curves.h"
+#include "bio/model.h"
+#include "bio/rigid_motion.h"
+#include "bio/skeleton.h"
+#include "bio/span.h"
+#include "bio/wrap_rule.h"
+
+namespace bio {
+
+/// A point of a path, in the frame of the segment that carries it.
+struct PathNode {
+  std::size_t point = 0;    ///< its place in Path::points
+  std::size_t segment = 0;  ///< of the skeleton; 0 is the ground
+  Placement<double> X_SB;   ///< its body in the segment
+  Vec3<double> p_S;         ///< in the segment frame [m]; not used where it moves
+  int motion = -1;          ///< index into CompiledPath::motions, −1: fixed in its body
+  int condition = -1;       ///< index into CompiledPath::conditions, −1: always active
+};
+
+/// A location in a body that follows free coordinates.
+struct CompiledPointMotion {
+  std::array<Skeleton::CoordinateSource, 3> source;
+  std::vector<FunctionEvaluator> location;  ///< x, y, z over the coordinate
+};
+
+/// Active while lower ≤ coordinate ≤ upper, with OpenSim's tolerance of 1e-5 at both borders.
+struct CompiledCondition {
+  Skeleton::CoordinateSource source;
+  double lower = 0;
+  double upper = 0;
+};
+
+/// A cylinder about z or a sphere, in the frame of its segment.
+struct PathSurface {
+  bool isSphere = false;
+  std::size_t wrap = 0;     ///< its place in Path::wraps
+  std::size_t segment = 0;  ///< of the skeleton
+  Placement<double> X_SC;   ///< surface in the segment
+  double radius = 0;        ///< [m]
+  double halfLength = 0;    ///< cylinder [m]
+  WrapQuadrant quadrant = WrapQuadrant::all;
+};
+
+/// A surface that a span may touch, and the way it then goes.
+struct SpanSurface {
+  std::size_t surface = 0;
+  Side side = Side::counterclockwise;  ///< cylinder
+  Way way = Way::shorter;              ///< sphere
+};
+
+/// From node a to node b.
+struct PathSpan {
+  std::size_t a = 0;
+  std::size_t b = 0;
+  bool moves = false;
+  std::vector<SpanSurface> surfaces;  ///< in the order in which they are tried
+};
+
+/// The path while a given set of conditional points is active.
+struct PathVariant {
+  double fixedLength = 0;        ///< of the spans that do not move [m]
+  std::vector<PathSpan> moving;  ///< in path order
+  std::vector<PathSpan> all;     ///< moving and fixed, in path order
+};
+
+/// A muscle's path as evaluation needs it. Plain data; what MusclePath is made of.
+struct CompiledPath {
+  std::vector<PathNode> nodes;
+  std::vector<CompiledPointMotion> motions;
+  std::vector<CompiledCondition> conditions;
+  std::vector<PathSurface> surfaces;
+  std::vector<PathVariant> variants;  ///< by the bits of the active conditions
+  std::vector<std::string> notes;
+};
+
+/// See MusclePath.
+CompiledPath compilePath(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
+                         const std::vector<std::string>& wrapAsCylinder);
+
+/// The variant for a configuration.
+template <class Q>
+const PathVariant& activeVariant(const CompiledPath& path, const Q& q) {
+  std::size_t bits = 0;
+  for (std::size_t i = 0; i < path.conditions.size(); ++i) {
+    const CompiledCondition& condition = path.conditions[i];
+    const double coordinate =
+        condition.source.coupling
+            .evaluate(plainValue(q[static_cast<Eigen::Index>(condition.source.freeIndex)]))
+            .value;
+    const bool active =
+        coordinate >= condition.lower - 1e-5 && coordinate <= condition.upper + 1e-5;
+    bits |= (active ? std::size_t{1} : std::size_t{0}) << i;
+  }
+  return path.variants[bits];
+}
+
+/// Whether a span with these ends, seen in the surface's frame, is left straight because an end
+/// lies within the radius, or because both contacts lie beyond a cylinder's ends.
+template <class T>
+bool surfaceIsOutOfPlay(const PathSurface& surface, const T& radius, Side side, const Vec3<T>& p_CP,
+                        const Vec3<T>& p_CQ) {
+  const double r = plainValue(radius);
+  const auto at = [](const Vec3<T>& p) {
+    return Vec3<double>(plainValue(p.x()), plainValue(p.y()), plainValue(p.z()));
+  };
+  const Vec3<double> P = at(p_CP), Q = at(p_CQ);
+  if (surface.isSphere) return !(P.squaredNorm() > r * r && Q.squaredNorm() > r * r);
+  if (!(P.head<2>().squaredNorm() > r * r && Q.head<2>().squaredNorm() > r * r)) return true;
+  const bool within =
+      std::abs(P.z()) <= surface.halfLength && std::abs(Q.z()) <= surface.halfLength;
+  return !within && !cylinderTouches(r, 2 * surface.halfLength, side, P, Q);
+}
+
+}  // namespace bio

@@ -1,0 +1,429 @@
+#include "bio/compiled_path.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include "path_reach.h"
+
+namespace bio {
+namespace {
+
+constexpr std::size_t maxConditions = 6;
+
+Placement<double> placementOf(const FramePlacement& frame) {
+  using Eigen::AngleAxisd;
+  const Eigen::Vector3d& o = frame.orientation;
+  Placement<double> X;
+  X.R = (AngleAxisd(o.x(), Eigen::Vector3d::UnitX()) * AngleAxisd(o.y(), Eigen::Vector3d::UnitY()) *
+         AngleAxisd(o.z(), Eigen::Vector3d::UnitZ()))
+            .toRotationMatrix();
+  X.p = frame.translation;
+  return X;
+}
+
+// A wrap of the path: a surface that can be evaluated, or the ellipsoid around one that cannot.
+struct CandidateWrap {
+  std::string name;
+  std::size_t firstPoint = 0, lastPoint = 0;  // in Path::points
+  std::size_t segment = 0;
+  Placement<double> X_SC;
+  std::optional<std::size_t> surface;            // in CompiledPath::surfaces
+  Vec3<double> semiAxes = Vec3<double>::Zero();  // without surface
+  bool isTorus = false;
+};
+
+// A span and a wrap that might touch.
+struct Encounter {
+  std::size_t span = 0;
+  bool moves = false;
+  bool penetrates = false;
+  double lengthChange = 0;  // of a span that must pass on the other side but meets nothing
+  SpanSurface way;
+};
+
+class Compiler {
+ public:
+  Compiler(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
+           const std::vector<std::string>& wrapAsCylinder)
+      : model_(model),
+        skeleton_(skeleton),
+        muscle_(muscle),
+        wrapAsCylinder_(wrapAsCylinder),
+        postures_(samplePostures(skeleton)) {}
+
+  CompiledPath compile() {
+    for (std::size_t i = 0; i < muscle_.path.points.size(); ++i) addNode(i);
+    for (std::size_t i = 0; i < muscle_.path.wraps.size(); ++i) addWrap(i);
+    const std::size_t numVariants = std::size_t{1} << path_.conditions.size();
+    for (std::size_t bits = 0; bits < numVariants; ++bits) addVariant(bits);
+    return std::move(path_);
+  }
+
+ private:
+  // A note once, however many variants it holds for.
+  void note(const std::string& text) {
+    const std::string line = fmt::format("{}: {}", muscle_.name, text);
+    if (std::find(path_.notes.begin(), path_.notes.end(), line) == path_.notes.end()) {
+      path_.notes.push_back(line);
+    }
+  }
+
+  void addNode(std::size_t index) {
+    const PathPoint& point = muscle_.path.points[index];
+    const BodyPlacement& place = skeleton_.placeOf(point.body);
+    PathNode node;
+    node.point = index;
+    node.segment = place.segment;
+    node.X_SB = place.X_SB;
+    Vec3<double> location = point.location;
+    if (point.motion) {
+      CompiledPointMotion motion;
+      bool isFixed = true;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::string& coordinate = point.motion->coordinate[i];
+        if (!coordinate.empty()) motion.source[i] = skeleton_.sourceOf(coordinate);
+        motion.location.emplace_back(point.motion->location[i]);
+        isFixed = isFixed && motion.source[i].freeIndex < 0;
+        location[static_cast<Eigen::Index>(i)] =
+            motion.location[i].evaluate(motion.source[i].value).value;
+      }
+      if (!isFixed) {
+        node.motion = static_cast<int>(path_.motions.size());
+        path_.motions.push_back(std::move(motion));
+      }
+    }
+    node.p_S = place.X_SB.R * location + place.X_SB.p;
+    if (point.condition) {
+      const CompiledCondition condition{skeleton_.sourceOf(point.condition->coordinate),
+                                        point.condition->lower, point.condition->upper};
+      if (condition.source.freeIndex < 0) {
+        const double value = condition.source.value;
+        const bool active = value >= condition.lower - 1e-5 && value <= condition.upper + 1e-5;
+        if (!active) return;
+      } else {
+        node.condition = conditionIndex(*point.condition, condition);
+      }
+    }
+    path_.nodes.push_back(std::move(node));
+  }
+
+  int conditionIndex(const PointCondition& given, const CompiledCondition& condition) {
+    for (std::size_t i = 0; i < conditionKeys_.size(); ++i) {
+      const PointCondition& known = conditionKeys_[i];
+      if (known.coordinate == given.coordinate && known.lower == given.lower &&
+          known.upper == given.upper) {
+        return static_cast<int>(i);
+      }
+    }
+    if (conditionKeys_.size() == maxConditions) {
+      throw std::invalid_argument(
+          fmt::format("muscle '{}' has more than {} different conditions on its points",
+                      muscle_.name, maxConditions));
+    }
+    conditionKeys_.push_back(given);
+    path_.conditions.push_back(condition);
+    return static_cast<int>(conditionKeys_.size()) - 1;
+  }
+
+  void addWrap(std::size_t index) {
+    const PathWrap& wrap = muscle_.path.wraps[index];
+    const WrapObject& object = findWrapObject(model_, wrap.wrapObject);
+    if (!object.active) return;
+    const int numPoints = static_cast<int>(muscle_.path.points.size());
+    const int first = wrap.firstPoint < 1 ? 1 : wrap.firstPoint;
+    const int last = wrap.lastPoint < 1 ? numPoints : std::min(wrap.lastPoint, numPoints);
+    if (first >= last) return;
+    const BodyPlacement& place = skeleton_.placeOf(object.body);
+    CandidateWrap candidate;
+    candidate.name = object.name;
+    candidate.firstPoint = static_cast<std::size_t>(first - 1);
+    candidate.lastPoint = static_cast<std::size_t>(last - 1);
+    candidate.segment = place.segment;
+    candidate.X_SC = place.X_SB * placementOf(object.frame);
+    PathSurface surface;
+    surface.wrap = index;
+    surface.segment = candidate.segment;
+    surface.quadrant = wrapQuadrant(object.quadrant);
+    bool known = true;
+    switch (object.shape) {
+      case WrapShape::cylinder:
+        surface.radius = object.radius;
+        surface.halfLength = object.length / 2;
+        break;
+      case WrapShape::sphere:
+        surface.isSphere = true;
+        surface.radius = object.radius;
+        break;
+      case WrapShape::torus:
+        known = false;
+        candidate.isTorus = true;
+        candidate.semiAxes.setConstant(object.radius + object.outerRadius);
+        break;
+      case WrapShape::ellipsoid:
+        known = ellipsoidAsSurface(object, candidate, surface);
+        break;
+    }
+    if (known) {
+      if (!(surface.radius > 0)) {
+        throw std::invalid_argument(fmt::format(
+            "wrap object '{}': radius is {} m, must be positive", object.name, surface.radius));
+      }
+      surface.X_SC = candidate.X_SC;
+      candidate.surface = path_.surfaces.size();
+      path_.surfaces.push_back(surface);
+      if (path_.surfaces.size() > 32) {
+        throw std::invalid_argument(
+            fmt::format("muscle '{}' has more than 32 wrap objects", muscle_.name));
+      }
+    }
+    wraps_.push_back(std::move(candidate));
+  }
+
+  // A sphere if all semi-axes are equal, a cylinder if asked for; else false.
+  bool ellipsoidAsSurface(const WrapObject& object, CandidateWrap& candidate,
+                          PathSurface& surface) const {
+    const Vec3<double>& s = object.semiAxes;
+    candidate.semiAxes = s;
+    const auto equal = [&](int i, int j) { return std::abs(s[i] - s[j]) <= 1e-9 * s[i]; };
+    if (equal(0, 1) && equal(1, 2)) {
+      surface.isSphere = true;
+      surface.radius = s[0];
+      return true;
+    }
+    const auto& names = wrapAsCylinder_;
+    if (std::find(names.begin(), names.end(), object.name) == names.end()) return false;
+    // the axis is the odd one out; a cyclic change of axes makes it z
+    int axis = -1;
+    for (int k = 0; k < 3; ++k) {
+      if (equal((k + 1) % 3, (k + 2) % 3)) axis = k;
+    }
+    if (axis < 0) {
+      throw std::invalid_argument(fmt::format(
+          "wrap object '{}' cannot be taken as a cylinder: its semi-axes are {}, {} and {} m, two "
+          "must be equal",
+          object.name, s[0], s[1], s[2]));
+    }
+    Mat3<double> turn = Mat3<double>::Zero();  // columns: new x, y, z in the old frame
+    for (int k = 0; k < 3; ++k) turn((axis + 1 + k) % 3, k) = 1;
+    candidate.X_SC.R = (candidate.X_SC.R * turn).eval();
+    surface.radius = s[(axis + 1) % 3];
+    surface.halfLength = s[axis];
+    if (surface.quadrant != WrapQuadrant::all) {
+      const int code = static_cast<int>(surface.quadrant) - 1;  // 2·axis + (minus)
+      const int turned = (code / 2 - axis - 1 + 6) % 3;
+      surface.quadrant = static_cast<WrapQuadrant>(1 + 2 * turned + code % 2);
+    }
+    return true;
+  }
+
+  // The path with the conditional points whose bits are set.
+  void addVariant(std::size_t bits) {
+    PathVariant variant;
+    std::vector<std::size_t> active;
+    for (std::size_t i = 0; i < path_.nodes.size(); ++i) {
+      const int condition = path_.nodes[i].condition;
+      if (condition < 0 || ((bits >> condition) & 1) != 0) active.push_back(i);
+    }
+    if (active.size() < 2) {
+      throw std::invalid_argument(
+          fmt::format("muscle '{}' has {} active points in some posture, must have at least 2",
+                      muscle_.name, active.size()));
+    }
+    for (std::size_t i = 0; i + 1 < active.size(); ++i) {
+      PathSpan span{active[i], active[i + 1], false, {}};
+      const PathNode& a = path_.nodes[span.a];
+      const PathNode& b = path_.nodes[span.b];
+      span.moves = a.segment != b.segment || a.motion >= 0 || b.motion >= 0;
+      variant.all.push_back(span);
+    }
+    for (const CandidateWrap& wrap : wraps_) {
+      if (wrap.surface) {
+        assign(wrap, variant);
+      } else {
+        leaveOut(wrap, variant);
+      }
+    }
+    // the spans that stay: their length, once and for all
+    const Posture& posture = postures_.front();
+    for (const PathSpan& span : variant.all) {
+      if (span.moves) {
+        variant.moving.push_back(span);
+      } else {
+        variant.fixedLength += fixedLength(span, posture);
+      }
+    }
+    path_.variants.push_back(std::move(variant));
+  }
+
+  bool inRange(const CandidateWrap& wrap, const PathSpan& span) const {
+    return path_.nodes[span.a].point >= wrap.firstPoint &&
+           path_.nodes[span.b].point <= wrap.lastPoint;
+  }
+
+  bool movesAgainst(const CandidateWrap& wrap, const PathSpan& span) const {
+    return span.moves || path_.nodes[span.a].segment != wrap.segment;
+  }
+
+  // Ends of a span in a wrap's frame.
+  std::pair<Vec3<double>, Vec3<double>> ends(const CandidateWrap& wrap, const PathSpan& span,
+                                             const Posture& posture) const {
+    const auto seen = [&](std::size_t node) {
+      const Vec3<double> p_G = nodePosition(path_, path_.nodes[node], posture);
+      return seenFrom(posture, wrap.segment, wrap.X_SC, p_G);
+    };
+    return {seen(span.a), seen(span.b)};
+  }
+
+  SpanSurface wayRound(std::size_t index, const Vec3<double>& P, const Vec3<double>& Q) const {
+    const PathSurface& surface = path_.surfaces[index];
+    SpanSurface way{index, Side::counterclockwise, Way::shorter};
+    if (surface.isSphere) {
+      way.way = sphereWay(surface.quadrant, P, Q);
+    } else {
+      way.side = cylinderSide(surface.quadrant, P, Q);
+    }
+    return way;
+  }
+
+  // Gives a surface to the spans that may touch it.
+  void assign(const CandidateWrap& wrap, PathVariant& variant) {
+    const PathSurface& surface = path_.surfaces[*wrap.surface];
+    std::vector<Encounter> through, around;
+    for (std::size_t i = 0; i < variant.all.size(); ++i) {
+      const PathSpan& span = variant.all[i];
+      if (!inRange(wrap, span)) continue;
+      Encounter encounter;
+      encounter.span = i;
+      encounter.moves = movesAgainst(wrap, span);
+      const std::size_t numPostures = encounter.moves ? postures_.size() : 1;
+      const double reach = encounter.moves ? 1.02 : 1.0;
+      for (std::size_t k = 0; k < numPostures && !encounter.penetrates; ++k) {
+        const auto [P, Q] = ends(wrap, span, postures_[k]);
+        if (!(closestApproach(surface, P, Q) < reach)) continue;
+        encounter.penetrates = true;
+        encounter.way = wayRound(*wrap.surface, P, Q);
+      }
+      if (encounter.penetrates) {
+        through.push_back(encounter);
+      } else if (passesWrongSide(wrap, span, encounter)) {
+        around.push_back(encounter);
+      }
+    }
+    // A span that stays and goes through the object has it for good.
+    const auto stays =
+        std::find_if(through.begin(), through.end(), [](const Encounter& e) { return !e.moves; });
+    if (stays != through.end()) {
+      give(*stays, variant);
+      return;
+    }
+    for (const Encounter& encounter : through) give(encounter, variant);
+    if (!through.empty() || around.empty()) return;
+    give(*std::min_element(around.begin(), around.end(),
+                           [](const Encounter& a, const Encounter& b) {
+                             return a.lengthChange < b.lengthChange;
+                           }),
+         variant);
+  }
+
+  // Whether a span that never meets the object has to be led round it, because it passes near it on
+  // the side that the quadrant forbids.
+  bool passesWrongSide(const CandidateWrap& wrap, const PathSpan& span,
+                       Encounter& encounter) const {
+    const PathSurface& surface = path_.surfaces[*wrap.surface];
+    if (surface.quadrant == WrapQuadrant::all) return false;
+    const auto [P, Q] = ends(wrap, span, postures_.front());
+    if (!(closestApproach(surface, P, Q) < 2)) return false;
+    encounter.way = wayRound(*wrap.surface, P, Q);
+    if (surfaceIsOutOfPlay(surface, surface.radius, encounter.way.side, P, Q)) return false;
+    const Span<double> wrapped = surface.isSphere
+                                     ? wrapSphere(surface.radius, encounter.way.way, P, Q)
+                                     : wrapCylinder(surface.radius, encounter.way.side, P, Q);
+    encounter.lengthChange = wrapped.length - (Q - P).norm();
+    return wrapped.touches;
+  }
+
+  void give(const Encounter& encounter, PathVariant& variant) const {
+    PathSpan& span = variant.all[encounter.span];
+    if (!encounter.moves && !span.surfaces.empty()) return;  // the first object has it
+    span.surfaces.push_back(encounter.way);
+    span.moves = span.moves || encounter.moves;
+  }
+
+  // An object that cannot be evaluated: no moving span may reach it.
+  void leaveOut(const CandidateWrap& wrap, const PathVariant& variant) {
+    bool fixedInRange = false, movingInRange = false;
+    for (const PathSpan& span : variant.all) {
+      if (!inRange(wrap, span)) continue;
+      if (!movesAgainst(wrap, span)) {
+        fixedInRange = true;
+        continue;
+      }
+      movingInRange = true;
+      for (const Posture& posture : postures_) {
+        const auto [P, Q] = ends(wrap, span, posture);
+        if (closestApproach(wrap.semiAxes, P, Q) < 1.02) refuse(wrap);
+      }
+    }
+    const char* shape = wrap.isTorus ? "torus" : "ellipsoid";
+    if (fixedInRange) {
+      note(fmt::format("the {} '{}' is left out: spans that do not move are taken as straight",
+                       shape, wrap.name));
+    } else if (movingInRange) {
+      note(fmt::format("the {} '{}' is left out: no moving span reaches it", shape, wrap.name));
+    }
+  }
+
+  [[noreturn]] void refuse(const CandidateWrap& wrap) const {
+    const Vec3<double>& s = wrap.semiAxes;
+    if (wrap.isTorus) {
+      throw std::invalid_argument(fmt::format(
+          "muscle '{}' can touch the torus '{}' where it moves; only cylinders and spheres are "
+          "simulated",
+          muscle_.name, wrap.name));
+    }
+    const bool twoEqual = std::abs(s[0] - s[1]) <= 1e-9 * s[0] ||
+                          std::abs(s[1] - s[2]) <= 1e-9 * s[1] ||
+                          std::abs(s[2] - s[0]) <= 1e-9 * s[2];
+    throw std::invalid_argument(fmt::format(
+        "muscle '{}' can touch the ellipsoid '{}' (semi-axes {}, {}, {} m) where it moves; only "
+        "cylinders and spheres are simulated{}",
+        muscle_.name, wrap.name, s[0], s[1], s[2],
+        twoEqual ? fmt::format("; --wrap-as-cylinder {} takes it as a cylinder", wrap.name) : ""));
+  }
+
+  double fixedLength(const PathSpan& span, const Posture& posture) const {
+    const Vec3<double> P = nodePosition(path_, path_.nodes[span.a], posture);
+    const Vec3<double> Q = nodePosition(path_, path_.nodes[span.b], posture);
+    if (span.surfaces.empty()) return (Q - P).norm();
+    const SpanSurface& way = span.surfaces.front();
+    const PathSurface& surface = path_.surfaces[way.surface];
+    const Vec3<double> p_CP = seenFrom(posture, surface.segment, surface.X_SC, P);
+    const Vec3<double> p_CQ = seenFrom(posture, surface.segment, surface.X_SC, Q);
+    if (surfaceIsOutOfPlay(surface, surface.radius, way.side, p_CP, p_CQ)) return (Q - P).norm();
+    return surface.isSphere ? wrapSphere(surface.radius, way.way, p_CP, p_CQ).length
+                            : wrapCylinder(surface.radius, way.side, p_CP, p_CQ).length;
+  }
+
+  const Model& model_;
+  const Skeleton& skeleton_;
+  const Muscle& muscle_;
+  const std::vector<std::string>& wrapAsCylinder_;
+  std::vector<Posture> postures_;
+  std::vector<PointCondition> conditionKeys_;
+  std::vector<CandidateWrap> wraps_;
+  CompiledPath path_;
+};
+
+}  // namespace
+
+CompiledPath compilePath(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
+                         const std::vector<std::string>& wrapAsCylinder) {
+  return Compiler(model, skeleton, muscle, wrapAsCylinder).compile();
+}
+
+}  // namespace bio
