@@ -7,9 +7,11 @@
 #include <map>
 
 #include "bio/file_error.h"
+#include "bio/model_review.h"
 #include "bio/osim_file.h"
 #include "bio/table_file.h"
 #include "bio/trial.h"
+#include "bio/trial_review.h"
 #include "result.h"
 #include "text.h"
 
@@ -76,6 +78,9 @@ using Contents = std::vector<std::variant<Section, Paragraph, Figure, Table>>;
 Contents checkModel(const std::string& file, const bio::Model& model, Findings& findings) {
   for (const std::string& warning : model.warnings) findings.add(file, "warning", warning);
   for (const std::string& remark : model.remarks) findings.add(file, "unusual", remark);
+  for (const bio::Remark& remark : bio::reviewModel(model)) {
+    findings.add(file, "unusual", fmt::format("{}: {}", remark.subject, remark.message));
+  }
   std::size_t coordinates = 0;
   for (const bio::Joint& joint : model.joints) coordinates += joint.coordinates.size();
   return {Section{file},
@@ -90,8 +95,10 @@ Contents checkTrial(const std::string& file, const std::vector<bio::Model>& mode
                     Findings& findings) {
   const bio::Table table = bio::readTable(file);
   for (const bio::Model& model : models) {
-    for (const std::string& warning : bio::readTrial(file, model).warnings) {
-      findings.add(file, "warning", warning);
+    const bio::Trial trial = bio::readTrial(file, model);
+    for (const std::string& warning : trial.warnings) findings.add(file, "warning", warning);
+    for (const bio::Remark& remark : bio::reviewTrial(trial, model)) {
+      findings.add(file, "unusual", fmt::format("{}: {}", remark.subject, remark.message));
     }
   }
   const Eigen::VectorXd times = bio::timesOf(table);

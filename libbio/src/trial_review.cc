@@ -1,0 +1,92 @@
+#include "bio/trial_review.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace bio {
+namespace {
+
+constexpr double degreesBeyond = 4 * std::numbers::pi;  // [rad]
+
+Eigen::VectorXd steps(const Eigen::VectorXd& values) {
+  return values.tail(values.size() - 1) - values.head(values.size() - 1);
+}
+
+void reviewSampling(const Trial& trial, std::vector<Remark>& remarks) {
+  const Eigen::VectorXd intervals = steps(trial.times);
+  std::vector<double> sorted(intervals.begin(), intervals.end());
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double median = *middle;
+  const double least = intervals.minCoeff(), largest = intervals.maxCoeff();
+  if (largest > 1.01 * median || least < 0.99 * median) {
+    remarks.push_back({"time", fmt::format("intervals = {:.4g} to {:.4g} s, usually equal "
+                                           "(the median is {:.4g} s)",
+                                           least, largest, median)});
+  }
+  if (median > 0.1) {
+    remarks.push_back(
+        {"time", fmt::format("rows are {:.4g} s apart, usually below 0.1 s", median)});
+  }
+}
+
+void reviewExcitation(const std::string& muscle, const Eigen::VectorXd& excitation,
+                      std::vector<Remark>& remarks) {
+  const std::string subject = fmt::format("excitation of '{}'", muscle);
+  if (excitation.maxCoeff() == 0) remarks.push_back({subject, "is 0 throughout"});
+  if (excitation.minCoeff() == 1) remarks.push_back({subject, "is 1 throughout"});
+  const double jump = steps(excitation).cwiseAbs().maxCoeff();
+  if (jump > 0.5) {
+    remarks.push_back(
+        {subject, fmt::format("jumps by {:.3g} between rows, usually below 0.5", jump)});
+  }
+}
+
+void reviewMotion(const MeasuredMotion& motion, const Coordinate& coordinate, double start,
+                  std::vector<Remark>& remarks) {
+  const std::string subject = fmt::format("measured '{}'", motion.coordinate);
+  const double least = motion.values.minCoeff(), largest = motion.values.maxCoeff();
+  const double widest = std::max(std::abs(least), std::abs(largest));
+  const char* unit = coordinate.isRotation ? "rad" : "m";
+  if (coordinate.isRotation && widest > degreesBeyond) {
+    remarks.push_back(
+        {subject, fmt::format("values = {:.4g} to {:.4g} rad, usually within ±4π: degrees?", least,
+                              largest)});
+  } else if (least < coordinate.rangeMin - 1e-3 || largest > coordinate.rangeMax + 1e-3) {
+    remarks.push_back(
+        {subject, fmt::format("values = {:.4g} to {:.4g} {}, outside the model's range {} to {}",
+                              least, largest, unit, coordinate.rangeMin, coordinate.rangeMax)});
+  }
+  if (coordinate.isRotation && motion.values.size() > 1) {
+    const double jump = steps(motion.values).cwiseAbs().maxCoeff();
+    if (jump > 0.5 && widest <= degreesBeyond) {
+      remarks.push_back({subject, fmt::format("jumps by {:.3g} rad between measurements, usually "
+                                              "below 0.5 rad",
+                                              jump)});
+    }
+  }
+  if (motion.times(0) - start > 0.1) {
+    remarks.push_back(
+        {subject, fmt::format("begins {:.3g} s after the excitations", motion.times(0) - start)});
+  }
+}
+
+}  // namespace
+
+std::vector<Remark> reviewTrial(const Trial& trial, const Model& model) {
+  std::vector<Remark> remarks;
+  reviewSampling(trial, remarks);
+  for (std::size_t m = 0; m < trial.muscles.size(); ++m) {
+    reviewExcitation(trial.muscles[m], trial.excitations.col(static_cast<Eigen::Index>(m)),
+                     remarks);
+  }
+  for (const MeasuredMotion& motion : trial.measured) {
+    reviewMotion(motion, findCoordinate(model, motion.coordinate), trial.times(0), remarks);
+  }
+  return remarks;
+}
+
+}  // namespace bio
