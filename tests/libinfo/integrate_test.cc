@@ -125,14 +125,14 @@ TEST(VariationalIntegrator, KeepsTheEnergyOfTheDoublePendulumOverAHundredThousan
   const double scale =
       first + robot.lagrangian(Vector<double, 2>::Zero().eval(), Vector<double, 2>::Zero().eval(),
                                still, still, theta);
-  EXPECT_LT(farthest, 0.05 * scale);
+  EXPECT_LT(farthest, 0.004 * scale);  // measured 0.0019
   // slope of the block means by least squares, against its own standard error
   const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(blocks, -1.0, 1.0);
   const double slope = t.dot(mean) / t.squaredNorm();
   const Eigen::VectorXd rest = (mean.array() - mean.mean()).matrix() - slope * t;
   const double error = std::sqrt(rest.squaredNorm() / (blocks - 2) / t.squaredNorm());
   EXPECT_LT(std::abs(slope), 3.0 * error);
-  EXPECT_LT(std::abs(slope), 1e-3 * scale);
+  EXPECT_LT(std::abs(slope), 2e-5 * scale);  // measured 5e-6 over half the run
   RecordProperty("band", std::to_string(farthest / scale));
   RecordProperty("slope", std::to_string(slope / scale));
 }

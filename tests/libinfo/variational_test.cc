@@ -180,6 +180,15 @@ TEST(VariationalIntegrator, ReportsAStepItCannotSolve) {
   EXPECT_GT(taken.residualNorm, 1e-6);
 }
 
+TEST(VariationalIntegrator, DoesNotClaimASolutionForNumbersThatAreNone) {
+  const Integrator integrator({}, dt);
+  for (int i = 0; i < Integrator::zSize; ++i) {
+    Z broken = z;
+    broken[i] = std::nan("");
+    EXPECT_FALSE(integrator.step(unpack(broken)).converged) << "argument " << i;
+  }
+}
+
 TEST(VariationalIntegrator, RefusesATimeStepThatIsNotPositive) {
   for (const double bad : {0.0, -0.1, std::nan(""), HUGE_VAL})
     EXPECT_THROW(VariationalIntegrator(CartDoublePendulum<>{}, bad), std::domain_error);
