@@ -173,6 +173,13 @@ class Compiler {
         throw std::invalid_argument(fmt::format(
             "wrap object '{}': radius is {} m, must be positive", object.name, surface.radius));
       }
+      const bool alongAxis =
+          surface.quadrant == WrapQuadrant::plusZ || surface.quadrant == WrapQuadrant::minusZ;
+      if (alongAxis && !surface.isSphere) {
+        throw std::invalid_argument(fmt::format(
+            "wrap object '{}': quadrant {} lies along the cylinder's axis, must be across",
+            object.name, object.quadrant));
+      }
       surface.X_SC = candidate.X_SC;
       candidate.surface = path_.surfaces.size();
       path_.surfaces.push_back(surface);

@@ -70,7 +70,6 @@ TEST_F(ReferencePaths, LengthsAndMomentArmsAgreeWithOpenSim) {
     EXPECT_TRUE(path.moves());
     EXPECT_TRUE(path.notes().empty()) << path.notes().front();
     double worstLength = 0, worstArm = 0, worstFreeLength = 0, worstFreeArm = 0, worstOwn = 0;
-    int contact = 0;
     for (std::size_t row = 0; row < table_.rows.size(); ++row) {
       const double degrees = table_.at(row, "elbow_flexion_deg");
       const auto at = [&](double angle) {
@@ -82,7 +81,6 @@ TEST_F(ReferencePaths, LengthsAndMomentArmsAgreeWithOpenSim) {
       const LengthJet<1> jet = at(angle);
       const bool wrapped = table_.at(row, muscle.name + ".wrapped") != 0;
       EXPECT_EQ(jet.wrapped, wrapped) << muscle.name << " at " << degrees;
-      contact += wrapped ? 1 : 0;
       const double length = std::abs(jet.length - table_.at(row, muscle.name + ".length_m"));
       const double arm = std::abs(-jet.dL_dq[0] - table_.at(row, muscle.name + ".moment_arm_m"));
       (wrapped ? worstLength : worstFreeLength) =
@@ -96,15 +94,13 @@ TEST_F(ReferencePaths, LengthsAndMomentArmsAgreeWithOpenSim) {
       const bool smooth = at(angle + 2 * h).wrapped == at(angle - 2 * h).wrapped;
       if (smooth && degrees > 0) worstOwn = std::max(worstOwn, std::abs(own - jet.dL_dq[0]));
     }
-    // OpenSim's wrapping is approximate (README of the reference): 8e-7 m, 2e-6 m
+    // OpenSim's wrapping is approximate; measured 7.6e-7 m and 1.8e-6 m where a wrap touches, and
+    // elsewhere 5e-13 m and 5e-10 m, the rounding of the table
     EXPECT_LT(worstLength, 2e-6) << muscle.name;
     EXPECT_LT(worstArm, 1e-5) << muscle.name;
     EXPECT_LT(worstFreeLength, 1e-8) << muscle.name;
     EXPECT_LT(worstFreeArm, 1e-8) << muscle.name;
-    EXPECT_LT(worstOwn, 1e-9) << muscle.name;
-    std::printf("%-9s wrapped %3d  length %.1e m  arm %.1e m  free %.1e %.1e m  own %.1e m\n",
-                muscle.name.c_str(), contact, worstLength, worstArm, worstFreeLength, worstFreeArm,
-                worstOwn);
+    EXPECT_LT(worstOwn, 1e-9) << muscle.name;  // measured 7e-13 m
   }
 }
 
