@@ -1,10 +1,12 @@
 #include <gmock/gmock.h>
+#include <tinyxml2.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <numbers>
 #include <optional>
+#include <set>
 
 #include "bio/curves.h"
 #include "bio/osim_file.h"
@@ -80,6 +82,42 @@ TEST(Elbow8, FilesAreWhatTheirGeneratorWrites) {
   for (const char* name : {"elbow8.osim", "elbow8_passive.osim"}) {
     EXPECT_EQ(support::contentOf(folder / name), support::contentOf(root / "models" / name))
         << name;
+  }
+}
+
+// Every "parent/child" of tags below the element.
+void collectTags(const tinyxml2::XMLElement& element, std::set<std::string>& tags) {
+  for (auto child = element.FirstChildElement(); child; child = child->NextSiblingElement()) {
+    tags.insert(std::string(element.Name()) + "/" + child->Name());
+    collectTags(*child, tags);
+  }
+}
+
+std::set<std::string> tagsOf(const std::filesystem::path& file) {
+  tinyxml2::XMLDocument document;
+  EXPECT_EQ(document.LoadFile(file.c_str()), tinyxml2::XML_SUCCESS) << file;
+  std::set<std::string> tags;
+  collectTags(*document.RootElement(), tags);
+  return tags;
+}
+
+// OpenSim is not at hand in a test; but its own files show which elements it reads where.
+TEST(Elbow8, HoldsOnlyElementsThatOpenSimWritesInTheSamePlaces) {
+  const auto shared = root / "../shared";
+  if (!std::filesystem::exists(shared)) {
+    GTEST_SKIP() << "the folder ../shared with models made elsewhere is not beside the sources";
+  }
+  std::set<std::string> known = {
+      "Schutte1993Muscle_Deprecated/min_control", "Schutte1993Muscle_Deprecated/max_control",
+      "CoordinateLimitForce/appliesForce"};  // properties of every muscle and force
+  for (const char* name : {"reference/elbow8_reference.osim", "data/models/arm26_v4_thelen.osim",
+                           "data/models/MoBL_ARMS_v4_millard.osim"}) {
+    known.merge(tagsOf(shared / name));
+  }
+  for (const char* name : {"models/elbow8.osim", "models/elbow8_passive.osim"}) {
+    for (const std::string& tag : tagsOf(root / name)) {
+      EXPECT_TRUE(known.contains(tag)) << tag << " in " << name;
+    }
   }
 }
 

@@ -227,6 +227,9 @@ TEST_F(SharedModel, EveryKindOfChangeIsWrittenToBothFormats) {
   for (const char* name :
        {"reference/elbow8_reference.osim", "data/models/MoBL_ARMS_v3_schutte.osim"}) {
     Model model = readOsim(shared / name);
+    model.name = "changed";
+    model.credits = "someone <else>";
+    model.gravity = {0, -9.7, 0};
     findItem(model.bodies, "ulna").inertia[4] = -7.5e-5;
     findItem(model.bodies, "hand").massCenter.y() = -0.05;
     for (Joint& joint : model.joints) {

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <random>
 #include <string>
 
 #include "bio/file_error.h"
@@ -341,6 +342,42 @@ TEST_F(OsimRules, Couplers) {
                           "coordinates"));
 }
 
+// Whatever is done to the text, the reader reads it or refuses it in one line that names the file.
+TEST_F(OsimRules, RandomDamageIsReadOrRefused) {
+  std::mt19937 random(7);
+  const std::string marks = "<>/\"'& -0x.\n";
+  int refused = 0;
+  const int trials = 1500;
+  for (int trial = 0; trial < trials; ++trial) {
+    std::string text = valid;
+    for (unsigned change = 0; change <= random() % 3; ++change) {
+      const auto at = random() % text.size();
+      switch (random() % 4) {
+        case 0:
+          text.resize(at + 1);
+          break;
+        case 1:
+          text[at] = marks[random() % marks.size()];
+          break;
+        case 2:
+          text.erase(at, 1 + random() % 60);
+          break;
+        default:
+          text.insert(at, text.substr(random() % text.size(), 1 + random() % 60));
+      }
+    }
+    try {
+      read(text);
+    } catch (const FileError& error) {
+      ++refused;
+      const std::string what = error.what();
+      EXPECT_TRUE(what.starts_with((folder_ / "m.osim:").string())) << what;
+    }
+  }
+  EXPECT_GT(refused, trials / 4);
+  EXPECT_LT(refused, trials);
+}
+
 // What is good ------------------------------------------------------------------------------------
 
 TEST_F(OsimRules, DefaultsOfTheModelSpeakWhereAnElementIsSilent) {
@@ -401,6 +438,21 @@ TEST_F(OsimRules, PointsAndWrapsOnOffsetFramesAreFoldedIntoTheBody) {
   EXPECT_EQ(ball.body, "lower");
   EXPECT_NEAR((ball.frame.translation - Eigen::Vector3d(1, 2.5, 3)).norm(), 0, 1e-15);
   EXPECT_NEAR(ball.frame.orientation.z(), 1.5707963267948966, 1e-15);
+}
+
+TEST_F(OsimRules, FramesMayHangOnFramesOfAComponentSet) {
+  const std::string text = replaced(
+      valid, "</Model>",
+      "<ComponentSet><objects><PhysicalOffsetFrame name=\"outer\"><socket_parent>/bodyset/lower"
+      "</socket_parent><translation>1 0 0</translation><components><PhysicalOffsetFrame "
+      "name=\"inner\"><socket_parent>..</socket_parent><translation>0 1 0</translation>"
+      "<WrapObjectSet><objects><WrapSphere "
+      "name=\"ball\"><radius>0.1</radius></WrapSphere></objects>"
+      "</WrapObjectSet></PhysicalOffsetFrame></components></PhysicalOffsetFrame></objects>"
+      "</ComponentSet></Model>");
+  const Model model = read(text);
+  EXPECT_EQ(findWrapObject(model, "ball").body, "lower");
+  EXPECT_EQ(findWrapObject(model, "ball").frame.translation, Eigen::Vector3d(1, 1, 0));
 }
 
 TEST_F(OsimRules, AngleLimitsAreDegreesButThoseOfASlideAreNot) {

@@ -107,8 +107,8 @@ std::string pathOf(const Element& element) {
   return path;
 }
 
-// The x and y of a spline are one table: both are replaced, or the target's own x (with a point given
-// twice, say) would no longer fit.
+// The x and y of a spline are one table: both are replaced, or the target's own x (with a point
+// given twice, say) would no longer fit.
 bool replaceTable(Element& target, const Element& after) {
   for (const char* tag : {"x", "y"}) {
     if (!after.FirstChildElement(tag) || !target.FirstChildElement(tag)) return false;

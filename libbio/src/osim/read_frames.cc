@@ -55,11 +55,6 @@ const BodyFrame* find(const Reading& reading, const std::string& ownerPath,
   return name == "ground" ? at("/ground") : at("/bodyset/" + name);
 }
 
-struct OffsetFrame {
-  const Element* element;
-  std::string ownerPath;
-};
-
 // Offset frames may hang on offset frames that come later in the file.
 void placeFrames(Reading& reading, std::vector<OffsetFrame> waiting) {
   while (!waiting.empty()) {
@@ -106,35 +101,41 @@ FramePlacement compose(const FramePlacement& a, const FramePlacement& b) {
   return placement;
 }
 
+namespace {
+
+// The offset frames of a list, and those that they hold themselves.
+void collect(Reading& reading, const Element* list, const std::string& ownerPath) {
+  for (const Element* child : childrenOf(list)) {
+    if (std::string_view(child->Name()) != "PhysicalOffsetFrame") continue;
+    reading.offsetFrames.push_back({child, ownerPath});
+    collect(reading, child->FirstChildElement("components"),
+            ownerPath + "/" + nameOf(reading.source, *child));
+  }
+}
+
+}  // namespace
+
 void readFrames(Reading& reading, const Element& model) {
   reading.frames["/ground"] = {"ground", {}};
   for (const Body& body : reading.model.bodies)
     reading.frames["/bodyset/" + body.name] = {body.name, {}};
 
-  std::vector<OffsetFrame> frames;
-  const auto collect = [&](const Element* list, const std::string& ownerPath) {
-    for (const Element* child : childrenOf(list)) {
-      if (std::string_view(child->Name()) == "PhysicalOffsetFrame") {
-        frames.push_back({child, ownerPath});
-      }
-    }
-  };
   if (const Element* ground = model.FirstChildElement("Ground")) {
-    collect(ground->FirstChildElement("components"), "/ground");
+    collect(reading, ground->FirstChildElement("components"), "/ground");
   }
   for (const auto& [set, path] :
        {std::pair("BodySet", "/bodyset/"), std::pair("JointSet", "/jointset/")}) {
     for (const Element* object : objectsOf(model, set)) {
       const std::string ownerPath = path + nameOf(reading.source, *object);
-      collect(object->FirstChildElement("components"), ownerPath);
-      collect(object->FirstChildElement("frames"), ownerPath);
+      collect(reading, object->FirstChildElement("components"), ownerPath);
+      collect(reading, object->FirstChildElement("frames"), ownerPath);
     }
   }
-  collect(model.FirstChildElement("components"), "");
+  collect(reading, model.FirstChildElement("components"), "");
   if (const Element* set = model.FirstChildElement("ComponentSet")) {
-    collect(set->FirstChildElement("objects"), "/componentset");
+    collect(reading, set->FirstChildElement("objects"), "/componentset");
   }
-  placeFrames(reading, std::move(frames));
+  placeFrames(reading, reading.offsetFrames);
 }
 
 BodyFrame resolveFrame(const Reading& reading, const Element& owner, const std::string& ownerPath,

@@ -202,25 +202,15 @@ PathWrap readWrap(const Reading& reading, const Element& element, std::size_t po
 
 void readWrapObjects(Reading& reading, const Element& model) {
   std::map<std::string, int> names;
-  const auto at = [&](const std::string& path) { return reading.frames.at(path); };
   if (const Element* ground = model.FirstChildElement("Ground")) {
-    readWrapsOf(reading, *ground, at("/ground"), names);
+    readWrapsOf(reading, *ground, {"ground", {}}, names);
   }
   for (const Element* body : objectsOf(model, "BodySet")) {
-    const std::string name = nameOf(reading.source, *body);
-    const std::string path = name == "ground" ? "/ground" : "/bodyset/" + name;
-    readWrapsOf(reading, *body, at(path), names);
-    for (const Element* part : childrenOf(body->FirstChildElement("components"))) {
-      if (std::string_view(part->Name()) == "PhysicalOffsetFrame") {
-        readWrapsOf(reading, *part, at(path + "/" + nameOf(reading.source, *part)), names);
-      }
-    }
+    readWrapsOf(reading, *body, {nameOf(reading.source, *body), {}}, names);
   }
-  for (const Element* joint : objectsOf(model, "JointSet")) {
-    const std::string path = "/jointset/" + nameOf(reading.source, *joint);
-    for (const Element* frame : childrenOf(joint->FirstChildElement("frames"))) {
-      readWrapsOf(reading, *frame, at(path + "/" + nameOf(reading.source, *frame)), names);
-    }
+  for (const auto& [element, ownerPath] : reading.offsetFrames) {
+    const std::string path = ownerPath + "/" + nameOf(reading.source, *element);
+    readWrapsOf(reading, *element, reading.frames.at(path), names);
   }
 }
 

@@ -16,9 +16,16 @@ struct BodyFrame {
   FramePlacement placement;  ///< in the body
 };
 
+/// A PhysicalOffsetFrame element and the absolute path of what holds it.
+struct OffsetFrame {
+  const Element* element;
+  std::string ownerPath;
+};
+
 struct Reading {
   Source source;
   Model model;
+  std::vector<OffsetFrame> offsetFrames;    ///< in the order of the file
   std::map<std::string, BodyFrame> frames;  ///< by absolute path, e.g. /bodyset/humerus
 };
 
@@ -39,7 +46,7 @@ SplineFunction readSpline(Reading& reading, const Element& function);
 // Skeleton
 
 void readBodies(Reading& reading, const Element& model);
-/// Registers every offset frame in bodies, joints, the ground and the component sets.
+/// Registers every offset frame: in bodies, joints, the ground, component sets and other frames.
 void readFrames(Reading& reading, const Element& model);
 /// The frame a socket names, relative to the object at `ownerPath` or absolute.
 BodyFrame resolveFrame(const Reading& reading, const Element& owner, const std::string& ownerPath,

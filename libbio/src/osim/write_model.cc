@@ -25,7 +25,7 @@ void buildDocument(tinyxml2::XMLDocument& document, const Model& model, Format f
   }
   for (const Body& body : model.bodies) appendBody(writing, bodies, body);
   if (is4) {
-    Element& joints = appendSet(writing, top, "JointSet", "jointset");
+    Element& joints = append(append(top, "JointSet", "jointset"), "objects");
     for (const Joint& joint : model.joints) appendJoint(writing, joints, joint);
   }
   Element& constraints = appendSet(writing, top, "ConstraintSet", "constraintset");
