@@ -60,6 +60,10 @@ TEST(CartDoublePendulum, HasThePotentialAndInertiaOfTheThesisRobot) {
   EXPECT_NEAR(fall, 9.81 * (0.085 * 0.146 + 0.0847 * (0.2796 + 0.125)), 1e-15);
   // the whole translates with the cart
   EXPECT_NEAR(L(rest, rest, 2.0) - L(rest, rest, 0.0), 0.5 * (0.085 + 0.0847) * 4.0, 1e-15);
+  // link 1 turns about the cart while link 2, kept upright, is carried along on a circle
+  const double inertia1 = 0.085 * (0.146 * 0.146 + (0.305 * 0.305 + 0.0445 * 0.0445) / 12.0);
+  EXPECT_NEAR(L(rest, {3.0, -3.0}, 0.0) - L(rest, rest, 0.0),
+              0.5 * (inertia1 + 0.0847 * 0.2796 * 0.2796) * 9.0, 1e-15);
   // link 2 alone turns about its pivot
   const double inertia2 = 0.0847 * (0.125 * 0.125 + (0.305 * 0.305 + 0.0381 * 0.0381) / 12.0);
   EXPECT_NEAR(L(rest, {0.0, 3.0}, 0.0) - L(rest, rest, 0.0), 0.5 * inertia2 * 9.0, 1e-15);
