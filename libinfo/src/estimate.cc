@@ -96,6 +96,8 @@ class Estimator {
       const VectorXd before = theta_;
       const Taken taken =
           options_.method == Method::levenbergMarquardt ? damped() : backtrack(direction);
+      if (taken != Taken::step && 0.5 * std::pow(scaledGradient(), 2) <= 1e-14 * at_.cost)
+        return finish(Termination::roundingReached);
       if (taken == Taken::none) return finish(Termination::noDescent);
       if (taken == Taken::still || theta_ == before) return finish(Termination::stepSmall);
       ++result_.iterations;
@@ -204,7 +206,7 @@ class Estimator {
   Estimate finish(Termination why) {
     result_.why = why;
     result_.converged = why == Termination::gradientSmall || why == Termination::decrementSmall ||
-                        why == Termination::costSmall;
+                        why == Termination::costSmall || why == Termination::roundingReached;
     result_.parameters = theta_;
     result_.cost = at_.cost;
     result_.gradient = at_.gradient;
@@ -265,6 +267,8 @@ std::string describe(Termination why) {
       return "converged: a further step would change nothing";
     case Termination::costSmall:
       return "converged: the cost is as small as asked for";
+    case Termination::roundingReached:
+      return "converged: to the rounding of the cost";
     case Termination::stepSmall:
       return "stopped: the parameters no longer move";
     case Termination::noDescent:

@@ -69,7 +69,14 @@ MatrixXd LeastSquares::residuals(const MatrixXd& outputs) const {
                                        MatrixXd::Zero(outputs.rows(), outputs.cols()));
 }
 
+void LeastSquares::requireSize(const VectorXd& theta) const {
+  if (theta.size() != static_cast<Index>(parameters_.size()))
+    throw std::invalid_argument(fmt::format("least squares: {} parameter values for {} parameters",
+                                            theta.size(), parameters_.size()));
+}
+
 double LeastSquares::cost(const VectorXd& theta) const {
+  requireSize(theta);
   const MatrixXd r = residuals(predictor_.outputs(theta));
   double cost =
       0.5 * measurements_.covariance.whiten(r.reshaped(), measurements_.observed).squaredNorm();
@@ -80,6 +87,7 @@ double LeastSquares::cost(const VectorXd& theta) const {
 }
 
 LeastSquares::Linearised LeastSquares::linearise(const VectorXd& theta) const {
+  requireSize(theta);
   const Index p = theta.size();
   const Prediction prediction = predictor_.withSensitivities(theta);
   Linearised at;

@@ -17,14 +17,15 @@ enum class Method {
   levenbergMarquardt  ///< iterated least squares, damped; for far starts and weak information
 };
 
-/// Why an estimator stopped. The first three are convergence.
+/// Why an estimator stopped. The first four are convergence.
 enum class Termination {
-  gradientSmall,   ///< |dβ/dθ_i| of free parameters, in units of their own deviations
-  decrementSmall,  ///< a whole further step would lower β by no more than `decrementTolerance`
-  costSmall,       ///< β ≤ costTolerance
-  stepSmall,       ///< θ no longer moves, to rounding
-  noDescent,       ///< no step along the direction lowers β enough
-  singular,        ///< the (approximate) Hessian of free parameters cannot be inverted
+  gradientSmall,    ///< |dβ/dθ_i| of free parameters, in units of their own deviations
+  decrementSmall,   ///< a whole further step would lower β by no more than `decrementTolerance`
+  costSmall,        ///< β ≤ costTolerance
+  roundingReached,  ///< no step lowers β, and what the gradient promises is below β's rounding
+  stepSmall,        ///< θ no longer moves, to rounding
+  noDescent,        ///< no step along the direction lowers β enough
+  singular,         ///< the (approximate) Hessian of free parameters cannot be inverted
   iterationLimit,
   stopped  ///< the progress callback said so
 };
@@ -44,7 +45,7 @@ struct EstimateOptions {
   int maxIterations = 100;
   /// gradientSmall at max_i |dβ/dθ_i|/√I_ii ≤ this: how far a parameter alone would still move, in
   /// standard deviations.
-  double gradientTolerance = 1e-9;
+  double gradientTolerance = 1e-8;
   /// decrementSmall at −½ gᵀd ≤ this [nats of log posterior]; 0: off. Not for gradient descent.
   double decrementTolerance = 1e-12;
   double costTolerance = 0;  ///< costSmall at β ≤ this; 0: off

@@ -76,6 +76,7 @@ class LeastSquares {
   Eigen::MatrixXd hessian(const Eigen::VectorXd& theta, const Linearised& at) const;
 
  private:
+  void requireSize(const Eigen::VectorXd& theta) const;
   Eigen::MatrixXd residuals(const Eigen::MatrixXd& outputs) const;
 
   Predictor predictor_;
