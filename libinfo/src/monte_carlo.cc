@@ -31,6 +31,19 @@ void parallelFor(int n, int threads, const std::function<void(int)>& body) {
   });
 }
 
+MatrixXd drawNoise(const OutputCovariance& covariance, Index n, RandomStream& random) {
+  if (!covariance.isConstant() && covariance.samples() != n)
+    throw std::invalid_argument(
+        fmt::format("noise: {} samples, but covariances for {}", n, covariance.samples()));
+  MatrixXd noise(covariance.outputs(), n), root;
+  for (Index k = 0; k < n; ++k) {
+    for (double& entry : noise.col(k)) entry = random.normal();
+    if (k == 0 || !covariance.isConstant()) root = covariance.at(k).llt().matrixL();
+    noise.col(k) = (root * noise.col(k)).eval();
+  }
+  return noise;
+}
+
 MonteCarloResult monteCarlo(const Predictor& predictor, const VectorXd& truth,
                             const OutputCovariance& covariance,
                             const std::vector<Parameter>& parameters,
@@ -54,9 +67,6 @@ MonteCarloResult monteCarlo(const Predictor& predictor, const VectorXd& truth,
   // checks truth, bounds and shapes once, before any thread starts
   const LeastSquares reference(predictor, {exact.outputs, covariance, observed}, atTruth);
 
-  std::vector<MatrixXd> roots;
-  for (Index k = 0; k < std::max<Index>(1, covariance.samples()); ++k)
-    roots.push_back(covariance.at(k).llt().matrixL());
   std::vector<std::string> names;
   for (const Parameter& parameter : parameters) names.push_back(label(parameter));
 
@@ -78,12 +88,7 @@ MonteCarloResult monteCarlo(const Predictor& predictor, const VectorXd& truth,
       const double drawn = truth[j] * (1 + options.startSpread * (2 * random.uniform() - 1));
       trial.start[j] = std::clamp(drawn, parameter.lower, parameter.upper);
     }
-    MatrixXd data = exact.outputs;
-    VectorXd noise(data.rows());
-    for (Index k = 0; k < data.cols(); ++k) {
-      for (double& entry : noise) entry = random.normal();
-      data.col(k) += roots[covariance.isConstant() ? 0 : static_cast<std::size_t>(k)] * noise;
-    }
+    const MatrixXd data = exact.outputs + drawNoise(covariance, exact.outputs.cols(), random);
     const LeastSquares problem(predictor, {data, covariance, observed}, atTruth);
     const Estimate estimated = info::estimate(problem, trial.start, options.estimate);
     trial.parameters = estimated.parameters;

@@ -56,6 +56,10 @@ MonteCarloResult monteCarlo(const Predictor& predictor, const Eigen::VectorXd& t
                             const MonteCarloOptions& options = {},
                             const ObservationMask& observed = {});
 
+/// Noise ~ N(0, Σ_k) on samples k = 0 … n−1: outputs × n. Drawn sample by sample.
+/// @throws std::invalid_argument if the covariance is given for another number of samples
+Eigen::MatrixXd drawNoise(const OutputCovariance& covariance, Eigen::Index n, RandomStream& random);
+
 /// body(0) … body(n−1) on at most `threads` threads (0: all cores). An exception of a body ends it
 /// and is thrown here.
 void parallelFor(int n, int threads, const std::function<void(int)>& body);

@@ -1,0 +1,156 @@
+#include "info/predictor.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "info/integrate.h"
+#include "info/systems/damped_oscillator.h"
+#include "info/systems/pendulum.h"
+#include "info/systems/suspended_mass.h"
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using info::Predictor;
+
+// Largest deviation of Γ and of the contracted curvature from central differences, relative.
+struct Deviation {
+  double first, second;
+};
+Deviation compare(const Predictor& predictor, const VectorXd& theta) {
+  const auto at = predictor.withSensitivities(theta);
+  MatrixXd w(at.outputs.rows(), at.outputs.cols());
+  for (Eigen::Index i = 0; i < w.size(); ++i) w.reshaped()[i] = std::sin(1.0 + double(i));
+  const MatrixXd curvature = predictor.contractedCurvature(theta, w);
+  MatrixXd gamma(at.gamma.rows(), at.gamma.cols()), second(curvature.rows(), curvature.cols());
+  for (Eigen::Index j = 0; j < theta.size(); ++j) {
+    const double h = 1e-5 * std::abs(theta[j]);
+    const VectorXd step = h * VectorXd::Unit(theta.size(), j);
+    gamma.col(j) =
+        (predictor.outputs(theta + step) - predictor.outputs(theta - step)).reshaped() / (2 * h);
+    second.col(j) = (predictor.withSensitivities(theta + step).gamma -
+                     predictor.withSensitivities(theta - step).gamma)
+                        .transpose() *
+                    w.reshaped() / (2 * h);
+  }
+  EXPECT_TRUE(at.outputs.isApprox(predictor.outputs(theta), 1e-14));
+  EXPECT_LT((curvature - curvature.transpose()).norm(), 1e-12 * curvature.norm());
+  return {(at.gamma - gamma).norm() / gamma.norm(), (curvature - second).norm() / second.norm()};
+}
+
+TEST(Predictor, HasTheDerivativesOfItsOutputsThroughAnExplicitStep) {
+  // the load cell's output contains u, x and θ
+  using Map = info::Rk4<info::SuspendedMass>;
+  const auto u = [](double t) { return Eigen::Matrix<double, 1, 1>(2 * std::cos(3 * t) + t); };
+  const auto predictor =
+      info::makePredictor(Map{{}, 0.02}, info::Experiment<Map>{Eigen::Vector4d(0, 0.3, 0, -0.2),
+                                                               info::sampleInput<Map>(u, 0.02, 100),
+                                                               info::stepsEvery(0, 5, 100)});
+  const auto deviation = compare(predictor, Eigen::Vector2d(0.12, 0.5));
+  EXPECT_LT(deviation.first, 1e-8);
+  EXPECT_LT(deviation.second, 1e-7);
+  EXPECT_EQ(predictor.outputs(Eigen::Vector2d(0.12, 0.5)).cols(), 21);
+}
+
+TEST(Predictor, HasTheDerivativesOfItsOutputsThroughAnImplicitStep) {
+  using Map = info::ImplicitMidpoint<info::Pendulum>;
+  const auto u = [](double t) { return Eigen::Matrix<double, 1, 1>(0.5 * std::sin(t)); };
+  const auto predictor =
+      info::makePredictor(Map{{}, 0.05}, info::Experiment<Map>{Eigen::Vector2d(1, 0),
+                                                               info::sampleInput<Map>(u, 0.05, 40),
+                                                               info::stepsEvery(1, 1, 40)});
+  const auto deviation = compare(predictor, Eigen::Vector2d(0.8, 0.1));
+  EXPECT_LT(deviation.first, 1e-7);
+  EXPECT_LT(deviation.second, 1e-6);
+}
+
+TEST(Predictor, AgreesWithTheClosedFormOfTheOscillator) {
+  using Map = info::Rk4<info::DampedOscillator>;
+  const Eigen::Vector2d theta(0.6, 9);
+  const auto predictor = info::makePredictor(
+      Map{{}, 0.01}, info::Experiment<Map>{Eigen::Vector2d(1, 0.5),
+                                           std::vector<Eigen::Matrix<double, 1, 1>>(
+                                               301, Eigen::Matrix<double, 1, 1>(0.0)),
+                                           info::stepsEvery(10, 10, 300)});
+  const auto at = predictor.withSensitivities(theta);
+  using Two = info::Dual<2>;
+  info::Vector<Two, 2> seeded;
+  seeded << Two(0.6, 2, 0), Two(9, 2, 1);
+  for (Eigen::Index k = 0; k < 30; ++k) {
+    const Two q =
+        info::DampedOscillator{}.freeMotion(Two(1), Two(0.5), seeded, 0.1 * double(k + 1));
+    EXPECT_NEAR(at.outputs(0, k), q.value(), 1e-7);
+    EXPECT_NEAR(at.gamma(k, 0), q.derivatives()[0], 1e-7);
+    EXPECT_NEAR(at.gamma(k, 1), q.derivatives()[1], 1e-7);
+  }
+}
+
+TEST(Predictor, OfSomeParametersInOtherUnitsFollowsTheChainRule) {
+  using Map = info::Rk4<info::SuspendedMass>;
+  const auto full = info::makePredictor(
+      Map{{}, 0.02}, info::Experiment<Map>{Eigen::Vector4d(0, 0.3, 0, 0),
+                                           std::vector<Eigen::Matrix<double, 1, 1>>(
+                                               51, Eigen::Matrix<double, 1, 1>(1.0)),
+                                           info::stepsEvery(1, 1, 50)});
+  // the length alone, in centimetres
+  const auto part =
+      info::reparametrise(full, Eigen::Vector2d(0.12, 0.5), {1}, VectorXd::Constant(1, 0.01));
+  const VectorXd theta = VectorXd::Constant(1, 47.0);
+  EXPECT_EQ(part.outputs(theta), full.outputs(Eigen::Vector2d(0.12, 0.47)));
+  const auto deviation = compare(part, theta);
+  EXPECT_LT(deviation.first, 1e-8);
+  EXPECT_LT(deviation.second, 1e-7);
+  EXPECT_THROW(info::reparametrise(full, Eigen::Vector2d(1, 1), {2}, VectorXd::Ones(1)),
+               std::invalid_argument);
+  EXPECT_THROW(info::reparametrise(full, Eigen::Vector2d(1, 1), {1}, VectorXd::Ones(2)),
+               std::invalid_argument);
+}
+
+// An implicit step that has no solution: x₁ = x + Δt·θ(1 + x₁²) beyond its fold.
+struct Runaway {
+  static constexpr int stateSize = 1, inputSize = 1, parameterSize = 1, outputSize = 1;
+  std::vector<std::string> parameterNames() const { return {"rate"}; }
+  template <class T>
+  info::Vector<T, 1> residual(const info::Vector<T, 1>& x1, const info::Vector<T, 1>& x,
+                              const info::Vector<T, 1>&, const info::Vector<T, 1>&,
+                              const info::Vector<T, 1>& theta) const {
+    info::Vector<T, 1> r;
+    r << x1[0] - x[0] - theta[0] * (1.0 + x1[0] * x1[0]);
+    return r;
+  }
+  template <class T>
+  info::Vector<T, 1> g(const info::Vector<T, 1>& x, const info::Vector<T, 1>&,
+                       const info::Vector<T, 1>&) const {
+    return x;
+  }
+};
+
+TEST(Predictor, LeavesSamplesAfterAnUnsolvedStepUndefined) {
+  const auto predictor = info::makePredictor(
+      Runaway{}, info::Experiment<Runaway>{
+                     info::Vector<double, 1>(0.0),
+                     std::vector<info::Vector<double, 1>>(9, info::Vector<double, 1>(0.0)),
+                     info::stepsEvery(1, 1, 8)});
+  const MatrixXd outputs = predictor.outputs(VectorXd::Constant(1, 0.2));
+  EXPECT_TRUE(std::isfinite(outputs(0, 0)));
+  EXPECT_TRUE(std::isnan(outputs(0, 7)));
+  const auto at = predictor.withSensitivities(VectorXd::Constant(1, 0.2));
+  EXPECT_TRUE(std::isfinite(at.gamma(0, 0)));
+  EXPECT_TRUE(std::isnan(at.gamma(7, 0)));
+  EXPECT_TRUE(std::isnan(predictor.contractedCurvature(VectorXd::Constant(1, 0.2), outputs)(0, 0)));
+}
+
+TEST(Predictor, RefusesSamplesBeyondTheInputs) {
+  const std::vector<info::Vector<double, 1>> inputs(5, info::Vector<double, 1>(0.0));
+  EXPECT_THROW(info::makePredictor(Runaway{}, {info::Vector<double, 1>(0.0), inputs, {5}}),
+               info::DimensionError);
+  EXPECT_THROW(info::makePredictor(Runaway{}, {info::Vector<double, 1>(0.0), inputs, {}}),
+               info::DimensionError);
+  const auto predictor =
+      info::makePredictor(Runaway{}, {info::Vector<double, 1>(0.0), inputs, {4}});
+  EXPECT_THROW(predictor.outputs(VectorXd::Ones(2)), info::DimensionError);
+}
+
+}  // namespace
