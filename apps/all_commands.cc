@@ -1,6 +1,7 @@
 #include "check.h"
 #include "command.h"
 #include "emg.h"
+#include "robot.h"
 
 namespace app {
 
@@ -8,6 +9,7 @@ std::vector<std::unique_ptr<Command>> allCommands() {
   std::vector<std::unique_ptr<Command>> commands;
   commands.push_back(checkCommand());
   commands.push_back(emgCommand());
+  commands.push_back(robotCommand());
   return commands;
 }
 

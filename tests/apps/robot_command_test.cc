@@ -1,0 +1,87 @@
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "support/run_program.h"
+#include "support/scratch_folder.h"
+
+namespace {
+
+using support::ProgramResult;
+using support::runFisherHill;
+using testing::AllOf;
+using testing::HasSubstr;
+
+TEST(RobotCommand, PrintsThePublishedBoundOfTheDoublePendulum) {
+  const ProgramResult result =
+      runFisherHill({"robot", "double-pendulum", "--bound-only", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto bound = nlohmann::json::parse(result.out)["cramer_rao_bound"];
+  EXPECT_NEAR(bound["m1_m1"].get<double>(), 2.71e-4, 0.05 * 2.71e-4);
+  EXPECT_NEAR(bound["m1_c"].get<double>(), 1.46e-3, 0.05 * 1.46e-3);
+  EXPECT_NEAR(bound["c_c"].get<double>(), 1.05, 0.05 * 1.05);
+  EXPECT_THAT(runFisherHill({"robot", "double-pendulum", "--bound-only"}).out,
+              AllOf(HasSubstr("cramer_rao_bound.m1_c"), HasSubstr("0.001438")));
+}
+
+TEST(RobotCommand, SaysThatTheMassesCannotBeToldApartWithoutDamping) {
+  const ProgramResult result = runFisherHill(
+      {"robot", "double-pendulum", "--bound-only", "--unknown", "m1,m2", "--undamped"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.out,
+              AllOf(HasSubstr("m1 and m2 cannot be told apart: only m1/m2 is determined"),
+                    HasSubstr("m1 +1 %, m2 +1 %")));
+  EXPECT_EQ(
+      runFisherHill({"robot", "double-pendulum", "--bound-only", "--unknown", "m1,m2"}).status, 0);
+}
+
+TEST(RobotCommand, PrintsHowThreeEstimatorsConverge) {
+  const ProgramResult result = runFisherHill({"robot", "suspended-mass", "--convergence"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out,
+              AllOf(HasSubstr("gradient descent has not converged after 1000 iterations"),
+                    HasSubstr("iterated least squares"), HasSubstr("Newton-Raphson")));
+  const auto json = nlohmann::json::parse(
+      runFisherHill({"robot", "suspended-mass", "--convergence", "--json"}).out);
+  EXPECT_NEAR(json["lively_Newton_Raphson_final_order"].get<double>(), 2, 0.2);
+  EXPECT_LT(json["lively_iterated_least_squares"]["final_ratio"].get<double>(), 0.05);
+  EXPECT_FALSE(json["quiet_gradient_descent"]["converged"].get<bool>());
+}
+
+TEST(RobotCommand, SimulatesTheSameTrialsOnAnyNumberOfThreads) {
+  const support::ScratchFolder scratch;
+  const auto run = [&](const std::string& threads, const std::string& seed) {
+    return nlohmann::json::parse(
+        runFisherHill({"robot", "double-pendulum", "--period", "2", "--trials", "20", "--json",
+                       "--threads", threads, "--seed", seed})
+            .out)["trials_covariance"];
+  };
+  const auto alone = run("1", "7");
+  EXPECT_EQ(alone, run("2", "7"));
+  EXPECT_NE(alone, run("2", "8"));
+}
+
+TEST(RobotCommand, WritesAReport) {
+  const support::ScratchFolder scratch;
+  const std::string out = (scratch / "out").string();
+  ASSERT_EQ(runFisherHill({"robot", "suspended-mass", "--convergence", "--out", out}).status, 0);
+  EXPECT_THAT(support::contentOf(out + "/report.html"), HasSubstr("Lively motion"));
+}
+
+TEST(RobotCommand, TellsWrongUseInOneLine) {
+  const auto fails = [](std::vector<std::string> arguments, const std::string& message) {
+    const ProgramResult result = runFisherHill(std::move(arguments));
+    EXPECT_EQ(result.status, 2);
+    EXPECT_THAT(result.err, HasSubstr(message));
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  };
+  fails({"robot", "crane"}, "crane");
+  fails({"robot", "double-pendulum", "--convergence"}, "--convergence goes with suspended-mass");
+  fails({"robot", "suspended-mass", "--undamped"}, "go with double-pendulum");
+  fails({"robot", "double-pendulum", "--undamped"}, "--undamped goes with --unknown m1,m2");
+  fails({"robot", "double-pendulum", "--amplitude", "-1"}, "--amplitude");
+  fails({"robot", "double-pendulum", "--trials", "0"}, "--trials");
+}
+
+}  // namespace
