@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bio/activation.h"
+#include "bio/path.h"
 #include "bio/schutte_muscle.h"
 #include "bio/wrap_cylinder.h"
 #include "bio/wrap_sphere.h"
@@ -136,6 +137,48 @@ void activationStep(benchmark::State& state) {
   }
 }
 BENCHMARK(activationStep);
+
+// One hinge, a triceps-like path: one fixed and one moving span with a cylinder.
+void hingePath(benchmark::State& state) {
+  bio::Model model;
+  bio::Body forearm;
+  forearm.name = "forearm";
+  forearm.mass = 1.5;
+  model.bodies = {forearm};
+  bio::Joint elbow;
+  elbow.kind = bio::JointKind::pin;
+  elbow.parentBody = "ground";
+  elbow.childBody = "forearm";
+  elbow.coordinates.resize(1);
+  elbow.coordinates[0].name = "flexion";
+  elbow.coordinates[0].rangeMax = 2.2;
+  model.joints = {elbow};
+  bio::WrapObject cylinder;
+  cylinder.name = "cylinder";
+  cylinder.body = "ground";
+  cylinder.radius = 0.016;
+  cylinder.length = 0.1;
+  model.wrapObjects = {cylinder};
+  bio::Muscle muscle;
+  muscle.name = "extensor";
+  bio::PathPoint a, b, c;
+  a.body = b.body = "ground";
+  c.body = "forearm";
+  a.location = {-0.01, 0.2, 0.01};
+  b.location = {-0.024, 0.02, 0};
+  c.location = {-0.022, 0.010, -0.001};
+  muscle.path.points = {a, b, c};
+  muscle.path.wraps = {{"cylinder", -1, -1}};
+  const bio::Skeleton skeleton(model, {.freeCoordinates = {"flexion"}, .lockedValues = {}});
+  const bio::MusclePath path(model, skeleton, muscle, {});
+  using Q = Eigen::Matrix<double, 1, 1>;
+  std::vector<bio::RigidMotion<double, 1>> moved(skeleton.numSegments());
+  const Q q(state.range(0) / 100.0);
+  skeleton.motions<double, 1>(q, moved.data());
+  for (auto _ : state) benchmark::DoNotOptimize(path.length<1>(q, moved.data()));
+  state.SetLabel(path.length<1>(q, moved.data()).wrapped ? "touches" : "straight");
+}
+BENCHMARK(hingePath)->Arg(40)->Arg(180);
 
 }  // namespace
 
