@@ -18,11 +18,10 @@ enum class Side { counterclockwise = 1, clockwise = -1 };
 /// are made of.
 template <class T>
 struct CylinderGeometry {
-  T distanceP, distanceQ;  ///< ρ, of the ends from the axis [m]
-  T tangentP, tangentQ;    ///< √(ρ² − r²), from the ends to their contacts [m]
-  T eP[2], eQ[2];          ///< unit tangents at P (towards the contact) and Q (away from it)
-  T angle;                 ///< wrapped angle β ∈ (0, 2π) [rad]; meaningless if !touches
-  bool touches;            ///< β > 0
+  T tangentP, tangentQ;  ///< √(ρ² − r²), from the ends to their contacts [m]
+  T eP[2], eQ[2];        ///< unit tangents at P (towards the contact) and Q (away from it)
+  T angle;               ///< wrapped angle β ∈ (0, 2π) [rad]; meaningless if !touches
+  bool touches;          ///< β > 0
 };
 
 /// @throws std::domain_error if an end point is not outside the cylinder
@@ -43,8 +42,6 @@ CylinderGeometry<T> cylinderGeometry(const T& radius, Side side, const Vec3<T>& 
   CylinderGeometry<T> g;
   const T perPP = T(1.0) / pp;
   const T perQQ = T(1.0) / qq;
-  g.distanceP = sqrt(pp);
-  g.distanceQ = sqrt(qq);
   g.tangentP = sqrt(T(pp - rr));
   g.tangentQ = sqrt(T(qq - rr));
   const T& a = g.tangentP;
@@ -104,41 +101,61 @@ Span<T> wrapCylinder(const T& radius, Side side, const Vec3<T>& p_CP, const Vec3
   return {length, dL_dP, dL_dQ, true};
 }
 
-/// wrapCylinder with second derivatives, in closed form: s falls apart into a part of P and one of
-/// Q, whose Hessians are (1/a) n nᵀ with a the tangent length and n across the tangent. At lift-off
-/// the Hessian jumps.
+/// wrapCylinder with what its second derivatives are made of: the Hessian over both ends is the sum
+/// of three dyads,
+///     bendP nP nPᵀ + bendQ nQ nQᵀ + perLength m mᵀ,   m = (mP, mQ)
+/// because s falls apart into a part of P and one of Q, whose Hessians are (1/a) n nᵀ with a the
+/// tangent length and n across the tangent, and L = √(s² + Δz²) has one curvature. Meaningless if
+/// !span.touches.
 template <class T>
-SpanToSecondOrder<T> wrapCylinderToSecondOrder(const T& radius, Side side, const Vec3<T>& p_CP,
-                                               const Vec3<T>& p_CQ) {
+struct CylinderDyads {
+  Span<T> span;
+  Vec3<T> nP, nQ;  ///< across the tangents, in the plane
+  Vec3<T> mP, mQ;
+  T bendP, bendQ, perLength;  ///< [1/m]
+};
+
+template <class T>
+CylinderDyads<T> wrapCylinderDyads(const T& radius, Side side, const Vec3<T>& p_CP,
+                                   const Vec3<T>& p_CQ) {
   using std::sqrt;
   const CylinderGeometry<T> g = cylinderGeometry(radius, side, p_CP, p_CQ);
-  if (!g.touches) return straightSpanToSecondOrder(p_CP, p_CQ);
+  CylinderDyads<T> result;
+  result.span.touches = g.touches;
+  if (!g.touches) return result;
   const T s = g.tangentP + radius * g.angle + g.tangentQ;
   const T h = p_CQ.z() - p_CP.z();
   const T length = sqrt(T(s * s + h * h));
-  const T perLength = T(1.0) / length;
-  const T around = s * perLength;
-  const T up = h * perLength;
+  result.perLength = T(1.0) / length;
+  const T around = s * result.perLength;
+  const T up = h * result.perLength;
+  result.span.length = length;
+  result.span.dL_dP = Vec3<T>(T(-around * g.eP[0]), T(-around * g.eP[1]), T(-up));
+  result.span.dL_dQ = Vec3<T>(T(around * g.eQ[0]), T(around * g.eQ[1]), up);
+  result.nP = Vec3<T>(T(-g.eP[1]), g.eP[0], T(0.0));
+  result.nQ = Vec3<T>(T(-g.eQ[1]), g.eQ[0], T(0.0));
+  result.mP = Vec3<T>(T(-up * g.eP[0]), T(-up * g.eP[1]), around);
+  result.mQ = Vec3<T>(T(up * g.eQ[0]), T(up * g.eQ[1]), T(-around));
+  result.bendP = around / g.tangentP;
+  result.bendQ = around / g.tangentQ;
+  return result;
+}
 
-  // Gradient of s in the plane, and of L = √(s² + h²).
+/// wrapCylinder with second derivatives. At lift-off the Hessian jumps.
+template <class T>
+SpanToSecondOrder<T> wrapCylinderToSecondOrder(const T& radius, Side side, const Vec3<T>& p_CP,
+                                               const Vec3<T>& p_CQ) {
+  const CylinderDyads<T> d = wrapCylinderDyads(radius, side, p_CP, p_CQ);
+  if (!d.span.touches) return straightSpanToSecondOrder(p_CP, p_CQ);
   SpanToSecondOrder<T> result;
-  result.span = {length, Vec3<T>(T(-around * g.eP[0]), T(-around * g.eP[1]), T(-up)),
-                 Vec3<T>(T(around * g.eQ[0]), T(around * g.eQ[1]), up), true};
-
-  // Curvature of L over (s, h) is (1/L) m mᵀ with m = (up, −around): one dyad for both ends.
-  const Vec3<T> mP(T(-up * g.eP[0]), T(-up * g.eP[1]), around);
-  const Vec3<T> mQ(T(up * g.eQ[0]), T(up * g.eQ[1]), T(-around));
-  const Vec3<T> mPPerLength = mP * perLength;
-  const Vec3<T> mQPerLength = mQ * perLength;
-  const T bendP = around / g.tangentP;
-  const T bendQ = around / g.tangentQ;
-  const Vec3<T> nP(T(-g.eP[1]), g.eP[0], T(0.0));
-  const Vec3<T> nQ(T(-g.eQ[1]), g.eQ[0], T(0.0));
-  const Vec3<T> nPBent = nP * bendP;
-  const Vec3<T> nQBent = nQ * bendQ;
-  result.hessian.d2L_dPdP = nPBent * nP.transpose() + mPPerLength * mP.transpose();
-  result.hessian.d2L_dPdQ = mPPerLength * mQ.transpose();
-  result.hessian.d2L_dQdQ = nQBent * nQ.transpose() + mQPerLength * mQ.transpose();
+  result.span = d.span;
+  const Vec3<T> nPBent = d.nP * d.bendP;
+  const Vec3<T> nQBent = d.nQ * d.bendQ;
+  const Vec3<T> mPPerLength = d.mP * d.perLength;
+  const Vec3<T> mQPerLength = d.mQ * d.perLength;
+  result.hessian.d2L_dPdP = nPBent * d.nP.transpose() + mPPerLength * d.mP.transpose();
+  result.hessian.d2L_dPdQ = mPPerLength * d.mQ.transpose();
+  result.hessian.d2L_dQdQ = nQBent * d.nQ.transpose() + mQPerLength * d.mQ.transpose();
   return result;
 }
 
