@@ -115,50 +115,6 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
-struct Mistake {
-  const char* name;
-  std::vector<std::string> arguments;  ///< GOOD, HERE and OUT stand for paths
-  const char* message;
-};
-
-class CheckMistake : public testing::TestWithParam<Mistake> {};
-
-TEST_P(CheckMistake, IsOneLineStatusTwoAndLeavesNothing) {
-  const ScratchFolder scratch;
-  const std::string good = scratch.file("good.csv", goodTrial);
-  std::vector<std::string> arguments = {"check"};
-  for (std::string argument : GetParam().arguments) {
-    if (argument == "GOOD") argument = good;
-    if (argument == "HERE") argument = scratch.path().string();
-    if (argument == "OUT") argument = (scratch / "out").string();
-    arguments.push_back(argument);
-  }
-  const ProgramResult result = runFisherHill(arguments);
-  EXPECT_EQ(result.status, 2);
-  EXPECT_EQ(result.out, "");
-  EXPECT_THAT(result.err, testing::StartsWith("fisherhill check: "));
-  EXPECT_THAT(result.err, HasSubstr(GetParam().message));
-  EXPECT_EQ(lines(result.err), 1) << result.err;
-  EXPECT_THAT(scratch.listing(), ElementsAre("good.csv"));
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    All, CheckMistake,
-    testing::Values(
-        Mistake{"NoFile", {}, "FILE"},
-        Mistake{"MissingFile", {"HERE/missing.osim"}, "does not exist: HERE/missing.osim"},
-        Mistake{"Folder", {"HERE"}, "directory"},
-        Mistake{"UnknownOption", {"GOOD", "--fast"}, "--fast"},
-        Mistake{"OutWithoutFolder", {"GOOD", "--out"}, "--out"},
-        Mistake{"OutIsAFile", {"GOOD", "--out", "GOOD"}, "is not a folder"},
-        Mistake{"OutIsEmpty", {"GOOD", "--out", ""}, "--out"},
-        Mistake{"OutCannotBeMade", {"GOOD", "--out", "/dev/null/out"}, "/dev/null/out"},
-        Mistake{"OutCannotBeWritten", {"GOOD", "--out", "/proc/out"}, "/proc/out"},
-        Mistake{"OneOfTwoIsMissing", {"GOOD", "missing.csv", "--out", "OUT"}, "missing.csv"},
-        Mistake{"BadThreads", {"GOOD", "--threads", "none", "--out", "OUT"}, "--threads"},
-        Mistake{"BadSeed", {"GOOD", "--seed", "-3", "--out", "OUT"}, "--seed"}),
-    [](const auto& test) { return std::string(test.param.name); });
-
 TEST(CheckCommand, MatchesATrialsColumnsWithTheModel) {
   const ScratchFolder scratch;
   const std::string rows = "0,0.1,0.2\n0.1,0.2,0.3\n";

@@ -1,0 +1,103 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "support/run_program.h"
+#include "support/scratch_folder.h"
+
+// What people type wrongly, and files that are broken: one line that names it, status 2, nothing
+// left behind, whatever the subcommand.
+namespace {
+
+using support::ProgramResult;
+using support::ScratchFolder;
+using testing::HasSubstr;
+
+const std::string model = "models/elbow8.osim";
+
+struct Mistake {
+  std::string name;
+  std::vector<std::string> arguments;  ///< $ stands for the scratch folder
+  std::string message;                 ///< a part of the one line; $ as above
+};
+
+/// The files a mistake can use.
+void writeFiles(const ScratchFolder& scratch) {
+  scratch.file("good.csv", "time,BIClong\n0,0.1\n0.1,0.2\n0.2,0.1\n");
+  scratch.file("nan.csv", "time,BIClong\n0,0.1\n0.1,nan\n0.2,0.1\n");
+  scratch.file("high.csv", "time,BIClong\n0,0.1\n0.1,1.2\n0.2,0.1\n");
+  scratch.file("negative.csv", "time,BIClong\n0,0.1\n0.1,-0.2\n0.2,0.1\n");
+  scratch.file("extra.csv", "time,BIClong,GLUTmax\n0,0.1,0\n0.1,0.1,0\n");
+  scratch.file("one_row.csv", "time,BIClong\n0,0.1\n");
+  scratch.file("back.csv", "time,BIClong\n0,0.1\n0.2,0.1\n0.1,0.1\n");
+  scratch.file("empty.csv", "");
+  scratch.file("word.csv", "time,BIClong\n0,0.1\n0.1,much\n");
+  scratch.file("text.osim", "no model\n");
+  scratch.file("empty.toml", "");
+}
+
+std::string replaced(std::string text, const std::string& with) {
+  for (std::size_t at = 0; (at = text.find('$', at)) != text.npos; at += with.size()) {
+    text.replace(at, 1, with);
+  }
+  return text;
+}
+
+class EveryMistake : public testing::TestWithParam<Mistake> {};
+
+TEST_P(EveryMistake, IsOneLineStatusTwoAndLeavesNothing) {
+  const ScratchFolder scratch;
+  writeFiles(scratch);
+  const auto before = scratch.listing();
+  std::vector<std::string> arguments;
+  for (const std::string& argument : GetParam().arguments) {
+    arguments.push_back(replaced(argument, scratch.path().string()));
+  }
+  const ProgramResult result = support::runFisherHill(arguments);
+  EXPECT_EQ(result.status, 2) << result.out;
+  EXPECT_EQ(result.out, "");
+  // Warnings may stand before the error; the last line is the one.
+  const std::string error =
+      result.err.substr(result.err.rfind("fisherhill " + arguments[0] + ": "));
+  EXPECT_THAT(error, HasSubstr(replaced(GetParam().message, scratch.path().string())));
+  EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
+  EXPECT_EQ(scratch.listing(), before);
+}
+
+std::string nameOf(const testing::TestParamInfo<Mistake>& test) {
+  return test.param.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Check, EveryMistake,
+    testing::ValuesIn(std::vector<Mistake>{
+        {"NoFile", {"check"}, "FILE"},
+        {"MissingFile", {"check", "$/missing.osim"}, "does not exist: $/missing.osim"},
+        {"Folder", {"check", "$"}, "directory"},
+        {"UnknownOption", {"check", "$/good.csv", "--fast"}, "--fast"},
+        {"OutWithoutFolder", {"check", "$/good.csv", "--out"}, "--out"},
+        {"OutIsAFile", {"check", "$/good.csv", "--out", "$/good.csv"}, "is not a folder"},
+        {"OutIsEmpty", {"check", "$/good.csv", "--out", ""}, "--out"},
+        {"OutCannotBeMade", {"check", "$/good.csv", "--out", "/dev/null/out"}, "/dev/null/out"},
+        {"OutCannotBeWritten", {"check", "$/good.csv", "--out", "/proc/out"}, "/proc/out"},
+        {"OneOfTwoIsMissing", {"check", "$/good.csv", "no.csv", "--out", "$/out"}, "no.csv"},
+        {"BadThreads", {"check", "$/good.csv", "--threads", "none", "--out", "$/out"}, "--threads"},
+        {"BadSeed", {"check", "$/good.csv", "--seed", "-3", "--out", "$/out"}, "--seed"}}),
+    nameOf);
+
+INSTANTIATE_TEST_SUITE_P(
+    Emg, EveryMistake,
+    testing::ValuesIn(std::vector<Mistake>{
+        {"NoConfig", {"emg", "$/good.csv", "--out", "$/out"}, "--config"},
+        {"MissingConfig", {"emg", "$/good.csv", "--config", "$/no.toml"}, "$/no.toml"},
+        {"MissingRecording", {"emg", "$/no.csv", "--config", "$/empty.toml"}, "$/no.csv"},
+        {"EmptyConfig",
+         {"emg", "$/good.csv", "--config", "$/empty.toml", "--out", "$/out"},
+         "$/empty.toml"},
+        {"ConfigIsATable",
+         {"emg", "$/good.csv", "--config", "$/good.csv", "--out", "$/out"},
+         "$/good.csv"}}),
+    nameOf);
+
+}  // namespace
