@@ -100,4 +100,12 @@ INSTANTIATE_TEST_SUITE_P(
          "$/good.csv"}}),
     nameOf);
 
+INSTANTIATE_TEST_SUITE_P(
+    Robot, EveryMistake,
+    testing::ValuesIn(std::vector<Mistake>{
+        {"NoExperiment", {"robot"}, "robot"},
+        {"UnknownExperiment", {"robot", "triple-pendulum", "--out", "$/out"}, "triple-pendulum"},
+        {"OutIsAFile", {"robot", "suspended-mass", "--out", "$/good.csv"}, "is not a folder"}}),
+    nameOf);
+
 }  // namespace

@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <regex>
@@ -87,15 +86,6 @@ TEST(SourceTree, EveryTestProgramIsBuilt) {
     const fs::path path = file;
     EXPECT_THAT(contentOf(source / path.parent_path() / "CMakeLists.txt"),
                 testing::HasSubstr(path.stem().string()));
-  }
-}
-
-TEST(SourceTree, NoFileOfTheProductIsLongerThanFourHundredLines) {
-  for (const std::string folder : {"libinfo", "libbio", "apps"}) {
-    for (const std::string& file : sourcesBelow(folder)) {
-      const std::string text = contentOf(source / file);
-      EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 400) << file;
-    }
   }
 }
 
