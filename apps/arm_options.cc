@@ -1,0 +1,40 @@
+#include "arm_options.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+namespace app {
+
+std::map<std::string, double> byName(const std::vector<Assignment>& assignments) {
+  std::map<std::string, double> values;
+  for (const Assignment& assignment : assignments) {
+    if (!values.emplace(assignment.name, assignment.value).second) {
+      throw std::invalid_argument(fmt::format("'{}' is given twice", assignment.name));
+    }
+  }
+  return values;
+}
+
+bio::ArmOptions armOptions(const SimulationOptions& options) {
+  bio::ArmOptions arm;
+  arm.skeleton.freeCoordinates = options.coordinates;
+  arm.skeleton.lockedValues = byName(options.locks);
+  arm.wrapAsCylinder = options.wrapAsCylinder;
+  return arm;
+}
+
+bio::SimulationOptions simulationOptions(const SimulationOptions& options, double startTime,
+                                         double duration) {
+  bio::SimulationOptions simulation;
+  simulation.integrator = options.integrator == "vi-left" ? bio::Integrator::variationalLeft
+                          : options.integrator == "rk4"   ? bio::Integrator::rungeKutta4
+                          : options.integrator == "cvode" ? bio::Integrator::cvode
+                                                          : bio::Integrator::variational;
+  simulation.startTime = startTime;
+  simulation.duration = duration;
+  simulation.step = options.stepOrDefault();
+  return simulation;
+}
+
+}  // namespace app

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+
+#include "bio/coupled.h"
+#include "bio/trial.h"
+#include "report.h"
+
+namespace app {
+
+/// A simulated trial and all that it was made of.
+struct ReplayFindings {
+  const std::string& modelFile;
+  const std::string& trialFile;
+  const bio::Model& model;
+  const bio::Trial& trial;
+  const bio::Arm& arm;
+  const bio::Trajectory& motion;
+  const bio::MuscleReport& muscles;
+  const bio::SimulationOptions& options;
+};
+
+/// The figures that summary.json is to hold: rms_error_deg, newton_iterations_per_step, …
+void tellReplay(const ReplayFindings& findings, Summary& summary);
+
+/// Angle beside what was measured, activations, forces, moment arms, energy.
+Report replayReport(const ReplayFindings& findings);
+
+}  // namespace app

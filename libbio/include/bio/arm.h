@@ -1,0 +1,84 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bio/activation.h"
+#include "bio/coordinate_force.h"
+#include "bio/model.h"
+#include "bio/path.h"
+#include "bio/schutte_muscle.h"
+#include "bio/skeleton.h"
+
+namespace bio {
+
+struct ArmOptions {
+  SkeletonOptions skeleton;                 ///< which coordinates are free, where the others are held
+  std::vector<std::string> wrapAsCylinder;  ///< ellipsoids with two equal semi-axes to take as cylinders
+  SchutteOptions muscle;                    ///< activation floor, treatment of negative forces
+};
+
+/// One muscle ready to be simulated.
+struct ArmMuscle {
+  std::string name;
+  SchutteMuscle<double> muscle;
+  SchutteActivation<double> activation;
+  MusclePath path;
+};
+
+/// A model compiled for simulation: the skeleton that the free coordinates leave, the muscles that
+/// they move, and the passive coordinate forces. Constant; state is passed to it.
+class Arm {
+ public:
+  /// @throws std::invalid_argument what Skeleton and MusclePath throw, non-physical muscle
+  ///   parameters, a moving muscle of a class other than Schutte's
+  Arm(const Model& model, const ArmOptions& options);
+
+  const Skeleton& skeleton() const { return skeleton_; }
+  const CoordinateForces& coordinateForces() const { return coordinateForces_; }
+  const std::vector<ArmMuscle>& muscles() const { return muscles_; }
+  std::size_t numMuscles() const { return muscles_.size(); }
+
+  /// One line each: muscles left out, spans taken as constant, wraps out of reach.
+  const std::vector<std::string>& notes() const { return notes_; }
+
+ private:
+  Skeleton skeleton_;
+  CoordinateForces coordinateForces_;
+  std::vector<std::unique_ptr<const SchutteCurves>> curves_;
+  std::vector<ArmMuscle> muscles_;
+  std::vector<std::string> notes_;
+};
+
+/// Everything about an arm that depends on the configuration alone, for N free coordinates: segment
+/// placements, inertia and gravity, muscle–tendon lengths, each with first and second derivatives.
+/// A workspace: allocates when made, never when moved.
+template <int N>
+class ArmConfiguration {
+ public:
+  using Vector = Eigen::Matrix<double, N, 1>;
+
+  explicit ArmConfiguration(const Arm& arm)
+      : arm_(&arm), motions_(arm.skeleton().numSegments()), lengths_(arm.numMuscles()) {}
+
+  void moveTo(const Vector& q) {
+    arm_->skeleton().template motions<double, N>(q, motions_.data());
+    inertia_ = arm_->skeleton().template inertia<N>(q, motions_.data());
+    for (std::size_t i = 0; i < lengths_.size(); ++i) {
+      lengths_[i] = arm_->muscles()[i].path.template length<N>(q, motions_.data());
+    }
+  }
+
+  const std::vector<RigidMotion<double, N>>& motions() const { return motions_; }
+  const InertiaJet<N>& inertia() const { return inertia_; }
+  const LengthJet<N>& length(std::size_t muscle) const { return lengths_[muscle]; }
+
+ private:
+  const Arm* arm_;
+  std::vector<RigidMotion<double, N>> motions_;
+  InertiaJet<N> inertia_;
+  std::vector<LengthJet<N>> lengths_;
+};
+
+}  // namespace bio

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "bio/arm.h"
+#include "bio/excitation.h"
+
+namespace bio {
+
+/// How the coupled equations of skeleton and muscles are stepped.
+enum class Integrator {
+  variational,      ///< midpoint variational, forces on both ends, implicit muscles; second order
+  variationalLeft,  ///< the same with forces on the left end (the thesis's scheme); first order
+  rungeKutta4,      ///< classical, explicit; fourth order, stable for tiny steps only
+  cvode             ///< SUNDIALS BDF, adaptive, analytic Jacobian: the converged reference
+};
+
+/// State of an arm; column vectors over free coordinates and over muscles.
+struct ArmState {
+  Eigen::VectorXd q;            ///< [rad] or [m]
+  Eigen::VectorXd qDot;         ///< [rad/s] or [m/s]
+  Eigen::VectorXd activation;   ///< 0 … 1
+  Eigen::VectorXd fibreLength;  ///< [m]
+};
+
+struct SimulationOptions {
+  Integrator integrator = Integrator::variational;
+  double startTime = 0;              ///< [s]
+  double duration = 0;               ///< [s] > 0
+  double step = 0.01;                ///< [s] > 0; cvode: interval of the output
+  double newtonTolerance = 1e-9;     ///< last correction: of q [rad], of fibre lengths relative to ℓ0
+  int maxIterations = 25;            ///< Newton iterations before a step is halved
+  int maxHalvings = 8;               ///< a step may shrink to step/2^maxHalvings
+  double relativeTolerance = 1e-10;  ///< cvode
+  double absoluteTolerance = 1e-12;  ///< cvode
+  /// Called after every output row with the time reached [s]; return false to stop.
+  std::function<bool(double)> progress;
+};
+
+/// How a simulation ended. Anything but `completed` leaves the rows up to that time in place.
+enum class Outcome { completed, noSolution, unstable, stopped };
+
+/// A simulated motion; matrices have one column per row of time.
+struct Trajectory {
+  std::vector<double> time;     ///< [s]
+  Eigen::MatrixXd q;            ///< [rad] or [m]
+  Eigen::MatrixXd qDot;         ///< [rad/s] or [m/s]
+  Eigen::MatrixXd activation;
+  Eigen::MatrixXd fibreLength;  ///< [m]
+  Eigen::VectorXd muscleWork;   ///< done by the muscles on the skeleton since the start [J]
+  Eigen::VectorXd passiveWork;  ///< done by the coordinate forces since the start [J]
+
+  Outcome outcome = Outcome::completed;
+  double failedAt = 0;  ///< [s]; the last time reached if not completed
+  std::string why;      ///< one line; empty if completed
+  long steps = 0;
+  long newtonIterations = 0;
+  long halvedSteps = 0;      ///< steps that were taken in halves
+  double wallSeconds = 0;    ///< stepping alone, without set-up and analysis
+};
+
+/// Thrown when a muscle has no static equilibrium at the start; names muscle, length and activation.
+class NoStaticEquilibrium : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Start of a simulation: at q with speed 0, activation = excitation at `time` (not below the
+/// activation floor), every fibre in static equilibrium.
+/// @param excitation  one column per muscle of the arm
+/// @throws NoStaticEquilibrium, std::invalid_argument (sizes)
+ArmState initialState(const Arm& arm, const Eigen::VectorXd& q, const ExcitationSignal& excitation,
+                      double time);
+
+/// Plays the excitations through the arm.
+///
+/// Variational: with v = (q' − q)/h, midpoint quantities m and f = −Σ F_T,i ∂ℓ_i/∂q + passive,
+///     p  = M(q_m) v − (h/2)(½ vᵀ∂M v − ∂V) − F⁻,    F⁻ = (h/2) f (symmetric) or h f (left)
+///     p' = M(q_m) v + (h/2)(½ vᵀ∂M v − ∂V) + F⁺,    F⁺ = (h/2) f or 0
+///     (ℓ'_i − ℓ_i)/h = V(act_i, ℓ_m,i, ℓ_MT,i(q_m))
+/// (section 3.2 of the thesis; (2.23) with the factor h). The muscle equation (3.4) is solved for the
+/// fibre velocity in closed form, docs/decisions/002: same root, better conditioned. Newton by the
+/// arrow structure: fibre lengths are eliminated one by one, the Schur complement in q is solved.
+/// When Newton fails the step is halved; when the smallest step fails the outcome is noSolution.
+///
+/// @throws std::invalid_argument sizes, step ≤ 0, duration ≤ 0
+Trajectory simulate(const Arm& arm, const ExcitationSignal& excitation, const ArmState& start,
+                    const SimulationOptions& options);
+
+/// Kinetic and potential energy at a state [J].
+struct Energy {
+  double kinetic = 0;
+  double potential = 0;  ///< of gravity
+};
+Energy energyOf(const Arm& arm, const Eigen::VectorXd& q, const Eigen::VectorXd& qDot);
+
+/// max over time of |E(t) − E(0) − work of muscles and passive forces| [J].
+double energyError(const Arm& arm, const Trajectory& trajectory);
+
+/// What the muscles do along a motion; rows = muscles, columns = times.
+struct MuscleReport {
+  Eigen::MatrixXd tendonForce;         ///< [N]
+  Eigen::MatrixXd muscleTendonLength;  ///< [m]
+  Eigen::MatrixXd momentArm;           ///< −∂ℓ/∂q of coordinate `coordinate` [m]
+};
+MuscleReport reportMuscles(const Arm& arm, const Trajectory& trajectory, int coordinate = 0);
+
+}  // namespace bio

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "bio/coupled.h"
+#include "bio/table_file.h"
+#include "bio/trial.h"
+
+/// What joins a recorded trial to a simulated arm.
+namespace bio {
+
+/// The trial's excitations in the order of the arm's muscles.
+/// @throws std::invalid_argument if the trial lacks one of them
+ExcitationSignal excitationOf(const Trial& trial, const Arm& arm);
+
+/// Start values of the free coordinates [rad] or [m]: as given, else the first measured value, else
+/// the default.
+/// @throws std::invalid_argument for a name that is not free, or a value that is not finite
+Eigen::VectorXd startCoordinates(const Trial& trial, const Arm& arm,
+                                 const std::map<std::string, double>& given);
+
+/// How far a simulation is from a measured coordinate, at the measured times that it covers.
+struct MeasuredError {
+  double rms = 0;                 ///< [rad] or [m]
+  double largest = 0;             ///< [rad] or [m]
+  double largestAt = 0;           ///< [s]
+  Eigen::Index count = 0;         ///< measured values compared
+};
+/// @throws std::invalid_argument if the coordinate is not free, or no measured time is covered
+MeasuredError compareWithMeasured(const Arm& arm, const Trajectory& trajectory,
+                                  const MeasuredMotion& measured);
+
+/// States as OpenSim 4 names them: value and speed of every coordinate of the model (locked and
+/// coupled ones too), activation and fiber_length of every simulated muscle; radians and metres.
+Table statesTable(const Model& model, const Arm& arm, const Trajectory& trajectory);
+
+/// Tendon forces [N], one column per muscle.
+Table forcesTable(const Arm& arm, const Trajectory& trajectory, const MuscleReport& report);
+
+/// Lengths and moment arms of muscles over the range of one coordinate.
+struct PathSample {
+  Eigen::VectorXd value;           ///< of the coordinate [rad] or [m]
+  std::vector<std::string> muscles;
+  Eigen::MatrixXd length;          ///< rows = values, columns = muscles [m]
+  Eigen::MatrixXd momentArm;       ///< −∂ℓ/∂q [m]
+  Eigen::MatrixXd momentArmSlope;  ///< −∂²ℓ/∂q² [m/rad]
+  Eigen::MatrixXi wrapped;         ///< 1: a wrap object is touched
+  std::vector<std::string> notes;
+};
+/// Paths of every enabled muscle that the skeleton's first coordinate moves, whatever its class; the
+/// other free coordinates stay at their defaults.
+/// @throws std::invalid_argument what MusclePath throws
+PathSample samplePaths(const Model& model, const Skeleton& skeleton,
+                       const std::vector<std::string>& wrapAsCylinder,
+                       const Eigen::VectorXd& values);
+
+}  // namespace bio

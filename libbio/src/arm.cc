@@ -1,0 +1,42 @@
+#include "bio/arm.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+namespace bio {
+
+Arm::Arm(const Model& model, const ArmOptions& options)
+    : skeleton_(model, options.skeleton), coordinateForces_(model, skeleton_) {
+  for (const Muscle& muscle : model.muscles) {
+    if (!muscle.enabled) {
+      notes_.push_back(fmt::format("muscle '{}' is switched off in the model", muscle.name));
+      continue;
+    }
+    MusclePath path(model, skeleton_, muscle, options.wrapAsCylinder);
+    if (!path.moves()) {
+      notes_.push_back(
+          fmt::format("muscle '{}' is left out: no free coordinate moves it", muscle.name));
+      continue;
+    }
+    if (!muscle.schutte) {
+      throw std::invalid_argument(fmt::format(
+          "muscle '{}' is a {}; only Schutte1993Muscle_Deprecated can be simulated", muscle.name,
+          muscle.className));
+    }
+    for (const std::string& note : path.notes()) notes_.push_back(note);
+    const SchutteParameters& s = *muscle.schutte;
+    try {
+      curves_.push_back(std::make_unique<const SchutteCurves>(s));
+      muscles_.push_back({muscle.name,
+                          SchutteMuscle<double>(schutteQuantities(s), *curves_.back(), options.muscle),
+                          SchutteActivation<double>{s.timeScale, s.activation1, s.activation2},
+                          std::move(path)});
+    } catch (const std::invalid_argument& e) {
+      throw std::invalid_argument(fmt::format("muscle '{}': {}", muscle.name, e.what()));
+    }
+  }
+  if (muscles_.empty()) notes_.push_back("no muscle acts on the free coordinates");
+}
+
+}  // namespace bio

@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+
+#include "arm_dynamics.h"
+
+namespace bio::stepping {
+namespace {
+
+/// Speeds and lengths beyond these are no motion of an arm any more.
+constexpr double largestSpeed = 1e3;  ///< [rad/s]
+
+template <int N>
+Trajectory run(const Arm& arm, const ExcitationSignal& excitation, const ArmState& start,
+               const SimulationOptions& options) {
+  ArmDynamics<N> dynamics(arm, excitation);
+  using State = Eigen::VectorXd;
+  State y = dynamics.pack(start);
+  State stage = y, k1 = y, k2 = y, k3 = y, k4 = y;
+  const auto n = static_cast<Eigen::Index>(arm.numMuscles());
+  const std::size_t rows = numRows(options);
+  Recorder recorder(arm, rows);
+  Trajectory& trajectory = recorder.trajectory();
+  double muscleWork = 0;
+  double passiveWork = 0;
+  const auto record = [&](double t) {
+    recorder.add(t, y.template head<N>(), y.template segment<N>(N), y.segment(2 * N, n), y.tail(n),
+                 muscleWork, passiveWork);
+  };
+  record(options.startTime);
+  const StopWatch watch;
+  for (std::size_t k = 1; k < rows; ++k) {
+    const double t = rowTime(options, k - 1);
+    const double h = rowTime(options, k) - t;
+    const auto p1 = dynamics.derivative(t, y, k1);
+    stage = y + h / 2 * k1;
+    const auto p2 = dynamics.derivative(t + h / 2, stage, k2);
+    stage = y + h / 2 * k2;
+    const auto p3 = dynamics.derivative(t + h / 2, stage, k3);
+    stage = y + h * k3;
+    const auto p4 = dynamics.derivative(t + h, stage, k4);
+    y += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+    muscleWork += h / 6 * (p1.muscle + 2 * p2.muscle + 2 * p3.muscle + p4.muscle);
+    passiveWork += h / 6 * (p1.passive + 2 * p2.passive + 2 * p3.passive + p4.passive);
+    ++trajectory.steps;
+    if (!y.allFinite() || !(y.template segment<N>(N).cwiseAbs().maxCoeff() < largestSpeed)) {
+      trajectory.outcome = Outcome::unstable;
+      trajectory.failedAt = t;
+      trajectory.why = fmt::format(
+          "unstable at t = {:.6g} s: {} with a step of {:.3g} s", t + h,
+          y.allFinite() ? fmt::format("the speed exceeds {:.0f} rad/s", largestSpeed)
+                        : std::string("a muscle fibre left its domain (not a number)"),
+          options.step);
+      break;
+    }
+    record(t + h);
+    if (options.progress && !options.progress(t + h)) {
+      trajectory.outcome = Outcome::stopped;
+      trajectory.failedAt = t + h;
+      trajectory.why = fmt::format("stopped at t = {:.6g} s", t + h);
+      break;
+    }
+  }
+  trajectory.wallSeconds = watch.seconds();
+  return recorder.finish();
+}
+
+}  // namespace
+
+Trajectory simulateRungeKutta4(const Arm& arm, const ExcitationSignal& excitation,
+                               const ArmState& start, const SimulationOptions& options) {
+  return withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+    return run<decltype(N)::value>(arm, excitation, start, options);
+  });
+}
+
+}  // namespace bio::stepping

@@ -1,0 +1,339 @@
+#include <fmt/format.h>
+
+#include "coupled_stepping.h"
+
+namespace bio::stepping {
+namespace {
+
+/// Advances activations along the excitation, row by row of its table, so that corners of the
+/// excitation are met exactly whatever the step of the simulation.
+class ActivationPlayer {
+ public:
+  ActivationPlayer(const Arm& arm, const ExcitationSignal& excitation, double time)
+      : arm_(&arm), excitation_(&excitation), from_(excitation.numMuscles()), to_(from_.size()) {
+    excitation.at(time, hint_, from_);
+  }
+
+  /// activation(t0) becomes activation(t1); calls must follow each other in time, or restart().
+  void advance(double t0, double t1, Eigen::VectorXd& activation) {
+    const std::vector<double>& rows = excitation_->times();
+    double t = t0;
+    while (t < t1) {
+      std::size_t next = hint_;
+      while (next < rows.size() && rows[next] <= t * (1 + 1e-15) + 1e-15) ++next;
+      const double stop = next < rows.size() ? std::min(rows[next], t1) : t1;
+      excitation_->at(stop, hint_, to_);
+      for (Eigen::Index i = 0; i < activation.size(); ++i) {
+        activation[i] = stepActivation(arm_->muscles()[static_cast<std::size_t>(i)].activation,
+                                       from_[i], to_[i], activation[i], stop - t);
+      }
+      from_.swap(to_);
+      t = stop;
+    }
+  }
+
+  void restart(double time) {
+    hint_ = 0;
+    excitation_->at(time, hint_, from_);
+  }
+
+ private:
+  const Arm* arm_;
+  const ExcitationSignal* excitation_;
+  Eigen::VectorXd from_;
+  Eigen::VectorXd to_;
+  std::size_t hint_ = 0;
+};
+
+/// One step of the coupled variational scheme and its Newton iteration.
+template <int N>
+class VariationalStepper {
+ public:
+  using Vector = Eigen::Matrix<double, N, 1>;
+  using Matrix = Eigen::Matrix<double, N, N>;
+
+  VariationalStepper(const Arm& arm, const SimulationOptions& options)
+      : arm_(arm),
+        options_(options),
+        configuration_(arm),
+        symmetric_(options.integrator == Integrator::variational),
+        rate_(arm.numMuscles()),
+        inverse_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(arm.numMuscles()))),
+        residual_(inverse_) {}
+
+  struct Ends {
+    Vector q, p;
+    Eigen::VectorXd fibreLength;
+  };
+
+  struct Result {
+    bool converged = false;
+    int iterations = 0;
+    double muscleWork = 0;   ///< f_muscle·(q' − q)
+    double passiveWork = 0;
+  };
+
+  /// Solves for the end of a step of length h; `end` holds the first guess of q and fibreLength and
+  /// is overwritten (with garbage if not converged).
+  Result solve(double h, const Ends& begin, const Eigen::VectorXd& activation, Ends& end) {
+    Result result;
+    const double share = symmetric_ ? h / 2 : h;  // of the forces in F⁻
+    for (result.iterations = 1; result.iterations <= options_.maxIterations; ++result.iterations) {
+      const Vector q_m = (begin.q + end.q) / 2;
+      const Vector v = (end.q - begin.q) / h;
+      configuration_.moveTo(q_m);
+      const InertiaJet<N>& inertia = configuration_.inertia();
+
+      // skeleton: M v and ½ vᵀ∂M v − ∂V with their derivatives in the end configuration
+      const Vector Mv = inertia.massMatrix * v;
+      Vector L_q = -inertia.dV;
+      Matrix dMv = inertia.massMatrix / h;
+      Matrix dL_q = -inertia.d2V / 2;
+      if (!arm_.skeleton().hasConstantInertia()) {
+        for (int k = 0; k < N; ++k) {
+          const auto sk = static_cast<std::size_t>(k);
+          const Vector M_k_v = inertia.dM[sk] * v;
+          L_q[k] += v.dot(M_k_v) / 2;
+          dMv.col(k) += M_k_v / 2;
+          dL_q.row(k) += M_k_v.transpose() / h;
+          for (int j = 0; j < N; ++j) {
+            dL_q(k, j) += v.dot(inertia.d2M[static_cast<std::size_t>(pairIndex(k, j))] * v) / 4;
+          }
+        }
+      }
+
+      // passive coordinate forces
+      passive_.setZero();
+      Matrix tau_q = Matrix::Zero();
+      Matrix tau_v = Matrix::Zero();
+      arm_.coordinateForces().template add<N>(q_m, v, passive_, tau_q, tau_v);
+      Matrix dTau = tau_q / 2 + tau_v / h;
+
+      // muscles: forces on the skeleton, and fibre lengths eliminated one by one
+      muscle_.setZero();
+      Matrix eliminated = Matrix::Zero();
+      Vector carried = Vector::Zero();
+      for (std::size_t i = 0; i < rate_.size(); ++i) {
+        const auto si = static_cast<Eigen::Index>(i);
+        const LengthJet<N>& path = configuration_.length(i);
+        const double l_m = (begin.fibreLength[si] + end.fibreLength[si]) / 2;
+        rate_[i] = fibreRateDerivatives(arm_.muscles()[i].muscle, activation[si], l_m, path.length);
+        const FibreRateDerivatives& r = rate_[i];
+        muscle_ -= r.tendonForce * path.dL_dq;
+        dTau.noalias() -= (r.dF_dMuscleTendonLength / 2 * path.dL_dq) * path.dL_dq.transpose();
+        dTau -= r.tendonForce / 2 * path.d2L_dq2;
+        residual_[si] = (end.fibreLength[si] - begin.fibreLength[si]) / h - r.fibreVelocity;
+        inverse_[si] = 1 / (1 / h - r.dV_dFibreLength / 2);
+        // G_i C_i/J_i with C = −½ V_L ∂ℓ, G = share·½ F_ℓ ∂ℓ
+        const double G = share / 2 * r.dF_dFibreLength;
+        eliminated.noalias() -= (G * inverse_[si] * r.dV_dMuscleTendonLength / 2 * path.dL_dq) *
+                                path.dL_dq.transpose();
+        carried += G * inverse_[si] * residual_[si] * path.dL_dq;
+      }
+
+      const Vector R = Mv - h / 2 * L_q - share * (muscle_ + passive_) - begin.p;
+      const Matrix J = dMv - h / 2 * dL_q - share * dTau - eliminated;
+      Vector dq = solveSmall(J, carried - R);
+      if (!dq.allFinite()) return result;
+
+      // trust limits: a step of the arm or of a fibre that is too bold is shortened as a whole
+      double shorten = 1;
+      double size = dq.cwiseAbs().maxCoeff();
+      if (size > largestTurn) shorten = largestTurn / size;
+      double fibreSize = 0;
+      for (std::size_t i = 0; i < rate_.size(); ++i) {
+        const auto si = static_cast<Eigen::Index>(i);
+        const LengthJet<N>& path = configuration_.length(i);
+        const double C_dq = -rate_[i].dV_dMuscleTendonLength / 2 * path.dL_dq.dot(dq);
+        residual_[si] = -(residual_[si] + C_dq) * inverse_[si];  // now δℓ
+        fibreSize = std::max(fibreSize,
+                             std::abs(residual_[si]) * arm_.muscles()[i].muscle.perFibre());
+      }
+      if (!(fibreSize < 1e6)) return result;
+      if (fibreSize * shorten > largestFibreStep) shorten = largestFibreStep / fibreSize;
+      end.q += shorten * dq;
+      end.fibreLength += shorten * residual_;
+      if (size < options_.newtonTolerance && fibreSize < options_.newtonTolerance) {
+        // L_q, forces and M v belong to the last iterate but one, which is within the tolerance
+        const Vector step = end.q - begin.q;
+        end.p = Mv + dMv * dq + h / 2 * (L_q + dL_q * dq) +
+                (symmetric_ ? Vector(share * (muscle_ + passive_)) : Vector(Vector::Zero()));
+        result.muscleWork = muscle_.dot(step);
+        result.passiveWork = passive_.dot(step);
+        result.converged = true;
+        return result;
+      }
+    }
+    return result;
+  }
+
+  /// What is left of the equations at the last iterate, for the message of a failed step.
+  std::string describeResidual() const {
+    std::string text;
+    for (std::size_t i = 0; i < rate_.size(); ++i) {
+      text += fmt::format("{}{} {:.2g} m", i ? ", " : "", arm_.muscles()[i].name,
+                          residual_[static_cast<Eigen::Index>(i)]);
+    }
+    return text;
+  }
+
+ private:
+  static constexpr double largestTurn = 0.3;        ///< [rad] per iteration
+  static constexpr double largestFibreStep = 0.25;  ///< of ℓ0 per iteration
+
+  static Vector solveSmall(const Matrix& J, const Vector& b) {
+    if constexpr (N == 1) {
+      return b / J(0, 0);
+    } else {
+      return J.partialPivLu().solve(b);
+    }
+  }
+
+  const Arm& arm_;
+  const SimulationOptions& options_;
+  ArmConfiguration<N> configuration_;
+  bool symmetric_;
+  std::vector<FibreRateDerivatives> rate_;
+  Eigen::VectorXd inverse_;
+  Eigen::VectorXd residual_;
+  Vector muscle_;
+  Vector passive_;
+};
+
+template <int N>
+class VariationalRun {
+ public:
+  using Stepper = VariationalStepper<N>;
+  using Ends = typename Stepper::Ends;
+  using Vector = typename Stepper::Vector;
+
+  VariationalRun(const Arm& arm, const ExcitationSignal& excitation, const ArmState& start,
+                 const SimulationOptions& options)
+      : arm_(arm),
+        options_(options),
+        stepper_(arm, options),
+        player_(arm, excitation, options.startTime),
+        configuration_(arm),
+        recorder_(arm, numRows(options)),
+        activation_(start.activation),
+        middle_(start.activation),
+        scratch_(static_cast<std::size_t>(options.maxHalvings) + 2) {
+    now_.q = start.q;
+    configuration_.moveTo(now_.q);
+    now_.p = configuration_.inertia().massMatrix * start.qDot;
+    now_.fibreLength = start.fibreLength;
+    velocity_ = start.qDot;
+    fibreVelocity_ = Eigen::VectorXd::Zero(start.fibreLength.size());
+    next_ = now_;
+    for (Scratch& s : scratch_) s.middle = s.activation = s.activationMiddle = start.activation;
+    for (Scratch& s : scratch_) s.state = now_;
+    recorder_.add(options.startTime, now_.q, start.qDot, activation_, now_.fibreLength, 0, 0);
+  }
+
+  Trajectory run() {
+    const StopWatch watch;
+    const std::size_t rows = numRows(options_);
+    Trajectory& trajectory = recorder_.trajectory();
+    for (std::size_t k = 1; k < rows; ++k) {
+      const double t0 = rowTime(options_, k - 1);
+      const double t1 = rowTime(options_, k);
+      if (!advance(t0, t1, 0)) {
+        trajectory.outcome = Outcome::noSolution;
+        trajectory.failedAt = t0;
+        trajectory.why = fmt::format(
+            "no solution at t = {:.6g} s: the smallest step, {:.3g} s, did not converge (last "
+            "corrections: {})",
+            t0, (t1 - t0) / std::pow(2, options_.maxHalvings), stepper_.describeResidual());
+        break;
+      }
+      ++trajectory.steps;
+      recorder_.add(t1, now_.q, speed(), activation_, now_.fibreLength, muscleWork_, passiveWork_);
+      if (options_.progress && !options_.progress(t1)) {
+        trajectory.outcome = Outcome::stopped;
+        trajectory.failedAt = t1;
+        trajectory.why = fmt::format("stopped at t = {:.6g} s", t1);
+        break;
+      }
+    }
+    trajectory.wallSeconds = watch.seconds();
+    return recorder_.finish();
+  }
+
+ private:
+  struct Scratch {
+    Ends state;
+    Eigen::VectorXd activation, activationMiddle, middle;
+  };
+
+  /// Moves now_ and activation_ from t0 to t1; in halves, and halves of them, where Newton fails.
+  bool advance(double t0, double t1, int depth) {
+    Scratch& kept = scratch_[static_cast<std::size_t>(depth)];
+    const double h = t1 - t0;
+    const double tMiddle = t0 + h / 2;
+    kept.activation = activation_;
+    player_.advance(t0, tMiddle, activation_);
+    middle_ = activation_;
+    player_.advance(tMiddle, t1, activation_);
+
+    next_.q = now_.q + h * velocity_;
+    next_.fibreLength = now_.fibreLength + h * fibreVelocity_;
+    typename Stepper::Result result = stepper_.solve(h, now_, middle_, next_);
+    count(result.iterations);
+    if (!result.converged) {  // again from rest, in case the extrapolation was the trouble
+      next_.q = now_.q;
+      next_.fibreLength = now_.fibreLength;
+      result = stepper_.solve(h, now_, middle_, next_);
+      count(result.iterations);
+    }
+    if (result.converged) {
+      velocity_ = (next_.q - now_.q) / h;
+      fibreVelocity_ = (next_.fibreLength - now_.fibreLength) / h;
+      now_.q.swap(next_.q);
+      now_.p.swap(next_.p);
+      now_.fibreLength.swap(next_.fibreLength);
+      muscleWork_ += result.muscleWork;
+      passiveWork_ += result.passiveWork;
+      return true;
+    }
+    if (depth >= options_.maxHalvings) return false;
+    if (depth == 0) ++recorder_.trajectory().halvedSteps;
+    activation_ = kept.activation;
+    player_.restart(t0);
+    return advance(t0, tMiddle, depth + 1) && advance(tMiddle, t1, depth + 1);
+  }
+
+  void count(int iterations) {
+    recorder_.trajectory().newtonIterations += std::min(iterations, options_.maxIterations);
+  }
+
+  /// q̇ = M⁻¹p at the end of the last step.
+  Vector speed() {
+    if (!arm_.skeleton().hasConstantInertia()) configuration_.moveTo(now_.q);
+    return configuration_.inertia().massMatrix.ldlt().solve(now_.p);
+  }
+
+  const Arm& arm_;
+  const SimulationOptions& options_;
+  Stepper stepper_;
+  ActivationPlayer player_;
+  ArmConfiguration<N> configuration_;
+  Recorder recorder_;
+  Eigen::VectorXd activation_, middle_;
+  Ends now_, next_;
+  Vector velocity_;
+  Eigen::VectorXd fibreVelocity_;
+  double muscleWork_ = 0;
+  double passiveWork_ = 0;
+  std::vector<Scratch> scratch_;
+};
+
+}  // namespace
+
+Trajectory simulateVariational(const Arm& arm, const ExcitationSignal& excitation,
+                               const ArmState& start, const SimulationOptions& options) {
+  return withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+    return VariationalRun<decltype(N)::value>(arm, excitation, start, options).run();
+  });
+}
+
+}  // namespace bio::stepping

@@ -1,0 +1,194 @@
+#include "bio/replay.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "coupled_stepping.h"
+
+namespace bio {
+
+ExcitationSignal excitationOf(const Trial& trial, const Arm& arm) {
+  const auto n = static_cast<Eigen::Index>(arm.numMuscles());
+  Eigen::MatrixXd values(trial.times.size(), n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const std::string& name = arm.muscles()[static_cast<std::size_t>(i)].name;
+    const auto at = std::find(trial.muscles.begin(), trial.muscles.end(), name);
+    if (at == trial.muscles.end()) {
+      throw std::invalid_argument(fmt::format("{}: no excitation of muscle '{}'", trial.file, name));
+    }
+    values.col(i) = trial.excitations.col(at - trial.muscles.begin());
+  }
+  return {std::vector<double>(trial.times.begin(), trial.times.end()), values};
+}
+
+Eigen::VectorXd startCoordinates(const Trial& trial, const Arm& arm,
+                                 const std::map<std::string, double>& given) {
+  const auto& free = arm.skeleton().coordinates();
+  for (const auto& [name, value] : given) {
+    if (arm.skeleton().indexOf(name) < 0) {
+      std::string known;
+      for (const Coordinate& c : free) known += (known.empty() ? "" : ", ") + c.name;
+      throw std::invalid_argument(
+          fmt::format("start of '{}': it is not a free coordinate (free: {})", name, known));
+    }
+    if (!std::isfinite(value)) {
+      throw std::invalid_argument(fmt::format("start of '{}' = {}, must be finite", name, value));
+    }
+  }
+  Eigen::VectorXd q(static_cast<Eigen::Index>(free.size()));
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    double value = free[i].defaultValue;
+    for (const MeasuredMotion& measured : trial.measured) {
+      if (measured.coordinate == free[i].name && measured.values.size() > 0) value = measured.values[0];
+    }
+    const auto at = given.find(free[i].name);
+    q[static_cast<Eigen::Index>(i)] = at != given.end() ? at->second : value;
+  }
+  return q;
+}
+
+MeasuredError compareWithMeasured(const Arm& arm, const Trajectory& trajectory,
+                                  const MeasuredMotion& measured) {
+  const int index = arm.skeleton().indexOf(measured.coordinate);
+  if (index < 0) {
+    throw std::invalid_argument(
+        fmt::format("measured coordinate '{}' is not free", measured.coordinate));
+  }
+  const std::vector<double>& time = trajectory.time;
+  MeasuredError error;
+  double sum = 0;
+  std::size_t k = 0;
+  for (Eigen::Index i = 0; i < measured.times.size(); ++i) {
+    const double t = measured.times[i];
+    if (t < time.front() - 1e-9 || t > time.back() + 1e-9) continue;
+    while (k + 2 < time.size() && time[k + 1] < t) ++k;
+    double simulated = trajectory.q(index, static_cast<Eigen::Index>(k));
+    if (time.size() > 1) {
+      // cubic through values and speeds: as accurate as the integrators
+      const auto c = static_cast<Eigen::Index>(k);
+      const double h = time[k + 1] - time[k];
+      const double s = (t - time[k]) / h;
+      const double a = simulated;
+      const double b = trajectory.q(index, c + 1);
+      const double da = h * trajectory.qDot(index, c);
+      const double db = h * trajectory.qDot(index, c + 1);
+      simulated = a + s * (da + s * (3 * (b - a) - 2 * da - db + s * (2 * (a - b) + da + db)));
+    }
+    const double difference = simulated - measured.values[i];
+    sum += difference * difference;
+    ++error.count;
+    if (std::abs(difference) > error.largest) {
+      error.largest = std::abs(difference);
+      error.largestAt = t;
+    }
+  }
+  if (error.count == 0) {
+    throw std::invalid_argument(fmt::format(
+        "measured coordinate '{}': no value between {} s and {} s", measured.coordinate, time.front(),
+        time.back()));
+  }
+  error.rms = std::sqrt(sum / static_cast<double>(error.count));
+  return error;
+}
+
+Table statesTable(const Model& model, const Arm& arm, const Trajectory& trajectory) {
+  const Skeleton& skeleton = arm.skeleton();
+  const auto K = static_cast<Eigen::Index>(trajectory.time.size());
+  Table table;
+  table.name = "states";
+  table.columns = {"time"};
+  std::vector<Eigen::VectorXd> columns = {
+      Eigen::Map<const Eigen::VectorXd>(trajectory.time.data(), K)};
+  const auto add = [&](const std::string& name, Eigen::VectorXd values) {
+    table.columns.push_back(name);
+    columns.push_back(std::move(values));
+  };
+  for (const Joint& joint : model.joints) {
+    for (const Coordinate& coordinate : joint.coordinates) {
+      const std::string path = fmt::format("/jointset/{}/{}", joint.name, coordinate.name);
+      const Skeleton::CoordinateSource& source = skeleton.sourceOf(coordinate.name);
+      Eigen::VectorXd value = Eigen::VectorXd::Constant(K, source.value);
+      Eigen::VectorXd speed = Eigen::VectorXd::Zero(K);
+      if (source.freeIndex >= 0) {
+        for (Eigen::Index k = 0; k < K; ++k) {
+          const CurveValue y = source.coupling.evaluate(trajectory.q(source.freeIndex, k));
+          value[k] = y.value;
+          speed[k] = y.slope * trajectory.qDot(source.freeIndex, k);
+        }
+      }
+      add(path + "/value", value);
+      add(path + "/speed", speed);
+    }
+  }
+  for (std::size_t i = 0; i < arm.numMuscles(); ++i) {
+    const std::string path = "/forceset/" + arm.muscles()[i].name;
+    const auto row = static_cast<Eigen::Index>(i);
+    add(path + "/activation", trajectory.activation.row(row).transpose());
+    add(path + "/fiber_length", trajectory.fibreLength.row(row).transpose());
+  }
+  table.values.resize(K, static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    table.values.col(static_cast<Eigen::Index>(c)) = columns[c];
+  }
+  return table;
+}
+
+Table forcesTable(const Arm& arm, const Trajectory& trajectory, const MuscleReport& report) {
+  const auto K = static_cast<Eigen::Index>(trajectory.time.size());
+  Table table;
+  table.name = "tendon forces [N]";
+  table.columns = {"time"};
+  for (const ArmMuscle& muscle : arm.muscles()) table.columns.push_back(muscle.name);
+  table.values.resize(K, report.tendonForce.rows() + 1);
+  table.values.col(0) = Eigen::Map<const Eigen::VectorXd>(trajectory.time.data(), K);
+  table.values.rightCols(report.tendonForce.rows()) = report.tendonForce.transpose();
+  return table;
+}
+
+PathSample samplePaths(const Model& model, const Skeleton& skeleton,
+                       const std::vector<std::string>& wrapAsCylinder,
+                       const Eigen::VectorXd& values) {
+  std::vector<MusclePath> paths;
+  PathSample sample;
+  sample.value = values;
+  for (const Muscle& muscle : model.muscles) {
+    if (!muscle.enabled) continue;
+    MusclePath path(model, skeleton, muscle, wrapAsCylinder);
+    if (!path.moves()) {
+      sample.notes.push_back(
+          fmt::format("muscle '{}' is left out: no free coordinate moves it", muscle.name));
+      continue;
+    }
+    sample.notes.insert(sample.notes.end(), path.notes().begin(), path.notes().end());
+    sample.muscles.push_back(muscle.name);
+    paths.push_back(std::move(path));
+  }
+  const auto n = static_cast<Eigen::Index>(paths.size());
+  sample.length.resize(values.size(), n);
+  sample.momentArm.resize(values.size(), n);
+  sample.momentArmSlope.resize(values.size(), n);
+  sample.wrapped.resize(values.size(), n);
+  stepping::withCoordinates(skeleton.numCoordinates(), [&](auto N) {
+    constexpr int count = decltype(N)::value;
+    std::vector<RigidMotion<double, count>> moved(skeleton.numSegments());
+    Eigen::Matrix<double, count, 1> q;
+    for (int i = 0; i < count; ++i) {
+      q[i] = skeleton.coordinates()[static_cast<std::size_t>(i)].defaultValue;
+    }
+    for (Eigen::Index k = 0; k < values.size(); ++k) {
+      q[0] = values[k];
+      skeleton.motions<double, count>(q, moved.data());
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const auto jet = paths[static_cast<std::size_t>(i)].length<count>(q, moved.data());
+        sample.length(k, i) = jet.length;
+        sample.momentArm(k, i) = -jet.dL_dq[0];
+        sample.momentArmSlope(k, i) = -jet.d2L_dq2(0, 0);
+        sample.wrapped(k, i) = jet.wrapped ? 1 : 0;
+      }
+    }
+  });
+  return sample;
+}
+
+}  // namespace bio

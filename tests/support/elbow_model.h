@@ -1,0 +1,12 @@
+#pragma once
+
+#include "bio/osim_file.h"
+
+namespace bio::testing {
+
+/// The shipped eight-muscle elbow.
+inline Model elbowModel() {
+  return readOsim(std::string(FISHERHILL_SOURCE_DIR) + "/models/elbow8.osim");
+}
+
+}  // namespace bio::testing
