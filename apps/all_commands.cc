@@ -2,6 +2,8 @@
 #include "command.h"
 #include "emg.h"
 #include "robot.h"
+#include "moment_arms.h"
+#include "replay.h"
 
 namespace app {
 
@@ -10,6 +12,8 @@ std::vector<std::unique_ptr<Command>> allCommands() {
   commands.push_back(checkCommand());
   commands.push_back(emgCommand());
   commands.push_back(robotCommand());
+  commands.push_back(momentArmsCommand());
+  commands.push_back(replayCommand());
   return commands;
 }
 
