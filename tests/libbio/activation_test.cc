@@ -86,7 +86,7 @@ TEST(StepActivation, IsExactForConstantExcitation) {
 
 // Twice the steps, a quarter of the error: measured over excitation ramps that rise, fall and
 // cross.
-TEST(StepActivation, IsSecondOrderForSchuttesDynamics) {
+TEST(StepActivation, IsFourthOrderForSchuttesDynamics) {
   for (const Step& s : {Step{0.1, 0.9, 0.05}, Step{0.1, 0.9, 0.4}, Step{0.9, 0.1, 0.2}}) {
     const double h = 0.1;
     const double exact = reference(schutte, s.u0, s.u1, s.a0, h);
