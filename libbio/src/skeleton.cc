@@ -1,4 +1,5 @@
 #include "bio/skeleton.h"
+#include "bio/skeleton_motion.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
