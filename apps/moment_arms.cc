@@ -18,8 +18,9 @@ constexpr double degree = std::numbers::pi / 180;
 class MomentArms : public Command {
  public:
   About about() const override {
-    return {"moment-arms", "Muscle–tendon lengths and moment arms over a coordinate's range",
-            "fisherhill moment-arms models/elbow8.osim --from 0 --to 130 --points 131 --out out/arms"};
+    return {
+        "moment-arms", "Muscle–tendon lengths and moment arms over a coordinate's range",
+        "fisherhill moment-arms models/elbow8.osim --from 0 --to 130 --points 131 --out out/arms"};
   }
 
   void addOptions(CLI::App& options) override {
@@ -27,8 +28,10 @@ class MomentArms : public Command {
         ->required()
         ->check(CLI::ExistingFile)
         ->type_name("");
-    options.add_option("--from", from_, "first angle [deg], or position [mm] of a sliding coordinate");
-    options.add_option("--to", to_, "last angle [deg] or position [mm]; without: the coordinate's range");
+    options.add_option("--from", from_,
+                       "first angle [deg], or position [mm] of a sliding coordinate");
+    options.add_option("--to", to_,
+                       "last angle [deg] or position [mm]; without: the coordinate's range");
     options.add_option("--points", points_, "number of values, at least 2")->capture_default_str();
     addModelOptions(options, model_options_);
   }
@@ -44,7 +47,8 @@ class MomentArms : public Command {
     const double unit = coordinate.isRotation ? degree : 1e-3;
     const double first = from_ ? *from_ : coordinate.rangeMin / unit;
     const double last = to_ ? *to_ : coordinate.rangeMax / unit;
-    require(points_ >= 2 && points_ <= 1000000, fmt::format("--points {}, must be 2 to 1000000", points_));
+    require(points_ >= 2 && points_ <= 1000000,
+            fmt::format("--points {}, must be 2 to 1000000", points_));
     require(std::isfinite(first) && std::isfinite(last) && last > first,
             fmt::format("--from {} --to {}, must rise", numberText(first), numberText(last)));
     const Eigen::VectorXd shown = Eigen::VectorXd::LinSpaced(points_, first, last);
@@ -85,7 +89,8 @@ class MomentArms : public Command {
     table.values.col(0) = shown;
     for (Eigen::Index i = 0; i < sample.length.cols(); ++i) {
       const std::string& muscle = sample.muscles[static_cast<std::size_t>(i)];
-      for (const char* quantity : {"length_m", "moment_arm_m", "moment_arm_slope_m_per_rad", "wrapped"}) {
+      for (const char* quantity :
+           {"length_m", "moment_arm_m", "moment_arm_slope_m_per_rad", "wrapped"}) {
         table.columns.push_back(muscle + "." + quantity);
       }
       table.values.col(1 + 4 * i) = sample.length.col(i);
@@ -110,10 +115,12 @@ class MomentArms : public Command {
       const Eigen::VectorXd arm = sample.momentArm.col(c) * 1e3;
       const Eigen::VectorXd length = sample.length.col(c) * 1e3;
       arms.series.push_back({.name = sample.muscles[i], .x = x, .y = {arm.begin(), arm.end()}});
-      lengths.series.push_back({.name = sample.muscles[i], .x = x, .y = {length.begin(), length.end()}});
+      lengths.series.push_back(
+          {.name = sample.muscles[i], .x = x, .y = {length.begin(), length.end()}});
     }
     report.mainFigure = arms;
-    report.verdict = fmt::format("{} muscles are moved by {}.", sample.muscles.size(), coordinate.name);
+    report.verdict =
+        fmt::format("{} muscles are moved by {}.", sample.muscles.size(), coordinate.name);
     report.details.push_back(lengths);
     for (const std::string& note : sample.notes) report.details.push_back(Paragraph{note});
     return report;

@@ -45,8 +45,8 @@ class Replay : public Command {
 
     const bio::Arm arm(model, armOptions(simulation_));
     if (arm.numMuscles() == 0) {
-      throw std::invalid_argument(fmt::format("{}: no muscle moves {}", model_,
-                                              fmt::join(simulation_.coordinates, ", ")));
+      throw std::invalid_argument(
+          fmt::format("{}: no muscle moves {}", model_, fmt::join(simulation_.coordinates, ", ")));
     }
     const bio::ExcitationSignal excitation = bio::excitationOf(trial, arm);
     const double start = trial.times[0];

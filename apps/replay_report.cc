@@ -78,8 +78,9 @@ Figure energyFigure(const ReplayFindings& f) {
   Figure figure{.title = "Energy",
                 .xLabel = "Time [s]",
                 .yLabel = "Energy [J]",
-                .caption = "The balance is what the integrator gains or loses: kinetic + potential − "
-                           "work of muscles and passive forces."};
+                .caption =
+                    "The balance is what the integrator gains or loses: kinetic + potential − "
+                    "work of muscles and passive forces."};
   const auto add = [&](const std::string& name, const Eigen::VectorXd& values, SeriesStyle style) {
     figure.series.push_back(
         {.name = name, .x = f.motion.time, .y = scaled(values, 1), .style = style});
@@ -102,11 +103,11 @@ std::string comparison(const ReplayFindings& f) {
     if (measured == nullptr) continue;
     const ShownUnit unit = unitOf(coordinate);
     const bio::MeasuredError error = bio::compareWithMeasured(f.arm, f.motion, *measured);
-    text += fmt::format("{}{} differs from the measured one by {:.3g} {} (root mean square of {} "
-                        "samples), at most by {:.3g} {} at {:.3g} s",
-                        text.empty() ? "Simulated " : "; ", coordinate.name, error.rms * unit.factor,
-                        unit.name, error.count, error.largest * unit.factor, unit.name,
-                        error.largestAt);
+    text += fmt::format(
+        "{}{} differs from the measured one by {:.3g} {} (root mean square of {} "
+        "samples), at most by {:.3g} {} at {:.3g} s",
+        text.empty() ? "Simulated " : "; ", coordinate.name, error.rms * unit.factor, unit.name,
+        error.count, error.largest * unit.factor, unit.name, error.largestAt);
   }
   return text.empty() ? "Simulated; no measured coordinate to compare with" : text;
 }
@@ -134,9 +135,9 @@ void tellReplay(const ReplayFindings& f, Summary& summary) {
   summary.set("final_time_s", motion.time.back());
   summary.set("steps", motion.steps);
   summary.set("newton_iterations_per_step",
-              motion.steps > 0 ? static_cast<double>(motion.newtonIterations) /
-                                     static_cast<double>(motion.steps)
-                               : 0.0);
+              motion.steps > 0
+                  ? static_cast<double>(motion.newtonIterations) / static_cast<double>(motion.steps)
+                  : 0.0);
   summary.set("halved_steps", motion.halvedSteps);
   summary.set("energy_error_J", bio::energyError(f.arm, motion));
   std::vector<std::string> muscles;
@@ -157,25 +158,26 @@ Report replayReport(const ReplayFindings& f) {
     report.details.push_back(motionFigure(f, i));
   }
   report.details.push_back(Section{"Muscles"});
-  report.details.push_back(
-      perMuscle(f, "Activations", "Activation [1]", f.motion.activation, 1));
-  report.details.push_back(
-      perMuscle(f, "Tendon forces", "Force [N]", f.muscles.tendonForce, 1));
+  report.details.push_back(perMuscle(f, "Activations", "Activation [1]", f.motion.activation, 1));
+  report.details.push_back(perMuscle(f, "Tendon forces", "Force [N]", f.muscles.tendonForce, 1));
   const bio::Coordinate& first = f.arm.skeleton().coordinates().front();
   const Eigen::MatrixXd moments = f.muscles.tendonForce.cwiseProduct(f.muscles.momentArm);
   report.details.push_back(perMuscle(f, "Moments", first.isRotation ? "Moment [N m]" : "Force [N]",
                                      moments, 1,
                                      fmt::format("Positive: increases {}.", first.name)));
-  report.details.push_back(perMuscle(f, "Moment arms", first.isRotation ? "Moment arm [mm]" : "−∂ℓ/∂q [10⁻³]",
+  report.details.push_back(perMuscle(f, "Moment arms",
+                                     first.isRotation ? "Moment arm [mm]" : "−∂ℓ/∂q [10⁻³]",
                                      f.muscles.momentArm, 1e3));
   report.details.push_back(perMuscle(f, "Fibre lengths", "Length [mm]", f.motion.fibreLength, 1e3));
   report.details.push_back(Section{"Energy and numerics"});
   report.details.push_back(energyFigure(f));
-  report.details.push_back(Paragraph{fmt::format(
-      "{} steps of {} s, {:.3g} Newton iterations a step, {} steps halved; stepping took {:.3g} ms.",
-      f.motion.steps, numberText(f.options.step),
-      static_cast<double>(f.motion.newtonIterations) / std::max(1.0, static_cast<double>(f.motion.steps)),
-      f.motion.halvedSteps, f.motion.wallSeconds * 1e3)});
+  report.details.push_back(
+      Paragraph{fmt::format("{} steps of {} s, {:.3g} Newton iterations a step, {} steps halved; "
+                            "stepping took {:.3g} ms.",
+                            f.motion.steps, numberText(f.options.step),
+                            static_cast<double>(f.motion.newtonIterations) /
+                                std::max(1.0, static_cast<double>(f.motion.steps)),
+                            f.motion.halvedSteps, f.motion.wallSeconds * 1e3)});
   if (!f.arm.notes().empty()) {
     report.details.push_back(Section{"Notes"});
     for (const std::string& note : f.arm.notes()) report.details.push_back(Paragraph{note});

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace bio {
@@ -20,18 +21,25 @@ Arm::Arm(const Model& model, const ArmOptions& options)
       continue;
     }
     if (!muscle.schutte) {
-      throw std::invalid_argument(fmt::format(
-          "muscle '{}' is a {}; only Schutte1993Muscle_Deprecated can be simulated", muscle.name,
-          muscle.className));
+      throw std::invalid_argument(
+          fmt::format("muscle '{}' is a {}; only Schutte1993Muscle_Deprecated can be simulated",
+                      muscle.name, muscle.className));
     }
     for (const std::string& note : path.notes()) notes_.push_back(note);
+    for (const PathSwitch& s : path.switches()) {
+      const bool known =
+          std::any_of(switches_.begin(), switches_.end(), [&](const PathSwitch& other) {
+            return other.freeIndex == s.freeIndex && other.value == s.value;
+          });
+      if (!known) switches_.push_back(s);
+    }
     const SchutteParameters& s = *muscle.schutte;
     try {
       curves_.push_back(std::make_unique<const SchutteCurves>(s));
-      muscles_.push_back({muscle.name,
-                          SchutteMuscle<double>(schutteQuantities(s), *curves_.back(), options.muscle),
-                          SchutteActivation<double>{s.timeScale, s.activation1, s.activation2},
-                          std::move(path)});
+      muscles_.push_back(
+          {muscle.name,
+           SchutteMuscle<double>(schutteQuantities(s), *curves_.back(), options.muscle),
+           SchutteActivation<double>{s.timeScale, s.activation1, s.activation2}, std::move(path)});
     } catch (const std::invalid_argument& e) {
       throw std::invalid_argument(fmt::format("muscle '{}': {}", muscle.name, e.what()));
     }

@@ -83,8 +83,7 @@ class ArmDynamics {
                    r.tendonForce * path.d2L_dq2;
       const Eigen::Index a = 2 * N + i;
       const Eigen::Index l = a + numMuscles_;
-      jacobian.template block<N, 1>(N, l) =
-          -factor_.solve(Vector(r.dF_dFibreLength * path.dL_dq));
+      jacobian.template block<N, 1>(N, l) = -factor_.solve(Vector(r.dF_dFibreLength * path.dL_dq));
       const auto& law = arm_.muscles()[si].activation;
       jacobian(a, a) = -law.rateConstant(u_[i], u_[i] >= y[a]);
       jacobian.template block<1, N>(l, 0) = r.dV_dMuscleTendonLength * path.dL_dq.transpose();
@@ -94,6 +93,9 @@ class ArmDynamics {
     jacobian.template block<N, N>(N, 0) = factor_.solve(dForce_dq);
     jacobian.template block<N, N>(N, N) = factor_.solve(dForce_dqDot);
   }
+
+  /// Of the last state that was evaluated.
+  const FibreRateDerivatives& rate(std::size_t muscle) const { return rate_[muscle]; }
 
  private:
   template <class Y>
@@ -110,8 +112,9 @@ class ArmDynamics {
     muscle_.setZero();
     for (Eigen::Index i = 0; i < numMuscles_; ++i) {
       const auto si = static_cast<std::size_t>(i);
-      rate_[si] = fibreRateDerivatives(arm_.muscles()[si].muscle, y[2 * N + i],
-                                       y[2 * N + numMuscles_ + i], configuration_.length(si).length);
+      rate_[si] =
+          fibreRateDerivatives(arm_.muscles()[si].muscle, y[2 * N + i], y[2 * N + numMuscles_ + i],
+                               configuration_.length(si).length);
       muscle_ -= rate_[si].tendonForce * configuration_.length(si).dL_dq;
     }
     Vector force = muscle_ + passive_ - inertia.dV;

@@ -14,8 +14,8 @@ ArmState initialState(const Arm& arm, const Eigen::VectorXd& q, const Excitation
                                             q.size(), arm.skeleton().numCoordinates()));
   }
   if (excitation.numMuscles() != n) {
-    throw std::invalid_argument(fmt::format("excitations: {} columns, the arm has {} muscles",
-                                            excitation.numMuscles(), n));
+    throw std::invalid_argument(
+        fmt::format("excitations: {} columns, the arm has {} muscles", excitation.numMuscles(), n));
   }
   ArmState state;
   state.q = q;
@@ -53,17 +53,19 @@ Trajectory simulate(const Arm& arm, const ExcitationSignal& excitation, const Ar
           fmt::format("step = {} s, must be > 0", options.step));
   require(options.duration > 0 && std::isfinite(options.duration),
           fmt::format("duration = {} s, must be > 0", options.duration));
-  require(options.duration / options.step < 1e8,
-          fmt::format("duration/step = {:.3g} steps, must be < 1e8", options.duration / options.step));
+  require(
+      options.duration / options.step < 1e8,
+      fmt::format("duration/step = {:.3g} steps, must be < 1e8", options.duration / options.step));
   require(options.maxHalvings >= 0 && options.maxHalvings <= 40,
           fmt::format("maxHalvings = {}, must be 0 to 40", options.maxHalvings));
   require(options.newtonTolerance > 0, "newtonTolerance must be > 0");
   const auto n = static_cast<Eigen::Index>(arm.numMuscles());
   const Eigen::Index N = arm.skeleton().numCoordinates();
-  require(start.q.size() == N && start.qDot.size() == N && start.activation.size() == n &&
-              start.fibreLength.size() == n && excitation.numMuscles() == n,
-          fmt::format("start state or excitations do not fit an arm with {} coordinates and {} muscles",
-                      N, n));
+  require(
+      start.q.size() == N && start.qDot.size() == N && start.activation.size() == n &&
+          start.fibreLength.size() == n && excitation.numMuscles() == n,
+      fmt::format("start state or excitations do not fit an arm with {} coordinates and {} muscles",
+                  N, n));
   require(start.q.allFinite() && start.qDot.allFinite() && start.activation.allFinite() &&
               start.fibreLength.allFinite(),
           "start state: a value is not finite");
@@ -96,16 +98,16 @@ double energyError(const Arm& arm, const Trajectory& trajectory) {
     const Energy energy = energyOf(arm, trajectory.q.col(k), trajectory.qDot.col(k));
     const double stored = energy.kinetic + energy.potential;
     if (k == 0) first = stored;
-    worst = std::max(worst, std::abs(stored - first - trajectory.muscleWork[k] -
-                                     trajectory.passiveWork[k]));
+    worst = std::max(
+        worst, std::abs(stored - first - trajectory.muscleWork[k] - trajectory.passiveWork[k]));
   }
   return worst;
 }
 
 MuscleReport reportMuscles(const Arm& arm, const Trajectory& trajectory, int coordinate) {
   if (coordinate < 0 || coordinate >= arm.skeleton().numCoordinates()) {
-    throw std::invalid_argument(fmt::format("coordinate {} of {}", coordinate,
-                                            arm.skeleton().numCoordinates()));
+    throw std::invalid_argument(
+        fmt::format("coordinate {} of {}", coordinate, arm.skeleton().numCoordinates()));
   }
   const auto n = static_cast<Eigen::Index>(arm.numMuscles());
   const Eigen::Index K = trajectory.q.cols();

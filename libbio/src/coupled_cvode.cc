@@ -121,7 +121,8 @@ Trajectory run(const Arm& arm, const ExcitationSignal& excitation, const ArmStat
         trajectory.outcome = Outcome::noSolution;
         trajectory.failedAt = reached;
         const std::unique_ptr<char, void (*)(void*)> name(CVodeGetReturnFlagName(flag), std::free);
-        trajectory.why = fmt::format("no solution at t = {:.6g} s: CVODE says {}", reached, name.get());
+        trajectory.why =
+            fmt::format("no solution at t = {:.6g} s: CVODE says {}", reached, name.get());
         break;
       }
     }

@@ -13,11 +13,16 @@ namespace bio::stepping {
 template <class F>
 decltype(auto) withCoordinates(int count, F&& function) {
   switch (count) {
-    case 1: return function(std::integral_constant<int, 1>{});
-    case 2: return function(std::integral_constant<int, 2>{});
-    case 3: return function(std::integral_constant<int, 3>{});
-    case 4: return function(std::integral_constant<int, 4>{});
-    default: throw std::invalid_argument("1 to 4 free coordinates can be simulated");
+    case 1:
+      return function(std::integral_constant<int, 1>{});
+    case 2:
+      return function(std::integral_constant<int, 2>{});
+    case 3:
+      return function(std::integral_constant<int, 3>{});
+    case 4:
+      return function(std::integral_constant<int, 4>{});
+    default:
+      throw std::invalid_argument("1 to 4 free coordinates can be simulated");
   }
 }
 
@@ -75,8 +80,7 @@ inline std::size_t numRows(const SimulationOptions& options) {
 
 /// Time of row k, the end exactly.
 inline double rowTime(const SimulationOptions& options, std::size_t k) {
-  return options.startTime +
-         std::min(static_cast<double>(k) * options.step, options.duration);
+  return options.startTime + std::min(static_cast<double>(k) * options.step, options.duration);
 }
 
 /// Seconds since construction.
@@ -93,7 +97,7 @@ class StopWatch {
 /// Forces and their derivatives that muscles and passive laws exert at a configuration.
 template <int N>
 struct GeneralisedForce {
-  Eigen::Matrix<double, N, 1> muscle;   ///< −Σ F ∂ℓ/∂q
+  Eigen::Matrix<double, N, 1> muscle;  ///< −Σ F ∂ℓ/∂q
   Eigen::Matrix<double, N, 1> passive;
 };
 

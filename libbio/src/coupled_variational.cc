@@ -69,7 +69,7 @@ class VariationalStepper {
   struct Result {
     bool converged = false;
     int iterations = 0;
-    double muscleWork = 0;   ///< f_muscle·(q' − q)
+    double muscleWork = 0;  ///< f_muscle·(q' − q)
     double passiveWork = 0;
   };
 
@@ -126,8 +126,8 @@ class VariationalStepper {
         inverse_[si] = 1 / (1 / h - r.dV_dFibreLength / 2);
         // G_i C_i/J_i with C = −½ V_L ∂ℓ, G = share·½ F_ℓ ∂ℓ
         const double G = share / 2 * r.dF_dFibreLength;
-        eliminated.noalias() -= (G * inverse_[si] * r.dV_dMuscleTendonLength / 2 * path.dL_dq) *
-                                path.dL_dq.transpose();
+        eliminated.noalias() -=
+            (G * inverse_[si] * r.dV_dMuscleTendonLength / 2 * path.dL_dq) * path.dL_dq.transpose();
         carried += G * inverse_[si] * residual_[si] * path.dL_dq;
       }
 
@@ -146,8 +146,8 @@ class VariationalStepper {
         const LengthJet<N>& path = configuration_.length(i);
         const double C_dq = -rate_[i].dV_dMuscleTendonLength / 2 * path.dL_dq.dot(dq);
         residual_[si] = -(residual_[si] + C_dq) * inverse_[si];  // now δℓ
-        fibreSize = std::max(fibreSize,
-                             std::abs(residual_[si]) * arm_.muscles()[i].muscle.perFibre());
+        fibreSize =
+            std::max(fibreSize, std::abs(residual_[si]) * arm_.muscles()[i].muscle.perFibre());
       }
       if (!(fibreSize < 1e6)) return result;
       if (fibreSize * shorten > largestFibreStep) shorten = largestFibreStep / fibreSize;
@@ -217,7 +217,7 @@ class VariationalRun {
         recorder_(arm, numRows(options)),
         activation_(start.activation),
         middle_(start.activation),
-        scratch_(static_cast<std::size_t>(options.maxHalvings) + 2) {
+        keptActivation_(static_cast<std::size_t>(options.maxHalvings) + 1, start.activation) {
     now_.q = start.q;
     configuration_.moveTo(now_.q);
     now_.p = configuration_.inertia().massMatrix * start.qDot;
@@ -225,8 +225,6 @@ class VariationalRun {
     velocity_ = start.qDot;
     fibreVelocity_ = Eigen::VectorXd::Zero(start.fibreLength.size());
     next_ = now_;
-    for (Scratch& s : scratch_) s.middle = s.activation = s.activationMiddle = start.activation;
-    for (Scratch& s : scratch_) s.state = now_;
     recorder_.add(options.startTime, now_.q, start.qDot, activation_, now_.fibreLength, 0, 0);
   }
 
@@ -260,46 +258,94 @@ class VariationalRun {
   }
 
  private:
-  struct Scratch {
-    Ends state;
-    Eigen::VectorXd activation, activationMiddle, middle;
-  };
-
-  /// Moves now_ and activation_ from t0 to t1; in halves, and halves of them, where Newton fails.
+  /// Moves now_ and activation_ from t0 to t1; in halves, and halves of them, where Newton fails,
+  /// and in two parts where a conditional path point comes or goes.
   bool advance(double t0, double t1, int depth) {
-    Scratch& kept = scratch_[static_cast<std::size_t>(depth)];
-    const double h = t1 - t0;
-    const double tMiddle = t0 + h / 2;
-    kept.activation = activation_;
-    player_.advance(t0, tMiddle, activation_);
-    middle_ = activation_;
-    player_.advance(tMiddle, t1, activation_);
-
-    next_.q = now_.q + h * velocity_;
-    next_.fibreLength = now_.fibreLength + h * fibreVelocity_;
-    typename Stepper::Result result = stepper_.solve(h, now_, middle_, next_);
-    count(result.iterations);
-    if (!result.converged) {  // again from rest, in case the extrapolation was the trouble
-      next_.q = now_.q;
-      next_.fibreLength = now_.fibreLength;
-      result = stepper_.solve(h, now_, middle_, next_);
-      count(result.iterations);
-    }
-    if (result.converged) {
-      velocity_ = (next_.q - now_.q) / h;
-      fibreVelocity_ = (next_.fibreLength - now_.fibreLength) / h;
-      now_.q.swap(next_.q);
-      now_.p.swap(next_.p);
-      now_.fibreLength.swap(next_.fibreLength);
-      muscleWork_ += result.muscleWork;
-      passiveWork_ += result.passiveWork;
-      return true;
+    Eigen::VectorXd& kept = keptActivation_[static_cast<std::size_t>(depth)];
+    kept = activation_;
+    if (solve(t0, t1)) {
+      double split = 0;
+      if (!findSwitch(t0, t1, kept, split)) {
+        accept(t1 - t0);
+        return true;
+      }
+      accept(split - t0);
+      return advance(split, t1, depth);
     }
     if (depth >= options_.maxHalvings) return false;
     if (depth == 0) ++recorder_.trajectory().halvedSteps;
-    activation_ = kept.activation;
+    activation_ = kept;
     player_.restart(t0);
+    const double tMiddle = t0 + (t1 - t0) / 2;
     return advance(t0, tMiddle, depth + 1) && advance(tMiddle, t1, depth + 1);
+  }
+
+  /// One step from now_ into next_, activation_ moved along.
+  bool solve(double t0, double t1) {
+    const double h = t1 - t0;
+    const double tMiddle = t0 + h / 2;
+    player_.advance(t0, tMiddle, activation_);
+    middle_ = activation_;
+    player_.advance(tMiddle, t1, activation_);
+    next_.q = now_.q + h * velocity_;
+    next_.fibreLength = now_.fibreLength + h * fibreVelocity_;
+    result_ = stepper_.solve(h, now_, middle_, next_);
+    count(result_.iterations);
+    if (!result_.converged) {  // again from rest, in case the extrapolation was the trouble
+      next_.q = now_.q;
+      next_.fibreLength = now_.fibreLength;
+      result_ = stepper_.solve(h, now_, middle_, next_);
+      count(result_.iterations);
+    }
+    return result_.converged;
+  }
+
+  /// If a path gains or loses points within the step just solved: shortens the step to end there.
+  /// The length jumps at a switch, so a step across it would be of first order only.
+  bool findSwitch(double t0, double t1, const Eigen::VectorXd& activationAtStart, double& split) {
+    constexpr double onSwitch = 1e-9;    // [rad]: near enough to count as being there
+    constexpr double worthwhile = 1e-3;  // of the step, from either end
+    const PathSwitch* first = nullptr;
+    double fraction = 1;
+    for (const PathSwitch& s : arm_.switches()) {
+      const double from = s.distance(now_.q[s.freeIndex]);
+      const double to = s.distance(next_.q[s.freeIndex]);
+      if (from * to >= 0 || std::abs(from) < 1e3 * onSwitch) continue;
+      if (from / (from - to) < fraction) {
+        fraction = from / (from - to);
+        first = &s;
+      }
+    }
+    if (first == nullptr || fraction < worthwhile || fraction > 1 - worthwhile) return false;
+
+    const double h = t1 - t0;
+    const double from = first->distance(now_.q[first->freeIndex]);
+    for (int iteration = 0; iteration < 8; ++iteration) {
+      split = t0 + fraction * h;
+      activation_ = activationAtStart;
+      player_.restart(t0);
+      if (!solve(t0, split)) break;
+      const double to = first->distance(next_.q[first->freeIndex]);
+      if (std::abs(to) < onSwitch) return true;
+      fraction *= from / (from - to);
+      if (!(fraction > worthwhile / 10 && fraction < 1)) break;
+    }
+    // not to be met exactly: take the whole step as it is
+    activation_ = activationAtStart;
+    player_.restart(t0);
+    solve(t0, t1);
+    return false;
+  }
+
+  /// next_ becomes now_.
+  void accept(double h) {
+    velocity_ = (next_.q - now_.q) / h;
+    fibreVelocity_ = (next_.fibreLength - now_.fibreLength) / h;
+    now_.q.swap(next_.q);
+    now_.p.swap(next_.p);
+    now_.fibreLength.swap(next_.fibreLength);
+    muscleWork_ += result_.muscleWork;
+    passiveWork_ += result_.passiveWork;
   }
 
   void count(int iterations) {
@@ -324,7 +370,8 @@ class VariationalRun {
   Eigen::VectorXd fibreVelocity_;
   double muscleWork_ = 0;
   double passiveWork_ = 0;
-  std::vector<Scratch> scratch_;
+  std::vector<Eigen::VectorXd> keptActivation_;  ///< one per depth of halving
+  typename Stepper::Result result_;
 };
 
 }  // namespace

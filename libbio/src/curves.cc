@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -14,9 +15,16 @@ struct Points {
   std::vector<double> y;
 };
 
-// The points without repetitions, checked.
-Points distinctPoints(const char* kind, const std::vector<double>& x,
-                      const std::vector<double>& y) {
+// SimmSpline's shortest interval: what it takes a doubled point to be apart.
+constexpr double shortestInterval = 1e-7;
+
+double interval(double from, double to) {
+  return std::max(shortestInterval, to - from);
+}
+
+// The points, checked; one that is given twice stays twice if `keepDoubled`, except at the ends.
+Points checkedPoints(const char* kind, const std::vector<double>& x, const std::vector<double>& y,
+                     bool keepDoubled) {
   if (x.size() != y.size()) {
     throw std::invalid_argument(
         fmt::format("{}: {} values of x but {} of y", kind, x.size(), y.size()));
@@ -28,6 +36,14 @@ Points distinctPoints(const char* kind, const std::vector<double>& x,
           fmt::format("{}: point {} is ({}, {}), must be finite", kind, i + 1, x[i], y[i]));
     }
     if (!points.x.empty() && x[i] == points.x.back()) {
+      const std::size_t n = points.x.size();
+      const bool inside = n > 1 && x[i] != x.back();
+      const bool third = n > 1 && points.x[n - 2] == x[i];
+      if (y[i] == points.y.back() && keepDoubled && inside && !third) {
+        points.x.push_back(x[i]);
+        points.y.push_back(y[i]);
+        continue;
+      }
       if (y[i] == points.y.back()) continue;
       throw std::invalid_argument(
           fmt::format("{}: two values, {} and {}, at x = {}", kind, points.y.back(), y[i], x[i]));
@@ -48,7 +64,9 @@ Points distinctPoints(const char* kind, const std::vector<double>& x,
 
 // Newton's third divided difference over points i … i+3.
 double thirdDifference(const Points& p, std::size_t i) {
-  const auto first = [&](std::size_t j) { return (p.y[j + 1] - p.y[j]) / (p.x[j + 1] - p.x[j]); };
+  const auto first = [&](std::size_t j) {
+    return (p.y[j + 1] - p.y[j]) / interval(p.x[j], p.x[j + 1]);
+  };
   const auto second = [&](std::size_t j) {
     return (first(j + 1) - first(j)) / (p.x[j + 2] - p.x[j]);
   };
@@ -63,7 +81,7 @@ std::vector<double> secondDerivatives(const Points& p) {
   if (n == 2) return {0, 0};
   std::vector<double> h(n - 1), slope(n - 1);
   for (std::size_t i = 0; i + 1 < n; ++i) {
-    h[i] = p.x[i + 1] - p.x[i];
+    h[i] = interval(p.x[i], p.x[i + 1]);
     slope[i] = (p.y[i + 1] - p.y[i]) / h[i];
   }
   const double thirdFirst = n > 3 ? 6 * thirdDifference(p, 0) : 0;
@@ -97,7 +115,7 @@ PiecewiseCubic throughPoints(const Points& p, const std::vector<double>& M) {
   const std::size_t n = p.x.size();
   std::vector<PiecewiseCubic::Segment> segments(n + 1);
   for (std::size_t i = 0; i + 1 < n; ++i) {
-    const double h = p.x[i + 1] - p.x[i];
+    const double h = interval(p.x[i], p.x[i + 1]);
     const double slope = (p.y[i + 1] - p.y[i]) / h - h * (2 * M[i] + M[i + 1]) / 6;
     segments[i + 1] = {p.x[i], p.y[i], slope, M[i] / 2, (M[i + 1] - M[i]) / (6 * h)};
   }
@@ -109,12 +127,12 @@ PiecewiseCubic throughPoints(const Points& p, const std::vector<double>& M) {
 }
 
 PiecewiseCubic spline(const SplineFunction& function) {
-  const Points points = distinctPoints("spline", function.x, function.y);
+  const Points points = checkedPoints("spline", function.x, function.y, true);
   return throughPoints(points, secondDerivatives(points));
 }
 
 PiecewiseCubic polyline(const PiecewiseLinearFunction& function) {
-  const Points points = distinctPoints("piecewise linear function", function.x, function.y);
+  const Points points = checkedPoints("piecewise linear function", function.x, function.y, false);
   return throughPoints(points, std::vector<double>(points.x.size(), 0.0));
 }
 

@@ -88,4 +88,15 @@ std::vector<Eigen::Vector3d> MusclePath::polyline(const std::vector<double>& q,
   return line;
 }
 
+std::vector<PathSwitch> MusclePath::switches() const {
+  std::vector<PathSwitch> switches;
+  for (const CompiledCondition& condition : compiled_.conditions) {
+    for (const double value :
+         {condition.lower - conditionMargin, condition.upper + conditionMargin}) {
+      switches.push_back({condition.source.freeIndex, condition.source.coupling, value});
+    }
+  }
+  return switches;
+}
+
 }  // namespace bio

@@ -15,7 +15,8 @@ ExcitationSignal excitationOf(const Trial& trial, const Arm& arm) {
     const std::string& name = arm.muscles()[static_cast<std::size_t>(i)].name;
     const auto at = std::find(trial.muscles.begin(), trial.muscles.end(), name);
     if (at == trial.muscles.end()) {
-      throw std::invalid_argument(fmt::format("{}: no excitation of muscle '{}'", trial.file, name));
+      throw std::invalid_argument(
+          fmt::format("{}: no excitation of muscle '{}'", trial.file, name));
     }
     values.col(i) = trial.excitations.col(at - trial.muscles.begin());
   }
@@ -40,7 +41,8 @@ Eigen::VectorXd startCoordinates(const Trial& trial, const Arm& arm,
   for (std::size_t i = 0; i < free.size(); ++i) {
     double value = free[i].defaultValue;
     for (const MeasuredMotion& measured : trial.measured) {
-      if (measured.coordinate == free[i].name && measured.values.size() > 0) value = measured.values[0];
+      if (measured.coordinate == free[i].name && measured.values.size() > 0)
+        value = measured.values[0];
     }
     const auto at = given.find(free[i].name);
     q[static_cast<Eigen::Index>(i)] = at != given.end() ? at->second : value;
@@ -84,9 +86,9 @@ MeasuredError compareWithMeasured(const Arm& arm, const Trajectory& trajectory,
     }
   }
   if (error.count == 0) {
-    throw std::invalid_argument(fmt::format(
-        "measured coordinate '{}': no value between {} s and {} s", measured.coordinate, time.front(),
-        time.back()));
+    throw std::invalid_argument(
+        fmt::format("measured coordinate '{}': no value between {} s and {} s", measured.coordinate,
+                    time.front(), time.back()));
   }
   error.rms = std::sqrt(sum / static_cast<double>(error.count));
   return error;

@@ -20,8 +20,12 @@ void* operator new(std::size_t size) {
   throw std::bad_alloc();
 }
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
 
 namespace bio {
 namespace {
@@ -32,12 +36,15 @@ constexpr double degree = std::numbers::pi / 180;
 ExcitationSignal lifting(const Arm& arm, double duration = 2.0) {
   std::vector<double> times;
   for (double t = 0; t < duration + 1e-9; t += 0.01) times.push_back(t);
-  Eigen::MatrixXd u(static_cast<Eigen::Index>(times.size()), static_cast<Eigen::Index>(arm.numMuscles()));
+  Eigen::MatrixXd u(static_cast<Eigen::Index>(times.size()),
+                    static_cast<Eigen::Index>(arm.numMuscles()));
   for (Eigen::Index k = 0; k < u.rows(); ++k) {
     for (Eigen::Index i = 0; i < u.cols(); ++i) {
       const double phase = 0.4 * static_cast<double>(i);
       const double wave = std::sin(std::numbers::pi * times[static_cast<std::size_t>(k)] - phase);
-      u(k, i) = 0.02 + (arm.muscles()[static_cast<std::size_t>(i)].name.starts_with("B") ? 0.16 : 0.04) * wave * wave;
+      u(k, i) =
+          0.02 + (arm.muscles()[static_cast<std::size_t>(i)].name.starts_with("B") ? 0.16 : 0.04) *
+                     wave * wave;
     }
   }
   return {times, u};
@@ -147,8 +154,12 @@ double observedOrder(const Case& c, Integrator integrator, const Trajectory& ref
     }
     errors.push_back(std::sqrt(sum / static_cast<double>(count)) / degree);
   }
-  const double order = std::log(errors.front() / errors.back()) / std::log(steps.front() / steps.back());
-  std::printf("order %.3f from %.3g deg at %g s, %.3g deg at %g s\n", order, errors.front(), steps.front(), errors.back(), steps.back());
+  for (std::size_t i = 0; i < steps.size(); ++i)
+    std::printf("  %g s: %.3g deg\n", steps[i], errors[i]);
+  const double order =
+      std::log(errors.front() / errors.back()) / std::log(steps.front() / steps.back());
+  std::printf("  order %.3f from %.3g deg at %g s, %.3g deg at %g s\n", order, errors.front(),
+              steps.front(), errors.back(), steps.back());
   return order;
 }
 
@@ -161,8 +172,11 @@ TEST(Coupled, SymmetricForcingIsSecondOrderAndLeftForcingFirst) {
     fine.absoluteTolerance = 1e-13;
     const Trajectory reference = simulate(c.arm, c.excitation, c.start, fine);
     ASSERT_EQ(reference.outcome, Outcome::completed) << reference.why;
-    EXPECT_NEAR(observedOrder(c, Integrator::variational, reference, {0.01, 0.005, 0.0025}), 2.0, 0.15);
-    EXPECT_NEAR(observedOrder(c, Integrator::variationalLeft, reference, {0.005, 0.0025, 0.00125}), 1.0, 0.15);
+    EXPECT_NEAR(
+        observedOrder(c, Integrator::variational, reference, {0.02, 0.01, 0.005, 0.0025, 0.00125}),
+        2.0, 0.15);
+    EXPECT_NEAR(observedOrder(c, Integrator::variationalLeft, reference, {0.005, 0.0025, 0.00125}),
+                1.0, 0.15);
   }
 }
 
@@ -182,7 +196,7 @@ TEST(Coupled, EnergyBalanceClosesAsTheStepShrinks) {
 TEST(Coupled, RungeKuttaBlowsUpWhereTheVariationalIntegratorHolds) {
   const Case c = liftingCase();
   const Trajectory explicitly =
-      simulate(c.arm, c.excitation, c.start, options(Integrator::rungeKutta4, 0.0016));
+      simulate(c.arm, c.excitation, c.start, options(Integrator::rungeKutta4, 0.002));
   EXPECT_EQ(explicitly.outcome, Outcome::unstable);
   EXPECT_NE(explicitly.why.find("unstable at t ="), std::string::npos);
   EXPECT_EQ(explicitly.time.size(), static_cast<std::size_t>(explicitly.q.cols()));
@@ -221,7 +235,8 @@ TEST(Coupled, AStepThatCannotBeSolvedIsAResultWithTimeAndReason) {
 }
 
 TEST(Coupled, NothingIsAllocatedInAStep) {
-  for (const Integrator integrator : {Integrator::variational, Integrator::variationalLeft, Integrator::rungeKutta4}) {
+  for (const Integrator integrator :
+       {Integrator::variational, Integrator::variationalLeft, Integrator::rungeKutta4}) {
     const Case c = liftingCase();
     const double step = integrator == Integrator::rungeKutta4 ? 1e-4 : 0.01;
     const auto count = [&](double duration) {
@@ -236,13 +251,15 @@ TEST(Coupled, NothingIsAllocatedInAStep) {
 
 TEST(Coupled, TheProgressCallbackCanStopARun) {
   const Case c = liftingCase();
-  for (const Integrator integrator : {Integrator::variational, Integrator::rungeKutta4, Integrator::cvode}) {
-    SimulationOptions o = options(integrator, 1e-3);
-    o.progress = [](double t) { return t < 0.0495; };
+  for (const Integrator integrator :
+       {Integrator::variational, Integrator::rungeKutta4, Integrator::cvode}) {
+    const double step = integrator == Integrator::rungeKutta4 ? 1e-4 : 1e-3;
+    SimulationOptions o = options(integrator, step);
+    o.progress = [](double t) { return t < 0.04995; };
     const Trajectory motion = simulate(c.arm, c.excitation, c.start, o);
     EXPECT_EQ(motion.outcome, Outcome::stopped);
     EXPECT_NEAR(motion.time.back(), 0.05, 1e-9);
-    EXPECT_EQ(motion.q.cols(), 51);
+    EXPECT_EQ(motion.q.cols(), std::lround(0.05 / step) + 1);
   }
 }
 
@@ -261,10 +278,14 @@ TEST(Coupled, BrokenRulesAreNamed) {
   fails([](auto& o, auto&) { o.newtonTolerance = std::nan(""); });
   fails([](auto&, auto& s) { s.q[0] = std::nan(""); });
   fails([](auto&, auto& s) { s.fibreLength.resize(2); });
-  EXPECT_THROW(ExcitationSignal({0, 1}, Eigen::MatrixXd::Constant(2, 8, 1.2)), std::invalid_argument);
-  EXPECT_THROW(ExcitationSignal({1, 0}, Eigen::MatrixXd::Constant(2, 8, 0.2)), std::invalid_argument);
-  EXPECT_THROW(ExcitationSignal({0, 1}, Eigen::MatrixXd::Constant(2, 8, std::nan(""))), std::invalid_argument);
-  EXPECT_THROW(initialState(c.arm, Eigen::VectorXd::Zero(2), c.excitation, 0), std::invalid_argument);
+  EXPECT_THROW(ExcitationSignal({0, 1}, Eigen::MatrixXd::Constant(2, 8, 1.2)),
+               std::invalid_argument);
+  EXPECT_THROW(ExcitationSignal({1, 0}, Eigen::MatrixXd::Constant(2, 8, 0.2)),
+               std::invalid_argument);
+  EXPECT_THROW(ExcitationSignal({0, 1}, Eigen::MatrixXd::Constant(2, 8, std::nan(""))),
+               std::invalid_argument);
+  EXPECT_THROW(initialState(c.arm, Eigen::VectorXd::Zero(2), c.excitation, 0),
+               std::invalid_argument);
 }
 
 }  // namespace

@@ -121,9 +121,19 @@ TEST(CubicSpline, HasTheKnownFeaturesOfTheElbowCurves) {
   EXPECT_NEAR(tendon.value(0.0322), 1, 4e-3);
 }
 
-TEST(CubicSpline, CountsAPointGivenTwiceOnce) {
+TEST(CubicSpline, IsFlatAtAPointGivenTwice) {
+  const CubicSpline twice(SplineFunction{{0, 1, 2, 2, 4, 5}, {0, 1, 8, 8, 64, 3}});
+  const double h = 1e-6;  // two points close together
+  const CubicSpline close(SplineFunction{{0, 1, 2 - h, 2, 4, 5}, {0, 1, 8, 8, 64, 3}});
+  for (double x = -1; x <= 6; x += 0.1) EXPECT_NEAR(close.value(x), twice.value(x), 1e-3) << x;
+  EXPECT_NEAR(twice.evaluate(2).slope, 0, 1e-4);
+  EXPECT_NEAR(twice.evaluate(2 - 1e-12).slope, 0, 1e-4);
+  EXPECT_DOUBLE_EQ(twice.value(2), 8);
+}
+
+TEST(CubicSpline, CountsAPointGivenTwiceAtAnEndOnce) {
   const CubicSpline once(SplineFunction{{0, 1, 2, 4, 5}, {0, 1, 8, 64, 3}});
-  const CubicSpline twice(SplineFunction{{0, 1, 1, 2, 4, 5, 5}, {0, 1, 1, 8, 64, 3, 3}});
+  const CubicSpline twice(SplineFunction{{0, 0, 1, 2, 4, 5, 5}, {0, 0, 1, 8, 64, 3, 3}});
   for (double x = -1; x <= 6; x += 0.1) EXPECT_EQ(once.value(x), twice.value(x));
 }
 

@@ -74,12 +74,13 @@ Comparison compare(const std::string& trial, Integrator integrator, double step)
       const double fibre = motion.values(k, columnIndex(motion, name + ".fiber_length_m"));
       const double force = motion.values(k, columnIndex(motion, name + ".tendon_force_N"));
       worst.fibre_m = std::max(worst.fibre_m, std::abs(ours.fibreLength(row, k * stride) - fibre));
-      worst.force_N = std::max(worst.force_N, std::abs(muscles.tendonForce(row, k * stride) - force));
+      worst.force_N =
+          std::max(worst.force_N, std::abs(muscles.tendonForce(row, k * stride) - force));
     }
   }
   worst.angle_deg = std::sqrt(sum / static_cast<double>(q.size())) / degree;
-  std::printf("%s: angle %.4g deg rms, fibre %.3g m, force %.3g N\n", trial.c_str(), worst.angle_deg,
-              worst.fibre_m, worst.force_N);
+  std::printf("%s: angle %.4g deg rms, fibre %.3g m, force %.3g N\n", trial.c_str(),
+              worst.angle_deg, worst.fibre_m, worst.force_N);
   return worst;
 }
 

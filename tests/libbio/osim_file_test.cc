@@ -58,7 +58,7 @@ TEST_F(SharedModel, ElbowReferenceIsReadWhole) {
   ASSERT_TRUE(triceps.schutte);
   EXPECT_DOUBLE_EQ(triceps.schutte->maxIsometricForce, 771.8);
   EXPECT_DOUBLE_EQ(triceps.schutte->damping, 0.017);
-  EXPECT_EQ(triceps.schutte->passiveForceLength->x.size(), 17u);  // 18 with 1.15 twice
+  EXPECT_EQ(triceps.schutte->passiveForceLength->x.size(), 18u);  // with 1.15 twice
   EXPECT_EQ(triceps.path.wraps.at(0).firstPoint, 4);
   EXPECT_EQ(triceps.path.wraps.at(0).lastPoint, 5);
   EXPECT_EQ(model.remarks.size(), 8u);

@@ -493,13 +493,13 @@ TEST_F(OsimRules, MultipliersAreMultipliedOut) {
   EXPECT_EQ(std::get<LinearFunction>(f.shape).slope, 1);
 }
 
-TEST_F(OsimRules, APointGivenTwiceCountsOnceAndIsRemarked) {
+TEST_F(OsimRules, APointGivenTwiceIsKeptAndRemarked) {
   const Model model = read(replaced(valid, "<x>0 0.5 1 1.5 2</x><y>0 0.3 1 0.3 0<",
                                     "<x>0 0.5 0.5 1 2</x><y>0 0.3 0.3 1 0<"));
-  EXPECT_THAT(model.muscles[0].schutte->activeForceLength.x, ElementsAre(0, 0.5, 1, 2));
+  EXPECT_THAT(model.muscles[0].schutte->activeForceLength.x, ElementsAre(0, 0.5, 0.5, 1, 2));
   EXPECT_THAT(model.remarks,
               ElementsAre("SimmSpline 'active_force_length_curve' of Schutte1993Muscle_Deprecated "
-                          "'flexor': the point x = 0.5 is there twice; once is used"));
+                          "'flexor': the point x = 0.5 is there twice; the spline is flat there"));
   EXPECT_THAT(model.warnings, IsEmpty());
 }
 

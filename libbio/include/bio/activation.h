@@ -56,6 +56,27 @@ T activationRate(const Dynamics& dynamics, const T& u, const T& a) {
   return rate;
 }
 
+namespace detail {
+
+/// e = u − a after a time h, from e0 at excitation uStart that changes by `slope`, on one branch.
+template <class Dynamics, class T>
+T lagAfter(const Dynamics& dynamics, const T& slope, const T& uStart, const T& e0, const T& h,
+           bool rising) {
+  using std::exp;
+  const T k = dynamics.rateConstant(T(uStart + slope * h * T(0.5)), rising);
+  const T steady = slope / k;  // e for t → ∞ if k stayed
+  const T x = k * h;
+  const T decay = exp(T(-x));
+  const T growth = (k - dynamics.rateConstant(uStart, rising)) * T(2.0);  // k′h
+  const T e1 = steady + (e0 - steady) * decay;
+  if (plainValue(growth) == 0 || plainValue(x) == 0) return e1;
+  const T bracket = x - T(2.0) + (x + T(2.0)) * decay;
+  const T corrected = e1 - steady * growth * bracket / (T(2.0) * k * x);
+  return corrected;
+}
+
+}  // namespace detail
+
 /// Activation at the end of a step of length h [s] in which the excitation goes straight from u0 to
 /// u1, from activation a0 at its start.
 ///
@@ -67,41 +88,27 @@ T activationRate(const Dynamics& dynamics, const T& u, const T& a) {
 /// exact for constant u, fourth order in h otherwise. Stable for every h.
 template <class Dynamics, class T>
 T stepActivation(const Dynamics& dynamics, const T& u0, const T& u1, const T& a0, const T& h) {
-  using std::exp;
   using std::log;
   if (!(plainValue(h) > 0)) return a0;
   const T slope = (u1 - u0) / h;  // of u
-  const double e0 = plainValue(u0) - plainValue(a0);
-  bool rising = e0 > 0 || (e0 == 0 && plainValue(slope) >= 0);
-  T remaining = h;
-  T uStart = u0;
   T e = u0 - a0;
-  for (int part = 0; part < 2; ++part) {
-    const T half = slope * remaining * T(0.5);
-    const T k = dynamics.rateConstant(T(uStart + half), rising);
-    const T steady = slope / k;  // e for t → ∞ if k stayed
-    const T x = k * remaining;
-    const T decay = exp(T(-x));
-    T eEnd = steady + (e - steady) * decay;
-    const T growth = (k - dynamics.rateConstant(uStart, rising)) * T(2.0);  // k′h
-    if (plainValue(growth) != 0) {
-      const T bracket = x - T(2.0) + (x + T(2.0)) * decay;
-      eEnd = eEnd - steady * growth * bracket / (T(2.0) * k * x);
-    }
-    const bool crosses = rising ? plainValue(eEnd) < 0 : plainValue(eEnd) > 0;
-    if (!crosses || part == 1) {
-      e = eEnd;
-      break;
-    }
-    // e = 0 at exp(−k t) = −steady/(e − steady)
-    const T ratio = (steady - e) / steady;
-    const T crossing = log(ratio) / k;
-    uStart = uStart + slope * crossing;
-    remaining = remaining - crossing;
-    e = T(0.0);
-    rising = !rising;
+  const bool rising = plainValue(e) > 0 || (plainValue(e) == 0 && plainValue(slope) >= 0);
+  const T atEnd = detail::lagAfter(dynamics, slope, u0, e, h, rising);
+  if (rising ? plainValue(atEnd) >= 0 : plainValue(atEnd) <= 0) {
+    const T a1 = u1 - atEnd;
+    return a1;
   }
-  const T a1 = u1 - e;
+  // e = 0 at exp(−k t) = −steady/(e − steady) for a constant k; Newton, with ė = u′ at e = 0
+  const T k = dynamics.rateConstant(T((u0 + u1) * T(0.5)), rising);
+  const T steady = slope / k;
+  const T ratio = (steady - e) / steady;
+  T crossing = log(ratio) / k;
+  for (int iteration = 0; iteration < 3; ++iteration) {
+    crossing = crossing - detail::lagAfter(dynamics, slope, u0, e, crossing, rising) / slope;
+  }
+  const T uCrossing = u0 + slope * crossing;
+  const T rest = h - crossing;
+  const T a1 = u1 - detail::lagAfter(dynamics, slope, uCrossing, T(0.0), rest, !rising);
   return a1;
 }
 

@@ -14,9 +14,10 @@
 namespace bio {
 
 struct ArmOptions {
-  SkeletonOptions skeleton;                 ///< which coordinates are free, where the others are held
-  std::vector<std::string> wrapAsCylinder;  ///< ellipsoids with two equal semi-axes to take as cylinders
-  SchutteOptions muscle;                    ///< activation floor, treatment of negative forces
+  SkeletonOptions skeleton;  ///< which coordinates are free, where the others are held
+  std::vector<std::string>
+      wrapAsCylinder;     ///< ellipsoids with two equal semi-axes to take as cylinders
+  SchutteOptions muscle;  ///< activation floor, treatment of negative forces
 };
 
 /// One muscle ready to be simulated.
@@ -40,6 +41,9 @@ class Arm {
   const std::vector<ArmMuscle>& muscles() const { return muscles_; }
   std::size_t numMuscles() const { return muscles_.size(); }
 
+  /// Where a path of this arm gains or loses conditional points, each once.
+  const std::vector<PathSwitch>& switches() const { return switches_; }
+
   /// One line each: muscles left out, spans taken as constant, wraps out of reach.
   const std::vector<std::string>& notes() const { return notes_; }
 
@@ -48,6 +52,7 @@ class Arm {
   CoordinateForces coordinateForces_;
   std::vector<std::unique_ptr<const SchutteCurves>> curves_;
   std::vector<ArmMuscle> muscles_;
+  std::vector<PathSwitch> switches_;
   std::vector<std::string> notes_;
 };
 

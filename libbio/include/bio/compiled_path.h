@@ -85,6 +85,9 @@ struct CompiledPath {
 CompiledPath compilePath(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
                          const std::vector<std::string>& wrapAsCylinder);
 
+/// Conditional points stay active this far beyond their range, as in OpenSim [rad] or [m].
+constexpr double conditionMargin = 1e-5;
+
 /// The variant for a configuration.
 template <class Q>
 const PathVariant& activeVariant(const CompiledPath& path, const Q& q) {
@@ -95,8 +98,8 @@ const PathVariant& activeVariant(const CompiledPath& path, const Q& q) {
         condition.source.coupling
             .evaluate(plainValue(q[static_cast<Eigen::Index>(condition.source.freeIndex)]))
             .value;
-    const bool active =
-        coordinate >= condition.lower - 1e-5 && coordinate <= condition.upper + 1e-5;
+    const bool active = coordinate >= condition.lower - conditionMargin &&
+                        coordinate <= condition.upper + conditionMargin;
     bits |= (active ? std::size_t{1} : std::size_t{0}) << i;
   }
   return path.variants[bits];

@@ -29,12 +29,12 @@ struct ArmState {
 
 struct SimulationOptions {
   Integrator integrator = Integrator::variational;
-  double startTime = 0;              ///< [s]
-  double duration = 0;               ///< [s] > 0
-  double step = 0.01;                ///< [s] > 0; cvode: interval of the output
-  double newtonTolerance = 1e-9;     ///< last correction: of q [rad], of fibre lengths relative to ℓ0
-  int maxIterations = 25;            ///< Newton iterations before a step is halved
-  int maxHalvings = 8;               ///< a step may shrink to step/2^maxHalvings
+  double startTime = 0;           ///< [s]
+  double duration = 0;            ///< [s] > 0
+  double step = 0.01;             ///< [s] > 0; cvode: interval of the output
+  double newtonTolerance = 1e-9;  ///< last correction: of q [rad], of fibre lengths relative to ℓ0
+  int maxIterations = 25;         ///< Newton iterations before a step is halved
+  int maxHalvings = 8;            ///< a step may shrink to step/2^maxHalvings
   double relativeTolerance = 1e-10;  ///< cvode
   double absoluteTolerance = 1e-12;  ///< cvode
   /// Called after every output row with the time reached [s]; return false to stop.
@@ -46,9 +46,9 @@ enum class Outcome { completed, noSolution, unstable, stopped };
 
 /// A simulated motion; matrices have one column per row of time.
 struct Trajectory {
-  std::vector<double> time;     ///< [s]
-  Eigen::MatrixXd q;            ///< [rad] or [m]
-  Eigen::MatrixXd qDot;         ///< [rad/s] or [m/s]
+  std::vector<double> time;  ///< [s]
+  Eigen::MatrixXd q;         ///< [rad] or [m]
+  Eigen::MatrixXd qDot;      ///< [rad/s] or [m/s]
   Eigen::MatrixXd activation;
   Eigen::MatrixXd fibreLength;  ///< [m]
   Eigen::VectorXd muscleWork;   ///< done by the muscles on the skeleton since the start [J]
@@ -59,11 +59,12 @@ struct Trajectory {
   std::string why;      ///< one line; empty if completed
   long steps = 0;
   long newtonIterations = 0;
-  long halvedSteps = 0;      ///< steps that were taken in halves
-  double wallSeconds = 0;    ///< stepping alone, without set-up and analysis
+  long halvedSteps = 0;    ///< steps that were taken in halves
+  double wallSeconds = 0;  ///< stepping alone, without set-up and analysis
 };
 
-/// Thrown when a muscle has no static equilibrium at the start; names muscle, length and activation.
+/// Thrown when a muscle has no static equilibrium at the start; names muscle, length and
+/// activation.
 class NoStaticEquilibrium : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -81,10 +82,12 @@ ArmState initialState(const Arm& arm, const Eigen::VectorXd& q, const Excitation
 ///     p  = M(q_m) v − (h/2)(½ vᵀ∂M v − ∂V) − F⁻,    F⁻ = (h/2) f (symmetric) or h f (left)
 ///     p' = M(q_m) v + (h/2)(½ vᵀ∂M v − ∂V) + F⁺,    F⁺ = (h/2) f or 0
 ///     (ℓ'_i − ℓ_i)/h = V(act_i, ℓ_m,i, ℓ_MT,i(q_m))
-/// (section 3.2 of the thesis; (2.23) with the factor h). The muscle equation (3.4) is solved for the
-/// fibre velocity in closed form, docs/decisions/002: same root, better conditioned. Newton by the
-/// arrow structure: fibre lengths are eliminated one by one, the Schur complement in q is solved.
-/// When Newton fails the step is halved; when the smallest step fails the outcome is noSolution.
+/// (section 3.2 of the thesis; (2.23) with the factor h). The muscle equation (3.4) is solved for
+/// the fibre velocity in closed form, docs/decisions/002: same root, better conditioned. Newton by
+/// the arrow structure: fibre lengths are eliminated one by one, the Schur complement in q is
+/// solved. When Newton fails the step is halved; when the smallest step fails the outcome is
+/// noSolution. A step within which a path gains or loses conditional points is taken in two parts
+/// that meet there, since the length jumps.
 ///
 /// @throws std::invalid_argument sizes, step ≤ 0, duration ≤ 0
 Trajectory simulate(const Arm& arm, const ExcitationSignal& excitation, const ArmState& start,

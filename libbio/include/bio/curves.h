@@ -75,7 +75,9 @@ class PiecewiseCubic {
 /// End conditions of Forsythe, Malcolm and Moler (1977): the third derivative on the first and last
 /// interval is that of the cubic through the four points at that end. Three points give their
 /// parabola, two their line. Outside the points it goes on straight with the slope of the end.
-/// A point given twice (same x and y) counts once.
+/// A point given twice (same x and y) makes the spline flat there, with a jump in curvature: the
+/// limit of two points close together, as OpenSim's SimmSpline takes it (docs/decisions/006). At
+/// the ends it counts once.
 ///
 /// @throws std::invalid_argument for fewer than two different points, values that are not finite,
 ///         knots that fall, or two values at one knot

@@ -29,6 +29,17 @@ struct PathParameters {
   std::vector<T> radii;  ///< of Path::wraps [m]; unused for a wrap that is left out
 };
 
+/// A value of a free coordinate at which a path gains or loses conditional points: its length jumps
+/// there, by little if the model is well made.
+struct PathSwitch {
+  int freeIndex = 0;
+  FunctionEvaluator coupling{identityFunction()};  ///< of the condition's coordinate from q_k
+  double value = 0;                                ///< of the condition's coordinate [rad] or [m]
+
+  /// Changes sign at the switch.
+  double distance(double q_k) const { return coupling.evaluate(q_k).value - value; }
+};
+
 /// The path of one muscle, compiled for a skeleton: the constant length of the spans that cannot
 /// move, and the spans that do. Evaluation is pure and allocates nothing.
 ///
@@ -55,6 +66,8 @@ class MusclePath {
   bool moves() const;
   /// One line each: wraps of fixed spans taken as straight, wraps out of reach.
   const std::vector<std::string>& notes() const { return compiled_.notes; }
+  /// Where conditional points come and go.
+  std::vector<PathSwitch> switches() const;
 
   /// `moved` is what Skeleton::motions(q, ·) returned.
   template <int N>
@@ -87,19 +100,19 @@ class MusclePath {
 
 // Compiled once, in src/instances; other scalars need bio/path_length.h.
 extern template LengthJet<1> MusclePath::length<1>(const Eigen::Matrix<double, 1, 1>&,
-                                                     const RigidMotion<double, 1>*) const;
+                                                   const RigidMotion<double, 1>*) const;
 extern template std::vector<Eigen::Vector3d> MusclePath::pathPoints<1>(
     const Eigen::Matrix<double, 1, 1>&, const RigidMotion<double, 1>*, double) const;
 extern template LengthJet<2> MusclePath::length<2>(const Eigen::Matrix<double, 2, 1>&,
-                                                     const RigidMotion<double, 2>*) const;
+                                                   const RigidMotion<double, 2>*) const;
 extern template std::vector<Eigen::Vector3d> MusclePath::pathPoints<2>(
     const Eigen::Matrix<double, 2, 1>&, const RigidMotion<double, 2>*, double) const;
 extern template LengthJet<3> MusclePath::length<3>(const Eigen::Matrix<double, 3, 1>&,
-                                                     const RigidMotion<double, 3>*) const;
+                                                   const RigidMotion<double, 3>*) const;
 extern template std::vector<Eigen::Vector3d> MusclePath::pathPoints<3>(
     const Eigen::Matrix<double, 3, 1>&, const RigidMotion<double, 3>*, double) const;
 extern template LengthJet<4> MusclePath::length<4>(const Eigen::Matrix<double, 4, 1>&,
-                                                     const RigidMotion<double, 4>*) const;
+                                                   const RigidMotion<double, 4>*) const;
 extern template std::vector<Eigen::Vector3d> MusclePath::pathPoints<4>(
     const Eigen::Matrix<double, 4, 1>&, const RigidMotion<double, 4>*, double) const;
 

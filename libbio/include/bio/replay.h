@@ -22,10 +22,10 @@ Eigen::VectorXd startCoordinates(const Trial& trial, const Arm& arm,
 
 /// How far a simulation is from a measured coordinate, at the measured times that it covers.
 struct MeasuredError {
-  double rms = 0;                 ///< [rad] or [m]
-  double largest = 0;             ///< [rad] or [m]
-  double largestAt = 0;           ///< [s]
-  Eigen::Index count = 0;         ///< measured values compared
+  double rms = 0;          ///< [rad] or [m]
+  double largest = 0;      ///< [rad] or [m]
+  double largestAt = 0;    ///< [s]
+  Eigen::Index count = 0;  ///< measured values compared
 };
 /// @throws std::invalid_argument if the coordinate is not free, or no measured time is covered
 MeasuredError compareWithMeasured(const Arm& arm, const Trajectory& trajectory,
@@ -40,7 +40,7 @@ Table forcesTable(const Arm& arm, const Trajectory& trajectory, const MuscleRepo
 
 /// Lengths and moment arms of muscles over the range of one coordinate.
 struct PathSample {
-  Eigen::VectorXd value;           ///< of the coordinate [rad] or [m]
+  Eigen::VectorXd value;  ///< of the coordinate [rad] or [m]
   std::vector<std::string> muscles;
   Eigen::MatrixXd length;          ///< rows = values, columns = muscles [m]
   Eigen::MatrixXd momentArm;       ///< −∂ℓ/∂q [m]
@@ -48,8 +48,8 @@ struct PathSample {
   Eigen::MatrixXi wrapped;         ///< 1: a wrap object is touched
   std::vector<std::string> notes;
 };
-/// Paths of every enabled muscle that the skeleton's first coordinate moves, whatever its class; the
-/// other free coordinates stay at their defaults.
+/// Paths of every enabled muscle that the skeleton's first coordinate moves, whatever its class;
+/// the other free coordinates stay at their defaults.
 /// @throws std::invalid_argument what MusclePath throws
 PathSample samplePaths(const Model& model, const Skeleton& skeleton,
                        const std::vector<std::string>& wrapAsCylinder,

@@ -140,20 +140,20 @@ class Skeleton {
 
 // Compiled once, in src/instances; other scalars need bio/skeleton_motion.h.
 extern template void Skeleton::motions<double, 1>(const Eigen::Matrix<double, 1, 1>&,
-                                                    RigidMotion<double, 1>*) const;
+                                                  RigidMotion<double, 1>*) const;
 extern template InertiaJet<1> Skeleton::inertia<1>(const Eigen::Matrix<double, 1, 1>&,
-                                                     const RigidMotion<double, 1>*) const;
+                                                   const RigidMotion<double, 1>*) const;
 extern template void Skeleton::motions<double, 2>(const Eigen::Matrix<double, 2, 1>&,
-                                                    RigidMotion<double, 2>*) const;
+                                                  RigidMotion<double, 2>*) const;
 extern template InertiaJet<2> Skeleton::inertia<2>(const Eigen::Matrix<double, 2, 1>&,
-                                                     const RigidMotion<double, 2>*) const;
+                                                   const RigidMotion<double, 2>*) const;
 extern template void Skeleton::motions<double, 3>(const Eigen::Matrix<double, 3, 1>&,
-                                                    RigidMotion<double, 3>*) const;
+                                                  RigidMotion<double, 3>*) const;
 extern template InertiaJet<3> Skeleton::inertia<3>(const Eigen::Matrix<double, 3, 1>&,
-                                                     const RigidMotion<double, 3>*) const;
+                                                   const RigidMotion<double, 3>*) const;
 extern template void Skeleton::motions<double, 4>(const Eigen::Matrix<double, 4, 1>&,
-                                                    RigidMotion<double, 4>*) const;
+                                                  RigidMotion<double, 4>*) const;
 extern template InertiaJet<4> Skeleton::inertia<4>(const Eigen::Matrix<double, 4, 1>&,
-                                                     const RigidMotion<double, 4>*) const;
+                                                   const RigidMotion<double, 4>*) const;
 
 }  // namespace bio

@@ -12,7 +12,8 @@ struct Points {
   std::vector<double> y;
 };
 
-Points readPoints(Reading& reading, const Element& function) {
+// A spline keeps a point that is there twice: it is flat there, in OpenSim and here.
+Points readPoints(Reading& reading, const Element& function, bool isSpline) {
   const std::vector<double> x = readNumbers(reading.source, function, "x", "", {});
   const std::vector<double> y = readNumbers(reading.source, function, "y", "", {});
   if (x.size() != y.size()) {
@@ -23,7 +24,12 @@ Points readPoints(Reading& reading, const Element& function) {
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (!kept.x.empty() && x[i] == kept.x.back() && y[i] == kept.y.back()) {
       reading.model.remarks.push_back(
-          fmt::format("{}: the point x = {} is there twice; once is used", label(function), x[i]));
+          fmt::format("{}: the point x = {} is there twice; {}", label(function), x[i],
+                      isSpline ? "the spline is flat there" : "once is used"));
+      if (isSpline) {
+        kept.x.push_back(x[i]);
+        kept.y.push_back(y[i]);
+      }
       continue;
     }
     if (!kept.x.empty() && !(x[i] > kept.x.back())) {
@@ -54,7 +60,7 @@ const Element* findFunction(const Element& object, const char* property) {
 }
 
 SplineFunction readSpline(Reading& reading, const Element& function) {
-  Points points = readPoints(reading, function);
+  Points points = readPoints(reading, function, true);
   return {std::move(points.x), std::move(points.y)};
 }
 
@@ -75,7 +81,7 @@ Function readFunction(Reading& reading, const Element& function) {
     return {1, readSpline(reading, function)};
   }
   if (kind == "PiecewiseLinearFunction") {
-    Points points = readPoints(reading, function);
+    Points points = readPoints(reading, function, false);
     return {1, PiecewiseLinearFunction{std::move(points.x), std::move(points.y)}};
   }
   if (kind == "PolynomialFunction") {
