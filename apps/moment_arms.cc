@@ -54,6 +54,7 @@ class MomentArms : public Command {
     const Eigen::VectorXd shown = Eigen::VectorXd::LinSpaced(points_, first, last);
     const bio::PathSample sample =
         bio::samplePaths(model, skeleton, model_options_.wrapAsCylinder, shown * unit);
+    for (const std::string& warning : sample.warnings) summary.warn(warning);
     require(!sample.muscles.empty(),
             fmt::format("{}: coordinate '{}' moves no muscle", model_, coordinate.name));
 

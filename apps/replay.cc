@@ -44,6 +44,7 @@ class Replay : public Command {
     for (const std::string& warning : trial.warnings) summary.warn(warning);
 
     const bio::Arm arm(model, armOptions(simulation_));
+    for (const std::string& warning : arm.warnings()) summary.warn(warning);
     if (arm.numMuscles() == 0) {
       throw std::invalid_argument(
           fmt::format("{}: no muscle moves {}", model_, fmt::join(simulation_.coordinates, ", ")));
@@ -64,6 +65,7 @@ class Replay : public Command {
       };
       motion = bio::simulate(arm, excitation, state, options);
     }
+    for (const std::string& sentence : bio::rangeRemarks(arm, motion)) summary.warn(sentence);
     const bio::MuscleReport muscles = bio::reportMuscles(arm, motion);
     folder.writeFile("states.sto", [&](const std::filesystem::path& path) {
       bio::writeTable(bio::statesTable(model, arm, motion), path);

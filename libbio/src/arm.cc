@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 
 namespace bio {
@@ -14,7 +15,14 @@ Arm::Arm(const Model& model, const ArmOptions& options)
       notes_.push_back(fmt::format("muscle '{}' is switched off in the model", muscle.name));
       continue;
     }
-    MusclePath path(model, skeleton_, muscle, options.wrapAsCylinder);
+    std::optional<MusclePath> compiled;
+    try {
+      compiled.emplace(model, skeleton_, muscle, options.wrapAsCylinder);
+    } catch (const UnsupportedWrap& e) {
+      warnings_.push_back(fmt::format("{}: the muscle is left out", e.what()));
+      continue;
+    }
+    MusclePath& path = *compiled;
     if (!path.moves()) {
       notes_.push_back(
           fmt::format("muscle '{}' is left out: no free coordinate moves it", muscle.name));

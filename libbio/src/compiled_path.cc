@@ -387,20 +387,18 @@ class Compiler {
 
   [[noreturn]] void refuse(const CandidateWrap& wrap) const {
     const Vec3<double>& s = wrap.semiAxes;
-    if (wrap.isTorus) {
-      throw std::invalid_argument(fmt::format(
-          "muscle '{}' can touch the torus '{}' where it moves; only cylinders and spheres are "
-          "simulated",
-          muscle_.name, wrap.name));
+    const std::string what =
+        wrap.isTorus ? fmt::format("torus '{}'", wrap.name)
+                     : fmt::format("ellipsoid '{}' (semi-axes {}, {}, {} m)", wrap.name, s[0], s[1], s[2]);
+    const std::string message = fmt::format(
+        "muscle '{}' can touch the {} where it moves; only cylinders and spheres are simulated",
+        muscle_.name, what);
+    const auto equal = [](double a, double b) { return std::abs(a - b) <= 1e-9 * a; };
+    if (wrap.isTorus || !(equal(s[0], s[1]) || equal(s[1], s[2]) || equal(s[2], s[0]))) {
+      throw UnsupportedWrap(message);
     }
-    const bool twoEqual = std::abs(s[0] - s[1]) <= 1e-9 * s[0] ||
-                          std::abs(s[1] - s[2]) <= 1e-9 * s[1] ||
-                          std::abs(s[2] - s[0]) <= 1e-9 * s[2];
-    throw std::invalid_argument(fmt::format(
-        "muscle '{}' can touch the ellipsoid '{}' (semi-axes {}, {}, {} m) where it moves; only "
-        "cylinders and spheres are simulated{}",
-        muscle_.name, wrap.name, s[0], s[1], s[2],
-        twoEqual ? fmt::format("; --wrap-as-cylinder {} takes it as a cylinder", wrap.name) : ""));
+    throw std::invalid_argument(
+        fmt::format("{}; --wrap-as-cylinder {} takes it as a cylinder", message, wrap.name));
   }
 
   double fixedLength(const PathSpan& span, const Posture& posture) const {

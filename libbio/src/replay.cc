@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
+#include <optional>
 
 #include "coupled_stepping.h"
 
@@ -94,6 +96,26 @@ MeasuredError compareWithMeasured(const Arm& arm, const Trajectory& trajectory,
   return error;
 }
 
+std::vector<std::string> rangeRemarks(const Arm& arm, const Trajectory& trajectory) {
+  std::vector<std::string> remarks;
+  for (std::size_t i = 0; i < arm.skeleton().coordinates().size(); ++i) {
+    const Coordinate& c = arm.skeleton().coordinates()[i];
+    const double unit = c.isRotation ? 180 / std::numbers::pi : 1e3;
+    const double margin = c.isRotation ? std::numbers::pi / 180 : 1e-3;
+    const Eigen::VectorXd q = trajectory.q.row(static_cast<Eigen::Index>(i));
+    for (Eigen::Index k = 0; k < q.size(); ++k) {
+      if (q[k] >= c.rangeMin - margin && q[k] <= c.rangeMax + margin) continue;
+      remarks.push_back(fmt::format(
+          "{0} leaves its range, {1:.4g} to {2:.4g} {3}, at {4:.3g} s and reaches {5:.4g} to {6:.4g} "
+          "{3}: no passive force of the model holds it",
+          c.name, c.rangeMin * unit, c.rangeMax * unit, c.isRotation ? "deg" : "mm",
+          trajectory.time[static_cast<std::size_t>(k)], q.minCoeff() * unit, q.maxCoeff() * unit));
+      break;
+    }
+  }
+  return remarks;
+}
+
 Table statesTable(const Model& model, const Arm& arm, const Trajectory& trajectory) {
   const Skeleton& skeleton = arm.skeleton();
   const auto K = static_cast<Eigen::Index>(trajectory.time.size());
@@ -156,7 +178,14 @@ PathSample samplePaths(const Model& model, const Skeleton& skeleton,
   sample.value = values;
   for (const Muscle& muscle : model.muscles) {
     if (!muscle.enabled) continue;
-    MusclePath path(model, skeleton, muscle, wrapAsCylinder);
+    std::optional<MusclePath> compiled;
+    try {
+      compiled.emplace(model, skeleton, muscle, wrapAsCylinder);
+    } catch (const UnsupportedWrap& e) {
+      sample.warnings.push_back(fmt::format("{}: the muscle is left out", e.what()));
+      continue;
+    }
+    MusclePath& path = *compiled;
     if (!path.moves()) {
       sample.notes.push_back(
           fmt::format("muscle '{}' is left out: no free coordinate moves it", muscle.name));

@@ -1,4 +1,5 @@
 #include "bio/path.h"
+#include "bio/path_length.h"
 
 #include <gtest/gtest.h>
 

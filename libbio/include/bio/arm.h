@@ -29,7 +29,8 @@ struct ArmMuscle {
 };
 
 /// A model compiled for simulation: the skeleton that the free coordinates leave, the muscles that
-/// they move, and the passive coordinate forces. Constant; state is passed to it.
+/// they move, and the passive coordinate forces. A muscle whose path moves over a surface without an
+/// exact geodesic (UnsupportedWrap) is left out with a warning. Constant; state is passed to it.
 class Arm {
  public:
   /// @throws std::invalid_argument what Skeleton and MusclePath throw, non-physical muscle
@@ -44,7 +45,9 @@ class Arm {
   /// Where a path of this arm gains or loses conditional points, each once.
   const std::vector<PathSwitch>& switches() const { return switches_; }
 
-  /// One line each: muscles left out, spans taken as constant, wraps out of reach.
+  /// One line each: muscles that move but cannot be simulated and are left out.
+  const std::vector<std::string>& warnings() const { return warnings_; }
+  /// One line each: muscles left out because nothing moves them, spans taken as constant, wraps out of reach.
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
@@ -54,6 +57,7 @@ class Arm {
   std::vector<ArmMuscle> muscles_;
   std::vector<PathSwitch> switches_;
   std::vector<std::string> notes_;
+  std::vector<std::string> warnings_;
 };
 
 /// Everything about an arm that depends on the configuration alone, for N free coordinates: segment

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cstddef>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -79,6 +80,12 @@ struct CompiledPath {
   std::vector<PathSurface> surfaces;
   std::vector<PathVariant> variants;  ///< by the bits of the active conditions
   std::vector<std::string> notes;
+};
+
+/// A path that moves over a surface for which there is no exact geodesic here: a torus, or an
+/// ellipsoid with three different semi-axes. Nothing the user could say makes it one.
+class UnsupportedWrap : public std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
 };
 
 /// See MusclePath.

@@ -55,8 +55,9 @@ class MusclePath {
  public:
   /// @param wrapAsCylinder names of ellipsoids with two equal semi-axes to be taken as cylinders
   /// about the third
-  /// @throws std::invalid_argument for an ellipsoid or torus that a moving span can touch, an
-  /// ellipsoid in wrapAsCylinder
+  /// @throws UnsupportedWrap for a torus or a three-axial ellipsoid that a moving span can touch
+  /// @throws std::invalid_argument for another ellipsoid that a moving span can touch, one in
+  /// wrapAsCylinder
   ///   without two equal semi-axes, names that the model lacks, a path that has less than two
   ///   points in some posture
   MusclePath(const Model& model, const Skeleton& skeleton, const Muscle& muscle,

@@ -31,6 +31,10 @@ struct MeasuredError {
 MeasuredError compareWithMeasured(const Arm& arm, const Trajectory& trajectory,
                                   const MeasuredMotion& measured);
 
+/// One sentence for each free coordinate that leaves its range in the model, and when: nothing but the
+/// model's own passive forces holds it there.
+std::vector<std::string> rangeRemarks(const Arm& arm, const Trajectory& trajectory);
+
 /// States as OpenSim 4 names them: value and speed of every coordinate of the model (locked and
 /// coupled ones too), activation and fiber_length of every simulated muscle; radians and metres.
 Table statesTable(const Model& model, const Arm& arm, const Trajectory& trajectory);
@@ -47,6 +51,7 @@ struct PathSample {
   Eigen::MatrixXd momentArmSlope;  ///< −∂²ℓ/∂q² [m/rad]
   Eigen::MatrixXi wrapped;         ///< 1: a wrap object is touched
   std::vector<std::string> notes;
+  std::vector<std::string> warnings;  ///< muscles left out that cannot be computed
 };
 /// Paths of every enabled muscle that the skeleton's first coordinate moves, whatever its class;
 /// the other free coordinates stay at their defaults.
