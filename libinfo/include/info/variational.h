@@ -235,8 +235,7 @@ auto VariationalIntegrator<S>::chain(const typename Formulas::Slopes& slopes) co
   // 0 = p_k + r̂: M dq_{k+1} = −(dp_k + ∂r̂/∂z dz)
   const Square transposedM = unknown.template leftCols<n>(k);
   c.inverseM = inverse(transposedM).transpose();
-  Slope dr_dz(k, zLength());
-  dr_dz.noalias() = known.template leftCols<n>(k).transpose();
+  Slope dr_dz = known.template leftCols<n>(k).transpose();
   dr_dz.template middleCols<n>(k, k).diagonal().array() += 1.0;
   c.dq1_dz = -c.inverseM * dr_dz;
   // p_{k+1} = p̂
