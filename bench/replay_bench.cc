@@ -1,0 +1,58 @@
+// The main job: 4.5 s of a shipped trial on the eight-muscle elbow.
+#include <benchmark/benchmark.h>
+
+#include "bio/osim_file.h"
+#include "bio/replay.h"
+
+namespace {
+
+const std::string root = FISHERHILL_SOURCE_DIR;
+
+struct Job {
+  bio::Model model = bio::readOsim(root + "/models/elbow8.osim");
+  bio::Arm arm{model, {{{"elbow_flexion"}, {}}, {}, {}}};
+  bio::Trial trial = bio::readTrial(root + "/emg_data/curl_slow.sto", model);
+  bio::ExcitationSignal excitation = bio::excitationOf(trial, arm);
+  bio::ArmState start =
+      bio::initialState(arm, bio::startCoordinates(trial, arm, {}), excitation, 0);
+};
+
+void replay(benchmark::State& state, bio::Integrator integrator, double step) {
+  const Job job;
+  bio::SimulationOptions options;
+  options.integrator = integrator;
+  options.step = step;
+  options.duration = 4.5;
+  for (auto _ : state) {
+    const bio::Trajectory motion = bio::simulate(job.arm, job.excitation, job.start, options);
+    benchmark::DoNotOptimize(motion.q.data());
+    state.counters["newton_per_step"] =
+        static_cast<double>(motion.newtonIterations) / static_cast<double>(motion.steps);
+  }
+}
+BENCHMARK_CAPTURE(replay, variational_10ms, bio::Integrator::variational, 0.01)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(replay, variational_20ms, bio::Integrator::variational, 0.02)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(replay, variational_left_10ms, bio::Integrator::variationalLeft, 0.01)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(replay, runge_kutta_4e4, bio::Integrator::rungeKutta4, 4e-4)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(replay, cvode, bio::Integrator::cvode, 0.01)->Unit(benchmark::kMillisecond);
+
+/// All that a configuration needs: placements, inertia, eight path lengths with Hessians.
+void configuration(benchmark::State& state) {
+  const Job job;
+  bio::ArmConfiguration<1> configuration(job.arm);
+  Eigen::Matrix<double, 1, 1> q(0.9);
+  for (auto _ : state) {
+    configuration.moveTo(q);
+    benchmark::DoNotOptimize(configuration.length(0).length);
+    q[0] = 1.9 - q[0];
+  }
+}
+BENCHMARK(configuration);
+
+}  // namespace
+
+BENCHMARK_MAIN();
