@@ -2,6 +2,7 @@
 #include "command.h"
 #include "emg.h"
 #include "moment_arms.h"
+#include "render.h"
 #include "replay.h"
 #include "robot.h"
 
@@ -12,6 +13,7 @@ std::vector<std::unique_ptr<Command>> allCommands() {
   commands.push_back(checkCommand());
   commands.push_back(emgCommand());
   commands.push_back(momentArmsCommand());
+  commands.push_back(renderCommand(drawInOtherProgram));
   commands.push_back(replayCommand());
   commands.push_back(robotCommand());
   return commands;

@@ -1,0 +1,130 @@
+#include "render.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <stdexcept>
+
+namespace app {
+namespace {
+
+constexpr int fewestPixels = 64, mostPixels = 8192;
+
+/// One side of a picture; 0 if it is no number.
+int pixelsOf(const std::string& text) {
+  int value = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc() && stop == end ? value : 0;
+}
+
+void parseSize(const std::string& text, RenderOptions& options) {
+  const std::size_t cross = text.find('x');
+  options.width = pixelsOf(text.substr(0, cross));
+  options.height = cross == text.npos ? 0 : pixelsOf(text.substr(cross + 1));
+  for (const int side : {options.width, options.height}) {
+    if (side < fewestPixels || side > mostPixels) {
+      throw CLI::ValidationError(
+          "--size", fmt::format("{} must be WIDTHxHEIGHT, each {} to {} pixels", text, fewestPixels,
+                                mostPixels));
+    }
+  }
+}
+
+class Render : public Command {
+ public:
+  explicit Render(Drawing draw) : draw_(std::move(draw)) {}
+
+  About about() const override {
+    return {"render", "Pictures or a film of the arm, muscles coloured by activation",
+            "fisherhill render models/elbow8.osim out/replay/states.sto --film --out out/film"};
+  }
+
+  void addOptions(CLI::App& options) override {
+    options.add_option("MODEL", options_.model, "model (.osim)")
+        ->required()
+        ->check(CLI::ExistingFile)
+        ->type_name("");
+    options
+        .add_option("STATES", options_.states,
+                    "the motion: states.sto of a simulation, or a table with the coordinates")
+        ->required()
+        ->check(CLI::ExistingFile)
+        ->type_name("");
+    auto* time = options.add_option("--time", options_.time,
+                                    "moment of the picture [s]; default: the middle of the motion");
+    time->type_name("SECONDS");
+    options.add_flag("--film", options_.film, "the whole motion as arm.mp4 (needs ffmpeg)")
+        ->excludes(time);
+    options.add_option("--fps", options_.framesPerSecond, "pictures per second of the film")
+        ->check(CLI::Range(1.0, 240.0))
+        ->type_name("N")
+        ->capture_default_str();
+    options
+        .add_option_function<std::string>(
+            "--size", [this](const std::string& text) { parseSize(text, options_); },
+            "width and height [pixel]")
+        ->type_name("WxH")
+        ->default_str("1280x960");
+    options.add_option("--camera", options_.camera, "where to look from; all of them see all")
+        ->check(CLI::IsMember({"fit", "side", "front", "top", "isometric"}))
+        ->capture_default_str();
+    options.add_option("--geometry", options_.geometry, "folder of the .vtp files the model names")
+        ->check(CLI::ExistingDirectory)
+        ->type_name("DIR");
+    options.add_flag("--show-wraps", options_.showWraps, "wrap surfaces, translucent");
+    options
+        .add_option_function<std::string>(
+            "--thickness",
+            [this](const std::string& text) { options_.thicknessByForce = text == "force"; },
+            "of the muscles: force (the tendon's) or fixed")
+        ->check(CLI::IsMember({"force", "fixed"}))
+        ->default_str("force");
+    options.add_option("--ghost", options_.ghost, "a second motion, drawn translucent beside it")
+        ->check(CLI::ExistingFile)
+        ->type_name("STATES");
+    options.add_flag("--ignore-extra", options_.ignoreExtra,
+                     "pass over columns that the model does not know");
+    addModelOptions(options, options_.simulation);
+  }
+
+  ExitStatus run(const CommandContext& context) override {
+    if (!context.out) {
+      throw std::invalid_argument("--out is missing: a picture needs a folder to be written to");
+    }
+    if (options_.film && (options_.width % 2 != 0 || options_.height % 2 != 0)) {
+      throw std::invalid_argument(fmt::format("--size {}x{}: a film needs even numbers of pixels",
+                                              options_.width, options_.height));
+    }
+    return draw_(options_, context);
+  }
+
+ private:
+  Drawing draw_;
+  RenderOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> renderCommand(Drawing draw) {
+  return std::make_unique<Render>(std::move(draw));
+}
+
+ExitStatus drawInOtherProgram(const RenderOptions&, const CommandContext& context) {
+  const std::filesystem::path program =
+      std::filesystem::read_symlink("/proc/self/exe").parent_path() / "fisherhill-render";
+  std::vector<char*> words;
+  for (const std::string& word : context.commandLine) {
+    words.push_back(const_cast<char*>(word.c_str()));
+  }
+  words.push_back(nullptr);
+  execv(program.c_str(), words.data());
+  throw std::runtime_error(fmt::format(
+      "{} cannot be started ({}); it is built where VTK is installed, with FISHERHILL_VIEW=ON",
+      program.string(), std::strerror(errno)));
+}
+
+}  // namespace app
