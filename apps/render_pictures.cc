@@ -22,7 +22,7 @@ namespace {
 namespace view = bio::view;
 
 constexpr double fixedRadius = 0.004;    // [m]
-constexpr double restingRadius = 0.002;  // [m], of a tube without force
+constexpr double restingRadius = 0.0025;  // [m], of a tube without force
 constexpr double shownStress = 5e6;      // [N/m²]: tendon force per area that a tube gains
 
 view::Camera cameraNamed(const std::string& name) {

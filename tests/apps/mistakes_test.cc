@@ -35,6 +35,7 @@ void writeFiles(const ScratchFolder& scratch) {
   scratch.file("word.csv", "time,BIClong\n0,0.1\n0.1,much\n");
   scratch.file("text.osim", "no model\n");
   scratch.file("empty.toml", "");
+  scratch.file("motion.csv", "time,elbow_flexion_deg\n0,30\n0.1,40\n");
 }
 
 std::string replaced(std::string text, const std::string& with) {
@@ -107,5 +108,34 @@ INSTANTIATE_TEST_SUITE_P(
         {"UnknownExperiment", {"robot", "triple-pendulum", "--out", "$/out"}, "triple-pendulum"},
         {"OutIsAFile", {"robot", "suspended-mass", "--out", "$/good.csv"}, "is not a folder"}}),
     nameOf);
+
+#ifdef FISHERHILL_HAS_VIEW
+INSTANTIATE_TEST_SUITE_P(
+    Render, EveryMistake,
+    testing::ValuesIn(std::vector<Mistake>{
+        {"NoOut", {"render", model, "$/motion.csv"}, "--out is missing"},
+        {"NoStates", {"render", model, "$/no.sto", "--out", "$/out"}, "$/no.sto"},
+        {"EmptyStates", {"render", model, "$/empty.csv", "--out", "$/out"}, "$/empty.csv"},
+        {"ForeignColumn", {"render", model, "$/extra.csv", "--out", "$/out"}, "'GLUTmax'"},
+        {"NoCoordinate", {"render", model, "$/good.csv", "--out", "$/out"}, "no column gives"},
+        {"BadModel", {"render", "$/text.osim", "$/motion.csv", "--out", "$/out"}, "$/text.osim"},
+        {"BadSize",
+         {"render", model, "$/motion.csv", "--out", "$/out", "--size", "1280"},
+         "WIDTHxHEIGHT"},
+        {"OddFilm",
+         {"render", model, "$/motion.csv", "--out", "$/out", "--film", "--size", "101x100"},
+         "even"},
+        {"TimeOutside",
+         {"render", model, "$/motion.csv", "--out", "$/out", "--time", "9"},
+         "--time 9 s"},
+        {"UnknownCamera",
+         {"render", model, "$/motion.csv", "--out", "$/out", "--camera", "left"},
+         "left"},
+        {"NoGeometryFolder",
+         {"render", model, "$/motion.csv", "--out", "$/out", "--geometry", "$/none"},
+         "$/none"},
+        {"OutIsAFile", {"render", model, "$/motion.csv", "--out", "$/good.csv"}, "not a folder"}}),
+    nameOf);
+#endif
 
 }  // namespace

@@ -113,7 +113,8 @@ TEST(Start, NamesAPackageForEveryLibraryThatIsLookedFor) {
       {"toml11", "libtoml11-dev"},
       {"nlohmann_json", "nlohmann-json3-dev"},
       {"Threads", "g++"},
-      {"VTK", "libvtk9-dev"}};
+      {"VTK", "libvtk9-dev"},
+      {"X11", "libx11-dev"}};
   std::size_t at = 0;
   while ((at = cmake.find("find_package(", at)) != cmake.npos) {
     at += std::string_view("find_package(").size();
