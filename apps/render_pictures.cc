@@ -21,9 +21,9 @@ namespace {
 
 namespace view = bio::view;
 
-constexpr double fixedRadius = 0.004;    // [m]
+constexpr double fixedRadius = 0.004;     // [m]
 constexpr double restingRadius = 0.0025;  // [m], of a tube without force
-constexpr double shownStress = 5e6;      // [N/m²]: tendon force per area that a tube gains
+constexpr double shownStress = 5e6;       // [N/m²]: tendon force per area that a tube gains
 
 view::Camera cameraNamed(const std::string& name) {
   if (name == "side") return view::Camera::side;
@@ -190,6 +190,7 @@ ExitStatus drawPictures(const RenderOptions& options, const CommandContext& cont
   bio::ArmOptions armOptions = app::armOptions(options.simulation);
   armOptions.skeleton = view::skeletonFor(model, motions, armOptions.skeleton);
   const MovingArm arm(model, armOptions, motion);
+  for (const std::string& warning : arm.poser().warnings()) summary.warn(warning);
   std::optional<MovingArm> ghost;
   if (ghostMotion) ghost.emplace(model, armOptions, *ghostMotion);
   view::TendonForces forces;

@@ -65,6 +65,21 @@ void place(vtkActor* actor, const Placement<double>& X) {
   actor->SetUserMatrix(matrix);
 }
 
+/// Debian's font for everything; VTK's own stand-in for Arial has round square brackets.
+void setFont(vtkTextProperty* letters, bool bold) {
+  const std::string file =
+      std::string("/usr/share/fonts/truetype/dejavu/DejaVuSans") + (bold ? "-Bold.ttf" : ".ttf");
+  letters->SetFontFamilyToArial();
+  letters->SetBold(bold);
+  letters->ItalicOff();
+  letters->ShadowOff();
+  letters->SetColor(inkColour[0], inkColour[1], inkColour[2]);
+  if (std::filesystem::exists(file)) {
+    letters->SetFontFamily(VTK_FONT_FILE);
+    letters->SetFontFile(file.c_str());
+  }
+}
+
 /// Light from the camera's side, without shadows: the same brightness wherever one looks from.
 void addLight(vtkRenderer* renderer, double elevation, double azimuth, double intensity) {
   vtkNew<vtkLight> light;
@@ -130,10 +145,8 @@ struct ArmScene::Parts {
     text->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
     text->SetPosition(x, y);
     vtkTextProperty* letters = text->GetTextProperty();
-    letters->SetFontFamilyToArial();
+    setFont(letters, bold);
     letters->SetFontSize(pixels(size));
-    letters->SetBold(bold);
-    letters->SetColor(inkColour[0], inkColour[1], inkColour[2]);
     renderer->AddViewProp(text);
   }
 
@@ -208,14 +221,8 @@ struct ArmScene::Parts {
     bar->SetLabelFormat("%.1f");
     bar->SetTitle("");
     bar->UnconstrainedFontSizeOn();
-    bar->GetLabelTextProperty()->SetFontFamilyToArial();
-    bar->GetLabelTextProperty()->SetFontSize(pixels(20));
-    bar->GetLabelTextProperty()->SetColor(inkColour[0], inkColour[1], inkColour[2]);
-    for (vtkTextProperty* letters : {bar->GetLabelTextProperty()}) {
-      letters->ItalicOff();
-      letters->BoldOff();
-      letters->ShadowOff();
-    }
+    setFont(bar->GetLabelTextProperty(), false);
+    bar->GetLabelTextProperty()->SetFontSize(pixels(18));
     bar->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
     bar->SetPosition(0.875, 0.25);
     bar->SetWidth(0.075);
@@ -225,7 +232,7 @@ struct ArmScene::Parts {
     vtkNew<vtkTextActor> title;
     title->SetInput("Activation [1]");
     title->GetTextProperty()->SetJustificationToRight();
-    writeAt(title, 0.98, 0.755, 22);
+    writeAt(title, 0.98, 0.755, 20);
   }
 
   void addCaptions() {
@@ -234,15 +241,15 @@ struct ArmScene::Parts {
     for (const std::string& line : options.captions) {
       vtkNew<vtkTextActor> text;
       text->SetInput(line.c_str());
-      writeAt(text, 0.02, y, first ? 26 : 20, first);
+      writeAt(text, 0.02, y, first ? 24 : 18, first);
       y -= 0.035;
       first = false;
     }
     vtkNew<vtkTextActor> grid;
     grid->SetInput("Ground: squares of 0.1 m");
     grid->GetTextProperty()->SetJustificationToRight();
-    writeAt(grid, 0.98, 0.025, 20);
-    writeAt(clock, 0.02, 0.025, 26, true);
+    writeAt(grid, 0.98, 0.025, 18);
+    writeAt(clock, 0.02, 0.025, 24, true);
   }
 };
 

@@ -96,8 +96,13 @@ ArmPoser::ArmPoser(const Model& model, const SkeletonOptions& options,
   for (const Body& body : model.bodies) bodies_.push_back(body.name);
   for (const Muscle& muscle : model.muscles) {
     if (!muscle.enabled) continue;
+    try {
+      paths_.emplace_back(model, skeleton_, muscle, wrapAsCylinder);
+    } catch (const UnsupportedWrap& error) {
+      warnings_.push_back(fmt::format("{}: the muscle is left out", error.what()));
+      continue;
+    }
     names_.push_back(muscle.name);
-    paths_.emplace_back(model, skeleton_, muscle, wrapAsCylinder);
     wraps_.emplace_back();
     for (const PathWrap& wrap : muscle.path.wraps) {
       const WrapObject& object = findWrapObject(model, wrap.wrapObject);

@@ -50,6 +50,8 @@ class ArmPoser {
 
   const Skeleton& skeleton() const { return skeleton_; }
   const std::vector<std::string>& muscles() const { return names_; }
+  /// One line for each muscle that is left out since its wraps are not supported.
+  const std::vector<std::string>& warnings() const { return warnings_; }
 
   /// Everything that a picture of one posture needs.
   struct Posture {
@@ -67,6 +69,7 @@ class ArmPoser {
   Skeleton skeleton_;
   std::vector<std::string> bodies_;
   std::vector<std::string> names_;
+  std::vector<std::string> warnings_;
   std::vector<MusclePath> paths_;
   std::vector<std::vector<WrapObject>> wraps_;  ///< cylinders and spheres of each path
 };
