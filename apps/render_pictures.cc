@@ -23,6 +23,7 @@ namespace view = bio::view;
 
 constexpr double fixedRadius = 0.004;     // [m]
 constexpr double restingRadius = 0.0025;  // [m], of a tube without force
+constexpr double ghostRadius = 0.0022;    // [m]: hidden where both motions coincide
 constexpr double shownStress = 5e6;       // [N/m²]: tendon force per area that a tube gains
 
 view::Camera cameraNamed(const std::string& name) {
@@ -201,7 +202,7 @@ ExitStatus drawPictures(const RenderOptions& options, const CommandContext& cont
     }
   }
   const auto radii = tubeRadii(arm.poser().muscles(), forces, times.size());
-  const std::vector<double> ghostRadii(arm.poser().muscles().size(), 0.75 * fixedRadius);
+  const std::vector<double> ghostRadii(arm.poser().muscles().size(), ghostRadius);
 
   // All that is ever seen, so that the camera stands still.
   const std::vector<view::BodyShape> bodies = view::bodyShapes(model);

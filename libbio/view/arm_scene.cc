@@ -65,6 +65,11 @@ void place(vtkActor* actor, const Placement<double>& X) {
   actor->SetUserMatrix(matrix);
 }
 
+bool coincide(const Placement<double>& a, const Placement<double>& b) {
+  constexpr double unseen = 1e-4;  // [m], [rad]
+  return (a.p - b.p).norm() < unseen && (a.R - b.R).norm() < unseen;
+}
+
 /// Debian's font for everything; VTK's own stand-in for Arial has round square brackets.
 void setFont(vtkTextProperty* letters, bool bold) {
   const std::string file =
@@ -299,8 +304,11 @@ Image ArmScene::draw(const Moment& moment) {
   for (const Parts::Body& body : p.bodies) {
     for (const auto& actor : body.actors) place(actor, moment.posture->bodies.at(body.name));
     if (!body.ghost) continue;
-    body.ghost->SetVisibility(moment.ghost != nullptr);
-    if (moment.ghost != nullptr) place(body.ghost, moment.ghost->bodies.at(body.name));
+    // A ghost in the very place of its bone would only flicker.
+    const bool apart = moment.ghost != nullptr && !coincide(moment.posture->bodies.at(body.name),
+                                                            moment.ghost->bodies.at(body.name));
+    body.ghost->SetVisibility(apart);
+    if (apart) place(body.ghost, moment.ghost->bodies.at(body.name));
   }
   p.ghostMuscles->SetVisibility(moment.ghost != nullptr);
   if (moment.ghost != nullptr) {
