@@ -14,6 +14,7 @@
 #include "info/systems/robot_experiments.h"
 #include "progress_bar.h"
 #include "result.h"
+#include "robot_optimise.h"
 #include "text.h"
 
 namespace app {
@@ -146,8 +147,8 @@ Figure errorFigure(const std::vector<Approach>& all) {
 class Robot : public Command {
  public:
   About about() const override {
-    return {"robot", "What an experiment with a robot would tell about its parameters",
-            "fisherhill robot double-pendulum --bound-only"};
+    return {"robot", "The motion of a robot that tells most about its parameters",
+            "fisherhill robot double-pendulum --discrete"};
   }
 
   void addOptions(CLI::App& options) override {
@@ -158,6 +159,19 @@ class Robot : public Command {
         ->required()
         ->check(CLI::IsMember({"double-pendulum", "suspended-mass"}))
         ->type_name("");
+    options.add_flag("--discrete", discrete_,
+                     "double-pendulum: optimise the variational integrator's motion in steps");
+    options
+        .add_option("--perturb", perturb_,
+                    "add a small random smooth motion to the start, of about this input "
+                    "[m/s^2; with --discrete m]")
+        ->check(CLI::PositiveNumber)
+        ->type_name("SIZE");
+    options
+        .add_option("--warm-start", warmStart_, "start from the input of a motion_optimised.csv")
+        ->check(CLI::ExistingFile)
+        ->type_name("FILE");
+    options.add_flag("--as-is", asIs_, "judge the start, with simulated trials; do not optimise");
     options.add_flag("--bound-only", boundOnly_, "the Cramér-Rao bound, without simulated trials");
     options
         .add_option("--unknown", unknown_,
@@ -167,7 +181,7 @@ class Robot : public Command {
     options.add_flag("--undamped", undamped_, "double-pendulum with --unknown m1,m2: no damping");
     options
         .add_option("--amplitude", amplitude_, "cart motion amplitude*(1 - cos(2 pi t/period)) [m]")
-        ->check(CLI::PositiveNumber)
+        ->check(CLI::NonNegativeNumber)
         ->type_name("A");
     options.add_option("--period", period_, "its period [s]")
         ->check(CLI::PositiveNumber)
@@ -187,11 +201,21 @@ class Robot : public Command {
       throw std::invalid_argument("--unknown and --undamped go with double-pendulum");
     if (undamped_ && unknown_ != "m1,m2")
       throw std::invalid_argument("--undamped goes with --unknown m1,m2");
-    OutputFolder folder(context, {});
+    const bool optimise = !convergence_ && !boundOnly_ && !asIs_ && unknown_ == "m1,c";
+    if (!optimise && (discrete_ || perturb_ || !warmStart_.empty()))
+      throw std::invalid_argument(
+          "--discrete, --perturb and --warm-start go with optimising, without --as-is, "
+          "--bound-only, --convergence and --unknown m1,m2");
+    if (discrete_ && !isPendulum)
+      throw std::invalid_argument("--discrete goes with double-pendulum");
+    OutputFolder folder(context, optimise ? optimiseFiles() : std::vector<std::string>{});
     Summary summary(context);
     Report report;
     report.title = fmt::format("What the {} tells", robot_);
     const ExitStatus status = convergence_ ? convergence(context, summary, report)
+                              : optimise   ? optimiseRobot({isPendulum, discrete_, amplitude_,
+                                                            period_, perturb_, warmStart_, trials_},
+                                                           context, summary, report, folder)
                                            : information(context, summary, report);
     deliver(context, summary, report, folder);
     return status;
@@ -328,8 +352,10 @@ class Robot : public Command {
 
   std::string robot_;
   std::string unknown_ = "m1,c";
-  bool boundOnly_ = false, undamped_ = false, convergence_ = false;
-  std::optional<double> amplitude_, period_;
+  std::string warmStart_;
+  bool boundOnly_ = false, undamped_ = false, convergence_ = false, discrete_ = false,
+       asIs_ = false;
+  std::optional<double> amplitude_, period_, perturb_;
   int trials_ = 300;
 };
 

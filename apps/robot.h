@@ -6,9 +6,9 @@
 
 namespace app {
 
-/// `fisherhill robot double-pendulum|suspended-mass`: what an experiment with one of the two robots
-/// would tell about its parameters, and how estimators fare on it. Status 1 if the data could not
-/// tell the parameters apart.
+/// `fisherhill robot double-pendulum|suspended-mass`: the motion that tells most about the robot's
+/// parameters (robot_optimise.h); or what a given motion would tell, and how estimators fare on it.
+/// Status 1 if the data could not tell the parameters apart, or if no better motion was found.
 std::unique_ptr<Command> robotCommand();
 
 }  // namespace app

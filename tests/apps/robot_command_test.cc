@@ -53,8 +53,8 @@ TEST(RobotCommand, SimulatesTheSameTrialsOnAnyNumberOfThreads) {
   const support::ScratchFolder scratch;
   const auto run = [&](const std::string& threads, const std::string& seed) {
     return nlohmann::json::parse(
-        runFisherHill({"robot", "double-pendulum", "--period", "2", "--trials", "20", "--json",
-                       "--threads", threads, "--seed", seed})
+        runFisherHill({"robot", "double-pendulum", "--as-is", "--period", "2", "--trials", "20",
+                       "--json", "--threads", threads, "--seed", seed})
             .out)["trials_covariance"];
   };
   const auto alone = run("1", "7");
@@ -67,6 +67,62 @@ TEST(RobotCommand, WritesAReport) {
   const std::string out = (scratch / "out").string();
   ASSERT_EQ(runFisherHill({"robot", "suspended-mass", "--convergence", "--out", out}).status, 0);
   EXPECT_THAT(support::contentOf(out + "/report.html"), HasSubstr("Lively motion"));
+}
+
+TEST(RobotCommand, OptimisesTheDoublePendulumAndTriesBothMotions) {
+  const support::ScratchFolder scratch;
+  const std::string out = (scratch / "out").string();
+  const ProgramResult result =
+      runFisherHill({"robot", "double-pendulum", "--out", out, "--trials", "200"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = nlohmann::json::parse(support::contentOf(out + "/summary.json"));
+  EXPECT_GT(json["lambda_min_factor"].get<double>(), 1000);
+  const auto before = json["bound_initial"], after = json["bound_optimised"],
+             trials = json["monte_carlo_optimised"];
+  EXPECT_NEAR(before[0][0].get<double>() / 2.71e-4, 1, 0.05);
+  EXPECT_NEAR(before[1][1].get<double>() / 1.05, 1, 0.05);
+  for (int i : {0, 1}) {
+    EXPECT_NEAR(trials[i][i].get<double>() / after[i][i].get<double>(), 1, 0.25);
+    EXPECT_GT(before[i][i].get<double>() / after[i][i].get<double>(), 800);
+  }
+  EXPECT_THAT(support::contentOf(out + "/report.html"), HasSubstr("2.32e-7, 8.83e-7, 1.01e-3"));
+  const auto search = nlohmann::json::parse(support::contentOf(out + "/search.json"));
+  EXPECT_EQ(search["costs"].size(), json["iterations"].get<std::size_t>() + 1);
+  // the result is a start that needs nothing more
+  const auto again = nlohmann::json::parse(
+      runFisherHill({"robot", "double-pendulum", "--warm-start", out + "/motion_optimised.csv",
+                     "--trials", "2", "--json"})
+          .out);
+  EXPECT_EQ(again["iterations"], 0);
+}
+
+TEST(RobotCommand, OptimisesTheDoublePendulumInSteps) {
+  const auto json = nlohmann::json::parse(
+      runFisherHill({"robot", "double-pendulum", "--discrete", "--json"}).out);
+  EXPECT_GT(json["lambda_min_factor"].get<double>(), 100);
+  EXPECT_GT(json["ms_per_iteration_continuous"].get<double>(), 0);
+}
+
+TEST(RobotCommand, MakesGradientDescentOnTheSuspendedMassConverge) {
+  const auto json = nlohmann::json::parse(runFisherHill({"robot", "suspended-mass", "--json"}).out);
+  EXPECT_NEAR(json["condition_initial"].get<double>() / 1.73e8, 1, 0.02);
+  EXPECT_LE(json["condition_optimised"].get<double>(), 20);
+  EXPECT_GT(json["lambda_max_optimised"].get<double>(), json["lambda_max_initial"].get<double>());
+  EXPECT_GT(json["gradient_descent_iterations"]["initial"].get<int>(), 1000);
+  EXPECT_LE(json["gradient_descent_iterations"]["optimised"].get<int>(), 130);
+  EXPECT_LE(json["iterated_least_squares_iterations"]["optimised"].get<int>(), 6);
+}
+
+TEST(RobotCommand, AdvisesWhereTheStartTellsNothingAndPerturbsIt) {
+  const ProgramResult still =
+      runFisherHill({"robot", "double-pendulum", "--discrete", "--amplitude", "0"});
+  EXPECT_EQ(still.status, 2);
+  EXPECT_THAT(still.err, AllOf(HasSubstr("tells nothing"), HasSubstr("--perturb")));
+  const ProgramResult perturbed =
+      runFisherHill({"robot", "double-pendulum", "--discrete", "--amplitude", "0", "--perturb",
+                     "0.01", "--json"});
+  ASSERT_EQ(perturbed.status, 0) << perturbed.err;
+  EXPECT_GT(nlohmann::json::parse(perturbed.out)["lambda_min_factor"].get<double>(), 10);
 }
 
 TEST(RobotCommand, TellsWrongUseInOneLine) {
@@ -82,6 +138,10 @@ TEST(RobotCommand, TellsWrongUseInOneLine) {
   fails({"robot", "double-pendulum", "--undamped"}, "--undamped goes with --unknown m1,m2");
   fails({"robot", "double-pendulum", "--amplitude", "-1"}, "--amplitude");
   fails({"robot", "double-pendulum", "--trials", "0"}, "--trials");
+  fails({"robot", "suspended-mass", "--discrete"}, "--discrete goes with double-pendulum");
+  fails({"robot", "double-pendulum", "--discrete", "--as-is"}, "go with optimising");
+  fails({"robot", "double-pendulum", "--warm-start", FISHERHILL_SOURCE_DIR "/README.md"},
+        "no column named input");
 }
 
 }  // namespace
