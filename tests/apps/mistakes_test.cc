@@ -59,8 +59,9 @@ TEST_P(EveryMistake, IsOneLineStatusTwoAndLeavesNothing) {
   EXPECT_EQ(result.status, 2) << result.out;
   EXPECT_EQ(result.out, "");
   // Warnings may stand before the error; the last line is the one.
-  const std::string error =
-      result.err.substr(result.err.rfind("fisherhill " + arguments[0] + ": "));
+  const std::size_t last = result.err.rfind("fisherhill " + arguments[0] + ": ");
+  ASSERT_NE(last, result.err.npos) << result.err;
+  const std::string error = result.err.substr(last);
   EXPECT_THAT(error, HasSubstr(replaced(GetParam().message, scratch.path().string())));
   EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
   EXPECT_EQ(scratch.listing(), before);
@@ -99,6 +100,74 @@ INSTANTIATE_TEST_SUITE_P(
         {"ConfigIsATable",
          {"emg", "$/good.csv", "--config", "$/good.csv", "--out", "$/out"},
          "$/good.csv"}}),
+    nameOf);
+
+INSTANTIATE_TEST_SUITE_P(
+    MomentArms, EveryMistake,
+    testing::ValuesIn(std::vector<Mistake>{
+        {"NoModel", {"moment-arms"}, "MODEL"},
+        {"MissingModel", {"moment-arms", "$/no.osim"}, "$/no.osim"},
+        {"NotAModel", {"moment-arms", "$/text.osim", "--out", "$/out"}, "$/text.osim"},
+        {"Backwards",
+         {"moment-arms", model, "--from", "90", "--to", "10", "--out", "$/out"},
+         "--to"},
+        {"OnePoint", {"moment-arms", model, "--points", "1", "--out", "$/out"}, "--points"},
+        {"HalfAPoint", {"moment-arms", model, "--points", "10.5"}, "--points"},
+        {"FromNowhere", {"moment-arms", model, "--from", "nan", "--out", "$/out"}, "--from"},
+        {"UnknownCoordinate",
+         {"moment-arms", model, "--coordinate", "knee", "--out", "$/out"},
+         "knee"},
+        {"UnknownLock", {"moment-arms", model, "--lock", "knee=1", "--out", "$/out"}, "knee"},
+        {"UnknownWrap",
+         {"moment-arms", model, "--wrap-as-cylinder", "ball", "--out", "$/out"},
+         "ball"}}),
+    nameOf);
+
+INSTANTIATE_TEST_SUITE_P(
+    Replay, EveryMistake,
+    testing::ValuesIn(std::vector<Mistake>{
+        {"NoTrial", {"replay", model, "--out", "$/out"}, "TRIAL"},
+        {"MissingTrial", {"replay", model, "$/no.sto", "--out", "$/out"}, "$/no.sto"},
+        {"MissingModel", {"replay", "$/no.osim", "$/good.csv", "--out", "$/out"}, "$/no.osim"},
+        {"NotAModel", {"replay", "$/text.osim", "$/good.csv", "--out", "$/out"}, "$/text.osim"},
+        {"TheOtherWayRound", {"replay", "$/good.csv", model, "--out", "$/out"}, "$/good.csv"},
+        {"ExcitationNaN", {"replay", model, "$/nan.csv", "--out", "$/out"}, "BIClong"},
+        {"ExcitationAboveOne", {"replay", model, "$/high.csv", "--out", "$/out"}, "1.2"},
+        {"ExcitationNegative", {"replay", model, "$/negative.csv", "--out", "$/out"}, "-0.2"},
+        {"ColumnOfNothing", {"replay", model, "$/extra.csv", "--out", "$/out"}, "GLUTmax"},
+        {"OneRow", {"replay", model, "$/one_row.csv", "--out", "$/out"}, "$/one_row.csv"},
+        {"TimeGoesBack", {"replay", model, "$/back.csv", "--out", "$/out"}, "$/back.csv:4"},
+        {"EmptyTrial", {"replay", model, "$/empty.csv", "--out", "$/out"}, "$/empty.csv"},
+        {"WordForANumber", {"replay", model, "$/word.csv", "--out", "$/out"}, "$/word.csv:3"},
+        {"UnknownIntegrator", {"replay", model, "$/good.csv", "--integrator", "euler"}, "euler"},
+        {"StepZero", {"replay", model, "$/good.csv", "--step", "0", "--out", "$/out"}, "--step"},
+        {"StepNaN", {"replay", model, "$/good.csv", "--step", "nan", "--out", "$/out"}, "--step"},
+        {"UnknownCoordinate",
+         {"replay", model, "$/good.csv", "--coordinate", "knee", "--out", "$/out"},
+         "knee"},
+        {"UnknownInitial",
+         {"replay", model, "$/good.csv", "--initial", "knee=10deg", "--out", "$/out"},
+         "knee"},
+        {"InitialOfALockedOne",
+         {"replay", model, "$/good.csv", "--initial", "shoulder_elv=10deg", "--out", "$/out"},
+         "shoulder_elv"},
+        {"BadAngle",
+         {"replay", model, "$/good.csv", "--initial", "elbow_flexion=34degrees", "--out", "$/out"},
+         "34degrees"},
+        {"InitialTwice",
+         {"replay", model, "$/good.csv", "--initial", "elbow_flexion=1", "--initial",
+          "elbow_flexion=2", "--out", "$/out"},
+         "elbow_flexion"},
+        {"LockTheFreeOne",
+         {"replay", model, "$/good.csv", "--lock", "elbow_flexion=1", "--out", "$/out"},
+         "elbow_flexion"},
+        {"UnknownLock",
+         {"replay", model, "$/good.csv", "--lock", "knee=1", "--out", "$/out"},
+         "knee"},
+        {"UnknownWrap",
+         {"replay", model, "$/good.csv", "--wrap-as-cylinder", "ball", "--out", "$/out"},
+         "ball"},
+        {"OutIsAFile", {"replay", model, "$/good.csv", "--out", "$/good.csv"}, "is not a folder"}}),
     nameOf);
 
 INSTANTIATE_TEST_SUITE_P(

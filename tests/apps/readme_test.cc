@@ -90,6 +90,15 @@ TEST(Contributing, ItsCommandsAreTheLaunchersOwn) {
   }
 }
 
+TEST(Start, RunsTheReadmesFirstResult) {
+  const std::vector<std::string> lines = shellLines(source / "README.md");
+  const auto first = std::find_if(lines.begin(), lines.end(), [](const std::string& line) {
+    return line.starts_with("fisherhill ");
+  });
+  ASSERT_NE(first, lines.end());
+  EXPECT_THAT(contentOf(source / "start"), testing::HasSubstr("/" + *first + "\n"));
+}
+
 TEST(Start, RefusesWhatItDoesNotKnow) {
   const auto result = support::runProgram({(source / "start").string(), "everything"});
   EXPECT_EQ(result.status, 2);
