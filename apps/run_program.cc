@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <exception>
+#include <filesystem>
 #include <new>
 
 #include "info/version.h"
@@ -31,8 +32,9 @@ int runCommand(Command& command, const CommandContext& context) {
   try {
     return status(command.run(context));
   } catch (const Interrupted&) {
-    fmt::print(stderr, "fisherhill {}: interrupted; finished parts are kept{}\n",
-               context.subcommand, context.out ? " in " + context.out->string() : "");
+    const bool kept = context.out && std::filesystem::exists(*context.out);
+    fmt::print(stderr, "fisherhill {}: interrupted; {}\n", context.subcommand,
+               kept ? "finished parts are in " + context.out->string() : "nothing was written");
     return status(ExitStatus::interrupted);
   } catch (const std::bad_alloc&) {
     return fail(context.subcommand, "not enough memory");
