@@ -428,6 +428,7 @@ class Compiler {
 
 CompiledPath compilePath(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
                          const std::vector<std::string>& wrapAsCylinder) {
+  for (const std::string& name : wrapAsCylinder) findWrapObject(model, name);
   return Compiler(model, skeleton, muscle, wrapAsCylinder).compile();
 }
 
