@@ -103,7 +103,8 @@ class Compiler {
                                         point.condition->lower, point.condition->upper};
       if (condition.source.freeIndex < 0) {
         const double value = condition.source.value;
-        const bool active = value >= condition.lower - 1e-5 && value <= condition.upper + 1e-5;
+        const bool active = value >= condition.lower - conditionMargin &&
+                            value <= condition.upper + conditionMargin;
         if (!active) return;
       } else {
         node.condition = conditionIndex(*point.condition, condition);
@@ -250,9 +251,9 @@ class Compiler {
     }
     for (const CandidateWrap& wrap : wraps_) {
       if (wrap.surface) {
-        assign(wrap, variant);
+        assign(wrap, variant, bits);
       } else {
-        leaveOut(wrap, variant);
+        leaveOut(wrap, variant, bits);
       }
     }
     // the spans that stay: their length, once and for all
@@ -265,6 +266,19 @@ class Compiler {
       }
     }
     path_.variants.push_back(std::move(variant));
+  }
+
+  // Whether a posture has exactly the conditions of these bits.
+  bool occurs(std::size_t bits, const Posture& posture) const {
+    for (std::size_t i = 0; i < path_.conditions.size(); ++i) {
+      const CompiledCondition& c = path_.conditions[i];
+      const double q = posture.q[static_cast<std::size_t>(c.source.freeIndex)];
+      const double coordinate = c.source.coupling.evaluate(q).value;
+      const bool active =
+          coordinate >= c.lower - conditionMargin && coordinate <= c.upper + conditionMargin;
+      if (active != (((bits >> i) & 1) != 0)) return false;
+    }
+    return true;
   }
 
   bool inRange(const CandidateWrap& wrap, const PathSpan& span) const {
@@ -298,7 +312,7 @@ class Compiler {
   }
 
   // Gives a surface to the spans that may touch it.
-  void assign(const CandidateWrap& wrap, PathVariant& variant) {
+  void assign(const CandidateWrap& wrap, PathVariant& variant, std::size_t bits) {
     const PathSurface& surface = path_.surfaces[*wrap.surface];
     std::vector<Encounter> through, around;
     for (std::size_t i = 0; i < variant.all.size(); ++i) {
@@ -310,6 +324,7 @@ class Compiler {
       const std::size_t numPostures = encounter.moves ? postures_.size() : 1;
       const double reach = encounter.moves ? 1.02 : 1.0;
       for (std::size_t k = 0; k < numPostures && !encounter.penetrates; ++k) {
+        if (encounter.moves && !occurs(bits, postures_[k])) continue;
         const auto [P, Q] = ends(wrap, span, postures_[k]);
         if (!(closestApproach(surface, P, Q) < reach)) continue;
         encounter.penetrates = true;
@@ -362,7 +377,7 @@ class Compiler {
   }
 
   // An object that cannot be evaluated: no moving span may reach it.
-  void leaveOut(const CandidateWrap& wrap, const PathVariant& variant) {
+  void leaveOut(const CandidateWrap& wrap, const PathVariant& variant, std::size_t bits) {
     bool fixedInRange = false, movingInRange = false;
     for (const PathSpan& span : variant.all) {
       if (!inRange(wrap, span)) continue;
@@ -372,6 +387,7 @@ class Compiler {
       }
       movingInRange = true;
       for (const Posture& posture : postures_) {
+        if (!occurs(bits, posture)) continue;
         const auto [P, Q] = ends(wrap, span, posture);
         if (closestApproach(wrap.semiAxes, P, Q) < 1.02) refuse(wrap);
       }
@@ -387,9 +403,9 @@ class Compiler {
 
   [[noreturn]] void refuse(const CandidateWrap& wrap) const {
     const Vec3<double>& s = wrap.semiAxes;
-    const std::string what =
-        wrap.isTorus ? fmt::format("torus '{}'", wrap.name)
-                     : fmt::format("ellipsoid '{}' (semi-axes {}, {}, {} m)", wrap.name, s[0], s[1], s[2]);
+    const std::string what = wrap.isTorus ? fmt::format("torus '{}'", wrap.name)
+                                          : fmt::format("ellipsoid '{}' (semi-axes {}, {}, {} m)",
+                                                        wrap.name, s[0], s[1], s[2]);
     const std::string message = fmt::format(
         "muscle '{}' can touch the {} where it moves; only cylinders and spheres are simulated",
         muscle_.name, what);

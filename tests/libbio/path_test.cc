@@ -282,6 +282,17 @@ TEST(MusclePath, ConditionalPointsActInTheirRange) {
   EXPECT_EQ(locked.at(ArmPath<1>::Q(0.7)).length, through.at(ArmPath<1>::Q(0.7)).length);
 }
 
+// A guide that lifts the path off an ellipsoid wherever it could be touched makes it harmless.
+TEST(MusclePath, LooksAtSpansOnlyWhereTheirPointsAreActive) {
+  const Model model = arm();
+  Muscle m = extensor({"odd"});
+  EXPECT_THROW(ArmPath<1>(model, m), UnsupportedWrap);
+  PathPoint guide = point("humerus", {-0.05, -0.345, -0.012});
+  guide.condition = PointCondition{"flexion", 0.3, 3.0};
+  m.path.points.insert(m.path.points.begin() + 2, guide);
+  EXPECT_NO_THROW(ArmPath<1>(model, m));
+}
+
 TEST(MusclePath, MovingPointsFollowTheirFunctions) {
   const Model model = arm();
   Muscle m = flexor();
@@ -457,6 +468,7 @@ TEST(MusclePath, RefusesWhatItCannotSimulate) {
   refuses(extensor({"ellipsoid"}), {}, "--wrap-as-cylinder ellipsoid");
   refuses(extensor({"odd"}), {}, "only cylinders and spheres are simulated");
   refuses(extensor({"odd"}), {"odd"}, "two must be equal");
+  EXPECT_THROW(ArmPath<1>(model, extensor({"odd"})), UnsupportedWrap);
   refuses(extensor({"nothing"}), {}, "no wrap object called 'nothing'");
   refuses(muscle({point("humerus", {0, 0, 0})}), {}, "at least 2");
   refuses(muscle({point("humerus", {0, 0, 0}), point("foot", {0, 0, 0})}), {},
