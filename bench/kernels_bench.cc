@@ -173,7 +173,7 @@ void hingePath(benchmark::State& state) {
   const bio::MusclePath path(model, skeleton, muscle, {});
   using Q = Eigen::Matrix<double, 1, 1>;
   std::vector<bio::RigidMotion<double, 1>> moved(skeleton.numSegments());
-  const Q q(state.range(0) / 100.0);
+  const Q q(static_cast<double>(state.range(0)) / 100);
   skeleton.motions<double, 1>(q, moved.data());
   for (auto _ : state) benchmark::DoNotOptimize(path.length<1>(q, moved.data()));
   state.SetLabel(path.length<1>(q, moved.data()).wrapped ? "touches" : "straight");
