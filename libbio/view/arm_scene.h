@@ -32,7 +32,7 @@ constexpr double viewAngle = 0.4;
 Eigen::Vector3d directionOf(Camera camera, const std::vector<Eigen::Vector3d>& points);
 
 /// The part of the picture that legend, captions and time leave free.
-constexpr PictureFrame pictureFrame = {-0.93, 0.68, -0.76, 0.8};
+constexpr PictureFrame pictureFrame = {-0.93, 0.68, -0.76, 0.7};
 
 /// Bones, joints, muscles, wraps, ground, legend and time stamp, drawn off screen.
 class ArmScene {
