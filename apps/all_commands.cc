@@ -1,5 +1,6 @@
 #include "check.h"
 #include "command.h"
+#include "compare.h"
 #include "emg.h"
 #include "moment_arms.h"
 #include "render.h"
@@ -11,6 +12,7 @@ namespace app {
 std::vector<std::unique_ptr<Command>> allCommands() {
   std::vector<std::unique_ptr<Command>> commands;
   commands.push_back(checkCommand());
+  commands.push_back(compareCommand());
   commands.push_back(emgCommand());
   commands.push_back(momentArmsCommand());
   commands.push_back(renderCommand(drawInOtherProgram));

@@ -1,0 +1,208 @@
+#include "compare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "arm_options.h"
+#include "bio/osim_file.h"
+#include "bio/replay.h"
+#include "compare_report.h"
+#include "progress_bar.h"
+#include "result.h"
+#include "text.h"
+
+namespace app {
+namespace {
+
+class Compare : public Command {
+ public:
+  About about() const override {
+    return {"compare", "Integrators at time steps: error, time, how each fails",
+            "fisherhill compare models/elbow8.osim emg_data/curl_slow.sto --out out/compare"};
+  }
+
+  void addOptions(CLI::App& options) override {
+    options.add_option("MODEL", model_, "model (.osim)")
+        ->required()
+        ->check(CLI::ExistingFile)
+        ->type_name("");
+    options.add_option("TRIAL", trial_, "excitations, and the measured coordinate if there is one")
+        ->required()
+        ->check(CLI::ExistingFile)
+        ->type_name("");
+    options
+        .add_option("--integrators", integrators_, "which to compare, of rk4, vi, vi-left, cvode")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->type_name("NAMES")
+        ->default_str("rk4,vi,vi-left,cvode");
+    options
+        .add_option("--steps", steps_,
+                    "time steps [s], rising; of cvode the intervals of the output")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->type_name("SECONDS")
+        ->default_str("0.0002,0.0003,0.0005,0.0008,0.001,0.002,0.005,0.01,0.02,0.05");
+    options
+        .add_option("--also", also_,
+                    "lay another program's result beside ours: a table of states with the "
+                    "coordinate; may be repeated")
+        ->type_name("NAME=FILE")
+        ->allow_extra_args(false);
+    addSimulationOptions(options, simulation_);
+  }
+
+  ExitStatus run(const CommandContext& context) override {
+    bio::CompareOptions options = compareOptions();
+    OutputFolder folder(context, {"compare.csv"});
+    Summary summary(context);
+    summary.addInput(model_);
+    summary.addInput(trial_);
+    const bio::Model model = bio::readOsim(model_);
+    const bio::Trial trial = bio::readTrial(trial_, model, {simulation_.ignoreExtra});
+    for (const std::string& warning : model.warnings) summary.warn(warning);
+    for (const std::string& warning : trial.warnings) summary.warn(warning);
+
+    const bio::Arm arm(model, armOptions(simulation_));
+    if (arm.numMuscles() == 0) {
+      throw std::invalid_argument(
+          fmt::format("{}: no muscle moves {}", model_, fmt::join(simulation_.coordinates, ", ")));
+    }
+    const auto& free = arm.skeleton().coordinates();
+    const auto rotation =
+        std::find_if(free.begin(), free.end(), [](const auto& c) { return c.isRotation; });
+    if (rotation == free.end()) throw std::invalid_argument("no free coordinate is a rotation");
+    std::vector<AlsoCurve> also = readAlso(*rotation, summary);
+
+    const bio::ExcitationSignal excitation = bio::excitationOf(trial, arm);
+    options.startTime = trial.times[0];
+    options.duration = trial.times[trial.times.size() - 1] - options.startTime;
+    const bio::ArmState state =
+        bio::initialState(arm, bio::startCoordinates(trial, arm, byName(simulation_.initial)),
+                          excitation, options.startTime);
+    bio::Comparison comparison;
+    {
+      ProgressBar bar("compare");
+      options.progress = [&](double done) { bar.update(done); };
+      comparison = bio::compareIntegrators(arm, excitation, state, options);
+    }
+    if (comparison.reference.completed()) {
+      for (AlsoCurve& one : also) {
+        one.rms = bio::rmsDifference(arm, one.curve, comparison.reference.motion, rotation->name);
+      }
+    }
+    folder.write("compare.csv", [&](std::ostream& out) { writeCells(comparison, out); });
+
+    const bio::CompareCell* chosen = chosenCell(comparison);
+    const CompareFindings findings{model_,  trial_,     trial, arm,   *rotation,
+                                   options, comparison, also,  chosen};
+    if (chosen != nullptr) {
+      summary.setSimulation(shortName(chosen->integrator), chosen->step, options.duration,
+                            chosen->wallSeconds);
+    } else {
+      summary.setSimulation(simulation_.integrator, simulation_.stepOrDefault(), options.duration,
+                            comparison.reference.motion.wallSeconds);
+    }
+    tellCompare(findings, summary);
+    deliver(context, summary, compareReport(findings), folder);
+    return comparison.reference.completed() ? ExitStatus::done : ExitStatus::answerIsNo;
+  }
+
+ private:
+  /// The typed lists; --step joins the steps.
+  bio::CompareOptions compareOptions() const {
+    bio::CompareOptions options;
+    if (!integrators_.empty()) {
+      options.integrators.clear();
+      for (const std::string& name : integrators_) {
+        if (name.empty()) throw std::invalid_argument("--integrators: the list is empty");
+        options.integrators.push_back(integratorNamed(name));
+      }
+    }
+    if (!steps_.empty()) {
+      options.steps.clear();
+      for (const std::string& text : steps_) {
+        if (text.empty()) throw std::invalid_argument("--steps: the list is empty");
+        double step = 0;
+        try {
+          step = parseNumber(text);
+        } catch (const std::invalid_argument& error) {
+          throw std::invalid_argument(fmt::format("--steps: {}", error.what()));
+        }
+        if (!(step > 0)) {
+          throw std::invalid_argument(fmt::format("--steps: {} s, must be > 0", text));
+        }
+        if (!options.steps.empty() && !(step > options.steps.back())) {
+          throw std::invalid_argument(fmt::format("--steps: {} s after {} s, must rise", text,
+                                                  numberText(options.steps.back())));
+        }
+        options.steps.push_back(step);
+      }
+    }
+    if (simulation_.step) {
+      const auto at =
+          std::lower_bound(options.steps.begin(), options.steps.end(), *simulation_.step);
+      if (at == options.steps.end() || *at != *simulation_.step) {
+        options.steps.insert(at, *simulation_.step);
+      }
+    }
+    return options;
+  }
+
+  static bio::Integrator integratorNamed(const std::string& name) {
+    for (const auto integrator : bio::CompareOptions{}.integrators) {
+      if (shortName(integrator) == name) return integrator;
+    }
+    throw std::invalid_argument(
+        fmt::format("--integrators: '{}' is none of rk4, vi, vi-left, cvode", name));
+  }
+
+  std::vector<AlsoCurve> readAlso(const bio::Coordinate& coordinate, Summary& summary) const {
+    std::vector<AlsoCurve> also;
+    for (const std::string& text : also_) {
+      const std::size_t sign = text.find('=');
+      if (sign == 0 || sign == text.npos || sign + 1 == text.size()) {
+        throw std::invalid_argument(fmt::format("--also: '{}' must be NAME=FILE", text));
+      }
+      const std::string file = text.substr(sign + 1);
+      also.push_back({text.substr(0, sign), bio::readCoordinate(file, coordinate)});
+      summary.addInput(file);
+    }
+    return also;
+  }
+
+  /// The run of --integrator, else of the first integrator, at the step nearest to --step.
+  const bio::CompareCell* chosenCell(const bio::Comparison& comparison) const {
+    const bio::CompareCell* best = nullptr;
+    const auto distance = [&](const bio::CompareCell& cell) {
+      return std::abs(std::log(cell.step / simulation_.stepOrDefault()));
+    };
+    const auto isAsked = [&](const bio::CompareCell& cell) {
+      return shortName(cell.integrator) == simulation_.integrator;
+    };
+    for (const bio::CompareCell& cell : comparison.cells) {
+      if (best == nullptr || (isAsked(cell) && !isAsked(*best)) ||
+          (cell.integrator == best->integrator && distance(cell) < distance(*best))) {
+        best = &cell;
+      }
+    }
+    return best;
+  }
+
+  std::string model_;
+  std::string trial_;
+  std::vector<std::string> integrators_;
+  std::vector<std::string> steps_;
+  std::vector<std::string> also_;
+  SimulationOptions simulation_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> compareCommand() {
+  return std::make_unique<Compare>();
+}
+
+}  // namespace app

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "compare_report.h"
+
+// The figures of a comparison.
+namespace app {
+
+/// ok, unstable, no solution or stopped.
+const char* statusName(bio::Outcome outcome);
+
+bool isOk(const bio::CompareCell& cell);
+
+/// The cells of one integrator, steps rising.
+std::vector<const bio::CompareCell*> cellsOf(const CompareFindings& findings,
+                                             bio::Integrator integrator);
+
+/// RMS error over time to simulate, one curve per integrator.
+Figure workPrecisionFigure(const CompareFindings& findings);
+
+/// RMS error over step: its slope is the order.
+Figure errorFigure(const CompareFindings& findings);
+
+/// Where the runs ended, of the integrators that failed at any step; a sentence if none did.
+std::variant<Section, Paragraph, Figure, Table> failureTimeline(const CompareFindings& findings);
+
+/// Runge–Kutta at three steps: the last two that hold and the first that does not.
+Figure rungeKuttaFigure(const CompareFindings& findings);
+
+/// The variational integrator at two steps: near 10 ms and the longest that holds.
+Figure variationalFigure(const CompareFindings& findings);
+
+/// The reference, and each fixed-step integrator at its longest step with a useful error.
+Figure besideFigure(const CompareFindings& findings, const std::string& title);
+
+}  // namespace app

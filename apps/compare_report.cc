@@ -1,0 +1,236 @@
+#include "compare_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "bio/replay.h"
+#include "compare_figures.h"
+#include "text.h"
+
+namespace app {
+namespace {
+
+constexpr double radian = 180 / std::numbers::pi;  ///< in degrees
+
+Table cellTable(const CompareFindings& f) {
+  Table table{"Every run",
+              {"integrator", "step [s]", "status", "RMS error [deg]", "largest [deg]", "time [ms]",
+               "Newton iterations per step", "energy error [J]"},
+              {}};
+  for (const bio::CompareCell& cell : f.comparison.cells) {
+    table.rows.push_back(
+        {shortName(cell.integrator), numberText(cell.step),
+         isOk(cell)
+             ? (cell.halvedSteps > 0 ? fmt::format("ok, {} steps halved", cell.halvedSteps) : "ok")
+             : fmt::format("{} at {} s", statusName(cell.outcome), numberText(cell.failedAt)),
+         numberText(cell.error.rms * radian, 3), numberText(cell.error.largest * radian, 3),
+         numberText(cell.wallSeconds * 1e3, 3), numberText(cell.newtonPerStep, 3),
+         numberText(cell.energyError, 3)});
+  }
+  return table;
+}
+
+Table failureTable(const CompareFindings& f) {
+  Table table{"How runs failed", {"integrator", "step [s]", "why"}, {}};
+  for (const bio::CompareCell& cell : f.comparison.cells) {
+    if (isOk(cell)) continue;
+    table.rows.push_back({shortName(cell.integrator), numberText(cell.step), cell.why});
+  }
+  return table;
+}
+
+Table limitTable(const CompareFindings& f) {
+  Table table{"", {"integrator", "stable at [s]", "not stable at [s]", "how it fails there"}, {}};
+  for (const bio::StepLimit& limit : f.comparison.limits) {
+    table.rows.push_back({shortName(limit.integrator), numberText(limit.stable),
+                          numberText(limit.failing), limit.why});
+  }
+  return table;
+}
+
+std::string referenceText(const CompareFindings& f) {
+  const bio::ConvergedReference& reference = f.comparison.reference;
+  return fmt::format(
+      "The reference is CVODE at a relative tolerance of {:g}. At {:g} it differs by {:.2g} deg "
+      "RMS, "
+      "at most by {:.2g} deg; reading it between its rows adds {:.2g} deg. Errors are not known "
+      "better than that.",
+      reference.relativeTolerance, reference.looserTolerance, reference.disagreement.rms * radian,
+      reference.disagreement.largest * radian, reference.interpolationError * radian);
+}
+
+std::string verdictOf(const CompareFindings& f) {
+  std::string text;
+  if (isOk(*f.chosen)) {
+    text = fmt::format("{} at {} s is {:.2g} deg (RMS) from the converged reference",
+                       shortName(f.chosen->integrator), numberText(f.chosen->step),
+                       f.chosen->error.rms * radian);
+  } else {
+    text = fmt::format("{} at {} s does not reach the end", shortName(f.chosen->integrator),
+                       numberText(f.chosen->step));
+  }
+  for (const bio::StepLimit& limit : f.comparison.limits) {
+    if (std::isnan(limit.stable)) {
+      text += fmt::format("; no stable step of {} was found", shortName(limit.integrator));
+    } else if (std::isnan(limit.failing)) {
+      text += fmt::format("; {} is stable at every step tried, to {:.2g} s",
+                          shortName(limit.integrator), limit.stable);
+    } else {
+      text += fmt::format("; {} is stable to {:.2g} s", shortName(limit.integrator), limit.stable);
+    }
+  }
+  return text + ".";
+}
+
+void addMeasured(const CompareFindings& f, Report& report) {
+  for (const bio::MeasuredMotion& measured : f.trial.measured) {
+    if (measured.coordinate != f.coordinate.name) continue;
+    Figure figure = besideFigure(f, "Beside the measured motion");
+    const bio::MeasuredError error =
+        bio::compareWithMeasured(f.arm, f.comparison.reference.motion, measured);
+    Series series{.name = "measured", .style = SeriesStyle::points};
+    for (Eigen::Index k = 0; k < measured.times.size(); ++k) {
+      series.x.push_back(measured.times[k]);
+      series.y.push_back(measured.values[k] * radian);
+    }
+    figure.series.push_back(std::move(series));
+    figure.caption = fmt::format(
+        "The reference is {:.3g} deg (RMS) from the measured motion: what the model lacks, not the "
+        "integrator. Each integrator is drawn at its longest step with an error below {:.2g} deg.",
+        error.rms * radian, f.options.usefulError * radian);
+    report.details.push_back(std::move(figure));
+  }
+}
+
+void addAlso(const CompareFindings& f, Report& report) {
+  if (f.also.empty()) return;
+  Figure figure = besideFigure(f, "Beside other programs");
+  for (const AlsoCurve& one : f.also) {
+    Series series{.name = one.name, .x = one.curve.time, .style = SeriesStyle::points};
+    for (const double value : one.curve.value) series.y.push_back(value * radian);
+    figure.series.push_back(std::move(series));
+    figure.caption += fmt::format("{}{} is {:.2g} deg (RMS) from the reference.",
+                                  figure.caption.empty() ? "" : " ", one.name, one.rms * radian);
+  }
+  report.details.push_back(std::move(figure));
+}
+
+}  // namespace
+
+void writeCells(const bio::Comparison& comparison, std::ostream& out) {
+  const auto cell = [](double value) {
+    return std::isfinite(value) ? fmt::format("{:.9g}", value) : std::string();
+  };
+  out << "integrator,step_s,status,failed_at_s,rms_deg,max_deg,wall_ms,newton_per_step,"
+         "energy_error_J\n";
+  for (const bio::CompareCell& one : comparison.cells) {
+    out << fmt::format("{},{},{},{},{},{},{},{},{}\n", shortName(one.integrator), cell(one.step),
+                       statusName(one.outcome), cell(one.failedAt), cell(one.error.rms * radian),
+                       cell(one.error.largest * radian), cell(one.wallSeconds * 1e3),
+                       cell(one.newtonPerStep), cell(one.energyError));
+  }
+}
+
+void tellCompare(const CompareFindings& f, Summary& summary) {
+  using Json = nlohmann::ordered_json;
+  const bio::ConvergedReference& reference = f.comparison.reference;
+  Json stable = {{"rk4", nullptr}, {"vi", nullptr}};
+  for (const bio::StepLimit& limit : f.comparison.limits) {
+    stable[shortName(limit.integrator)] = limit.stable;
+  }
+  Json observed = {{"vi", nullptr}, {"vi-left", nullptr}, {"rk4", nullptr}};
+  Json used = Json::object();
+  for (const bio::ObservedOrder& order : f.comparison.orders) {
+    observed[shortName(order.integrator)] = order.order;
+    used[shortName(order.integrator)] = order.steps;
+  }
+  summary.set("largest_stable_step_s", stable);
+  summary.set("observed_order", observed);
+  summary.set("observed_order_steps_s", used);
+  summary.set("stable_means_rms_below_deg", f.options.usefulError * radian);
+  if (!reference.completed()) {
+    summary.set("why", reference.motion.why);
+    return;
+  }
+  summary.set("status", statusName(f.chosen->outcome));
+  summary.set("rms_deg", f.chosen->error.rms * radian);
+  summary.set("max_deg", f.chosen->error.largest * radian);
+  summary.set("newton_iterations_per_step", f.chosen->newtonPerStep);
+  summary.set("energy_error_J", f.chosen->energyError);
+  summary.set("reference_relative_tolerances",
+              Json::array({reference.looserTolerance, reference.relativeTolerance}));
+  summary.set("reference_disagreement_rms_deg", reference.disagreement.rms * radian);
+  summary.set("reference_disagreement_max_deg", reference.disagreement.largest * radian);
+  summary.set("reference_interpolation_rms_deg", reference.interpolationError * radian);
+  for (const bio::MeasuredMotion& measured : f.trial.measured) {
+    if (measured.coordinate != f.coordinate.name) continue;
+    summary.set("reference_from_measured_rms_deg",
+                bio::compareWithMeasured(f.arm, reference.motion, measured).rms * radian);
+  }
+  for (const AlsoCurve& one : f.also) {
+    summary.set("also_" + one.name + "_rms_deg", one.rms * radian);
+  }
+  summary.set("timings_per_run", f.options.timings);
+  summary.set("notes", f.arm.notes());
+}
+
+Report compareReport(const CompareFindings& f) {
+  Report report;
+  report.title = fmt::format("Integrators on {} with {}", f.trialFile, f.modelFile);
+  if (!f.comparison.reference.completed()) {
+    report.verdict =
+        fmt::format("There is no converged reference: {}.", f.comparison.reference.motion.why);
+    return report;
+  }
+  report.verdict = verdictOf(f);
+  report.mainFigure = workPrecisionFigure(f);
+  report.details.push_back(errorFigure(f));
+  report.details.push_back(Paragraph{referenceText(f)});
+  if (!f.arm.switches().empty() &&
+      std::count(f.options.integrators.begin(), f.options.integrators.end(),
+                 bio::Integrator::rungeKutta4) > 0) {
+    report.details.push_back(Paragraph{
+        "A muscle path of this arm gains or loses points at certain angles, and its length "
+        "jumps there. The variational integrators end a step at such a place; Runge–Kutta "
+        "does not, so that its error follows from where the steps happen to fall and its "
+        "order drops to about one."});
+  }
+  report.details.push_back(Section{"Largest stable steps"});
+  report.details.push_back(limitTable(f));
+  report.details.push_back(Paragraph{fmt::format(
+      "A step is stable if the run reaches the end and stays within {:.2g} deg (RMS) of the "
+      "reference; found by bisection to {:.2g} %.",
+      f.options.usefulError * radian, (f.options.stepResolution - 1) * 100)});
+  report.details.push_back(failureTimeline(f));
+  if (Table failures = failureTable(f); !failures.rows.empty()) {
+    report.details.push_back(std::move(failures));
+  }
+  report.details.push_back(Section{"Motions"});
+  if (!cellsOf(f, bio::Integrator::rungeKutta4).empty()) {
+    report.details.push_back(rungeKuttaFigure(f));
+  }
+  if (!cellsOf(f, bio::Integrator::variational).empty()) {
+    report.details.push_back(variationalFigure(f));
+  }
+  addMeasured(f, report);
+  addAlso(f, report);
+  report.details.push_back(Section{"Runs"});
+  report.details.push_back(cellTable(f));
+  report.details.push_back(Paragraph{
+      fmt::format("Times are medians of {} runs. The energy error is the largest difference "
+                  "between kinetic plus "
+                  "potential energy and the work of muscles and passive forces. A step of CVODE is "
+                  "the interval "
+                  "of its output; its own steps follow from a relative tolerance of 1e-10.",
+                  f.options.timings)});
+  if (!f.arm.notes().empty()) {
+    report.details.push_back(Section{"Notes"});
+    for (const std::string& note : f.arm.notes()) report.details.push_back(Paragraph{note});
+  }
+  return report;
+}
+
+}  // namespace app

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bio/coupled.h"
+
+namespace bio {
+
+/// The course of one coordinate in a result of any program.
+struct CoordinateCurve {
+  std::vector<double> time;   ///< [s] rising
+  std::vector<double> value;  ///< [rad] or [m]; NaN where the table has none
+};
+
+/// Reads a table of states: the column `/…/NAME/value` of OpenSim 4, `NAME/value`, `NAME`, or
+/// `NAME_deg`. Angles are degrees when the header says inDegrees=yes or the name ends in `_deg`.
+/// @throws FileError if the table cannot be read or has no such column, or more than one
+CoordinateCurve readCoordinate(const std::filesystem::path& statesFile,
+                               const Coordinate& coordinate);
+
+/// Root mean square of curve − motion at the curve's times that the motion covers [rad] or [m].
+/// @throws std::invalid_argument if it covers none of them, or the coordinate is not free
+double rmsDifference(const Arm& arm, const CoordinateCurve& curve, const Trajectory& motion,
+                     const std::string& coordinate);
+
+}  // namespace bio

@@ -1,0 +1,38 @@
+#pragma once
+
+// The runs that a comparison is made of; not part of the public interface.
+
+#include "bio/compare.h"
+
+namespace bio::compare {
+
+/// One arm under one excitation, simulated as often as it takes.
+class Runs {
+ public:
+  /// Keeps references; `reference` may be filled later by makeReference().
+  Runs(const Arm& arm, const ExcitationSignal& excitation, const ArmState& start,
+       const CompareOptions& options, const ConvergedReference& reference)
+      : arm_(&arm),
+        excitation_(&excitation),
+        start_(&start),
+        options_(&options),
+        reference_(&reference) {}
+
+  ConvergedReference makeReference() const;
+  CompareCell cell(Integrator integrator, double step) const;
+  StepLimit limit(Integrator integrator) const;
+  ObservedOrder order(Integrator integrator) const;
+
+ private:
+  SimulationOptions simulationOptions(Integrator integrator, double step) const;
+  Trajectory run(Integrator integrator, double step) const;
+  std::string fault(Integrator integrator, double step) const;
+
+  const Arm* arm_;
+  const ExcitationSignal* excitation_;
+  const ArmState* start_;
+  const CompareOptions* options_;
+  const ConvergedReference* reference_;
+};
+
+}  // namespace bio::compare

@@ -1,0 +1,128 @@
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "support/run_program.h"
+#include "support/scratch_folder.h"
+
+namespace {
+
+using support::ProgramResult;
+using support::runFisherHill;
+using support::ScratchFolder;
+using testing::HasSubstr;
+
+const std::string model = "models/elbow8.osim";
+
+/// A third of a second of biceps, with a measured angle.
+std::string shortTrial(const ScratchFolder& scratch, bool measured = true) {
+  std::ostringstream text;
+  text << "time,BIClong,BRA" << (measured ? ",elbow_flexion_deg" : "") << "\n";
+  for (int k = 0; k <= 30; ++k) {
+    text << 0.01 * k << ',' << 0.05 + 0.003 * k << ",0.05";
+    if (measured) text << ',' << 30 + 0.1 * k;
+    text << '\n';
+  }
+  return scratch.file(measured ? "trial.csv" : "unmeasured.csv", text.str());
+}
+
+std::vector<std::string> linesOf(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(CompareCommand, WritesTheTableTheSummaryAndTheReport) {
+  const ScratchFolder scratch;
+  const std::string trial = shortTrial(scratch);
+  const std::string states = scratch.file(
+      "states.csv", "time,/jointset/elbow/elbow_flexion/value\n0,0.52\n0.1,0.52\n0.2,0.53\n");
+  const std::string out = (scratch / "out").string();
+  const ProgramResult result = runFisherHill({"compare", model, trial, "--integrators",
+                                              "rk4,vi,cvode", "--steps", "0.0002,0.005", "--step",
+                                              "0.01", "--also", "OpenSim=" + states, "--out", out});
+  ASSERT_EQ(result.status, 0) << result.err;
+
+  const auto lines = linesOf(support::contentOf(out + "/compare.csv"));
+  ASSERT_EQ(lines.size(), 10u);
+  EXPECT_EQ(lines[0],
+            "integrator,step_s,status,failed_at_s,rms_deg,max_deg,wall_ms,newton_per_step,"
+            "energy_error_J");
+  EXPECT_THAT(lines[1], testing::StartsWith("rk4,0.0002,ok,,"));
+  EXPECT_THAT(lines[3], testing::MatchesRegex("rk4,0.01,unstable,[0-9.e-]+,,,,0,"));
+  EXPECT_THAT(lines[6], testing::StartsWith("vi,0.01,ok,,"));
+  EXPECT_THAT(lines[9], testing::StartsWith("cvode,0.01,ok,,"));
+  for (const std::string& line : lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 8);
+
+  const auto json = nlohmann::json::parse(support::contentOf(out + "/summary.json"));
+  EXPECT_EQ(json["integrator"], "vi");
+  EXPECT_EQ(json["step_s"], 0.01);
+  EXPECT_NEAR(json["duration_s"].get<double>(), 0.3, 1e-12);
+  EXPECT_GT(json["wall_s"].get<double>(), 0);
+  EXPECT_LT(json["largest_stable_step_s"]["rk4"].get<double>(), 0.0008);
+  EXPECT_GE(json["largest_stable_step_s"]["vi"].get<double>(), 0.01);
+  EXPECT_NEAR(json["observed_order"]["vi"].get<double>(), 2, 0.3);
+  EXPECT_TRUE(json["observed_order"]["vi-left"].is_null());
+  EXPECT_GT(json["also_OpenSim_rms_deg"].get<double>(), 0);
+  EXPECT_EQ(json["inputs"].size(), 3u);
+
+  const std::string report = support::contentOf(out + "/report.html");
+  for (const char* title : {"Work and precision", "Error against step", "Where the runs ended",
+                            "Runge–Kutta at three steps", "The variational integrator at two steps",
+                            "Beside the measured motion", "Beside other programs"}) {
+    EXPECT_THAT(report, HasSubstr(title));
+  }
+}
+
+TEST(CompareCommand, LeavesOutFiguresThatHaveNothingToShow) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "out").string();
+  const ProgramResult result =
+      runFisherHill({"compare", model, shortTrial(scratch, false), "--integrators", "vi-left",
+                     "--steps", "0.01", "--initial", "elbow_flexion=40deg", "--out", out});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::string report = support::contentOf(out + "/report.html");
+  EXPECT_THAT(report, HasSubstr("Every run reached the end of the trial."));
+  for (const char* title :
+       {"Runge–Kutta at three steps", "Beside the measured motion", "Beside other programs"}) {
+    EXPECT_THAT(report, testing::Not(HasSubstr(title)));
+  }
+  const auto json = nlohmann::json::parse(support::contentOf(out + "/summary.json"));
+  EXPECT_EQ(json["integrator"], "vi-left");
+  EXPECT_TRUE(json["largest_stable_step_s"]["rk4"].is_null());
+}
+
+TEST(CompareCommand, TellsWrongUseInOneLine) {
+  const ScratchFolder scratch;
+  const std::string trial = shortTrial(scratch);
+  const std::string other = scratch.file("other.csv", "time,knee\n0,1\n1,2\n");
+  const auto before = scratch.listing();
+  const auto fails = [&](std::vector<std::string> arguments, const std::string& message) {
+    arguments.insert(arguments.begin(), {"compare", model, trial});
+    arguments.insert(arguments.end(), {"--out", (scratch / "out").string()});
+    const ProgramResult result = runFisherHill(std::move(arguments));
+    EXPECT_EQ(result.status, 2) << message;
+    // the trial's warnings may stand before the error
+    const std::string error = result.err.substr(result.err.rfind("fisherhill compare: "));
+    EXPECT_THAT(error, HasSubstr(message));
+    EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
+    EXPECT_EQ(scratch.listing(), before);
+  };
+  fails({"--integrators", ""}, "--integrators");
+  fails({"--integrators", "rk4,euler"}, "'euler' is none of rk4, vi, vi-left, cvode");
+  fails({"--integrators", "vi,vi"}, "twice");
+  fails({"--steps", ""}, "--steps");
+  fails({"--steps=-0.01"}, "--steps: -0.01 s, must be > 0");
+  fails({"--steps", "nan"}, "--steps");
+  fails({"--steps", "0.01,0.005"}, "--steps: 0.005 s after 0.01 s, must rise");
+  fails({"--steps", "0.01,0.5"}, "must not exceed the duration");
+  fails({"--also", "states.sto"}, "--also: 'states.sto' must be NAME=FILE");
+  fails({"--also", "OpenSim=" + other}, other + ": no column of coordinate 'elbow_flexion'");
+  fails({"--also", "OpenSim=/no/such.sto"}, "/no/such.sto");
+  fails({"--step", "-1"}, "--step");
+}
+
+}  // namespace
