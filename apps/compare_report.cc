@@ -16,7 +16,7 @@ namespace {
 constexpr double radian = 180 / std::numbers::pi;  ///< in degrees
 
 Table cellTable(const CompareFindings& f) {
-  Table table{"Every run",
+  Table table{"",
               {"integrator", "step [s]", "status", "RMS error [deg]", "largest [deg]", "time [ms]",
                "Newton iterations per step", "energy error [J]"},
               {}};
@@ -24,10 +24,10 @@ Table cellTable(const CompareFindings& f) {
     table.rows.push_back(
         {shortName(cell.integrator), numberText(cell.step),
          isOk(cell)
-             ? (cell.halvedSteps > 0 ? fmt::format("ok, {} steps halved", cell.halvedSteps) : "ok")
+             ? (cell.halvedSteps > 0 ? fmt::format("ok, {} halved", cell.halvedSteps) : "ok")
              : fmt::format("{} at {} s", statusName(cell.outcome), numberText(cell.failedAt)),
          numberText(cell.error.rms * radian, 3), numberText(cell.error.largest * radian, 3),
-         numberText(cell.wallSeconds * 1e3, 3), numberText(cell.newtonPerStep, 3),
+         numberText(cell.wallSeconds * 1e3, 4), numberText(cell.newtonPerStep, 3),
          numberText(cell.energyError, 3)});
   }
   return table;
@@ -98,8 +98,9 @@ void addMeasured(const CompareFindings& f, Report& report) {
     }
     figure.series.push_back(std::move(series));
     figure.caption = fmt::format(
-        "The reference is {:.3g} deg (RMS) from the measured motion: what the model lacks, not the "
-        "integrator. Each integrator is drawn at its longest step with an error below {:.2g} deg.",
+        "The reference is {:.3g} deg (RMS) from the measured motion; that is not an integrator's "
+        "doing. "
+        "Each integrator is drawn at its longest step with an error below {:.2g} deg.",
         error.rms * radian, f.options.usefulError * radian);
     report.details.push_back(std::move(figure));
   }
@@ -193,10 +194,11 @@ Report compareReport(const CompareFindings& f) {
       std::count(f.options.integrators.begin(), f.options.integrators.end(),
                  bio::Integrator::rungeKutta4) > 0) {
     report.details.push_back(Paragraph{
-        "A muscle path of this arm gains or loses points at certain angles, and its length "
-        "jumps there. The variational integrators end a step at such a place; Runge–Kutta "
-        "does not, so that its error follows from where the steps happen to fall and its "
-        "order drops to about one."});
+        "A muscle path of this arm gains or loses points at certain angles, and its length jumps "
+        "there. "
+        "The variational integrators end a step at such a place; Runge–Kutta does not, so that its "
+        "error scatters with where the steps happen to fall instead of shrinking with the fourth "
+        "power."});
   }
   report.details.push_back(Section{"Largest stable steps"});
   report.details.push_back(limitTable(f));
@@ -224,7 +226,8 @@ Report compareReport(const CompareFindings& f) {
                   "between kinetic plus "
                   "potential energy and the work of muscles and passive forces. A step of CVODE is "
                   "the interval "
-                  "of its output; its own steps follow from a relative tolerance of 1e-10.",
+                  "of its output; its own steps follow from a relative tolerance of 1e-10. Halved: "
+                  "steps that did not converge as a whole.",
                   f.options.timings)});
   if (!f.arm.notes().empty()) {
     report.details.push_back(Section{"Notes"});

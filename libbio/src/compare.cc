@@ -37,6 +37,18 @@ double between(const Trajectory& motion, Eigen::Index row, std::size_t k, double
   return a + s * (da + s * (3 * (b - a) - 2 * da - db + s * (2 * (a - b) + da + db)));
 }
 
+/// Time of the first row that is further than `limit` [rad] from the reference.
+double firstBeyond(const Arm& arm, const Trajectory& motion, const Trajectory& reference,
+                   double limit) {
+  Trajectory row;
+  for (std::size_t k = 0; k < motion.time.size(); ++k) {
+    row.time = {motion.time[k]};
+    row.q = motion.q.col(static_cast<Eigen::Index>(k));
+    if (deviation(arm, row, reference).largest > limit) return motion.time[k];
+  }
+  return motion.time.back();
+}
+
 /// Every second row.
 Trajectory thinned(const Trajectory& full) {
   Trajectory half;
@@ -156,13 +168,26 @@ CompareCell Runs::cell(Integrator integrator, double step) const {
   cell.outcome = motion.outcome;
   cell.why = motion.why;
   cell.halvedSteps = motion.halvedSteps;
-  cell.newtonPerStep = motion.steps > 0 ? static_cast<double>(motion.newtonIterations) /
-                                              static_cast<double>(motion.steps)
-                                        : unknown;
+  if (motion.steps > 0) {
+    cell.newtonPerStep =
+        static_cast<double>(motion.newtonIterations) / static_cast<double>(motion.steps);
+  } else {
+    cell.newtonPerStep = integrator == Integrator::rungeKutta4 ? 0 : unknown;
+  }
   if (motion.outcome == Outcome::completed) {
     cell.failedAt = unknown;
     cell.error = deviation(*arm_, motion, reference_->motion);
     cell.energyError = energyError(*arm_, motion);
+    if (integrator == Integrator::rungeKutta4 && !(cell.error.rms < options_->usefulError)) {
+      cell.outcome = Outcome::unstable;
+      cell.failedAt = firstBeyond(*arm_, motion, reference_->motion, options_->usefulError);
+      constexpr double degree = std::numbers::pi / 180;
+      cell.why = fmt::format(
+          "unstable at t = {:.6g} s: bounded, but off by more than {:.3g} deg for the first time; "
+          "{:.3g} "
+          "deg RMS",
+          cell.failedAt, options_->usefulError / degree, cell.error.rms / degree);
+    }
     // short runs are repeated more often: a single interruption would outweigh them
     constexpr double enough = 0.1;  // [s]
     constexpr std::size_t atMost = 51;

@@ -48,6 +48,8 @@ struct ConvergedReference {
 };
 
 /// One integrator at one step. What is not known of a run that did not reach the end is NaN.
+/// A run of rk4 that reaches the end with an RMS error of usefulError or more counts as unstable:
+/// as long as it is stable its error is smaller by orders of magnitude.
 struct CompareCell {
   Integrator integrator = Integrator::variational;
   double step = 0;  ///< [s]
@@ -90,7 +92,8 @@ ObservedOrder fitOrder(const std::vector<double>& steps, const std::vector<doubl
 /// Steps over which an integrator's order is observed [s]: in its asymptotic range on an arm's
 /// motions of seconds, and whole parts of 5 ms (vi: or whole multiples), where recorded excitations
 /// have their corners. Empty for cvode. Where a path gains or loses conditional points its length
-/// jumps; rk4 does not look for these times, and its order falls to about one on such an arm.
+/// jumps; rk4 does not look for these times, and on such an arm its error scatters instead of
+/// falling with the fourth power.
 std::vector<double> orderSteps(Integrator integrator);
 
 struct Comparison {
