@@ -81,27 +81,43 @@ Trajectory simulate(const Arm& arm, const ExcitationSignal& excitation, const Ar
   throw std::invalid_argument("unknown integrator");
 }
 
+namespace {
+
+template <int N>
+Energy energyAt(ArmConfiguration<N>& configuration, const Eigen::Matrix<double, N, 1>& q,
+                const Eigen::Matrix<double, N, 1>& qDot) {
+  configuration.moveTo(q);
+  const auto& inertia = configuration.inertia();
+  return {qDot.dot(inertia.massMatrix * qDot) / 2, inertia.potential};
+}
+
+}  // namespace
+
 Energy energyOf(const Arm& arm, const Eigen::VectorXd& q, const Eigen::VectorXd& qDot) {
   return stepping::withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
     ArmConfiguration<decltype(N)::value> configuration(arm);
-    configuration.moveTo(q);
-    const auto& inertia = configuration.inertia();
-    const Eigen::Matrix<double, decltype(N)::value, 1> v = qDot;
-    return Energy{v.dot(inertia.massMatrix * v) / 2, inertia.potential};
+    return energyAt<decltype(N)::value>(configuration, q, qDot);
+  });
+}
+
+Eigen::VectorXd energyImbalance(const Arm& arm, const Trajectory& trajectory) {
+  return stepping::withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+    ArmConfiguration<decltype(N)::value> configuration(arm);
+    Eigen::VectorXd imbalance(trajectory.q.cols());
+    double first = 0;
+    for (Eigen::Index k = 0; k < trajectory.q.cols(); ++k) {
+      const Energy energy =
+          energyAt<decltype(N)::value>(configuration, trajectory.q.col(k), trajectory.qDot.col(k));
+      const double stored = energy.kinetic + energy.potential;
+      if (k == 0) first = stored;
+      imbalance[k] = stored - first - trajectory.muscleWork[k] - trajectory.passiveWork[k];
+    }
+    return imbalance;
   });
 }
 
 double energyError(const Arm& arm, const Trajectory& trajectory) {
-  double worst = 0;
-  double first = 0;
-  for (Eigen::Index k = 0; k < trajectory.q.cols(); ++k) {
-    const Energy energy = energyOf(arm, trajectory.q.col(k), trajectory.qDot.col(k));
-    const double stored = energy.kinetic + energy.potential;
-    if (k == 0) first = stored;
-    worst = std::max(
-        worst, std::abs(stored - first - trajectory.muscleWork[k] - trajectory.passiveWork[k]));
-  }
-  return worst;
+  return energyImbalance(arm, trajectory).cwiseAbs().maxCoeff();
 }
 
 MuscleReport reportMuscles(const Arm& arm, const Trajectory& trajectory, int coordinate) {

@@ -100,6 +100,9 @@ struct Energy {
 };
 Energy energyOf(const Arm& arm, const Eigen::VectorXd& q, const Eigen::VectorXd& qDot);
 
+/// E(t) − E(0) − work of muscles and passive forces at every row [J]: what the integrator made up.
+Eigen::VectorXd energyImbalance(const Arm& arm, const Trajectory& trajectory);
+
 /// max over time of |E(t) − E(0) − work of muscles and passive forces| [J].
 double energyError(const Arm& arm, const Trajectory& trajectory);
 
