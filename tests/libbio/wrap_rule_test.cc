@@ -60,8 +60,8 @@ TEST(CylinderTouches, NotWhenAnEndIsInsideOrBothContactsAreBeyondTheEnds) {
   EXPECT_FALSE(cylinderTouches(1, 10, cw, V(0.5, 3, 0), V(0, 0, 0)));
   EXPECT_TRUE(cylinderTouches(1, 10, cw, V(0.5, 3, 4.9), V(0.5, -3, 4.9)));
   EXPECT_FALSE(cylinderTouches(1, 10, cw, V(0.5, 3, 5.1), V(0.5, -3, 5.1)));
-  EXPECT_TRUE(cylinderTouches(1, 10, cw, V(0.5, 3, -3), V(0.5, -3, 12)));
-  EXPECT_TRUE(cylinderTouches(1, 10, cw, V(0.5, 3, 12), V(0.5, -3, -3)));
+  EXPECT_TRUE(cylinderTouches(1, 10, cw, V(0.5, 3, -3), V(0.5, -3, 13)));
+  EXPECT_TRUE(cylinderTouches(1, 10, cw, V(0.5, 3, 13), V(0.5, -3, -3)));
 }
 
 // For "all", any segment that penetrates touches, and none that misses.
