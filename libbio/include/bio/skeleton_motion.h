@@ -1,6 +1,7 @@
 #pragma once
 
 // Template bodies of skeleton.h.
+#include <Eigen/Dense>
 #include <unsupported/Eigen/AutoDiff>
 
 #include "bio/skeleton.h"
