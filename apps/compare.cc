@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "arm_options.h"
-#include "bio/osim_file.h"
-#include "bio/replay.h"
+#include "arm_input.h"
 #include "compare_report.h"
 #include "progress_bar.h"
 #include "result.h"
@@ -24,14 +22,8 @@ class Compare : public Command {
   }
 
   void addOptions(CLI::App& options) override {
-    options.add_option("MODEL", model_, "model (.osim)")
-        ->required()
-        ->check(CLI::ExistingFile)
-        ->type_name("");
-    options.add_option("TRIAL", trial_, "excitations, and the measured coordinate if there is one")
-        ->required()
-        ->check(CLI::ExistingFile)
-        ->type_name("");
+    addModelArgument(options, model_);
+    addTrialArgument(options, trial_);
     options
         .add_option("--integrators", integrators_, "which to compare, of rk4, vi, vi-left, cvode")
         ->delimiter(',')
@@ -58,35 +50,22 @@ class Compare : public Command {
     bio::CompareOptions options = compareOptions();
     OutputFolder folder(context, {"compare.csv"});
     Summary summary(context);
-    summary.addInput(model_);
-    summary.addInput(trial_);
-    const bio::Model model = bio::readOsim(model_);
-    const bio::Trial trial = bio::readTrial(trial_, model, {simulation_.ignoreExtra});
-    for (const std::string& warning : model.warnings) summary.warn(warning);
-    for (const std::string& warning : trial.warnings) summary.warn(warning);
-
-    const bio::Arm arm(model, armOptions(simulation_));
-    if (arm.numMuscles() == 0) {
-      throw std::invalid_argument(
-          fmt::format("{}: no muscle moves {}", model_, fmt::join(simulation_.coordinates, ", ")));
-    }
+    const bio::Model model = readModel(model_, summary);
+    const bio::Arm arm = movableArm(model, model_, simulation_, summary);
+    const TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
     const auto& free = arm.skeleton().coordinates();
     const auto rotation =
         std::find_if(free.begin(), free.end(), [](const auto& c) { return c.isRotation; });
     if (rotation == free.end()) throw std::invalid_argument("no free coordinate is a rotation");
     std::vector<AlsoCurve> also = readAlso(*rotation, summary);
 
-    const bio::ExcitationSignal excitation = bio::excitationOf(trial, arm);
-    options.startTime = trial.times[0];
-    options.duration = trial.times[trial.times.size() - 1] - options.startTime;
-    const bio::ArmState state =
-        bio::initialState(arm, bio::startCoordinates(trial, arm, byName(simulation_.initial)),
-                          excitation, options.startTime);
+    options.startTime = input.startTime;
+    options.duration = input.duration;
     bio::Comparison comparison;
     {
       ProgressBar bar("compare");
       options.progress = [&](double done) { bar.update(done); };
-      comparison = bio::compareIntegrators(arm, excitation, state, options);
+      comparison = bio::compareIntegrators(arm, input.excitation, input.start, options);
     }
     if (comparison.reference.completed()) {
       for (AlsoCurve& one : also) {
@@ -96,8 +75,8 @@ class Compare : public Command {
     folder.write("compare.csv", [&](std::ostream& out) { writeCells(comparison, out); });
 
     const bio::CompareCell* chosen = chosenCell(comparison);
-    const CompareFindings findings{model_,  trial_,     trial, arm,   *rotation,
-                                   options, comparison, also,  chosen};
+    const CompareFindings findings{model_,  trial_,     input.trial, arm,   *rotation,
+                                   options, comparison, also,        chosen};
     if (chosen != nullptr) {
       summary.setSimulation(shortName(chosen->integrator), chosen->step, options.duration,
                             chosen->wallSeconds);

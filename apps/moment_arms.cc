@@ -4,8 +4,8 @@
 
 #include <numbers>
 
+#include "arm_input.h"
 #include "arm_options.h"
-#include "bio/osim_file.h"
 #include "bio/replay.h"
 #include "result.h"
 #include "text.h"
@@ -24,10 +24,7 @@ class MomentArms : public Command {
   }
 
   void addOptions(CLI::App& options) override {
-    options.add_option("MODEL", model_, "model (.osim)")
-        ->required()
-        ->check(CLI::ExistingFile)
-        ->type_name("");
+    addModelArgument(options, model_);
     options.add_option("--from", from_,
                        "first angle [deg], or position [mm] of a sliding coordinate");
     options.add_option("--to", to_,
@@ -39,9 +36,7 @@ class MomentArms : public Command {
   ExitStatus run(const CommandContext& context) override {
     OutputFolder folder(context, {"moment_arms.csv"});
     Summary summary(context);
-    summary.addInput(model_);
-    const bio::Model model = bio::readOsim(model_);
-    for (const std::string& warning : model.warnings) summary.warn(warning);
+    const bio::Model model = readModel(model_, summary);
     const bio::Skeleton skeleton(model, armOptions(model_options_).skeleton);
     const bio::Coordinate& coordinate = skeleton.coordinates().front();
     const double unit = coordinate.isRotation ? degree : 1e-3;

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "arm_input.h"
+
 namespace app {
 namespace {
 
@@ -44,10 +46,7 @@ class Render : public Command {
   }
 
   void addOptions(CLI::App& options) override {
-    options.add_option("MODEL", options_.model, "model (.osim)")
-        ->required()
-        ->check(CLI::ExistingFile)
-        ->type_name("");
+    addModelArgument(options, options_.model);
     options
         .add_option("STATES", options_.states,
                     "the motion: states.sto of a simulation, or a table with the coordinates")

@@ -7,8 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "arm_input.h"
 #include "arm_options.h"
-#include "bio/osim_file.h"
 #include "progress_bar.h"
 #include "result.h"
 #include "text.h"
@@ -173,10 +173,8 @@ ExitStatus drawPictures(const RenderOptions& options, const CommandContext& cont
   const bool toFilm = options.film && view::FilmWriter::available();
   OutputFolder folder(context, {!options.film ? "arm.png" : toFilm ? "arm.mp4" : frameName(0)});
   Summary summary(context);
-  summary.addInput(options.model);
+  const bio::Model model = readModel(options.model, summary);
   summary.addInput(options.states);
-  const bio::Model model = bio::readOsim(options.model);
-  for (const std::string& warning : model.warnings) summary.warn(warning);
   const view::ArmMotion motion = view::readArmMotion(options.states, model, options.ignoreExtra);
   std::optional<view::ArmMotion> ghostMotion;
   std::vector<const view::ArmMotion*> motions = {&motion};

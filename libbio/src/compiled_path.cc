@@ -5,37 +5,15 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 #include <stdexcept>
 
 #include "path_reach.h"
+#include "wrap_candidate.h"
 
 namespace bio {
 namespace {
 
 constexpr std::size_t maxConditions = 6;
-
-Placement<double> placementOf(const FramePlacement& frame) {
-  using Eigen::AngleAxisd;
-  const Eigen::Vector3d& o = frame.orientation;
-  Placement<double> X;
-  X.R = (AngleAxisd(o.x(), Eigen::Vector3d::UnitX()) * AngleAxisd(o.y(), Eigen::Vector3d::UnitY()) *
-         AngleAxisd(o.z(), Eigen::Vector3d::UnitZ()))
-            .toRotationMatrix();
-  X.p = frame.translation;
-  return X;
-}
-
-// A wrap of the path: a surface that can be evaluated, or the ellipsoid around one that cannot.
-struct CandidateWrap {
-  std::string name;
-  std::size_t firstPoint = 0, lastPoint = 0;  // in Path::points
-  std::size_t segment = 0;
-  Placement<double> X_SC;
-  std::optional<std::size_t> surface;            // in CompiledPath::surfaces
-  Vec3<double> semiAxes = Vec3<double>::Zero();  // without surface
-  bool isTorus = false;
-};
 
 // A span and a wrap that might touch.
 struct Encounter {
@@ -139,94 +117,19 @@ class Compiler {
     const int first = wrap.firstPoint < 1 ? 1 : wrap.firstPoint;
     const int last = wrap.lastPoint < 1 ? numPoints : std::min(wrap.lastPoint, numPoints);
     if (first >= last) return;
-    const BodyPlacement& place = skeleton_.placeOf(object.body);
-    CandidateWrap candidate;
-    candidate.name = object.name;
+    CandidateWrap candidate =
+        candidateWrap(object, skeleton_.placeOf(object.body), index, wrapAsCylinder_);
     candidate.firstPoint = static_cast<std::size_t>(first - 1);
     candidate.lastPoint = static_cast<std::size_t>(last - 1);
-    candidate.segment = place.segment;
-    candidate.X_SC = place.X_SB * placementOf(object.frame);
-    PathSurface surface;
-    surface.wrap = index;
-    surface.segment = candidate.segment;
-    surface.quadrant = wrapQuadrant(object.quadrant);
-    bool known = true;
-    switch (object.shape) {
-      case WrapShape::cylinder:
-        surface.radius = object.radius;
-        surface.halfLength = object.length / 2;
-        break;
-      case WrapShape::sphere:
-        surface.isSphere = true;
-        surface.radius = object.radius;
-        break;
-      case WrapShape::torus:
-        known = false;
-        candidate.isTorus = true;
-        candidate.semiAxes.setConstant(object.radius + object.outerRadius);
-        break;
-      case WrapShape::ellipsoid:
-        known = ellipsoidAsSurface(object, candidate, surface);
-        break;
-    }
-    if (known) {
-      if (!(surface.radius > 0)) {
-        throw std::invalid_argument(fmt::format(
-            "wrap object '{}': radius is {} m, must be positive", object.name, surface.radius));
-      }
-      const bool alongAxis =
-          surface.quadrant == WrapQuadrant::plusZ || surface.quadrant == WrapQuadrant::minusZ;
-      if (alongAxis && !surface.isSphere) {
-        throw std::invalid_argument(fmt::format(
-            "wrap object '{}': quadrant {} lies along the cylinder's axis, must be across",
-            object.name, object.quadrant));
-      }
-      surface.X_SC = candidate.X_SC;
+    if (candidate.shape) {
       candidate.surface = path_.surfaces.size();
-      path_.surfaces.push_back(surface);
+      path_.surfaces.push_back(*candidate.shape);
       if (path_.surfaces.size() > 32) {
         throw std::invalid_argument(
             fmt::format("muscle '{}' has more than 32 wrap objects", muscle_.name));
       }
     }
     wraps_.push_back(std::move(candidate));
-  }
-
-  // A sphere if all semi-axes are equal, a cylinder if asked for; else false.
-  bool ellipsoidAsSurface(const WrapObject& object, CandidateWrap& candidate,
-                          PathSurface& surface) const {
-    const Vec3<double>& s = object.semiAxes;
-    candidate.semiAxes = s;
-    const auto equal = [&](int i, int j) { return std::abs(s[i] - s[j]) <= 1e-9 * s[i]; };
-    if (equal(0, 1) && equal(1, 2)) {
-      surface.isSphere = true;
-      surface.radius = s[0];
-      return true;
-    }
-    const auto& names = wrapAsCylinder_;
-    if (std::find(names.begin(), names.end(), object.name) == names.end()) return false;
-    // the axis is the odd one out; a cyclic change of axes makes it z
-    int axis = -1;
-    for (int k = 0; k < 3; ++k) {
-      if (equal((k + 1) % 3, (k + 2) % 3)) axis = k;
-    }
-    if (axis < 0) {
-      throw std::invalid_argument(fmt::format(
-          "wrap object '{}' cannot be taken as a cylinder: its semi-axes are {}, {} and {} m, two "
-          "must be equal",
-          object.name, s[0], s[1], s[2]));
-    }
-    Mat3<double> turn = Mat3<double>::Zero();  // columns: new x, y, z in the old frame
-    for (int k = 0; k < 3; ++k) turn((axis + 1 + k) % 3, k) = 1;
-    candidate.X_SC.R = (candidate.X_SC.R * turn).eval();
-    surface.radius = s[(axis + 1) % 3];
-    surface.halfLength = s[axis];
-    if (surface.quadrant != WrapQuadrant::all) {
-      const int code = static_cast<int>(surface.quadrant) - 1;  // 2·axis + (minus)
-      const int turned = (code / 2 - axis - 1 + 6) % 3;
-      surface.quadrant = static_cast<WrapQuadrant>(1 + 2 * turned + code % 2);
-    }
-    return true;
   }
 
   // The path with the conditional points whose bits are set.
@@ -250,7 +153,7 @@ class Compiler {
       variant.all.push_back(span);
     }
     for (const CandidateWrap& wrap : wraps_) {
-      if (wrap.surface) {
+      if (wrap.shape) {
         assign(wrap, variant, bits);
       } else {
         leaveOut(wrap, variant, bits);
@@ -313,7 +216,7 @@ class Compiler {
 
   // Gives a surface to the spans that may touch it.
   void assign(const CandidateWrap& wrap, PathVariant& variant, std::size_t bits) {
-    const PathSurface& surface = path_.surfaces[*wrap.surface];
+    const PathSurface& surface = path_.surfaces[wrap.surface];
     std::vector<Encounter> through, around;
     for (std::size_t i = 0; i < variant.all.size(); ++i) {
       const PathSpan& span = variant.all[i];
@@ -328,7 +231,7 @@ class Compiler {
         const auto [P, Q] = ends(wrap, span, postures_[k]);
         if (!(closestApproach(surface, P, Q) < reach)) continue;
         encounter.penetrates = true;
-        encounter.way = wayRound(*wrap.surface, P, Q);
+        encounter.way = wayRound(wrap.surface, P, Q);
       }
       if (encounter.penetrates) {
         through.push_back(encounter);
@@ -356,11 +259,11 @@ class Compiler {
   // the side that the quadrant forbids.
   bool passesWrongSide(const CandidateWrap& wrap, const PathSpan& span,
                        Encounter& encounter) const {
-    const PathSurface& surface = path_.surfaces[*wrap.surface];
+    const PathSurface& surface = path_.surfaces[wrap.surface];
     if (surface.quadrant == WrapQuadrant::all) return false;
     const auto [P, Q] = ends(wrap, span, postures_.front());
     if (!(closestApproach(surface, P, Q) < 2)) return false;
-    encounter.way = wayRound(*wrap.surface, P, Q);
+    encounter.way = wayRound(wrap.surface, P, Q);
     if (surfaceIsOutOfPlay(surface, surface.radius, encounter.way.side, P, Q)) return false;
     const Span<double> wrapped = surface.isSphere
                                      ? wrapSphere(surface.radius, encounter.way.way, P, Q)

@@ -11,19 +11,6 @@
 namespace bio {
 namespace {
 
-/// Body-fixed x-y-z angles, as OpenSim orients frames.
-Placement<double> placementOf(const FramePlacement& frame) {
-  using Eigen::AngleAxisd;
-  using Eigen::Vector3d;
-  const Vector3d& o = frame.orientation;
-  Placement<double> X;
-  X.R = (AngleAxisd(o.x(), Vector3d::UnitX()) * AngleAxisd(o.y(), Vector3d::UnitY()) *
-         AngleAxisd(o.z(), Vector3d::UnitZ()))
-            .toRotationMatrix();
-  X.p = frame.translation;
-  return X;
-}
-
 /// Axes of any joint as those of a custom joint: shifts first, then turns.
 std::vector<std::pair<bool, TransformAxis>> elementaryMotions(const Joint& joint) {
   std::vector<std::pair<bool, TransformAxis>> motions;
@@ -80,6 +67,18 @@ void addBody(Segment& segment, const Body& body, const Placement<double>& X_SB) 
 }
 
 }  // namespace
+
+Placement<double> placementOf(const FramePlacement& frame) {
+  using Eigen::AngleAxisd;
+  using Eigen::Vector3d;
+  const Vector3d& o = frame.orientation;
+  Placement<double> X;
+  X.R = (AngleAxisd(o.x(), Vector3d::UnitX()) * AngleAxisd(o.y(), Vector3d::UnitY()) *
+         AngleAxisd(o.z(), Vector3d::UnitZ()))
+            .toRotationMatrix();
+  X.p = frame.translation;
+  return X;
+}
 
 Skeleton::Skeleton(const Model& model, const SkeletonOptions& options) : gravity_(model.gravity) {
   // which coordinates are free, coupled or constant

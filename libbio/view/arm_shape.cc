@@ -141,15 +141,6 @@ ArmPoser::Posture ArmPoser::pose(const Eigen::VectorXd& q, const std::vector<dou
   return posture;
 }
 
-Placement<double> placementOf(const FramePlacement& frame) {
-  using Eigen::AngleAxisd;
-  const Vector3d& o = frame.orientation;
-  return {(AngleAxisd(o.x(), Vector3d::UnitX()) * AngleAxisd(o.y(), Vector3d::UnitY()) *
-           AngleAxisd(o.z(), Vector3d::UnitZ()))
-              .toRotationMatrix(),
-          frame.translation};
-}
-
 namespace {
 
 /// From the axis or centre to the point, in the wrap's frame.

@@ -74,9 +74,6 @@ class ArmPoser {
   std::vector<std::vector<WrapObject>> wraps_;  ///< cylinders and spheres of each path
 };
 
-/// The placement of a frame in its parent.
-Placement<double> placementOf(const FramePlacement& frame);
-
 /// Distance [m] of a point in ground from the axis of a cylinder or the centre of a sphere.
 double distanceFromWrap(const WrapObject& wrap, const Placement<double>& body,
                         const Eigen::Vector3d& point);

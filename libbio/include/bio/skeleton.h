@@ -11,6 +11,10 @@
 
 namespace bio {
 
+/// The placement of a frame in its parent: R = R_x(o_x) R_y(o_y) R_z(o_z), as OpenSim orients
+/// frames.
+Placement<double> placementOf(const FramePlacement& frame);
+
 /// What a skeleton leaves free. Every coordinate not named in `freeCoordinates`, and not coupled to
 /// one that is, is removed: its joint axis becomes part of a rigid segment.
 struct SkeletonOptions {

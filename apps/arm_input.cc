@@ -1,0 +1,67 @@
+#include "arm_input.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <stdexcept>
+
+#include "arm_options.h"
+#include "bio/osim_file.h"
+#include "bio/replay.h"
+
+namespace app {
+namespace {
+
+void addFileArgument(CLI::App& subcommand, const std::string& name, std::string& file,
+                     const std::string& description) {
+  subcommand.add_option(name, file, description)
+      ->required()
+      ->check(CLI::ExistingFile)
+      ->type_name("");
+}
+
+}  // namespace
+
+void addModelArgument(CLI::App& subcommand, std::string& model) {
+  addFileArgument(subcommand, "MODEL", model, "model (.osim)");
+}
+
+void addTrialArgument(CLI::App& subcommand, std::string& trial) {
+  addFileArgument(subcommand, "TRIAL", trial,
+                  "excitations, and the measured coordinate if there is one");
+}
+
+bio::Model readModel(const std::string& file, Summary& summary) {
+  summary.addInput(file);
+  bio::Model model = bio::readOsim(file);
+  for (const std::string& warning : model.warnings) summary.warn(warning);
+  return model;
+}
+
+bio::Arm movableArm(const bio::Model& model, const std::string& file,
+                    const SimulationOptions& options, Summary& summary) {
+  bio::Arm arm(model, armOptions(options));
+  for (const std::string& warning : arm.warnings()) summary.warn(warning);
+  if (arm.numMuscles() == 0) {
+    throw std::invalid_argument(
+        fmt::format("{}: no muscle moves {}", file, fmt::join(options.coordinates, ", ")));
+  }
+  return arm;
+}
+
+TrialInput readTrialInput(const std::string& file, const bio::Model& model, const bio::Arm& arm,
+                          const SimulationOptions& options, Summary& summary) {
+  summary.addInput(file);
+  TrialInput input;
+  input.trial = bio::readTrial(file, model, {options.ignoreExtra});
+  for (const std::string& warning : input.trial.warnings) summary.warn(warning);
+  input.excitation = bio::excitationOf(input.trial, arm);
+  input.startTime = input.trial.times[0];
+  input.duration = input.trial.times[input.trial.times.size() - 1] - input.startTime;
+  input.start =
+      bio::initialState(arm, bio::startCoordinates(input.trial, arm, byName(options.initial)),
+                        input.excitation, input.startTime);
+  return input;
+}
+
+}  // namespace app

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "bio/coupled.h"
+#include "bio/trial.h"
+#include "simulation_options.h"
+#include "summary.h"
+
+/// What subcommands with a model and trials read; every file becomes an input of the summary, every
+/// remark a warning.
+namespace app {
+
+/// The required argument MODEL.
+void addModelArgument(CLI::App& subcommand, std::string& model);
+
+/// The required argument TRIAL.
+void addTrialArgument(CLI::App& subcommand, std::string& trial);
+
+/// @throws what readOsim throws
+bio::Model readModel(const std::string& file, Summary& summary);
+
+/// The arm that the model options leave.
+/// @param file  the model's, for the message
+/// @throws std::invalid_argument what Arm throws, or if no muscle moves the free coordinates
+bio::Arm movableArm(const bio::Model& model, const std::string& file,
+                    const SimulationOptions& options, Summary& summary);
+
+/// A trial, and how it starts and drives an arm.
+struct TrialInput {
+  bio::Trial trial;
+  bio::ExcitationSignal excitation;  ///< of the arm's muscles
+  double startTime = 0;              ///< [s]
+  double duration = 0;               ///< [s]
+  bio::ArmState start;  ///< at rest: --initial, else the first measured value, else the default
+};
+/// @throws what readTrial, excitationOf, startCoordinates and initialState throw
+TrialInput readTrialInput(const std::string& file, const bio::Model& model, const bio::Arm& arm,
+                          const SimulationOptions& options, Summary& summary);
+
+}  // namespace app
