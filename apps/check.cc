@@ -73,7 +73,7 @@ bool isModel(const std::string& file) {
 }
 
 /// What a file holds, for the report.
-using Contents = std::vector<std::variant<Section, Paragraph, Figure, Table>>;
+using Contents = std::vector<ReportPart>;
 
 Contents checkModel(const std::string& file, const bio::Model& model, Findings& findings) {
   for (const std::string& warning : model.warnings) findings.add(file, "warning", warning);

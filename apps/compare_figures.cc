@@ -203,7 +203,7 @@ Figure errorFigure(const CompareFindings& f) {
   return figure;
 }
 
-std::variant<Section, Paragraph, Figure, Table> failureTimeline(const CompareFindings& f) {
+ReportPart failureTimeline(const CompareFindings& f) {
   Figure figure{.title = "Where the runs ended",
                 .xLabel = "Step [s]",
                 .yLabel = "Time reached [s]",

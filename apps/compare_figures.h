@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "compare_report.h"
@@ -25,7 +24,7 @@ Figure workPrecisionFigure(const CompareFindings& findings);
 Figure errorFigure(const CompareFindings& findings);
 
 /// Where the runs ended, of the integrators that failed at any step; a sentence if none did.
-std::variant<Section, Paragraph, Figure, Table> failureTimeline(const CompareFindings& findings);
+ReportPart failureTimeline(const CompareFindings& findings);
 
 /// Runge–Kutta at three steps: the last two that hold and the first that does not.
 Figure rungeKuttaFigure(const CompareFindings& findings);

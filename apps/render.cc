@@ -82,9 +82,15 @@ class Render : public Command {
             "of the muscles: force (the tendon's) or fixed")
         ->check(CLI::IsMember({"force", "fixed"}))
         ->default_str("force");
-    options.add_option("--ghost", options_.ghost, "a second motion, drawn translucent beside it")
+    auto* ghost = options.add_option("--ghost", options_.ghost,
+                                     "a second motion, drawn translucent beside it");
+    ghost->check(CLI::ExistingFile)->type_name("STATES");
+    options
+        .add_option("--ghost-model", options_.ghostModel,
+                    "the model of the second motion, if it is another one")
         ->check(CLI::ExistingFile)
-        ->type_name("STATES");
+        ->needs(ghost)
+        ->type_name("MODEL");
     options.add_flag("--ignore-extra", options_.ignoreExtra,
                      "pass over columns that the model does not know");
     addModelOptions(options, options_.simulation);

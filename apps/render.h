@@ -24,7 +24,8 @@ struct RenderOptions {
   std::string geometry;  ///< folder of .vtp files
   bool showWraps = false;
   bool thicknessByForce = true;
-  std::string ghost;  ///< a second motion
+  std::string ghost;       ///< a second motion
+  std::string ghostModel;  ///< the model that makes it; empty: the same
   bool ignoreExtra = false;
   SimulationOptions simulation;  ///< the model options alone
 };

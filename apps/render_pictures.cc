@@ -9,10 +9,10 @@
 
 #include "arm_input.h"
 #include "arm_options.h"
+#include "moving_arm.h"
 #include "progress_bar.h"
 #include "result.h"
 #include "text.h"
-#include "view/arm_motion.h"
 #include "view/arm_scene.h"
 #include "view/virtual_display.h"
 
@@ -57,45 +57,6 @@ Eigen::VectorXd shownTimes(const RenderOptions& options, const view::ArmMotion& 
   return first + Eigen::VectorXd::LinSpaced(n, 0, count - 1).array() / options.framesPerSecond;
 }
 
-/// A motion with the arm that can follow it.
-class MovingArm {
- public:
-  MovingArm(const bio::Model& model, const bio::ArmOptions& options, const view::ArmMotion& motion)
-      : motion_(motion), poser_(model, options.skeleton, options.wrapAsCylinder) {}
-
-  const view::ArmPoser& poser() const { return poser_; }
-  bool covers(double time) const {
-    return time >= motion_.time[0] && time <= motion_.time[motion_.time.size() - 1];
-  }
-
-  view::ArmPoser::Posture at(double time, const std::vector<double>& radii) const {
-    const auto& coordinates = poser_.skeleton().coordinates();
-    Eigen::VectorXd q(static_cast<Eigen::Index>(coordinates.size()));
-    for (std::size_t i = 0; i < coordinates.size(); ++i) {
-      const auto found = motion_.coordinates.find(coordinates[i].name);
-      q[static_cast<Eigen::Index>(i)] = found == motion_.coordinates.end()
-                                            ? coordinates[i].defaultValue
-                                            : view::valueAt(motion_.time, found->second, time);
-    }
-    return poser_.pose(q, radii);
-  }
-
-  std::vector<double> activationsAt(double time) const {
-    std::vector<double> values;
-    for (const std::string& muscle : poser_.muscles()) {
-      const auto found = motion_.activations.find(muscle);
-      values.push_back(found == motion_.activations.end()
-                           ? std::numeric_limits<double>::quiet_NaN()
-                           : view::valueAt(motion_.time, found->second, time));
-    }
-    return values;
-  }
-
- private:
-  const view::ArmMotion& motion_;
-  view::ArmPoser poser_;
-};
-
 /// Radii of the tubes, by moment and muscle [m].
 std::vector<std::vector<double>> tubeRadii(const std::vector<std::string>& muscles,
                                            const view::TendonForces& forces, Eigen::Index count) {
@@ -114,30 +75,8 @@ std::vector<std::vector<double>> tubeRadii(const std::vector<std::string>& muscl
   return radii;
 }
 
-/// What the camera has to see.
-void addOutline(const std::vector<view::BodyShape>& bodies, const view::ArmPoser::Posture& posture,
-                std::vector<Eigen::Vector3d>& points) {
-  const auto addBall = [&](const Eigen::Vector3d& centre, double radius) {
-    for (int axis = 0; axis < 3; ++axis) {
-      for (const double sign : {-1.0, 1.0}) {
-        points.push_back(centre + sign * radius * Eigen::Vector3d::Unit(axis));
-      }
-    }
-  };
-  for (const view::BodyShape& body : bodies) {
-    const bio::Placement<double>& X = posture.bodies.at(body.name);
-    for (const view::TaperedBone& bone : body.bones) {
-      addBall(X.R * bone.from + X.p, 1.5 * bone.fromRadius);
-      addBall(X.R * bone.to + X.p, 1.5 * bone.toRadius);
-    }
-  }
-  for (const view::MuscleShape& muscle : posture.muscles) {
-    for (const Eigen::Vector3d& point : muscle.points) addBall(point, muscle.radius);
-  }
-}
-
-Report reportOn(const RenderOptions& options, const view::ArmMotion& motion, const MovingArm& arm,
-                const std::string& verdict) {
+Report reportOn(const RenderOptions& options, const MovingArm& arm, const std::string& verdict) {
+  const view::ArmMotion& motion = arm.motion();
   Report report;
   report.title = fmt::format("{} on {}", options.states, options.model);
   report.verdict = verdict;
@@ -147,7 +86,7 @@ Report reportOn(const RenderOptions& options, const view::ArmMotion& motion, con
   for (const auto& [muscle, values] : motion.activations) {
     shown.series.push_back({.name = muscle, .x = times, .y = {values.begin(), values.end()}});
   }
-  if (!shown.series.empty()) report.mainFigure = shown;
+  if (!shown.series.empty()) report.details.push_back(shown);
   for (const bio::Coordinate& coordinate : arm.poser().skeleton().coordinates()) {
     const auto found = motion.coordinates.find(coordinate.name);
     if (found == motion.coordinates.end()) continue;
@@ -166,6 +105,119 @@ std::string frameName(Eigen::Index k) {
   return fmt::format("frame_{:04}.png", k + 1);
 }
 
+/// The model options that concern this model: a ghost may have neither coordinate nor wrap of the
+/// name.
+bio::ArmOptions ghostOptions(const bio::Model& model, const SimulationOptions& simulation) {
+  SimulationOptions known = simulation;
+  std::erase_if(known.locks, [&](const Assignment& lock) {
+    return std::none_of(model.joints.begin(), model.joints.end(), [&](const bio::Joint& joint) {
+      return std::any_of(joint.coordinates.begin(), joint.coordinates.end(),
+                         [&](const bio::Coordinate& c) { return c.name == lock.name; });
+    });
+  });
+  std::erase_if(known.wrapAsCylinder, [&](const std::string& name) {
+    return std::none_of(model.wrapObjects.begin(), model.wrapObjects.end(),
+                        [&](const bio::WrapObject& wrap) { return wrap.name == name; });
+  });
+  return armOptions(known);
+}
+
+/// All that is to be drawn.
+struct Shown {
+  Eigen::VectorXd times;                   ///< [s]
+  std::optional<MovingArm> arm;            ///< never empty once read
+  std::vector<std::vector<double>> radii;  ///< of its muscles, by moment [m]
+  bool thicknessIsForce = false;
+  std::optional<MovingArm> ghost;
+  std::vector<double> ghostRadii;
+  std::string ghostCaption;
+};
+
+Shown readShown(const RenderOptions& options, Summary& summary) {
+  Shown shown;
+  const bio::Model model = readModel(options.model, summary);
+  summary.addInput(options.states);
+  view::ArmMotion motion = view::readArmMotion(options.states, model, options.ignoreExtra);
+  shown.times = shownTimes(options, motion);
+  std::vector<const view::ArmMotion*> motions = {&motion};
+
+  bio::Model otherModel;
+  view::ArmMotion ghostMotion;
+  const bool hasGhost = !options.ghost.empty(), isOther = !options.ghostModel.empty();
+  if (hasGhost) {
+    if (isOther) otherModel = readModel(options.ghostModel, summary);
+    summary.addInput(options.ghost);
+    ghostMotion =
+        view::readArmMotion(options.ghost, isOther ? otherModel : model, options.ignoreExtra);
+    if (!isOther) motions.push_back(&ghostMotion);
+    shown.ghostCaption =
+        fmt::format("Orange: {}{}", std::filesystem::path(options.ghost).filename().string(),
+                    isOther ? " on " + otherModel.name : "");
+  }
+
+  bio::ArmOptions armOptions = app::armOptions(options.simulation);
+  armOptions.skeleton = view::skeletonFor(model, motions, armOptions.skeleton);
+  view::TendonForces forces;
+  if (options.thicknessByForce) {
+    forces = view::tendonForces(model, armOptions, motion, shown.times);
+    if (forces.byMuscle.empty()) {
+      summary.warn(fmt::format("muscles are drawn with a fixed thickness: {}", forces.whyNone));
+    }
+  }
+  shown.thicknessIsForce = !forces.byMuscle.empty();
+  shown.arm.emplace(model, armOptions, std::move(motion));
+  for (const std::string& warning : shown.arm->poser().warnings()) summary.warn(warning);
+  shown.radii = tubeRadii(shown.arm->poser().muscles(), forces, shown.times.size());
+  if (hasGhost) {
+    if (isOther) {
+      armOptions = ghostOptions(otherModel, options.simulation);
+      armOptions.skeleton = view::skeletonFor(otherModel, {&ghostMotion}, armOptions.skeleton);
+    }
+    shown.ghost.emplace(isOther ? otherModel : model, armOptions, std::move(ghostMotion));
+    shown.ghostRadii.assign(shown.ghost->poser().muscles().size(), ghostRadius);
+    if (isOther) {
+      for (const std::string& warning : shown.ghost->poser().warnings()) summary.warn(warning);
+    }
+  }
+  return shown;
+}
+
+/// All that is ever seen, so that the camera stands still [m].
+std::vector<Eigen::Vector3d> outlineOf(const Shown& shown, bool& ghostIsSeen) {
+  std::vector<Eigen::Vector3d> outline;
+  const Eigen::Index stride = std::max<Eigen::Index>(1, shown.times.size() / 24);
+  for (Eigen::Index k = 0; k < shown.times.size(); k += stride) {
+    const double time = shown.times[k];
+    shown.arm->addOutline(shown.arm->at(time, shown.radii[static_cast<std::size_t>(k)]), outline);
+    if (shown.ghost && shown.ghost->covers(time)) {
+      shown.ghost->addOutline(shown.ghost->at(time, shown.ghostRadii), outline);
+      ghostIsSeen = true;
+    }
+  }
+  return outline;
+}
+
+view::SceneOptions sceneOptions(const RenderOptions& options, const Shown& shown,
+                                const std::vector<Eigen::Vector3d>& outline) {
+  view::SceneOptions scene;
+  scene.width = options.width;
+  scene.height = options.height;
+  scene.showWraps = options.showWraps;
+  scene.geometry = options.geometry;
+  scene.floor = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& point : outline) {
+    scene.floor = std::min(scene.floor, point.y() - 0.03);
+    scene.middle += point / static_cast<double>(outline.size());
+  }
+  scene.captions = {fmt::format("{} – {}", shown.arm->modelName(),
+                                std::filesystem::path(options.states).filename().string()),
+                    shown.thicknessIsForce
+                        ? "Muscles: 1 mm² more of cross-section per 5 N of tendon force"
+                        : "Muscles: equal thickness"};
+  if (shown.ghost) scene.captions.push_back(shown.ghostCaption);
+  return scene;
+}
+
 }  // namespace
 
 ExitStatus drawPictures(const RenderOptions& options, const CommandContext& context) {
@@ -173,71 +225,18 @@ ExitStatus drawPictures(const RenderOptions& options, const CommandContext& cont
   const bool toFilm = options.film && view::FilmWriter::available();
   OutputFolder folder(context, {!options.film ? "arm.png" : toFilm ? "arm.mp4" : frameName(0)});
   Summary summary(context);
-  const bio::Model model = readModel(options.model, summary);
-  summary.addInput(options.states);
-  const view::ArmMotion motion = view::readArmMotion(options.states, model, options.ignoreExtra);
-  std::optional<view::ArmMotion> ghostMotion;
-  std::vector<const view::ArmMotion*> motions = {&motion};
-  if (!options.ghost.empty()) {
-    summary.addInput(options.ghost);
-    ghostMotion = view::readArmMotion(options.ghost, model, options.ignoreExtra);
-    motions.push_back(&*ghostMotion);
-  }
-  const Eigen::VectorXd times = shownTimes(options, motion);
-
-  // The arm, and a second one of the same build for the ghost.
-  bio::ArmOptions armOptions = app::armOptions(options.simulation);
-  armOptions.skeleton = view::skeletonFor(model, motions, armOptions.skeleton);
-  const MovingArm arm(model, armOptions, motion);
-  for (const std::string& warning : arm.poser().warnings()) summary.warn(warning);
-  std::optional<MovingArm> ghost;
-  if (ghostMotion) ghost.emplace(model, armOptions, *ghostMotion);
-  view::TendonForces forces;
-  if (options.thicknessByForce) {
-    forces = view::tendonForces(model, armOptions, motion, times);
-    if (forces.byMuscle.empty()) {
-      summary.warn(fmt::format("muscles are drawn with a fixed thickness: {}", forces.whyNone));
-    }
-  }
-  const auto radii = tubeRadii(arm.poser().muscles(), forces, times.size());
-  const std::vector<double> ghostRadii(arm.poser().muscles().size(), ghostRadius);
-
-  // All that is ever seen, so that the camera stands still.
-  const std::vector<view::BodyShape> bodies = view::bodyShapes(model);
-  std::vector<Eigen::Vector3d> outline;
+  const Shown shown = readShown(options, summary);
+  const Eigen::VectorXd& times = shown.times;
   bool ghostIsSeen = false;
-  const Eigen::Index stride = std::max<Eigen::Index>(1, times.size() / 24);
-  for (Eigen::Index k = 0; k < times.size(); k += stride) {
-    addOutline(bodies, arm.at(times[k], radii[static_cast<std::size_t>(k)]), outline);
-    if (ghost && ghost->covers(times[k])) {
-      addOutline(bodies, ghost->at(times[k], ghostRadii), outline);
-      ghostIsSeen = true;
-    }
-  }
-  if (ghost && !ghostIsSeen) {
+  const std::vector<Eigen::Vector3d> outline = outlineOf(shown, ghostIsSeen);
+  if (shown.ghost && !ghostIsSeen) {
     summary.warn(fmt::format("{} has no moment in common with what is shown", options.ghost));
-  }
-  view::SceneOptions sceneOptions;
-  sceneOptions.width = options.width;
-  sceneOptions.height = options.height;
-  sceneOptions.showWraps = options.showWraps;
-  sceneOptions.geometry = options.geometry;
-  sceneOptions.floor = std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector3d& point : outline) {
-    sceneOptions.floor = std::min(sceneOptions.floor, point.y() - 0.03);
-    sceneOptions.middle += point / static_cast<double>(outline.size());
-  }
-  sceneOptions.captions = {
-      fmt::format("{} – {}", model.name, std::filesystem::path(options.states).filename().string()),
-      forces.byMuscle.empty() ? "Muscles: equal thickness"
-                              : "Muscles: 1 mm² more of cross-section per 5 N of tendon force"};
-  if (ghost) {
-    sceneOptions.captions.push_back(
-        fmt::format("Orange: {}", std::filesystem::path(options.ghost).filename().string()));
   }
 
   const view::VirtualDisplay display;
-  view::ArmScene scene(bodies, sceneOptions);
+  view::ArmScene scene(shown.arm->bodies(),
+                       shown.ghost ? shown.ghost->bodies() : std::vector<view::BodyShape>{},
+                       sceneOptions(options, shown, outline));
   for (const std::string& warning : scene.warnings()) summary.warn(warning);
   const Eigen::Vector3d direction = view::directionOf(cameraNamed(options.camera), outline);
   const Eigen::Vector3d up =
@@ -247,20 +246,26 @@ ExitStatus drawPictures(const RenderOptions& options, const CommandContext& cont
                              view::pictureFrame));
   const auto draw = [&](Eigen::Index k) {
     const double time = times[k];
-    const view::ArmPoser::Posture posture = arm.at(time, radii[static_cast<std::size_t>(k)]);
-    view::ArmScene::Moment moment{time, &posture, arm.activationsAt(time), nullptr};
+    const view::ArmPoser::Posture posture =
+        shown.arm->at(time, shown.radii[static_cast<std::size_t>(k)]);
+    view::ArmScene::Moment moment{time, &posture, shown.arm->activationsAt(time), nullptr};
     std::optional<view::ArmPoser::Posture> ghostPosture;
-    if (ghost && ghost->covers(time)) {
-      ghostPosture = ghost->at(time, ghostRadii);
+    if (shown.ghost && shown.ghost->covers(time)) {
+      ghostPosture = shown.ghost->at(time, shown.ghostRadii);
       moment.ghost = &*ghostPosture;
     }
     return scene.draw(moment);
   };
+  Picture embedded{.title = toFilm || options.film ? "The middle of the film" : "The arm"};
   const auto drawAll = [&](const std::function<void(Eigen::Index, const view::Image&)>& take) {
     ProgressBar bar("render");
     for (Eigen::Index k = 0; k < times.size(); ++k) {
       bar.update(static_cast<double>(k) / static_cast<double>(times.size()));
-      take(k, draw(k));
+      const view::Image image = draw(k);
+      take(k, image);
+      if (k != times.size() / 2) continue;
+      embedded.png = view::pngOf(image);
+      embedded.caption = fmt::format("t = {} s", numberText(times[k]));
     }
   };
 
@@ -276,8 +281,8 @@ ExitStatus drawPictures(const RenderOptions& options, const CommandContext& cont
                           numberText(options.framesPerSecond));
   } else {
     drawAll([&](Eigen::Index k, const view::Image& image) {
-      folder.writeFile(options.film ? frameName(k) : "arm.png",
-                       [&](const std::filesystem::path& file) { view::writePng(image, file); });
+      folder.write(options.film ? frameName(k) : "arm.png",
+                   [&](std::ostream& out) { out << view::pngOf(image); });
     });
     verdict = options.film ? fmt::format("{} pictures of a film.", times.size())
                            : fmt::format("A picture at {} s.", numberText(times[0]));
@@ -296,7 +301,9 @@ ExitStatus drawPictures(const RenderOptions& options, const CommandContext& cont
   summary.set("height_pixels", options.height);
   summary.set("wall_s",
               std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-  deliver(context, summary, reportOn(options, motion, arm, verdict), folder);
+  Report report = reportOn(options, *shown.arm, verdict);
+  report.mainPicture = std::move(embedded);
+  deliver(context, summary, report, folder);
   return ExitStatus::done;
 }
 

@@ -1,6 +1,7 @@
 #include "report.h"
 
 #include <fmt/format.h>
+#include <openssl/evp.h>
 
 #include <cmath>
 #include <ctime>
@@ -96,6 +97,29 @@ std::string html(const Figure& figure) {
   return text + "</figure>\n";
 }
 
+std::string base64(const std::string& bytes) {
+  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
+  const int length = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
+                                     reinterpret_cast<const unsigned char*>(bytes.data()),
+                                     static_cast<int>(bytes.size()));
+  text.resize(static_cast<std::size_t>(length));
+  return text;
+}
+
+std::string html(const Picture& picture) {
+  if (!picture.png.starts_with("\x89PNG")) {
+    throw std::invalid_argument(fmt::format("picture '{}': is no PNG", picture.title));
+  }
+  std::string text = "<figure class=\"picture\">\n";
+  if (!picture.title.empty()) text += fmt::format("<h3>{}</h3>\n", htmlText(picture.title));
+  text += fmt::format("<img alt=\"{}\" src=\"data:image/png;base64,{}\">\n",
+                      htmlText(picture.title), base64(picture.png));
+  if (!picture.caption.empty()) {
+    text += fmt::format("<figcaption>{}</figcaption>\n", htmlText(picture.caption));
+  }
+  return text + "</figure>\n";
+}
+
 std::string html(const Table& table) {
   std::string text = "<div class=\"table\">\n";
   if (!table.title.empty()) text += fmt::format("<h3>{}</h3>\n", htmlText(table.title));
@@ -169,6 +193,7 @@ std::string renderReport(const Report& report, const Summary& summary) {
   text += "</head>\n<body>\n<main>\n";
   text += fmt::format("<header><h1>{}</h1>\n<p class=\"verdict\">{}</p></header>\n",
                       htmlText(report.title), htmlText(report.verdict));
+  if (report.mainPicture) text += html(*report.mainPicture);
   if (report.mainFigure) text += html(*report.mainFigure);
   text += warningList(summary);
   for (const auto& part : report.details) {

@@ -42,6 +42,13 @@ struct Table {
   std::vector<std::vector<std::string>> rows = {};  ///< each as long as columns
 };
 
+/// A picture, kept inside the page.
+struct Picture {
+  std::string title = {};
+  std::string png = {};      ///< the bytes of a PNG file
+  std::string caption = {};  ///< what to see, one or two sentences; may be empty
+};
+
 struct Paragraph {
   std::string text = {};
 };
@@ -50,17 +57,20 @@ struct Section {
   std::string title = {};
 };
 
-/// First what was run, the verdict in a sentence and the main figure; then the details in their
-/// order; then where it all came from, which is taken from the summary.
+using ReportPart = std::variant<Section, Paragraph, Figure, Table, Picture>;
+
+/// First what was run, the verdict in a sentence and the main picture or figure; then the details
+/// in their order; then where it all came from, which is taken from the summary.
 struct Report {
   std::string title = {};    ///< what was run: "Replay of trial_a.sto on elbow8.osim"
   std::string verdict = {};  ///< the answer in one sentence
+  std::optional<Picture> mainPicture = {};  ///< above the figure where there are both
   std::optional<Figure> mainFigure = {};
-  std::vector<std::variant<Section, Paragraph, Figure, Table>> details = {};
+  std::vector<ReportPart> details = {};
 };
 
 /// @throws std::invalid_argument if a series' x and y, or a table's columns and row, differ in
-/// length
+/// length, or a picture is no PNG
 std::string renderReport(const Report& report, const Summary& summary);
 
 }  // namespace app

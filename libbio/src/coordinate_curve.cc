@@ -17,8 +17,8 @@ CoordinateCurve readCoordinate(const std::filesystem::path& statesFile,
   const std::string& name = coordinate.name;
   std::string found;
   for (const std::string& column : table.columns) {
-    const bool matches = column == name || column == name + "_deg" || column == name + "/value" ||
-                         (column.starts_with("/") && column.ends_with("/" + name + "/value"));
+    const bool matches = column == name || column == name + "_deg" || column == name + "_rad" ||
+                         column == name + "/value" || column.ends_with("/" + name + "/value");
     if (!matches) continue;
     if (!found.empty()) {
       throw FileError(fmt::format("{}: columns '{}' and '{}' both hold coordinate '{}'",
@@ -28,10 +28,11 @@ CoordinateCurve readCoordinate(const std::filesystem::path& statesFile,
   }
   if (found.empty()) {
     throw FileError(
-        fmt::format("{}: no column of coordinate '{}' (/jointset/…/{}/value, {} or {}_deg)",
-                    statesFile.string(), name, name, name, name));
+        fmt::format("{}: no column of coordinate '{}' (/jointset/…/{}/value, {}, {}_deg or {}_rad)",
+                    statesFile.string(), name, name, name, name, name));
   }
-  const bool degrees = coordinate.isRotation && (table.inDegrees || found == name + "_deg");
+  const bool degrees = coordinate.isRotation &&
+                       ((table.inDegrees && found != name + "_rad") || found == name + "_deg");
   const Eigen::VectorXd times = timesOf(table);
   const Eigen::VectorXd values =
       table.values.col(columnIndex(table, found)) * (degrees ? std::numbers::pi / 180 : 1.0);

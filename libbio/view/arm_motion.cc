@@ -15,15 +15,16 @@ namespace {
 
 /// What a column stands for in a model.
 enum class Meaning { coordinate, activation, fibreLength, nothingShown, foreign };
+enum class Unit { asHeader, degree, radian };
 struct ColumnMeaning {
   Meaning meaning = Meaning::foreign;
-  std::string name = {};   ///< of the coordinate or muscle
-  bool inDegrees = false;  ///< by the column's own name
+  std::string name = {};       ///< of the coordinate or muscle
+  Unit unit = Unit::asHeader;  ///< of an angle, by the column's own name
 };
 
 std::vector<std::string> partsOf(const std::string& path) {
   std::vector<std::string> parts;
-  std::size_t from = 1;
+  std::size_t from = path.starts_with("/") ? 1 : 0;
   for (std::size_t slash; (slash = path.find('/', from)) != path.npos; from = slash + 1) {
     parts.push_back(path.substr(from, slash - from));
   }
@@ -48,28 +49,48 @@ const Coordinate* coordinateOf(const Model& model, const std::string& joint,
   return nullptr;
 }
 
+/// `state` as OpenSim calls it, also with its unit behind.
+ColumnMeaning muscleState(const std::string& muscle, const std::string& state) {
+  if (state == "activation") return {Meaning::activation, muscle};
+  if (state == "fiber_length" || state == "fiber_length_m") return {Meaning::fibreLength, muscle};
+  return {Meaning::nothingShown, muscle};
+}
+
+/// Names with slashes: OpenSim 4's /jointset/J/C/value, and J/C/value of OpenSim 3.3.
+ColumnMeaning meaningOfPath(const std::string& column, const Model& model) {
+  std::vector<std::string> parts = partsOf(column);
+  const bool inJoints = parts.front() == "jointset", inForces = parts.front() == "forceset";
+  if (inJoints || inForces) parts.erase(parts.begin());
+  if (!inForces && parts.size() == 3 && coordinateOf(model, parts[0], parts[1])) {
+    return {parts[2] == "value" ? Meaning::coordinate : Meaning::nothingShown, parts[1]};
+  }
+  if (!inJoints && parts.size() == 2 && hasMuscle(model, parts[0])) {
+    return muscleState(parts[0], parts[1]);
+  }
+  return {};
+}
+
 ColumnMeaning meaningOf(const std::string& column, const Model& model) {
   if (column == "time" || column == "time_s") return {Meaning::nothingShown};
-  if (column.starts_with("/")) {
-    const std::vector<std::string> parts = partsOf(column);
-    if (parts.size() == 4 && parts[0] == "jointset" && coordinateOf(model, parts[1], parts[2])) {
-      return {parts[3] == "value" ? Meaning::coordinate : Meaning::nothingShown, parts[2]};
-    }
-    if (parts.size() == 3 && parts[0] == "forceset" && hasMuscle(model, parts[1])) {
-      const Meaning meaning = parts[2] == "activation"     ? Meaning::activation
-                              : parts[2] == "fiber_length" ? Meaning::fibreLength
-                                                           : Meaning::nothingShown;
-      return {meaning, parts[1]};
-    }
-    return {};
-  }
+  if (column.find('/') != column.npos) return meaningOfPath(column, model);
   if (coordinateOf(model, "", column)) return {Meaning::coordinate, column};
-  const std::string suffix = "_deg";
-  if (column.ends_with(suffix)) {
-    const std::string name = column.substr(0, column.size() - suffix.size());
-    if (coordinateOf(model, "", name)) return {Meaning::coordinate, name, true};
-  }
   if (hasMuscle(model, column)) return {Meaning::nothingShown, column};
+  // OpenSim 3: C_u is a speed, M.activation a state
+  const std::pair<std::string, ColumnMeaning> endings[] = {
+      {"_deg", {Meaning::coordinate, "", Unit::degree}},
+      {"_rad", {Meaning::coordinate, "", Unit::radian}},
+      {"_u", {Meaning::nothingShown}},
+      {"_speed", {Meaning::nothingShown}},
+      {"_speed_rad_s", {Meaning::nothingShown}}};
+  for (const auto& [ending, meaning] : endings) {
+    if (!column.ends_with(ending)) continue;
+    const std::string name = column.substr(0, column.size() - ending.size());
+    if (coordinateOf(model, "", name)) return {meaning.meaning, name, meaning.unit};
+  }
+  const std::size_t dot = column.rfind('.');
+  if (dot != column.npos && hasMuscle(model, column.substr(0, dot))) {
+    return muscleState(column.substr(0, dot), column.substr(dot + 1));
+  }
   return {};
 }
 
@@ -120,7 +141,7 @@ ArmMotion readArmMotion(const std::filesystem::path& file, const Model& model, b
     switch (meaning.meaning) {
       case Meaning::coordinate:
         if (coordinateOf(model, "", meaning.name)->isRotation &&
-            (table.inDegrees || meaning.inDegrees)) {
+            (meaning.unit == Unit::degree || (meaning.unit == Unit::asHeader && table.inDegrees))) {
           values *= std::numbers::pi / 180;
         }
         motion.coordinates[meaning.name] = values;

@@ -21,9 +21,10 @@ struct ArmMotion {
 };
 
 /// Reads states as OpenSim 4 names them (`/jointset/J/C/value`, `/forceset/M/activation`,
-/// `/forceset/M/fiber_length`), or a motion or trial whose columns are called as the coordinates
-/// are, in degrees if the header says so or the name ends in `_deg`. Cells that were not measured
-/// are filled by straight lines. Speeds, other states and excitations are passed over.
+/// `/forceset/M/fiber_length`) or OpenSim 3 did (`J/C/value`, `C_u`, `M.activation`), or a motion
+/// or trial whose columns are called as the coordinates are, in degrees if the header says so or
+/// the name ends in `_deg`, in radians if it ends in `_rad`. Cells that were not measured are
+/// filled by straight lines. Speeds, other states and excitations are passed over.
 /// @throws FileError what readTable throws
 /// @throws std::invalid_argument for a column that belongs to nothing in the model unless
 ///   `ignoreExtra`, or if no column gives a coordinate

@@ -19,6 +19,7 @@
 #include <vtkTextProperty.h>
 #include <vtkUnsignedCharArray.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -63,6 +64,14 @@ void place(vtkActor* actor, const Placement<double>& X) {
     matrix->SetElement(i, 3, X.p[i]);
   }
   actor->SetUserMatrix(matrix);
+}
+
+bool sameBones(const BodyShape& a, const BodyShape& b) {
+  const auto same = [](const TaperedBone& one, const TaperedBone& other) {
+    return one.from == other.from && one.to == other.to && one.shaftRadius == other.shaftRadius;
+  };
+  return a.geometryFiles == b.geometryFiles &&
+         std::equal(a.bones.begin(), a.bones.end(), b.bones.begin(), b.bones.end(), same);
 }
 
 bool coincide(const Placement<double>& a, const Placement<double>& b) {
@@ -124,16 +133,15 @@ Eigen::Vector3d directionOf(Camera camera, const std::vector<Eigen::Vector3d>& p
 
 struct ArmScene::Parts {
   struct Body {
-    std::string name;
+    BodyShape shape;
     std::vector<vtkSmartPointer<vtkActor>> actors;  ///< bones and wraps
-    vtkSmartPointer<vtkActor> ghost;                ///< bones; may be null
   };
 
   SceneOptions options;
   std::vector<std::string> warnings;
   vtkNew<vtkRenderWindow> window;
   vtkNew<vtkRenderer> renderer;
-  std::vector<Body> bodies;
+  std::vector<Body> bodies, ghosts;
   vtkNew<vtkLookupTable> colours;
   vtkNew<vtkPolyDataMapper> muscleMapper;
   vtkNew<vtkActor> muscles;
@@ -155,23 +163,21 @@ struct ArmScene::Parts {
     renderer->AddViewProp(text);
   }
 
-  void addBody(const BodyShape& shape, std::vector<std::string>& unusable) {
-    Body body{shape.name, {}, nullptr};
+  /// From its files, or tapered solids; null if it has no bones.
+  vtkSmartPointer<vtkPolyData> bonesOf(const BodyShape& shape, std::vector<std::string>& unusable) {
     vtkSmartPointer<vtkPolyData> bones;
     if (!options.geometry.empty()) bones = meshFromFiles(shape, options.geometry, unusable);
-    if (!bones && !shape.bones.empty()) {
-      std::vector<vtkSmartPointer<vtkPolyData>> solids;
-      for (const TaperedBone& bone : shape.bones) solids.push_back(meshOf(bone));
-      for (const auto& [centre, radius] : shape.joints) {
-        solids.push_back(sphereMesh(centre, radius));
-      }
-      bones = joined(solids);
-    }
-    if (bones) {
+    if (bones || shape.bones.empty()) return bones;
+    std::vector<vtkSmartPointer<vtkPolyData>> solids;
+    for (const TaperedBone& bone : shape.bones) solids.push_back(meshOf(bone));
+    for (const auto& [centre, radius] : shape.joints) solids.push_back(sphereMesh(centre, radius));
+    return joined(solids);
+  }
+
+  void addBody(const BodyShape& shape, std::vector<std::string>& unusable) {
+    Body body{shape, {}};
+    if (const auto bones = bonesOf(shape, unusable)) {
       body.actors.push_back(actorOf(bones, boneColour));
-      body.ghost = actorOf(bones, ghostColour, 0.22);
-      body.ghost->VisibilityOff();
-      renderer->AddActor(body.ghost);
     }
     if (options.showWraps) {
       for (const WrapObject& wrap : shape.wraps) {
@@ -181,6 +187,23 @@ struct ArmScene::Parts {
     }
     for (const auto& actor : body.actors) renderer->AddActor(actor);
     bodies.push_back(body);
+  }
+
+  void addGhost(const BodyShape& shape, std::vector<std::string>& unusable) {
+    const auto bones = bonesOf(shape, unusable);
+    if (!bones) return;
+    Body body{shape, {actorOf(bones, ghostColour, 0.22)}};
+    renderer->AddActor(body.actors.front());
+    ghosts.push_back(body);
+  }
+
+  /// Whether a ghost's bones lie in the very place of the same bones: they would only flicker.
+  bool isHidden(const Body& ghost, const Moment& moment) const {
+    return std::any_of(bodies.begin(), bodies.end(), [&](const Body& body) {
+      return body.shape.name == ghost.shape.name && sameBones(body.shape, ghost.shape) &&
+             coincide(moment.posture->bodies.at(body.shape.name),
+                      moment.ghost->bodies.at(ghost.shape.name));
+    });
   }
 
   void addGround() {
@@ -258,7 +281,8 @@ struct ArmScene::Parts {
   }
 };
 
-ArmScene::ArmScene(const std::vector<BodyShape>& bodies, const SceneOptions& options)
+ArmScene::ArmScene(const std::vector<BodyShape>& bodies, const std::vector<BodyShape>& ghosts,
+                   const SceneOptions& options)
     : parts_(std::make_unique<Parts>()) {
   vtkObject::GlobalWarningDisplayOff();  // a library does not print
   Parts& p = *parts_;
@@ -274,6 +298,9 @@ ArmScene::ArmScene(const std::vector<BodyShape>& bodies, const SceneOptions& opt
   p.addGround();
   std::vector<std::string> unusable;
   for (const BodyShape& body : bodies) p.addBody(body, unusable);
+  for (const BodyShape& ghost : ghosts) p.addGhost(ghost, unusable);
+  std::sort(unusable.begin(), unusable.end());
+  unusable.erase(std::unique(unusable.begin(), unusable.end()), unusable.end());
   if (!unusable.empty()) {
     p.warnings.push_back(fmt::format("{}: no readable {}; tapered solids are drawn instead",
                                      options.geometry.string(), fmt::join(unusable, ", ")));
@@ -302,13 +329,13 @@ Image ArmScene::draw(const Moment& moment) {
   Parts& p = *parts_;
   p.muscleMapper->SetInputData(tubesOf(moment.posture->muscles, moment.activations));
   for (const Parts::Body& body : p.bodies) {
-    for (const auto& actor : body.actors) place(actor, moment.posture->bodies.at(body.name));
-    if (!body.ghost) continue;
-    // A ghost in the very place of its bone would only flicker.
-    const bool apart = moment.ghost != nullptr && !coincide(moment.posture->bodies.at(body.name),
-                                                            moment.ghost->bodies.at(body.name));
-    body.ghost->SetVisibility(apart);
-    if (apart) place(body.ghost, moment.ghost->bodies.at(body.name));
+    const Placement<double>& X = moment.posture->bodies.at(body.shape.name);
+    for (const auto& actor : body.actors) place(actor, X);
+  }
+  for (const Parts::Body& ghost : p.ghosts) {
+    const bool shown = moment.ghost != nullptr && !p.isHidden(ghost, moment);
+    ghost.actors.front()->SetVisibility(shown);
+    if (shown) place(ghost.actors.front(), moment.ghost->bodies.at(ghost.shape.name));
   }
   p.ghostMuscles->SetVisibility(moment.ghost != nullptr);
   if (moment.ghost != nullptr) {
@@ -340,7 +367,7 @@ Image ArmScene::draw(const Moment& moment) {
   return image;
 }
 
-void writePng(const Image& image, const std::filesystem::path& file) {
+std::string pngOf(const Image& image) {
   vtkNew<vtkImageData> data;
   data->SetDimensions(image.width, image.height, 1);
   data->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
@@ -351,13 +378,13 @@ void writePng(const Image& image, const std::filesystem::path& file) {
     std::memcpy(to + r * row, image.rgb.data() + from * row, row);
   }
   vtkNew<vtkPNGWriter> writer;
-  writer->SetFileName(file.c_str());
+  writer->WriteToMemoryOn();
   writer->SetCompressionLevel(4);
   writer->SetInputData(data);
   writer->Write();
-  if (writer->GetErrorCode() != 0) {
-    throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
-  }
+  const vtkUnsignedCharArray* bytes = writer->GetResult();
+  const auto* first = const_cast<vtkUnsignedCharArray*>(bytes)->GetPointer(0);
+  return {first, first + bytes->GetNumberOfValues()};
 }
 
 }  // namespace bio::view

@@ -37,7 +37,7 @@ constexpr PictureFrame pictureFrame = {-0.93, 0.68, -0.76, 0.7};
 /// Bones, joints, muscles, wraps, ground, legend and time stamp, drawn off screen.
 class ArmScene {
  public:
-  /// One moment of a second motion is drawn translucent if `ghost` is not null.
+  /// One moment of the second arm or motion is drawn translucent if `ghost` is not null.
   struct Moment {
     double time = 0;  ///< [s]
     const ArmPoser::Posture* posture = nullptr;
@@ -46,7 +46,9 @@ class ArmScene {
   };
 
   /// There must be a display (VirtualDisplay) as long as the scene lives.
-  ArmScene(const std::vector<BodyShape>& bodies, const SceneOptions& options);
+  /// @param ghosts  the bodies of the second arm; empty: none is ever drawn
+  ArmScene(const std::vector<BodyShape>& bodies, const std::vector<BodyShape>& ghosts,
+           const SceneOptions& options);
   ~ArmScene();
   ArmScene(const ArmScene&) = delete;
   ArmScene& operator=(const ArmScene&) = delete;
@@ -62,7 +64,7 @@ class ArmScene {
   std::unique_ptr<Parts> parts_;
 };
 
-/// @throws std::runtime_error if the file cannot be written
-void writePng(const Image& image, const std::filesystem::path& file);
+/// The bytes of a PNG file.
+std::string pngOf(const Image& image);
 
 }  // namespace bio::view

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -75,6 +76,45 @@ TEST(CompareCommand, WritesTheTableTheSummaryAndTheReport) {
                             "Beside the measured motion", "Beside other programs"}) {
     EXPECT_THAT(report, HasSubstr(title));
   }
+}
+
+// The elbow as OpenSim 4.6 moved it, in the columns its own states files have.
+TEST(CompareCommand, LaysOpenSimsStatesBesideOurs) {
+  const std::filesystem::path reference =
+      std::filesystem::path(FISHERHILL_SOURCE_DIR) / "../shared/reference";
+  if (!std::filesystem::exists(reference / "forward_101.csv")) {
+    GTEST_SKIP() << "needs OpenSim's reference files in ../shared/reference, which are not part of "
+                    "the project";
+  }
+  const ScratchFolder scratch;
+  std::istringstream rows(support::contentOf(reference / "forward_101.csv"));
+  std::string row, states;
+  std::getline(rows, row);
+  int count = 0;
+  for (; std::getline(rows, row); ++count) {
+    const std::size_t time = row.find(','), angle = row.find(',', time + 1),
+                      speed = row.find(',', angle + 1);
+    states += row.substr(0, time) + '\t' + row.substr(time + 1, angle - time - 1) + '\t' +
+              row.substr(angle + 1, speed - angle - 1) + '\n';
+  }
+  const std::string file = scratch.file(
+      "states.sto",
+      "ModelStates\nversion=3\ninDegrees=no\nDataType=double\nOpenSimVersion=4.6\nnRows=" +
+          std::to_string(count) +
+          "\nnColumns=3\nendheader\ntime\t/jointset/elbow/elbow_flexion/value\t"
+          "/jointset/elbow/elbow_flexion/speed\n" +
+          states);
+  const std::string out = (scratch / "out").string();
+  const ProgramResult result =
+      runFisherHill({"compare", (reference / "elbow8_reference.osim").string(),
+                     (reference / "excitations_101.sto").string(), "--initial", "elbow_flexion=0.6",
+                     "--integrators", "vi", "--steps", "0.01", "--also", "OpenSim=" + file,
+                     "--also", "table=" + (reference / "forward_101.csv").string(), "--out", out});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = nlohmann::json::parse(support::contentOf(out + "/summary.json"));
+  EXPECT_LT(json["also_OpenSim_rms_deg"].get<double>(), 1e-3);
+  EXPECT_EQ(json["also_OpenSim_rms_deg"], json["also_table_rms_deg"]);
+  EXPECT_THAT(support::contentOf(out + "/report.html"), HasSubstr("Beside other programs"));
 }
 
 TEST(CompareCommand, LeavesOutFiguresThatHaveNothingToShow) {

@@ -200,12 +200,28 @@ INSTANTIATE_TEST_SUITE_P(
         {"UnknownCamera",
          {"render", model, "$/motion.csv", "--out", "$/out", "--camera", "left"},
          "left"},
+        {"GhostModelWithoutGhost",
+         {"render", model, "$/motion.csv", "--out", "$/out", "--ghost-model", model},
+         "--ghost"},
+        {"GhostOfAnotherModel",
+         {"render", model, "$/motion.csv", "--out", "$/out", "--ghost", "$/extra.csv"},
+         "'GLUTmax'"},
         {"NoGeometryFolder",
          {"render", model, "$/motion.csv", "--out", "$/out", "--geometry", "$/none"},
          "$/none"},
         {"OutIsAFile", {"render", model, "$/motion.csv", "--out", "$/good.csv"}, "not a folder"}}),
     nameOf);
+#else
+INSTANTIATE_TEST_SUITE_P(
+    RenderWithoutVtk, EveryMistake,
+    testing::ValuesIn(std::vector<Mistake>{
+        {"IsNotBuilt",
+         {"render", model, "$/motion.csv", "--out", "$/out"},
+         "built where VTK is installed, with FISHERHILL_VIEW=ON"},
+        {"NoStates", {"render", model, "$/no.sto", "--out", "$/out"}, "$/no.sto"}}),
+    nameOf);
 #endif
+
 TEST(CtrlC, EndsALongReplayWithStatus130AndNothingHalfWritten) {
   const ScratchFolder scratch;
   const std::string out = (scratch / "out").string();

@@ -80,26 +80,77 @@ TEST_F(RenderCommand, DrawsAPictureWithoutADisplayAndLeavesNoServer) {
   EXPECT_EQ(static_cast<unsigned char>(png[19]), 160);  // width and height, big-endian
   EXPECT_EQ(static_cast<unsigned char>(png[23]), 120);
   EXPECT_TRUE(made("summary.json"));
+  EXPECT_THAT(contentOf(scratch_ / "out/report.html"),
+              HasSubstr("<img alt=\"The arm\" src=\"data:image/png;base64,iVBORw0KGgo"));
   expectNothingLeftRunning();
 }
 
-TEST_F(RenderCommand, MissingGeometryIsOneWarningAndATaperedSolid) {
+TEST_F(RenderCommand, TheGhostMayBeAnotherModel) {
+  // A humerus that is a hand's breadth shorter, and no other difference.
   std::string text = contentOf(model);
-  const std::string nothing = "<attached_geometry/>";
-  const std::size_t at = text.find(nothing, text.find("<Body name=\"humerus\">"));
-  text.replace(at, nothing.size(),
-               "<attached_geometry><Mesh name=\"bone\"><mesh_file>humerus.vtp</mesh_file></Mesh>"
-               "</attached_geometry>");
-  const std::string named = scratch_.file("named.osim", text);
-  const ProgramResult result =
-      support::runProgram({"env", "-u", "DISPLAY", FISHERHILL_PROGRAM_FOLDER "/fisherhill",
-                           "render", named, states_, "--out", (scratch_ / "out").string(), "--size",
-                           "160x120", "--geometry", scratch_.path().string()});
-  EXPECT_EQ(result.status, 0) << result.err;
-  const std::size_t first = result.err.find("humerus.vtp");
-  EXPECT_NE(first, result.err.npos) << result.err;
-  EXPECT_EQ(result.err.find("humerus.vtp", first + 1), result.err.npos) << result.err;
-  EXPECT_TRUE(made("arm.png"));
+  const std::string joint = "0.0061 -0.2904 -0.0123";
+  const std::size_t at = text.find(joint);
+  ASSERT_NE(at, text.npos);
+  text.replace(at, joint.size(), "0.0061 -0.2104 -0.0123");
+  const std::string shorter = scratch_.file("shorter.osim", text);
+  ASSERT_EQ(render({}).status, 0);
+  const std::string alone = contentOf(scratch_ / "out/arm.png");
+  ASSERT_EQ(render({"--force", "--ghost", states_}).status, 0);
+  const std::string same = contentOf(scratch_ / "out/arm.png");
+  const ProgramResult result = render({"--force", "--ghost", states_, "--ghost-model", shorter});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(contentOf(scratch_ / "out/arm.png"), same);
+  EXPECT_NE(contentOf(scratch_ / "out/arm.png"), alone);
+  EXPECT_THAT(contentOf(scratch_ / "out/summary.json"), HasSubstr("shorter.osim"));
+}
+
+class RenderGeometry : public RenderCommand {
+ protected:
+  /// The shipped elbow with a geometry file for its humerus.
+  std::string modelWithGeometry() {
+    std::string text = contentOf(model);
+    const std::string nothing = "<attached_geometry/>";
+    const std::size_t at = text.find(nothing, text.find("<Body name=\"humerus\">"));
+    text.replace(at, nothing.size(),
+                 "<attached_geometry><Mesh name=\"bone\"><mesh_file>humerus.vtp</mesh_file></Mesh>"
+                 "</attached_geometry>");
+    return scratch_.file("named.osim", text);
+  }
+
+  /// @return the picture
+  std::string draw(const std::string& named, const std::string& geometry, std::string& messages) {
+    const ProgramResult result =
+        support::runProgram({"env", "-u", "DISPLAY", FISHERHILL_PROGRAM_FOLDER "/fisherhill",
+                             "render", named, states_, "--out", (scratch_ / "out").string(),
+                             "--force", "--size", "160x120", "--geometry", geometry});
+    EXPECT_EQ(result.status, 0) << result.err;
+    messages = result.err;
+    return contentOf(scratch_ / "out/arm.png");
+  }
+};
+
+TEST_F(RenderGeometry, MissingItIsOneWarningAndATaperedSolid) {
+  const std::string named = modelWithGeometry();
+  fs::create_directory(scratch_ / "empty");
+  fs::create_directory(scratch_ / "bones");
+  // A tetrahedron along the humerus.
+  scratch_.file("bones/humerus.vtp",
+                "<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\"><PolyData>"
+                "<Piece NumberOfPoints=\"4\" NumberOfVerts=\"0\" NumberOfLines=\"0\" "
+                "NumberOfStrips=\"0\" NumberOfPolys=\"4\"><Points><DataArray type=\"Float32\" "
+                "NumberOfComponents=\"3\" format=\"ascii\">0 0 0.05 0.05 0 -0.05 -0.05 0 -0.05 0 "
+                "-0.3 0</DataArray></Points><Polys><DataArray type=\"Int32\" "
+                "Name=\"connectivity\" format=\"ascii\">0 1 2 0 3 1 1 3 2 2 3 0</DataArray>"
+                "<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">3 6 9 12</DataArray>"
+                "</Polys></Piece></PolyData></VTKFile>\n");
+  std::string messages;
+  const std::string tapered = draw(named, (scratch_ / "empty").string(), messages);
+  const std::size_t first = messages.find("humerus.vtp");
+  EXPECT_NE(first, messages.npos) << messages;
+  EXPECT_EQ(messages.find("humerus.vtp", first + 1), messages.npos) << messages;
+  const std::string meshed = draw(named, (scratch_ / "bones").string(), messages);
+  EXPECT_EQ(messages.find(".vtp"), messages.npos) << messages;
+  EXPECT_NE(meshed, tapered);
 }
 
 TEST_F(RenderCommand, MakesAFilm) {

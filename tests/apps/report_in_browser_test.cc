@@ -54,7 +54,13 @@ TEST(ReportInBrowser, DrawsEveryFigureWithoutAConsoleMessage) {
   report.title = "A test";
   report.verdict = "It draws.";
   report.mainFigure = waves(AxisScale::linear, 1);
-  report.details = {waves(AxisScale::linear, 10), waves(AxisScale::logarithmic, 3), Figure{}};
+  // 1 × 1 pixel
+  const std::string png(
+      "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\b\0\0\0\0:~\x9bU\0\0\0\nIDATx\x9c"
+      "c`\0\0\0\2\0\1H\xaf\xa4q\0\0\0\0IEND\xae\x42`\x82",
+      67);
+  report.details = {waves(AxisScale::linear, 10), waves(AxisScale::logarithmic, 3), Figure{},
+                    Picture{.title = "A picture", .png = png}};
   const ScratchFolder scratch;
   const ProgramResult result = openInBrowser(renderReport(report, Summary({})), scratch);
   ASSERT_EQ(result.status, 0) << result.err;

@@ -54,6 +54,22 @@ TEST(Report, NeedsNothingFromElsewhere) {
   EXPECT_THAT(html, HasSubstr("Copyright (c) 2022 Leon Sorokin"));
 }
 
+TEST(Report, KeepsPicturesInsideThePage) {
+  Report report = smallReport();
+  report.mainPicture = Picture{.title = "An arm", .png = "\x89PNG\r\n\x1a\n", .caption = "Bent."};
+  report.details = {Picture{.title = "Another", .png = "\x89PNG"}};
+  const std::string html = renderReport(report, Summary({}));
+  // RFC 4648: 8 bytes are 12 letters with one '=', 4 bytes 8 with two
+  const std::size_t main =
+      html.find("<img alt=\"An arm\" src=\"data:image/png;base64,iVBORw0KGgo=\">");
+  ASSERT_NE(main, html.npos);
+  EXPECT_GT(main, html.find("It moves."));
+  EXPECT_LT(main, html.find("<h3>Angle</h3>"));
+  EXPECT_THAT(html, HasSubstr("src=\"data:image/png;base64,iVBORw==\">"));
+  report.details = {Picture{.title = "A film", .png = "ftyp"}};
+  EXPECT_THROW(renderReport(report, Summary({})), std::invalid_argument);
+}
+
 TEST(Report, TakesTextLiterally) {
   Report report = smallReport();
   report.title = "<b>&\"";

@@ -234,6 +234,22 @@ TEST(CoordinateCurve, IsReadFromTheColumnsOfOpenSimAndOthers) {
               std::numbers::pi / 2, 1e-15);
   EXPECT_NEAR(second("c.csv", "time,elbow_flexion_deg\n0,5\n1,180\n"), std::numbers::pi, 1e-15);
   EXPECT_EQ(second("d.csv", "time,elbow_flexion\n0,5\n1,0.3\n"), 0.3);
+  EXPECT_EQ(second("g.csv", "time_s,elbow_flexion_rad,elbow_flexion_speed_rad_s\n0,5,1\n1,0.2,2\n"),
+            0.2);
+  // OpenSim 3.3: states in radians, and what its analyses print, in degrees
+  EXPECT_EQ(
+      second("h.sto", header + "no\nendheader\ntime\telbow/elbow_flexion/value\n0\t5\n1\t0.4\n"),
+      0.4);
+  EXPECT_NEAR(
+      second("i.sto",
+             "Coordinates\nversion=1\nnRows=2\nnColumns=3\ninDegrees=yes\n\nUnits are S.I. "
+             "units (second, meters, Newtons, ...)\nIf the header above contains a line with "
+             "'inDegrees', this indicates whether rotational values are in degrees (yes) or "
+             "radians (no).\n\nendheader\ntime\tpro_sup\telbow_flexion\n 0.0\t 1.0\t 2.0\n "
+             "1.0\t 1.0\t 45.0\n"),
+      std::numbers::pi / 4, 1e-15);
+  EXPECT_EQ(second("j.sto", header + "yes\nendheader\ntime\telbow_flexion_rad\n0\t5\n1\t0.4\n"),
+            0.4);
   EXPECT_THROW(second("e.csv", "time,/jointset/elbow/elbow_flexion/speed\n0,5\n1,0\n"), FileError);
   EXPECT_THROW(second("f.csv", "time,elbow_flexion,elbow_flexion_deg\n0,5,0\n1,0,0\n"), FileError);
 }

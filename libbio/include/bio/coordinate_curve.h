@@ -14,8 +14,9 @@ struct CoordinateCurve {
   std::vector<double> value;  ///< [rad] or [m]; NaN where the table has none
 };
 
-/// Reads a table of states: the column `/…/NAME/value` of OpenSim 4, `NAME/value`, `NAME`, or
-/// `NAME_deg`. Angles are degrees when the header says inDegrees=yes or the name ends in `_deg`.
+/// Reads a table of states or kinematics: the column `/jointset/JOINT/NAME/value` of OpenSim 4,
+/// `JOINT/NAME/value` or `NAME` of OpenSim 3, `NAME_deg` or `NAME_rad`. Angles are degrees when the
+/// name ends in `_deg`, or the header says inDegrees=yes and the name does not end in `_rad`.
 /// @throws FileError if the table cannot be read or has no such column, or more than one
 CoordinateCurve readCoordinate(const std::filesystem::path& statesFile,
                                const Coordinate& coordinate);

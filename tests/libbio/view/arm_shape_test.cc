@@ -136,6 +136,24 @@ TEST_F(MotionFile, GivesStatesInRadiansAndMeasuredAnglesInDegrees) {
   EXPECT_TRUE(measured.activations.empty()) << "excitations are no activations";
 }
 
+TEST_F(MotionFile, UnderstandsTheNamesOfOpenSim3AndUnitsBehindThem) {
+  const ArmMotion old = read(
+      "time,elbow_flexion,elbow_flexion_u,BRA.activation,BRA.fiber_length\n0,0.5,9,0.1,0.07\n"
+      "1,1.5,9,0.3,0.08\n");
+  EXPECT_DOUBLE_EQ(old.coordinates.at("elbow_flexion")[1], 1.5);
+  EXPECT_DOUBLE_EQ(old.activations.at("BRA")[1], 0.3);
+  EXPECT_DOUBLE_EQ(old.fibreLengths.at("BRA")[1], 0.08);
+  const ArmMotion paths =
+      read("time,elbow/elbow_flexion/value,BRA/activation\n0,0.5,0.1\n1,1.5,0.3\n");
+  EXPECT_DOUBLE_EQ(paths.coordinates.at("elbow_flexion")[1], 1.5);
+  EXPECT_DOUBLE_EQ(paths.activations.at("BRA")[1], 0.3);
+  const ArmMotion units = read(
+      "time_s,elbow_flexion_rad,elbow_flexion_speed_rad_s,BRA.fiber_length_m,BRA.tendon_force_N\n"
+      "0,0.5,9,0.07,1\n1,1.5,9,0.08,1\n");
+  EXPECT_DOUBLE_EQ(units.coordinates.at("elbow_flexion")[1], 1.5);
+  EXPECT_DOUBLE_EQ(units.fibreLengths.at("BRA")[1], 0.08);
+}
+
 TEST_F(MotionFile, ColumnsOfAnotherModelAreNamed) {
   const std::string knee = "time,elbow_flexion,/jointset/knee/knee_angle/value\n0,1,2\n1,1,2\n";
   try {
