@@ -21,10 +21,8 @@ namespace {
 
 namespace view = bio::view;
 
-constexpr double fixedRadius = 0.004;     // [m]
-constexpr double restingRadius = 0.0025;  // [m], of a tube without force
-constexpr double ghostRadius = 0.0022;    // [m]: hidden where both motions coincide
-constexpr double shownStress = 5e6;       // [N/m²]: tendon force per area that a tube gains
+constexpr double fixedRadius = 0.004;   // [m]
+constexpr double ghostRadius = 0.0022;  // [m]: hidden where both motions coincide
 
 view::Camera cameraNamed(const std::string& name) {
   if (name == "side") return view::Camera::side;
@@ -64,12 +62,9 @@ std::vector<std::vector<double>> tubeRadii(const std::vector<std::string>& muscl
   for (Eigen::Index k = 0; k < count; ++k) {
     for (const std::string& muscle : muscles) {
       const auto found = forces.byMuscle.find(muscle);
-      const double area =
-          found == forces.byMuscle.end() ? -1 : std::max(found->second[k], 0.0) / shownStress;
+      const double force = found == forces.byMuscle.end() ? 0 : found->second[k];
       radii[static_cast<std::size_t>(k)].push_back(
-          forces.byMuscle.empty() ? fixedRadius
-          : area < 0              ? restingRadius
-                     : std::sqrt(restingRadius * restingRadius + area / std::numbers::pi));
+          forces.byMuscle.empty() ? fixedRadius : view::tubeRadius(force));
     }
   }
   return radii;

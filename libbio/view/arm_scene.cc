@@ -12,6 +12,7 @@
 #include <vtkPNGWriter.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
+#include <vtkProperty2D.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkScalarBarActor.h>
@@ -160,6 +161,9 @@ struct ArmScene::Parts {
     vtkTextProperty* letters = text->GetTextProperty();
     setFont(letters, bold);
     letters->SetFontSize(pixels(size));
+    // Lines of the ground must not run through the letters.
+    letters->SetBackgroundColor(background[0], background[1], background[2]);
+    letters->SetBackgroundOpacity(0.75);
     renderer->AddViewProp(text);
   }
 
@@ -192,7 +196,8 @@ struct ArmScene::Parts {
   void addGhost(const BodyShape& shape, std::vector<std::string>& unusable) {
     const auto bones = bonesOf(shape, unusable);
     if (!bones) return;
-    Body body{shape, {actorOf(bones, ghostColour, 0.22)}};
+    Body body{shape, {actorOf(bones, ghostColour, 0.3)}};
+    body.actors.front()->GetProperty()->BackfaceCullingOn();  // one layer, not two
     renderer->AddActor(body.actors.front());
     ghosts.push_back(body);
   }
@@ -237,7 +242,8 @@ struct ArmScene::Parts {
     ghostMapper->ScalarVisibilityOff();
     ghostMuscles->SetMapper(ghostMapper);
     ghostMuscles->GetProperty()->SetColor(ghostColour[0], ghostColour[1], ghostColour[2]);
-    ghostMuscles->GetProperty()->SetOpacity(0.3);
+    ghostMuscles->GetProperty()->SetOpacity(0.45);
+    ghostMuscles->GetProperty()->BackfaceCullingOn();
     ghostMuscles->VisibilityOff();
     renderer->AddActor(ghostMuscles);
   }
@@ -256,6 +262,9 @@ struct ArmScene::Parts {
     bar->SetWidth(0.075);
     bar->SetHeight(0.48);
     bar->SetBarRatio(0.4);
+    bar->DrawBackgroundOn();
+    bar->GetBackgroundProperty()->SetColor(background[0], background[1], background[2]);
+    bar->GetBackgroundProperty()->SetOpacity(0.75);
     renderer->AddViewProp(bar);
     vtkNew<vtkTextActor> title;
     title->SetInput("Activation [1]");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 namespace bio::view {
@@ -87,6 +88,13 @@ std::vector<BodyShape> bodyShapes(const Model& model) {
     shapes.push_back(shape);
   }
   return shapes;
+}
+
+double tubeRadius(double tendonForce) {
+  constexpr double restingRadius = 0.0025;  // [m]
+  constexpr double shownStress = 5e6;       // [N/m²]
+  return std::sqrt(restingRadius * restingRadius +
+                   std::max(tendonForce, 0.0) / (shownStress * std::numbers::pi));
 }
 
 ArmPoser::ArmPoser(const Model& model, const SkeletonOptions& options,

@@ -41,6 +41,11 @@ struct MuscleShape {
   double radius = 0;                    ///< [m]
 };
 
+/// Radius of the tube of a muscle [m]: its cross-section grows with the tendon force F,
+///     π (r² − r_0²) = F/σ,   r_0 = 2.5 mm, σ = 5 N/mm²
+/// @param tendonForce  F [N]; below 0 (a slack tendon that is extrapolated) as 0
+double tubeRadius(double tendonForce);
+
 /// An arm that takes on postures.
 class ArmPoser {
  public:

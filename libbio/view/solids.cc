@@ -6,6 +6,7 @@
 #include <vtkDoubleArray.h>
 #include <vtkMatrix4x4.h>
 #include <vtkNew.h>
+#include <vtkObject.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyDataNormals.h>
@@ -179,7 +180,7 @@ GroundMesh groundMesh(const Vector3d& middle, double height) {
   face->InsertNextCell(4, square);
   ground.plane->SetPoints(corners);
   ground.plane->SetPolys(face);
-  const double above = height + 5e-4;
+  const double above = height + 2e-3;  // [m]: enough for the depth buffer to tell them apart
   for (int i = -halfCount; i <= halfCount; ++i) {
     const double at = i * spacing;
     const vtkIdType along[2] = {ends->InsertNextPoint(x - half, above, z + at),
@@ -196,6 +197,7 @@ GroundMesh groundMesh(const Vector3d& middle, double height) {
 
 Mesh meshFromFiles(const BodyShape& body, const std::filesystem::path& folder,
                    std::vector<std::string>& unusable) {
+  vtkObject::GlobalWarningDisplayOff();  // a library does not print
   std::vector<Mesh> meshes;
   for (const std::string& name : body.geometryFiles) {
     const std::filesystem::path file = folder / std::filesystem::path(name).filename();

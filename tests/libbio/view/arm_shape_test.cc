@@ -83,6 +83,14 @@ TEST(LiftedOff, LeavesALineThatGoesThroughTheSurfaceAsItIs) {
   EXPECT_EQ(liftedOff(wrap, {}, line, 0.004), line);
 }
 
+TEST(TubeRadius, AreaGrowsByOneSquareMillimetrePerFiveNewtons) {
+  const auto area = [](double force) { return std::numbers::pi * std::pow(tubeRadius(force), 2); };
+  EXPECT_DOUBLE_EQ(tubeRadius(0), 0.0025);
+  EXPECT_DOUBLE_EQ(tubeRadius(-20), 0.0025);
+  EXPECT_NEAR(area(5) - area(0), 1e-6, 1e-15);
+  EXPECT_NEAR(area(500) - area(0), 1e-4, 1e-15);
+}
+
 // The elbow sits where the model's joint says, and the hand moves round it.
 TEST(ArmPoser, PutsBodiesWhereTheJointsAre) {
   const Model model = bio::testing::elbowModel();
