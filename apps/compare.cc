@@ -7,6 +7,7 @@
 
 #include "arm_input.h"
 #include "compare_report.h"
+#include "figure_pictures.h"
 #include "progress_bar.h"
 #include "result.h"
 #include "text.h"
@@ -43,6 +44,7 @@ class Compare : public Command {
                     "coordinate; may be repeated")
         ->type_name("NAME=FILE")
         ->allow_extra_args(false);
+    options.add_flag("--png", png_, "the figures of the report as PNG files too");
     addSimulationOptions(options, simulation_);
   }
 
@@ -85,7 +87,13 @@ class Compare : public Command {
                             comparison.reference.motion.wallSeconds);
     }
     tellCompare(findings, summary);
-    deliver(context, summary, compareReport(findings), folder);
+    const Report report = compareReport(findings);
+    if (png_ && folder.active()) {
+      for (const FigurePicture& picture : figurePictures(report)) {
+        folder.write(picture.file, [&](std::ostream& out) { out << picture.png; });
+      }
+    }
+    deliver(context, summary, report, folder);
     return comparison.reference.completed() ? ExitStatus::done : ExitStatus::answerIsNo;
   }
 
@@ -175,6 +183,7 @@ class Compare : public Command {
   std::vector<std::string> integrators_;
   std::vector<std::string> steps_;
   std::vector<std::string> also_;
+  bool png_ = false;
   SimulationOptions simulation_;
 };
 

@@ -118,9 +118,12 @@ std::unique_ptr<Command> renderCommand(Drawing draw) {
   return std::make_unique<Render>(std::move(draw));
 }
 
+std::filesystem::path pictureProgram() {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path() / "fisherhill-render";
+}
+
 ExitStatus drawInOtherProgram(const RenderOptions&, const CommandContext& context) {
-  const std::filesystem::path program =
-      std::filesystem::read_symlink("/proc/self/exe").parent_path() / "fisherhill-render";
+  const std::filesystem::path program = pictureProgram();
   std::vector<char*> words;
   for (const std::string& word : context.commandLine) {
     words.push_back(const_cast<char*>(word.c_str()));

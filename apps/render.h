@@ -35,6 +35,9 @@ using Drawing = std::function<ExitStatus(const RenderOptions&, const CommandCont
 /// `render`: a picture or a film of the arm.
 std::unique_ptr<Command> renderCommand(Drawing draw);
 
+/// Where the program that links VTK is, built or not.
+std::filesystem::path pictureProgram();
+
 /// Hands the same command line to the program `fisherhill-render` beside this one, which links
 /// VTK; does not return. @throws std::runtime_error if it is not there
 ExitStatus drawInOtherProgram(const RenderOptions& options, const CommandContext& context);

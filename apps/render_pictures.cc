@@ -204,11 +204,13 @@ view::SceneOptions sceneOptions(const RenderOptions& options, const Shown& shown
     scene.floor = std::min(scene.floor, point.y() - 0.03);
     scene.middle += point / static_cast<double>(outline.size());
   }
-  scene.captions = {fmt::format("{} – {}", shown.arm->modelName(),
-                                std::filesystem::path(options.states).filename().string()),
-                    shown.thicknessIsForce
-                        ? "Muscles: 1 mm² more of cross-section per 5 N of tendon force"
-                        : "Muscles: equal thickness"};
+  scene.captions = {
+      fmt::format("{} – {}", shown.arm->modelName(),
+                  std::filesystem::path(options.states).filename().string()),
+      fmt::format("Muscles: {}{}",
+                  shown.thicknessIsForce ? "1 mm² more of cross-section per 5 N of tendon force"
+                                         : "equal thickness",
+                  shown.arm->motion().activations.empty() ? "; grey: activation not given" : "")};
   if (shown.ghost) scene.captions.push_back(shown.ghostCaption);
   return scene;
 }

@@ -48,29 +48,6 @@ void mustBeAsLong(const Figure& figure, const Series& series, const std::vector<
                   figure.title, series.name, what, values.size(), series.x.size()));
 }
 
-Json figureJson(const Figure& figure) {
-  Json json = {{"xLabel", figure.xLabel},
-               {"yLabel", figure.yLabel},
-               {"xLog", figure.xScale == AxisScale::logarithmic},
-               {"yLog", figure.yScale == AxisScale::logarithmic},
-               {"series", Json::array()}};
-  for (const Series& series : figure.series) {
-    mustBeAsLong(figure, series, series.y, "y");
-    Json one = {{"name", series.name},
-                {"style", styleName(series.style)},
-                {"x", plotNumbers(series.x)},
-                {"y", plotNumbers(series.y)}};
-    if (!series.bandLow.empty() || !series.bandHigh.empty()) {
-      mustBeAsLong(figure, series, series.bandLow, "bandLow");
-      mustBeAsLong(figure, series, series.bandHigh, "bandHigh");
-      one["low"] = plotNumbers(series.bandLow);
-      one["high"] = plotNumbers(series.bandHigh);
-    }
-    json["series"].push_back(std::move(one));
-  }
-  return json;
-}
-
 /// JSON inside a script element must not be able to end that element.
 std::string scriptText(const Json& json) {
   std::string text;
@@ -180,6 +157,30 @@ std::string warningList(const Summary& summary) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json figureJson(const Figure& figure) {
+  Json json = {{"title", figure.title},
+               {"xLabel", figure.xLabel},
+               {"yLabel", figure.yLabel},
+               {"xLog", figure.xScale == AxisScale::logarithmic},
+               {"yLog", figure.yScale == AxisScale::logarithmic},
+               {"series", Json::array()}};
+  for (const Series& series : figure.series) {
+    mustBeAsLong(figure, series, series.y, "y");
+    Json one = {{"name", series.name},
+                {"style", styleName(series.style)},
+                {"x", plotNumbers(series.x)},
+                {"y", plotNumbers(series.y)}};
+    if (!series.bandLow.empty() || !series.bandHigh.empty()) {
+      mustBeAsLong(figure, series, series.bandLow, "bandLow");
+      mustBeAsLong(figure, series, series.bandHigh, "bandHigh");
+      one["low"] = plotNumbers(series.bandLow);
+      one["high"] = plotNumbers(series.bandHigh);
+    }
+    json["series"].push_back(std::move(one));
+  }
+  return json;
+}
 
 std::string renderReport(const Report& report, const Summary& summary) {
   std::string text = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";

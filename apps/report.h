@@ -36,6 +36,10 @@ struct Figure {
   AxisScale yScale = AxisScale::linear;
 };
 
+/// What draws a figure: title, labels, scales and series with at most six digits, NaN as null.
+/// @throws std::invalid_argument if a series' x and y differ in length
+nlohmann::ordered_json figureJson(const Figure& figure);
+
 struct Table {
   std::string title = {};
   std::vector<std::string> columns = {};            ///< with units

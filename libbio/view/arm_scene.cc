@@ -28,6 +28,8 @@
 #include <stdexcept>
 
 #include "view/colour_map.h"
+#include "view/letters.h"
+#include "view/picture.h"
 #include "view/solids.h"
 
 namespace bio::view {
@@ -40,7 +42,6 @@ constexpr Colour ghostColour = {0.85, 0.35, 0.1};
 constexpr Colour groundColour = {0.925, 0.93, 0.935};
 constexpr Colour lineColour = {0.8, 0.81, 0.82};
 constexpr Colour unknownColour = {0.6, 0.6, 0.6};
-constexpr Colour inkColour = {0.1, 0.1, 0.12};
 
 vtkSmartPointer<vtkActor> actorOf(vtkPolyData* mesh, const Colour& colour, double opacity = 1) {
   vtkNew<vtkPolyDataMapper> mapper;
@@ -78,21 +79,6 @@ bool sameBones(const BodyShape& a, const BodyShape& b) {
 bool coincide(const Placement<double>& a, const Placement<double>& b) {
   constexpr double unseen = 1e-4;  // [m], [rad]
   return (a.p - b.p).norm() < unseen && (a.R - b.R).norm() < unseen;
-}
-
-/// Debian's font for everything; VTK's own stand-in for Arial has round square brackets.
-void setFont(vtkTextProperty* letters, bool bold) {
-  const std::string file =
-      std::string("/usr/share/fonts/truetype/dejavu/DejaVuSans") + (bold ? "-Bold.ttf" : ".ttf");
-  letters->SetFontFamilyToArial();
-  letters->SetBold(bold);
-  letters->ItalicOff();
-  letters->ShadowOff();
-  letters->SetColor(inkColour[0], inkColour[1], inkColour[2]);
-  if (std::filesystem::exists(file)) {
-    letters->SetFontFamily(VTK_FONT_FILE);
-    letters->SetFontFile(file.c_str());
-  }
 }
 
 /// Light from the camera's side, without shadows: the same brightness wherever one looks from.
@@ -355,25 +341,7 @@ Image ArmScene::draw(const Moment& moment) {
   p.renderer->ResetCameraClippingRange();
   p.window->Render();
 
-  const int* size = p.window->GetSize();
-  Image image{p.options.width, p.options.height, {}};
-  if (size[0] != image.width || size[1] != image.height) {
-    throw std::runtime_error(
-        fmt::format("a picture of {}x{} pixels cannot be drawn here", image.width, image.height));
-  }
-  vtkNew<vtkUnsignedCharArray> pixels;
-  p.window->GetPixelData(0, 0, image.width - 1, image.height - 1, 0, pixels);
-  const auto row = 3 * static_cast<std::size_t>(image.width);
-  image.rgb.resize(row * static_cast<std::size_t>(image.height));
-  if (static_cast<std::size_t>(pixels->GetNumberOfValues()) != image.rgb.size()) {
-    throw std::runtime_error("the picture could not be read back from the display");
-  }
-  // VTK's first row is the lowest.
-  for (std::size_t r = 0; r < static_cast<std::size_t>(image.height); ++r) {
-    const std::size_t from = static_cast<std::size_t>(image.height) - 1 - r;
-    std::memcpy(image.rgb.data() + r * row, pixels->GetPointer(0) + from * row, row);
-  }
-  return image;
+  return imageOf(p.window, p.options.width, p.options.height);
 }
 
 std::string pngOf(const Image& image) {
