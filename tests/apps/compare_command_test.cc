@@ -117,6 +117,33 @@ TEST(CompareCommand, LaysOpenSimsStatesBesideOurs) {
   EXPECT_THAT(support::contentOf(out + "/report.html"), HasSubstr("Beside other programs"));
 }
 
+#ifdef FISHERHILL_HAS_VIEW
+TEST(CompareCommand, DrawsItsFiguresAsPngFiles) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "out").string();
+  const ProgramResult result =
+      runFisherHill({"compare", model, shortTrial(scratch), "--integrators", "vi", "--steps",
+                     "0.002,0.01", "--png", "--out", out});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto files = nlohmann::json::parse(support::contentOf(out + "/summary.json"))["files"];
+  for (const char* name : {"work_and_precision.png", "error_against_step.png",
+                           "the_variational_integrator_at_two_steps.png"}) {
+    EXPECT_TRUE(support::contentOf(out + "/" + name).starts_with("\x89PNG")) << name;
+    EXPECT_NE(std::find(files.begin(), files.end(), name), files.end()) << name;
+  }
+}
+#else
+TEST(CompareCommand, SaysThatPngFilesNeedVtk) {
+  const ScratchFolder scratch;
+  const ProgramResult result =
+      runFisherHill({"compare", model, shortTrial(scratch), "--integrators", "vi", "--steps",
+                     "0.01", "--png", "--out", (scratch / "out").string()});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, HasSubstr("FISHERHILL_VIEW=ON"));
+  EXPECT_FALSE(std::filesystem::exists(scratch / "out"));
+}
+#endif
+
 TEST(CompareCommand, LeavesOutFiguresThatHaveNothingToShow) {
   const ScratchFolder scratch;
   const std::string out = (scratch / "out").string();
