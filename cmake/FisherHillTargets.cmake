@@ -10,11 +10,24 @@ if(FISHERHILL_SANITIZE)
   target_link_options(fisherhill_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
+# Headers that nearly every file of a kind reads, parsed once per kind. Files must not rely on them:
+# the check that every public header compiles alone builds without.
+set(standard_headers <algorithm> <cmath> <functional> <limits> <memory> <optional> <stdexcept>
+  <string> <vector> <Eigen/Dense>)
+
 # fisherhill_test(name [LABELS label...] LIBS lib...): tests/.../name.cc becomes one test program,
 # and every TEST in it one ctest case.
 function(fisherhill_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT" "LABELS;LIBS")
+  if(NOT TARGET test_headers)
+    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/test_headers.cc CONTENT "")
+    add_library(test_headers OBJECT ${PROJECT_BINARY_DIR}/test_headers.cc)
+    target_link_libraries(test_headers PRIVATE fisherhill_flags Eigen3::Eigen GTest::gmock)
+    target_precompile_headers(test_headers PRIVATE
+      ${standard_headers} <filesystem> <gmock/gmock.h> <gtest/gtest.h> <unsupported/Eigen/AutoDiff>)
+  endif()
   add_executable(${name} ${name}.cc)
+  target_precompile_headers(${name} REUSE_FROM test_headers)
   target_link_libraries(${name} PRIVATE fisherhill_flags ${arg_LIBS} GTest::gmock GTest::gtest_main)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(${name} PRIVATE
