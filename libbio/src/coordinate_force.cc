@@ -39,6 +39,30 @@ CoordinateForceValue evaluate(const SpringGeneralizedForce& law, double q, doubl
           -law.viscosity};
 }
 
+std::array<double, 6> parameterDerivatives(const CoordinateLimitForce& law, double q, double qDot) {
+  const double above = q - law.upperLimit;
+  const double below = law.lowerLimit - q;
+  const double perTransition = 1 / law.transition;
+  const auto [up, upSlope] = smoothStep(above * perTransition);
+  const auto [low, lowSlope] = smoothStep(below * perTransition);
+  // s_u and s_l over the distances beyond the limits
+  const double up_a = upSlope * perTransition;
+  const double low_b = lowSlope * perTransition;
+  return {law.upperStiffness * (up_a * above + up) + law.damping * up_a * qDot,
+          -up * above,
+          law.lowerStiffness * (low_b * below + low) - law.damping * low_b * qDot,
+          low * below,
+          -(up + low) * qDot,
+          (law.upperStiffness * up_a * above * above - law.lowerStiffness * low_b * below * below +
+           law.damping * (up_a * above + low_b * below) * qDot) *
+              perTransition};
+}
+
+std::array<double, 3> parameterDerivatives(const SpringGeneralizedForce& law, double q,
+                                           double qDot) {
+  return {-(q - law.restLength), law.stiffness, -qDot};
+}
+
 CoordinateForces::CoordinateForces(const Model& model, const Skeleton& skeleton) {
   const auto addLaws = [&](const auto& laws, auto&& lawOf) {
     for (const auto& law : laws) {

@@ -44,8 +44,8 @@ ArmState initialState(const Arm& arm, const Eigen::VectorXd& q, const Excitation
   return state;
 }
 
-Trajectory simulate(const Arm& arm, const ExcitationSignal& excitation, const ArmState& start,
-                    const SimulationOptions& options) {
+void stepping::checkSimulation(const Arm& arm, const ExcitationSignal& excitation,
+                               const ArmState& start, const SimulationOptions& options) {
   const auto require = [](bool holds, const std::string& message) {
     if (!holds) throw std::invalid_argument(message);
   };
@@ -69,6 +69,11 @@ Trajectory simulate(const Arm& arm, const ExcitationSignal& excitation, const Ar
   require(start.q.allFinite() && start.qDot.allFinite() && start.activation.allFinite() &&
               start.fibreLength.allFinite(),
           "start state: a value is not finite");
+}
+
+Trajectory simulate(const Arm& arm, const ExcitationSignal& excitation, const ArmState& start,
+                    const SimulationOptions& options) {
+  stepping::checkSimulation(arm, excitation, start, options);
   switch (options.integrator) {
     case Integrator::variational:
     case Integrator::variationalLeft:

@@ -101,8 +101,16 @@ struct GeneralisedForce {
   Eigen::Matrix<double, N, 1> passive;
 };
 
+/// What simulate() requires of its arguments. @throws std::invalid_argument
+void checkSimulation(const Arm& arm, const ExcitationSignal& excitation, const ArmState& start,
+                     const SimulationOptions& options);
+
+class StepTape;
+
+/// @param tape takes down every part of a step that was accepted, for sensitivities; may be null
 Trajectory simulateVariational(const Arm& arm, const ExcitationSignal& excitation,
-                               const ArmState& start, const SimulationOptions& options);
+                               const ArmState& start, const SimulationOptions& options,
+                               StepTape* tape = nullptr);
 Trajectory simulateRungeKutta4(const Arm& arm, const ExcitationSignal& excitation,
                                const ArmState& start, const SimulationOptions& options);
 Trajectory simulateCvode(const Arm& arm, const ExcitationSignal& excitation, const ArmState& start,

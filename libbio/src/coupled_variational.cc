@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "coupled_stepping.h"
+#include "coupled_tape.h"
 
 namespace bio::stepping {
 namespace {
@@ -208,9 +208,10 @@ class VariationalRun {
   using Vector = typename Stepper::Vector;
 
   VariationalRun(const Arm& arm, const ExcitationSignal& excitation, const ArmState& start,
-                 const SimulationOptions& options)
+                 const SimulationOptions& options, StepTape* tape)
       : arm_(arm),
         options_(options),
+        tape_(tape),
         stepper_(arm, options),
         player_(arm, excitation, options.startTime),
         configuration_(arm),
@@ -226,16 +227,19 @@ class VariationalRun {
     fibreVelocity_ = Eigen::VectorXd::Zero(start.fibreLength.size());
     next_ = now_;
     recorder_.add(options.startTime, now_.q, start.qDot, activation_, now_.fibreLength, 0, 0);
+    if (tape_) tape_->begin(now_.q, now_.fibreLength, activation_);
   }
 
   Trajectory run() {
     const StopWatch watch;
     const std::size_t rows = numRows(options_);
     Trajectory& trajectory = recorder_.trajectory();
+    TimeMark begin = markRow(rowTime(options_, 0));
     for (std::size_t k = 1; k < rows; ++k) {
-      const double t0 = rowTime(options_, k - 1);
-      const double t1 = rowTime(options_, k);
-      if (!advance(t0, t1, 0)) {
+      const TimeMark end = markRow(rowTime(options_, k));
+      const double t0 = begin.value;
+      const double t1 = end.value;
+      if (!advance(begin, end, 0)) {
         trajectory.outcome = Outcome::noSolution;
         trajectory.failedAt = t0;
         trajectory.why = fmt::format(
@@ -244,7 +248,9 @@ class VariationalRun {
             t0, (t1 - t0) / std::pow(2, options_.maxHalvings), stepper_.describeResidual());
         break;
       }
+      begin = end;
       ++trajectory.steps;
+      if (tape_) tape_->endRow();
       recorder_.add(t1, now_.q, speed(), activation_, now_.fibreLength, muscleWork_, passiveWork_);
       if (options_.progress && !options_.progress(t1)) {
         trajectory.outcome = Outcome::stopped;
@@ -260,24 +266,37 @@ class VariationalRun {
  private:
   /// Moves now_ and activation_ from t0 to t1; in halves, and halves of them, where Newton fails,
   /// and in two parts where a conditional path point comes or goes.
-  bool advance(double t0, double t1, int depth) {
+  bool advance(const TimeMark& begin, const TimeMark& end, int depth) {
+    const double t0 = begin.value;
+    const double t1 = end.value;
     Eigen::VectorXd& kept = keptActivation_[static_cast<std::size_t>(depth)];
     kept = activation_;
     if (solve(t0, t1)) {
       double split = 0;
-      if (!findSwitch(t0, t1, kept, split)) {
-        accept(t1 - t0);
+      const PathSwitch* met = findSwitch(t0, t1, kept, split);
+      if (met == nullptr) {
+        accept(begin, end);
         return true;
       }
-      accept(split - t0);
-      return advance(split, t1, depth);
+      const TimeMark middle = markSwitch(split, *met);
+      accept(begin, middle);
+      return advance(middle, end, depth);
     }
     if (depth >= options_.maxHalvings) return false;
     if (depth == 0) ++recorder_.trajectory().halvedSteps;
     activation_ = kept;
     player_.restart(t0);
-    const double tMiddle = t0 + (t1 - t0) / 2;
-    return advance(t0, tMiddle, depth + 1) && advance(tMiddle, t1, depth + 1);
+    const TimeMark middle = markMiddle(begin, end);
+    return advance(begin, middle, depth + 1) && advance(middle, end, depth + 1);
+  }
+
+  TimeMark markRow(double time) { return {time, tape_ ? tape_->addRow(time) : 0}; }
+  TimeMark markSwitch(double time, const PathSwitch& met) {
+    return {time, tape_ ? tape_->addSwitch(time, met) : 0};
+  }
+  TimeMark markMiddle(const TimeMark& begin, const TimeMark& end) {
+    const double time = begin.value + (end.value - begin.value) / 2;
+    return {time, tape_ ? tape_->addMiddle(time, begin.index, end.index) : 0};
   }
 
   /// One step from now_ into next_, activation_ moved along.
@@ -302,43 +321,53 @@ class VariationalRun {
 
   /// If a path gains or loses points within the step just solved: shortens the step to end there.
   /// The length jumps at a switch, so a step across it would be of first order only.
-  bool findSwitch(double t0, double t1, const Eigen::VectorXd& activationAtStart, double& split) {
-    constexpr double onSwitch = 1e-9;    // [rad]: near enough to count as being there
+  /// Returns which switch it then ends on, or null.
+  const PathSwitch* findSwitch(double t0, double t1, const Eigen::VectorXd& activationAtStart,
+                               double& split) {
+    // near enough to count as being there
+    const double onSwitch = std::min(1e-9, options_.newtonTolerance);  // [rad]
     constexpr double worthwhile = 1e-3;  // of the step, from either end
     const PathSwitch* first = nullptr;
     double fraction = 1;
     for (const PathSwitch& s : arm_.switches()) {
       const double from = s.distance(now_.q[s.freeIndex]);
       const double to = s.distance(next_.q[s.freeIndex]);
-      if (from * to >= 0 || std::abs(from) < 1e3 * onSwitch) continue;
+      if (from * to >= 0 || std::abs(from) < 1e-6) continue;
       if (from / (from - to) < fraction) {
         fraction = from / (from - to);
         first = &s;
       }
     }
-    if (first == nullptr || fraction < worthwhile || fraction > 1 - worthwhile) return false;
+    if (first == nullptr || fraction < worthwhile || fraction > 1 - worthwhile) return nullptr;
 
+    // the secant through the last two ends, at first through the start
     const double h = t1 - t0;
-    const double from = first->distance(now_.q[first->freeIndex]);
-    for (int iteration = 0; iteration < 8; ++iteration) {
+    double before = 0;
+    double distanceBefore = first->distance(now_.q[first->freeIndex]);
+    for (int iteration = 0; iteration < 12; ++iteration) {
       split = t0 + fraction * h;
       activation_ = activationAtStart;
       player_.restart(t0);
       if (!solve(t0, split)) break;
       const double to = first->distance(next_.q[first->freeIndex]);
-      if (std::abs(to) < onSwitch) return true;
-      fraction *= from / (from - to);
+      if (std::abs(to) < onSwitch) return first;
+      const double next = fraction - to * (fraction - before) / (to - distanceBefore);
+      before = fraction;
+      distanceBefore = to;
+      fraction = next;
       if (!(fraction > worthwhile / 10 && fraction < 1)) break;
     }
     // not to be met exactly: take the whole step as it is
     activation_ = activationAtStart;
     player_.restart(t0);
     solve(t0, t1);
-    return false;
+    return nullptr;
   }
 
   /// next_ becomes now_.
-  void accept(double h) {
+  void accept(const TimeMark& begin, const TimeMark& end) {
+    const double h = end.value - begin.value;
+    if (tape_) tape_->add(begin.index, end.index, next_.q, next_.fibreLength, middle_, activation_);
     velocity_ = (next_.q - now_.q) / h;
     fibreVelocity_ = (next_.fibreLength - now_.fibreLength) / h;
     now_.q.swap(next_.q);
@@ -360,6 +389,7 @@ class VariationalRun {
 
   const Arm& arm_;
   const SimulationOptions& options_;
+  StepTape* tape_;
   Stepper stepper_;
   ActivationPlayer player_;
   ArmConfiguration<N> configuration_;
@@ -377,9 +407,10 @@ class VariationalRun {
 }  // namespace
 
 Trajectory simulateVariational(const Arm& arm, const ExcitationSignal& excitation,
-                               const ArmState& start, const SimulationOptions& options) {
+                               const ArmState& start, const SimulationOptions& options,
+                               StepTape* tape) {
   return withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
-    return VariationalRun<decltype(N)::value>(arm, excitation, start, options).run();
+    return VariationalRun<decltype(N)::value>(arm, excitation, start, options, tape).run();
   });
 }
 

@@ -69,6 +69,8 @@ class MusclePath {
   const std::vector<std::string>& notes() const { return compiled_.notes; }
   /// Where conditional points come and go.
   std::vector<PathSwitch> switches() const;
+  /// What evaluation works on.
+  const CompiledPath& compiled() const { return compiled_; }
 
   /// `moved` is what Skeleton::motions(q, ·) returned.
   template <int N>

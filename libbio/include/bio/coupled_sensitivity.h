@@ -1,0 +1,70 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "bio/coupled.h"
+#include "bio/parameters.h"
+
+namespace bio {
+
+/// Derivatives of one quantity along a motion; rows = times, columns = parameters.
+using SensitivityMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// A simulated motion and how it follows parameters, [unit of the quantity per unit of θ].
+struct SensitivityTrajectory {
+  Trajectory motion;
+  std::vector<SensitivityMatrix> q;     ///< dq/dθ of each free coordinate
+  std::vector<SensitivityMatrix> qDot;  ///< dq̇/dθ of each free coordinate
+  std::vector<SensitivityMatrix> fibreLength;  ///< of each muscle; empty unless asked for
+  std::vector<SensitivityMatrix> activation;   ///< of each muscle; empty unless asked for
+  std::vector<SensitivityMatrix> tendonForce;  ///< of each muscle; empty unless asked for
+  double wallSeconds = 0;  ///< of the sensitivities alone; motion.wallSeconds is the motion's
+};
+
+struct SensitivityOptions {
+  SimulationOptions simulation;  ///< integrator: variational or variationalLeft
+  bool muscles = false;          ///< also fibre lengths, activations and tendon forces
+};
+
+/// Simulates the trial and differentiates the discrete motion in parameters, exactly.
+///
+/// A step solves r(z', z, θ) = 0 for z' = (q', ℓ'_i), so by the implicit function theorem
+///     dz'/dθ = −J⁻¹(∂r/∂z·dz/dθ + ∂r/∂θ)
+/// with the arrow-shaped J of simulate(); all parameters are the columns of one matrix. Activations
+/// follow their exact recursion, row by row of the trial. The start depends on θ too: fibres rest
+/// in static equilibrium at the excitation of the first row. Where a step was cut at a switch of a
+/// path, the time of the cut is one more unknown with the equation D(q(t)) = 0, and moves what lies
+/// on both sides of it. Decisions are held: which steps are halved, which way a path takes.
+/// docs/theory/sensitivity.md.
+///
+/// What is differentiated is what the program computes: central differences of whole simulations
+/// agree to their own accuracy. At kinks (a fibre exactly between shortening and lengthening, a
+/// path at lift-off) the derivative is one of the two sides.
+///
+/// @param arm      compiled from setting.model
+/// @param setting  catalogue.at(…) or catalogue.nominal()
+/// @param wanted   indices of the catalogue's parameters, columns of the result in this order
+/// @param trial    as recorded; setting.mapping turns it into excitations
+/// @throws std::invalid_argument for another integrator, and what simulate() throws;
+///   NoStaticEquilibrium
+SensitivityTrajectory simulateWithSensitivities(const Arm& arm,
+                                                const ParameterCatalogue& catalogue,
+                                                const ParameterCatalogue::Setting& setting,
+                                                const std::vector<std::size_t>& wanted,
+                                                const ExcitationSignal& trial,
+                                                const SensitivityOptions& options);
+
+/// The motion alone, from the same inputs.
+Trajectory simulateSetting(const Arm& arm, const ParameterCatalogue::Setting& setting,
+                           const ExcitationSignal& trial, const SimulationOptions& options);
+
+/// Where the simulation of a setting starts: at its coordinates and speeds, the fibres in static
+/// equilibrium. @throws NoStaticEquilibrium
+ArmState startOf(const Arm& arm, const ParameterCatalogue::Setting& setting,
+                 const ExcitationSignal& driven, double time);
+
+/// Names of the arm's muscles, in order.
+std::vector<std::string> muscleNames(const Arm& arm);
+
+}  // namespace bio

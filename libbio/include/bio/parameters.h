@@ -1,0 +1,130 @@
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "bio/arm.h"
+#include "bio/emg_mapping.h"
+#include "bio/model.h"
+#include "bio/muscle_parameters.h"
+#include "info/parameter.h"
+
+namespace bio {
+
+// What a parameter sets; indices into the lists of Model ------------------------------------------
+
+struct MuscleTarget {
+  std::size_t muscle;
+  MuscleQuantity quantity;
+};
+struct PointTarget {
+  std::size_t muscle, point;
+  int axis;  ///< 0 x, 1 y, 2 z of the location in the body
+};
+struct WrapTarget {
+  std::size_t wrap;
+  int component;  ///< 0 radius, 1–3 translation, 4–6 rotation in the body
+};
+struct BodyTarget {
+  std::size_t body;
+  int component;  ///< 0 mass, 1–3 mass centre, 4–9 inertia xx yy zz xy xz yz about it
+};
+/// upper limit, upper stiffness, lower limit, lower stiffness, damping, transition
+struct LimitForceTarget {
+  std::size_t force;
+  int component;  ///< 0–5 in that order
+};
+/// stiffness, rest length, viscosity
+struct SpringForceTarget {
+  std::size_t force;
+  int component;  ///< 0–2 in that order
+};
+struct EmgTarget {
+  enum class What { gain, delay, nonlinearity } what;
+  std::string muscle;  ///< of a gain
+};
+struct InitialTarget {
+  int coordinate;  ///< free index
+  bool isSpeed;
+};
+using ParameterTarget = std::variant<MuscleTarget, PointTarget, WrapTarget, BodyTarget,
+                                     LimitForceTarget, SpringForceTarget, EmgTarget, InitialTarget>;
+
+/// A number of the model, of the way from EMG to excitation, or of the start, under the path by
+/// which people call it.
+struct ModelParameter {
+  std::string name;     ///< e.g. "TRI.radius", "BRA.tendon_slack_length", "hand.mass"
+  std::string unit;     ///< "" for a pure number
+  std::string meaning;  ///< one line
+  double value;         ///< in the model [unit]
+  double lower, upper;  ///< what estimation and sweeps keep to [unit]
+  double deviation;     ///< default standard deviation of what is known beforehand [unit] > 0
+  std::vector<ParameterTarget> targets;  ///< all are set to the same value
+  bool isGroup = false;  ///< sets what other parameters set one by one; not part of "all"
+};
+
+/// Start of a simulation: coordinates and speeds; the fibres start in static equilibrium.
+struct StartPoint {
+  Eigen::VectorXd q;     ///< [rad] or [m]
+  Eigen::VectorXd qDot;  ///< [rad/s] or [m/s]; empty: 0
+};
+
+/// All parameters that move the arm, by name.
+///
+/// Muscles are called by OpenSim's words (max_isometric_force, optimal_fiber_length,
+/// tendon_slack_length, pennation_angle, damping, time_scale, activation1, activation2), points by
+/// their place (TRIlong.point2.x), wrap objects by name (TRI.radius, TRI.translation.x,
+/// TRI.rotation.x), bodies by name (hand.mass, hand.mass_center.x, hand.inertia.xx), passive forces
+/// by name (elbow_flexion_ligaments.upper_stiffness). emg.BRA.gain, emg.delay, emg.nonlinearity;
+/// initial.elbow_flexion, initial.elbow_flexion.speed. Groups: activation.time_scale, emg.gain, …
+///
+/// Bounds and deviations are defaults for someone who knows nothing better
+/// (docs/decisions/012-parameter-sensitivities.md); positive quantities stay positive.
+class ParameterCatalogue {
+ public:
+  /// @param start where the simulation starts; sized as the arm's free coordinates
+  ParameterCatalogue(const Model& model, const Arm& arm, const StartPoint& start,
+                     const EmgMapping& mapping = {});
+
+  const std::vector<ModelParameter>& parameters() const { return parameters_; }
+
+  /// Index of a name; spelling variants are understood (optimal_fibre_length, pennation, x for
+  /// translation.x of a wrap object). @throws std::invalid_argument with the nearest names
+  std::size_t find(const std::string& name) const;
+
+  /// Indices of names, in order, each once. A name may hold `*`; "all" is every one but groups.
+  /// @throws std::invalid_argument as find does, or if a pattern matches nothing
+  std::vector<std::size_t> select(const std::vector<std::string>& names) const;
+
+  /// Values in the model.
+  Eigen::VectorXd values(const std::vector<std::size_t>& selection) const;
+
+  /// As estimators see them; the default deviation becomes the prior if asked for.
+  std::vector<info::Parameter> asEstimated(const std::vector<std::size_t>& selection,
+                                           bool withPriors) const;
+
+  /// The model, EMG mapping and start with some parameters at other values.
+  struct Setting {
+    Model model;
+    EmgMapping mapping;
+    StartPoint start;
+    Eigen::VectorXd values;  ///< of every parameter of the catalogue
+  };
+  /// @throws std::invalid_argument for a value that is not finite, or sizes that differ. Whether
+  ///   the values make sense is found out when an Arm is made of it.
+  Setting at(const std::vector<std::size_t>& selection, const Eigen::VectorXd& values) const;
+  /// As the model has them.
+  Setting nominal() const { return at({}, Eigen::VectorXd(0)); }
+
+  const Model& model() const { return model_; }
+
+ private:
+  Model model_;
+  EmgMapping mapping_;
+  StartPoint start_;
+  std::vector<std::string> muscles_;  ///< of the arm
+  std::vector<ModelParameter> parameters_;
+};
+
+}  // namespace bio

@@ -1,0 +1,102 @@
+#include "bio/emg_mapping.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace bio {
+namespace {
+
+struct Shaped {
+  double value;    ///< S(x)
+  double inShape;  ///< ∂S/∂A
+};
+
+/// Near A = 0 by its series, S = x + x(x−1)[A/2 + A²(2x−1)/12 + A³x(x−1)/24 + …].
+Shaped shaped(double x, double A) {
+  if (std::abs(A) < 1e-2) {
+    const double b = x * (x - 1);
+    const double c3 = b / 24;
+    const double c4 = (2 * x - 1) * (3 * x * x - 3 * x - 1) / 720;
+    return {x + b * (A / 2 + A * A * (2 * x - 1) / 12 + A * A * A * c3 + A * A * A * A * c4),
+            b * (0.5 + A * (2 * x - 1) / 6 + 3 * A * A * c3 + 4 * A * A * A * c4)};
+  }
+  const double below = std::expm1(A);
+  const double above = std::expm1(A * x);
+  const double value = above / below;
+  return {value, (x * (above + 1) - value * (below + 1)) / below};
+}
+
+void check(const std::vector<std::string>& muscles, const EmgMapping& mapping) {
+  for (const auto& [muscle, gain] : mapping.gain) {
+    if (std::find(muscles.begin(), muscles.end(), muscle) == muscles.end()) {
+      throw std::invalid_argument(fmt::format("EMG gain of '{}': no such muscle moves", muscle));
+    }
+    if (!(gain >= 0 && std::isfinite(gain))) {
+      throw std::invalid_argument(
+          fmt::format("EMG gain of '{}' = {}, must be ≥ 0 and finite", muscle, gain));
+    }
+  }
+  if (!std::isfinite(mapping.delay)) {
+    throw std::invalid_argument(fmt::format("EMG delay = {} s, must be finite", mapping.delay));
+  }
+  if (!(std::abs(mapping.nonlinearity) <= 6)) {
+    throw std::invalid_argument(
+        fmt::format("EMG nonlinearity = {}, must be −6 to 6", mapping.nonlinearity));
+  }
+}
+
+double gainOf(const EmgMapping& mapping, const std::string& muscle) {
+  const auto at = mapping.gain.find(muscle);
+  return at == mapping.gain.end() ? 1.0 : at->second;
+}
+
+/// The trial's rows; rows = muscles.
+Eigen::MatrixXd rowsOf(const ExcitationSignal& trial) {
+  Eigen::MatrixXd rows(trial.numMuscles(), static_cast<Eigen::Index>(trial.times().size()));
+  std::size_t hint = 0;
+  for (Eigen::Index k = 0; k < rows.cols(); ++k) {
+    trial.at(trial.times()[static_cast<std::size_t>(k)], hint, rows.col(k));
+  }
+  return rows;
+}
+
+}  // namespace
+
+ExcitationSignal drivenExcitation(const ExcitationSignal& trial,
+                                  const std::vector<std::string>& muscles,
+                                  const EmgMapping& mapping) {
+  check(muscles, mapping);
+  Eigen::MatrixXd rows = rowsOf(trial);
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    const double gain = gainOf(mapping, muscles[static_cast<std::size_t>(i)]);
+    for (Eigen::Index k = 0; k < rows.cols(); ++k) {
+      rows(i, k) = std::clamp(gain * shaped(rows(i, k), mapping.nonlinearity).value, 0.0, 1.0);
+    }
+  }
+  std::vector<double> times = trial.times();
+  for (double& t : times) t += mapping.delay;
+  return {std::move(times), rows.transpose()};
+}
+
+EmgDerivatives emgDerivatives(const ExcitationSignal& trial,
+                              const std::vector<std::string>& muscles, const EmgMapping& mapping) {
+  check(muscles, mapping);
+  const Eigen::MatrixXd rows = rowsOf(trial);
+  EmgDerivatives derivatives{Eigen::MatrixXd::Zero(rows.rows(), rows.cols()),
+                             Eigen::MatrixXd::Zero(rows.rows(), rows.cols())};
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    const double gain = gainOf(mapping, muscles[static_cast<std::size_t>(i)]);
+    for (Eigen::Index k = 0; k < rows.cols(); ++k) {
+      const Shaped s = shaped(rows(i, k), mapping.nonlinearity);
+      if (gain * s.value > 1) continue;
+      derivatives.gain(i, k) = s.value;
+      derivatives.nonlinearity(i, k) = gain * s.inShape;
+    }
+  }
+  return derivatives;
+}
+
+}  // namespace bio

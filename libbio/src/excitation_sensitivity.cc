@@ -1,0 +1,131 @@
+#include "excitation_sensitivity.h"
+
+#include "info/dual.h"
+
+namespace bio::stepping {
+namespace {
+
+using Eigen::Index;
+
+/// ∂a₁ in u₀, u₁, a₀, h and the constants of the dynamics, through the scalar type.
+struct PieceDerivatives {
+  double value;
+  Eigen::Matrix<double, 7, 1> d;
+};
+
+PieceDerivatives pieceDerivatives(const SchutteActivation<double>& law, double u0, double u1,
+                                  double a0, double h) {
+  using D = info::Dual<7>;
+  const SchutteActivation<D> dynamics{D(law.timeScale, 7, 4), D(law.activation1, 7, 5),
+                                      D(law.activation2, 7, 6)};
+  const D end = stepActivation(dynamics, D(u0, 7, 0), D(u1, 7, 1), D(a0, 7, 2), D(h, 7, 3));
+  return {end.value(), end.derivatives()};
+}
+
+}  // namespace
+
+ExcitationSensitivity::ExcitationSensitivity(const Arm& arm, const ParameterEffects& effects,
+                                             const ExcitationSignal& trial,
+                                             const ExcitationSignal& driven,
+                                             const EmgMapping& mapping)
+    : arm_(arm),
+      effects_(effects),
+      driven_(driven),
+      emg_(emgDerivatives(trial, muscleNames(arm), mapping)),
+      from_(static_cast<Index>(arm.numMuscles())),
+      to_(from_),
+      now_(from_) {}
+
+double ExcitationSensitivity::between(const Eigen::MatrixXd& rows, Index muscle, double t) const {
+  const std::vector<double>& times = driven_.times();
+  if (!(t > times.front())) return rows(muscle, 0);
+  if (t >= times.back()) return rows(muscle, rows.cols() - 1);
+  std::size_t k = nextRow_ > 0 ? std::min(nextRow_, times.size() - 1) - 1 : 0;
+  if (times[k] > t) k = 0;
+  while (times[k + 1] <= t) ++k;
+  const auto c = static_cast<Index>(k);
+  const double w = (t - times[k]) / (times[k + 1] - times[k]);
+  return (1 - w) * rows(muscle, c) + w * rows(muscle, c + 1);
+}
+
+void ExcitationSensitivity::start(double time, SensitivityMatrix& rows) {
+  rows.setZero();
+  nextRow_ = 0;
+  for (Index i = 0; i < rows.rows(); ++i) {
+    for (const QuantityEffect& effect : effects_.muscles[static_cast<std::size_t>(i)].gain) {
+      rows(i, effect.column) += between(emg_.gain, i, time);
+    }
+    for (const Index column : effects_.nonlinearity) {
+      rows(i, column) += between(emg_.nonlinearity, i, time);
+    }
+  }
+  // later by d: the excitation at the start is that of d earlier; none is known before the first row
+  const std::vector<double>& times = driven_.times();
+  if (effects_.delay.empty() || !(time > times.front()) || !(time < times.back())) return;
+  std::size_t k = 0;
+  while (times[k + 1] <= time) ++k;
+  driven_.at(times[k], hint_, from_);
+  driven_.at(times[k + 1], hint_, to_);
+  for (const Index column : effects_.delay) {
+    rows.col(column) -= (to_ - from_) / (times[k + 1] - times[k]);
+  }
+}
+
+void ExcitationSensitivity::advance(double t0, double t1, const Eigen::RowVectorXd* dt0,
+                                    const Eigen::RowVectorXd* dt1,
+                                    const Eigen::Ref<const Eigen::VectorXd>& activation,
+                                    const SensitivityMatrix& in, SensitivityMatrix& out) {
+  const std::vector<double>& rows = driven_.times();
+  if (nextRow_ > 0 && nextRow_ <= rows.size() && rows[nextRow_ - 1] > t0) nextRow_ = 0;
+  double t = t0;
+  bool first = true, beginsOnRow = false;
+  now_ = activation;
+  driven_.at(t0, hint_, from_);
+  while (t < t1) {
+    // the same pieces as the integrator's
+    while (nextRow_ < rows.size() && rows[nextRow_] <= t * (1 + 1e-15) + 1e-15) ++nextRow_;
+    const bool endsOnRow = nextRow_ < rows.size() && rows[nextRow_] < t1;
+    const double stop = endsOnRow ? rows[nextRow_] : t1;
+    const double h = stop - t;
+    driven_.at(stop, hint_, to_);
+    for (Index i = 0; i < out.rows(); ++i) {
+      const auto si = static_cast<std::size_t>(i);
+      const auto& effects = effects_.muscles[si];
+      const PieceDerivatives p =
+          pieceDerivatives(arm_.muscles()[si].activation, from_[i], to_[i], now_[i], h);
+      now_[i] = p.value;
+      auto row = out.row(i);
+      if (first) {
+        row = p.d[2] * in.row(i);
+      } else {
+        row *= p.d[2];
+      }
+      // a time that moves takes the excitation along its piece, and the piece's length with it
+      const double slope = (to_[i] - from_[i]) / h;
+      if (!beginsOnRow && dt0) row += (p.d[0] * slope - p.d[3]) * *dt0;
+      if (!endsOnRow && dt1) row += (p.d[1] * slope + p.d[3]) * *dt1;
+      // a delay moves the rows of the trial; at a held time the excitation is of earlier
+      for (const Index column : effects_.delay) {
+        row[column] += (beginsOnRow ? -p.d[3] : -p.d[0] * slope) +
+                       (endsOnRow ? p.d[3] : -p.d[1] * slope);
+      }
+      for (const QuantityEffect& effect : effects.gain) {
+        row[effect.column] +=
+            p.d[0] * between(emg_.gain, i, t) + p.d[1] * between(emg_.gain, i, stop);
+      }
+      for (const Index column : effects_.nonlinearity) {
+        row[column] += p.d[0] * between(emg_.nonlinearity, i, t) +
+                       p.d[1] * between(emg_.nonlinearity, i, stop);
+      }
+      for (const QuantityEffect& effect : effects.activation) {
+        row[effect.column] += effect.factor * p.d[4 + static_cast<Index>(effect.quantity)];
+      }
+    }
+    from_.swap(to_);
+    t = stop;
+    first = false;
+    beginsOnRow = endsOnRow;
+  }
+}
+
+}  // namespace bio::stepping

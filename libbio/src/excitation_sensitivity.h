@@ -1,0 +1,40 @@
+#pragma once
+
+// Activations of a run differentiated in parameters and in the times of a step; not public.
+
+#include "bio/coupled_sensitivity.h"
+#include "parameter_effects.h"
+
+namespace bio::stepping {
+
+/// Follows the recursion by which the variational integrator advances activations: straight pieces
+/// of excitation from row to row of the trial, cut at the times of the steps.
+class ExcitationSensitivity {
+ public:
+  ExcitationSensitivity(const Arm& arm, const ParameterEffects& effects,
+                        const ExcitationSignal& trial, const ExcitationSignal& driven,
+                        const EmgMapping& mapping);
+
+  /// d(activation)/dθ at the start, where it equals the excitation; rows = muscles.
+  void start(double time, SensitivityMatrix& rows);
+
+  /// From t0 to t1, whose derivatives are rows or null (fixed); `out` may not be `in`.
+  /// @param activation  at t0
+  void advance(double t0, double t1, const Eigen::RowVectorXd* dt0, const Eigen::RowVectorXd* dt1,
+               const Eigen::Ref<const Eigen::VectorXd>& activation, const SensitivityMatrix& in,
+               SensitivityMatrix& out);
+
+ private:
+  /// Straight lines between the rows of the trial, as ExcitationSignal draws them.
+  double between(const Eigen::MatrixXd& rows, Eigen::Index muscle, double t) const;
+
+  const Arm& arm_;
+  const ParameterEffects& effects_;
+  const ExcitationSignal& driven_;
+  EmgDerivatives emg_;
+  std::size_t hint_ = 0;        ///< of the signal
+  std::size_t nextRow_ = 0;     ///< first row of the signal behind the time reached
+  Eigen::VectorXd from_, to_, now_;
+};
+
+}  // namespace bio::stepping

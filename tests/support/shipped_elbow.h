@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+
+#include "bio/coupled_sensitivity.h"
+#include "bio/osim_file.h"
+#include "bio/replay.h"
+
+namespace bio::testing {
+
+/// A shipped model with a shipped trial, the elbow free.
+struct ShippedElbow {
+  explicit ShippedElbow(const std::string& modelName = "elbow8",
+                        const std::string& trialName = "curl_slow", EmgMapping mapping = {})
+      : model(readOsim(root() + "/models/" + modelName + ".osim")),
+        arm(model, options()),
+        trial(readTrial(root() + "/emg_data/" + trialName + ".sto", model)),
+        excitation(excitationOf(trial, arm)),
+        catalogue(model, arm, {startCoordinates(trial, arm, {}), {}}, mapping) {}
+
+  static std::string root() { return FISHERHILL_SOURCE_DIR; }
+  static ArmOptions options() { return {{{"elbow_flexion"}, {}}, {}, {}}; }
+
+  Model model;
+  Arm arm;
+  Trial trial;
+  ExcitationSignal excitation;
+  ParameterCatalogue catalogue;
+};
+
+}  // namespace bio::testing
