@@ -50,8 +50,8 @@ class SensitivityPass {
     unit_ = row_;
     unit_[numParameters] = 1;
     for (const ArmMuscle& muscle : arm.muscles()) {
-      gradients_.emplace_back(setting.model, arm.skeleton(),
-                              findMuscle(setting.model, muscle.name), muscle.path);
+      gradients_.emplace_back(setting.model, arm.skeleton(), findMuscle(setting.model, muscle.name),
+                              muscle.path);
       workspaces_.push_back(gradients_.back().template workspace<N>());
     }
   }
@@ -107,8 +107,7 @@ class SensitivityPass {
       const auto si = static_cast<Index>(i);
       const SchutteMuscle<double>& muscle = arm_.muscles()[i].muscle;
       const LengthJet<N>& path = configuration_.length(i);
-      const StaticEquilibrium rest =
-          staticEquilibrium(muscle, start.activation[si], path.length);
+      const StaticEquilibrium rest = staticEquilibrium(muscle, start.activation[si], path.length);
       const EquilibriumDerivatives d =
           equilibriumDerivatives(muscle, start.activation[si], path.length, rest);
       auto fibre = fibre_.row(si);
@@ -189,8 +188,8 @@ class SensitivityPass {
     }
 
     // activations at the middle and at the end
-    excitation_.advance(t0, tMiddle, dt0, timeMoves ? &middleTime_ : nullptr,
-                        tape.activation(i), activation_, middle_);
+    excitation_.advance(t0, tMiddle, dt0, timeMoves ? &middleTime_ : nullptr, tape.activation(i),
+                        activation_, middle_);
     excitation_.advance(tMiddle, t1, timeMoves ? &middleTime_ : nullptr, dt1,
                         tape.middleActivation(i + 1), middle_, activation_);
 
@@ -229,8 +228,7 @@ class SensitivityPass {
       const SchutteMuscle<double>& muscle = arm_.muscles()[m].muscle;
       const LengthJet<N>& path = configuration_.length(m);
       const double l_m = (l0[sm] + l1[sm]) / 2;
-      const FibreRateDerivatives r =
-          fibreRateDerivatives(muscle, activation[sm], l_m, path.length);
+      const FibreRateDerivatives r = fibreRateDerivatives(muscle, activation[sm], l_m, path.length);
       const double perJ = 1 / (1 / h - r.dV_dFibreLength / 2);
       auto trial = trialFibre_.row(sm);
       const double half = r.dV_dMuscleTendonLength / 2 * perJ;
@@ -329,12 +327,11 @@ class SensitivityPass {
     PathGradient<N>& gradient = workspaces_[m];
     gradients_[m].template evaluate<N>(q, configuration_.motions().data(), gradient);
     for (const QuantityEffect& effect : effects.points) {
-      use(effect, gradient.points[effect.quantity / 3].row(
-                      static_cast<Index>(effect.quantity % 3)));
+      use(effect,
+          gradient.points[effect.quantity / 3].row(static_cast<Index>(effect.quantity % 3)));
     }
     for (const QuantityEffect& effect : effects.wraps) {
-      use(effect,
-          gradient.wraps[effect.quantity / 7].row(static_cast<Index>(effect.quantity % 7)));
+      use(effect, gradient.wraps[effect.quantity / 7].row(static_cast<Index>(effect.quantity % 7)));
     }
   }
 
@@ -373,10 +370,9 @@ class SensitivityPass {
           return X.second[static_cast<std::size_t>(pairIndex(k, l))];
         });
         inertia_(k, effect.column) += detail::momentProduct(effect.change, X_k, dX);
-        slope_(k, effect.column) +=
-            detail::momentProduct(effect.change, dX_k, dX) +
-            arm_.skeleton().gravity().dot(X_k.R * effect.change.massMoment +
-                                          X_k.p * effect.change.mass);
+        slope_(k, effect.column) += detail::momentProduct(effect.change, dX_k, dX) +
+                                    arm_.skeleton().gravity().dot(X_k.R * effect.change.massMoment +
+                                                                  X_k.p * effect.change.mass);
       }
     }
   }
@@ -439,7 +435,7 @@ class SensitivityPass {
   ExcitationSensitivity excitation_;
   std::vector<PathGradients> gradients_;
   std::vector<PathGradient<N>> workspaces_;
-  std::vector<double> through_;  ///< (V_L/2J) of each muscle
+  std::vector<double> through_;   ///< (V_L/2J) of each muscle
   std::vector<RowVector> times_;  ///< dt/dθ of the tape's times; empty: fixed
   Rows dq_, dp_, forward_, force_, inertia_, slope_;
   SensitivityMatrix fibre_, trialFibre_, activation_, middle_;
@@ -468,8 +464,7 @@ Trajectory simulateSetting(const Arm& arm, const ParameterCatalogue::Setting& se
   return simulate(arm, driven, startOf(arm, setting, driven, options.startTime), options);
 }
 
-SensitivityTrajectory simulateWithSensitivities(const Arm& arm,
-                                                const ParameterCatalogue& catalogue,
+SensitivityTrajectory simulateWithSensitivities(const Arm& arm, const ParameterCatalogue& catalogue,
                                                 const ParameterCatalogue::Setting& setting,
                                                 const std::vector<std::size_t>& wanted,
                                                 const ExcitationSignal& trial,
@@ -482,8 +477,7 @@ SensitivityTrajectory simulateWithSensitivities(const Arm& arm,
   const ArmState start = startOf(arm, setting, driven, options.simulation.startTime);
   stepping::checkSimulation(arm, driven, start, options.simulation);
   stepping::StepTape tape;
-  Trajectory motion =
-      stepping::simulateVariational(arm, driven, start, options.simulation, &tape);
+  Trajectory motion = stepping::simulateVariational(arm, driven, start, options.simulation, &tape);
   const stepping::ParameterEffects effects(arm, catalogue, setting, wanted);
   return stepping::withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
     stepping::SensitivityPass<decltype(N)::value> pass(

@@ -59,7 +59,8 @@ void ExcitationSensitivity::start(double time, SensitivityMatrix& rows) {
       rows(i, column) += between(emg_.nonlinearity, i, time);
     }
   }
-  // later by d: the excitation at the start is that of d earlier; none is known before the first row
+  // later by d: the excitation at the start is that of d earlier; none is known before the first
+  // row
   const std::vector<double>& times = driven_.times();
   if (effects_.delay.empty() || !(time > times.front()) || !(time < times.back())) return;
   std::size_t k = 0;
@@ -82,9 +83,10 @@ void ExcitationSensitivity::advance(double t0, double t1, const Eigen::RowVector
   now_ = activation;
   driven_.at(t0, hint_, from_);
   while (t < t1) {
-    // the same pieces as the integrator's
-    while (nextRow_ < rows.size() && rows[nextRow_] <= t * (1 + 1e-15) + 1e-15) ++nextRow_;
-    const bool endsOnRow = nextRow_ < rows.size() && rows[nextRow_] < t1;
+    // the integrator's pieces, without those that rounding makes where a row and a step meet
+    constexpr double together = 1e-12;  // [s]
+    while (nextRow_ < rows.size() && rows[nextRow_] <= t + together) ++nextRow_;
+    const bool endsOnRow = nextRow_ < rows.size() && rows[nextRow_] < t1 - together;
     const double stop = endsOnRow ? rows[nextRow_] : t1;
     const double h = stop - t;
     driven_.at(stop, hint_, to_);
@@ -106,8 +108,8 @@ void ExcitationSensitivity::advance(double t0, double t1, const Eigen::RowVector
       if (!endsOnRow && dt1) row += (p.d[1] * slope + p.d[3]) * *dt1;
       // a delay moves the rows of the trial; at a held time the excitation is of earlier
       for (const Index column : effects_.delay) {
-        row[column] += (beginsOnRow ? -p.d[3] : -p.d[0] * slope) +
-                       (endsOnRow ? p.d[3] : -p.d[1] * slope);
+        row[column] +=
+            (beginsOnRow ? -p.d[3] : -p.d[0] * slope) + (endsOnRow ? p.d[3] : -p.d[1] * slope);
       }
       for (const QuantityEffect& effect : effects.gain) {
         row[effect.column] +=

@@ -32,8 +32,8 @@ class ExcitationSensitivity {
   const ParameterEffects& effects_;
   const ExcitationSignal& driven_;
   EmgDerivatives emg_;
-  std::size_t hint_ = 0;        ///< of the signal
-  std::size_t nextRow_ = 0;     ///< first row of the signal behind the time reached
+  std::size_t hint_ = 0;     ///< of the signal
+  std::size_t nextRow_ = 0;  ///< first row of the signal behind the time reached
   Eigen::VectorXd from_, to_, now_;
 };
 

@@ -85,8 +85,7 @@ Balance balanceOf(const SchutteMuscle<double>& muscle, double activation, double
     return b;
   }
   for (std::size_t i = 0; i < numFibreQuantities; ++i) b.dP[i] = b.dTendon[i] * kappa;
-  b.dP[at(MuscleQuantity::optimalFibreLength)] +=
-      b.tendon * kappa_w * w_l0 - passiveSlope * l_l0;
+  b.dP[at(MuscleQuantity::optimalFibreLength)] += b.tendon * kappa_w * w_l0 - passiveSlope * l_l0;
   b.dP[at(MuscleQuantity::pennation)] += b.tendon * kappa_w * w_pennation;
   b.dP[at(MuscleQuantity::passiveForceScale)] -= passive;
   b.P_m = perStrain * kappa;
@@ -143,8 +142,10 @@ EquilibriumDerivatives equilibriumDerivatives(const SchutteMuscle<double>& muscl
                                               double activation, double muscleTendonLength,
                                               const StaticEquilibrium& rest) {
   EquilibriumDerivatives result{};
-  if (rest.why == StaticEquilibrium::Why::forceFree && rest.count == 0) {
-    const SchutteQuantities<double>& p = muscle.quantities();
+  const SchutteQuantities<double>& p = muscle.quantities();
+  const bool isSlack = rest.why == StaticEquilibrium::Why::forceFree ||
+                       rest.tendonForce < 1e-9 * p.maxIsometricForce;
+  if (isSlack) {
     const double l = rest.fibreLength;
     const double along = (muscleTendonLength - p.tendonSlackLength) / l;
     const double across = muscle.thickness() / l;

@@ -35,7 +35,8 @@ ParameterEffects::ParameterEffects(const Arm& arm, const ParameterCatalogue& cat
         muscle.activation.push_back({2, column});
       } else {
         // a scale multiplies the curve that the catalogue's model has; the arm's is scaled already
-        const bool isScale = quantity >= static_cast<std::size_t>(MuscleQuantity::tendonStrainScale);
+        const bool isScale =
+            quantity >= static_cast<std::size_t>(MuscleQuantity::tendonStrainScale);
         muscle.fibre.push_back({quantity, column, isScale ? 1 / value : 1.0});
         if (target.quantity == MuscleQuantity::timeScale) muscle.activation.push_back({0, column});
       }
@@ -63,12 +64,14 @@ ParameterEffects::ParameterEffects(const Arm& arm, const ParameterCatalogue& cat
     }
     void operator()(const LimitForceTarget& target) const {
       const CoordinateLimitForce& law = model.limitForces[target.force];
-      effects.limitForces.push_back({law, arm.skeleton().indexOf(law.coordinate),
+      effects.limitForces.push_back({law,
+                                     arm.skeleton().indexOf(law.coordinate),
                                      {static_cast<std::size_t>(target.component), column}});
     }
     void operator()(const SpringForceTarget& target) const {
       const SpringGeneralizedForce& law = model.springForces[target.force];
-      effects.springForces.push_back({law, arm.skeleton().indexOf(law.coordinate),
+      effects.springForces.push_back({law,
+                                      arm.skeleton().indexOf(law.coordinate),
                                       {static_cast<std::size_t>(target.component), column}});
     }
     void operator()(const EmgTarget& target) const {
@@ -116,8 +119,7 @@ void ParameterEffects::addBody(const Arm& arm, const Body& body, int component,
     const int i = rows[component - 4], j = columns[component - 4];
     Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
     inertia(i, j) = inertia(j, i) = 1;
-    const Eigen::Matrix3d central =
-        0.5 * inertia.trace() * Eigen::Matrix3d::Identity() - inertia;
+    const Eigen::Matrix3d central = 0.5 * inertia.trace() * Eigen::Matrix3d::Identity() - inertia;
     change.secondMoment = R * central * R.transpose();
   }
   segments.push_back({place.segment, std::move(change), column});

@@ -33,8 +33,8 @@ struct MuscleRule {
   const char* name;
   const char* unit;
   const char* meaning;
-  double SchutteParameters::* member;  ///< null: a scale of a curve
-  double lower, upper, deviation;      ///< fractions of the value
+  double SchutteParameters::*member;  ///< null: a scale of a curve
+  double lower, upper, deviation;     ///< fractions of the value
 };
 constexpr MuscleRule muscleRules[] = {
     {MuscleQuantity::maxIsometricForce, "max_isometric_force", "N", "maximum isometric force F0",
@@ -137,8 +137,7 @@ struct SetInModel {
   void operator()(const PointTarget& target) const {
     PathPoint& point = model.muscles[target.muscle].path.points[target.point];
     if (point.motion) {
-      shiftFunction(point.motion->location[static_cast<std::size_t>(target.axis)],
-                    value - nominal);
+      shiftFunction(point.motion->location[static_cast<std::size_t>(target.axis)], value - nominal);
     } else {
       point.location[target.axis] = value;
     }
@@ -205,7 +204,8 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
     std::size_t diagonal = row[0];
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t changed = diagonal + (std::tolower(a[i - 1]) == std::tolower(b[j - 1]) ? 0 : 1);
+      const std::size_t changed =
+          diagonal + (std::tolower(a[i - 1]) == std::tolower(b[j - 1]) ? 0 : 1);
       diagonal = row[j];
       row[j] = std::min({changed, row[j] + 1, row[j - 1] + 1});
     }
@@ -215,7 +215,8 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
 
 bool matches(const char* pattern, const char* text) {
   if (*pattern == '\0') return *text == '\0';
-  if (*pattern == '*') return matches(pattern + 1, text) || (*text != '\0' && matches(pattern, text + 1));
+  if (*pattern == '*')
+    return matches(pattern + 1, text) || (*text != '\0' && matches(pattern, text + 1));
   return *pattern == *text && matches(pattern + 1, text + 1);
 }
 
@@ -305,10 +306,9 @@ class Collector {
             fmt::format("position of the wrap object in {}", wrap.body), value, position(value),
             {WrapTarget{index, 1 + axis}});
       }
-      const bool isSphere =
-          wrap.shape == WrapShape::sphere ||
-          (wrap.shape == WrapShape::ellipsoid &&
-           (wrap.semiAxes.array() - radius).abs().maxCoeff() <= 1e-9 * radius);
+      const bool isSphere = wrap.shape == WrapShape::sphere ||
+                            (wrap.shape == WrapShape::ellipsoid &&
+                             (wrap.semiAxes.array() - radius).abs().maxCoeff() <= 1e-9 * radius);
       for (int axis = 0; axis < 3 && !isSphere; ++axis) {
         const double value = wrap.frame.orientation[axis];
         add(fmt::format("{}.rotation.{}", wrap.name, axisName(axis)), "rad",
@@ -332,8 +332,7 @@ class Collector {
             {BodyTarget{i, 1 + axis}});
       }
       constexpr const char* names[] = {"xx", "yy", "zz", "xy", "xz", "yz"};
-      const double largest =
-          std::max({body.inertia[0], body.inertia[1], body.inertia[2], 1e-6});
+      const double largest = std::max({body.inertia[0], body.inertia[1], body.inertia[2], 1e-6});
       for (int k = 0; k < 6; ++k) {
         const double value = body.inertia[static_cast<std::size_t>(k)];
         const Habit habit = k < 3 ? Habit{0, value + 4 * largest, 0.3 * largest}
@@ -350,20 +349,18 @@ class Collector {
       const char* unit;
       bool isAngle;
     };
-    constexpr Rule limitRules[] = {{"upper_limit", "rad", true},
-                                   {"upper_stiffness", "N m/rad", false},
-                                   {"lower_limit", "rad", true},
-                                   {"lower_stiffness", "N m/rad", false},
-                                   {"damping", "N m s/rad", false},
-                                   {"transition", "rad", false}};
+    constexpr Rule limitRules[] = {
+        {"upper_limit", "rad", true},    {"upper_stiffness", "N m/rad", false},
+        {"lower_limit", "rad", true},    {"lower_stiffness", "N m/rad", false},
+        {"damping", "N m s/rad", false}, {"transition", "rad", false}};
     constexpr Rule springRules[] = {{"stiffness", "N m/rad", false},
                                     {"rest_length", "rad", true},
                                     {"viscosity", "N m s/rad", false}};
     const auto addForce = [&](const std::string& name, const Rule& rule, double value,
                               ParameterTarget target) {
       const double spread = std::max(std::abs(value), 1e-6);
-      const Habit habit = rule.isAngle ? Habit{value - 1.5, value + 1.5, 0.1}
-                                       : Habit{0, 10 * spread, 0.5 * spread};
+      const Habit habit =
+          rule.isAngle ? Habit{value - 1.5, value + 1.5, 0.1} : Habit{0, 10 * spread, 0.5 * spread};
       add(name + "." + rule.name, rule.unit, "passive force of the coordinate", value, habit,
           {target});
     };
@@ -432,10 +429,9 @@ class Collector {
   void addGroup(const char* name, const std::string& quantity, const char* meaning) {
     ModelParameter group;
     for (const ModelParameter& parameter : parameters_) {
-      const bool isMember =
-          !parameter.isGroup && parameter.name.ends_with("." + quantity) &&
-          (std::holds_alternative<MuscleTarget>(parameter.targets.front()) ||
-           std::holds_alternative<EmgTarget>(parameter.targets.front()));
+      const bool isMember = !parameter.isGroup && parameter.name.ends_with("." + quantity) &&
+                            (std::holds_alternative<MuscleTarget>(parameter.targets.front()) ||
+                             std::holds_alternative<EmgTarget>(parameter.targets.front()));
       if (!isMember) continue;
       if (group.targets.empty()) {
         group = parameter;
@@ -504,7 +500,8 @@ std::size_t ParameterCatalogue::find(const std::string& name) const {
   for (std::size_t i = 0; i < std::min<std::size_t>(3, order.size()); ++i) {
     nearest += (i ? ", " : "") + parameters_[order[i]].name;
   }
-  throw std::invalid_argument(fmt::format("no parameter is called '{}'; nearest: {}", name, nearest));
+  throw std::invalid_argument(
+      fmt::format("no parameter is called '{}'; nearest: {}", name, nearest));
 }
 
 std::vector<std::size_t> ParameterCatalogue::select(const std::vector<std::string>& names) const {
@@ -531,6 +528,17 @@ std::vector<std::size_t> ParameterCatalogue::select(const std::vector<std::strin
       }
     } else {
       take(find(name));
+    }
+  }
+  for (const std::size_t a : selection) {
+    for (const std::size_t b : selection) {
+      if (!parameters_[a].isGroup || a == b) continue;
+      for (const ParameterTarget& target : parameters_[b].targets) {
+        const auto& all = parameters_[a].targets;
+        if (std::find(all.begin(), all.end(), target) == all.end()) continue;
+        throw std::invalid_argument(fmt::format("{} and {} set the same number, take one of them",
+                                                parameters_[a].name, parameters_[b].name));
+      }
     }
   }
   return selection;

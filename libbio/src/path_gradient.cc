@@ -50,8 +50,7 @@ void addPoint(const PathNode& node, const RigidMotion<double, N>* moved, const V
   out.col(0) += node.X_SB.R.transpose() * (X.value.R.transpose() * c);
   for (std::size_t k = 0; k < N; ++k) {
     out.col(static_cast<Eigen::Index>(k) + 1) +=
-        node.X_SB.R.transpose() *
-        (X.first[k].R.transpose() * c + X.value.R.transpose() * c_k[k]);
+        node.X_SB.R.transpose() * (X.first[k].R.transpose() * c + X.value.R.transpose() * c_k[k]);
   }
 }
 
@@ -75,8 +74,7 @@ PathGradients::PathGradients(const Model& model, const Skeleton& skeleton, const
     const Matrix3d Ry = Eigen::AngleAxisd(o.y(), Vector3d::UnitY()).toRotationMatrix();
     const Matrix3d Rz = Eigen::AngleAxisd(o.z(), Vector3d::UnitZ()).toRotationMatrix();
     // an ellipsoid taken as a cylinder has its axes renamed: surface frame = R_BC·renamed
-    const Matrix3d renamed =
-        (Rx * Ry * Rz).transpose() * frame.R_SB.transpose() * surface.X_SC.R;
+    const Matrix3d renamed = (Rx * Ry * Rz).transpose() * frame.R_SB.transpose() * surface.X_SC.R;
     frame.turnAxes.col(0) = renamed.transpose() * ((Ry * Rz).transpose() * Vector3d::UnitX());
     frame.turnAxes.col(1) = renamed.transpose() * (Rz.transpose() * Vector3d::UnitY());
     frame.turnAxes.col(2) = renamed.transpose() * Vector3d::UnitZ();
@@ -140,9 +138,8 @@ void PathGradients::addSpan(const PathSpan& span, const Eigen::Matrix<double, N,
       continue;
     }
     const SpanToSecondOrder<double> s =
-        surface.isSphere
-            ? wrapSphereToSecondOrder(surface.radius, way.way, P.value, Q.value)
-            : wrapCylinderToSecondOrder(surface.radius, way.side, P.value, Q.value);
+        surface.isSphere ? wrapSphereToSecondOrder(surface.radius, way.way, P.value, Q.value)
+                         : wrapCylinderToSecondOrder(surface.radius, way.side, P.value, Q.value);
     if (!s.span.touches) {
       if (isFixed) break;
       continue;
@@ -166,8 +163,8 @@ void PathGradients::addSpan(const PathSpan& span, const Eigen::Matrix<double, N,
           s.hessian.d2L_dPdQ.transpose() * P.first[k] + s.hessian.d2L_dQdQ * Q.first[k];
       wrap(0, column) += r.dL_dP.dot(P.first[k]) + r.dL_dQ.dot(Q.first[k]);
       wrap.template block<3, 1>(1, column) -= intoBody * (gP + gQ);
-      const Vector3d moment_k = P.value.cross(gP) + P.first[k].cross(cP) + Q.value.cross(gQ) +
-                                Q.first[k].cross(cQ);
+      const Vector3d moment_k =
+          P.value.cross(gP) + P.first[k].cross(cP) + Q.value.cross(gQ) + Q.first[k].cross(cQ);
       wrap.template block<3, 1>(4, column) -= frame.turnAxes.transpose() * moment_k;
       const Matrix3d turned = X.first[k].R * surface.X_SC.R;
       atP[k] = intoGround * gP + turned * cP;

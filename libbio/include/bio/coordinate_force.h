@@ -25,8 +25,8 @@ CoordinateForceValue evaluate(const CoordinateLimitForce& law, double q, double 
 /// τ = −k (q − q_0) − b q̇
 CoordinateForceValue evaluate(const SpringGeneralizedForce& law, double q, double qDot);
 
-/// ∂τ/∂θ of a law's own numbers, in the order in which the law lists them: upper limit and stiffness,
-/// lower limit and stiffness, damping, transition; stiffness, rest length, viscosity.
+/// ∂τ/∂θ of a law's own numbers, in the order in which the law lists them: upper limit and
+/// stiffness, lower limit and stiffness, damping, transition; stiffness, rest length, viscosity.
 std::array<double, 6> parameterDerivatives(const CoordinateLimitForce& law, double q, double qDot);
 std::array<double, 3> parameterDerivatives(const SpringGeneralizedForce& law, double q,
                                            double qDot);

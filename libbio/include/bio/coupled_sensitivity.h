@@ -14,8 +14,8 @@ using SensitivityMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 
 /// A simulated motion and how it follows parameters, [unit of the quantity per unit of θ].
 struct SensitivityTrajectory {
   Trajectory motion;
-  std::vector<SensitivityMatrix> q;     ///< dq/dθ of each free coordinate
-  std::vector<SensitivityMatrix> qDot;  ///< dq̇/dθ of each free coordinate
+  std::vector<SensitivityMatrix> q;            ///< dq/dθ of each free coordinate
+  std::vector<SensitivityMatrix> qDot;         ///< dq̇/dθ of each free coordinate
   std::vector<SensitivityMatrix> fibreLength;  ///< of each muscle; empty unless asked for
   std::vector<SensitivityMatrix> activation;   ///< of each muscle; empty unless asked for
   std::vector<SensitivityMatrix> tendonForce;  ///< of each muscle; empty unless asked for
@@ -48,8 +48,7 @@ struct SensitivityOptions {
 /// @param trial    as recorded; setting.mapping turns it into excitations
 /// @throws std::invalid_argument for another integrator, and what simulate() throws;
 ///   NoStaticEquilibrium
-SensitivityTrajectory simulateWithSensitivities(const Arm& arm,
-                                                const ParameterCatalogue& catalogue,
+SensitivityTrajectory simulateWithSensitivities(const Arm& arm, const ParameterCatalogue& catalogue,
                                                 const ParameterCatalogue::Setting& setting,
                                                 const std::vector<std::size_t>& wanted,
                                                 const ExcitationSignal& trial,

@@ -45,13 +45,13 @@ FibreParameterDerivatives fibreParameterDerivatives(const SchutteMuscle<double>&
 
 /// How a fibre in static equilibrium follows what it depends on.
 struct EquilibriumDerivatives {
-  double dl_dActivation;                              ///< ∂ℓ/∂act [m]
-  double dl_dMuscleTendonLength;                      ///< ∂ℓ/∂ℓ_MT [1]
+  double dl_dActivation;                                ///< ∂ℓ/∂act [m]
+  double dl_dMuscleTendonLength;                        ///< ∂ℓ/∂ℓ_MT [1]
   std::array<double, numFibreQuantities> dl_dQuantity;  ///< ∂ℓ/∂θ
 };
 
 /// By the implicit function theorem on P − A = 0, which has no kink where V = 0 has one; where
-/// fibre and tendon carry no force (StaticEquilibrium::Why::forceFree), of ℓ = √((ℓ_MT−ℓs)² + w²).
+/// fibre and tendon carry no force (forceFree, or F_T < 1e-9·F0), of ℓ = √((ℓ_MT − ℓs)² + w²).
 EquilibriumDerivatives equilibriumDerivatives(const SchutteMuscle<double>& muscle,
                                               double activation, double muscleTendonLength,
                                               const StaticEquilibrium& rest);

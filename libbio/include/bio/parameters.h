@@ -17,36 +17,44 @@ namespace bio {
 struct MuscleTarget {
   std::size_t muscle;
   MuscleQuantity quantity;
+  friend bool operator==(const MuscleTarget&, const MuscleTarget&) = default;
 };
 struct PointTarget {
   std::size_t muscle, point;
   int axis;  ///< 0 x, 1 y, 2 z of the location in the body
+  friend bool operator==(const PointTarget&, const PointTarget&) = default;
 };
 struct WrapTarget {
   std::size_t wrap;
   int component;  ///< 0 radius, 1–3 translation, 4–6 rotation in the body
+  friend bool operator==(const WrapTarget&, const WrapTarget&) = default;
 };
 struct BodyTarget {
   std::size_t body;
   int component;  ///< 0 mass, 1–3 mass centre, 4–9 inertia xx yy zz xy xz yz about it
+  friend bool operator==(const BodyTarget&, const BodyTarget&) = default;
 };
 /// upper limit, upper stiffness, lower limit, lower stiffness, damping, transition
 struct LimitForceTarget {
   std::size_t force;
   int component;  ///< 0–5 in that order
+  friend bool operator==(const LimitForceTarget&, const LimitForceTarget&) = default;
 };
 /// stiffness, rest length, viscosity
 struct SpringForceTarget {
   std::size_t force;
   int component;  ///< 0–2 in that order
+  friend bool operator==(const SpringForceTarget&, const SpringForceTarget&) = default;
 };
 struct EmgTarget {
   enum class What { gain, delay, nonlinearity } what;
   std::string muscle;  ///< of a gain
+  friend bool operator==(const EmgTarget&, const EmgTarget&) = default;
 };
 struct InitialTarget {
   int coordinate;  ///< free index
   bool isSpeed;
+  friend bool operator==(const InitialTarget&, const InitialTarget&) = default;
 };
 using ParameterTarget = std::variant<MuscleTarget, PointTarget, WrapTarget, BodyTarget,
                                      LimitForceTarget, SpringForceTarget, EmgTarget, InitialTarget>;
@@ -94,7 +102,8 @@ class ParameterCatalogue {
   std::size_t find(const std::string& name) const;
 
   /// Indices of names, in order, each once. A name may hold `*`; "all" is every one but groups.
-  /// @throws std::invalid_argument as find does, or if a pattern matches nothing
+  /// @throws std::invalid_argument as find does, if a pattern matches nothing, or if a group is
+  ///   named beside one of its members
   std::vector<std::size_t> select(const std::vector<std::string>& names) const;
 
   /// Values in the model.

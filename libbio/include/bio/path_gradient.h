@@ -64,7 +64,7 @@ class PathGradients {
 
   const CompiledPath* path_;
   std::size_t numPoints_, numWraps_;
-  std::vector<SurfaceFrame> frames_;      ///< of CompiledPath::surfaces
+  std::vector<SurfaceFrame> frames_;       ///< of CompiledPath::surfaces
   std::vector<PathGradient<0>> constant_;  ///< of the fixed spans, per variant
   std::vector<bool> mayTouch_, used_;
 };

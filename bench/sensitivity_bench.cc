@@ -1,0 +1,65 @@
+// What all sensitivities of the main job cost, beside the job itself.
+#include <benchmark/benchmark.h>
+
+#include "bio/coupled_sensitivity.h"
+#include "support/shipped_elbow.h"
+
+namespace {
+
+using bio::testing::ShippedElbow;
+
+bio::SimulationOptions options() {
+  bio::SimulationOptions o;
+  o.duration = 4.5;
+  return o;
+}
+
+void simulation(benchmark::State& state) {
+  const ShippedElbow elbow;
+  const auto setting = elbow.catalogue.nominal();
+  for (auto _ : state) {
+    const bio::Trajectory motion =
+        bio::simulateSetting(elbow.arm, setting, elbow.excitation, options());
+    benchmark::DoNotOptimize(motion.q.data());
+  }
+}
+BENCHMARK(simulation)->Unit(benchmark::kMillisecond);
+
+/// The motion again, and its derivatives in the parameters that match the patterns.
+void sensitivities(benchmark::State& state, const std::vector<std::string>& patterns,
+                   bool muscles) {
+  const ShippedElbow elbow;
+  const auto setting = elbow.catalogue.nominal();
+  const auto wanted = elbow.catalogue.select(patterns);
+  for (auto _ : state) {
+    const bio::SensitivityTrajectory s = bio::simulateWithSensitivities(
+        elbow.arm, elbow.catalogue, setting, wanted, elbow.excitation, {options(), muscles});
+    benchmark::DoNotOptimize(s.q[0].data());
+  }
+  state.counters["parameters"] = static_cast<double>(wanted.size());
+}
+BENCHMARK_CAPTURE(sensitivities, of_the_motion_to_all, {"all"}, false)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(sensitivities, of_everything_to_all, {"all"}, true)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(sensitivities, of_the_motion_to_muscles,
+                  {"*.max_isometric_force", "*.optimal_fiber_length", "*.tendon_slack_length",
+                   "*.pennation_angle", "*.damping", "*.time_scale", "*.activation1",
+                   "*.activation2"},
+                  false)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(sensitivities, of_the_motion_to_one, {"TRI.radius"}, false)
+    ->Unit(benchmark::kMillisecond);
+
+void compileArm(benchmark::State& state) {
+  const ShippedElbow elbow;
+  for (auto _ : state) {
+    const bio::Arm arm(elbow.model, ShippedElbow::options());
+    benchmark::DoNotOptimize(arm.numMuscles());
+  }
+}
+BENCHMARK(compileArm)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bio/coupled_sensitivity.h"
+#include "bio/trial.h"
+#include "info/least_squares.h"
+
+namespace bio {
+
+/// A trial as estimators see it: parameters in, a coordinate at the measured times out.
+///
+/// For every θ the model is changed, compiled and simulated anew; sensitivities are those of the
+/// discrete motion, interpolated to the measured times as the motion is. Immutable: may be used
+/// from several threads.
+class ArmExperiment {
+ public:
+  /// @param trial       excitations; its measured values are not looked at
+  /// @param coordinate  what is observed, free
+  /// @param times       when, within the trial [s], rising
+  /// @param selection   indices of the catalogue's parameters: θ
+  /// @throws std::invalid_argument if the coordinate is not free, a time is outside the
+  ///   simulation, or the integrator has no sensitivities
+  ArmExperiment(const ParameterCatalogue& catalogue, const ArmOptions& arm, ExcitationSignal trial,
+                const std::string& coordinate, std::vector<double> times,
+                std::vector<std::size_t> selection, const SimulationOptions& options);
+
+  const std::vector<double>& times() const { return times_; }
+  const std::vector<std::size_t>& selection() const { return selection_; }
+  const ParameterCatalogue& catalogue() const { return *catalogue_; }
+
+  /// The coordinate at the times [rad] or [m]; NaN behind the end of a simulation that failed, and
+  /// everywhere if no arm can be made of θ.
+  Eigen::VectorXd outputs(const Eigen::VectorXd& theta) const;
+
+  struct Linearised {
+    Eigen::VectorXd outputs;  ///< at the times
+    Eigen::MatrixXd gamma;    ///< Γ = dy/dθ: times × parameters
+  };
+  Linearised withSensitivities(const Eigen::VectorXd& theta) const;
+
+  /// For info::LeastSquares; one output. This experiment must outlive it.
+  info::Predictor predictor() const;
+
+  /// The whole simulations behind them. @throws what Arm, initialState and simulate throw
+  Trajectory simulate(const Eigen::VectorXd& theta) const;
+  SensitivityTrajectory simulateWithSensitivities(const Eigen::VectorXd& theta) const;
+
+ private:
+  Trajectory simulateAt(const ParameterCatalogue::Setting& setting) const;
+  SensitivityTrajectory sensitivitiesAt(const ParameterCatalogue::Setting& setting) const;
+
+  const ParameterCatalogue* catalogue_;
+  ArmOptions armOptions_;
+  ExcitationSignal trial_;
+  int coordinate_;
+  std::vector<double> times_;
+  std::vector<std::size_t> selection_;
+  SimulationOptions options_;
+};
+
+/// Several experiments on the same parameters, their samples one behind the other.
+/// @throws std::invalid_argument for none, or different selections
+info::Predictor joined(const std::vector<ArmExperiment>& experiments);
+
+}  // namespace bio

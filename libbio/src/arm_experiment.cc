@@ -1,0 +1,184 @@
+#include "bio/arm_experiment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+namespace bio {
+namespace {
+
+using Eigen::Index;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// A value between two rows of a motion as a combination of values and speeds there: the cubic of
+/// Hermite, as accurate as the integrators.
+struct Weights {
+  Index row;
+  double value0, value1, speed0, speed1;
+};
+
+/// Nothing where the motion has not come so far.
+std::optional<Weights> weightsAt(const std::vector<double>& time, double t) {
+  constexpr double together = 1e-9;
+  if (time.size() < 2 || t < time.front() - together || t > time.back() + together) return {};
+  const auto behind = std::upper_bound(time.begin(), time.end(), t);
+  const auto k = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
+      behind - time.begin() - 1, 0, static_cast<std::ptrdiff_t>(time.size()) - 2));
+  const double h = time[k + 1] - time[k];
+  const double s = (t - time[k]) / h;
+  return Weights{static_cast<Index>(k), 1 + s * s * (2 * s - 3), s * s * (3 - 2 * s),
+                 h * s * (1 - s) * (1 - s), -h * s * s * (1 - s)};
+}
+
+}  // namespace
+
+ArmExperiment::ArmExperiment(const ParameterCatalogue& catalogue, const ArmOptions& arm,
+                             ExcitationSignal trial, const std::string& coordinate,
+                             std::vector<double> times, std::vector<std::size_t> selection,
+                             const SimulationOptions& options)
+    : catalogue_(&catalogue),
+      armOptions_(arm),
+      trial_(std::move(trial)),
+      coordinate_(-1),
+      times_(std::move(times)),
+      selection_(std::move(selection)),
+      options_(options) {
+  const auto& free = arm.skeleton.freeCoordinates;
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    if (free[i] == coordinate) coordinate_ = static_cast<int>(i);
+  }
+  if (coordinate_ < 0) {
+    throw std::invalid_argument(fmt::format("observed coordinate '{}' is not free", coordinate));
+  }
+  if (options.integrator != Integrator::variational &&
+      options.integrator != Integrator::variationalLeft) {
+    throw std::invalid_argument("sensitivities: the integrator must be vi or vi-left");
+  }
+  double last = -std::numeric_limits<double>::infinity();
+  for (const double t : times_) {
+    const bool inside = t >= options.startTime - 1e-9 &&
+                        t <= options.startTime + options.duration + 1e-9 && t > last;
+    if (!inside) {
+      throw std::invalid_argument(
+          fmt::format("observed time {} s must rise and lie within {} to {} s", t,
+                      options.startTime, options.startTime + options.duration));
+    }
+    last = t;
+  }
+}
+
+Trajectory ArmExperiment::simulate(const Eigen::VectorXd& theta) const {
+  return simulateAt(catalogue_->at(selection_, theta));
+}
+Trajectory ArmExperiment::simulateAt(const ParameterCatalogue::Setting& setting) const {
+  const Arm arm(setting.model, armOptions_);
+  return simulateSetting(arm, setting, trial_, options_);
+}
+
+SensitivityTrajectory ArmExperiment::simulateWithSensitivities(const Eigen::VectorXd& theta) const {
+  return sensitivitiesAt(catalogue_->at(selection_, theta));
+}
+SensitivityTrajectory ArmExperiment::sensitivitiesAt(
+    const ParameterCatalogue::Setting& setting) const {
+  const Arm arm(setting.model, armOptions_);
+  return bio::simulateWithSensitivities(arm, *catalogue_, setting, selection_, trial_,
+                                        {options_, false});
+}
+
+Eigen::VectorXd ArmExperiment::outputs(const Eigen::VectorXd& theta) const {
+  Eigen::VectorXd y = Eigen::VectorXd::Constant(static_cast<Index>(times_.size()), nan);
+  const ParameterCatalogue::Setting setting = catalogue_->at(selection_, theta);
+  Trajectory motion;
+  try {
+    motion = simulateAt(setting);
+  } catch (const std::exception&) {
+    return y;  // outside the model's domain
+  }
+  for (std::size_t i = 0; i < times_.size(); ++i) {
+    if (const auto w = weightsAt(motion.time, times_[i])) {
+      y[static_cast<Index>(i)] = w->value0 * motion.q(coordinate_, w->row) +
+                                 w->value1 * motion.q(coordinate_, w->row + 1) +
+                                 w->speed0 * motion.qDot(coordinate_, w->row) +
+                                 w->speed1 * motion.qDot(coordinate_, w->row + 1);
+    }
+  }
+  return y;
+}
+
+ArmExperiment::Linearised ArmExperiment::withSensitivities(const Eigen::VectorXd& theta) const {
+  const auto K = static_cast<Index>(times_.size());
+  Linearised result{Eigen::VectorXd::Constant(K, nan),
+                    Eigen::MatrixXd::Constant(K, theta.size(), nan)};
+  const ParameterCatalogue::Setting setting = catalogue_->at(selection_, theta);
+  SensitivityTrajectory s;
+  try {
+    s = sensitivitiesAt(setting);
+  } catch (const std::exception&) {
+    return result;
+  }
+  const auto c = static_cast<std::size_t>(coordinate_);
+  for (Index i = 0; i < K; ++i) {
+    const auto w = weightsAt(s.motion.time, times_[static_cast<std::size_t>(i)]);
+    if (!w) continue;
+    const Index k = w->row;
+    result.outputs[i] =
+        w->value0 * s.motion.q(coordinate_, k) + w->value1 * s.motion.q(coordinate_, k + 1) +
+        w->speed0 * s.motion.qDot(coordinate_, k) + w->speed1 * s.motion.qDot(coordinate_, k + 1);
+    result.gamma.row(i) = w->value0 * s.q[c].row(k) + w->value1 * s.q[c].row(k + 1) +
+                          w->speed0 * s.qDot[c].row(k) + w->speed1 * s.qDot[c].row(k + 1);
+  }
+  return result;
+}
+
+info::Predictor ArmExperiment::predictor() const {
+  info::Predictor predictor;
+  predictor.outputs = [this](const Eigen::VectorXd& theta) -> Eigen::MatrixXd {
+    return outputs(theta).transpose();
+  };
+  predictor.withSensitivities = [this](const Eigen::VectorXd& theta) {
+    Linearised at = withSensitivities(theta);
+    return info::Prediction{at.outputs.transpose(), std::move(at.gamma)};
+  };
+  return predictor;
+}
+
+info::Predictor joined(const std::vector<ArmExperiment>& experiments) {
+  if (experiments.empty()) throw std::invalid_argument("no experiment to join");
+  Index samples = 0;
+  for (const ArmExperiment& experiment : experiments) {
+    if (experiment.selection() != experiments.front().selection()) {
+      throw std::invalid_argument("joined experiments must have the same parameters");
+    }
+    samples += static_cast<Index>(experiment.times().size());
+  }
+  info::Predictor predictor;
+  predictor.outputs = [experiments, samples](const Eigen::VectorXd& theta) {
+    Eigen::MatrixXd y(1, samples);
+    Index at = 0;
+    for (const ArmExperiment& experiment : experiments) {
+      const auto count = static_cast<Index>(experiment.times().size());
+      y.middleCols(at, count) = experiment.outputs(theta).transpose();
+      at += count;
+    }
+    return y;
+  };
+  predictor.withSensitivities = [experiments, samples](const Eigen::VectorXd& theta) {
+    info::Prediction all{Eigen::MatrixXd(1, samples), Eigen::MatrixXd(samples, theta.size())};
+    Index at = 0;
+    for (const ArmExperiment& experiment : experiments) {
+      const auto count = static_cast<Index>(experiment.times().size());
+      const ArmExperiment::Linearised part = experiment.withSensitivities(theta);
+      all.outputs.middleCols(at, count) = part.outputs.transpose();
+      all.gamma.middleRows(at, count) = part.gamma;
+      at += count;
+    }
+    return all;
+  };
+  return predictor;
+}
+
+}  // namespace bio
