@@ -36,6 +36,8 @@ const char* styleName(SeriesStyle style) {
       return "dashed";
     case SeriesStyle::points:
       return "points";
+    case SeriesStyle::path:
+      return "path";
   }
   return "line";
 }

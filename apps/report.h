@@ -10,7 +10,12 @@
 /// report.html: one self-contained file with interactive plots, readable without a network.
 namespace app {
 
-enum class SeriesStyle { line, dashed, points };
+enum class SeriesStyle {
+  line,
+  dashed,
+  points,
+  path  ///< drawn in the order given, so that it may turn back; a NaN in y lifts the pen
+};
 
 /// One curve. A NaN in y means "not measured": the line has a gap there, a point is left out.
 struct Series {

@@ -26,6 +26,22 @@
     return [order.map(i => curve.x[i]), ...columns.map(column => order.map(i => shown(column[i])))];
   };
 
+  // A curve in the order of its points, which may turn back; null lifts the pen.
+  const pathOf = curve => plot => {
+    const path = new Path2D();
+    let down = false;
+    curve.x.forEach((x, i) => {
+      if (x === null || curve.y[i] === null) {
+        down = false;
+        return;
+      }
+      const at = [plot.valToPos(x, "x", true), plot.valToPos(curve.y[i], "y", true)];
+      if (down) path.lineTo(...at); else path.moveTo(...at);
+      down = true;
+    });
+    return { stroke: path, fill: null, clip: null, band: null, gaps: null, flags: 1 };
+  };
+
   const axis = (label, side) => ({
     label, font, labelFont: "600 " + font, labelSize: 26, labelGap: 2,
     // On the left the axis is as wide as its longest number.
@@ -45,9 +61,11 @@
       const points = curve.style === "points";
       const turn = Math.floor(i / colours.length) + (curve.style === "dashed" ? 1 : 0);
       series.push({
-        label: curve.name, stroke: colour, width: points ? 0 : 2, dash: dashes[turn % dashes.length],
-        points: points ? { show: true, size: 6, stroke: colour, fill: colour } : { show: figure.xLog },
-        paths: points ? () => null : undefined,
+        label: curve.name, stroke: colour, width: points ? 0 : curve.style === "path" ? 1 : 2,
+        dash: dashes[turn % dashes.length],
+        points: points ? { show: true, size: 6, stroke: colour, fill: colour }
+          : { show: figure.xLog && curve.style !== "path" },
+        paths: points ? () => null : curve.style === "path" ? pathOf(curve) : undefined,
         value: (plot, v) => text(v),
       });
       if (curve.low) {

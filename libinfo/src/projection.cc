@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "info/riccati.h"
@@ -15,45 +14,43 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-FlowProjection::FlowProjection(ExtendedFlow system, FlowDesign design,
-                               const std::vector<VectorXd>& start)
-    : system_(std::move(system)), design_(std::move(design)) {
-  const Dimensions d = system_.dimensions;
-  FlowDesign& c = design_;
+namespace {
+
+// Checked and filled; in place, so that the base class may have it.
+FlowDesign& prepared(FlowDesign& c, const ExtendedFlow& system) {
   if (!(c.step > 0 && std::isfinite(c.step)))
     throw std::domain_error(fmt::format("time step: {} s, rule: > 0 and finite", c.step));
-  if (c.desiredInput.size() < 2)
-    throw std::invalid_argument(
-        fmt::format("desired inputs: {} of them, rule: ≥ 2", c.desiredInput.size()));
-  requireLength("x0", c.x0.size(), d.state);
-  detail::checkInputs("desired inputs", c.desiredInput, c.desiredInput.size(), d.input);
-  if (!start.empty()) detail::checkInputs("start", start, c.desiredInput.size(), d.input);
-  inverseDensity_ = detail::inverseCovariance(c.outputDensity, d.output);
-  detail::checkLimits(c.limits, d.input);
-  const int n = d.state, m = d.input;
-  detail::fillWeight("state weight Q", c.stateWeight, n, false);
-  detail::fillWeight("input weight R", c.inputWeight, m, false);
-  detail::fillWeight("model's state weight", c.modelState, n + n * d.parameter, false);
-  detail::fillWeight("model's input weight", c.modelInput, m, true);
-  detail::fillWeight("gain's state weight", c.gainState, n, false);
-  detail::fillWeight("gain's input weight", c.gainInput, m, true);
+  detail::prepareDesign(c, detail::sizesOf(system), 0);
+  return c;
+}
 
+}  // namespace
+
+FlowProjection::FlowProjection(ExtendedFlow system, FlowDesign design,
+                               const std::vector<VectorXd>& start)
+    : ProjectedMotion(system.output, system.candidates, prepared(design, system),
+                      detail::inverseCovariance(design.outputDensity, detail::sizesOf(system).h)),
+      system_(std::move(system)),
+      design_(std::move(design)) {
+  if (!start.empty())
+    detail::checkInputs("start", start, design_.desiredInput.size(), system_.dimensions.input);
   const auto open = [&](const std::vector<VectorXd>& inputs, const char* what) {
-    FlowMotion motion;
+    Motion motion;
     if (!run({}, inputs, {}, motion))
       throw std::domain_error(fmt::format("{}: the motion does not stay finite", what));
     return motion;
   };
-  motion_ = open(c.desiredInput, "desired motion");
-  desiredState_ = motion_.x;
-  if (!start.empty()) motion_ = open(start, "start");
-  Evaluated at = evaluate(motion_);
-  cost_ = at.cost;
-  information_ = std::move(at.information);
+  Motion desired = open(design_.desiredInput, "desired motion");
+  desiredState_ = desired.x;
+  begin(start.empty() ? std::move(desired) : open(start, "start"));
+}
+
+double FlowProjection::share(std::size_t k) const {
+  return k == 0 || k == steps() ? 0.5 * design_.step : design_.step;
 }
 
 bool FlowProjection::run(const std::vector<VectorXd>& alpha, const std::vector<VectorXd>& beta,
-                         const std::vector<MatrixXd>& gains, FlowMotion& motion) const {
+                         const std::vector<MatrixXd>& gains, Motion& motion) const {
   const double h = design_.step;
   motion.x.assign(1, design_.x0);
   motion.psi.assign(1, MatrixXd::Zero(system_.dimensions.state, system_.dimensions.parameter));
@@ -88,41 +85,23 @@ bool FlowProjection::run(const std::vector<VectorXd>& alpha, const std::vector<V
   }
 }
 
-double FlowProjection::tracking(const FlowMotion& motion) const {
+double FlowProjection::tracking(const Motion& motion) const {
   const FlowDesign& c = design_;
   double sum = 0;
   for (std::size_t k = 0; k <= steps(); ++k) {
     const VectorXd dx = motion.x[k] - desiredState_[k], du = motion.u[k] - c.desiredInput[k];
-    double rate = 0.5 * (dx.dot(c.stateWeight * dx) + du.dot(c.inputWeight * du));
-    for (Index i = 0; i < c.limits.lower.size(); ++i)
-      rate +=
-          inputBarrier(motion.u[k][i], c.limits.lower[i], c.limits.upper[i], c.limits.weight).value;
+    const double rate = 0.5 * (dx.dot(c.stateWeight * dx) + du.dot(c.inputWeight * du)) +
+                        limitCost(c.limits, motion.u[k]);
     sum += share(k) * rate;
   }
   return sum;
-}
-
-double FlowProjection::trackingCost() const {
-  return tracking(motion_);
-}
-
-FlowProjection::Evaluated FlowProjection::evaluate(const FlowMotion& motion) const {
-  const Index p = system_.dimensions.parameter;
-  MatrixXd information = MatrixXd::Zero(p, p);
-  for (std::size_t k = 0; k <= steps(); ++k) {
-    const MatrixXd gamma = system_.output.gamma(motion.x[k], motion.psi[k], motion.u[k]);
-    information += share(k) * gamma.transpose() * (inverseDensity_ * gamma);
-  }
-  information = (0.5 * (information + information.transpose())).eval();
-  const double phi = informationCost(design_.information, information, 1e-9).value;
-  return {tracking(motion) + phi, std::move(information)};
 }
 
 FlowProjection::Direction FlowProjection::findDirection(double repeatedTolerance) {
   const Dimensions d = system_.dimensions;
   const FlowDesign& c = design_;
   const Index n = d.state, m = d.input, p = d.parameter, N = n + n * p;
-  const InformationCost phi = informationCost(c.information, information_, repeatedTolerance);
+  const std::vector<MatrixXd> slopes = informationSlopes(repeatedTolerance);
 
   LinearSequence whole, plant;
   LinearCost slope;
@@ -140,49 +119,27 @@ FlowProjection::Direction FlowProjection::findDirection(double repeatedTolerance
     plant.B.push_back(at.x.rightCols(m));
     whole.A.push_back(std::move(A));
     whole.B.push_back(std::move(B));
-    // a and b: tracking, limits, and dφ = 2⟨Σ⁻¹ Γ dφ/dI, dΓ⟩
-    const MatrixXd gamma = system_.output.gamma(x, psi, u);
-    const auto g = system_.output.gradient(x, psi, u, 2 * inverseDensity_ * gamma * phi.dvalue_dI);
-    VectorXd a(N), b = c.inputWeight * (u - c.desiredInput[k]) + g.u;
+    // a and b: tracking, limits and information
+    const auto g = outputSlope(k, slopes);
+    VectorXd a(N);
     a << c.stateWeight * (x - desiredState_[k]) + g.x, g.psi.reshaped();
-    for (Index i = 0; i < c.limits.lower.size(); ++i)
-      b[i] += inputBarrier(u[i], c.limits.lower[i], c.limits.upper[i], c.limits.weight).slope;
+    VectorXd b = c.inputWeight * (u - c.desiredInput[k]) + g.u + limitSlope(c.limits, u);
     slope.a.push_back(std::move(a));
     slope.b.push_back(std::move(b));
   }
-  gains_ = continuousLqrGains(plant, c.step, {c.gainState, c.gainInput, {}, {}});
-  AffineLqSolution zeta =
-      continuousAffineLq(whole, c.step, slope, {c.modelState, c.modelInput, {}, {}});
-  z_ = std::move(zeta.z);
-  v_ = std::move(zeta.v);
-  Direction out{zeta.slope, 0};
-  for (const VectorXd& v : v_) out.largestMove = std::max(out.largestMove, v.cwiseAbs().maxCoeff());
-  return out;
+  gains_ = continuousLqrGains(plant, c.step, {c.gainState, c.gainInput, {}, {}}, c.riccati);
+  return follow(
+      continuousAffineLq(whole, c.step, slope, {c.modelState, c.modelInput, {}, {}}, c.riccati));
 }
 
-double FlowProjection::trial(double step) {
+bool FlowProjection::project(double step, Motion& motion) const {
   const Index n = system_.dimensions.state;
   std::vector<VectorXd> alpha, beta;
   for (std::size_t k = 0; k <= steps(); ++k) {
     alpha.push_back(motion_.x[k] + step * z_[k].head(n));
     beta.push_back(motion_.u[k] + step * v_[k]);
   }
-  constexpr double none = std::numeric_limits<double>::infinity();
-  if (!run(alpha, beta, gains_, tried_)) return none;
-  try {
-    Evaluated at = evaluate(tried_);
-    triedCost_ = at.cost;
-    triedInformation_ = std::move(at.information);
-  } catch (const NoInformation&) {
-    return none;
-  }
-  return triedCost_;
-}
-
-void FlowProjection::accept() {
-  std::swap(motion_, tried_);
-  cost_ = triedCost_;
-  information_ = triedInformation_;
+  return run(alpha, beta, gains_, motion);
 }
 
 }  // namespace info

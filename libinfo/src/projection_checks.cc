@@ -43,6 +43,9 @@ void checkInputs(const char* name, const std::vector<VectorXd>& inputs, std::siz
                                               name, k, inputs[k].size(), size));
 }
 
+namespace {
+
+// lower < upper for each input, weight > 0.
 void checkLimits(const InputLimits& limits, Index inputs) {
   if (limits.lower.size() == 0 && limits.upper.size() == 0) return;
   if (limits.lower.size() != inputs || limits.upper.size() != inputs)
@@ -57,6 +60,46 @@ void checkLimits(const InputLimits& limits, Index inputs) {
   if (!(limits.weight > 0 && std::isfinite(limits.weight)))
     throw std::domain_error(
         fmt::format("weight of the input limits: {}, rule: > 0 and finite", limits.weight));
+}
+
+}  // namespace
+
+MatrixXd overCandidates(const MatrixXd& W, const CandidateSizes& sizes, Index more, Index p) {
+  const Index n = sizes.n, all = n * sizes.count, size = all + more + all * p;
+  MatrixXd out = MatrixXd::Zero(size, size);
+  std::vector<Index> place(static_cast<std::size_t>(W.rows()));
+  for (Index s = 0; s < sizes.count; ++s) {
+    for (Index i = 0; i < W.rows(); ++i) {
+      const Index ofPsi = i - n - more;
+      place[std::size_t(i)] = i < n          ? s * n + i
+                              : i < n + more ? all + i - n
+                                             : all + more + ofPsi / n * all + s * n + ofPsi % n;
+    }
+    for (Index i = 0; i < W.rows(); ++i)
+      for (Index j = 0; j < W.cols(); ++j)
+        out(place[std::size_t(i)], place[std::size_t(j)]) += W(i, j) / sizes.count;
+  }
+  return out;
+}
+
+void prepareDesign(MotionDesign& c, const CandidateSizes& sizes, Index more) {
+  const Index n = sizes.n, m = sizes.m;
+  if (c.desiredInput.size() < 2)
+    throw std::invalid_argument(
+        fmt::format("desired inputs: {} of them, rule: ≥ 2", c.desiredInput.size()));
+  requireLength("x0", c.x0.size(), n);
+  checkInputs("desired inputs", c.desiredInput, c.desiredInput.size(), m);
+  checkLimits(c.limits, m);
+  fillWeight("state weight Q", c.stateWeight, n, false);
+  fillWeight("input weight R", c.inputWeight, m, false);
+  fillWeight("model's state weight", c.modelState, n + more + n * sizes.p, false);
+  fillWeight("model's input weight", c.modelInput, m, true);
+  fillWeight("gain's state weight", c.gainState, n + more, false);
+  fillWeight("gain's input weight", c.gainInput, m, true);
+  c.x0 = c.x0.replicate(sizes.count, 1).eval();
+  c.stateWeight = overCandidates(c.stateWeight, sizes, 0, 0);
+  c.modelState = overCandidates(c.modelState, sizes, more, sizes.p);
+  c.gainState = overCandidates(c.gainState, sizes, more, 0);
 }
 
 }  // namespace info::detail

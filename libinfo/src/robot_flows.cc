@@ -20,8 +20,16 @@ std::vector<Eigen::VectorXd> cosineStart(double amplitude, double step) {
 
 }  // namespace
 
+ExtendedFlow doublePendulumFlow(const Vector<double, 2>& theta) {
+  return extendFlow(CartDoublePendulum<>{}, theta);
+}
+
+ExtendedFlow suspendedMassFlow(const Vector<double, 2>& theta) {
+  return extendFlow(SuspendedMass{}, theta);
+}
+
 FlowTask doublePendulumFlowTask(double step) {
-  FlowTask task{extendFlow(CartDoublePendulum<>{}, Vector<double, 2>(0.085, 0.5)), {}};
+  FlowTask task{doublePendulumFlow(), {}};
   FlowDesign& d = task.design;
   d.step = step;
   d.x0 = Eigen::VectorXd::Zero(6);
@@ -38,7 +46,7 @@ FlowTask doublePendulumFlowTask(double step) {
 }
 
 FlowTask suspendedMassFlowTask(double step) {
-  FlowTask task{extendFlow(SuspendedMass{}, Vector<double, 2>(0.10, 0.60)), {}};
+  FlowTask task{suspendedMassFlow(), {}};
   FlowDesign& d = task.design;
   d.step = step;
   d.x0 = Eigen::VectorXd::Zero(4);

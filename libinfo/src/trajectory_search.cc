@@ -69,6 +69,20 @@ Barrier inputBarrier(double u, double lower, double upper, double weight) {
   return {weight * (0.5 * (t * t - 1) - std::log(delta)), weight * t / delta * ds_du};
 }
 
+double limitCost(const InputLimits& limits, const VectorXd& u) {
+  double sum = 0;
+  for (Eigen::Index i = 0; i < limits.lower.size(); ++i)
+    sum += inputBarrier(u[i], limits.lower[i], limits.upper[i], limits.weight).value;
+  return sum;
+}
+
+VectorXd limitSlope(const InputLimits& limits, const VectorXd& u) {
+  VectorXd slope = VectorXd::Zero(u.size());
+  for (Eigen::Index i = 0; i < limits.lower.size(); ++i)
+    slope[i] = inputBarrier(u[i], limits.lower[i], limits.upper[i], limits.weight).slope;
+  return slope;
+}
+
 std::string describe(SearchEnd why) {
   switch (why) {
     case SearchEnd::slopeSmall:

@@ -98,22 +98,59 @@ TEST(ContinuousLqrGains, FollowTheHyperbolicTangent) {
     EXPECT_NEAR(K[k](0, 0), std::tanh(2 - h * double(k)), 5e-9);  // 2.4e-9
 }
 
+struct ContinuousProblem {
+  LinearSequence system;
+  LinearCost cost;
+  QuadraticWeights weights;
+  double step;
+};
+
+// Time-varying, three states, one input, over 2 s.
+ContinuousProblem continuousProblem(std::size_t steps) {
+  ContinuousProblem p;
+  p.step = 2.0 / double(steps);
+  for (std::size_t k = 0; k <= steps; ++k) {
+    const double t = p.step * double(k);
+    p.system.A.push_back(0.8 * wave(3, 3, t));
+    p.system.B.push_back(wave(3, 1, 1 + t));
+    p.cost.a.push_back(wave(3, 1, 2 * t));
+    p.cost.b.push_back(wave(1, 1, 1 - t));
+  }
+  p.weights = {VectorXd{{1.0, 2.0, 0.5}}.asDiagonal(),
+               MatrixXd::Constant(1, 1, 0.7),
+               {},
+               VectorXd{{3.0, 1.0, 2.0}}.asDiagonal()};
+  return p;
+}
+
+// The same equations by another algorithm: backward differentiation with adaptive steps.
+TEST(RiccatiIntegration, AgreesWithSundials) {
+  const auto difference = [](std::size_t steps) {
+    const ContinuousProblem p = continuousProblem(steps);
+    using enum RiccatiIntegration;
+    const auto gains = continuousLqrGains(p.system, p.step, p.weights, rungeKutta);
+    const auto reference = continuousLqrGains(p.system, p.step, p.weights, adaptive);
+    const auto zeta = continuousAffineLq(p.system, p.step, p.cost, p.weights, rungeKutta);
+    const auto closer = continuousAffineLq(p.system, p.step, p.cost, p.weights, adaptive);
+    double largest = std::abs(zeta.slope - closer.slope);
+    for (std::size_t k = 0; k <= steps; ++k) {
+      largest = std::max(largest, (gains[k] - reference[k]).cwiseAbs().maxCoeff());
+      largest = std::max(largest, (zeta.v[k] - closer.v[k]).cwiseAbs().maxCoeff());
+    }
+    return largest;
+  };
+  EXPECT_LT(difference(200), 1e-6);
+  EXPECT_GT(difference(10), 1e-5);  // not the same computation twice
+}
+
 // ∫ aᵀz + bᵀv = −∫ zᵀQz + vᵀRv at the minimum: the cost's derivative along the minimiser vanishes.
 TEST(ContinuousAffineLq, IsStationaryToSecondOrderInTheStep) {
   const auto defect = [](std::size_t steps) {
-    const double h = 2.0 / double(steps);
-    LinearSequence system;
-    LinearCost cost;
-    for (std::size_t k = 0; k <= steps; ++k) {
-      const double t = h * double(k);
-      system.A.push_back(0.8 * wave(3, 3, t));
-      system.B.push_back(wave(3, 1, 1 + t));
-      cost.a.push_back(wave(3, 1, 2 * t));
-      cost.b.push_back(wave(1, 1, 1 - t));
-    }
-    const QuadraticWeights weights{
-        VectorXd{{1.0, 2.0, 0.5}}.asDiagonal(), MatrixXd::Constant(1, 1, 0.7), {}, {}};
-    const AffineLqSolution s = continuousAffineLq(system, h, cost, weights);
+    ContinuousProblem p = continuousProblem(steps);
+    p.weights.Qf = {};
+    const QuadraticWeights& weights = p.weights;
+    const double h = p.step;
+    const AffineLqSolution s = continuousAffineLq(p.system, h, p.cost, weights);
     double quadratic = 0;
     for (std::size_t k = 0; k <= steps; ++k)
       quadratic += (k == 0 || k == steps ? 0.5 : 1.0) * h *

@@ -49,6 +49,7 @@ struct ExtendedStepMap {
                             const Eigen::VectorXd& u0, const Eigen::VectorXd& u1)>
       derivatives;
   ExtendedOutput output;
+  int candidates = 1;  ///< how many systems it is a stack of, sizes being those of all
 };
 
 /// ẋ = f, ψ̇ = D_x f ψ + D_θ f   (2.7).
@@ -70,6 +71,7 @@ struct ExtendedFlow {
                             const Eigen::VectorXd& u)>
       derivatives;
   ExtendedOutput output;
+  int candidates = 1;  ///< how many systems it is a stack of, sizes being those of all
 };
 
 namespace detail {

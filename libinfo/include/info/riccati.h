@@ -46,18 +46,28 @@ std::vector<Eigen::MatrixXd> lqrGains(const LinearSequence& system,
 AffineLqSolution affineLq(const LinearSequence& system, const LinearCost& cost,
                           const QuadraticWeights& weights);
 
+/// How Riccati equations are integrated in continuous time.
+enum class RiccatiIntegration {
+  rungeKutta,  ///< order 4, a step from node to node
+  adaptive     ///< CVODES with a relative tolerance of 1e-8; many times slower
+};
+
 /// Gains K(t) at the nodes of a grid, continuous time:
 ///     −Ṗ = AᵀP + PA − PBR⁻¹BᵀP + Q,   P(T) = Qf,   K = R⁻¹BᵀP
-/// integrated backwards by the classical Runge–Kutta method, A and B linear between nodes.
+/// integrated backwards, A and B linear between nodes.
 /// @param step between nodes [s] > 0; @throws as above
-std::vector<Eigen::MatrixXd> continuousLqrGains(const LinearSequence& system, double step,
-                                                const QuadraticWeights& weights);
+std::vector<Eigen::MatrixXd> continuousLqrGains(
+    const LinearSequence& system, double step, const QuadraticWeights& weights,
+    RiccatiIntegration integration = RiccatiIntegration::rungeKutta);
 
-/// min ∫ aᵀz + bᵀv + ½zᵀQz + ½vᵀRv dt + a_fᵀz(T) + ½z(T)ᵀQf z(T), z(0) = 0, likewise:
+/// min ∫ aᵀz + bᵀv + ½zᵀQz + ½vᵀRv dt + ½z(T)ᵀQf z(T), z(0) = 0, likewise:
 ///     −ṙ = (A − BK)ᵀr + a − Kᵀb,   v = −Kz − R⁻¹(Bᵀr + b)
-/// The slope is the trapezoidal sum over the nodes. Error O(step²) for smooth A, B, a, b.
+/// z by the classical Runge–Kutta method; the slope is the trapezoidal sum over the nodes. Error
+/// O(step²) for smooth A, B, a, b.
 /// @throws as above
-AffineLqSolution continuousAffineLq(const LinearSequence& system, double step,
-                                    const LinearCost& cost, const QuadraticWeights& weights);
+AffineLqSolution continuousAffineLq(
+    const LinearSequence& system, double step, const LinearCost& cost,
+    const QuadraticWeights& weights,
+    RiccatiIntegration integration = RiccatiIntegration::rungeKutta);
 
 }  // namespace info

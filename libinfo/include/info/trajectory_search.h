@@ -53,6 +53,9 @@ struct Barrier {
   double value, slope;
 };
 Barrier inputBarrier(double u, double lower, double upper, double weight);
+/// The sum over all inputs, and its slope.
+double limitCost(const InputLimits& limits, const Eigen::VectorXd& u);
+Eigen::VectorXd limitSlope(const InputLimits& limits, const Eigen::VectorXd& u);
 
 /// What is known after an iteration. costs.back() and eigenvalues belong to the motion reached.
 struct SearchProgress {

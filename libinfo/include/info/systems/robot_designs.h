@@ -22,6 +22,10 @@ struct StepTask {
 };
 StepTask doublePendulumStepTask(double timeStep = 0.02, std::size_t stepsPerSample = 1);
 
+/// Both robots in continuous time at θ, in the units of robot_experiments.h.
+ExtendedFlow doublePendulumFlow(const Vector<double, 2>& theta = {0.085, 0.5});
+ExtendedFlow suspendedMassFlow(const Vector<double, 2>& theta = {0.10, 0.60});
+
 struct FlowTask {
   ExtendedFlow system;
   FlowDesign design;

@@ -51,6 +51,11 @@ PlannedExperiment doublePendulumExperiment(
     DoublePendulumUnknowns unknowns = DoublePendulumUnknowns::mass1AndDamping,
     double damping = 5e-4);
 
+/// The same robot in chapter 5's terms: the cart's positions x_0 … x_K [m], the variational step,
+/// samples after every so many steps; θ = (m1 [kg], c [10e-3 kg m²/s]) at (0.085, 0.05).
+PlannedExperiment doublePendulumStepExperiment(const std::vector<double>& position, double timeStep,
+                                               std::size_t stepsPerSample);
+
 /// Cart and mass on a string: the string's force, θ = (m [kg], ℓ [m]), start (0.10, 0.60), truth
 /// (0.12, 0.50), RK4. The noise, which the thesis does not print, has the deviation that gives
 /// Table 4.5's λ₁ = 3.18e6 for 500 samples: σ² = 500/33044 N².
