@@ -1,24 +1,8 @@
 #pragma once
 
-#include <optional>
-#include <string>
-
-#include "command.h"
-#include "output_folder.h"
-#include "report.h"
-#include "summary.h"
+#include "robot_search.h"
 
 namespace app {
-
-/// What `fisherhill robot` optimises, and from where.
-struct OptimiseRequest {
-  bool pendulum = true;                     ///< else the suspended mass
-  bool discrete = false;                    ///< the variational integrator's motion (chapter 5)
-  std::optional<double> amplitude, period;  ///< of the start, [m] and [s]
-  std::optional<double> perturb;            ///< added to the start's input [unit of the input]
-  std::string warmStart;                    ///< a motion_optimised.csv; empty: none
-  int trials = 300;
-};
 
 /// Finds the motion that tells most about the robot's parameters, and simulates the experiment with
 /// both motions: motion_initial.csv, motion_optimised.csv, search.json. Status 1 if the search made
@@ -28,5 +12,25 @@ ExitStatus optimiseRobot(const OptimiseRequest& request, const CommandContext& c
 
 /// The files it writes.
 std::vector<std::string> optimiseFiles();
+
+/// One robot each, as optimiseRobot. Chapter 4's double pendulum, chapter 5's, and section 4.5.
+ExitStatus optimisePendulum(const OptimiseRequest& request, const CommandContext& context,
+                            Summary& summary, Report& report, OutputFolder& folder);
+ExitStatus optimisePendulumInSteps(const OptimiseRequest& request, const CommandContext& context,
+                                   Summary& summary, Report& report, OutputFolder& folder);
+ExitStatus optimiseSuspendedMass(const OptimiseRequest& request, const CommandContext& context,
+                                 Summary& summary, Report& report, OutputFolder& folder);
+
+/// The cart's accelerations of a motion.
+info::CartMotion cartMotion(const TimedMotion& motion, std::size_t stepsPerSample);
+
+/// One system, or a stack of them.
+template <class System, class Make>
+System systemAt(const std::vector<Eigen::Vector2d>& theta, const Make& make) {
+  if (theta.size() == 1) return make(theta.front());
+  std::vector<System> all;
+  for (const Eigen::Vector2d& one : theta) all.push_back(make(one));
+  return info::stack(std::move(all));
+}
 
 }  // namespace app

@@ -2,6 +2,8 @@
 // two parameters, exact information; and the whole optimisation to λ_min × 100 and beyond.
 #include <benchmark/benchmark.h>
 
+#include "info/discrete_projection.h"
+#include "info/projection.h"
 #include "info/systems/robot_designs.h"
 
 namespace {
@@ -42,5 +44,26 @@ void Trial(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(projection.trial(step));
 }
 BENCHMARK(Trial)->Unit(benchmark::kMillisecond);
+
+// The same robot in continuous time, 250 nodes; the argument says how Riccati is integrated.
+void ContinuousDirection(benchmark::State& state) {
+  FlowTask task = doublePendulumFlowTask(0.02);
+  task.design.riccati =
+      state.range(0) == 0 ? RiccatiIntegration::rungeKutta : RiccatiIntegration::adaptive;
+  FlowProjection projection(task.system, task.design);
+  for (auto _ : state) benchmark::DoNotOptimize(projection.findDirection(1e-9));
+}
+BENCHMARK(ContinuousDirection)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+
+// One direction for five candidates of θ at once.
+void RobustDirection(benchmark::State& state) {
+  const StepTask task = doublePendulumStepTask();
+  std::vector<ExtendedStepMap> all;
+  for (double m1 : {0.06, 0.07, 0.085, 0.1, 0.12})
+    all.push_back(doublePendulumSteps(0.02, 1e-2, {m1, 0.05}));
+  StepProjection projection(stack(all), task.design);
+  for (auto _ : state) benchmark::DoNotOptimize(projection.findDirection(1e-9));
+}
+BENCHMARK(RobustDirection)->Unit(benchmark::kMillisecond);
 
 }  // namespace

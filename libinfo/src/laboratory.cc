@@ -72,8 +72,8 @@ MatrixXd measure(const Plant& plant, const StateOf<Plant>& x0, const CartMotion&
 LaboratoryEffects usualDoublePendulumEffects() {
   return {.outOfPlane = 3 * std::numbers::pi / 180,
           .dryFriction = 1e-5,
-          .controlLag = 0.02,
-          .controlNoise = 0.1,
+          .controlLag = 0.002,
+          .controlNoise = 0.05,
           .sensorCurvature = 0.01,
           .sensorStep = 1e-3};
 }
@@ -81,8 +81,8 @@ LaboratoryEffects usualDoublePendulumEffects() {
 LaboratoryEffects usualSuspendedMassEffects() {
   return {.outOfPlane = 3 * std::numbers::pi / 180,
           .dryFriction = 1e-4,
-          .controlLag = 0.02,
-          .controlNoise = 0.1,
+          .controlLag = 0.002,
+          .controlNoise = 0.05,
           .sensorCurvature = 0.01,
           .sensorStep = 3.0 / 1024};
 }

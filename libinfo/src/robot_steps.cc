@@ -1,44 +1,16 @@
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 
-#include "info/predictor.h"
 #include "info/systems/robot_designs.h"
-#include "info/systems/robot_experiments.h"
 #include "info/variational.h"
 
 namespace info {
 
-namespace {
-
-VariationalIntegrator<CartDoublePendulum<>> integrator(double timeStep, double dampingUnit) {
-  CartDoublePendulum<> system;
-  system.dampingUnit = dampingUnit;
-  return VariationalIntegrator<CartDoublePendulum<>>(system, timeStep);
-}
-
-}  // namespace
-
 ExtendedStepMap doublePendulumSteps(double timeStep, double dampingUnit,
                                     const Vector<double, 2>& theta) {
-  return extend(integrator(timeStep, dampingUnit), theta);
-}
-
-PlannedExperiment doublePendulumStepExperiment(const std::vector<double>& position, double timeStep,
-                                               std::size_t stepsPerSample) {
-  if (stepsPerSample < 1 || position.size() <= stepsPerSample)
-    throw std::invalid_argument("cart motion: there must be at least one sample");
-  const auto map = integrator(timeStep, 1e-2);
-  using Map = std::decay_t<decltype(map)>;
-  std::vector<InputOf<Map>> inputs;
-  for (double x : position) inputs.push_back(InputOf<Map>(x));
-  return {makePredictor(map, Experiment<Map>{StateOf<Map>::Zero(), inputs,
-                                             stepsEvery(stepsPerSample, stepsPerSample,
-                                                        position.size() - 1)}),
-          OutputCovariance(Eigen::Vector2d(1.12e-4, 4.79e-4).asDiagonal().toDenseMatrix()),
-          {{.name = "m1", .unit = "kg", .start = 0.085, .lower = 1e-3},
-           {.name = "c", .unit = "10e-3 kg m²/s", .start = 0.05}},
-          Eigen::Vector2d(0.085, 0.05)};
+  CartDoublePendulum<> system;
+  system.dampingUnit = dampingUnit;
+  return extend(VariationalIntegrator<CartDoublePendulum<>>(system, timeStep), theta);
 }
 
 StepTask doublePendulumStepTask(double timeStep, std::size_t stepsPerSample) {

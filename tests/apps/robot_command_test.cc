@@ -96,11 +96,93 @@ TEST(RobotCommand, OptimisesTheDoublePendulumAndTriesBothMotions) {
   EXPECT_EQ(again["iterations"], 0);
 }
 
-TEST(RobotCommand, OptimisesTheDoublePendulumInSteps) {
-  const auto json = nlohmann::json::parse(
-      runFisherHill({"robot", "double-pendulum", "--discrete", "--json"}).out);
+nlohmann::json summaryOf(std::vector<std::string> arguments, int status = 0) {
+  arguments.insert(arguments.begin(), "robot");
+  arguments.push_back("--json");
+  const ProgramResult result = runFisherHill(std::move(arguments));
+  EXPECT_EQ(result.status, status) << result.err;
+  return nlohmann::json::parse(result.out);
+}
+
+TEST(RobotCommand, OptimisesTheDoublePendulumInStepsAndTriesBothMotions) {
+  const auto json = summaryOf({"double-pendulum", "--discrete", "--trials", "200"});
   EXPECT_GT(json["lambda_min_factor"].get<double>(), 100);
   EXPECT_GT(json["ms_per_iteration_continuous"].get<double>(), 0);
+  for (int i : {0, 1}) {
+    EXPECT_NEAR(json["monte_carlo_optimised"][i][i].get<double>() /
+                    json["bound_optimised"][i][i].get<double>(),
+                1, 0.25);
+    EXPECT_LT(json["monte_carlo_optimised"][i][i].get<double>(),
+              0.05 * json["monte_carlo_initial"][i][i].get<double>());
+  }
+}
+
+TEST(RobotCommand, MeasuresLessOftenThanItSteps) {
+  const std::vector<std::string> whole = {"double-pendulum", "--discrete", "--trials", "2"};
+  auto rare = whole;
+  rare.insert(rare.end(), {"--measure-every", "5"});
+  const auto all = summaryOf(whole), fifth = summaryOf(rare);
+  EXPECT_EQ(fifth["samples_per_s"], 10);
+  EXPECT_NEAR(fifth["information_initial"][0][0].get<double>() /
+                  all["information_initial"][0][0].get<double>(),
+              0.2, 0.02);
+  EXPECT_GT(fifth["lambda_min_factor"].get<double>(), 100);
+}
+
+TEST(RobotCommand, DesignsForTheWorstOfSeveralCandidates) {
+  const auto json = summaryOf({"double-pendulum", "--discrete", "--trials", "2", "--robust",
+                               "worst", "--candidate", "0.085", "0.05", "--candidate", "0.04",
+                               "0.02", "--candidate", "0.25", "0.2"});
+  EXPECT_EQ(json["candidates"].size(), 3u);
+  const auto worst = json["worst_lambda_min"];
+  EXPECT_GT(worst["robust"].get<double>(), 1.1 * worst["nominal"].get<double>());
+  EXPECT_GT(worst["nominal"].get<double>(), worst["initial"].get<double>());
+  EXPECT_EQ(summaryOf({"double-pendulum", "--discrete", "--trials", "2", "--robust", "average",
+                       "--iterations", "2"})["candidates"]
+                .size(),
+            5u);
+}
+
+// Tables 4.4 and 4.7 in kind.
+TEST(RobotCommand, EstimatesBetterFromTheOptimisedMotionInTheLaboratory) {
+  const support::ScratchFolder scratch;
+  for (const std::string robot : {"double-pendulum", "suspended-mass"}) {
+    const std::string out = (scratch / robot).string();
+    const auto json = summaryOf({robot, "--lab", "--trials", "2", "--out", out});
+    const auto lab = json["laboratory"];
+    EXPECT_GT(lab["out_of_plane_rad"].get<double>(), 0);
+    EXPECT_LT(lab["median_error_optimised"][1].get<double>(),
+              0.5 * lab["median_error_initial"][1].get<double>());
+    EXPECT_LT(lab["median_error_optimised"][0].get<double>(), 0.05) << lab;
+    EXPECT_LT(lab["median_error_optimised"][1].get<double>(), 0.3) << lab;
+  }
+  EXPECT_THAT(support::contentOf((scratch / "double-pendulum/report.html").string()),
+              AllOf(HasSubstr("as in table 4.4"), HasSubstr("0.211")));
+  EXPECT_THAT(support::contentOf((scratch / "suspended-mass/report.html").string()),
+              AllOf(HasSubstr("as in table 4.7"), HasSubstr("1.11")));
+}
+
+TEST(RobotCommand, TakesEachEffectOfTheLaboratoryByItsSize) {
+  const auto lab = summaryOf({"suspended-mass", "--trials", "2", "--out-of-plane", "2deg",
+                              "--sensor-step", "0.01"})["laboratory"];
+  EXPECT_NEAR(lab["out_of_plane_rad"].get<double>(), 0.0349, 1e-4);
+  EXPECT_EQ(lab["sensor_step"], 0.01);
+  EXPECT_EQ(lab["dry_friction_N_m"], 0);
+  const auto more = summaryOf(
+      {"suspended-mass", "--trials", "2", "--lab", "--dry-friction", "0.002"})["laboratory"];
+  EXPECT_EQ(more["dry_friction_N_m"], 0.002);
+  EXPECT_GT(more["control_lag_s"].get<double>(), 0);
+}
+
+TEST(RobotCommand, SaysWithFiguresThatASearchMadeNoProgress) {
+  const support::ScratchFolder scratch;
+  const std::string out = (scratch / "out").string();
+  ASSERT_EQ(runFisherHill({"robot", "suspended-mass", "--tolerance", "0", "--out", out}).status, 0);
+  const ProgramResult again = runFisherHill({"robot", "suspended-mass", "--tolerance", "0",
+                                             "--warm-start", out + "/motion_optimised.csv"});
+  EXPECT_EQ(again.status, 1);
+  EXPECT_THAT(again.out, AllOf(HasSubstr("No progress: no step along the direction"),
+                               HasSubstr("the cost stays at 10"), HasSubstr("motions tried")));
 }
 
 TEST(RobotCommand, MakesGradientDescentOnTheSuspendedMassConverge) {
@@ -142,6 +224,22 @@ TEST(RobotCommand, TellsWrongUseInOneLine) {
   fails({"robot", "double-pendulum", "--discrete", "--as-is"}, "go with optimising");
   fails({"robot", "double-pendulum", "--warm-start", FISHERHILL_SOURCE_DIR "/README.md"},
         "no column named input");
+  const auto inSteps = [&](std::vector<std::string> more, const std::string& message) {
+    more.insert(more.begin(), {"robot", "double-pendulum", "--discrete", "--trials", "2"});
+    fails(std::move(more), message);
+  };
+  inSteps({"--limits", "0.2", "-0.2"}, "limits of input 0: lower 0.2, upper -0.2");
+  inSteps({"--limits", "0.1", "0.2"}, "limits of input 0: 0 at time 0, rule: 0.1");
+  inSteps({"--input-weight", "-1"}, "input weight R: least eigenvalue is -1");
+  inSteps({"--objective", "e=-1"}, "weight of E in the objective: -1");
+  inSteps({"--objective", "f=1"}, "no such criterion");
+  inSteps({"--measure-every", "1000"}, "steps per sample: 1000, rule: 1");
+  inSteps({"--lab"}, "go without --discrete");
+  inSteps({"--candidate", "1", "1"}, "--candidate goes with --robust");
+  inSteps({"--robust", "worst", "--objective", "d=1"}, "worst case: weight of D");
+  fails({"robot", "double-pendulum", "--measure-every", "2"}, "goes with --discrete");
+  fails({"robot", "suspended-mass", "--out-of-plane", "120deg"}, "angle out of the plane");
+  fails({"robot", "suspended-mass", "--dry-friction", "-1"}, "dry friction: -1 N m");
 }
 
 }  // namespace
