@@ -7,6 +7,7 @@
 #include "info/convergence.h"
 #include "info/fisher.h"
 #include "info/identifiability.h"
+#include "info/systems/robot_designs.h"
 
 namespace {
 
@@ -53,6 +54,20 @@ TEST(DoublePendulumExperiment, TellsTheMassesApartOnlyThroughDamping) {
   EXPECT_THAT(undamped.sentences,
               testing::ElementsAre(testing::HasSubstr("m1 and m2 cannot be told apart")));
   EXPECT_EQ(report(5e-4).rank, 2);
+}
+
+// The optimisation's own information, by other code, is the second way.
+TEST(DoublePendulumStepExperiment, TellsWhatTheOptimisationInStepsSays) {
+  for (std::size_t every : {1UL, 5UL}) {
+    const info::StepTask task = info::doublePendulumStepTask(0.02, every);
+    const info::StepProjection start(task.system, task.design);
+    std::vector<double> position;
+    for (const auto& u : task.design.desiredInput) position.push_back(u[0]);
+    const auto experiment = info::doublePendulumStepExperiment(position, 0.02, every);
+    EXPECT_LT((information(experiment, experiment.truth) - start.information()).norm(),
+              1e-9 * start.information().norm());
+  }
+  EXPECT_THROW(info::doublePendulumStepExperiment({0, 0}, 0.02, 2), std::invalid_argument);
 }
 
 TEST(SuspendedMassExperiment, StartsFromThePublishedEigenvalues) {
