@@ -49,7 +49,7 @@ AffineLqSolution affineLq(const LinearSequence& system, const LinearCost& cost,
 /// How Riccati equations are integrated in continuous time.
 enum class RiccatiIntegration {
   rungeKutta,  ///< order 4, a step from node to node
-  adaptive     ///< CVODES with a relative tolerance of 1e-8; many times slower
+  adaptive     ///< CVODES with a relative tolerance of 1e-8
 };
 
 /// Gains K(t) at the nodes of a grid, continuous time:
