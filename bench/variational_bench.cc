@@ -99,8 +99,8 @@ void FiveSecondsWithTwoSensitivities(benchmark::State& state) {
 }
 BENCHMARK(FiveSecondsWithTwoSensitivities)->Unit(benchmark::kMillisecond);
 
-/// The same step and first derivatives by Eigen's automatic differentiation, for comparison.
-void StepWithFirstDerivativesByEigenAutoDiff(benchmark::State& state) {
+/// The same step and first derivatives by nested dual numbers, for comparison.
+void StepWithFirstDerivativesByDualNumbers(benchmark::State& state) {
   const DualVariationalMap<CartDoublePendulum<>> map{{}, dt};
   const Integrator::State x{0.6, -0.3, 0.001, 0.0005};
   for (auto _ : state) {
@@ -108,6 +108,6 @@ void StepWithFirstDerivativesByEigenAutoDiff(benchmark::State& state) {
     benchmark::DoNotOptimize(d);
   }
 }
-BENCHMARK(StepWithFirstDerivativesByEigenAutoDiff);
+BENCHMARK(StepWithFirstDerivativesByDualNumbers);
 
 }  // namespace

@@ -1,9 +1,9 @@
 #include "bio/coordinate_force.h"
 
-#include <Eigen/Dense>
-#include <unsupported/Eigen/AutoDiff>
-
 #include <fmt/format.h>
+#include <Eigen/Dense>
+
+#include "info/dual.h"
 
 namespace bio {
 namespace {
@@ -80,7 +80,7 @@ CoordinateForces::CoordinateForces(const Model& model, const Skeleton& skeleton)
 
 CoordinateForceValue CoordinateForces::evaluateLaw(const Acting& acting, double q, double qDot) {
   if (const auto* expression = std::get_if<Expression>(&acting.law)) {
-    using Ad = Eigen::AutoDiffScalar<Eigen::Vector2d>;
+    using Ad = info::Dual<2>;
     const Ad values[2] = {Ad(q, 2, 0), Ad(qDot, 2, 1)};
     const Ad force = expression->evaluate(values);
     return {force.value(), force.derivatives()[0], force.derivatives()[1]};

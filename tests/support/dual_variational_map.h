@@ -5,7 +5,7 @@
 namespace info {
 
 /// The midpoint variational step written as an implicit step map, straight from its definition with
-/// D₁L_d and D₂L_d by Eigen's automatic differentiation: the independent second way for
+/// D₁L_d and D₂L_d by dual numbers: the independent second way for
 /// VariationalIntegrator, without its chain rule, its recorded formulas or its implicit function.
 template <LagrangianSystem S>
 struct DualVariationalMap {
@@ -22,7 +22,7 @@ struct DualVariationalMap {
   Vector<T, stateSize> residual(const Vector<T, stateSize>& x1, const Vector<T, stateSize>& x,
                                 const Vector<T, inputSize>& u0, const Vector<T, inputSize>& u1,
                                 const Vector<T, parameterSize>& theta) const {
-    using D = Eigen::AutoDiffScalar<Vector<T, stateSize>>;
+    using D = Dual<stateSize, T>;
     Vector<D, n> q0, q1;
     for (int i = 0; i < n; ++i) {
       q0[i] = D(x[i], stateSize, i);

@@ -2,9 +2,9 @@
 
 // Template bodies of skeleton.h.
 #include <Eigen/Dense>
-#include <unsupported/Eigen/AutoDiff>
 
 #include "bio/skeleton.h"
+#include "info/dual.h"
 
 namespace bio {
 namespace detail {
@@ -162,7 +162,7 @@ InertiaJet<N> Skeleton::inertia(const Eigen::Matrix<double, N, 1>& q,
 
   // mass matrix: first and second derivatives need second and third derivatives of the placements,
   // the third through the scalar type
-  using Ad = Eigen::AutoDiffScalar<Eigen::Matrix<double, N, 1>>;
+  using Ad = info::Dual<N>;
   Eigen::Matrix<Ad, N, 1> qAd;
   for (int i = 0; i < N; ++i) qAd[i] = Ad(q[i], N, i);
   std::array<RigidMotion<Ad, N>, maxSegments> movedAd;
