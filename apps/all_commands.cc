@@ -6,6 +6,7 @@
 #include "render.h"
 #include "replay.h"
 #include "robot.h"
+#include "sensitivity.h"
 
 namespace app {
 
@@ -18,6 +19,7 @@ std::vector<std::unique_ptr<Command>> allCommands() {
   commands.push_back(renderCommand(drawInOtherProgram));
   commands.push_back(replayCommand());
   commands.push_back(robotCommand());
+  commands.push_back(sensitivityCommand());
   return commands;
 }
 
