@@ -38,8 +38,7 @@ class Sensitivity : public Command {
         ->check(CLI::ExistingFile)
         ->type_name("");
     options.add_flag("--list-parameters", list_, "print every parameter of the model and stop");
-    options
-        .add_option("--parameter", swept_, "parameter to sweep over --values")
+    options.add_option("--parameter", swept_, "parameter to sweep over --values")
         ->type_name("NAME")
         ->allow_extra_args(false);
     options.add_option("--values", values_, "its values, in the parameter's unit")
@@ -89,14 +88,13 @@ class Sensitivity : public Command {
     }
     const Study& first = studies.front();
     const bio::Coordinate& coordinate = arm.skeleton().coordinates().front();
-    SensitivityFindings findings{model_, trials_, coordinate, first.input.trial,
-                                 noise_ / shownFactor(coordinate), 0};
+    SensitivityFindings findings{
+        model_, trials_, coordinate, first.input.trial, noise_ / shownFactor(coordinate), 0};
     for (const Study& study : studies) {
       findings.samples += static_cast<Eigen::Index>(study.times.size());
     }
     // every name is looked up before anything long begins
-    const auto swept =
-        swept_.empty() ? std::optional<std::size_t>() : first.catalogue.find(swept_);
+    const auto swept = swept_.empty() ? std::optional<std::size_t>() : first.catalogue.find(swept_);
     if (swept) checkValues(first.catalogue.parameters()[*swept]);
     const auto selection = selected(first.catalogue, swept);
     const auto held = profiledIndex(first.catalogue, selection);
@@ -111,8 +109,7 @@ class Sensitivity : public Command {
     if (!global_.empty()) findings.global = ensembles(studies, selection, context, summary);
 
     write(findings, folder);
-    summary.setSimulation(simulation_.integrator, simulation_.stepOrDefault(),
-                          first.input.duration,
+    summary.setSimulation(simulation_.integrator, simulation_.stepOrDefault(), first.input.duration,
                           findings.local ? findings.local->motion.wallSeconds
                                          : findings.sweeps.front().nominal.wallSeconds);
     tellSensitivity(findings, summary);
@@ -228,8 +225,12 @@ class Sensitivity : public Command {
 
   bio::ArmExperiment experiment(const Study& study,
                                 const std::vector<std::size_t>& selection) const {
-    return {study.catalogue, armOptions(simulation_),     study.input.excitation,
-            simulation_.coordinates.front(), study.times, selection,
+    return {study.catalogue,
+            armOptions(simulation_),
+            study.input.excitation,
+            simulation_.coordinates.front(),
+            study.times,
+            selection,
             options(study)};
   }
 
@@ -273,8 +274,7 @@ class Sensitivity : public Command {
       gammas.push_back(linearised.gamma);
       bar.update(static_cast<double>(gammas.size()) / static_cast<double>(studies.size() + 1));
     }
-    findings.information =
-        bio::informationAbout(catalogue, selection, gammas, findings.noise);
+    findings.information = bio::informationAbout(catalogue, selection, gammas, findings.noise);
     // what all sensitivities cost beside the motion: the best of five, since others use the machine
     const Study& first = studies.front();
     double alone = 0, with = 0;
@@ -322,8 +322,7 @@ class Sensitivity : public Command {
       if (value >= parameter.lower && value <= parameter.upper) values.push_back(value);
     }
     ProgressBar bar("profile");
-    return {parameter,
-            info::profileLikelihood(problem, estimated, held, values, estimateOptions)};
+    return {parameter, info::profileLikelihood(problem, estimated, held, values, estimateOptions)};
   }
 
   const bio::Coordinate& firstCoordinate(const std::vector<Study>& studies) const {
@@ -366,8 +365,8 @@ class Sensitivity : public Command {
     const int undefined = (finding.morris ? finding.morris->undefined : 0) +
                           (finding.sobol ? finding.sobol->undefined : 0);
     if (undefined > 0) {
-      summary.warn(fmt::format("{} runs of the ensemble did not reach the end and are left out",
-                               undefined));
+      summary.warn(
+          fmt::format("{} runs of the ensemble did not reach the end and are left out", undefined));
     }
     return finding;
   }

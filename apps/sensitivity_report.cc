@@ -47,12 +47,11 @@ std::vector<double> scaled(const Eigen::VectorXd& values, double factor) {
 Figure sweepFigure(const SensitivityFindings& f, const Sweep& sweep) {
   const double factor = shownFactor(f.coordinate);
   const std::string& unit = sweep.parameter.unit;
-  Figure figure{
-      .title = fmt::format("{} for {} values of {}", f.coordinate.name, sweep.runs.size(),
-                           sweep.parameter.name),
-      .xLabel = "Time [s]",
-      .yLabel = fmt::format("{} [{}]", f.coordinate.name, shownUnit(f.coordinate)),
-      .caption = fmt::format("The model has {}.", withUnit(sweep.parameter.value, unit))};
+  Figure figure{.title = fmt::format("{} for {} values of {}", f.coordinate.name, sweep.runs.size(),
+                                     sweep.parameter.name),
+                .xLabel = "Time [s]",
+                .yLabel = fmt::format("{} [{}]", f.coordinate.name, shownUnit(f.coordinate)),
+                .caption = fmt::format("The model has {}.", withUnit(sweep.parameter.value, unit))};
   const auto add = [&](const std::string& name, const bio::Trajectory& motion, SeriesStyle style) {
     figure.series.push_back({.name = name,
                              .x = motion.time,
@@ -96,8 +95,9 @@ Figure courseFigure(const SensitivityFindings& f) {
       .title = "What moves the motion most",
       .xLabel = "Time [s]",
       .yLabel = fmt::format("Change of {} [{}]", f.coordinate.name, shownUnit(f.coordinate)),
-      .caption = "Each curve: how far one standard deviation of what is known of the parameter "
-                 "beforehand moves the motion, to first order."};
+      .caption =
+          "Each curve: how far one standard deviation of what is known of the parameter "
+          "beforehand moves the motion, to first order."};
   for (const std::size_t i : ranking(known.normalisedSensitivity)) {
     if (figure.series.size() == 8) break;
     const auto column = static_cast<Eigen::Index>(i);
@@ -113,9 +113,10 @@ Table rankingTable(const SensitivityFindings& f, const std::string& title,
                    const Eigen::VectorXd& score, std::size_t most) {
   const bio::ParameterInformation& known = *f.information;
   const char* unit = shownUnit(f.coordinate);
-  Table table{.title = title,
-              .columns = {"parameter", "value", fmt::format("moves the motion by [{}]", unit),
-                          "known beforehand ±", "bound alone ±", "bound jointly ±", "identifiable"}};
+  Table table{
+      .title = title,
+      .columns = {"parameter", "value", fmt::format("moves the motion by [{}]", unit),
+                  "known beforehand ±", "bound alone ±", "bound jointly ±", "identifiable"}};
   for (const std::size_t i : ranking(score)) {
     if (table.rows.size() == most) break;
     const auto k = static_cast<Eigen::Index>(i);
@@ -123,7 +124,8 @@ Table rankingTable(const SensitivityFindings& f, const std::string& title,
     table.rows.push_back({p.name, withUnit(p.start, p.unit),
                           numberText(known.normalisedSensitivity[k] * shownFactor(f.coordinate), 3),
                           numberText(p.prior->deviation, 3), numberText(known.boundAlone[k], 3),
-                          numberText(known.boundJoint[k], 3), known.identifiable[i] ? "yes" : "no"});
+                          numberText(known.boundJoint[k], 3),
+                          known.identifiable[i] ? "yes" : "no"});
   }
   return table;
 }
@@ -132,8 +134,9 @@ Figure profileFigure(const ProfileFinding& finding) {
   Figure figure{.title = fmt::format("Profile likelihood of {}", finding.parameter.name),
                 .xLabel = info::label(finding.parameter),
                 .yLabel = "Misfit of the best fit [nats]",
-                .caption = "Of the model's own motion with the given noise and priors; the "
-                           "parameter is bounded where the curve rises above the 95 % line."};
+                .caption =
+                    "Of the model's own motion with the given noise and priors; the "
+                    "parameter is bounded where the curve rises above the 95 % line."};
   Series curve{.name = "profile"}, line{.name = "95 %", .style = SeriesStyle::dashed};
   for (const info::ProfilePoint& point : finding.profile.points) {
     curve.x.push_back(point.value);
@@ -187,11 +190,11 @@ std::string verdictOf(const SensitivityFindings& f) {
     const auto most = std::max_element(
         sweep.runs.begin(), sweep.runs.end(),
         [](const SweepRun& a, const SweepRun& b) { return a.largest < b.largest; });
-    text += fmt::format("{} = {} instead of {} changes {} by up to {} {}. ", sweep.parameter.name,
-                        withUnit(most->value, sweep.parameter.unit),
-                        numberText(sweep.parameter.value), f.coordinate.name,
-                        numberText(most->largest * shownFactor(f.coordinate), 3),
-                        shownUnit(f.coordinate));
+    text +=
+        fmt::format("{} = {} instead of {} changes {} by up to {} {}. ", sweep.parameter.name,
+                    withUnit(most->value, sweep.parameter.unit), numberText(sweep.parameter.value),
+                    f.coordinate.name, numberText(most->largest * shownFactor(f.coordinate), 3),
+                    shownUnit(f.coordinate));
   }
   if (!f.information) return text;
   const auto& known = *f.information;
@@ -302,20 +305,21 @@ void tellSensitivity(const SensitivityFindings& f, Summary& summary) {
   }
   if (!f.information) return;
   const bio::ParameterInformation& known = *f.information;
-  auto parameters = nlohmann::ordered_json::object();
+  auto parameters = nlohmann::ordered_json::array();
   for (const std::size_t i : ranking(known.normalisedSensitivity)) {
     const auto k = static_cast<Eigen::Index>(i);
     const info::Parameter& p = known.parameters[i];
     const auto number = [](double x) {
       return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json();
     };
-    parameters[p.name] = {{"unit", p.unit},
+    parameters.push_back({{"name", p.name},
+                          {"unit", p.unit},
                           {"value", p.start},
                           {"prior_sd", p.prior->deviation},
                           {"normalised_sensitivity", known.normalisedSensitivity[k] * factor},
                           {"bound_alone", number(known.boundAlone[k])},
                           {"bound_joint", number(known.boundJoint[k])},
-                          {"identifiable", static_cast<bool>(known.identifiable[i])}};
+                          {"identifiable", static_cast<bool>(known.identifiable[i])}});
   }
   summary.set("parameters", parameters);
   std::vector<std::string> names;
@@ -323,6 +327,7 @@ void tellSensitivity(const SensitivityFindings& f, Summary& summary) {
     if (names.size() < 20) names.push_back(known.parameters[i].name);
   }
   summary.set("most_information", names);
+  summary.set("determined_combinations", known.determinedCombinations);
   summary.set("not_told_apart", known.sentences);
   summary.set("cost_ratio", f.costRatio);
   if (f.profile) {

@@ -14,51 +14,72 @@ namespace {
 
 using Eigen::Index;
 
-/// "a·b^0.7", the combination of two parameters that both effects agree on: with information I the
-/// change √I_11 δ₁ ∓ √I_22 δ₂ is what is seen.
+/// What the data say about a parameter, in the prior's measure: I·σ². Below it, nothing.
+constexpr double nothing = 1e-12;
+
+/// Forces, lengths, masses and scales are multiplied; positions, angles and times are added.
+bool isAmount(const info::Parameter& p) {
+  return p.start > 0 && p.lower >= 0;
+}
+
+/// The combination of two parameters that both effects agree on: the measured change is
+/// seenA·δa + seenB·δb.
 std::string combination(const info::Parameter& a, const info::Parameter& b, double seenA,
                         double seenB) {
-  if (a.start == 0 || b.start == 0) {
+  if (!isAmount(a) || !isAmount(b)) {
     const double ratio = seenB / seenA;
     return fmt::format("{} {} {:.3g}·{}", a.name, ratio < 0 ? "−" : "+", std::abs(ratio), b.name);
   }
   const double exponent = seenB * b.start / (seenA * a.start);
+  const char* sign = exponent > 0 ? "·" : "/";
   if (std::abs(std::abs(exponent) - 1) < 0.02) {
-    return fmt::format("{}{}{}", a.name, exponent > 0 ? "·" : "/", b.name);
+    return fmt::format("{}{}{}", a.name, sign, b.name);
   }
-  return fmt::format("{}{}{}^{:.2g}", a.name, exponent > 0 ? "·" : "/", b.name,
-                     std::abs(exponent));
+  return fmt::format("{}{}{}^{:.2g}", a.name, sign, b.name, std::abs(exponent));
 }
 
-std::vector<std::string> inWords(const ParameterInformation& known) {
-  std::vector<std::string> sentences;
+/// Pairs that look alike, those that matter most first.
+void addPairs(const ParameterInformation& known, std::vector<std::string>& sentences) {
   constexpr std::size_t most = 12;
-  const auto pairs = alikePairs(known.fisher, 0.99);
-  for (const AlikePair& pair : pairs) {
-    if (sentences.size() == most) {
-      sentences.push_back(fmt::format("and {} more pairs of parameters look alike",
-                                      pairs.size() - most));
+  auto pairs = alikePairs(known.fisher, 0.99);
+  const auto weight = [&](const AlikePair& pair) {
+    return std::min(known.normalisedSensitivity[pair.first],
+                    known.normalisedSensitivity[pair.second]);
+  };
+  const double small = 1e-6 * known.normalisedSensitivity.maxCoeff();
+  std::erase_if(pairs, [&](const AlikePair& pair) { return weight(pair) < small; });
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [&](const AlikePair& a, const AlikePair& b) { return weight(a) > weight(b); });
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (i == most) {
+      sentences.push_back(
+          fmt::format("{} more pairs of parameters look alike", pairs.size() - most));
       break;
     }
-    const info::Parameter& a = known.parameters[static_cast<std::size_t>(pair.first)];
-    const info::Parameter& b = known.parameters[static_cast<std::size_t>(pair.second)];
-    const double seenA = std::sqrt(known.fisher(pair.first, pair.first));
-    const double seenB = std::copysign(
-        std::sqrt(known.fisher(pair.second, pair.second)), -pair.correlation);
-    sentences.push_back(fmt::format("only {} is determined, not {} and {} apart: correlation {:.4f}",
-                                    combination(a, b, seenA, seenB), a.name, b.name,
-                                    pair.correlation));
+    const info::Parameter& a = known.parameters[static_cast<std::size_t>(pairs[i].first)];
+    const info::Parameter& b = known.parameters[static_cast<std::size_t>(pairs[i].second)];
+    const double seenA = std::sqrt(known.fisher(pairs[i].first, pairs[i].first));
+    const double seenB = std::copysign(std::sqrt(known.fisher(pairs[i].second, pairs[i].second)),
+                                       -pairs[i].correlation);
+    sentences.push_back(
+        fmt::format("{} and {} are hardly told apart: only {} is determined (correlation {:.5f})",
+                    a.name, b.name, combination(a, b, seenA, seenB), pairs[i].correlation));
   }
-  std::string still;
+}
+
+void addStill(const ParameterInformation& known, std::vector<std::string>& sentences) {
+  std::string names;
   int count = 0;
   for (Index i = 0; i < known.fisher.rows(); ++i) {
-    if (known.fisher(i, i) > 0) continue;
-    if (++count <= 8) still += (still.empty() ? "" : ", ") + known.parameters[static_cast<std::size_t>(i)].name;
+    const info::Parameter& p = known.parameters[static_cast<std::size_t>(i)];
+    if (known.fisher(i, i) * p.prior->deviation * p.prior->deviation > nothing) continue;
+    if (++count <= 8) names += (names.empty() ? "" : ", ") + p.name;
   }
-  if (count == 1) sentences.push_back(still + " moves nothing that is measured");
-  if (count > 8) still += fmt::format(" and {} more", count - 8);
-  if (count > 1) sentences.push_back(still + " move nothing that is measured");
-  return sentences;
+  if (count > 8) names += fmt::format(" and {} more", count - 8);
+  if (count > 0) {
+    sentences.push_back(
+        fmt::format("{} {} nothing that is measured", names, count == 1 ? "moves" : "move"));
+  }
 }
 
 }  // namespace
@@ -121,7 +142,17 @@ ParameterInformation informationAbout(const ParameterCatalogue& catalogue,
   known.correlation =
       ratio.cwiseInverse().asDiagonal() * covarianceScaled * ratio.cwiseInverse().asDiagonal();
   for (Index i = 0; i < p; ++i) known.identifiable.push_back(ratio[i] <= 0.5);
-  known.sentences = inWords(known);
+  // combinations about which the data at least halve what was uncertain: 1/(1 + λ) ≤ 1/4
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled, Eigen::EigenvaluesOnly);
+  known.determinedCombinations = (eigen.eigenvalues().array() >= 3).count();
+  if (known.determinedCombinations < p) {
+    known.sentences.push_back(fmt::format(
+        "the data halve the uncertainty of {} combinations of the {} parameters, the others stay "
+        "as they were known beforehand",
+        known.determinedCombinations, p));
+  }
+  addPairs(known, known.sentences);
+  addStill(known, known.sentences);
   return known;
 }
 

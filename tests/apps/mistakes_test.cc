@@ -72,6 +72,36 @@ std::string nameOf(const testing::TestParamInfo<Mistake>& test) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
+    Sensitivity, EveryMistake,
+    testing::ValuesIn(std::vector<Mistake>{
+        {"NoTrial", {"sensitivity", model, "--all"}, "TRIAL is required"},
+        {"NothingToDo", {"sensitivity", model, "$/good.csv"}, "nothing to do: give --all"},
+        {"UnknownParameter",
+         {"sensitivity", model, "$/good.csv", "--parameters", "TRI.radios"},
+         "no parameter is called 'TRI.radios'; nearest: TRI.radius"},
+        {"OutsideItsBounds",
+         {"sensitivity", model, "$/good.csv", "--parameter", "TRI.radius", "--values", "0.2"},
+         "TRI.radius = 0.2 m, must be 0.0048 to 0.032 m"},
+        {"NoValues",
+         {"sensitivity", model, "$/good.csv", "--parameter", "TRI.radius"},
+         "--parameter and --values belong together"},
+        {"NegativeNoise",
+         {"sensitivity", model, "$/good.csv", "--all", "--noise", "-1"},
+         "--noise: -1 deg, must be > 0"},
+        {"ProfileOfAnother",
+         {"sensitivity", model, "$/good.csv", "--parameters", "TRI.radius", "--profile",
+          "hand.mass", "--out", "$/out"},
+         "hand.mass is not one of the --parameters"},
+        {"GlobalOverAll",
+         {"sensitivity", model, "$/good.csv", "--parameters", "*", "--global", "sobol"},
+         "285 parameters, at most 32"},
+        {"OtherIntegrator",
+         {"sensitivity", model, "$/good.csv", "--all", "--integrator", "rk4"},
+         "--integrator rk4"},
+    }),
+    nameOf);
+
+INSTANTIATE_TEST_SUITE_P(
     Check, EveryMistake,
     testing::ValuesIn(std::vector<Mistake>{
         {"NoFile", {"check"}, "FILE"},

@@ -14,8 +14,8 @@ constexpr double pi = std::numbers::pi;
 /// Ishigami and Homma's function, whose indices are known in closed form.
 VectorXd ishigami(const VectorXd& unit) {
   const VectorXd x = 2 * pi * unit.array() - pi;
-  return VectorXd::Constant(
-      1, std::sin(x[0]) + 7 * std::pow(std::sin(x[1]), 2) + 0.1 * std::pow(x[2], 4) * std::sin(x[0]));
+  return VectorXd::Constant(1, std::sin(x[0]) + 7 * std::pow(std::sin(x[1]), 2) +
+                                   0.1 * std::pow(x[2], 4) * std::sin(x[0]));
 }
 
 TEST(GlobalSensitivity, SobolIndicesOfIshigamisFunction) {

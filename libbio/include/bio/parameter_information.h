@@ -21,7 +21,10 @@ struct ParameterInformation {
   /// The data at least halve what was uncertain: boundJoint ≤ deviation/2.
   std::vector<bool> identifiable;
   Eigen::MatrixXd correlation;  ///< of estimates at the joint bound
-  /// What cannot be told apart, in words, worst first; pairs, then what moves nothing.
+  /// Independent combinations about which the data at least halve what was uncertain.
+  Eigen::Index determinedCombinations = 0;
+  /// What cannot be told apart, in words: how much is determined, pairs of which only a product or
+  /// a sum is, most influential first, and what moves nothing.
   std::vector<std::string> sentences;
 };
 

@@ -88,7 +88,7 @@ struct StartPoint {
 /// initial.elbow_flexion, initial.elbow_flexion.speed. Groups: activation.time_scale, emg.gain, …
 ///
 /// Bounds and deviations are defaults for someone who knows nothing better
-/// (docs/decisions/012-parameter-sensitivities.md); positive quantities stay positive.
+/// (docs/decisions/013-parameter-sensitivities.md); positive quantities stay positive.
 class ParameterCatalogue {
  public:
   /// @param start where the simulation starts; sized as the arm's free coordinates

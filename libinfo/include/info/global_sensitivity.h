@@ -26,7 +26,7 @@ using CubeModel = std::function<Eigen::VectorXd(const Eigen::VectorXd& unit)>;
 /// square over the outputs of (y(x + Δe_i) − y(x))/Δ, for σ with the sign of its mean.
 struct MorrisResult {
   Eigen::VectorXd meanAbsolute;  ///< μ*, per unit of the cube
-  Eigen::VectorXd deviation;     ///< σ of the signed effects: large beside μ*: curved or interacting
+  Eigen::VectorXd deviation;  ///< σ of the signed effects: large beside μ*: curved or interacting
   int runs = 0;
   int undefined = 0;  ///< runs that gave nothing finite
   bool complete = true;
