@@ -22,11 +22,11 @@ std::vector<std::size_t> ranking(const Eigen::VectorXd& score) {
   return order;
 }
 
-/// Prior deviation over the bound if all others were known: information in the priors' measure.
+/// Prior deviation over the joint bound: how much narrower the data make what is known.
 Eigen::VectorXd informationGain(const bio::ParameterInformation& known) {
   Eigen::VectorXd gain(known.boundAlone.size());
   for (Eigen::Index i = 0; i < gain.size(); ++i) {
-    gain[i] = known.parameters[static_cast<std::size_t>(i)].prior->deviation / known.boundAlone[i];
+    gain[i] = known.parameters[static_cast<std::size_t>(i)].prior->deviation / known.boundJoint[i];
   }
   return gain;
 }

@@ -32,7 +32,7 @@ std::string combination(const info::Parameter& a, const info::Parameter& b, doub
   }
   const double exponent = seenB * b.start / (seenA * a.start);
   const char* sign = exponent > 0 ? "·" : "/";
-  if (std::abs(std::abs(exponent) - 1) < 0.02) {
+  if (std::abs(std::abs(exponent) - 1) < 0.05) {
     return fmt::format("{}{}{}", a.name, sign, b.name);
   }
   return fmt::format("{}{}{}^{:.2g}", a.name, sign, b.name, std::abs(exponent));
