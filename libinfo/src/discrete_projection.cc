@@ -26,6 +26,16 @@ StepDesign& prepared(StepDesign& c, const ExtendedStepMap& system) {
   if (c.stepsPerSample < 1 || c.stepsPerSample > steps)
     throw std::domain_error(
         fmt::format("steps per sample: {}, rule: 1 … {}", c.stepsPerSample, steps));
+  for (StepWaypoint& waypoint : c.waypoints) {
+    if (waypoint.step < 1 || waypoint.step > steps)
+      throw std::invalid_argument(
+          fmt::format("waypoint at step {}, rule: 1 … {}", waypoint.step, steps));
+    requireLength("waypoint's state", waypoint.state.size(), system.dimensions.state);
+    detail::fillWeight("waypoint's weight", waypoint.weight, system.dimensions.state, false);
+    if (!waypoint.state.allFinite())
+      throw std::domain_error(
+          fmt::format("waypoint at step {}: the state is not finite", waypoint.step));
+  }
   detail::fillWeight("rate weight V", c.rateWeight, m, false);
   detail::fillWeight("model's rate weight", c.modelRate, m, false);
   // u_0 is given: no search can bring it within
@@ -81,6 +91,10 @@ double StepProjection::tracking(const Motion& motion) const {
                   rate.dot(c.rateWeight * rate));
     sum += limitCost(c.limits, motion.u[k]);
   }
+  for (const StepWaypoint& waypoint : c.waypoints) {
+    const VectorXd off = motion.x[waypoint.step] - waypoint.state;
+    sum += 0.5 * off.dot(waypoint.weight * off);
+  }
   return sum;
 }
 
@@ -129,11 +143,17 @@ StepProjection::Direction StepProjection::findDirection(double repeatedTolerance
     a.segment(n, m) += g.u;
     a.tail(n * p) += g.psi.reshaped();
   }
+  for (const StepWaypoint& waypoint : c.waypoints)
+    slope.a[waypoint.step].head(n) += waypoint.weight * (motion_.x[waypoint.step] - waypoint.state);
   gains_ = lqrGains(plant, {c.gainState, c.gainInput, {}, {}});
 
   // rate² = |w − u_k|²/Δt² couples w and the state u_k
   QuadraticWeights model{c.modelState, c.modelInput + c.modelRate / (h * h), MatrixXd::Zero(m, N),
                          c.modelState};
+  for (const StepWaypoint& waypoint : c.waypoints) {
+    model.extra.push_back({waypoint.step, MatrixXd::Zero(N, N)});
+    model.extra.back().Q.topLeftCorner(n, n) = waypoint.weight;
+  }
   model.Q.block(n, n, m, m) += c.modelRate / (h * h);
   model.S.middleCols(n, m) = -c.modelRate / (h * h);
   return follow(affineLq(whole, slope, model));

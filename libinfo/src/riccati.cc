@@ -23,7 +23,12 @@ Sweep sweepBack(const LinearSequence& system, const QuadraticWeights& weights, c
   Sweep out;
   out.K.resize(c.steps);
   if (cost) out.feedforward.resize(c.steps);
-  MatrixXd P = c.Qf, PA(c.n, c.n), PB(c.n, c.m), H(c.m, c.m), G(c.m, c.n);
+  const auto withExtra = [&](MatrixXd Q, std::size_t k) {
+    for (const NodeWeight& extra : weights.extra)
+      if (extra.node == k) Q += extra.Q;
+    return Q;
+  };
+  MatrixXd P = withExtra(c.Qf, c.steps), PA(c.n, c.n), PB(c.n, c.m), H(c.m, c.m), G(c.m, c.n);
   VectorXd r = cost ? cost->a[c.steps] : VectorXd();
   for (std::size_t k = c.steps; k-- > 0;) {
     const MatrixXd &A = system.A[k], &B = system.B[k];
@@ -45,7 +50,7 @@ Sweep sweepBack(const LinearSequence& system, const QuadraticWeights& weights, c
       next.noalias() -= out.K[k].transpose() * h;
       r.swap(next);
     }
-    P = weights.Q;
+    P = withExtra(weights.Q, k);
     P.noalias() += A.transpose() * PA;
     P.noalias() -= out.K[k].transpose() * G;
     P = (0.5 * (P + P.transpose())).eval();

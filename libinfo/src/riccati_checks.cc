@@ -47,6 +47,12 @@ CheckedLq checkLq(const LinearSequence& system, const QuadraticWeights& weights,
     throw std::invalid_argument("weight S: rule m × n, and none in continuous time");
   if (c.Qf.size() == 0) c.Qf = continuous ? MatrixXd::Zero(c.n, c.n).eval() : weights.Q;
   checkWeight("Qf", c.Qf, c.n, false);
+  for (const NodeWeight& extra : weights.extra) {
+    checkWeight("Q of a node", extra.Q, c.n, false);
+    if (extra.node > c.steps || continuous)
+      throw std::invalid_argument(fmt::format(
+          "weight of node {}: rule at most {}, and none in continuous time", extra.node, c.steps));
+  }
   return c;
 }
 

@@ -73,6 +73,25 @@ TEST(StepProjection, HasTheExactSlopeWithinLimits) {
   EXPECT_NEAR(slopeDefect(task, 1e-4), 0, 1e-6);
 }
 
+TEST(StepProjection, HasTheExactSlopeWithWaypointsAndReachesThem) {
+  StepTask task = loadCell({});
+  const Eigen::Vector4d place(0.3, 0.4, 0, 0);
+  task.design.waypoints = {{60, place, Eigen::Vector4d(1e6, 1e6, 0, 0).asDiagonal()},
+                           {100, Eigen::Vector4d::Zero(), 1e2 * MatrixXd::Identity(4, 4)}};
+  EXPECT_NEAR(slopeDefect(task), 0, 1e-5);
+  StepProjection projection(task.system, task.design);
+  const SearchResult result = search(projection, {.slopeTolerance = 1e-6});
+  EXPECT_TRUE(result.converged);
+  EXPECT_LE(result.iterations, 15);  // the waypoints are in the model: Gauss and Newton
+  EXPECT_LT((projection.motion().x[60] - place).head(2).norm(), 0.01);
+  task.design.waypoints[0].step = 101;
+  EXPECT_THROW(StepProjection(task.system, task.design), std::invalid_argument);
+  task.design.waypoints[0] = {60, VectorXd::Zero(3), MatrixXd::Identity(4, 4)};
+  EXPECT_THROW(StepProjection(task.system, task.design), DimensionError);
+  task.design.waypoints[0] = {60, place, -MatrixXd::Identity(4, 4)};
+  EXPECT_THROW(StepProjection(task.system, task.design), std::domain_error);
+}
+
 TEST(StepProjection, CountsOnlyTheSamplesTaken) {
   const auto every = [](std::size_t n) {
     const StepTask task = doublePendulumStepTask(0.02, n);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "info/derivatives.h"
+#include "info/extended_derivatives.h"
 #include "info/step_map.h"
 
 /// A system at one θ with its sensitivities ψ = dx/dθ as further states: what the optimisation of a
@@ -76,86 +76,19 @@ struct ExtendedFlow {
 
 namespace detail {
 
-/// Value, first derivatives along (ψ, I) and the derivatives of both in w, of F(w, θ) where the
-/// first n of w are x. One sweep where the directions are few.
-struct NestedDerivatives {
-  Eigen::MatrixXd dw;     ///< ∂F/∂w
-  Eigen::MatrixXd dpsiw;  ///< ∂vec(D_xF ψ + D_θF)/∂w
-};
-
-template <int N, int W, int P, class F>
-NestedDerivatives nestedDerivatives(const F& function, const Vector<double, W>& w,
-                                    const Eigen::MatrixXd& psi, const Vector<double, P>& theta) {
-  static_assert(N >= 0 && W >= 0 && P > 0, "fixed sizes, at least one parameter");
-  using Inner = Dual<P>;
-  using Outer = Dual<W, Inner>;
-  Vector<Outer, W> wT;
-  Vector<Outer, P> thetaT;
-  for (Eigen::Index i = 0; i < W; ++i) {
-    Inner value(w[i]);
-    if (i < N)
-      for (Eigen::Index j = 0; j < P; ++j) value.derivatives()[j] = psi(i, j);
-    wT[i].value() = value;
-    for (Eigen::Index d = 0; d < W; ++d) wT[i].derivatives()[d] = Inner(d == i ? 1.0 : 0.0);
-  }
-  for (Eigen::Index j = 0; j < P; ++j) {
-    Inner value(theta[j]);
-    value.derivatives()[j] = 1.0;
-    thetaT[j].value() = value;
-    for (Eigen::Index d = 0; d < W; ++d) thetaT[j].derivatives()[d] = Inner(0.0);
-  }
-  const auto image = function(wT, thetaT).eval();
-  const Eigen::Index rows = image.size();
-  NestedDerivatives out{Eigen::MatrixXd(rows, W), Eigen::MatrixXd(rows * P, W)};
-  for (Eigen::Index i = 0; i < rows; ++i)
-    for (Eigen::Index d = 0; d < W; ++d) {
-      const Inner& slope = image[i].derivatives()[d];
-      out.dw(i, d) = slope.value();
-      for (Eigen::Index j = 0; j < P; ++j) out.dpsiw(j * rows + i, d) = slope.derivatives()[j];
-    }
-  return out;
-}
-
-/// The value and its derivatives along the p directions (ψ, I) only.
-template <int N, int W, int P, class F>
-auto alongPsi(const F& function, const Vector<double, W>& w, const Eigen::MatrixXd& psi,
-              const Vector<double, P>& theta) {
-  using T = Dual<P>;
-  Vector<T, W> wT = w.template cast<T>();
-  Vector<T, P> thetaT = theta.template cast<T>();
-  for (Eigen::Index j = 0; j < P; ++j) {
-    for (Eigen::Index i = 0; i < N; ++i) wT[i].derivatives()[j] = psi(i, j);
-    thetaT[j].derivatives()[j] = 1.0;
-  }
-  const auto image = function(wT, thetaT).eval();
-  std::pair<Eigen::VectorXd, Eigen::MatrixXd> out{Eigen::VectorXd(image.size()),
-                                                  Eigen::MatrixXd(image.size(), P)};
-  for (Eigen::Index i = 0; i < image.size(); ++i) {
-    out.first[i] = image[i].value();
-    out.second.row(i) = image[i].derivatives().transpose();
-  }
-  return out;
-}
-
 template <class S>
-ExtendedOutput extendedOutput(std::shared_ptr<const S> system, const ParametersOf<S>& theta) {
-  constexpr int n = S::stateSize, m = S::inputSize, p = S::parameterSize, w = n + m;
-  const auto g = [=](const auto& at, const auto& parameters) {
-    using T = typename std::decay_t<decltype(at)>::Scalar;
-    return OutputOf<S, T>(system->g(Vector<T, n>(at.template head<n>()),
-                                    Vector<T, m>(at.template tail<m>()), parameters));
-  };
+ExtendedOutput outputFunctions(std::shared_ptr<const S> system, const ParametersOf<S>& theta) {
+  constexpr int n = S::stateSize, m = S::inputSize;
   ExtendedOutput out;
   out.gamma = [=](const Eigen::VectorXd& x, const Eigen::MatrixXd& psi, const Eigen::VectorXd& u) {
-    Vector<double, w> at;
-    at << x, u;
-    return alongPsi<n, w, p>(g, at, psi, theta).second;
+    return Eigen::MatrixXd(
+        extendedOutput(*system, StateOf<S>(x), StateSensitivityOf<S>(psi), InputOf<S>(u), theta)
+            .along);
   };
   out.gradient = [=](const Eigen::VectorXd& x, const Eigen::MatrixXd& psi, const Eigen::VectorXd& u,
                      const Eigen::MatrixXd& P) {
-    Vector<double, w> at;
-    at << x, u;
-    const NestedDerivatives d = nestedDerivatives<n, w, p>(g, at, psi, theta);
+    const auto d = extendedOutputDerivatives(*system, StateOf<S>(x), StateSensitivityOf<S>(psi),
+                                             InputOf<S>(u), theta);
     const Eigen::VectorXd along = d.dpsiw.transpose() * P.reshaped();
     return ExtendedOutput::Gradient{along.head(n), d.dw.leftCols(n).transpose() * P, along.tail(m)};
   };
@@ -191,8 +124,8 @@ ExtendedStepMap extend(M map, const ParametersOf<M>& theta) {
       };
       Vector<double, w> at;
       at << x, u0, u1;
-      auto d = detail::nestedDerivatives<n, w, p>(step, at, psi, theta);
-      return ExtendedStepMap::Derivatives{std::move(d.dw), std::move(d.dpsiw)};
+      const auto d = detail::nestedDerivatives<n, w, p>(step, at, psi, theta);
+      return ExtendedStepMap::Derivatives{d.dw, d.dpsiw};
     } else if constexpr (requires(const StateOf<M>& s, const InputOf<M>& u) {
                            shared->secondDerivatives(
                                shared->argumentsOf(s, u, u, theta),
@@ -234,36 +167,29 @@ ExtendedStepMap extend(M map, const ParametersOf<M>& theta) {
       return d;
     }
   };
-  out.output = detail::extendedOutput<M>(shared, theta);
+  out.output = detail::outputFunctions<M>(shared, theta);
   return out;
 }
 
 /// The extended form of a continuous system of fixed sizes at θ.
 template <SmoothSystem S>
 ExtendedFlow extendFlow(S system, const ParametersOf<S>& theta) {
-  constexpr int n = S::stateSize, m = S::inputSize, p = S::parameterSize, w = n + m;
-  static_assert(n > 0 && m > 0 && p > 0, "fixed sizes, at least one state, input and parameter");
+  static_assert(S::stateSize > 0 && S::inputSize > 0 && S::parameterSize > 0,
+                "fixed sizes, at least one state, input and parameter");
   const auto shared = std::make_shared<const S>(std::move(system));
-  const auto f = [=](const auto& at, const auto& parameters) {
-    using T = typename std::decay_t<decltype(at)>::Scalar;
-    return StateOf<S, T>(shared->f(Vector<T, n>(at.template head<n>()),
-                                   Vector<T, m>(at.template tail<m>()), parameters));
-  };
   ExtendedFlow out{dimensionsOf(*shared), shared->parameterNames(), {}, {}, {}};
   out.rate = [=](const Eigen::VectorXd& x, const Eigen::MatrixXd& psi, const Eigen::VectorXd& u) {
-    Vector<double, w> at;
-    at << x, u;
-    auto [xDot, psiDot] = detail::alongPsi<n, w, p>(f, at, psi, theta);
-    return ExtendedFlow::Rate{std::move(xDot), std::move(psiDot)};
+    const auto at =
+        extendedRate(*shared, StateOf<S>(x), StateSensitivityOf<S>(psi), InputOf<S>(u), theta);
+    return ExtendedFlow::Rate{at.value, at.along};
   };
   out.derivatives = [=](const Eigen::VectorXd& x, const Eigen::MatrixXd& psi,
                         const Eigen::VectorXd& u) {
-    Vector<double, w> at;
-    at << x, u;
-    auto d = detail::nestedDerivatives<n, w, p>(f, at, psi, theta);
-    return ExtendedFlow::Derivatives{std::move(d.dw), std::move(d.dpsiw)};
+    const auto d = extendedRateDerivatives(*shared, StateOf<S>(x), StateSensitivityOf<S>(psi),
+                                           InputOf<S>(u), theta);
+    return ExtendedFlow::Derivatives{d.dw, d.dpsiw};
   };
-  out.output = detail::extendedOutput<S>(shared, theta);
+  out.output = detail::outputFunctions<S>(shared, theta);
   return out;
 }
 

@@ -12,12 +12,20 @@ struct LinearSequence {
   std::vector<Eigen::MatrixXd> B;  ///< n × m
 };
 
-/// Weights of ½ zᵀQz + vᵀSz + ½ vᵀRv; the same at every time.
+/// A weight ½ zᵀQz at one node more.
+struct NodeWeight {
+  std::size_t node;   ///< 0 … number of steps
+  Eigen::MatrixXd Q;  ///< n × n, symmetric ⪰ 0
+};
+
+/// Weights of ½ zᵀQz + vᵀSz + ½ vᵀRv; the same at every time
+/// but for those of `extra`.
 struct QuadraticWeights {
   Eigen::MatrixXd Q;  ///< n × n, symmetric ⪰ 0
   Eigen::MatrixXd R;  ///< m × m, symmetric ≻ 0
   Eigen::MatrixXd S;  ///< m × n; empty: 0. Only in steps
   Eigen::MatrixXd Qf;  ///< n × n at the end, symmetric ⪰ 0; empty: Q in steps, 0 in continuous time
+  std::vector<NodeWeight> extra = {};  ///< only in steps
 };
 
 /// The affine part aᵀz + bᵀv of a cost.
