@@ -99,6 +99,15 @@ std::string html(const Picture& picture) {
   return text + "</figure>\n";
 }
 
+std::string html(const VectorDrawing& drawing) {
+  if (!drawing.svg.starts_with("<svg")) {
+    throw std::invalid_argument(fmt::format("drawing '{}': is no SVG", drawing.title));
+  }
+  return fmt::format(
+      "<figure class=\"picture\">\n<h3>{}</h3>\n{}<figcaption>{}</figcaption>\n</figure>\n",
+      htmlText(drawing.title), drawing.svg, htmlText(drawing.caption));
+}
+
 std::string html(const Table& table) {
   std::string text = "<div class=\"table\">\n";
   if (!table.title.empty()) text += fmt::format("<h3>{}</h3>\n", htmlText(table.title));

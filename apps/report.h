@@ -58,6 +58,13 @@ struct Picture {
   std::string caption = {};  ///< what to see, one or two sentences; may be empty
 };
 
+/// A drawing, which may move by itself; kept inside the page as it is.
+struct VectorDrawing {
+  std::string title = {};
+  std::string svg = {};  ///< an <svg> element, written by us
+  std::string caption = {};
+};
+
 struct Paragraph {
   std::string text = {};
 };
@@ -66,7 +73,7 @@ struct Section {
   std::string title = {};
 };
 
-using ReportPart = std::variant<Section, Paragraph, Figure, Table, Picture>;
+using ReportPart = std::variant<Section, Paragraph, Figure, Table, Picture, VectorDrawing>;
 
 /// First what was run, the verdict in a sentence and the main picture or figure; then the details
 /// in their order; then where it all came from, which is taken from the summary.
@@ -79,7 +86,7 @@ struct Report {
 };
 
 /// @throws std::invalid_argument if a series' x and y, or a table's columns and row, differ in
-/// length, or a picture is no PNG
+/// length, or a picture is no PNG, or a drawing no SVG
 std::string renderReport(const Report& report, const Summary& summary);
 
 }  // namespace app

@@ -8,6 +8,7 @@
 #include "info/systems/laboratory.h"
 #include "quantity.h"
 #include "result.h"
+#include "robot_baxter.h"
 #include "robot_information.h"
 #include "robot_optimise.h"
 
@@ -25,19 +26,32 @@ class Robot : public Command {
 
   void addOptions(CLI::App& options) override {
     options
-        .add_option("ROBOT", robot_,
-                    "double-pendulum (cart, two links, angles measured) or suspended-mass (cart, "
-                    "mass on a string, its force measured)")
+        .add_option(
+            "ROBOT", robot_,
+            "double-pendulum (cart, two links, angles measured), suspended-mass (cart, mass "
+            "on a string, its force measured) or baxter (the same on a robot's arm, learnt "
+            "while it moves)")
         ->required()
-        ->check(CLI::IsMember({"double-pendulum", "suspended-mass"}))
+        ->check(CLI::IsMember({"double-pendulum", "suspended-mass", "baxter"}))
         ->type_name("");
+    const auto common = options.get_options().size();
     addStart(options);
     addObjective(options);
     addLaboratory(options);
     addJudging(options);
+    for (CLI::Option* option : options.get_options()) cartOptions_.push_back(option);
+    cartOptions_.erase(cartOptions_.begin(),
+                       cartOptions_.begin() + static_cast<std::ptrdiff_t>(common));
+    baxterOptions_ = addBaxterOptions(options, baxter_);
   }
 
   ExitStatus run(const CommandContext& context) override {
+    const bool isBaxter = robot_ == "baxter";
+    for (const CLI::Option* option : isBaxter ? cartOptions_ : baxterOptions_)
+      if (option->count() > 0)
+        throw std::invalid_argument(
+            fmt::format("{} does not go with {}", option->get_name(), robot_));
+    if (isBaxter) return learn(context);
     const bool optimise = checkUse();
     OutputFolder folder(context, optimise ? optimiseFiles() : std::vector<std::string>{});
     Summary summary(context);
@@ -57,6 +71,16 @@ class Robot : public Command {
   }
 
  private:
+  ExitStatus learn(const CommandContext& context) const {
+    OutputFolder folder(context, baxterFiles());
+    Summary summary(context);
+    Report report;
+    report.title = "An arm learns the length of a string while it moves";
+    const ExitStatus status = runBaxter(baxter_, context, summary, report, folder);
+    deliver(context, summary, report, folder);
+    return status;
+  }
+
   void addStart(CLI::App& options) {
     options.add_flag("--discrete", discrete_,
                      "double-pendulum: optimise the variational integrator's motion in steps");
@@ -268,6 +292,8 @@ class Robot : public Command {
   std::vector<double> limits_;
   std::vector<std::pair<double, double>> candidates_;
   int trials_ = 300, stepsPerSample_ = 1;
+  BaxterRequest baxter_;
+  std::vector<CLI::Option*> cartOptions_, baxterOptions_;
 };
 
 }  // namespace

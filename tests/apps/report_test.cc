@@ -105,5 +105,16 @@ TEST(Report, RefusesListsOfDifferentLength) {
   EXPECT_THROW(renderReport(report, Summary({})), std::invalid_argument);
 }
 
+TEST(Report, KeepsADrawingInsideThePage) {
+  Report report = smallReport();
+  report.details = {
+      VectorDrawing{"A ball & a box", "<svg viewBox=\"0 0 1 1\"></svg>\n", "It moves."}};
+  EXPECT_THAT(
+      renderReport(report, Summary({})),
+      AllOf(HasSubstr("<h3>A ball &amp; a box</h3>\n<svg viewBox"), HasSubstr("It moves.")));
+  report.details = {VectorDrawing{"", "<script></script>", ""}};
+  EXPECT_THROW(renderReport(report, Summary({})), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace app
