@@ -185,16 +185,20 @@ ExperimentDesign::ExperimentDesign(const Arm& arm, const ParameterCatalogue& cat
   measuredTimes_ = equalTimes(simulation.startTime, simulation.duration, question_.period);
   rows_ = merged(rows_, measuredTimes_);
   trialExcitation_ = valuesAt(given, rows_);
+  trialForce_ = externalForceOf(trial, arm);
 }
 
 ExperimentDesign::Inputs ExperimentDesign::inputsOf(const VectorXd& x) const {
   MatrixXd excitation = trialExcitation_;
-  ExternalForce torque;
+  ExternalForce torque = trialForce_;
   if (x.size() > 0) {
     const MatrixXd values = profiles_.values(x, rows_);
     Index input = 0;
     if (hasTorque()) {
       MatrixXd all = MatrixXd::Zero(values.rows(), arm_->skeleton().numCoordinates());
+      for (std::size_t k = 0; k < rows_.size() && !trialForce_.empty(); ++k) {
+        all.row(static_cast<Index>(k)) = trialForce_.at(rows_[k]).value.transpose();
+      }
       all.col(coordinate_) = values.col(input++);
       torque = ExternalForce(rows_, std::move(all));
     }
@@ -270,6 +274,26 @@ VectorXd ExperimentDesign::surpriseOf(const SensitivityTrajectory& s) const {
   return (s.q[static_cast<std::size_t>(coordinate_)].leftCols(p) * off.asDiagonal())
       .rowwise()
       .norm();
+}
+
+VectorXd ExperimentDesign::surpriseAt(const DesignedExperiment& e) const {
+  const auto p = static_cast<Index>(question_.parameters.size());
+  const VectorXd off = limits_.surprise * scale_.cwiseMin(question_.priorDeviation).head(p);
+  return (e.gamma.leftCols(p) * off.asDiagonal()).rowwise().norm();
+}
+
+VectorXd ExperimentDesign::boundOverTime(const DesignedExperiment& e) const {
+  VectorXd bound = VectorXd::Constant(e.gamma.rows(), std::numeric_limits<double>::quiet_NaN());
+  MatrixXd sum = scaledInformation(MatrixXd::Zero(0, scale_.size()));
+  for (Index k = 0; k < e.gamma.rows(); ++k) {
+    const VectorXd row = scale_.cwiseProduct(e.gamma.row(k).transpose()) / question_.noise;
+    sum += row * row.transpose();
+    const Eigen::LDLT<MatrixXd> factor(sum);
+    const VectorXd D = factor.vectorD();
+    if (factor.info() != Eigen::Success || !(D.minCoeff() > 1e-14 * D.maxCoeff())) continue;
+    bound[k] = scale_[0] * std::sqrt(VectorXd(factor.solve(VectorXd::Unit(scale_.size(), 0)))[0]);
+  }
+  return bound;
 }
 
 double ExperimentDesign::penalty(const SensitivityTrajectory& s, double price) const {
@@ -366,6 +390,10 @@ VectorXd ExperimentDesign::startCoefficients() const {
   const ExcitationSignal trial(rows_, trialExcitation_);
   const MatrixXd excitation = valuesAt(trial, profiles_.knots());
   Index input = hasTorque() ? 1 : 0;
+  for (std::size_t k = 0; k < profiles_.knots().size() && hasTorque(); ++k) {
+    if (trialForce_.empty()) break;
+    atKnots(static_cast<Index>(k), 0) = trialForce_.at(profiles_.knots()[k]).value[coordinate_];
+  }
   for (const auto& columns : columns_) {
     for (const Index column : columns) {
       atKnots.col(input) += excitation.col(column) / static_cast<double>(columns.size());

@@ -113,10 +113,11 @@ class ExperimentDesign {
   ExperimentDesign(const Arm& arm, const ParameterCatalogue& catalogue,
                    ParameterCatalogue::Setting setting, const Trial& trial,
                    const SimulationOptions& simulation, DesignQuestion question,
-                   DesignLimits limits, std::vector<MuscleGroup> groups, double knotInterval = 0.1);
+                   DesignLimits limits, std::vector<MuscleGroup> groups, double knotInterval = 0.3);
 
   /// The torque, if there is one, then the groups.
   const info::BoundedProfiles& profiles() const { return profiles_; }
+  const Arm& arm() const { return *arm_; }
   bool hasTorque() const { return limits_.torque > 0; }
   const std::vector<MuscleGroup>& groups() const { return groups_; }
   const DesignQuestion& question() const { return question_; }
@@ -129,6 +130,12 @@ class ExperimentDesign {
   DesignedExperiment at(const Eigen::VectorXd& x) const;
   /// Whether a motion keeps to range and speed, and the inputs to their limits.
   bool keepsLimits(const DesignedExperiment& experiment) const;
+
+  /// How far the coordinate may be from what is expected at the measured times when the parameters
+  /// asked for are off by DesignLimits::surprise of their deviations, to first order [rad] or [m].
+  Eigen::VectorXd surpriseAt(const DesignedExperiment& experiment) const;
+  /// Bound on the first parameter from the measurements up to each measured time; NaN: unbounded.
+  Eigen::VectorXd boundOverTime(const DesignedExperiment& experiment) const;
 
   /// @throws std::runtime_error if the trial itself does not reach the end
   DesignResult search(const DesignSearchSettings& settings) const;
@@ -168,6 +175,7 @@ class ExperimentDesign {
   Eigen::VectorXd scale_;
   std::vector<double> rows_;         ///< times of the trial and of the knots
   Eigen::MatrixXd trialExcitation_;  ///< at rows_
+  ExternalForce trialForce_;
   std::vector<double> measuredTimes_;
   info::BoundedProfiles profiles_;
 };
