@@ -2,6 +2,7 @@
 #include "check.h"
 #include "command.h"
 #include "compare.h"
+#include "design.h"
 #include "emg.h"
 #include "moment_arms.h"
 #include "render.h"
@@ -16,6 +17,7 @@ std::vector<std::unique_ptr<Command>> allCommands() {
   commands.push_back(calibrateCommand());
   commands.push_back(checkCommand());
   commands.push_back(compareCommand());
+  commands.push_back(designCommand());
   commands.push_back(emgCommand());
   commands.push_back(momentArmsCommand());
   commands.push_back(renderCommand(drawInOtherProgram));

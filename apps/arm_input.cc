@@ -56,6 +56,7 @@ TrialInput readTrialInput(const std::string& file, const bio::Model& model, cons
   input.trial = bio::readTrial(file, model, {options.ignoreExtra});
   for (const std::string& warning : input.trial.warnings) summary.warn(warning);
   input.excitation = bio::excitationOf(input.trial, arm);
+  input.externalForce = bio::externalForceOf(input.trial, arm);
   input.startTime = input.trial.times[0];
   input.duration = input.trial.times[input.trial.times.size() - 1] - input.startTime;
   input.start =

@@ -31,11 +31,12 @@ bio::Arm movableArm(const bio::Model& model, const std::string& file,
 struct TrialInput {
   bio::Trial trial;
   bio::ExcitationSignal excitation;  ///< of the arm's muscles
+  bio::ExternalForce externalForce;  ///< empty: none
   double startTime = 0;              ///< [s]
   double duration = 0;               ///< [s]
   bio::ArmState start;  ///< at rest: --initial, else the first measured value, else the default
 };
-/// @throws what readTrial, excitationOf, startCoordinates and initialState throw
+/// @throws what readTrial, excitationOf, externalForceOf, startCoordinates and initialState throw
 TrialInput readTrialInput(const std::string& file, const bio::Model& model, const bio::Arm& arm,
                           const SimulationOptions& options, Summary& summary);
 

@@ -63,6 +63,7 @@ class Compare : public Command {
 
     options.startTime = input.startTime;
     options.duration = input.duration;
+    options.externalForce = input.externalForce;
     bio::Comparison comparison;
     {
       ProgressBar bar("compare");

@@ -31,6 +31,7 @@ class Replay : public Command {
     const TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
     bio::SimulationOptions options =
         simulationOptions(simulation_, input.startTime, input.duration);
+    options.externalForce = input.externalForce;
 
     bio::Trajectory motion;
     {

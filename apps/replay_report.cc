@@ -73,7 +73,8 @@ Figure energyFigure(const ReplayFindings& f) {
     potential[k] = energy.potential;
   }
   potential.array() -= potential[0];
-  balance = kinetic + potential - f.motion.muscleWork - f.motion.passiveWork;
+  balance =
+      kinetic + potential - f.motion.muscleWork - f.motion.passiveWork - f.motion.externalWork;
   balance.array() -= balance[0];
   Figure figure{.title = "Energy",
                 .xLabel = "Time [s]",

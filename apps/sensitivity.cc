@@ -220,7 +220,10 @@ class Sensitivity : public Command {
   }
 
   bio::SimulationOptions options(const Study& study) const {
-    return simulationOptions(simulation_, study.input.startTime, study.input.duration);
+    bio::SimulationOptions chosen =
+        simulationOptions(simulation_, study.input.startTime, study.input.duration);
+    chosen.externalForce = study.input.externalForce;
+    return chosen;
   }
 
   bio::ArmExperiment experiment(const Study& study,

@@ -6,8 +6,11 @@
 
 namespace bio::stepping {
 
+inline const ExternalForce noExternalForce;
+
 /// ẏ = f(t, y) with y = (q, q̇, activations, fibre lengths):
-///     M q̈ = −Σ F_i ∂ℓ_i + τ_passive − Ṁ q̇ + ½ q̇ᵀ∂M q̇ − ∂V,   ȧ = activation law,   ℓ̇ = V
+///     M q̈ = −Σ F_i ∂ℓ_i + τ_passive + τ_external − Ṁ q̇ + ½ q̇ᵀ∂M q̇ − ∂V,   ȧ = activation law,   ℓ̇
+///     = V
 template <int N>
 class ArmDynamics {
  public:
@@ -15,9 +18,11 @@ class ArmDynamics {
   using Matrix = Eigen::Matrix<double, N, N>;
   using State = Eigen::VectorXd;
 
-  ArmDynamics(const Arm& arm, const ExcitationSignal& excitation)
+  ArmDynamics(const Arm& arm, const ExcitationSignal& excitation,
+              const ExternalForce& external = noExternalForce)
       : arm_(arm),
         excitation_(excitation),
+        externalForce_(external),
         configuration_(arm),
         numMuscles_(static_cast<Eigen::Index>(arm.numMuscles())),
         u_(State::Zero(numMuscles_)),
@@ -32,8 +37,9 @@ class ArmDynamics {
   }
 
   struct Power {
-    double muscle = 0;   ///< of the muscles on the skeleton [W]
-    double passive = 0;  ///< of the coordinate forces [W]
+    double muscle = 0;    ///< of the muscles on the skeleton [W]
+    double passive = 0;   ///< of the coordinate forces [W]
+    double external = 0;  ///< of what pushes from outside [W]
   };
 
   /// f(t, y) into yDot; returns the powers. NaN where a fibre has left its domain.
@@ -47,7 +53,7 @@ class ArmDynamics {
       yDot[2 * N + i] = activationRate(arm_.muscles()[si].activation, u_[i], y[2 * N + i]);
       yDot[2 * N + numMuscles_ + i] = rate_[si].fibreVelocity;
     }
-    return {muscle_.dot(qDot_), passive_.dot(qDot_)};
+    return {muscle_.dot(qDot_), passive_.dot(qDot_), external_.dot(qDot_)};
   }
 
   /// ∂f/∂y, dense; size() × size().
@@ -109,6 +115,8 @@ class ArmDynamics {
     tau_q_.setZero();
     tau_v_.setZero();
     arm_.coordinateForces().template add<N>(q, qDot_, passive_, tau_q_, tau_v_);
+    external_.setZero();
+    externalForce_.add(t, externalRow_, external_);
     muscle_.setZero();
     for (Eigen::Index i = 0; i < numMuscles_; ++i) {
       const auto si = static_cast<std::size_t>(i);
@@ -117,7 +125,7 @@ class ArmDynamics {
                                configuration_.length(si).length);
       muscle_ -= rate_[si].tendonForce * configuration_.length(si).dL_dq;
     }
-    Vector force = muscle_ + passive_ - inertia.dV;
+    Vector force = muscle_ + passive_ + external_ - inertia.dV;
     if (!arm_.skeleton().hasConstantInertia()) {
       for (int k = 0; k < N; ++k) {
         const Vector M_k_v = inertia.dM[static_cast<std::size_t>(k)] * qDot_;
@@ -131,12 +139,14 @@ class ArmDynamics {
 
   const Arm& arm_;
   const ExcitationSignal& excitation_;
+  const ExternalForce& externalForce_;
   ArmConfiguration<N> configuration_;
   Eigen::Index numMuscles_;
   State u_;
   std::vector<FibreRateDerivatives> rate_;
   std::size_t hint_ = 0;
-  Vector qDot_, acceleration_, muscle_, passive_;
+  std::size_t externalRow_ = 0;
+  Vector qDot_, acceleration_, muscle_, passive_, external_;
   Matrix tau_q_, tau_v_;
   Eigen::LDLT<Matrix> factor_;
 };

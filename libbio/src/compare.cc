@@ -148,6 +148,7 @@ ConvergedReference Runs::makeReference() const {
 
 SimulationOptions Runs::simulationOptions(Integrator integrator, double step) const {
   SimulationOptions simulation;
+  simulation.externalForce = options_->externalForce;
   simulation.integrator = integrator;
   simulation.step = step;
   simulation.startTime = options_->startTime;

@@ -69,6 +69,9 @@ void stepping::checkSimulation(const Arm& arm, const ExcitationSignal& excitatio
   require(start.q.allFinite() && start.qDot.allFinite() && start.activation.allFinite() &&
               start.fibreLength.allFinite(),
           "start state: a value is not finite");
+  require(options.externalForce.empty() || options.externalForce.numCoordinates() == N,
+          fmt::format("external force: {} columns, the arm has {} free coordinates",
+                      options.externalForce.numCoordinates(), N));
 }
 
 Trajectory simulate(const Arm& arm, const ExcitationSignal& excitation, const ArmState& start,
@@ -115,7 +118,8 @@ Eigen::VectorXd energyImbalance(const Arm& arm, const Trajectory& trajectory) {
           energyAt<decltype(N)::value>(configuration, trajectory.q.col(k), trajectory.qDot.col(k));
       const double stored = energy.kinetic + energy.potential;
       if (k == 0) first = stored;
-      imbalance[k] = stored - first - trajectory.muscleWork[k] - trajectory.passiveWork[k];
+      imbalance[k] = stored - first - trajectory.muscleWork[k] - trajectory.passiveWork[k] -
+                     trajectory.externalWork[k];
     }
     return imbalance;
   });

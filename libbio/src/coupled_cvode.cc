@@ -4,6 +4,8 @@
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
 
 #include "arm_dynamics.h"
@@ -48,6 +50,7 @@ int powers(double t, N_Vector y, N_Vector power, void* dynamics) {
   const auto p = static_cast<ArmDynamics<N>*>(dynamics)->derivative(t, view(y), unused);
   view(power)[0] = p.muscle;
   view(power)[1] = p.passive;
+  view(power)[2] = p.external;
   return std::isfinite(p.muscle) ? 0 : 1;
 }
 
@@ -70,7 +73,7 @@ void silent(int, const char*, const char*, char*, void*) {}
 template <int N>
 Trajectory run(const Arm& arm, const ExcitationSignal& excitation, const ArmState& start,
                const SimulationOptions& options) {
-  ArmDynamics<N> dynamics(arm, excitation);
+  ArmDynamics<N> dynamics(arm, excitation, options.externalForce);
   const Eigen::Index size = dynamics.size();
   const auto n = static_cast<Eigen::Index>(arm.numMuscles());
 
@@ -78,7 +81,7 @@ Trajectory run(const Arm& arm, const ExcitationSignal& excitation, const ArmStat
   check(SUNContext_Create(nullptr, &rawContext), "SUNContext_Create");
   const Owned<SUNContext, FreeContext> context(rawContext);
   const Owned<N_Vector, FreeVector> y(N_VNew_Serial(size, context.get()));
-  const Owned<N_Vector, FreeVector> work(N_VNew_Serial(2, context.get()));
+  const Owned<N_Vector, FreeVector> work(N_VNew_Serial(3, context.get()));
   view(y.get()) = dynamics.pack(start);
   view(work.get()).setZero();
   const Owned<SUNMatrix, FreeMatrix> matrix(SUNDenseMatrix(size, size, context.get()));
@@ -102,16 +105,19 @@ Trajectory run(const Arm& arm, const ExcitationSignal& excitation, const ArmStat
   const auto record = [&](double t) {
     const auto state = view(y.get());
     recorder.add(t, state.template head<N>(), state.template segment<N>(N), state.segment(2 * N, n),
-                 state.tail(n), view(work.get())[0], view(work.get())[1]);
+                 state.tail(n), view(work.get())[0], view(work.get())[1], view(work.get())[2]);
   };
   record(options.startTime);
   const StopWatch watch;
-  const std::vector<double>& corners = excitation.times();
+  const std::vector<double>& outside = options.externalForce.times();
+  std::vector<double> corners;
+  std::set_union(excitation.times().begin(), excitation.times().end(), outside.begin(),
+                 outside.end(), std::back_inserter(corners));
   std::size_t corner = 0;
   double reached = options.startTime;
   for (std::size_t k = 1; k < rows && trajectory.outcome == Outcome::completed; ++k) {
     const double target = rowTime(options, k);
-    // no step reaches over a corner of the excitation
+    // no step reaches over a corner of the excitation or of the force from outside
     while (reached < target) {
       while (corner < corners.size() && corners[corner] <= reached) ++corner;
       const double stop = corner < corners.size() ? std::min(corners[corner], target) : target;

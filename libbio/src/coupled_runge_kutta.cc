@@ -36,8 +36,9 @@ class FibreStability {
 /// Very long steps leap over the stiff states; then the energy gives them away.
 void cutWhereEnergyIsMadeUp(const Arm& arm, Trajectory& motion, double step) {
   const Eigen::VectorXd imbalance = energyImbalance(arm, motion);
-  const double work =
-      motion.muscleWork.cwiseAbs().maxCoeff() + motion.passiveWork.cwiseAbs().maxCoeff();
+  const double work = motion.muscleWork.cwiseAbs().maxCoeff() +
+                      motion.passiveWork.cwiseAbs().maxCoeff() +
+                      motion.externalWork.cwiseAbs().maxCoeff();
   for (Eigen::Index k = 0; k < imbalance.size(); ++k) {
     if (std::abs(imbalance[k]) <= largestEnergyError * work) continue;
     motion.outcome = Outcome::unstable;
@@ -54,6 +55,7 @@ void cutWhereEnergyIsMadeUp(const Arm& arm, Trajectory& motion, double step) {
     }
     motion.muscleWork.conservativeResize(k);
     motion.passiveWork.conservativeResize(k);
+    motion.externalWork.conservativeResize(k);
     return;
   }
 }
@@ -61,7 +63,7 @@ void cutWhereEnergyIsMadeUp(const Arm& arm, Trajectory& motion, double step) {
 template <int N>
 Trajectory run(const Arm& arm, const ExcitationSignal& excitation, const ArmState& start,
                const SimulationOptions& options) {
-  ArmDynamics<N> dynamics(arm, excitation);
+  ArmDynamics<N> dynamics(arm, excitation, options.externalForce);
   using State = Eigen::VectorXd;
   State y = dynamics.pack(start);
   State stage = y, k1 = y, k2 = y, k3 = y, k4 = y;
@@ -71,9 +73,10 @@ Trajectory run(const Arm& arm, const ExcitationSignal& excitation, const ArmStat
   Trajectory& trajectory = recorder.trajectory();
   double muscleWork = 0;
   double passiveWork = 0;
+  double externalWork = 0;
   const auto record = [&](double t) {
     recorder.add(t, y.template head<N>(), y.template segment<N>(N), y.segment(2 * N, n), y.tail(n),
-                 muscleWork, passiveWork);
+                 muscleWork, passiveWork, externalWork);
   };
   record(options.startTime);
   FibreStability stability(arm.numMuscles());
@@ -103,6 +106,7 @@ Trajectory run(const Arm& arm, const ExcitationSignal& excitation, const ArmStat
     y += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
     muscleWork += h / 6 * (p1.muscle + 2 * p2.muscle + 2 * p3.muscle + p4.muscle);
     passiveWork += h / 6 * (p1.passive + 2 * p2.passive + 2 * p3.passive + p4.passive);
+    externalWork += h / 6 * (p1.external + 2 * p2.external + 2 * p3.external + p4.external);
     ++trajectory.steps;
     if (!y.allFinite() || !(y.template segment<N>(N).cwiseAbs().maxCoeff() < largestSpeed)) {
       trajectory.outcome = Outcome::unstable;

@@ -40,11 +40,12 @@ class Recorder {
     trajectory_.fibreLength.resize(n, K);
     trajectory_.muscleWork.resize(K);
     trajectory_.passiveWork.resize(K);
+    trajectory_.externalWork.resize(K);
   }
 
   template <class Q, class QDot, class A, class L>
   void add(double time, const Q& q, const QDot& qDot, const A& activation, const L& fibreLength,
-           double muscleWork, double passiveWork) {
+           double muscleWork, double passiveWork, double externalWork) {
     const auto k = static_cast<Eigen::Index>(trajectory_.time.size());
     trajectory_.time.push_back(time);
     trajectory_.q.col(k) = q;
@@ -53,6 +54,7 @@ class Recorder {
     trajectory_.fibreLength.col(k) = fibreLength;
     trajectory_.muscleWork[k] = muscleWork;
     trajectory_.passiveWork[k] = passiveWork;
+    trajectory_.externalWork[k] = externalWork;
   }
 
   /// Cuts the unused columns off.
@@ -64,6 +66,7 @@ class Recorder {
     trajectory_.fibreLength.conservativeResize(Eigen::NoChange, K);
     trajectory_.muscleWork.conservativeResize(K);
     trajectory_.passiveWork.conservativeResize(K);
+    trajectory_.externalWork.conservativeResize(K);
     return std::move(trajectory_);
   }
 

@@ -71,12 +71,17 @@ class VariationalStepper {
     int iterations = 0;
     double muscleWork = 0;  ///< f_muscle·(q' − q)
     double passiveWork = 0;
+    double externalWork = 0;
   };
 
   /// Solves for the end of a step of length h; `end` holds the first guess of q and fibreLength and
   /// is overwritten (with garbage if not converged).
-  Result solve(double h, const Ends& begin, const Eigen::VectorXd& activation, Ends& end) {
+  /// @param middle  time of the step's middle [s]
+  Result solve(double h, double middle, const Ends& begin, const Eigen::VectorXd& activation,
+               Ends& end) {
     Result result;
+    external_.setZero();
+    options_.externalForce.add(middle, row_, external_);
     const double share = symmetric_ ? h / 2 : h;  // of the forces in F⁻
     for (result.iterations = 1; result.iterations <= options_.maxIterations; ++result.iterations) {
       const Vector q_m = (begin.q + end.q) / 2;
@@ -131,7 +136,7 @@ class VariationalStepper {
         carried += G * inverse_[si] * residual_[si] * path.dL_dq;
       }
 
-      const Vector R = Mv - h / 2 * L_q - share * (muscle_ + passive_) - begin.p;
+      const Vector R = Mv - h / 2 * L_q - share * (muscle_ + passive_ + external_) - begin.p;
       const Matrix J = dMv - h / 2 * dL_q - share * dTau - eliminated;
       Vector dq = solveSmall(J, carried - R);
       if (!dq.allFinite()) return result;
@@ -157,9 +162,11 @@ class VariationalStepper {
         // L_q, forces and M v belong to the last iterate but one, which is within the tolerance
         const Vector step = end.q - begin.q;
         end.p = Mv + dMv * dq + h / 2 * (L_q + dL_q * dq) +
-                (symmetric_ ? Vector(share * (muscle_ + passive_)) : Vector(Vector::Zero()));
+                (symmetric_ ? Vector(share * (muscle_ + passive_ + external_))
+                            : Vector(Vector::Zero()));
         result.muscleWork = muscle_.dot(step);
         result.passiveWork = passive_.dot(step);
+        result.externalWork = external_.dot(step);
         result.converged = true;
         return result;
       }
@@ -198,6 +205,8 @@ class VariationalStepper {
   Eigen::VectorXd residual_;
   Vector muscle_;
   Vector passive_;
+  Vector external_;
+  std::size_t row_ = 0;  ///< of the external force
 };
 
 template <int N>
@@ -226,7 +235,7 @@ class VariationalRun {
     velocity_ = start.qDot;
     fibreVelocity_ = Eigen::VectorXd::Zero(start.fibreLength.size());
     next_ = now_;
-    recorder_.add(options.startTime, now_.q, start.qDot, activation_, now_.fibreLength, 0, 0);
+    recorder_.add(options.startTime, now_.q, start.qDot, activation_, now_.fibreLength, 0, 0, 0);
     if (tape_) tape_->begin(now_.q, now_.fibreLength, activation_);
   }
 
@@ -251,7 +260,8 @@ class VariationalRun {
       begin = end;
       ++trajectory.steps;
       if (tape_) tape_->endRow();
-      recorder_.add(t1, now_.q, speed(), activation_, now_.fibreLength, muscleWork_, passiveWork_);
+      recorder_.add(t1, now_.q, speed(), activation_, now_.fibreLength, muscleWork_, passiveWork_,
+                    externalWork_);
       if (options_.progress && !options_.progress(t1)) {
         trajectory.outcome = Outcome::stopped;
         trajectory.failedAt = t1;
@@ -308,12 +318,12 @@ class VariationalRun {
     player_.advance(tMiddle, t1, activation_);
     next_.q = now_.q + h * velocity_;
     next_.fibreLength = now_.fibreLength + h * fibreVelocity_;
-    result_ = stepper_.solve(h, now_, middle_, next_);
+    result_ = stepper_.solve(h, tMiddle, now_, middle_, next_);
     count(result_.iterations);
     if (!result_.converged) {  // again from rest, in case the extrapolation was the trouble
       next_.q = now_.q;
       next_.fibreLength = now_.fibreLength;
-      result_ = stepper_.solve(h, now_, middle_, next_);
+      result_ = stepper_.solve(h, tMiddle, now_, middle_, next_);
       count(result_.iterations);
     }
     return result_.converged;
@@ -375,6 +385,7 @@ class VariationalRun {
     now_.fibreLength.swap(next_.fibreLength);
     muscleWork_ += result_.muscleWork;
     passiveWork_ += result_.passiveWork;
+    externalWork_ += result_.externalWork;
   }
 
   void count(int iterations) {
@@ -400,6 +411,7 @@ class VariationalRun {
   Eigen::VectorXd fibreVelocity_;
   double muscleWork_ = 0;
   double passiveWork_ = 0;
+  double externalWork_ = 0;
   std::vector<Eigen::VectorXd> keptActivation_;  ///< one per depth of halving
   typename Stepper::Result result_;
 };

@@ -25,6 +25,22 @@ ExcitationSignal excitationOf(const Trial& trial, const Arm& arm) {
   return {std::vector<double>(trial.times.begin(), trial.times.end()), values};
 }
 
+ExternalForce externalForceOf(const Trial& trial, const Arm& arm) {
+  if (trial.applied.empty()) return {};
+  Eigen::MatrixXd values =
+      Eigen::MatrixXd::Zero(trial.times.size(), arm.skeleton().numCoordinates());
+  for (const AppliedForce& applied : trial.applied) {
+    const int index = arm.skeleton().indexOf(applied.coordinate);
+    if (index < 0) {
+      throw std::invalid_argument(
+          fmt::format("{}: a torque or force acts on '{}', which is not free to move", trial.file,
+                      applied.coordinate));
+    }
+    values.col(index) = applied.values;
+  }
+  return {std::vector<double>(trial.times.begin(), trial.times.end()), std::move(values)};
+}
+
 Eigen::VectorXd startCoordinates(const Trial& trial, const Arm& arm,
                                  const std::map<std::string, double>& given) {
   const auto& free = arm.skeleton().coordinates();
@@ -106,7 +122,8 @@ std::vector<std::string> rangeRemarks(const Arm& arm, const Trajectory& trajecto
     for (Eigen::Index k = 0; k < q.size(); ++k) {
       if (q[k] >= c.rangeMin - margin && q[k] <= c.rangeMax + margin) continue;
       remarks.push_back(fmt::format(
-          "{0} leaves its range, {1:.4g} to {2:.4g} {3}, at {4:.3g} s and reaches {5:.4g} to {6:.4g} "
+          "{0} leaves its range, {1:.4g} to {2:.4g} {3}, at {4:.3g} s and reaches {5:.4g} to "
+          "{6:.4g} "
           "{3}: no passive force of the model holds it",
           c.name, c.rangeMin * unit, c.rangeMax * unit, c.isRotation ? "deg" : "mm",
           trajectory.time[static_cast<std::size_t>(k)], q.minCoeff() * unit, q.maxCoeff() * unit));

@@ -216,6 +216,11 @@ class SensitivityPass {
     arm_.coordinateForces().template add<N>(q_m, v, f, f_q, f_v);
     force_.setZero();  // what of df does not go through dq′
     addPassiveForces(q_m, v);
+    if (!options_.simulation.externalForce.empty()) {
+      const ExternalForce::At external = options_.simulation.externalForce.at(tMiddle);
+      f += external.value;
+      if (timeMoves) force_ += external.slope * middleTime_;
+    }
 
     // muscles: dℓ′ = trialFibre + (V_L/2J) ∂ℓ·dq′
     Matrix f_end = Matrix::Zero();  // df through the fibres that dq′ moves

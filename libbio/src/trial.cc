@@ -14,7 +14,7 @@ namespace bio {
 namespace {
 
 struct Meaning {
-  enum class Kind { time, muscle, coordinate, extra } kind = Kind::extra;
+  enum class Kind { time, muscle, coordinate, applied, extra } kind = Kind::extra;
   std::string name;
   bool inDegrees = false;
 };
@@ -54,6 +54,14 @@ Meaning meaningOf(const Model& model, const Table& table, const std::string& col
   if (const Coordinate* coordinate = findMeasured(model, name)) {
     return {Meaning::Kind::coordinate, name, coordinate->isRotation && table.inDegrees};
   }
+  for (const auto& [ending, ofRotation] : {std::pair{".torque", true}, {".force", false}}) {
+    if (!name.ends_with(ending)) continue;
+    const std::string pushed = name.substr(0, name.rfind('.'));
+    const Coordinate* coordinate = findMeasured(model, pushed);
+    if (coordinate && coordinate->isRotation == ofRotation) {
+      return {Meaning::Kind::applied, pushed, false};
+    }
+  }
   const Coordinate* coordinate = suffix ? findMeasured(model, bare) : nullptr;
   if (coordinate && coordinate->isRotation) return {Meaning::Kind::coordinate, bare, true};
   return {};
@@ -90,21 +98,25 @@ class TrialReader {
       if (meaning.kind == Meaning::Kind::extra) {
         if (!options_.ignoreExtra) {
           fail(
-              fmt::format("column '{}' is neither a muscle nor a coordinate of the model, and "
-                          "columns that are neither are not ignored",
+              fmt::format("column '{}' is neither a muscle nor a coordinate of the model, nor a "
+                          "torque on one, and "
+                          "such columns are not ignored",
                           column));
         }
         trial_.warnings.push_back(fmt::format("{}: column '{}' is ignored", file_, column));
         continue;
       }
       if (meaning.kind == Meaning::Kind::time) continue;
-      const auto [found, isNew] = seen.emplace(meaning.name, column);
+      const bool isApplied = meaning.kind == Meaning::Kind::applied;
+      const auto [found, isNew] = seen.emplace((isApplied ? "." : "") + meaning.name, column);
       if (!isNew) {
         fail(fmt::format("columns '{}' and '{}' both give '{}', must be one", found->second, column,
                          meaning.name));
       }
       if (meaning.kind == Meaning::Kind::muscle) {
         columnOf_[meaning.name] = static_cast<Eigen::Index>(i);
+      } else if (isApplied) {
+        readApplied(static_cast<Eigen::Index>(i), meaning);
       } else {
         readMeasured(static_cast<Eigen::Index>(i), meaning);
       }
@@ -127,6 +139,14 @@ class TrialReader {
     const auto count = static_cast<Eigen::Index>(times.size());
     trial_.measured.push_back({meaning.name, Eigen::Map<Eigen::VectorXd>(times.data(), count),
                                Eigen::Map<Eigen::VectorXd>(values.data(), count)});
+  }
+
+  void readApplied(Eigen::Index column, const Meaning& meaning) {
+    const Eigen::VectorXd values = table_.values.col(column);
+    for (Eigen::Index row = 0; row < values.size(); ++row) {
+      if (!std::isfinite(values[row])) fail(column, row, "is missing, must be given in every row");
+    }
+    trial_.applied.push_back({meaning.name, values});
   }
 
   void readExcitations() {

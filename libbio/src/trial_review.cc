@@ -45,6 +45,25 @@ void reviewExcitation(const std::string& muscle, const Eigen::VectorXd& excitati
   }
 }
 
+constexpr double strongPush = 50;  // [N·m] or [N]
+
+void reviewApplied(const AppliedForce& applied, bool isRotation, std::vector<Remark>& remarks) {
+  const std::string subject =
+      fmt::format("{} on '{}'", isRotation ? "torque" : "force", applied.coordinate);
+  const char* unit = isRotation ? "N·m" : "N";
+  const double largest = applied.values.cwiseAbs().maxCoeff();
+  if (largest > strongPush) {
+    remarks.push_back({subject, fmt::format("reaches {:.4g} {}, usually below {} {}", largest, unit,
+                                            strongPush, unit)});
+  }
+  if (largest == 0) remarks.push_back({subject, "is 0 throughout"});
+  const double jump = steps(applied.values).cwiseAbs().maxCoeff();
+  if (jump > strongPush / 10) {
+    remarks.push_back({subject, fmt::format("jumps by {:.3g} {} between rows, usually below {} {}",
+                                            jump, unit, strongPush / 10, unit)});
+  }
+}
+
 void reviewMotion(const MeasuredMotion& motion, const Coordinate& coordinate, double start,
                   std::vector<Remark>& remarks) {
   const std::string subject = fmt::format("measured '{}'", motion.coordinate);
@@ -82,6 +101,9 @@ std::vector<Remark> reviewTrial(const Trial& trial, const Model& model) {
   for (std::size_t m = 0; m < trial.muscles.size(); ++m) {
     reviewExcitation(trial.muscles[m], trial.excitations.col(static_cast<Eigen::Index>(m)),
                      remarks);
+  }
+  for (const AppliedForce& applied : trial.applied) {
+    reviewApplied(applied, findCoordinate(model, applied.coordinate).isRotation, remarks);
   }
   for (const MeasuredMotion& motion : trial.measured) {
     reviewMotion(motion, findCoordinate(model, motion.coordinate), trial.times(0), remarks);

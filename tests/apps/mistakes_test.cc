@@ -29,6 +29,10 @@ void writeFiles(const ScratchFolder& scratch) {
   scratch.file("high.csv", "time,BIClong\n0,0.1\n0.1,1.2\n0.2,0.1\n");
   scratch.file("negative.csv", "time,BIClong\n0,0.1\n0.1,-0.2\n0.2,0.1\n");
   scratch.file("extra.csv", "time,BIClong,GLUTmax\n0,0.1,0\n0.1,0.1,0\n");
+  scratch.file("torque_gap.csv", "time,BRA,elbow_flexion.torque\n0,0.1,1\n0.1,0.1,\n");
+  scratch.file("torque_locked.csv", "time,BRA,pro_sup.torque\n0,0.1,1\n0.1,0.1,1\n");
+  scratch.file("torque_of_nothing.csv", "time,BRA,knee.torque\n0,0.1,1\n0.1,0.1,1\n");
+  scratch.file("force_on_an_angle.csv", "time,BRA,elbow_flexion.force\n0,0.1,1\n0.1,0.1,1\n");
   scratch.file("one_row.csv", "time,BIClong\n0,0.1\n");
   scratch.file("back.csv", "time,BIClong\n0,0.1\n0.2,0.1\n0.1,0.1\n");
   scratch.file("empty.csv", "");
@@ -183,6 +187,43 @@ INSTANTIATE_TEST_SUITE_P(
          "$/good.csv"}}),
     nameOf);
 
+std::vector<std::string> design(std::vector<std::string> more) {
+  std::vector<std::string> arguments = {"design", model, "emg_data/curl_slow.sto", "--parameters",
+                                        "TRI.radius"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  arguments.insert(arguments.end(), {"--out", "$/out"});
+  return arguments;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Design, EveryMistake,
+    testing::ValuesIn(std::vector<Mistake>{
+        {"NoParameters", {"design", model, "$/good.csv", "--out", "$/out"}, "--parameters"},
+        {"UnknownParameter",
+         {"design", model, "$/good.csv", "--parameters", "TRI.raduis", "--out", "$/out"},
+         "TRI.raduis"},
+        {"UnknownNuisance", design({"--nuisance", "foot.mass"}), "foot.mass"},
+        {"NoiseZero", design({"--noise", "0"}), "--noise"},
+        {"NoiseNaN", design({"--noise", "nan"}), "--noise"},
+        {"RateNegative", design({"--rate", "-1"}), "--rate"},
+        {"TorqueNegative", design({"--torque", "-1"}), "--torque"},
+        {"TorqueRateZero", design({"--torque-rate", "0"}), "--torque-rate"},
+        {"NothingToChange", design({"--torque", "0"}), "--torque"},
+        {"UnknownMuscle", design({"--excite", "GLUTmax"}), "GLUTmax"},
+        {"MuscleTwice", design({"--excite", "BRA,BRA+BRD"}), "BRA"},
+        {"ExcitationAboveOne", design({"--excitation-max", "1.5"}), "--excitation-max"},
+        {"RangeBackwards", design({"--range", "90deg,10deg"}), "--range"},
+        {"RangeOfWords", design({"--range", "low,high"}), "--range"},
+        {"SpeedZero", design({"--speed", "0"}), "--speed"},
+        {"SurpriseNegative", design({"--surprise", "-1"}), "--surprise"},
+        {"KnotsZero", design({"--knots", "0"}), "--knots"},
+        {"OtherIntegrator", design({"--integrator", "rk4"}), "--integrator"},
+        {"UnknownCriterion", design({"--criterion", "G"}), "--criterion"},
+        {"PriorOfAnother", design({"--prior", "hand.mass=0.1"}), "hand.mass"},
+        {"PriorZero", design({"--prior", "TRI.radius=0"}), "--prior"},
+        {"CandidatesNegative", design({"--candidates", "-1"}), "--candidates"}}),
+    nameOf);
+
 INSTANTIATE_TEST_SUITE_P(
     MomentArms, EveryMistake,
     testing::ValuesIn(std::vector<Mistake>{
@@ -216,6 +257,18 @@ INSTANTIATE_TEST_SUITE_P(
         {"ExcitationAboveOne", {"replay", model, "$/high.csv", "--out", "$/out"}, "1.2"},
         {"ExcitationNegative", {"replay", model, "$/negative.csv", "--out", "$/out"}, "-0.2"},
         {"ColumnOfNothing", {"replay", model, "$/extra.csv", "--out", "$/out"}, "GLUTmax"},
+        {"TorqueWithAGap",
+         {"replay", model, "$/torque_gap.csv", "--out", "$/out"},
+         "elbow_flexion.torque"},
+        {"TorqueOnALockedCoordinate",
+         {"replay", model, "$/torque_locked.csv", "--out", "$/out"},
+         "pro_sup"},
+        {"TorqueOnNothing",
+         {"replay", model, "$/torque_of_nothing.csv", "--out", "$/out"},
+         "knee.torque"},
+        {"ForceOnAnAngle",
+         {"replay", model, "$/force_on_an_angle.csv", "--out", "$/out"},
+         "elbow_flexion.force"},
         {"OneRow", {"replay", model, "$/one_row.csv", "--out", "$/out"}, "$/one_row.csv"},
         {"TimeGoesBack", {"replay", model, "$/back.csv", "--out", "$/out"}, "$/back.csv:4"},
         {"EmptyTrial", {"replay", model, "$/empty.csv", "--out", "$/out"}, "$/empty.csv"},

@@ -26,9 +26,10 @@ struct CompareOptions {
   /// [s] > 0, rising; cvode: intervals of the output
   std::vector<double> steps = {0.0002, 0.0003, 0.0005, 0.0008, 0.001,
                                0.002,  0.005,  0.01,   0.02,   0.05};
-  double startTime = 0;  ///< [s]
-  double duration = 0;   ///< [s] > 0
-  int timings = 5;       ///< runs of each cell at least, of which the median counts; ≥ 1
+  double startTime = 0;              ///< [s]
+  double duration = 0;               ///< [s] > 0
+  ExternalForce externalForce = {};  ///< empty: nothing pushes from outside
+  int timings = 5;  ///< runs of each cell at least, of which the median counts; ≥ 1
   double usefulError = 0.017453293;  ///< RMS below which a step counts as stable [rad] > 0
   double stepResolution = 1.02;      ///< ratio at which the bisection for a step ends, > 1
   /// Called between runs with the part of the work that is done, 0 to 1.

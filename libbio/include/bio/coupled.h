@@ -8,6 +8,7 @@
 
 #include "bio/arm.h"
 #include "bio/excitation.h"
+#include "bio/external_force.h"
 
 namespace bio {
 
@@ -39,6 +40,8 @@ struct SimulationOptions {
   double absoluteTolerance = 1e-12;  ///< cvode
   /// Called after every output row with the time reached [s]; return false to stop.
   std::function<bool(double)> progress;
+  /// What pushes the arm from outside; empty: nothing.
+  ExternalForce externalForce = {};
 };
 
 /// How a simulation ended. Anything but `completed` leaves the rows up to that time in place.
@@ -50,9 +53,10 @@ struct Trajectory {
   Eigen::MatrixXd q;         ///< [rad] or [m]
   Eigen::MatrixXd qDot;      ///< [rad/s] or [m/s]
   Eigen::MatrixXd activation;
-  Eigen::MatrixXd fibreLength;  ///< [m]
-  Eigen::VectorXd muscleWork;   ///< done by the muscles on the skeleton since the start [J]
-  Eigen::VectorXd passiveWork;  ///< done by the coordinate forces since the start [J]
+  Eigen::MatrixXd fibreLength;   ///< [m]
+  Eigen::VectorXd muscleWork;    ///< done by the muscles on the skeleton since the start [J]
+  Eigen::VectorXd passiveWork;   ///< done by the coordinate forces since the start [J]
+  Eigen::VectorXd externalWork;  ///< done by what pushes from outside since the start [J]
 
   Outcome outcome = Outcome::completed;
   double failedAt = 0;  ///< [s]; the last time reached if not completed
@@ -78,7 +82,8 @@ ArmState initialState(const Arm& arm, const Eigen::VectorXd& q, const Excitation
 
 /// Plays the excitations through the arm.
 ///
-/// Variational: with v = (q' − q)/h, midpoint quantities m and f = −Σ F_T,i ∂ℓ_i/∂q + passive,
+/// Variational: with v = (q' − q)/h, midpoint quantities m and
+/// f = −Σ F_T,i ∂ℓ_i/∂q + passive + external (at the middle time),
 ///     p  = M(q_m) v − (h/2)(½ vᵀ∂M v − ∂V) − F⁻,    F⁻ = (h/2) f (symmetric) or h f (left)
 ///     p' = M(q_m) v + (h/2)(½ vᵀ∂M v − ∂V) + F⁺,    F⁺ = (h/2) f or 0
 ///     (ℓ'_i − ℓ_i)/h = V(act_i, ℓ_m,i, ℓ_MT,i(q_m))
@@ -89,7 +94,7 @@ ArmState initialState(const Arm& arm, const Eigen::VectorXd& q, const Excitation
 /// noSolution. A step within which a path gains or loses conditional points is taken in two parts
 /// that meet there, since the length jumps.
 ///
-/// @throws std::invalid_argument sizes, step ≤ 0, duration ≤ 0
+/// @throws std::invalid_argument sizes (the external force's too), step ≤ 0, duration ≤ 0
 Trajectory simulate(const Arm& arm, const ExcitationSignal& excitation, const ArmState& start,
                     const SimulationOptions& options);
 
@@ -100,10 +105,11 @@ struct Energy {
 };
 Energy energyOf(const Arm& arm, const Eigen::VectorXd& q, const Eigen::VectorXd& qDot);
 
-/// E(t) − E(0) − work of muscles and passive forces at every row [J]: what the integrator made up.
+/// E(t) − E(0) − work of muscles, passive and external forces at every row [J]: what the integrator
+/// made up.
 Eigen::VectorXd energyImbalance(const Arm& arm, const Trajectory& trajectory);
 
-/// max over time of |E(t) − E(0) − work of muscles and passive forces| [J].
+/// max over time of |energyImbalance| [J].
 double energyError(const Arm& arm, const Trajectory& trajectory);
 
 /// What the muscles do along a motion; rows = muscles, columns = times.

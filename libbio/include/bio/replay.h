@@ -14,6 +14,10 @@ namespace bio {
 /// @throws std::invalid_argument if the trial lacks one of them
 ExcitationSignal excitationOf(const Trial& trial, const Arm& arm);
 
+/// What pushes the arm from outside in a trial; none if the trial has no such column.
+/// @throws std::invalid_argument if it pushes a coordinate that is not free
+ExternalForce externalForceOf(const Trial& trial, const Arm& arm);
+
 /// Start values of the free coordinates [rad] or [m]: as given, else the first measured value, else
 /// the default.
 /// @throws std::invalid_argument for a name that is not free, or a value that is not finite
@@ -31,8 +35,8 @@ struct MeasuredError {
 MeasuredError compareWithMeasured(const Arm& arm, const Trajectory& trajectory,
                                   const MeasuredMotion& measured);
 
-/// One sentence for each free coordinate that leaves its range in the model, and when: nothing but the
-/// model's own passive forces holds it there.
+/// One sentence for each free coordinate that leaves its range in the model, and when: nothing but
+/// the model's own passive forces holds it there.
 std::vector<std::string> rangeRemarks(const Arm& arm, const Trajectory& trajectory);
 
 /// States as OpenSim 4 names them: value and speed of every coordinate of the model (locked and

@@ -18,31 +18,39 @@ struct MeasuredMotion {
   Eigen::VectorXd values;  ///< [rad] or [m], finite
 };
 
+/// What pushes one coordinate from outside, in every row.
+struct AppliedForce {
+  std::string coordinate;
+  Eigen::VectorXd values;  ///< [N·m] or [N], finite; positive pushes the coordinate up
+};
+
 /// What drives a simulation, and what was measured beside it.
 struct Trial {
   std::string file;
   Eigen::VectorXd times;             ///< [s] strictly rising, at least 2
   std::vector<std::string> muscles;  ///< every enabled muscle of the model, in its order
   Eigen::MatrixXd excitations;       ///< 0 to 1; one row per time, one column per muscle
+  std::vector<AppliedForce> applied;
   std::vector<MeasuredMotion> measured;
   std::vector<std::string> warnings;  ///< one line each
 };
 
 struct TrialOptions {
-  bool ignoreExtra =
-      false;               ///< skip columns that are neither muscle nor coordinate, with a warning
-  double baseline = 0.01;  ///< excitation of a muscle without a column, 0 to 1
+  bool ignoreExtra = false;  ///< skip columns that mean nothing here, with a warning
+  double baseline = 0.01;    ///< excitation of a muscle without a column, 0 to 1
 };
 
 /// Reads a .sto, .mot or .csv table as a trial of the model: column `time` [s], one column per
 /// driven muscle (0 to 1 in every row), and a column per measured coordinate – an angle is in
-/// degrees when the header says inDegrees=yes or the name ends in `_deg`, else in radians.
+/// degrees when the header says inDegrees=yes or the name ends in `_deg`, else in radians. A column
+/// `elbow_flexion.torque` [N·m] (of a translation: `.force` [N]) is what pushes from outside.
 /// OpenSim's paths count as names:
 /// `/forceset/BRA/activation` is not an excitation, `/forceset/BRA` and
 /// `/jointset/elbow/elbow_flexion/value` are understood. Empty cells and NaN: not measured.
 /// A muscle without a column gets the baseline, with a warning.
-/// @throws FileError naming file, column and row for a value outside its range, a muscle with gaps,
-/// a column that is neither, two columns of one meaning, or a table that table_file.h refuses
+/// @throws FileError naming file, column and row for a value outside its range, a muscle or a
+/// torque with gaps, a column that is neither, two columns of one meaning, or a table that
+/// table_file.h refuses
 Trial readTrial(const std::filesystem::path& file, const Model& model,
                 const TrialOptions& options = {});
 

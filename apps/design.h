@@ -1,0 +1,12 @@
+#pragma once
+
+#include <memory>
+
+#include "command.h"
+
+namespace app {
+
+/// fisherhill design: the experiment that tells most about chosen parameters.
+std::unique_ptr<Command> designCommand();
+
+}  // namespace app

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <string>
+#include <vector>
+
+namespace bio {
+
+/// Generalised forces that something outside puts on the free coordinates – a dynamometer, an
+/// exoskeleton: straight lines between rows, 0 before the first row and behind the last.
+class ExternalForce {
+ public:
+  /// None: no rows, no coordinates.
+  ExternalForce() = default;
+  /// @param times   [s], strictly rising, at least one
+  /// @param values  rows = times, columns = free coordinates [N·m] or [N], finite; positive pushes
+  ///   the coordinate up
+  /// @throws std::invalid_argument sizes that differ, times not rising, a value that is not finite
+  ExternalForce(std::vector<double> times, Eigen::MatrixXd values);
+
+  bool empty() const { return times_.empty(); }
+  int numCoordinates() const { return static_cast<int>(values_.rows()); }
+  const std::vector<double>& times() const { return times_; }
+
+  /// What it is at t, and how it changes there.
+  struct At {
+    Eigen::VectorXd value;  ///< [N·m] or [N]
+    Eigen::VectorXd slope;  ///< [1/s of that]; at a row, of the line that begins there
+  };
+  At at(double t) const;
+
+  /// Adds the forces at t to `force` (numCoordinates() entries); nothing if empty. `hint` speeds up
+  /// forward playing: any value is allowed, it is set to the row used.
+  template <class Force>
+  void add(double t, std::size_t& hint, Force& force) const {
+    if (empty() || t < times_.front() || t > times_.back()) return;
+    const std::size_t last = times_.size() - 1;
+    if (t >= times_[last]) {
+      force += values_.col(static_cast<Eigen::Index>(last));
+      return;
+    }
+    if (hint >= last || times_[hint] > t) hint = 0;
+    while (times_[hint + 1] <= t) ++hint;
+    const double w = (t - times_[hint]) / (times_[hint + 1] - times_[hint]);
+    const auto k = static_cast<Eigen::Index>(hint);
+    force += (1 - w) * values_.col(k) + w * values_.col(k + 1);
+  }
+
+ private:
+  std::vector<double> times_;
+  Eigen::MatrixXd values_;  ///< one column per row of the table: contiguous in time
+};
+
+}  // namespace bio
