@@ -1,3 +1,4 @@
+#include "calibrate.h"
 #include "check.h"
 #include "command.h"
 #include "compare.h"
@@ -12,6 +13,7 @@ namespace app {
 
 std::vector<std::unique_ptr<Command>> allCommands() {
   std::vector<std::unique_ptr<Command>> commands;
+  commands.push_back(calibrateCommand());
   commands.push_back(checkCommand());
   commands.push_back(compareCommand());
   commands.push_back(emgCommand());

@@ -78,8 +78,12 @@ void LeastSquares::requireSize(const VectorXd& theta) const {
 double LeastSquares::cost(const VectorXd& theta) const {
   requireSize(theta);
   const MatrixXd r = residuals(predictor_.outputs(theta));
-  double cost =
-      0.5 * measurements_.covariance.whiten(r.reshaped(), measurements_.observed).squaredNorm();
+  const MatrixXd white = measurements_.covariance.whiten(r.reshaped(), measurements_.observed);
+  double cost = 0;
+  for (Index k = 0; k < r.cols(); ++k) {
+    const double squared = white.middleRows(k * r.rows(), r.rows()).squaredNorm();
+    cost += 0.5 * evaluate(measurements_.loss, squared, r.rows()).value;
+  }
   for (Index i = 0; i < theta.size(); ++i)
     if (const auto& prior = parameters_[static_cast<std::size_t>(i)].prior)
       cost += 0.5 * std::pow((theta[i] - prior->mean) / prior->deviation, 2);
@@ -97,9 +101,18 @@ LeastSquares::Linearised LeastSquares::linearise(const VectorXd& theta) const {
                                             prediction.gamma.rows(), prediction.gamma.cols(),
                                             at.residuals.size(), p));
   const OutputCovariance& covariance = measurements_.covariance;
-  const MatrixXd r = covariance.whiten(at.residuals.reshaped(), measurements_.observed);
-  const MatrixXd gamma = covariance.whiten(prediction.gamma, measurements_.observed);
-  at.cost = 0.5 * r.squaredNorm();
+  MatrixXd r = covariance.whiten(at.residuals.reshaped(), measurements_.observed);
+  MatrixXd gamma = covariance.whiten(prediction.gamma, measurements_.observed);
+  at.cost = 0;
+  const Index h = at.residuals.rows();
+  for (Index k = 0; k < at.residuals.cols(); ++k) {
+    const LossValue loss = evaluate(measurements_.loss, r.middleRows(k * h, h).squaredNorm(), h);
+    at.cost += 0.5 * loss.value;
+    if (loss.slope == 1) continue;
+    const double root = std::sqrt(loss.slope);
+    r.middleRows(k * h, h) *= root;
+    gamma.middleRows(k * h, h) *= root;
+  }
   at.gradient = -gamma.transpose() * r;
   at.information = gamma.transpose() * gamma;
   for (Index i = 0; i < p; ++i)
@@ -116,7 +129,8 @@ LeastSquares::Linearised LeastSquares::linearise(const VectorXd& theta) const {
 
 MatrixXd LeastSquares::hessian(const VectorXd& theta, const Linearised& at) const {
   if (!hasCurvature())
-    throw std::logic_error("least squares: this predictor has no second derivatives");
+    throw std::logic_error(
+        "least squares: second derivatives need a predictor that has them, and no robust loss");
   // w_k = Σ_k⁻¹ r_k, by whitening the identity: Σ⁻¹ = L⁻ᵀL⁻¹ of what was observed
   const Index h = at.residuals.rows();
   MatrixXd w(h, at.residuals.cols());

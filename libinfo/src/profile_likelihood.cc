@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -47,6 +48,69 @@ Profile profileLikelihood(const LeastSquares& problem, const Estimate& estimated
     start = best.parameters;
   }
   return profile;
+}
+
+ProfileInterval profileInterval(const LeastSquares& problem, const Estimate& estimated,
+                                Eigen::Index parameter, double deviation,
+                                const EstimateOptions& options) {
+  if (!(deviation > 0 && std::isfinite(deviation)))
+    throw std::invalid_argument(
+        fmt::format("profile interval: deviation {} must be finite and > 0", deviation));
+  ProfileInterval result;
+  result.profile = profileLikelihood(problem, estimated, parameter, {}, options);
+  const double z = normalQuantile(options.confidence);
+  const double centre = estimated.parameters[parameter];
+  const Parameter& free = problem.parameters()[static_cast<std::size_t>(parameter)];
+
+  // of one value: how many deviations of the likelihood it is away
+  ProfilePoint from{centre, estimated.cost, estimated.parameters, true};
+  const auto rootAt = [&](double value) {
+    Estimate near = estimated;
+    near.parameters = from.parameters;
+    const Profile one = profileLikelihood(problem, near, parameter, {value}, options);
+    from = one.points.front();
+    result.profile.points.push_back(from);
+    return std::sqrt(2 * std::max(0.0, from.cost - estimated.cost));
+  };
+  const auto search = [&](double side, double bound, bool& atBound) {
+    from = {centre, estimated.cost, estimated.parameters, true};
+    double inside = centre, rootInside = 0;
+    for (double steps = 1; steps <= 8; steps *= 2) {
+      double outside = centre + side * steps * z * deviation;
+      const bool last = side * (outside - bound) >= 0;
+      if (last) outside = bound;
+      if (outside == inside) break;
+      double rootOutside = rootAt(outside);
+      if (rootOutside < z) {
+        inside = outside;
+        rootInside = rootOutside;
+        if (!last) continue;
+        atBound = true;
+        return bound;
+      }
+      for (int i = 0; i < 12; ++i) {
+        const double middle =
+            inside + (z - rootInside) / (rootOutside - rootInside) * (outside - inside);
+        if (std::abs(middle - inside) < 0.01 * deviation ||
+            std::abs(middle - outside) < 0.01 * deviation)
+          return middle;
+        const double root = rootAt(middle);
+        (root < z ? inside : outside) = middle;
+        (root < z ? rootInside : rootOutside) = root;
+      }
+      return 0.5 * (inside + outside);
+    }
+    if (inside == bound) {
+      atBound = true;
+      return bound;
+    }
+    return side * std::numeric_limits<double>::infinity();
+  };
+  result.lower = search(-1, free.lower, result.lowerAtBound);
+  result.upper = search(1, free.upper, result.upperAtBound);
+  std::sort(result.profile.points.begin(), result.profile.points.end(),
+            [](const ProfilePoint& a, const ProfilePoint& b) { return a.value < b.value; });
+  return result;
 }
 
 }  // namespace info

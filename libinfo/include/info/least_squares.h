@@ -7,6 +7,7 @@
 
 #include "info/output_covariance.h"
 #include "info/parameter.h"
+#include "info/robust_loss.h"
 
 namespace info {
 
@@ -36,6 +37,7 @@ struct Measurements {
   Eigen::MatrixXd outputs;        ///< ỹ: outputs × samples
   OutputCovariance covariance;    ///< of the noise on them
   ObservationMask observed = {};  ///< false: not measured, the entry of `outputs` is not read
+  RobustLoss loss = {};           ///< what a residual costs; gaussian: least squares
 };
 
 /// The weighted least-squares cost of a model against data, with Gaussian priors,
@@ -43,6 +45,9 @@ struct Measurements {
 /// the negative log posterior up to a constant. Thesis (2.4), there without priors, with
 ///     dβ/dθ = −Σ_k Γ_kᵀΣ_k⁻¹r_k + (θ − μ)/σ²                     (2.5), whose print lacks the
 ///     minus d²β/dθ² = Σ_k Γ_kᵀΣ_k⁻¹Γ_k − Σ_k r_kᵀΣ_k⁻¹ d²y_k/dθ² + 1/σ²   (2.9)
+///
+/// With a robust loss ½r_kᵀΣ_k⁻¹r_k becomes ½ρ(r_kᵀΣ_k⁻¹r_k), and in gradient and information each
+/// sample carries the weight ρ′ (iteratively reweighted least squares).
 ///
 /// Immutable; may be used from several threads at once if the predictor may.
 class LeastSquares {
@@ -56,17 +61,20 @@ class LeastSquares {
   const std::vector<Parameter>& parameters() const { return parameters_; }
   const Measurements& measurements() const { return measurements_; }
   const Predictor& predictor() const { return predictor_; }
-  bool hasCurvature() const { return static_cast<bool>(predictor_.contractedCurvature); }
+  /// Second derivatives there are for least squares proper only.
+  bool hasCurvature() const {
+    return predictor_.contractedCurvature && measurements_.loss.kind == RobustLoss::Kind::gaussian;
+  }
   /// Start values of the parameters.
   Eigen::VectorXd start() const;
   /// Number of values measured.
   Eigen::Index observations() const;
 
   struct Linearised {
-    double cost;                  ///< β; not finite where the model is undefined
-    Eigen::VectorXd gradient;     ///< dβ/dθ
-    Eigen::MatrixXd information;  ///< ΣΓᵀΣ⁻¹Γ + 1/σ², the Gauss–Newton Hessian (2.10)
-    Eigen::MatrixXd residuals;    ///< ỹ − y: outputs × samples, 0 where not observed
+    double cost;               ///< β; not finite where the model is undefined
+    Eigen::VectorXd gradient;  ///< dβ/dθ
+    Eigen::MatrixXd information;  ///< Σρ′ΓᵀΣ⁻¹Γ + 1/σ², the Gauss–Newton Hessian (2.10)
+    Eigen::MatrixXd residuals;  ///< ỹ − y: outputs × samples, 0 where not observed
   };
 
   /// β(θ); +∞ where the prediction is not finite.

@@ -34,4 +34,24 @@ Profile profileLikelihood(const LeastSquares& problem, const Estimate& estimated
                           Eigen::Index parameter, const std::vector<double>& values,
                           const EstimateOptions& options = {});
 
+/// The values of a parameter at which its profile meets the threshold: a confidence interval that
+/// may be skew.
+struct ProfileInterval {
+  Profile profile;
+  double lower;  ///< −∞ if the profile stays below the threshold down to the lowest value tried
+  double upper;  ///< +∞ likewise
+  bool lowerAtBound = false;  ///< the parameter's bound lies within the confidence region
+  bool upperAtBound = false;
+};
+
+/// Searches outwards from the estimate: profile points at 1, 2, 4 and 8 times z·deviation on each
+/// side, until one is beyond the threshold; the crossing is sought by regula falsi on the signed
+/// root √(2(β − β̂)), nearly straight in the parameter, to 1 % of the deviation.
+///
+/// @param deviation of the parameter, as the Cramér–Rao bound gives it [its unit] > 0, finite
+/// @throws std::invalid_argument for another deviation, and what profileLikelihood throws
+ProfileInterval profileInterval(const LeastSquares& problem, const Estimate& estimated,
+                                Eigen::Index parameter, double deviation,
+                                const EstimateOptions& options = {});
+
 }  // namespace info

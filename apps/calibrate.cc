@@ -1,0 +1,317 @@
+#include "calibrate.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <numbers>
+#include <set>
+
+#include "arm_options.h"
+#include "bio/osim_file.h"
+#include "bio/replay.h"
+#include "calibrate_report.h"
+#include "info/version.h"
+#include "progress_bar.h"
+#include "result.h"
+
+namespace app {
+namespace {
+
+constexpr double radian = 180 / std::numbers::pi;  ///< in degrees
+
+/// NAME=A:B
+struct NamedPair {
+  std::string name;
+  double first, second;
+};
+
+NamedPair parsePair(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::size_t colon = text.find(':', equals == text.npos ? 0 : equals);
+  if (equals == text.npos || equals == 0 || colon == text.npos) {
+    throw std::invalid_argument(fmt::format("'{}' must be NAME=NUMBER:NUMBER", text));
+  }
+  return {text.substr(0, equals), parseNumber(text.substr(equals + 1, colon - equals - 1)),
+          parseNumber(text.substr(colon + 1))};
+}
+
+/// Names are kept as typed; the library knows what they mean.
+std::vector<NamedPair> parsePairs(const std::vector<std::string>& texts, const char* option) {
+  std::vector<NamedPair> pairs;
+  for (const std::string& text : texts) {
+    try {
+      pairs.push_back(parsePair(text));
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("{}: {}", option, error.what()));
+    }
+    for (std::size_t i = 0; i + 1 < pairs.size(); ++i) {
+      if (pairs[i].name == pairs.back().name) {
+        throw std::invalid_argument(fmt::format("{}: '{}' is given twice", option, pairs[i].name));
+      }
+    }
+  }
+  return pairs;
+}
+
+/// The trial as a model without EMG parameters needs it: the excitations that drove the muscles,
+/// with rows wherever they bend.
+bio::Table drivenTable(const bio::Trial& trial, const bio::TrialSet& set,
+                       const bio::EmgMapping& mapping) {
+  const std::vector<std::string> muscles = bio::muscleNames(set.arm());
+  const bio::ExcitationSignal driven =
+      bio::drivenExcitation(bio::excitationOf(trial, set.arm()), muscles, mapping);
+  const double first = trial.times[0], last = trial.times[trial.times.size() - 1];
+  std::set<double> times(trial.times.begin(), trial.times.end());
+  for (const double t : driven.times()) {
+    if (t > first && t < last) times.insert(t);
+  }
+  bio::Table table;
+  table.name = "driven excitations";
+  table.columns = {"time"};
+  table.columns.insert(table.columns.end(), muscles.begin(), muscles.end());
+  const auto n = static_cast<Eigen::Index>(muscles.size());
+  const auto measured = static_cast<Eigen::Index>(trial.measured.size());
+  table.values = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(times.size()),
+                                           1 + n + measured, std::nan(""));
+  Eigen::Index row = 0;
+  std::size_t hint = 0;
+  for (const double t : times) {
+    table.values(row, 0) = t;
+    driven.at(t, hint, table.values.row(row).segment(1, n).transpose());
+    ++row;
+  }
+  for (Eigen::Index k = 0; k < measured; ++k) {
+    const bio::MeasuredMotion& motion = trial.measured[static_cast<std::size_t>(k)];
+    table.columns.push_back(motion.coordinate);
+    for (Eigen::Index i = 0; i < motion.times.size(); ++i) {
+      const auto place = std::distance(times.begin(), times.find(motion.times[i]));
+      table.values(place, 1 + n + k) = motion.values[i];
+    }
+  }
+  return table;
+}
+
+class Calibrate : public Command {
+ public:
+  About about() const override {
+    return {"calibrate", "Estimate parameters of a model from measured motions",
+            "fisherhill calibrate models/elbow8.osim emg_data/curl_slow.sto --hold-out "
+            "emg_data/curl_fast.sto --parameters TRI.radius,hand.mass --out out/calibrate"};
+  }
+
+  void addOptions(CLI::App& options) override {
+    options.add_option("MODEL", model_, "model (.osim)")
+        ->required()
+        ->check(CLI::ExistingFile)
+        ->type_name("");
+    options.add_option("TRIAL", trials_, "trials to estimate from, with a measured angle")
+        ->required()
+        ->check(CLI::ExistingFile)
+        ->type_name("");
+    const std::string group = "Calibration";
+    const auto list = [&](const char* name, std::vector<std::string>& target, const char* text) {
+      return options.add_option(name, target, text)
+          ->allow_extra_args(false)
+          ->delimiter(',')
+          ->group(group);
+    };
+    list("--parameters", parameters_, "what to estimate, by name, e.g. TRI.radius,hand.mass")
+        ->required()
+        ->type_name("NAMES");
+    list("--hold-out", heldOut_, "trial to test the estimate on; may be repeated")
+        ->check(CLI::ExistingFile)
+        ->type_name("TRIAL");
+    options
+        .add_flag("--own-start", ownStart_,
+                  "estimate where each trial starts, and how fast, as well")
+        ->group(group);
+    options.add_flag("--no-priors", noPriors_, "let bounds alone hold the parameters")
+        ->group(group);
+    list("--prior", priors_,
+         "what is known beforehand instead of the default, in the unit of "
+         "the parameter; may be repeated")
+        ->type_name("NAME=MEAN:SD");
+    list("--bounds", bounds_, "bounds instead of the default; may be repeated")
+        ->type_name("NAME=LOW:HIGH");
+    options
+        .add_option("--noise-deg", noise_,
+                    "standard deviation of the measured angle; default: from the residuals and "
+                    "their autocorrelation")
+        ->check(CLI::PositiveNumber)
+        ->type_name("DEG")
+        ->group(group);
+    options.add_option("--loss", loss_, "gaussian, or huber or student against outliers")
+        ->check(CLI::IsMember({"gaussian", "huber", "student"}))
+        ->capture_default_str()
+        ->group(group);
+    options.add_option("--starts", starts_, "starts to estimate from, the model's values first")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str()
+        ->type_name("N")
+        ->group(group);
+    list("--profile", profile_, "parameters whose profile likelihood is computed")
+        ->type_name("NAMES");
+    options
+        .add_option("--bootstrap", bootstrap_,
+                    "estimate again from so many resamples of the residuals")
+        ->check(CLI::Range(20, 100000))
+        ->type_name("N")
+        ->group(group);
+    addSimulationOptions(options, simulation_);
+  }
+
+  ExitStatus run(const CommandContext& context) override {
+    const bio::CalibrationOptions typed = calibrationOptions(context);
+    std::vector<std::string> names = {"calibrated.osim"};
+    for (std::size_t i = 0; i < trials_.size() + heldOut_.size(); ++i) {
+      names.push_back(drivenName(i));
+    }
+    OutputFolder folder(context, names);
+    Summary summary(context);
+    summary.addInput(model_);
+    for (const auto* files : {&trials_, &heldOut_}) {
+      for (const std::string& file : *files) summary.addInput(file);
+    }
+    mustDiffer(summary);
+
+    const bio::Model model = bio::readOsim(model_);
+    for (const std::string& warning : model.warnings) summary.warn(warning);
+    const bio::TrialSet training(model, armOptions(simulation_), read(trials_, model, summary),
+                                 typed.trials);
+    for (const std::string& warning : training.arm().warnings()) summary.warn(warning);
+    std::optional<bio::TrialSet> heldOut;
+    if (!heldOut_.empty()) {
+      bio::TrialSetOptions others = typed.trials;
+      others.ownStart = false;
+      heldOut.emplace(model, armOptions(simulation_), read(heldOut_, model, summary), others);
+    }
+
+    bio::CalibrationOptions options = typed;
+    bio::Calibration calibration;
+    {
+      ProgressBar bar("calibrate");
+      options.progress = [&](double share) {
+        bar.update(share);
+        return true;
+      };
+      calibration = bio::calibrate(training, heldOut ? &*heldOut : nullptr, options);
+    }
+    const CalibrateFindings findings{model_, training, heldOut ? &*heldOut : nullptr, options,
+                                     calibration};
+    tellCalibrate(findings, summary);
+    if (calibration.calibrated) {
+      writeModel(findings, summary, folder);
+      writeDriven(findings, folder);
+    }
+    deliver(context, summary, calibrateReport(findings), folder);
+    return calibration.failure.empty() && calibration.converged ? ExitStatus::done
+                                                                : ExitStatus::answerIsNo;
+  }
+
+ private:
+  static std::string drivenName(std::size_t i) { return fmt::format("driven_{}.sto", i + 1); }
+
+  bio::CalibrationOptions calibrationOptions(const CommandContext& context) const {
+    bio::CalibrationOptions options;
+    options.trials.parameters = parameters_;
+    options.trials.ownStart = ownStart_;
+    options.trials.initial = byName(simulation_.initial);
+    options.trials.simulation = simulationOptions(simulation_, 0, 1);
+    options.trials.threads = context.threads;
+    options.priors = !noPriors_;
+    for (const NamedPair& prior : parsePairs(priors_, "--prior")) {
+      options.prior[prior.name] = {prior.first, prior.second};
+    }
+    for (const NamedPair& bounds : parsePairs(bounds_, "--bounds")) {
+      options.bounds[bounds.name] = {bounds.first, bounds.second};
+    }
+    if (noise_) options.noise = *noise_ / radian;
+    options.loss.kind = loss_ == "huber"     ? info::RobustLoss::Kind::huber
+                        : loss_ == "student" ? info::RobustLoss::Kind::student
+                                             : info::RobustLoss::Kind::gaussian;
+    options.starts = starts_;
+    options.seed = context.seed;
+    options.profile = profile_;
+    options.bootstrap = bootstrap_.value_or(0);
+    return options;
+  }
+
+  /// A trial that is estimated from twice counts twice, and one held out must not be estimated
+  /// from.
+  void mustDiffer(const Summary& summary) const {
+    const auto& inputs = summary.inputs();
+    for (std::size_t i = 1; i < inputs.size(); ++i) {
+      for (std::size_t j = i + 1; j < inputs.size(); ++j) {
+        if (inputs[i].sha256 != inputs[j].sha256) continue;
+        const bool between = i <= trials_.size() && j > trials_.size();
+        throw std::invalid_argument(
+            between ? fmt::format("{}: is held out, and estimated from as {}", inputs[j].path,
+                                  inputs[i].path)
+                    : fmt::format("{}: is the same trial as {}", inputs[j].path, inputs[i].path));
+      }
+    }
+  }
+
+  std::vector<bio::Trial> read(const std::vector<std::string>& files, const bio::Model& model,
+                               Summary& summary) const {
+    std::vector<bio::Trial> trials;
+    for (const std::string& file : files) {
+      trials.push_back(bio::readTrial(file, model, {simulation_.ignoreExtra}));
+      for (const std::string& warning : trials.back().warnings) summary.warn(warning);
+    }
+    return trials;
+  }
+
+  void writeModel(const CalibrateFindings& f, const Summary& summary, OutputFolder& folder) const {
+    bio::Model model = f.calibration.calibrated->model;
+    std::string text =
+        fmt::format("Calibrated by FisherHill {} ({})", info::version(), summary.commandLine());
+    for (std::size_t i = 0; i < summary.inputs().size(); ++i) {
+      const char* what = i == 0 ? "from" : i <= trials_.size() ? "to" : "tested on";
+      text += fmt::format("; {} {} SHA-256 {}", what, summary.inputs()[i].path,
+                          summary.inputs()[i].sha256);
+    }
+    for (const bio::CalibratedParameter& one : f.calibration.parameters) {
+      if (!one.ofTrial) text += "; " + estimateWords(one);
+    }
+    model.credits += model.credits.empty() ? text : ". " + text;
+    folder.writeFile("calibrated.osim", [&](const std::filesystem::path& path) {
+      bio::rewriteOsim(model_, model, path);
+    });
+  }
+
+  void writeDriven(const CalibrateFindings& f, OutputFolder& folder) const {
+    const bio::EmgMapping& mapping = f.calibration.calibrated->mapping;
+    const bool calibrated = std::any_of(
+        f.calibration.parameters.begin(), f.calibration.parameters.end(),
+        [](const bio::CalibratedParameter& one) { return one.asked.name.starts_with("emg."); });
+    if (!calibrated) return;
+    std::size_t number = 0;
+    for (const bio::TrialSet* set : {&f.training, f.heldOut}) {
+      if (!set) continue;
+      for (const bio::Trial& trial : set->trials()) {
+        folder.writeFile(drivenName(number++), [&](const std::filesystem::path& path) {
+          bio::writeTable(drivenTable(trial, *set, mapping), path);
+        });
+      }
+    }
+  }
+
+  std::string model_;
+  std::vector<std::string> trials_, heldOut_, parameters_, priors_, bounds_, profile_;
+  bool ownStart_ = false, noPriors_ = false;
+  std::optional<double> noise_;
+  std::string loss_ = "gaussian";
+  int starts_ = 1;
+  std::optional<int> bootstrap_;
+  SimulationOptions simulation_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> calibrateCommand() {
+  return std::make_unique<Calibrate>();
+}
+
+}  // namespace app

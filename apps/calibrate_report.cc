@@ -1,0 +1,412 @@
+#include "calibrate_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "text.h"
+
+namespace app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr double radian = 180 / std::numbers::pi;  ///< in degrees
+
+double rmse(const bio::TrialSet& set, const Eigen::MatrixXd& predicted) {
+  return std::sqrt(set.meanSquare(predicted)) * radian;
+}
+
+std::string withUnit(double value, const std::string& unit, int digits = 4) {
+  return numberText(value, digits) + (unit.empty() ? "" : " " + unit);
+}
+
+std::vector<double> degrees(const Eigen::VectorXd& values) {
+  const Eigen::VectorXd result = values * radian;
+  return {result.begin(), result.end()};
+}
+
+/// Where the samples of a series begin.
+Eigen::Index beginOf(const bio::TrialSet& set, std::size_t series) {
+  Eigen::Index begin = 0;
+  for (std::size_t i = 0; i < series; ++i) begin += set.series()[i].values.size();
+  return begin;
+}
+
+Figure overlay(const bio::TrialSet& set, std::size_t index, const Eigen::MatrixXd& before,
+               const Eigen::MatrixXd& after, const char* role) {
+  const bio::MeasuredSeries& series = set.series()[index];
+  const Eigen::Index begin = beginOf(set, index), n = series.values.size();
+  const std::string& file = set.trials()[series.trial].file;
+  const Eigen::VectorXd was = before.middleCols(begin, n).transpose();
+  const Eigen::VectorXd is = after.middleCols(begin, n).transpose();
+  const auto rms = [&](const Eigen::VectorXd& y) {
+    return std::sqrt((y - series.values).squaredNorm() / static_cast<double>(n)) * radian;
+  };
+  Figure figure{.title = fmt::format("{} ({})", file, role),
+                .xLabel = "Time [s]",
+                .yLabel = fmt::format("{} [deg]", series.coordinate),
+                .caption = fmt::format("{:.3g} deg RMS with the model as it was, {:.3g} deg with "
+                                       "the calibrated one.",
+                                       rms(was), rms(is))};
+  figure.series.push_back({.name = "measured",
+                           .x = series.times,
+                           .y = degrees(series.values),
+                           .style = SeriesStyle::points});
+  figure.series.push_back(
+      {.name = "before", .x = series.times, .y = degrees(was), .style = SeriesStyle::dashed});
+  figure.series.push_back({.name = "calibrated", .x = series.times, .y = degrees(is)});
+  return figure;
+}
+
+Figure residualFigure(const CalibrateFindings& f) {
+  Figure figure{.title = "Residuals",
+                .xLabel = "Time [s]",
+                .yLabel = "Measured − calibrated [deg]",
+                .caption =
+                    "What the calibrated model leaves. Noise would scatter about 0; slow "
+                    "waves are what the model does not say."};
+  const auto add = [&](const bio::TrialSet& set, const Eigen::MatrixXd& after, bool held) {
+    for (std::size_t i = 0; i < set.series().size() && figure.series.size() < 8; ++i) {
+      const bio::MeasuredSeries& series = set.series()[i];
+      const Eigen::VectorXd r =
+          series.values - after.middleCols(beginOf(set, i), series.values.size()).transpose();
+      figure.series.push_back(
+          {.name = set.trials()[series.trial].file + (held ? " (held out)" : ""),
+           .x = series.times,
+           .y = degrees(r),
+           .style = held ? SeriesStyle::dashed : SeriesStyle::line});
+    }
+  };
+  add(f.training, f.calibration.after, false);
+  if (f.heldOut) add(*f.heldOut, f.calibration.heldOutAfter, true);
+  return figure;
+}
+
+/// Mean interval between measured values of the first series [s].
+double interval(const bio::TrialSet& set) {
+  const std::vector<double>& times = set.series().front().times;
+  return times.size() < 2 ? 0.0
+                          : (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+}
+
+Figure autocorrelationFigure(const CalibrateFindings& f) {
+  const bio::ResidualNoise& noise = f.calibration.noise;
+  const double step = interval(f.training);
+  const double bound = 2 / std::sqrt(static_cast<double>(f.calibration.after.size()));
+  Figure figure{.title = "Autocorrelation of the residuals",
+                .xLabel = "Lag [s]",
+                .yLabel = "Correlation [1]",
+                .caption = "Within the band, white noise."};
+  Series series{.name = "residuals"};
+  Series band{.name = "white noise", .style = SeriesStyle::dashed};
+  for (std::size_t k = 0; k < noise.autocorrelation.size(); ++k) {
+    const double lag = static_cast<double>(k) * step;
+    series.x.push_back(lag);
+    series.y.push_back(noise.autocorrelation[k]);
+    band.x.push_back(lag);
+    band.y.push_back(0);
+    band.bandLow.push_back(-bound);
+    band.bandHigh.push_back(bound);
+  }
+  figure.series = {std::move(series), std::move(band)};
+  return figure;
+}
+
+std::string intervalText(double lower, double upper) {
+  if (std::isnan(lower) || std::isnan(upper)) return "–";
+  const auto end = [](double x) {
+    return std::isinf(x) ? std::string(x < 0 ? "−∞" : "∞") : numberText(x);
+  };
+  return fmt::format("{} … {}", end(lower), end(upper));
+}
+
+Table estimateTable(const CalibrateFindings& f) {
+  const bool bootstrapped = f.options.bootstrap > 0;
+  Table table{"",
+              {"parameter", "unit", "model", "estimate", "± sd", "95 % interval",
+               "known beforehand", "data alone", "identifiable"},
+              {}};
+  table.columns[5] = fmt::format("{:g} % interval", f.options.confidence * 100);
+  if (!f.options.profile.empty()) table.columns.push_back("profile interval");
+  if (bootstrapped) table.columns.push_back("bootstrap interval");
+  for (const bio::CalibratedParameter& one : f.calibration.parameters) {
+    const auto& prior = one.asked.prior;
+    std::vector<std::string> row = {
+        one.asked.name,
+        one.asked.unit,
+        numberText(one.asked.start),
+        numberText(one.value),
+        numberText(one.deviation, 3),
+        intervalText(one.lower, one.upper),
+        prior ? fmt::format("{} ± {}", numberText(prior->mean), numberText(prior->deviation, 3))
+              : intervalText(one.asked.lower, one.asked.upper),
+        std::isinf(one.determinacy.bound) ? "± ∞" : "± " + numberText(one.determinacy.bound, 3),
+        one.identifiable ? "yes"
+        : one.atBound    ? "on its bound"
+                         : "no"};
+    if (!f.options.profile.empty()) {
+      row.push_back(one.profile && one.identifiable
+                        ? intervalText(one.profile->lower, one.profile->upper)
+                        : "–");
+    }
+    if (bootstrapped) row.push_back(intervalText(one.bootstrapLower, one.bootstrapUpper));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+/// Estimates and what was known before, in deviations of the latter, one place per parameter.
+Figure intervalFigure(const CalibrateFindings& f) {
+  const double z = info::normalQuantile(f.options.confidence);
+  Figure figure{.title = "Estimates beside what was known",
+                .xLabel = "Parameter, in the order of the table",
+                .yLabel = "Departure from the model [known deviations]",
+                .caption =
+                    "Bars are intervals of equal confidence. A parameter without a bar at "
+                    "its estimate is not identifiable."};
+  Series known{.name = "known beforehand"}, found{.name = "interval"};
+  Series estimate{.name = "estimate", .style = SeriesStyle::points};
+  const double gap = std::nan("");
+  const auto bar = [&](Series& series, double x, double low, double high) {
+    for (const auto& [dx, y] :
+         {std::pair{0.0, low}, std::pair{0.001, high}, std::pair{0.002, gap}}) {
+      series.x.push_back(x + dx);
+      series.y.push_back(y);
+    }
+  };
+  double place = 1;
+  for (const bio::CalibratedParameter& one : f.calibration.parameters) {
+    const auto scaled = [&](double value) { return (value - one.asked.start) / one.known; };
+    if (const auto& prior = one.asked.prior) {
+      bar(known, place - 0.1, scaled(prior->mean - z * prior->deviation),
+          scaled(prior->mean + z * prior->deviation));
+    }
+    if (!std::isnan(one.lower)) bar(found, place + 0.1, scaled(one.lower), scaled(one.upper));
+    estimate.x.push_back(place + 0.1);
+    estimate.y.push_back(scaled(one.value));
+    place += 1;
+  }
+  for (Series* series : {&known, &found, &estimate}) {
+    if (!series->x.empty()) figure.series.push_back(std::move(*series));
+  }
+  return figure;
+}
+
+Table correlationTable(const CalibrateFindings& f) {
+  Table table{"Correlations of the estimates", {""}, {}};
+  const auto& parameters = f.calibration.parameters;
+  for (const auto& one : parameters) table.columns.push_back(one.asked.name);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    std::vector<std::string> row = {parameters[i].asked.name};
+    for (std::size_t j = 0; j < parameters.size(); ++j) {
+      row.push_back(
+          parameters[i].atBound || parameters[j].atBound
+              ? "–"
+              : fmt::format("{:.3f}", f.calibration.correlation(static_cast<Eigen::Index>(i),
+                                                                static_cast<Eigen::Index>(j))));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+Figure profileFigure(const bio::CalibratedParameter& one) {
+  const info::Profile& profile = one.profile->profile;
+  Figure figure{.title = fmt::format("Profile likelihood of {}", one.asked.name),
+                .xLabel = info::label(one.asked),
+                .yLabel = "Negative log posterior [nats]",
+                .caption =
+                    "The least cost with the parameter held. Values below the dashed line "
+                    "are in the confidence region."};
+  Series curve{.name = "profile"}, threshold{.name = "threshold", .style = SeriesStyle::dashed};
+  for (const info::ProfilePoint& point : profile.points) {
+    curve.x.push_back(point.value);
+    curve.y.push_back(point.cost);
+    threshold.x.push_back(point.value);
+    threshold.y.push_back(profile.threshold);
+  }
+  figure.series = {std::move(curve), std::move(threshold)};
+  return figure;
+}
+
+Table startTable(const CalibrateFindings& f) {
+  Table table{"Starts", {"start", "cost [nats]", "ended"}, {}};
+  for (std::size_t i = 0; i < f.calibration.starts.size(); ++i) {
+    const info::StartOutcome& one = f.calibration.starts[i];
+    table.rows.push_back(
+        {i == 0 ? "model" : fmt::format("{}", i + 1), numberText(one.cost, 7), one.why});
+  }
+  return table;
+}
+
+std::string noiseText(const CalibrateFindings& f) {
+  const bio::ResidualNoise& noise = f.calibration.noise;
+  if (f.options.noise) {
+    return fmt::format("Noise of {:.3g} deg was given, white; reduced χ² is {:.3g}.{}",
+                       noise.deviation * radian, f.calibration.reducedChiSquare,
+                       f.calibration.reducedChiSquare > 1.5
+                           ? " The residuals are larger than that noise: the model does not fit to "
+                             "within it, and the intervals are too narrow."
+                           : "");
+  }
+  if (noise.correlationTime <= 1) {
+    return fmt::format("The residuals are white, {:.3g} deg; that was taken for the noise.",
+                       noise.deviation * radian);
+  }
+  return fmt::format(
+      "The residuals are {:.3g} deg and correlated: {:.3g} samples ({:.2g} s) count as one "
+      "independent value, and the intervals are {:.2g} times wider than white noise would make "
+      "them. Part of it is what the model does not say; no interval tells how wrong that makes "
+      "an estimate.",
+      noise.deviation * radian, noise.correlationTime, noise.correlationTime * interval(f.training),
+      std::sqrt(noise.correlationTime));
+}
+
+std::string verdictOf(const CalibrateFindings& f) {
+  const bio::Calibration& c = f.calibration;
+  if (!c.failure.empty()) return fmt::format("There is no estimate: {}.", c.failure);
+  std::ptrdiff_t all = 0, known = 0;
+  for (const auto& one : c.parameters) {
+    all += !one.ofTrial;
+    known += !one.ofTrial && one.identifiable;
+  }
+  std::string text =
+      fmt::format("The model is {:.3g} deg (RMS) from the measured angles, {:.3g} deg before",
+                  rmse(f.training, c.after), rmse(f.training, c.before));
+  if (f.heldOut) {
+    text += fmt::format("; on trials held out {:.3g} deg, {:.3g} deg before",
+                        rmse(*f.heldOut, c.heldOutAfter), rmse(*f.heldOut, c.heldOutBefore));
+  }
+  text += fmt::format("; {} of {} parameter{} can be known from these trials", known, all,
+                      all == 1 ? "" : "s");
+  if (!c.converged) text += fmt::format(" (not a minimum: {})", info::describe(c.why));
+  return text + ".";
+}
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json estimateJson(const CalibrateFindings& f, const bio::CalibratedParameter& one) {
+  Json json = {{"value", one.value},
+               {"sd", number(one.deviation)},
+               {"unit", one.asked.unit},
+               {"identifiable", one.identifiable},
+               {"model", one.asked.start},
+               {"interval", Json::array({number(one.lower), number(one.upper)})},
+               {"sd_data_alone", number(one.determinacy.bound)},
+               {"at_bound", one.atBound}};
+  if (one.asked.prior) {
+    json["prior"] = {{"mean", one.asked.prior->mean}, {"sd", one.asked.prior->deviation}};
+  }
+  if (!one.why.empty()) json["why"] = one.why;
+  if (one.profile && one.identifiable) {
+    json["profile_interval"] =
+        Json::array({number(one.profile->lower), number(one.profile->upper)});
+  }
+  if (f.options.bootstrap > 0) {
+    json["bootstrap_sd"] = number(one.bootstrapDeviation);
+    json["bootstrap_interval"] =
+        Json::array({number(one.bootstrapLower), number(one.bootstrapUpper)});
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string estimateWords(const bio::CalibratedParameter& one) {
+  const std::string was = fmt::format("was {}", numberText(one.asked.start, 6));
+  if (std::isnan(one.deviation)) {
+    return fmt::format("{} = {} ({}; no interval: {})", one.asked.name,
+                       withUnit(one.value, one.asked.unit, 6), was, one.why);
+  }
+  return fmt::format("{} = {} ± {} ({})", one.asked.name, numberText(one.value, 6),
+                     withUnit(one.deviation, one.asked.unit, 3), was);
+}
+
+void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
+  const bio::Calibration& c = f.calibration;
+  if (!c.failure.empty()) {
+    summary.set("status", "no solution");
+    summary.set("why", c.failure);
+    return;
+  }
+  summary.set("status", c.converged ? "ok" : "not converged");
+  if (!c.converged) summary.set("why", info::describe(c.why));
+  summary.set("rmse_train_deg", rmse(f.training, c.after));
+  summary.set("rmse_train_before_deg", rmse(f.training, c.before));
+  summary.set("rmse_held_out_deg",
+              f.heldOut ? number(rmse(*f.heldOut, c.heldOutAfter)) : Json(nullptr));
+  summary.set("rmse_held_out_before_deg",
+              f.heldOut ? number(rmse(*f.heldOut, c.heldOutBefore)) : Json(nullptr));
+  Json estimates = Json::object();
+  for (const bio::CalibratedParameter& one : c.parameters) {
+    estimates[one.asked.name] = estimateJson(f, one);
+    if (!one.why.empty() && !one.ofTrial) summary.warn(one.why);
+  }
+  summary.set("estimates", estimates);
+  summary.set("noise_deg", c.noise.deviation * radian);
+  summary.set("noise_is", f.options.noise ? "given" : "from the residuals");
+  summary.set("samples_per_independent_value", c.noise.correlationTime);
+  summary.set("reduced_chi_square", number(c.reducedChiSquare));
+  summary.set("iterations", c.iterations);
+  if (c.starts.size() > 1) {
+    summary.set("starts", c.starts.size());
+    summary.set("starts_that_agree", c.agreeingStarts);
+  }
+  if (f.options.bootstrap > 0) summary.set("bootstrap_converged", c.bootstrapConverged);
+  Json correlation = Json::array();
+  for (const auto& row : c.correlation.rowwise()) {
+    correlation.push_back(std::vector<double>(row.begin(), row.end()));
+  }
+  summary.set("correlation", correlation);
+}
+
+Report calibrateReport(const CalibrateFindings& f) {
+  const bio::Calibration& c = f.calibration;
+  Report report;
+  std::vector<std::string> files;
+  for (const bio::Trial& trial : f.training.trials()) files.push_back(trial.file);
+  report.title = fmt::format("Calibration of {} on {}", f.modelFile, fmt::join(files, ", "));
+  report.verdict = verdictOf(f);
+  if (!c.failure.empty()) return report;
+  report.mainFigure = overlay(f.training, 0, c.before, c.after, "estimated from");
+  report.details.push_back(Section{"Estimates"});
+  report.details.push_back(estimateTable(f));
+  for (const bio::CalibratedParameter& one : c.parameters) {
+    if (!one.why.empty()) report.details.push_back(Paragraph{one.why + "."});
+  }
+  report.details.push_back(intervalFigure(f));
+  if (c.parameters.size() > 1) report.details.push_back(correlationTable(f));
+  for (const bio::CalibratedParameter& one : c.parameters) {
+    if (one.profile) report.details.push_back(profileFigure(one));
+  }
+  if (f.heldOut) {
+    report.details.push_back(Section{"Trials held out"});
+    for (std::size_t i = 0; i < f.heldOut->series().size(); ++i) {
+      report.details.push_back(overlay(*f.heldOut, i, c.heldOutBefore, c.heldOutAfter, "held out"));
+    }
+  }
+  if (f.training.series().size() > 1) {
+    report.details.push_back(Section{"Other trials estimated from"});
+    for (std::size_t i = 1; i < f.training.series().size(); ++i) {
+      report.details.push_back(overlay(f.training, i, c.before, c.after, "estimated from"));
+    }
+  }
+  report.details.push_back(Section{"What is left"});
+  report.details.push_back(Paragraph{noiseText(f)});
+  report.details.push_back(residualFigure(f));
+  if (!c.noise.autocorrelation.empty()) report.details.push_back(autocorrelationFigure(f));
+  if (c.starts.size() > 1) report.details.push_back(startTable(f));
+  report.details.push_back(Paragraph{fmt::format(
+      "{} iterations; {}. Data alone: the Cramér–Rao bound without priors, the other parameters "
+      "unknown. A parameter counts as identifiable where that is no wider than what was known "
+      "beforehand.",
+      c.iterations, info::describe(c.why))});
+  return report;
+}
+
+}  // namespace app

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bio/arm_experiment.h"
+#include "bio/trial.h"
+#include "info/least_squares.h"
+
+namespace bio {
+
+struct TrialSetOptions {
+  /// Names or patterns as ParameterCatalogue::select takes them: the same value in every trial.
+  std::vector<std::string> parameters;
+  bool ownStart = false;  ///< estimate where each trial starts, and how fast, as well
+  std::map<std::string, double> initial;  ///< start values [rad] or [m], as startCoordinates takes
+  SimulationOptions simulation;           ///< start and duration are each trial's own
+  int threads = 1;                        ///< trials simulated at once
+};
+
+/// Measured samples of one coordinate in one trial.
+struct MeasuredSeries {
+  std::size_t trial;  ///< index in the set
+  std::string coordinate;
+  std::vector<double> times;  ///< [s]
+  Eigen::VectorXd values;     ///< [rad]
+};
+
+/// Several trials of one model as one experiment: θ = (parameters of the model, common to all;
+/// then, if asked for, start and start speed of each trial's free coordinates), outputs = the
+/// measured angles of all trials one behind the other.
+///
+/// Angles count alike, whichever coordinate they belong to. Each trial is simulated over all its
+/// rows, from its first measured value at rest.
+class TrialSet {
+ public:
+  /// @throws std::invalid_argument, naming the file where there is one, for no trial, a trial
+  ///   without a measured free angle, an unknown name, one given twice or two that set the same
+  ///   number, a start as common parameter of several trials, another integrator
+  TrialSet(const Model& model, const ArmOptions& arm, std::vector<Trial> trials,
+           const TrialSetOptions& options);
+
+  const Arm& arm() const { return *arm_; }
+  const std::vector<Trial>& trials() const { return trials_; }
+  const std::vector<MeasuredSeries>& series() const { return series_; }
+  /// Of a trial; they differ in the start only.
+  const ParameterCatalogue& catalogue(std::size_t trial = 0) const { return *catalogues_[trial]; }
+  /// Indices of the common parameters in the catalogue.
+  const std::vector<std::size_t>& selection() const { return selection_; }
+
+  std::size_t numParameters() const { return parameters_.size(); }
+  /// Number of those that are common; the others are starts of trials.
+  std::size_t numCommon() const { return selection_.size(); }
+  /// θ as the models and trials have it, with the catalogue's bounds; starts of trials have a
+  /// prior.
+  const std::vector<info::Parameter>& parameters() const { return parameters_; }
+  /// How well each is known beforehand, in its unit.
+  const Eigen::VectorXd& known() const { return known_; }
+
+  /// 1 × samples [rad]
+  Eigen::MatrixXd measured() const;
+  /// 1 × samples; NaN where a simulation did not come so far. The set must outlive it.
+  info::Predictor predictor() const;
+  /// Why the trial's simulation does not reach its end; empty if it does.
+  std::string failure(std::size_t trial, const Eigen::VectorXd& theta) const;
+  /// Mean square difference [rad²] of predictions from measurements: of all, and of each trial.
+  double meanSquare(const Eigen::MatrixXd& predicted) const;
+  double meanSquare(const Eigen::MatrixXd& predicted, std::size_t trial) const;
+
+ private:
+  void collectSeries(const TrialSetOptions& options);
+  void collectParameters(const TrialSetOptions& options);
+  Eigen::VectorXd thetaOf(std::size_t trial, const Eigen::VectorXd& theta) const;
+
+  std::vector<Trial> trials_;
+  int threads_;
+  std::unique_ptr<const Arm> arm_;
+  std::vector<std::unique_ptr<const ParameterCatalogue>> catalogues_;  ///< one per trial
+  std::vector<std::size_t> selection_;
+  std::vector<std::size_t> own_;  ///< indices of the start's parameters; empty unless estimated
+  std::vector<info::Parameter> parameters_;
+  Eigen::VectorXd known_;
+  std::vector<MeasuredSeries> series_;
+  std::vector<ArmExperiment> experiments_;  ///< one per series
+};
+
+/// Indices of the parameters that the names select, each once.
+/// @throws std::invalid_argument as ParameterCatalogue::select does, for a name given twice, and
+///   for two parameters that set the same number
+std::vector<std::size_t> selectDistinct(const ParameterCatalogue& catalogue,
+                                        const std::vector<std::string>& names);
+
+}  // namespace bio

@@ -1,0 +1,246 @@
+#include "bio/trial_set.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include "bio/replay.h"
+#include "info/monte_carlo.h"
+
+namespace bio {
+namespace {
+
+using Eigen::Index;
+
+/// Equal for targets that are the same number.
+struct TargetKey {
+  std::string operator()(const MuscleTarget& t) const {
+    return fmt::format("muscle {} {}", t.muscle, static_cast<int>(t.quantity));
+  }
+  std::string operator()(const PointTarget& t) const {
+    return fmt::format("point {} {} {}", t.muscle, t.point, t.axis);
+  }
+  std::string operator()(const WrapTarget& t) const {
+    return fmt::format("wrap {} {}", t.wrap, t.component);
+  }
+  std::string operator()(const BodyTarget& t) const {
+    return fmt::format("body {} {}", t.body, t.component);
+  }
+  std::string operator()(const LimitForceTarget& t) const {
+    return fmt::format("limit {} {}", t.force, t.component);
+  }
+  std::string operator()(const SpringForceTarget& t) const {
+    return fmt::format("spring {} {}", t.force, t.component);
+  }
+  std::string operator()(const EmgTarget& t) const {
+    return fmt::format("emg {} {}", static_cast<int>(t.what), t.muscle);
+  }
+  std::string operator()(const InitialTarget& t) const {
+    return fmt::format("initial {} {}", t.coordinate, t.isSpeed);
+  }
+};
+
+bool isStart(const ModelParameter& parameter) {
+  return std::holds_alternative<InitialTarget>(parameter.targets.front());
+}
+
+double durationOf(const Trial& trial) {
+  return trial.times[trial.times.size() - 1] - trial.times[0];
+}
+
+}  // namespace
+
+std::vector<std::size_t> selectDistinct(const ParameterCatalogue& catalogue,
+                                        const std::vector<std::string>& names) {
+  if (names.empty()) throw std::invalid_argument("no parameter is named");
+  std::set<std::size_t> named;
+  for (const std::string& name : names) {
+    if (name == "all" || name.find('*') != std::string::npos) continue;
+    if (!named.insert(catalogue.find(name)).second) {
+      throw std::invalid_argument(fmt::format("parameter '{}' is given twice", name));
+    }
+  }
+  const std::vector<std::size_t> selection = catalogue.select(names);
+  std::map<std::string, std::string> setBy;
+  for (const std::size_t index : selection) {
+    const ModelParameter& parameter = catalogue.parameters()[index];
+    for (const ParameterTarget& target : parameter.targets) {
+      const auto [at, isNew] = setBy.emplace(std::visit(TargetKey{}, target), parameter.name);
+      if (!isNew) {
+        throw std::invalid_argument(fmt::format("parameters '{}' and '{}' set the same number",
+                                                at->second, parameter.name));
+      }
+    }
+  }
+  return selection;
+}
+
+TrialSet::TrialSet(const Model& model, const ArmOptions& arm, std::vector<Trial> trials,
+                   const TrialSetOptions& options)
+    : trials_(std::move(trials)),
+      threads_(options.threads),
+      arm_(std::make_unique<const Arm>(model, arm)) {
+  if (trials_.empty()) throw std::invalid_argument("no trial is given");
+  if (arm_->numMuscles() == 0) throw std::invalid_argument("no muscle moves a free coordinate");
+  for (const Trial& trial : trials_) {
+    const StartPoint start{startCoordinates(trial, *arm_, options.initial), {}};
+    catalogues_.push_back(std::make_unique<const ParameterCatalogue>(model, *arm_, start));
+  }
+  collectParameters(options);
+  collectSeries(options);
+  std::vector<std::size_t> all = selection_;
+  all.insert(all.end(), own_.begin(), own_.end());
+  for (const MeasuredSeries& series : series_) {
+    const Trial& trial = trials_[series.trial];
+    SimulationOptions simulation = options.simulation;
+    simulation.startTime = trial.times[0];
+    simulation.duration = durationOf(trial);
+    simulation.progress = {};
+    experiments_.emplace_back(*catalogues_[series.trial], arm, excitationOf(trial, *arm_),
+                              series.coordinate, series.times, all, simulation);
+  }
+}
+
+void TrialSet::collectSeries(const TrialSetOptions&) {
+  for (std::size_t i = 0; i < trials_.size(); ++i) {
+    const std::size_t before = series_.size();
+    for (const MeasuredMotion& measured : trials_[i].measured) {
+      const int index = arm_->skeleton().indexOf(measured.coordinate);
+      if (index < 0 || measured.times.size() == 0) continue;
+      if (!arm_->skeleton().coordinates()[static_cast<std::size_t>(index)].isRotation) continue;
+      series_.push_back({i,
+                         measured.coordinate,
+                         {measured.times.begin(), measured.times.end()},
+                         measured.values});
+    }
+    if (series_.size() == before) {
+      std::vector<std::string> names;
+      for (const Coordinate& c : arm_->skeleton().coordinates()) names.push_back(c.name);
+      throw std::invalid_argument(fmt::format("{}: no measured column of a free angle ({})",
+                                              trials_[i].file, fmt::join(names, ", ")));
+    }
+  }
+}
+
+void TrialSet::collectParameters(const TrialSetOptions& options) {
+  const ParameterCatalogue& catalogue = *catalogues_.front();
+  if (!options.parameters.empty() || !options.ownStart) {
+    selection_ = selectDistinct(catalogue, options.parameters);
+  }
+  for (const std::size_t index : selection_) {
+    const ModelParameter& parameter = catalogue.parameters()[index];
+    if (isStart(parameter) && (trials_.size() > 1 || options.ownStart)) {
+      throw std::invalid_argument(fmt::format(
+          "parameter '{}' is each trial's own and cannot be common to all", parameter.name));
+    }
+  }
+  if (options.ownStart) {
+    for (std::size_t i = 0; i < catalogue.parameters().size(); ++i) {
+      const ModelParameter& parameter = catalogue.parameters()[i];
+      if (isStart(parameter) && !parameter.isGroup) own_.push_back(i);
+    }
+  }
+  parameters_ = catalogue.asEstimated(selection_, false);
+  std::vector<double> known;
+  for (const std::size_t index : selection_) {
+    known.push_back(catalogue.parameters()[index].deviation);
+  }
+  for (std::size_t i = 0; i < trials_.size() && !own_.empty(); ++i) {
+    for (info::Parameter parameter : catalogues_[i]->asEstimated(own_, true)) {
+      if (trials_.size() > 1) parameter.name = fmt::format("trial{}.{}", i + 1, parameter.name);
+      known.push_back(parameter.prior->deviation);
+      parameters_.push_back(std::move(parameter));
+    }
+  }
+  known_ = Eigen::VectorXd::Map(known.data(), static_cast<Index>(known.size()));
+}
+
+Eigen::VectorXd TrialSet::thetaOf(std::size_t trial, const Eigen::VectorXd& theta) const {
+  const auto common = static_cast<Index>(selection_.size());
+  const auto own = static_cast<Index>(own_.size());
+  Eigen::VectorXd part(common + own);
+  part << theta.head(common), theta.segment(common + static_cast<Index>(trial) * own, own);
+  return part;
+}
+
+Eigen::MatrixXd TrialSet::measured() const {
+  Index samples = 0;
+  for (const MeasuredSeries& series : series_) samples += series.values.size();
+  Eigen::MatrixXd values(1, samples);
+  Index at = 0;
+  for (const MeasuredSeries& series : series_) {
+    values.middleCols(at, series.values.size()) = series.values.transpose();
+    at += series.values.size();
+  }
+  return values;
+}
+
+info::Predictor TrialSet::predictor() const {
+  // where the samples of each series begin
+  std::vector<Index> begin = {0};
+  for (const MeasuredSeries& series : series_) begin.push_back(begin.back() + series.values.size());
+  info::Predictor predictor;
+  predictor.outputs = [this, begin](const Eigen::VectorXd& theta) {
+    Eigen::MatrixXd y(1, begin.back());
+    info::parallelFor(static_cast<int>(series_.size()), threads_, [&](int i) {
+      const auto s = static_cast<std::size_t>(i);
+      y.middleCols(begin[s], begin[s + 1] - begin[s]) =
+          experiments_[s].outputs(thetaOf(series_[s].trial, theta)).transpose();
+    });
+    return y;
+  };
+  predictor.withSensitivities = [this, begin](const Eigen::VectorXd& theta) {
+    info::Prediction all{Eigen::MatrixXd(1, begin.back()),
+                         Eigen::MatrixXd::Zero(begin.back(), theta.size())};
+    const auto common = static_cast<Index>(selection_.size());
+    const auto own = static_cast<Index>(own_.size());
+    info::parallelFor(static_cast<int>(series_.size()), threads_, [&](int i) {
+      const auto s = static_cast<std::size_t>(i);
+      const std::size_t trial = series_[s].trial;
+      const Index first = begin[s], count = begin[s + 1] - begin[s];
+      const ArmExperiment::Linearised part =
+          experiments_[s].withSensitivities(thetaOf(trial, theta));
+      all.outputs.middleCols(first, count) = part.outputs.transpose();
+      all.gamma.block(first, 0, count, common) = part.gamma.leftCols(common);
+      all.gamma.block(first, common + static_cast<Index>(trial) * own, count, own) =
+          part.gamma.rightCols(own);
+    });
+    return all;
+  };
+  return predictor;
+}
+
+std::string TrialSet::failure(std::size_t trial, const Eigen::VectorXd& theta) const {
+  for (std::size_t s = 0; s < series_.size(); ++s) {
+    if (series_[s].trial != trial) continue;
+    try {
+      return experiments_[s].simulate(thetaOf(trial, theta)).why;
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+  }
+  return {};
+}
+
+double TrialSet::meanSquare(const Eigen::MatrixXd& predicted) const {
+  return (predicted - measured()).squaredNorm() / static_cast<double>(predicted.size());
+}
+
+double TrialSet::meanSquare(const Eigen::MatrixXd& predicted, std::size_t trial) const {
+  double sum = 0;
+  Index at = 0, count = 0;
+  for (const MeasuredSeries& series : series_) {
+    const Index n = series.values.size();
+    if (series.trial == trial) {
+      sum += (predicted.middleCols(at, n).transpose() - series.values).squaredNorm();
+      count += n;
+    }
+    at += n;
+  }
+  return sum / static_cast<double>(count);
+}
+
+}  // namespace bio
