@@ -171,11 +171,8 @@ Figure intervalFigure(const CalibrateFindings& f) {
   Series estimate{.name = "estimate", .style = SeriesStyle::points};
   const double gap = std::nan("");
   const auto bar = [&](Series& series, double x, double low, double high) {
-    for (const auto& [dx, y] :
-         {std::pair{0.0, low}, std::pair{0.001, high}, std::pair{0.002, gap}}) {
-      series.x.push_back(x + dx);
-      series.y.push_back(y);
-    }
+    series.x.insert(series.x.end(), {x, x + 0.001, x + 0.4});
+    series.y.insert(series.y.end(), {low, high, gap});
   };
   double place = 1;
   for (const bio::CalibratedParameter& one : f.calibration.parameters) {

@@ -15,34 +15,6 @@ namespace {
 
 using Eigen::Index;
 
-/// Equal for targets that are the same number.
-struct TargetKey {
-  std::string operator()(const MuscleTarget& t) const {
-    return fmt::format("muscle {} {}", t.muscle, static_cast<int>(t.quantity));
-  }
-  std::string operator()(const PointTarget& t) const {
-    return fmt::format("point {} {} {}", t.muscle, t.point, t.axis);
-  }
-  std::string operator()(const WrapTarget& t) const {
-    return fmt::format("wrap {} {}", t.wrap, t.component);
-  }
-  std::string operator()(const BodyTarget& t) const {
-    return fmt::format("body {} {}", t.body, t.component);
-  }
-  std::string operator()(const LimitForceTarget& t) const {
-    return fmt::format("limit {} {}", t.force, t.component);
-  }
-  std::string operator()(const SpringForceTarget& t) const {
-    return fmt::format("spring {} {}", t.force, t.component);
-  }
-  std::string operator()(const EmgTarget& t) const {
-    return fmt::format("emg {} {}", static_cast<int>(t.what), t.muscle);
-  }
-  std::string operator()(const InitialTarget& t) const {
-    return fmt::format("initial {} {}", t.coordinate, t.isSpeed);
-  }
-};
-
 bool isStart(const ModelParameter& parameter) {
   return std::holds_alternative<InitialTarget>(parameter.targets.front());
 }
@@ -63,19 +35,7 @@ std::vector<std::size_t> selectDistinct(const ParameterCatalogue& catalogue,
       throw std::invalid_argument(fmt::format("parameter '{}' is given twice", name));
     }
   }
-  const std::vector<std::size_t> selection = catalogue.select(names);
-  std::map<std::string, std::string> setBy;
-  for (const std::size_t index : selection) {
-    const ModelParameter& parameter = catalogue.parameters()[index];
-    for (const ParameterTarget& target : parameter.targets) {
-      const auto [at, isNew] = setBy.emplace(std::visit(TargetKey{}, target), parameter.name);
-      if (!isNew) {
-        throw std::invalid_argument(fmt::format("parameters '{}' and '{}' set the same number",
-                                                at->second, parameter.name));
-      }
-    }
-  }
-  return selection;
+  return catalogue.select(names);
 }
 
 TrialSet::TrialSet(const Model& model, const ArmOptions& arm, std::vector<Trial> trials,

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "info/estimate.h"
 #include "support/closed_forms.h"
 
 namespace {
@@ -115,6 +116,46 @@ TEST(LeastSquares, RefusesShapesThatDoNotFit) {
   first.contractedCurvature = nullptr;
   const LeastSquares q(first, p.measurements(), p.parameters());
   EXPECT_THROW(q.hessian(kTheta, q.linearise(kTheta)), std::logic_error);
+}
+
+TEST(LeastSquares, WithARobustLossTheGradientIsThatOfTheCost) {
+  using Kind = info::RobustLoss::Kind;
+  const auto plain = problem();
+  for (const info::RobustLoss& loss :
+       {info::RobustLoss{Kind::huber, 0.3}, info::RobustLoss{Kind::student, 1, 3}}) {
+    info::Measurements measurements = plain.measurements();
+    measurements.loss = loss;
+    const LeastSquares robust(plain.predictor(), measurements, plain.parameters());
+    EXPECT_NE(robust.cost(kTheta), plain.cost(kTheta));
+    const auto at = robust.linearise(kTheta);
+    EXPECT_DOUBLE_EQ(at.cost, robust.cost(kTheta));
+    for (Eigen::Index i = 0; i < 2; ++i) {
+      Eigen::Vector2d h = Eigen::Vector2d::Zero();
+      h[i] = 1e-6;
+      EXPECT_NEAR(at.gradient[i], (robust.cost(kTheta + h) - robust.cost(kTheta - h)) / 2e-6,
+                  1e-6 * std::abs(at.gradient[i]) + 1e-7);
+    }
+    EXPECT_FALSE(robust.hasCurvature());
+    EXPECT_THROW(robust.hessian(kTheta, at), std::logic_error);
+  }
+}
+
+// A line through points of which one in ten is far off.
+TEST(LeastSquares, ARobustLossForgetsOutliers) {
+  const VectorXd t = VectorXd::LinSpaced(40, 0, 4);
+  MatrixXd data = (1 + 2 * t.array() + 0.01 * (9 * t.array()).sin()).matrix().transpose();
+  for (Eigen::Index k = 0; k < 40; k += 10) data(0, k) += 5;
+  const auto slope = [&](info::RobustLoss loss) {
+    const LeastSquares line(
+        support::straightLine(t),
+        {data, info::OutputCovariance(MatrixXd::Constant(1, 1, 1e-4)), {}, loss},
+        {{.name = "a"}, {.name = "b"}});
+    return info::estimate(line).parameters[1];
+  };
+  using Kind = info::RobustLoss::Kind;
+  EXPECT_GT(std::abs(slope({Kind::gaussian}) - 2), 0.1);
+  EXPECT_NEAR(slope({Kind::huber}), 2, 0.005);
+  EXPECT_NEAR(slope({Kind::student}), 2, 0.005);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "support/closed_forms.h"
 
@@ -57,6 +58,56 @@ TEST(ProfileLikelihood, RefusesWhatIsNoParameterOrOutOfBounds) {
   EXPECT_THROW(info::profileLikelihood(problem, best, 2, {0}), std::invalid_argument);
   EXPECT_THROW(info::profileLikelihood(problem, best, 0, {-2}), std::invalid_argument);
   EXPECT_THROW(info::profileLikelihood(problem, best, 0, {std::nan("")}), std::invalid_argument);
+}
+
+TEST(ProfileInterval, OfALinearModelIsTheCramerRaoInterval) {
+  const VectorXd t = VectorXd::LinSpaced(9, 0, 2);
+  const MatrixXd data = (1 + 2 * t.array() + 0.1 * (7 * t.array()).sin()).matrix().transpose();
+  const info::LeastSquares problem(support::straightLine(t), {data, kNoise},
+                                   {{.name = "a"}, {.name = "b"}});
+  const auto best = info::estimate(problem);
+  const double deviation = std::sqrt(best.covariance(1, 1));
+  for (const double tried : {0.3 * deviation, deviation, 2.5 * deviation}) {
+    const auto interval = info::profileInterval(problem, best, 1, tried);
+    EXPECT_NEAR(interval.lower, best.intervals(1, 0), 0.02 * deviation);
+    EXPECT_NEAR(interval.upper, best.intervals(1, 1), 0.02 * deviation);
+  }
+}
+
+// y = e^θ: the profile interval is that of y, carried over; the Cramér–Rao one is symmetric.
+TEST(ProfileInterval, IsSkewWhereTheModelIs) {
+  info::Predictor exponential;
+  exponential.outputs = [](const VectorXd& theta) -> MatrixXd {
+    return MatrixXd::Constant(1, 1, std::exp(theta[0]));
+  };
+  exponential.withSensitivities = [exponential](const VectorXd& theta) {
+    return info::Prediction{exponential.outputs(theta), exponential.outputs(theta)};
+  };
+  const info::LeastSquares problem(exponential, {MatrixXd::Constant(1, 1, 0.5), kNoise},
+                                   {{.name = "a"}});
+  const auto best = info::estimate(problem);
+  const auto interval = info::profileInterval(problem, best, 0, 0.2);
+  EXPECT_NEAR(interval.lower, std::log(0.5 - 0.195996), 0.004);
+  EXPECT_NEAR(interval.upper, std::log(0.5 + 0.195996), 0.004);
+}
+
+TEST(ProfileInterval, SaysWhereItIsOpenAndWhereABoundEndsIt) {
+  info::Predictor sum;
+  sum.outputs = [](const VectorXd& theta) -> MatrixXd {
+    return MatrixXd::Constant(1, 3, theta.sum());
+  };
+  sum.withSensitivities = [sum](const VectorXd& theta) {
+    return info::Prediction{sum.outputs(theta), MatrixXd::Ones(3, 2)};
+  };
+  const info::LeastSquares problem(
+      sum, {MatrixXd::Constant(1, 3, 5.0), kNoise},
+      {{.name = "a", .start = 1, .lower = -2}, {.name = "b", .start = 2}});
+  const auto interval = info::profileInterval(problem, info::estimate(problem), 0, 1);
+  EXPECT_EQ(interval.lower, -2);
+  EXPECT_TRUE(interval.lowerAtBound);
+  EXPECT_EQ(interval.upper, std::numeric_limits<double>::infinity());
+  EXPECT_THROW(info::profileInterval(problem, info::estimate(problem), 0, 0),
+               std::invalid_argument);
 }
 
 }  // namespace

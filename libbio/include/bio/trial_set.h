@@ -87,8 +87,7 @@ class TrialSet {
 };
 
 /// Indices of the parameters that the names select, each once.
-/// @throws std::invalid_argument as ParameterCatalogue::select does, for a name given twice, and
-///   for two parameters that set the same number
+/// @throws std::invalid_argument as ParameterCatalogue::select does, and for a name given twice
 std::vector<std::size_t> selectDistinct(const ParameterCatalogue& catalogue,
                                         const std::vector<std::string>& names);
 

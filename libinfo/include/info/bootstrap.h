@@ -11,9 +11,9 @@ namespace info {
 struct BootstrapOptions {
   int replicates = 200;  ///< ≥ 2
   std::uint64_t seed = 1;
-  int threads = 0;               ///< at most so many at once; 0: all cores
-  Eigen::Index blockLength = 1;  ///< samples that stay together, ≥ 1
-  EstimateOptions estimate;      ///< of each replicate; its confidence is that of the intervals
+  int threads = 0;                ///< at most so many at once; 0: all cores
+  Eigen::Index blockLength = 1;   ///< samples that stay together, ≥ 1
+  EstimateOptions estimate = {};  ///< of each replicate; its confidence is that of the intervals
   /// Called with the number of replicates done, from any thread, one call at a time; returning
   /// false stops before those not yet begun.
   std::function<bool(int done, int replicates)> progress = {};

@@ -12,9 +12,10 @@ namespace info {
 struct MultiStartOptions {
   int starts = 1;  ///< ≥ 1; the first one is the problem's own
   std::uint64_t seed = 1;
-  int threads = 0;           ///< at most so many at once; 0: all cores
-  double spread = 2;         ///< further starts lie within ± spread·scale of the own one; > 0
-  EstimateOptions estimate;  ///< of each start; its progress callback is called from all threads
+  int threads = 0;    ///< at most so many at once; 0: all cores
+  double spread = 2;  ///< further starts lie within ± spread·scale of the own one; > 0
+  EstimateOptions estimate =
+      {};  ///< of each start; its progress callback is called from all threads
 };
 
 struct StartOutcome {
