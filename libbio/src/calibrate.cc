@@ -86,6 +86,7 @@ class Calibrator {
       result_.failure = failureAt(start);
       return result_;
     }
+    if (result_.before.allFinite()) holdWhatHasNoEffect(start);
     try {
       fit();
     } catch (const std::domain_error& error) {
@@ -135,9 +136,20 @@ class Calibrator {
     return false;
   }
 
+  /// A parameter that changes no measured angle, and has no prior, stays where it is.
+  void holdWhatHasNoEffect(const VectorXd& start) {
+    const MatrixXd gamma = predictor_.withSensitivities(start).gamma;
+    for (Index i = 0; i < gamma.cols(); ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      if (!asked_[k].prior && (gamma.col(i).array() == 0).all()) held_.push_back(k);
+    }
+  }
+
   info::LeastSquares problem(double sigma) const {
     const info::OutputCovariance covariance(MatrixXd::Constant(1, 1, sigma * sigma));
-    return {predictor_, {measured_, covariance, {}, options_.loss}, asked_};
+    std::vector<info::Parameter> parameters = asked_;
+    for (const std::size_t i : held_) parameters[i].lower = parameters[i].upper = asked_[i].start;
+    return {predictor_, {measured_, covariance, {}, options_.loss}, parameters};
   }
 
   info::EstimateOptions estimateOptions() {
@@ -349,6 +361,7 @@ class Calibrator {
       if (!progress(0.3 + share * static_cast<double>(k) / static_cast<double>(profiled_.size()))) {
         return;
       }
+      if (std::count(held_.begin(), held_.end(), profiled_[k]) > 0) continue;
       CalibratedParameter& one = result_.parameters[profiled_[k]];
       const double width = std::isfinite(one.deviation) ? one.deviation : one.known;
       one.profile = info::profileInterval(least, estimate_, static_cast<Index>(profiled_[k]), width,
@@ -389,6 +402,7 @@ class Calibrator {
   info::Predictor predictor_;
   MatrixXd measured_;
   std::vector<std::size_t> profiled_;
+  std::vector<std::size_t> held_;
   info::Estimate estimate_;
   Calibration result_;
 };

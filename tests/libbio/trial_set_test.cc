@@ -28,7 +28,7 @@ TrialSet set(std::vector<std::string> names, std::vector<Trial> trials, bool own
 TEST(TrialSet, SensitivitiesAreDerivativesOfTheOutputs) {
   const TrialSet trials =
       set({"TRI.radius", "hand.mass", "emg.BRA.gain"},
-          {elbow().trial("curl_slow", 0.8, {}, 30), elbow().trial("curl_fast", 0.6, {}, 50)}, true);
+          {elbow().trial("curl_slow", 1.5, {}, 30), elbow().trial("curl_fast", 0.6, {}, 50)}, true);
   ASSERT_EQ(trials.numParameters(), 7u);
   EXPECT_EQ(trials.numCommon(), 3u);
   const auto& parameters = trials.parameters();
@@ -80,11 +80,12 @@ TEST(TrialSet, MeasuresErrorsAsReplayDoes) {
 }
 
 TEST(TrialSet, GivesNothingWhereThereIsNoSimulation) {
-  const TrialSet trials = set({"hand.mass"}, {elbow().trial("curl_slow", 0.5)});
-  EXPECT_EQ(trials.failure(0, Eigen::VectorXd::Constant(1, 0.5)), "");
+  const TrialSet trials = set({"BRA.max_isometric_force"}, {elbow().trial("curl_slow", 0.5)});
+  EXPECT_EQ(trials.failure(0, Eigen::VectorXd::Constant(1, 900)), "");
   const Eigen::VectorXd impossible = Eigen::VectorXd::Constant(1, -5);
-  EXPECT_TRUE(trials.predictor().outputs(impossible).array().isNaN().any());
-  EXPECT_NE(trials.failure(0, impossible), "");
+  EXPECT_TRUE(trials.predictor().outputs(impossible).array().isNaN().all());
+  EXPECT_TRUE(trials.predictor().withSensitivities(impossible).gamma.array().isNaN().all());
+  EXPECT_THAT(trials.failure(0, impossible), HasSubstr("BRA"));
 }
 
 TEST(TrialSet, RefusesWhatCannotBeEstimatedFrom) {

@@ -69,7 +69,7 @@ struct Calibration {
   int bootstrapConverged = 0;
   bool complete = true;  ///< false if the progress callback stopped it
   ResidualNoise noise;
-  double reducedChiSquare = 0;  ///< of single samples; near 1 where the noise is what was said
+  double reducedChiSquare = 0;    ///< of single samples; near 1 where the noise is what was said
   Eigen::MatrixXd before, after;  ///< of the trials estimated from, 1 × samples [rad]
   Eigen::MatrixXd heldOutBefore, heldOutAfter;  ///< of the others
   /// The model, the EMG mapping and the first trial's start at the estimate.
@@ -89,7 +89,8 @@ struct Calibration {
 ///
 /// Intervals are given for what the data themselves determine (determinacy.h), with priors added;
 /// of all else the reason is given in words. A parameter on a bound is held there for the others'
-/// intervals. Trials held out are simulated from their own first measured value, at rest.
+/// intervals; one without effect on any angle, and without prior, stays as the model has it. Trials
+/// held out are simulated from their own first measured value, at rest.
 ///
 /// @throws std::invalid_argument what TrialSet throws, and for an option out of range, a prior or
 ///   bound of a parameter that is not estimated, bounds that do not enclose the model's value
