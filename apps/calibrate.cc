@@ -174,6 +174,7 @@ class Calibrate : public Command {
       for (const std::string& file : *files) summary.addInput(file);
     }
     mustDiffer(summary);
+    mustNotOverwrite(summary, folder, names);
 
     const bio::Model model = bio::readOsim(model_);
     for (const std::string& warning : model.warnings) summary.warn(warning);
@@ -249,6 +250,21 @@ class Calibrate : public Command {
             between ? fmt::format("{}: is held out, and estimated from as {}", inputs[j].path,
                                   inputs[i].path)
                     : fmt::format("{}: is the same trial as {}", inputs[j].path, inputs[i].path));
+      }
+    }
+  }
+
+  /// Not even with --force.
+  void mustNotOverwrite(const Summary& summary, const OutputFolder& folder,
+                        const std::vector<std::string>& names) const {
+    for (const std::string& name : names) {
+      for (const Summary::InputFile& input : summary.inputs()) {
+        std::error_code ignored;
+        if (folder.active() &&
+            std::filesystem::equivalent(folder.path(name), input.path, ignored)) {
+          throw std::invalid_argument(fmt::format(
+              "{}: is an input and would be overwritten; choose another --out", input.path));
+        }
       }
     }
   }

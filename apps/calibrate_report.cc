@@ -137,7 +137,7 @@ Table estimateTable(const CalibrateFindings& f) {
     std::vector<std::string> row = {
         one.asked.name,
         one.asked.unit,
-        numberText(one.asked.start),
+        numberText(one.model),
         numberText(one.value),
         numberText(one.deviation, 3),
         intervalText(one.lower, one.upper),
@@ -176,7 +176,7 @@ Figure intervalFigure(const CalibrateFindings& f) {
   };
   double place = 1;
   for (const bio::CalibratedParameter& one : f.calibration.parameters) {
-    const auto scaled = [&](double value) { return (value - one.asked.start) / one.known; };
+    const auto scaled = [&](double value) { return (value - one.model) / one.known; };
     if (const auto& prior = one.asked.prior) {
       bar(known, place - 0.1, scaled(prior->mean - z * prior->deviation),
           scaled(prior->mean + z * prior->deviation));
@@ -292,7 +292,7 @@ Json estimateJson(const CalibrateFindings& f, const bio::CalibratedParameter& on
                {"sd", number(one.deviation)},
                {"unit", one.asked.unit},
                {"identifiable", one.identifiable},
-               {"model", one.asked.start},
+               {"model", one.model},
                {"interval", Json::array({number(one.lower), number(one.upper)})},
                {"sd_data_alone", number(one.determinacy.bound)},
                {"at_bound", one.atBound}};
@@ -315,7 +315,7 @@ Json estimateJson(const CalibrateFindings& f, const bio::CalibratedParameter& on
 }  // namespace
 
 std::string estimateWords(const bio::CalibratedParameter& one) {
-  const std::string was = fmt::format("was {}", numberText(one.asked.start, 6));
+  const std::string was = fmt::format("was {}", numberText(one.model, 6));
   if (std::isnan(one.deviation)) {
     return fmt::format("{} = {} ({}; no interval: {})", one.asked.name,
                        withUnit(one.value, one.asked.unit, 6), was, one.why);

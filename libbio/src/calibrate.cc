@@ -70,6 +70,10 @@ class Calibrator {
       const std::size_t i = indexOf(name, "prior");
       asked_[i].prior = prior;
       known_[static_cast<Index>(i)] = prior.deviation;
+      // who says what is known is better believed than the model
+      if (asked_[i].lower <= asked_[i].upper && std::isfinite(prior.mean)) {
+        asked_[i].start = std::clamp(prior.mean, asked_[i].lower, asked_[i].upper);
+      }
     }
     info::checkParameters(asked_);
     for (const std::string& name : options_.profile) profiled_.push_back(indexOf(name, "profile"));
@@ -77,16 +81,17 @@ class Calibrator {
   }
 
   Calibration run() {
-    const VectorXd start = startValues();
-    result_.before = predictor_.outputs(start);
+    const VectorXd asIs = valuesOf(training_.parameters()), start = valuesOf(asked_);
+    result_.before = predictor_.outputs(asIs);
     if (heldOut_) {
-      result_.heldOutBefore = heldOut_->predictor().outputs(start.head(common()));
+      result_.heldOutBefore = heldOut_->predictor().outputs(asIs.head(common()));
     }
-    if (!result_.before.allFinite() && options_.starts == 1) {
+    atStart_ = start == asIs ? result_.before : predictor_.outputs(start);
+    if (!atStart_.allFinite() && options_.starts == 1) {
       result_.failure = failureAt(start);
       return result_;
     }
-    if (result_.before.allFinite()) holdWhatHasNoEffect(start);
+    if (atStart_.allFinite()) holdWhatHasNoEffect(start);
     try {
       fit();
     } catch (const std::domain_error& error) {
@@ -102,10 +107,12 @@ class Calibrator {
  private:
   Index common() const { return static_cast<Index>(training_.numCommon()); }
 
-  VectorXd startValues() const {
-    VectorXd start(static_cast<Index>(asked_.size()));
-    for (Index i = 0; i < start.size(); ++i) start[i] = asked_[static_cast<std::size_t>(i)].start;
-    return start;
+  static VectorXd valuesOf(const std::vector<info::Parameter>& parameters) {
+    VectorXd values(static_cast<Index>(parameters.size()));
+    for (Index i = 0; i < values.size(); ++i) {
+      values[i] = parameters[static_cast<std::size_t>(i)].start;
+    }
+    return values;
   }
 
   std::size_t indexOf(const std::string& name, const char* what) const {
@@ -122,11 +129,11 @@ class Calibrator {
     for (std::size_t i = 0; i < training_.trials().size(); ++i) {
       const std::string why = training_.failure(i, theta);
       if (!why.empty()) {
-        return fmt::format("{}: no simulation with the model as it is: {}",
-                           training_.trials()[i].file, why);
+        return fmt::format("{}: no simulation at the start values: {}", training_.trials()[i].file,
+                           why);
       }
     }
-    return "the simulation with the model as it is has no finite angle";
+    return "the simulation at the start values has no finite angle";
   }
 
   /// false: stop
@@ -214,9 +221,8 @@ class Calibrator {
       return progress(fitShare * done);
     };
     const auto p = static_cast<Index>(asked_.size());
-    const MatrixXd guess = result_.before.allFinite()
-                               ? result_.before
-                               : MatrixXd::Constant(1, measured_.size(), measured_.mean());
+    const MatrixXd guess =
+        atStart_.allFinite() ? atStart_ : MatrixXd::Constant(1, measured_.size(), measured_.mean());
     result_.noise = noiseOf(guess, 0);
     result_.noise.effective = result_.noise.deviation;  // white until there is a fit
     {
@@ -320,6 +326,7 @@ class Calibrator {
   CalibratedParameter blank(Index i) const {
     CalibratedParameter one{};
     one.asked = asked_[static_cast<std::size_t>(i)];
+    one.model = training_.parameters()[static_cast<std::size_t>(i)].start;
     one.known = known_[i];
     one.ofTrial = i >= common();
     one.value = estimate_.parameters[i];
@@ -401,6 +408,7 @@ class Calibrator {
   VectorXd known_;
   info::Predictor predictor_;
   MatrixXd measured_;
+  MatrixXd atStart_;
   std::vector<std::size_t> profiled_;
   std::vector<std::size_t> held_;
   info::Estimate estimate_;

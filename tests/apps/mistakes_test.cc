@@ -71,6 +71,57 @@ std::string nameOf(const testing::TestParamInfo<Mistake>& test) {
   return test.param.name;
 }
 
+const std::string slow = "emg_data/curl_slow.sto";
+
+/// `fisherhill calibrate` on a good trial, with what comes behind.
+std::vector<std::string> calibrate(std::vector<std::string> more,
+                                   const std::string& parameters = "hand.mass") {
+  std::vector<std::string> all = {"calibrate", model,   slow,   "--parameters",
+                                  parameters,  "--out", "$/out"};
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Calibrate, EveryMistake,
+    testing::ValuesIn(std::vector<Mistake>{
+        {"NoTrial", {"calibrate", model, "--parameters", "hand.mass"}, "TRIAL"},
+        {"NoParameters", {"calibrate", model, slow}, "--parameters"},
+        {"EmptyParameters", calibrate({}, ""), "--parameters"},
+        {"UnknownParameter", calibrate({}, "hand.mas"), "no parameter is called 'hand.mas'"},
+        {"ParameterTwice", calibrate({}, "hand.mass,hand.mass"), "'hand.mass' is given twice"},
+        {"GroupAndMember", calibrate({}, "emg.gain,emg.BRA.gain"), "set the same number"},
+        {"NothingMeasured",
+         {"calibrate", model, "$/good.csv", "--parameters", "hand.mass", "--out", "$/out"},
+         "$/good.csv: no measured column of a free angle"},
+        {"MissingTrial", {"calibrate", model, "$/no.sto", "--parameters", "hand.mass"}, "$/no.sto"},
+        {"NotAModel",
+         {"calibrate", "$/text.osim", slow, "--parameters", "hand.mass"},
+         "$/text.osim"},
+        {"HoldOutIsTrained", calibrate({"--hold-out", slow}), "is held out, and estimated from"},
+        {"TrialTwice", calibrate({slow}), "is the same trial as"},
+        {"HoldOutUnmeasured", calibrate({"--hold-out", "$/good.csv"}), "$/good.csv"},
+        {"HoldOutMissing", calibrate({"--hold-out", "$/no.sto"}), "$/no.sto"},
+        {"PriorOfNothing", calibrate({"--prior", "TRI.radius=1:2"}), "TRI.radius"},
+        {"PriorWithoutMean", calibrate({"--prior", "hand.mass=1"}), "NAME=NUMBER:NUMBER"},
+        {"PriorTwice", calibrate({"--prior", "hand.mass=1:2,hand.mass=1:3"}), "twice"},
+        {"PriorZero", calibrate({"--prior", "hand.mass=0.6:0"}), "hand.mass"},
+        {"BoundsExclude", calibrate({"--bounds", "hand.mass=1:2"}), "hand.mass"},
+        {"BoundsAreWords", calibrate({"--bounds", "hand.mass=low:high"}), "--bounds"},
+        {"NoiseZero", calibrate({"--noise-deg", "0"}), "--noise-deg"},
+        {"NoiseNaN", calibrate({"--noise-deg", "nan"}), "noise"},
+        {"UnknownLoss", calibrate({"--loss", "cauchy"}), "cauchy"},
+        {"NoStarts", calibrate({"--starts", "0"}), "--starts"},
+        {"FewReplicates", calibrate({"--bootstrap", "3"}), "--bootstrap"},
+        {"ProfileOfNothing", calibrate({"--profile", "TRI.radius"}), "TRI.radius"},
+        {"OtherIntegrator", calibrate({"--integrator", "rk4"}), "vi or vi-left"},
+        {"StartOfSeveral", calibrate({"emg_data/curl_fast.sto"}, "initial.elbow_flexion"),
+         "each trial's own"},
+        {"OutIsAFile",
+         {"calibrate", model, slow, "--parameters", "hand.mass", "--out", "$/good.csv"},
+         "is not a folder"}}),
+    nameOf);
+
 INSTANTIATE_TEST_SUITE_P(
     Sensitivity, EveryMistake,
     testing::ValuesIn(std::vector<Mistake>{

@@ -254,7 +254,7 @@ TEST(Calibrate, WithoutASimulationSaysWhy) {
   asked.trials.simulation.maxIterations = 1;
   asked.trials.simulation.maxHalvings = 0;
   const Calibration found = run({elbow().trial("curl_fast", 0.5)}, asked);
-  EXPECT_THAT(found.failure, HasSubstr("curl_fast.sto: no simulation with the model as it is"));
+  EXPECT_THAT(found.failure, HasSubstr("curl_fast.sto: no simulation at the start values"));
   EXPECT_TRUE(found.parameters.empty());
 }
 

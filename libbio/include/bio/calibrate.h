@@ -33,7 +33,8 @@ struct CalibrationOptions {
 };
 
 struct CalibratedParameter {
-  info::Parameter asked;  ///< start: as the model has it; bounds; prior
+  info::Parameter asked;  ///< start, bounds, prior
+  double model = 0;       ///< as the model has it
   double known = 0;       ///< standard deviation of what was known beforehand
   bool ofTrial = false;   ///< start of one trial, not a parameter of the model
   double value = 0;
@@ -93,7 +94,7 @@ struct Calibration {
 /// held out are simulated from their own first measured value, at rest.
 ///
 /// @throws std::invalid_argument what TrialSet throws, and for an option out of range, a prior or
-///   bound of a parameter that is not estimated, bounds that do not enclose the model's value
+///   bound of a parameter that is not estimated, bounds that do not enclose the start
 Calibration calibrate(const TrialSet& training, const TrialSet* heldOut,
                       const CalibrationOptions& options);
 

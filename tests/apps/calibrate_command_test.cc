@@ -1,0 +1,121 @@
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "support/run_program.h"
+#include "support/scratch_folder.h"
+
+namespace {
+
+using support::contentOf;
+using support::ProgramResult;
+using support::runFisherHill;
+using support::ScratchFolder;
+using testing::HasSubstr;
+
+const std::string model = "models/elbow8.osim";
+const std::string slow = "emg_data/curl_slow.sto";
+const std::string fast = "emg_data/curl_fast.sto";
+
+TEST(CalibrateCommand, WritesTheModelTheSummaryAndTheReport) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "out").string();
+  const ProgramResult result = runFisherHill({"calibrate", model, slow, "--hold-out", fast,
+                                              "--parameters", "TRI.radius,hand.mass", "--profile",
+                                              "hand.mass", "--starts", "3", "--out", out});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(scratch.listing(),
+              testing::UnorderedElementsAre("out", "out/calibrated.osim", "out/report.html",
+                                            "out/summary.json"));
+  const auto json = nlohmann::json::parse(contentOf(out + "/summary.json"));
+  EXPECT_EQ(json["inputs"].size(), 3u);
+  EXPECT_LT(json["rmse_train_deg"].get<double>(),
+            0.2 * json["rmse_train_before_deg"].get<double>());
+  EXPECT_LT(json["rmse_held_out_deg"].get<double>(),
+            json["rmse_held_out_before_deg"].get<double>());
+  EXPECT_EQ(json["starts"], 3);
+  const auto& mass = json["estimates"]["hand.mass"];
+  EXPECT_EQ(mass["unit"], "kg");
+  EXPECT_EQ(mass["identifiable"], true);
+  EXPECT_GT(mass["sd"].get<double>(), 0);
+  EXPECT_LT(mass["profile_interval"][0].get<double>(), mass["value"].get<double>());
+  EXPECT_EQ(json["correlation"].size(), 2u);
+
+  const std::string report = contentOf(out + "/report.html");
+  for (const char* title :
+       {"Estimates beside what was known", "Correlations of the estimates", "Residuals",
+        "Autocorrelation of the residuals", "Trials held out", "Profile likelihood of hand.mass"}) {
+    EXPECT_THAT(report, HasSubstr(title));
+  }
+
+  // the new model moves as the report says, and tells where it came from
+  const ProgramResult replay = runFisherHill({"replay", out + "/calibrated.osim", slow, "--json"});
+  ASSERT_EQ(replay.status, 0) << replay.err;
+  EXPECT_NEAR(nlohmann::json::parse(replay.out)["rms_error_deg"].get<double>(),
+              json["rmse_train_deg"].get<double>(), 1e-6);
+  const std::string osim = contentOf(out + "/calibrated.osim");
+  EXPECT_THAT(osim, HasSubstr("Calibrated by FisherHill"));
+  for (const auto& input : json["inputs"]) {
+    EXPECT_THAT(osim, HasSubstr(input["sha256"].get<std::string>()));
+  }
+  EXPECT_THAT(osim, HasSubstr("kg (was 0.5819)"));
+}
+
+TEST(CalibrateCommand, RefusesAnIntervalInWords) {
+  const ProgramResult result =
+      runFisherHill({"calibrate", model, slow, "--parameters", "hand.mass,emg.BRA.gain", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("cannot be told apart from"));
+  const auto json = nlohmann::json::parse(result.out);
+  const auto& gain = json["estimates"]["emg.BRA.gain"];
+  EXPECT_EQ(gain["identifiable"], false);
+  EXPECT_TRUE(gain["sd"].is_null());
+  EXPECT_TRUE(gain["interval"][0].is_null());
+  EXPECT_THAT(gain["why"].get<std::string>(), HasSubstr("hand.mass"));
+}
+
+// What the way from EMG to excitation became cannot stand in a model file: it goes into the trials.
+TEST(CalibrateCommand, WritesTrialsWithTheCalibratedExcitations) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "out").string();
+  const ProgramResult result =
+      runFisherHill({"calibrate", model, slow, "--parameters",
+                     "hand.mass,emg.delay,emg.nonlinearity", "--out", out});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = nlohmann::json::parse(contentOf(out + "/summary.json"));
+  EXPECT_GT(std::abs(json["estimates"]["emg.nonlinearity"]["value"].get<double>()), 1e-3);
+  const ProgramResult replay =
+      runFisherHill({"replay", out + "/calibrated.osim", out + "/driven_1.sto", "--json"});
+  ASSERT_EQ(replay.status, 0) << replay.err;
+  EXPECT_NEAR(nlohmann::json::parse(replay.out)["rms_error_deg"].get<double>(),
+              json["rmse_train_deg"].get<double>(), 1e-3);
+}
+
+TEST(CalibrateCommand, NeverOverwritesItsInput) {
+  const ScratchFolder scratch;
+  const std::string own = (scratch / "calibrated.osim").string();
+  std::filesystem::copy_file(std::filesystem::path(FISHERHILL_SOURCE_DIR) / model, own);
+  const std::string before = contentOf(own);
+  for (const bool force : {false, true}) {
+    std::vector<std::string> arguments = {
+        "calibrate", own, slow, "--parameters", "hand.mass", "--out", scratch.path().string()};
+    if (force) arguments.push_back("--force");
+    const ProgramResult result = runFisherHill(arguments);
+    EXPECT_EQ(result.status, 2) << result.err;
+    EXPECT_EQ(contentOf(own), before);
+  }
+}
+
+TEST(CalibrateCommand, SameSeedSameBits) {
+  const auto run = [](const char* seed, const char* threads) {
+    return nlohmann::json::parse(
+        runFisherHill({"calibrate", model, slow, "--parameters", "hand.mass", "--bootstrap", "20",
+                       "--seed", seed, "--threads", threads, "--json"})
+            .out)["estimates"];
+  };
+  EXPECT_EQ(run("3", "1"), run("3", "2"));
+  EXPECT_NE(run("3", "2"), run("4", "2"));
+}
+
+}  // namespace
