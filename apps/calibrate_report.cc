@@ -400,8 +400,8 @@ Report calibrateReport(const CalibrateFindings& f) {
   if (c.starts.size() > 1) report.details.push_back(startTable(f));
   report.details.push_back(Paragraph{fmt::format(
       "{} iterations; {}. Data alone: the Cramér–Rao bound without priors, the other parameters "
-      "unknown. A parameter counts as identifiable where that is no wider than what was known "
-      "beforehand.",
+      "unknown. A parameter counts as identifiable where that, together with what was known "
+      "beforehand, at least halves what was uncertain about it.",
       c.iterations, info::describe(c.why))});
   return report;
 }

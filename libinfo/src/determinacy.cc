@@ -98,13 +98,14 @@ std::vector<Determinacy> determinacy(const MatrixXd& information,
     }
     Determinacy one{1 / std::sqrt(information(i, i)), std::sqrt(variance) * known[i], false, ""};
     if (!(information(i, i) > 0)) one.boundAlone = one.bound = infinity;
-    one.identifiable = one.bound <= known[i];
+    const double enough = known[i] / std::sqrt(3.0);
+    one.identifiable = one.bound <= enough;
     const std::string others = partners(v.col(loosest), i, parameters);
     if (one.identifiable) {
       // nothing to explain
     } else if (std::isinf(one.boundAlone)) {
       one.why = fmt::format("{} has no effect on {}", parameter.name, outcome);
-    } else if (one.boundAlone > known[i] || others.empty()) {
+    } else if (one.boundAlone > enough || others.empty()) {
       one.why = fmt::format(
           "{} hardly moves {}: with everything else known the data alone would leave ±{}, and ±{} "
           "is known beforehand",

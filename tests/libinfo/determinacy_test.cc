@@ -50,15 +50,16 @@ TEST(Determinacy, SaysThatAParameterHardlyMattersOrNotAtAll) {
   EXPECT_TRUE(std::isinf(told[1].boundAlone));
 }
 
-// The border is where the data say as much as was known before.
-TEST(Determinacy, ChangesItsVerdictWhereDataAndPriorKnowAlike) {
+// The border is where data and prior together know twice as well as the prior: 1/√(I + 1/d²) = d/2.
+TEST(Determinacy, ChangesItsVerdictWhereTheDataHalveWhatWasUncertain) {
   const auto verdict = [](double known) {
     return determinacy(Eigen::MatrixXd::Constant(1, 1, 4), {{.name = "a"}},
                        Eigen::VectorXd::Constant(1, known))[0]
         .identifiable;
   };
-  EXPECT_TRUE(verdict(0.501));
-  EXPECT_FALSE(verdict(0.499));
+  EXPECT_TRUE(verdict(0.867));
+  EXPECT_FALSE(verdict(0.865));
+  EXPECT_NEAR(1 / std::sqrt(4 + 1 / (0.866025 * 0.866025)), 0.866025 / 2, 1e-6);
 }
 
 // A nearly blind direction of others does not make a well-known parameter doubtful.

@@ -12,15 +12,15 @@ namespace info {
 struct Determinacy {
   double boundAlone;  ///< Cramér–Rao deviation with all others known: 1/√I_ii; +∞ without effect
   double bound;       ///< with the others unknown: √(I⁻¹)_ii; +∞ where undetermined
-  bool identifiable;  ///< bound ≤ what was known beforehand
+  bool identifiable;  ///< bound ≤ known/√3: together with what was known at least halves it
   std::string why;    ///< one sentence where not identifiable, else empty
 };
 
-/// Which parameters the data determine better than they were known beforehand, and why the others
+/// Which parameters the data determine well beyond what was known beforehand, and why the others
 /// are not.
 ///
 /// With S = diag(known), a unit of S·I·S is one standard deviation of prior knowledge. A parameter
-/// whose bound from the data alone exceeds `known` is not identifiable: an estimate of it would
+/// whose bound from the data alone exceeds known/√3 is not identifiable: an estimate of it would
 /// repeat the prior, or follow the noise along a valley of the cost. The sentence says whether it
 /// hardly moves what is measured, or names those it is confounded with (components of the least
 /// informed direction that it takes part in, at least a quarter of the largest). Where
