@@ -164,6 +164,8 @@ class Calibrator {
     // statistically nothing: a ten-thousandth of a deviation, a millionth of a nat
     estimate.gradientTolerance = 1e-4;
     estimate.decrementTolerance = 1e-6;
+    // paths that lift off and fibres that turn put kinks into the motion's dependence on θ
+    estimate.kinkTolerance = 0.01;
     estimate.confidence = options_.confidence;
     return estimate;
   }

@@ -26,6 +26,7 @@ void check(const EstimateOptions& options, const LeastSquares& problem) {
   rule(options.maxIterations >= 0, "maxIterations", options.maxIterations, "≥ 0");
   rule(options.gradientTolerance >= 0, "gradientTolerance", options.gradientTolerance, "≥ 0");
   rule(options.decrementTolerance >= 0, "decrementTolerance", options.decrementTolerance, "≥ 0");
+  rule(options.kinkTolerance >= 0, "kinkTolerance", options.kinkTolerance, "≥ 0");
   rule(options.costTolerance >= 0, "costTolerance", options.costTolerance, "≥ 0");
   rule(within(options.armijoSlope), "armijoSlope", options.armijoSlope, "between 0 and 1");
   rule(within(options.armijoShrink), "armijoShrink", options.armijoShrink, "between 0 and 1");
@@ -98,6 +99,8 @@ class Estimator {
           options_.method == Method::levenbergMarquardt ? damped() : backtrack(direction);
       if (taken != Taken::step && 0.5 * std::pow(scaledGradient(), 2) <= 1e-14 * at_.cost)
         return finish(Termination::roundingReached);
+      if (taken != Taken::step && scaledGradient() <= options_.kinkTolerance)
+        return finish(Termination::kinkReached);
       if (taken == Taken::none) return finish(Termination::noDescent);
       if (taken == Taken::still || theta_ == before) return finish(Termination::stepSmall);
       ++result_.iterations;
@@ -206,7 +209,8 @@ class Estimator {
   Estimate finish(Termination why) {
     result_.why = why;
     result_.converged = why == Termination::gradientSmall || why == Termination::decrementSmall ||
-                        why == Termination::costSmall || why == Termination::roundingReached;
+                        why == Termination::costSmall || why == Termination::roundingReached ||
+                        why == Termination::kinkReached;
     result_.parameters = theta_;
     result_.cost = at_.cost;
     result_.gradient = at_.gradient;
@@ -269,6 +273,8 @@ std::string describe(Termination why) {
       return "converged: the cost is as small as asked for";
     case Termination::roundingReached:
       return "converged: to the rounding of the cost";
+    case Termination::kinkReached:
+      return "converged: at a kink of the cost, from which every step leads up";
     case Termination::stepSmall:
       return "stopped: the parameters no longer move";
     case Termination::noDescent:

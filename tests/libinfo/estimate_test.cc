@@ -270,6 +270,29 @@ TEST(Estimate, RefusesOptionsAndStartsOutOfRange) {
                std::invalid_argument);
 }
 
+// y = (θ, 0.1·|θ|) against (0, −0.05): the least cost is at the kink, with a slope of 0.005.
+TEST(Estimate, KnowsAMinimumAtAKinkIfToldHowFlat) {
+  info::Predictor kinked;
+  kinked.outputs = [](const VectorXd& theta) -> MatrixXd {
+    return Eigen::RowVector2d(theta[0], 0.1 * std::abs(theta[0]));
+  };
+  kinked.withSensitivities = [kinked](const VectorXd& theta) {
+    return info::Prediction{kinked.outputs(theta), Eigen::Vector2d(1, theta[0] < 0 ? -0.1 : 0.1)};
+  };
+  const info::LeastSquares problem(
+      kinked, {Eigen::RowVector2d(0, -0.05), info::OutputCovariance(MatrixXd::Identity(1, 1))},
+      {{.name = "x", .start = 0.7}});
+  EXPECT_FALSE(info::estimate(problem).converged);
+  info::EstimateOptions options;
+  options.kinkTolerance = 0.01;
+  const info::Estimate found = info::estimate(problem, options);
+  EXPECT_EQ(found.why, info::Termination::kinkReached) << info::describe(found.why);
+  EXPECT_TRUE(found.converged);
+  EXPECT_NEAR(found.parameters[0], 0, 1e-6);
+  options.kinkTolerance = -1;
+  EXPECT_THROW(info::estimate(problem, options), std::invalid_argument);
+}
+
 TEST(Estimate, KnowsTheNormalDistribution) {
   EXPECT_NEAR(info::normalQuantile(0.95), 1.959963984540054, 1e-12);
   EXPECT_NEAR(info::normalQuantile(0.6826894921370859), 1, 1e-12);

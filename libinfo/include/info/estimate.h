@@ -17,12 +17,13 @@ enum class Method {
   levenbergMarquardt  ///< iterated least squares, damped; for far starts and weak information
 };
 
-/// Why an estimator stopped. The first four are convergence.
+/// Why an estimator stopped. The first five are convergence.
 enum class Termination {
   gradientSmall,    ///< |dβ/dθ_i| of free parameters, in units of their own deviations
   decrementSmall,   ///< a whole further step would lower β by no more than `decrementTolerance`
   costSmall,        ///< β ≤ costTolerance
   roundingReached,  ///< no step lowers β, and what the gradient promises is below β's rounding
+  kinkReached,      ///< no step lowers β, and the gradient is within `kinkTolerance`
   stepSmall,        ///< θ no longer moves, to rounding
   noDescent,        ///< no step along the direction lowers β enough
   singular,         ///< the (approximate) Hessian of free parameters cannot be inverted
@@ -49,6 +50,9 @@ struct EstimateOptions {
   /// decrementSmall at −½ gᵀd ≤ this [nats of log posterior]; 0: off. Not for gradient descent.
   double decrementTolerance = 1e-12;
   double costTolerance = 0;  ///< costSmall at β ≤ this; 0: off
+  /// kinkReached where no step lowers β and max_i |dβ/dθ_i|/√I_ii ≤ this: β may have its minimum at
+  /// a kink of the model, where no gradient vanishes; 0: off.
+  double kinkTolerance = 0;
   double armijoSlope = 1e-4;  ///< a step γd is taken if β falls by this share of −γ·gᵀd, in (0, 1)
   double armijoShrink = 0.5;  ///< γ is multiplied by this until then, in (0, 1)
   double confidence = 0.95;   ///< of the intervals, in (0, 1)
