@@ -215,6 +215,9 @@ class Calibrate : public Command {
 
   bio::CalibrationOptions calibrationOptions(const CommandContext& context) const {
     bio::CalibrationOptions options;
+    for (const std::string& name : parameters_) {
+      if (name.empty()) throw std::invalid_argument("--parameters: a name is empty");
+    }
     options.trials.parameters = parameters_;
     options.trials.ownStart = ownStart_;
     options.trials.initial = byName(simulation_.initial);

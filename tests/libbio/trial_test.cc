@@ -101,8 +101,8 @@ TEST_F(TrialFile, ExtraColumnsAreIgnoredOnlyWhenAskedFor) {
   const std::string text = "time,BRA,TRIlong,knee\n0,0.5,0,1\n1,0.5,0,2\n";
   EXPECT_EQ(
       messageOf(text),
-      "trial.csv: column 'knee' is neither a muscle nor a coordinate of the model, and columns "
-      "that are neither are not ignored");
+      "trial.csv: column 'knee' is neither a muscle nor a coordinate of the model, nor a torque on "
+      "one, and such columns are not ignored");
   EXPECT_THAT(read(text, {.ignoreExtra = true}).warnings,
               ElementsAre(HasSubstr("column 'knee' is ignored")));
 }
