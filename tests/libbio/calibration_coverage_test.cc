@@ -5,9 +5,10 @@
 namespace bio::testing {
 namespace {
 
-TEST(CalibrationCoverage, TwoHundredRepetitionsAttainTheBoundAndTheirIntervalsHold) {
-  const CalibrationStatistics s = repeatCalibration(200);
-  EXPECT_EQ(s.converged, 200);
+// A coverage out of 200 repetitions is known to 1.5 % only, out of 1500 to 0.6 %.
+TEST(CalibrationCoverage, RepetitionsAttainTheBoundAndTheirIntervalsHold) {
+  const CalibrationStatistics s = repeatCalibration(1500);
+  EXPECT_GE(s.converged, 1490);
   EXPECT_NEAR(s.noise, 0.5, 0.01);
   for (Eigen::Index k = 0; k < 3; ++k) {
     EXPECT_LT(std::abs(s.bias[k]), 3);
