@@ -277,7 +277,7 @@ class Design : public Command {
     options.trials = monteCarlo_;
     options.seed = context.seed;
     options.threads = context.threads;
-    options.startSpread = 0.002;
+    options.startSpread = 0.0005;
     options.estimate.decrementTolerance = 1e-6;
     ProgressBar bar("monte carlo");
     options.progress = [&](int done, int trials) {

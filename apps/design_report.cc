@@ -33,8 +33,8 @@ Figure torqueFigure(const DesignFindings& f) {
                                        numberText(f.design.limits().torque),
                                        numberText(f.design.limits().torqueRate))};
   for (const auto& [name, e, style] :
-       {std::tuple{"before", &f.result.before, SeriesStyle::dashed},
-        std::tuple{"designed", &f.result.after, SeriesStyle::line}}) {
+       {std::tuple{"designed", &f.result.after, SeriesStyle::line},
+        std::tuple{"before", &f.result.before, SeriesStyle::dashed}}) {
     Series series{.name = name, .x = e->excitation.times(), .style = style};
     for (const double t : series.x) series.y.push_back(torqueAt(f, *e, t));
     figure.series.push_back(std::move(series));
@@ -50,8 +50,8 @@ Figure excitationFigure(const DesignFindings& f, const bio::MuscleGroup& group) 
                                        fmt::join(group.muscles, ", "), group.muscles.front())};
   const bio::Table before = bio::designTable(f.design.arm(), f.result.before, f.coordinate.name);
   const bio::Table after = bio::designTable(f.design.arm(), f.result.after, f.coordinate.name);
-  for (const auto& [name, table, style] : {std::tuple{"before", &before, SeriesStyle::dashed},
-                                           std::tuple{"designed", &after, SeriesStyle::line}}) {
+  for (const auto& [name, table, style] : {std::tuple{"designed", &after, SeriesStyle::line},
+                                           std::tuple{"before", &before, SeriesStyle::dashed}}) {
     const Index column = bio::columnIndex(*table, group.muscles.front());
     figure.series.push_back({.name = name,
                              .x = asList(table->values.col(0)),
@@ -97,8 +97,8 @@ Figure knowledgeFigure(const DesignFindings& f) {
                     "measurements so far can have.",
                 .yScale = AxisScale::logarithmic};
   for (const auto& [name, e, style] :
-       {std::tuple{"before", &f.result.before, SeriesStyle::dashed},
-        std::tuple{"designed", &f.result.after, SeriesStyle::line}}) {
+       {std::tuple{"designed", &f.result.after, SeriesStyle::line},
+        std::tuple{"before", &f.result.before, SeriesStyle::dashed}}) {
     figure.series.push_back({.name = name,
                              .x = asList(e->measuredTimes),
                              .y = asList(f.design.boundOverTime(*e)),

@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
       simulation);
   info::MonteCarloOptions options;
   options.trials = 200;
-  options.startSpread = 0.002;
+  options.startSpread = 0.0005;
   options.estimate.decrementTolerance = 1e-6;
   const info::MonteCarloResult simulated = info::monteCarlo(
       experiment.predictor(), catalogue.values(question.parameters),
