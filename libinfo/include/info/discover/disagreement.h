@@ -18,6 +18,7 @@ struct Quantity {
   double upper = 0;
   double deviation = 1;      ///< prior standard deviation about nominal > 0; see `logarithmic`
   bool logarithmic = false;  ///< prior and deviation are those of log(value/nominal); nominal > 0
+  int trial = -1;            ///< the only trial that it belongs to (its start); -1: every trial
 };
 
 /// An effect that the base model may lack, as one entry of a catalogue.
@@ -87,6 +88,12 @@ class Disagreement {
   /// The outputs alone.
   virtual Eigen::VectorXd outputs(int trial, const Eigen::VectorXd& values,
                                   const Eigen::VectorXd& latent) const = 0;
+
+  /// The outputs with time steps half as long, for the gate against numerical error; empty: not
+  /// offered, the gate is then left out.
+  virtual Eigen::VectorXd refinedOutputs(int /*trial*/, const Eigen::VectorXd& /*values*/) const {
+    return {};
+  }
 
   /// Inputs whose past the innovations must not follow, samples × inputs at times(trial), for the
   /// test of input independence; may have no columns.

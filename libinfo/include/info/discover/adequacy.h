@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <string>
+#include <vector>
+
+#include "info/discover/joint_fit.h"
+
+namespace info::discover {
+
+/// Is what is left white noise of the size that it should have?
+struct Adequacy {
+  double meanSquare = 0;           ///< mean normalised innovation squared, about 1
+  double lowest = 0, highest = 0;  ///< its band
+  double ljungBox = 0;             ///< Q over the lags
+  double ljungBoxProbability = 1;  ///< of a Q as large by chance
+  double inputScore = 0;           ///< largest |z| of innovations against past inputs
+  double inputProbability = 1;     ///< of one as large by chance, over all inputs and lags
+  std::string input;               ///< which input that was
+  bool sized = true, white = true, independent = true;
+  bool adequate() const { return sized && white && independent; }
+};
+
+struct AdequacyOptions {
+  double level = 0.001;
+  int lags = 20;
+  double deviationError = 0;  ///< relative standard error of σ_y where it was estimated: widens
+};
+
+/// Tests the whitened innovations of a fit: their size (χ²), their autocorrelation (Ljung and Box,
+/// lags pooled over trials), and their correlation with each input 0 to 0.2 s earlier.
+Adequacy adequacy(const Likelihood& likelihood, const Fit& fit, const AdequacyOptions& options);
+
+/// Upper tail of χ² with n degrees of freedom, n > 0.
+double chiSquareTail(double x, double n);
+/// x with chiSquareTail(x, n) = probability.
+double chiSquareQuantile(double probability, double n);
+
+}  // namespace info::discover

@@ -1,0 +1,129 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "info/discover/adequacy.h"
+#include "info/discover/disagreement.h"
+#include "info/discover/gap.h"
+#include "info/discover/localise.h"
+#include "info/discover/unknown.h"
+
+namespace info::discover {
+
+/// The kinds of answer that there are.
+enum class Finding {
+  none,       ///< nothing is missing that is larger than Verdict::detectability says
+  parameter,  ///< a parameter of the base model is further off than its tolerance
+  named,      ///< one effect, or several that act together, each without a rival
+  ambiguous,  ///< one of several effects that these data cannot tell apart
+  unknown,    ///< something is missing that no effect of the catalogue explains
+  numerical,  ///< the base model's own time steps are too long to say anything
+};
+
+enum class Stage { calibrate, localise, screen, race, decide, finished };
+
+struct Progress {
+  Stage stage = Stage::calibrate;
+  double fraction = 0;  ///< of the whole, 0 to 1
+  std::string doing;    ///< e.g. "race: visc"
+};
+
+struct Options {
+  /// σ_y [unit of the output]; empty: estimated from the data's third differences
+  std::optional<double> outputDeviation;
+  double latentTime = 0.08;        ///< ℓ [s] of the latent force
+  double latentScale = 0.02;       ///< s of the prior exp(−σ_d/s) that prefers σ_d = 0
+  double latentTolerance = 0.1;    ///< up to this size the latent force may be noise of the inputs
+  double evidence = 5;             ///< nats that a name must be ahead of the hypothesis without it
+  double significance = 3.5;       ///< deviations that its amplitude must differ from absence by
+  double classWidth = 4.6;         ///< nats: rivals no further behind than this stay in the class
+  double surprise = 3;             ///< prior deviations beyond which a parameter is in error
+  double level = 0.001;            ///< of every test of adequacy
+  double falseDiscoveries = 0.05;  ///< share among what the score map lights up
+  int maxEffects = 3;
+  int finalists = 9;         ///< most candidates that are raced at a time
+  std::vector<int> heldOut;  ///< trials that are not fitted, only judged by
+  bool symbolic = true;      ///< look for a formula when no name fits
+  /// Called between fits; false ends the work, and what has been finished is in the verdict.
+  std::function<bool(const Progress&)> progress;
+};
+
+/// One quantity as a hypothesis has it.
+struct Estimate {
+  std::size_t quantity = 0;  ///< index into Disagreement::quantities()
+  double value = 0;
+  double deviation = 0;  ///< of the posterior, in the unit of the quantity
+  double surprise =
+      0;  ///< (value − nominal)/prior deviation; of the logarithm where that is normal
+};
+
+/// A hypothesis that was raced.
+struct Finalist {
+  std::vector<std::size_t> effects;  ///< indices into Disagreement::candidates()
+  double logEvidence = 0;   ///< log Z − log Z of the base: nats, each at its own best σ_d
+  double latentSize = 0;    ///< that σ_d
+  double probability = 0;   ///< among all that were raced with as many effects, and fewer
+  double significance = 0;  ///< |amplitude − nominal|/deviation, of the least one
+  bool adequate = false;    ///< for the leader and its rivals; the others are not tested
+  std::vector<Estimate> estimates;  ///< of the effects' quantities
+};
+
+/// An effect that is said to be missing, and what it cannot be told from.
+struct NamedEffect {
+  std::size_t candidate = 0;
+  std::vector<Estimate> estimates;    ///< of its quantities, the amplitude first
+  double logBayesFactor = 0;          ///< nats by which it improves on the others alone
+  double probability = 0;             ///< of this name against the others in its place
+  std::vector<std::size_t> equals;    ///< candidates in its class, itself first
+  std::vector<double> equalEvidence;  ///< log Z of those less that of the leader
+  bool exact = false;                 ///< true: some of them are equivalent by declaration
+};
+
+/// The smallest amplitude of a candidate that these data would have shown, 5/√S_cc.
+struct Detectable {
+  std::size_t candidate = 0;
+  double amplitude = 0;  ///< [unit of the amplitude]; infinite: they can never show it
+};
+
+/// What was found. Everything up to `reached` is filled in.
+struct Verdict {
+  Stage reached = Stage::calibrate;
+  Finding finding = Finding::none;
+  std::string sentence;              ///< the finding in plain words
+  std::vector<NamedEffect> effects;  ///< in the order they were found; for unknown: the surrogate
+  double probability = 0;            ///< of all effects together; 0 where it was vetoed
+  bool vetoed = false;     ///< named, but the innovations are still not white: no probability
+  bool surrogate = false;  ///< finding unknown: `effects` only imitates what is missing
+
+  double outputDeviation = 0;  ///< σ_y
+  bool deviationEstimated = false;
+  double latentSizeBefore = 0;           ///< σ_d with the base model
+  double latentSizeAfter = 0;            ///< σ_d with the effects
+  Eigen::VectorXd base;                  ///< all quantities, base model calibrated
+  Eigen::VectorXd values;                ///< all quantities with the effects
+  std::vector<Estimate> calibration;     ///< nuisances of the base model
+  std::vector<Estimate> nuisancesAfter;  ///< with the effects
+  Adequacy before, after;
+  Localisation localisation;
+  std::vector<Finalist> finalists;  ///< best first
+  std::vector<Detectable> detectability;
+  Gap gap;  ///< on the trials that were fitted
+  std::optional<Gap> heldOut;
+  std::optional<Unknown> unknown;
+  double numericalError = 0;  ///< largest change at half the time step, in σ_y; 0: not offered
+  int fits = 0;               ///< how many
+};
+
+/// Finds, names and judges what a model lacks.
+/// @throws std::invalid_argument if the data break a rule of Disagreement
+Verdict run(const Disagreement& data, const Options& options = {});
+
+const char* name(Finding finding);
+const char* name(Stage stage);
+const char* name(EffectKind kind);
+
+}  // namespace info::discover

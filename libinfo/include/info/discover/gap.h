@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "info/discover/disagreement.h"
+
+namespace info::discover {
+
+/// How far simulation (no latent force) and data are apart, root mean square over all samples, in
+/// the unit of the output.
+struct Gap {
+  double nominal = 0;     ///< base model as it came, starts fitted
+  double calibrated = 0;  ///< base model after calibration
+  double after = 0;       ///< with the effects
+  double floor = 0;       ///< σ_y
+  double range = 0;       ///< of the data, for normalised errors
+  /// 1 − (after² − floor²)/(before² − floor²); empty if before² < 1.05·floor²: no gap to close
+  std::optional<double> closedFromCalibrated, closedFromNominal;
+};
+
+/// Fills in `closedFrom…`.
+void closeGap(Gap& gap);
+
+}  // namespace info::discover

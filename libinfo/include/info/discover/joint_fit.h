@@ -1,0 +1,125 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "info/discover/disagreement.h"
+#include "info/discover/hypothesis.h"
+
+namespace info::discover {
+
+/// How the data scatter about the model.
+struct Noise {
+  double output = 0;         ///< σ_y > 0, of every sample
+  double latent = 0;         ///< σ_d ≥ 0, of the latent force in units of its scale G
+  double latentTime = 0.08;  ///< ℓ [s] > 0: the latent force forgets itself within
+};
+
+/// A hypothesis fitted to the trials: the most probable parameters, starts and latent forces.
+struct Fit {
+  Hypothesis hypothesis;
+  Noise noise;
+  Eigen::VectorXd values;  ///< of all quantities
+  Eigen::VectorXd xi;      ///< of the free ones, prior N(0, 1)
+  std::vector<Eigen::VectorXd>
+      eta;                     ///< latent force of each trial, prior N(0, 1); empty if σ_d = 0
+  double cost = 0;             ///< J = ½Σe²/σ_y² + ½|ξ|² + ½|η|²
+  double logEvidence = 0;      ///< log Z
+  Eigen::MatrixXd covariance;  ///< of ξ; 0 for those at a bound
+  std::vector<bool> atBound;
+  double latentPower = 0;    ///< |η|²
+  double latentFreedom = 0;  ///< γ: how many of the η the data determine
+  bool converged = false;
+  int iterations = 0;
+
+  double deviation(std::size_t free) const;  ///< of a free quantity's value
+};
+
+struct FitOptions {
+  int iterations = 15;
+  double tolerance = 0.02;  ///< nats that another step may still gain
+};
+
+/// Gaussian likelihood of whole trials: docs/decisions/030-batch-likelihood.md.
+///
+/// The latent force is d = σ_d·diag(G)·L·η at its nodes, LLᵀ = exp(−|t_i−t_j|/ℓ), η ~ N(0, 1). All
+/// that is uncertain is then N(0, 1) before the data, and with residuals e = ỹ − y(ξ, η)
+///     J = ½|e|²/σ_y² + ½|ξ|² + ½|η|²
+///     log Z = −J − ½ log|H| − N·log(σ_y√2π),   H = 1 + ΓᵀΓ/σ_y² over (ξ, η)
+/// where bounds cut the normal distributions off. For a linear model without bounds log Z is
+/// exactly the sum of a Kalman filter's innovation terms.
+class Likelihood {
+ public:
+  /// G is taken where `values` lie and stays: hypotheses are compared under one noise model.
+  /// @throws std::invalid_argument if the data break a rule of Disagreement
+  Likelihood(const Disagreement& data, std::vector<int> trials, const Eigen::VectorXd& values,
+             double latentTime = 0.08);
+
+  const Disagreement& data() const { return data_; }
+  const std::vector<int>& trials() const { return trials_; }
+  Eigen::Index samples() const;
+
+  /// Starts at `start` (all quantities) and the latent forces `eta` (empty: 0), ends at a minimum
+  /// of J.
+  /// @throws std::domain_error if the model cannot be simulated at the start
+  Fit fit(const Hypothesis& hypothesis, const Noise& noise, const Eigen::VectorXd& start,
+          const std::vector<Eigen::VectorXd>& eta = {}, const FitOptions& options = {}) const;
+
+  /// What the data say at a fit about further disturbances of the outputs.
+  struct Linear {
+    Eigen::VectorXd residuals;  ///< e = ỹ − y
+    Eigen::MatrixXd gamma;      ///< dy/dξ
+    Eigen::MatrixXd latent;     ///< dy/dη
+    Eigen::MatrixXd extra;      ///< dy/dq of further quantities
+    Eigen::MatrixXd force;      ///< dy/dd
+    Eigen::VectorXd speeds;
+  };
+  /// @param at    in the order of trials()
+  /// @param extra further quantities, at the values that `values` gives them
+  Linear linearise(std::size_t at, const Fit& fit, const Eigen::VectorXd& values,
+                   const std::vector<std::size_t>& extra, bool force) const;
+
+  /// Score and information of further disturbances, per trial samples × disturbances, after
+  /// elimination of all that is free in the fit (but for what is at a bound).
+  struct Projected {
+    Eigen::VectorXd score;
+    Eigen::MatrixXd information;
+  };
+  Projected project(const Fit& fit, const std::vector<Linear>& trials,
+                    const std::vector<Eigen::MatrixXd>& disturbances) const;
+
+  /// Innovations L⁻¹(e + Wη) with LLᵀ = σ_y² + WWᵀ: white, N(0, 1), in the order of time.
+  Eigen::VectorXd innovations(std::size_t at, const Fit& fit) const;
+
+  /// Latent force at its nodes [unit of the generalised force], and its posterior deviation.
+  Eigen::VectorXd force(std::size_t at, const Fit& fit) const;
+  Eigen::VectorXd forceDeviation(std::size_t at, const Fit& fit) const;
+
+  /// Root mean square of ỹ − y without latent force over all trials.
+  double simulationError(const Eigen::VectorXd& values) const;
+
+ private:
+  struct Point;
+  struct Step;
+  double cost(const Hypothesis& hypothesis, const Noise& noise, const Point& point) const;
+  Linear linearise(std::size_t at, const Hypothesis& hypothesis, double latentSize,
+                   const Eigen::VectorXd& values, const Eigen::VectorXd& xi,
+                   const Eigen::VectorXd& eta, const std::vector<std::size_t>& extra,
+                   bool force) const;
+  void finish(Fit& fit, const std::vector<Linear>& trials) const;
+
+  const Disagreement& data_;
+  std::vector<int> trials_;
+  std::vector<Eigen::MatrixXd> roots_;  ///< diag(G)·L per trial
+};
+
+/// σ_y from the third differences of equally spaced samples, Σ(Δ³y)²/20: exact for noise on a curve
+/// that a parabola follows over four samples; slower curves add little.
+struct OutputDeviation {
+  double value = 0;
+  double relativeError = 0;  ///< standard error of value²/value², for noise
+};
+/// @throws std::invalid_argument if no four samples are equally spaced
+OutputDeviation estimateOutputDeviation(const Disagreement& data, const std::vector<int>& trials);
+
+}  // namespace info::discover

@@ -1,0 +1,231 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "info/discover/joint_fit.h"
+#include "info/discover/truncated.h"
+#include "support/linear_disagreement.h"
+
+namespace {
+
+using namespace info::discover;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kOutput = 0.02, kLatent = 0.7, kTime = 0.11;
+
+struct Filtered {
+  double logLikelihood = 0;
+  VectorXd innovations;  // of the first trial, whitened
+};
+
+// A Kalman filter over (x, v, d, gain, push), written for this test: nothing is shared with the
+// batch form.
+Filtered kalman(const LinearDisagreement& data, double pushDeviation) {
+  const double rho = std::exp(-LinearDisagreement::kStep / kTime);
+  Filtered result;
+  VectorXd m = VectorXd::Zero(5);
+  MatrixXd P = MatrixXd::Zero(5, 5);
+  m[3] = 1;
+  P(3, 3) = 0.04;
+  P(4, 4) = pushDeviation * pushDeviation;
+  for (int t = 0; t < data.numTrials(); ++t) {
+    // the trial starts: position, speed and force anew, parameters stay what the data have made
+    // them
+    m.head(3).setZero();
+    P.topRows(3).setZero();
+    P.leftCols(3).setZero();
+    P.diagonal().head(3) << 0.09, 0.09, kLatent * kLatent;
+    const VectorXd& y = data.measured(t);
+    VectorXd white(y.size());
+    for (Index k = 0; k < y.size(); ++k) {
+      const double S = P(0, 0) + kOutput * kOutput, e = y[k] - m[0];
+      white[k] = e / std::sqrt(S);
+      result.logLikelihood -= 0.5 * (e * e / S + std::log(2 * std::numbers::pi * S));
+      const VectorXd K = P.col(0) / S;
+      m += K * e;
+      P -= K * P.row(0);
+      MatrixXd A = MatrixXd::Identity(5, 5);
+      A.topLeftCorner(2, 2) = data.F;
+      A.block(0, 2, 2, 1) = data.B;
+      A.block(0, 3, 2, 1) = data.B * data.input(k);
+      A.block(0, 4, 2, 1) = data.B;
+      A(2, 2) = rho;
+      m = (A * m).eval();
+      P = (A * P * A.transpose()).eval();
+      P(2, 2) += kLatent * kLatent * (1 - rho * rho);
+    }
+    if (t == 0) result.innovations = white;
+  }
+  return result;
+}
+
+LinearDisagreement drawn(int trials, int samples, double push, std::uint64_t seed = 3) {
+  LinearDisagreement data(trials, samples);
+  VectorXd truth = nominalValues(data);
+  truth[0] = 1.15;
+  truth[1] = push;
+  data.draw(seed, truth, kOutput, kLatent, kTime);
+  return data;
+}
+
+TEST(JointFit, HasTheEvidenceOfAKalmanFilter) {
+  const LinearDisagreement data = drawn(2, 60, 0.4);
+  const Likelihood likelihood(data, {0, 1}, nominalValues(data), kTime);
+  const Noise noise{kOutput, kLatent, kTime};
+  const Fit base = likelihood.fit(makeHypothesis(data, {}, {0, 1}), noise, nominalValues(data));
+  EXPECT_TRUE(base.converged);
+  EXPECT_NEAR(base.logEvidence, kalman(data, 0).logLikelihood, 1e-7);
+  const Fit push = likelihood.fit(makeHypothesis(data, {0}, {0, 1}), noise, nominalValues(data));
+  EXPECT_NEAR(push.logEvidence, kalman(data, 1).logLikelihood, 1e-7);
+}
+
+TEST(JointFit, WhitensToTheInnovationsOfAKalmanFilterThatKnowsTheStart) {
+  LinearDisagreement data = drawn(1, 50, 0);
+  const Likelihood likelihood(data, {0}, nominalValues(data), kTime);
+  // with what is free at its estimate, the filter must start there, certain of it
+  const Fit fit =
+      likelihood.fit(makeHypothesis(data, {}, {0}), {kOutput, kLatent, kTime}, nominalValues(data));
+  const double rho = std::exp(-LinearDisagreement::kStep / kTime);
+  Eigen::Vector3d m(fit.values[4], fit.values[5], 0);
+  Eigen::Matrix3d P = Eigen::Vector3d(0, 0, kLatent * kLatent).asDiagonal();
+  const VectorXd white = likelihood.innovations(0, fit);
+  for (Index k = 0; k < white.size(); ++k) {
+    const double S = P(0, 0) + kOutput * kOutput, e = data.measured(0)[k] - m[0];
+    EXPECT_NEAR(white[k], e / std::sqrt(S), 1e-8) << k;
+    const Eigen::Vector3d K = P.col(0) / S;
+    m += K * e;
+    P -= (K * P.row(0)).eval();
+    Eigen::Matrix3d A = Eigen::Matrix3d::Identity();
+    A.topLeftCorner<2, 2>() = data.F;
+    A.block<2, 1>(0, 2) = data.B;
+    A(2, 2) = rho;
+    m = (A * m).eval();
+    m.head<2>() += data.B * fit.values[0] * data.input(k);
+    P = (A * P * A.transpose()).eval();
+    P(2, 2) += kLatent * kLatent * (1 - rho * rho);
+  }
+}
+
+TEST(JointFit, OfASimulationIsLinearRegressionWithPriors) {
+  const LinearDisagreement data = drawn(2, 40, 0.4);
+  const Likelihood likelihood(data, {0, 1}, nominalValues(data));
+  const Hypothesis h = makeHypothesis(data, {0}, {0, 1});
+  const Fit fit = likelihood.fit(h, {kOutput, 0, kTime}, nominalValues(data));
+  MatrixXd A = MatrixXd::Identity(6, 6);
+  VectorXd b = VectorXd::Zero(6);
+  std::vector<std::size_t> wanted;
+  for (const FreeQuantity& q : h.free) wanted.push_back(q.quantity);
+  for (int t = 0; t < 2; ++t) {
+    const auto p = data.predict(t, nominalValues(data), {}, wanted, false);
+    MatrixXd J = p.gamma / kOutput;
+    for (Index i = 0; i < 6; ++i) J.col(i) *= h.free[static_cast<std::size_t>(i)].deviation;
+    A += J.transpose() * J;
+    b += J.transpose() * (data.measured(t) - p.outputs) / kOutput;
+  }
+  EXPECT_LT((fit.xi - A.inverse() * b).norm(), 1e-6);
+  EXPECT_LT((fit.covariance - A.inverse()).norm(), 1e-9);
+}
+
+// The projected score of an effect says what a fit with it free then finds.
+TEST(JointFit, ProjectedScoresForetellTheEvidenceOfAnEffect) {
+  const LinearDisagreement data = drawn(2, 60, 0.4);
+  const Likelihood likelihood(data, {0, 1}, nominalValues(data), kTime);
+  const Noise noise{kOutput, kLatent, kTime};
+  const Fit base = likelihood.fit(makeHypothesis(data, {}, {0, 1}), noise, nominalValues(data));
+  std::vector<Likelihood::Linear> trials;
+  std::vector<MatrixXd> extra;
+  for (std::size_t t = 0; t < 2; ++t) {
+    trials.push_back(likelihood.linearise(t, base, base.values, {1, 3}, false));
+    extra.push_back(trials.back().extra);
+  }
+  const auto projected = likelihood.project(base, trials, extra);
+  const std::size_t candidates[] = {0, 2};
+  const double deviations[] = {1, 0.5};
+  for (Index i = 0; i < 2; ++i) {
+    const double s2 = deviations[i] * deviations[i];
+    const double information = 1 + s2 * projected.information(i, i);
+    const double gain = 0.5 * s2 * projected.score[i] * projected.score[i] / information -
+                        0.5 * std::log(information);
+    const Fit with =
+        likelihood.fit(makeHypothesis(data, {candidates[i]}, {0, 1}), noise, nominalValues(data));
+    EXPECT_NEAR(gain, with.logEvidence - base.logEvidence, 1e-4);
+  }
+}
+
+// One-sided: evidence by quadrature over the amplitude, everything else eliminated exactly.
+TEST(JointFit, IntegratesAOneSidedPriorOverWhatIsLeftOfIt) {
+  for (const double push : {-0.5, 0.0, 0.5}) {
+    const LinearDisagreement data = drawn(1, 60, push, 8);
+    const Likelihood likelihood(data, {0}, nominalValues(data), kTime);
+    const Noise noise{kOutput, kLatent, kTime};
+    const Fit shove = likelihood.fit(makeHypothesis(data, {1}, {0}), noise, nominalValues(data));
+    const Hypothesis base = makeHypothesis(data, {}, {0});
+    double sum = 0, reference = 0;
+    const double step = 0.01;
+    for (int i = 0; i < 500; ++i) {
+      VectorXd start = nominalValues(data);
+      start[2] = (i + 0.5) * step;
+      const double log = likelihood.fit(base, noise, start).logEvidence;
+      if (i == 0) reference = log;
+      sum += step * std::exp(log - reference - 0.5 * start[2] * start[2]) * 2 /
+             std::sqrt(2 * std::numbers::pi);
+    }
+    EXPECT_NEAR(shove.logEvidence, reference + std::log(sum), 2e-3) << push;
+  }
+}
+
+TEST(JointFit, CountsWhatTheLatentForceUsesUp) {
+  const LinearDisagreement data = drawn(1, 60, 0);
+  const Likelihood likelihood(data, {0}, nominalValues(data), kTime);
+  const Hypothesis base = makeHypothesis(data, {}, {0});
+  // d log Z/d log σ_d = |η|² − γ, by differences of log Z
+  const double h = 1e-3;
+  const auto at = [&](double size) {
+    return likelihood.fit(base, {kOutput, size, kTime}, nominalValues(data), {}, {30, 1e-9});
+  };
+  const Fit fit = at(kLatent);
+  const double slope =
+      (at(kLatent * std::exp(h)).logEvidence - at(kLatent * std::exp(-h)).logEvidence) / (2 * h);
+  EXPECT_NEAR(fit.latentPower - fit.latentFreedom, slope, 1e-3);
+}
+
+TEST(OutputDeviation, ComesFromThirdDifferences) {
+  LinearDisagreement data(2, 400);
+  VectorXd truth = nominalValues(data);
+  truth[4] = 0.5;
+  data.draw(5, truth, 0.05, 0, kTime);
+  const OutputDeviation found = estimateOutputDeviation(data, {0, 1});
+  // the relative error of σ is half of that of σ²
+  EXPECT_NEAR(found.value / 0.05, 1, 3 * 0.5 * found.relativeError);
+  EXPECT_LT(found.relativeError, 0.08);
+}
+
+TEST(Truncated, MassesAgreeWithQuadrature) {
+  EXPECT_NEAR(logNormalWithin(-1, 2), std::log(0.818594614120364), 1e-12);
+  EXPECT_NEAR(logNormalWithin(30, 31), -454.3212439955966, 1e-6);
+  double sum = 0;
+  for (int i = 0; i < 200000; ++i) {
+    const double x = (i + 0.5) * 1e-5;
+    sum += 1e-5 * std::exp(-3 * x - 0.5 * 4 * x * x);
+  }
+  EXPECT_NEAR(logMassAtBound(3, 4, 2), std::log(sum / std::sqrt(2 * std::numbers::pi)), 1e-8);
+}
+
+TEST(Hypothesis, RefusesWhatBreaksARule) {
+  struct Broken : LinearDisagreement {
+    Broken() : LinearDisagreement(1, 10) {}
+    const std::vector<Candidate>& candidates() const override { return broken; }
+    std::vector<Candidate> broken = LinearDisagreement::candidates();
+  } data;
+  data.broken[0].deviations = {-1};
+  EXPECT_THROW(makeHypothesis(data, {0}, {0}), std::invalid_argument);
+  data.broken[0].deviations = {};
+  EXPECT_THROW(makeHypothesis(data, {0}, {0}), std::invalid_argument);
+  EXPECT_EQ(makeHypothesis(data, {}, {0}).free.size(), 3U);
+  EXPECT_EQ(startsOnly(data, {0}).free.size(), 2U);
+}
+
+}  // namespace
