@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <limits>
-#include <optional>
 #include <stdexcept>
+
+#include "motion_weights.h"
 
 namespace bio {
 namespace {
@@ -13,26 +13,6 @@ namespace {
 using Eigen::Index;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-/// A value between two rows of a motion as a combination of values and speeds there: the cubic of
-/// Hermite, as accurate as the integrators.
-struct Weights {
-  Index row;
-  double value0, value1, speed0, speed1;
-};
-
-/// Nothing where the motion has not come so far.
-std::optional<Weights> weightsAt(const std::vector<double>& time, double t) {
-  constexpr double together = 1e-9;
-  if (time.size() < 2 || t < time.front() - together || t > time.back() + together) return {};
-  const auto behind = std::upper_bound(time.begin(), time.end(), t);
-  const auto k = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
-      behind - time.begin() - 1, 0, static_cast<std::ptrdiff_t>(time.size()) - 2));
-  const double h = time[k + 1] - time[k];
-  const double s = (t - time[k]) / h;
-  return Weights{static_cast<Index>(k), 1 + s * s * (2 * s - 3), s * s * (3 - 2 * s),
-                 h * s * (1 - s) * (1 - s), -h * s * s * (1 - s)};
-}
 
 }  // namespace
 
@@ -100,10 +80,7 @@ Eigen::VectorXd ArmExperiment::outputs(const Eigen::VectorXd& theta) const {
   }
   for (std::size_t i = 0; i < times_.size(); ++i) {
     if (const auto w = weightsAt(motion.time, times_[i])) {
-      y[static_cast<Index>(i)] = w->value0 * motion.q(coordinate_, w->row) +
-                                 w->value1 * motion.q(coordinate_, w->row + 1) +
-                                 w->speed0 * motion.qDot(coordinate_, w->row) +
-                                 w->speed1 * motion.qDot(coordinate_, w->row + 1);
+      y[static_cast<Index>(i)] = w->value(motion.q.row(coordinate_), motion.qDot.row(coordinate_));
     }
   }
   return y;
@@ -125,9 +102,7 @@ ArmExperiment::Linearised ArmExperiment::withSensitivities(const Eigen::VectorXd
     const auto w = weightsAt(s.motion.time, times_[static_cast<std::size_t>(i)]);
     if (!w) continue;
     const Index k = w->row;
-    result.outputs[i] =
-        w->value0 * s.motion.q(coordinate_, k) + w->value1 * s.motion.q(coordinate_, k + 1) +
-        w->speed0 * s.motion.qDot(coordinate_, k) + w->speed1 * s.motion.qDot(coordinate_, k + 1);
+    result.outputs[i] = w->value(s.motion.q.row(coordinate_), s.motion.qDot.row(coordinate_));
     result.gamma.row(i) = w->value0 * s.q[c].row(k) + w->value1 * s.q[c].row(k + 1) +
                           w->speed0 * s.qDot[c].row(k) + w->speed1 * s.qDot[c].row(k + 1);
   }

@@ -3,6 +3,11 @@
 #include <fmt/format.h>
 #include <Eigen/Dense>
 
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <stdexcept>
+
 #include "info/dual.h"
 
 namespace bio {
@@ -63,6 +68,74 @@ std::array<double, 3> parameterDerivatives(const SpringGeneralizedForce& law, do
   return {-(q - law.restLength), law.stiffness, -qDot};
 }
 
+namespace {
+
+std::vector<std::string> variablesOf(const ExpressionBasedCoordinateForce& law) {
+  std::vector<std::string> names = {"q", "qdot"};
+  for (const NamedConstant& constant : law.constants) names.push_back(constant.name);
+  return names;
+}
+
+}  // namespace
+
+CoordinateExpression::CoordinateExpression(const ExpressionBasedCoordinateForce& law)
+    : expression_(law.expression, variablesOf(law)) {
+  if (law.constants.size() > maxConstants) {
+    throw std::invalid_argument(fmt::format("expression of '{}': {} constants, must be ≤ {}",
+                                            law.name, law.constants.size(), maxConstants));
+  }
+  for (const NamedConstant& constant : law.constants) constants_.push_back(constant.value);
+}
+
+CoordinateForceValue CoordinateExpression::evaluate(double q, double qDot) const {
+  using D = info::Dual<2>;
+  D values[2 + maxConstants] = {D(q, 2, 0), D(qDot, 2, 1)};
+  for (std::size_t i = 0; i < constants_.size(); ++i) values[2 + i] = D(constants_[i]);
+  const D force = expression_.evaluate(values);
+  return {force.value(), force.derivatives()[0], force.derivatives()[1]};
+}
+
+double CoordinateExpression::parameterDerivative(std::size_t constant, double q,
+                                                 double qDot) const {
+  using D = info::Dual<1>;
+  D values[2 + maxConstants] = {D(q), D(qDot)};
+  for (std::size_t i = 0; i < constants_.size(); ++i) {
+    values[2 + i] = i == constant ? D(constants_[i], 1, 0) : D(constants_[i]);
+  }
+  return expression_.evaluate(values).derivatives()[0];
+}
+
+std::string plainExpression(const ExpressionBasedCoordinateForce& law) {
+  std::string plain;
+  const std::string& text = law.expression;
+  for (std::size_t i = 0; i < text.size();) {
+    const auto isWord = [&](std::size_t at) {
+      return std::isalnum(static_cast<unsigned char>(text[at])) || text[at] == '_' ||
+             text[at] == '.';
+    };
+    std::size_t end = i;
+    while (end < text.size() && isWord(end)) ++end;
+    if (end == i) {
+      plain += text[i++];
+      continue;
+    }
+    const std::string word = text.substr(i, end - i);
+    const auto at = std::find_if(law.constants.begin(), law.constants.end(),
+                                 [&](const NamedConstant& c) { return c.name == word; });
+    if (at == law.constants.end()) {
+      plain += word;
+    } else if (!std::isfinite(at->value)) {
+      throw std::invalid_argument(fmt::format("expression of '{}': {} = {}, must be finite",
+                                              law.name, at->name, at->value));
+    } else {
+      plain +=
+          at->value < 0 ? fmt::format("({:.17g})", at->value) : fmt::format("{:.17g}", at->value);
+    }
+    i = end;
+  }
+  return plain;
+}
+
 CoordinateForces::CoordinateForces(const Model& model, const Skeleton& skeleton) {
   const auto addLaws = [&](const auto& laws, auto&& lawOf) {
     for (const auto& law : laws) {
@@ -73,17 +146,13 @@ CoordinateForces::CoordinateForces(const Model& model, const Skeleton& skeleton)
   };
   addLaws(model.limitForces, [](const CoordinateLimitForce& law) { return law; });
   addLaws(model.springForces, [](const SpringGeneralizedForce& law) { return law; });
-  addLaws(model.expressionForces, [](const ExpressionBasedCoordinateForce& law) {
-    return Expression(law.expression, {"q", "qdot"});
-  });
+  addLaws(model.expressionForces,
+          [](const ExpressionBasedCoordinateForce& law) { return CoordinateExpression(law); });
 }
 
 CoordinateForceValue CoordinateForces::evaluateLaw(const Acting& acting, double q, double qDot) {
-  if (const auto* expression = std::get_if<Expression>(&acting.law)) {
-    using Ad = info::Dual<2>;
-    const Ad values[2] = {Ad(q, 2, 0), Ad(qDot, 2, 1)};
-    const Ad force = expression->evaluate(values);
-    return {force.value(), force.derivatives()[0], force.derivatives()[1]};
+  if (const auto* expression = std::get_if<CoordinateExpression>(&acting.law)) {
+    return expression->evaluate(q, qDot);
   }
   if (const auto* limit = std::get_if<CoordinateLimitForce>(&acting.law)) {
     return evaluate(*limit, q, qDot);

@@ -5,6 +5,23 @@
 #include "sensitivity_pass.h"
 
 namespace bio {
+namespace {
+
+void checkNodes(const ExternalNodes& nodes, const Arm& arm) {
+  if (nodes.times.empty()) return;
+  bool rises = nodes.times.size() >= 2;
+  for (std::size_t k = 0; k + 1 < nodes.times.size(); ++k) {
+    rises = rises && nodes.times[k] < nodes.times[k + 1];
+  }
+  if (!rises) {
+    throw std::invalid_argument("nodes of the external force: must be at least 2 and rise in time");
+  }
+  if (nodes.coordinate < 0 || nodes.coordinate >= arm.skeleton().numCoordinates()) {
+    throw std::invalid_argument("nodes of the external force: no such free coordinate");
+  }
+}
+
+}  // namespace
 
 std::vector<std::string> muscleNames(const Arm& arm) {
   std::vector<std::string> names;
@@ -30,16 +47,32 @@ SensitivityTrajectory simulateWithSensitivities(const Arm& arm, const ParameterC
                                                 const std::vector<std::size_t>& wanted,
                                                 const ExcitationSignal& trial,
                                                 const SensitivityOptions& options) {
+  std::vector<ParameterDirection> directions;
+  for (const std::size_t index : wanted) {
+    ParameterDirection& direction = directions.emplace_back();
+    for (const ParameterTarget& target : catalogue.parameters().at(index).targets) {
+      direction.push_back({target, 1, setting.values[static_cast<Eigen::Index>(index)]});
+    }
+  }
+  return simulateWithSensitivities(arm, setting, directions, trial, options);
+}
+
+SensitivityTrajectory simulateWithSensitivities(const Arm& arm,
+                                                const ParameterCatalogue::Setting& setting,
+                                                const std::vector<ParameterDirection>& wanted,
+                                                const ExcitationSignal& trial,
+                                                const SensitivityOptions& options) {
   const Integrator integrator = options.simulation.integrator;
   if (integrator != Integrator::variational && integrator != Integrator::variationalLeft) {
     throw std::invalid_argument("sensitivities: the integrator must be vi or vi-left");
   }
+  checkNodes(options.externalNodes, arm);
   const ExcitationSignal driven = drivenExcitation(trial, muscleNames(arm), setting.mapping);
   const ArmState start = startOf(arm, setting, driven, options.simulation.startTime);
   stepping::checkSimulation(arm, driven, start, options.simulation);
   stepping::StepTape tape;
   Trajectory motion = stepping::simulateVariational(arm, driven, start, options.simulation, &tape);
-  const stepping::ParameterEffects effects(arm, catalogue, setting, wanted);
+  const stepping::ParameterEffects effects(arm, setting, wanted);
   return stepping::withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
     stepping::SensitivityPass<decltype(N)::value> pass(
         arm, effects, setting, trial, driven, static_cast<Eigen::Index>(wanted.size()), options);

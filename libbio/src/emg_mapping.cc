@@ -39,6 +39,23 @@ void check(const std::vector<std::string>& muscles, const EmgMapping& mapping) {
           fmt::format("EMG gain of '{}' = {}, must be ≥ 0 and finite", muscle, gain));
     }
   }
+  const auto known = [&](const std::string& muscle) {
+    return std::find(muscles.begin(), muscles.end(), muscle) != muscles.end();
+  };
+  for (const auto& [muscle, offset] : mapping.offset) {
+    if (!known(muscle) || !std::isfinite(offset)) {
+      throw std::invalid_argument(fmt::format(
+          "EMG offset of '{}' = {}: must be finite, of a muscle that moves", muscle, offset));
+    }
+  }
+  for (const EmgMapping::Crosstalk& c : mapping.crosstalk) {
+    if (!known(c.from) || !known(c.to) || c.from == c.to || !std::isfinite(c.share)) {
+      throw std::invalid_argument(
+          fmt::format("EMG crosstalk {} from '{}' to '{}': must be finite, between two muscles "
+                      "that move",
+                      c.share, c.from, c.to));
+    }
+  }
   if (!std::isfinite(mapping.delay)) {
     throw std::invalid_argument(fmt::format("EMG delay = {} s, must be finite", mapping.delay));
   }
@@ -63,13 +80,35 @@ Eigen::MatrixXd rowsOf(const ExcitationSignal& trial) {
   return rows;
 }
 
+/// z: the rows without offset and crosstalk; not below 0, but for rows that have neither.
+Eigen::MatrixXd cleaned(const Eigen::MatrixXd& rows, const std::vector<std::string>& muscles,
+                        const EmgMapping& mapping) {
+  if (mapping.offset.empty() && mapping.crosstalk.empty()) return rows;
+  Eigen::MatrixXd clean = rows;
+  const auto indexOf = [&](const std::string& name) {
+    return std::find(muscles.begin(), muscles.end(), name) - muscles.begin();
+  };
+  for (const auto& [muscle, offset] : mapping.offset) {
+    clean.row(indexOf(muscle)).array() -= offset;
+  }
+  for (const EmgMapping::Crosstalk& c : mapping.crosstalk) {
+    clean.row(indexOf(c.to)) -= c.share * rows.row(indexOf(c.from));
+  }
+  return clean.cwiseMax(0.0);
+}
+
+/// ∂S/∂x
+double slopeOfShape(double x, double A) {
+  return A == 0 ? 1.0 : A * std::exp(A * x) / std::expm1(A);
+}
+
 }  // namespace
 
 ExcitationSignal drivenExcitation(const ExcitationSignal& trial,
                                   const std::vector<std::string>& muscles,
                                   const EmgMapping& mapping) {
   check(muscles, mapping);
-  Eigen::MatrixXd rows = rowsOf(trial);
+  Eigen::MatrixXd rows = cleaned(rowsOf(trial), muscles, mapping);
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
     const double gain = gainOf(mapping, muscles[static_cast<std::size_t>(i)]);
     for (Eigen::Index k = 0; k < rows.cols(); ++k) {
@@ -84,9 +123,10 @@ ExcitationSignal drivenExcitation(const ExcitationSignal& trial,
 EmgDerivatives emgDerivatives(const ExcitationSignal& trial,
                               const std::vector<std::string>& muscles, const EmgMapping& mapping) {
   check(muscles, mapping);
-  const Eigen::MatrixXd rows = rowsOf(trial);
-  EmgDerivatives derivatives{Eigen::MatrixXd::Zero(rows.rows(), rows.cols()),
-                             Eigen::MatrixXd::Zero(rows.rows(), rows.cols())};
+  const Eigen::MatrixXd recorded = rowsOf(trial);
+  const Eigen::MatrixXd rows = cleaned(recorded, muscles, mapping);
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(rows.rows(), rows.cols());
+  EmgDerivatives derivatives{none, none, none, recorded};
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
     const double gain = gainOf(mapping, muscles[static_cast<std::size_t>(i)]);
     for (Eigen::Index k = 0; k < rows.cols(); ++k) {
@@ -94,6 +134,9 @@ EmgDerivatives emgDerivatives(const ExcitationSignal& trial,
       if (gain * s.value > 1) continue;
       derivatives.gain(i, k) = s.value;
       derivatives.nonlinearity(i, k) = gain * s.inShape;
+      if (rows(i, k) > 0) {
+        derivatives.signal(i, k) = gain * slopeOfShape(rows(i, k), mapping.nonlinearity);
+      }
     }
   }
   return derivatives;

@@ -1,5 +1,7 @@
 #include "excitation_sensitivity.h"
 
+#include <algorithm>
+
 #include "info/dual.h"
 
 namespace bio::stepping {
@@ -31,34 +33,50 @@ ExcitationSensitivity::ExcitationSensitivity(const Arm& arm, const ParameterEffe
     : arm_(arm),
       effects_(effects),
       driven_(driven),
-      emg_(emgDerivatives(trial, muscleNames(arm), mapping)),
       from_(static_cast<Index>(arm.numMuscles())),
       to_(from_),
-      now_(from_) {}
+      now_(from_) {
+  if (effects.emg.empty()) return;
+  const std::vector<std::string> muscles = muscleNames(arm);
+  const EmgDerivatives d = emgDerivatives(trial, muscles, mapping);
+  for (const auto& effect : effects.emg) {
+    const auto index = [&](const std::string& name) {
+      return static_cast<Index>(std::find(muscles.begin(), muscles.end(), name) - muscles.begin());
+    };
+    const EmgTarget& target = effect.target;
+    const auto enter = [&](Index muscle, const Eigen::RowVectorXd& rows) {
+      emg_.push_back({muscle, effect.column, effect.weight * rows});
+    };
+    if (target.what == EmgTarget::What::nonlinearity) {
+      for (Index i = 0; i < d.nonlinearity.rows(); ++i) enter(i, d.nonlinearity.row(i));
+      continue;
+    }
+    const Index i = index(target.muscle);
+    if (i == d.gain.rows()) continue;
+    if (target.what == EmgTarget::What::gain) enter(i, d.gain.row(i));
+    if (target.what == EmgTarget::What::offset) enter(i, -d.signal.row(i));
+    if (target.what == EmgTarget::What::crosstalk) {
+      enter(i, -d.signal.row(i).cwiseProduct(d.rows.row(index(target.from))));
+    }
+  }
+}
 
-double ExcitationSensitivity::between(const Eigen::MatrixXd& rows, Index muscle, double t) const {
+double ExcitationSensitivity::between(const Eigen::RowVectorXd& rows, double t) const {
   const std::vector<double>& times = driven_.times();
-  if (!(t > times.front())) return rows(muscle, 0);
-  if (t >= times.back()) return rows(muscle, rows.cols() - 1);
+  if (!(t > times.front())) return rows[0];
+  if (t >= times.back()) return rows[rows.size() - 1];
   std::size_t k = nextRow_ > 0 ? std::min(nextRow_, times.size() - 1) - 1 : 0;
   if (times[k] > t) k = 0;
   while (times[k + 1] <= t) ++k;
   const auto c = static_cast<Index>(k);
   const double w = (t - times[k]) / (times[k + 1] - times[k]);
-  return (1 - w) * rows(muscle, c) + w * rows(muscle, c + 1);
+  return (1 - w) * rows[c] + w * rows[c + 1];
 }
 
 void ExcitationSensitivity::start(double time, SensitivityMatrix& rows) {
   rows.setZero();
   nextRow_ = 0;
-  for (Index i = 0; i < rows.rows(); ++i) {
-    for (const QuantityEffect& effect : effects_.muscles[static_cast<std::size_t>(i)].gain) {
-      rows(i, effect.column) += between(emg_.gain, i, time);
-    }
-    for (const Index column : effects_.nonlinearity) {
-      rows(i, column) += between(emg_.nonlinearity, i, time);
-    }
-  }
+  for (const RowsOfColumn& one : emg_) rows(one.muscle, one.column) += between(one.rows, time);
   // later by d: the excitation at the start is that of d earlier; none is known before the first
   // row
   const std::vector<double>& times = driven_.times();
@@ -67,8 +85,8 @@ void ExcitationSensitivity::start(double time, SensitivityMatrix& rows) {
   while (times[k + 1] <= time) ++k;
   driven_.at(times[k], hint_, from_);
   driven_.at(times[k + 1], hint_, to_);
-  for (const Index column : effects_.delay) {
-    rows.col(column) -= (to_ - from_) / (times[k + 1] - times[k]);
+  for (const QuantityEffect& effect : effects_.delay) {
+    rows.col(effect.column) -= effect.factor * (to_ - from_) / (times[k + 1] - times[k]);
   }
 }
 
@@ -107,17 +125,13 @@ void ExcitationSensitivity::advance(double t0, double t1, const Eigen::RowVector
       if (!beginsOnRow && dt0) row += (p.d[0] * slope - p.d[3]) * *dt0;
       if (!endsOnRow && dt1) row += (p.d[1] * slope + p.d[3]) * *dt1;
       // a delay moves the rows of the trial; at a held time the excitation is of earlier
-      for (const Index column : effects_.delay) {
-        row[column] +=
-            (beginsOnRow ? -p.d[3] : -p.d[0] * slope) + (endsOnRow ? p.d[3] : -p.d[1] * slope);
+      for (const QuantityEffect& effect : effects_.delay) {
+        row[effect.column] += effect.factor * ((beginsOnRow ? -p.d[3] : -p.d[0] * slope) +
+                                               (endsOnRow ? p.d[3] : -p.d[1] * slope));
       }
-      for (const QuantityEffect& effect : effects.gain) {
-        row[effect.column] +=
-            p.d[0] * between(emg_.gain, i, t) + p.d[1] * between(emg_.gain, i, stop);
-      }
-      for (const Index column : effects_.nonlinearity) {
-        row[column] += p.d[0] * between(emg_.nonlinearity, i, t) +
-                       p.d[1] * between(emg_.nonlinearity, i, stop);
+      for (const RowsOfColumn& one : emg_) {
+        if (one.muscle != i) continue;
+        row[one.column] += p.d[0] * between(one.rows, t) + p.d[1] * between(one.rows, stop);
       }
       for (const QuantityEffect& effect : effects.activation) {
         row[effect.column] += effect.factor * p.d[4 + static_cast<Index>(effect.quantity)];

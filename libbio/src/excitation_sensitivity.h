@@ -26,12 +26,17 @@ class ExcitationSensitivity {
 
  private:
   /// Straight lines between the rows of the trial, as ExcitationSignal draws them.
-  double between(const Eigen::MatrixXd& rows, Eigen::Index muscle, double t) const;
+  double between(const Eigen::RowVectorXd& rows, double t) const;
 
   const Arm& arm_;
   const ParameterEffects& effects_;
   const ExcitationSignal& driven_;
-  EmgDerivatives emg_;
+  /// What a column adds to the excitation of a muscle, at the rows of the trial.
+  struct RowsOfColumn {
+    Eigen::Index muscle, column;
+    Eigen::RowVectorXd rows;
+  };
+  std::vector<RowsOfColumn> emg_;
   std::size_t hint_ = 0;     ///< of the signal
   std::size_t nextRow_ = 0;  ///< first row of the signal behind the time reached
   Eigen::VectorXd from_, to_, now_;

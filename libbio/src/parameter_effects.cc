@@ -4,9 +4,8 @@
 
 namespace bio::stepping {
 
-ParameterEffects::ParameterEffects(const Arm& arm, const ParameterCatalogue& catalogue,
-                                   const ParameterCatalogue::Setting& setting,
-                                   const std::vector<std::size_t>& wanted)
+ParameterEffects::ParameterEffects(const Arm& arm, const ParameterCatalogue::Setting& setting,
+                                   const std::vector<ParameterDirection>& wanted)
     : muscles(arm.numMuscles()) {
   const Model& model = setting.model;
   const auto armIndex = [&](const std::string& name) {
@@ -21,7 +20,7 @@ ParameterEffects::ParameterEffects(const Arm& arm, const ParameterCatalogue& cat
     const Arm& arm;
     const Model& model;
     decltype(armIndex)& indexOf;
-    double value;
+    double value, weight;
     Eigen::Index column;
 
     void operator()(const MuscleTarget& target) const {
@@ -30,22 +29,24 @@ ParameterEffects::ParameterEffects(const Arm& arm, const ParameterCatalogue& cat
       OfMuscle& muscle = effects.muscles[i];
       const auto quantity = static_cast<std::size_t>(target.quantity);
       if (target.quantity == MuscleQuantity::activation1) {
-        muscle.activation.push_back({1, column});
+        muscle.activation.push_back({1, column, weight});
       } else if (target.quantity == MuscleQuantity::activation2) {
-        muscle.activation.push_back({2, column});
+        muscle.activation.push_back({2, column, weight});
       } else {
         // a scale multiplies the curve that the catalogue's model has; the arm's is scaled already
         const bool isScale =
             quantity >= static_cast<std::size_t>(MuscleQuantity::tendonStrainScale);
-        muscle.fibre.push_back({quantity, column, isScale ? 1 / value : 1.0});
-        if (target.quantity == MuscleQuantity::timeScale) muscle.activation.push_back({0, column});
+        muscle.fibre.push_back({quantity, column, isScale ? weight / value : weight});
+        if (target.quantity == MuscleQuantity::timeScale) {
+          muscle.activation.push_back({0, column, weight});
+        }
       }
     }
     void operator()(const PointTarget& target) const {
       const std::size_t i = indexOf(model.muscles[target.muscle].name);
       if (i == arm.numMuscles()) return;
       effects.muscles[i].points.push_back(
-          {3 * target.point + static_cast<std::size_t>(target.axis), column});
+          {3 * target.point + static_cast<std::size_t>(target.axis), column, weight});
     }
     void operator()(const WrapTarget& target) const {
       const std::string& name = model.wrapObjects[target.wrap].name;
@@ -55,50 +56,57 @@ ParameterEffects::ParameterEffects(const Arm& arm, const ParameterCatalogue& cat
         for (std::size_t place = 0; place < muscle.path.wraps.size(); ++place) {
           if (muscle.path.wraps[place].wrapObject != name) continue;
           effects.muscles[i].wraps.push_back(
-              {7 * place + static_cast<std::size_t>(target.component), column});
+              {7 * place + static_cast<std::size_t>(target.component), column, weight});
         }
       }
     }
     void operator()(const BodyTarget& target) const {
-      effects.addBody(arm, model.bodies[target.body], target.component, column);
+      effects.addBody(arm, model.bodies[target.body], target.component, column, weight);
     }
     void operator()(const LimitForceTarget& target) const {
       const CoordinateLimitForce& law = model.limitForces[target.force];
       effects.limitForces.push_back({law,
                                      arm.skeleton().indexOf(law.coordinate),
-                                     {static_cast<std::size_t>(target.component), column}});
+                                     {static_cast<std::size_t>(target.component), column, weight}});
     }
     void operator()(const SpringForceTarget& target) const {
       const SpringGeneralizedForce& law = model.springForces[target.force];
-      effects.springForces.push_back({law,
-                                      arm.skeleton().indexOf(law.coordinate),
-                                      {static_cast<std::size_t>(target.component), column}});
+      effects.springForces.push_back(
+          {law,
+           arm.skeleton().indexOf(law.coordinate),
+           {static_cast<std::size_t>(target.component), column, weight}});
+    }
+    void operator()(const ExpressionTarget& target) const {
+      const ExpressionBasedCoordinateForce& law = model.expressionForces[target.force];
+      effects.expressions.push_back({CoordinateExpression(law),
+                                     arm.skeleton().indexOf(law.coordinate),
+                                     {target.constant, column, weight}});
+    }
+    void operator()(const GravityTarget& target) const {
+      effects.gravity.push_back({static_cast<std::size_t>(target.axis), column, weight});
     }
     void operator()(const EmgTarget& target) const {
-      if (target.what == EmgTarget::What::delay) effects.delay.push_back(column);
-      if (target.what == EmgTarget::What::nonlinearity) effects.nonlinearity.push_back(column);
-      if (target.what == EmgTarget::What::gain) {
-        const std::size_t i = indexOf(target.muscle);
-        if (i < arm.numMuscles()) effects.muscles[i].gain.push_back({0, column});
+      if (target.what == EmgTarget::What::delay) {
+        effects.delay.push_back({0, column, weight});
+      } else {
+        effects.emg.push_back({target, column, weight});
       }
     }
     void operator()(const InitialTarget& target) const {
-      effects.start.push_back({target.coordinate, target.isSpeed, column});
+      effects.start.push_back({target.coordinate, target.isSpeed, column, weight});
     }
   };
 
-  for (const std::size_t index : wanted) {
-    const ModelParameter& parameter = catalogue.parameters().at(index);
-    const double value = setting.values[static_cast<Eigen::Index>(index)];
-    for (const ParameterTarget& target : parameter.targets) {
-      std::visit(Enter{*this, arm, model, armIndex, value, column}, target);
+  for (const ParameterDirection& direction : wanted) {
+    for (const TargetStep& step : direction) {
+      std::visit(Enter{*this, arm, model, armIndex, step.value, step.weight, column}, step.target);
     }
     ++column;
   }
 }
 
-void ParameterEffects::addBody(const Arm& arm, const Body& body, int component,
-                               Eigen::Index column) {
+void ParameterEffects::addBody(const Arm& arm, const Body& body, int component, Eigen::Index column,
+                               double weight) {
   const BodyPlacement& place = arm.skeleton().placeOf(body.name);
   if (place.segment == 0) return;
   const Eigen::Matrix3d& R = place.X_SB.R;
@@ -122,6 +130,9 @@ void ParameterEffects::addBody(const Arm& arm, const Body& body, int component,
     const Eigen::Matrix3d central = 0.5 * inertia.trace() * Eigen::Matrix3d::Identity() - inertia;
     change.secondMoment = R * central * R.transpose();
   }
+  change.mass *= weight;
+  change.massMoment *= weight;
+  change.secondMoment *= weight;
   segments.push_back({place.segment, std::move(change), column});
 }
 

@@ -19,16 +19,14 @@ struct QuantityEffect {
 /// The columns of wanted parameters sorted by what they touch.
 class ParameterEffects {
  public:
-  ParameterEffects(const Arm& arm, const ParameterCatalogue& catalogue,
-                   const ParameterCatalogue::Setting& setting,
-                   const std::vector<std::size_t>& wanted);
+  ParameterEffects(const Arm& arm, const ParameterCatalogue::Setting& setting,
+                   const std::vector<ParameterDirection>& wanted);
 
   struct OfMuscle {
     std::vector<QuantityEffect> fibre;       ///< quantity: MuscleQuantity below activation1
     std::vector<QuantityEffect> activation;  ///< quantity: 0 time scale, 1 activation1, 2 …2
     std::vector<QuantityEffect> points;      ///< quantity: 3·point + axis
     std::vector<QuantityEffect> wraps;       ///< quantity: 7·wrap + component
-    std::vector<QuantityEffect> gain;        ///< of the EMG; quantity unused
     bool hasGeometry() const { return !points.empty() || !wraps.empty(); }
   };
   struct OfSegment {
@@ -46,21 +44,36 @@ class ParameterEffects {
     int coordinate;
     QuantityEffect effect;
   };
+  struct OfExpression {
+    CoordinateExpression law;
+    int coordinate;
+    QuantityEffect effect;  ///< quantity: constant
+  };
   struct OfStart {
     int coordinate;
     bool isSpeed;
     Eigen::Index column;
+    double weight;
+  };
+  /// ∂u/∂θ at the rows of the trial.
+  struct OfEmg {
+    EmgTarget target;
+    Eigen::Index column;
+    double weight;
   };
 
   std::vector<OfMuscle> muscles;
   std::vector<OfSegment> segments;
+  std::vector<QuantityEffect> gravity;  ///< quantity: axis
   std::vector<OfLimitForce> limitForces;
   std::vector<OfSpringForce> springForces;
+  std::vector<OfExpression> expressions;
   std::vector<OfStart> start;
-  std::vector<Eigen::Index> delay, nonlinearity;  ///< columns
+  std::vector<OfEmg> emg;  ///< all but the delay
+  std::vector<QuantityEffect> delay;
 
  private:
-  void addBody(const Arm& arm, const Body& body, int component, Eigen::Index column);
+  void addBody(const Arm& arm, const Body& body, int component, Eigen::Index column, double weight);
 };
 
 }  // namespace bio::stepping

@@ -101,6 +101,10 @@ struct SetInModel {
   void operator()(const SpringForceTarget& target) const {
     *springForceValue(model.springForces[target.force], target.component) = value;
   }
+  void operator()(const ExpressionTarget& target) const {
+    model.expressionForces[target.force].constants[target.constant].value = value;
+  }
+  void operator()(const GravityTarget& target) const { model.gravity[target.axis] = value; }
   void operator()(const EmgTarget&) const {}
   void operator()(const InitialTarget&) const {}
 };
@@ -252,6 +256,45 @@ std::vector<info::Parameter> ParameterCatalogue::asEstimated(
   return result;
 }
 
+void setTarget(ParameterCatalogue::Setting& setting, const ParameterTarget& target, double value,
+               double nominal) {
+  if (!std::isfinite(value)) {
+    throw std::invalid_argument(fmt::format("a parameter is {}, must be finite", value));
+  }
+  EmgMapping& mapping = setting.mapping;
+  if (const auto* emg = std::get_if<EmgTarget>(&target)) {
+    switch (emg->what) {
+      case EmgTarget::What::delay:
+        mapping.delay = value;
+        break;
+      case EmgTarget::What::nonlinearity:
+        mapping.nonlinearity = value;
+        break;
+      case EmgTarget::What::gain:
+        mapping.gain[emg->muscle] = value;
+        break;
+      case EmgTarget::What::offset:
+        mapping.offset[emg->muscle] = value;
+        break;
+      case EmgTarget::What::crosstalk: {
+        const auto at =
+            std::find_if(mapping.crosstalk.begin(), mapping.crosstalk.end(),
+                         [&](const auto& c) { return c.from == emg->from && c.to == emg->muscle; });
+        if (at == mapping.crosstalk.end()) {
+          mapping.crosstalk.push_back({emg->from, emg->muscle, value});
+        } else {
+          at->share = value;
+        }
+        break;
+      }
+    }
+  } else if (const auto* initial = std::get_if<InitialTarget>(&target)) {
+    (initial->isSpeed ? setting.start.qDot : setting.start.q)[initial->coordinate] = value;
+  } else if (value != nominal) {
+    std::visit(SetInModel{setting.model, value, nominal}, target);
+  }
+}
+
 ParameterCatalogue::Setting ParameterCatalogue::at(const std::vector<std::size_t>& selection,
                                                    const Eigen::VectorXd& values) const {
   if (values.size() != static_cast<Eigen::Index>(selection.size())) {
@@ -272,15 +315,7 @@ ParameterCatalogue::Setting ParameterCatalogue::at(const std::vector<std::size_t
     }
     setting.values[static_cast<Eigen::Index>(selection[i])] = value;
     for (const ParameterTarget& target : parameter.targets) {
-      if (const auto* emg = std::get_if<EmgTarget>(&target)) {
-        if (emg->what == EmgTarget::What::delay) setting.mapping.delay = value;
-        if (emg->what == EmgTarget::What::nonlinearity) setting.mapping.nonlinearity = value;
-        if (emg->what == EmgTarget::What::gain) setting.mapping.gain[emg->muscle] = value;
-      } else if (const auto* initial = std::get_if<InitialTarget>(&target)) {
-        (initial->isSpeed ? setting.start.qDot : setting.start.q)[initial->coordinate] = value;
-      } else if (value != parameter.value) {
-        std::visit(SetInModel{setting.model, value, parameter.value}, target);
-      }
+      setTarget(setting, target, value, parameter.value);
     }
   }
   return setting;

@@ -10,8 +10,9 @@
 
 namespace bio::stepping {
 
-/// Carries d(state)/dθ along the tape. One more column than parameters: in it, at a switch of a
-/// path, runs the derivative in the time of the switch.
+/// Carries d(state)/dθ along the tape. Behind the parameters stands one more column: in it, at a
+/// switch of a path, runs the derivative in the time of the switch. Behind it stand the nodes of an
+/// external force, each of which is 0, and not computed, until its hat begins.
 template <int N>
 class SensitivityPass {
  public:
@@ -31,6 +32,7 @@ class SensitivityPass {
         symmetric_(options.simulation.integrator == Integrator::variational),
         numParameters_(numParameters),
         numMuscles_(static_cast<Index>(arm.numMuscles())),
+        nodes_(options.externalNodes),
         configuration_(arm),
         excitation_(arm, effects, trial, driven, setting.mapping) {
     const Index columns = numParameters + 1;
@@ -65,6 +67,11 @@ class SensitivityPass {
     if (options_.muscles) {
       result.fibreLength = result.activation = result.tendonForce = room(arm_.numMuscles());
     }
+    const auto numNodes = static_cast<Index>(nodes_.times.size());
+    if (numNodes > 0) {
+      result.qOfNodes.assign(N, SensitivityMatrix::Zero(rows, numNodes));
+      result.qDotOfNodes = result.qOfNodes;
+    }
     begin(start, result.motion.time.front());
     Index row = 0;
     record(row, result);
@@ -88,8 +95,11 @@ class SensitivityPass {
     dq_.setZero();
     dp_.setZero();
     for (const auto& effect : effects_.start) {
-      if (!effect.isSpeed) dq_(effect.coordinate, effect.column) += 1;
-      if (effect.isSpeed) dp_.col(effect.column) += inertia.massMatrix.col(effect.coordinate);
+      if (effect.isSpeed) {
+        dp_.col(effect.column) += effect.weight * inertia.massMatrix.col(effect.coordinate);
+      } else {
+        dq_(effect.coordinate, effect.column) += effect.weight;
+      }
     }
     // p = M q̇
     addInertia(qDot);
@@ -113,7 +123,7 @@ class SensitivityPass {
         fibre[effect.column] += effect.factor * d.dl_dQuantity[effect.quantity];
       }
       forGeometry(i, q, [&](const QuantityEffect& effect, const auto& gradient) {
-        fibre[effect.column] += d.dl_dMuscleTendonLength * gradient[0];
+        fibre[effect.column] += effect.factor * d.dl_dMuscleTendonLength * gradient[0];
       });
     }
   }
@@ -124,6 +134,7 @@ class SensitivityPass {
   const RowVector* slopeOf(const StepTape& tape, std::size_t index) {
     const StepTape::Time& time = tape.times()[index];
     RowVector& slope = times_[index];
+    if (slope.size()) widen(slope);
     if (time.law == StepTape::Time::Law::middle && slope.size() == 0) {
       const RowVector* a = slopeOf(tape, time.first);
       const RowVector* b = slopeOf(tape, time.second);
@@ -134,9 +145,30 @@ class SensitivityPass {
     return slope.size() ? &slope : nullptr;
   }
 
+  /// Makes room for every node whose hat has begun before t.
+  void beginNodes(double t) {
+    const std::vector<double>& times = nodes_.times;
+    std::size_t begun = begunNodes_;
+    while (begun < times.size() && times[begun == 0 ? 0 : begun - 1] < t) ++begun;
+    if (begun == begunNodes_) return;
+    begunNodes_ = begun;
+    for (Rows* rows : {&dq_, &dp_, &forward_, &force_, &inertia_, &slope_}) widen(*rows);
+    for (auto* rows : {&fibre_, &trialFibre_, &activation_, &middle_}) widen(*rows);
+    for (RowVector* row : {&row_, &middleTime_, &unit_}) widen(*row);
+  }
+  template <class RowsOf>
+  void widen(RowsOf& rows) const {
+    const Index before = rows.cols();
+    const Index columns = numParameters_ + 1 + static_cast<Index>(begunNodes_);
+    if (before == columns) return;
+    rows.conservativeResize(Eigen::NoChange, columns);
+    rows.rightCols(columns - before).setZero();
+  }
+
   void follow(const StepTape& tape, std::size_t i) {
     const StepTape::Part& part = tape.parts()[i];
     const StepTape::Time& end = tape.times()[part.end];
+    beginNodes(end.value);
     const double t0 = tape.times()[part.begin].value;
     const RowVector* dt0 = slopeOf(tape, part.begin);
     const bool meets = end.law == StepTape::Time::Law::onSwitch;
@@ -221,6 +253,7 @@ class SensitivityPass {
       f += external.value;
       if (timeMoves) force_ += external.slope * middleTime_;
     }
+    addNodes(tMiddle);
 
     // muscles: dℓ′ = trialFibre + (V_L/2J) ∂ℓ·dq′
     Matrix f_end = Matrix::Zero();  // df through the fibres that dq′ moves
@@ -311,10 +344,11 @@ class SensitivityPass {
       }
     }
     forGeometry(m, q, [&](const QuantityEffect& effect, const auto& gradient) {
-      trial[effect.column] += r.dV_dMuscleTendonLength * perJ * gradient[0];
+      trial[effect.column] += effect.factor * r.dV_dMuscleTendonLength * perJ * gradient[0];
       for (int k = 0; k < N; ++k) {
-        force_(k, effect.column) -= r.dF_dMuscleTendonLength * gradient[0] * path.dL_dq[k] +
-                                    r.tendonForce * gradient[1 + k];
+        force_(k, effect.column) -=
+            effect.factor * (r.dF_dMuscleTendonLength * gradient[0] * path.dL_dq[k] +
+                             r.tendonForce * gradient[1 + k]);
       }
     });
   }
@@ -339,12 +373,32 @@ class SensitivityPass {
   void addPassiveForces(const Vector& q, const Vector& v) {
     for (const auto& force : effects_.limitForces) {
       const auto d = parameterDerivatives(force.law, q[force.coordinate], v[force.coordinate]);
-      force_(force.coordinate, force.effect.column) += d[force.effect.quantity];
+      force_(force.coordinate, force.effect.column) +=
+          force.effect.factor * d[force.effect.quantity];
     }
     for (const auto& force : effects_.springForces) {
       const auto d = parameterDerivatives(force.law, q[force.coordinate], v[force.coordinate]);
-      force_(force.coordinate, force.effect.column) += d[force.effect.quantity];
+      force_(force.coordinate, force.effect.column) +=
+          force.effect.factor * d[force.effect.quantity];
     }
+    for (const auto& force : effects_.expressions) {
+      force_(force.coordinate, force.effect.column) +=
+          force.effect.factor * force.law.parameterDerivative(force.effect.quantity,
+                                                              q[force.coordinate],
+                                                              v[force.coordinate]);
+    }
+  }
+
+  /// ∂f/∂d of the nodes between which t lies.
+  void addNodes(double t) {
+    const std::vector<double>& times = nodes_.times;
+    if (times.empty() || t < times.front() || t > times.back()) return;
+    while (node_ + 2 < times.size() && times[node_ + 1] <= t) ++node_;
+    while (node_ > 0 && times[node_] > t) --node_;
+    const Index first = numParameters_ + 1 + static_cast<Index>(node_);
+    const double w = (t - times[node_]) / (times[node_ + 1] - times[node_]);
+    force_(nodes_.coordinate, first) += 1 - w;
+    force_(nodes_.coordinate, first + 1) += w;
   }
 
   /// inertia_ = ∂(M v)/∂θ and slope_ = ∂(½ vᵀ∂M v − ∂V)/∂θ, linear in the segments' moments:
@@ -376,6 +430,18 @@ class SensitivityPass {
                                                                   X_k.p * effect.change.mass);
       }
     }
+    for (const QuantityEffect& effect : effects_.gravity) {
+      const auto axis = static_cast<Index>(effect.quantity);
+      for (std::size_t s = 1; s < arm_.skeleton().numSegments(); ++s) {
+        const Segment& segment = arm_.skeleton().segments()[s];
+        for (int k = 0; k < N; ++k) {
+          const Placement<double>& X_k =
+              configuration_.motions()[s].first[static_cast<std::size_t>(k)];
+          slope_(k, effect.column) += effect.factor * (X_k.R.row(axis).dot(segment.massMoment) +
+                                                       X_k.p[axis] * segment.mass);
+        }
+      }
+    }
   }
 
   // Output ----------------------------------------------------------------------------------------
@@ -400,6 +466,10 @@ class SensitivityPass {
       const auto sk = static_cast<std::size_t>(k);
       result.q[sk].row(row) = dq_.row(k).head(numParameters_);
       result.qDot[sk].row(row) = force_.row(k).head(numParameters_);
+      if (nodes_.times.empty()) continue;
+      const auto begun = static_cast<Index>(begunNodes_);
+      result.qOfNodes[sk].row(row).head(begun) = dq_.row(k).tail(begun);
+      result.qDotOfNodes[sk].row(row).head(begun) = force_.row(k).tail(begun);
     }
     if (!options_.muscles) return;
     for (std::size_t i = 0; i < arm_.numMuscles(); ++i) {
@@ -421,7 +491,7 @@ class SensitivityPass {
         force[effect.column] += effect.factor * d.dF[effect.quantity];
       }
       forGeometry(i, q, [&](const QuantityEffect& effect, const auto& gradient) {
-        force[effect.column] += r.dF_dMuscleTendonLength * gradient[0];
+        force[effect.column] += effect.factor * r.dF_dMuscleTendonLength * gradient[0];
       });
     }
   }
@@ -432,6 +502,9 @@ class SensitivityPass {
   bool symmetric_;
   Index numParameters_;
   Index numMuscles_;
+  const ExternalNodes& nodes_;
+  std::size_t begunNodes_ = 0;  ///< have columns
+  std::size_t node_ = 0;        ///< before the time reached
   ArmConfiguration<N> configuration_;
   ExcitationSensitivity excitation_;
   std::vector<PathGradients> gradients_;

@@ -31,6 +31,27 @@ std::array<double, 6> parameterDerivatives(const CoordinateLimitForce& law, doub
 std::array<double, 3> parameterDerivatives(const SpringGeneralizedForce& law, double q,
                                            double qDot);
 
+/// A formula with its constants, compiled: τ(q, q̇; c).
+class CoordinateExpression {
+ public:
+  /// @throws std::invalid_argument syntax error, unknown name, more than maxConstants constants
+  explicit CoordinateExpression(const ExpressionBasedCoordinateForce& law);
+
+  static constexpr std::size_t maxConstants = 6;
+
+  CoordinateForceValue evaluate(double q, double qDot) const;
+  /// ∂τ/∂c of one of the constants.
+  double parameterDerivative(std::size_t constant, double q, double qDot) const;
+
+ private:
+  Expression expression_;
+  std::vector<double> constants_;
+};
+
+/// The formula with the numbers in the places of its constants, to 17 digits: what a file says.
+/// @throws std::invalid_argument a constant that is not finite
+std::string plainExpression(const ExpressionBasedCoordinateForce& law);
+
 /// All passive coordinate forces of a model that act on the free coordinates of a skeleton.
 class CoordinateForces {
  public:
@@ -56,7 +77,7 @@ class CoordinateForces {
  private:
   struct Acting {
     int index = 0;
-    std::variant<CoordinateLimitForce, SpringGeneralizedForce, Expression> law;
+    std::variant<CoordinateLimitForce, SpringGeneralizedForce, CoordinateExpression> law;
     std::string name;
   };
   static CoordinateForceValue evaluateLaw(const Acting& acting, double q, double qDot);

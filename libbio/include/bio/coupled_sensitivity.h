@@ -19,12 +19,23 @@ struct SensitivityTrajectory {
   std::vector<SensitivityMatrix> fibreLength;  ///< of each muscle; empty unless asked for
   std::vector<SensitivityMatrix> activation;   ///< of each muscle; empty unless asked for
   std::vector<SensitivityMatrix> tendonForce;  ///< of each muscle; empty unless asked for
+  std::vector<SensitivityMatrix> qOfNodes;     ///< dq/dd of each free coordinate: times × nodes
+  std::vector<SensitivityMatrix> qDotOfNodes;  ///< dq̇/dd of each free coordinate
   double wallSeconds = 0;  ///< of the sensitivities alone; motion.wallSeconds is the motion's
+};
+
+/// Nodes of an external force on one coordinate, straight lines between, 0 before the first and
+/// behind the last, as SimulationOptions::externalForce has it: how the motion follows its values
+/// there, [unit of q per N·m or N].
+struct ExternalNodes {
+  int coordinate = 0;         ///< free index
+  std::vector<double> times;  ///< [s] strictly rising, none or at least two
 };
 
 struct SensitivityOptions {
   SimulationOptions simulation;  ///< integrator: variational or variationalLeft
   bool muscles = false;          ///< also fibre lengths, activations and tendon forces
+  ExternalNodes externalNodes = {};
 };
 
 /// Simulates the trial and differentiates the discrete motion in parameters, exactly.
@@ -51,6 +62,13 @@ struct SensitivityOptions {
 SensitivityTrajectory simulateWithSensitivities(const Arm& arm, const ParameterCatalogue& catalogue,
                                                 const ParameterCatalogue::Setting& setting,
                                                 const std::vector<std::size_t>& wanted,
+                                                const ExcitationSignal& trial,
+                                                const SensitivityOptions& options);
+
+/// The same along directions in any numbers that the setting has, one column each.
+SensitivityTrajectory simulateWithSensitivities(const Arm& arm,
+                                                const ParameterCatalogue::Setting& setting,
+                                                const std::vector<ParameterDirection>& wanted,
                                                 const ExcitationSignal& trial,
                                                 const SensitivityOptions& options);
 

@@ -9,27 +9,38 @@
 namespace bio {
 
 /// From the excitations of a trial to those that drive the muscles:
-///     u_i(t) = min(1, g_i·S(x_i(t − d))),   S(x) = (e^{Ax} − 1)/(e^A − 1), S = x for A = 0
-/// (S: Lloyd & Besier 2003, eq. 3, as in emg_stages.h). S and the gain act on the rows of the
-/// trial, between which u stays straight. As it stands, the identity.
+///     u_i(t) = min(1, g_i·S(z_i(t − d))),   S(x) = (e^{Ax} − 1)/(e^A − 1), S = x for A = 0
+///     z_i = max(0, x_i − o_i − Σ_j c_ji·x_j)
+/// (S: Lloyd & Besier 2003, eq. 3, as in emg_stages.h). All of it acts on the rows of the trial,
+/// between which u stays straight. As it stands, the identity.
 struct EmgMapping {
-  std::map<std::string, double> gain;  ///< g [1] ≥ 0 by muscle; 1 where it has none
-  double delay = 0;                    ///< d [s], electromechanical
-  double nonlinearity = 0;             ///< A [1], −3 to 0
+  /// What an electrode shows of another muscle, c_ji of j in the signal of i.
+  struct Crosstalk {
+    std::string from, to;
+    double share = 0;  ///< c [1]
+  };
+
+  std::map<std::string, double> gain;         ///< g [1] ≥ 0 by muscle; 1 where it has none
+  double delay = 0;                           ///< d [s], electromechanical
+  double nonlinearity = 0;                    ///< A [1], −6 to 6
+  std::map<std::string, double> offset = {};  ///< o [1] by muscle; 0 where it has none
+  std::vector<Crosstalk> crosstalk = {};
 };
 
 /// @param muscles  the signal's, in order
 /// @throws std::invalid_argument for a gain < 0, a delay that is not finite, A outside −6 … 6, or a
-///   gain of a muscle that is not there
+///   gain, offset or crosstalk of a muscle that is not there
 ExcitationSignal drivenExcitation(const ExcitationSignal& trial,
                                   const std::vector<std::string>& muscles,
                                   const EmgMapping& mapping);
 
-/// ∂u/∂g_i and ∂u/∂A at the rows of the signal; rows = muscles, columns = rows. 0 where u is held
-/// at 1. ∂u/∂d is −du/dt.
+/// ∂u_i/∂g_i, ∂u_i/∂A and ∂u_i/∂z_i at the rows of the signal; rows = muscles, columns = rows. 0
+/// where u is held at 1, ∂u/∂z also where z is held at 0. ∂u/∂d is −du/dt.
 struct EmgDerivatives {
   Eigen::MatrixXd gain;
   Eigen::MatrixXd nonlinearity;
+  Eigen::MatrixXd signal;  ///< ∂u/∂z: −1 times it is ∂u/∂o, −x_j times it ∂u/∂c_ji
+  Eigen::MatrixXd rows;    ///< x: the trial's own
 };
 EmgDerivatives emgDerivatives(const ExcitationSignal& trial,
                               const std::vector<std::string>& muscles, const EmgMapping& mapping);

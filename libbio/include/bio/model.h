@@ -226,12 +226,21 @@ struct SpringGeneralizedForce {
   friend bool operator==(const SpringGeneralizedForce&, const SpringGeneralizedForce&) = default;
 };
 
+/// A number in an expression that goes by a name.
+struct NamedConstant {
+  std::string name;
+  double value = 0;
+  friend bool operator==(const NamedConstant&, const NamedConstant&) = default;
+};
+
 /// Generalised force given as an expression in q and qdot.
 struct ExpressionBasedCoordinateForce {
   std::string name;
   std::string coordinate;
   std::string expression;  ///< e.g. "-10*q-5*qdot" [N m]
   bool enabled = true;
+  /// Names that stand for numbers in the expression; a file has the numbers in their places.
+  std::vector<NamedConstant> constants = {};
   friend bool operator==(const ExpressionBasedCoordinateForce&,
                          const ExpressionBasedCoordinateForce&) = default;
 };

@@ -46,9 +46,19 @@ struct SpringForceTarget {
   int component;  ///< 0–2 in that order
   friend bool operator==(const SpringForceTarget&, const SpringForceTarget&) = default;
 };
+/// A constant of an expression.
+struct ExpressionTarget {
+  std::size_t force, constant;
+  friend bool operator==(const ExpressionTarget&, const ExpressionTarget&) = default;
+};
+struct GravityTarget {
+  int axis;  ///< 0 x, 1 y, 2 z of the ground
+  friend bool operator==(const GravityTarget&, const GravityTarget&) = default;
+};
 struct EmgTarget {
-  enum class What { gain, delay, nonlinearity } what;
-  std::string muscle;  ///< of a gain
+  enum class What { gain, delay, nonlinearity, offset, crosstalk } what;
+  std::string muscle;     ///< of a gain, an offset, a crosstalk's receiver
+  std::string from = {};  ///< of a crosstalk
   friend bool operator==(const EmgTarget&, const EmgTarget&) = default;
 };
 struct InitialTarget {
@@ -56,8 +66,9 @@ struct InitialTarget {
   bool isSpeed;
   friend bool operator==(const InitialTarget&, const InitialTarget&) = default;
 };
-using ParameterTarget = std::variant<MuscleTarget, PointTarget, WrapTarget, BodyTarget,
-                                     LimitForceTarget, SpringForceTarget, EmgTarget, InitialTarget>;
+using ParameterTarget =
+    std::variant<MuscleTarget, PointTarget, WrapTarget, BodyTarget, LimitForceTarget,
+                 SpringForceTarget, ExpressionTarget, GravityTarget, EmgTarget, InitialTarget>;
 
 /// A number of the model, of the way from EMG to excitation, or of the start, under the path by
 /// which people call it.
@@ -135,5 +146,20 @@ class ParameterCatalogue {
   std::vector<std::string> muscles_;  ///< of the arm
   std::vector<ModelParameter> parameters_;
 };
+
+/// A step in several elementary numbers at once, whose derivative is one column: dθ = Σ weight·dx.
+struct TargetStep {
+  ParameterTarget target;
+  double weight = 1;
+  double value = 1;  ///< of the target; looked at only for a scale of a curve
+};
+using ParameterDirection = std::vector<TargetStep>;
+
+/// Sets what a target names. Scales of curves multiply what `setting` has; a moving path point is
+/// shifted by value − nominal; the radius of an ellipsoid is that of the semi-axes equal to
+/// nominal.
+/// @throws std::invalid_argument for a value that is not finite
+void setTarget(ParameterCatalogue::Setting& setting, const ParameterTarget& target, double value,
+               double nominal);
 
 }  // namespace bio

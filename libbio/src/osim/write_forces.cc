@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <numbers>
 
+#include "bio/coordinate_force.h"
 #include "osim/writing.h"
 
 namespace bio::osim {
@@ -79,7 +80,7 @@ void appendCoordinateForces(const Writing& writing, Element& parent) {
     Element& element = append(parent, "ExpressionBasedCoordinateForce", force.name);
     appendEnabled(writing, element, force.enabled);
     appendText(element, "coordinate", force.coordinate);
-    appendText(element, "expression", force.expression);
+    appendText(element, "expression", plainExpression(force));
   }
 }
 

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bio/discover/widest_model.h"
+
+namespace bio::discover {
+
+/// One line of the catalogue: adds an effect, or a small family of them, to a model. An effect that
+/// the base model has already becomes WidestModel::present(); one that its skeleton does not know
+/// (tilt, where gravity does not turn the joint) is left out.
+struct EffectEntry {
+  const char* id;
+  void (*add)(WidestModel& model);
+};
+
+/// The catalogue. τ is the generalised force on the observed coordinate, + up; w = q̇.
+///
+/// | id | effect | amplitude |
+/// |---|---|---|
+/// | visc | −b·w | b N·m·s/rad |
+/// | coulomb | −c·tanh(w/0.05) | c N·m |
+/// | stribeck | −c·[1 + e^{−(w/v)²}]·tanh(w/0.05) | c N·m |
+/// | drag | −c·w·|w| | c N·m·s² |
+/// | powerdamp | −b·w·(w² + 0.01²)^{(n−1)/2} | b |
+/// | stiffness | −k(q − q_r) | k N·m/rad |
+/// | limit | OpenSim's CoordinateLimitForce, one stiffness for both ends | K N·m/rad |
+/// | payload | a point at the mass centre of the farthest body | m kg |
+/// | tilt | gravity's moment is that of q + δ | δ rad |
+/// | const | +c | c N·m |
+/// | handforce | horizontal force at that mass centre, in the plane of the joint | F N |
+/// | delay, shape, crosstalk_A_B, gain_i, offset_i | EmgMapping | |
+/// | mass, tau, Fmax_i, lopt_i, lslack_i, tendon, wrap_i | factors and shifts of parameters | |
+/// | bias, gain, clock | SensorLaw | |
+const std::vector<EffectEntry>& effectEntries();
+
+/// Adds the base model's own uncertain numbers as nuisances: every muscle's F0 (15 % of the
+/// logarithm), optimal fibre length (4 %) and tendon slack length (2 %), the mass of the moved
+/// bodies (5 %), the time scale of activation (20 %).
+void addNuisances(WidestModel& model);
+
+/// addNuisances, and every entry but those whose ids are in `without`.
+/// @param without  ids of entries or of candidates
+WidestModel widestModel(const Model& model, const ArmOptions& arm, const std::string& coordinate,
+                        const std::vector<std::string>& without = {});
+
+}  // namespace bio::discover

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bio/coupled.h"
+#include "bio/discover/widest_model.h"
+#include "bio/trial.h"
+
+namespace bio::discover {
+
+struct ElbowOptions {
+  SimulationOptions simulation;      ///< integrator: variational or variationalLeft; step
+  double latentSpacing = 0.05;       ///< between nodes of the latent force [s] > 0
+  double latentFloor = 0.5;          ///< τ_0 of its scale [N·m] > 0
+  double startDeviation = 0.035;     ///< prior of each trial's first angle [rad] > 0
+  double speedDeviation = 0.1;       ///< prior of each trial's first speed [rad/s] > 0
+  std::vector<std::string> without;  ///< ids of effects that are left out of the catalogue
+};
+
+/// A model and recorded trials with one observed coordinate, every effect of the catalogue built
+/// in: what info::discover asks.
+///
+/// Each trial is simulated from its own first angle (the first measured value is what is known of
+/// it) over its rows, driven by its excitations and by the torque it has from outside. y(t_k) is
+/// the cubic of Hermite between rows. All derivatives are exact: parameters, laws and latent nodes
+/// by the implicit function theorem (coupled_sensitivity.h), EMG and sensor by the chain rule; none
+/// is a difference of simulations. Before the start of a trial, where a clock offset may look, the
+/// coordinate goes on with its first speed.
+///
+/// The latent force is a torque on the coordinate, its scale
+///     G(t) = √(Σ_i (r_i F_i)² + τ_0²)   [N·m]
+/// with the moments of the muscles: an error of so many per cent of each muscle's force.
+class ElbowDisagreement : public info::discover::Disagreement {
+ public:
+  using Quantity = info::discover::Quantity;
+  using Candidate = info::discover::Candidate;
+
+  /// @param coordinate  observed; measured in every trial; samples that are missing have no time
+  /// @throws std::invalid_argument what WidestModel throws, no trial, a trial without a measured
+  ///   value of the coordinate, an integrator without sensitivities, an option out of range
+  ElbowDisagreement(const Model& model, const ArmOptions& arm, const std::string& coordinate,
+                    std::vector<Trial> trials, ElbowOptions options = {});
+
+  const std::vector<Quantity>& quantities() const override { return quantities_; }
+  const std::vector<std::size_t>& nuisances() const override { return nuisances_; }
+  const std::vector<Candidate>& candidates() const override { return widest_.candidates(); }
+  int numTrials() const override { return static_cast<int>(trials_.size()); }
+  std::string trialName(int trial) const override { return of(trial).trial.file; }
+  const std::vector<double>& times(int trial) const override { return of(trial).times; }
+  const Eigen::VectorXd& measured(int trial) const override { return of(trial).measured; }
+  const std::vector<double>& latentTimes(int trial) const override { return of(trial).nodes; }
+  Prediction predict(int trial, const Eigen::VectorXd& values, const Eigen::VectorXd& latent,
+                     const std::vector<std::size_t>& wanted, bool latentToo) const override;
+  Eigen::VectorXd outputs(int trial, const Eigen::VectorXd& values,
+                          const Eigen::VectorXd& latent) const override;
+  Eigen::VectorXd refinedOutputs(int trial, const Eigen::VectorXd& values) const override;
+  Eigen::MatrixXd inputs(int trial) const override;
+  std::vector<std::string> inputNames() const override;
+
+  /// Model and effects, without the trials' starts.
+  const WidestModel& widest() const { return widest_; }
+  /// Why the trial's simulation does not reach its end; empty if it does.
+  std::string failure(int trial, const Eigen::VectorXd& values) const;
+
+ private:
+  struct OfTrial {
+    Trial trial;
+    ExcitationSignal excitation;
+    ExternalForce external;
+    std::vector<double> times;
+    Eigen::VectorXd measured;
+    std::vector<double> nodes;
+    std::size_t angle, speed;  ///< quantities of its start
+  };
+  const OfTrial& of(int trial) const { return trials_.at(static_cast<std::size_t>(trial)); }
+  ParameterCatalogue::Setting settingAt(const OfTrial& one, const Eigen::VectorXd& values,
+                                        const std::vector<std::size_t>& wanted) const;
+  SimulationOptions simulationOf(const OfTrial& one, const Eigen::VectorXd& latent,
+                                 double clock) const;
+  Trajectory simulate(const OfTrial& one, const Eigen::VectorXd& values,
+                      const Eigen::VectorXd& latent, double stepFactor) const;
+  Eigen::VectorXd outputsOf(const OfTrial& one, const Trajectory& motion,
+                            const SensorLaw& sensor) const;
+
+  WidestModel widest_;
+  ElbowOptions options_;
+  std::vector<Quantity> quantities_;  ///< the model's, then the trials' starts
+  std::vector<std::size_t> nuisances_;
+  std::vector<OfTrial> trials_;
+};
+
+}  // namespace bio::discover

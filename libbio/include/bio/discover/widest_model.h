@@ -1,0 +1,163 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bio/arm.h"
+#include "bio/parameters.h"
+#include "info/discover/disagreement.h"
+
+namespace bio::discover {
+
+/// What a quantity does: how elementary numbers of model and EMG follow it, or the sensor.
+struct Meaning {
+  enum class Kind {
+    scale,  ///< multiplies each number
+    shift,  ///< adds weight·value to each number
+    tilt,   ///< turns gravity, so that its moment about the axis is that of q + value
+    bias,   ///< of the sensor, y = (1 + gain)·q(t − clock) + bias
+    gain,
+    clock
+  };
+  struct Part {
+    std::size_t number;
+    double weight = 1;
+  };
+  Kind kind = Kind::shift;
+  std::vector<Part> parts;
+};
+
+/// What stands between the coordinate and what is measured: y(t) = (1 + gain)·q(t − clock) + bias.
+struct SensorLaw {
+  double bias = 0;   ///< [rad] or [m]
+  double gain = 0;   ///< [1]
+  double clock = 0;  ///< [s]
+};
+
+/// Muscles whose names begin with the same capitals: TRIlong, TRIlat and TRImed are TRI.
+struct MuscleGroup {
+  std::string name;
+  std::vector<std::size_t> muscles;  ///< indices into the arm's
+  double momentArm = 0;              ///< mean at mid-range [m], > 0: pulls the coordinate up
+};
+
+/// A model with every effect of a catalogue built in and absent.
+///
+/// Elementary numbers θ_n (a muscle's F0, a body's mass, a constant of a law, …) follow quantities
+/// x:
+///     θ_n = θ_n0 · Π_scales x + Σ_shifts weight·x
+/// so that quantities overlap as they like (the F0 of one head, and of all three). A law whose
+/// amplitude is nominal is switched off unless a derivative asks for it; switched on, it adds ±0.
+/// Building is done by effects (effects.h); afterwards constant.
+class WidestModel {
+ public:
+  using Quantity = info::discover::Quantity;
+  using Candidate = info::discover::Candidate;
+
+  /// @param coordinate  the one that is observed; free in `arm`
+  /// @throws std::invalid_argument what Arm throws; a coordinate that is not free
+  WidestModel(const Model& model, const ArmOptions& arm, const std::string& coordinate);
+
+  // What effects ask ------------------------------------------------------------------------------
+
+  const Model& base() const { return base_; }
+  const Arm& arm() const { return *arm_; }
+  const ArmOptions& armOptions() const { return armOptions_; }
+  int freeIndex() const { return freeIndex_; }
+  const Coordinate& coordinate() const;
+  double middle() const { return (coordinate().rangeMin + coordinate().rangeMax) / 2; }
+  const std::vector<MuscleGroup>& groups() const { return groups_; }
+  const ParameterCatalogue& parameters() const { return *parameters_; }
+  /// Bodies with a mass that the coordinate moves, the farthest from ground last.
+  const std::vector<std::string>& movedBodies() const { return movedBodies_; }
+  /// Axis in ground about which the coordinate turns all of them, unit; zero if it does not.
+  const Eigen::Vector3d& axis() const { return axis_; }
+  /// ∂(mass centre of a body in ground)/∂q.
+  Eigen::Vector3d velocityOf(const std::string& body, double q) const;
+  bool knows(const std::string& id) const;              ///< a candidate of this id
+  std::size_t find(const std::string& quantity) const;  ///< @throws std::invalid_argument
+
+  // What effects build ----------------------------------------------------------------------------
+
+  /// Index of an elementary number; each target is there once.
+  std::size_t number(const ParameterTarget& target, double nominal);
+  /// Those of a parameter of the model, by its path name.
+  std::vector<Meaning::Part> numbers(const std::string& parameter);
+  std::size_t add(Quantity quantity, Meaning meaning);
+  void addNuisance(std::size_t quantity) { nuisances_.push_back(quantity); }
+  void add(Candidate candidate) { candidates_.push_back(std::move(candidate)); }
+  /// An effect that the base model has already, so that it is no candidate.
+  void addPresent(const std::string& id, const std::string& what) { present_[id] = what; }
+  /// A law with the numbers at 0, on while one of the quantities (its amplitude first) asks for it.
+  /// Returns its index in its list of Model.
+  std::size_t addLaw(SpringGeneralizedForce law);
+  std::size_t addLaw(CoordinateLimitForce law);
+  std::size_t addLaw(ExpressionBasedCoordinateForce law);
+  /// Takes candidates off the list; their quantities stay, at nominal.
+  void forget(const std::vector<std::string>& ids);
+  /// Says which quantities the law added last belongs to, the amplitude first.
+  void lawFollows(std::vector<std::size_t> quantities);
+
+  // What it is then -------------------------------------------------------------------------------
+
+  const std::vector<Quantity>& quantities() const { return quantities_; }
+  const std::vector<std::size_t>& nuisances() const { return nuisances_; }
+  const std::vector<Candidate>& candidates() const { return candidates_; }
+  /// Ids of effects that the base model has already, and by which of its elements.
+  const std::map<std::string, std::string>& present() const { return present_; }
+  Eigen::VectorXd nominal() const;
+
+  /// Model and EMG mapping at values; the start is the default position at rest.
+  /// @param wanted  quantities whose derivatives will be asked for: their laws are on
+  ParameterCatalogue::Setting settingAt(const Eigen::VectorXd& values,
+                                        const std::vector<std::size_t>& wanted) const;
+  /// How the numbers follow a quantity; empty for one of the sensor.
+  ParameterDirection direction(const Eigen::VectorXd& values, std::size_t quantity) const;
+  SensorLaw sensorAt(const Eigen::VectorXd& values) const;
+  Meaning::Kind kindOf(std::size_t quantity) const { return meanings_[quantity].kind; }
+
+ private:
+  struct Number {
+    ParameterTarget target;
+    double nominal;
+  };
+  struct Law {
+    enum class List { spring, limit, expression } list;
+    std::size_t index;
+    std::vector<std::size_t> quantities;
+  };
+  /// Products of scales and sums of shifts, one per number.
+  struct Numbers {
+    Eigen::VectorXd product, sum;
+    double at(std::size_t i, const Number& number) const {
+      const auto k = static_cast<Eigen::Index>(i);
+      return number.nominal * product[k] + sum[k];
+    }
+  };
+  Numbers numbersAt(const Eigen::VectorXd& values) const;
+  void findBodies();
+  void findGroups();
+
+  Model base_;
+  ArmOptions armOptions_;
+  std::unique_ptr<const Arm> arm_;
+  int freeIndex_;
+  std::unique_ptr<const ParameterCatalogue> parameters_;
+  std::vector<std::string> movedBodies_;
+  Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();
+  std::vector<MuscleGroup> groups_;
+
+  Model widest_;
+  std::vector<Number> numbers_;
+  std::vector<Quantity> quantities_;
+  std::vector<Meaning> meanings_;
+  std::vector<std::size_t> nuisances_;
+  std::vector<Candidate> candidates_;
+  std::map<std::string, std::string> present_;
+  std::vector<Law> laws_;
+};
+
+}  // namespace bio::discover

@@ -1,0 +1,94 @@
+#include "bio/discover/add_effects.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "bio/coordinate_force.h"
+#include "bio/discover/effects.h"
+
+namespace bio::discover {
+namespace {
+
+using Eigen::Index;
+
+/// Takes the laws off that were built in and are absent.
+template <class Laws>
+void dropAbsent(Laws& laws, std::size_t ofBase) {
+  const auto built = laws.begin() + static_cast<std::ptrdiff_t>(ofBase);
+  laws.erase(std::remove_if(built, laws.end(), [](const auto& law) { return !law.enabled; }),
+             laws.end());
+}
+
+const info::discover::Candidate& findCandidate(const WidestModel& widest, const std::string& id) {
+  for (const auto& candidate : widest.candidates()) {
+    if (candidate.id == id) return candidate;
+  }
+  const auto present = widest.present().find(id);
+  if (present != widest.present().end()) {
+    throw std::invalid_argument(
+        fmt::format("effect '{}': the model has it already, as '{}'", id, present->second));
+  }
+  throw std::invalid_argument(fmt::format("effect '{}': not in the catalogue of this model", id));
+}
+
+std::string wordsOf(const WidestModel& widest, const info::discover::Candidate& candidate,
+                    const EffectToAdd& effect) {
+  std::string words = fmt::format("; {} ({}):", candidate.name, candidate.id);
+  for (std::size_t i = 0; i < candidate.quantities.size(); ++i) {
+    const auto k = static_cast<Index>(i);
+    const auto& quantity = widest.quantities()[candidate.quantities[i]];
+    words += fmt::format("{} {} {:.6g}", i ? "," : "", quantity.name, effect.values[k]);
+    if (effect.deviations.size() > k) words += fmt::format(" ± {:.2g}", effect.deviations[k]);
+    if (!quantity.unit.empty()) words += " " + quantity.unit;
+  }
+  if (effect.logBayesFactor != 0)
+    words += fmt::format(", evidence {:.4g} nats", effect.logBayesFactor);
+  if (effect.probability != 0) words += fmt::format(", probability {:.4g}", effect.probability);
+  return words;
+}
+
+}  // namespace
+
+Augmented augmentedModel(const WidestModel& widest, const Eigen::VectorXd& values) {
+  ParameterCatalogue::Setting setting = widest.settingAt(values, {});
+  Augmented result{std::move(setting.model), std::move(setting.mapping), widest.sensorAt(values)};
+  Model& model = result.model;
+  dropAbsent(model.springForces, widest.base().springForces.size());
+  dropAbsent(model.limitForces, widest.base().limitForces.size());
+  dropAbsent(model.expressionForces, widest.base().expressionForces.size());
+  for (ExpressionBasedCoordinateForce& force : model.expressionForces) {
+    if (force.constants.empty()) continue;
+    force.expression = plainExpression(force);
+    force.constants.clear();
+  }
+  return result;
+}
+
+Augmented addEffects(const Model& model, const ArmOptions& arm, const std::string& coordinate,
+                     const std::vector<EffectToAdd>& effects, const EffectProvenance& provenance) {
+  const WidestModel widest = widestModel(model, arm, coordinate);
+  Eigen::VectorXd values = widest.nominal();
+  std::string credits = "Effects added by " + provenance.tool;
+  for (std::size_t i = 0; i < provenance.data.size(); ++i) {
+    credits += (i ? ", " : " from ") + provenance.data[i];
+  }
+  for (const EffectToAdd& effect : effects) {
+    const auto& candidate = findCandidate(widest, effect.id);
+    if (effect.values.size() != static_cast<Index>(candidate.quantities.size())) {
+      throw std::invalid_argument(fmt::format("effect '{}': {} values for {} quantities", effect.id,
+                                              effect.values.size(), candidate.quantities.size()));
+    }
+    for (std::size_t i = 0; i < candidate.quantities.size(); ++i) {
+      values[static_cast<Index>(candidate.quantities[i])] = effect.values[static_cast<Index>(i)];
+    }
+    credits += wordsOf(widest, candidate, effect);
+  }
+  Augmented result = augmentedModel(widest, values);
+  std::string& text = result.model.credits;
+  text += text.empty() ? credits : ". " + credits;
+  return result;
+}
+
+}  // namespace bio::discover

@@ -1,0 +1,98 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "discover/effects/effects.h"
+
+namespace bio::discover {
+
+using Eigen::Index;
+using info::discover::Candidate;
+
+const std::vector<EffectEntry>& effectEntries() {
+  static const std::vector<EffectEntry> entries = {
+      {"visc", addViscousDamping},
+      {"coulomb", addCoulombFriction},
+      {"stribeck", addStribeckFriction},
+      {"drag", addQuadraticDrag},
+      {"powerdamp", addPowerDamping},
+      {"stiffness", addStiffness},
+      {"limit", addLimits},
+      {"payload", addPayload},
+      {"tilt", addTilt},
+      {"const", addConstantTorque},
+      {"handforce", addHandForce},
+      {"delay", addDelay},
+      {"shape", addShape},
+      {"crosstalk", addCrosstalk},
+      {"electrodes", addElectrodeGains},
+      {"baselines", addBaselines},
+      {"mass", addMassError},
+      {"tau", addActivationError},
+      {"muscles", addMuscleErrors},
+      {"tendon", addTendonCompliance},
+      {"wraps", addWrapErrors},
+      {"sensor", addSensorErrors},
+  };
+  return entries;
+}
+
+WidestModel widestModel(const Model& model, const ArmOptions& arm, const std::string& coordinate,
+                        const std::vector<std::string>& without) {
+  WidestModel widest(model, arm, coordinate);
+  addNuisances(widest);
+  for (const EffectEntry& entry : effectEntries()) {
+    if (std::find(without.begin(), without.end(), entry.id) == without.end()) entry.add(widest);
+  }
+  widest.forget(without);
+  return widest;
+}
+
+Candidate candidate(const WidestModel& model, std::string id, std::string name,
+                    std::string sentence, info::discover::EffectKind kind,
+                    std::vector<std::size_t> quantities,
+                    const std::vector<std::vector<double>>& starts,
+                    std::vector<std::string> equivalents) {
+  Candidate one{std::move(id),
+                std::move(name),
+                std::move(sentence),
+                kind,
+                std::move(quantities),
+                {},
+                {},
+                std::move(equivalents)};
+  for (const std::size_t quantity : one.quantities) {
+    one.deviations.push_back(model.quantities()[quantity].deviation);
+  }
+  for (const std::vector<double>& start : starts) {
+    one.starts.push_back(Eigen::VectorXd::Map(start.data(), static_cast<Index>(start.size())));
+  }
+  return one;
+}
+
+std::string lawName(const WidestModel& model, const std::string& id) {
+  return model.coordinate().name + "_" + id;
+}
+
+void addExpression(WidestModel& model, const ExpressionEffect& effect) {
+  const std::string law = lawName(model, effect.id);
+  for (const ExpressionBasedCoordinateForce& force : model.base().expressionForces) {
+    if (force.name == law && force.enabled) return model.addPresent(effect.id, law);
+  }
+  std::vector<NamedConstant> constants;
+  for (const std::string& name : effect.constants) constants.push_back({name, 0});
+  const std::size_t force =
+      model.addLaw({law, model.coordinate().name, effect.expression, true, constants});
+  std::vector<std::size_t> quantities;
+  for (std::size_t i = 0; i < effect.quantities.size(); ++i) {
+    const std::size_t number = model.number(ExpressionTarget{force, i}, 0);
+    quantities.push_back(model.add(effect.quantities[i], {Meaning::Kind::shift, {{number}}}));
+  }
+  model.lawFollows(quantities);
+  model.add(candidate(model, effect.id, effect.name, effect.sentence,
+                      info::discover::EffectKind::structure, quantities, effect.starts,
+                      effect.equivalents));
+}
+
+}  // namespace bio::discover

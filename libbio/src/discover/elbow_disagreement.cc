@@ -1,0 +1,302 @@
+#include "bio/discover/elbow_disagreement.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <stdexcept>
+
+#include "bio/coupled_sensitivity.h"
+#include "bio/discover/effects.h"
+#include "bio/replay.h"
+#include "motion_weights.h"
+
+namespace bio::discover {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Where the coordinate is looked at: before the start it goes on with its first speed.
+std::optional<MotionWeights> lookAt(const std::vector<double>& time, double t) {
+  if (time.size() >= 2 && t < time.front()) {
+    return MotionWeights{0, 1, 0, t - time.front(), 0, 0, 0, 1, 0};
+  }
+  return weightsAt(time, t);
+}
+
+/// The torque of the trial and the latent one, straight between the nodes of both.
+ExternalForce together(const ExternalForce& external, const std::vector<double>& nodes,
+                       const VectorXd& latent, int freeIndex, Index coordinates) {
+  MatrixXd values = MatrixXd::Zero(latent.size(), coordinates);
+  values.col(freeIndex) = latent;
+  ExternalForce force(nodes, values);
+  if (external.empty()) return force;
+  std::set<double> rows(nodes.begin(), nodes.end());
+  rows.insert(external.times().begin(), external.times().end());
+  const std::vector<double> times(rows.begin(), rows.end());
+  MatrixXd sum(static_cast<Index>(times.size()), coordinates);
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    sum.row(static_cast<Index>(k)) =
+        (external.at(times[k]).value + force.at(times[k]).value).transpose();
+  }
+  return {times, sum};
+}
+
+}  // namespace
+
+ElbowDisagreement::ElbowDisagreement(const Model& model, const ArmOptions& arm,
+                                     const std::string& coordinate, std::vector<Trial> trials,
+                                     ElbowOptions options)
+    : widest_(widestModel(model, arm, coordinate, options.without)),
+      options_(std::move(options)),
+      quantities_(widest_.quantities()),
+      nuisances_(widest_.nuisances()) {
+  if (trials.empty()) throw std::invalid_argument("no trial is given");
+  const auto positive = [](double value, const char* what) {
+    if (!(value > 0 && std::isfinite(value))) {
+      throw std::invalid_argument(fmt::format("{} = {}, must be > 0", what, value));
+    }
+  };
+  positive(options_.latentSpacing, "spacing of the latent force");
+  positive(options_.latentFloor, "floor of the latent force's scale");
+  positive(options_.startDeviation, "deviation of the start");
+  positive(options_.speedDeviation, "deviation of the start's speed");
+  const Integrator integrator = options_.simulation.integrator;
+  if (integrator != Integrator::variational && integrator != Integrator::variationalLeft) {
+    throw std::invalid_argument("sensitivities: the integrator must be vi or vi-left");
+  }
+  const Coordinate& observed = widest_.coordinate();
+  for (Trial& trial : trials) {
+    OfTrial one{std::move(trial), {}, {}, {}, {}, {}, 0, 0};
+    for (const MeasuredMotion& motion : one.trial.measured) {
+      if (motion.coordinate != coordinate) continue;
+      one.times.assign(motion.times.begin(), motion.times.end());
+      one.measured = motion.values;
+    }
+    if (one.times.empty()) {
+      throw std::invalid_argument(
+          fmt::format("{}: no measured value of '{}'", one.trial.file, coordinate));
+    }
+    one.excitation = excitationOf(one.trial, widest_.arm());
+    one.external = externalForceOf(one.trial, widest_.arm());
+    const double first = one.trial.times[0], last = one.times.back();
+    const double intervals =
+        std::max(1.0, std::ceil((last - first) / options_.latentSpacing - 1e-9));
+    for (int k = 0; k <= static_cast<int>(intervals); ++k) {
+      one.nodes.push_back(first + k * options_.latentSpacing);
+    }
+    const int index = static_cast<int>(trials_.size());
+    const double start = one.measured[0];
+    const auto own = [&](const char* what, const char* unit, double nominal, double lower,
+                         double upper, double deviation) {
+      Quantity quantity{fmt::format("trial{}.initial.{}{}", index + 1, coordinate, what),
+                        unit,
+                        nominal,
+                        std::min(lower, nominal),
+                        std::max(upper, nominal),
+                        deviation,
+                        false};
+      quantity.trial = index;
+      nuisances_.push_back(quantities_.size());
+      quantities_.push_back(std::move(quantity));
+      return quantities_.size() - 1;
+    };
+    const bool turns = observed.isRotation;
+    one.angle = own("", turns ? "rad" : "m", start, observed.rangeMin, observed.rangeMax,
+                    options_.startDeviation);
+    one.speed = own(".speed", turns ? "rad/s" : "m/s", 0, turns ? -10.0 : -2.0, turns ? 10.0 : 2.0,
+                    options_.speedDeviation);
+    trials_.push_back(std::move(one));
+  }
+}
+
+ParameterCatalogue::Setting ElbowDisagreement::settingAt(
+    const OfTrial& one, const VectorXd& values, const std::vector<std::size_t>& wanted) const {
+  if (values.size() != static_cast<Index>(quantities_.size())) {
+    throw std::invalid_argument(
+        fmt::format("{} values for {} quantities", values.size(), quantities_.size()));
+  }
+  const auto own = static_cast<Index>(widest_.quantities().size());
+  ParameterCatalogue::Setting setting = widest_.settingAt(values.head(own), wanted);
+  setting.start.q[widest_.freeIndex()] = values[static_cast<Index>(one.angle)];
+  setting.start.qDot[widest_.freeIndex()] = values[static_cast<Index>(one.speed)];
+  return setting;
+}
+
+SimulationOptions ElbowDisagreement::simulationOf(const OfTrial& one, const VectorXd& latent,
+                                                  double clock) const {
+  SimulationOptions simulation = options_.simulation;
+  simulation.startTime = one.trial.times[0];
+  // a sensor that runs ahead looks behind the last sample
+  simulation.duration = one.times.back() - simulation.startTime + std::max(0.0, -clock);
+  simulation.progress = {};
+  simulation.externalForce = one.external;
+  if (latent.size() == 0) return simulation;
+  if (latent.size() != static_cast<Index>(one.nodes.size())) {
+    throw std::invalid_argument(
+        fmt::format("{} values of the latent force for {} nodes", latent.size(), one.nodes.size()));
+  }
+  simulation.externalForce = together(one.external, one.nodes, latent, widest_.freeIndex(),
+                                      widest_.arm().skeleton().numCoordinates());
+  return simulation;
+}
+
+Trajectory ElbowDisagreement::simulate(const OfTrial& one, const VectorXd& values,
+                                       const VectorXd& latent, double stepFactor) const {
+  const ParameterCatalogue::Setting setting = settingAt(one, values, {});
+  SimulationOptions simulation = simulationOf(one, latent, widest_.sensorAt(values).clock);
+  simulation.step *= stepFactor;
+  const Arm arm(setting.model, widest_.armOptions());
+  return simulateSetting(arm, setting, one.excitation, simulation);
+}
+
+VectorXd ElbowDisagreement::outputsOf(const OfTrial& one, const Trajectory& motion,
+                                      const SensorLaw& sensor) const {
+  VectorXd y = VectorXd::Constant(static_cast<Index>(one.times.size()), nan);
+  const int c = widest_.freeIndex();
+  for (std::size_t i = 0; i < one.times.size(); ++i) {
+    const auto w = lookAt(motion.time, one.times[i] - sensor.clock);
+    if (!w) continue;
+    y[static_cast<Index>(i)] =
+        (1 + sensor.gain) * w->value(motion.q.row(c), motion.qDot.row(c)) + sensor.bias;
+  }
+  return y;
+}
+
+VectorXd ElbowDisagreement::outputs(int trial, const VectorXd& values,
+                                    const VectorXd& latent) const {
+  const OfTrial& one = of(trial);
+  try {
+    return outputsOf(one, simulate(one, values, latent, 1), widest_.sensorAt(values));
+  } catch (const std::exception&) {
+    return VectorXd::Constant(static_cast<Index>(one.times.size()), nan);  // outside its domain
+  }
+}
+
+VectorXd ElbowDisagreement::refinedOutputs(int trial, const VectorXd& values) const {
+  const OfTrial& one = of(trial);
+  try {
+    return outputsOf(one, simulate(one, values, {}, 0.5), widest_.sensorAt(values));
+  } catch (const std::exception&) {
+    return VectorXd::Constant(static_cast<Index>(one.times.size()), nan);
+  }
+}
+
+std::string ElbowDisagreement::failure(int trial, const VectorXd& values) const {
+  try {
+    return simulate(of(trial), values, {}, 1).why;
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
+ElbowDisagreement::Prediction ElbowDisagreement::predict(int trial, const VectorXd& values,
+                                                         const VectorXd& latent,
+                                                         const std::vector<std::size_t>& wanted,
+                                                         bool latentToo) const {
+  const OfTrial& one = of(trial);
+  const auto K = static_cast<Index>(one.times.size());
+  const auto numNodes = static_cast<Index>(latentToo ? one.nodes.size() : 0);
+  Prediction result{VectorXd::Constant(K, nan),
+                    MatrixXd::Constant(K, static_cast<Index>(wanted.size()), nan),
+                    MatrixXd::Constant(latentToo ? K : 0, numNodes, nan),
+                    VectorXd::Constant(numNodes, options_.latentFloor), VectorXd::Constant(K, nan)};
+  const ParameterCatalogue::Setting setting = settingAt(one, values, wanted);
+  const SensorLaw sensor = widest_.sensorAt(values);
+  const auto own = widest_.quantities().size();
+  const VectorXd modelValues = values.head(static_cast<Index>(own));
+
+  // columns of the simulation: those of the sensor, and of other trials, have none
+  std::vector<ParameterDirection> directions;
+  std::vector<Index> column(wanted.size(), -1);
+  for (std::size_t j = 0; j < wanted.size(); ++j) {
+    ParameterDirection direction;
+    const int c = widest_.freeIndex();
+    if (wanted[j] == one.angle) direction = {{InitialTarget{c, false}}};
+    if (wanted[j] == one.speed) direction = {{InitialTarget{c, true}}};
+    if (wanted[j] < own) direction = widest_.direction(modelValues, wanted[j]);
+    if (direction.empty()) continue;
+    column[j] = static_cast<Index>(directions.size());
+    directions.push_back(std::move(direction));
+  }
+
+  SensitivityOptions options;
+  SensitivityTrajectory s;
+  try {
+    options.simulation = simulationOf(one, latent, sensor.clock);
+    if (latentToo) options.externalNodes = {widest_.freeIndex(), one.nodes};
+    const Arm arm(setting.model, widest_.armOptions());
+    s = simulateWithSensitivities(arm, setting, directions, one.excitation, options);
+    if (latentToo) {
+      Trajectory atNodes;  // the nearest rows
+      const auto rows = static_cast<Index>(s.motion.time.size());
+      atNodes.q.resize(s.motion.q.rows(), numNodes);
+      atNodes.fibreLength.resize(s.motion.fibreLength.rows(), numNodes);
+      for (Index k = 0; k < numNodes; ++k) {
+        const double at = one.nodes[static_cast<std::size_t>(k)] - s.motion.time.front();
+        const Index row = std::clamp<Index>(
+            static_cast<Index>(std::lround(at / options.simulation.step)), 0, rows - 1);
+        atNodes.q.col(k) = s.motion.q.col(row);
+        atNodes.fibreLength.col(k) = s.motion.fibreLength.col(row);
+      }
+      const MuscleReport muscles = reportMuscles(arm, atNodes, widest_.freeIndex());
+      const MatrixXd moments = muscles.momentArm.cwiseProduct(muscles.tendonForce);
+      const double floor = options_.latentFloor;
+      result.latentScale =
+          (moments.colwise().squaredNorm().transpose().array() + floor * floor).sqrt().matrix();
+    }
+  } catch (const std::exception&) {
+    return result;  // outside the model's domain
+  }
+
+  const auto c = static_cast<std::size_t>(widest_.freeIndex());
+  const auto q = s.motion.q.row(widest_.freeIndex());
+  const auto qDot = s.motion.qDot.row(widest_.freeIndex());
+  const double factor = 1 + sensor.gain;
+  for (Index i = 0; i < K; ++i) {
+    const auto w = lookAt(s.motion.time, one.times[static_cast<std::size_t>(i)] - sensor.clock);
+    if (!w) continue;
+    const double value = w->value(q, qDot), slope = w->slope(q, qDot);
+    result.outputs[i] = factor * value + sensor.bias;
+    result.speeds[i] = factor * slope;
+    const auto along = [&](const SensitivityMatrix& Q, const SensitivityMatrix& QDot, Index j) {
+      return factor * w->value(Q.col(j), QDot.col(j));
+    };
+    for (std::size_t j = 0; j < wanted.size(); ++j) {
+      double& entry = result.gamma(i, static_cast<Index>(j));
+      entry = column[j] >= 0 ? along(s.q[c], s.qDot[c], column[j]) : 0;
+      if (wanted[j] >= own) continue;
+      const Meaning::Kind kind = widest_.kindOf(wanted[j]);
+      if (kind == Meaning::Kind::bias) entry = 1;
+      if (kind == Meaning::Kind::gain) entry = value;
+      if (kind == Meaning::Kind::clock) entry = -factor * slope;
+    }
+    for (Index k = 0; k < numNodes; ++k) {
+      result.latentGamma(i, k) = along(s.qOfNodes[c], s.qDotOfNodes[c], k);
+    }
+  }
+  return result;
+}
+
+MatrixXd ElbowDisagreement::inputs(int trial) const {
+  const OfTrial& one = of(trial);
+  MatrixXd values(static_cast<Index>(one.times.size()), one.excitation.numMuscles());
+  std::size_t hint = 0;
+  for (std::size_t i = 0; i < one.times.size(); ++i) {
+    one.excitation.at(one.times[i], hint, values.row(static_cast<Index>(i)).transpose());
+  }
+  return values;
+}
+
+std::vector<std::string> ElbowDisagreement::inputNames() const {
+  return muscleNames(widest_.arm());
+}
+
+}  // namespace bio::discover

@@ -1,0 +1,273 @@
+#include "bio/discover/widest_model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <stdexcept>
+
+#include "../coupled_stepping.h"
+
+namespace bio::discover {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+WidestModel::WidestModel(const Model& model, const ArmOptions& arm, const std::string& coordinate)
+    : base_(model),
+      armOptions_(arm),
+      arm_(std::make_unique<const Arm>(model, arm)),
+      freeIndex_(arm_->skeleton().indexOf(coordinate)),
+      widest_(model) {
+  if (freeIndex_ < 0) {
+    throw std::invalid_argument(fmt::format("observed coordinate '{}' is not free", coordinate));
+  }
+  StartPoint start;
+  const auto& free = arm_->skeleton().coordinates();
+  start.q.resize(static_cast<Index>(free.size()));
+  for (std::size_t i = 0; i < free.size(); ++i)
+    start.q[static_cast<Index>(i)] = free[i].defaultValue;
+  parameters_ = std::make_unique<const ParameterCatalogue>(model, *arm_, start);
+  findBodies();
+  findGroups();
+}
+
+const Coordinate& WidestModel::coordinate() const {
+  return arm_->skeleton().coordinates()[static_cast<std::size_t>(freeIndex_)];
+}
+
+namespace {
+
+/// The first derivative of a segment's placement in one coordinate.
+Placement<double> movement(const Arm& arm, std::size_t segment, int freeIndex, double q,
+                           Eigen::Matrix3d* orientation) {
+  return stepping::withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+    Eigen::Matrix<double, decltype(N)::value, 1> at;
+    for (int i = 0; i < decltype(N)::value; ++i) {
+      at[i] = arm.skeleton().coordinates()[static_cast<std::size_t>(i)].defaultValue;
+    }
+    at[freeIndex] = q;
+    ArmConfiguration<decltype(N)::value> configuration(arm);
+    configuration.moveTo(at);
+    const auto& motion = configuration.motions()[segment];
+    if (orientation) *orientation = motion.value.R;
+    return Placement<double>(motion.first[static_cast<std::size_t>(freeIndex)]);
+  });
+}
+
+}  // namespace
+
+Vector3d WidestModel::velocityOf(const std::string& body, double q) const {
+  const BodyPlacement& place = arm_->skeleton().placeOf(body);
+  if (place.segment == 0) return Vector3d::Zero();
+  const Placement<double> X_k = movement(*arm_, place.segment, freeIndex_, q, nullptr);
+  const Vector3d center = place.X_SB.R * findBody(base_, body).massCenter + place.X_SB.p;
+  return X_k.R * center + X_k.p;
+}
+
+void WidestModel::findBodies() {
+  for (const Body& body : base_.bodies) {
+    const BodyPlacement& place = arm_->skeleton().placeOf(body.name);
+    if (place.segment == 0 || !(body.mass > 0)) continue;
+    Eigen::Matrix3d R;
+    const Placement<double> X_k = movement(*arm_, place.segment, freeIndex_, middle(), &R);
+    const Eigen::Matrix3d turn = X_k.R * R.transpose();  // ω×
+    const Vector3d omega(turn(2, 1), turn(0, 2), turn(1, 0));
+    if (omega.norm() < 1e-9 && velocityOf(body.name, middle()).norm() < 1e-9) continue;
+    movedBodies_.push_back(body.name);
+    if (omega.norm() > 0.5) axis_ = omega.normalized();
+  }
+}
+
+void WidestModel::findGroups() {
+  VectorXd q = VectorXd::Zero(arm_->skeleton().numCoordinates());
+  for (Index i = 0; i < q.size(); ++i) {
+    q[i] = arm_->skeleton().coordinates()[static_cast<std::size_t>(i)].defaultValue;
+  }
+  q[freeIndex_] = middle();
+  Trajectory still;
+  still.time = {0};
+  still.q = q;
+  const auto n = static_cast<Index>(arm_->numMuscles());
+  still.fibreLength = VectorXd::Ones(n);
+  const VectorXd momentArm = reportMuscles(*arm_, still, freeIndex_).momentArm;
+  for (std::size_t i = 0; i < arm_->numMuscles(); ++i) {
+    const std::string& muscle = arm_->muscles()[i].name;
+    std::size_t length = 0;
+    while (length < muscle.size() && std::isupper(static_cast<unsigned char>(muscle[length]))) {
+      ++length;
+    }
+    const std::string name = length > 0 ? muscle.substr(0, length) : muscle;
+    auto at = std::find_if(groups_.begin(), groups_.end(),
+                           [&](const MuscleGroup& group) { return group.name == name; });
+    if (at == groups_.end()) at = groups_.insert(groups_.end(), MuscleGroup{name, {}, 0});
+    at->muscles.push_back(i);
+    at->momentArm += momentArm[static_cast<Index>(i)];
+  }
+  for (MuscleGroup& group : groups_) group.momentArm /= static_cast<double>(group.muscles.size());
+}
+
+bool WidestModel::knows(const std::string& id) const {
+  return std::any_of(candidates_.begin(), candidates_.end(),
+                     [&](const Candidate& candidate) { return candidate.id == id; });
+}
+
+std::size_t WidestModel::find(const std::string& quantity) const {
+  for (std::size_t i = 0; i < quantities_.size(); ++i) {
+    if (quantities_[i].name == quantity) return i;
+  }
+  throw std::invalid_argument(fmt::format("no quantity is called '{}'", quantity));
+}
+
+std::size_t WidestModel::number(const ParameterTarget& target, double nominal) {
+  for (std::size_t i = 0; i < numbers_.size(); ++i) {
+    if (numbers_[i].target == target) return i;
+  }
+  numbers_.push_back({target, nominal});
+  return numbers_.size() - 1;
+}
+
+std::vector<Meaning::Part> WidestModel::numbers(const std::string& parameter) {
+  const ModelParameter& found = parameters_->parameters()[parameters_->find(parameter)];
+  std::vector<Meaning::Part> parts;
+  for (const ParameterTarget& target : found.targets)
+    parts.push_back({number(target, found.value)});
+  return parts;
+}
+
+std::size_t WidestModel::add(Quantity quantity, Meaning meaning) {
+  quantities_.push_back(std::move(quantity));
+  meanings_.push_back(std::move(meaning));
+  return quantities_.size() - 1;
+}
+
+std::size_t WidestModel::addLaw(SpringGeneralizedForce law) {
+  law.enabled = false;
+  widest_.springForces.push_back(std::move(law));
+  laws_.push_back({Law::List::spring, widest_.springForces.size() - 1, {}});
+  return laws_.back().index;
+}
+std::size_t WidestModel::addLaw(CoordinateLimitForce law) {
+  law.enabled = false;
+  widest_.limitForces.push_back(std::move(law));
+  laws_.push_back({Law::List::limit, widest_.limitForces.size() - 1, {}});
+  return laws_.back().index;
+}
+std::size_t WidestModel::addLaw(ExpressionBasedCoordinateForce law) {
+  law.enabled = false;
+  widest_.expressionForces.push_back(std::move(law));
+  laws_.push_back({Law::List::expression, widest_.expressionForces.size() - 1, {}});
+  return laws_.back().index;
+}
+void WidestModel::lawFollows(std::vector<std::size_t> quantities) {
+  laws_.back().quantities = std::move(quantities);
+}
+
+void WidestModel::forget(const std::vector<std::string>& ids) {
+  std::erase_if(candidates_, [&](const Candidate& candidate) {
+    return std::find(ids.begin(), ids.end(), candidate.id) != ids.end();
+  });
+}
+
+VectorXd WidestModel::nominal() const {
+  VectorXd values(static_cast<Index>(quantities_.size()));
+  for (Index i = 0; i < values.size(); ++i) {
+    values[i] = quantities_[static_cast<std::size_t>(i)].nominal;
+  }
+  return values;
+}
+
+WidestModel::Numbers WidestModel::numbersAt(const VectorXd& values) const {
+  const auto n = static_cast<Index>(numbers_.size());
+  Numbers numbers{VectorXd::Ones(n), VectorXd::Zero(n)};
+  for (std::size_t i = 0; i < meanings_.size(); ++i) {
+    const double value = values[static_cast<Index>(i)];
+    for (const Meaning::Part& part : meanings_[i].parts) {
+      const auto k = static_cast<Index>(part.number);
+      if (meanings_[i].kind == Meaning::Kind::scale) numbers.product[k] *= value;
+      if (meanings_[i].kind == Meaning::Kind::shift) numbers.sum[k] += part.weight * value;
+    }
+  }
+  return numbers;
+}
+
+ParameterCatalogue::Setting WidestModel::settingAt(const VectorXd& values,
+                                                   const std::vector<std::size_t>& wanted) const {
+  ParameterCatalogue::Setting setting{widest_, {}, {}, {}};
+  const auto coordinates = static_cast<Index>(arm_->skeleton().coordinates().size());
+  setting.start.q.resize(coordinates);
+  for (Index i = 0; i < coordinates; ++i) {
+    setting.start.q[i] = arm_->skeleton().coordinates()[static_cast<std::size_t>(i)].defaultValue;
+  }
+  setting.start.qDot = VectorXd::Zero(coordinates);
+  const Numbers numbers = numbersAt(values);
+  for (std::size_t i = 0; i < numbers_.size(); ++i) {
+    const double value = numbers.at(i, numbers_[i]);
+    if (value != numbers_[i].nominal) {
+      setTarget(setting, numbers_[i].target, value, numbers_[i].nominal);
+    }
+  }
+  for (std::size_t i = 0; i < meanings_.size(); ++i) {
+    const double angle = values[static_cast<Index>(i)];
+    if (meanings_[i].kind != Meaning::Kind::tilt || angle == 0) continue;
+    setting.model.gravity = Eigen::AngleAxisd(-angle, axis_) * setting.model.gravity;
+  }
+  for (const Law& law : laws_) {
+    const std::size_t amplitude = law.quantities.front();
+    bool on = values[static_cast<Index>(amplitude)] != quantities_[amplitude].nominal;
+    for (const std::size_t quantity : law.quantities) {
+      on = on || std::find(wanted.begin(), wanted.end(), quantity) != wanted.end();
+    }
+    switch (law.list) {
+      case Law::List::spring:
+        setting.model.springForces[law.index].enabled = on;
+        break;
+      case Law::List::limit:
+        setting.model.limitForces[law.index].enabled = on;
+        break;
+      case Law::List::expression:
+        setting.model.expressionForces[law.index].enabled = on;
+        break;
+    }
+  }
+  return setting;
+}
+
+ParameterDirection WidestModel::direction(const VectorXd& values, std::size_t quantity) const {
+  const Meaning& meaning = meanings_.at(quantity);
+  ParameterDirection direction;
+  if (meaning.kind == Meaning::Kind::tilt) {
+    const double angle = values[static_cast<Index>(quantity)];
+    const Vector3d turned = Eigen::AngleAxisd(-angle, axis_) * base_.gravity;
+    const Vector3d rate = -axis_.cross(turned);
+    for (int k = 0; k < 3; ++k) direction.push_back({GravityTarget{k}, rate[k], 1});
+    return direction;
+  }
+  if (meaning.parts.empty()) return direction;
+  const Numbers numbers = numbersAt(values);
+  for (const Meaning::Part& part : meaning.parts) {
+    const Number& number = numbers_[part.number];
+    double weight = part.weight;
+    if (meaning.kind == Meaning::Kind::scale) {
+      weight = number.nominal * numbers.product[static_cast<Index>(part.number)] /
+               values[static_cast<Index>(quantity)];
+    }
+    if (weight == 0) continue;
+    direction.push_back({number.target, weight, numbers.at(part.number, number)});
+  }
+  return direction;
+}
+
+SensorLaw WidestModel::sensorAt(const VectorXd& values) const {
+  SensorLaw sensor;
+  for (std::size_t i = 0; i < meanings_.size(); ++i) {
+    const double value = values[static_cast<Index>(i)];
+    if (meanings_[i].kind == Meaning::Kind::bias) sensor.bias += value;
+    if (meanings_[i].kind == Meaning::Kind::gain) sensor.gain += value;
+    if (meanings_[i].kind == Meaning::Kind::clock) sensor.clock += value;
+  }
+  return sensor;
+}
+
+}  // namespace bio::discover

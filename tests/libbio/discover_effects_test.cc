@@ -1,0 +1,376 @@
+#include "bio/discover/effects.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <limits>
+#include <set>
+
+#include "bio/discover/add_effects.h"
+#include "bio/discover/elbow_disagreement.h"
+#include "support/scratch_folder.h"
+#include "support/shipped_elbow.h"
+
+namespace bio::discover {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using info::discover::Candidate;
+using support::ScratchFolder;
+using testing::ShippedElbow;
+
+/// The beginning of a trial.
+Trial cut(Trial trial, double seconds) {
+  Index rows = 0;
+  while (rows < trial.times.size() && trial.times[rows] <= seconds + 1e-9) ++rows;
+  trial.times.conservativeResize(rows);
+  trial.excitations.conservativeResize(rows, Eigen::NoChange);
+  for (MeasuredMotion& motion : trial.measured) {
+    Index samples = 0;
+    while (samples < motion.times.size() && motion.times[samples] <= seconds + 1e-9) ++samples;
+    motion.times.conservativeResize(samples);
+    motion.values.conservativeResize(samples);
+  }
+  return trial;
+}
+
+struct Case {
+  explicit Case(double seconds = 0.6, const std::string& model = "elbow8",
+                const std::string& trial = "curl_fast")
+      : elbow(model, trial),
+        data(elbow.model, ShippedElbow::options(), "elbow_flexion", {cut(elbow.trial, seconds)}) {}
+
+  VectorXd nominal() const {
+    VectorXd values(static_cast<Index>(data.quantities().size()));
+    for (Index i = 0; i < values.size(); ++i) {
+      values[i] = data.quantities()[static_cast<std::size_t>(i)].nominal;
+    }
+    return values;
+  }
+  /// With an effect as a start of its has it.
+  VectorXd with(const Candidate& candidate, std::size_t start = 0) const {
+    VectorXd values = nominal();
+    for (std::size_t i = 0; i < candidate.quantities.size(); ++i) {
+      values[static_cast<Index>(candidate.quantities[i])] =
+          candidate.starts.at(start)[static_cast<Index>(i)];
+    }
+    return values;
+  }
+  const Candidate& find(const std::string& id) const {
+    for (const Candidate& candidate : data.candidates()) {
+      if (candidate.id == id) return candidate;
+    }
+    throw std::invalid_argument("no candidate " + id);
+  }
+  VectorXd outputs(const VectorXd& values) const { return data.outputs(0, values, {}); }
+
+  ShippedElbow elbow;
+  ElbowDisagreement data;
+};
+
+/// Fourth-order central difference of whole simulations.
+template <class F>
+VectorXd difference(const F& f, double h) {
+  return (8 * (f(h) - f(-h)) - (f(2 * h) - f(-2 * h))) / (12 * h);
+}
+
+/// max |a − b| / max |b|, with the best of several steps.
+double disagreement(const VectorXd& column, const std::function<VectorXd(double)>& f,
+                    double scale) {
+  double best = std::numeric_limits<double>::infinity();
+  for (const double h : {3e-2, 1e-2, 3e-3, 1e-3, 3e-4}) {
+    const VectorXd d = difference(f, h * scale);
+    const double size = std::max(d.cwiseAbs().maxCoeff(), 1e-9);
+    const double error = (column - d).cwiseAbs().maxCoeff() / size;
+    if (error < best) best = error;
+  }
+  return best;
+}
+
+TEST(Effects, AreAllThereWithTheirWords) {
+  const Case c;
+  std::set<std::string> ids;
+  for (const Candidate& candidate : c.data.candidates()) {
+    EXPECT_TRUE(ids.insert(candidate.id).second) << candidate.id << " twice";
+    EXPECT_FALSE(candidate.sentence.empty());
+    EXPECT_EQ(candidate.deviations.size(), candidate.quantities.size()) << candidate.id;
+    ASSERT_FALSE(candidate.starts.empty()) << candidate.id;
+    for (const VectorXd& start : candidate.starts) {
+      ASSERT_EQ(start.size(), static_cast<Index>(candidate.quantities.size())) << candidate.id;
+      for (std::size_t i = 0; i < candidate.quantities.size(); ++i) {
+        const auto& quantity = c.data.quantities()[candidate.quantities[i]];
+        EXPECT_GE(start[static_cast<Index>(i)], quantity.lower) << candidate.id;
+        EXPECT_LE(start[static_cast<Index>(i)], quantity.upper) << candidate.id;
+      }
+    }
+  }
+  for (const char* id : {"visc",         "coulomb",
+                         "stribeck",     "drag",
+                         "powerdamp",    "stiffness",
+                         "limit",        "payload",
+                         "tilt",         "const",
+                         "handforce",    "delay",
+                         "shape",        "crosstalk_BIC_TRI",
+                         "gain_TRI",     "gain_BRA",
+                         "offset",       "offset_BIC",
+                         "tau",          "mass",
+                         "tendon",       "Fmax_TRI",
+                         "Fmax_TRIlong", "lopt_BIC",
+                         "lslack_BRD",   "wrap_TRI",
+                         "wrap_BIC_BRD", "bias",
+                         "gain",         "clock"}) {
+    EXPECT_TRUE(ids.contains(id)) << id;
+  }
+  // what is equivalent to something is equivalent to something there is
+  for (const Candidate& candidate : c.data.candidates()) {
+    for (const std::string& other : candidate.equivalents)
+      EXPECT_TRUE(ids.contains(other)) << other;
+  }
+  for (const auto& quantity : c.data.quantities()) {
+    EXPECT_LE(quantity.lower, quantity.nominal) << quantity.name;
+    EXPECT_GE(quantity.upper, quantity.nominal) << quantity.name;
+    EXPECT_GT(quantity.deviation, 0) << quantity.name;
+  }
+}
+
+TEST(Effects, ThatTheModelHasAreNoCandidates) {
+  const Case c(0.3, "elbow8_passive");
+  EXPECT_EQ(c.data.widest().present().at("visc"), "elbow_flexion_damping");
+  EXPECT_EQ(c.data.widest().present().at("limit"), "elbow_flexion_ligaments");
+  EXPECT_FALSE(c.data.widest().knows("visc"));
+  EXPECT_FALSE(c.data.widest().knows("limit"));
+  EXPECT_TRUE(c.data.widest().knows("coulomb"));
+}
+
+// Bit for bit, whatever the quantities that shape it are, and though its law is switched on.
+TEST(Effects, ChangeNothingAtAmplitudeZero) {
+  const Case c(0.4);
+  const VectorXd base = c.outputs(c.nominal());
+  const Trajectory plain =
+      simulateSetting(c.elbow.arm, c.elbow.catalogue.nominal(), c.elbow.excitation, [] {
+        SimulationOptions options;
+        options.duration = 0.4;
+        return options;
+      }());
+  EXPECT_EQ(base[base.size() - 1], plain.q(0, plain.q.cols() - 1));
+  for (const Candidate& candidate : c.data.candidates()) {
+    VectorXd values = c.with(candidate, candidate.starts.size() - 1);
+    const std::size_t amplitude = candidate.quantities.front();
+    values[static_cast<Index>(amplitude)] = c.data.quantities()[amplitude].nominal;
+    EXPECT_EQ(c.outputs(values), base) << candidate.id;
+    EXPECT_EQ(c.data.predict(0, values, {}, candidate.quantities, false).outputs, base)
+        << candidate.id;
+    EXPECT_NE(c.outputs(c.with(candidate)), base) << candidate.id;
+  }
+}
+
+TEST(Effects, DerivativesMatchDifferencesOfWholeSimulations) {
+  const Case c(0.6);
+  std::string worstOf;
+  double worst = 0;
+  for (const Candidate& candidate : c.data.candidates()) {
+    for (const bool absent : {false, true}) {
+      VectorXd values = c.with(candidate);
+      const std::size_t amplitude = candidate.quantities.front();
+      if (absent) values[static_cast<Index>(amplitude)] = c.data.quantities()[amplitude].nominal;
+      const auto at = c.data.predict(0, values, {}, candidate.quantities, false);
+      for (std::size_t i = 0; i < candidate.quantities.size(); ++i) {
+        const auto k = static_cast<Index>(candidate.quantities[i]);
+        const auto& quantity = c.data.quantities()[candidate.quantities[i]];
+        // a clamped baseline or crosstalk has a kink where a signal reaches zero
+        const bool hasKink = candidate.id.starts_with("crosstalk") || candidate.id == "shape";
+        const double scale = (quantity.logarithmic ? quantity.nominal : 1) * quantity.deviation *
+                             (hasKink ? 0.1 : 1);
+        const double error = disagreement(
+            at.gamma.col(static_cast<Index>(i)),
+            [&](double step) {
+              VectorXd moved = values;
+              moved[k] += step;
+              return c.outputs(moved);
+            },
+            scale);
+        if (error > worst) worst = error, worstOf = candidate.id + " " + quantity.name;
+        EXPECT_LT(error, 2e-4) << candidate.id << ": " << quantity.name
+                               << (absent ? ", absent" : "");
+        if (!absent && i == 0) {
+          EXPECT_GT(at.gamma.col(0).cwiseAbs().maxCoeff(), 0) << candidate.id;
+        }
+      }
+    }
+  }
+  std::printf("worst: %s %.2g\n", worstOf.c_str(), worst);
+}
+
+TEST(Effects, ThatDissipateTakeEnergyOut) {
+  const Case c(0.9);
+  for (const char* id : {"visc", "coulomb", "stribeck", "drag", "powerdamp"}) {
+    const Candidate& candidate = c.find(id);
+    for (const VectorXd& start : candidate.starts) {
+      VectorXd values = c.data.widest().nominal();
+      for (std::size_t i = 0; i < candidate.quantities.size(); ++i) {
+        values[static_cast<Index>(candidate.quantities[i])] = start[static_cast<Index>(i)];
+      }
+      const auto setting = c.data.widest().settingAt(values, {});
+      const Arm arm(setting.model, ShippedElbow::options());
+      SimulationOptions options;
+      options.duration = 0.9;
+      const Trajectory motion = simulateSetting(arm, setting, c.elbow.excitation, options);
+      for (Index k = 1; k < motion.passiveWork.size(); ++k) {
+        ASSERT_LE(motion.passiveWork[k], motion.passiveWork[k - 1]) << id;
+      }
+      EXPECT_LT(motion.passiveWork[motion.passiveWork.size() - 1], -1e-3) << id;
+    }
+  }
+}
+
+TEST(Effects, OfAFileMoveItAsTheyDoHere) {
+  const Case c(0.6);
+  ScratchFolder folder;
+  for (const Candidate& candidate : c.data.candidates()) {
+    const bool isOfModel = candidate.kind != info::discover::EffectKind::input &&
+                           candidate.kind != info::discover::EffectKind::sensor;
+    if (!isOfModel) continue;
+    const Augmented added =
+        addEffects(c.elbow.model, ShippedElbow::options(), "elbow_flexion",
+                   {{candidate.id, candidate.starts[0], {}, 12.5, 0.99}}, {"a test", {"none"}});
+    const auto file = folder / (candidate.id + ".osim");
+    writeOsim(added.model, file);
+    const Model read = readOsim(file);
+    EXPECT_NE(read.credits.find("(" + candidate.id + ")"), std::string::npos) << read.credits;
+    EXPECT_TRUE(read.warnings.empty()) << candidate.id;
+    const ElbowDisagreement again(read, ShippedElbow::options(), "elbow_flexion",
+                                  {cut(c.elbow.trial, 0.6)});
+    VectorXd nominal = VectorXd::Zero(static_cast<Index>(again.quantities().size()));
+    for (Index i = 0; i < nominal.size(); ++i) {
+      nominal[i] = again.quantities()[static_cast<std::size_t>(i)].nominal;
+    }
+    const VectorXd y = again.outputs(0, nominal, {});
+    EXPECT_LT((y - c.outputs(c.with(candidate))).cwiseAbs().maxCoeff(), 1e-9) << candidate.id;
+    // and are known again
+    if (!read.springForces.empty() || !read.expressionForces.empty() || !read.limitForces.empty()) {
+      EXPECT_TRUE(again.widest().present().contains(candidate.id)) << candidate.id;
+      EXPECT_THROW(addEffects(read, ShippedElbow::options(), "elbow_flexion",
+                              {{candidate.id, candidate.starts[0], {}, 0, 0}}, {"a test", {}}),
+                   std::invalid_argument);
+    }
+  }
+}
+
+TEST(Effects, WithAPlaceInOpenSimUseItsOwnComponents) {
+  const Case c(0.3);
+  const auto added = [&](const char* id) {
+    return addEffects(c.elbow.model, ShippedElbow::options(), "elbow_flexion",
+                      {{id, c.find(id).starts[0], {}, 0, 0}}, {"a test", {}})
+        .model;
+  };
+  EXPECT_EQ(added("visc").springForces.at(0).viscosity, 0.1);
+  EXPECT_EQ(added("visc").springForces.at(0).stiffness, 0);
+  EXPECT_EQ(added("stiffness").springForces.at(0).stiffness, 0.5);
+  EXPECT_EQ(added("limit").limitForces.at(0).upperStiffness, 3);
+  EXPECT_EQ(added("limit").limitForces.at(0).lowerStiffness, 3);
+  const Model loaded = added("payload");
+  Model expected = c.elbow.model;
+  expected.credits = loaded.credits;
+  for (Body& body : expected.bodies) {
+    if (body.name == "hand") body.mass += 0.2;
+  }
+  EXPECT_EQ(loaded, expected);
+  EXPECT_EQ(added("coulomb").expressionForces.at(0).expression,
+            "-0.20000000000000001*tanh(qdot/0.05)");
+}
+
+TEST(LatentForce, NodesMatchDifferencesOfSimulationsWithAnExternalForce) {
+  const Case c(0.6);
+  const VectorXd values = c.with(c.find("visc"));
+  const auto nodes = static_cast<Index>(c.data.latentTimes(0).size());
+  VectorXd latent(nodes);
+  for (Index k = 0; k < nodes; ++k) latent[k] = 0.5 * std::sin(1.7 * static_cast<double>(k));
+  const auto at = c.data.predict(0, values, latent, {}, true);
+  EXPECT_EQ(at.outputs, c.data.outputs(0, values, latent));
+  ASSERT_EQ(at.latentGamma.cols(), nodes);
+  double largest = 0;
+  for (Index k = 0; k < nodes; ++k) {
+    const auto f = [&](double step) {
+      VectorXd moved = latent;
+      moved[k] += step;
+      return c.data.outputs(0, values, moved);
+    };
+    const VectorXd d = difference(f, 1e-3);
+    largest = std::max(largest, d.cwiseAbs().maxCoeff());
+    EXPECT_LT((at.latentGamma.col(k) - d).cwiseAbs().maxCoeff(), 1e-6) << "node " << k;
+    // nothing moves before the hat begins
+    const double begins =
+        c.data.latentTimes(0)[static_cast<std::size_t>(std::max<Index>(k - 1, 0))];
+    for (std::size_t i = 0; i < c.data.times(0).size() && c.data.times(0)[i] <= begins; ++i) {
+      EXPECT_EQ(at.latentGamma(static_cast<Index>(i), k), 0);
+    }
+  }
+  EXPECT_GT(largest, 0.01);
+  EXPECT_GT(at.latentScale.minCoeff(), 0.5);
+}
+
+TEST(ElbowDisagreement, DerivativesInNuisancesMatchDifferencesUnderALatentForceAndASensor) {
+  const Case c(0.5);
+  VectorXd values = c.nominal();
+  values[static_cast<Index>(c.find("clock").quantities[0])] = 0.013;
+  values[static_cast<Index>(c.find("gain").quantities[0])] = 0.1;
+  values[static_cast<Index>(c.find("Fmax_TRI").quantities[0])] = 1.1;
+  values[static_cast<Index>(c.find("Fmax_TRIlong").quantities[0])] = 0.9;
+  values[static_cast<Index>(c.find("mass").quantities[0])] = 1.05;
+  values[static_cast<Index>(c.find("payload").quantities[0])] = 0.1;
+  const VectorXd latent = VectorXd::Constant(static_cast<Index>(c.data.latentTimes(0).size()), 0.3);
+  std::vector<std::size_t> wanted = c.data.nuisances();
+  for (const char* id : {"clock", "gain", "bias", "Fmax_TRI", "payload"}) {
+    wanted.push_back(c.find(id).quantities[0]);
+  }
+  const auto at = c.data.predict(0, values, latent, wanted, false);
+  for (std::size_t j = 0; j < wanted.size(); ++j) {
+    const auto& quantity = c.data.quantities()[wanted[j]];
+    const double error = disagreement(
+        at.gamma.col(static_cast<Index>(j)),
+        [&](double step) {
+          VectorXd moved = values;
+          moved[static_cast<Index>(wanted[j])] += step;
+          return c.data.outputs(0, moved, latent);
+        },
+        quantity.deviation);
+    EXPECT_LT(error, 2e-4) << quantity.name;
+  }
+}
+
+TEST(ElbowDisagreement, SaysNothingWhereTheSimulationFails) {
+  const Case c(0.3);
+  VectorXd values = c.nominal();
+  values[static_cast<Index>(c.find("lslack_TRI").quantities[0])] = 40;
+  EXPECT_FALSE(c.outputs(values).allFinite());
+  EXPECT_FALSE(c.data.failure(0, values).empty());
+  const auto at = c.data.predict(0, values, {}, {0}, true);
+  EXPECT_FALSE(at.outputs.allFinite());
+  EXPECT_EQ(at.latentGamma.cols(), static_cast<Index>(c.data.latentTimes(0).size()));
+}
+
+TEST(ElbowDisagreement, RefusesWhatItCannotUse) {
+  const ShippedElbow elbow;
+  const auto make = [&](const std::string& coordinate, std::vector<Trial> trials,
+                        ElbowOptions options) {
+    return ElbowDisagreement(elbow.model, ShippedElbow::options(), coordinate, std::move(trials),
+                             std::move(options));
+  };
+  EXPECT_THROW(make("elbow_flexion", {}, {}), std::invalid_argument);
+  EXPECT_THROW(make("pro_sup", {elbow.trial}, {}), std::invalid_argument);
+  Trial unmeasured = elbow.trial;
+  unmeasured.measured.clear();
+  EXPECT_THROW(make("elbow_flexion", {unmeasured}, {}), std::invalid_argument);
+  ElbowOptions options;
+  options.latentFloor = std::nan("");
+  EXPECT_THROW(make("elbow_flexion", {elbow.trial}, options), std::invalid_argument);
+  options = {};
+  options.simulation.integrator = Integrator::cvode;
+  EXPECT_THROW(make("elbow_flexion", {elbow.trial}, options), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace bio::discover
