@@ -14,7 +14,7 @@
 /// Quantities: start position and speed of each trial, drag of the input (nuisance "gain" of u),
 /// and the effects "push" (constant force, two-sided), "shove" (constant force, one-sided) and
 /// "bias".
-class LinearDisagreement final : public info::discover::Disagreement {
+class LinearDisagreement : public info::discover::Disagreement {
  public:
   using VectorXd = Eigen::VectorXd;
   using MatrixXd = Eigen::MatrixXd;

@@ -177,7 +177,7 @@ Fit Likelihood::fit(const Hypothesis& hypothesis, const Noise& noise, const Vect
   };
   relinearise();
 
-  double damping = 1e-4;
+  double damping = 1e-6;
   for (fit.iterations = 0; fit.iterations < options.iterations; ++fit.iterations) {
     bool accepted = false;
     for (int attempt = 0; attempt < 12 && !accepted && !fit.converged; ++attempt) {
@@ -215,8 +215,13 @@ Fit Likelihood::fit(const Hypothesis& hypothesis, const Noise& noise, const Vect
       }
       Step step;
       step.xi = VectorXd::Zero(p);
-      if (!moving.empty())
-        step.xi(moving) = MatrixXd(R(moving, moving)).llt().solve(VectorXd(right(moving)));
+      if (!moving.empty()) {
+        const MatrixXd free = R(moving, moving);
+        const VectorXd pull = right(moving);
+        const VectorXd solved = free.llt().solve(pull);
+        for (std::size_t i = 0; i < moving.size(); ++i)
+          step.xi[moving[i]] = solved[static_cast<Index>(i)];
+      }
       Point next = point;
       for (Index i = 0; i < p; ++i) {
         const FreeQuantity& q = hypothesis.free[static_cast<std::size_t>(i)];
@@ -267,6 +272,7 @@ void Likelihood::finish(Fit& fit, const std::vector<Linear>& trials) const {
   fit.latentPower = 0;
   fit.latentFreedom = 0;
   Index samples = 0;
+  std::vector<MatrixXd> carried;  // C⁻¹WᵀΓ/σ², how η follows ξ
   for (std::size_t t = 0; t < trials.size(); ++t) {
     const Linear& l = trials[t];
     samples += l.residuals.size();
@@ -282,6 +288,7 @@ void Likelihood::finish(Fit& fit, const std::vector<Linear>& trials) const {
     const MatrixXd inverse = block.matrixL().solve(MatrixXd::Identity(L.rows(), L.rows()));
     fit.latentPower += fit.eta[t].squaredNorm();
     fit.latentFreedom += static_cast<double>(L.rows()) - inverse.squaredNorm();
+    carried.push_back(inverse.transpose() * half);
   }
   // the parameters: those at a bound have a one-sided mass of their own
   std::vector<Index> inside;
@@ -301,7 +308,10 @@ void Likelihood::finish(Fit& fit, const std::vector<Linear>& trials) const {
     const MatrixXd L = factor.matrixL();
     logDeterminant += 2 * L.diagonal().array().log().sum();
     const MatrixXd covariance = factor.solve(MatrixXd::Identity(n, n));
-    fit.covariance(inside, inside) = covariance;
+    for (Index i = 0; i < n; ++i)
+      for (Index j = 0; j < n; ++j)
+        fit.covariance(inside[static_cast<std::size_t>(i)], inside[static_cast<std::size_t>(j)]) =
+            covariance(i, j);
   }
   for (Index i = 0; i < p; ++i) {
     const FreeQuantity& q = h.free[static_cast<std::size_t>(i)];
@@ -319,6 +329,8 @@ void Likelihood::finish(Fit& fit, const std::vector<Linear>& trials) const {
           logNormalWithin((q.lowest - fit.xi[i]) / deviation, (q.highest - fit.xi[i]) / deviation);
     }
   }
+  for (const MatrixXd& c : carried)
+    fit.latentFreedom -= (c * fit.covariance).cwiseProduct(c).sum();
   fit.logEvidence =
       -fit.cost - 0.5 * logDeterminant + mass -
       static_cast<double>(samples) * std::log(fit.noise.output * std::sqrt(2 * std::numbers::pi));
