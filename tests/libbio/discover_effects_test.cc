@@ -41,7 +41,14 @@ struct Case {
   explicit Case(double seconds = 0.6, const std::string& model = "elbow8",
                 const std::string& trial = "curl_fast")
       : elbow(model, trial),
-        data(elbow.model, ShippedElbow::options(), "elbow_flexion", {cut(elbow.trial, seconds)}) {}
+        data(elbow.model, ShippedElbow::options(), "elbow_flexion", {cut(elbow.trial, seconds)},
+             exact()) {}
+
+  static ElbowOptions exact() {
+    ElbowOptions options;
+    options.simulation.newtonTolerance = 1e-12;
+    return options;
+  }
 
   VectorXd nominal() const {
     VectorXd values(static_cast<Index>(data.quantities().size()));
@@ -77,15 +84,16 @@ VectorXd difference(const F& f, double h) {
   return (8 * (f(h) - f(-h)) - (f(2 * h) - f(-2 * h))) / (12 * h);
 }
 
-/// max |a − b| / max |b|, with the best of several steps.
+/// max |column − difference| / max |difference|, of the step that agrees best: a fibre that turns
+/// and a path that lifts off put kinks into the motion, which a finer step does not meet.
 double disagreement(const VectorXd& column, const std::function<VectorXd(double)>& f,
                     double scale) {
   double best = std::numeric_limits<double>::infinity();
-  for (const double h : {3e-2, 1e-2, 3e-3, 1e-3, 3e-4}) {
+  for (const double h : {3e-3, 3e-4, 3e-5, 1e-2}) {
     const VectorXd d = difference(f, h * scale);
-    const double size = std::max(d.cwiseAbs().maxCoeff(), 1e-9);
-    const double error = (column - d).cwiseAbs().maxCoeff() / size;
-    if (error < best) best = error;
+    const double size = std::max(d.cwiseAbs().maxCoeff(), 1e-6);
+    best = std::min(best, (column - d).cwiseAbs().maxCoeff() / size);
+    if (best < 1e-5) break;
   }
   return best;
 }
@@ -147,12 +155,13 @@ TEST(Effects, ThatTheModelHasAreNoCandidates) {
 
 // Bit for bit, whatever the quantities that shape it are, and though its law is switched on.
 TEST(Effects, ChangeNothingAtAmplitudeZero) {
-  const Case c(0.4);
+  const Case c(0.2);
   const VectorXd base = c.outputs(c.nominal());
   const Trajectory plain =
       simulateSetting(c.elbow.arm, c.elbow.catalogue.nominal(), c.elbow.excitation, [] {
         SimulationOptions options;
-        options.duration = 0.4;
+        options.duration = 0.2;
+        options.newtonTolerance = 1e-12;
         return options;
       }());
   EXPECT_EQ(base[base.size() - 1], plain.q(0, plain.q.cols() - 1));
@@ -163,45 +172,52 @@ TEST(Effects, ChangeNothingAtAmplitudeZero) {
     EXPECT_EQ(c.outputs(values), base) << candidate.id;
     EXPECT_EQ(c.data.predict(0, values, {}, candidate.quantities, false).outputs, base)
         << candidate.id;
-    EXPECT_NE(c.outputs(c.with(candidate)), base) << candidate.id;
+  }
+}
+
+TEST(Effects, AllMoveTheArmInAWholeTrial) {
+  VectorXd largest;
+  for (const char* trial : {"cocontraction", "curl_fast"}) {
+    const Case c(4.5, "elbow8", trial);
+    std::vector<std::size_t> amplitudes;
+    for (const Candidate& candidate : c.data.candidates()) {
+      amplitudes.push_back(candidate.quantities.front());
+    }
+    const auto at = c.data.predict(0, c.nominal(), {}, amplitudes, false);
+    const VectorXd moved = at.gamma.cwiseAbs().colwise().maxCoeff().transpose();
+    largest = largest.size() ? VectorXd(largest.cwiseMax(moved)) : moved;
+    for (std::size_t j = 0; j < amplitudes.size() && trial[1] == 'u'; ++j) {
+      EXPECT_GT(largest[static_cast<Index>(j)], 0) << c.data.candidates()[j].id;
+    }
   }
 }
 
 TEST(Effects, DerivativesMatchDifferencesOfWholeSimulations) {
-  const Case c(0.6);
-  std::string worstOf;
-  double worst = 0;
+  const Case c(0.3);
   for (const Candidate& candidate : c.data.candidates()) {
     for (const bool absent : {false, true}) {
       VectorXd values = c.with(candidate);
-      const std::size_t amplitude = candidate.quantities.front();
-      if (absent) values[static_cast<Index>(amplitude)] = c.data.quantities()[amplitude].nominal;
-      const auto at = c.data.predict(0, values, {}, candidate.quantities, false);
-      for (std::size_t i = 0; i < candidate.quantities.size(); ++i) {
-        const auto k = static_cast<Index>(candidate.quantities[i]);
-        const auto& quantity = c.data.quantities()[candidate.quantities[i]];
-        // a clamped baseline or crosstalk has a kink where a signal reaches zero
-        const bool hasKink = candidate.id.starts_with("crosstalk") || candidate.id == "shape";
-        const double scale = (quantity.logarithmic ? quantity.nominal : 1) * quantity.deviation *
-                             (hasKink ? 0.1 : 1);
+      std::vector<std::size_t> quantities = candidate.quantities;
+      const std::size_t amplitude = quantities.front();
+      if (absent) {
+        values[static_cast<Index>(amplitude)] = c.data.quantities()[amplitude].nominal;
+        quantities = {amplitude};
+      }
+      const auto at = c.data.predict(0, values, {}, quantities, false);
+      for (std::size_t i = 0; i < quantities.size(); ++i) {
         const double error = disagreement(
             at.gamma.col(static_cast<Index>(i)),
             [&](double step) {
               VectorXd moved = values;
-              moved[k] += step;
+              moved[static_cast<Index>(quantities[i])] += step;
               return c.outputs(moved);
             },
-            scale);
-        if (error > worst) worst = error, worstOf = candidate.id + " " + quantity.name;
-        EXPECT_LT(error, 2e-4) << candidate.id << ": " << quantity.name
+            c.data.quantities()[quantities[i]].deviation);
+        EXPECT_LT(error, 2e-4) << c.data.quantities()[quantities[i]].name
                                << (absent ? ", absent" : "");
-        if (!absent && i == 0) {
-          EXPECT_GT(at.gamma.col(0).cwiseAbs().maxCoeff(), 0) << candidate.id;
-        }
       }
     }
   }
-  std::printf("worst: %s %.2g\n", worstOf.c_str(), worst);
 }
 
 TEST(Effects, ThatDissipateTakeEnergyOut) {
@@ -227,7 +243,7 @@ TEST(Effects, ThatDissipateTakeEnergyOut) {
 }
 
 TEST(Effects, OfAFileMoveItAsTheyDoHere) {
-  const Case c(0.6);
+  const Case c(0.4);
   ScratchFolder folder;
   for (const Candidate& candidate : c.data.candidates()) {
     const bool isOfModel = candidate.kind != info::discover::EffectKind::input &&
@@ -242,7 +258,7 @@ TEST(Effects, OfAFileMoveItAsTheyDoHere) {
     EXPECT_NE(read.credits.find("(" + candidate.id + ")"), std::string::npos) << read.credits;
     EXPECT_TRUE(read.warnings.empty()) << candidate.id;
     const ElbowDisagreement again(read, ShippedElbow::options(), "elbow_flexion",
-                                  {cut(c.elbow.trial, 0.6)});
+                                  {cut(c.elbow.trial, 0.4)}, Case::exact());
     VectorXd nominal = VectorXd::Zero(static_cast<Index>(again.quantities().size()));
     for (Index i = 0; i < nominal.size(); ++i) {
       nominal[i] = again.quantities()[static_cast<std::size_t>(i)].nominal;
@@ -298,9 +314,8 @@ TEST(LatentForce, NodesMatchDifferencesOfSimulationsWithAnExternalForce) {
       moved[k] += step;
       return c.data.outputs(0, values, moved);
     };
-    const VectorXd d = difference(f, 1e-3);
-    largest = std::max(largest, d.cwiseAbs().maxCoeff());
-    EXPECT_LT((at.latentGamma.col(k) - d).cwiseAbs().maxCoeff(), 1e-6) << "node " << k;
+    largest = std::max(largest, at.latentGamma.col(k).cwiseAbs().maxCoeff());
+    EXPECT_LT(disagreement(at.latentGamma.col(k), f, 1), 1e-5) << "node " << k;
     // nothing moves before the hat begins
     const double begins =
         c.data.latentTimes(0)[static_cast<std::size_t>(std::max<Index>(k - 1, 0))];
