@@ -60,8 +60,8 @@ TEST(ReducedElbow, FollowsTheIndependentTruthWithEveryEffect) {
     const Elbow elbow(reduced::record(recipe, 5));
     VectorXd v = info::discover::nominalValues(elbow);
     v[reduced::kStribeckSpeed] = 0.4;
-    v[reduced::kLimitFlexed] = 2.1;
-    v[reduced::kLimitExtended] = 0.45;
+    v[reduced::kLimitFlexed] = 2.0;
+    v[reduced::kLimitExtended] = 0.5;
     v[reduced::kFatigueTime] = 0.4;
     for (const auto& c : elbow.candidates())
       if (c.id == id) v[static_cast<Index>(c.quantities[0])] = reduced::fullSize(id);

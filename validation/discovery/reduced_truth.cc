@@ -88,7 +88,7 @@ State slopeOf(const Arm& arm, const State& x, const double* excitation, double t
   torque -= arm.get("stribeck") * (1 + std::exp(-std::pow(x.w / 0.4, 2))) * grip;
   torque -= arm.get("drag") * x.w * std::abs(x.w) + arm.get("stiffness") * (x.q - 1);
   if (const double A = arm.get("limit"); A != 0)
-    torque -= A * (std::exp(8 * (x.q - 2.1)) - std::exp(-8 * (x.q - 0.45)));
+    torque -= A * (std::exp(8 * (x.q - 2.0)) - std::exp(-8 * (x.q - 0.5)));
   torque += arm.get("const") + arm.get("handforce") * 0.34 * std::cos(x.q);
   // what no catalogue has
   torque -= arm.get("cubic") * std::pow(x.q - 1.2, 3);
@@ -222,7 +222,7 @@ Trial recordOne(const Arm& arm, const Recipe& recipe, RandomStream& random) {
 double fullSize(const std::string& effect) {
   static const std::map<std::string, double> sizes = {
       {"visc", 0.25},     {"coulomb", 0.3},   {"stribeck", 0.25},  {"drag", 0.08},
-      {"stiffness", 1},   {"limit", 0.4},     {"payload", 0.4},    {"tilt", 0.2},
+      {"stiffness", 1},   {"limit", 0.8},     {"payload", 0.4},    {"tilt", 0.2},
       {"const", 0.6},     {"handforce", 2.5}, {"fatigue", 0.3},    {"delay", 0.03},
       {"shape", -1.2},    {"tri<bic", 0.15},  {"bic<tri", 0.15},   {"wrapBIC", 0.005},
       {"wrapTRI", 0.005}, {"bias", 0.1},      {"gain", 0.1},       {"clock", 0.03},

@@ -1,0 +1,97 @@
+#include "info/discover/decide.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace info::discover {
+
+namespace {
+
+const Finalist* find(const std::vector<Finalist>& raced, const std::vector<std::size_t>& effects) {
+  for (const Finalist& f : raced)
+    if (f.effects == effects) return &f;
+  return nullptr;
+}
+
+// the class of one effect, the others staying
+NamedEffect classOf(const std::vector<Candidate>& candidates, const Judgement& judgement,
+                    const Finalist& leader, std::size_t effect, const Options& options) {
+  NamedEffect named;
+  named.candidate = effect;
+  std::vector<std::size_t> rest = leader.effects;
+  rest.erase(std::find(rest.begin(), rest.end(), effect));
+  const Finalist* without = find(judgement.raced, rest);
+  named.logBayesFactor = without != nullptr ? leader.logEvidence - without->logEvidence : 0;
+  for (const Estimate& e : leader.estimates) {
+    const auto& own = candidates[effect].quantities;
+    if (std::find(own.begin(), own.end(), e.quantity) != own.end()) named.estimates.push_back(e);
+  }
+  named.equals = {effect};
+  named.equalEvidence = {0};
+  double sum = 1 + (without != nullptr ? std::exp(-named.logBayesFactor) *
+                                             static_cast<double>(candidates.size())
+                                       : 0);
+  const auto& declared = candidates[effect].equivalents;
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    if (std::find(leader.effects.begin(), leader.effects.end(), c) != leader.effects.end())
+      continue;
+    std::vector<std::size_t> swapped = rest;
+    swapped.push_back(c);
+    std::sort(swapped.begin(), swapped.end());
+    const Finalist* rival = find(judgement.raced, swapped);
+    const bool equal =
+        std::find(declared.begin(), declared.end(), candidates[c].id) != declared.end();
+    if (rival == nullptr && !equal) continue;
+    const double behind = rival != nullptr ? rival->logEvidence - leader.logEvidence : 0;
+    if (rival != nullptr) sum += std::exp(behind);
+    if (equal || behind > -options.classWidth) {
+      named.equals.push_back(c);
+      named.equalEvidence.push_back(behind);
+      named.exact = named.exact || equal;
+    }
+  }
+  named.probability = 1 / sum;
+  return named;
+}
+
+}  // namespace
+
+Decision decide(const std::vector<Candidate>& candidates, const Judgement& judgement,
+                const Options& options) {
+  Decision decision;
+  const Finalist* leader = find(judgement.raced, judgement.chosen);
+  if (judgement.chosen.empty() || leader == nullptr) {
+    const bool fits =
+        judgement.before.adequate() && judgement.latentBefore <= options.latentTolerance;
+    decision.finding = !fits                                         ? Finding::unknown
+                       : judgement.surprise > options.surprise ? Finding::parameter
+                                                                     : Finding::none;
+    return decision;
+  }
+  bool alone = true, parameters = true;
+  decision.probability = 1;
+  for (const std::size_t effect : judgement.chosen) {
+    decision.effects.push_back(classOf(candidates, judgement, *leader, effect, options));
+    const NamedEffect& named = decision.effects.back();
+    alone = alone && named.equals.size() == 1;
+    for (const std::size_t c : named.equals)
+      parameters = parameters && candidates[c].kind == EffectKind::parameter;
+    decision.probability *= named.probability;
+  }
+  const Adequacy& after = judgement.after;
+  if (!after.white || !after.independent || judgement.latentAfter > options.latentTolerance ||
+      judgement.heldOutWorse) {
+    decision.finding = Finding::unknown;
+    decision.surrogate = true;
+    decision.probability = 0;
+    return decision;
+  }
+  decision.finding = !alone ? Finding::ambiguous : parameters ? Finding::parameter : Finding::named;
+  if (!after.sized) {
+    decision.vetoed = true;
+    decision.probability = 0;
+  }
+  return decision;
+}
+
+}  // namespace info::discover

@@ -1,0 +1,389 @@
+#include "info/discover/discover.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "info/discover/decide.h"
+#include "search.h"
+
+namespace info::discover {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+const char* name(Finding finding) {
+  static constexpr const char* kNames[] = {"none",      "parameter", "named",
+                                           "ambiguous", "unknown",   "numerical"};
+  return kNames[static_cast<int>(finding)];
+}
+const char* name(Stage stage) {
+  static constexpr const char* kNames[] = {"calibrate", "localise", "screen",
+                                           "race",      "decide",   "finished"};
+  return kNames[static_cast<int>(stage)];
+}
+const char* name(EffectKind kind) {
+  static constexpr const char* kNames[] = {"structure", "input", "geometry", "sensor", "parameter"};
+  return kNames[static_cast<int>(kind)];
+}
+
+namespace {
+
+std::vector<Estimate> estimatesOf(const Fit& fit, const std::vector<std::size_t>& wanted,
+                                  const Disagreement& data) {
+  std::vector<Estimate> result;
+  for (const std::size_t q : wanted) {
+    const int i = fit.hypothesis.indexOf(q);
+    if (i < 0) continue;
+    const auto at = static_cast<std::size_t>(i);
+    Estimate e{q, fit.values[static_cast<Index>(q)], fit.deviation(at), 0};
+    // surprise counts the tolerance of the quantity itself, not that of a race
+    FreeQuantity own = fit.hypothesis.free[at];
+    own.deviation = data.quantities()[q].deviation;
+    e.surprise = own.coordinate(e.value);
+    result.push_back(e);
+  }
+  return result;
+}
+
+// Everything that run() carries from stage to stage.
+class Work {
+ public:
+  Work(const Disagreement& data, const Options& options) : data_(data), options_(options) {
+    for (int t = 0; t < data.numTrials(); ++t)
+      if (std::find(options.heldOut.begin(), options.heldOut.end(), t) == options.heldOut.end())
+        trials_.push_back(t);
+  }
+
+  Verdict run() {
+    try {
+      prepare();
+      if (verdict_.finding == Finding::numerical) return verdict_;
+      race();
+      judge();
+      conclude();
+      verdict_.reached = Stage::finished;
+      report(Stage::finished, 1, "");
+    } catch (const Stopped&) {
+      verdict_.sentence = "stopped before the end";
+    }
+    if (search_) verdict_.fits = search_->fits();
+    return verdict_;
+  }
+
+ private:
+  void report(Stage stage, double fraction, const std::string& doing) {
+    fraction_ = std::max(fraction_, fraction);
+    if (options_.progress && !options_.progress({stage, fraction_, doing})) throw Stopped();
+  }
+
+  void prepare() {
+    AdequacyOptions& test = test_;
+    test.level = options_.level;
+    if (options_.outputDeviation) {
+      verdict_.outputDeviation = *options_.outputDeviation;
+    } else {
+      const OutputDeviation found = estimateOutputDeviation(data_, trials_);
+      verdict_.outputDeviation = found.value;
+      verdict_.deviationEstimated = true;
+      test.deviationError = found.relativeError;
+    }
+    stage_ = Stage::calibrate;
+    search_.emplace(data_, trials_, options_, verdict_.outputDeviation,
+                    [this](const std::string& doing) {
+                      report(stage_, fraction_ + 0.5 * (0.9 - fraction_) * 0.05, doing);
+                    });
+    search_->calibrate();
+    // a model whose own steps are too long says nothing about the world
+    for (const int t : trials_) {
+      const VectorXd& values = search_->at({}).simulation.values;
+      const VectorXd refined = data_.refinedOutputs(t, values);
+      if (refined.size() == 0) continue;
+      const double change =
+          (refined - data_.outputs(t, values, {})).cwiseAbs().maxCoeff() / verdict_.outputDeviation;
+      verdict_.numericalError = std::max(verdict_.numericalError, change);
+    }
+    if (verdict_.numericalError > 0.2) {
+      verdict_.finding = Finding::numerical;
+      verdict_.sentence =
+          fmt::format("Halving the time step changes the simulation by {:.2g} deviations of the "
+                      "measurement: take shorter steps first.",
+                      verdict_.numericalError);
+    }
+    base();
+    verdict_.reached = Stage::localise;
+    report(Stage::localise, 0.2, "");
+  }
+
+  // what there is to say about the base model
+  void base() {
+    const Entry& entry = search_->at({});
+    verdict_.base = entry.fit.values;
+    verdict_.values = entry.fit.values;
+    verdict_.latentSizeBefore = verdict_.latentSizeAfter = entry.fit.noise.latent;
+    verdict_.before = verdict_.after = adequacy(search_->likelihood(), entry.fit, test_);
+    verdict_.calibration = verdict_.nuisancesAfter =
+        estimatesOf(entry.fit, data_.nuisances(), data_);
+  }
+
+  // Greedy selection: an effect at a time, each earning its place, then each tried against others.
+  void race() {
+    stage_ = Stage::race;
+    report(Stage::screen, 0.25, "");
+    while (static_cast<int>(chosen_.size()) < options_.maxEffects) {
+      const bool first = chosen_.empty();
+      const std::vector<std::size_t> list =
+          search_->shortlist(chosen_, first ? options_.finalists : 5);
+      if (!first && !promising()) break;
+      search_->race(chosen_, list);
+      const std::vector<std::size_t> best = bestOf(chosen_, list);
+      if (best.empty()) break;
+      chosen_ = best;
+      while (swapOne()) {
+      }
+    }
+  }
+
+  // Is anything to be gained beyond what has been chosen?
+  bool promising() const {
+    for (const bool simulation : {false, true})
+      if (search_->screen(chosen_, simulation).front().gain > 0.6 * options_.evidence) return true;
+    return false;
+  }
+
+  std::vector<std::size_t> bestOf(const std::vector<std::size_t>& with,
+                                  const std::vector<std::size_t>& list) const {
+    std::vector<std::size_t> best;
+    double score = search_->at(with).score + options_.evidence;
+    for (const std::size_t c : list) {
+      std::vector<std::size_t> effects = with;
+      effects.push_back(c);
+      std::sort(effects.begin(), effects.end());
+      const Entry& entry = search_->at(effects);
+      if (entry.score > score && search_->significance(entry) > options_.significance) {
+        score = entry.score;
+        best = effects;
+      }
+    }
+    return best;
+  }
+
+  // With two effects or more, each may have been a makeshift for something else.
+  bool swapOne() {
+    if (chosen_.size() < 2) return false;
+    const double score = search_->at(chosen_).score;
+    for (const std::size_t effect : std::vector<std::size_t>(chosen_)) {
+      std::vector<std::size_t> rest = chosen_;
+      rest.erase(std::find(rest.begin(), rest.end(), effect));
+      if (search_->entries().count(rest) == 0) {
+        if (rest.size() != 1) continue;
+        search_->race({}, rest);
+      }
+      const std::vector<std::size_t> list = search_->shortlist(rest, 5);
+      search_->race(rest, list);
+      const std::vector<std::size_t> best = bestOf(rest, list);
+      if (!best.empty() && best != chosen_ && search_->at(best).score > score + 0.1) {
+        chosen_ = best;
+        return true;
+      }
+    }
+    return false;
+  }
+
+  void judge() {
+    const double base = search_->at({}).score;
+    for (const auto& [effects, entry] : search_->entries()) {
+      Finalist f;
+      f.effects = effects;
+      f.logEvidence = entry.score - base;
+      f.latentSize = entry.fit.noise.latent;
+      f.significance = search_->significance(entry);
+      for (const std::size_t e : effects)
+        for (const Estimate& x :
+             estimatesOf(entry.fit, data_.candidates()[e].quantities, data_))
+          f.estimates.push_back(x);
+      verdict_.finalists.push_back(f);
+    }
+    const double rarity = std::log(0.5 / std::max(1.0, static_cast<double>(
+                                                            data_.candidates().size())));
+    const auto posterior = [&](const Finalist& f) {
+      return f.logEvidence + rarity * static_cast<double>(f.effects.size());
+    };
+    std::sort(verdict_.finalists.begin(), verdict_.finalists.end(),
+              [&](const Finalist& a, const Finalist& b) { return posterior(a) > posterior(b); });
+    double sum = 0;
+    for (const Finalist& f : verdict_.finalists)
+      sum += std::exp(posterior(f) - posterior(verdict_.finalists[0]));
+    for (Finalist& f : verdict_.finalists)
+      f.probability = std::exp(posterior(f) - posterior(verdict_.finalists[0])) / sum;
+    base_again();
+    const Entry& leader = search_->at(chosen_);
+    if (!chosen_.empty()) {
+      verdict_.after = adequacy(search_->likelihood(), leader.fit, test_);
+      verdict_.values = leader.fit.values;
+      verdict_.latentSizeAfter = leader.fit.noise.latent;
+      verdict_.nuisancesAfter = estimatesOf(leader.fit, data_.nuisances(), data_);
+    }
+    for (Finalist& f : verdict_.finalists) {
+      if (f.effects == chosen_) f.adequate = verdict_.after.adequate();
+      if (f.effects.empty()) f.adequate = verdict_.before.adequate();
+    }
+  }
+  // back-substitution may have found a better base
+  void base_again() { base(); }
+
+  double heldOutEvidence(const Entry& entry, double* error) const {
+    Likelihood likelihood(data_, options_.heldOut, search_->at({}).fit.values,
+                          options_.latentTime);
+    const Hypothesis starts = startsOnly(data_, options_.heldOut);
+    const Fit fit = likelihood.fit(starts, entry.fit.noise, entry.fit.values);
+    Noise still = entry.fit.noise;
+    still.latent = 0;
+    *error = likelihood.simulationError(likelihood.fit(starts, still, entry.fit.values).values);
+    return fit.logEvidence;
+  }
+
+  void conclude() {
+    stage_ = Stage::decide;
+    report(Stage::decide, 0.9, "");
+    const Entry& before = search_->at({});
+    const Entry& after = search_->at(chosen_);
+    Judgement judgement;
+    judgement.raced = verdict_.finalists;
+    judgement.chosen = chosen_;
+    judgement.before = verdict_.before;
+    judgement.after = verdict_.after;
+    judgement.latentBefore = verdict_.latentSizeBefore;
+    judgement.latentAfter = verdict_.latentSizeAfter;
+    const Estimate* worst = nullptr;
+    for (const Estimate& e : verdict_.calibration)
+      if (data_.quantities()[e.quantity].trial < 0 &&
+          (worst == nullptr || std::abs(e.surprise) > std::abs(worst->surprise)))
+        worst = &e;
+    if (worst != nullptr) judgement.surprise = std::abs(worst->surprise);
+
+    gaps(before, after, judgement);
+    const Decision decision = decide(data_.candidates(), judgement, options_);
+    verdict_.finding = decision.finding;
+    verdict_.effects = decision.effects;
+    verdict_.probability = decision.probability;
+    verdict_.vetoed = decision.vetoed;
+    verdict_.surrogate = decision.surrogate;
+    // the parameter that is off, where no race was needed to see it
+    if (decision.finding == Finding::parameter && decision.effects.empty())
+      for (std::size_t c = 0; c < data_.candidates().size(); ++c)
+        if (data_.candidates()[c].kind == EffectKind::parameter &&
+            data_.candidates()[c].quantities[0] == worst->quantity) {
+          NamedEffect named;
+          named.candidate = c;
+          named.estimates = {*worst};
+          named.equals = {c};
+          named.equalEvidence = {0};
+          verdict_.effects.push_back(named);
+          break;
+        }
+
+    // where the base disagrees, with the scatter of inputs that is left once effects are named
+    const bool small = before.fit.noise.latent <= options_.latentTolerance;
+    const bool trusted = decision.finding != Finding::unknown && !chosen_.empty();
+    Fit map = before.simulation;
+    if (trusted && after.fit.noise.latent > 0)
+      map = refit(before, after.fit.noise.latent);
+    else if (decision.finding == Finding::none && small)
+      map = before.fit;
+    const Fit smoothing =
+        before.fit.noise.latent > 0 ? before.fit : refit(before, options_.latentScale);
+    verdict_.localisation = localise(search_->likelihood(), map, smoothing,
+                                     {0.25, 8, 6, options_.falseDiscoveries});
+    for (const Screened& s : search_->screen(chosen_, false))
+      verdict_.detectability.push_back(
+          {s.candidate, s.information > 0 ? 5 / std::sqrt(s.information) : HUGE_VAL});
+    std::sort(verdict_.detectability.begin(), verdict_.detectability.end(),
+              [](const Detectable& a, const Detectable& b) { return a.candidate < b.candidate; });
+    if (decision.finding == Finding::unknown && options_.symbolic)
+      verdict_.unknown = describeUnknown(search_->likelihood(), smoothing);
+    verdict_.sentence = sentence();
+  }
+
+  Fit refit(const Entry& entry, double size) const {
+    return search_->likelihood().fit(entry.fit.hypothesis,
+                                     {verdict_.outputDeviation, size, options_.latentTime},
+                                     entry.fit.values);
+  }
+
+  void gaps(const Entry& before, const Entry& after, Judgement& judgement) {
+    Gap& gap = verdict_.gap;
+    gap.floor = verdict_.outputDeviation;
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (const int t : trials_) {
+      low = std::min(low, data_.measured(t).minCoeff());
+      high = std::max(high, data_.measured(t).maxCoeff());
+    }
+    gap.range = high - low;
+    const Noise still{verdict_.outputDeviation, 0, options_.latentTime};
+    const Likelihood& likelihood = search_->likelihood();
+    const auto nominal = [&](const Likelihood& l, const std::vector<int>& trials) {
+      return l.simulationError(
+          l.fit(startsOnly(data_, trials), still, nominalValues(data_)).values);
+    };
+    gap.nominal = nominal(likelihood, trials_);
+    gap.calibrated = likelihood.simulationError(before.simulation.values);
+    gap.after = likelihood.simulationError(after.simulation.values);
+    closeGap(gap);
+    if (options_.heldOut.empty()) return;
+    Gap held;
+    held.floor = gap.floor;
+    held.range = gap.range;
+    const double without = heldOutEvidence(before, &held.calibrated);
+    const double with = heldOutEvidence(after, &held.after);
+    held.nominal = nominal(
+        Likelihood(data_, options_.heldOut, before.fit.values, options_.latentTime),
+        options_.heldOut);
+    closeGap(held);
+    verdict_.heldOut = held;
+    judgement.heldOutWorse = !chosen_.empty() && with < without;
+  }
+
+  std::string sentence() const {
+    const auto& candidates = data_.candidates();
+    std::string names;
+    for (const NamedEffect& e : verdict_.effects) {
+      std::string one;
+      for (const std::size_t c : e.equals) one += (one.empty() ? "" : " or ") + candidates[c].name;
+      if (e.equals.size() > 1 && verdict_.effects.size() > 1) one = "(" + one + ")";
+      names += (names.empty() ? "" : ", and ") + one;
+    }
+    switch (verdict_.finding) {
+      case Finding::none: return "No missing effect above the detectable size.";
+      case Finding::parameter: return "Parameter error: " + names + ".";
+      case Finding::named:
+      case Finding::ambiguous:
+        return "Missing: " + names + (verdict_.vetoed ? "; what is left has the wrong size." : ".");
+      case Finding::unknown:
+        return "Something is missing that has no name here" +
+               (names.empty() ? std::string(".") : "; imitated best by: " + names + ".");
+      case Finding::numerical: break;
+    }
+    return verdict_.sentence;
+  }
+
+  const Disagreement& data_;
+  const Options& options_;
+  std::vector<int> trials_;
+  AdequacyOptions test_;
+  std::optional<Search> search_;
+  std::vector<std::size_t> chosen_;
+  Stage stage_ = Stage::calibrate;
+  double fraction_ = 0;
+  Verdict verdict_;
+};
+
+}  // namespace
+
+Verdict run(const Disagreement& data, const Options& options) {
+  return Work(data, options).run();
+}
+
+}  // namespace info::discover

@@ -1,0 +1,168 @@
+#include "info/discover/localise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace info::discover {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+void benjaminiHochberg(std::vector<Score>& scores, double share) {
+  std::vector<std::size_t> order(scores.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::abs(scores[a].z) > std::abs(scores[b].z);
+  });
+  std::size_t accepted = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const double p = std::erfc(std::abs(scores[order[i]].z) / std::numbers::sqrt2);
+    if (p <= share * static_cast<double>(i + 1) / static_cast<double>(order.size()))
+      accepted = i + 1;
+  }
+  for (std::size_t i = 0; i < order.size(); ++i) scores[order[i]].significant = i < accepted;
+}
+
+namespace {
+
+// y at latent nodes, straight between samples
+VectorXd atNodes(const std::vector<double>& nodes, const std::vector<double>& times,
+                 const VectorXd& y) {
+  VectorXd result(static_cast<Index>(nodes.size()));
+  std::size_t k = 0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    while (k + 2 < times.size() && times[k + 1] < nodes[i]) ++k;
+    const auto at = static_cast<Index>(k);
+    const double s = std::clamp((nodes[i] - times[k]) / (times[k + 1] - times[k]), 0.0, 1.0);
+    result[static_cast<Index>(i)] = (1 - s) * y[at] + s * y[at + 1];
+  }
+  return result;
+}
+
+}  // namespace
+
+Localisation localise(const Likelihood& likelihood, const Fit& fit, const Fit& smoothing,
+                      const LocaliseOptions& options) {
+  const Disagreement& data = likelihood.data();
+  const std::size_t n = likelihood.trials().size();
+  Localisation result;
+  result.trials = likelihood.trials();
+
+  std::vector<Likelihood::Linear> linear;
+  std::vector<VectorXd> q, qDot;
+  std::vector<MatrixXd> inputs;
+  double range[4] = {1e300, -1e300, 1e300, -1e300};
+  for (std::size_t t = 0; t < n; ++t) {
+    const int trial = likelihood.trials()[t];
+    linear.push_back(likelihood.linearise(t, fit, fit.values, {}, true));
+    const auto& nodes = data.latentTimes(trial);
+    const auto& times = data.times(trial);
+    q.push_back(atNodes(nodes, times, data.measured(trial) - linear[t].residuals));
+    qDot.push_back(atNodes(nodes, times, linear[t].speeds));
+    MatrixXd u = data.inputs(trial), placed(static_cast<Index>(nodes.size()), u.cols());
+    for (Index j = 0; j < u.cols(); ++j) placed.col(j) = atNodes(nodes, times, u.col(j));
+    inputs.push_back(placed);
+    range[0] = std::min(range[0], q[t].minCoeff());
+    range[1] = std::max(range[1], q[t].maxCoeff());
+    range[2] = std::min(range[2], qDot[t].minCoeff());
+    range[3] = std::max(range[3], qDot[t].maxCoeff());
+  }
+
+  // one column of force per element of the map
+  std::vector<Score> scores;
+  std::vector<std::vector<VectorXd>> columns(n);
+  const auto add = [&](const Score& score, const auto& forceOf) {
+    bool any = false;
+    std::vector<VectorXd> forces;
+    for (std::size_t t = 0; t < n; ++t) {
+      forces.push_back(forceOf(t));
+      any = any || forces.back().squaredNorm() > 0;
+    }
+    if (!any) return;
+    for (std::size_t t = 0; t < n; ++t) columns[t].push_back(linear[t].force * forces[t]);
+    scores.push_back(score);
+  };
+  for (std::size_t t = 0; t < n; ++t) {
+    const auto& nodes = data.latentTimes(likelihood.trials()[t]);
+    const double half = 0.5 * options.width;
+    for (double middle = nodes.front(); middle <= nodes.back() + 1e-9; middle += half) {
+      Score score;
+      score.trial = likelihood.trials()[t];
+      score.from = middle - half;
+      score.to = middle + half;
+      add(score, [&](std::size_t of) {
+        VectorXd f = VectorXd::Zero(linear[of].force.cols());
+        if (of == t)
+          for (Index i = 0; i < f.size(); ++i)
+            f[i] = std::max(
+                0.0, 1 - std::abs(nodes[static_cast<std::size_t>(i)] - middle) / half);
+        return f;
+      });
+    }
+  }
+  const std::size_t numTimes = scores.size();
+  const double width[2] = {(range[1] - range[0]) / options.cellsQ + 1e-12,
+                           (range[3] - range[2]) / options.cellsQDot + 1e-12};
+  for (int a = 0; a < options.cellsQ; ++a)
+    for (int b = 0; b < options.cellsQDot; ++b) {
+      Score score;
+      score.lowerQ = range[0] + a * width[0];
+      score.upperQ = score.lowerQ + width[0];
+      score.lowerQDot = range[2] + b * width[1];
+      score.upperQDot = score.lowerQDot + width[1];
+      add(score, [&](std::size_t of) {
+        VectorXd f = VectorXd::Zero(linear[of].force.cols());
+        for (Index i = 0; i < f.size(); ++i)
+          f[i] = q[of][i] >= score.lowerQ && q[of][i] < score.upperQ &&
+                         qDot[of][i] >= score.lowerQDot && qDot[of][i] < score.upperQDot
+                     ? 1
+                     : 0;
+        return f;
+      });
+    }
+  const std::size_t numCells = scores.size() - numTimes;
+  const auto names = data.inputNames();
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    Score score;
+    score.input = names[j];
+    add(score,
+        [&](std::size_t of) { return VectorXd(inputs[of].col(static_cast<Index>(j))); });
+  }
+
+  std::vector<MatrixXd> disturbances;
+  const auto m = static_cast<Index>(scores.size());
+  for (std::size_t t = 0; t < n; ++t) {
+    MatrixXd block(linear[t].residuals.size(), m);
+    for (Index j = 0; j < m; ++j) block.col(j) = columns[t][static_cast<std::size_t>(j)];
+    disturbances.push_back(std::move(block));
+  }
+  const auto projected = likelihood.project(fit, linear, disturbances);
+  for (Index j = 0; j < m; ++j) {
+    Score& score = scores[static_cast<std::size_t>(j)];
+    const double information = projected.information(j, j);
+    if (information > 1e-12) {
+      score.z = projected.score[j] / std::sqrt(information);
+      score.amplitude = projected.score[j] / information;
+    }
+  }
+  const auto from = scores.begin();
+  const auto cells = from + static_cast<std::ptrdiff_t>(numTimes);
+  const auto last = cells + static_cast<std::ptrdiff_t>(numCells);
+  result.times.assign(from, cells);
+  result.cells.assign(cells, last);
+  result.inputs.assign(last, scores.end());
+  benjaminiHochberg(result.times, options.falseDiscoveries);
+  benjaminiHochberg(result.cells, options.falseDiscoveries);
+  benjaminiHochberg(result.inputs, options.falseDiscoveries);
+
+  for (std::size_t t = 0; t < n; ++t) {
+    result.force.push_back(likelihood.force(t, smoothing));
+    result.forceDeviation.push_back(likelihood.forceDeviation(t, smoothing));
+  }
+  return result;
+}
+
+}  // namespace info::discover

@@ -1,0 +1,274 @@
+#include "search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+namespace info::discover {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kFirstSize = 0.3, kRaceSize = 0.1, kSmallest = 1e-3;
+
+std::vector<std::size_t> with(std::vector<std::size_t> effects, std::size_t another) {
+  effects.push_back(another);
+  std::sort(effects.begin(), effects.end());
+  return effects;
+}
+
+}  // namespace
+
+Search::Search(const Disagreement& data, std::vector<int> trials, const Options& options,
+               double outputDeviation, Report report)
+    : data_(data),
+      trials_(std::move(trials)),
+      options_(options),
+      output_(outputDeviation),
+      report_(std::move(report)) {
+  likelihood_.emplace(data_, trials_, nominalValues(data_), options_.latentTime);
+}
+
+// Follows σ_d from `size` to where the evidence is largest: MacKay's fixed point
+//     σ_d² ← σ_d²·|η|²/(γ + σ_d/s)
+// then compares with σ_d = 0. Keeps whatever is better than what was known of the hypothesis.
+void Search::improve(const std::vector<std::size_t>& effects, const VectorXd& start, double size) {
+  const Hypothesis hypothesis = makeHypothesis(data_, effects, trials_);
+  Entry found;
+  found.effects = effects;
+  found.score = -1e300;
+  const auto keep = [&](Fit fit) {
+    ++fits_;
+    const double score = fit.logEvidence - fit.noise.latent / options_.latentScale;
+    if (score > found.score) {
+      found.score = score;
+      found.fit = std::move(fit);
+    }
+  };
+  VectorXd values = start;
+  std::vector<VectorXd> eta;
+  for (int round = 0; round < 7 && size > kSmallest; ++round) {
+    Fit fit = likelihood_->fit(hypothesis, {output_, size, options_.latentTime}, values, eta,
+                               {round == 0 ? 10 : 6, 0.05});
+    const double ratio = fit.latentPower / std::max(1e-9, fit.latentFreedom +
+                                                              size / options_.latentScale);
+    const double factor = std::clamp(std::pow(ratio, 0.6), 0.15, 3.0);
+    values = fit.values;
+    eta = fit.eta;
+    keep(std::move(fit));
+    size *= factor;
+    if (std::abs(std::log(factor)) < 0.1) break;
+    if (size > 3) break;
+  }
+  Fit simulation = likelihood_->fit(hypothesis, {output_, 0, options_.latentTime}, values, {},
+                                    {25, 0.02});
+  found.simulation = simulation;
+  keep(std::move(simulation));
+  const auto known = entries_.find(effects);
+  if (known == entries_.end()) {
+    entries_.emplace(effects, std::move(found));
+    return;
+  }
+  Entry& old = known->second;
+  if (found.simulation.logEvidence > old.simulation.logEvidence)
+    old.simulation = std::move(found.simulation);
+  if (found.score > old.score) {
+    old.score = found.score;
+    old.fit = std::move(found.fit);
+  }
+}
+
+void Search::calibrate() {
+  report_("base model");
+  improve({}, nominalValues(data_), kFirstSize);
+  // the scale of the latent force where the arm really goes, then once more from both ends
+  const VectorXd values = at({}).fit.values;
+  likelihood_.emplace(data_, trials_, values, options_.latentTime);
+  entries_.clear();
+  report_("base model");
+  improve({}, values, kRaceSize);
+  improve({}, nominalValues(data_), kFirstSize);
+}
+
+VectorXd Search::started(std::size_t candidate, std::size_t start, VectorXd values) const {
+  const Candidate& c = data_.candidates()[candidate];
+  // a parameter that is free anyway goes on from where it is
+  const auto& nuisances = data_.nuisances();
+  for (std::size_t i = 0; i < c.quantities.size(); ++i)
+    if (std::find(nuisances.begin(), nuisances.end(), c.quantities[i]) == nuisances.end())
+      values[static_cast<Index>(c.quantities[i])] = c.starts.at(start)[static_cast<Index>(i)];
+  return values;
+}
+
+std::vector<Screened> Search::screen(const std::vector<std::size_t>& effects,
+                                     bool simulation) const {
+  const Entry& entry = at(effects);
+  const Fit& fit = simulation ? entry.simulation : entry.fit;
+  std::vector<Screened> result;
+  const auto& candidates = data_.candidates();
+  // candidates whose shape quantities have several starts are seen once for each
+  std::size_t rounds = 1;
+  for (const Candidate& c : candidates) rounds = std::max(rounds, c.starts.size());
+  for (std::size_t round = 0; round < rounds; ++round) {
+    std::vector<std::size_t> which, amplitudes;
+    VectorXd values = fit.values;
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+      if (std::find(effects.begin(), effects.end(), c) != effects.end()) continue;
+      if (candidates[c].starts.size() <= round) continue;
+      which.push_back(c);
+      amplitudes.push_back(candidates[c].quantities[0]);
+      // shape quantities as this start has them, the amplitude absent
+      for (std::size_t i = 1; i < candidates[c].quantities.size(); ++i) {
+        const std::size_t q = candidates[c].quantities[i];
+        if (fit.hypothesis.indexOf(q) < 0)
+          values[static_cast<Index>(q)] = candidates[c].starts[round][static_cast<Index>(i)];
+      }
+    }
+    std::vector<Likelihood::Linear> linear;
+    std::vector<MatrixXd> columns;
+    for (std::size_t t = 0; t < trials_.size(); ++t) {
+      linear.push_back(likelihood_->linearise(t, fit, values, amplitudes, false));
+      columns.push_back(linear.back().extra);
+    }
+    const auto projected = likelihood_->project(fit, linear, columns);
+    for (std::size_t i = 0; i < which.size(); ++i) {
+      const Candidate& c = candidates[which[i]];
+      const Quantity& q = data_.quantities()[c.quantities[0]];
+      double variance = c.deviations[0] * c.deviations[0];
+      double g = projected.score[static_cast<Index>(i)];
+      double S = projected.information(static_cast<Index>(i), static_cast<Index>(i));
+      const int there = fit.hypothesis.indexOf(c.quantities[0]);
+      if (q.logarithmic) {
+        const double value = values[static_cast<Index>(c.quantities[0])];
+        g *= value;
+        S *= value * value;
+      }
+      if (there >= 0) {
+        // widening the prior of a parameter that is free: a disturbance in it of the variance added
+        const double narrow = fit.hypothesis.free[static_cast<std::size_t>(there)].deviation;
+        variance = std::max(0.0, variance - narrow * narrow);
+      }
+      const double growth = 1 + variance * std::max(S, 0.0);
+      const bool blocked = there < 0 && q.lower >= q.nominal && g < 0;
+      Screened s;
+      s.candidate = which[i];
+      s.gain = (blocked ? 0 : 0.5 * variance * g * g / growth) - 0.5 * std::log(growth);
+      s.information = std::max(projected.information(static_cast<Index>(i), static_cast<Index>(i)),
+                               0.0);
+      const auto known = std::find_if(result.begin(), result.end(), [&](const Screened& r) {
+        return r.candidate == s.candidate;
+      });
+      if (known == result.end())
+        result.push_back(s);
+      else if (s.gain > known->gain)
+        *known = s;
+    }
+  }
+  std::sort(result.begin(), result.end(),
+            [](const Screened& a, const Screened& b) { return a.gain > b.gain; });
+  return result;
+}
+
+std::vector<std::size_t> Search::shortlist(const std::vector<std::size_t>& effects,
+                                           int most) const {
+  const auto filter = screen(effects, false), simulation = screen(effects, true);
+  std::vector<std::size_t> list;
+  const auto add = [&](const Screened& s) {
+    if (s.information > 0 && std::find(list.begin(), list.end(), s.candidate) == list.end())
+      list.push_back(s.candidate);
+  };
+  // half of what there is room for comes from either mode in turn
+  for (std::size_t i = 0; i < filter.size() && static_cast<int>(list.size()) < most - 2; ++i) {
+    add(filter[i]);
+    if (static_cast<int>(list.size()) < most - 2) add(simulation[i]);
+  }
+  if (most >= 6) {
+    std::set<EffectKind> kinds;
+    for (const std::size_t c : list) kinds.insert(data_.candidates()[c].kind);
+    for (const Screened& s : filter)
+      if (kinds.insert(data_.candidates()[s.candidate].kind).second) add(s);
+  }
+  const std::vector<std::size_t> touched = list;
+  for (const std::size_t c : touched)
+    for (const std::string& id : data_.candidates()[c].equivalents)
+      for (const Screened& s : filter)
+        if (data_.candidates()[s.candidate].id == id) add(s);
+  return list;
+}
+
+void Search::race(const std::vector<std::size_t>& base,
+                  const std::vector<std::size_t>& candidates) {
+  const VectorXd values = at(base).fit.values;
+  for (const std::size_t c : candidates) {
+    const auto effects = with(base, c);
+    if (entries_.count(effects) != 0) continue;
+    report_(describe(data_, effects));
+    // of several starts the one that a short fit likes best
+    const Hypothesis hypothesis = makeHypothesis(data_, effects, trials_);
+    const std::size_t starts = data_.candidates()[c].starts.size();
+    VectorXd best = started(c, 0, values);
+    double evidence = -1e300;
+    for (std::size_t s = 0; starts > 1 && s < starts; ++s) {
+      const Fit fit = likelihood_->fit(hypothesis, {output_, kRaceSize, options_.latentTime},
+                                       started(c, s, values), {}, {6, 0.1});
+      ++fits_;
+      if (fit.logEvidence > evidence) {
+        evidence = fit.logEvidence;
+        best = fit.values;
+      }
+    }
+    improve(effects, best, kRaceSize);
+  }
+  if (candidates.empty()) return;
+  // cross-starts: everything that is not far behind once more from the leader's nuisances
+  const auto lead = [&] {
+    std::size_t leader = candidates[0];
+    for (const std::size_t c : candidates)
+      if (at(with(base, c)).score > at(with(base, leader)).score) leader = c;
+    return leader;
+  };
+  const std::size_t leader = lead();
+  const Entry& first = at(with(base, leader));
+  const VectorXd from = first.fit.values;
+  const double score = first.score;
+  const double size = std::max(0.02, 2 * first.fit.noise.latent);
+  const auto absent = [&](VectorXd v) {
+    const auto& nuisances = data_.nuisances();
+    for (const std::size_t q : data_.candidates()[leader].quantities)
+      if (std::find(nuisances.begin(), nuisances.end(), q) == nuisances.end())
+        v[static_cast<Index>(q)] = data_.quantities()[q].nominal;
+    return v;
+  };
+  for (const std::size_t c : candidates) {
+    if (c == leader || at(with(base, c)).score < score - 40) continue;
+    report_(describe(data_, with(base, c)));
+    VectorXd start = absent(from);
+    const Entry& own = at(with(base, c));
+    const auto& nuisances = data_.nuisances();
+    for (const std::size_t q : data_.candidates()[c].quantities)
+      if (std::find(nuisances.begin(), nuisances.end(), q) == nuisances.end())
+        start[static_cast<Index>(q)] = own.fit.values[static_cast<Index>(q)];
+    improve(with(base, c), start, size);
+  }
+  report_(describe(data_, base));
+  improve(base, absent(from), size);
+}
+
+double Search::significance(const Entry& entry) const {
+  double least = 1e300;
+  for (const std::size_t e : entry.effects) {
+    const std::size_t amplitude = data_.candidates()[e].quantities[0];
+    const int i = entry.fit.hypothesis.indexOf(amplitude);
+    const double deviation = entry.fit.deviation(static_cast<std::size_t>(i));
+    const double distance = std::abs(entry.fit.values[static_cast<Index>(amplitude)] -
+                                     data_.quantities()[amplitude].nominal);
+    least = std::min(least, deviation > 0 ? distance / deviation : 0.0);
+  }
+  return entry.effects.empty() ? 0 : least;
+}
+
+}  // namespace info::discover

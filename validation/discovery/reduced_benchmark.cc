@@ -1,0 +1,218 @@
+// Blind scoring of discovery on the reduced elbow: reduced_benchmark --seeds A B --suite S …
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "info/discover/discover.h"
+#include "info/random_stream.h"
+#include "reduced_truth.h"
+
+namespace {
+
+using namespace info::discover;
+
+const std::vector<std::string> kEffects = {
+    "visc",  "coulomb", "stribeck", "drag",    "stiffness", "limit",   "payload",
+    "tilt",  "const",   "handforce", "fatigue", "delay",     "shape",   "tri<bic",
+    "bic<tri", "wrapBIC", "wrapTRI",  "bias",    "gain",      "clock"};
+const std::vector<std::string> kParameters = {"tau",     "FmaxBIC", "FmaxBRA", "FmaxBRD", "FmaxTRI",
+                                              "loptBIC", "loptBRA", "loptBRD", "loptTRI", "mass"};
+const std::vector<std::string> kOutside = {"cubic",  "powerdamp",  "qdamp",
+                                           "tremor", "hysteresis", "flwidth"};
+
+struct Tally {
+  int hits = 0, of = 0;
+  void count(bool hit) { hits += hit, ++of; }
+};
+
+void print(const char* what, const Tally& tally) {
+  if (tally.of == 0) return;
+  // Wilson's interval
+  const double n = tally.of, p = tally.hits / n, z = 1.96, z2 = z * z;
+  const double middle = (p + z2 / (2 * n)) / (1 + z2 / n);
+  const double half = z * std::sqrt(p * (1 - p) / n + z2 / (4 * n * n)) / (1 + z2 / n);
+  fmt::print("{:<44} {:4d} / {:<4d} = {:5.1f} %   ({:.1f} … {:.1f})\n", what, tally.hits, tally.of,
+             100 * p, 100 * std::max(0.0, middle - half), 100 * std::min(1.0, middle + half));
+}
+
+double truthOf(const std::string& id, double size) {
+  static const double tolerance[] = {0.2, 0.15, 0.15, 0.15, 0.15, 0.04, 0.04, 0.04, 0.04, 0.05};
+  for (std::size_t i = 0; i < kParameters.size(); ++i)
+    if (kParameters[i] == id) return std::exp(size * 5 * tolerance[i]);  // 5 σ at full size
+  return size * reduced::fullSize(id);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::uint64_t first = 0, last = 20;
+  std::string suite = "null", only, without;
+  double size = 1, emgNoise = 0;
+  bool verbose = false, known = true;
+  for (int i = 1; i < argc; ++i) {
+    const auto is = [&](const char* flag, int more) {
+      return std::strcmp(argv[i], flag) == 0 && i + more < argc;
+    };
+    if (is("--seeds", 2)) first = std::stoull(argv[++i]), last = std::stoull(argv[++i]);
+    else if (is("--suite", 1)) suite = argv[++i];
+    else if (is("--size", 1)) size = std::stod(argv[++i]);
+    else if (is("--emg-noise", 1)) emgNoise = std::stod(argv[++i]);
+    else if (is("--only", 1)) only = argv[++i];
+    else if (is("--leave-out", 0)) without = "yes";
+    else if (is("--estimate-sigma", 0)) known = false;
+    else if (is("--verbose", 0)) verbose = true;
+    else {
+      fmt::print(stderr, "reduced_benchmark --seeds A B --suite null|single|parameter|two|"
+                         "equivalents|out [--size s] [--emg-noise c] [--only id] [--leave-out] "
+                         "[--estimate-sigma] [--verbose]\n");
+      return 2;
+    }
+  }
+  Tally detected, top, inClass, falseName, confident, coverage, both, unknown, structureNamed;
+  std::vector<double> closed, seconds, floors;
+  for (std::uint64_t seed = first; seed < last; ++seed) {
+    info::RandomStream pick(seed, 99);
+    reduced::Recipe recipe;
+    recipe.trials = 4;  // the last one is held out
+    recipe.emgNoise = emgNoise;
+    std::vector<std::string> truth;
+    const auto choose = [&](const std::vector<std::string>& from) {
+      const auto i = static_cast<std::size_t>(pick.uniform() * static_cast<double>(from.size()));
+      truth.push_back(only.empty() || !truth.empty() ? from[i] : only);
+    };
+    if (suite == "single") choose(kEffects);
+    if (suite == "parameter") choose(kParameters);
+    if (suite == "out") choose(kOutside);
+    if (suite == "equivalents") choose({"tilt", "handforce", "delay", "clock", "payload"});
+    if (suite == "two") {
+      choose(kEffects);
+      do {
+        truth.resize(1);
+        choose(kEffects);
+      } while (truth[0] == truth[1]);
+    }
+    for (const auto& id : truth) {
+      const bool sign = pick.uniform() < 0.5;
+      double amount = truthOf(id, size);
+      if (suite == "parameter" && sign) amount = 1 / amount;
+      const bool bothWays = id == "tilt" || id == "const" || id == "handforce" || id == "shape" ||
+                            id == "wrapBIC" || id == "wrapTRI" || id == "bias" || id == "gain";
+      if (bothWays && sign) amount = -amount;
+      recipe.effects.emplace_back(id, amount);
+    }
+    std::vector<std::string> hidden;
+    if (!without.empty()) hidden = truth;
+    std::vector<reduced::Trial> trials;
+    try {
+      trials = reduced::record(recipe, seed);
+    } catch (const std::domain_error&) {
+      fmt::print("seed {}: the arm went out of range, left out\n", seed);
+      continue;
+    }
+    const reduced::Elbow elbow(std::move(trials), hidden);
+    Options options;
+    if (known) options.outputDeviation = recipe.outputNoise;
+    options.heldOut = {3};
+    options.latentTolerance = emgNoise > 0 ? 2 * emgNoise : 0.02;
+    const auto begin = std::chrono::steady_clock::now();
+    const Verdict v = run(elbow, options);
+    seconds.push_back(
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+
+    const auto& candidates = elbow.candidates();
+    const bool says = v.finding == Finding::named || v.finding == Finding::ambiguous ||
+                      v.finding == Finding::parameter;
+    const auto isNamed = [&](const std::string& id, bool anywhere) {
+      for (const NamedEffect& e : v.effects) {
+        if (candidates[e.candidate].id == id) return true;
+        const auto& mates = candidates[e.candidate].equivalents;
+        for (const auto& m : mates)
+          if (m == id) return true;  // a declared equivalent counts as right
+        for (const std::size_t c : e.equals)
+          if (anywhere && candidates[c].id == id) return true;
+      }
+      return false;
+    };
+    bool all = !truth.empty(), allClass = all;
+    for (const auto& id : truth) {
+      all = all && isNamed(id, false);
+      allClass = allClass && isNamed(id, true);
+    }
+    bool structure = false;
+    for (const NamedEffect& e : v.effects)
+      structure = structure || candidates[e.candidate].kind != EffectKind::parameter;
+    detected.count(v.finding != Finding::none);
+    if (suite == "null") falseName.count(says);
+    if (suite == "parameter") structureNamed.count(says && structure);
+    if (suite == "out" || !without.empty()) unknown.count(!says || v.finding == Finding::ambiguous);
+    else if (!truth.empty()) {
+      top.count(says && all && v.effects.size() == truth.size());
+      if (v.finding != Finding::none) inClass.count(allClass);
+      confident.count(says && v.probability >= 0.95 && !allClass);
+      if (truth.size() == 2) both.count(says && allClass);
+      if (says && all && truth.size() == 1 && candidates[v.effects[0].candidate].id == truth[0] &&
+          !v.effects[0].estimates.empty()) {
+        const Estimate& e = v.effects[0].estimates[0];
+        double value = recipe.effects[0].second;
+        if (suite == "parameter") value = NAN;  // drawn about its tolerance too
+        if (std::isfinite(value)) coverage.count(std::abs(e.value - value) < 1.96 * e.deviation);
+      }
+    }
+    if (v.heldOut && v.heldOut->closedFromCalibrated && says)
+      closed.push_back(*v.heldOut->closedFromCalibrated);
+    if (v.heldOut && says) floors.push_back(v.heldOut->after / v.heldOut->floor);
+    if (verbose || (suite != "null" && suite != "out" && !(says && all && v.effects.size() == truth.size())) ||
+        (suite == "null" && v.finding != Finding::none)) {
+      std::string said, table;
+      for (const NamedEffect& e : v.effects) {
+        said += " [";
+        for (std::size_t i = 0; i < e.equals.size(); ++i)
+          said += fmt::format("{}{}", i ? "|" : "", candidates[e.equals[i]].id);
+        said += fmt::format(" p={:.3f} B={:.1f}", e.probability, e.logBayesFactor);
+        if (!e.estimates.empty())
+          said += fmt::format(" {:.3g}±{:.2g}", e.estimates[0].value, e.estimates[0].deviation);
+        said += "]";
+      }
+      for (std::size_t i = 0; i < std::min<std::size_t>(6, v.finalists.size()); ++i)
+        table += fmt::format(" {}:{:.1f}(σd {:.3f})", describe(elbow, v.finalists[i].effects),
+                             v.finalists[i].logEvidence, v.finalists[i].latentSize);
+      std::string hiddenEffects;
+      for (const auto& [id, amount] : recipe.effects)
+        hiddenEffects += fmt::format("{}={:.3g} ", id, amount);
+      fmt::print("seed {} truth {}: {}{} | NIS {:.3f} LB p {:.1e} in p {:.1e} σd {:.3f}→{:.3f} num "
+                 "{:.3f} fits {} {:.1f}s |{}\n",
+                 seed, hiddenEffects, name(v.finding), said, v.after.meanSquare,
+                 v.after.ljungBoxProbability, v.after.inputProbability, v.latentSizeBefore,
+                 v.latentSizeAfter, v.numericalError, v.fits, seconds.back(), table);
+      if (v.unknown) fmt::print("    formula {} (explains {:.2f}, stable {}), peak {:.1f} Hz share {:.2f}\n",
+                 v.unknown->formula, v.unknown->explained, v.unknown->stable,
+                 v.unknown->peakFrequency, v.unknown->peakShare);
+      std::fflush(stdout);
+    }
+  }
+  const auto median = [](std::vector<double> x) {
+    if (x.empty()) return std::nan("");
+    std::sort(x.begin(), x.end());
+    return x[x.size() / 2];
+  };
+  fmt::print("suite {}, size {}, EMG noise {}, seeds {} to {}\n", suite, size, emgNoise, first,
+             last - 1);
+  print("found anything", detected);
+  print("false names", falseName);
+  print("structure named, only a parameter wrong", structureNamed);
+  print("right name(s) first", top);
+  print("true name(s) in the class, of detected", inClass);
+  print("both named", both);
+  print("confidently wrong", confident);
+  print("95 % interval covers the amplitude", coverage);
+  print("not given an unqualified name", unknown);
+  fmt::print("gap closed on the held-out trial: median {:.3f} of {}; error/floor {:.3f}\n",
+             median(closed), closed.size(), median(floors));
+  fmt::print("seconds per data set: median {:.1f}, most {:.1f}\n", median(seconds),
+             seconds.empty() ? NAN : *std::max_element(seconds.begin(), seconds.end()));
+}
