@@ -183,7 +183,9 @@ TEST(Effects, AllMoveTheArmInAWholeTrial) {
     for (const Candidate& candidate : c.data.candidates()) {
       amplitudes.push_back(candidate.quantities.front());
     }
-    const auto at = c.data.predict(0, c.nominal(), {}, amplitudes, false);
+    VectorXd values = c.nominal();
+    values[static_cast<Index>(c.data.widest().quantities().size())] = 0.02;  // nearly straight
+    const auto at = c.data.predict(0, values, {}, amplitudes, false);
     const VectorXd moved = at.gamma.cwiseAbs().colwise().maxCoeff().transpose();
     largest = largest.size() ? VectorXd(largest.cwiseMax(moved)) : moved;
     for (std::size_t j = 0; j < amplitudes.size() && trial[1] == 'u'; ++j) {
