@@ -51,9 +51,10 @@ VectorXd busy(const Elbow& elbow) {
 
 TEST(ReducedElbow, FollowsTheIndependentTruthWithEveryEffect) {
   // largest errors seen: 0.0006° without friction, 0.012° with it; the noise is 0.5°
-  for (const char* effect : {"none", "visc", "coulomb", "stribeck", "drag", "stiffness", "limit",
-                             "payload", "tilt", "const", "handforce", "fatigue", "delay", "shape",
-                             "tri<bic", "bic<tri", "wrapBIC", "wrapTRI", "bias", "gain", "clock"}) {
+  for (const char* effect :
+       {"none",    "visc",    "coulomb", "stribeck",  "drag",    "stiffness", "limit",
+        "payload", "tilt",    "const",   "handforce", "fatigue", "delay",     "shape",
+        "tri<bic", "bic<tri", "wrapBIC", "wrapTRI",   "bias",    "gain",      "clock"}) {
     reduced::Recipe recipe = plain();
     const std::string id = effect;
     if (id != "none") recipe.effects = {{id, reduced::fullSize(id)}};

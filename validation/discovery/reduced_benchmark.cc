@@ -16,10 +16,10 @@ namespace {
 
 using namespace info::discover;
 
-const std::vector<std::string> kEffects = {
-    "visc",  "coulomb", "stribeck", "drag",    "stiffness", "limit",   "payload",
-    "tilt",  "const",   "handforce", "fatigue", "delay",     "shape",   "tri<bic",
-    "bic<tri", "wrapBIC", "wrapTRI",  "bias",    "gain",      "clock"};
+const std::vector<std::string> kEffects = {"visc",    "coulomb", "stribeck", "drag",    "stiffness",
+                                           "limit",   "payload", "tilt",     "const",   "handforce",
+                                           "fatigue", "delay",   "shape",    "tri<bic", "bic<tri",
+                                           "wrapBIC", "wrapTRI", "bias",     "gain",    "clock"};
 const std::vector<std::string> kParameters = {"tau",     "FmaxBIC", "FmaxBRA", "FmaxBRD", "FmaxTRI",
                                               "loptBIC", "loptBRA", "loptBRD", "loptTRI", "mass"};
 const std::vector<std::string> kOutside = {"cubic",  "powerdamp",  "qdamp",
@@ -58,18 +58,27 @@ int main(int argc, char** argv) {
     const auto is = [&](const char* flag, int more) {
       return std::strcmp(argv[i], flag) == 0 && i + more < argc;
     };
-    if (is("--seeds", 2)) first = std::stoull(argv[++i]), last = std::stoull(argv[++i]);
-    else if (is("--suite", 1)) suite = argv[++i];
-    else if (is("--size", 1)) size = std::stod(argv[++i]);
-    else if (is("--emg-noise", 1)) emgNoise = std::stod(argv[++i]);
-    else if (is("--only", 1)) only = argv[++i];
-    else if (is("--leave-out", 0)) without = "yes";
-    else if (is("--estimate-sigma", 0)) known = false;
-    else if (is("--verbose", 0)) verbose = true;
+    if (is("--seeds", 2))
+      first = std::stoull(argv[++i]), last = std::stoull(argv[++i]);
+    else if (is("--suite", 1))
+      suite = argv[++i];
+    else if (is("--size", 1))
+      size = std::stod(argv[++i]);
+    else if (is("--emg-noise", 1))
+      emgNoise = std::stod(argv[++i]);
+    else if (is("--only", 1))
+      only = argv[++i];
+    else if (is("--leave-out", 0))
+      without = "yes";
+    else if (is("--estimate-sigma", 0))
+      known = false;
+    else if (is("--verbose", 0))
+      verbose = true;
     else {
-      fmt::print(stderr, "reduced_benchmark --seeds A B --suite null|single|parameter|two|"
-                         "equivalents|out [--size s] [--emg-noise c] [--only id] [--leave-out] "
-                         "[--estimate-sigma] [--verbose]\n");
+      fmt::print(stderr,
+                 "reduced_benchmark --seeds A B --suite null|single|parameter|two|"
+                 "equivalents|out [--size s] [--emg-noise c] [--only id] [--leave-out] "
+                 "[--estimate-sigma] [--verbose]\n");
       return 2;
     }
   }
@@ -149,7 +158,8 @@ int main(int argc, char** argv) {
     detected.count(v.finding != Finding::none);
     if (suite == "null") falseName.count(says);
     if (suite == "parameter") structureNamed.count(says && structure);
-    if (suite == "out" || !without.empty()) unknown.count(!says || v.finding == Finding::ambiguous);
+    if (suite == "out" || !without.empty())
+      unknown.count(!says || v.finding == Finding::ambiguous);
     else if (!truth.empty()) {
       top.count(says && all && v.effects.size() == truth.size());
       if (v.finding != Finding::none) inClass.count(allClass);
@@ -166,7 +176,8 @@ int main(int argc, char** argv) {
     if (v.heldOut && v.heldOut->closedFromCalibrated && says)
       closed.push_back(*v.heldOut->closedFromCalibrated);
     if (v.heldOut && says) floors.push_back(v.heldOut->after / v.heldOut->floor);
-    if (verbose || (suite != "null" && suite != "out" && !(says && all && v.effects.size() == truth.size())) ||
+    if (verbose ||
+        (suite != "null" && suite != "out" && !(says && all && v.effects.size() == truth.size())) ||
         (suite == "null" && v.finding != Finding::none)) {
       std::string said, table;
       for (const NamedEffect& e : v.effects) {
@@ -184,14 +195,16 @@ int main(int argc, char** argv) {
       std::string hiddenEffects;
       for (const auto& [id, amount] : recipe.effects)
         hiddenEffects += fmt::format("{}={:.3g} ", id, amount);
-      fmt::print("seed {} truth {}: {}{} | NIS {:.3f} LB p {:.1e} in p {:.1e} σd {:.3f}→{:.3f} num "
-                 "{:.3f} fits {} {:.1f}s |{}\n",
-                 seed, hiddenEffects, name(v.finding), said, v.after.meanSquare,
-                 v.after.ljungBoxProbability, v.after.inputProbability, v.latentSizeBefore,
-                 v.latentSizeAfter, v.numericalError, v.fits, seconds.back(), table);
-      if (v.unknown) fmt::print("    formula {} (explains {:.2f}, stable {}), peak {:.1f} Hz share {:.2f}\n",
-                 v.unknown->formula, v.unknown->explained, v.unknown->stable,
-                 v.unknown->peakFrequency, v.unknown->peakShare);
+      fmt::print(
+          "seed {} truth {}: {}{} | NIS {:.3f} LB p {:.1e} in p {:.1e} σd {:.3f}→{:.3f} num "
+          "{:.3f} fits {} {:.1f}s |{}\n",
+          seed, hiddenEffects, name(v.finding), said, v.after.meanSquare,
+          v.after.ljungBoxProbability, v.after.inputProbability, v.latentSizeBefore,
+          v.latentSizeAfter, v.numericalError, v.fits, seconds.back(), table);
+      if (v.unknown)
+        fmt::print("    formula {} (explains {:.2f}, stable {}), peak {:.1f} Hz share {:.2f}\n",
+                   v.unknown->formula, v.unknown->explained, v.unknown->stable,
+                   v.unknown->peakFrequency, v.unknown->peakShare);
       std::fflush(stdout);
     }
   }

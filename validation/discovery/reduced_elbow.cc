@@ -25,9 +25,10 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 struct Route {
   double r0, r1, length;
 };
-constexpr std::array<Route, kMuscles> kRoutes = {
-    {{0.018, 0.022, 0.1656282}, {0.012, 0.013, 0.1126894}, {0.025, 0.04, 0.2255057},
-     {-0.022, -0.004, 0.0710494}}};
+constexpr std::array<Route, kMuscles> kRoutes = {{{0.018, 0.022, 0.1656282},
+                                                  {0.012, 0.013, 0.1126894},
+                                                  {0.025, 0.04, 0.2255057},
+                                                  {-0.022, -0.004, 0.0710494}}};
 
 // Which of the input-like quantities moves activations; derivatives are carried in this order.
 constexpr std::array<std::size_t, 5> kInputLike = {kTau, kDelay, kShape, kTriFromBic, kBicFromTri};
@@ -118,8 +119,8 @@ void evaluate(const VectorXd& v, double q, double w, const std::array<double, kM
     const double F0 = value(kForce + m), optimal = value(kLength + m);
     const double dr = m == 0 ? value(kWrapBic) : m == 3 ? value(kWrapTri) : 0;
     const double r = route.r0 + route.r1 * sine + dr, r_q = route.r1 * cosine;
-    const double l = (route.length - route.r0 * q - route.r1 * (1 - cosine) - dr * (q - kMiddle)) /
-                     optimal;
+    const double l =
+        (route.length - route.r0 * q - route.r1 * (1 - cosine) - dr * (q - kMiddle)) / optimal;
     const double s = -r * w / (10 * optimal), x = l - 1;
     const double fl = std::exp(-5 * x * x), fl_l = -10 * x * fl;
     const double fp = x > 0 ? 4 * x * x : 0, fp_l = x > 0 ? 8 * x : 0;
@@ -159,7 +160,8 @@ void evaluate(const VectorXd& v, double q, double w, const std::array<double, kM
   torque -= value(kViscous) * w + value(kCoulomb) * contact + value(kStribeck) * bump * contact +
             value(kDrag) * w * std::abs(w) + value(kStiffness) * (q - kRestAngle);
   const double A = value(kLimit);
-  const double flexed = A != 0 || derivatives ? std::exp(kLimitRate * (q - value(kLimitFlexed))) : 0;
+  const double flexed =
+      A != 0 || derivatives ? std::exp(kLimitRate * (q - value(kLimitFlexed))) : 0;
   const double extended =
       A != 0 || derivatives ? std::exp(-kLimitRate * (q - value(kLimitExtended))) : 0;
   torque -= A * (flexed - extended);
@@ -326,8 +328,8 @@ Elbow::Solution Elbow::solve(int which, double h, const VectorXd& values, const 
       const double h00 = (1 + 2 * s) * (1 - s) * (1 - s), h10 = s * (1 - s) * (1 - s);
       const double h01 = s * s * (3 - 2 * s), h11 = s * s * (s - 1);
       const double angle = h00 * q0 + h * h10 * w0 + h01 * q + h * h11 * w;
-      const double speed = (6 * s * (s - 1) * (q0 - q)) / h + (1 - s) * (1 - 3 * s) * w0 +
-                           s * (3 * s - 2) * w;
+      const double speed =
+          (6 * s * (s - 1) * (q0 - q)) / h + (1 - s) * (1 - 3 * s) * w0 + s * (3 * s - 2) * w;
       solution.outputs[sample] = (1 + gain) * angle + bias;
       solution.speeds[sample] = speed;
       if constexpr (derivatives) {
@@ -362,8 +364,8 @@ Elbow::Elbow(std::vector<Trial> trials, const std::vector<std::string>& hidden, 
     const Trial& trial = trials_[t];
     const std::string suffix = " of trial " + std::to_string(t + 1);
     nuisances_.push_back(quantities_.size());
-    quantities_.push_back({"start angle" + suffix, "rad", trial.startAngle, -3, 6, 0.05, false,
-                           static_cast<int>(t)});
+    quantities_.push_back(
+        {"start angle" + suffix, "rad", trial.startAngle, -3, 6, 0.05, false, static_cast<int>(t)});
     nuisances_.push_back(quantities_.size());
     quantities_.push_back({"start speed" + suffix, "rad/s", trial.startSpeed, -20, 20, 0.5, false,
                            static_cast<int>(t)});

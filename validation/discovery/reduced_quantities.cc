@@ -93,8 +93,8 @@ std::vector<Candidate> catalogue(const std::vector<std::string>& hidden) {
   for (std::size_t m = 0; m < 4; ++m) {
     add(std::string("Fmax") + muscles[m], std::string("strength of ") + muscles[m], parameter,
         {kForce + m}, {0.6}, {{forces[m]}});
-    add(std::string("lopt") + muscles[m], std::string("optimal length of ") + muscles[m],
-        parameter, {kLength + m}, {0.2}, {{lengths[m]}});
+    add(std::string("lopt") + muscles[m], std::string("optimal length of ") + muscles[m], parameter,
+        {kLength + m}, {0.2}, {{lengths[m]}});
   }
   add("mass", "mass of the forearm", parameter, {kMass}, {0.3}, {{1.5}}, {"payload"});
   std::erase_if(all, [&](const Candidate& c) {

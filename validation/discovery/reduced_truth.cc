@@ -221,12 +221,12 @@ Trial recordOne(const Arm& arm, const Recipe& recipe, RandomStream& random) {
 
 double fullSize(const std::string& effect) {
   static const std::map<std::string, double> sizes = {
-      {"visc", 0.25},     {"coulomb", 0.3},   {"stribeck", 0.25},  {"drag", 0.08},
-      {"stiffness", 1},   {"limit", 0.8},     {"payload", 0.4},    {"tilt", 0.2},
-      {"const", 0.6},     {"handforce", 2.5}, {"fatigue", 0.3},    {"delay", 0.03},
-      {"shape", -1.2},    {"tri<bic", 0.15},  {"bic<tri", 0.15},   {"wrapBIC", 0.005},
-      {"wrapTRI", 0.005}, {"bias", 0.1},      {"gain", 0.1},       {"clock", 0.03},
-      {"cubic", 1.2},     {"powerdamp", 0.5}, {"qdamp", 0.2},      {"tremor", 0.4},
+      {"visc", 0.25},      {"coulomb", 0.3},   {"stribeck", 0.25}, {"drag", 0.08},
+      {"stiffness", 1},    {"limit", 0.8},     {"payload", 0.4},   {"tilt", 0.2},
+      {"const", 0.6},      {"handforce", 2.5}, {"fatigue", 0.3},   {"delay", 0.03},
+      {"shape", -1.2},     {"tri<bic", 0.15},  {"bic<tri", 0.15},  {"wrapBIC", 0.005},
+      {"wrapTRI", 0.005},  {"bias", 0.1},      {"gain", 0.1},      {"clock", 0.03},
+      {"cubic", 1.2},      {"powerdamp", 0.5}, {"qdamp", 0.2},     {"tremor", 0.4},
       {"hysteresis", 0.6}, {"flwidth", 0.35}};
   const auto found = sizes.find(effect);
   if (found == sizes.end()) throw std::invalid_argument("reduced truth: no effect " + effect);

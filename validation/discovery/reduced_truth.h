@@ -14,7 +14,7 @@ struct Recipe {
   /// Hidden effects by id of the catalogue, or of what it lacks: cubic, powerdamp, qdamp, tremor,
   /// hysteresis, flwidth. Sizes are amplitudes in the effect's own unit; of a parameter the factor.
   std::vector<std::pair<std::string, double>> effects;
-  double emgNoise = 0;    ///< relative, 80 ms Ornstein–Uhlenbeck, of what the muscles get
+  double emgNoise = 0;  ///< relative, 80 ms Ornstein–Uhlenbeck, of what the muscles get
   double outputNoise = 0.5 * 0.017453292519943295;  ///< [rad]
   bool nuisances = true;  ///< parameters drawn from their tolerances; false: nominal
   int trials = 3;

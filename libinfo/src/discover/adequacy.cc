@@ -89,8 +89,8 @@ Adequacy adequacy(const Likelihood& likelihood, const Fit& fit, const AdequacyOp
       double score = 0, information = 0;
       for (std::size_t t = 0; t < series.size(); ++t) {
         const auto& times = data.times(likelihood.trials()[t]);
-        const double interval = (times.back() - times.front()) /
-                                std::max(1.0, static_cast<double>(times.size()) - 1);
+        const double interval =
+            (times.back() - times.front()) / std::max(1.0, static_cast<double>(times.size()) - 1);
         const auto lag = static_cast<Index>(std::lround(0.05 * step / interval));
         const Index n = series[t].size() - lag;
         if (n < 2) continue;

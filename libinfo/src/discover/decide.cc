@@ -28,9 +28,9 @@ NamedEffect classOf(const std::vector<Candidate>& candidates, const Judgement& j
   }
   named.equals = {effect};
   named.equalEvidence = {0};
-  double sum = 1 + (without != nullptr ? std::exp(-named.logBayesFactor) *
-                                             static_cast<double>(candidates.size())
-                                       : 0);
+  double sum = 1 + (without != nullptr
+                        ? std::exp(-named.logBayesFactor) * static_cast<double>(candidates.size())
+                        : 0);
   const auto& declared = candidates[effect].equivalents;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     if (std::find(leader.effects.begin(), leader.effects.end(), c) != leader.effects.end())
@@ -63,9 +63,9 @@ Decision decide(const std::vector<Candidate>& candidates, const Judgement& judge
   if (judgement.chosen.empty() || leader == nullptr) {
     const bool fits =
         judgement.before.adequate() && judgement.latentBefore <= options.latentTolerance;
-    decision.finding = !fits                                         ? Finding::unknown
+    decision.finding = !fits                                   ? Finding::unknown
                        : judgement.surprise > options.surprise ? Finding::parameter
-                                                                     : Finding::none;
+                                                               : Finding::none;
     return decision;
   }
   bool alone = true, parameters = true;

@@ -98,7 +98,7 @@ class Work {
     search_->calibrate();
     // a model whose own steps are too long says nothing about the world
     for (const int t : trials_) {
-      const VectorXd& values = search_->at({}).simulation.values;
+      const VectorXd& values = search_->simulation({}).values;
       const VectorXd refined = data_.refinedOutputs(t, values);
       if (refined.size() == 0) continue;
       const double change =
@@ -107,10 +107,10 @@ class Work {
     }
     if (verdict_.numericalError > 0.2) {
       verdict_.finding = Finding::numerical;
-      verdict_.sentence =
-          fmt::format("Halving the time step changes the simulation by {:.2g} deviations of the "
-                      "measurement: take shorter steps first.",
-                      verdict_.numericalError);
+      verdict_.sentence = fmt::format(
+          "Halving the time step changes the simulation by {:.2g} deviations of the "
+          "measurement: take shorter steps first.",
+          verdict_.numericalError);
     }
     base();
     verdict_.reached = Stage::localise;
@@ -201,13 +201,12 @@ class Work {
       f.latentSize = entry.fit.noise.latent;
       f.significance = search_->significance(entry);
       for (const std::size_t e : effects)
-        for (const Estimate& x :
-             estimatesOf(entry.fit, data_.candidates()[e].quantities, data_))
+        for (const Estimate& x : estimatesOf(entry.fit, data_.candidates()[e].quantities, data_))
           f.estimates.push_back(x);
       verdict_.finalists.push_back(f);
     }
-    const double rarity = std::log(0.5 / std::max(1.0, static_cast<double>(
-                                                            data_.candidates().size())));
+    const double rarity =
+        std::log(0.5 / std::max(1.0, static_cast<double>(data_.candidates().size())));
     const auto posterior = [&](const Finalist& f) {
       return f.logEvidence + rarity * static_cast<double>(f.effects.size());
     };
@@ -234,15 +233,20 @@ class Work {
   // back-substitution may have found a better base
   void base_again() { base(); }
 
-  double heldOutEvidence(const Entry& entry, double* error) const {
-    Likelihood likelihood(data_, options_.heldOut, search_->at({}).fit.values,
-                          options_.latentTime);
-    const Hypothesis starts = startsOnly(data_, options_.heldOut);
-    const Fit fit = likelihood.fit(starts, entry.fit.noise, entry.fit.values);
+  // log of the probability of the held-out trials given the others: log Z of all less that of those
+  double heldOutScore(const Entry& entry, double* error) const {
+    std::vector<int> all;
+    for (int t = 0; t < data_.numTrials(); ++t) all.push_back(t);
+    const Likelihood whole(data_, all, search_->likelihoodValues(), options_.latentTime);
+    const Fit fit =
+        whole.fit(makeHypothesis(data_, entry.effects, all), entry.fit.noise, entry.fit.values);
     Noise still = entry.fit.noise;
     still.latent = 0;
-    *error = likelihood.simulationError(likelihood.fit(starts, still, entry.fit.values).values);
-    return fit.logEvidence;
+    const Likelihood likelihood(data_, options_.heldOut, search_->likelihoodValues(),
+                                options_.latentTime);
+    *error = likelihood.simulationError(
+        likelihood.fit(startsOnly(data_, options_.heldOut), still, entry.fit.values).values);
+    return fit.logEvidence - entry.fit.logEvidence;
   }
 
   void conclude() {
@@ -288,15 +292,15 @@ class Work {
     // where the base disagrees, with the scatter of inputs that is left once effects are named
     const bool small = before.fit.noise.latent <= options_.latentTolerance;
     const bool trusted = decision.finding != Finding::unknown && !chosen_.empty();
-    Fit map = before.simulation;
+    Fit map = search_->simulation({});
     if (trusted && after.fit.noise.latent > 0)
       map = refit(before, after.fit.noise.latent);
     else if (decision.finding == Finding::none && small)
       map = before.fit;
     const Fit smoothing =
         before.fit.noise.latent > 0 ? before.fit : refit(before, options_.latentScale);
-    verdict_.localisation = localise(search_->likelihood(), map, smoothing,
-                                     {0.25, 8, 6, options_.falseDiscoveries});
+    verdict_.localisation =
+        localise(search_->likelihood(), map, smoothing, {0.25, 8, 6, options_.falseDiscoveries});
     for (const Screened& s : search_->screen(chosen_, false))
       verdict_.detectability.push_back(
           {s.candidate, s.information > 0 ? 5 / std::sqrt(s.information) : HUGE_VAL});
@@ -329,18 +333,18 @@ class Work {
           l.fit(startsOnly(data_, trials), still, nominalValues(data_)).values);
     };
     gap.nominal = nominal(likelihood, trials_);
-    gap.calibrated = likelihood.simulationError(before.simulation.values);
-    gap.after = likelihood.simulationError(after.simulation.values);
+    gap.calibrated = likelihood.simulationError(search_->simulation({}).values);
+    gap.after = likelihood.simulationError(search_->simulation(chosen_).values);
     closeGap(gap);
     if (options_.heldOut.empty()) return;
     Gap held;
     held.floor = gap.floor;
     held.range = gap.range;
-    const double without = heldOutEvidence(before, &held.calibrated);
-    const double with = heldOutEvidence(after, &held.after);
-    held.nominal = nominal(
-        Likelihood(data_, options_.heldOut, before.fit.values, options_.latentTime),
-        options_.heldOut);
+    const double without = heldOutScore(before, &held.calibrated);
+    const double with = heldOutScore(after, &held.after);
+    held.nominal =
+        nominal(Likelihood(data_, options_.heldOut, before.fit.values, options_.latentTime),
+                options_.heldOut);
     closeGap(held);
     verdict_.heldOut = held;
     judgement.heldOutWorse = !chosen_.empty() && with < without;
@@ -356,15 +360,18 @@ class Work {
       names += (names.empty() ? "" : ", and ") + one;
     }
     switch (verdict_.finding) {
-      case Finding::none: return "No missing effect above the detectable size.";
-      case Finding::parameter: return "Parameter error: " + names + ".";
+      case Finding::none:
+        return "No missing effect above the detectable size.";
+      case Finding::parameter:
+        return "Parameter error: " + names + ".";
       case Finding::named:
       case Finding::ambiguous:
         return "Missing: " + names + (verdict_.vetoed ? "; what is left has the wrong size." : ".");
       case Finding::unknown:
         return "Something is missing that has no name here" +
                (names.empty() ? std::string(".") : "; imitated best by: " + names + ".");
-      case Finding::numerical: break;
+      case Finding::numerical:
+        break;
     }
     return verdict_.sentence;
   }

@@ -33,12 +33,11 @@ VectorXd withCoordinates(const Hypothesis& h, VectorXd values, const VectorXd& x
   return values;
 }
 
-// 1 + damping + WᵀW/σ², the block of one trial's latent force
-Eigen::LLT<MatrixXd> latentBlock(const MatrixXd& W, double output, double damping) {
-  MatrixXd C = MatrixXd::Zero(W.cols(), W.cols());
+// 1 + WᵀW/σ², the block of one trial's latent force
+MatrixXd latentBlock(const MatrixXd& W, double output) {
+  MatrixXd C = MatrixXd::Identity(W.cols(), W.cols());
   C.selfadjointView<Eigen::Lower>().rankUpdate(W.transpose(), 1 / (output * output));
-  C.diagonal().array() += 1 + damping;
-  return C.llt();
+  return C;
 }
 
 }  // namespace
@@ -124,7 +123,8 @@ Likelihood::Linear Likelihood::linearise(std::size_t at, const Hypothesis& hypot
   for (Index i = 0; i < p; ++i)
     linear.gamma.col(i) *= hypothesis.free[static_cast<std::size_t>(i)].slope(xi[i]);
   linear.extra = prediction.gamma.rightCols(prediction.gamma.cols() - p);
-  linear.latent = latent ? MatrixXd(prediction.latentGamma * (latentSize * roots_[at]))
+  linear.latent = latent ? MatrixXd(latentSize * (prediction.latentGamma *
+                                                  roots_[at].triangularView<Eigen::Lower>()))
                          : MatrixXd(linear.residuals.size(), 0);
   if (force) linear.force = std::move(prediction.latentGamma);
   linear.speeds = std::move(prediction.speeds);
@@ -179,29 +179,33 @@ Fit Likelihood::fit(const Hypothesis& hypothesis, const Noise& noise, const Vect
 
   double damping = 1e-6;
   for (fit.iterations = 0; fit.iterations < options.iterations; ++fit.iterations) {
+    // normal equations of what there is at this point
+    MatrixXd information = MatrixXd::Identity(p, p);
+    VectorXd gradient = point.xi;
+    std::vector<MatrixXd> blocks, coupling;
+    std::vector<VectorXd> latentRight;
+    for (std::size_t t = 0; t < trials.size(); ++t) {
+      const Linear& l = trials[t];
+      information.noalias() += precision * l.gamma.transpose() * l.gamma;
+      gradient.noalias() -= precision * l.gamma.transpose() * l.residuals;
+      blocks.push_back(latentBlock(l.latent, noise.output));
+      coupling.push_back(precision * l.latent.transpose() * l.gamma);
+      latentRight.push_back(precision * l.latent.transpose() * l.residuals - point.eta[t]);
+    }
     bool accepted = false;
     for (int attempt = 0; attempt < 12 && !accepted && !fit.converged; ++attempt) {
       // eliminate each trial's latent force
-      MatrixXd R = MatrixXd::Identity(p, p);
-      VectorXd right = -point.xi, gradient = point.xi;
-      std::vector<Eigen::LLT<MatrixXd>> blocks;
-      std::vector<MatrixXd> coupling;
-      std::vector<VectorXd> latentRight;
-      for (std::size_t t = 0; t < trials.size(); ++t) {
-        const Linear& l = trials[t];
-        R.noalias() += precision * l.gamma.transpose() * l.gamma;
-        const VectorXd pull = precision * l.gamma.transpose() * l.residuals;
-        right += pull;
-        gradient -= pull;
-        blocks.push_back(latentBlock(l.latent, noise.output, damping));
-        coupling.push_back(precision * l.latent.transpose() * l.gamma);
-        latentRight.push_back(precision * l.latent.transpose() * l.residuals - point.eta[t]);
-      }
+      MatrixXd R = information;
+      VectorXd right = -gradient;
       R.diagonal() *= 1 + damping;
+      std::vector<Eigen::LLT<MatrixXd>> factors;
       for (std::size_t t = 0; t < trials.size(); ++t) {
+        MatrixXd C = blocks[t];
+        C.diagonal().array() += damping;
+        factors.push_back(C.llt());
         if (coupling[t].rows() == 0) continue;
-        const MatrixXd half = blocks[t].matrixL().solve(coupling[t]);
-        const VectorXd halfRight = blocks[t].matrixL().solve(latentRight[t]);
+        const MatrixXd half = factors[t].matrixL().solve(coupling[t]);
+        const VectorXd halfRight = factors[t].matrixL().solve(latentRight[t]);
         R.noalias() -= half.transpose() * half;
         right.noalias() -= half.transpose() * halfRight;
       }
@@ -231,7 +235,7 @@ Fit Likelihood::fit(const Hypothesis& hypothesis, const Noise& noise, const Vect
       step.gain = -0.5 * gradient.dot(step.xi);
       for (std::size_t t = 0; t < trials.size(); ++t) {
         if (coupling[t].rows() == 0) continue;
-        step.eta.push_back(blocks[t].solve(latentRight[t] - coupling[t] * step.xi));
+        step.eta.push_back(factors[t].solve(latentRight[t] - coupling[t] * step.xi));
         step.gain += 0.5 * latentRight[t].dot(step.eta.back());
         next.eta[t] += step.eta.back();
       }
@@ -279,7 +283,7 @@ void Likelihood::finish(Fit& fit, const std::vector<Linear>& trials) const {
     R.noalias() += precision * l.gamma.transpose() * l.gamma;
     gradient.noalias() -= precision * l.gamma.transpose() * l.residuals;
     if (l.latent.cols() == 0) continue;
-    const auto block = latentBlock(l.latent, fit.noise.output, 0);
+    const auto block = latentBlock(l.latent, fit.noise.output).llt();
     const MatrixXd L = block.matrixL();
     logDeterminant += 2 * L.diagonal().array().log().sum();
     const MatrixXd half =
@@ -329,8 +333,7 @@ void Likelihood::finish(Fit& fit, const std::vector<Linear>& trials) const {
           logNormalWithin((q.lowest - fit.xi[i]) / deviation, (q.highest - fit.xi[i]) / deviation);
     }
   }
-  for (const MatrixXd& c : carried)
-    fit.latentFreedom -= (c * fit.covariance).cwiseProduct(c).sum();
+  for (const MatrixXd& c : carried) fit.latentFreedom -= (c * fit.covariance).cwiseProduct(c).sum();
   fit.logEvidence =
       -fit.cost - 0.5 * logDeterminant + mass -
       static_cast<double>(samples) * std::log(fit.noise.output * std::sqrt(2 * std::numbers::pi));
@@ -354,7 +357,7 @@ Likelihood::Projected Likelihood::project(const Fit& fit, const std::vector<Line
     if (l.latent.cols() > 0) Q.col(p + m) += l.latent * fit.eta[t];
     gram.noalias() += precision * Q.transpose() * Q;
     if (l.latent.cols() == 0) continue;
-    const auto block = latentBlock(l.latent, fit.noise.output, 0);
+    const auto block = latentBlock(l.latent, fit.noise.output).llt();
     const MatrixXd half = block.matrixL().solve(MatrixXd(precision * l.latent.transpose() * Q));
     gram.noalias() -= half.transpose() * half;
   }
@@ -393,7 +396,7 @@ VectorXd Likelihood::forceDeviation(std::size_t at, const Fit& fit) const {
   if (fit.eta[at].size() == 0) return VectorXd::Zero(roots_[at].rows());
   const Linear l = linearise(at, fit, fit.values, {}, false);
   const double precision = 1 / (fit.noise.output * fit.noise.output);
-  const auto block = latentBlock(l.latent, fit.noise.output, 0);
+  const auto block = latentBlock(l.latent, fit.noise.output).llt();
   // var η = C⁻¹ + C⁻¹ B cov(ξ) Bᵀ C⁻¹
   const MatrixXd B = block.solve(MatrixXd(precision * l.latent.transpose() * l.gamma));
   MatrixXd variance = block.solve(MatrixXd::Identity(B.rows(), B.rows()));

@@ -97,8 +97,7 @@ Localisation localise(const Likelihood& likelihood, const Fit& fit, const Fit& s
         VectorXd f = VectorXd::Zero(linear[of].force.cols());
         if (of == t)
           for (Index i = 0; i < f.size(); ++i)
-            f[i] = std::max(
-                0.0, 1 - std::abs(nodes[static_cast<std::size_t>(i)] - middle) / half);
+            f[i] = std::max(0.0, 1 - std::abs(nodes[static_cast<std::size_t>(i)] - middle) / half);
         return f;
       });
     }
@@ -128,8 +127,7 @@ Localisation localise(const Likelihood& likelihood, const Fit& fit, const Fit& s
   for (std::size_t j = 0; j < names.size(); ++j) {
     Score score;
     score.input = names[j];
-    add(score,
-        [&](std::size_t of) { return VectorXd(inputs[of].col(static_cast<Index>(j))); });
+    add(score, [&](std::size_t of) { return VectorXd(inputs[of].col(static_cast<Index>(j))); });
   }
 
   std::vector<MatrixXd> disturbances;

@@ -14,6 +14,9 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double kFirstSize = 0.3, kRaceSize = 0.1, kSmallest = 1e-3;
+// with so large a latent force none at all is out of the question, and its fit is not worth the
+// time
+constexpr double kHopeless = 0.03;
 
 std::vector<std::size_t> with(std::vector<std::size_t> effects, std::size_t another) {
   effects.push_back(another);
@@ -51,30 +54,33 @@ void Search::improve(const std::vector<std::size_t>& effects, const VectorXd& st
   };
   VectorXd values = start;
   std::vector<VectorXd> eta;
-  for (int round = 0; round < 7 && size > kSmallest; ++round) {
+  for (int round = 0; round < 6 && size > kSmallest; ++round) {
     Fit fit = likelihood_->fit(hypothesis, {output_, size, options_.latentTime}, values, eta,
-                               {round == 0 ? 10 : 6, 0.05});
-    const double ratio = fit.latentPower / std::max(1e-9, fit.latentFreedom +
-                                                              size / options_.latentScale);
+                               {round == 0 ? 10 : 5, 0.05});
+    const double ratio =
+        fit.latentPower / std::max(1e-9, fit.latentFreedom + size / options_.latentScale);
     const double factor = std::clamp(std::pow(ratio, 0.6), 0.15, 3.0);
     values = fit.values;
     eta = fit.eta;
     keep(std::move(fit));
+    if (std::abs(std::log(factor)) < 0.15) break;
     size *= factor;
-    if (std::abs(std::log(factor)) < 0.1) break;
     if (size > 3) break;
   }
-  Fit simulation = likelihood_->fit(hypothesis, {output_, 0, options_.latentTime}, values, {},
-                                    {25, 0.02});
-  found.simulation = simulation;
-  keep(std::move(simulation));
+  if (found.score == -1e300 || size < kHopeless) {
+    Fit simulation =
+        likelihood_->fit(hypothesis, {output_, 0, options_.latentTime}, values, {}, {12, 0.02});
+    found.simulation = simulation;
+    keep(std::move(simulation));
+  }
   const auto known = entries_.find(effects);
   if (known == entries_.end()) {
     entries_.emplace(effects, std::move(found));
     return;
   }
   Entry& old = known->second;
-  if (found.simulation.logEvidence > old.simulation.logEvidence)
+  if (found.simulation &&
+      (!old.simulation || found.simulation->logEvidence > old.simulation->logEvidence))
     old.simulation = std::move(found.simulation);
   if (found.score > old.score) {
     old.score = found.score;
@@ -87,11 +93,11 @@ void Search::calibrate() {
   improve({}, nominalValues(data_), kFirstSize);
   // the scale of the latent force where the arm really goes, then once more from both ends
   const VectorXd values = at({}).fit.values;
+  scaleValues_ = values;
   likelihood_.emplace(data_, trials_, values, options_.latentTime);
   entries_.clear();
   report_("base model");
   improve({}, values, kRaceSize);
-  improve({}, nominalValues(data_), kFirstSize);
 }
 
 VectorXd Search::started(std::size_t candidate, std::size_t start, VectorXd values) const {
@@ -107,7 +113,7 @@ VectorXd Search::started(std::size_t candidate, std::size_t start, VectorXd valu
 std::vector<Screened> Search::screen(const std::vector<std::size_t>& effects,
                                      bool simulation) const {
   const Entry& entry = at(effects);
-  const Fit& fit = simulation ? entry.simulation : entry.fit;
+  const Fit& fit = simulation ? *entry.simulation : entry.fit;
   std::vector<Screened> result;
   const auto& candidates = data_.candidates();
   // candidates whose shape quantities have several starts are seen once for each
@@ -157,8 +163,8 @@ std::vector<Screened> Search::screen(const std::vector<std::size_t>& effects,
       Screened s;
       s.candidate = which[i];
       s.gain = (blocked ? 0 : 0.5 * variance * g * g / growth) - 0.5 * std::log(growth);
-      s.information = std::max(projected.information(static_cast<Index>(i), static_cast<Index>(i)),
-                               0.0);
+      s.information =
+          std::max(projected.information(static_cast<Index>(i), static_cast<Index>(i)), 0.0);
       const auto known = std::find_if(result.begin(), result.end(), [&](const Screened& r) {
         return r.candidate == s.candidate;
       });
@@ -173,8 +179,19 @@ std::vector<Screened> Search::screen(const std::vector<std::size_t>& effects,
   return result;
 }
 
-std::vector<std::size_t> Search::shortlist(const std::vector<std::size_t>& effects,
-                                           int most) const {
+const Fit& Search::simulation(const std::vector<std::size_t>& effects) {
+  Entry& entry = entries_.at(effects);
+  if (!entry.simulation) {
+    entry.simulation =
+        likelihood_->fit(makeHypothesis(data_, effects, trials_), {output_, 0, options_.latentTime},
+                         entry.fit.values, {}, {25, 0.02});
+    ++fits_;
+  }
+  return *entry.simulation;
+}
+
+std::vector<std::size_t> Search::shortlist(const std::vector<std::size_t>& effects, int most) {
+  this->simulation(effects);
   const auto filter = screen(effects, false), simulation = screen(effects, true);
   std::vector<std::size_t> list;
   const auto add = [&](const Screened& s) {
@@ -203,6 +220,7 @@ std::vector<std::size_t> Search::shortlist(const std::vector<std::size_t>& effec
 void Search::race(const std::vector<std::size_t>& base,
                   const std::vector<std::size_t>& candidates) {
   const VectorXd values = at(base).fit.values;
+  const double raceSize = std::clamp(2 * at(base).fit.noise.latent, 0.01, kRaceSize);
   for (const std::size_t c : candidates) {
     const auto effects = with(base, c);
     if (entries_.count(effects) != 0) continue;
@@ -213,15 +231,15 @@ void Search::race(const std::vector<std::size_t>& base,
     VectorXd best = started(c, 0, values);
     double evidence = -1e300;
     for (std::size_t s = 0; starts > 1 && s < starts; ++s) {
-      const Fit fit = likelihood_->fit(hypothesis, {output_, kRaceSize, options_.latentTime},
-                                       started(c, s, values), {}, {6, 0.1});
+      const Fit fit = likelihood_->fit(hypothesis, {output_, raceSize, options_.latentTime},
+                                       started(c, s, values), {}, {5, 0.1});
       ++fits_;
       if (fit.logEvidence > evidence) {
         evidence = fit.logEvidence;
         best = fit.values;
       }
     }
-    improve(effects, best, kRaceSize);
+    improve(effects, best, raceSize);
   }
   if (candidates.empty()) return;
   // cross-starts: everything that is not far behind once more from the leader's nuisances
@@ -235,7 +253,7 @@ void Search::race(const std::vector<std::size_t>& base,
   const Entry& first = at(with(base, leader));
   const VectorXd from = first.fit.values;
   const double score = first.score;
-  const double size = std::max(0.02, 2 * first.fit.noise.latent);
+  const double size = std::max(2e-3, first.fit.noise.latent);
   const auto absent = [&](VectorXd v) {
     const auto& nuisances = data_.nuisances();
     for (const std::size_t q : data_.candidates()[leader].quantities)
@@ -244,7 +262,7 @@ void Search::race(const std::vector<std::size_t>& base,
     return v;
   };
   for (const std::size_t c : candidates) {
-    if (c == leader || at(with(base, c)).score < score - 40) continue;
+    if (c == leader || at(with(base, c)).score < score - 25) continue;
     report_(describe(data_, with(base, c)));
     VectorXd start = absent(from);
     const Entry& own = at(with(base, c));

@@ -17,8 +17,8 @@ struct Stopped {};
 struct Entry {
   std::vector<std::size_t> effects;  ///< sorted
   Fit fit;
-  Fit simulation;     ///< the same without latent force
-  double score = 0;   ///< log Z − σ_d/s
+  std::optional<Fit> simulation;  ///< the same without latent force, where it was fitted
+  double score = 0;               ///< log Z − σ_d/s
 };
 
 /// What one linear step says of a candidate.
@@ -38,15 +38,19 @@ class Search {
   /// Base model by homotopy in σ_d, from the nominal values.
   void calibrate();
   const Likelihood& likelihood() const { return *likelihood_; }
+  /// Where the scale of the latent force was taken.
+  const Eigen::VectorXd& likelihoodValues() const { return scaleValues_; }
   const Entry& at(const std::vector<std::size_t>& effects) const { return entries_.at(effects); }
   const std::map<std::vector<std::size_t>, Entry>& entries() const { return entries_; }
   int fits() const { return fits_; }
 
-  /// One-step gains of all candidates that are not yet in `effects`, at the fits with and without latent
-  /// force.
+  /// One-step gains of all candidates that are not yet in `effects`, at the fits with and without
+  /// latent force.
   std::vector<Screened> screen(const std::vector<std::size_t>& effects, bool simulation) const;
   /// Union of the best of both modes, the best of each kind, and declared equivalents.
-  std::vector<std::size_t> shortlist(const std::vector<std::size_t>& effects, int most) const;
+  std::vector<std::size_t> shortlist(const std::vector<std::size_t>& effects, int most);
+  /// The fit without latent force, made where it is not there yet.
+  const Fit& simulation(const std::vector<std::size_t>& effects);
   /// Fits `with` + each candidate; then again from the leader's nuisances, and `with` too.
   void race(const std::vector<std::size_t>& with, const std::vector<std::size_t>& candidates);
   /// Least |amplitude − nominal|/deviation over its effects.
@@ -62,6 +66,7 @@ class Search {
   double output_;
   Report report_;
   std::optional<Likelihood> likelihood_;
+  Eigen::VectorXd scaleValues_;
   std::map<std::vector<std::size_t>, Entry> entries_;
   int fits_ = 0;
 };

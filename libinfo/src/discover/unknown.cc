@@ -27,7 +27,8 @@ struct Library {
 Library collect(const Likelihood& likelihood, const Fit& fit) {
   const Disagreement& data = likelihood.data();
   Library library;
-  library.names = {"1", "q", "q²", "q³", "q̇", "q̇|q̇|", "q̇³", "tanh(q̇/0.05)", "q·q̇", "sin q", "cos q"};
+  library.names = {"1",   "q",     "q²",   "q³", "q̇", "q̇|q̇|", "q̇³", "tanh(q̇/0.05)",
+                   "q·q̇", "sin q", "cos q"};
   for (const std::string& input : data.inputNames()) library.names.push_back(input);
   std::vector<VectorXd> rows;
   std::vector<double> force;
@@ -79,8 +80,7 @@ Subset bestSubset(const MatrixXd& normal, const VectorXd& right, double power, d
     const Eigen::LDLT<MatrixXd> factor(A);
     const VectorXd x = factor.solve(b);
     const double left = std::max(1e-12 * power, power - b.dot(x));
-    const double now =
-        count * std::log(left) + static_cast<double>(terms.size()) * std::log(count);
+    const double now = count * std::log(left) + static_cast<double>(terms.size()) * std::log(count);
     if (now < score) {
       score = now;
       const MatrixXd inverse = factor.solve(MatrixXd::Identity(A.rows(), A.rows()));

@@ -8,12 +8,13 @@ namespace info::discover {
 
 /// What has been found out about all hypotheses before anything is said.
 struct Judgement {
-  std::vector<Finalist> raced;       ///< among them the base, and whatever `chosen` competes with
-  std::vector<std::size_t> chosen;   ///< effects that greedy selection accepted, sorted; may be empty
-  Adequacy before, after;            ///< of the base, and with the chosen effects
+  std::vector<Finalist> raced;  ///< among them the base, and whatever `chosen` competes with
+  std::vector<std::size_t>
+      chosen;              ///< effects that greedy selection accepted, sorted; may be empty
+  Adequacy before, after;  ///< of the base, and with the chosen effects
   double latentBefore = 0, latentAfter = 0;  ///< σ_d
-  double surprise = 0;               ///< largest one among the base's parameters
-  bool heldOutWorse = false;         ///< trials that were held out speak against the chosen effects
+  double surprise = 0;                       ///< largest one among the base's parameters
+  bool heldOutWorse = false;  ///< trials that were held out speak against the chosen effects
 };
 
 struct Decision {
@@ -23,14 +24,15 @@ struct Decision {
   bool vetoed = false, surrogate = false;
 };
 
-/// The rules, in this order; adequate means: all tests passed, and σ_d within what inputs may scatter.
-///   nothing chosen, base adequate:   `parameter` if one is off by more than `surprise`, else `none`
-///   nothing chosen, base inadequate: `unknown`
-///   chosen, but not white, not independent of the inputs, latent force too large, or worse on what was
-///   held out: `unknown`, the chosen ones are a surrogate
-///   chosen: each in a class with all that are no further behind than `classWidth` in its place, and with
-///   its declared equivalents. Every class of one: `named`, or `parameter` if that is all they are;
-///   otherwise `ambiguous`. Innovations of the wrong size veto the probability.
+/// The rules, in this order; adequate means: all tests passed, and σ_d within what inputs may
+/// scatter.
+///   nothing chosen, base adequate:   `parameter` if one is off by more than `surprise`, else
+///   `none` nothing chosen, base inadequate: `unknown` chosen, but not white, not independent of
+///   the inputs, latent force too large, or worse on what was held out: `unknown`, the chosen ones
+///   are a surrogate chosen: each in a class with all that are no further behind than `classWidth`
+///   in its place, and with its declared equivalents. Every class of one: `named`, or `parameter`
+///   if that is all they are; otherwise `ambiguous`. Innovations of the wrong size veto the
+///   probability.
 Decision decide(const std::vector<Candidate>& candidates, const Judgement& judgement,
                 const Options& options);
 
