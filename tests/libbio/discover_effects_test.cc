@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "bio/discover/add_effects.h"
@@ -298,6 +300,43 @@ TEST(Effects, WithAPlaceInOpenSimUseItsOwnComponents) {
   EXPECT_EQ(loaded, expected);
   EXPECT_EQ(added("coulomb").expressionForces.at(0).expression,
             "-0.20000000000000001*tanh(qdot/0.05)");
+}
+
+/// Names of the elements in a document.
+std::set<std::string> elementsOf(const std::string& text) {
+  std::set<std::string> names;
+  for (std::size_t at = text.find('<'); at != text.npos; at = text.find('<', at + 1)) {
+    names.insert(text.substr(at + 1, text.find_first_of(" >/\n", at + 1) - at - 1));
+  }
+  return names;
+}
+
+TEST(Effects, WithAPlaceInOpenSimWriteNoElementThatItDoesNotKnow) {
+  const Case c(0.3);
+  ScratchFolder folder;
+  const auto written = [&](const Model& model) {
+    writeOsim(model, folder / "model.osim");
+    std::ifstream file(folder / "model.osim");
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  const std::set<std::string> before = elementsOf(written(c.elbow.model));
+  const std::map<const char*, std::set<std::string>> expected = {
+      {"visc", {"SpringGeneralizedForce", "stiffness", "rest_length", "viscosity"}},
+      {"stiffness", {"SpringGeneralizedForce", "stiffness", "rest_length", "viscosity"}},
+      {"limit",
+       {"CoordinateLimitForce", "upper_stiffness", "upper_limit", "lower_stiffness", "lower_limit",
+        "transition"}},
+      {"payload", {}},
+      {"coulomb", {"ExpressionBasedCoordinateForce", "expression"}}};
+  for (const auto& [id, names] : expected) {
+    const Augmented added = addEffects(c.elbow.model, ShippedElbow::options(), "elbow_flexion",
+                                       {{id, c.find(id).starts[0], {}, 0, 0}}, {"a test", {}});
+    std::set<std::string> fresh;
+    for (const std::string& name : elementsOf(written(added.model))) {
+      if (!before.contains(name)) fresh.insert(name);
+    }
+    EXPECT_EQ(fresh, names) << id;
+  }
 }
 
 TEST(LatentForce, NodesMatchDifferencesOfSimulationsWithAnExternalForce) {
