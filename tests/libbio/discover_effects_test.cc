@@ -321,13 +321,14 @@ TEST(Effects, WithAPlaceInOpenSimWriteNoElementThatItDoesNotKnow) {
   };
   const std::set<std::string> before = elementsOf(written(c.elbow.model));
   const std::map<const char*, std::set<std::string>> expected = {
-      {"visc", {"SpringGeneralizedForce", "stiffness", "rest_length", "viscosity"}},
-      {"stiffness", {"SpringGeneralizedForce", "stiffness", "rest_length", "viscosity"}},
+      {"visc", {"SpringGeneralizedForce", "coordinate", "stiffness", "rest_length", "viscosity"}},
+      {"stiffness",
+       {"SpringGeneralizedForce", "coordinate", "stiffness", "rest_length", "viscosity"}},
       {"limit",
-       {"CoordinateLimitForce", "upper_stiffness", "upper_limit", "lower_stiffness", "lower_limit",
-        "transition"}},
+       {"CoordinateLimitForce", "coordinate", "upper_stiffness", "upper_limit", "lower_stiffness",
+        "lower_limit", "transition"}},
       {"payload", {}},
-      {"coulomb", {"ExpressionBasedCoordinateForce", "expression"}}};
+      {"coulomb", {"ExpressionBasedCoordinateForce", "coordinate", "expression"}}};
   for (const auto& [id, names] : expected) {
     const Augmented added = addEffects(c.elbow.model, ShippedElbow::options(), "elbow_flexion",
                                        {{id, c.find(id).starts[0], {}, 0, 0}}, {"a test", {}});
