@@ -10,6 +10,7 @@
 #include "info/fisher.h"
 #include "info/monte_carlo.h"
 #include "info/residuals.h"
+#include "info/symmetric_eigen.h"
 
 namespace bio {
 namespace {
@@ -315,13 +316,12 @@ class Calibrator {
 
   /// The inverse of a matrix of information; where it is singular, as large as rounding allows.
   static MatrixXd scaledInverse(const MatrixXd& information, const VectorXd& scale) {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scale.asDiagonal() * information *
-                                                        scale.asDiagonal());
+    const auto eigen = info::symmetricEigen(scale.asDiagonal() * information * scale.asDiagonal());
     const double floor =
-        std::max(1e-14 * eigen.eigenvalues().maxCoeff(), std::numeric_limits<double>::min());
-    const MatrixXd inverse = eigen.eigenvectors() *
-                             eigen.eigenvalues().cwiseMax(floor).cwiseInverse().asDiagonal() *
-                             eigen.eigenvectors().transpose();
+        std::max(1e-14 * eigen.values.maxCoeff(), std::numeric_limits<double>::min());
+    const MatrixXd inverse = eigen.vectors *
+                             eigen.values.cwiseMax(floor).cwiseInverse().asDiagonal() *
+                             eigen.vectors.transpose();
     return scale.asDiagonal() * inverse * scale.asDiagonal();
   }
 
