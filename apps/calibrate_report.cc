@@ -5,16 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "angle_unit.h"
 #include "text.h"
 
 namespace app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr double radian = 180 / std::numbers::pi;  ///< in degrees
-
 double rmse(const bio::TrialSet& set, const Eigen::MatrixXd& predicted) {
   return std::sqrt(set.meanSquare(predicted)) * radian;
 }

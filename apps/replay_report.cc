@@ -2,15 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
+#include "angle_unit.h"
 #include "bio/replay.h"
 #include "text.h"
 
 namespace app {
 namespace {
-
-constexpr double radian = 180 / std::numbers::pi;  ///< in degrees
 
 /// Angles are shown in degrees, positions in mm.
 struct ShownUnit {

@@ -19,7 +19,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 /// Noise and estimate follow each other until σ changes by less than this share.
 constexpr double noiseSettled = 0.01;
 constexpr int noiseRounds = 12;
@@ -332,15 +332,15 @@ class Calibrator {
     one.known = known_[i];
     one.ofTrial = i >= common();
     one.value = estimate_.parameters[i];
-    one.deviation = one.lower = one.upper = nan;
-    one.bootstrapDeviation = one.bootstrapLower = one.bootstrapUpper = nan;
+    one.deviation = one.lower = one.upper = unknown;
+    one.bootstrapDeviation = one.bootstrapLower = one.bootstrapUpper = unknown;
     return one;
   }
 
   CalibratedParameter atBound(Index i) const {
     CalibratedParameter one = blank(i);
     one.atBound = true;
-    one.determinacy = {nan, nan, false, ""};
+    one.determinacy = {unknown, unknown, false, ""};
     const bool low = one.value <= one.asked.lower;
     const std::string unit = one.asked.unit.empty() ? "" : " " + one.asked.unit;
     one.why = fmt::format(
