@@ -4,9 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <numbers>
 #include <set>
 
+#include "angle_unit.h"
 #include "arm_options.h"
 #include "bio/osim_file.h"
 #include "bio/replay.h"
@@ -17,8 +17,6 @@
 
 namespace app {
 namespace {
-
-constexpr double radian = 180 / std::numbers::pi;  ///< in degrees
 
 /// NAME=A:B
 struct NamedPair {

@@ -5,22 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "angle_unit.h"
+#include "interval_drawing.h"
 #include "text.h"
 
 namespace app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr double radian = 180 / std::numbers::pi;  ///< in degrees
-
 double rmse(const bio::TrialSet& set, const Eigen::MatrixXd& predicted) {
   return std::sqrt(set.meanSquare(predicted)) * radian;
-}
-
-std::string withUnit(double value, const std::string& unit, int digits = 4) {
-  return numberText(value, digits) + (unit.empty() ? "" : " " + unit);
 }
 
 std::vector<double> degrees(const Eigen::VectorXd& values) {
@@ -158,38 +153,25 @@ Table estimateTable(const CalibrateFindings& f) {
   return table;
 }
 
-/// Estimates and what was known before, in deviations of the latter, one place per parameter.
-Figure intervalFigure(const CalibrateFindings& f) {
+/// Estimates and what was known before, in deviations of the latter.
+VectorDrawing intervals(const CalibrateFindings& f) {
   const double z = info::normalQuantile(f.options.confidence);
-  Figure figure{.title = "Estimates beside what was known",
-                .xLabel = "Parameter, in the order of the table",
-                .yLabel = "Departure from the model [known deviations]",
-                .caption =
-                    "Bars are intervals of equal confidence. A parameter without a bar at "
-                    "its estimate is not identifiable."};
-  Series known{.name = "known beforehand"}, found{.name = "interval"};
-  Series estimate{.name = "estimate", .style = SeriesStyle::points};
-  const double gap = std::nan("");
-  const auto bar = [&](Series& series, double x, double low, double high) {
-    series.x.insert(series.x.end(), {x, x + 0.001, x + 0.4});
-    series.y.insert(series.y.end(), {low, high, gap});
-  };
-  double place = 1;
+  std::vector<IntervalRow> rows;
   for (const bio::CalibratedParameter& one : f.calibration.parameters) {
     const auto scaled = [&](double value) { return (value - one.model) / one.known; };
+    IntervalRow row{.name = one.asked.name, .estimate = scaled(one.value)};
     if (const auto& prior = one.asked.prior) {
-      bar(known, place - 0.1, scaled(prior->mean - z * prior->deviation),
-          scaled(prior->mean + z * prior->deviation));
+      row.before = std::pair(scaled(prior->mean - z * prior->deviation),
+                             scaled(prior->mean + z * prior->deviation));
     }
-    if (!std::isnan(one.lower)) bar(found, place + 0.1, scaled(one.lower), scaled(one.upper));
-    estimate.x.push_back(place + 0.1);
-    estimate.y.push_back(scaled(one.value));
-    place += 1;
+    if (!std::isnan(one.lower)) row.interval = std::pair(scaled(one.lower), scaled(one.upper));
+    rows.push_back(std::move(row));
   }
-  for (Series* series : {&known, &found, &estimate}) {
-    if (!series->x.empty()) figure.series.push_back(std::move(*series));
-  }
-  return figure;
+  return {"Estimates beside what was known",
+          intervalDrawing(rows, "Departure from the model [known deviations]"),
+          fmt::format("Bars are intervals of {:g} % confidence. An estimate without a bar is not "
+                      "identifiable.",
+                      f.options.confidence * 100)};
 }
 
 Table correlationTable(const CalibrateFindings& f) {
@@ -376,7 +358,7 @@ Report calibrateReport(const CalibrateFindings& f) {
   for (const bio::CalibratedParameter& one : c.parameters) {
     if (!one.why.empty()) report.details.push_back(Paragraph{one.why + "."});
   }
-  report.details.push_back(intervalFigure(f));
+  report.details.emplace_back(intervals(f));
   if (c.parameters.size() > 1) report.details.push_back(correlationTable(f));
   for (const bio::CalibratedParameter& one : c.parameters) {
     if (one.profile) report.details.push_back(profileFigure(one));

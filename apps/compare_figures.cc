@@ -5,14 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
+#include "angle_unit.h"
 #include "text.h"
 
 namespace app {
 namespace {
-
-constexpr double radian = 180 / std::numbers::pi;  ///< in degrees
 
 std::string longName(bio::Integrator integrator) {
   switch (integrator) {

@@ -4,16 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "angle_unit.h"
 #include "bio/replay.h"
 #include "compare_figures.h"
 #include "text.h"
 
 namespace app {
 namespace {
-
-constexpr double radian = 180 / std::numbers::pi;  ///< in degrees
 
 Table cellTable(const CompareFindings& f) {
   Table table{"",

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <sstream>
 
+#include "angle_unit.h"
 #include "arm_input.h"
 #include "arm_options.h"
 #include "bio/arm_experiment.h"
@@ -18,8 +18,6 @@
 
 namespace app {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 /// "a+b" → a, b
 std::vector<std::string> joinedByPlus(const std::string& text) {

@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "angle_unit.h"
 #include "bio/replay.h"
 #include "text.h"
 
 namespace app {
 namespace {
 
-constexpr double radian = 180 / std::numbers::pi;  ///< in degrees
 using Json = nlohmann::ordered_json;
 using bio::DesignedExperiment;
 using Eigen::Index;

@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
+#include "angle_unit.h"
 #include "arm_input.h"
 #include "arm_options.h"
 #include "bio/replay.h"
@@ -12,8 +11,6 @@
 
 namespace app {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 class MomentArms : public Command {
  public:

@@ -238,7 +238,7 @@ ExitStatus drawPictures(const RenderOptions& options, const CommandContext& cont
   const Eigen::Vector3d direction = view::directionOf(cameraNamed(options.camera), outline);
   const Eigen::Vector3d up =
       options.camera == "top" ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
-  scene.look(view::fitCamera(outline, direction, up, view::viewAngle,
+  scene.look(view::fitCamera(outline, direction, up, view::cameraViewAngle,
                              static_cast<double>(options.width) / options.height,
                              view::pictureFrame));
   const auto draw = [&](Eigen::Index k) {

@@ -2,15 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
+#include "angle_unit.h"
 #include "bio/replay.h"
 #include "text.h"
 
 namespace app {
 namespace {
-
-constexpr double radian = 180 / std::numbers::pi;  ///< in degrees
 
 /// Angles are shown in degrees, positions in mm.
 struct ShownUnit {
@@ -21,7 +18,7 @@ ShownUnit unitOf(const bio::Coordinate& coordinate) {
   return coordinate.isRotation ? ShownUnit{radian, "deg"} : ShownUnit{1e3, "mm"};
 }
 
-std::vector<double> scaled(const Eigen::VectorXd& values, double factor) {
+std::vector<double> inUnit(const Eigen::VectorXd& values, double factor) {
   const Eigen::VectorXd result = values * factor;
   return {result.begin(), result.end()};
 }
@@ -42,12 +39,12 @@ Figure motionFigure(const ReplayFindings& f, std::size_t index) {
   figure.series.push_back(
       {.name = "simulated",
        .x = f.motion.time,
-       .y = scaled(f.motion.q.row(static_cast<Eigen::Index>(index)), unit.factor)});
+       .y = inUnit(f.motion.q.row(static_cast<Eigen::Index>(index)), unit.factor)});
   if (const auto* measured = measuredOf(f, coordinate.name)) {
     figure.title += " beside the measured one";
     figure.series.push_back({.name = "measured",
                              .x = {measured->times.begin(), measured->times.end()},
-                             .y = scaled(measured->values, unit.factor),
+                             .y = inUnit(measured->values, unit.factor),
                              .style = SeriesStyle::points});
   }
   return figure;
@@ -59,7 +56,7 @@ Figure perMuscle(const ReplayFindings& f, const std::string& title, const std::s
   for (std::size_t i = 0; i < f.arm.numMuscles(); ++i) {
     figure.series.push_back({.name = f.arm.muscles()[i].name,
                              .x = f.motion.time,
-                             .y = scaled(rows.row(static_cast<Eigen::Index>(i)), factor)});
+                             .y = inUnit(rows.row(static_cast<Eigen::Index>(i)), factor)});
   }
   return figure;
 }
@@ -84,7 +81,7 @@ Figure energyFigure(const ReplayFindings& f) {
                     "work of muscles and passive forces."};
   const auto add = [&](const std::string& name, const Eigen::VectorXd& values, SeriesStyle style) {
     figure.series.push_back(
-        {.name = name, .x = f.motion.time, .y = scaled(values, 1), .style = style});
+        {.name = name, .x = f.motion.time, .y = inUnit(values, 1), .style = style});
   };
   add("kinetic", kinetic, SeriesStyle::line);
   add("potential (from the start)", potential, SeriesStyle::line);

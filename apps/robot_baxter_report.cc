@@ -66,6 +66,21 @@ std::string motion(const char* attribute, const info::SwingRun& run, const F& va
       attribute, run.time.back() + 0.02 * held, values);
 }
 
+/// Opens a drawing in millimetres, wide enough for the whole path of the ball.
+std::string picture(const std::vector<const info::SwingRun*>& runs) {
+  double left = -780, right = 880;
+  for (const info::SwingRun* run : runs) {
+    for (const double x : run->ballX) {
+      left = std::min(left, 1000 * x - 30);
+      right = std::max(right, 1000 * x + 30);
+    }
+  }
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"{:.0f} -60 {:.0f} 560\" "
+      "width=\"100%\">\n",
+      left, right - left);
+}
+
 std::string boxLines(const info::Box& box) {
   const double left = 1000 * (box.wall - box.opening), right = 1000 * box.wall,
                top = -1000 * box.edge;
@@ -77,9 +92,7 @@ std::string boxLines(const info::Box& box) {
 }
 
 std::string pathFigure(const BaxterTrial& trial, const info::Box& box) {
-  std::string svg =
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-780 -60 1660 560\" width=\"100%\">\n" +
-      boxLines(box);
+  std::string svg = picture({&trial.withoutEstimation, &trial.withEstimation}) + boxLines(box);
   svg += fmt::format(
       "<polyline points=\"{}\" fill=\"none\" stroke=\"#D55E00\" stroke-width=\"4\" "
       "stroke-dasharray=\"14 8\"/>\n",
@@ -102,9 +115,7 @@ std::string yesNo(const info::SwingRun& run) {
 }  // namespace
 
 std::string swingDrawing(const info::SwingRun& run, const info::Box& box) {
-  std::string svg =
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-780 -60 1660 560\" width=\"100%\">\n" +
-      boxLines(box);
+  std::string svg = picture({&run}) + boxLines(box);
   svg +=
       fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"#c8c8c8\" stroke-width=\"3\"/>\n",
                   points(run.ballX, run.ballZ));

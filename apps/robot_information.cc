@@ -5,6 +5,7 @@
 
 #include "info/fisher.h"
 #include "info/identifiability.h"
+#include "info/symmetric_eigen.h"
 #include "robot_figures.h"
 #include "text.h"
 
@@ -93,11 +94,10 @@ ExitStatus tellInformation(const info::PlannedExperiment& plan, std::optional<in
   }
 
   const MatrixXd bound = info::cramerRaoBound(matrix, names);
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(matrix, Eigen::EigenvaluesOnly);
+  const Eigen::VectorXd eigenvalues = info::symmetricEigenvalues(matrix);
   summary.set("cramer_rao_bound", upperTriangle(bound, names));
-  summary.set("least_eigenvalue", eigen.eigenvalues()[0]);
-  summary.set("condition_number",
-              eigen.eigenvalues()[eigen.eigenvalues().size() - 1] / eigen.eigenvalues()[0]);
+  summary.set("least_eigenvalue", eigenvalues[0]);
+  summary.set("condition_number", eigenvalues[eigenvalues.size() - 1] / eigenvalues[0]);
   std::vector<std::string> deviations;
   for (std::size_t i = 0; i < names.size(); ++i)
     deviations.push_back(fmt::format("{} to ±{} {}", names[i],

@@ -14,7 +14,7 @@ using Eigen::Vector2d;
 using Eigen::VectorXd;
 using info::Method;
 
-LaboratoryRobot inLaboratory(const info::LaboratoryEffects& effects) {
+LaboratoryRobot massInLaboratory(const info::LaboratoryEffects& effects) {
   LaboratoryRobot robot;
   robot.truth = Vector2d(0.124, 0.50);
   robot.experiment = [](const info::CartMotion& motion) {
@@ -98,7 +98,7 @@ ExitStatus optimiseSuspendedMass(const OptimiseRequest& request, const CommandCo
   map("Cost of the estimator on exact data, initial motion", slowProblem, squaresSlow);
   map("Cost of the estimator on exact data, optimised motion", fastProblem, squaresFast);
   if (request.lab)
-    tellLaboratory(inLaboratory(*request.lab), *request.lab, cartMotion(found.before, 1),
+    tellLaboratory(massInLaboratory(*request.lab), *request.lab, cartMotion(found.before, 1),
                    cartMotion(found.after, 1), context, summary, report);
   tellSearch(found, {"cart_m", "angle_rad", "cart_m_per_s", "rate_rad_per_s"}, summary, report,
              folder);

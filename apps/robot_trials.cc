@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "info/fisher.h"
+#include "info/symmetric_eigen.h"
 #include "progress_bar.h"
 
 namespace app {
@@ -22,7 +23,7 @@ nlohmann::ordered_json rowsOf(const MatrixXd& matrix) {
 }
 
 VectorXd eigenvaluesOf(const MatrixXd& information) {
-  return Eigen::SelfAdjointEigenSolver<MatrixXd>(information).eigenvalues();
+  return info::symmetricEigenvalues(information);
 }
 
 MatrixXd boundOf(const info::PlannedExperiment& plan) {

@@ -35,10 +35,6 @@ std::string cell(double value) {
   return std::isfinite(value) ? fmt::format("{:.9g}", value) : std::string();
 }
 
-std::string withUnit(double value, const std::string& unit) {
-  return unit.empty() ? numberText(value) : numberText(value) + " " + unit;
-}
-
 std::vector<double> scaled(const Eigen::VectorXd& values, double factor) {
   const Eigen::VectorXd result = values * factor;
   return {result.begin(), result.end()};
@@ -199,6 +195,12 @@ std::string verdictOf(const SensitivityFindings& f) {
   if (!f.information) return text;
   const auto& known = *f.information;
   const auto count = std::count(known.identifiable.begin(), known.identifiable.end(), true);
+  if (known.parameters.size() == 1) {
+    return text + fmt::format("{} samples of {} with {} {} of noise bound it to ±{}.", f.samples,
+                              f.coordinate.name, numberText(f.noise * shownFactor(f.coordinate)),
+                              shownUnit(f.coordinate),
+                              withUnit(known.boundAlone[0], known.parameters[0].unit));
+  }
   text += fmt::format(
       "Of {} parameters, {} samples of {} with {} {} of noise more than halve the uncertainty of "
       "{}; {} moves the motion most.",

@@ -27,6 +27,10 @@ std::string numberText(double value, int digits) {
   return fmt::format("{:.{}g}", value, digits);
 }
 
+std::string withUnit(double value, const std::string& unit, int digits) {
+  return numberText(value, digits) + (unit.empty() ? "" : " " + unit);
+}
+
 std::string htmlText(std::string_view text) {
   std::string html;
   for (const char c : text) {

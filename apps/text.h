@@ -12,6 +12,9 @@ std::string oneLine(std::string_view text);
 /// The number with at most `digits` significant digits; "–" when it is not finite.
 std::string numberText(double value, int digits = 4);
 
+/// "0.016 m", or "0.016" for a pure number.
+std::string withUnit(double value, const std::string& unit, int digits = 4);
+
 /// & < > " ' replaced by their HTML entities.
 std::string htmlText(std::string_view text);
 

@@ -12,15 +12,33 @@ if(FISHERHILL_SANITIZE)
   target_link_options(fisherhill_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
+# In tests a local may be called as another file's helper; the others are GCC 12's false alarms (its
+# bug 105651, and Eigen's temporaries of AD scalars).
+add_library(fisherhill_test_flags INTERFACE)
+target_compile_options(fisherhill_test_flags INTERFACE -Wno-shadow
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow -Wno-maybe-uninitialized>)
+
 # Headers that nearly every file of a kind reads, parsed once per kind. Files must not rely on them:
 # the check that every public header compiles alone builds without.
 set(standard_headers <algorithm> <cmath> <functional> <limits> <memory> <optional> <stdexcept>
   <string> <vector> <Eigen/Dense>)
 
-# fisherhill_test(name [LABELS label...] LIBS lib...): tests/.../name.cc becomes one test program,
-# and every TEST in it one ctest case.
+# fisherhill_batched(target): its files are compiled several at a time, so that Eigen's and others'
+# templates are instantiated once for all of them: less than half the time of a build from nothing.
+# Names in anonymous namespaces are therefore unique in a target.
+function(fisherhill_batched target)
+  if(FISHERHILL_BATCHES)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
+  endif()
+endfunction()
+
+# fisherhill_test(name [BATCHED] [FILES file...] [LABELS label...] LIBS lib...): the files, or name.cc,
+# become one test program, and every TEST in it one ctest case.
 function(fisherhill_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT" "LABELS;LIBS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg BATCHED TIMEOUT "FILES;LABELS;LIBS")
+  if(NOT arg_FILES)
+    set(arg_FILES ${name}.cc)
+  endif()
   if(NOT TARGET test_headers)
     file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/test_headers.cc CONTENT "")
     add_library(test_headers OBJECT ${PROJECT_BINARY_DIR}/test_headers.cc)
@@ -28,9 +46,12 @@ function(fisherhill_test name)
     target_precompile_headers(test_headers PRIVATE
       ${standard_headers} <filesystem> <gmock/gmock.h> <gtest/gtest.h>)
   endif()
-  add_executable(${name} ${name}.cc)
+  add_executable(${name} ${arg_FILES})
+  if(arg_BATCHED)
+    fisherhill_batched(${name})
+  endif()
   target_precompile_headers(${name} REUSE_FROM test_headers)
-  target_link_libraries(${name} PRIVATE fisherhill_flags ${arg_LIBS} GTest::gmock GTest::gtest_main)
+  target_link_libraries(${name} PRIVATE fisherhill_flags fisherhill_test_flags ${arg_LIBS} GTest::gmock GTest::gtest_main)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(${name} PRIVATE
     FISHERHILL_SOURCE_DIR="${PROJECT_SOURCE_DIR}" FISHERHILL_BINARY_DIR="${PROJECT_BINARY_DIR}")

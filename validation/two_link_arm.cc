@@ -11,6 +11,7 @@
 
 #include "info/discrete_projection.h"
 #include "info/integrate.h"
+#include "info/symmetric_eigen.h"
 
 namespace {
 
@@ -51,7 +52,7 @@ struct TwoLinkArm {
 };
 
 double least(const Eigen::MatrixXd& I) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(I).eigenvalues()[0];
+  return info::symmetricEigenvalues(I)[0];
 }
 
 }  // namespace

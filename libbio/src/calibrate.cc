@@ -10,6 +10,7 @@
 #include "info/fisher.h"
 #include "info/monte_carlo.h"
 #include "info/residuals.h"
+#include "info/symmetric_eigen.h"
 
 namespace bio {
 namespace {
@@ -18,7 +19,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 /// Noise and estimate follow each other until σ changes by less than this share.
 constexpr double noiseSettled = 0.01;
 constexpr int noiseRounds = 12;
@@ -315,13 +316,12 @@ class Calibrator {
 
   /// The inverse of a matrix of information; where it is singular, as large as rounding allows.
   static MatrixXd scaledInverse(const MatrixXd& information, const VectorXd& scale) {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scale.asDiagonal() * information *
-                                                        scale.asDiagonal());
+    const auto eigen = info::symmetricEigen(scale.asDiagonal() * information * scale.asDiagonal());
     const double floor =
-        std::max(1e-14 * eigen.eigenvalues().maxCoeff(), std::numeric_limits<double>::min());
-    const MatrixXd inverse = eigen.eigenvectors() *
-                             eigen.eigenvalues().cwiseMax(floor).cwiseInverse().asDiagonal() *
-                             eigen.eigenvectors().transpose();
+        std::max(1e-14 * eigen.values.maxCoeff(), std::numeric_limits<double>::min());
+    const MatrixXd inverse = eigen.vectors *
+                             eigen.values.cwiseMax(floor).cwiseInverse().asDiagonal() *
+                             eigen.vectors.transpose();
     return scale.asDiagonal() * inverse * scale.asDiagonal();
   }
 
@@ -332,15 +332,15 @@ class Calibrator {
     one.known = known_[i];
     one.ofTrial = i >= common();
     one.value = estimate_.parameters[i];
-    one.deviation = one.lower = one.upper = nan;
-    one.bootstrapDeviation = one.bootstrapLower = one.bootstrapUpper = nan;
+    one.deviation = one.lower = one.upper = unknown;
+    one.bootstrapDeviation = one.bootstrapLower = one.bootstrapUpper = unknown;
     return one;
   }
 
   CalibratedParameter atBound(Index i) const {
     CalibratedParameter one = blank(i);
     one.atBound = true;
-    one.determinacy = {nan, nan, false, ""};
+    one.determinacy = {unknown, unknown, false, ""};
     const bool low = one.value <= one.asked.lower;
     const std::string unit = one.asked.unit.empty() ? "" : " " + one.asked.unit;
     one.why = fmt::format(

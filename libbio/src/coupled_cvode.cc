@@ -71,8 +71,8 @@ void check(int flag, const char* what) {
 void silent(int, const char*, const char*, char*, void*) {}
 
 template <int N>
-Trajectory run(const Arm& arm, const ExcitationSignal& excitation, const ArmState& start,
-               const SimulationOptions& options) {
+Trajectory runAdaptive(const Arm& arm, const ExcitationSignal& excitation, const ArmState& start,
+                       const SimulationOptions& options) {
   ArmDynamics<N> dynamics(arm, excitation, options.externalForce);
   const Eigen::Index size = dynamics.size();
   const auto n = static_cast<Eigen::Index>(arm.numMuscles());
@@ -154,7 +154,7 @@ Trajectory run(const Arm& arm, const ExcitationSignal& excitation, const ArmStat
 Trajectory simulateCvode(const Arm& arm, const ExcitationSignal& excitation, const ArmState& start,
                          const SimulationOptions& options) {
   return withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
-    return run<decltype(N)::value>(arm, excitation, start, options);
+    return runAdaptive<decltype(N)::value>(arm, excitation, start, options);
   });
 }
 

@@ -61,8 +61,8 @@ void cutWhereEnergyIsMadeUp(const Arm& arm, Trajectory& motion, double step) {
 }
 
 template <int N>
-Trajectory run(const Arm& arm, const ExcitationSignal& excitation, const ArmState& start,
-               const SimulationOptions& options) {
+Trajectory runExplicit(const Arm& arm, const ExcitationSignal& excitation, const ArmState& start,
+                       const SimulationOptions& options) {
   ArmDynamics<N> dynamics(arm, excitation, options.externalForce);
   using State = Eigen::VectorXd;
   State y = dynamics.pack(start);
@@ -137,7 +137,7 @@ Trajectory run(const Arm& arm, const ExcitationSignal& excitation, const ArmStat
 Trajectory simulateRungeKutta4(const Arm& arm, const ExcitationSignal& excitation,
                                const ArmState& start, const SimulationOptions& options) {
   return withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
-    return run<decltype(N)::value>(arm, excitation, start, options);
+    return runExplicit<decltype(N)::value>(arm, excitation, start, options);
   });
 }
 

@@ -17,7 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double together = 1e-9;  ///< times nearer than this are one [s]
+constexpr double sameTime = 1e-9;  ///< times nearer than this are one [s]
 
 void require(bool holds, const std::string& message) {
   if (!holds) throw std::invalid_argument(message);
@@ -46,8 +46,8 @@ std::vector<double> knotsOf(double start, double duration, double interval) {
 std::vector<double> merged(const std::vector<double>& first, const std::vector<double>& second) {
   std::vector<double> all = first;
   for (const double t : second) {
-    const auto at = std::lower_bound(first.begin(), first.end(), t - together);
-    if (at == first.end() || *at > t + together) all.push_back(t);
+    const auto at = std::lower_bound(first.begin(), first.end(), t - sameTime);
+    if (at == first.end() || *at > t + sameTime) all.push_back(t);
   }
   std::sort(all.begin(), all.end());
   return all;
@@ -75,7 +75,7 @@ struct Between {
 };
 
 Between betweenRows(const std::vector<double>& time, double t) {
-  const auto behind = std::upper_bound(time.begin(), time.end(), t + together);
+  const auto behind = std::upper_bound(time.begin(), time.end(), t + sameTime);
   const auto k = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
       behind - time.begin() - 1, 0, static_cast<std::ptrdiff_t>(time.size()) - 2));
   const double h = time[k + 1] - time[k];
@@ -434,7 +434,7 @@ Table designTable(const Arm& arm, const DesignedExperiment& e, const std::string
   table.columns.push_back(coordinate);
   Index row = 0;
   for (Index i = 0; i < e.measuredTimes.size(); ++i) {
-    while (row + 1 < K && times[static_cast<std::size_t>(row)] < e.measuredTimes[i] - together) {
+    while (row + 1 < K && times[static_cast<std::size_t>(row)] < e.measuredTimes[i] - sameTime) {
       ++row;
     }
     table.values(row, table.values.cols() - 1) = e.measured[i];

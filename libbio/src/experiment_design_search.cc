@@ -18,7 +18,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double worthless = std::numeric_limits<double>::infinity();
 }
 
 DesignResult ExperimentDesign::search(const DesignSearchSettings& settings) const {
@@ -32,9 +32,9 @@ DesignResult ExperimentDesign::search(const DesignSearchSettings& settings) cons
   const auto phi = [&](const MatrixXd& information) {
     try {
       const double value = cost(information, 1e-9).value;
-      return std::isfinite(value) ? value : infinite;
+      return std::isfinite(value) ? value : worthless;
     } catch (const std::domain_error&) {
-      return infinite;
+      return worthless;
     }
   };
   result.costBefore = phi(scaledInformation(result.before.gamma));
@@ -51,7 +51,7 @@ DesignResult ExperimentDesign::search(const DesignSearchSettings& settings) cons
   const auto run = [&](const VectorXd& x) {
     info::DesignOutcome outcome;
     if (stop) return outcome;
-    double value = infinite;
+    double value = worthless;
     bool keeps = false;
     try {
       const SensitivityTrajectory s = simulateInputs(inputsOf(x));
@@ -85,7 +85,7 @@ DesignResult ExperimentDesign::search(const DesignSearchSettings& settings) cons
   };
   const auto costOf = [&](const VectorXd& x) {
     const info::DesignOutcome outcome = run(x);
-    return outcome.possible ? phi(outcome.information) + outcome.penalty : infinite;
+    return outcome.possible ? phi(outcome.information) + outcome.penalty : worthless;
   };
   const auto project = [&](const VectorXd& x) { return profiles_.project(x); };
 

@@ -11,7 +11,7 @@ namespace bio {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 void checkOrder(int order) {
   if (order < 1 || order > 10) {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "info/fisher.h"
+#include "info/symmetric_eigen.h"
 
 namespace bio {
 namespace {
@@ -143,8 +144,8 @@ ParameterInformation informationAbout(const ParameterCatalogue& catalogue,
       ratio.cwiseInverse().asDiagonal() * covarianceScaled * ratio.cwiseInverse().asDiagonal();
   for (Index i = 0; i < p; ++i) known.identifiable.push_back(ratio[i] <= 0.5);
   // combinations about which the data at least halve what was uncertain: 1/(1 + λ) ≤ 1/4
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled, Eigen::EigenvaluesOnly);
-  known.determinedCombinations = (eigen.eigenvalues().array() >= 3).count();
+  const Eigen::VectorXd eigenvalues = info::symmetricEigenvalues(scaled);
+  known.determinedCombinations = (eigenvalues.array() >= 3).count();
   if (known.determinedCombinations < p) {
     known.sentences.push_back(fmt::format(
         "the data halve the uncertainty of {} combinations of the {} parameters, the others stay "

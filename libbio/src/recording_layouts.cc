@@ -15,7 +15,7 @@
 namespace bio {
 namespace {
 
-constexpr double notMeasured = std::numeric_limits<double>::quiet_NaN();
+constexpr double emptyCell = std::numeric_limits<double>::quiet_NaN();
 
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t\r\"");
@@ -95,7 +95,7 @@ std::vector<RawColumn> numberColumns(const std::string& file, const std::vector<
         columns.resize(k + 1);
         lengths.resize(k + 1, 0);
       }
-      columns[k].resize(row, notMeasured);
+      columns[k].resize(row, emptyCell);
       columns[k].push_back(value);
       lengths[k] = row + 1;
     }

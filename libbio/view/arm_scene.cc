@@ -317,7 +317,7 @@ void ArmScene::look(const CameraPlace& place) {
   camera->SetPosition(place.position.data());
   camera->SetFocalPoint(focus.data());
   camera->SetViewUp(place.up.data());
-  camera->SetViewAngle(viewAngle * 180 / std::numbers::pi);
+  camera->SetViewAngle(cameraViewAngle * 180 / std::numbers::pi);
 }
 
 Image ArmScene::draw(const Moment& moment) {

@@ -25,7 +25,7 @@ struct SceneOptions {
 enum class Camera { fit, side, front, top, isometric };
 
 /// Vertical angle of view [rad].
-constexpr double viewAngle = 0.4;
+constexpr double cameraViewAngle = 0.4;
 
 /// Unit vector towards the camera in OpenSim's axes, x forwards, y up, z to the right. `fit` looks
 /// along the horizontal direction in which the points differ least, a little from above.

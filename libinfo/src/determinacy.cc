@@ -6,6 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "info/symmetric_eigen.h"
+
 namespace info {
 namespace {
 
@@ -76,18 +78,17 @@ std::vector<Determinacy> determinacy(const MatrixXd& information,
     throw std::domain_error("determinacy: every entry of the information must be finite");
   }
 
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(known.asDiagonal() * information *
-                                                      known.asDiagonal());
-  const MatrixXd& v = eigen.eigenvectors();
+  const auto eigen = symmetricEigen(known.asDiagonal() * information * known.asDiagonal());
+  const MatrixXd& v = eigen.vectors;
   // eigenvalues below rounding carry no information
-  const double floor = 1e-14 * std::max(0.0, eigen.eigenvalues()[p - 1]);
+  const double floor = 1e-14 * std::max(0.0, eigen.values[p - 1]);
   std::vector<Determinacy> result;
   for (Index i = 0; i < p; ++i) {
     const Parameter& parameter = parameters[static_cast<std::size_t>(i)];
     double variance = 0, largest = -1;
     Index loosest = 0;
     for (Index j = 0; j < p; ++j) {
-      const double lambda = eigen.eigenvalues()[j];
+      const double lambda = eigen.values[j];
       const double share = v(i, j) * v(i, j);
       const double part = lambda > floor ? share / lambda : (share > 1e-12 ? infinity : 0.0);
       variance += part;
@@ -112,7 +113,7 @@ std::vector<Determinacy> determinacy(const MatrixXd& information,
           parameter.name, outcome, quantity(one.boundAlone, parameter),
           quantity(known[i], parameter));
     } else {
-      const double lambda = std::max(0.0, eigen.eigenvalues()[loosest]);
+      const double lambda = std::max(0.0, eigen.values[loosest]);
       one.why = fmt::format(
           "{} cannot be told apart from {}: {} together change {} by {:.2g} standard deviations in "
           "all; alone it would be known to ±{}",

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "info/identifiability.h"
+#include "info/symmetric_eigen.h"
 
 namespace info {
 namespace {
@@ -141,17 +142,17 @@ class Estimator {
                                .cwiseInverse();
     MatrixXd hessian = at_.information;
     if (options_.method == Method::newtonRaphson) hessian = problem_.hessian(theta_, at_);
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scale.asDiagonal() * hessian(free_, free_) *
-                                                        scale.asDiagonal());
-    VectorXd lambda = eigen.eigenvalues();
+    const auto eigen =
+        symmetricEigen(scale.asDiagonal() * hessian(free_, free_) * scale.asDiagonal());
+    VectorXd lambda = eigen.values;
     if (lambda.minCoeff() < 0 && options_.method == Method::newtonRaphson) {
       ++result_.indefiniteHessians;
       lambda = lambda.cwiseAbs();
     }
     if (!(lambda.minCoeff() > 1e-14 * lambda.maxCoeff())) return std::nullopt;
-    return -(scale.asDiagonal() * (eigen.eigenvectors() * (eigen.eigenvectors().transpose() *
-                                                           scale.asDiagonal() * at_.gradient(free_))
-                                                              .cwiseQuotient(lambda)));
+    return -(scale.asDiagonal() *
+             (eigen.vectors * (eigen.vectors.transpose() * scale.asDiagonal() * at_.gradient(free_))
+                                  .cwiseQuotient(lambda)));
   }
 
   VectorXd project(const VectorXd& theta) const { return theta.cwiseMax(lower_).cwiseMin(upper_); }

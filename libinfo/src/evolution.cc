@@ -8,6 +8,7 @@
 
 #include "info/monte_carlo.h"
 #include "info/random_stream.h"
+#include "info/symmetric_eigen.h"
 
 namespace info {
 
@@ -55,9 +56,9 @@ EvolutionResult evolve(const std::function<double(const VectorXd&)>& cost,
   std::vector<std::size_t> order(inside.size());
   for (int generation = 0; generation < options.generations; ++generation) {
     // x = mean + σ B D z with C = B D² Bᵀ
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(C);
-    const VectorXd D = eigen.eigenvalues().cwiseMax(1e-20).cwiseSqrt();
-    const MatrixXd& B = eigen.eigenvectors();
+    const auto eigen = symmetricEigen(C);
+    const VectorXd D = eigen.values.cwiseMax(1e-20).cwiseSqrt();
+    const MatrixXd& B = eigen.vectors;
     parallelFor(lambda, options.threads, [&](int i) {
       const auto si = static_cast<std::size_t>(i);
       RandomStream random(options.seed, static_cast<std::uint64_t>(generation) *

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "info/symmetric_eigen.h"
+
 namespace info {
 
 using Eigen::Index;
@@ -77,19 +79,18 @@ MatrixXd cramerRaoBound(const MatrixXd& information, const std::vector<std::stri
           name(i), information(i, i)));
   // unit information for each parameter, so that the verdict does not depend on units
   const VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scale.asDiagonal() * information *
-                                                      scale.asDiagonal());
-  if (!(eigen.eigenvalues()[0] > 1e-13)) {
+  const auto eigen = symmetricEigen(scale.asDiagonal() * information * scale.asDiagonal());
+  if (!(eigen.values[0] > 1e-13)) {
     std::string list;
     for (Index i = 0; i < p; ++i)
-      if (std::abs(eigen.eigenvectors()(i, 0)) > 1e-3) list += (list.empty() ? "" : ", ") + name(i);
+      if (std::abs(eigen.vectors(i, 0)) > 1e-3) list += (list.empty() ? "" : ", ") + name(i);
     throw std::domain_error(
         fmt::format("zero information about one combination of parameters {}: the data "
                     "cannot tell them apart",
                     list));
   }
-  const MatrixXd half = scale.asDiagonal() * eigen.eigenvectors() *
-                        eigen.eigenvalues().cwiseSqrt().cwiseInverse().asDiagonal();
+  const MatrixXd half =
+      scale.asDiagonal() * eigen.vectors * eigen.values.cwiseSqrt().cwiseInverse().asDiagonal();
   return half * half.transpose();
 }
 

@@ -7,6 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "info/symmetric_eigen.h"
+
 namespace info {
 namespace {
 
@@ -144,10 +146,9 @@ IdentifiabilityReport identifiability(const MatrixXd& information,
 
   IdentifiabilityReport report;
   const VectorXd s = scales(parameters, scale);
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(s.asDiagonal() * information *
-                                                      s.asDiagonal());
-  report.eigenvalues = eigen.eigenvalues();
-  report.eigenvectors = eigen.eigenvectors();
+  const auto eigen = symmetricEigen(s.asDiagonal() * information * s.asDiagonal());
+  report.eigenvalues = eigen.values;
+  report.eigenvectors = eigen.vectors;
   const double largest = report.eigenvalues[p - 1];
   const Index nullity =
       largest > 0 ? (report.eigenvalues.array() <= tolerance * largest).count() : p;

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "info/symmetric_eigen.h"
+
 namespace info {
 namespace {
 
@@ -27,8 +29,7 @@ void requireCovariance(const MatrixXd& covariance, Index size, const char* what)
   const bool isSymmetric =
       (covariance - covariance.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * largest;
   if (!covariance.allFinite() || !isSymmetric ||
-      !(Eigen::SelfAdjointEigenSolver<MatrixXd>(covariance, Eigen::EigenvaluesOnly)
-            .eigenvalues()[0] >= -1e-12 * largest))
+      !(symmetricEigenvalues(covariance)[0] >= -1e-12 * largest))
     throw std::domain_error(
         fmt::format("Kalman filter: {} must be symmetric and positive semidefinite", what));
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "info/symmetric_eigen.h"
+
 namespace info {
 namespace {
 
@@ -12,7 +14,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-Eigen::SelfAdjointEigenSolver<MatrixXd> decompose(const MatrixXd& information) {
+SymmetricEigen decompose(const MatrixXd& information) {
   if (information.rows() == 0 || information.rows() != information.cols())
     throw std::invalid_argument("information matrix must be square");
   if (!information.allFinite())
@@ -20,15 +22,15 @@ Eigen::SelfAdjointEigenSolver<MatrixXd> decompose(const MatrixXd& information) {
   if (!((information - information.transpose()).cwiseAbs().maxCoeff() <=
         1e-9 * information.cwiseAbs().maxCoeff()))
     throw std::invalid_argument("information matrix must be symmetric");
-  return Eigen::SelfAdjointEigenSolver<MatrixXd>(information);
+  return symmetricEigen(information);
 }
 
 }  // namespace
 
 Criterion criterion(Optimality which, const MatrixXd& information, double repeatedTolerance) {
   const auto eigen = decompose(information);
-  const VectorXd& lambda = eigen.eigenvalues();
-  const MatrixXd& vectors = eigen.eigenvectors();
+  const VectorXd& lambda = eigen.values;
+  const MatrixXd& vectors = eigen.vectors;
   const double least = lambda[0], largest = lambda[lambda.size() - 1];
   if (which != Optimality::e && !(least > 0))
     throw std::domain_error(fmt::format(
@@ -62,11 +64,11 @@ Criterion softMinEigenvalue(const MatrixXd& information, double width) {
   if (!(width > 0 && std::isfinite(width)))
     throw std::invalid_argument(fmt::format("width {} of the soft minimum must be > 0", width));
   const auto eigen = decompose(information);
-  const double least = eigen.eigenvalues()[0];
-  const VectorXd weight = (-(eigen.eigenvalues().array() - least) / width).exp();
+  const double least = eigen.values[0];
+  const VectorXd weight = (-(eigen.values.array() - least) / width).exp();
   const double sum = weight.sum();
   return {least - width * std::log(sum),
-          eigen.eigenvectors() * (weight / sum).asDiagonal() * eigen.eigenvectors().transpose(), 1};
+          eigen.vectors * (weight / sum).asDiagonal() * eigen.vectors.transpose(), 1};
 }
 
 }  // namespace info

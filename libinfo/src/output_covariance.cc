@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "info/symmetric_eigen.h"
+
 namespace info {
 namespace {
 
@@ -37,8 +39,7 @@ void check(const MatrixXd& sigma, std::size_t sample) {
                       sample, i, sigma(i, i)));
   const MatrixXd correlation =
       deviation.cwiseInverse().asDiagonal() * sigma * deviation.cwiseInverse().asDiagonal();
-  const double smallest =
-      Eigen::SelfAdjointEigenSolver<MatrixXd>(correlation, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  const double smallest = symmetricEigenvalues(correlation)[0];
   if (!(smallest > 1e-14))
     throw std::domain_error(
         fmt::format("output covariance of sample {}: not positive definite, the "

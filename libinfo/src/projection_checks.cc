@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "info/symmetric_eigen.h"
+
 namespace info::detail {
 
 using Eigen::Index;
@@ -18,8 +20,7 @@ void fillWeight(const char* name, MatrixXd& W, Index size, bool definite) {
   const double scale = W.cwiseAbs().maxCoeff();
   if (!W.allFinite() || !((W - W.transpose()).cwiseAbs().maxCoeff() <= 1e-12 * scale))
     throw std::domain_error(fmt::format("{}: rule finite and symmetric is broken", name));
-  const double least =
-      Eigen::SelfAdjointEigenSolver<MatrixXd>(W, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  const double least = symmetricEigenvalues(W)[0];
   if (definite ? !(least > 0) : !(least >= -1e-12 * scale))
     throw std::domain_error(
         fmt::format("{}: least eigenvalue is {}, rule: {} 0", name, least, definite ? ">" : "≥"));

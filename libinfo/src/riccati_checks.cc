@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "info/symmetric_eigen.h"
+
 namespace info::detail {
 
 using Eigen::Index;
@@ -21,8 +23,7 @@ void checkWeight(const char* name, const MatrixXd& W, Index size, bool definite)
   const double scale = W.cwiseAbs().maxCoeff();
   if (!W.allFinite() || !((W - W.transpose()).cwiseAbs().maxCoeff() <= 1e-12 * scale))
     throw std::domain_error(fmt::format("weight {}: rule finite and symmetric is broken", name));
-  const double least =
-      Eigen::SelfAdjointEigenSolver<MatrixXd>(W, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  const double least = symmetricEigenvalues(W)[0];
   if (definite ? !(least > 0) : !(least >= -1e-12 * scale))
     throw std::domain_error(fmt::format("weight {}: least eigenvalue is {}, rule: {} 0", name,
                                         least, definite ? ">" : "≥"));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "info/optimality.h"
+#include "info/symmetric_eigen.h"
 
 namespace info {
 
@@ -26,8 +27,8 @@ InformationCost informationCost(const InformationWeights& weights, const MatrixX
   }
   InformationCost out{0, MatrixXd::Zero(information.rows(), information.cols())};
   if (!any) return out;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(information);
-  const VectorXd& lambda = eigen.eigenvalues();
+  const auto eigen = symmetricEigen(information);
+  const VectorXd& lambda = eigen.values;
   if (!(lambda[0] > 1e-14 * lambda[lambda.size() - 1]))
     throw NoInformation(fmt::format(
         "the motion tells nothing about a combination of the parameters: least eigenvalue of the "
@@ -157,9 +158,9 @@ SearchResult search(SearchProblem& problem, const SearchOptions& options) {
     result.costs.push_back(problem.cost());
     result.steps.push_back(step);
     if (options.progress) {
-      const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(problem.information());
+      const auto eigen = symmetricEigen(problem.information());
       if (!options.progress(
-              {result.iterations, problem.cost(), direction.slope, step, eigen.eigenvalues()}))
+              {result.iterations, problem.cost(), direction.slope, step, eigen.values}))
         return end(SearchEnd::stopped);
     }
   }

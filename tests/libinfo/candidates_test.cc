@@ -7,6 +7,7 @@
 #include "info/discrete_projection.h"
 #include "info/integrate.h"
 #include "info/projection.h"
+#include "info/symmetric_eigen.h"
 #include "info/systems/suspended_mass.h"
 
 namespace {
@@ -47,7 +48,7 @@ StepDesign shaking(CandidateRule rule = CandidateRule::worst) {
 }
 
 double least(const MatrixXd& I) {
-  return Eigen::SelfAdjointEigenSolver<MatrixXd>(I).eigenvalues()[0];
+  return info::symmetricEigenvalues(I)[0];
 }
 // λ_min at every candidate, of the motion that these inputs make.
 VectorXd leastAt(const std::vector<VectorXd>& inputs) {

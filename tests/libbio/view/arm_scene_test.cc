@@ -79,8 +79,8 @@ TEST_F(Scene, AMusclesColourIsItsActivation) {
 }
 
 TEST_F(Scene, AMusclesWidthIsTwiceItsRadius) {
-  // Half the picture's height is tan(viewAngle/2) metres at the distance of 1 m.
-  const double pixel = 2 * std::tan(viewAngle / 2) / height;
+  // Half the picture's height is tan(cameraViewAngle/2) metres at the distance of 1 m.
+  const double pixel = 2 * std::tan(cameraViewAngle / 2) / height;
   for (const double radius : {0.005, 0.01, 0.02}) {
     EXPECT_NEAR(thickness(drawMuscle(0, radius)), 2 * radius / pixel, 2) << radius;
   }
@@ -91,7 +91,7 @@ TEST_F(Scene, AGhostIsOrangeAndLeavesTheArmAsItIs) {
   const Image alone = draw({0, &one, {0.5}, nullptr});
   const Image both = draw({0, &one, {0.5}, &other});
   EXPECT_EQ(middle(alone), middle(both));
-  const double pixel = 2 * std::tan(viewAngle / 2) / height;
+  const double pixel = 2 * std::tan(cameraViewAngle / 2) / height;
   const int x = width / 2 + static_cast<int>(0.05 / pixel);
   EXPECT_NE(at(alone, x, height / 2), at(both, x, height / 2));
   const Colour ghost = at(both, x, height / 2);
@@ -124,7 +124,7 @@ TEST_F(Scene, BonesAreWhereTheirBodyIs) {
   ArmPoser::Posture one = posture(0.005);
   one.bodies["bone"] = {Eigen::Matrix3d::Identity(), {0.02, 0.1, 0}};
   const Image without = drawMuscle(0.5, 0.005), with = draw({0, &one, {0.5}, nullptr}, {bone});
-  const double pixel = 2 * std::tan(viewAngle / 2) / height;
+  const double pixel = 2 * std::tan(cameraViewAngle / 2) / height;
   const auto differs = [&](double x, double y) {
     const int column = width / 2 + static_cast<int>(x / pixel);
     const int row = height / 2 - static_cast<int>(y / pixel);

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report.h"
+
+namespace app {
+
+/// One row of an interval drawing; values in a scale shared by all rows.
+struct IntervalRow {
+  std::string name;
+  std::optional<double> estimate = {};
+  std::optional<std::pair<double, double>> interval = {};  ///< about the estimate
+  std::optional<std::pair<double, double>> before = {};    ///< what was known beforehand
+};
+
+/// Intervals one below the other, each with its name: grey what was known before, blue what was
+/// found, a dot at the estimate. Infinite ends reach the edge.
+/// @param xLabel  of the shared scale
+std::string intervalDrawing(const std::vector<IntervalRow>& rows, const std::string& xLabel);
+
+}  // namespace app
