@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "discovery/reduced_truth.h"
 #include "info/discover/discover.h"
 #include "info/random_stream.h"
-#include "reduced_truth.h"
 
 namespace {
 

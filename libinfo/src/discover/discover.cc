@@ -132,18 +132,31 @@ class Work {
   void race() {
     stage_ = Stage::race;
     report(Stage::screen, 0.25, "");
-    while (static_cast<int>(chosen_.size()) < options_.maxEffects) {
+    for (int round = 0; round < 2 * options_.maxEffects; ++round) {
       const bool first = chosen_.empty();
-      const std::vector<std::size_t> list =
-          search_->shortlist(chosen_, first ? options_.finalists : 5);
-      if (!first && !promising()) break;
-      search_->race(chosen_, list);
-      const std::vector<std::size_t> best = bestOf(chosen_, list);
-      if (best.empty()) break;
-      chosen_ = best;
+      if (static_cast<int>(chosen_.size()) >= options_.maxEffects || (!first && !promising()))
+        break;
+      search_->race(chosen_, search_->shortlist(chosen_, first ? options_.finalists : 5));
+      const std::vector<std::size_t> before = chosen_;
+      chosen_ = best();
       while (swapOne()) {
       }
+      if (chosen_ == before) break;
     }
+  }
+
+  // The best of all that have been raced where every effect is significant and earns its place.
+  std::vector<std::size_t> best() const {
+    std::vector<std::size_t> best;
+    double score = search_->at({}).score;
+    for (const auto& [effects, entry] : search_->entries()) {
+      const double net = entry.score - options_.evidence * static_cast<double>(effects.size());
+      if (!effects.empty() && net > score && search_->significance(entry) > options_.significance) {
+        score = net;
+        best = effects;
+      }
+    }
+    return best;
   }
 
   // Is anything to be gained beyond what has been chosen?
@@ -153,43 +166,23 @@ class Work {
     return false;
   }
 
-  std::vector<std::size_t> bestOf(const std::vector<std::size_t>& with,
-                                  const std::vector<std::size_t>& list) const {
-    std::vector<std::size_t> best;
-    double score = search_->at(with).score + options_.evidence;
-    for (const std::size_t c : list) {
-      std::vector<std::size_t> effects = with;
-      effects.push_back(c);
-      std::sort(effects.begin(), effects.end());
-      const Entry& entry = search_->at(effects);
-      if (entry.score > score && search_->significance(entry) > options_.significance) {
-        score = entry.score;
-        best = effects;
-      }
-    }
-    return best;
-  }
-
   // With two effects or more, each may have been a makeshift for something else.
   bool swapOne() {
     if (chosen_.size() < 2) return false;
-    const double score = search_->at(chosen_).score;
-    for (const std::size_t effect : std::vector<std::size_t>(chosen_)) {
-      std::vector<std::size_t> rest = chosen_;
+    const std::vector<std::size_t> now = chosen_;
+    for (const std::size_t effect : now) {
+      std::vector<std::size_t> rest = now;
       rest.erase(std::find(rest.begin(), rest.end(), effect));
       if (search_->entries().count(rest) == 0) {
-        if (rest.size() != 1) continue;
-        search_->race({}, rest);
+        std::vector<std::size_t> fewer = rest;
+        fewer.pop_back();
+        if (search_->entries().count(fewer) == 0) continue;
+        search_->race(fewer, {rest.back()});
       }
-      const std::vector<std::size_t> list = search_->shortlist(rest, 5);
-      search_->race(rest, list);
-      const std::vector<std::size_t> best = bestOf(rest, list);
-      if (!best.empty() && best != chosen_ && search_->at(best).score > score + 0.1) {
-        chosen_ = best;
-        return true;
-      }
+      search_->race(rest, search_->shortlist(rest, 5));
     }
-    return false;
+    chosen_ = best();
+    return chosen_ != now;
   }
 
   void judge() {
