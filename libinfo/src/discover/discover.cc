@@ -96,15 +96,7 @@ class Work {
                       report(stage_, fraction_ + 0.5 * (0.9 - fraction_) * 0.05, doing);
                     });
     search_->calibrate();
-    // a model whose own steps are too long says nothing about the world
-    for (const int t : trials_) {
-      const VectorXd& values = search_->simulation({}).values;
-      const VectorXd refined = data_.refinedOutputs(t, values);
-      if (refined.size() == 0) continue;
-      const double change =
-          (refined - data_.outputs(t, values, {})).cwiseAbs().maxCoeff() / verdict_.outputDeviation;
-      verdict_.numericalError = std::max(verdict_.numericalError, change);
-    }
+    numericalError(search_->simulation({}).values);
     if (verdict_.numericalError > 0.2) {
       verdict_.finding = Finding::numerical;
       verdict_.sentence = fmt::format(
@@ -115,6 +107,17 @@ class Work {
     base();
     verdict_.reached = Stage::localise;
     report(Stage::localise, 0.2, "");
+  }
+
+  // a model whose own steps are too long says nothing about the world
+  void numericalError(const VectorXd& values) {
+    for (const int t : trials_) {
+      const VectorXd refined = data_.refinedOutputs(t, values);
+      if (refined.size() == 0) continue;
+      const double change =
+          (refined - data_.outputs(t, values, {})).cwiseAbs().maxCoeff() / verdict_.outputDeviation;
+      verdict_.numericalError = std::max(verdict_.numericalError, change);
+    }
   }
 
   // what there is to say about the base model
@@ -216,6 +219,7 @@ class Work {
       verdict_.after = adequacy(search_->likelihood(), leader.fit, test_);
       verdict_.values = leader.fit.values;
       verdict_.latentSizeAfter = leader.fit.noise.latent;
+      numericalError(leader.fit.values);
       verdict_.nuisancesAfter = estimatesOf(leader.fit, data_.nuisances(), data_);
     }
     for (Finalist& f : verdict_.finalists) {
@@ -231,14 +235,20 @@ class Work {
     std::vector<int> all;
     for (int t = 0; t < data_.numTrials(); ++t) all.push_back(t);
     const Likelihood whole(data_, all, search_->likelihoodValues(), options_.latentTime);
-    const Fit fit =
-        whole.fit(makeHypothesis(data_, entry.effects, all), entry.fit.noise, entry.fit.values);
+    const Hypothesis hypothesis = makeHypothesis(data_, entry.effects, all);
+    // the starts of trials that were held out are new: a large latent force leads to them
+    Noise wide = entry.fit.noise;
+    wide.latent = std::max(wide.latent, 0.1);
+    const Fit first = whole.fit(hypothesis, wide, entry.fit.values, {}, {10, 0.1});
+    const Fit fit = whole.fit(hypothesis, entry.fit.noise, first.values, {}, {30, 0.05});
     Noise still = entry.fit.noise;
     still.latent = 0;
     const Likelihood likelihood(data_, options_.heldOut, search_->likelihoodValues(),
                                 options_.latentTime);
+    const Hypothesis starts = startsOnly(data_, options_.heldOut);
+    const Fit near = likelihood.fit(starts, wide, entry.fit.values, {}, {10, 0.1});
     *error = likelihood.simulationError(
-        likelihood.fit(startsOnly(data_, options_.heldOut), still, entry.fit.values).values);
+        likelihood.fit(starts, still, near.values, {}, {30, 0.01}).values);
     return fit.logEvidence - entry.fit.logEvidence;
   }
 
@@ -340,7 +350,9 @@ class Work {
                 options_.heldOut);
     closeGap(held);
     verdict_.heldOut = held;
-    judgement.heldOutWorse = !chosen_.empty() && with < without;
+    // a base that fits badly is no exact yardstick: its simulation must be no worse, too
+    judgement.heldOutWorse =
+        !chosen_.empty() && with < without && held.after > 0.95 * held.calibrated;
   }
 
   std::string sentence() const {
