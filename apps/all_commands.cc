@@ -3,6 +3,7 @@
 #include "command.h"
 #include "compare.h"
 #include "design.h"
+#include "discover.h"
 #include "emg.h"
 #include "moment_arms.h"
 #include "render.h"
@@ -18,6 +19,7 @@ std::vector<std::unique_ptr<Command>> allCommands() {
   commands.push_back(checkCommand());
   commands.push_back(compareCommand());
   commands.push_back(designCommand());
+  commands.push_back(discoverCommand());
   commands.push_back(emgCommand());
   commands.push_back(momentArmsCommand());
   commands.push_back(renderCommand(drawInOtherProgram));

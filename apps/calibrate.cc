@@ -4,13 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <set>
 
 #include "angle_unit.h"
 #include "arm_options.h"
 #include "bio/osim_file.h"
-#include "bio/replay.h"
 #include "calibrate_report.h"
+#include "driven_trial.h"
 #include "info/version.h"
 #include "progress_bar.h"
 #include "result.h"
@@ -50,44 +49,6 @@ std::vector<NamedPair> parsePairs(const std::vector<std::string>& texts, const c
     }
   }
   return pairs;
-}
-
-/// The trial as a model without EMG parameters needs it: the excitations that drove the muscles,
-/// with rows wherever they bend.
-bio::Table drivenTable(const bio::Trial& trial, const bio::TrialSet& set,
-                       const bio::EmgMapping& mapping) {
-  const std::vector<std::string> muscles = bio::muscleNames(set.arm());
-  const bio::ExcitationSignal driven =
-      bio::drivenExcitation(bio::excitationOf(trial, set.arm()), muscles, mapping);
-  const double first = trial.times[0], last = trial.times[trial.times.size() - 1];
-  std::set<double> times(trial.times.begin(), trial.times.end());
-  for (const double t : driven.times()) {
-    if (t > first && t < last) times.insert(t);
-  }
-  bio::Table table;
-  table.name = "driven excitations";
-  table.columns = {"time"};
-  table.columns.insert(table.columns.end(), muscles.begin(), muscles.end());
-  const auto n = static_cast<Eigen::Index>(muscles.size());
-  const auto measured = static_cast<Eigen::Index>(trial.measured.size());
-  table.values = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(times.size()),
-                                           1 + n + measured, std::nan(""));
-  Eigen::Index row = 0;
-  std::size_t hint = 0;
-  for (const double t : times) {
-    table.values(row, 0) = t;
-    driven.at(t, hint, table.values.row(row).segment(1, n).transpose());
-    ++row;
-  }
-  for (Eigen::Index k = 0; k < measured; ++k) {
-    const bio::MeasuredMotion& motion = trial.measured[static_cast<std::size_t>(k)];
-    table.columns.push_back(motion.coordinate);
-    for (Eigen::Index i = 0; i < motion.times.size(); ++i) {
-      const auto place = std::distance(times.begin(), times.find(motion.times[i]));
-      table.values(place, 1 + n + k) = motion.values[i];
-    }
-  }
-  return table;
 }
 
 class Calibrate : public Command {
@@ -313,7 +274,7 @@ class Calibrate : public Command {
       if (!set) continue;
       for (const bio::Trial& trial : set->trials()) {
         folder.writeFile(drivenName(number++), [&](const std::filesystem::path& path) {
-          bio::writeTable(drivenTable(trial, *set, mapping), path);
+          bio::writeTable(drivenTable(trial, set->arm(), mapping), path);
         });
       }
     }

@@ -1,0 +1,133 @@
+#include "discover_verdict.h"
+
+#include "angle_unit.h"
+#include "info/discover/hypothesis.h"
+
+namespace app {
+namespace {
+
+using info::discover::Estimate;
+using info::discover::Gap;
+using info::discover::Score;
+using nlohmann::ordered_json;
+
+ordered_json number(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
+
+ordered_json parametersJson(const DiscoverFindings& f, const std::vector<Estimate>& estimates) {
+  ordered_json parameters = ordered_json::object();
+  for (const Estimate& one : estimates) {
+    const auto& quantity = f.data.quantities()[one.quantity];
+    parameters[quantity.name] = {
+        {"value", number(one.value)}, {"sd", number(one.deviation)}, {"unit", quantity.unit}};
+  }
+  return parameters;
+}
+
+ordered_json gapJson(const DiscoverFindings& f, const Gap& gap) {
+  const double unit = f.isAngle ? radian : 1;
+  const std::string end = f.isAngle ? "_deg" : "_m";
+  ordered_json json;
+  json["rmse_nominal" + end] = number(unit * gap.nominal);
+  json["rmse_calibrated" + end] = number(unit * gap.calibrated);
+  json["rmse_after" + end] = number(unit * gap.after);
+  json["noise_floor" + end] = number(unit * gap.floor);
+  json["gap_closed"] =
+      gap.closedFromCalibrated ? number(*gap.closedFromCalibrated) : ordered_json(nullptr);
+  json["gap_closed_from_nominal"] =
+      gap.closedFromNominal ? number(*gap.closedFromNominal) : ordered_json(nullptr);
+  return json;
+}
+
+ordered_json localisationJson(const DiscoverFindings& f) {
+  const double unit = f.isAngle ? radian : 1;
+  ordered_json json{{"time_spans", ordered_json::array()},
+                    {"state_regions", ordered_json::array()},
+                    {"muscles", ordered_json::array()}};
+  const auto& map = f.verdict.localisation;
+  for (const Score& one : map.times) {
+    if (!one.significant) continue;
+    json["time_spans"].push_back({{"trial", f.data.trialName(one.trial)},
+                                  {"from_s", one.from},
+                                  {"to_s", one.to},
+                                  {"score", number(one.z)}});
+  }
+  for (const Score& one : map.cells) {
+    if (!one.significant) continue;
+    json["state_regions"].push_back({{"from", {unit * one.lowerQ, unit * one.lowerQDot}},
+                                     {"to", {unit * one.upperQ, unit * one.upperQDot}},
+                                     {"score", number(one.z)}});
+  }
+  for (const Score& one : map.inputs) {
+    json["muscles"].push_back(
+        {{"name", one.input}, {"score", number(one.z)}, {"significant", one.significant}});
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string verdictWord(const info::discover::Verdict& verdict) {
+  return verdict.reached == info::discover::Stage::finished ||
+                 verdict.finding == info::discover::Finding::numerical
+             ? info::discover::name(verdict.finding)
+             : "stopped";
+}
+
+ordered_json verdictJson(const DiscoverFindings& f) {
+  const auto& candidates = f.data.candidates();
+  const auto& verdict = f.verdict;
+  ordered_json json;
+  json["verdict"] = verdictWord(verdict);
+  json["sentence"] = verdict.sentence;
+  json["stage_reached"] = info::discover::name(verdict.reached);
+  json["effects"] = ordered_json::array();
+  json["class"] = ordered_json::array();
+  for (const auto& effect : verdict.effects) {
+    const auto& candidate = candidates[effect.candidate];
+    json["effects"].push_back({{"id", candidate.id},
+                               {"name", candidate.name},
+                               {"kind", info::discover::name(candidate.kind)},
+                               {"surrogate", verdict.surrogate},
+                               {"parameters", parametersJson(f, effect.estimates)},
+                               {"log_bayes_factor", number(effect.logBayesFactor)},
+                               {"probability", number(effect.probability)}});
+    for (const std::size_t c : effect.equals) json["class"].push_back(candidates[c].id);
+  }
+  json["localisation"] = localisationJson(f);
+  json["gap"] = {{"train", gapJson(f, verdict.gap)},
+                 {"held_out", verdict.heldOut ? gapJson(f, *verdict.heldOut) : nullptr}};
+  json["undetectable_below"] = ordered_json::object();
+  for (const auto& one : verdict.detectability) {
+    json["undetectable_below"][candidates[one.candidate].id] = number(one.amplitude);
+  }
+  json["next_experiment"] = f.nextExperiment;
+  json["noise_sd"] = number(verdict.outputDeviation);
+  json["noise_estimated"] = verdict.deviationEstimated;
+  json["probability_vetoed"] = verdict.vetoed;
+  json["numerical_error_in_noise_sd"] = number(verdict.numericalError);
+  json["already_in_the_model"] = ordered_json::object();
+  for (const auto& [id, where] : f.data.widest().present()) {
+    json["already_in_the_model"][id] = where;
+  }
+  json["evidence"] = ordered_json::array();
+  for (const auto& one : verdict.finalists) {
+    ordered_json ids = ordered_json::array();
+    for (const std::size_t e : one.effects) ids.push_back(candidates[e].id);
+    json["evidence"].push_back({{"effects", ids},
+                                {"log_bayes_factor", number(one.logEvidence)},
+                                {"probability", number(one.probability)},
+                                {"amplitude_over_sd", number(one.significance)}});
+  }
+  if (verdict.unknown) {
+    json["unknown"] = {{"formula", verdict.unknown->formula},
+                       {"stable", verdict.unknown->stable},
+                       {"explained", number(verdict.unknown->explained)},
+                       {"peak_Hz", number(verdict.unknown->peakFrequency)},
+                       {"rms_Nm", number(verdict.unknown->forceSize)}};
+  }
+  return json;
+}
+
+}  // namespace app

@@ -1,0 +1,50 @@
+#include "driven_trial.h"
+
+#include <cmath>
+#include <set>
+
+#include "bio/coupled_sensitivity.h"
+#include "bio/replay.h"
+
+namespace app {
+
+bio::Table drivenTable(const bio::Trial& trial, const bio::Arm& arm,
+                       const bio::EmgMapping& mapping) {
+  const std::vector<std::string> muscles = bio::muscleNames(arm);
+  const bio::ExcitationSignal driven =
+      bio::drivenExcitation(bio::excitationOf(trial, arm), muscles, mapping);
+  const double first = trial.times[0], last = trial.times[trial.times.size() - 1];
+  std::set<double> times(trial.times.begin(), trial.times.end());
+  for (const bio::MeasuredMotion& motion : trial.measured) {
+    times.insert(motion.times.begin(), motion.times.end());
+  }
+  for (const double t : driven.times()) {
+    if (t > first && t < last) times.insert(t);
+  }
+  bio::Table table;
+  table.name = "driven excitations";
+  table.columns = {"time"};
+  table.columns.insert(table.columns.end(), muscles.begin(), muscles.end());
+  const auto n = static_cast<Eigen::Index>(muscles.size());
+  const auto measured = static_cast<Eigen::Index>(trial.measured.size());
+  table.values = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(times.size()),
+                                           1 + n + measured, std::nan(""));
+  Eigen::Index row = 0;
+  std::size_t hint = 0;
+  for (const double t : times) {
+    table.values(row, 0) = t;
+    driven.at(t, hint, table.values.row(row).segment(1, n).transpose());
+    ++row;
+  }
+  for (Eigen::Index k = 0; k < measured; ++k) {
+    const bio::MeasuredMotion& motion = trial.measured[static_cast<std::size_t>(k)];
+    table.columns.push_back(motion.coordinate);
+    for (Eigen::Index i = 0; i < motion.times.size(); ++i) {
+      const auto place = std::distance(times.begin(), times.find(motion.times[i]));
+      table.values(place, 1 + n + k) = motion.values[i];
+    }
+  }
+  return table;
+}
+
+}  // namespace app
