@@ -14,6 +14,7 @@ namespace hidden {
 namespace {
 
 using Json = nlohmann::ordered_json;
+constexpr const char* unseen = "wrap_BIC";  // touched below 20° only
 constexpr double degree = std::numbers::pi / 180;
 
 bool belongs(const std::string& suite, const EffectRow& row) {
@@ -57,6 +58,35 @@ Json distance_deg(const Truth& truth, const Truth& other, const NamedTrial& name
   }
 }
 
+// Trials are drawn until the nominal model follows one to within 30° RMS, at most 12 times; then
+// the one that it follows best is taken: the experimenter drops efforts that run away from every
+// model. Returns the nominal model's distance [deg].
+Json drawTrial(NamedTrial& named, const Truth& truth, const Truth& nominal, const TrialPlan& plan,
+               std::uint64_t seed, std::uint64_t stream) {
+  Json best;
+  std::string why;
+  int made = 0;
+  for (std::uint64_t attempt = 0; attempt < 60 && made < 12; ++attempt) {
+    RandomNumbers random(seed, stream + attempt);
+    NamedTrial drawn = named;
+    try {
+      drawn.trial = makeTrial(truth, plan, random);
+    } catch (const std::runtime_error& e) {
+      why = e.what();
+      continue;
+    }
+    ++made;
+    const Json distance = distance_deg(truth, nominal, drawn, false);
+    const bool better = best.is_null() || (!distance.is_null() && distance < best);
+    if (made > 1 && !better) continue;
+    best = distance;
+    named = std::move(drawn);
+    if (!best.is_null() && best <= 30) break;
+  }
+  if (made == 0) throw std::runtime_error(named.name + ": 60 draws failed, the last: " + why);
+  return best;
+}
+
 Json describe(const EffectRow& row, double amplitude) {
   Json readings = Json::array();
   for (const Reading& r : row.readings(amplitude)) {
@@ -86,7 +116,7 @@ void write(const std::filesystem::path& file, const std::string& text) {
 std::vector<std::string> chosenEffects(const DataSetPlan& plan) {
   std::vector<const EffectRow*> rows;
   for (const EffectRow& row : hiddenEffects()) {
-    if (belongs(plan.suite, row)) rows.push_back(&row);
+    if (belongs(plan.suite, row) && row.id != unseen) rows.push_back(&row);
   }
   const std::size_t count = plan.suite == "null" ? 0 : plan.suite == "two" ? 2 : 1;
   if (!plan.effects.empty()) {
@@ -146,23 +176,12 @@ DataSet makeDataSet(const ElbowNumbers& nominal, const DataSetPlan& plan) {
       held.numbers.forearm.push_back(
           {"known", named.knownMass, nominal.hand, Eigen::Matrix3d::Zero()});
     }
-    constexpr std::uint64_t attempts = 40;
-    for (std::uint64_t attempt = 0;; ++attempt) {
-      RandomNumbers random(plan.seed, 100 * (i + 1) + attempt);
-      try {
-        named.trial = makeTrial(held, trialPlan, random);
-        break;
-      } catch (const std::runtime_error& e) {
-        if (attempt + 1 < attempts) continue;
-        throw std::runtime_error(
-            fmt::format("{}: 40 draws failed, the last: {}", names[i], e.what()));
-      }
-    }
+    const Json nominalDistance = drawTrial(named, held, bare, trialPlan, plan.seed, 100 * (i + 1));
     if (named.name != "follow_up") {
       strength.push_back({{"trial", named.name},
                           {"tracking_rms_deg", std::round(100 * named.trial.tracking_deg) / 100},
                           {"effect_rms_deg", distance_deg(truth, base, named, true)},
-                          {"nominal_rms_deg", distance_deg(truth, bare, named, false)}});
+                          {"nominal_rms_deg", nominalDistance}});
     }
     set.trials.push_back(std::move(named));
   }

@@ -39,7 +39,7 @@ struct DataSet {
 /// for an unknown suite or id, or effects that do not fit the suite
 std::vector<std::string> chosenEffects(const DataSetPlan& plan);
 
-/// Draws the person and the trials. @throws std::runtime_error if 40 draws of a trial fail
+/// Draws the person and the trials. @throws std::runtime_error if 60 draws of a trial fail
 DataSet makeDataSet(const ElbowNumbers& nominal, const DataSetPlan& plan);
 
 /// One trial as an .sto table: time, eight EMG channels (0 … 1), the angle [deg], and the known

@@ -69,7 +69,7 @@ std::vector<EffectRow> makeTable() {
        "−τ_c·tanh(w/0.05 rad/s)",
        "tau_c",
        "N m",
-       0.5,
+       0.4,
        false,
        {},
        extra<&Extras::coulomb>});
@@ -80,7 +80,7 @@ std::vector<EffectRow> makeTable() {
        "−τ_c·[1 + e^{−(w/0.3 rad/s)²}]·tanh(w/0.05 rad/s)",
        "tau_c",
        "N m",
-       0.4,
+       0.3,
        false,
        {},
        extra<&Extras::stribeck>});
@@ -91,7 +91,7 @@ std::vector<EffectRow> makeTable() {
        "−c·w·abs(w)",
        "c",
        "N m s²",
-       0.15,
+       0.1,
        false,
        {},
        extra<&Extras::drag>});
@@ -102,7 +102,7 @@ std::vector<EffectRow> makeTable() {
        "−b·w·(w² + (0.01 rad/s)²)^(−1/4): ~ sgn(w)·√abs(w)",
        "b",
        "N m s^½",
-       0.5,
+       0.35,
        false,
        {},
        extra<&Extras::powerDamping>});
@@ -113,7 +113,7 @@ std::vector<EffectRow> makeTable() {
        "−k·(q − 1.2 rad)",
        "k",
        "N m/rad",
-       1.5,
+       0.8,
        false,
        {},
        extra<&Extras::stiffness>});
@@ -147,7 +147,7 @@ std::vector<EffectRow> makeTable() {
        "gravity's moment is that of the angle q + δ",
        "delta",
        "rad",
-       0.2,
+       0.12,
        false,
        {"handforce"},
        extra<&Extras::tilt>});
@@ -158,7 +158,7 @@ std::vector<EffectRow> makeTable() {
        "+τ_0",
        "tau_0",
        "N m",
-       0.6,
+       0.4,
        false,
        {},
        extra<&Extras::constant>});
@@ -169,7 +169,7 @@ std::vector<EffectRow> makeTable() {
        "a force F along the ground's +x (forward) at the hand's mass centre",
        "F",
        "N",
-       4.0,
+       2.0,
        false,
        {"tilt"},
        extra<&Extras::handForce>});
@@ -215,7 +215,7 @@ std::vector<EffectRow> makeTable() {
        "0",
        "c",
        "",
-       0.2,
+       0.1,
        false,
        {"crosstalk_reverse"},
        input<&InputChain::crosstalk>});
@@ -226,7 +226,7 @@ std::vector<EffectRow> makeTable() {
        "excitation = (1 + g)·EMG, three heads",
        "g",
        "",
-       -0.3,
+       -0.25,
        true,
        {"Fmax_TRI"},
        [](Truth& truth, double a, RandomNumbers&) {
@@ -240,7 +240,7 @@ std::vector<EffectRow> makeTable() {
        "excitation = EMG + o, all muscles, not below 0",
        "o",
        "",
-       -0.02,
+       -0.01,
        false,
        {},
        input<&InputChain::offset>});
@@ -251,7 +251,7 @@ std::vector<EffectRow> makeTable() {
        "both time constants of every muscle × (1 + a)",
        "change",
        "",
-       1.0,
+       0.8,
        true,
        {},
        [](Truth& truth, double a, RandomNumbers&) { slowActivation(truth, 1 + a); }});
@@ -288,7 +288,7 @@ std::vector<EffectRow> makeTable() {
        "F0 × (1 + a)",
        "change",
        "",
-       -0.4,
+       -0.35,
        true,
        {"gain_BRA"},
        [](Truth& truth, double a, RandomNumbers&) {
@@ -314,7 +314,7 @@ std::vector<EffectRow> makeTable() {
        "ℓs of the three heads × (1 + a)",
        "change",
        "",
-       0.05,
+       0.03,
        true,
        {},
        [](Truth& truth, double a, RandomNumbers&) {
@@ -359,7 +359,7 @@ std::vector<EffectRow> makeTable() {
        "wrap radius of biceps and brachioradialis",
        g,
        true,
-       "radius of cylinder BIC_BRD + Δr",
+       "radius of cylinder BIC_BRD + Δr; touched below 20° only, so not drawn by seed",
        "dr",
        "m",
        0.003,
@@ -407,7 +407,7 @@ std::vector<EffectRow> makeTable() {
        "−k·(q − 1.2 rad)³",
        "k",
        "N m/rad³",
-       3.0,
+       1.5,
        false,
        {},
        extra<&Extras::cubic>});
@@ -418,7 +418,7 @@ std::vector<EffectRow> makeTable() {
        "−α·z, ż = (w − abs(w)·z)/0.15 rad, z(0) = 0",
        "alpha",
        "N m",
-       1.0,
+       0.6,
        false,
        {},
        extra<&Extras::hysteresis>});
@@ -444,7 +444,7 @@ std::vector<EffectRow> makeTable() {
        "−b·(q/1.2 rad)²·w",
        "b",
        "N m s",
-       0.3,
+       0.2,
        false,
        {},
        extra<&Extras::angleDamping>});
@@ -455,7 +455,7 @@ std::vector<EffectRow> makeTable() {
        "EMG of both biceps heads × (1 − d) for 0.6 to 1.2 s, their muscles go on",
        "d",
        "",
-       0.9,
+       0.5,
        false,
        {},
        [](Truth& truth, double a, RandomNumbers& random) {
@@ -471,7 +471,7 @@ std::vector<EffectRow> makeTable() {
        "+k·max(0, q_c − q) from 1.2 to 2.8 s, q_c = 1.2 rad: something to rest on, then taken away",
        "k",
        "N m/rad",
-       4.0,
+       3.0,
        false,
        {},
        extra<&Extras::contact>});

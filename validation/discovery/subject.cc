@@ -45,7 +45,7 @@ class Target {
     while (t < duration + 1) {
       double next = random.between(25, 115) * degree;
       while (std::abs(next - q) < 20 * degree) next = random.between(25, 115) * degree;
-      const double speed = random.between(70, 160) * degree;
+      const double speed = random.between(50, 130) * degree;
       const double time = std::max(0.4, std::abs(next - q) / speed);
       reaches_.push_back({t, time, q, next});
       t += time + random.between(0, 0.35);
@@ -75,18 +75,27 @@ class Target {
   std::vector<Reach> reaches_;
 };
 
-// From drive to the eight muscles' excitations: d > 0 flexes, both sides co-contract.
+double smoothStep(double x) {
+  const double s = std::clamp(x, 0.0, 1.0);
+  return s * s * (3 - 2 * s);
+}
+
+// From drive to the eight muscles' excitations: d > 0 flexes, both sides co-contract – little
+// between 45 and 80°, where co-contraction makes this elbow statically unstable (its stiffness
+// turns negative), so that open-loop replays would drift apart for no interesting reason.
 class Synergy {
  public:
-  explicit Synergy(RandomNumbers& random) : level_(random.between(0.02, 0.06)), together_(random) {
+  explicit Synergy(RandomNumbers& random) : level_(random.between(0.03, 0.08)), together_(random) {
     for (int i = 0; i < 8; ++i) shares_.emplace_back(random);
   }
-  Channels at(double t, double drive) const {
+  Channels at(double t, double angle, double drive) const {
     Channels v{};
-    const double both = level_ * std::exp(0.4 * together_.at(t));
+    const double safe = 0.1 + smoothStep((angle - 80 * degree) / (20 * degree)) +
+                        0.3 * smoothStep((45 * degree - angle) / (15 * degree));
+    const double both = level_ * safe * std::exp(0.4 * together_.at(t));
     for (std::size_t i = 0; i < 8; ++i) {
       const double side = i < 4 ? std::max(0.0, -1.6 * drive) : std::max(0.0, drive);
-      v[i] = std::clamp((both + side) * std::exp(0.3 * shares_[i].at(t)), 0.005, 0.9);
+      v[i] = std::clamp((both + side) * std::exp(0.3 * shares_[i].at(t)), 0.003, 0.9);
     }
     return v;
   }
@@ -178,8 +187,8 @@ Trial makeTrial(const Truth& truth, const TrialPlan& plan, RandomNumbers& random
     made.times.push_back(t);
     const Channels unfaith = drawError();
     if (plan.emgNoise > 0) made.unfaith.push_back(unfaith);
-    made.emg.push_back(
-        recordingOf(truth.chain, synergy.at(t, drive), plan.emgNoise > 0 ? &unfaith : nullptr));
+    made.emg.push_back(recordingOf(truth.chain, synergy.at(t, target.at(t).q, drive),
+                                   plan.emgNoise > 0 ? &unfaith : nullptr));
     if (!plan.torquePulses) return;
     double torque = 0;
     for (std::size_t k = 0; k < pulses.size(); ++k) {
@@ -188,7 +197,7 @@ Trial makeTrial(const Truth& truth, const TrialPlan& plan, RandomNumbers& random
     made.torque.push_back(torque);
   };
   const auto replaceLast = [&](double drive) {
-    made.emg.back() = recordingOf(truth.chain, synergy.at(made.times.back(), drive),
+    made.emg.back() = recordingOf(truth.chain, synergy.at(made.times.back(), target.at(0).q, drive),
                                   plan.emgNoise > 0 ? &made.unfaith.back() : nullptr);
   };
 
