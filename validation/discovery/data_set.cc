@@ -15,7 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 constexpr const char* unseen = "wrap_BIC";  // touched below 20° only
-constexpr double degree = std::numbers::pi / 180;
 
 bool belongs(const std::string& suite, const EffectRow& row) {
   static const std::set<std::string> twins = {"delay", "clock", "tilt", "handforce"};

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -56,6 +57,7 @@ ForceCurve::ForceCurve(std::vector<double> x, std::vector<double> y)
 
 double ForceCurve::at(double x) const {
   const std::size_t n = x_.size();
+  if (std::isnan(x)) return x;
   if (x < x_[0]) return y_[0] + slope_[0] * (x - x_[0]);
   const auto end = static_cast<Eigen::Index>(n) - 1;
   if (x >= x_[n - 1]) return y_[n - 1] + slope_[end] * (x - x_[n - 1]);

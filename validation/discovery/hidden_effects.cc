@@ -121,7 +121,7 @@ std::vector<EffectRow> makeTable() {
        "passive joint limits",
        s,
        true,
-       "−K·s((q − 100°)/30°)·(q − 100°) above, +K·s((35° − q)/30°)·(35° − q) below, s the quintic "
+       "−K·s((q − 90°)/30°)·(q − 90°) above, +K·s((40° − q)/30°)·(40° − q) below, s the quintic "
        "step: OpenSim's CoordinateLimitForce without damping",
        "stiffness",
        "N m/rad",
@@ -215,7 +215,7 @@ std::vector<EffectRow> makeTable() {
        "0",
        "c",
        "",
-       0.1,
+       0.06,
        false,
        {"crosstalk_reverse"},
        input<&InputChain::crosstalk>});
@@ -429,7 +429,7 @@ std::vector<EffectRow> makeTable() {
        "+α·sin(2πft + φ), f in 4–6 Hz and φ drawn",
        "alpha",
        "N m",
-       0.5,
+       1.0,
        false,
        {},
        [](Truth& truth, double a, RandomNumbers& random) {

@@ -10,7 +10,6 @@
 namespace hidden {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 using Channels = std::array<double, 8>;
 
 double rounded(double value, double unit) {

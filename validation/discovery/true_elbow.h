@@ -2,11 +2,14 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <numbers>
 #include <vector>
 
 #include "elbow_numbers.h"
 
 namespace hidden {
+
+inline constexpr double degree = std::numbers::pi / 180;  ///< [rad]
 
 /// What happens between the recorded EMG and the muscle; absent by default.
 struct InputChain {
@@ -26,12 +29,12 @@ struct Extras {
   double drag = 0;                            ///< −c·w·|w| [N m s²]
   double powerDamping = 0;                    ///< −b·w·(w² + 0.01²)^{−1/4}, ~ sgn(w)√|w|
   double stiffness = 0, stiffnessRest = 1.2;  ///< −k(q − q_r) [N m/rad]
-  double limit = 0;                           ///< −K·s(x)·beyond, both ends [N m/rad]
-  double limitUpper = 1.7453, limitLower = 0.6109;  ///< 100°, 35° [rad]
-  double limitTransition = 0.5236;                  ///< 30° [rad]
-  double tilt = 0;                                  ///< gravity's moment is that of q + δ [rad]
-  double constant = 0;                              ///< +τ_0 [N m]
-  double handForce = 0;                             ///< along the ground's x at the hand [N]
+  double limit = 0;  ///< K of −K·s(x)·beyond, s the quintic step, at both ends [N m/rad]
+  double limitUpper = 90 * degree, limitLower = 40 * degree;  ///< [rad]
+  double limitTransition = 30 * degree;                       ///< [rad]
+  double tilt = 0;                        ///< gravity's moment is that of q + δ [rad]
+  double constant = 0;                    ///< +τ_0 [N m]
+  double handForce = 0;                   ///< along the ground's x at the hand [N]
   double fatigue = 0, fatigueTime = 0.3;  ///< contractile force × [1 − φ(1 − e^{−∫a dt/T})]
   double cubic = 0;                       ///< −k₃(q − 1.2)³ [N m/rad³]
   double hysteresis = 0;  ///< −α·z, ż = (w − |w|·z)/0.15, Bouc–Wen with n = 1 [N m]
