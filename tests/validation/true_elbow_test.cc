@@ -125,6 +125,22 @@ TEST(TrueElbow, WrappedPathsAreTautStringsRoundTheCylinder) {
   EXPECT_GE(shortest, span.length - 1e-12);
 }
 
+TEST(ForceCurve, IsTheCubicWhereThePointsAreOfOne) {
+  const auto cubic = [](double x) { return 1 + x * (2 - x * (3 - 0.5 * x)); };
+  std::vector<double> x = {-1, -0.3, 0, 0.7, 1.1, 2.5}, y;
+  for (const double knot : x) y.push_back(cubic(knot));
+  const ForceCurve curve(x, y);
+  for (double at = -1; at < 2.5; at += 0.01) EXPECT_NEAR(curve.at(at), cubic(at), 1e-12);
+  EXPECT_TRUE(std::isnan(curve.at(std::nan(""))));
+  EXPECT_THROW(ForceCurve({0, 1, 0.5, 2}, {0, 0, 0, 0}), std::invalid_argument);
+}
+
+TEST(ForceCurve, IsFlatWhereAPointStandsTwice) {
+  const ForceCurve curve({0, 1, 1.5, 1.5, 2, 3}, {0, 0.2, 1, 1, 2, 2});
+  EXPECT_NEAR((curve.at(1.5 + 1e-5) - curve.at(1.5)) / 1e-5, 0, 1e-3);
+  EXPECT_NEAR((curve.at(1.5) - curve.at(1.5 - 1e-5)) / 1e-5, 0, 1e-3);
+}
+
 TEST(TrueElbow, FibreVelocityBalancesTheForces) {
   // equations.md, section 1, evaluated from the outside
   const HillMuscle& m = shipped().muscles[0];

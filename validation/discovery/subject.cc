@@ -239,7 +239,7 @@ Trial makeTrial(const Truth& truth, const TrialPlan& plan, RandomNumbers& random
   trial.recorded = made.emg;
   for (std::size_t k = 0; truth.dropout.present && k < rows; ++k) {
     if (made.times[k] < truth.dropout.from || made.times[k] > truth.dropout.to) continue;
-    for (const std::size_t i : {4, 5}) {
+    for (const std::size_t i : {std::size_t{4}, std::size_t{5}}) {
       trial.recorded[k][i] = rounded(truth.dropout.level * trial.recorded[k][i], 1e-5);
     }
   }
