@@ -81,6 +81,9 @@ TEST(HiddenData, NuisancesHaveTheirDeviationsAndStayWithinTolerance) {
       if (n.name.ends_with("tendon_slack_length")) slack += change * change;
     }
   }
+  Truth exact;
+  exact.numbers = shipped();
+  for (const Nuisance& n : drawNuisances(exact, random, 0)) EXPECT_EQ(n.factor, 1) << n.name;
   EXPECT_EQ(count, 1600);
   // cut at 2.5 deviations, a normal's deviation is 0.955 of the whole
   EXPECT_NEAR(std::sqrt(force / count), 0.955 * 0.15, 0.008);

@@ -147,7 +147,7 @@ DataSet makeDataSet(const ElbowNumbers& nominal, const DataSetPlan& plan) {
   Truth base;
   base.numbers = nominal;
   RandomNumbers person(plan.seed, 0), hiding(plan.seed, 1);
-  const auto nuisances = drawNuisances(base, person);
+  const auto nuisances = drawNuisances(base, person, plan.nuisances);
   Truth truth = base;
   Json effects = Json::array();
   for (const std::string& id : chosenEffects(plan)) {
@@ -187,13 +187,10 @@ DataSet makeDataSet(const ElbowNumbers& nominal, const DataSetPlan& plan) {
 
   Json drawn = Json::object();
   for (const Nuisance& n : nuisances) drawn[n.name] = n.factor;
-  set.label = {{"seed", plan.seed},
-               {"suite", plan.suite},
-               {"size", plan.size},
-               {"emg_noise", plan.emgNoise},
-               {"angle_noise_deg", TrialPlan{}.angleNoise},
-               {"effects", effects},
-               {"strength", strength},
+  set.label = {{"seed", plan.seed},           {"suite", plan.suite},
+               {"size", plan.size},           {"emg_noise", plan.emgNoise},
+               {"nuisances", plan.nuisances}, {"angle_noise_deg", TrialPlan{}.angleNoise},
+               {"effects", effects},          {"strength", strength},
                {"nuisance_factors", drawn}};
   return set;
 }

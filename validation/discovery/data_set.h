@@ -21,6 +21,7 @@ struct DataSetPlan {
   std::vector<std::string> effects;  ///< ids; empty: chosen by seed from those of the suite
   double size = 1;                   ///< share of the full size
   double emgNoise = 0;
+  double nuisances = 1;  ///< share of the person's usual departures
 };
 
 /// A trial with the name of its file, without extension.

@@ -526,10 +526,10 @@ std::string effectsAsMarkdown() {
   return text;
 }
 
-std::vector<Nuisance> drawNuisances(Truth& truth, RandomNumbers& random) {
+std::vector<Nuisance> drawNuisances(Truth& truth, RandomNumbers& random, double share) {
   std::vector<Nuisance> drawn;
   const auto draw = [&](const std::string& name, double deviation) {
-    drawn.push_back({name, std::exp(deviation * random.normalWithin(2.5))});
+    drawn.push_back({name, std::exp(share * deviation * random.normalWithin(2.5))});
     return drawn.back().factor;
   };
   for (HillMuscle& m : truth.numbers.muscles) {

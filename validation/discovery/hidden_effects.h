@@ -72,6 +72,7 @@ struct Nuisance {
 /// Makes the nominal elbow a person: F0 15 % and ℓ0 4 %, ℓs 1 % per muscle, mass of everything
 /// beyond the elbow 5 %, activation time constants of all muscles together 20 % (standard
 /// deviations of the logarithm; draws beyond 2.5 deviations are repeated).
-std::vector<Nuisance> drawNuisances(Truth& truth, RandomNumbers& random);
+/// @param share  of these deviations; 0: the nominal model, which no person is
+std::vector<Nuisance> drawNuisances(Truth& truth, RandomNumbers& random, double share = 1);
 
 }  // namespace hidden

@@ -2,7 +2,8 @@
 // a label that only the scorer opens.
 //
 //     make_hidden_elbow --seed N --suite null|single|parameter|two|out|equivalents
-//         [--effect ID[,ID]] [--size S] [--emg-noise C] --model MODEL.osim --out DIR --labels DIR
+//         [--effect ID[,ID]] [--size S] [--emg-noise C] [--nuisances SHARE]
+//         --model MODEL.osim --out DIR --labels DIR
 //     make_hidden_elbow --list
 //
 // Exit status 2 for wrong use, 1 if no data set could be made.
@@ -32,6 +33,7 @@ int make(const hidden::Arguments& arguments) {
   if (!(plan.emgNoise >= 0 && plan.emgNoise <= 0.3)) {
     throw std::invalid_argument("--emg-noise must be 0 to 0.3");
   }
+  plan.nuisances = arguments.number("nuisances", 1);
   for (const char* needed : {"out", "labels", "model"}) {
     if (!arguments.has(needed)) {
       throw std::invalid_argument(fmt::format("--{} is needed", needed));
@@ -51,7 +53,8 @@ int make(const hidden::Arguments& arguments) {
 int main(int argc, char** argv) {
   try {
     const hidden::Arguments arguments(
-        argc, argv, {"seed", "suite", "effect", "size", "emg-noise", "model", "out", "labels"},
+        argc, argv,
+        {"seed", "suite", "effect", "size", "emg-noise", "nuisances", "model", "out", "labels"},
         {"list"});
     if (arguments.has("list")) {
       fmt::print("{}", hidden::effectsAsMarkdown());
