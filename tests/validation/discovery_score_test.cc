@@ -102,6 +102,8 @@ TEST(Judge, AWrongNameWithTheTruthInItsClassIsNotConfidentlyWrong) {
   const Outcome outside = judge("a", label, verdictOf("named", effects, Json::array({"coulomb"})));
   EXPECT_TRUE(in.classHasTruth && !in.confidentlyWrong() && !in.firstIsRight && !in.unqualified);
   EXPECT_TRUE(outside.confidentlyWrong());
+  const Json doubtful = Json::array({effectOf("coulomb", "structure", 0.94)});
+  EXPECT_FALSE(judge("a", label, verdictOf("named", doubtful)).confidentlyWrong());
 }
 
 TEST(Judge, AParameterErrorThatIsCalledAStructure) {
