@@ -1,0 +1,203 @@
+#include "discovery_score.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "support/scratch_folder.h"
+
+namespace hidden {
+namespace {
+
+// Values of Newcombe (Statistics in Medicine 17, 1998), Wilson's method without correction.
+TEST(Wilson, AgreesWithPublishedIntervals) {
+  const struct {
+    int k, n;
+    double low, high;
+  } published[] = {
+      {81, 263, 0.2553, 0.3662}, {15, 148, 0.0624, 0.1605}, {0, 20, 0.0, 0.1611},
+      {1, 29, 0.0061, 0.1718},   {20, 20, 0.8389, 1.0},
+  };
+  for (const auto& p : published) {
+    const Interval i = wilson(p.k, p.n);
+    EXPECT_NEAR(i.low, p.low, 5e-5) << p.k << " of " << p.n;
+    EXPECT_NEAR(i.high, p.high, 5e-5) << p.k << " of " << p.n;
+  }
+}
+
+TEST(Wilson, NeedsAProportion) {
+  EXPECT_THROW(wilson(3, 2), std::invalid_argument);
+  EXPECT_THROW(wilson(-1, 2), std::invalid_argument);
+  EXPECT_EQ(wilson(0, 0).high, 1);
+}
+
+Json truthOf(const std::string& id, double value, std::vector<std::string> equivalents = {}) {
+  return {{"id", id},
+          {"readings", Json::array({{{"name", "b"}, {"unit", "N m s"}, {"value", value}}})},
+          {"equivalents", equivalents}};
+}
+
+Json labelOf(const std::string& suite, const Json& effects, double size = 1, double noise = 0) {
+  return {{"suite", suite}, {"size", size}, {"emg_noise", noise}, {"effects", effects}};
+}
+
+Json effectOf(const std::string& id, const std::string& kind, double probability, double value = 0,
+              double sd = 1, const std::string& parameter = "b",
+              const std::string& unit = "N m s") {
+  return {{"id", id},
+          {"kind", kind},
+          {"probability", probability},
+          {"parameters", {{parameter, {{"value", value}, {"sd", sd}, {"unit", unit}}}}}};
+}
+
+Json verdictOf(const std::string& word, const Json& effects, const Json& inClass = Json::array()) {
+  return {{"verdict", word}, {"effects", effects}, {"class", inClass}};
+}
+
+TEST(Judge, ARightNameWithItsAmplitude) {
+  Json verdict = verdictOf("named", Json::array({effectOf("visc", "structure", 0.99, 0.34, 0.02)}),
+                           Json::array({"visc"}));
+  verdict["gap"] = {
+      {"held_out", {{"gap_closed", 0.99}, {"rmse_after_deg", 0.51}, {"noise_floor_deg", 0.5}}}};
+  verdict["wall_s"] = 12.5;
+  const Outcome o = judge("a", labelOf("single", Json::array({truthOf("visc", 0.3)})), verdict);
+  EXPECT_TRUE(o.firstIsRight && o.classHasTruth && o.allNamed && o.claims && o.unqualified);
+  EXPECT_FALSE(o.confidentlyWrong() || o.namesStructure);
+  EXPECT_NEAR(o.z.value(), 2, 1e-12);
+  EXPECT_NEAR(o.gapClosed.value(), 0.99, 1e-12);
+  EXPECT_NEAR(o.overFloor.value(), 1.02, 1e-12);
+  EXPECT_NEAR(o.seconds.value(), 12.5, 1e-12);
+}
+
+TEST(Judge, UnitsAndOtherNamesOfTheSameAmplitude) {
+  const Json label = labelOf(
+      "single", Json::array({{{"id", "wrap_TRI"},
+                              {"readings", Json::array({{{"name", "dr"}, {"value", 0.003}},
+                                                        {{"name", "factor"}, {"value", 1.2}}})}}}));
+  const auto zOf = [&](const std::string& name, double value, double sd, const std::string& unit) {
+    return judge(
+               "a", label,
+               verdictOf("named",
+                         Json::array({effectOf("wrap_TRI", "geometry", 1, value, sd, name, unit)})))
+        .z.value();
+  };
+  EXPECT_NEAR(zOf("dr", 4, 0.5, "mm"), 2, 1e-9);
+  EXPECT_NEAR(zOf("factor", 1.1, 0.1, ""), -1, 1e-9);
+  EXPECT_NEAR(zOf("unheard of", 0.002, 0.001, "m"), -1, 1e-9);  // then it is the first reading
+}
+
+TEST(Judge, DeclaredEquivalentsAreRightButTellNoAmplitude) {
+  const Outcome o =
+      judge("a", labelOf("single", Json::array({truthOf("delay", 0.04, {"clock"})})),
+            verdictOf("named", Json::array({effectOf("clock", "sensor", 0.97, 0.04)})));
+  EXPECT_TRUE(o.firstIsRight && o.classHasTruth);
+  EXPECT_FALSE(o.z.has_value());
+}
+
+TEST(Judge, AWrongNameWithTheTruthInItsClassIsNotConfidentlyWrong) {
+  const Json label = labelOf("single", Json::array({truthOf("visc", 0.3)}));
+  const Json effects = Json::array({effectOf("coulomb", "structure", 0.96)});
+  const Outcome in = judge("a", label, verdictOf("ambiguous", effects, {"coulomb", "visc"}));
+  const Outcome outside = judge("a", label, verdictOf("named", effects, Json::array({"coulomb"})));
+  EXPECT_TRUE(in.classHasTruth && !in.confidentlyWrong() && !in.firstIsRight && !in.unqualified);
+  EXPECT_TRUE(outside.confidentlyWrong());
+  const Json doubtful = Json::array({effectOf("coulomb", "structure", 0.94)});
+  EXPECT_FALSE(judge("a", label, verdictOf("named", doubtful)).confidentlyWrong());
+}
+
+TEST(Judge, AParameterErrorThatIsCalledAStructure) {
+  const Json label = labelOf("parameter", Json::array({truthOf("Fmax_TRI", -0.25, {"gain_TRI"})}));
+  const auto structural = [&](const char* id, const char* kind) {
+    return judge("a", label, verdictOf("named", Json::array({effectOf(id, kind, 0.5)})))
+        .namesStructure;
+  };
+  EXPECT_TRUE(structural("visc", "structure"));
+  EXPECT_FALSE(structural("Fmax_BIC", "parameter"));
+  EXPECT_FALSE(structural("gain_TRI", "input"));
+}
+
+TEST(Judge, TwoEffectsNeedBothNames) {
+  const Json label = labelOf("two", Json::array({truthOf("visc", 0.3), truthOf("payload", 0.5)}));
+  const auto both = [&](const Json& effects) {
+    return judge("a", label, verdictOf("named", effects)).allNamed;
+  };
+  EXPECT_FALSE(both(Json::array({effectOf("visc", "structure", 1)})));
+  EXPECT_TRUE(
+      both(Json::array({effectOf("payload", "structure", 1), effectOf("visc", "structure", 1)})));
+}
+
+TEST(Judge, NoneAndNumericalClaimNothing) {
+  for (const char* word : {"none", "numerical"}) {
+    const Outcome o = judge("a", labelOf("null", Json::array()), verdictOf(word, Json::array()));
+    EXPECT_FALSE(o.claims) << word;
+  }
+  EXPECT_TRUE(
+      judge("a", labelOf("null", Json::array()), verdictOf("unknown", Json::array())).claims);
+}
+
+const Row& rowOf(const Score& score, const std::string& metric) {
+  for (const Row& row : score.rows) {
+    if (row.metric == metric) return row;
+  }
+  throw std::runtime_error("no row " + metric);
+}
+
+TEST(Score, CountsMissesAndMissingVerdicts) {
+  std::vector<Outcome> outcomes;
+  const Json visc = labelOf("single", Json::array({truthOf("visc", 0.3)}));
+  for (int i = 0; i < 9; ++i) {
+    outcomes.push_back(
+        judge("r" + std::to_string(i), visc,
+              verdictOf("named", Json::array({effectOf("visc", "structure", 0.99, 0.3, 0.01)}))));
+  }
+  outcomes.push_back(judge("lost", visc, Json()));
+  outcomes.push_back(
+      judge("quiet", labelOf("null", Json::array()), verdictOf("none", Json::array())));
+  outcomes.push_back(judge("odd", labelOf("out", Json::array({truthOf("tremor", 1)})),
+                           verdictOf("unknown", Json::array())));
+  const Score s = score(outcomes);
+  const Row& right = rowOf(s, "right name first, clean EMG, full size");
+  EXPECT_EQ(right.k, 9);
+  EXPECT_EQ(right.n, 10);
+  EXPECT_FALSE(right.met);
+  ASSERT_EQ(right.misses.size(), 1u);
+  EXPECT_THAT(right.misses[0],
+              testing::HasSubstr("lost (single, size 1, EMG noise 0): visc; said: no verdict"));
+  EXPECT_EQ(rowOf(s, "false alarms on null data").k, 0);
+  EXPECT_TRUE(rowOf(s, "false alarms on null data").met);
+  EXPECT_EQ(rowOf(s, "out of catalogue: no unqualified name").k, 1);
+  EXPECT_EQ(rowOf(s, "two effects: both named").n, 0);
+  EXPECT_FALSE(rowOf(s, "95 % interval covers the truth").met);  // 9 of 9 covers too much
+  EXPECT_EQ(rowOf(s, "parameter within 2 sd of the truth").k, 9);
+  EXPECT_THAT(s.asMarkdown(),
+              testing::HasSubstr("| 9 of 10 | 90.0 % | 59.6–98.2 % | ≥ 97 % | no |"));
+  EXPECT_EQ(s.asJson()["shares"][2]["misses"].size(), 1u);
+}
+
+TEST(Score, ReadsFoldersAndSaysWhichFileIsBroken) {
+  const support::ScratchFolder folder;
+  const auto write = [&](const std::string& name, const std::string& text) {
+    const auto file = folder.path() / name;
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file) << text;
+  };
+  write("labels/x.json", labelOf("null", Json::array()).dump());
+  write("verdicts/x/verdict.json", verdictOf("none", Json::array()).dump());
+  write("verdicts/x/summary.json", R"({"wall_s": 3})");
+  const auto outcomes = readOutcomes(folder.path() / "labels", folder.path() / "verdicts");
+  ASSERT_EQ(outcomes.size(), 1u);
+  EXPECT_TRUE(outcomes[0].hasVerdict);
+  EXPECT_EQ(outcomes[0].seconds.value(), 3);
+  write("verdicts/x/verdict.json", "{");
+  try {
+    readOutcomes(folder.path() / "labels", folder.path() / "verdicts");
+    FAIL();
+  } catch (const std::runtime_error& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr("verdict.json"));
+  }
+  EXPECT_THROW(readOutcomes(folder.path() / "nowhere", folder.path()), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace hidden

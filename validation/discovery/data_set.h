@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "subject.h"
+
+namespace hidden {
+
+/// What a data set is to contain. Everything else follows from the seed.
+struct DataSetPlan {
+  std::uint64_t seed = 0;
+  /// null: nuisances alone · single: one effect that is no parameter · parameter: one parameter
+  /// far outside its tolerance · two: two effects · out: one that the catalogue lacks ·
+  /// equivalents: one of delay, clock, tilt, handforce, and the trial that would tell it from its
+  /// twin
+  std::string suite = "single";
+  std::vector<std::string> effects;  ///< ids; empty: chosen by seed from those of the suite
+  double size = 1;                   ///< share of the full size
+  double emgNoise = 0;
+  double nuisances = 1;  ///< share of the person's usual departures
+};
+
+/// A trial with the name of its file, without extension.
+struct NamedTrial {
+  std::string name;
+  Trial trial;
+  double knownMass = 0;  ///< held in the hand, and written in the file's header [kg]
+};
+
+struct DataSet {
+  std::vector<NamedTrial> trials;  ///< train_1, train_2, train_3, held_out[, follow_up]
+  nlohmann::ordered_json label;    ///< the truth, for the scorer alone
+};
+
+/// Effects that a plan hides: those it names, else by seed, in turn. @throws std::invalid_argument
+/// for an unknown suite or id, or effects that do not fit the suite
+std::vector<std::string> chosenEffects(const DataSetPlan& plan);
+
+/// Draws the person and the trials. @throws std::runtime_error if 60 draws of a trial fail
+DataSet makeDataSet(const ElbowNumbers& nominal, const DataSetPlan& plan);
+
+/// One trial as an .sto table: time, eight EMG channels (0 … 1), the angle [deg], and the known
+/// torque where there is one.
+std::string asTable(const NamedTrial& trial, const std::string& title);
+
+/// Writes NAME.sto into `folder` (follow_up.sto into folder/follow_up) and truth.sha256 beside
+/// them, the label into labels/NAME-OF-FOLDER.json.
+/// @throws std::runtime_error if a file cannot be written
+void writeDataSet(const DataSet& set, const std::filesystem::path& folder,
+                  const std::filesystem::path& labels);
+
+/// SHA-256 as 64 hexadecimal digits.
+std::string sha256(const std::string& bytes);
+
+}  // namespace hidden

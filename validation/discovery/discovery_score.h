@@ -1,0 +1,74 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "wilson.h"
+
+namespace hidden {
+
+using Json = nlohmann::ordered_json;
+
+/// What one verdict is worth beside the truth. Declared equivalents count as the truth.
+struct Outcome {
+  std::string name;   ///< of the data set
+  std::string suite;  ///< of its label
+  std::vector<std::string> truth;
+  double size = 1, emgNoise = 0;
+  bool hasVerdict = false;  ///< false: none was given, which counts as wrong everywhere
+  std::string verdict;      ///< the word
+  std::vector<std::string> named, inClass;
+  bool claims = false;          ///< says that something is missing or wrong
+  bool namesStructure = false;  ///< its first name is no parameter and no equivalent of the truth
+  bool firstIsRight = false;    ///< its first name is a truth
+  bool classHasTruth = false;   ///< a truth is among names and class
+  bool allNamed = false;        ///< every truth is among the names
+  bool confident = false;       ///< first name's probability ≥ 0.95
+  bool unqualified = false;     ///< "named" or "parameter", with no second candidate in the class
+  std::optional<double> z;      ///< (estimate − truth)/sd of the first right name's amplitude
+  std::optional<double> gapClosed, overFloor, seconds;
+
+  bool confidentlyWrong() const { return confident && claims && !classHasTruth; }
+};
+
+/// @param verdict  null if there is none; @throws nlohmann::json::exception for a broken label or
+///   a verdict without its word
+Outcome judge(const std::string& name, const Json& label, const Json& verdict);
+
+/// One line of the table: k of n, its interval, and the target of design/discovery.md.
+struct Row {
+  std::string metric;
+  int k = 0, n = 0;
+  std::string target;  ///< e.g. "≤ 2 %"
+  bool met = false;    ///< by the share itself; false if n = 0
+  std::vector<std::string> misses;
+  Interval interval() const { return wilson(k, n); }
+};
+
+/// Medians and worst values of a quantity.
+struct Spread {
+  std::string metric, unit, target;
+  std::vector<double> values;  ///< rising
+  double median() const;       ///< NaN if empty
+  bool met = false;
+};
+
+struct Score {
+  std::vector<Row> rows;
+  std::vector<Spread> spreads;
+  Json asJson() const;
+  std::string asMarkdown() const;
+};
+
+Score score(const std::vector<Outcome>& outcomes);
+
+/// Reads every NAME.json of a folder of labels and NAME/verdict.json (or NAME.json) of a folder of
+/// verdicts. Run times come from `wall_s` of the verdict, else of summary.json beside it.
+/// @throws std::runtime_error naming the file that cannot be read, or if there is no label
+std::vector<Outcome> readOutcomes(const std::filesystem::path& labels,
+                                  const std::filesystem::path& verdicts);
+
+}  // namespace hidden

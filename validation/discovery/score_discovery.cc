@@ -1,0 +1,39 @@
+// Compares verdicts with labels and prints the benchmark's table.
+//
+//     score_discovery --labels DIR --verdicts DIR [--json FILE]
+//
+// Exit status 1 if a target with data is missed, 2 for wrong use or a file that cannot be read.
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "arguments.h"
+#include "discovery_score.h"
+
+int main(int argc, char** argv) {
+  try {
+    const hidden::Arguments arguments(argc, argv, {"labels", "verdicts", "json"});
+    if (!arguments.has("labels") || !arguments.has("verdicts")) {
+      throw std::invalid_argument("--labels and --verdicts are needed");
+    }
+    const auto score =
+        hidden::score(hidden::readOutcomes(arguments.text("labels"), arguments.text("verdicts")));
+    fmt::print("{}", score.asMarkdown());
+    if (arguments.has("json")) {
+      std::ofstream stream(arguments.text("json"));
+      stream << score.asJson().dump(2) << '\n';
+      stream.close();
+      if (!stream) throw std::runtime_error(arguments.text("json") + ": cannot be written");
+    }
+    bool missed = false;
+    for (const auto& row : score.rows)
+      missed = missed || (row.n > 0 && row.target != "–" && !row.met);
+    for (const auto& spread : score.spreads)
+      missed = missed || (!spread.values.empty() && !spread.met);
+    return missed ? 1 : 0;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "score_discovery: {}\n", e.what());
+    return 2;
+  }
+}
