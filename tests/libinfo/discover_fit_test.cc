@@ -76,10 +76,12 @@ TEST(JointFit, HasTheEvidenceOfAKalmanFilter) {
   const LinearDisagreement data = drawn(2, 60, 0.4);
   const Likelihood likelihood(data, {0, 1}, nominalValues(data), kTime);
   const Noise noise{kOutput, kLatent, kTime};
-  const Fit base = likelihood.fit(makeHypothesis(data, {}, {0, 1}), noise, nominalValues(data), {}, kExact);
+  const Fit base =
+      likelihood.fit(makeHypothesis(data, {}, {0, 1}), noise, nominalValues(data), {}, kExact);
   EXPECT_TRUE(base.converged);
   EXPECT_NEAR(base.logEvidence, kalman(data, 0).logLikelihood, 1e-7);
-  const Fit push = likelihood.fit(makeHypothesis(data, {0}, {0, 1}), noise, nominalValues(data), {}, kExact);
+  const Fit push =
+      likelihood.fit(makeHypothesis(data, {0}, {0, 1}), noise, nominalValues(data), {}, kExact);
   EXPECT_NEAR(push.logEvidence, kalman(data, 1).logLikelihood, 1e-7);
 }
 
@@ -135,7 +137,8 @@ TEST(JointFit, ProjectedScoresForetellTheEvidenceOfAnEffect) {
   const LinearDisagreement data = drawn(2, 60, 0.4);
   const Likelihood likelihood(data, {0, 1}, nominalValues(data), kTime);
   const Noise noise{kOutput, kLatent, kTime};
-  const Fit base = likelihood.fit(makeHypothesis(data, {}, {0, 1}), noise, nominalValues(data), {}, kExact);
+  const Fit base =
+      likelihood.fit(makeHypothesis(data, {}, {0, 1}), noise, nominalValues(data), {}, kExact);
   std::vector<Likelihood::Linear> trials;
   std::vector<MatrixXd> extra;
   for (std::size_t t = 0; t < 2; ++t) {
@@ -150,8 +153,8 @@ TEST(JointFit, ProjectedScoresForetellTheEvidenceOfAnEffect) {
     const double information = 1 + s2 * projected.information(i, i);
     const double gain = 0.5 * s2 * projected.score[i] * projected.score[i] / information -
                         0.5 * std::log(information);
-    const Fit with =
-        likelihood.fit(makeHypothesis(data, {candidates[i]}, {0, 1}), noise, nominalValues(data), {}, kExact);
+    const Fit with = likelihood.fit(makeHypothesis(data, {candidates[i]}, {0, 1}), noise,
+                                    nominalValues(data), {}, kExact);
     EXPECT_NEAR(gain, with.logEvidence - base.logEvidence, 1e-4);
   }
 }
@@ -162,7 +165,8 @@ TEST(JointFit, IntegratesAOneSidedPriorOverWhatIsLeftOfIt) {
     const LinearDisagreement data = drawn(1, 60, push, 8);
     const Likelihood likelihood(data, {0}, nominalValues(data), kTime);
     const Noise noise{kOutput, kLatent, kTime};
-    const Fit shove = likelihood.fit(makeHypothesis(data, {1}, {0}), noise, nominalValues(data), {}, kExact);
+    const Fit shove =
+        likelihood.fit(makeHypothesis(data, {1}, {0}), noise, nominalValues(data), {}, kExact);
     const Hypothesis base = makeHypothesis(data, {}, {0});
     double sum = 0, reference = 0;
     const double step = 0.01;

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "discovery/reduced_truth.h"
 #include "info/discover/discover.h"
 #include "info/random_stream.h"
-#include "reduced_truth.h"
 
 namespace {
 
@@ -52,7 +52,7 @@ double truthOf(const std::string& id, double size) {
 int main(int argc, char** argv) {
   std::uint64_t first = 0, last = 20;
   std::string suite = "null", only, without;
-  double size = 1, emgNoise = 0;
+  double size = 1, emgNoise = 0, step = 0.01;
   bool verbose = false, known = true;
   for (int i = 1; i < argc; ++i) {
     const auto is = [&](const char* flag, int more) {
@@ -66,6 +66,8 @@ int main(int argc, char** argv) {
       size = std::stod(argv[++i]);
     else if (is("--emg-noise", 1))
       emgNoise = std::stod(argv[++i]);
+    else if (is("--step", 1))
+      step = std::stod(argv[++i]);
     else if (is("--only", 1))
       only = argv[++i];
     else if (is("--leave-out", 0))
@@ -123,7 +125,7 @@ int main(int argc, char** argv) {
       fmt::print("seed {}: the arm went out of range, left out\n", seed);
       continue;
     }
-    const reduced::Elbow elbow(std::move(trials), hidden);
+    const reduced::Elbow elbow(std::move(trials), hidden, step);
     Options options;
     if (known) options.outputDeviation = recipe.outputNoise;
     options.heldOut = {3};
@@ -197,10 +199,14 @@ int main(int argc, char** argv) {
         hiddenEffects += fmt::format("{}={:.3g} ", id, amount);
       fmt::print(
           "seed {} truth {}: {}{} | NIS {:.3f} LB p {:.1e} in p {:.1e} σd {:.3f}→{:.3f} num "
-          "{:.3f} fits {} {:.1f}s |{}\n",
+          "{:.3f} held {} fits {} {:.1f}s |{}\n",
           seed, hiddenEffects, name(v.finding), said, v.after.meanSquare,
           v.after.ljungBoxProbability, v.after.inputProbability, v.latentSizeBefore,
-          v.latentSizeAfter, v.numericalError, v.fits, seconds.back(), table);
+          v.latentSizeAfter, v.numericalError,
+          v.heldOut ? fmt::format("{:.2f}→{:.2f}", v.heldOut->calibrated / v.heldOut->floor,
+                                  v.heldOut->after / v.heldOut->floor)
+                    : std::string(),
+          v.fits, seconds.back(), table);
       if (v.unknown)
         fmt::print("    formula {} (explains {:.2f}, stable {}), peak {:.1f} Hz share {:.2f}\n",
                    v.unknown->formula, v.unknown->explained, v.unknown->stable,

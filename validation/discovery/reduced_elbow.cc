@@ -1,10 +1,10 @@
-#include "reduced_elbow.h"
+#include "discovery/reduced_elbow.h"
 
 #include <cmath>
 #include <limits>
 
+#include "discovery/reduced_quantities.h"
 #include "info/dual.h"
-#include "reduced_quantities.h"
 
 namespace reduced {
 

@@ -1,4 +1,4 @@
-#include "reduced_quantities.h"
+#include "discovery/reduced_quantities.h"
 
 #include <algorithm>
 
@@ -70,7 +70,7 @@ std::vector<Candidate> catalogue(const std::vector<std::string>& hidden) {
   add("drag", "quadratic drag", structure, {kDrag}, {0.1}, {{0.02}});
   add("stiffness", "joint stiffness", structure, {kStiffness}, {2}, {{0.2}});
   add("limit", "passive limits of the joint", structure, {kLimit, kLimitFlexed, kLimitExtended},
-      {1, 0.2, 0.2}, {{0.1, 2.2, 0.35}, {0.1, 2.0, 0.55}});
+      {1, 0.2, 0.2}, {{0.1, 2.2, 0.35}, {0.1, 1.9, 0.35}, {0.1, 2.2, 0.65}, {0.1, 1.9, 0.65}});
   add("payload", "mass in the hand", structure, {kPayload}, {0.7}, {{0.0}}, {"mass"});
   add("tilt", "tilted arm", structure, {kTilt}, {0.3}, {{0.0}}, {"handforce"});
   add("const", "constant torque", structure, {kConstant}, {1}, {{0.0}});

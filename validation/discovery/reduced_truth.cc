@@ -1,4 +1,4 @@
-#include "reduced_truth.h"
+#include "discovery/reduced_truth.h"
 
 #include <algorithm>
 #include <cmath>

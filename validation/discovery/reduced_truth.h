@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "reduced_elbow.h"
+#include "discovery/reduced_elbow.h"
 
 namespace reduced {
 

@@ -96,15 +96,7 @@ class Work {
                       report(stage_, fraction_ + 0.5 * (0.9 - fraction_) * 0.05, doing);
                     });
     search_->calibrate();
-    // a model whose own steps are too long says nothing about the world
-    for (const int t : trials_) {
-      const VectorXd& values = search_->simulation({}).values;
-      const VectorXd refined = data_.refinedOutputs(t, values);
-      if (refined.size() == 0) continue;
-      const double change =
-          (refined - data_.outputs(t, values, {})).cwiseAbs().maxCoeff() / verdict_.outputDeviation;
-      verdict_.numericalError = std::max(verdict_.numericalError, change);
-    }
+    numericalError(search_->simulation({}).values);
     if (verdict_.numericalError > 0.2) {
       verdict_.finding = Finding::numerical;
       verdict_.sentence = fmt::format(
@@ -115,6 +107,17 @@ class Work {
     base();
     verdict_.reached = Stage::localise;
     report(Stage::localise, 0.2, "");
+  }
+
+  // a model whose own steps are too long says nothing about the world
+  void numericalError(const VectorXd& values) {
+    for (const int t : trials_) {
+      const VectorXd refined = data_.refinedOutputs(t, values);
+      if (refined.size() == 0) continue;
+      const double change =
+          (refined - data_.outputs(t, values, {})).cwiseAbs().maxCoeff() / verdict_.outputDeviation;
+      verdict_.numericalError = std::max(verdict_.numericalError, change);
+    }
   }
 
   // what there is to say about the base model
@@ -132,18 +135,31 @@ class Work {
   void race() {
     stage_ = Stage::race;
     report(Stage::screen, 0.25, "");
-    while (static_cast<int>(chosen_.size()) < options_.maxEffects) {
+    for (int round = 0; round < 2 * options_.maxEffects; ++round) {
       const bool first = chosen_.empty();
-      const std::vector<std::size_t> list =
-          search_->shortlist(chosen_, first ? options_.finalists : 5);
-      if (!first && !promising()) break;
-      search_->race(chosen_, list);
-      const std::vector<std::size_t> best = bestOf(chosen_, list);
-      if (best.empty()) break;
-      chosen_ = best;
+      if (static_cast<int>(chosen_.size()) >= options_.maxEffects || (!first && !promising()))
+        break;
+      search_->race(chosen_, search_->shortlist(chosen_, first ? options_.finalists : 5));
+      const std::vector<std::size_t> before = chosen_;
+      chosen_ = best();
       while (swapOne()) {
       }
+      if (chosen_ == before) break;
     }
+  }
+
+  // The best of all that have been raced where every effect is significant and earns its place.
+  std::vector<std::size_t> best() const {
+    std::vector<std::size_t> best;
+    double score = search_->at({}).score;
+    for (const auto& [effects, entry] : search_->entries()) {
+      const double net = entry.score - options_.evidence * static_cast<double>(effects.size());
+      if (!effects.empty() && net > score && search_->significance(entry) > options_.significance) {
+        score = net;
+        best = effects;
+      }
+    }
+    return best;
   }
 
   // Is anything to be gained beyond what has been chosen?
@@ -153,43 +169,23 @@ class Work {
     return false;
   }
 
-  std::vector<std::size_t> bestOf(const std::vector<std::size_t>& with,
-                                  const std::vector<std::size_t>& list) const {
-    std::vector<std::size_t> best;
-    double score = search_->at(with).score + options_.evidence;
-    for (const std::size_t c : list) {
-      std::vector<std::size_t> effects = with;
-      effects.push_back(c);
-      std::sort(effects.begin(), effects.end());
-      const Entry& entry = search_->at(effects);
-      if (entry.score > score && search_->significance(entry) > options_.significance) {
-        score = entry.score;
-        best = effects;
-      }
-    }
-    return best;
-  }
-
   // With two effects or more, each may have been a makeshift for something else.
   bool swapOne() {
     if (chosen_.size() < 2) return false;
-    const double score = search_->at(chosen_).score;
-    for (const std::size_t effect : std::vector<std::size_t>(chosen_)) {
-      std::vector<std::size_t> rest = chosen_;
+    const std::vector<std::size_t> now = chosen_;
+    for (const std::size_t effect : now) {
+      std::vector<std::size_t> rest = now;
       rest.erase(std::find(rest.begin(), rest.end(), effect));
       if (search_->entries().count(rest) == 0) {
-        if (rest.size() != 1) continue;
-        search_->race({}, rest);
+        std::vector<std::size_t> fewer = rest;
+        fewer.pop_back();
+        if (search_->entries().count(fewer) == 0) continue;
+        search_->race(fewer, {rest.back()});
       }
-      const std::vector<std::size_t> list = search_->shortlist(rest, 5);
-      search_->race(rest, list);
-      const std::vector<std::size_t> best = bestOf(rest, list);
-      if (!best.empty() && best != chosen_ && search_->at(best).score > score + 0.1) {
-        chosen_ = best;
-        return true;
-      }
+      search_->race(rest, search_->shortlist(rest, 5));
     }
-    return false;
+    chosen_ = best();
+    return chosen_ != now;
   }
 
   void judge() {
@@ -223,6 +219,7 @@ class Work {
       verdict_.after = adequacy(search_->likelihood(), leader.fit, test_);
       verdict_.values = leader.fit.values;
       verdict_.latentSizeAfter = leader.fit.noise.latent;
+      numericalError(leader.fit.values);
       verdict_.nuisancesAfter = estimatesOf(leader.fit, data_.nuisances(), data_);
     }
     for (Finalist& f : verdict_.finalists) {
@@ -238,14 +235,20 @@ class Work {
     std::vector<int> all;
     for (int t = 0; t < data_.numTrials(); ++t) all.push_back(t);
     const Likelihood whole(data_, all, search_->likelihoodValues(), options_.latentTime);
-    const Fit fit =
-        whole.fit(makeHypothesis(data_, entry.effects, all), entry.fit.noise, entry.fit.values);
+    const Hypothesis hypothesis = makeHypothesis(data_, entry.effects, all);
+    // the starts of trials that were held out are new: a large latent force leads to them
+    Noise wide = entry.fit.noise;
+    wide.latent = std::max(wide.latent, 0.1);
+    const Fit first = whole.fit(hypothesis, wide, entry.fit.values, {}, {10, 0.1});
+    const Fit fit = whole.fit(hypothesis, entry.fit.noise, first.values, {}, {30, 0.05});
     Noise still = entry.fit.noise;
     still.latent = 0;
     const Likelihood likelihood(data_, options_.heldOut, search_->likelihoodValues(),
                                 options_.latentTime);
+    const Hypothesis starts = startsOnly(data_, options_.heldOut);
+    const Fit near = likelihood.fit(starts, wide, entry.fit.values, {}, {10, 0.1});
     *error = likelihood.simulationError(
-        likelihood.fit(startsOnly(data_, options_.heldOut), still, entry.fit.values).values);
+        likelihood.fit(starts, still, near.values, {}, {30, 0.01}).values);
     return fit.logEvidence - entry.fit.logEvidence;
   }
 
@@ -347,7 +350,9 @@ class Work {
                 options_.heldOut);
     closeGap(held);
     verdict_.heldOut = held;
-    judgement.heldOutWorse = !chosen_.empty() && with < without;
+    // a base that fits badly is no exact yardstick: its simulation must be no worse, too
+    judgement.heldOutWorse =
+        !chosen_.empty() && with < without && held.after > 0.95 * held.calibrated;
   }
 
   std::string sentence() const {

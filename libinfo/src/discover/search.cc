@@ -281,7 +281,17 @@ double Search::significance(const Entry& entry) const {
   for (const std::size_t e : entry.effects) {
     const std::size_t amplitude = data_.candidates()[e].quantities[0];
     const int i = entry.fit.hypothesis.indexOf(amplitude);
-    const double deviation = entry.fit.deviation(static_cast<std::size_t>(i));
+    // its deviation for given shape quantities: at amplitude 0 there is nothing to be shaped
+    std::vector<Index> own;
+    for (const std::size_t q : data_.candidates()[e].quantities) {
+      const int k = entry.fit.hypothesis.indexOf(q);
+      if (k == i || !entry.fit.atBound[static_cast<std::size_t>(k)]) own.push_back(k);
+    }
+    const MatrixXd covariance = entry.fit.covariance(own, own);
+    const double variance = covariance(0, 0) > 0 ? 1 / covariance.inverse()(0, 0) : 0;
+    const double deviation =
+        std::sqrt(variance) *
+        std::abs(entry.fit.hypothesis.free[static_cast<std::size_t>(i)].slope(entry.fit.xi[i]));
     const double distance = std::abs(entry.fit.values[static_cast<Index>(amplitude)] -
                                      data_.quantities()[amplitude].nominal);
     least = std::min(least, deviation > 0 ? distance / deviation : 0.0);

@@ -1,0 +1,228 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "info/discover/decide.h"
+#include "info/random_stream.h"
+#include "support/linear_disagreement.h"
+
+namespace {
+
+using namespace info::discover;
+using Eigen::Index;
+using Eigen::VectorXd;
+
+// Made-up evidence over three structures and a parameter.
+std::vector<Candidate> catalogue() {
+  std::vector<Candidate> all(4);
+  const char* ids[] = {"a", "b", "c", "p"};
+  for (std::size_t i = 0; i < 4; ++i) {
+    all[i].id = all[i].name = ids[i];
+    all[i].quantities = {i};
+    all[i].deviations = {1};
+  }
+  all[2].equivalents = {"b"};
+  all[3].kind = EffectKind::parameter;
+  return all;
+}
+Judgement raced(std::vector<std::pair<std::vector<std::size_t>, double>> table,
+                std::vector<std::size_t> chosen) {
+  Judgement judgement;
+  judgement.raced.emplace_back();
+  for (auto& [effects, evidence] : table) {
+    Finalist f;
+    f.effects = effects;
+    f.logEvidence = evidence;
+    judgement.raced.push_back(f);
+  }
+  judgement.chosen = std::move(chosen);
+  return judgement;
+}
+
+TEST(Decide, SaysNoneWhenTheBaseFitsAndNothingEarnedItsPlace) {
+  const Decision d = decide(catalogue(), raced({{{0}, 3.0}}, {}), {});
+  EXPECT_EQ(d.finding, Finding::none);
+  EXPECT_TRUE(d.effects.empty());
+}
+
+TEST(Decide, SaysUnknownWhenTheBaseDoesNotFitAndNothingEarnedItsPlace) {
+  Judgement j = raced({{{0}, 3.0}}, {});
+  j.before.white = false;
+  EXPECT_EQ(decide(catalogue(), j, {}).finding, Finding::unknown);
+  j.before.white = true;
+  j.latentBefore = 0.2;
+  EXPECT_EQ(decide(catalogue(), j, {}).finding, Finding::unknown);
+}
+
+TEST(Decide, SaysParameterWhenOneIsOffByMoreThanItsTolerance) {
+  Judgement j = raced({{{0}, 3.0}}, {});
+  j.surprise = 3.2;
+  EXPECT_EQ(decide(catalogue(), j, {}).finding, Finding::parameter);
+  EXPECT_EQ(decide(catalogue(), raced({{{3}, 9.0}, {{0}, 2.0}}, {3}), {}).finding,
+            Finding::parameter);
+}
+
+TEST(Decide, NamesALeaderWithoutRivals) {
+  const Decision d = decide(catalogue(), raced({{{0}, 30.0}, {{1}, 20.0}, {{3}, 10}}, {0}), {});
+  EXPECT_EQ(d.finding, Finding::named);
+  ASSERT_EQ(d.effects.size(), 1U);
+  EXPECT_EQ(d.effects[0].candidate, 0U);
+  EXPECT_DOUBLE_EQ(d.effects[0].logBayesFactor, 30);
+  EXPECT_NEAR(d.probability, 1 / (1 + std::exp(-10.0) + std::exp(-20.0) + 4 * std::exp(-30.0)),
+              1e-12);
+}
+
+TEST(Decide, CallsRivalsWithinTheClassAndDeclaredEquivalentsAmbiguous) {
+  const Decision near = decide(catalogue(), raced({{{0}, 30.0}, {{1}, 26.0}}, {0}), {});
+  EXPECT_EQ(near.finding, Finding::ambiguous);
+  EXPECT_EQ(near.effects[0].equals, (std::vector<std::size_t>{0, 1}));
+  EXPECT_FALSE(near.effects[0].exact);
+  const Decision exact = decide(catalogue(), raced({{{2}, 30.0}, {{1}, 5.0}}, {2}), {});
+  EXPECT_EQ(exact.finding, Finding::ambiguous);
+  EXPECT_TRUE(exact.effects[0].exact);
+}
+
+TEST(Decide, ComparesEachOfSeveralEffectsInItsPlace) {
+  const Decision d = decide(
+      catalogue(), raced({{{0}, 30.0}, {{1}, 12.0}, {{0, 1}, 50.0}, {{0, 3}, 47.0}}, {0, 1}), {});
+  EXPECT_EQ(d.finding, Finding::ambiguous);
+  EXPECT_EQ(d.effects[0].equals, (std::vector<std::size_t>{0}));
+  EXPECT_EQ(d.effects[1].equals, (std::vector<std::size_t>{1, 3}));
+  EXPECT_DOUBLE_EQ(d.effects[0].logBayesFactor, 38);
+}
+
+TEST(Decide, CallsALeaderASurrogateWhereSomethingIsLeft) {
+  for (int what = 0; what < 4; ++what) {
+    Judgement j = raced({{{0}, 30.0}}, {0});
+    if (what == 0) j.after.white = false;
+    if (what == 1) j.after.independent = false;
+    if (what == 2) j.latentAfter = 0.2;
+    if (what == 3) j.heldOutWorse = true;
+    const Decision d = decide(catalogue(), j, {});
+    EXPECT_EQ(d.finding, Finding::unknown) << what;
+    EXPECT_TRUE(d.surrogate);
+    EXPECT_EQ(d.effects.size(), 1U);
+    EXPECT_EQ(d.probability, 0);
+  }
+}
+
+TEST(Decide, LetsInnovationsOfTheWrongSizeVetoTheProbability) {
+  Judgement j = raced({{{0}, 30.0}}, {0});
+  j.after.sized = false;
+  const Decision d = decide(catalogue(), j, {});
+  EXPECT_EQ(d.finding, Finding::named);
+  EXPECT_TRUE(d.vetoed);
+  EXPECT_EQ(d.probability, 0);
+}
+
+TEST(Adequacy, KnowsTheChiSquareDistribution) {
+  EXPECT_NEAR(chiSquareTail(31.41043284423092, 20), 0.05, 1e-10);
+  EXPECT_NEAR(chiSquareTail(10.82756617078829, 1), 0.001, 1e-10);
+  EXPECT_NEAR(chiSquareQuantile(0.001, 1300), 1464.69, 0.5);  // Wilson and Hilferty: 1464.7
+}
+
+TEST(Gap, IsClosedByWhatIsLeftAboveTheFloor) {
+  Gap gap{10, 5, 2, 1, 100, {}, {}};
+  closeGap(gap);
+  EXPECT_DOUBLE_EQ(*gap.closedFromCalibrated, 1 - 3.0 / 24);
+  EXPECT_DOUBLE_EQ(*gap.closedFromNominal, 1 - 3.0 / 99);
+  gap.calibrated = 1.02;
+  closeGap(gap);
+  EXPECT_FALSE(gap.closedFromCalibrated);
+}
+
+TEST(BenjaminiHochberg, KeepsTheRightOnes) {
+  std::vector<Score> scores(4);
+  // p = 0.0027, 0.0164, 0.0455, 0.317; thresholds 0.0125, 0.025, 0.0375, 0.05
+  scores[0].z = 2;
+  scores[1].z = -3;
+  scores[2].z = 1;
+  scores[3].z = 2.4;
+  benjaminiHochberg(scores, 0.05);
+  EXPECT_FALSE(scores[0].significant);
+  EXPECT_TRUE(scores[1].significant);
+  EXPECT_FALSE(scores[2].significant);
+  EXPECT_TRUE(scores[3].significant);
+}
+
+constexpr double kOutput = 0.02, kLatent = 0.3, kTime = 0.1;
+
+LinearDisagreement drawn(std::uint64_t seed, double push, double gain) {
+  LinearDisagreement data(2, 80);
+  VectorXd truth = nominalValues(data);
+  truth[0] = gain;
+  truth[1] = push;
+  data.draw(seed, truth, kOutput, kLatent, kTime);
+  return data;
+}
+
+// Whatever the nuisances are, scores of the map are N(0, 1) if nothing is missing.
+TEST(Localise, ScoresAreStandardNormalWhenNothingIsMissing) {
+  double sum = 0, squares = 0, count = 0;
+  int significant = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    info::RandomStream random(seed, 77);
+    const LinearDisagreement data = drawn(seed, 0, 1 + 0.2 * random.normal());
+    const Likelihood likelihood(data, {0, 1}, nominalValues(data), kTime);
+    const Fit fit = likelihood.fit(makeHypothesis(data, {}, {0, 1}), {kOutput, kLatent, kTime},
+                                   nominalValues(data));
+    const Localisation map = localise(likelihood, fit, fit, {0.5, 4, 1, 0.05});
+    for (const Score& s : map.times) {
+      sum += s.z;
+      squares += s.z * s.z;
+      ++count;
+      significant += s.significant;
+    }
+    const Adequacy tests = adequacy(likelihood, fit, {});
+    EXPECT_TRUE(tests.adequate()) << seed;
+  }
+  // 40 × about 34 scores, neighbours correlated
+  EXPECT_NEAR(sum / count, 0, 0.1);
+  EXPECT_NEAR(squares / count, 1, 0.12);
+  EXPECT_LT(significant, 20);
+}
+
+TEST(Adequacy, SeesAForceThatTheModelLacks) {
+  const LinearDisagreement data = drawn(1, 3, 1);
+  const Likelihood likelihood(data, {0, 1}, nominalValues(data), kTime);
+  const Fit base = likelihood.fit(makeHypothesis(data, {}, {0, 1}), {kOutput, kLatent, kTime},
+                                  nominalValues(data));
+  EXPECT_FALSE(adequacy(likelihood, base, {}).adequate());
+  const Fit push = likelihood.fit(makeHypothesis(data, {0}, {0, 1}), {kOutput, kLatent, kTime},
+                                  nominalValues(data));
+  EXPECT_TRUE(adequacy(likelihood, push, {}).adequate());
+}
+
+TEST(Discover, FindsTheForceOnALinearOscillator) {
+  const LinearDisagreement data = drawn(5, 2, 1.1);
+  Options options;
+  options.outputDeviation = kOutput;
+  options.latentScale = 1;
+  options.latentTolerance = 0.6;
+  int calls = 0;
+  options.progress = [&](const Progress& p) {
+    EXPECT_GE(p.fraction, 0);
+    EXPECT_LE(p.fraction, 1);
+    return ++calls > 0;
+  };
+  const Verdict v = run(data, options);
+  EXPECT_EQ(v.reached, Stage::finished);
+  EXPECT_GT(calls, 5);
+  ASSERT_EQ(v.effects.size(), 1U);
+  // push and shove are the same force; the one-sided prior is worth log 2
+  EXPECT_EQ(v.finding, Finding::ambiguous);
+  EXPECT_NEAR(v.effects[0].estimates[0].value, 2, 4 * v.effects[0].estimates[0].deviation);
+  EXPECT_NEAR(v.latentSizeAfter, kLatent, 0.1);
+}
+
+TEST(Discover, StopsWhenToldTo) {
+  const LinearDisagreement data = drawn(5, 2, 1.1);
+  Options options;
+  options.outputDeviation = kOutput;
+  options.progress = [](const Progress& p) { return p.stage < Stage::race; };
+  const Verdict v = run(data, options);
+  EXPECT_EQ(v.reached, Stage::localise);
+  EXPECT_EQ(v.base.size(), static_cast<Index>(data.quantities().size()));
+}
+
+}  // namespace
