@@ -81,24 +81,31 @@ class Discover : public Command {
     }
     const bio::ArmOptions arm = armOptions(simulation_);
     const std::string coordinate = observed();
-    bio::discover::ElbowOptions elbow;
-    elbow.simulation = simulationOptions(simulation_, 0, 1);
-    elbow.without = without_;
-    const bio::discover::ElbowDisagreement data(model, arm, coordinate, trials, elbow);
-    const bool isAngle = data.widest().coordinate().isRotation;
-
-    info::discover::Options options = engineOptions(isAngle);
     bool interrupted = false;
+    std::unique_ptr<bio::discover::ElbowDisagreement> made;
+    info::discover::Options options;
     info::discover::Verdict verdict;
-    {
+    // steps that are too long look like an effect: shorter ones, unless they were asked for
+    for (double step = simulation_.stepOrDefault();; step /= 2) {
+      bio::discover::ElbowOptions elbow;
+      elbow.simulation = simulationOptions(simulation_, 0, 1);
+      elbow.simulation.step = step;
+      elbow.without = without_;
+      made =
+          std::make_unique<bio::discover::ElbowDisagreement>(model, arm, coordinate, trials, elbow);
+      options = engineOptions(made->widest().coordinate().isRotation);
       ProgressBar bar("discover");
       options.progress = [&](const info::discover::Progress& at) {
         if (!interruptionRequested()) bar.update(at.fraction);
         interrupted = interruptionRequested();
         return !interrupted;
       };
-      verdict = info::discover::run(data, options);
+      verdict = info::discover::run(*made, options);
+      summary.set("step_s", step);
+      if (verdict.finding != Finding::numerical || simulation_.step || step < 0.003) break;
     }
+    const bio::discover::ElbowDisagreement& data = *made;
+    const bool isAngle = data.widest().coordinate().isRotation;
     const std::string next = followUp(data, verdict);
     const DiscoverFindings findings{model_, files, data, options, verdict, next, isAngle};
     tell(findings, summary);

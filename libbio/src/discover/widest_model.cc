@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <stdexcept>
 
 #include "../coupled_stepping.h"
@@ -185,7 +186,9 @@ WidestModel::Numbers WidestModel::numbersAt(const VectorXd& values) const {
     const double value = values[static_cast<Index>(i)];
     for (const Meaning::Part& part : meanings_[i].parts) {
       const auto k = static_cast<Index>(part.number);
-      if (meanings_[i].kind == Meaning::Kind::scale) numbers.product[k] *= value;
+      if (meanings_[i].kind == Meaning::Kind::scale) {
+        numbers.product[k] *= part.weight == 1 ? value : std::pow(value, part.weight);
+      }
       if (meanings_[i].kind == Meaning::Kind::shift) numbers.sum[k] += part.weight * value;
     }
   }
@@ -250,8 +253,8 @@ ParameterDirection WidestModel::direction(const VectorXd& values, std::size_t qu
     const Number& number = numbers_[part.number];
     double weight = part.weight;
     if (meaning.kind == Meaning::Kind::scale) {
-      weight = number.nominal * numbers.product[static_cast<Index>(part.number)] /
-               values[static_cast<Index>(quantity)];
+      weight *= number.nominal * numbers.product[static_cast<Index>(part.number)] /
+                values[static_cast<Index>(quantity)];
     }
     if (weight == 0) continue;
     direction.push_back({number.target, weight, numbers.at(part.number, number)});

@@ -15,7 +15,7 @@ namespace bio::discover {
 /// What a quantity does: how elementary numbers of model and EMG follow it, or the sensor.
 struct Meaning {
   enum class Kind {
-    scale,  ///< multiplies each number
+    scale,  ///< multiplies each number by value^weight
     shift,  ///< adds weight·value to each number
     tilt,   ///< turns gravity, so that its moment about the axis is that of q + value
     bias,   ///< of the sensor, y = (1 + gain)·q(t − clock) + bias
@@ -48,7 +48,7 @@ struct MuscleGroup {
 ///
 /// Elementary numbers θ_n (a muscle's F0, a body's mass, a constant of a law, …) follow quantities
 /// x:
-///     θ_n = θ_n0 · Π_scales x + Σ_shifts weight·x
+///     θ_n = θ_n0 · Π_scales x^weight + Σ_shifts weight·x
 /// so that quantities overlap as they like (the F0 of one head, and of all three). A law whose
 /// amplitude is nominal is switched off unless a derivative asks for it; switched on, it adds ±0.
 /// Building is done by effects (effects.h); afterwards constant.

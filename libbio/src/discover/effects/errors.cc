@@ -69,7 +69,12 @@ void addNuisances(WidestModel& model) {
   if (model.arm().numMuscles() > 0) {
     std::vector<Meaning::Part> parts;
     for (const ArmMuscle& muscle : model.arm().muscles()) {
-      for (const auto& part : model.numbers(muscle.name + ".time_scale")) parts.push_back(part);
+      // rates, so that the time scale of the fibres' velocity stays as it is
+      for (const char* rate : {".activation1", ".activation2"}) {
+        for (const auto& part : model.numbers(muscle.name + rate)) {
+          parts.push_back({part.number, -1});
+        }
+      }
     }
     model.addNuisance(model.add(factor(timeName, 0.2, 5, 0.2), {Meaning::Kind::scale, parts}));
   }
