@@ -1,6 +1,7 @@
 #include "discover.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -8,6 +9,7 @@
 #include "arm_input.h"
 #include "arm_options.h"
 #include "bio/discover/add_effects.h"
+#include "bio/discover/effects.h"
 #include "bio/osim_file.h"
 #include "discover_report.h"
 #include "driven_trial.h"
@@ -81,6 +83,7 @@ class Discover : public Command {
     }
     const bio::ArmOptions arm = armOptions(simulation_);
     const std::string coordinate = observed();
+    mustBeKnown(bio::discover::widestModel(model, arm, coordinate));
     bool interrupted = false;
     std::unique_ptr<bio::discover::ElbowDisagreement> made;
     info::discover::Options options;
@@ -126,6 +129,22 @@ class Discover : public Command {
                                               simulation_.coordinates.size()));
     }
     return simulation_.coordinates.front();
+  }
+
+  /// --without names effects of the catalogue, or such as the model has already.
+  void mustBeKnown(const bio::discover::WidestModel& widest) const {
+    const auto& entries = bio::discover::effectEntries();
+    for (const std::string& id : without_) {
+      if (widest.knows(id) || widest.present().count(id) > 0 ||
+          std::any_of(entries.begin(), entries.end(),
+                      [&](const bio::discover::EffectEntry& entry) { return id == entry.id; })) {
+        continue;
+      }
+      std::vector<std::string> ids;
+      for (const auto& candidate : widest.candidates()) ids.push_back(candidate.id);
+      throw std::invalid_argument(fmt::format("--without: no effect is called '{}'; there are {}",
+                                              id, fmt::join(ids, ", ")));
+    }
   }
 
   static void mustDiffer(const Summary& summary) {

@@ -28,6 +28,13 @@ class Writer {
   Report write() {
     report_.title = fmt::format("What {} lacks", f_.modelFile);
     report_.verdict = f_.verdict.sentence;
+    for (const auto& effect : f_.verdict.effects) {
+      const Estimate& amplitude = effect.estimates.front();
+      const auto& quantity = f_.data.quantities()[amplitude.quantity];
+      report_.verdict +=
+          fmt::format(" {} = {} ± {}.", quantity.name, numberText(amplitude.value, 3),
+                      withUnit(amplitude.deviation, quantity.unit, 2));
+    }
     const bool gapOfHeldOut = f_.verdict.heldOut.has_value();
     const Gap& gap = gapOfHeldOut ? *f_.verdict.heldOut : f_.verdict.gap;
     if (gap.closedFromCalibrated && !f_.verdict.effects.empty()) {
@@ -75,7 +82,7 @@ class Writer {
   }
 
   /// Measured, base after calibration, and with the effects; the band is the measurement's noise
-  /// together with what the parameters leave open, 95 %.
+  /// together with what the amplitudes leave open, 95 %.
   Figure motion(int t) const {
     const auto& verdict = f_.verdict;
     const std::vector<double>& times = f_.data.times(t);
@@ -90,11 +97,11 @@ class Writer {
     if (verdict.base.size() > 0) {
       figure.series.push_back({.name = "calibrated, nothing added",
                                .x = times,
-                               .y = shown(f_.data.outputs(t, withStart(verdict.base, t), {})),
+                               .y = shown(f_.data.outputs(t, verdict.base, {})),
                                .style = SeriesStyle::dashed});
     }
     if (!verdict.effects.empty()) {
-      const VectorXd after = f_.data.outputs(t, withStart(verdict.values, t), {});
+      const VectorXd after = f_.data.outputs(t, verdict.values, {});
       Series series{.name = "with the effect", .x = times, .y = shown(after)};
       const VectorXd wide = bandOf(t);
       series.bandLow = shown(after - wide);
@@ -102,7 +109,7 @@ class Writer {
       figure.series.push_back(std::move(series));
       figure.caption =
           "Simulations from the start to the end, without looking at the measured angle. The band: "
-          "95 % of measurements, with the estimates' uncertainty.";
+          "95 % of measurements, with the uncertainty of the effect's size.";
     }
     return figure;
   }
@@ -112,15 +119,8 @@ class Writer {
     return std::find(held.begin(), held.end(), t) != held.end();
   }
 
-  /// Of a trial that was held out the start is the first measured value.
-  VectorXd withStart(const VectorXd& values, int) const { return values; }
-
   VectorXd bandOf(int t) const {
-    std::vector<Estimate> free = f_.verdict.nuisancesAfter;
-    for (const auto& effect : f_.verdict.effects) {
-      free.insert(free.end(), effect.estimates.begin(), effect.estimates.end());
-    }
-    // correlations are not kept here; the measurement's own noise and the amplitude's deviation
+    // the measurement's own noise and the amplitudes' deviations
     std::vector<std::size_t> wanted;
     VectorXd deviation(static_cast<Index>(f_.verdict.effects.size()));
     for (const auto& effect : f_.verdict.effects) {

@@ -67,6 +67,9 @@ std::string followUp(const info::discover::Disagreement& data,
                : "Repeat the trials at another speed and with a known mass in the hand; these data "
                  "cannot tell the effects of the class apart.";
   }
+  if (verdict.reached != info::discover::Stage::finished && verdict.finding != Finding::numerical) {
+    return "None yet: run this to its end.";
+  }
   switch (verdict.finding) {
     case Finding::unknown:
       return "Record passive motion (muscles at rest, moved by hand or a dynamometer) over the "

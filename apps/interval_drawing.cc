@@ -67,13 +67,17 @@ std::string intervalDrawing(const std::vector<IntervalRow>& rows, const std::str
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" width=\"100%\" "
       "font-family=\"sans-serif\" font-size=\"15\">\n",
       width, bottom + bottomMargin);
-  // what the colours mean
-  svg += fmt::format(
-      "<line x1=\"{0}\" x2=\"{1}\" y1=\"14\" y2=\"14\" stroke=\"#bbbbbb\" stroke-width=\"10\"/>"
-      "<text x=\"{2}\" y=\"19\">known beforehand</text>"
-      "<line x1=\"{3}\" x2=\"{4}\" y1=\"14\" y2=\"14\" stroke=\"#0072B2\" stroke-width=\"4\"/>"
-      "<text x=\"{5}\" y=\"19\">estimate and interval</text>\n",
-      left, left + 30, left + 38, left + 200, left + 230, left + 238);
+  // what the colours mean, where there are two
+  const bool both = std::any_of(rows.begin(), rows.end(),
+                                [](const IntervalRow& row) { return row.before.has_value(); });
+  if (both) {
+    svg += fmt::format(
+        "<line x1=\"{0}\" x2=\"{1}\" y1=\"14\" y2=\"14\" stroke=\"#bbbbbb\" stroke-width=\"10\"/>"
+        "<text x=\"{2}\" y=\"19\">known beforehand</text>"
+        "<line x1=\"{3}\" x2=\"{4}\" y1=\"14\" y2=\"14\" stroke=\"#0072B2\" stroke-width=\"4\"/>"
+        "<text x=\"{5}\" y=\"19\">estimate and interval</text>\n",
+        left, left + 30, left + 38, left + 200, left + 230, left + 238);
+  }
   // axis
   const double step = tickStep(scale.high - scale.low);
   for (double k = std::ceil(scale.low / step); k * step <= scale.high; ++k) {

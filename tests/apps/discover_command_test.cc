@@ -1,0 +1,101 @@
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "support/run_program.h"
+#include "support/scratch_folder.h"
+
+namespace {
+
+using support::contentOf;
+using support::ProgramResult;
+using support::runFisherHill;
+using support::ScratchFolder;
+using testing::HasSubstr;
+
+const std::string elbow = "models/elbow8.osim";
+const std::string train = "emg_data/hidden_a/train_1.sto";
+
+TEST(DiscoverCommand, NamesTheDampingThatIsHiddenAddsItAndFindsNothingMore) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "out").string();
+  const ProgramResult result = runFisherHill(
+      {"discover", elbow, train, "--noise-deg", "0.5", "--max-effects", "1", "--out", out});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(scratch.listing(),
+              testing::UnorderedElementsAre("out", "out/report.html", "out/summary.json",
+                                            "out/verdict.json", "out/with_effect.osim"));
+  const auto verdict = nlohmann::json::parse(contentOf(out + "/verdict.json"));
+  EXPECT_EQ(verdict["verdict"], "named");
+  ASSERT_EQ(verdict["effects"].size(), 1u);
+  const auto& effect = verdict["effects"][0];
+  EXPECT_EQ(effect["id"], "visc");
+  // the truth, emg_data/answers/hidden.json, is 0.3
+  const auto& viscosity = effect["parameters"]["visc.viscosity"];
+  EXPECT_NEAR(viscosity["value"].get<double>(), 0.3, 3 * viscosity["sd"].get<double>());
+  EXPECT_LT(viscosity["sd"].get<double>(), 0.03);
+  EXPECT_GT(effect["log_bayes_factor"].get<double>(), 5);
+  EXPECT_GT(verdict["gap"]["train"]["gap_closed"].get<double>(), 0.9);
+  EXPECT_TRUE(verdict["gap"]["held_out"].is_null());
+  EXPECT_GT(verdict["undetectable_below"]["coulomb"].get<double>(), 0);
+  EXPECT_THAT(result.err, HasSubstr("remains untested"));
+
+  // what is added is OpenSim's own, says where it came from, and the input is untouched
+  const std::string osim = contentOf(out + "/with_effect.osim");
+  EXPECT_THAT(osim, HasSubstr("<SpringGeneralizedForce name=\"elbow_flexion_visc\">"));
+  EXPECT_THAT(osim, HasSubstr("viscous joint damping (visc)"));
+  EXPECT_THAT(
+      osim, HasSubstr(nlohmann::json::parse(contentOf(out + "/summary.json"))["inputs"][1]["sha256"]
+                          .get<std::string>()));
+  const std::string report = contentOf(out + "/report.html");
+  for (const char* title : {"What is missing", "All that were raced", "Score over time",
+                            "The force that is missing", "Is what is left white noise?",
+                            "What these data could not have shown", "Next experiment"}) {
+    EXPECT_THAT(report, HasSubstr(title));
+  }
+
+  const ProgramResult again = runFisherHill({"discover", out + "/with_effect.osim", train,
+                                             "--noise-deg", "0.5", "--max-effects", "1", "--json"});
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(nlohmann::json::parse(again.out)["verdict"], "none");
+}
+
+struct Mistake {
+  std::string name;
+  std::vector<std::string> arguments;
+  std::string says;
+};
+
+class DiscoverMistake : public testing::TestWithParam<Mistake> {};
+
+TEST_P(DiscoverMistake, IsOneLineStatusTwoAndLeavesNothing) {
+  const ScratchFolder scratch;
+  // a trial without a measured angle
+  std::ofstream(scratch / "unmeasured.csv") << "time,BRA\n0,0.1\n0.1,0.1\n0.2,0.1\n";
+  std::vector<std::string> arguments = {"discover", elbow};
+  for (std::string argument : GetParam().arguments) {
+    if (argument == "unmeasured.csv") argument = (scratch / "unmeasured.csv").string();
+    arguments.push_back(argument);
+  }
+  arguments.insert(arguments.end(), {"--out", (scratch / "out").string()});
+  const ProgramResult result = runFisherHill(arguments);
+  EXPECT_EQ(result.status, 2) << result.out;
+  EXPECT_THAT(result.err, HasSubstr(GetParam().says));
+  EXPECT_THAT(scratch.listing(), testing::ElementsAre("unmeasured.csv"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Discover, DiscoverMistake,
+    testing::Values(
+        Mistake{"NothingMeasured", {"unmeasured.csv"}, "elbow_flexion"},
+        Mistake{"SameTrialTwice", {train, train}, "is the same trial as"},
+        Mistake{"HeldOutIsFitted", {train, "--hold-out", train}, "is the same trial as"},
+        Mistake{"UnknownEffect", {train, "--without", "ghost"}, "no effect is called 'ghost'"},
+        Mistake{"TwoCoordinates", {train, "--coordinate", "elbow_flexion,pro_sup"}, "observes one"},
+        Mistake{"NoSensitivities", {train, "--integrator", "cvode"}, "must be vi or vi-left"},
+        Mistake{"NoiseBelowZero", {train, "--noise-deg", "-1"}, "--noise-deg"},
+        Mistake{"FourEffects", {train, "--max-effects", "4"}, "--max-effects"}),
+    [](const auto& info) { return info.param.name; });
+
+}  // namespace
