@@ -350,9 +350,10 @@ class Work {
                 options_.heldOut);
     closeGap(held);
     verdict_.heldOut = held;
-    // a base that fits badly is no exact yardstick: its simulation must be no worse, too
+    // by more than chance; a base that fits badly is no exact yardstick, so its simulation must be
+    // no worse, too
     judgement.heldOutWorse =
-        !chosen_.empty() && with < without && held.after > 0.95 * held.calibrated;
+        !chosen_.empty() && with < without - 3 && held.after > 0.95 * held.calibrated;
   }
 
   std::string sentence() const {
