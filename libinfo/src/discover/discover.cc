@@ -163,9 +163,11 @@ class Work {
   }
 
   // Is anything to be gained beyond what has been chosen?
-  bool promising() const {
+  bool promising() {
+    search_->simulation(chosen_);
     for (const bool simulation : {false, true})
-      if (search_->screen(chosen_, simulation).front().gain > 0.6 * options_.evidence) return true;
+      for (const Screened& s : search_->screen(chosen_, simulation))
+        if (s.gain > 0.6 * options_.evidence) return true;
     return false;
   }
 
