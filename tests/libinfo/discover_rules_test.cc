@@ -201,6 +201,7 @@ TEST(Discover, FindsTheForceOnALinearOscillator) {
   Options options;
   options.outputDeviation = kOutput;
   options.latentScale = 1;
+  options.latentTime = kTime;
   options.latentTolerance = 0.6;
   int calls = 0;
   options.progress = [&](const Progress& p) {
