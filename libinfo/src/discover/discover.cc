@@ -163,9 +163,11 @@ class Work {
   }
 
   // Is anything to be gained beyond what has been chosen?
-  bool promising() const {
+  bool promising() {
+    search_->simulation(chosen_);
     for (const bool simulation : {false, true})
-      if (search_->screen(chosen_, simulation).front().gain > 0.6 * options_.evidence) return true;
+      for (const Screened& s : search_->screen(chosen_, simulation))
+        if (s.gain > 0.6 * options_.evidence) return true;
     return false;
   }
 
@@ -350,9 +352,10 @@ class Work {
                 options_.heldOut);
     closeGap(held);
     verdict_.heldOut = held;
-    // a base that fits badly is no exact yardstick: its simulation must be no worse, too
+    // by more than chance; a base that fits badly is no exact yardstick, so its simulation must be
+    // no worse, too
     judgement.heldOutWorse =
-        !chosen_.empty() && with < without && held.after > 0.95 * held.calibrated;
+        !chosen_.empty() && with < without - 3 && held.after > 0.95 * held.calibrated;
   }
 
   std::string sentence() const {

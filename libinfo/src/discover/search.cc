@@ -113,7 +113,7 @@ VectorXd Search::started(std::size_t candidate, std::size_t start, VectorXd valu
 std::vector<Screened> Search::screen(const std::vector<std::size_t>& effects,
                                      bool simulation) const {
   const Entry& entry = at(effects);
-  const Fit& fit = simulation ? *entry.simulation : entry.fit;
+  const Fit& fit = simulation ? entry.simulation.value() : entry.fit;
   std::vector<Screened> result;
   const auto& candidates = data_.candidates();
   // candidates whose shape quantities have several starts are seen once for each

@@ -117,6 +117,9 @@ void spectrum(const Likelihood& likelihood, const Fit& fit, Unknown& unknown) {
       }
       sum += cosine * cosine + sine * sine;
     }
+    // against the spectrum that the prior of the force has, which falls as 1/(1 + (2πfℓ)²)
+    const double slow = 2 * std::numbers::pi * f * fit.noise.latentTime;
+    sum *= 1 + slow * slow;
     density.push_back(sum);
     if (sum > peak) {
       peak = sum;

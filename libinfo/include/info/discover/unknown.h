@@ -17,7 +17,7 @@ struct SymbolicTerm {
 
 /// What can be said of an effect that has no name.
 struct Unknown {
-  double peakFrequency = 0;         ///< [Hz] of the latent force
+  double peakFrequency = 0;         ///< [Hz] of the latent force, relative to its prior
   double peakShare = 0;             ///< of its power within ±0.5 Hz of the peak
   double forceSize = 0;             ///< root mean square [unit of the generalised force]
   std::vector<SymbolicTerm> terms;  ///< best subset, at most three
