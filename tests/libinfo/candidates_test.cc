@@ -9,9 +9,11 @@
 #include "info/projection.h"
 #include "info/symmetric_eigen.h"
 #include "info/systems/suspended_mass.h"
+#include "support/throws_saying.h"
 
 namespace {
 
+using support::throwsSaying;
 using namespace info;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -122,7 +124,7 @@ TEST(Stack, OfTheSameSystemTwiceIsThatSystem) {
 
 // DJ·ζ against the central difference of J(P(ξ + γζ)), at a motion off the desired one.
 template <class Projection>
-double slopeDefect(Projection& projection, double move) {
+double stackedSlopeDefect(Projection& projection, double move) {
   const auto direction = projection.findDirection(1e-9);
   EXPECT_LT(direction.slope, 0);
   const double step = move / direction.largestMove;
@@ -137,7 +139,7 @@ TEST(Stack, HasTheExactSlopeInSteps) {
     std::vector<VectorXd> start = d.desiredInput;
     for (std::size_t k = 1; k < start.size(); ++k) start[k] *= 1.05;
     StepProjection projection(stepsAtAll(), d, start);
-    EXPECT_NEAR(slopeDefect(projection, 3e-4), 0, 1e-6);
+    EXPECT_NEAR(stackedSlopeDefect(projection, 3e-4), 0, 1e-6);
   }
 }
 
@@ -158,7 +160,7 @@ TEST(Stack, HasTheSlopeToSecondOrderInContinuousTime) {
       start.push_back(1.05 * d.desiredInput.back());
     }
     FlowProjection projection(stack(all), d, start);
-    return slopeDefect(projection, 1e-3);
+    return stackedSlopeDefect(projection, 1e-3);
   };
   const double coarse = defect(0.02);
   EXPECT_LT(std::abs(coarse), 0.02);
@@ -175,16 +177,6 @@ TEST(RobustDesign, BeatsTheNominalOneAtItsWorstCandidate) {
   const VectorXd ofNominal = leastAt(nominal.motion().u), ofRobust = leastAt(robust.motion().u);
   EXPECT_GT(ofRobust.minCoeff(), 1.2 * ofNominal.minCoeff())
       << ofNominal.transpose() << " and " << ofRobust.transpose();
-}
-
-template <class F>
-void throwsSaying(F function, const char* words) {
-  try {
-    function();
-    ADD_FAILURE() << "nothing thrown: " << words;
-  } catch (const std::exception& e) {
-    EXPECT_THAT(e.what(), HasSubstr(words));
-  }
 }
 
 TEST(Candidates, NameTheRuleThatIsBroken) {

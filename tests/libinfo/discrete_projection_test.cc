@@ -8,9 +8,11 @@
 #include "info/symmetric_eigen.h"
 #include "info/systems/robot_designs.h"
 #include "info/systems/suspended_mass.h"
+#include "support/throws_saying.h"
 
 namespace {
 
+using support::throwsSaying;
 using namespace info;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -137,16 +139,6 @@ TEST(StepProjection, KeepsInputsWithinTheirLimits) {
   EXPECT_GT(largest(), 1.1);
   task.design.limits = {VectorXd{{-0.9}}, VectorXd{{0.9}}, 0.02};
   EXPECT_LT(largest(), 0.9);
-}
-
-template <class F>
-void throwsSaying(const F& function, const char* words) {
-  try {
-    function();
-    ADD_FAILURE() << "nothing thrown: " << words;
-  } catch (const std::exception& e) {
-    EXPECT_THAT(e.what(), HasSubstr(words));
-  }
 }
 
 TEST(StepProjection, AdvisesWhereTheStartTellsNothing) {

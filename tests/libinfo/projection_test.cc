@@ -6,9 +6,11 @@
 
 #include "info/symmetric_eigen.h"
 #include "info/systems/robot_designs.h"
+#include "support/throws_saying.h"
 
 namespace {
 
+using support::throwsSaying;
 using namespace info;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -67,16 +69,6 @@ TEST(FlowProjection, MakesBothParametersOfTheSuspendedMassVisible) {
   EXPECT_NEAR(before[1], 3.18e6, 0.01e6);
   EXPECT_LT(after[1] / after[0], 20);
   EXPECT_GT(after[1], before[1]);
-}
-
-template <class F>
-void throwsSaying(F function, const char* words) {
-  try {
-    function();
-    ADD_FAILURE() << "nothing thrown: " << words;
-  } catch (const std::exception& e) {
-    EXPECT_THAT(e.what(), HasSubstr(words));
-  }
 }
 
 TEST(FlowProjection, NamesTheRuleThatIsBroken) {

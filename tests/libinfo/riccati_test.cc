@@ -4,8 +4,11 @@
 
 #include <cmath>
 
+#include "support/throws_saying.h"
+
 namespace {
 
+using support::throwsSaying;
 using namespace info;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -161,16 +164,6 @@ TEST(ContinuousAffineLq, IsStationaryToSecondOrderInTheStep) {
   const double coarse = defect(50), fine = defect(100);
   EXPECT_LT(coarse, 2e-3);
   EXPECT_NEAR(coarse / fine, 4, 0.8);
-}
-
-template <class F>
-void throwsSaying(F function, const char* words) {
-  try {
-    function();
-    ADD_FAILURE() << "nothing thrown: " << words;
-  } catch (const std::exception& e) {
-    EXPECT_THAT(e.what(), HasSubstr(words));
-  }
 }
 
 TEST(Riccati, NamesTheWeightThatBreaksItsRule) {
