@@ -60,7 +60,6 @@ class Work {
   Verdict run() {
     try {
       prepare();
-      if (verdict_.finding == Finding::numerical) return verdict_;
       race();
       judge();
       conclude();
@@ -96,21 +95,15 @@ class Work {
                       report(stage_, fraction_ + 0.5 * (0.9 - fraction_) * 0.05, doing);
                     });
     search_->calibrate();
-    numericalError(search_->simulation({}).values);
-    if (verdict_.numericalError > 0.2) {
-      verdict_.finding = Finding::numerical;
-      verdict_.sentence = fmt::format(
-          "Halving the time step changes the simulation by {:.2g} deviations of the "
-          "measurement: take shorter steps first.",
-          verdict_.numericalError);
-    }
     base();
     verdict_.reached = Stage::localise;
     report(Stage::localise, 0.2, "");
   }
 
-  // a model whose own steps are too long says nothing about the world
-  void numericalError(const VectorXd& values) {
+  // A simulation that changes with its step says nothing about the world. Asked of what is believed
+  // in the end: a base that lacks something may run away, and then every step is too long.
+  bool stepsTooLong() {
+    const VectorXd& values = search_->simulation(chosen_).values;
     for (const int t : trials_) {
       const VectorXd refined = data_.refinedOutputs(t, values);
       if (refined.size() == 0) continue;
@@ -118,6 +111,13 @@ class Work {
           (refined - data_.outputs(t, values, {})).cwiseAbs().maxCoeff() / verdict_.outputDeviation;
       verdict_.numericalError = std::max(verdict_.numericalError, change);
     }
+    if (verdict_.numericalError <= 0.2) return false;
+    verdict_.finding = Finding::numerical;
+    verdict_.sentence = fmt::format(
+        "Halving the time step changes the simulation by {:.2g} deviations of the "
+        "measurement: take shorter steps first.",
+        verdict_.numericalError);
+    return true;
   }
 
   // what there is to say about the base model
@@ -221,7 +221,6 @@ class Work {
       verdict_.after = adequacy(search_->likelihood(), leader.fit, test_);
       verdict_.values = leader.fit.values;
       verdict_.latentSizeAfter = leader.fit.noise.latent;
-      numericalError(leader.fit.values);
       verdict_.nuisancesAfter = estimatesOf(leader.fit, data_.nuisances(), data_);
     }
     for (Finalist& f : verdict_.finalists) {
@@ -274,6 +273,7 @@ class Work {
     if (worst != nullptr) judgement.surprise = std::abs(worst->surprise);
 
     gaps(before, after, judgement);
+    if (stepsTooLong()) return;
     const Decision decision = decide(data_.candidates(), judgement, options_);
     verdict_.finding = decision.finding;
     verdict_.effects = decision.effects;
