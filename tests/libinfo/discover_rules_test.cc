@@ -219,6 +219,47 @@ TEST(Discover, FindsTheForceOnALinearOscillator) {
   EXPECT_NEAR(v.latentSizeAfter, kLatent, 0.1);
 }
 
+// As drawn(), but what is pushed cannot be simulated, or nothing can.
+class Fragile : public LinearDisagreement {
+ public:
+  Fragile(LinearDisagreement data, bool always)
+      : LinearDisagreement(std::move(data)), always_(always) {}
+  Prediction predict(int trial, const VectorXd& values, const VectorXd& latent,
+                     const std::vector<std::size_t>& wanted, bool latentToo) const override {
+    Prediction p = LinearDisagreement::predict(trial, values, latent, wanted, latentToo);
+    if (fails(values)) p.outputs.setConstant(std::nan(""));
+    return p;
+  }
+  VectorXd outputs(int trial, const VectorXd& values, const VectorXd& latent) const override {
+    VectorXd y = LinearDisagreement::outputs(trial, values, latent);
+    if (fails(values)) y.setConstant(std::nan(""));
+    return y;
+  }
+
+ private:
+  bool fails(const VectorXd& values) const { return always_ || values[2] != 0; }
+  bool always_;
+};
+
+TEST(Discover, GoesOnWithoutACandidateThatCannotBeSimulated) {
+  Options options;
+  options.outputDeviation = kOutput;
+  options.latentScale = 1;
+  options.latentTime = kTime;
+  options.latentTolerance = 0.6;
+  const Verdict v = run(Fragile(drawn(5, 2, 1.1), false), options);
+  EXPECT_EQ(v.reached, Stage::finished);
+  ASSERT_EQ(v.effects.size(), 1U);
+  EXPECT_EQ(v.effects[0].candidate, 0U);
+  for (const Finalist& f : v.finalists) EXPECT_TRUE(std::isfinite(f.logEvidence));
+}
+
+TEST(Discover, SaysThatTheModelCannotBeSimulated) {
+  Options options;
+  options.outputDeviation = kOutput;
+  EXPECT_THROW(run(Fragile(drawn(5, 2, 1.1), true), options), std::domain_error);
+}
+
 TEST(Discover, StopsWhenToldTo) {
   const LinearDisagreement data = drawn(5, 2, 1.1);
   Options options;

@@ -193,6 +193,7 @@ class Work {
   void judge() {
     const double base = search_->at({}).score;
     for (const auto& [effects, entry] : search_->entries()) {
+      if (!entry.works()) continue;
       Finalist f;
       f.effects = effects;
       f.logEvidence = entry.score - base;
@@ -334,8 +335,12 @@ class Work {
     const Noise still{verdict_.outputDeviation, 0, options_.latentTime};
     const Likelihood& likelihood = search_->likelihood();
     const auto nominal = [&](const Likelihood& l, const std::vector<int>& trials) {
-      return l.simulationError(
-          l.fit(startsOnly(data_, trials), still, nominalValues(data_)).values);
+      try {
+        return l.simulationError(
+            l.fit(startsOnly(data_, trials), still, nominalValues(data_)).values);
+      } catch (const std::domain_error&) {
+        return HUGE_VAL;  // as it came it does not reach the end
+      }
     };
     gap.nominal = nominal(likelihood, trials_);
     gap.calibrated = likelihood.simulationError(search_->simulation({}).values);

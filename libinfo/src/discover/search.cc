@@ -13,6 +13,8 @@ using Eigen::VectorXd;
 
 namespace {
 
+// the score of what could not be simulated at all
+constexpr double kFailed = -1e300;
 constexpr double kFirstSize = 0.3, kRaceSize = 0.1, kSmallest = 1e-3;
 // with so large a latent force none at all is out of the question, and its fit is not worth the
 // time
@@ -43,7 +45,7 @@ void Search::improve(const std::vector<std::size_t>& effects, const VectorXd& st
   const Hypothesis hypothesis = makeHypothesis(data_, effects, trials_);
   Entry found;
   found.effects = effects;
-  found.score = -1e300;
+  found.score = kFailed;
   const auto keep = [&](Fit fit) {
     ++fits_;
     const double score = fit.logEvidence - fit.noise.latent / options_.latentScale;
@@ -52,11 +54,22 @@ void Search::improve(const std::vector<std::size_t>& effects, const VectorXd& st
       found.fit = std::move(fit);
     }
   };
+  // nothing where the simulation cannot even begin
+  const auto fitted = [&](double latent, const VectorXd& from, const std::vector<VectorXd>& forces,
+                          const FitOptions& options) -> std::optional<Fit> {
+    try {
+      return likelihood_->fit(hypothesis, {output_, latent, options_.latentTime}, from, forces,
+                              options);
+    } catch (const std::domain_error&) {
+      return std::nullopt;
+    }
+  };
   VectorXd values = start;
   std::vector<VectorXd> eta;
   for (int round = 0; round < 6 && size > kSmallest; ++round) {
-    Fit fit = likelihood_->fit(hypothesis, {output_, size, options_.latentTime}, values, eta,
-                               {round == 0 ? 10 : 5, 0.05});
+    std::optional<Fit> tried = fitted(size, values, eta, {round == 0 ? 10 : 5, 0.05});
+    if (!tried) break;
+    Fit& fit = *tried;
     const double ratio =
         fit.latentPower / std::max(1e-9, fit.latentFreedom + size / options_.latentScale);
     const double factor = std::clamp(std::pow(ratio, 0.6), 0.15, 3.0);
@@ -67,11 +80,11 @@ void Search::improve(const std::vector<std::size_t>& effects, const VectorXd& st
     size *= factor;
     if (size > 3) break;
   }
-  if (found.score == -1e300 || size < kHopeless) {
-    Fit simulation =
-        likelihood_->fit(hypothesis, {output_, 0, options_.latentTime}, values, {}, {12, 0.02});
-    found.simulation = simulation;
-    keep(std::move(simulation));
+  if (found.score == kFailed || size < kHopeless) {
+    if (std::optional<Fit> simulation = fitted(0, values, {}, {12, 0.02})) {
+      found.simulation = *simulation;
+      keep(std::move(*simulation));
+    }
   }
   const auto known = entries_.find(effects);
   if (known == entries_.end()) {
@@ -91,6 +104,7 @@ void Search::improve(const std::vector<std::size_t>& effects, const VectorXd& st
 void Search::calibrate() {
   report_("base model");
   improve({}, nominalValues(data_), kFirstSize);
+  mustWork();
   // the scale of the latent force where the arm really goes, then once more from both ends
   const VectorXd values = at({}).fit.values;
   scaleValues_ = values;
@@ -98,6 +112,13 @@ void Search::calibrate() {
   entries_.clear();
   report_("base model");
   improve({}, values, kRaceSize);
+  mustWork();
+}
+
+void Search::mustWork() const {
+  if (!at({}).works())
+    throw std::domain_error(
+        "the model cannot be simulated over these trials, not even with a force that helps it");
 }
 
 VectorXd Search::started(std::size_t candidate, std::size_t start, VectorXd values) const {
@@ -231,13 +252,17 @@ void Search::race(const std::vector<std::size_t>& base,
     VectorXd best = started(c, 0, values);
     double evidence = -1e300;
     for (std::size_t s = 0; starts > 1 && s < starts; ++s) {
-      const Fit fit = likelihood_->fit(hypothesis, {output_, raceSize, options_.latentTime},
-                                       started(c, s, values), {}, {5, 0.1});
-      ++fits_;
-      if (fit.logEvidence > evidence) {
-        evidence = fit.logEvidence;
-        best = fit.values;
+      try {
+        const Fit fit = likelihood_->fit(hypothesis, {output_, raceSize, options_.latentTime},
+                                         started(c, s, values), {}, {5, 0.1});
+        if (fit.logEvidence > evidence) {
+          evidence = fit.logEvidence;
+          best = fit.values;
+        }
+      } catch (const std::domain_error&) {
+        // this start cannot be simulated; another may
       }
+      ++fits_;
     }
     improve(effects, best, raceSize);
   }
@@ -251,6 +276,7 @@ void Search::race(const std::vector<std::size_t>& base,
   };
   const std::size_t leader = lead();
   const Entry& first = at(with(base, leader));
+  if (!first.works()) return;
   const VectorXd from = first.fit.values;
   const double score = first.score;
   const double size = std::max(2e-3, first.fit.noise.latent);
@@ -276,7 +302,12 @@ void Search::race(const std::vector<std::size_t>& base,
   improve(base, absent(from), size);
 }
 
+bool Entry::works() const {
+  return score > kFailed;
+}
+
 double Search::significance(const Entry& entry) const {
+  if (!entry.works()) return 0;
   double least = 1e300;
   for (const std::size_t e : entry.effects) {
     const std::size_t amplitude = data_.candidates()[e].quantities[0];

@@ -19,6 +19,7 @@ struct Entry {
   Fit fit;
   std::optional<Fit> simulation;  ///< the same without latent force, where it was fitted
   double score = 0;               ///< log Z − σ_d/s
+  bool works() const;             ///< false: no fit could be simulated
 };
 
 /// What one linear step says of a candidate.
@@ -57,6 +58,7 @@ class Search {
   double significance(const Entry& entry) const;
 
  private:
+  void mustWork() const;  ///< @throws std::domain_error if the base could not be fitted
   void improve(const std::vector<std::size_t>& effects, const Eigen::VectorXd& start, double size);
   Eigen::VectorXd started(std::size_t candidate, std::size_t start, Eigen::VectorXd values) const;
 
