@@ -226,7 +226,7 @@ std::vector<EffectRow> makeTable() {
        "excitation = (1 + g)·EMG, three heads",
        "g",
        "",
-       -0.25,
+       -0.4,
        true,
        {"Fmax_TRI"},
        [](Truth& truth, double a, RandomNumbers&) {
@@ -262,7 +262,7 @@ std::vector<EffectRow> makeTable() {
        "F0 of the three heads × (1 + a)",
        "change",
        "",
-       -0.25,
+       -0.4,
        true,
        {"gain_TRI"},
        [](Truth& truth, double a, RandomNumbers&) {
@@ -275,7 +275,7 @@ std::vector<EffectRow> makeTable() {
        "F0 of both heads × (1 + a)",
        "change",
        "",
-       -0.3,
+       -0.4,
        true,
        {"gain_BIC"},
        [](Truth& truth, double a, RandomNumbers&) {
@@ -288,7 +288,7 @@ std::vector<EffectRow> makeTable() {
        "F0 × (1 + a)",
        "change",
        "",
-       -0.35,
+       -0.4,
        true,
        {"gain_BRA"},
        [](Truth& truth, double a, RandomNumbers&) {
