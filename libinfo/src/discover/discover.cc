@@ -139,12 +139,14 @@ class Work {
       const bool first = chosen_.empty();
       if (static_cast<int>(chosen_.size()) >= options_.maxEffects || (!first && !promising()))
         break;
-      search_->race(chosen_, search_->shortlist(chosen_, first ? options_.finalists : 5));
+      const std::vector<std::size_t> list =
+          search_->shortlist(chosen_, first ? options_.finalists : 5);
+      search_->race(chosen_, list);
       const std::vector<std::size_t> before = chosen_;
       chosen_ = best();
       while (swapOne()) {
       }
-      if (chosen_ == before) break;
+      if (chosen_ == before && !replaceOne(list)) break;
     }
   }
 
@@ -168,6 +170,28 @@ class Work {
     for (const bool simulation : {false, true})
       for (const Screened& s : search_->screen(chosen_, simulation))
         if (s.gain > 0.6 * options_.evidence) return true;
+    return false;
+  }
+
+  // A newcomer that helps much but leaves nothing to one of those before it takes its place.
+  bool replaceOne(const std::vector<std::size_t>& list) {
+    const double score = search_->at(chosen_).score;
+    for (const std::size_t c : list) {
+      std::vector<std::size_t> both = chosen_;
+      both.push_back(c);
+      std::sort(both.begin(), both.end());
+      if (!(search_->at(both).score > score + options_.evidence)) continue;
+      for (const std::size_t old : chosen_) {
+        search_->drop(both, old);
+        std::vector<std::size_t> effects = both;
+        effects.erase(std::find(effects.begin(), effects.end(), old));
+        const Entry& entry = search_->at(effects);
+        if (entry.score > score && search_->significance(entry) > options_.significance) {
+          chosen_ = effects;
+          return true;
+        }
+      }
+    }
     return false;
   }
 

@@ -302,6 +302,20 @@ void Search::race(const std::vector<std::size_t>& base,
   improve(base, absent(from), size);
 }
 
+void Search::drop(const std::vector<std::size_t>& effects, std::size_t effect) {
+  const Entry& entry = at(effects);
+  if (!entry.works()) return;
+  std::vector<std::size_t> rest = effects;
+  rest.erase(std::find(rest.begin(), rest.end(), effect));
+  VectorXd start = entry.fit.values;
+  const auto& nuisances = data_.nuisances();
+  for (const std::size_t q : data_.candidates()[effect].quantities)
+    if (std::find(nuisances.begin(), nuisances.end(), q) == nuisances.end())
+      start[static_cast<Index>(q)] = data_.quantities()[q].nominal;
+  report_(describe(data_, rest));
+  improve(rest, start, std::clamp(2 * entry.fit.noise.latent, 0.01, kRaceSize));
+}
+
 bool Entry::works() const {
   return score > kFailed;
 }

@@ -57,6 +57,9 @@ class Search {
   /// Least |amplitude − nominal|/deviation over its effects.
   double significance(const Entry& entry) const;
 
+  /// Fits `effects` without one of them, from where the fit of all of them is.
+  void drop(const std::vector<std::size_t>& effects, std::size_t effect);
+
  private:
   void mustWork() const;  ///< @throws std::domain_error if the base could not be fitted
   void improve(const std::vector<std::size_t>& effects, const Eigen::VectorXd& start, double size);
