@@ -202,7 +202,7 @@ TEST(TrueElbow, TheInputChainDoesWhatTheTableSays) {
   EXPECT_NEAR(at("delay", 1, 0.54)[0], 0.2, 1e-12);
   EXPECT_NEAR(at("delay", 1, 0.03)[0], 0.1, 1e-12);
   EXPECT_NEAR(at("offset", 1, 0.5)[7], 0.19, 1e-12);
-  EXPECT_NEAR(at("gain_TRI", 1, 0.5)[2], 0.15, 1e-12);
+  EXPECT_NEAR(at("gain_TRI", 1, 0.5)[2], 0.2 * (1 - 0.4), 1e-12);
   EXPECT_NEAR(at("gain_TRI", 1, 0.5)[3], 0.2, 1e-12);
   EXPECT_NEAR(at("crosstalk", 1, 0)[0], 0.1 - 0.06 * 0.3, 1e-12);
   EXPECT_NEAR(at("crosstalk", 1, 0)[4], 0.2, 1e-12);
