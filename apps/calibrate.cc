@@ -11,6 +11,7 @@
 #include "calibrate_report.h"
 #include "driven_trial.h"
 #include "info/version.h"
+#include "input_rules.h"
 #include "progress_bar.h"
 #include "result.h"
 
@@ -132,8 +133,8 @@ class Calibrate : public Command {
     for (const auto* files : {&trials_, &heldOut_}) {
       for (const std::string& file : *files) summary.addInput(file);
     }
-    mustDiffer(summary);
-    mustNotOverwrite(summary, folder, names);
+    inputsMustDiffer(summary, trials_.size());
+    resultsMustNotBeInputs(summary, folder, names);
 
     const bio::Model model = bio::readOsim(model_);
     for (const std::string& warning : model.warnings) summary.warn(warning);
@@ -170,8 +171,6 @@ class Calibrate : public Command {
   }
 
  private:
-  static std::string drivenName(std::size_t i) { return fmt::format("driven_{}.sto", i + 1); }
-
   bio::CalibrationOptions calibrationOptions(const CommandContext& context) const {
     bio::CalibrationOptions options;
     for (const std::string& name : parameters_) {
@@ -198,37 +197,6 @@ class Calibrate : public Command {
     options.profile = profile_;
     options.bootstrap = bootstrap_.value_or(0);
     return options;
-  }
-
-  /// A trial that is estimated from twice counts twice, and one held out must not be estimated
-  /// from.
-  void mustDiffer(const Summary& summary) const {
-    const auto& inputs = summary.inputs();
-    for (std::size_t i = 1; i < inputs.size(); ++i) {
-      for (std::size_t j = i + 1; j < inputs.size(); ++j) {
-        if (inputs[i].sha256 != inputs[j].sha256) continue;
-        const bool between = i <= trials_.size() && j > trials_.size();
-        throw std::invalid_argument(
-            between ? fmt::format("{}: is held out, and estimated from as {}", inputs[j].path,
-                                  inputs[i].path)
-                    : fmt::format("{}: is the same trial as {}", inputs[j].path, inputs[i].path));
-      }
-    }
-  }
-
-  /// Not even with --force.
-  void mustNotOverwrite(const Summary& summary, const OutputFolder& folder,
-                        const std::vector<std::string>& names) const {
-    for (const std::string& name : names) {
-      for (const Summary::InputFile& input : summary.inputs()) {
-        std::error_code ignored;
-        if (folder.active() &&
-            std::filesystem::equivalent(folder.path(name), input.path, ignored)) {
-          throw std::invalid_argument(fmt::format(
-              "{}: is an input and would be overwritten; choose another --out", input.path));
-        }
-      }
-    }
   }
 
   std::vector<bio::Trial> read(const std::vector<std::string>& files, const bio::Model& model,

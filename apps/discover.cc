@@ -1,20 +1,19 @@
 #include "discover.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <algorithm>
+#include <chrono>
 
 #include "angle_unit.h"
 #include "arm_input.h"
 #include "arm_options.h"
 #include "bio/discover/add_effects.h"
-#include "bio/discover/effects.h"
 #include "bio/osim_file.h"
 #include "discover_report.h"
 #include "driven_trial.h"
 #include "follow_up.h"
 #include "info/version.h"
+#include "input_rules.h"
 #include "interruption.h"
 #include "progress_bar.h"
 #include "result.h"
@@ -75,54 +74,34 @@ class Discover : public Command {
       trials.push_back(bio::readTrial(file, model, {simulation_.ignoreExtra}));
       for (const std::string& warning : trials.back().warnings) summary.warn(warning);
     }
-    mustDiffer(summary);
+    inputsMustDiffer(summary, trials_.size());
+    resultsMustNotBeInputs(summary, folder, names);
+    const bio::ArmOptions arm = armOptions(simulation_);
+    const std::string coordinate = observed();
+    const Found found = find(model, arm, coordinate, trials);
+    const bio::discover::ElbowDisagreement& data = *found.data;
+    const info::discover::Verdict& verdict = found.verdict;
+    const bool isAngle = data.widest().coordinate().isRotation;
     if (trials_.size() == 1 && heldOut_.empty()) {
       summary.warn(
           "one trial and none held out: whether a name holds for other motions remains untested; "
           "add trials, or one with --hold-out");
     }
-    const bio::ArmOptions arm = armOptions(simulation_);
-    const std::string coordinate = observed();
-    mustBeKnown(bio::discover::widestModel(model, arm, coordinate));
-    bool interrupted = false;
-    std::unique_ptr<bio::discover::ElbowDisagreement> made;
-    info::discover::Options options;
-    info::discover::Verdict verdict;
-    // steps that are too long look like an effect: shorter ones, unless they were asked for
-    for (double step = simulation_.stepOrDefault();; step /= 2) {
-      bio::discover::ElbowOptions elbow;
-      elbow.simulation = simulationOptions(simulation_, 0, 1);
-      elbow.simulation.step = step;
-      elbow.without = without_;
-      made =
-          std::make_unique<bio::discover::ElbowDisagreement>(model, arm, coordinate, trials, elbow);
-      options = engineOptions(made->widest().coordinate().isRotation);
-      ProgressBar bar("discover");
-      options.progress = [&](const info::discover::Progress& at) {
-        if (!interruptionRequested()) bar.update(at.fraction);
-        interrupted = interruptionRequested();
-        return !interrupted;
-      };
-      verdict = info::discover::run(*made, options);
-      summary.set("step_s", step);
-      if (verdict.finding != Finding::numerical || simulation_.step || step < 0.003) break;
-    }
-    const bio::discover::ElbowDisagreement& data = *made;
-    const bool isAngle = data.widest().coordinate().isRotation;
     const std::string next = followUp(data, verdict);
-    const DiscoverFindings findings{model_, files, data, options, verdict, next, isAngle};
+    const DiscoverFindings findings{model_,  files, data,    found.options,
+                                    verdict, next,  isAngle, found.wallSeconds};
+    summary.set("integrator", simulation_.integrator);
+    summary.set("step_s", found.step);
     tell(findings, summary);
     folder.write("verdict.json",
                  [&](std::ostream& out) { out << verdictJson(findings).dump(2) << '\n'; });
     if (mayBeAdded(verdict)) addTo(model, arm, coordinate, trials, findings, summary, folder);
     deliver(context, summary, discoverReport(findings), folder);
-    if (interrupted) throw Interrupted{};
+    if (found.interrupted) throw Interrupted{};
     return verdict.finding == Finding::numerical ? ExitStatus::answerIsNo : ExitStatus::done;
   }
 
  private:
-  static std::string drivenName(std::size_t i) { return fmt::format("driven_{}.sto", i + 1); }
-
   std::string observed() const {
     if (simulation_.coordinates.size() != 1) {
       throw std::invalid_argument(fmt::format("--coordinate: {} are free; discover observes one",
@@ -131,32 +110,42 @@ class Discover : public Command {
     return simulation_.coordinates.front();
   }
 
-  /// --without names effects of the catalogue, or such as the model has already.
-  void mustBeKnown(const bio::discover::WidestModel& widest) const {
-    const auto& entries = bio::discover::effectEntries();
-    for (const std::string& id : without_) {
-      if (widest.knows(id) || widest.present().count(id) > 0 ||
-          std::any_of(entries.begin(), entries.end(),
-                      [&](const bio::discover::EffectEntry& entry) { return id == entry.id; })) {
-        continue;
+  struct Found {
+    std::unique_ptr<bio::discover::ElbowDisagreement> data;
+    info::discover::Options options;
+    info::discover::Verdict verdict;
+    double step = 0;         ///< [s]
+    double wallSeconds = 0;  ///< of all attempts
+    bool interrupted = false;
+  };
+  /// Steps that are too long look like an effect: shorter ones, unless they were asked for.
+  Found find(const bio::Model& model, const bio::ArmOptions& arm, const std::string& coordinate,
+             const std::vector<bio::Trial>& trials) const {
+    Found found;
+    const auto begin = std::chrono::steady_clock::now();
+    for (found.step = simulation_.stepOrDefault();; found.step /= 2) {
+      bio::discover::ElbowOptions elbow;
+      elbow.simulation = simulationOptions(simulation_, 0, 1);
+      elbow.simulation.step = found.step;
+      elbow.without = without_;
+      found.data =
+          std::make_unique<bio::discover::ElbowDisagreement>(model, arm, coordinate, trials, elbow);
+      found.options = engineOptions(found.data->widest().coordinate().isRotation);
+      ProgressBar bar("discover");
+      found.options.progress = [&](const info::discover::Progress& at) {
+        found.interrupted = interruptionRequested();
+        if (!found.interrupted) bar.update(at.fraction);
+        return !found.interrupted;
+      };
+      found.verdict = info::discover::run(*found.data, found.options);
+      found.options.progress = {};
+      if (found.verdict.finding != Finding::numerical || simulation_.step || found.step < 0.003) {
+        break;
       }
-      std::vector<std::string> ids;
-      for (const auto& candidate : widest.candidates()) ids.push_back(candidate.id);
-      throw std::invalid_argument(fmt::format("--without: no effect is called '{}'; there are {}",
-                                              id, fmt::join(ids, ", ")));
     }
-  }
-
-  static void mustDiffer(const Summary& summary) {
-    const auto& inputs = summary.inputs();
-    for (std::size_t i = 1; i < inputs.size(); ++i) {
-      for (std::size_t j = i + 1; j < inputs.size(); ++j) {
-        if (inputs[i].sha256 == inputs[j].sha256) {
-          throw std::invalid_argument(
-              fmt::format("{}: is the same trial as {}", inputs[j].path, inputs[i].path));
-        }
-      }
-    }
+    found.wallSeconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return found;
   }
 
   info::discover::Options engineOptions(bool isAngle) const {
@@ -198,6 +187,7 @@ class Discover : public Command {
       summary.set("gap_closed_held_out", *verdict.heldOut->closedFromCalibrated);
     }
     summary.set("fits", verdict.fits);
+    summary.set("search_wall_s", f.wallSeconds);
     summary.set("next_experiment", f.nextExperiment);
   }
 
@@ -233,9 +223,10 @@ class Discover : public Command {
     if (!concernsTrials(added)) return;
     for (std::size_t i = 0; i < trials.size(); ++i) {
       folder.writeFile(drivenName(i), [&](const std::filesystem::path& path) {
-        bio::writeTable(drivenTable(corrected(trials[i], coordinate, added.sensor),
-                                    f.data.widest().arm(), added.mapping),
-                        path);
+        bio::writeTable(
+            drivenTable(bio::discover::asTrueSensor(trials[i], coordinate, added.sensor),
+                        f.data.widest().arm(), added.mapping),
+            path);
       });
     }
   }
@@ -245,28 +236,6 @@ class Discover : public Command {
     const bio::discover::SensorLaw& s = added.sensor;
     return !m.gain.empty() || m.delay != 0 || m.nonlinearity != 0 || !m.offset.empty() ||
            !m.crosstalk.empty() || s.bias != 0 || s.gain != 0 || s.clock != 0;
-  }
-
-  /// The trial as a true sensor would have measured it: q(t) = (y(t + clock) − bias)/(1 + gain).
-  static bio::Trial corrected(bio::Trial trial, const std::string& coordinate,
-                              const bio::discover::SensorLaw& sensor) {
-    for (bio::MeasuredMotion& motion : trial.measured) {
-      if (motion.coordinate != coordinate) continue;
-      motion.values = (motion.values.array() - sensor.bias) / (1 + sensor.gain);
-      if (sensor.clock == 0) continue;
-      // samples move to their own time; what falls out of the trial is not measured
-      std::vector<double> times, values;
-      for (Eigen::Index i = 0; i < motion.times.size(); ++i) {
-        const double t = motion.times[i] - sensor.clock;
-        if (t < trial.times[0] || t > trial.times[trial.times.size() - 1]) continue;
-        times.push_back(t);
-        values.push_back(motion.values[i]);
-      }
-      const auto n = static_cast<Eigen::Index>(times.size());
-      motion.times = Eigen::VectorXd::Map(times.data(), n);
-      motion.values = Eigen::VectorXd::Map(values.data(), n);
-    }
-    return trial;
   }
 
   std::string model_;

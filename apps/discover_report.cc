@@ -103,7 +103,7 @@ class Writer {
     if (!verdict.effects.empty()) {
       const VectorXd after = f_.data.outputs(t, verdict.values, {});
       Series series{.name = "with the effect", .x = times, .y = shown(after)};
-      const VectorXd wide = bandOf(t);
+      const VectorXd wide = 1.96 * info::discover::predictedDeviation(f_.data, verdict, t);
       series.bandLow = shown(after - wide);
       series.bandHigh = shown(after + wide);
       figure.series.push_back(std::move(series));
@@ -117,20 +117,6 @@ class Writer {
   bool isHeldOut(int t) const {
     const auto& held = f_.options.heldOut;
     return std::find(held.begin(), held.end(), t) != held.end();
-  }
-
-  VectorXd bandOf(int t) const {
-    // the measurement's own noise and the amplitudes' deviations
-    std::vector<std::size_t> wanted;
-    VectorXd deviation(static_cast<Index>(f_.verdict.effects.size()));
-    for (const auto& effect : f_.verdict.effects) {
-      deviation[static_cast<Index>(wanted.size())] = effect.estimates.front().deviation;
-      wanted.push_back(effect.estimates.front().quantity);
-    }
-    const auto at = f_.data.predict(t, f_.verdict.values, {}, wanted, false);
-    const VectorXd spread = (at.gamma * deviation.asDiagonal()).rowwise().squaredNorm();
-    const double noise = f_.verdict.outputDeviation;
-    return 1.96 * (spread.array() + noise * noise).sqrt().matrix();
   }
 
   void effects() {

@@ -105,6 +105,7 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   json["next_experiment"] = f.nextExperiment;
   json["noise_sd"] = number(verdict.outputDeviation);
   json["noise_estimated"] = verdict.deviationEstimated;
+  json["wall_s"] = number(f.wallSeconds);
   json["probability_vetoed"] = verdict.vetoed;
   json["numerical_error_in_noise_sd"] = number(verdict.numericalError);
   json["already_in_the_model"] = ordered_json::object();

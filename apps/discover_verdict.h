@@ -17,7 +17,8 @@ struct DiscoverFindings {
   const info::discover::Options& options;
   const info::discover::Verdict& verdict;
   const std::string& nextExperiment;
-  bool isAngle;  ///< outputs are shown in degrees
+  bool isAngle;        ///< outputs are shown in degrees
+  double wallSeconds;  ///< of the search
 };
 
 /// verdict.json as design/cli.md has it.

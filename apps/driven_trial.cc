@@ -1,5 +1,7 @@
 #include "driven_trial.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <set>
 
@@ -7,6 +9,10 @@
 #include "bio/replay.h"
 
 namespace app {
+
+std::string drivenName(std::size_t i) {
+  return fmt::format("driven_{}.sto", i + 1);
+}
 
 bio::Table drivenTable(const bio::Trial& trial, const bio::Arm& arm,
                        const bio::EmgMapping& mapping) {

@@ -2,9 +2,8 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
-
-#include "report.h"
 
 namespace app {
 

@@ -51,7 +51,8 @@ function(fisherhill_test name)
     fisherhill_batched(${name})
   endif()
   target_precompile_headers(${name} REUSE_FROM test_headers)
-  target_link_libraries(${name} PRIVATE fisherhill_flags fisherhill_test_flags ${arg_LIBS} GTest::gmock GTest::gtest_main)
+  target_link_libraries(${name}
+    PRIVATE fisherhill_flags fisherhill_test_flags ${arg_LIBS} GTest::gmock GTest::gtest_main)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(${name} PRIVATE
     FISHERHILL_SOURCE_DIR="${PROJECT_SOURCE_DIR}" FISHERHILL_BINARY_DIR="${PROJECT_BINARY_DIR}")

@@ -101,10 +101,8 @@ ArmExperiment::Linearised ArmExperiment::withSensitivities(const Eigen::VectorXd
   for (Index i = 0; i < K; ++i) {
     const auto w = weightsAt(s.motion.time, times_[static_cast<std::size_t>(i)]);
     if (!w) continue;
-    const Index k = w->row;
     result.outputs[i] = w->value(s.motion.q.row(coordinate_), s.motion.qDot.row(coordinate_));
-    result.gamma.row(i) = w->value0 * s.q[c].row(k) + w->value1 * s.q[c].row(k + 1) +
-                          w->speed0 * s.qDot[c].row(k) + w->speed1 * s.qDot[c].row(k + 1);
+    result.gamma.row(i) = w->rows(s.q[c], s.qDot[c]);
   }
   return result;
 }

@@ -8,36 +8,32 @@
 #include <stdexcept>
 
 #include "emg_remarks.h"
+#include "require.h"
 
 namespace bio {
 namespace {
 
-void requireThat(bool rule, const std::string& message) {
-  if (!rule) throw std::invalid_argument(message);
-}
-
 void check(const EmgConfig& config) {
-  requireThat(!config.electrodes.empty(), "EMG: no electrode is mapped to a muscle");
-  requireThat(config.shape >= -3 && config.shape <= 0,
-              fmt::format("EMG shape factor A = {}: must lie within -3 and 0", config.shape));
-  requireThat(config.delay >= 0 && config.delay <= 0.5,
-              fmt::format("electromechanical delay {} s: must lie within 0 and 0.5", config.delay));
-  requireThat(
-      config.outputRate > 2 * config.envelope.cutoff && std::isfinite(config.outputRate),
-      fmt::format("output rate {} Hz: must be more than twice the envelope's cut-off, {} Hz",
-                  config.outputRate, config.envelope.cutoff));
+  require(!config.electrodes.empty(), "EMG: no electrode is mapped to a muscle");
+  require(config.shape >= -3 && config.shape <= 0,
+          fmt::format("EMG shape factor A = {}: must lie within -3 and 0", config.shape));
+  require(config.delay >= 0 && config.delay <= 0.5,
+          fmt::format("electromechanical delay {} s: must lie within 0 and 0.5", config.delay));
+  require(config.outputRate > 2 * config.envelope.cutoff && std::isfinite(config.outputRate),
+          fmt::format("output rate {} Hz: must be more than twice the envelope's cut-off, {} Hz",
+                      config.outputRate, config.envelope.cutoff));
   for (std::size_t i = 0; i < config.electrodes.size(); ++i) {
     const Electrode& electrode = config.electrodes[i];
     for (std::size_t k = 0; k < i; ++k) {
-      requireThat(electrode.channel != config.electrodes[k].channel,
-                  fmt::format("EMG channel '{}': is mapped twice", electrode.channel));
+      require(electrode.channel != config.electrodes[k].channel,
+              fmt::format("EMG channel '{}': is mapped twice", electrode.channel));
     }
-    requireThat(!electrode.muscles.empty(),
-                fmt::format("EMG channel '{}': drives no muscle", electrode.channel));
+    require(!electrode.muscles.empty(),
+            fmt::format("EMG channel '{}': drives no muscle", electrode.channel));
     for (const auto& [muscle, weight] : electrode.muscles) {
-      requireThat(weight > 0 && weight <= 1,
-                  fmt::format("EMG channel '{}', muscle '{}': weight {}, must be > 0 and ≤ 1",
-                              electrode.channel, muscle, weight));
+      require(weight > 0 && weight <= 1,
+              fmt::format("EMG channel '{}', muscle '{}': weight {}, must be > 0 and ≤ 1",
+                          electrode.channel, muscle, weight));
     }
   }
 }
@@ -49,15 +45,15 @@ void setFull(const Electrode& electrode, ElectrodeTrace& trace) {
     trace.fullSource = fmt::format("maximum voluntary contraction ({})", mvc->source);
   } else {
     const double percent = std::get<OwnPercentile>(electrode.full).percent;
-    requireThat(percent > 0 && percent <= 100,
-                fmt::format("EMG channel '{}': percentile {}, must be > 0 and ≤ 100",
-                            electrode.channel, percent));
+    require(percent > 0 && percent <= 100,
+            fmt::format("EMG channel '{}': percentile {}, must be > 0 and ≤ 100", electrode.channel,
+                        percent));
     trace.full = percentile(trace.envelope, percent);
     trace.fullSource = fmt::format("percentile {:g} of its own envelope", percent);
   }
-  requireThat(trace.full > 0 && std::isfinite(trace.full),
-              fmt::format("EMG channel '{}': {} {} ({}) counts as excitation 1, must be > 0",
-                          electrode.channel, trace.full, trace.unit, trace.fullSource));
+  require(trace.full > 0 && std::isfinite(trace.full),
+          fmt::format("EMG channel '{}': {} {} ({}) counts as excitation 1, must be > 0",
+                      electrode.channel, trace.full, trace.unit, trace.fullSource));
 }
 
 // Rows common to all electrodes and inside the span that was asked for.
@@ -71,14 +67,12 @@ Eigen::VectorXd rowTimes(const std::vector<ElectrodeTrace>& traces, const EmgCon
   }
   const double begin = config.start.value_or(first);
   const double end = config.end.value_or(last);
-  requireThat(
-      begin >= first && end <= last + 1e-9,
-      fmt::format("output from {} s to {} s: the electrodes were recorded from {} s to {} s", begin,
-                  end, first, last));
+  require(begin >= first && end <= last + 1e-9,
+          fmt::format("output from {} s to {} s: the electrodes were recorded from {} s to {} s",
+                      begin, end, first, last));
   const double count = std::floor((end - begin) * config.outputRate + 1e-6);
-  requireThat(count >= 1,
-              fmt::format("output from {} s to {} s: holds fewer than two rows at {} Hz", begin,
-                          end, config.outputRate));
+  require(count >= 1, fmt::format("output from {} s to {} s: holds fewer than two rows at {} Hz",
+                                  begin, end, config.outputRate));
   const auto rows = static_cast<Eigen::Index>(count) + 1;
   return Eigen::VectorXd::NullaryExpr(
       rows, [&](Eigen::Index i) { return begin + static_cast<double>(i) / config.outputRate; });
@@ -89,10 +83,10 @@ Eigen::VectorXd rowTimes(const std::vector<ElectrodeTrace>& traces, const EmgCon
 ElectrodeTrace emgEnvelope(const Channel& channel, const EmgConfig& config) {
   checkWithoutGaps(channel);
   const double length = static_cast<double>(channel.values.size()) / channel.rate;
-  requireThat(length * config.envelope.cutoff >= 1,
-              fmt::format("EMG channel '{}': {:.3f} s long, must last at least one period of the "
-                          "envelope's cut-off, {:.3f} s",
-                          channel.name, length, 1 / config.envelope.cutoff));
+  require(length * config.envelope.cutoff >= 1,
+          fmt::format("EMG channel '{}': {:.3f} s long, must last at least one period of the "
+                      "envelope's cut-off, {:.3f} s",
+                      channel.name, length, 1 / config.envelope.cutoff));
   ElectrodeTrace out;
   out.channel = channel.name;
   out.unit = channel.unit;

@@ -8,6 +8,8 @@
 
 #include "bio/replay.h"
 #include "coupled_stepping.h"
+#include "motion_weights.h"
+#include "require.h"
 
 namespace bio {
 namespace {
@@ -18,10 +20,6 @@ using Eigen::VectorXd;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double sameTime = 1e-9;  ///< times nearer than this are one [s]
-
-void require(bool holds, const std::string& message) {
-  if (!holds) throw std::invalid_argument(message);
-}
 
 std::vector<double> equalTimes(double start, double duration, double interval) {
   const auto count = static_cast<std::size_t>(std::floor(duration / interval + 1e-6));
@@ -60,28 +58,6 @@ std::vector<info::ProfileLimits> profileLimits(const DesignLimits& limits, std::
     inputs.push_back({limits.leastExcitation, limits.largestExcitation, limits.excitationRate, {}});
   }
   return inputs;
-}
-
-/// The cubic through values and speeds of two rows, as a linear combination of them.
-struct Between {
-  Index row;
-  double value0, value1, speed0, speed1;
-  template <class Values, class Speeds>
-  auto of(const Values& value, const Speeds& speed) const {
-    return (value0 * value(row) + value1 * value(row + 1) + speed0 * speed(row) +
-            speed1 * speed(row + 1))
-        .eval();
-  }
-};
-
-Between betweenRows(const std::vector<double>& time, double t) {
-  const auto behind = std::upper_bound(time.begin(), time.end(), t + sameTime);
-  const auto k = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
-      behind - time.begin() - 1, 0, static_cast<std::ptrdiff_t>(time.size()) - 2));
-  const double h = time[k + 1] - time[k];
-  const double s = std::clamp((t - time[k]) / h, 0.0, 1.0);
-  return {static_cast<Index>(k), 1 + s * s * (2 * s - 3), s * s * (3 - 2 * s),
-          h * s * (1 - s) * (1 - s), -h * s * s * (1 - s)};
 }
 
 double largestSlope(const std::vector<double>& times, const MatrixXd& values) {
@@ -214,10 +190,8 @@ MatrixXd ExperimentDesign::gammaOf(const SensitivityTrajectory& s) const {
   const auto c = static_cast<std::size_t>(coordinate_);
   MatrixXd gamma(static_cast<Index>(measuredTimes_.size()), static_cast<Index>(wanted_.size()));
   for (std::size_t i = 0; i < measuredTimes_.size(); ++i) {
-    const Between b = betweenRows(s.motion.time, measuredTimes_[i]);
-    gamma.row(static_cast<Index>(i)) =
-        b.value0 * s.q[c].row(b.row) + b.value1 * s.q[c].row(b.row + 1) +
-        b.speed0 * s.qDot[c].row(b.row) + b.speed1 * s.qDot[c].row(b.row + 1);
+    const MotionWeights w = weightsAt(s.motion.time, measuredTimes_[i]).value();
+    gamma.row(static_cast<Index>(i)) = w.rows(s.q[c], s.qDot[c]);
   }
   return gamma;
 }
@@ -324,11 +298,9 @@ DesignedExperiment ExperimentDesign::describe(VectorXd x, Inputs inputs) const {
       Eigen::Map<const VectorXd>(measuredTimes_.data(), static_cast<Index>(measuredTimes_.size()));
   e.measured.resize(e.measuredTimes.size());
   for (std::size_t i = 0; i < measuredTimes_.size(); ++i) {
-    const Between b = betweenRows(s.motion.time, measuredTimes_[i]);
-    const auto& m = s.motion;
+    const MotionWeights w = weightsAt(s.motion.time, measuredTimes_[i]).value();
     e.measured[static_cast<Index>(i)] =
-        b.value0 * m.q(coordinate_, b.row) + b.value1 * m.q(coordinate_, b.row + 1) +
-        b.speed0 * m.qDot(coordinate_, b.row) + b.speed1 * m.qDot(coordinate_, b.row + 1);
+        w.value(s.motion.q.row(coordinate_), s.motion.qDot.row(coordinate_));
   }
   e.lowest = s.motion.q.row(coordinate_).minCoeff();
   e.highest = s.motion.q.row(coordinate_).maxCoeff();

@@ -7,10 +7,10 @@
 #include <numbers>
 #include <set>
 
+#include "plausible.h"
+
 namespace bio {
 namespace {
-
-constexpr double unusualDegrees = 4 * std::numbers::pi;  // [rad]
 
 struct Reviewer {
   const Model& model;
@@ -87,11 +87,11 @@ void Reviewer::reviewEndOfChain() {
 void Reviewer::reviewCoordinate(const Coordinate& coordinate) {
   const std::string subject = fmt::format("coordinate '{}'", coordinate.name);
   const double widest = std::max(std::abs(coordinate.rangeMin), std::abs(coordinate.rangeMax));
-  if (coordinate.isRotation && widest > unusualDegrees) {
+  if (coordinate.isRotation && widest > degreesBeyond) {
     say(subject, "range = {} to {} rad, usually within ±4π: degrees?", coordinate.rangeMin,
         coordinate.rangeMax);
   }
-  if (coordinate.isRotation && std::abs(coordinate.defaultValue) > unusualDegrees) {
+  if (coordinate.isRotation && std::abs(coordinate.defaultValue) > degreesBeyond) {
     say(subject, "default = {} rad, usually within ±4π: degrees?", coordinate.defaultValue);
   }
   const double slack = 1e-6;
@@ -132,7 +132,7 @@ void Reviewer::reviewMuscle(const Muscle& muscle) {
           point.name, point.location.norm());
     }
     if (point.condition && std::max(std::abs(point.condition->lower),
-                                    std::abs(point.condition->upper)) > unusualDegrees) {
+                                    std::abs(point.condition->upper)) > degreesBeyond) {
       say(subject, "point '{}' is active from {} to {} rad, usually within ±4π: degrees?",
           point.name, point.condition->lower, point.condition->upper);
     }
@@ -199,7 +199,7 @@ void Reviewer::reviewForces() {
   for (const SpringGeneralizedForce& force : model.springForces) {
     const std::string subject = fmt::format("force '{}'", force.name);
     if (findCoordinate(model, force.coordinate).isRotation &&
-        std::abs(force.restLength) > unusualDegrees) {
+        std::abs(force.restLength) > degreesBeyond) {
       say(subject, "rest length = {} rad, usually within ±4π: degrees?", force.restLength);
     }
     if (force.stiffness < 0) say(subject, "stiffness = {}, usually ≥ 0", force.stiffness);

@@ -94,11 +94,11 @@ Balance balanceOf(const SchutteMuscle<double>& muscle, double activation, double
 }
 
 /// v(P, A, B) and its slopes, from the quadratic G(v; P, A, B) = 0 of its regime.
-struct VelocityBySlope {
+struct VelocityGradient {
   double v, v_P, v_A, v_B;
 };
 
-VelocityBySlope velocityOf(double P, double A, double B) {
+VelocityGradient velocityOf(double P, double A, double B) {
   using schutte::maxLengtheningForce;
   using schutte::shapeLengthening;
   using schutte::shapeShortening;
@@ -124,7 +124,7 @@ FibreParameterDerivatives fibreParameterDerivatives(const SchutteMuscle<double>&
                                                     double muscleTendonLength) {
   const SchutteQuantities<double>& p = muscle.quantities();
   const Balance b = balanceOf(muscle, activation, fibreLength, muscleTendonLength);
-  const VelocityBySlope u = velocityOf(b.P, b.A, p.damping);
+  const VelocityGradient u = velocityOf(b.P, b.A, p.damping);
   const double speed = muscle.speedScale();
   FibreParameterDerivatives result;
   for (std::size_t i = 0; i < numFibreQuantities; ++i) {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "coupled_stepping.h"
+#include "motion_weights.h"
 
 namespace bio {
 
@@ -78,23 +79,12 @@ MeasuredError compareWithMeasured(const Arm& arm, const Trajectory& trajectory,
   const std::vector<double>& time = trajectory.time;
   MeasuredError error;
   double sum = 0;
-  std::size_t k = 0;
   for (Eigen::Index i = 0; i < measured.times.size(); ++i) {
     const double t = measured.times[i];
     if (t < time.front() - 1e-9 || t > time.back() + 1e-9) continue;
-    while (k + 2 < time.size() && time[k + 1] < t) ++k;
-    double simulated = trajectory.q(index, static_cast<Eigen::Index>(k));
-    if (time.size() > 1) {
-      // cubic through values and speeds: as accurate as the integrators
-      const auto c = static_cast<Eigen::Index>(k);
-      const double h = time[k + 1] - time[k];
-      const double s = (t - time[k]) / h;
-      const double a = simulated;
-      const double b = trajectory.q(index, c + 1);
-      const double da = h * trajectory.qDot(index, c);
-      const double db = h * trajectory.qDot(index, c + 1);
-      simulated = a + s * (da + s * (3 * (b - a) - 2 * da - db + s * (2 * (a - b) + da + db)));
-    }
+    const auto w = weightsAt(time, t);
+    const double simulated =
+        w ? w->value(trajectory.q.row(index), trajectory.qDot.row(index)) : trajectory.q(index, 0);
     const double difference = simulated - measured.values[i];
     sum += difference * difference;
     ++error.count;

@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "plausible.h"
 
 namespace bio {
 namespace {
-
-constexpr double degreesBeyond = 4 * std::numbers::pi;  // [rad]
 
 Eigen::VectorXd steps(const Eigen::VectorXd& values) {
   return values.tail(values.size() - 1) - values.head(values.size() - 1);

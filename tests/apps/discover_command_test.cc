@@ -1,6 +1,5 @@
 #include <gmock/gmock.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "support/run_program.h"
@@ -60,42 +59,5 @@ TEST(DiscoverCommand, NamesTheDampingThatIsHiddenAddsItAndFindsNothingMore) {
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(nlohmann::json::parse(again.out)["verdict"], "none");
 }
-
-struct Mistake {
-  std::string name;
-  std::vector<std::string> arguments;
-  std::string says;
-};
-
-class DiscoverMistake : public testing::TestWithParam<Mistake> {};
-
-TEST_P(DiscoverMistake, IsOneLineStatusTwoAndLeavesNothing) {
-  const ScratchFolder scratch;
-  // a trial without a measured angle
-  std::ofstream(scratch / "unmeasured.csv") << "time,BRA\n0,0.1\n0.1,0.1\n0.2,0.1\n";
-  std::vector<std::string> arguments = {"discover", elbow};
-  for (std::string argument : GetParam().arguments) {
-    if (argument == "unmeasured.csv") argument = (scratch / "unmeasured.csv").string();
-    arguments.push_back(argument);
-  }
-  arguments.insert(arguments.end(), {"--out", (scratch / "out").string()});
-  const ProgramResult result = runFisherHill(arguments);
-  EXPECT_EQ(result.status, 2) << result.out;
-  EXPECT_THAT(result.err, HasSubstr(GetParam().says));
-  EXPECT_THAT(scratch.listing(), testing::ElementsAre("unmeasured.csv"));
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Discover, DiscoverMistake,
-    testing::Values(
-        Mistake{"NothingMeasured", {"unmeasured.csv"}, "elbow_flexion"},
-        Mistake{"SameTrialTwice", {train, train}, "is the same trial as"},
-        Mistake{"HeldOutIsFitted", {train, "--hold-out", train}, "is the same trial as"},
-        Mistake{"UnknownEffect", {train, "--without", "ghost"}, "no effect is called 'ghost'"},
-        Mistake{"TwoCoordinates", {train, "--coordinate", "elbow_flexion,pro_sup"}, "observes one"},
-        Mistake{"NoSensitivities", {train, "--integrator", "cvode"}, "must be vi or vi-left"},
-        Mistake{"NoiseBelowZero", {train, "--noise-deg", "-1"}, "--noise-deg"},
-        Mistake{"FourEffects", {train, "--max-effects", "4"}, "--max-effects"}),
-    [](const auto& info) { return info.param.name; });
 
 }  // namespace

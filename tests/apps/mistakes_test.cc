@@ -38,6 +38,8 @@ void writeFiles(const ScratchFolder& scratch) {
   scratch.file("empty.csv", "");
   scratch.file("word.csv", "time,BIClong\n0,0.1\n0.1,much\n");
   scratch.file("text.osim", "no model\n");
+  scratch.file("with_effect.osim",
+               support::contentOf(std::string(FISHERHILL_SOURCE_DIR "/") + model));
   scratch.file("empty.toml", "");
   scratch.file("motion.csv", "time,elbow_flexion_deg\n0,30\n0.1,40\n");
 }
@@ -222,6 +224,35 @@ INSTANTIATE_TEST_SUITE_P(
         {"PriorOfAnother", design({"--prior", "hand.mass=0.1"}), "hand.mass"},
         {"PriorZero", design({"--prior", "TRI.radius=0"}), "--prior"},
         {"CandidatesNegative", design({"--candidates", "-1"}), "--candidates"}}),
+    nameOf);
+
+/// `fisherhill discover` on a good trial, with what comes behind.
+std::vector<std::string> discover(std::vector<std::string> more) {
+  std::vector<std::string> arguments = {"discover", model, "emg_data/hidden_a/train_1.sto"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  arguments.insert(arguments.end(), {"--out", "$/out"});
+  return arguments;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Discover, EveryMistake,
+    testing::ValuesIn(std::vector<Mistake>{
+        {"NoTrial", {"discover", model, "--out", "$/out"}, "TRIAL"},
+        {"NothingMeasured",
+         {"discover", model, "$/good.csv", "--out", "$/out"},
+         "$/good.csv: no measured value of 'elbow_flexion'"},
+        {"SameTrialTwice", discover({"emg_data/hidden_a/train_1.sto"}), "is the same trial as"},
+        {"HoldOutIsFitted", discover({"--hold-out", "emg_data/hidden_a/train_1.sto"}),
+         "is held out, and estimated from"},
+        {"UnknownEffect", discover({"--without", "ghost"}), "no effect is called 'ghost'"},
+        {"TwoCoordinates", discover({"--coordinate", "elbow_flexion,pro_sup"}), "observes one"},
+        {"OtherIntegrator", discover({"--integrator", "cvode"}), "vi or vi-left"},
+        {"NoiseBelowZero", discover({"--noise-deg", "-1"}), "--noise-deg"},
+        {"FourEffects", discover({"--max-effects", "4"}), "--max-effects"},
+        {"ResultIsTheModel",
+         {"discover", "$/with_effect.osim", "emg_data/hidden_a/train_1.sto", "--out", "$",
+          "--force"},
+         "$/with_effect.osim: is an input and would be overwritten"}}),
     nameOf);
 
 INSTANTIATE_TEST_SUITE_P(

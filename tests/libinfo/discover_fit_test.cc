@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "info/discover/joint_fit.h"
+#include "info/discover/output_deviation.h"
 #include "info/discover/truncated.h"
 #include "support/linear_disagreement.h"
 

@@ -217,6 +217,15 @@ TEST(Discover, FindsTheForceOnALinearOscillator) {
   EXPECT_EQ(v.finding, Finding::ambiguous);
   EXPECT_NEAR(v.effects[0].estimates[0].value, 2, 4 * v.effects[0].estimates[0].deviation);
   EXPECT_NEAR(v.latentSizeAfter, kLatent, 0.1);
+
+  // the band about the simulation: the model is linear, so a deviation more moves it by dy/dA·σ_A
+  const Estimate& push = v.effects[0].estimates[0];
+  Eigen::VectorXd values = v.values;
+  values[static_cast<Eigen::Index>(push.quantity)] += push.deviation;
+  const Eigen::VectorXd moved = data.outputs(0, values, {}) - data.outputs(0, v.values, {});
+  const Eigen::VectorXd expected = (moved.array().square() + kOutput * kOutput).sqrt();
+  EXPECT_NEAR((predictedDeviation(data, v, 0) - expected).cwiseAbs().maxCoeff(), 0, 1e-12);
+  EXPECT_GT(moved.cwiseAbs().maxCoeff(), 0.1 * kOutput);
 }
 
 // As drawn(), but what is pushed cannot be simulated, or nothing can.

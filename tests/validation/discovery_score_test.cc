@@ -84,6 +84,8 @@ TEST(Judge, UnitsAndOtherNamesOfTheSameAmplitude) {
   };
   EXPECT_NEAR(zOf("dr", 4, 0.5, "mm"), 2, 1e-9);
   EXPECT_NEAR(zOf("factor", 1.1, 0.1, ""), -1, 1e-9);
+  EXPECT_NEAR(zOf("wrap_TRI factor", 1.1, 0.1, ""), -1, 1e-9);  // a path's last word
+  EXPECT_NEAR(zOf("wrap_TRI.dr", 0.004, 0.0005, "m"), 2, 1e-9);
   EXPECT_NEAR(zOf("unheard of", 0.002, 0.001, "m"), -1, 1e-9);  // then it is the first reading
 }
 

@@ -40,22 +40,33 @@ std::optional<double> finite(const Json& object, const char* key) {
   return at->get<double>();
 }
 
-// (estimate − truth)/sd: the parameter of a name that the label knows, else the first one.
+// "factor" of "Fmax_TRI factor", "torque" of "coulomb.torque".
+std::string lastWord(const std::string& name) {
+  return name.substr(name.find_last_of(". ") + 1);
+}
+
+// (estimate − truth)/sd: the parameter whose name, or its last word, the label knows; else the
+// first one beside the first reading.
 std::optional<double> deviation(const Json& estimate, const Json& truth) {
   const Json parameters = estimate.value("parameters", Json::object());
+  if (parameters.empty()) return {};
   const Json& readings = truth.at("readings");
+  const Json* parameter = &*parameters.begin();
+  const Json* wanted = &readings.front();
+  bool known = false;
   for (const Json& reading : readings) {
-    const auto at = parameters.find(reading.at("name").get<std::string>());
-    if (at == parameters.end() && (parameters.empty() || &reading != &readings.back())) continue;
-    const bool known = at != parameters.end();
-    const Json& parameter = known ? *at : *parameters.begin();
-    const Json& wanted = known ? reading : readings.front();
-    const auto value = finite(parameter, "value"), sd = finite(parameter, "sd");
-    if (!value || !sd || !(*sd > 0)) return {};
-    const double unit = inSi(parameter.value("unit", ""));
-    return (*value * unit - wanted.at("value").get<double>()) / (*sd * unit);
+    for (const auto& item : parameters.items()) {
+      const std::string name = reading.at("name");
+      if (known || (item.key() != name && lastWord(item.key()) != name)) continue;
+      parameter = &item.value();
+      wanted = &reading;
+      known = true;
+    }
   }
-  return {};
+  const auto value = finite(*parameter, "value"), sd = finite(*parameter, "sd");
+  if (!value || !sd || !(*sd > 0)) return {};
+  const double unit = inSi(parameter->value("unit", ""));
+  return (*value * unit - wanted->at("value").get<double>()) / (*sd * unit);
 }
 
 std::string describe(const Outcome& o) {

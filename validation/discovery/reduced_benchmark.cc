@@ -1,14 +1,15 @@
-// Blind scoring of discovery on the reduced elbow: reduced_benchmark --seeds A B --suite S …
+// Blind scoring of discovery on the reduced elbow: reduced_benchmark FIRST LAST --suite S …
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <string>
 #include <vector>
 
+#include "discovery/arguments.h"
 #include "discovery/reduced_truth.h"
+#include "discovery/wilson.h"
 #include "info/discover/discover.h"
 #include "info/random_stream.h"
 
@@ -32,12 +33,9 @@ struct Tally {
 
 void print(const char* what, const Tally& tally) {
   if (tally.of == 0) return;
-  // Wilson's interval
-  const double n = tally.of, p = tally.hits / n, z = 1.96, z2 = z * z;
-  const double middle = (p + z2 / (2 * n)) / (1 + z2 / n);
-  const double half = z * std::sqrt(p * (1 - p) / n + z2 / (4 * n * n)) / (1 + z2 / n);
+  const hidden::Interval interval = hidden::wilson(tally.hits, tally.of);
   fmt::print("{:<44} {:4d} / {:<4d} = {:5.1f} %   ({:.1f} … {:.1f})\n", what, tally.hits, tally.of,
-             100 * p, 100 * std::max(0.0, middle - half), 100 * std::min(1.0, middle + half));
+             100.0 * tally.hits / tally.of, 100 * interval.low, 100 * interval.high);
 }
 
 double truthOf(const std::string& id, double size) {
@@ -47,43 +45,16 @@ double truthOf(const std::string& id, double size) {
   return size * reduced::fullSize(id);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  std::uint64_t first = 0, last = 20;
-  std::string suite = "null", only, without;
-  double size = 1, emgNoise = 0, step = 0.01;
-  bool verbose = false, known = true;
-  for (int i = 1; i < argc; ++i) {
-    const auto is = [&](const char* flag, int more) {
-      return std::strcmp(argv[i], flag) == 0 && i + more < argc;
-    };
-    if (is("--seeds", 2))
-      first = std::stoull(argv[++i]), last = std::stoull(argv[++i]);
-    else if (is("--suite", 1))
-      suite = argv[++i];
-    else if (is("--size", 1))
-      size = std::stod(argv[++i]);
-    else if (is("--emg-noise", 1))
-      emgNoise = std::stod(argv[++i]);
-    else if (is("--step", 1))
-      step = std::stod(argv[++i]);
-    else if (is("--only", 1))
-      only = argv[++i];
-    else if (is("--leave-out", 0))
-      without = "yes";
-    else if (is("--estimate-sigma", 0))
-      known = false;
-    else if (is("--verbose", 0))
-      verbose = true;
-    else {
-      fmt::print(stderr,
-                 "reduced_benchmark --seeds A B --suite null|single|parameter|two|"
-                 "equivalents|out [--size s] [--emg-noise c] [--only id] [--leave-out] "
-                 "[--estimate-sigma] [--verbose]\n");
-      return 2;
-    }
-  }
+int score(const hidden::Arguments& arguments) {
+  if (arguments.words.size() != 2)
+    throw std::invalid_argument("first and last seed are needed, e.g. 0 20");
+  const std::uint64_t first = std::stoull(arguments.words[0]),
+                      last = std::stoull(arguments.words[1]);
+  const std::string suite = arguments.text("suite", "null"), only = arguments.text("only");
+  const double size = arguments.number("size", 1), emgNoise = arguments.number("emg-noise", 0),
+               step = arguments.number("step", 0.01);
+  const bool verbose = arguments.has("verbose"), known = !arguments.has("estimate-sigma"),
+             leaveOut = arguments.has("leave-out");
   Tally detected, top, inClass, falseName, confident, coverage, both, unknown, structureNamed;
   std::vector<double> closed, seconds, floors;
   for (std::uint64_t seed = first; seed < last; ++seed) {
@@ -117,7 +88,7 @@ int main(int argc, char** argv) {
       recipe.effects.emplace_back(id, amount);
     }
     std::vector<std::string> hidden;
-    if (!without.empty()) hidden = truth;
+    if (leaveOut) hidden = truth;
     std::vector<reduced::Trial> trials;
     try {
       trials = reduced::record(recipe, seed);
@@ -160,7 +131,7 @@ int main(int argc, char** argv) {
     detected.count(v.finding != Finding::none);
     if (suite == "null") falseName.count(says);
     if (suite == "parameter") structureNamed.count(says && structure);
-    if (suite == "out" || !without.empty())
+    if (suite == "out" || leaveOut)
       unknown.count(!says || v.finding == Finding::ambiguous);
     else if (!truth.empty()) {
       top.count(says && all && v.effects.size() == truth.size());
@@ -234,4 +205,21 @@ int main(int argc, char** argv) {
              median(closed), closed.size(), median(floors));
   fmt::print("seconds per data set: median {:.1f}, most {:.1f}\n", median(seconds),
              seconds.empty() ? NAN : *std::max_element(seconds.begin(), seconds.end()));
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return score(hidden::Arguments(argc, argv, {"suite", "size", "emg-noise", "step", "only"},
+                                   {"leave-out", "estimate-sigma", "verbose"}));
+  } catch (const std::exception& error) {
+    fmt::print(stderr,
+               "reduced_benchmark: {}\nusage: reduced_benchmark FIRST LAST [--suite null|single|"
+               "parameter|two|equivalents|out] [--size s] [--emg-noise c] [--only id] "
+               "[--leave-out] [--estimate-sigma] [--verbose]\n",
+               error.what());
+    return 2;
+  }
 }

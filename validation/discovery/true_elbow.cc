@@ -12,6 +12,20 @@ namespace {
 // A path's conditional points stay this far beyond their range, as in OpenSim [rad].
 constexpr double conditionMargin = 1e-5;
 
+// Straight lines between rows, constant outside: rows `before` and `after`, the latter by its
+// share.
+struct Place {
+  std::size_t before, after;
+  double share;
+};
+Place placeOf(const std::vector<double>& times, double t) {
+  const auto above = std::upper_bound(times.begin(), times.end(), t);
+  if (above == times.begin()) return {0, 0, 0};
+  if (above == times.end()) return {times.size() - 1, times.size() - 1, 0};
+  const auto k = static_cast<std::size_t>(above - times.begin());
+  return {k - 1, k, (t - times[k - 1]) / (times[k] - times[k - 1])};
+}
+
 double smoothStep(double x) {
   const double s = std::clamp(x, 0.0, 1.0);
   return s * s * s * (10 - 15 * s + 6 * s * s);
@@ -108,14 +122,9 @@ double TrueElbow::extraTorque(double t, double q, double w, double z) const {
 Eigen::Array<double, 8, 1> TrueElbow::excitation(const Recording& recording, double t) const {
   using Channels = Eigen::Array<double, 8, 1>;
   const auto between = [&](const std::vector<std::array<double, 8>>& rows, double at) -> Channels {
-    const auto& times = recording.times;
+    const Place place = placeOf(recording.times, at);
     const auto row = [&](std::size_t k) { return Eigen::Map<const Channels>(rows[k].data()); };
-    const auto above = std::upper_bound(times.begin(), times.end(), at);
-    if (above == times.begin()) return row(0);
-    if (above == times.end()) return row(times.size() - 1);
-    const auto k = static_cast<std::size_t>(above - times.begin());
-    const double share = (at - times[k - 1]) / (times[k] - times[k - 1]);
-    return row(k - 1) + share * (row(k) - row(k - 1));
+    return row(place.before) + place.share * (row(place.after) - row(place.before));
   };
   Channels u = between(recording.emg, t - chain_.delay);
   u += chain_.offset;
@@ -171,15 +180,9 @@ void TrueElbow::rate(const Recording& recording, double t, const double* y, doub
   }
   double outside = 0;
   if (!recording.torque.empty()) {
-    const auto& times = recording.times;
-    const auto above = std::upper_bound(times.begin(), times.end(), t);
-    const auto k = static_cast<std::size_t>(above - times.begin());
-    if (k == 0 || k == times.size()) {
-      outside = recording.torque[k == 0 ? 0 : k - 1];
-    } else {
-      const double share = (t - times[k - 1]) / (times[k] - times[k - 1]);
-      outside = recording.torque[k - 1] + share * (recording.torque[k] - recording.torque[k - 1]);
-    }
+    const Place place = placeOf(recording.times, t);
+    const auto& torque = recording.torque;
+    outside = torque[place.before] + place.share * (torque[place.after] - torque[place.before]);
   }
   const double extra = extraTorque(t, q, w, z) + outside;
   yDot[0] = w;

@@ -157,9 +157,16 @@ Trajectory ElbowDisagreement::simulate(const OfTrial& one, const VectorXd& value
   return simulateSetting(arm, setting, one.excitation, simulation);
 }
 
-VectorXd ElbowDisagreement::outputsOf(const OfTrial& one, const Trajectory& motion,
-                                      const SensorLaw& sensor) const {
+VectorXd ElbowDisagreement::outputsOf(const OfTrial& one, const VectorXd& values,
+                                      const VectorXd& latent, double stepFactor) const {
   VectorXd y = VectorXd::Constant(static_cast<Index>(one.times.size()), nan);
+  Trajectory motion;
+  try {
+    motion = simulate(one, values, latent, stepFactor);
+  } catch (const std::exception&) {
+    return y;  // outside its domain
+  }
+  const SensorLaw sensor = widest_.sensorAt(values);
   const int c = widest_.freeIndex();
   for (std::size_t i = 0; i < one.times.size(); ++i) {
     const auto w = lookAt(motion.time, one.times[i] - sensor.clock);
@@ -172,21 +179,11 @@ VectorXd ElbowDisagreement::outputsOf(const OfTrial& one, const Trajectory& moti
 
 VectorXd ElbowDisagreement::outputs(int trial, const VectorXd& values,
                                     const VectorXd& latent) const {
-  const OfTrial& one = of(trial);
-  try {
-    return outputsOf(one, simulate(one, values, latent, 1), widest_.sensorAt(values));
-  } catch (const std::exception&) {
-    return VectorXd::Constant(static_cast<Index>(one.times.size()), nan);  // outside its domain
-  }
+  return outputsOf(of(trial), values, latent, 1);
 }
 
 VectorXd ElbowDisagreement::refinedOutputs(int trial, const VectorXd& values) const {
-  const OfTrial& one = of(trial);
-  try {
-    return outputsOf(one, simulate(one, values, {}, 0.5), widest_.sensorAt(values));
-  } catch (const std::exception&) {
-    return VectorXd::Constant(static_cast<Index>(one.times.size()), nan);
-  }
+  return outputsOf(of(trial), values, {}, 0.5);
 }
 
 std::string ElbowDisagreement::failure(int trial, const VectorXd& values) const {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "../coupled_stepping.h"
+#include "coupled_stepping.h"
 
 namespace bio::discover {
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "info/residuals.h"
+
 namespace info::discover {
 
 using Eigen::Index;
@@ -64,17 +66,12 @@ Adequacy adequacy(const Likelihood& likelihood, const Fit& fit, const AdequacyOp
   result.sized = result.meanSquare > result.lowest && result.meanSquare < result.highest;
 
   // autocorrelation, lags pooled over trials
-  for (int lag = 1; lag <= options.lags; ++lag) {
-    double sum = 0, pairs = 0;
-    for (const VectorXd& s : series) {
-      const Index n = s.size() - lag;
-      if (n <= 0) continue;
-      sum += s.head(n).dot(s.tail(n));
-      pairs += static_cast<double>(n);
-    }
-    if (pairs == 0) continue;
-    const double rho = (sum / pairs) / (power / count);
-    result.ljungBox += pairs * rho * rho;
+  const std::vector<double> rho = autocorrelation(series, options.lags);
+  for (std::size_t lag = 1; lag < rho.size(); ++lag) {
+    double pairs = 0;
+    for (const VectorXd& s : series)
+      pairs += std::max(0.0, static_cast<double>(s.size()) - static_cast<double>(lag));
+    result.ljungBox += pairs * rho[lag] * rho[lag];
   }
   result.ljungBoxProbability = chiSquareTail(result.ljungBox, options.lags);
   result.white = result.ljungBoxProbability > options.level;

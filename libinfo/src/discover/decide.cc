@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "effect_sets.h"
+
 namespace info::discover {
 
 namespace {
@@ -18,27 +20,23 @@ NamedEffect classOf(const std::vector<Candidate>& candidates, const Judgement& j
                     const Finalist& leader, std::size_t effect, const Options& options) {
   NamedEffect named;
   named.candidate = effect;
-  std::vector<std::size_t> rest = leader.effects;
-  rest.erase(std::find(rest.begin(), rest.end(), effect));
-  const Finalist* without = find(judgement.raced, rest);
-  named.logBayesFactor = without != nullptr ? leader.logEvidence - without->logEvidence : 0;
+  const Effects rest = without(leader.effects, effect);
+  const Finalist* others = find(judgement.raced, rest);
+  named.logBayesFactor = others != nullptr ? leader.logEvidence - others->logEvidence : 0;
   for (const Estimate& e : leader.estimates) {
     const auto& own = candidates[effect].quantities;
     if (std::find(own.begin(), own.end(), e.quantity) != own.end()) named.estimates.push_back(e);
   }
   named.equals = {effect};
   named.equalEvidence = {0};
-  double sum = 1 + (without != nullptr
+  double sum = 1 + (others != nullptr
                         ? std::exp(-named.logBayesFactor) * static_cast<double>(candidates.size())
                         : 0);
   const auto& declared = candidates[effect].equivalents;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     if (std::find(leader.effects.begin(), leader.effects.end(), c) != leader.effects.end())
       continue;
-    std::vector<std::size_t> swapped = rest;
-    swapped.push_back(c);
-    std::sort(swapped.begin(), swapped.end());
-    const Finalist* rival = find(judgement.raced, swapped);
+    const Finalist* rival = find(judgement.raced, with(rest, c));
     const bool equal =
         std::find(declared.begin(), declared.end(), candidates[c].id) != declared.end();
     if (rival == nullptr && !equal) continue;

@@ -7,7 +7,8 @@
 #include <stdexcept>
 
 #include "info/discover/decide.h"
-#include "search.h"
+#include "info/discover/output_deviation.h"
+#include "select.h"
 
 namespace info::discover {
 
@@ -60,7 +61,9 @@ class Work {
   Verdict run() {
     try {
       prepare();
-      race();
+      stage_ = Stage::race;
+      report(Stage::screen, 0.25, "");
+      chosen_ = select(*search_, options_);
       judge();
       conclude();
       verdict_.reached = Stage::finished;
@@ -131,96 +134,13 @@ class Work {
         estimatesOf(entry.fit, data_.nuisances(), data_);
   }
 
-  // Greedy selection: an effect at a time, each earning its place, then each tried against others.
-  void race() {
-    stage_ = Stage::race;
-    report(Stage::screen, 0.25, "");
-    for (int round = 0; round < 2 * options_.maxEffects; ++round) {
-      const bool first = chosen_.empty();
-      if (static_cast<int>(chosen_.size()) >= options_.maxEffects || (!first && !promising()))
-        break;
-      const std::vector<std::size_t> list =
-          search_->shortlist(chosen_, first ? options_.finalists : 5);
-      search_->race(chosen_, list);
-      const std::vector<std::size_t> before = chosen_;
-      chosen_ = best();
-      while (swapOne()) {
-      }
-      if (chosen_ == before && !replaceOne(list)) break;
-    }
-  }
-
-  // The best of all that have been raced where every effect is significant and earns its place.
-  std::vector<std::size_t> best() const {
-    std::vector<std::size_t> best;
-    double score = search_->at({}).score;
-    for (const auto& [effects, entry] : search_->entries()) {
-      const double net = entry.score - options_.evidence * static_cast<double>(effects.size());
-      if (!effects.empty() && net > score && search_->significance(entry) > options_.significance) {
-        score = net;
-        best = effects;
-      }
-    }
-    return best;
-  }
-
-  // Is anything to be gained beyond what has been chosen?
-  bool promising() {
-    search_->simulation(chosen_);
-    for (const bool simulation : {false, true})
-      for (const Screened& s : search_->screen(chosen_, simulation))
-        if (s.gain > 0.6 * options_.evidence) return true;
-    return false;
-  }
-
-  // A newcomer that helps much but leaves nothing to one of those before it takes its place.
-  bool replaceOne(const std::vector<std::size_t>& list) {
-    const double score = search_->at(chosen_).score;
-    for (const std::size_t c : list) {
-      std::vector<std::size_t> both = chosen_;
-      both.push_back(c);
-      std::sort(both.begin(), both.end());
-      if (!(search_->at(both).score > score + options_.evidence)) continue;
-      for (const std::size_t old : chosen_) {
-        search_->drop(both, old);
-        std::vector<std::size_t> effects = both;
-        effects.erase(std::find(effects.begin(), effects.end(), old));
-        const Entry& entry = search_->at(effects);
-        if (entry.score > score && search_->significance(entry) > options_.significance) {
-          chosen_ = effects;
-          return true;
-        }
-      }
-    }
-    return false;
-  }
-
-  // With two effects or more, each may have been a makeshift for something else.
-  bool swapOne() {
-    if (chosen_.size() < 2) return false;
-    const std::vector<std::size_t> now = chosen_;
-    for (const std::size_t effect : now) {
-      std::vector<std::size_t> rest = now;
-      rest.erase(std::find(rest.begin(), rest.end(), effect));
-      if (search_->entries().count(rest) == 0) {
-        std::vector<std::size_t> fewer = rest;
-        fewer.pop_back();
-        if (search_->entries().count(fewer) == 0) continue;
-        search_->race(fewer, {rest.back()});
-      }
-      search_->race(rest, search_->shortlist(rest, 5));
-    }
-    chosen_ = best();
-    return chosen_ != now;
-  }
-
   void judge() {
-    const double base = search_->at({}).score;
+    const double ofBase = search_->at({}).score;
     for (const auto& [effects, entry] : search_->entries()) {
       if (!entry.works()) continue;
       Finalist f;
       f.effects = effects;
-      f.logEvidence = entry.score - base;
+      f.logEvidence = entry.score - ofBase;
       f.latentSize = entry.fit.noise.latent;
       f.significance = search_->significance(entry);
       for (const std::size_t e : effects)
@@ -240,7 +160,7 @@ class Work {
       sum += std::exp(posterior(f) - posterior(verdict_.finalists[0]));
     for (Finalist& f : verdict_.finalists)
       f.probability = std::exp(posterior(f) - posterior(verdict_.finalists[0])) / sum;
-    base_again();
+    base();  // back-substitution may have found a better one
     const Entry& leader = search_->at(chosen_);
     if (!chosen_.empty()) {
       verdict_.after = adequacy(search_->likelihood(), leader.fit, test_);
@@ -253,29 +173,29 @@ class Work {
       if (f.effects.empty()) f.adequate = verdict_.before.adequate();
     }
   }
-  // back-substitution may have found a better base
-  void base_again() { base(); }
-
-  // log of the probability of the held-out trials given the others: log Z of all less that of those
-  double heldOutScore(const Entry& entry, double* error) const {
-    std::vector<int> all;
-    for (int t = 0; t < data_.numTrials(); ++t) all.push_back(t);
-    const Likelihood whole(data_, all, search_->likelihoodValues(), options_.latentTime);
-    const Hypothesis hypothesis = makeHypothesis(data_, entry.effects, all);
-    // the starts of trials that were held out are new: a large latent force leads to them
-    Noise wide = entry.fit.noise;
+  // What a hypothesis makes of the trials that were held out.
+  struct HeldOut {
+    double score = -HUGE_VAL;  // log of their probability given the others
+    double error = HUGE_VAL;   // of the simulation, with starts of their own [unit of the output]
+  };
+  HeldOut heldOut(const Entry& entry, const Likelihood& all, const Likelihood& held) const {
+    HeldOut result;
+    // their starts are new: a large latent force leads to them
+    Noise wide = entry.fit.noise, still = entry.fit.noise;
     wide.latent = std::max(wide.latent, 0.1);
-    const Fit first = whole.fit(hypothesis, wide, entry.fit.values, {}, {10, 0.1});
-    const Fit fit = whole.fit(hypothesis, entry.fit.noise, first.values, {}, {30, 0.05});
-    Noise still = entry.fit.noise;
     still.latent = 0;
-    const Likelihood likelihood(data_, options_.heldOut, search_->likelihoodValues(),
-                                options_.latentTime);
-    const Hypothesis starts = startsOnly(data_, options_.heldOut);
-    const Fit near = likelihood.fit(starts, wide, entry.fit.values, {}, {10, 0.1});
-    *error = likelihood.simulationError(
-        likelihood.fit(starts, still, near.values, {}, {30, 0.01}).values);
-    return fit.logEvidence - entry.fit.logEvidence;
+    const Hypothesis hypothesis = makeHypothesis(data_, entry.effects, all.trials());
+    if (const auto first = all.tryFit(hypothesis, wide, entry.fit.values, {}, {10, 0.1})) {
+      // log Z of all less that of those that were fitted
+      if (const auto fit = all.tryFit(hypothesis, entry.fit.noise, first->values, {}, {30, 0.05}))
+        result.score = fit->logEvidence - entry.fit.logEvidence;
+    }
+    const Hypothesis starts = startsOnly(data_, held.trials());
+    if (const auto near = held.tryFit(starts, wide, entry.fit.values, {}, {10, 0.1})) {
+      if (const auto fit = held.tryFit(starts, still, near->values, {}, {30, 0.01}))
+        result.error = held.simulationError(fit->values);
+    }
+    return result;
   }
 
   void conclude() {
@@ -358,33 +278,34 @@ class Work {
     gap.range = high - low;
     const Noise still{verdict_.outputDeviation, 0, options_.latentTime};
     const Likelihood& likelihood = search_->likelihood();
-    const auto nominal = [&](const Likelihood& l, const std::vector<int>& trials) {
-      try {
-        return l.simulationError(
-            l.fit(startsOnly(data_, trials), still, nominalValues(data_)).values);
-      } catch (const std::domain_error&) {
-        return HUGE_VAL;  // as it came it does not reach the end
-      }
+    const auto nominal = [&](const Likelihood& l) {
+      const auto fit = l.tryFit(startsOnly(data_, l.trials()), still, nominalValues(data_));
+      return fit ? l.simulationError(fit->values)
+                 : HUGE_VAL;  // as it came it may not reach the end
     };
-    gap.nominal = nominal(likelihood, trials_);
+    gap.nominal = nominal(likelihood);
     gap.calibrated = likelihood.simulationError(search_->simulation({}).values);
     gap.after = likelihood.simulationError(search_->simulation(chosen_).values);
     closeGap(gap);
     if (options_.heldOut.empty()) return;
-    Gap held;
-    held.floor = gap.floor;
-    held.range = gap.range;
-    const double without = heldOutScore(before, &held.calibrated);
-    const double with = heldOutScore(after, &held.after);
-    held.nominal =
-        nominal(Likelihood(data_, options_.heldOut, before.fit.values, options_.latentTime),
-                options_.heldOut);
-    closeGap(held);
-    verdict_.heldOut = held;
+    std::vector<int> every;
+    for (int t = 0; t < data_.numTrials(); ++t) every.push_back(t);
+    const VectorXd& scale = search_->scaleValues();
+    const Likelihood all(data_, every, scale, options_.latentTime);
+    const Likelihood held(data_, options_.heldOut, scale, options_.latentTime);
+    const HeldOut without = heldOut(before, all, held), with = heldOut(after, all, held);
+    Gap other;
+    other.floor = gap.floor;
+    other.range = gap.range;
+    other.nominal = nominal(held);
+    other.calibrated = without.error;
+    other.after = with.error;
+    closeGap(other);
+    verdict_.heldOut = other;
     // by more than chance; a base that fits badly is no exact yardstick, so its simulation must be
     // no worse, too
     judgement.heldOutWorse =
-        !chosen_.empty() && with < without - 3 && held.after > 0.95 * held.calibrated;
+        !chosen_.empty() && with.score < without.score - 3 && with.error > 0.95 * without.error;
   }
 
   std::string sentence() const {
@@ -418,7 +339,7 @@ class Work {
   std::vector<int> trials_;
   AdequacyOptions test_;
   std::optional<Search> search_;
-  std::vector<std::size_t> chosen_;
+  Effects chosen_;
   Stage stage_ = Stage::calibrate;
   double fraction_ = 0;
   Verdict verdict_;
@@ -428,6 +349,18 @@ class Work {
 
 Verdict run(const Disagreement& data, const Options& options) {
   return Work(data, options).run();
+}
+
+VectorXd predictedDeviation(const Disagreement& data, const Verdict& verdict, int trial) {
+  std::vector<std::size_t> amplitudes;
+  VectorXd deviation(static_cast<Index>(verdict.effects.size()));
+  for (const NamedEffect& effect : verdict.effects) {
+    deviation[static_cast<Index>(amplitudes.size())] = effect.estimates.front().deviation;
+    amplitudes.push_back(effect.estimates.front().quantity);
+  }
+  const auto at = data.predict(trial, verdict.values, {}, amplitudes, false);
+  const VectorXd spread = (at.gamma * deviation.asDiagonal()).rowwise().squaredNorm();
+  return (spread.array() + verdict.outputDeviation * verdict.outputDeviation).sqrt();
 }
 
 }  // namespace info::discover

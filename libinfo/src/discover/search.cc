@@ -20,12 +20,6 @@ constexpr double kFirstSize = 0.3, kRaceSize = 0.1, kSmallest = 1e-3;
 // time
 constexpr double kHopeless = 0.03;
 
-std::vector<std::size_t> with(std::vector<std::size_t> effects, std::size_t another) {
-  effects.push_back(another);
-  std::sort(effects.begin(), effects.end());
-  return effects;
-}
-
 }  // namespace
 
 Search::Search(const Disagreement& data, std::vector<int> trials, const Options& options,
@@ -41,7 +35,7 @@ Search::Search(const Disagreement& data, std::vector<int> trials, const Options&
 // Follows σ_d from `size` to where the evidence is largest: MacKay's fixed point
 //     σ_d² ← σ_d²·|η|²/(γ + σ_d/s)
 // then compares with σ_d = 0. Keeps whatever is better than what was known of the hypothesis.
-void Search::improve(const std::vector<std::size_t>& effects, const VectorXd& start, double size) {
+void Search::improve(const Effects& effects, const VectorXd& start, double size) {
   const Hypothesis hypothesis = makeHypothesis(data_, effects, trials_);
   Entry found;
   found.effects = effects;
@@ -54,15 +48,10 @@ void Search::improve(const std::vector<std::size_t>& effects, const VectorXd& st
       found.fit = std::move(fit);
     }
   };
-  // nothing where the simulation cannot even begin
   const auto fitted = [&](double latent, const VectorXd& from, const std::vector<VectorXd>& forces,
-                          const FitOptions& options) -> std::optional<Fit> {
-    try {
-      return likelihood_->fit(hypothesis, {output_, latent, options_.latentTime}, from, forces,
-                              options);
-    } catch (const std::domain_error&) {
-      return std::nullopt;
-    }
+                          const FitOptions& options) {
+    return likelihood_->tryFit(hypothesis, {output_, latent, options_.latentTime}, from, forces,
+                               options);
   };
   VectorXd values = start;
   std::vector<VectorXd> eta;
@@ -121,18 +110,31 @@ void Search::mustWork() const {
         "the model cannot be simulated over these trials, not even with a force that helps it");
 }
 
+std::vector<std::size_t> Search::ownQuantities(std::size_t candidate) const {
+  const auto& quantities = data_.candidates()[candidate].quantities;
+  const auto& nuisances = data_.nuisances();
+  std::vector<std::size_t> own;
+  for (std::size_t i = 0; i < quantities.size(); ++i)
+    if (std::find(nuisances.begin(), nuisances.end(), quantities[i]) == nuisances.end())
+      own.push_back(i);
+  return own;
+}
+
 VectorXd Search::started(std::size_t candidate, std::size_t start, VectorXd values) const {
   const Candidate& c = data_.candidates()[candidate];
-  // a parameter that is free anyway goes on from where it is
-  const auto& nuisances = data_.nuisances();
-  for (std::size_t i = 0; i < c.quantities.size(); ++i)
-    if (std::find(nuisances.begin(), nuisances.end(), c.quantities[i]) == nuisances.end())
-      values[static_cast<Index>(c.quantities[i])] = c.starts.at(start)[static_cast<Index>(i)];
+  for (const std::size_t i : ownQuantities(candidate))
+    values[static_cast<Index>(c.quantities[i])] = c.starts.at(start)[static_cast<Index>(i)];
   return values;
 }
 
-std::vector<Screened> Search::screen(const std::vector<std::size_t>& effects,
-                                     bool simulation) const {
+VectorXd Search::absent(std::size_t candidate, VectorXd values) const {
+  const Candidate& c = data_.candidates()[candidate];
+  for (const std::size_t i : ownQuantities(candidate))
+    values[static_cast<Index>(c.quantities[i])] = data_.quantities()[c.quantities[i]].nominal;
+  return values;
+}
+
+std::vector<Screened> Search::screen(const Effects& effects, bool simulation) const {
   const Entry& entry = at(effects);
   const Fit& fit = simulation ? entry.simulation.value() : entry.fit;
   std::vector<Screened> result;
@@ -200,7 +202,7 @@ std::vector<Screened> Search::screen(const std::vector<std::size_t>& effects,
   return result;
 }
 
-const Fit& Search::simulation(const std::vector<std::size_t>& effects) {
+const Fit& Search::simulation(const Effects& effects) {
   Entry& entry = entries_.at(effects);
   if (!entry.simulation) {
     entry.simulation =
@@ -211,7 +213,7 @@ const Fit& Search::simulation(const std::vector<std::size_t>& effects) {
   return *entry.simulation;
 }
 
-std::vector<std::size_t> Search::shortlist(const std::vector<std::size_t>& effects, int most) {
+std::vector<std::size_t> Search::shortlist(const Effects& effects, int most) {
   this->simulation(effects);
   const auto filter = screen(effects, false), simulation = screen(effects, true);
   std::vector<std::size_t> list;
@@ -238,8 +240,7 @@ std::vector<std::size_t> Search::shortlist(const std::vector<std::size_t>& effec
   return list;
 }
 
-void Search::race(const std::vector<std::size_t>& base,
-                  const std::vector<std::size_t>& candidates) {
+void Search::race(const Effects& base, const std::vector<std::size_t>& candidates) {
   const VectorXd values = at(base).fit.values;
   const double raceSize = std::clamp(2 * at(base).fit.noise.latent, 0.01, kRaceSize);
   for (const std::size_t c : candidates) {
@@ -252,15 +253,11 @@ void Search::race(const std::vector<std::size_t>& base,
     VectorXd best = started(c, 0, values);
     double evidence = -1e300;
     for (std::size_t s = 0; starts > 1 && s < starts; ++s) {
-      try {
-        const Fit fit = likelihood_->fit(hypothesis, {output_, raceSize, options_.latentTime},
-                                         started(c, s, values), {}, {5, 0.1});
-        if (fit.logEvidence > evidence) {
-          evidence = fit.logEvidence;
-          best = fit.values;
-        }
-      } catch (const std::domain_error&) {
-        // this start cannot be simulated; another may
+      const auto fit = likelihood_->tryFit(hypothesis, {output_, raceSize, options_.latentTime},
+                                           started(c, s, values), {}, {5, 0.1});
+      if (fit && fit->logEvidence > evidence) {
+        evidence = fit->logEvidence;
+        best = fit->values;
       }
       ++fits_;
     }
@@ -280,40 +277,28 @@ void Search::race(const std::vector<std::size_t>& base,
   const VectorXd from = first.fit.values;
   const double score = first.score;
   const double size = std::max(2e-3, first.fit.noise.latent);
-  const auto absent = [&](VectorXd v) {
-    const auto& nuisances = data_.nuisances();
-    for (const std::size_t q : data_.candidates()[leader].quantities)
-      if (std::find(nuisances.begin(), nuisances.end(), q) == nuisances.end())
-        v[static_cast<Index>(q)] = data_.quantities()[q].nominal;
-    return v;
-  };
   for (const std::size_t c : candidates) {
     if (c == leader || at(with(base, c)).score < score - 25) continue;
     report_(describe(data_, with(base, c)));
-    VectorXd start = absent(from);
+    VectorXd start = absent(leader, from);
     const Entry& own = at(with(base, c));
-    const auto& nuisances = data_.nuisances();
-    for (const std::size_t q : data_.candidates()[c].quantities)
-      if (std::find(nuisances.begin(), nuisances.end(), q) == nuisances.end())
-        start[static_cast<Index>(q)] = own.fit.values[static_cast<Index>(q)];
+    for (const std::size_t i : ownQuantities(c)) {
+      const auto q = static_cast<Index>(data_.candidates()[c].quantities[i]);
+      start[q] = own.fit.values[q];
+    }
     improve(with(base, c), start, size);
   }
   report_(describe(data_, base));
-  improve(base, absent(from), size);
+  improve(base, absent(leader, from), size);
 }
 
-void Search::drop(const std::vector<std::size_t>& effects, std::size_t effect) {
+void Search::drop(const Effects& effects, std::size_t effect) {
   const Entry& entry = at(effects);
   if (!entry.works()) return;
-  std::vector<std::size_t> rest = effects;
-  rest.erase(std::find(rest.begin(), rest.end(), effect));
-  VectorXd start = entry.fit.values;
-  const auto& nuisances = data_.nuisances();
-  for (const std::size_t q : data_.candidates()[effect].quantities)
-    if (std::find(nuisances.begin(), nuisances.end(), q) == nuisances.end())
-      start[static_cast<Index>(q)] = data_.quantities()[q].nominal;
+  const Effects rest = without(effects, effect);
   report_(describe(data_, rest));
-  improve(rest, start, std::clamp(2 * entry.fit.noise.latent, 0.01, kRaceSize));
+  improve(rest, absent(effect, entry.fit.values),
+          std::clamp(2 * entry.fit.noise.latent, 0.01, kRaceSize));
 }
 
 bool Entry::works() const {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "effect_sets.h"
 #include "info/discover/discover.h"
 #include "info/discover/joint_fit.h"
 
@@ -15,7 +16,7 @@ struct Stopped {};
 
 /// A hypothesis with the size of latent force that suits it best.
 struct Entry {
-  std::vector<std::size_t> effects;  ///< sorted
+  Effects effects;
   Fit fit;
   std::optional<Fit> simulation;  ///< the same without latent force, where it was fitted
   double score = 0;               ///< log Z − σ_d/s
@@ -40,30 +41,34 @@ class Search {
   void calibrate();
   const Likelihood& likelihood() const { return *likelihood_; }
   /// Where the scale of the latent force was taken.
-  const Eigen::VectorXd& likelihoodValues() const { return scaleValues_; }
-  const Entry& at(const std::vector<std::size_t>& effects) const { return entries_.at(effects); }
-  const std::map<std::vector<std::size_t>, Entry>& entries() const { return entries_; }
+  const Eigen::VectorXd& scaleValues() const { return scaleValues_; }
+  const Entry& at(const Effects& effects) const { return entries_.at(effects); }
+  const std::map<Effects, Entry>& entries() const { return entries_; }
   int fits() const { return fits_; }
 
   /// One-step gains of all candidates that are not yet in `effects`, at the fits with and without
   /// latent force.
-  std::vector<Screened> screen(const std::vector<std::size_t>& effects, bool simulation) const;
+  std::vector<Screened> screen(const Effects& effects, bool simulation) const;
   /// Union of the best of both modes, the best of each kind, and declared equivalents.
-  std::vector<std::size_t> shortlist(const std::vector<std::size_t>& effects, int most);
+  std::vector<std::size_t> shortlist(const Effects& effects, int most);
   /// The fit without latent force, made where it is not there yet.
-  const Fit& simulation(const std::vector<std::size_t>& effects);
-  /// Fits `with` + each candidate; then again from the leader's nuisances, and `with` too.
-  void race(const std::vector<std::size_t>& with, const std::vector<std::size_t>& candidates);
+  const Fit& simulation(const Effects& effects);
+  /// Fits `base` + each candidate; then again from the leader's nuisances, and `base` too.
+  void race(const Effects& base, const std::vector<std::size_t>& candidates);
+  /// Fits `effects` without one of them, from where the fit of all of them is.
+  void drop(const Effects& effects, std::size_t effect);
   /// Least |amplitude − nominal|/deviation over its effects.
   double significance(const Entry& entry) const;
 
-  /// Fits `effects` without one of them, from where the fit of all of them is.
-  void drop(const std::vector<std::size_t>& effects, std::size_t effect);
-
  private:
   void mustWork() const;  ///< @throws std::domain_error if the base could not be fitted
-  void improve(const std::vector<std::size_t>& effects, const Eigen::VectorXd& start, double size);
+  void improve(const Effects& effects, const Eigen::VectorXd& start, double size);
+  /// Values with an effect's own quantities at one of its starts, or at nominal; those that are
+  /// free anyway stay.
   Eigen::VectorXd started(std::size_t candidate, std::size_t start, Eigen::VectorXd values) const;
+  Eigen::VectorXd absent(std::size_t candidate, Eigen::VectorXd values) const;
+  /// Its quantities that are no nuisances, as places in Candidate::quantities.
+  std::vector<std::size_t> ownQuantities(std::size_t candidate) const;
 
   const Disagreement& data_;
   std::vector<int> trials_;
@@ -72,7 +77,7 @@ class Search {
   Report report_;
   std::optional<Likelihood> likelihood_;
   Eigen::VectorXd scaleValues_;
-  std::map<std::vector<std::size_t>, Entry> entries_;
+  std::map<Effects, Entry> entries_;
   int fits_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bio/discover/widest_model.h"
+#include "bio/trial.h"
 
 namespace bio::discover {
 
@@ -48,5 +49,9 @@ struct EffectProvenance {
 ///   model, or present in it already; values that are too many or too few
 Augmented addEffects(const Model& model, const ArmOptions& arm, const std::string& coordinate,
                      const std::vector<EffectToAdd>& effects, const EffectProvenance& provenance);
+
+/// The trial as a sensor without fault would have measured it, q(t) = (y(t + clock) − bias)/(1 +
+/// gain); samples whose time falls out of the trial are lost.
+Trial asTrueSensor(Trial trial, const std::string& coordinate, const SensorLaw& sensor);
 
 }  // namespace bio::discover

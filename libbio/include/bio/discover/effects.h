@@ -42,6 +42,7 @@ void addNuisances(WidestModel& model);
 
 /// addNuisances, and every entry but those whose ids are in `without`.
 /// @param without  ids of entries or of candidates
+/// @throws std::invalid_argument for an id that is neither, with those there are
 WidestModel widestModel(const Model& model, const ArmOptions& arm, const std::string& coordinate,
                         const std::vector<std::string>& without = {});
 

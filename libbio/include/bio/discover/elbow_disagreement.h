@@ -81,8 +81,8 @@ class ElbowDisagreement : public info::discover::Disagreement {
                                  double clock) const;
   Trajectory simulate(const OfTrial& one, const Eigen::VectorXd& values,
                       const Eigen::VectorXd& latent, double stepFactor) const;
-  Eigen::VectorXd outputsOf(const OfTrial& one, const Trajectory& motion,
-                            const SensorLaw& sensor) const;
+  Eigen::VectorXd outputsOf(const OfTrial& one, const Eigen::VectorXd& values,
+                            const Eigen::VectorXd& latent, double stepFactor) const;
 
   WidestModel widest_;
   ElbowOptions options_;

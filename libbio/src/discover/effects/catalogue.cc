@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -38,6 +39,24 @@ const std::vector<EffectEntry>& effectEntries() {
   return entries;
 }
 
+namespace {
+
+/// What is left out must be an entry, a candidate, or present in the model.
+void mustBeKnown(const WidestModel& widest, const std::vector<std::string>& ids) {
+  const auto& entries = effectEntries();
+  for (const std::string& id : ids) {
+    const bool isEntry = std::any_of(entries.begin(), entries.end(),
+                                     [&](const EffectEntry& entry) { return id == entry.id; });
+    if (isEntry || widest.knows(id) || widest.present().count(id) > 0) continue;
+    std::vector<std::string> known;
+    for (const Candidate& one : widest.candidates()) known.push_back(one.id);
+    throw std::invalid_argument(
+        fmt::format("no effect is called '{}'; there are {}", id, fmt::join(known, ", ")));
+  }
+}
+
+}  // namespace
+
 WidestModel widestModel(const Model& model, const ArmOptions& arm, const std::string& coordinate,
                         const std::vector<std::string>& without) {
   WidestModel widest(model, arm, coordinate);
@@ -45,6 +64,7 @@ WidestModel widestModel(const Model& model, const ArmOptions& arm, const std::st
   for (const EffectEntry& entry : effectEntries()) {
     if (std::find(without.begin(), without.end(), entry.id) == without.end()) entry.add(widest);
   }
+  mustBeKnown(widest, without);
   widest.forget(without);
   return widest;
 }

@@ -1,4 +1,4 @@
-#include <cmath>
+#include <algorithm>
 
 #include "discover/effects/effects.h"
 
@@ -8,15 +8,14 @@
 namespace bio::discover {
 namespace {
 
-/// Whether the model stops the coordinate at its ends, and by which element.
-bool hasLimits(const WidestModel& model, std::string& which) {
+/// What stops the coordinate at its ends in the model already; empty: nothing.
+std::string limitOf(const WidestModel& model) {
   for (const CoordinateLimitForce& limit : model.base().limitForces) {
     if (!limit.enabled || limit.coordinate != model.coordinate().name) continue;
-    if (std::max(limit.upperStiffness, limit.lowerStiffness) < 1e-3) continue;  // a damper only
-    which = limit.name;
-    return true;
+    const bool dampsOnly = std::max(limit.upperStiffness, limit.lowerStiffness) < 1e-3;
+    if (!dampsOnly) return limit.name;
   }
-  return false;
+  return {};
 }
 
 }  // namespace
@@ -44,7 +43,9 @@ void addStiffness(WidestModel& model) {
 }
 
 void addLimits(WidestModel& model) {
-  if (std::string which; hasLimits(model, which)) return model.addPresent("limit", which);
+  if (const std::string limit = limitOf(model); !limit.empty()) {
+    return model.addPresent("limit", limit);
+  }
   const Coordinate& q = model.coordinate();
   const double span = q.rangeMax - q.rangeMin;
   const std::size_t law =

@@ -122,6 +122,11 @@ struct Verdict {
 /// @throws std::invalid_argument if the data break a rule of Disagreement
 Verdict run(const Disagreement& data, const Options& options = {});
 
+/// Standard deviation of a trial's measurements about the simulation with the effects, at its
+/// times: √(σ_y² + Σ (dy/dA·σ_A)²) over the amplitudes A, each by itself.
+/// @throws what Disagreement::predict throws
+Eigen::VectorXd predictedDeviation(const Disagreement& data, const Verdict& verdict, int trial);
+
 const char* name(Finding finding);
 const char* name(Stage stage);
 const char* name(EffectKind kind);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <optional>
 #include <vector>
 
 #include "info/discover/disagreement.h"
@@ -64,6 +65,11 @@ class Likelihood {
   /// @throws std::domain_error if the model cannot be simulated at the start
   Fit fit(const Hypothesis& hypothesis, const Noise& noise, const Eigen::VectorXd& start,
           const std::vector<Eigen::VectorXd>& eta = {}, const FitOptions& options = {}) const;
+  /// The same, and nothing where the model cannot be simulated at the start.
+  std::optional<Fit> tryFit(const Hypothesis& hypothesis, const Noise& noise,
+                            const Eigen::VectorXd& start,
+                            const std::vector<Eigen::VectorXd>& eta = {},
+                            const FitOptions& options = {}) const;
 
   /// What the data say at a fit about further disturbances of the outputs.
   struct Linear {
@@ -100,8 +106,13 @@ class Likelihood {
 
  private:
   struct Point;
+  struct Normal;
   struct Step;
-  double cost(const Hypothesis& hypothesis, const Noise& noise, const Point& point) const;
+  double cost(const Noise& noise, const Point& point) const;
+  Normal normalEquations(const std::vector<Linear>& trials, const Noise& noise,
+                         const Point& point) const;
+  Step step(const Hypothesis& hypothesis, const Normal& normal, const Point& point,
+            double damping) const;
   Linear linearise(std::size_t at, const Hypothesis& hypothesis, double latentSize,
                    const Eigen::VectorXd& values, const Eigen::VectorXd& xi,
                    const Eigen::VectorXd& eta, const std::vector<std::size_t>& extra,
@@ -112,14 +123,5 @@ class Likelihood {
   std::vector<int> trials_;
   std::vector<Eigen::MatrixXd> roots_;  ///< diag(G)·L per trial
 };
-
-/// σ_y from the third differences of equally spaced samples, Σ(Δ³y)²/20: exact for noise on a curve
-/// that a parabola follows over four samples; slower curves add little.
-struct OutputDeviation {
-  double value = 0;
-  double relativeError = 0;  ///< standard error of value²/value², for noise
-};
-/// @throws std::invalid_argument if no four samples are equally spaced
-OutputDeviation estimateOutputDeviation(const Disagreement& data, const std::vector<int>& trials);
 
 }  // namespace info::discover

@@ -1,0 +1,38 @@
+#include "input_rules.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <stdexcept>
+
+namespace app {
+
+void inputsMustDiffer(const Summary& summary, std::size_t training) {
+  const auto& inputs = summary.inputs();
+  for (std::size_t i = 1; i < inputs.size(); ++i) {
+    for (std::size_t j = i + 1; j < inputs.size(); ++j) {
+      if (inputs[i].sha256 != inputs[j].sha256) continue;
+      const bool between = i <= training && j > training;
+      throw std::invalid_argument(
+          between ? fmt::format("{}: is held out, and estimated from as {}", inputs[j].path,
+                                inputs[i].path)
+                  : fmt::format("{}: is the same trial as {}", inputs[j].path, inputs[i].path));
+    }
+  }
+}
+
+void resultsMustNotBeInputs(const Summary& summary, const OutputFolder& folder,
+                            const std::vector<std::string>& results) {
+  if (!folder.active()) return;
+  for (const std::string& name : results) {
+    for (const Summary::InputFile& input : summary.inputs()) {
+      std::error_code ignored;
+      if (std::filesystem::equivalent(folder.path(name), input.path, ignored)) {
+        throw std::invalid_argument(fmt::format(
+            "{}: is an input and would be overwritten; choose another --out", input.path));
+      }
+    }
+  }
+}
+
+}  // namespace app

@@ -1,0 +1,101 @@
+#include "select.h"
+
+namespace info::discover {
+namespace {
+
+class Selection {
+ public:
+  Selection(Search& search, const Options& options) : search_(search), options_(options) {}
+
+  Effects run() {
+    for (int round = 0; round < 2 * options_.maxEffects; ++round) {
+      const bool first = chosen_.empty();
+      if (static_cast<int>(chosen_.size()) >= options_.maxEffects || (!first && !promising()))
+        break;
+      const std::vector<std::size_t> list =
+          search_.shortlist(chosen_, first ? options_.finalists : 5);
+      search_.race(chosen_, list);
+      const Effects before = chosen_;
+      chosen_ = best();
+      while (swapOne()) {
+      }
+      if (chosen_ == before && !replaceOne(list)) break;
+    }
+    return chosen_;
+  }
+
+ private:
+  // The best of all that have been raced where every effect is significant and earns its place.
+  Effects best() const {
+    Effects best;
+    double score = search_.at({}).score;
+    for (const auto& [effects, entry] : search_.entries()) {
+      const double net = entry.score - options_.evidence * static_cast<double>(effects.size());
+      if (!effects.empty() && net > score && isSignificant(entry)) {
+        score = net;
+        best = effects;
+      }
+    }
+    return best;
+  }
+
+  bool isSignificant(const Entry& entry) const {
+    return search_.significance(entry) > options_.significance;
+  }
+
+  // Is anything to be gained beyond what has been chosen?
+  bool promising() {
+    search_.simulation(chosen_);
+    for (const bool simulation : {false, true})
+      for (const Screened& s : search_.screen(chosen_, simulation))
+        if (s.gain > 0.6 * options_.evidence) return true;
+    return false;
+  }
+
+  // With two effects or more, each may have been a makeshift for something else.
+  bool swapOne() {
+    if (chosen_.size() < 2) return false;
+    const Effects now = chosen_;
+    for (const std::size_t effect : now) {
+      const Effects rest = without(now, effect);
+      if (search_.entries().count(rest) == 0) {
+        const Effects fewer = without(rest, rest.back());
+        if (search_.entries().count(fewer) == 0) continue;
+        search_.race(fewer, {rest.back()});
+      }
+      search_.race(rest, search_.shortlist(rest, 5));
+    }
+    chosen_ = best();
+    return chosen_ != now;
+  }
+
+  // A newcomer that helps much but leaves nothing to one of those before it takes its place.
+  bool replaceOne(const std::vector<std::size_t>& list) {
+    const double score = search_.at(chosen_).score;
+    for (const std::size_t newcomer : list) {
+      const Effects both = with(chosen_, newcomer);
+      if (!(search_.at(both).score > score + options_.evidence)) continue;
+      for (const std::size_t old : chosen_) {
+        search_.drop(both, old);
+        const Entry& entry = search_.at(without(both, old));
+        if (entry.score > score && isSignificant(entry)) {
+          chosen_ = entry.effects;
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  Search& search_;
+  const Options& options_;
+  Effects chosen_;
+};
+
+}  // namespace
+
+Effects select(Search& search, const Options& options) {
+  return Selection(search, options).run();
+}
+
+}  // namespace info::discover
