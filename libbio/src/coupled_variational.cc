@@ -83,6 +83,7 @@ class VariationalStepper {
     external_.setZero();
     options_.externalForce.add(middle, row_, external_);
     const double share = symmetric_ ? h / 2 : h;  // of the forces in F⁻
+    double previous = 0;                          // largest correction of the iteration before
     for (result.iterations = 1; result.iterations <= options_.maxIterations; ++result.iterations) {
       const Vector q_m = (begin.q + end.q) / 2;
       const Vector v = (end.q - begin.q) / h;
@@ -112,7 +113,8 @@ class VariationalStepper {
       Matrix tau_q = Matrix::Zero();
       Matrix tau_v = Matrix::Zero();
       arm_.coordinateForces().template add<N>(q_m, v, passive_, tau_q, tau_v);
-      Matrix dTau = tau_q / 2 + tau_v / h;
+      const Matrix dPassive = tau_q / 2 + tau_v / h;
+      Matrix dTau = dPassive;
 
       // muscles: forces on the skeleton, and fibre lengths eliminated one by one
       muscle_.setZero();
@@ -158,8 +160,15 @@ class VariationalStepper {
       if (fibreSize * shorten > largestFibreStep) shorten = largestFibreStep / fibreSize;
       end.q += shorten * dq;
       end.fibreLength += shorten * residual_;
-      if (size < options_.newtonTolerance && fibreSize < options_.newtonTolerance) {
-        // L_q, forces and M v belong to the last iterate but one, which is within the tolerance
+      const double correction = std::max(size, fibreSize);
+      if (isLast(correction, shorten == 1 ? previous : 0)) {
+        // L_q, forces and M v belong to the last iterate but one; to first order in the correction
+        for (std::size_t i = 0; i < rate_.size(); ++i) {
+          muscle_ -= (rate_[i].dF_dFibreLength / 2 * residual_[static_cast<Eigen::Index>(i)]) *
+                     configuration_.length(i).dL_dq;
+        }
+        muscle_ += (dTau - dPassive) * dq;
+        passive_ += dPassive * dq;
         const Vector step = end.q - begin.q;
         end.p = Mv + dMv * dq + h / 2 * (L_q + dL_q * dq) +
                 (symmetric_ ? Vector(share * (muscle_ + passive_ + external_))
@@ -170,8 +179,19 @@ class VariationalStepper {
         result.converged = true;
         return result;
       }
+      previous = correction;
     }
     return result;
+  }
+
+  /// Newton's corrections fall quadratically, x₃ ≈ x₂·(x₂/x₁)²: is the next one within the
+  /// tolerance?
+  /// @param previous  the correction before, 0: none that tells
+  bool isLast(double correction, double previous) const {
+    if (correction < options_.newtonTolerance) return true;
+    if (correction > worthwhile || correction > 0.1 * previous) return false;
+    const double ratio = correction / previous;
+    return correction * ratio * ratio < 0.01 * options_.newtonTolerance;
   }
 
   /// What is left of the equations at the last iterate, for the message of a failed step.
@@ -185,6 +205,7 @@ class VariationalStepper {
   }
 
  private:
+  static constexpr double worthwhile = 1e-4;        ///< corrections above are always followed
   static constexpr double largestTurn = 0.3;        ///< [rad] per iteration
   static constexpr double largestFibreStep = 0.25;  ///< of ℓ0 per iteration
 

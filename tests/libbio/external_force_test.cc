@@ -135,6 +135,7 @@ TEST(ExternalForce, SensitivitiesMatchDifferencesUnderIt) {
     SensitivityOptions options{p.options, false};
     options.simulation.integrator = integrator;
     options.simulation.step = 0.01;
+    options.simulation.newtonTolerance = 1e-12;
     const auto wanted =
         p.elbow.catalogue.select({"TRI.radius", "hand.mass", "initial.elbow_flexion"});
     const SensitivityTrajectory s =

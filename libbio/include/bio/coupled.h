@@ -30,12 +30,13 @@ struct ArmState {
 
 struct SimulationOptions {
   Integrator integrator = Integrator::variational;
-  double startTime = 0;           ///< [s]
-  double duration = 0;            ///< [s] > 0
-  double step = 0.01;             ///< [s] > 0; cvode: interval of the output
-  double newtonTolerance = 1e-9;  ///< last correction: of q [rad], of fibre lengths relative to ℓ0
-  int maxIterations = 25;         ///< Newton iterations before a step is halved
-  int maxHalvings = 8;            ///< a step may shrink to step/2^maxHalvings
+  double startTime = 0;  ///< [s]
+  double duration = 0;   ///< [s] > 0
+  double step = 0.01;    ///< [s] > 0; cvode: interval of the output
+  double newtonTolerance =
+      1e-9;                ///< what is left to correct: q [rad], fibre lengths relative to ℓ0
+  int maxIterations = 25;  ///< Newton iterations before a step is halved
+  int maxHalvings = 8;     ///< a step may shrink to step/2^maxHalvings
   double relativeTolerance = 1e-10;  ///< cvode
   double absoluteTolerance = 1e-12;  ///< cvode
   /// Called after every output row with the time reached [s]; return false to stop.

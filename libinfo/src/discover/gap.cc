@@ -5,7 +5,7 @@ namespace info::discover {
 void closeGap(Gap& gap) {
   const double floor = gap.floor * gap.floor, after = gap.after * gap.after - floor;
   const auto closed = [&](double before) -> std::optional<double> {
-    if (before * before < 1.05 * floor) return std::nullopt;
+    if (before * before < 1.2 * floor) return std::nullopt;
     return 1 - after / (before * before - floor);
   };
   gap.closedFromCalibrated = closed(gap.calibrated);

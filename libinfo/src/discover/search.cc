@@ -19,6 +19,8 @@ constexpr double kFirstSize = 0.3, kRaceSize = 0.1, kSmallest = 1e-3;
 // with so large a latent force none at all is out of the question, and its fit is not worth the
 // time
 constexpr double kHopeless = 0.03;
+// with so large a latent force the base is too far from the data for linear steps
+constexpr double kPoor = 0.06;
 
 }  // namespace
 
@@ -32,10 +34,20 @@ Search::Search(const Disagreement& data, std::vector<int> trials, const Options&
   likelihood_.emplace(data_, trials_, nominalValues(data_), options_.latentTime);
 }
 
+namespace {
+
+// η of another σ_d with the same latent force.
+std::vector<VectorXd> forceKept(std::vector<VectorXd> eta, double from, double to) {
+  for (VectorXd& one : eta) one *= from / to;
+  return eta;
+}
+
+}  // namespace
+
 // Follows σ_d from `size` to where the evidence is largest: MacKay's fixed point
 //     σ_d² ← σ_d²·|η|²/(γ + σ_d/s)
 // then compares with σ_d = 0. Keeps whatever is better than what was known of the hypothesis.
-void Search::improve(const Effects& effects, const VectorXd& start, double size) {
+void Search::improve(const Effects& effects, const VectorXd& start, double size, const Fit* near) {
   const Hypothesis hypothesis = makeHypothesis(data_, effects, trials_);
   Entry found;
   found.effects = effects;
@@ -55,8 +67,9 @@ void Search::improve(const Effects& effects, const VectorXd& start, double size)
   };
   VectorXd values = start;
   std::vector<VectorXd> eta;
+  if (near != nullptr) eta = forceKept(near->eta, near->noise.latent, size);
   for (int round = 0; round < 6 && size > kSmallest; ++round) {
-    std::optional<Fit> tried = fitted(size, values, eta, {round == 0 ? 10 : 5, 0.05});
+    std::optional<Fit> tried = fitted(size, values, eta, {25, 0.05});
     if (!tried) break;
     Fit& fit = *tried;
     const double ratio =
@@ -66,6 +79,7 @@ void Search::improve(const Effects& effects, const VectorXd& start, double size)
     eta = fit.eta;
     keep(std::move(fit));
     if (std::abs(std::log(factor)) < 0.15) break;
+    eta = forceKept(std::move(eta), size, factor * size);
     size *= factor;
     if (size > 3) break;
   }
@@ -202,6 +216,29 @@ std::vector<Screened> Search::screen(const Effects& effects, bool simulation) co
   return result;
 }
 
+std::vector<Screened> Search::probe(const Effects& effects) {
+  const Fit base = at(effects).fit;
+  std::vector<Screened> result;
+  for (std::size_t c = 0; c < data_.candidates().size(); ++c) {
+    if (std::find(effects.begin(), effects.end(), c) != effects.end()) continue;
+    report_(describe(data_, with(effects, c)));
+    const Hypothesis hypothesis = makeHypothesis(data_, with(effects, c), trials_);
+    Screened s{c, -HUGE_VAL, 0};
+    for (std::size_t start = 0; start < data_.candidates()[c].starts.size(); ++start) {
+      const auto fit = likelihood_->tryFit(hypothesis, base.noise, started(c, start, base.values),
+                                           base.eta, {4, 0.1});
+      ++fits_;
+      if (!fit) continue;
+      s.gain = std::max(s.gain, fit->logEvidence - base.logEvidence);
+      s.information = 1;
+    }
+    result.push_back(s);
+  }
+  std::sort(result.begin(), result.end(),
+            [](const Screened& a, const Screened& b) { return a.gain > b.gain; });
+  return result;
+}
+
 const Fit& Search::simulation(const Effects& effects) {
   Entry& entry = entries_.at(effects);
   if (!entry.simulation) {
@@ -215,7 +252,9 @@ const Fit& Search::simulation(const Effects& effects) {
 
 std::vector<std::size_t> Search::shortlist(const Effects& effects, int most) {
   this->simulation(effects);
-  const auto filter = screen(effects, false), simulation = screen(effects, true);
+  const bool poor = at(effects).fit.noise.latent > kPoor;
+  const auto filter = poor ? probe(effects) : screen(effects, false);
+  const auto simulation = screen(effects, true);
   std::vector<std::size_t> list;
   const auto add = [&](const Screened& s) {
     if (s.information > 0 && std::find(list.begin(), list.end(), s.candidate) == list.end())
@@ -241,7 +280,8 @@ std::vector<std::size_t> Search::shortlist(const Effects& effects, int most) {
 }
 
 void Search::race(const Effects& base, const std::vector<std::size_t>& candidates) {
-  const VectorXd values = at(base).fit.values;
+  const Fit near = at(base).fit;
+  const VectorXd& values = near.values;
   const double raceSize = std::clamp(2 * at(base).fit.noise.latent, 0.01, kRaceSize);
   for (const std::size_t c : candidates) {
     const auto effects = with(base, c);
@@ -253,15 +293,19 @@ void Search::race(const Effects& base, const std::vector<std::size_t>& candidate
     VectorXd best = started(c, 0, values);
     double evidence = -1e300;
     for (std::size_t s = 0; starts > 1 && s < starts; ++s) {
-      const auto fit = likelihood_->tryFit(hypothesis, {output_, raceSize, options_.latentTime},
-                                           started(c, s, values), {}, {5, 0.1});
+      const auto fit = likelihood_->tryFit(
+          hypothesis, {output_, raceSize, options_.latentTime}, started(c, s, values),
+          forceKept(near.eta, near.noise.latent, raceSize), {5, 0.1});
       if (fit && fit->logEvidence > evidence) {
         evidence = fit->logEvidence;
         best = fit->values;
       }
       ++fits_;
     }
-    improve(effects, best, raceSize);
+    improve(effects, best, raceSize, &near);
+    // what contains the base cannot be far worse: a wrong minimum, once more from the beginning
+    if (at(effects).score < at(base).score - options_.evidence)
+      improve(effects, started(c, 0, nominalValues(data_)), kFirstSize);
   }
   if (candidates.empty()) return;
   // cross-starts: everything that is not far behind once more from the leader's nuisances
@@ -286,10 +330,10 @@ void Search::race(const Effects& base, const std::vector<std::size_t>& candidate
       const auto q = static_cast<Index>(data_.candidates()[c].quantities[i]);
       start[q] = own.fit.values[q];
     }
-    improve(with(base, c), start, size);
+    improve(with(base, c), start, size, &first.fit);
   }
   report_(describe(data_, base));
-  improve(base, absent(leader, from), size);
+  improve(base, absent(leader, from), size, &first.fit);
 }
 
 bool Search::settle(const Effects& base) {
@@ -320,7 +364,7 @@ void Search::drop(const Effects& effects, std::size_t effect) {
   const Effects rest = without(effects, effect);
   report_(describe(data_, rest));
   improve(rest, absent(effect, entry.fit.values),
-          std::clamp(2 * entry.fit.noise.latent, 0.01, kRaceSize));
+          std::clamp(2 * entry.fit.noise.latent, 0.01, kRaceSize), &entry.fit);
 }
 
 bool Entry::works() const {

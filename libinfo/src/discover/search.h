@@ -49,6 +49,8 @@ class Search {
   /// One-step gains of all candidates that are not yet in `effects`, at the fits with and without
   /// latent force.
   std::vector<Screened> screen(const Effects& effects, bool simulation) const;
+  /// The same from short fits, for a base so poor that one linear step is no guide.
+  std::vector<Screened> probe(const Effects& effects);
   /// Union of the best of both modes, the best of each kind, and declared equivalents.
   std::vector<std::size_t> shortlist(const Effects& effects, int most);
   /// The fit without latent force, made where it is not there yet.
@@ -65,7 +67,9 @@ class Search {
 
  private:
   void mustWork() const;  ///< @throws std::domain_error if the base could not be fitted
-  void improve(const Effects& effects, const Eigen::VectorXd& start, double size);
+  /// @param near  a fit whose latent force keeps the simulation near the data at the start; or null
+  void improve(const Effects& effects, const Eigen::VectorXd& start, double size,
+               const Fit* near = nullptr);
   /// Values with an effect's own quantities at one of its starts, or at nominal; those that are
   /// free anyway stay.
   Eigen::VectorXd started(std::size_t candidate, std::size_t start, Eigen::VectorXd values) const;

@@ -15,7 +15,8 @@ struct Gap {
   double after = 0;       ///< with the effects
   double floor = 0;       ///< σ_y
   double range = 0;       ///< of the data, for normalised errors
-  /// 1 − (after² − floor²)/(before² − floor²); empty if before² < 1.05·floor²: no gap to close
+  /// 1 − (after² − floor²)/(before² − floor²); empty if before² < 1.2·floor², three
+  /// deviations of a mean square over 450 samples: no gap to close
   std::optional<double> closedFromCalibrated, closedFromNominal;
 };
 
