@@ -11,6 +11,10 @@ if(FISHERHILL_SANITIZE)
     -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(fisherhill_flags INTERFACE -fsanitize=address,undefined)
 endif()
+# GCC frees memory only once it has taken 1 GB: searching for what could be freed took a tenth of its time.
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  add_compile_options($<$<COMPILE_LANGUAGE:CXX>:--param=ggc-min-heapsize=500000>)
+endif()
 
 # In tests a local may be called as another file's helper; the others are GCC 12's false alarms (its
 # bug 105651, and Eigen's temporaries of AD scalars).
@@ -33,9 +37,13 @@ function(fisherhill_batched target)
 endfunction()
 
 # fisherhill_test(name [BATCHED] [FILES file...] [LABELS label...] LIBS lib...): the files, or name.cc,
-# become one test program, and every TEST in it one ctest case.
+# become one test program, and every TEST in it one ctest case. Those labelled slow are built only with
+# FISHERHILL_SLOW_TESTS.
 function(fisherhill_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg BATCHED TIMEOUT "FILES;LABELS;LIBS")
+  if("slow" IN_LIST arg_LABELS AND NOT FISHERHILL_SLOW_TESTS)
+    return()
+  endif()
   if(NOT arg_FILES)
     set(arg_FILES ${name}.cc)
   endif()
