@@ -27,20 +27,24 @@ target_compile_options(fisherhill_test_flags INTERFACE -Wno-shadow
 set(standard_headers <algorithm> <cmath> <functional> <limits> <memory> <optional> <stdexcept>
   <string> <vector> <Eigen/Dense>)
 
-# fisherhill_batched(target): its files are compiled several at a time, so that Eigen's and others'
-# templates are instantiated once for all of them: less than half the time of a build from nothing.
-# Names in anonymous namespaces are therefore unique in a target.
+# fisherhill_batched(target [size]): its files are compiled several at a time, 6 unless told, so that
+# Eigen's and others' templates are instantiated once for all of them: less than half the time of a build
+# from nothing. Names in anonymous namespaces are therefore unique in a target.
 function(fisherhill_batched target)
+  set(size 6)
+  if(ARGC GREATER 1)
+    set(size ${ARGV1})
+  endif()
   if(FISHERHILL_BATCHES)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${size})
   endif()
 endfunction()
 
-# fisherhill_test(name [BATCHED] [FILES file...] [LABELS label...] LIBS lib...): the files, or name.cc,
-# become one test program, and every TEST in it one ctest case. Those labelled slow are built only with
-# FISHERHILL_SLOW_TESTS.
+# fisherhill_test(name [BATCH size] [FILES file...] [LABELS label...] LIBS lib...): the files, or name.cc,
+# become one test program, compiled `size` at a time, and every TEST in it one ctest case. Those labelled
+# slow are built only with FISHERHILL_SLOW_TESTS.
 function(fisherhill_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg BATCHED TIMEOUT "FILES;LABELS;LIBS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "BATCH;TIMEOUT" "FILES;LABELS;LIBS")
   if("slow" IN_LIST arg_LABELS AND NOT FISHERHILL_SLOW_TESTS)
     return()
   endif()
@@ -55,8 +59,8 @@ function(fisherhill_test name)
       ${standard_headers} <filesystem> <gmock/gmock.h> <gtest/gtest.h>)
   endif()
   add_executable(${name} ${arg_FILES})
-  if(arg_BATCHED)
-    fisherhill_batched(${name})
+  if(arg_BATCH)
+    fisherhill_batched(${name} ${arg_BATCH})
   endif()
   target_precompile_headers(${name} REUSE_FROM test_headers)
   target_link_libraries(${name}
