@@ -40,14 +40,19 @@ function(fisherhill_batched target)
   endif()
 endfunction()
 
-# fisherhill_test(name [BATCH size] [FILES file...] [LABELS label...] LIBS lib...): the files, or name.cc,
-# become one test program, compiled `size` at a time, and every TEST in it one ctest case. Those labelled
-# slow are built only with FISHERHILL_SLOW_TESTS.
+# fisherhill_test(name [BATCH size] [FILES file...] [BATCHES list...] [LABELS label...] LIBS lib...): the
+# files, or name.cc, become one test program, and every TEST in it one ctest case. They are compiled one by
+# one, `size` at a time, or as the named lists of files say. Those labelled slow are built only with
+# FISHERHILL_SLOW_TESTS.
 function(fisherhill_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "BATCH;TIMEOUT" "FILES;LABELS;LIBS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "BATCH;TIMEOUT" "BATCHES;FILES;LABELS;LIBS")
   if("slow" IN_LIST arg_LABELS AND NOT FISHERHILL_SLOW_TESTS)
     return()
   endif()
+  foreach(batch IN LISTS arg_BATCHES)
+    list(APPEND arg_FILES ${${batch}})
+    set_source_files_properties(${${batch}} PROPERTIES UNITY_GROUP ${batch})
+  endforeach()
   if(NOT arg_FILES)
     set(arg_FILES ${name}.cc)
   endif()
@@ -61,6 +66,9 @@ function(fisherhill_test name)
   add_executable(${name} ${arg_FILES})
   if(arg_BATCH)
     fisherhill_batched(${name} ${arg_BATCH})
+  endif()
+  if(arg_BATCHES AND FISHERHILL_BATCHES)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   endif()
   target_precompile_headers(${name} REUSE_FROM test_headers)
   target_link_libraries(${name}
