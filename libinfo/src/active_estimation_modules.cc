@@ -50,8 +50,8 @@ InformationRateCost<S> actionCost(const ActiveEstimationTask& task) {
 template <class S>
 EstimatorModule<S>::EstimatorModule(const ActiveEstimationTask& task, Exchange<S>& exchange)
     : exchange_(exchange),
-      squares_(Map{modelOf<S>(task), kReceiverPeriod}, initialState<S>(task), unknownParameters<S>(task),
-               {loadCell(task)}, onlineOptions(task)) {}
+      squares_(Map{modelOf<S>(task), kReceiverPeriod}, initialState<S>(task),
+               unknownParameters<S>(task), {loadCell(task)}, onlineOptions(task)) {}
 
 template <class S>
 void EstimatorModule<S>::cycle(double time) {
