@@ -6,7 +6,7 @@
 
 namespace {
 
-using bio::testing::ShippedElbow;
+using bio::fixtures::ShippedElbow;
 
 bio::SimulationOptions options() {
   bio::SimulationOptions o;

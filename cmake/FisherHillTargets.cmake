@@ -11,6 +11,10 @@ if(FISHERHILL_SANITIZE)
     -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(fisherhill_flags INTERFACE -fsanitize=address,undefined)
 endif()
+# GCC frees memory only once it has taken 1 GB: searching for what could be freed took a tenth of its time.
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  add_compile_options($<$<COMPILE_LANGUAGE:CXX>:--param=ggc-min-heapsize=500000>)
+endif()
 
 # In tests a local may be called as another file's helper; the others are GCC 12's false alarms (its
 # bug 105651, and Eigen's temporaries of AD scalars).
@@ -23,19 +27,32 @@ target_compile_options(fisherhill_test_flags INTERFACE -Wno-shadow
 set(standard_headers <algorithm> <cmath> <functional> <limits> <memory> <optional> <stdexcept>
   <string> <vector> <Eigen/Dense>)
 
-# fisherhill_batched(target): its files are compiled several at a time, so that Eigen's and others'
-# templates are instantiated once for all of them: less than half the time of a build from nothing.
-# Names in anonymous namespaces are therefore unique in a target.
+# fisherhill_batched(target [size]): its files are compiled several at a time, 6 unless told, so that
+# Eigen's and others' templates are instantiated once for all of them: less than half the time of a build
+# from nothing. Names in anonymous namespaces are therefore unique in a target.
 function(fisherhill_batched target)
+  set(size 6)
+  if(ARGC GREATER 1)
+    set(size ${ARGV1})
+  endif()
   if(FISHERHILL_BATCHES)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${size})
   endif()
 endfunction()
 
-# fisherhill_test(name [BATCHED] [FILES file...] [LABELS label...] LIBS lib...): the files, or name.cc,
-# become one test program, and every TEST in it one ctest case.
+# fisherhill_test(name [BATCH size] [FILES file...] [BATCHES list...] [LABELS label...] LIBS lib...): the
+# files, or name.cc, become one test program, and every TEST in it one ctest case. They are compiled one by
+# one, `size` at a time, or as the named lists of files say. Those labelled slow are built only with
+# FISHERHILL_SLOW_TESTS.
 function(fisherhill_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg BATCHED TIMEOUT "FILES;LABELS;LIBS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "BATCH;TIMEOUT" "BATCHES;FILES;LABELS;LIBS")
+  if("slow" IN_LIST arg_LABELS AND NOT FISHERHILL_SLOW_TESTS)
+    return()
+  endif()
+  foreach(batch IN LISTS arg_BATCHES)
+    list(APPEND arg_FILES ${${batch}})
+    set_source_files_properties(${${batch}} PROPERTIES UNITY_GROUP ${batch})
+  endforeach()
   if(NOT arg_FILES)
     set(arg_FILES ${name}.cc)
   endif()
@@ -47,8 +64,11 @@ function(fisherhill_test name)
       ${standard_headers} <filesystem> <gmock/gmock.h> <gtest/gtest.h>)
   endif()
   add_executable(${name} ${arg_FILES})
-  if(arg_BATCHED)
-    fisherhill_batched(${name})
+  if(arg_BATCH)
+    fisherhill_batched(${name} ${arg_BATCH})
+  endif()
+  if(arg_BATCHES AND FISHERHILL_BATCHES)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   endif()
   target_precompile_headers(${name} REUSE_FROM test_headers)
   target_link_libraries(${name}

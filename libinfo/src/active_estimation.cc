@@ -12,8 +12,8 @@
 namespace info {
 namespace {
 
-using LengthUnknown = FreeParameters<SuspendedMass, 1>;
-using BothUnknown = FreeParameters<SuspendedMass, 0, 1>;
+using detail::BothUnknown;
+using detail::LengthUnknown;
 
 void check(const ActiveEstimationTask& task) {
   const auto positive = [](const char* what, double value, const char* unit) {

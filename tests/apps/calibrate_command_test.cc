@@ -5,17 +5,18 @@
 
 #include "support/run_program.h"
 #include "support/scratch_folder.h"
+#include "support/shipped_files.h"
 
 namespace {
 
 using support::contentOf;
+using support::model;
 using support::ProgramResult;
 using support::runFisherHill;
 using support::ScratchFolder;
+using support::slow;
 using testing::HasSubstr;
 
-const std::string model = "models/elbow8.osim";
-const std::string slow = "emg_data/curl_slow.sto";
 const std::string fast = "emg_data/curl_fast.sto";
 
 TEST(CalibrateCommand, WritesTheModelTheSummaryAndTheReport) {

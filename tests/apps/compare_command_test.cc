@@ -7,15 +7,16 @@
 
 #include "support/run_program.h"
 #include "support/scratch_folder.h"
+#include "support/shipped_files.h"
 
 namespace {
 
+using support::linesOf;
+using support::model;
 using support::ProgramResult;
 using support::runFisherHill;
 using support::ScratchFolder;
 using testing::HasSubstr;
-
-const std::string model = "models/elbow8.osim";
 
 /// A third of a second of biceps, with a measured angle.
 std::string shortTrial(const ScratchFolder& scratch, bool measured = true) {
@@ -27,13 +28,6 @@ std::string shortTrial(const ScratchFolder& scratch, bool measured = true) {
     text << '\n';
   }
   return scratch.file(measured ? "trial.csv" : "unmeasured.csv", text.str());
-}
-
-std::vector<std::string> linesOf(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
 }
 
 TEST(CompareCommand, WritesTheTableTheSummaryAndTheReport) {

@@ -5,16 +5,17 @@
 
 #include "support/run_program.h"
 #include "support/scratch_folder.h"
+#include "support/shipped_files.h"
 
 // What people type wrongly, and files that are broken: one line that names it, status 2, nothing
 // left behind, whatever the subcommand.
 namespace {
 
+using support::model;
 using support::ProgramResult;
 using support::ScratchFolder;
+using support::slow;
 using testing::HasSubstr;
-
-const std::string model = "models/elbow8.osim";
 
 struct Mistake {
   std::string name;
@@ -77,11 +78,9 @@ std::string nameOf(const testing::TestParamInfo<Mistake>& test) {
   return test.param.name;
 }
 
-const std::string slow = "emg_data/curl_slow.sto";
-
 /// `fisherhill calibrate` on a good trial, with what comes behind.
-std::vector<std::string> calibrate(std::vector<std::string> more,
-                                   const std::string& parameters = "hand.mass") {
+std::vector<std::string> calibrateWith(std::vector<std::string> more,
+                                       const std::string& parameters = "hand.mass") {
   std::vector<std::string> all = {"calibrate", model,   slow,   "--parameters",
                                   parameters,  "--out", "$/out"};
   all.insert(all.end(), more.begin(), more.end());
@@ -93,10 +92,10 @@ INSTANTIATE_TEST_SUITE_P(
     testing::ValuesIn(std::vector<Mistake>{
         {"NoTrial", {"calibrate", model, "--parameters", "hand.mass"}, "TRIAL"},
         {"NoParameters", {"calibrate", model, slow}, "--parameters"},
-        {"EmptyParameters", calibrate({}, ""), "--parameters"},
-        {"UnknownParameter", calibrate({}, "hand.mas"), "no parameter is called 'hand.mas'"},
-        {"ParameterTwice", calibrate({}, "hand.mass,hand.mass"), "'hand.mass' is given twice"},
-        {"GroupAndMember", calibrate({}, "emg.gain,emg.BRA.gain"), "set the same number"},
+        {"EmptyParameters", calibrateWith({}, ""), "--parameters"},
+        {"UnknownParameter", calibrateWith({}, "hand.mas"), "no parameter is called 'hand.mas'"},
+        {"ParameterTwice", calibrateWith({}, "hand.mass,hand.mass"), "'hand.mass' is given twice"},
+        {"GroupAndMember", calibrateWith({}, "emg.gain,emg.BRA.gain"), "set the same number"},
         {"NothingMeasured",
          {"calibrate", model, "$/good.csv", "--parameters", "hand.mass", "--out", "$/out"},
          "$/good.csv: no measured column of a free angle"},
@@ -104,24 +103,25 @@ INSTANTIATE_TEST_SUITE_P(
         {"NotAModel",
          {"calibrate", "$/text.osim", slow, "--parameters", "hand.mass"},
          "$/text.osim"},
-        {"HoldOutIsTrained", calibrate({"--hold-out", slow}), "is held out, and estimated from"},
-        {"TrialTwice", calibrate({slow}), "is the same trial as"},
-        {"HoldOutUnmeasured", calibrate({"--hold-out", "$/good.csv"}), "$/good.csv"},
-        {"HoldOutMissing", calibrate({"--hold-out", "$/no.sto"}), "$/no.sto"},
-        {"PriorOfNothing", calibrate({"--prior", "TRI.radius=1:2"}), "TRI.radius"},
-        {"PriorWithoutMean", calibrate({"--prior", "hand.mass=1"}), "NAME=NUMBER:NUMBER"},
-        {"PriorTwice", calibrate({"--prior", "hand.mass=1:2,hand.mass=1:3"}), "twice"},
-        {"PriorZero", calibrate({"--prior", "hand.mass=0.6:0"}), "hand.mass"},
-        {"BoundsExclude", calibrate({"--bounds", "hand.mass=1:2"}), "hand.mass"},
-        {"BoundsAreWords", calibrate({"--bounds", "hand.mass=low:high"}), "--bounds"},
-        {"NoiseZero", calibrate({"--noise-deg", "0"}), "--noise-deg"},
-        {"NoiseNaN", calibrate({"--noise-deg", "nan"}), "noise"},
-        {"UnknownLoss", calibrate({"--loss", "cauchy"}), "cauchy"},
-        {"NoStarts", calibrate({"--starts", "0"}), "--starts"},
-        {"FewReplicates", calibrate({"--bootstrap", "3"}), "--bootstrap"},
-        {"ProfileOfNothing", calibrate({"--profile", "TRI.radius"}), "TRI.radius"},
-        {"OtherIntegrator", calibrate({"--integrator", "rk4"}), "vi or vi-left"},
-        {"StartOfSeveral", calibrate({"emg_data/curl_fast.sto"}, "initial.elbow_flexion"),
+        {"HoldOutIsTrained", calibrateWith({"--hold-out", slow}),
+         "is held out, and estimated from"},
+        {"TrialTwice", calibrateWith({slow}), "is the same trial as"},
+        {"HoldOutUnmeasured", calibrateWith({"--hold-out", "$/good.csv"}), "$/good.csv"},
+        {"HoldOutMissing", calibrateWith({"--hold-out", "$/no.sto"}), "$/no.sto"},
+        {"PriorOfNothing", calibrateWith({"--prior", "TRI.radius=1:2"}), "TRI.radius"},
+        {"PriorWithoutMean", calibrateWith({"--prior", "hand.mass=1"}), "NAME=NUMBER:NUMBER"},
+        {"PriorTwice", calibrateWith({"--prior", "hand.mass=1:2,hand.mass=1:3"}), "twice"},
+        {"PriorZero", calibrateWith({"--prior", "hand.mass=0.6:0"}), "hand.mass"},
+        {"BoundsExclude", calibrateWith({"--bounds", "hand.mass=1:2"}), "hand.mass"},
+        {"BoundsAreWords", calibrateWith({"--bounds", "hand.mass=low:high"}), "--bounds"},
+        {"NoiseZero", calibrateWith({"--noise-deg", "0"}), "--noise-deg"},
+        {"NoiseNaN", calibrateWith({"--noise-deg", "nan"}), "noise"},
+        {"UnknownLoss", calibrateWith({"--loss", "cauchy"}), "cauchy"},
+        {"NoStarts", calibrateWith({"--starts", "0"}), "--starts"},
+        {"FewReplicates", calibrateWith({"--bootstrap", "3"}), "--bootstrap"},
+        {"ProfileOfNothing", calibrateWith({"--profile", "TRI.radius"}), "TRI.radius"},
+        {"OtherIntegrator", calibrateWith({"--integrator", "rk4"}), "vi or vi-left"},
+        {"StartOfSeveral", calibrateWith({"emg_data/curl_fast.sto"}, "initial.elbow_flexion"),
          "each trial's own"},
         {"OutIsAFile",
          {"calibrate", model, slow, "--parameters", "hand.mass", "--out", "$/good.csv"},
@@ -189,7 +189,7 @@ INSTANTIATE_TEST_SUITE_P(
          "$/good.csv"}}),
     nameOf);
 
-std::vector<std::string> design(std::vector<std::string> more) {
+std::vector<std::string> designWith(std::vector<std::string> more) {
   std::vector<std::string> arguments = {"design", model, "emg_data/curl_slow.sto", "--parameters",
                                         "TRI.radius"};
   arguments.insert(arguments.end(), more.begin(), more.end());
@@ -204,26 +204,26 @@ INSTANTIATE_TEST_SUITE_P(
         {"UnknownParameter",
          {"design", model, "$/good.csv", "--parameters", "TRI.raduis", "--out", "$/out"},
          "TRI.raduis"},
-        {"UnknownNuisance", design({"--nuisance", "foot.mass"}), "foot.mass"},
-        {"NoiseZero", design({"--noise", "0"}), "--noise"},
-        {"NoiseNaN", design({"--noise", "nan"}), "--noise"},
-        {"RateNegative", design({"--rate", "-1"}), "--rate"},
-        {"TorqueNegative", design({"--torque", "-1"}), "--torque"},
-        {"TorqueRateZero", design({"--torque-rate", "0"}), "--torque-rate"},
-        {"NothingToChange", design({"--torque", "0"}), "--torque"},
-        {"UnknownMuscle", design({"--excite", "GLUTmax"}), "GLUTmax"},
-        {"MuscleTwice", design({"--excite", "BRA,BRA+BRD"}), "BRA"},
-        {"ExcitationAboveOne", design({"--excitation-max", "1.5"}), "--excitation-max"},
-        {"RangeBackwards", design({"--range", "90deg,10deg"}), "--range"},
-        {"RangeOfWords", design({"--range", "low,high"}), "--range"},
-        {"SpeedZero", design({"--speed", "0"}), "--speed"},
-        {"SurpriseNegative", design({"--surprise", "-1"}), "--surprise"},
-        {"KnotsZero", design({"--knots", "0"}), "--knots"},
-        {"OtherIntegrator", design({"--integrator", "rk4"}), "--integrator"},
-        {"UnknownCriterion", design({"--criterion", "G"}), "--criterion"},
-        {"PriorOfAnother", design({"--prior", "hand.mass=0.1"}), "hand.mass"},
-        {"PriorZero", design({"--prior", "TRI.radius=0"}), "--prior"},
-        {"CandidatesNegative", design({"--candidates", "-1"}), "--candidates"}}),
+        {"UnknownNuisance", designWith({"--nuisance", "foot.mass"}), "foot.mass"},
+        {"NoiseZero", designWith({"--noise", "0"}), "--noise"},
+        {"NoiseNaN", designWith({"--noise", "nan"}), "--noise"},
+        {"RateNegative", designWith({"--rate", "-1"}), "--rate"},
+        {"TorqueNegative", designWith({"--torque", "-1"}), "--torque"},
+        {"TorqueRateZero", designWith({"--torque-rate", "0"}), "--torque-rate"},
+        {"NothingToChange", designWith({"--torque", "0"}), "--torque"},
+        {"UnknownMuscle", designWith({"--excite", "GLUTmax"}), "GLUTmax"},
+        {"MuscleTwice", designWith({"--excite", "BRA,BRA+BRD"}), "BRA"},
+        {"ExcitationAboveOne", designWith({"--excitation-max", "1.5"}), "--excitation-max"},
+        {"RangeBackwards", designWith({"--range", "90deg,10deg"}), "--range"},
+        {"RangeOfWords", designWith({"--range", "low,high"}), "--range"},
+        {"SpeedZero", designWith({"--speed", "0"}), "--speed"},
+        {"SurpriseNegative", designWith({"--surprise", "-1"}), "--surprise"},
+        {"KnotsZero", designWith({"--knots", "0"}), "--knots"},
+        {"OtherIntegrator", designWith({"--integrator", "rk4"}), "--integrator"},
+        {"UnknownCriterion", designWith({"--criterion", "G"}), "--criterion"},
+        {"PriorOfAnother", designWith({"--prior", "hand.mass=0.1"}), "hand.mass"},
+        {"PriorZero", designWith({"--prior", "TRI.radius=0"}), "--prior"},
+        {"CandidatesNegative", designWith({"--candidates", "-1"}), "--candidates"}}),
     nameOf);
 
 /// `fisherhill discover` on a good trial, with what comes behind.

@@ -16,7 +16,7 @@ using support::contentOf;
 using support::ProgramResult;
 using testing::HasSubstr;
 
-const std::string model = std::string(FISHERHILL_SOURCE_DIR) + "/models/elbow8.osim";
+const std::string modelFile = std::string(FISHERHILL_SOURCE_DIR) + "/models/elbow8.osim";
 
 /// Processes that carry a mark in their environment: what the program started and left behind.
 int processesMarked(const std::string& mark) {
@@ -37,8 +37,8 @@ class RenderCommand : public testing::Test {
     std::vector<std::string> words = {"env", "-u", "DISPLAY", mark_};
     if (!path.empty()) words.push_back("PATH=" + path);
     words.insert(words.end(), before.begin(), before.end());
-    words.insert(words.end(), {FISHERHILL_PROGRAM_FOLDER "/fisherhill", "render", model, states_,
-                               "--out", (scratch_ / "out").string(), "--size", "160x120"});
+    words.insert(words.end(), {FISHERHILL_PROGRAM_FOLDER "/fisherhill", "render", modelFile,
+                               states_, "--out", (scratch_ / "out").string(), "--size", "160x120"});
     words.insert(words.end(), arguments.begin(), arguments.end());
     return support::runProgram(words);
   }
@@ -87,7 +87,7 @@ TEST_F(RenderCommand, DrawsAPictureWithoutADisplayAndLeavesNoServer) {
 
 TEST_F(RenderCommand, TheGhostMayBeAnotherModel) {
   // A humerus that is a hand's breadth shorter, and no other difference.
-  std::string text = contentOf(model);
+  std::string text = contentOf(modelFile);
   const std::string joint = "0.0061 -0.2904 -0.0123";
   const std::size_t at = text.find(joint);
   ASSERT_NE(at, text.npos);
@@ -108,7 +108,7 @@ class RenderGeometry : public RenderCommand {
  protected:
   /// The shipped elbow with a geometry file for its humerus.
   std::string modelWithGeometry() {
-    std::string text = contentOf(model);
+    std::string text = contentOf(modelFile);
     const std::string nothing = "<attached_geometry/>";
     const std::size_t at = text.find(nothing, text.find("<Body name=\"humerus\">"));
     text.replace(at, nothing.size(),

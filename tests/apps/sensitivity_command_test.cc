@@ -7,23 +7,18 @@
 
 #include "support/run_program.h"
 #include "support/scratch_folder.h"
+#include "support/shipped_files.h"
 
 namespace {
 
+using support::linesOf;
+using support::model;
 using support::ProgramResult;
 using support::runFisherHill;
 using support::ScratchFolder;
 using testing::HasSubstr;
 
-const std::string model = "models/elbow8.osim";
 const std::string trial = "emg_data/curl_slow.sto";
-
-std::vector<std::string> linesOf(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
 
 // Figure 3.7 of the thesis: millimetres of wrap radius change the motion by degrees.
 TEST(SensitivityCommand, TwoMillimetresOfTricepsRadiusChangeTheAngleByDegrees) {

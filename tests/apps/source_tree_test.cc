@@ -14,16 +14,16 @@ namespace {
 namespace fs = std::filesystem;
 using support::contentOf;
 
-const fs::path source = FISHERHILL_SOURCE_DIR;
+const fs::path sourceTree = FISHERHILL_SOURCE_DIR;
 
 /// Every source file below a folder, with its path from the top.
 std::vector<std::string> sourcesBelow(const std::string& folder) {
   std::vector<std::string> files;
-  if (!fs::exists(source / folder)) return files;
-  for (const auto& entry : fs::recursive_directory_iterator(source / folder)) {
+  if (!fs::exists(sourceTree / folder)) return files;
+  for (const auto& entry : fs::recursive_directory_iterator(sourceTree / folder)) {
     const std::string extension = entry.path().extension();
     if (extension == ".h" || extension == ".cc") {
-      files.push_back(fs::relative(entry.path(), source).string());
+      files.push_back(fs::relative(entry.path(), sourceTree).string());
     }
   }
   return files;
@@ -37,7 +37,7 @@ void expectIncludesOnly(const std::string& pattern,
   const std::regex include("#include [<\"](" + pattern + ")");
   for (const std::string& folder : folders) {
     for (const std::string& file : sourcesBelow(folder)) {
-      const std::string text = contentOf(source / file);
+      const std::string text = contentOf(sourceTree / file);
       std::smatch match;
       if (!mayInclude(file) && std::regex_search(text, match, include)) {
         ADD_FAILURE() << file << " includes " << match[1];
@@ -73,7 +73,7 @@ TEST(SourceTree, OnlyTheProgramReadsCommandLines) {
 TEST(SourceTree, EveryPublicHeaderIsInItsLibrarysHeaderFileSet) {
   for (const std::string library : {"info", "bio"}) {
     const std::string top = "lib" + library + "/";
-    const std::string cmake = contentOf(source / top / "CMakeLists.txt");
+    const std::string cmake = contentOf(sourceTree / top / "CMakeLists.txt");
     for (const std::string& header : sourcesBelow(top + "include")) {
       EXPECT_THAT(cmake, testing::HasSubstr("  " + header.substr(top.size()) + "\n"));
     }
@@ -84,7 +84,7 @@ TEST(SourceTree, EveryTestProgramIsBuilt) {
   for (const std::string& file : sourcesBelow("tests")) {
     if (!file.ends_with("_test.cc")) continue;
     const fs::path path = file;
-    EXPECT_THAT(contentOf(source / path.parent_path() / "CMakeLists.txt"),
+    EXPECT_THAT(contentOf(sourceTree / path.parent_path() / "CMakeLists.txt"),
                 testing::HasSubstr(path.stem().string()));
   }
 }
@@ -93,7 +93,7 @@ TEST(SourceTree, NoFolderIsADrawerForAnything) {
   const std::set<std::string> drawers = {"utils", "util", "common", "misc",
                                          "core",  "base", "helpers"};
   for (const std::string& folder : folders) {
-    for (const auto& entry : fs::recursive_directory_iterator(source / folder)) {
+    for (const auto& entry : fs::recursive_directory_iterator(sourceTree / folder)) {
       if (entry.is_directory()) {
         EXPECT_EQ(drawers.count(entry.path().filename()), 0u) << entry.path();
       }
@@ -103,7 +103,7 @@ TEST(SourceTree, NoFolderIsADrawerForAnything) {
 
 TEST(SourceTree, CmakeNamesEveryFile) {
   for (const std::string& folder : folders) {
-    for (const auto& entry : fs::recursive_directory_iterator(source / folder)) {
+    for (const auto& entry : fs::recursive_directory_iterator(sourceTree / folder)) {
       if (entry.path().filename() != "CMakeLists.txt") continue;
       EXPECT_THAT(contentOf(entry.path()), testing::Not(testing::HasSubstr("file(GLOB")));
     }

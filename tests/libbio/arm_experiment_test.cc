@@ -7,13 +7,8 @@
 namespace bio {
 namespace {
 
-using testing::ShippedElbow;
-
-SimulationOptions forSeconds(double duration) {
-  SimulationOptions options;
-  options.duration = duration;
-  return options;
-}
+using fixtures::forSeconds;
+using fixtures::ShippedElbow;
 
 ArmExperiment experimentOn(const ShippedElbow& elbow, const std::vector<std::string>& names,
                            std::vector<double> times) {

@@ -5,16 +5,17 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/numbers.h"
 #include "support/synthetic_elbow.h"
 
 namespace bio {
 namespace {
 
+using fixtures::SyntheticElbow;
 using ::testing::HasSubstr;
-using testing::SyntheticElbow;
 using ::testing::ThrowsMessage;
 
-constexpr double degree = std::numbers::pi / 180;
+using support::degree;
 
 const SyntheticElbow& elbow() {
   static const SyntheticElbow one;

@@ -2,7 +2,7 @@
 
 #include "support/calibration_statistics.h"
 
-namespace bio::testing {
+namespace bio::fixtures {
 namespace {
 
 // A coverage out of 200 repetitions is known to 1.5 % only, out of 1500 to 0.6 %.
@@ -19,4 +19,4 @@ TEST(CalibrationCoverage, RepetitionsAttainTheBoundAndTheirIntervalsHold) {
 }
 
 }  // namespace
-}  // namespace bio::testing
+}  // namespace bio::fixtures

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace bio::testing {
+namespace bio::fixtures {
 namespace {
 
 // The spread of 30 repetitions is known to 26 %, their coverage to 4 %: this sees blunders only.
@@ -19,4 +19,4 @@ TEST(CalibrationStatistics, ThirtyRepetitionsLookRight) {
 }
 
 }  // namespace
-}  // namespace bio::testing
+}  // namespace bio::fixtures

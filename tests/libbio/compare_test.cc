@@ -11,6 +11,7 @@
 #include "bio/coordinate_curve.h"
 #include "bio/file_error.h"
 #include "support/elbow_model.h"
+#include "support/numbers.h"
 #include "support/scratch_folder.h"
 
 namespace bio {
@@ -18,11 +19,11 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr double degree = std::numbers::pi / 180;
+using support::degree;
 
 /// The shipped elbow lifting for a second, excitations every 10 ms.
 struct Lift {
-  Arm arm{testing::elbowModel(), {{{"elbow_flexion"}, {}}, {}, {}}};
+  Arm arm{fixtures::elbowModel(), {{{"elbow_flexion"}, {}}, {}, {}}};
   ExcitationSignal excitation = signal();
   ArmState start = initialState(arm, Eigen::VectorXd::Constant(1, 0.7), excitation, 0);
 
@@ -41,7 +42,7 @@ struct Lift {
   }
 };
 
-CompareOptions quick() {
+CompareOptions quickComparison() {
   CompareOptions options;
   options.duration = 1;
   options.steps = {0.0002, 0.003, 0.01};
@@ -60,7 +61,7 @@ const CompareCell& cellOf(const Comparison& comparison, Integrator integrator, d
 const Comparison& comparison() {
   static const Comparison result = [] {
     const Lift lift;
-    return compareIntegrators(lift.arm, lift.excitation, lift.start, quick());
+    return compareIntegrators(lift.arm, lift.excitation, lift.start, quickComparison());
   }();
   return result;
 }
@@ -77,7 +78,7 @@ TEST(Compare, TheReferenceIsConverged) {
 TEST(Compare, EveryIntegratorIsRunAtEveryStepInOrder) {
   const auto& cells = comparison().cells;
   ASSERT_EQ(cells.size(), 12u);
-  const CompareOptions options = quick();
+  const CompareOptions options = quickComparison();
   for (std::size_t i = 0; i < cells.size(); ++i) {
     EXPECT_EQ(cells[i].integrator, options.integrators[i / 3]);
     EXPECT_EQ(cells[i].step, options.steps[i % 3]);
@@ -118,7 +119,7 @@ TEST(Compare, AFailedRunSaysWhenAndWhyAndHasNoError) {
     EXPECT_EQ(std::isnan(cell.energyError), stopped);
     EXPECT_EQ(std::isnan(cell.wallSeconds), stopped);
     if (!stopped) {
-      EXPECT_GT(cell.error.rms, quick().usefulError);
+      EXPECT_GT(cell.error.rms, quickComparison().usefulError);
     }
   }
 }
@@ -149,8 +150,8 @@ TEST(Compare, TheLimitIsWhereTheAnswerChanges) {
                      comparison().reference.motion)
         .rms;
   };
-  EXPECT_LT(rms(limit.stable), quick().usefulError);
-  EXPECT_GE(rms(limit.failing), quick().usefulError);
+  EXPECT_LT(rms(limit.stable), quickComparison().usefulError);
+  EXPECT_GE(rms(limit.failing), quickComparison().usefulError);
   EXPECT_THAT(limit.why, HasSubstr("deg"));
 }
 
@@ -197,7 +198,7 @@ TEST(Compare, DeviationOfAShiftedMotionIsTheShift) {
 TEST(Compare, BrokenRulesAreNamed) {
   const Lift lift;
   const auto fails = [&](auto&& change, const std::string& message) {
-    CompareOptions options = quick();
+    CompareOptions options = quickComparison();
     change(options);
     try {
       compareIntegrators(lift.arm, lift.excitation, lift.start, options);

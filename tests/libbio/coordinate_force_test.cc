@@ -86,7 +86,7 @@ TEST(Expression, ErrorsSayWhereAndWhat) {
 }
 
 TEST(CoordinateForces, AddUpOnlyWhatActsOnFreeCoordinates) {
-  Model model = testing::threeLinkArm();
+  Model model = fixtures::threeLinkArm();
   model.limitForces = {limits()};
   model.springForces = {{"spring", "turn", 12, 0.4, 0.7, true}, {"off", "flex", 1, 0, 0, false}};
   model.expressionForces = {{"bushing", "flex", "-2*q^3-0.1*qdot*abs(qdot)", true}};

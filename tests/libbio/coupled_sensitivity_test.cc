@@ -10,20 +10,15 @@
 namespace bio {
 namespace {
 
-using testing::Disagreement;
-using testing::ShippedElbow;
-
-SimulationOptions forSeconds(double duration) {
-  SimulationOptions options;
-  options.duration = duration;
-  return options;
-}
+using fixtures::Disagreement;
+using fixtures::forSeconds;
+using fixtures::ShippedElbow;
 
 Disagreement compare(const ShippedElbow& elbow, const std::vector<std::size_t>& wanted,
                      const SimulationOptions& options) {
-  Disagreement d = testing::compareWithDifferences(
+  Disagreement d = fixtures::compareWithDifferences(
       elbow.arm, ShippedElbow::options(), elbow.excitation, elbow.catalogue, wanted, options);
-  testing::tell(d);
+  fixtures::tell(d);
   return d;
 }
 
@@ -85,9 +80,9 @@ TEST(CoupledSensitivity, MatchesDifferencesForTwoCoordinatesThatStartMoving) {
       catalogue.select({"BIClong.max_isometric_force", "BIClong.point9.x", "BIClong.point10.y",
                         "BRD.point3.z", "TRI.radius", "TRI.rotation.x", "hand.mass",
                         "radius.mass_center.x", "hand.inertia.yy", "elbow_spring.*", "initial.*"});
-  const Disagreement d = testing::compareWithDifferences(arm, armOptions, excitation, catalogue,
-                                                         wanted, forSeconds(0.12));
-  testing::tell(d);
+  const Disagreement d = fixtures::compareWithDifferences(arm, armOptions, excitation, catalogue,
+                                                          wanted, forSeconds(0.12));
+  fixtures::tell(d);
   EXPECT_LT(d.worst, 1e-5) << d.of;
 }
 
@@ -109,10 +104,10 @@ TEST(CoupledSensitivity, MatchesDifferencesWhereStepsAreHalved) {
   const stepping::StepTape tape =
       tapeOf(arm, excitation, startOf(arm, catalogue.nominal(), excitation, 0), options);
   EXPECT_GT(timesWithLaw(tape, stepping::StepTape::Time::Law::middle), 0);
-  const Disagreement d = testing::compareWithDifferences(
+  const Disagreement d = fixtures::compareWithDifferences(
       arm, ShippedElbow::options(), excitation, catalogue,
       catalogue.select({"BRA.*", "TRI.radius", "hand.mass", "initial.*"}), options);
-  testing::tell(d);
+  fixtures::tell(d);
   EXPECT_LT(d.worst, 1e-5) << d.of;
 }
 

@@ -9,6 +9,7 @@
 
 #include "../../libbio/src/arm_dynamics.h"
 #include "support/elbow_model.h"
+#include "support/numbers.h"
 
 namespace {
 std::atomic<long> allocations{0};
@@ -30,7 +31,7 @@ void operator delete(void* memory, std::size_t) noexcept {
 namespace bio {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
+using support::degree;
 
 /// Smooth excitations that lift and lower the forearm.
 ExcitationSignal lifting(const Arm& arm, double duration = 2.0) {
@@ -51,7 +52,7 @@ ExcitationSignal lifting(const Arm& arm, double duration = 2.0) {
 }
 
 Arm elbowArm(std::vector<std::string> free = {"elbow_flexion"}) {
-  return Arm(testing::elbowModel(), {{std::move(free), {}}, {}, {}});
+  return Arm(fixtures::elbowModel(), {{std::move(free), {}}, {}, {}});
 }
 
 SimulationOptions options(Integrator integrator, double step, double duration = 2.0) {

@@ -20,9 +20,9 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
+using fixtures::ShippedElbow;
 using info::discover::Candidate;
 using support::ScratchFolder;
-using testing::ShippedElbow;
 
 /// The beginning of a trial.
 Trial cut(Trial trial, double seconds) {

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-using testing::ShippedElbow;
+using fixtures::ShippedElbow;
 
 constexpr double degree = std::numbers::pi / 180;
 

@@ -8,17 +8,19 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "support/numbers.h"
+
 namespace {
 
+using std::numbers::pi;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
-constexpr double pi = std::numbers::pi;
-constexpr double fs = 1000;
-const double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double rate = 1000;
+using support::nan;
 
-Eigen::VectorXd sine(double f, Eigen::Index n) {
+Eigen::VectorXd sineAt(double f, Eigen::Index n) {
   return Eigen::VectorXd::NullaryExpr(
-      n, [&](Eigen::Index i) { return std::sin(2 * pi * f * static_cast<double>(i) / fs); });
+      n, [&](Eigen::Index i) { return std::sin(2 * pi * f * static_cast<double>(i) / rate); });
 }
 
 double amplitude(const Eigen::VectorXd& x) {
@@ -28,32 +30,33 @@ double amplitude(const Eigen::VectorXd& x) {
 
 TEST(EmgStages, BandPassKeepsTheBandAndHalvesThePowerAtItsEdges) {
   const bio::BandPassOptions options{.low = 20, .high = 400, .order = 2};
-  EXPECT_NEAR(amplitude(bio::bandPassed(sine(100, 9000), fs, options)), 1, 1e-3);
-  EXPECT_NEAR(amplitude(bio::bandPassed(sine(20, 9000), fs, options)), std::sqrt(0.5), 1e-3);
-  EXPECT_NEAR(amplitude(bio::bandPassed(sine(400, 9000), fs, options)), std::sqrt(0.5), 1e-3);
-  EXPECT_LT(amplitude(bio::bandPassed(sine(2, 9000), fs, options)), 1e-3);
+  EXPECT_NEAR(amplitude(bio::bandPassed(sineAt(100, 9000), rate, options)), 1, 1e-3);
+  EXPECT_NEAR(amplitude(bio::bandPassed(sineAt(20, 9000), rate, options)), std::sqrt(0.5), 1e-3);
+  EXPECT_NEAR(amplitude(bio::bandPassed(sineAt(400, 9000), rate, options)), std::sqrt(0.5), 1e-3);
+  EXPECT_LT(amplitude(bio::bandPassed(sineAt(2, 9000), rate, options)), 1e-3);
 }
 
 TEST(EmgStages, NotchCutsTheLineAndAsManyMultiplesAsAskedFor) {
   const bio::NotchOptions two{.lines = {60}, .harmonics = 2, .width = 4, .order = 2};
-  EXPECT_LT(amplitude(bio::notched(sine(60, 12000), fs, two)), 0.01);
-  EXPECT_LT(amplitude(bio::notched(sine(120, 12000), fs, two)), 0.01);
-  EXPECT_NEAR(amplitude(bio::notched(sine(180, 12000), fs, two)), 1, 1e-3);
-  EXPECT_NEAR(amplitude(bio::notched(sine(62, 12000), fs, two)), std::sqrt(0.5), 0.01);
+  EXPECT_LT(amplitude(bio::notched(sineAt(60, 12000), rate, two)), 0.01);
+  EXPECT_LT(amplitude(bio::notched(sineAt(120, 12000), rate, two)), 0.01);
+  EXPECT_NEAR(amplitude(bio::notched(sineAt(180, 12000), rate, two)), 1, 1e-3);
+  EXPECT_NEAR(amplitude(bio::notched(sineAt(62, 12000), rate, two)), std::sqrt(0.5), 0.01);
   // multiples above half the rate are left out, the line itself is not
   const bio::NotchOptions many{.lines = {60}, .harmonics = 50, .width = 4, .order = 2};
-  EXPECT_LT(amplitude(bio::notched(sine(480, 12000), fs, many)), 0.01);
-  EXPECT_THAT([] { bio::notched(sine(60, 100), fs, {.lines = {600}}); },
+  EXPECT_LT(amplitude(bio::notched(sineAt(480, 12000), rate, many)), 0.01);
+  EXPECT_THAT([] { bio::notched(sineAt(60, 100), rate, {.lines = {600}}); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("599 Hz")));
-  EXPECT_THAT([] { bio::notched(sine(60, 100), fs, {.lines = {60}, .harmonics = 0}); },
+  EXPECT_THAT([] { bio::notched(sineAt(60, 100), rate, {.lines = {60}, .harmonics = 0}); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("harmonics 0")));
-  EXPECT_THAT([] { bio::notched(sine(60, 100), fs, {.lines = {60}, .width = nan}); },
+  EXPECT_THAT([] { bio::notched(sineAt(60, 100), rate, {.lines = {60}, .width = nan}); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("width nan")));
 }
 
 // The mean of a rectified sine is 2/π.
 TEST(EmgStages, EnvelopeOfARectifiedSineIsTwoOverPi) {
-  const Eigen::VectorXd e = bio::envelope(sine(90, 9000).cwiseAbs(), fs, {.cutoff = 3, .order = 2});
+  const Eigen::VectorXd e =
+      bio::envelope(sineAt(90, 9000).cwiseAbs(), rate, {.cutoff = 3, .order = 2});
   EXPECT_NEAR(e[4500], 2 / pi, 1e-3);
 }
 

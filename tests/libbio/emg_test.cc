@@ -9,13 +9,15 @@
 #include <random>
 #include <stdexcept>
 
+#include "support/numbers.h"
+
 namespace {
 
+using std::numbers::pi;
+using support::nan;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
-constexpr double pi = std::numbers::pi;
-const double nan = std::numeric_limits<double>::quiet_NaN();
 
 // Effort of the made-up signals, 0.1 to 0.9 with a period of 4 s.
 double effort(double t) {

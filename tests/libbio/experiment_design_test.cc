@@ -6,15 +6,16 @@
 #include <numbers>
 
 #include "info/design_search.h"
+#include "support/numbers.h"
 #include "support/scratch_folder.h"
 #include "support/shipped_elbow.h"
 
 namespace bio {
 namespace {
 
-using testing::ShippedElbow;
+using fixtures::ShippedElbow;
 
-constexpr double degree = std::numbers::pi / 180;
+using support::degree;
 
 /// The first second of a shipped trial, little of everything.
 struct Short {
@@ -37,7 +38,7 @@ struct Short {
   }
 };
 
-DesignSearchSettings quick() {
+DesignSearchSettings quickSearch() {
   DesignSearchSettings settings;
   settings.candidates = 10;
   settings.generations = 4;
@@ -50,7 +51,7 @@ TEST(ExperimentDesign, LowersTheBoundAndKeepsEveryLimit) {
   s.groups = flexorsAndExtensors(s.elbow.arm, s.elbow.catalogue.nominal().start.q);
   ASSERT_EQ(s.groups.size(), 2u);
   const ExperimentDesign design = s.design();
-  const DesignResult result = design.search(quick());
+  const DesignResult result = design.search(quickSearch());
   ASSERT_TRUE(result.improved);
   ASSERT_TRUE(std::isfinite(result.before.bound[0]));
   EXPECT_LT(result.after.bound[0], 0.7 * result.before.bound[0]);
@@ -81,7 +82,7 @@ TEST(ExperimentDesign, LowersTheBoundAndKeepsEveryLimit) {
 TEST(ExperimentDesign, IsTheSameWithAnyNumberOfThreads) {
   const Short s;
   const ExperimentDesign design = s.design();
-  DesignSearchSettings settings = quick();
+  DesignSearchSettings settings = quickSearch();
   settings.threads = 1;
   const DesignResult one = design.search(settings);
   settings.threads = 3;
@@ -94,7 +95,7 @@ TEST(ExperimentDesign, IsTheSameWithAnyNumberOfThreads) {
 TEST(ExperimentDesign, WhatIsWrittenPlaysThePredictedMotion) {
   const Short s;
   const ExperimentDesign design = s.design();
-  const DesignResult result = design.search(quick());
+  const DesignResult result = design.search(quickSearch());
   ASSERT_TRUE(result.improved);
   const support::ScratchFolder scratch;
   const auto file = scratch.path() / "design.sto";
@@ -156,7 +157,7 @@ TEST(ExperimentDesign, CostFollowsItsGradient) {
 
 TEST(ExperimentDesign, StopsWhenAskedAndKeepsTheBest) {
   const Short s;
-  DesignSearchSettings settings = quick();
+  DesignSearchSettings settings = quickSearch();
   std::atomic<int> asked{0};
   settings.progress = [&](double done) {
     EXPECT_GE(done, 0);

@@ -4,14 +4,15 @@
 
 #include <numbers>
 
+#include "support/numbers.h"
 #include "support/shipped_elbow.h"
 
 namespace bio {
 namespace {
 
-using testing::ShippedElbow;
+using fixtures::ShippedElbow;
 
-constexpr double degree = std::numbers::pi / 180;
+using support::degree;
 
 ExternalForce ramp() {
   return {{0, 0.5, 1}, (Eigen::MatrixXd(3, 1) << 0, 2, -4).finished()};
@@ -41,7 +42,7 @@ struct Played {
   }
 };
 
-double rmsDegrees(const Trajectory& a, const Trajectory& b) {
+double rmsAngle(const Trajectory& a, const Trajectory& b) {
   const auto ratio = (b.q.cols() - 1) / (a.q.cols() - 1);
   double sum = 0;
   for (Eigen::Index k = 0; k < a.q.cols(); ++k) {
@@ -92,15 +93,15 @@ TEST(ExternalForce, IntegratorsAgreeUnderIt) {
   const Trajectory reference = p.play(Integrator::cvode, 0.01);
   ASSERT_EQ(reference.outcome, Outcome::completed) << reference.why;
   p.options.externalForce = {};
-  EXPECT_GT(rmsDegrees(reference, p.play(Integrator::cvode, 0.01)), 5);
+  EXPECT_GT(rmsAngle(reference, p.play(Integrator::cvode, 0.01)), 5);
   p.options.externalForce = swing();
   const Trajectory fine = p.play(Integrator::variational, 5e-4);
-  EXPECT_LT(rmsDegrees(reference, fine), 2e-3);
+  EXPECT_LT(rmsAngle(reference, fine), 2e-3);
   const Trajectory runge = p.play(Integrator::rungeKutta4, 1e-4);
   ASSERT_EQ(runge.outcome, Outcome::completed) << runge.why;
-  EXPECT_LT(rmsDegrees(reference, runge), 2e-2);
+  EXPECT_LT(rmsAngle(reference, runge), 2e-2);
   const Trajectory left = p.play(Integrator::variationalLeft, 5e-4);
-  EXPECT_LT(rmsDegrees(reference, left), 0.5);
+  EXPECT_LT(rmsAngle(reference, left), 0.5);
   // the work done from outside, by each
   EXPECT_GT(reference.externalWork.cwiseAbs().maxCoeff(), 0.5);
   for (const Trajectory* motion : {&fine, &runge, &left}) {
@@ -122,8 +123,8 @@ TEST(ExternalForce, ItsWorkClosesTheEnergyBalance) {
 TEST(ExternalForce, ConvergesWithSecondOrder) {
   Played p;
   const Trajectory reference = p.play(Integrator::cvode, 0.01);
-  const double coarse = rmsDegrees(reference, p.play(Integrator::variational, 0.002));
-  const double fine = rmsDegrees(reference, p.play(Integrator::variational, 0.001));
+  const double coarse = rmsAngle(reference, p.play(Integrator::variational, 0.002));
+  const double fine = rmsAngle(reference, p.play(Integrator::variational, 0.001));
   EXPECT_GT(coarse / fine, 3);
   EXPECT_LT(coarse / fine, 5.5);
 }

@@ -12,7 +12,7 @@ namespace {
 
 using bio::Filter;
 using bio::Passes;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double fs = 1000;
 
 double w(double f) {

@@ -7,11 +7,13 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "support/numbers.h"
+
 namespace {
 
+using support::nan;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
-const double nan = std::numeric_limits<double>::quiet_NaN();
 
 bio::Channel channel(const Eigen::VectorXd& values, double rate = 50, double start = 0) {
   return {"goniometer", "counts", rate, start, values};

@@ -23,7 +23,7 @@ std::vector<std::string> linesOf(const Model& model) {
 }
 
 // The shipped elbow without the products of inertia that draw remarks of their own.
-Model elbow() {
+Model reviewedElbow() {
   Model model = readOsim(root / "models/elbow8_passive.osim");
   for (Body& body : model.bodies) {
     if (body.name != "clavicle" && body.name != "scapula") continue;
@@ -46,7 +46,7 @@ TEST(ModelReview, FindsOnlyTheSourcesInertiasUnusualInTheShippedElbow) {
                 ElementsAre(StartsWith("body 'clavicle': principal moment of inertia = 0.000298"),
                             StartsWith("body 'scapula': principal moment of inertia = 0.00199")));
   }
-  EXPECT_THAT(linesOf(elbow()), IsEmpty());
+  EXPECT_THAT(linesOf(reviewedElbow()), IsEmpty());
 }
 
 TEST(ModelReview, FindsThePhantomBodiesOfTheSourceModel) {
@@ -141,14 +141,14 @@ TEST(ModelReview, NamesEachUnusualQuantityOnce) {
       {[](Model& m) { m.muscles.clear(); }, "model: has no muscle"},
   };
   for (const Case& c : cases) {
-    Model model = elbow();
+    Model model = reviewedElbow();
     c.spoil(model);
     EXPECT_THAT(linesOf(model), ElementsAre(c.remark));
   }
 }
 
 TEST(ModelReview, FindsAMasslessEndOfTheChain) {
-  Model model = elbow();
+  Model model = reviewedElbow();
   model.joints.back().coordinates[0].locked = false;
   model.bodies.back().mass = 0;
   EXPECT_THAT(

@@ -28,7 +28,7 @@ double lengthAt(const SchutteMuscle<double>& muscle, const Point& point) {
 }
 
 TEST(MuscleParameters, DerivativesAgreeWithTheScalarType) {
-  const testing::ShippedElbow elbow;
+  const fixtures::ShippedElbow elbow;
   for (const ArmMuscle& m : elbow.arm.muscles()) {
     const SchutteQuantities<double>& p = m.muscle.quantities();
     const SchutteQuantities<D> q{D(p.maxIsometricForce, 6, 0), D(p.optimalFibreLength, 6, 1),
@@ -52,7 +52,7 @@ TEST(MuscleParameters, DerivativesAgreeWithTheScalarType) {
 }
 
 TEST(MuscleParameters, CurveScalesAgreeWithScaledCurves) {
-  const testing::ShippedElbow elbow;
+  const fixtures::ShippedElbow elbow;
   const SchutteParameters& base = *findMuscle(elbow.model, "BIClong").schutte;
   const auto scaled = [&](MuscleQuantity quantity, double s) {
     SchutteParameters p = base;
@@ -93,7 +93,7 @@ TEST(MuscleParameters, CurveScalesAgreeWithScaledCurves) {
 }
 
 TEST(MuscleParameters, AStrongerMuscleIsNoFaster) {
-  const testing::ShippedElbow elbow;
+  const fixtures::ShippedElbow elbow;
   const SchutteMuscle<double>& muscle = elbow.arm.muscles()[6].muscle;
   const double l = 0.95 * muscle.quantities().optimalFibreLength;
   const double L = lengthAt(muscle, points[0]);
@@ -104,7 +104,7 @@ TEST(MuscleParameters, AStrongerMuscleIsNoFaster) {
 }
 
 TEST(MuscleParameters, AFibreAtRestFollowsWhatHoldsIt) {
-  const testing::ShippedElbow elbow;
+  const fixtures::ShippedElbow elbow;
   for (const std::string name : {"TRIlong", "BRA", "ANC"}) {
     const SchutteParameters base = *findMuscle(elbow.model, name).schutte;
     const SchutteCurves curves(base);
@@ -142,7 +142,7 @@ TEST(MuscleParameters, AFibreAtRestFollowsWhatHoldsIt) {
 
 TEST(MuscleParameters, AFibreBesideASlackTendonFollowsItsLength) {
   // so short that neither pulls
-  const testing::ShippedElbow elbow;
+  const fixtures::ShippedElbow elbow;
   const SchutteMuscle<double>& muscle = elbow.arm.muscles()[3].muscle;
   ASSERT_EQ(elbow.arm.muscles()[3].name, "ANC");
   const auto restAt = [&](double L) { return staticEquilibrium(muscle, 0.01, L); };

@@ -3,17 +3,18 @@
 
 #include <numbers>
 
+#include "support/numbers.h"
 #include "support/reference.h"
 
 namespace bio {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
+using support::degree;
 
 TEST(OpenSimReference, LengthsAndMomentArmsAgreeOverTheWholeRange) {
   FISHERHILL_NEEDS_REFERENCE();
-  const Table table = readTable(testing::reference("elbow8_paths.csv"), TableKind::any);
-  const Model model = readOsim(testing::reference("elbow8_reference.osim"));
+  const Table table = readTable(fixtures::reference("elbow8_paths.csv"), TableKind::any);
+  const Model model = readOsim(fixtures::reference("elbow8_reference.osim"));
   const Skeleton skeleton(model, {{"elbow_flexion"}, {}});
   const Eigen::VectorXd q = table.values.col(columnIndex(table, "elbow_flexion_deg")) * degree;
   const PathSample sample = samplePaths(model, skeleton, {}, q);
@@ -48,10 +49,10 @@ struct Comparison {
 };
 
 Comparison compare(const std::string& trial, Integrator integrator, double step) {
-  const Arm arm = testing::referenceArm();
-  const Model model = readOsim(testing::reference("elbow8_reference.osim"));
-  const Trial excitations = readTrial(testing::reference("excitations_" + trial + ".sto"), model);
-  const Table motion = readTable(testing::reference("forward_" + trial + ".csv"));
+  const Arm arm = fixtures::referenceArm();
+  const Model model = readOsim(fixtures::reference("elbow8_reference.osim"));
+  const Trial excitations = readTrial(fixtures::reference("excitations_" + trial + ".sto"), model);
+  const Table motion = readTable(fixtures::reference("forward_" + trial + ".csv"));
   const auto q = motion.values.col(columnIndex(motion, "elbow_flexion_rad"));
   const ExcitationSignal excitation = excitationOf(excitations, arm);
   SimulationOptions options;

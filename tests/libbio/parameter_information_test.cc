@@ -8,9 +8,9 @@
 namespace bio {
 namespace {
 
+using fixtures::ShippedElbow;
 using ::testing::Contains;
 using ::testing::HasSubstr;
-using testing::ShippedElbow;
 
 Eigen::MatrixXd gammaOf(const ShippedElbow& elbow, const std::vector<std::size_t>& selection) {
   std::vector<double> times;

@@ -11,8 +11,8 @@
 namespace bio {
 namespace {
 
+using fixtures::ShippedElbow;
 using ::testing::HasSubstr;
-using testing::ShippedElbow;
 
 TEST(Parameters, AreCalledAsAPersonWouldGuess) {
   const ShippedElbow elbow("elbow8_passive");

@@ -79,21 +79,21 @@ void gradientsMatchDifferences(const Model& model, const std::vector<std::string
 
 class PathGradientAt : public ::testing::TestWithParam<double> {};
 TEST_P(PathGradientAt, MatchesDifferencesOfCompiledPaths) {
-  const testing::ShippedElbow elbow;
+  const fixtures::ShippedElbow elbow;
   gradientsMatchDifferences<1>(elbow.model, {"elbow_flexion"},
                                Eigen::Matrix<double, 1, 1>(GetParam()), 3e-7);
 }
 INSTANTIATE_TEST_SUITE_P(OverTheRange, PathGradientAt, ::testing::Values(0.3, 0.7, 1.2, 1.9));
 
 TEST(PathGradient, MatchesDifferencesForTwoCoordinates) {
-  const testing::ShippedElbow elbow;
+  const fixtures::ShippedElbow elbow;
   gradientsMatchDifferences<2>(elbow.model, {"shoulder_rot", "elbow_flexion"},
                                Eigen::Vector2d(0.1, 1.3), 3e-7);
 }
 
 TEST(PathGradient, MovingTheWholeArmMovesNothing) {
   // shifting all points and objects of one fixed body together is a shift of the other ones
-  const testing::ShippedElbow elbow;
+  const fixtures::ShippedElbow elbow;
   const Skeleton& skeleton = elbow.arm.skeleton();
   std::vector<RigidMotion<double, 1>> moved(skeleton.numSegments());
   const Eigen::Matrix<double, 1, 1> q(1.4);

@@ -18,7 +18,7 @@ namespace {
 const std::filesystem::path folder =
     std::filesystem::path(FISHERHILL_SOURCE_DIR) / ".." / "shared" / "reference";
 
-struct Table {
+struct ReferencePath {
   std::vector<std::string> columns;
   std::vector<std::vector<double>> rows;
   double at(std::size_t row, const std::string& column) const {
@@ -30,8 +30,8 @@ struct Table {
   }
 };
 
-Table readTable(const std::filesystem::path& file) {
-  Table table;
+ReferencePath readReferencePath(const std::filesystem::path& file) {
+  ReferencePath table;
   std::ifstream in(file);
   std::string line, cell;
   std::getline(in, line);
@@ -45,7 +45,6 @@ Table readTable(const std::filesystem::path& file) {
   return table;
 }
 
-using Q = Eigen::Matrix<double, 1, 1>;
 
 class ReferencePaths : public testing::Test {
  protected:
@@ -54,10 +53,10 @@ class ReferencePaths : public testing::Test {
       GTEST_SKIP() << "no reference: " << (folder / "elbow8_paths.csv") << " does not exist";
     }
     model_ = readOsim(folder / "elbow8_reference.osim");
-    table_ = readTable(folder / "elbow8_paths.csv");
+    table_ = readReferencePath(folder / "elbow8_paths.csv");
   }
   Model model_;
-  Table table_;
+  ReferencePath table_;
 };
 
 TEST_F(ReferencePaths, LengthsAndMomentArmsAgreeWithOpenSim) {
@@ -73,7 +72,7 @@ TEST_F(ReferencePaths, LengthsAndMomentArmsAgreeWithOpenSim) {
     for (std::size_t row = 0; row < table_.rows.size(); ++row) {
       const double degrees = table_.at(row, "elbow_flexion_deg");
       const auto at = [&](double angle) {
-        const Q q(angle);
+        const Eigen::Matrix<double, 1, 1> q(angle);
         skeleton.motions<double, 1>(q, moved.data());
         return path.length<1>(q, moved.data());
       };

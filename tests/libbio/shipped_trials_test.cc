@@ -13,17 +13,17 @@
 
 namespace {
 
-const std::string source = FISHERHILL_SOURCE_DIR;
+const std::string sourceTree = FISHERHILL_SOURCE_DIR;
 
 class ShippedTrials : public testing::TestWithParam<std::string> {
  protected:
-  std::string trial() const { return source + "/emg_data/" + GetParam() + ".sto"; }
-  std::string raw() const { return source + "/emg_data/" + GetParam() + "_raw.csv"; }
+  std::string trial() const { return sourceTree + "/emg_data/" + GetParam() + ".sto"; }
+  std::string raw() const { return sourceTree + "/emg_data/" + GetParam() + "_raw.csv"; }
 };
 
 TEST_P(ShippedTrials, AreTrialsOfTheElbowModelWithoutAWarning) {
   const bio::Trial trial =
-      bio::readTrial(this->trial(), bio::readOsim(source + "/models/elbow8.osim"));
+      bio::readTrial(this->trial(), bio::readOsim(sourceTree + "/models/elbow8.osim"));
   EXPECT_THAT(trial.warnings, testing::IsEmpty());
   EXPECT_EQ(trial.times.size(), 901);
   EXPECT_DOUBLE_EQ(trial.times[900], 4.5);
@@ -40,7 +40,8 @@ TEST_P(ShippedTrials, AreTrialsOfTheElbowModelWithoutAWarning) {
 // The raw signals through the shipped configuration give the excitations they were made from, up to
 // the scatter of a noisy envelope, √(f_c/2B) = 6 % of the value at 3 Hz and 430 Hz.
 TEST_P(ShippedTrials, RawSignalsGiveBackTheExcitations) {
-  const bio::EmgConfigFile file = bio::readEmgConfig(source + "/emg_data/configs/shipped_raw.toml");
+  const bio::EmgConfigFile file =
+      bio::readEmgConfig(sourceTree + "/emg_data/configs/shipped_raw.toml");
   const bio::Recording recording = bio::readRecording(raw(), file.layout);
   EXPECT_EQ(recording.channels.size(), 9u);
   EXPECT_EQ(recording.channels[0].rate, 2000);
@@ -72,7 +73,8 @@ INSTANTIATE_TEST_SUITE_P(EmgData, ShippedTrials,
 
 TEST(EmgData, IsSmall) {
   std::uintmax_t size = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(source + "/emg_data")) {
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(sourceTree + "/emg_data")) {
     if (entry.is_regular_file()) size += entry.file_size();
   }
   EXPECT_LT(size, 1'600'000u);

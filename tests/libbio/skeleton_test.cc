@@ -67,7 +67,7 @@ void agreesWithSimbody(const Model& model, const std::vector<std::string>& free)
 }
 
 TEST(Skeleton, AgreesWithSimbodyOnPlacesMassMatrixAndGravity) {
-  const Model model = testing::threeLinkArm();
+  const Model model = fixtures::threeLinkArm();
   agreesWithSimbody<1>(model, {"lift"});
   agreesWithSimbody<1>(model, {"flex"});
   agreesWithSimbody<2>(model, {"flex", "turn"});
@@ -75,7 +75,7 @@ TEST(Skeleton, AgreesWithSimbodyOnPlacesMassMatrixAndGravity) {
 }
 
 TEST(Skeleton, DerivativesOfPlacementsMatchCentralDifferences) {
-  const Skeleton skeleton(testing::threeLinkArm(), freeing({"reach", "lift", "turn", "flex"}));
+  const Skeleton skeleton(fixtures::threeLinkArm(), freeing({"reach", "lift", "turn", "flex"}));
   const Q<4> q(0.02, 0.4, -0.3, 0.7);
   const auto X = moved<4>(skeleton, q);
   const double h = 1e-5;
@@ -98,7 +98,7 @@ TEST(Skeleton, DerivativesOfPlacementsMatchCentralDifferences) {
 }
 
 TEST(Skeleton, DerivativesOfInertiaAndGravityMatchCentralDifferences) {
-  const Skeleton skeleton(testing::threeLinkArm(), freeing({"reach", "lift", "turn", "flex"}));
+  const Skeleton skeleton(fixtures::threeLinkArm(), freeing({"reach", "lift", "turn", "flex"}));
   const auto at = [&](const Q<4>& q) {
     return skeleton.inertia<4>(q, moved<4>(skeleton, q).data());
   };
@@ -122,7 +122,7 @@ TEST(Skeleton, DerivativesOfInertiaAndGravityMatchCentralDifferences) {
 }
 
 TEST(Skeleton, ASingleHingeHasConstantInertia) {
-  const Model model = testing::threeLinkArm();
+  const Model model = fixtures::threeLinkArm();
   EXPECT_TRUE(Skeleton(model, freeing({"lift"})).hasConstantInertia());
   EXPECT_TRUE(Skeleton(model, freeing({"reach"})).hasConstantInertia());
   EXPECT_FALSE(
@@ -131,7 +131,7 @@ TEST(Skeleton, ASingleHingeHasConstantInertia) {
 }
 
 TEST(Skeleton, LockedValuesOverrideDefaultsAndDriveTheirCouplers) {
-  const Model model = testing::threeLinkArm();
+  const Model model = fixtures::threeLinkArm();
   const Skeleton skeleton(model, {{"lift"}, {{"flex", 1.0}}});
   const SimbodyTree tree(model);
   const Q<1> q(0.2);
@@ -148,7 +148,7 @@ TEST(Skeleton, LockedValuesOverrideDefaultsAndDriveTheirCouplers) {
 }
 
 TEST(Skeleton, RotatingAndShiftingFramesChainAndInvert) {
-  const Skeleton skeleton(testing::threeLinkArm(), freeing({"flex", "turn"}));
+  const Skeleton skeleton(fixtures::threeLinkArm(), freeing({"flex", "turn"}));
   const auto X = moved<2>(skeleton, Q<2>(0.4, 0.9));
   const auto& A = X[1];
   const auto identity = chain(invert(A), A);
@@ -159,7 +159,7 @@ TEST(Skeleton, RotatingAndShiftingFramesChainAndInvert) {
 }
 
 TEST(Skeleton, BrokenRulesAreNamed) {
-  const Model model = testing::threeLinkArm();
+  const Model model = fixtures::threeLinkArm();
   const auto message = [](const Model& m, const SkeletonOptions& options) -> std::string {
     try {
       const Skeleton skeleton(m, options);

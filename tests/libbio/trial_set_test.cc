@@ -7,11 +7,11 @@
 namespace bio {
 namespace {
 
+using fixtures::SyntheticElbow;
 using ::testing::HasSubstr;
-using testing::SyntheticElbow;
 using ::testing::ThrowsMessage;
 
-const SyntheticElbow& elbow() {
+const SyntheticElbow& subject() {
   static const SyntheticElbow one;
   return one;
 }
@@ -21,14 +21,14 @@ TrialSet set(std::vector<std::string> names, std::vector<Trial> trials, bool own
   options.parameters = std::move(names);
   options.ownStart = ownStart;
   options.simulation.newtonTolerance = 1e-12;
-  return {elbow().model, SyntheticElbow::options(), std::move(trials), options};
+  return {subject().model, SyntheticElbow::options(), std::move(trials), options};
 }
 
 // Two trials of different length, three common parameters, two of each trial's own.
 TEST(TrialSet, SensitivitiesAreDerivativesOfTheOutputs) {
-  const TrialSet trials =
-      set({"TRI.radius", "hand.mass", "emg.BRA.gain"},
-          {elbow().trial("curl_slow", 1.5, {}, 30), elbow().trial("curl_fast", 0.6, {}, 50)}, true);
+  const TrialSet trials = set(
+      {"TRI.radius", "hand.mass", "emg.BRA.gain"},
+      {subject().trial("curl_slow", 1.5, {}, 30), subject().trial("curl_fast", 0.6, {}, 50)}, true);
   ASSERT_EQ(trials.numParameters(), 7u);
   EXPECT_EQ(trials.numCommon(), 3u);
   const auto& parameters = trials.parameters();
@@ -62,25 +62,26 @@ TEST(TrialSet, SensitivitiesAreDerivativesOfTheOutputs) {
 
 // The same comparison as `fisherhill replay` makes.
 TEST(TrialSet, MeasuresErrorsAsReplayDoes) {
-  const Trial trial = elbow().trial("curl_slow", 1.0, {{"hand.mass", 0.8}}, 30, 3);
+  const Trial trial = subject().trial("curl_slow", 1.0, {{"hand.mass", 0.8}}, 30, 3);
   const TrialSet trials = set({"hand.mass"}, {trial});
   const Eigen::MatrixXd y =
       trials.predictor().outputs(Eigen::VectorXd::Constant(1, trials.parameters()[0].start));
-  const ExcitationSignal signal = excitationOf(trial, elbow().arm);
+  const ExcitationSignal signal = excitationOf(trial, subject().arm);
   SimulationOptions simulation;
   simulation.duration = 1.0;
   simulation.newtonTolerance = 1e-12;
-  const Trajectory motion = simulate(
-      elbow().arm, signal,
-      initialState(elbow().arm, startCoordinates(trial, elbow().arm, {}), signal, 0.0), simulation);
-  const double rms = compareWithMeasured(elbow().arm, motion, trial.measured[0]).rms;
+  const Trajectory motion =
+      simulate(subject().arm, signal,
+               initialState(subject().arm, startCoordinates(trial, subject().arm, {}), signal, 0.0),
+               simulation);
+  const double rms = compareWithMeasured(subject().arm, motion, trial.measured[0]).rms;
   EXPECT_GT(rms, 0.01);
   EXPECT_NEAR(std::sqrt(trials.meanSquare(y)), rms, 1e-12);
   EXPECT_NEAR(std::sqrt(trials.meanSquare(y, 0)), rms, 1e-12);
 }
 
 TEST(TrialSet, GivesNothingWhereThereIsNoSimulation) {
-  const TrialSet trials = set({"BRA.max_isometric_force"}, {elbow().trial("curl_slow", 0.5)});
+  const TrialSet trials = set({"BRA.max_isometric_force"}, {subject().trial("curl_slow", 0.5)});
   EXPECT_EQ(trials.failure(0, Eigen::VectorXd::Constant(1, 900)), "");
   const Eigen::VectorXd impossible = Eigen::VectorXd::Constant(1, -5);
   EXPECT_TRUE(trials.predictor().outputs(impossible).array().isNaN().all());
@@ -89,7 +90,7 @@ TEST(TrialSet, GivesNothingWhereThereIsNoSimulation) {
 }
 
 TEST(TrialSet, RefusesWhatCannotBeEstimatedFrom) {
-  const Trial good = elbow().trial("curl_slow", 0.3);
+  const Trial good = subject().trial("curl_slow", 0.3);
   Trial unmeasured = good;
   unmeasured.measured.clear();
   const auto fails = [](auto make, const char* message) {

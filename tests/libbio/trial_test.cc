@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "bio/file_error.h"
+#include "support/numbers.h"
 #include "support/scratch_folder.h"
 
 namespace bio {
@@ -14,7 +15,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::SizeIs;
 
-constexpr double degree = std::numbers::pi / 180;
+using support::degree;
 
 // Two muscles, one disabled, an elbow and a sliding coordinate: all that a trial asks of a model.
 Model twoMuscles() {

@@ -7,7 +7,7 @@
 namespace bio {
 namespace {
 
-using testing::ShippedElbow;
+using fixtures::ShippedElbow;
 
 class WholeTrialSensitivity : public ::testing::TestWithParam<std::pair<const char*, const char*>> {
 };
@@ -16,10 +16,10 @@ TEST_P(WholeTrialSensitivity, MatchesDifferencesForEveryParameter) {
   const ShippedElbow elbow(GetParam().first, GetParam().second);
   SimulationOptions options;
   options.duration = 4.5;
-  const testing::Disagreement d =
-      testing::compareWithDifferences(elbow.arm, ShippedElbow::options(), elbow.excitation,
-                                      elbow.catalogue, elbow.catalogue.select({"all"}), options);
-  testing::tell(d);
+  const fixtures::Disagreement d =
+      fixtures::compareWithDifferences(elbow.arm, ShippedElbow::options(), elbow.excitation,
+                                       elbow.catalogue, elbow.catalogue.select({"all"}), options);
+  fixtures::tell(d);
   EXPECT_GE(d.parameters, 285);
   EXPECT_LT(d.worst, 1e-5) << d.of;
 }

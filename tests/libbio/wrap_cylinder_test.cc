@@ -19,7 +19,7 @@ using std::numbers::pi;
 using V = Vec3<double>;
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 
-struct Case {
+struct CylinderCase {
   double radius;
   Side side;
   V P, Q;
@@ -30,9 +30,9 @@ V cylindrical(double distance, double angle, double z) {
 }
 
 // Ends outside the cylinder, any angle between them.
-Case randomCase(std::mt19937& random) {
+CylinderCase randomCylinder(std::mt19937& random) {
   std::uniform_real_distribution<double> unit(0, 1);
-  Case c;
+  CylinderCase c;
   c.radius = 0.005 + 0.03 * unit(random);
   c.side = unit(random) < 0.5 ? Side::counterclockwise : Side::clockwise;
   c.P =
@@ -42,12 +42,12 @@ Case randomCase(std::mt19937& random) {
   return c;
 }
 
-Span<double> wrap(const Case& c) {
+Span<double> wrap(const CylinderCase& c) {
   return wrapCylinder(c.radius, c.side, c.P, c.Q);
 }
 
 // The angle on the given side, from P to Q.
-double sweep(const Case& c) {
+double sweep(const CylinderCase& c) {
   const double sigma = c.side == Side::counterclockwise ? 1 : -1;
   const double angle = sigma * (std::atan2(c.Q.y(), c.Q.x()) - std::atan2(c.P.y(), c.P.x()));
   return angle < 0 ? angle + 2 * pi : angle;
@@ -90,7 +90,7 @@ TEST(WrapCylinder, AgreesWithTheChainOfAppendixA) {
   std::uniform_real_distribution<double> unit(-1, 1);
   int wrapped = 0;
   for (int i = 0; i < 2000; ++i) {
-    Case c = randomCase(random);
+    CylinderCase c = randomCylinder(random);
     const Span<double> span = wrap(c);
     if (!span.touches) continue;
     const double beta = wrapCylinderContact(c.radius, c.side, c.P, c.Q).angle;
@@ -113,7 +113,7 @@ TEST(WrapCylinder, IsTheShortestPathRoundTheCylinder) {
   std::mt19937 random(2);
   int wrapped = 0;
   for (int i = 0; i < 400; ++i) {
-    const Case c = randomCase(random);
+    const CylinderCase c = randomCylinder(random);
     const Span<double> span = wrap(c);
     if (!span.touches) continue;
     ++wrapped;
@@ -148,7 +148,7 @@ TEST(WrapCylinder, IsTheShortestPathRoundTheCylinder) {
 TEST(WrapCylinder, ContactPointsLieOnTheSurfaceAndTangentsTouchThem) {
   std::mt19937 random(3);
   for (int i = 0; i < 1000; ++i) {
-    const Case c = randomCase(random);
+    const CylinderCase c = randomCylinder(random);
     const Span<double> span = wrap(c);
     if (!span.touches) continue;
     const WrapContact<double> contact = wrapCylinderContact(c.radius, c.side, c.P, c.Q);
@@ -169,7 +169,7 @@ TEST(WrapCylinder, ContactPointsLieOnTheSurfaceAndTangentsTouchThem) {
 TEST(WrapCylinder, TransmitsNoForceAlongAndNoMomentAboutItsAxis) {
   std::mt19937 random(4);
   for (int i = 0; i < 2000; ++i) {
-    const Case c = randomCase(random);
+    const CylinderCase c = randomCylinder(random);
     const Span<double> span = wrap(c);
     EXPECT_NEAR(span.dL_dP.z() + span.dL_dQ.z(), 0, 1e-15);
     EXPECT_NEAR((c.P.cross(span.dL_dP) + c.Q.cross(span.dL_dQ)).z(), 0, 1e-15);
@@ -181,7 +181,7 @@ TEST(WrapCylinder, TransmitsNoForceAlongAndNoMomentAboutItsAxis) {
 TEST(WrapCylinder, ReversedAndMirroredPathsAreAsLong) {
   std::mt19937 random(5);
   for (int i = 0; i < 1000; ++i) {
-    const Case c = randomCase(random);
+    const CylinderCase c = randomCylinder(random);
     const Side other = c.side == Side::clockwise ? Side::counterclockwise : Side::clockwise;
     const Span<double> span = wrap(c);
     const Span<double> reversed = wrapCylinder(c.radius, other, c.Q, c.P);
@@ -219,7 +219,7 @@ TEST(WrapCylinder, DerivativesAgreeThreeWays) {
   std::mt19937 random(6);
   int wrapped = 0;
   for (int i = 0; i < 2000; ++i) {
-    const Case c = randomCase(random);
+    const CylinderCase c = randomCylinder(random);
     const SpanToSecondOrder<double> hand = wrapCylinderToSecondOrder(c.radius, c.side, c.P, c.Q);
     const Span<double> plain = wrap(c);
     wrapped += plain.touches ? 1 : 0;
@@ -272,7 +272,7 @@ TEST(WrapCylinder, RadiusDerivativeIsTheWrappedAngle) {
   using Dual1 = info::Dual<1>;
   std::mt19937 random(7);
   for (int i = 0; i < 500; ++i) {
-    const Case c = randomCase(random);
+    const CylinderCase c = randomCylinder(random);
     const Span<Dual1> span =
         wrapCylinder(Dual1(c.radius, 1, 0), c.side, Vec3<Dual1>(c.P.cast<Dual1>()),
                      Vec3<Dual1>(c.Q.cast<Dual1>()));

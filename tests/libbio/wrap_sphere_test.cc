@@ -17,20 +17,20 @@ using std::numbers::pi;
 using V = Vec3<double>;
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 
-struct Case {
+struct SphereCase {
   double radius;
   Way way;
   V P, Q;
 };
 
-Case randomCase(std::mt19937& random) {
+SphereCase randomSphere(std::mt19937& random) {
   std::uniform_real_distribution<double> unit(0, 1);
   std::normal_distribution<double> normal(0, 1);
   const auto point = [&](double r) {
     const V direction(normal(random), normal(random), normal(random));
     return V(direction.normalized() * r * (1.05 + 5 * unit(random)));
   };
-  Case c;
+  SphereCase c;
   c.radius = 0.005 + 0.03 * unit(random);
   c.way = unit(random) < 0.7 ? Way::shorter : Way::longer;
   c.P = point(c.radius);
@@ -59,7 +59,7 @@ TEST(WrapSphere, AgreesWithTheCylinderAcrossItsPlane) {
   std::mt19937 random(1);
   int wrapped = 0;
   for (int i = 0; i < 2000; ++i) {
-    const Case c = randomCase(random);
+    const SphereCase c = randomSphere(random);
     Mat3<double> R;  // frame with z across the plane
     R.col(2) = c.P.cross(c.Q).normalized();
     R.col(0) = c.P.normalized();
@@ -81,7 +81,7 @@ TEST(WrapSphere, AgreesWithTheCylinderAcrossItsPlane) {
 TEST(WrapSphere, TransmitsNoMomentAboutItsCentre) {
   std::mt19937 random(2);
   for (int i = 0; i < 1000; ++i) {
-    const Case c = randomCase(random);
+    const SphereCase c = randomSphere(random);
     const Span<double> span = wrapSphere(c.radius, c.way, c.P, c.Q);
     EXPECT_NEAR((c.P.cross(span.dL_dP) + c.Q.cross(span.dL_dQ)).norm(), 0, 1e-14);
     EXPECT_NEAR(span.dL_dP.norm(), 1, 1e-13);
@@ -92,7 +92,7 @@ TEST(WrapSphere, TransmitsNoMomentAboutItsCentre) {
 TEST(WrapSphere, ContactPointsLieOnTheSurface) {
   std::mt19937 random(3);
   for (int i = 0; i < 1000; ++i) {
-    const Case c = randomCase(random);
+    const SphereCase c = randomSphere(random);
     const Span<double> span = wrapSphere(c.radius, c.way, c.P, c.Q);
     if (!span.touches) continue;
     const WrapContact<double> contact = wrapSphereContact(c.radius, c.way, c.P, c.Q);
@@ -125,7 +125,7 @@ TEST(WrapSphere, DerivativesAgreeThreeWays) {
   using Outer = info::Dual<6, Inner>;
   std::mt19937 random(4);
   for (int i = 0; i < 1000; ++i) {
-    const Case c = randomCase(random);
+    const SphereCase c = randomSphere(random);
     if (c.P.normalized().cross(c.Q.normalized()).norm() < 0.05) continue;  // plane ill defined
     const SpanToSecondOrder<double> hand = wrapSphereToSecondOrder(c.radius, c.way, c.P, c.Q);
     Vec6 gradient, z;
@@ -168,7 +168,7 @@ TEST(WrapSphere, RadiusDerivativeIsTheWrappedAngle) {
   using Dual1 = info::Dual<1>;
   std::mt19937 random(5);
   for (int i = 0; i < 500; ++i) {
-    const Case c = randomCase(random);
+    const SphereCase c = randomSphere(random);
     const Span<Dual1> span =
         wrapSphere(Dual1(c.radius, 1, 0), c.way, Vec3<Dual1>(c.P.cast<Dual1>()),
                    Vec3<Dual1>(c.Q.cast<Dual1>()));

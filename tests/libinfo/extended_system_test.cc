@@ -13,7 +13,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-const Vector<double, 2> theta{0.1, 0.6};
+const Vector<double, 2> massTheta{0.1, 0.6};
 
 MatrixXd somePsi(Index n, Index p) {
   return MatrixXd::NullaryExpr(n, p, [](Index i, Index j) {
@@ -58,11 +58,11 @@ void checkStep(const ExtendedStepMap& map, const VectorXd& x, double u0, double 
 const VectorXd bob = VectorXd{{0.1, 0.5, -0.3, 1.1}};
 
 TEST(ExtendedStepMap, DifferentiatesAnExplicitMap) {
-  checkStep(extend(Rk4<SuspendedMass>{{}, 0.05}, theta), bob, 0.7, -0.4);
+  checkStep(extend(Rk4<SuspendedMass>{{}, 0.05}, massTheta), bob, 0.7, -0.4);
 }
 
 TEST(ExtendedStepMap, DifferentiatesAnImplicitMap) {
-  checkStep(extend(ImplicitMidpoint<SuspendedMass>{{}, 0.05}, theta), bob, 0.7, -0.4);
+  checkStep(extend(ImplicitMidpoint<SuspendedMass>{{}, 0.05}, massTheta), bob, 0.7, -0.4);
 }
 
 TEST(ExtendedStepMap, DifferentiatesAVariationalIntegrator) {
@@ -82,7 +82,7 @@ TEST(ExtendedStepMap, CarriesTheSensitivityOfTheStepsTaken) {
 }
 
 TEST(ExtendedFlow, DifferentiatesTheRatesOfStateAndSensitivity) {
-  const ExtendedFlow flow = extendFlow(SuspendedMass{}, theta);
+  const ExtendedFlow flow = extendFlow(SuspendedMass{}, massTheta);
   const MatrixXd psi = somePsi(4, 2);
   VectorXd w(5);
   w << bob, 0.7;
@@ -96,7 +96,7 @@ TEST(ExtendedFlow, DifferentiatesTheRatesOfStateAndSensitivity) {
 }
 
 TEST(ExtendedOutput, DifferentiatesTheSensitivityOfAnOutputWithTheInputInIt) {
-  const ExtendedOutput output = extendFlow(SuspendedMass{}, theta).output;
+  const ExtendedOutput output = extendFlow(SuspendedMass{}, massTheta).output;
   const MatrixXd psi = somePsi(4, 2), P{{0.7, -1.3}};
   VectorXd all(4 + 1 + 8);
   all << bob, 0.7, psi.reshaped();

@@ -15,7 +15,7 @@ using Eigen::VectorXd;
 using info::monteCarlo;
 using info::MonteCarloOptions;
 
-const info::OutputCovariance kNoise(MatrixXd::Constant(1, 1, 1e-4));
+const info::OutputCovariance kTrialNoise(MatrixXd::Constant(1, 1, 1e-4));
 const info::Predictor kModel =
     support::DampedOscillation{VectorXd::LinSpaced(50, 0.1, 5)}.predictor();
 const VectorXd kTruth = (VectorXd(2) << 0.5, 3).finished();
@@ -31,7 +31,7 @@ TEST(MonteCarlo, AttainsTheCramerRaoBoundAtLowNoise) {
   MonteCarloOptions options;
   options.trials = 1000;
   options.startSpread = 0.05;
-  const auto result = monteCarlo(kModel, kTruth, kNoise, kParameters, options);
+  const auto result = monteCarlo(kModel, kTruth, kTrialNoise, kParameters, options);
   EXPECT_EQ(result.converged, 1000);
   for (int i = 0; i < 2; ++i) {
     EXPECT_NEAR(result.covariance(i, i) / result.bound(i, i), 1, 4 * std::sqrt(2.0 / 999));
@@ -44,10 +44,10 @@ TEST(MonteCarlo, IsBitwiseTheSameForAnyNumberOfThreads) {
   options.trials = 40;
   options.startSpread = 0.1;
   options.threads = 1;
-  const auto alone = monteCarlo(kModel, kTruth, kNoise, kParameters, options);
+  const auto alone = monteCarlo(kModel, kTruth, kTrialNoise, kParameters, options);
   for (int threads : {2, 5, 0}) {
     options.threads = threads;
-    const auto together = monteCarlo(kModel, kTruth, kNoise, kParameters, options);
+    const auto together = monteCarlo(kModel, kTruth, kTrialNoise, kParameters, options);
     ASSERT_EQ(together.trials.size(), alone.trials.size());
     for (std::size_t i = 0; i < alone.trials.size(); ++i) {
       EXPECT_TRUE(sameBits(alone.trials[i].start, together.trials[i].start));
@@ -58,11 +58,11 @@ TEST(MonteCarlo, IsBitwiseTheSameForAnyNumberOfThreads) {
   // trial i does not depend on how many there are; another seed gives other trials
   options.trials = 3;
   EXPECT_TRUE(
-      sameBits(monteCarlo(kModel, kTruth, kNoise, kParameters, options).trials[2].parameters,
+      sameBits(monteCarlo(kModel, kTruth, kTrialNoise, kParameters, options).trials[2].parameters,
                alone.trials[2].parameters));
   options.seed = 2;
   EXPECT_FALSE(
-      sameBits(monteCarlo(kModel, kTruth, kNoise, kParameters, options).trials[2].parameters,
+      sameBits(monteCarlo(kModel, kTruth, kTrialNoise, kParameters, options).trials[2].parameters,
                alone.trials[2].parameters));
 }
 
@@ -92,7 +92,7 @@ TEST(MonteCarlo, StartsWithinSpreadAndBounds) {
   options.estimate.maxIterations = 0;
   std::vector<info::Parameter> parameters = kParameters;
   parameters[1].upper = 4;
-  const auto result = monteCarlo(kModel, kTruth, kNoise, parameters, options);
+  const auto result = monteCarlo(kModel, kTruth, kTrialNoise, parameters, options);
   double least = 9, most = 0;
   for (const auto& trial : result.trials) {
     EXPECT_LE(trial.start[1], 4);
@@ -116,11 +116,11 @@ TEST(MonteCarlo, TellsProgressOnceATrialAndStopsWhenTold) {
     EXPECT_EQ(trials, 30);
     return true;
   };
-  EXPECT_TRUE(monteCarlo(kModel, kTruth, kNoise, kParameters, options).complete);
+  EXPECT_TRUE(monteCarlo(kModel, kTruth, kTrialNoise, kParameters, options).complete);
   EXPECT_EQ(calls, 30);
   options.threads = 1;
   options.progress = [](int done, int) { return done < 4; };
-  const auto stopped = monteCarlo(kModel, kTruth, kNoise, kParameters, options);
+  const auto stopped = monteCarlo(kModel, kTruth, kTrialNoise, kParameters, options);
   EXPECT_FALSE(stopped.complete);
   EXPECT_EQ(stopped.trials.size(), 4u);
 }
@@ -129,14 +129,16 @@ TEST(MonteCarlo, RefusesWhatItCannotRun) {
   const auto refused = [](auto change) {
     MonteCarloOptions options;
     change(options);
-    EXPECT_THROW(monteCarlo(kModel, kTruth, kNoise, kParameters, options), std::invalid_argument);
+    EXPECT_THROW(monteCarlo(kModel, kTruth, kTrialNoise, kParameters, options),
+                 std::invalid_argument);
   };
   refused([](auto& o) { o.trials = 0; });
   refused([](auto& o) { o.threads = -1; });
   refused([](auto& o) { o.startSpread = -0.1; });
   refused([](auto& o) { o.startSpread = std::nan(""); });
-  EXPECT_THROW(monteCarlo(kModel, VectorXd::Ones(3), kNoise, kParameters), std::invalid_argument);
-  EXPECT_THROW(monteCarlo(kModel, VectorXd::Constant(2, -1), kNoise, kParameters),
+  EXPECT_THROW(monteCarlo(kModel, VectorXd::Ones(3), kTrialNoise, kParameters),
+               std::invalid_argument);
+  EXPECT_THROW(monteCarlo(kModel, VectorXd::Constant(2, -1), kTrialNoise, kParameters),
                std::invalid_argument);
 }
 

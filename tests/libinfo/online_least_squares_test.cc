@@ -13,8 +13,8 @@ namespace {
 using namespace info;
 using testing::HasSubstr;
 
-using Both = Rk4<FreeParameters<SuspendedMass, 0, 1>>;
-using Length = Rk4<FreeParameters<SuspendedMass, 1>>;
+using BothMap = Rk4<FreeParameters<SuspendedMass, 0, 1>>;
+using LengthMap = Rk4<FreeParameters<SuspendedMass, 1>>;
 constexpr double kStep = 0.01;
 
 double inputAt(std::size_t k) {
@@ -22,13 +22,13 @@ double inputAt(std::size_t k) {
 }
 
 /// A recording of the load cell, m = 0.2 kg, ℓ = 0.368 m unless said otherwise.
-struct Recording {
+struct ArmRecording {
   std::vector<Vector<double, 1>> inputs;
   std::vector<double> forces;
 };
-Recording record(std::size_t count, double noise, double capacity, double mass = 0.2,
-                 double length = 0.368, double laterLength = 0) {
-  Recording out;
+ArmRecording record(std::size_t count, double noise, double capacity, double mass = 0.2,
+                    double length = 0.368, double laterLength = 0) {
+  ArmRecording out;
   Rk4<SuspendedMass> map{{}, kStep};
   Vector<double, 4> x = Vector<double, 4>::Zero();
   RandomStream random(11, 0);
@@ -42,8 +42,8 @@ Recording record(std::size_t count, double noise, double capacity, double mass =
   return out;
 }
 
-const Length kLengthMap{{{}, {0.2, 0}}, kStep};
-const Both kBothMap{{{}, {0, 0}}, kStep};
+const LengthMap kLengthMap{{{}, {0.2, 0}}, kStep};
+const BothMap kBothMap{{{}, {0, 0}}, kStep};
 
 std::vector<Parameter> lengthFrom(double start) {
   return {{.name = "length", .unit = "m", .start = start, .lower = 0.05, .upper = 1.5}};
@@ -54,7 +54,7 @@ std::vector<Parameter> bothFrom(double mass, double length) {
 }
 
 template <class M>
-OnlineEstimate<M> feed(OnlineLeastSquares<M>& squares, const Recording& data,
+OnlineEstimate<M> feed(OnlineLeastSquares<M>& squares, const ArmRecording& data,
                        std::size_t every = 50) {
   OnlineEstimate<M> last;
   for (std::size_t k = 0; k < data.inputs.size(); ++k) {
@@ -65,9 +65,9 @@ OnlineEstimate<M> feed(OnlineLeastSquares<M>& squares, const Recording& data,
 }
 
 TEST(OnlineLeastSquares, FindsMassAndLengthOfExactData) {
-  OnlineLeastSquares<Both> squares(kBothMap, Vector<double, 4>::Zero(), bothFrom(0.15, 0.45),
-                                   {{.deviation = 0.1}});
-  const Recording data = record(400, 0, 100);
+  OnlineLeastSquares<BothMap> squares(kBothMap, Vector<double, 4>::Zero(), bothFrom(0.15, 0.45),
+                                      {{.deviation = 0.1}});
+  const ArmRecording data = record(400, 0, 100);
   const auto last = feed(squares, data);
   EXPECT_TRUE(last.converged);
   EXPECT_NEAR(last.parameters[0], 0.2, 1e-7);
@@ -81,15 +81,15 @@ TEST(OnlineLeastSquares, FindsMassAndLengthOfExactData) {
 
 // The second algorithm: the batch estimator of estimate.h on the same noisy data.
 TEST(OnlineLeastSquares, AgreesWithTheBatchEstimator) {
-  const Recording data = record(300, 0.1, 1e9);
-  OnlineLeastSquares<Both> squares(kBothMap, Vector<double, 4>::Zero(), bothFrom(0.15, 0.45),
-                                   {{.deviation = 0.1}});
+  const ArmRecording data = record(300, 0.1, 1e9);
+  OnlineLeastSquares<BothMap> squares(kBothMap, Vector<double, 4>::Zero(), bothFrom(0.15, 0.45),
+                                      {{.deviation = 0.1}});
   const auto online = feed(squares, data);
   Eigen::MatrixXd measured(1, 300);
   for (int k = 0; k < 300; ++k) measured(0, k) = data.forces[std::size_t(k)];
   const LeastSquares batch(
-      makePredictor(kBothMap, Experiment<Both>{Vector<double, 4>::Zero(), data.inputs,
-                                               stepsEvery(0, 1, 299)}),
+      makePredictor(kBothMap, Experiment<BothMap>{Vector<double, 4>::Zero(), data.inputs,
+                                                  stepsEvery(0, 1, 299)}),
       {measured, OutputCovariance(Eigen::MatrixXd::Constant(1, 1, 0.01))}, bothFrom(0.2, 0.37));
   const Estimate whole = estimate(batch);
   ASSERT_TRUE(whole.converged);
@@ -100,12 +100,12 @@ TEST(OnlineLeastSquares, AgreesWithTheBatchEstimator) {
 }
 
 TEST(OnlineLeastSquares, GivesTheSensitivityOfItsObserver) {
-  const Recording data = record(200, 0, 100);
+  const ArmRecording data = record(200, 0, 100);
   const auto at = [&](double length) {
     auto held = lengthFrom(length);
     held[0].lower = held[0].upper = length;
-    OnlineLeastSquares<Length> squares(kLengthMap, Vector<double, 4>::Zero(), held,
-                                       {{.deviation = 0.1}});
+    OnlineLeastSquares<LengthMap> squares(kLengthMap, Vector<double, 4>::Zero(), held,
+                                          {{.deviation = 0.1}});
     return feed(squares, data);
   };
   const Vector<double, 4> difference = (at(0.3681).x - at(0.3679).x) / 2e-4;
@@ -114,10 +114,10 @@ TEST(OnlineLeastSquares, GivesTheSensitivityOfItsObserver) {
 
 // With clipped data, against the least of independently computed likelihoods on a fine grid.
 TEST(OnlineLeastSquares, MaximisesTheLikelihoodOfClippedData) {
-  const Recording data = record(300, 0.1, 2.2);
+  const ArmRecording data = record(300, 0.1, 2.2);
   const ClippedSensor sensor{.deviation = 0.1, .upper = 2.2};
-  OnlineLeastSquares<Length> squares(kLengthMap, Vector<double, 4>::Zero(), lengthFrom(0.4),
-                                     {sensor});
+  OnlineLeastSquares<LengthMap> squares(kLengthMap, Vector<double, 4>::Zero(), lengthFrom(0.4),
+                                        {sensor});
   const auto got = feed(squares, data);
   std::size_t clipped = 0;
   for (double force : data.forces) clipped += force >= 2.2;
@@ -137,43 +137,43 @@ TEST(OnlineLeastSquares, MaximisesTheLikelihoodOfClippedData) {
   EXPECT_LT(got.cost, cost(got.parameters[0] - h));
   for (double length = 0.3; length < 0.45; length += 0.002) EXPECT_LE(got.cost, cost(length));
   // taken as measurements, the same data lead elsewhere
-  OnlineLeastSquares<Length> naive(kLengthMap, Vector<double, 4>::Zero(), lengthFrom(0.4),
-                                   {{.deviation = 0.1}});
+  OnlineLeastSquares<LengthMap> naive(kLengthMap, Vector<double, 4>::Zero(), lengthFrom(0.4),
+                                      {{.deviation = 0.1}});
   const auto wrong = feed(naive, data);
   EXPECT_LT(std::abs(got.parameters[0] - 0.368), 0.2 * std::abs(wrong.parameters[0] - 0.368));
 }
 
 TEST(OnlineLeastSquares, FollowsAChangeThroughASlidingWindow) {
-  const Recording data = record(1000, 0.005, 100, 0.2, 0.368, 0.42);
+  const ArmRecording data = record(1000, 0.005, 100, 0.2, 0.368, 0.42);
   OnlineOptions sliding{.window = 150, .startDeviation = Eigen::Vector4d(0, 0.5, 0, 3)};
-  OnlineLeastSquares<Length> window(kLengthMap, Vector<double, 4>::Zero(), lengthFrom(0.4),
-                                    {{.deviation = 0.005}}, sliding);
+  OnlineLeastSquares<LengthMap> window(kLengthMap, Vector<double, 4>::Zero(), lengthFrom(0.4),
+                                       {{.deviation = 0.005}}, sliding);
   const auto recent = feed(window, data);
   EXPECT_NEAR(recent.parameters[0], 0.42, 0.005);
   EXPECT_NEAR(recent.parameters[0], 0.42, 4 * std::sqrt(recent.covariance(0, 0)));
   EXPECT_EQ(recent.samples, 1000u);
-  OnlineLeastSquares<Length> whole(kLengthMap, Vector<double, 4>::Zero(), lengthFrom(0.4),
-                                   {{.deviation = 0.005}});
+  OnlineLeastSquares<LengthMap> whole(kLengthMap, Vector<double, 4>::Zero(), lengthFrom(0.4),
+                                      {{.deviation = 0.005}});
   EXPECT_GT(std::abs(feed(whole, data).parameters[0] - 0.42), 0.01);
 }
 
 TEST(OnlineLeastSquares, SlidesWithoutLosingExactData) {
   OnlineOptions sliding{.window = 100, .startDeviation = Eigen::Vector4d(0, 0.5, 0, 3)};
-  OnlineLeastSquares<Length> window(kLengthMap, Vector<double, 4>::Zero(), lengthFrom(0.4),
-                                    {{.deviation = 0.1}}, sliding);
+  OnlineLeastSquares<LengthMap> window(kLengthMap, Vector<double, 4>::Zero(), lengthFrom(0.4),
+                                       {{.deviation = 0.1}}, sliding);
   EXPECT_NEAR(feed(window, record(600, 0, 100)).parameters[0], 0.368, 1e-4);
 }
 
 TEST(OnlineLeastSquares, LeavesOutWhatWasNotMeasuredAndStaysInItsBounds) {
-  Recording data = record(200, 0, 100);
+  ArmRecording data = record(200, 0, 100);
   for (std::size_t k = 0; k < 200; k += 3) data.forces[k] = std::nan("");
-  OnlineLeastSquares<Length> squares(kLengthMap, Vector<double, 4>::Zero(), lengthFrom(0.4),
-                                     {{.deviation = 0.1}});
+  OnlineLeastSquares<LengthMap> squares(kLengthMap, Vector<double, 4>::Zero(), lengthFrom(0.4),
+                                        {{.deviation = 0.1}});
   EXPECT_NEAR(feed(squares, data).parameters[0], 0.368, 1e-7);
   auto bounded = lengthFrom(0.45);
   bounded[0].lower = 0.39;
-  OnlineLeastSquares<Length> stopped(kLengthMap, Vector<double, 4>::Zero(), bounded,
-                                     {{.deviation = 0.1}});
+  OnlineLeastSquares<LengthMap> stopped(kLengthMap, Vector<double, 4>::Zero(), bounded,
+                                        {{.deviation = 0.1}});
   const auto at = feed(stopped, data);
   EXPECT_EQ(at.parameters[0], 0.39);
   EXPECT_TRUE(at.converged);
@@ -183,14 +183,14 @@ TEST(OnlineLeastSquares, HoldsThePriorWhereTheDataSayNothing) {
   // at rest the force does not depend on the length
   auto parameters = lengthFrom(0.4);
   parameters[0].prior = GaussianPrior{0.41, 0.03};
-  OnlineLeastSquares<Length> squares(kLengthMap, Vector<double, 4>::Zero(), parameters,
-                                     {{.deviation = 0.1}});
+  OnlineLeastSquares<LengthMap> squares(kLengthMap, Vector<double, 4>::Zero(), parameters,
+                                        {{.deviation = 0.1}});
   for (int k = 0; k < 50; ++k) squares.add(Vector<double, 1>(0.0), Vector<double, 1>(1.962));
   const auto at = squares.update();
   EXPECT_NEAR(at.parameters[0], 0.41, 1e-5);
   EXPECT_NEAR(std::sqrt(at.covariance(0, 0)), 0.03, 1e-12);
-  OnlineLeastSquares<Length> unknowing(kLengthMap, Vector<double, 4>::Zero(), lengthFrom(0.4),
-                                       {{.deviation = 0.1}});
+  OnlineLeastSquares<LengthMap> unknowing(kLengthMap, Vector<double, 4>::Zero(), lengthFrom(0.4),
+                                          {{.deviation = 0.1}});
   unknowing.add(Vector<double, 1>(0.0), Vector<double, 1>(1.962));
   EXPECT_TRUE(std::isinf(unknowing.update().covariance(0, 0)));
 }
@@ -207,8 +207,8 @@ TEST(OnlineLeastSquares, NamesTheRuleThatIsBroken) {
   const auto with = [&](std::vector<Parameter> parameters, std::vector<ClippedSensor> sensors,
                         OnlineOptions options = {}) {
     return message([&] {
-      OnlineLeastSquares<Length>(kLengthMap, Vector<double, 4>::Zero(), parameters, sensors,
-                                 options);
+      OnlineLeastSquares<LengthMap>(kLengthMap, Vector<double, 4>::Zero(), parameters, sensors,
+                                    options);
     });
   };
   EXPECT_THAT(with(bothFrom(1, 1), {{.deviation = 1}}), HasSubstr("parameters: length is 2"));
@@ -223,8 +223,8 @@ TEST(OnlineLeastSquares, NamesTheRuleThatIsBroken) {
               HasSubstr("start: -1, rule: ≥ 0"));
   EXPECT_THAT(with(lengthFrom(0.4), {{.deviation = 1}}, {.maxIterations = 0}),
               HasSubstr("iterations: 0"));
-  OnlineLeastSquares<Length> squares(kLengthMap, Vector<double, 4>::Zero(), lengthFrom(0.4),
-                                     {{.deviation = 1}});
+  OnlineLeastSquares<LengthMap> squares(kLengthMap, Vector<double, 4>::Zero(), lengthFrom(0.4),
+                                        {{.deviation = 1}});
   EXPECT_THAT(message([&] { squares.update(); }), HasSubstr("number of samples is 0"));
   EXPECT_THAT(message([&] { squares.add(Vector<double, 1>(NAN), Vector<double, 1>(1.0)); }),
               HasSubstr("input is not finite"));

@@ -12,14 +12,14 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-const info::OutputCovariance kNoise(MatrixXd::Constant(1, 1, 0.01));
+const info::OutputCovariance kLineNoise(MatrixXd::Constant(1, 1, 0.01));
 
 // A linear model's profile is the parabola of its marginal variance, and meets the threshold where
 // the Cramér–Rao interval ends (to the 2e-7 at which estimation stops).
 TEST(ProfileLikelihood, OfALinearModelIsTheParabolaOfTheBound) {
   const VectorXd t = VectorXd::LinSpaced(9, 0, 2);
   const MatrixXd data = (1 + 2 * t.array() + 0.1 * (7 * t.array()).sin()).matrix().transpose();
-  const info::LeastSquares problem(support::straightLine(t), {data, kNoise},
+  const info::LeastSquares problem(support::straightLine(t), {data, kLineNoise},
                                    {{.name = "a"}, {.name = "b"}});
   const auto best = info::estimate(problem);
   const double centre = best.parameters[1];
@@ -44,7 +44,7 @@ TEST(ProfileLikelihood, IsFlatAlongAValley) {
   sum.withSensitivities = [sum](const VectorXd& theta) {
     return info::Prediction{sum.outputs(theta), MatrixXd::Ones(3, 2)};
   };
-  const info::LeastSquares problem(sum, {MatrixXd::Constant(1, 3, 5.0), kNoise},
+  const info::LeastSquares problem(sum, {MatrixXd::Constant(1, 3, 5.0), kLineNoise},
                                    {{.name = "a", .start = 1}, {.name = "b", .start = 2}});
   const auto profile = info::profileLikelihood(problem, info::estimate(problem), 0, {-50, 0, 50});
   for (const auto& point : profile.points) EXPECT_LT(point.cost, profile.threshold);
@@ -52,7 +52,7 @@ TEST(ProfileLikelihood, IsFlatAlongAValley) {
 
 TEST(ProfileLikelihood, RefusesWhatIsNoParameterOrOutOfBounds) {
   const VectorXd t = VectorXd::LinSpaced(9, 0, 2);
-  const info::LeastSquares problem(support::straightLine(t), {t.transpose(), kNoise},
+  const info::LeastSquares problem(support::straightLine(t), {t.transpose(), kLineNoise},
                                    {{.name = "a", .lower = -1}, {.name = "b"}});
   const auto best = info::estimate(problem);
   EXPECT_THROW(info::profileLikelihood(problem, best, 2, {0}), std::invalid_argument);
@@ -63,7 +63,7 @@ TEST(ProfileLikelihood, RefusesWhatIsNoParameterOrOutOfBounds) {
 TEST(ProfileInterval, OfALinearModelIsTheCramerRaoInterval) {
   const VectorXd t = VectorXd::LinSpaced(9, 0, 2);
   const MatrixXd data = (1 + 2 * t.array() + 0.1 * (7 * t.array()).sin()).matrix().transpose();
-  const info::LeastSquares problem(support::straightLine(t), {data, kNoise},
+  const info::LeastSquares problem(support::straightLine(t), {data, kLineNoise},
                                    {{.name = "a"}, {.name = "b"}});
   const auto best = info::estimate(problem);
   const double deviation = std::sqrt(best.covariance(1, 1));
@@ -83,7 +83,7 @@ TEST(ProfileInterval, IsSkewWhereTheModelIs) {
   exponential.withSensitivities = [exponential](const VectorXd& theta) {
     return info::Prediction{exponential.outputs(theta), exponential.outputs(theta)};
   };
-  const info::LeastSquares problem(exponential, {MatrixXd::Constant(1, 1, 0.5), kNoise},
+  const info::LeastSquares problem(exponential, {MatrixXd::Constant(1, 1, 0.5), kLineNoise},
                                    {{.name = "a"}});
   const auto best = info::estimate(problem);
   const auto interval = info::profileInterval(problem, best, 0, 0.2);
@@ -100,7 +100,7 @@ TEST(ProfileInterval, SaysWhereItIsOpenAndWhereABoundEndsIt) {
     return info::Prediction{sum.outputs(theta), MatrixXd::Ones(3, 2)};
   };
   const info::LeastSquares problem(
-      sum, {MatrixXd::Constant(1, 3, 5.0), kNoise},
+      sum, {MatrixXd::Constant(1, 3, 5.0), kLineNoise},
       {{.name = "a", .start = 1, .lower = -2}, {.name = "b", .start = 2}});
   const auto interval = info::profileInterval(problem, info::estimate(problem), 0, 1);
   EXPECT_EQ(interval.lower, -2);

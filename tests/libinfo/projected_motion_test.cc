@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 
 constexpr double step = 0.02;
 
-MotionDesign shaking() {
+MotionDesign shakingMotion() {
   MotionDesign d;
   d.x0 = VectorXd::Zero(4);
   for (int k = 0; k <= 100; ++k)
@@ -30,7 +30,7 @@ MotionDesign shaking() {
 
 StepProjection inSteps(std::size_t stepsPerSample = 1) {
   StepDesign d;
-  static_cast<MotionDesign&>(d) = shaking();
+  static_cast<MotionDesign&>(d) = shakingMotion();
   d.timeStep = step;
   d.stepsPerSample = stepsPerSample;
   d.outputCovariance = MatrixXd::Constant(1, 1, 0.01);
@@ -41,7 +41,7 @@ StepProjection inSteps(std::size_t stepsPerSample = 1) {
 
 FlowProjection continuously() {
   FlowDesign d;
-  static_cast<MotionDesign&>(d) = shaking();
+  static_cast<MotionDesign&>(d) = shakingMotion();
   d.step = step;
   d.outputDensity = MatrixXd::Constant(1, 1, 0.01 * step);
   d.modelState = 1e-3 * MatrixXd::Identity(12, 12);

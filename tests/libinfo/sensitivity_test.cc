@@ -18,7 +18,7 @@ static_assert(ExplicitStepMap<Rk4<Pendulum>>);
 static_assert(ImplicitStepMap<ImplicitMidpoint<Pendulum>> &&
               !ExplicitStepMap<ImplicitMidpoint<Pendulum>>);
 
-const Vector<double, 2> start{0.9, -0.4}, theta{0.7, 0.12};
+const Vector<double, 2> start{0.9, -0.4}, pendulumTheta{0.7, 0.12};
 
 std::vector<Vector<double, 1>> torque(std::size_t steps) {
   std::vector<Vector<double, 1>> u;
@@ -37,20 +37,20 @@ TYPED_TEST_SUITE(SensitivityOfMap, Maps);
 
 TYPED_TEST(SensitivityOfMap, FirstIsTheDerivativeOfTheStepsTaken) {
   const auto run = simulateWithSensitivity(this->map, start, Matrix<double, 2, 2>::Zero().eval(),
-                                           this->u, theta);
+                                           this->u, pendulumTheta);
   ASSERT_TRUE(run.complete);
   const auto last = [&](const Vector<double, 2>& t) {
     return simulate(this->map, start, this->u, t).x.back();
   };
-  const Matrix<double, 2, 2> difference = finiteDifferenceJacobian(last, theta);
+  const Matrix<double, 2, 2> difference = finiteDifferenceJacobian(last, pendulumTheta);
   EXPECT_LT((run.psi.back() - difference).norm(), 1e-8 * difference.norm());
-  EXPECT_EQ(run.x.back(), last(theta));
+  EXPECT_EQ(run.x.back(), last(pendulumTheta));
 }
 
 TYPED_TEST(SensitivityOfMap, SecondIsTheDerivativeOfTheFirst) {
   const Matrix<double, 2, 2> zero = Matrix<double, 2, 2>::Zero();
-  const auto run = simulateWithSensitivity(this->map, start, zero, this->u, theta);
-  const auto omega = secondSensitivity(this->map, run, this->u, theta);
+  const auto run = simulateWithSensitivity(this->map, start, zero, this->u, pendulumTheta);
+  const auto omega = secondSensitivity(this->map, run, this->u, pendulumTheta);
   for (int i = 0; i < 2; ++i) {
     const auto row = [&](const Vector<double, 2>& t) {
       return Vector<double, 2>(simulateWithSensitivity(this->map, start, zero, this->u, t)
@@ -58,37 +58,38 @@ TYPED_TEST(SensitivityOfMap, SecondIsTheDerivativeOfTheFirst) {
                                    .row(i)
                                    .transpose());
     };
-    const Matrix<double, 2, 2> difference = finiteDifferenceJacobian(row, theta);
+    const Matrix<double, 2, 2> difference = finiteDifferenceJacobian(row, pendulumTheta);
     EXPECT_LT((omega.back()[std::size_t(i)] - difference).norm(), 1e-7 * difference.norm());
   }
 }
 
 TYPED_TEST(SensitivityOfMap, AdjointSweepEqualsTheContractedForwardTensor) {
   const auto run = simulateWithSensitivity(this->map, start, Matrix<double, 2, 2>::Zero().eval(),
-                                           this->u, theta);
-  const auto omega = secondSensitivity(this->map, run, this->u, theta);
+                                           this->u, pendulumTheta);
+  const auto omega = secondSensitivity(this->map, run, this->u, pendulumTheta);
   std::vector<Vector<double, 2>> weights;
   Matrix<double, 2, 2> expected = Matrix<double, 2, 2>::Zero();
   for (std::size_t k = 0; k < run.x.size(); ++k) {
     weights.emplace_back(std::cos(double(k)), 0.1 * double(k));
     expected += weights[k][0] * omega[k][0] + weights[k][1] * omega[k][1];
   }
-  const auto swept = contractSecondSensitivity(this->map, run, this->u, theta, weights);
+  const auto swept = contractSecondSensitivity(this->map, run, this->u, pendulumTheta, weights);
   EXPECT_LT((swept - expected).norm(), 1e-12 * expected.norm());
 }
 
 TEST(Simulate, RefusesAnEmptyInput) {
-  EXPECT_THROW(simulate(Rk4<Pendulum>{{}, 0.01}, start, {}, theta), DimensionError);
+  EXPECT_THROW(simulate(Rk4<Pendulum>{{}, 0.01}, start, {}, pendulumTheta), DimensionError);
 }
 
 TEST(ContractSecondSensitivity, RefusesATrajectoryWithoutPsiAndWeightsOfAnotherLength) {
   const Rk4<Pendulum> map{{}, 0.01};
   const auto u = torque(3);
-  EXPECT_THROW(contractSecondSensitivity(map, simulate(map, start, u, theta), u, theta, {start}),
+  EXPECT_THROW(contractSecondSensitivity(map, simulate(map, start, u, pendulumTheta), u,
+                                         pendulumTheta, {start}),
                DimensionError);
   const auto run =
-      simulateWithSensitivity(map, start, Matrix<double, 2, 2>::Zero().eval(), u, theta);
-  EXPECT_THROW(contractSecondSensitivity(map, run, u, theta, {start}), DimensionError);
+      simulateWithSensitivity(map, start, Matrix<double, 2, 2>::Zero().eval(), u, pendulumTheta);
+  EXPECT_THROW(contractSecondSensitivity(map, run, u, pendulumTheta, {start}), DimensionError);
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include "bio/model.h"
 
-namespace bio::testing {
+namespace bio::fixtures {
 
 inline Coordinate coordinate(const std::string& name, double value = 0) {
   Coordinate c;
@@ -73,4 +73,4 @@ inline Model threeLinkArm() {
   return m;
 }
 
-}  // namespace bio::testing
+}  // namespace bio::fixtures

@@ -10,7 +10,7 @@
 
 // Calibrations repeated on synthetic trials whose truth is known. Noise of 0.5° is drawn anew each
 // time and estimated with the parameters; there are no priors.
-namespace bio::testing {
+namespace bio::fixtures {
 
 inline const std::vector<std::pair<std::string, double>> kTruth = {
     {"hand.mass", 0.65}, {"TRI.radius", 0.0172}, {"TRIlong.max_isometric_force", 700}};
@@ -80,4 +80,4 @@ inline CalibrationStatistics repeatCalibration(int repetitions) {
   return result;
 }
 
-}  // namespace bio::testing
+}  // namespace bio::fixtures

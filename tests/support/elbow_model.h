@@ -2,11 +2,11 @@
 
 #include "bio/osim_file.h"
 
-namespace bio::testing {
+namespace bio::fixtures {
 
 /// The shipped eight-muscle elbow.
 inline Model elbowModel() {
   return readOsim(std::string(FISHERHILL_SOURCE_DIR) + "/models/elbow8.osim");
 }
 
-}  // namespace bio::testing
+}  // namespace bio::fixtures

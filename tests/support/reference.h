@@ -8,7 +8,7 @@
 #include "bio/replay.h"
 
 /// The outside world: models and motions computed by OpenSim, kept beside the project.
-namespace bio::testing {
+namespace bio::fixtures {
 
 inline std::filesystem::path reference(const std::string& file) {
   return std::filesystem::path(FISHERHILL_SOURCE_DIR) / ".." / "shared" / "reference" / file;
@@ -16,7 +16,7 @@ inline std::filesystem::path reference(const std::string& file) {
 
 /// First line of a test that needs it. The files are not part of the project (their terms).
 #define FISHERHILL_NEEDS_REFERENCE()                                                     \
-  if (!std::filesystem::exists(bio::testing::reference("elbow8_reference.osim"))) {      \
+  if (!std::filesystem::exists(bio::fixtures::reference("elbow8_reference.osim"))) {     \
     GTEST_SKIP() << "needs OpenSim's reference files in ../shared/reference, which are " \
                     "not part of the project";                                           \
   }                                                                                      \
@@ -27,4 +27,4 @@ inline Arm referenceArm() {
   return Arm(readOsim(reference("elbow8_reference.osim")), {{{"elbow_flexion"}, {}}, {}, {}});
 }
 
-}  // namespace bio::testing
+}  // namespace bio::fixtures

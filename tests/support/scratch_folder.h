@@ -55,4 +55,11 @@ inline std::string contentOf(const std::filesystem::path& file) {
   return text.str();
 }
 
+inline std::vector<std::string> linesOf(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
 }  // namespace support

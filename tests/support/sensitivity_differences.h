@@ -8,7 +8,7 @@
 #include "bio/coupled_sensitivity.h"
 #include "info/monte_carlo.h"
 
-namespace bio::testing {
+namespace bio::fixtures {
 
 /// How far sensitivities are from differences of whole simulations, of the models changed, compiled
 /// and simulated anew.
@@ -141,4 +141,4 @@ inline void tell(const Disagreement& d) {
       d.parameters, d.compared, d.worst, d.of, d.worstMotion, d.negligible, d.undecided);
 }
 
-}  // namespace bio::testing
+}  // namespace bio::fixtures

@@ -6,7 +6,7 @@
 #include "bio/osim_file.h"
 #include "bio/replay.h"
 
-namespace bio::testing {
+namespace bio::fixtures {
 
 /// A shipped model with a shipped trial, the elbow free.
 struct ShippedElbow {
@@ -28,4 +28,10 @@ struct ShippedElbow {
   ParameterCatalogue catalogue;
 };
 
-}  // namespace bio::testing
+inline SimulationOptions forSeconds(double duration) {
+  SimulationOptions options;
+  options.duration = duration;
+  return options;
+}
+
+}  // namespace bio::fixtures

@@ -8,7 +8,7 @@
 #include "bio/replay.h"
 #include "info/random_stream.h"
 
-namespace bio::testing {
+namespace bio::fixtures {
 
 /// Trials of the shipped elbow whose truth is known: a shipped trial's excitations, and the angle
 /// that the model moves to with some parameters at other values.
@@ -71,4 +71,4 @@ struct SyntheticElbow {
   Arm arm;
 };
 
-}  // namespace bio::testing
+}  // namespace bio::fixtures

@@ -12,7 +12,7 @@ namespace hidden {
 namespace {
 
 TEST(TwoElbows, MoveAlikeWhereNothingIsHidden) {
-  const bio::testing::ShippedElbow theirs;
+  const bio::fixtures::ShippedElbow theirs;
   bio::SimulationOptions options;
   options.integrator = bio::Integrator::cvode;
   options.duration = 4.5;
@@ -46,7 +46,7 @@ TEST(TwoElbows, MoveAlikeWhereNothingIsHidden) {
 }
 
 TEST(TwoElbows, HaveTheSameLengthsAndMomentArms) {
-  const bio::testing::ShippedElbow theirs;
+  const bio::fixtures::ShippedElbow theirs;
   const TrueElbow elbow(readElbow(theirs.root() + "/models/elbow8.osim"), {}, {});
   const Eigen::VectorXd angles = Eigen::VectorXd::LinSpaced(261, 0, 130 * degree);
   const bio::PathSample sample = bio::samplePaths(theirs.model, theirs.arm.skeleton(), {}, angles);

@@ -26,7 +26,7 @@ Place placeOf(const std::vector<double>& times, double t) {
   return {k - 1, k, (t - times[k - 1]) / (times[k] - times[k - 1])};
 }
 
-double smoothStep(double x) {
+double smootherStep(double x) {
   const double s = std::clamp(x, 0.0, 1.0);
   return s * s * s * (10 - 15 * s + 6 * s * s);
 }
@@ -104,8 +104,8 @@ double TrueElbow::extraTorque(double t, double q, double w, double z) const {
                   e.drag * w * std::abs(w) - e.powerDamping * w * std::pow(w * w + 1e-4, -0.25) -
                   e.stiffness * (q - e.stiffnessRest) + e.constant;
   const double above = q - e.limitUpper, below = e.limitLower - q;
-  torque += e.limit * (smoothStep(below / e.limitTransition) * below -
-                       smoothStep(above / e.limitTransition) * above);
+  torque += e.limit * (smootherStep(below / e.limitTransition) * below -
+                       smootherStep(above / e.limitTransition) * above);
   if (e.tilt != 0) torque += gravityMoment(q + e.tilt) - gravityMoment(q);
   if (e.handForce != 0) {
     const Vec r = turned(numbers_.hand - numbers_.hinge, numbers_.axis, q);

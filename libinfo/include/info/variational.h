@@ -235,8 +235,9 @@ auto VariationalIntegrator<S>::chain(const typename Formulas::Slopes& slopes) co
   // 0 = p_k + r̂: M dq_{k+1} = −(dp_k + ∂r̂/∂z dz)
   const Square transposedM = unknown.template leftCols<n>(k);
   c.inverseM = inverse(transposedM).transpose();
-  Slope dr_dz = known.template leftCols<n>(k).transpose();
-  dr_dz.template middleCols<n>(k, k).diagonal().array() += 1.0;
+  Slope dr_dz = Slope::Zero(k, known.rows());
+  dr_dz.template middleCols<n>(k, k).diagonal().setOnes();
+  dr_dz += known.template leftCols<n>(k).transpose();
   c.dq1_dz = -c.inverseM * dr_dz;
   // p_{k+1} = p̂
   c.dp_dq1.noalias() = unknown.template rightCols<n>(k).transpose();

@@ -36,7 +36,7 @@ double leastDistance(const WrapObject& wrap, const Placement<double>& body,
 // Over the whole range of the joint, what is drawn of a muscle that wraps stays outside the
 // surface: also between the points of the polyline.
 TEST(ArmPoser, MusclesNeverCutThroughTheSurfacesTheyWrap) {
-  const Model model = bio::testing::elbowModel();
+  const Model model = bio::fixtures::elbowModel();
   const ArmPoser poser(model, flexion, {});
   const std::vector<double> radii(poser.muscles().size(), 0.003);
   int lying = 0;
@@ -93,7 +93,7 @@ TEST(TubeRadius, AreaGrowsByOneSquareMillimetrePerFiveNewtons) {
 
 // The elbow sits where the model's joint says, and the hand moves round it.
 TEST(ArmPoser, PutsBodiesWhereTheJointsAre) {
-  const Model model = bio::testing::elbowModel();
+  const Model model = bio::fixtures::elbowModel();
   const ArmPoser poser(model, flexion, {});
   const std::vector<double> radii(poser.muscles().size(), 0.003);
   const auto at = [&](double angle) {
@@ -111,7 +111,7 @@ TEST(ArmPoser, PutsBodiesWhereTheJointsAre) {
 }
 
 TEST(BodyShapes, ABoneReachesFromItsFrameToTheNextJoint) {
-  for (const BodyShape& shape : bodyShapes(bio::testing::elbowModel())) {
+  for (const BodyShape& shape : bodyShapes(bio::fixtures::elbowModel())) {
     if (shape.name == "humerus") {
       ASSERT_EQ(shape.bones.size(), 1u);
       EXPECT_EQ(shape.bones[0].to, Vector3d(0.0061, -0.2904, -0.0123));
@@ -127,7 +127,8 @@ TEST(BodyShapes, ABoneReachesFromItsFrameToTheNextJoint) {
 class MotionFile : public ::testing::Test {
  protected:
   ArmMotion read(const std::string& text, bool ignoreExtra = false) const {
-    return readArmMotion(scratch.file("motion.csv", text), bio::testing::elbowModel(), ignoreExtra);
+    return readArmMotion(scratch.file("motion.csv", text), bio::fixtures::elbowModel(),
+                         ignoreExtra);
   }
   support::ScratchFolder scratch;
 };
@@ -177,7 +178,7 @@ TEST_F(MotionFile, ColumnsOfAnotherModelAreNamed) {
 TEST_F(MotionFile, CoordinatesThatMoveAreFreeAndTheOthersHeldWhereTheyAre) {
   const ArmMotion motion = read("time,elbow_flexion,pro_sup\n0,0.2,0.4\n1,0.9,0.4\n");
   const SkeletonOptions options =
-      skeletonFor(bio::testing::elbowModel(), {&motion}, {{"elbow_flexion"}, {}});
+      skeletonFor(bio::fixtures::elbowModel(), {&motion}, {{"elbow_flexion"}, {}});
   EXPECT_THAT(options.freeCoordinates, ::testing::ElementsAre("elbow_flexion"));
   EXPECT_THAT(options.lockedValues, ::testing::ElementsAre(::testing::Pair("pro_sup", 0.4)));
 }
@@ -185,7 +186,7 @@ TEST_F(MotionFile, CoordinatesThatMoveAreFreeAndTheOthersHeldWhereTheyAre) {
 // The tendon's force comes from the muscle itself: none at a length where the tendon is slack.
 TEST_F(MotionFile, TendonForcesFollowTheFibreLengths) {
   std::string header = "time,/jointset/elbow/elbow_flexion/value", row = ",1.0";
-  const Model model = bio::testing::elbowModel();
+  const Model model = bio::fixtures::elbowModel();
   std::string slack = row, taut = row;
   for (const Muscle& muscle : model.muscles) {
     header += ",/forceset/" + muscle.name + "/fiber_length";
