@@ -20,7 +20,7 @@ constexpr double kFirstSize = 0.3, kRaceSize = 0.1, kSmallest = 1e-3;
 // time
 constexpr double kHopeless = 0.03;
 // with so large a latent force the base is too far from the data for linear steps
-constexpr double kPoor = 0.06;
+constexpr double kPoor = 0.2;
 
 }  // namespace
 
