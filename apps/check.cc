@@ -18,14 +18,14 @@
 namespace app {
 namespace {
 
-struct Finding {
+struct ReviewFinding {
   std::string file;
   std::string level;  ///< "error", "warning" or "unusual"
   std::string message;
 };
 
 struct Findings {
-  std::vector<Finding> list;
+  std::vector<ReviewFinding> list;
 
   void add(const std::string& file, const std::string& level, const std::string& message) {
     const bool named = message.starts_with(file + ":");
@@ -37,7 +37,7 @@ struct Findings {
 };
 
 /// The message without the names in quotes, to see which findings are alike.
-std::string patternOf(const Finding& finding) {
+std::string patternOf(const ReviewFinding& finding) {
   std::string pattern = finding.level + finding.file;
   bool quoted = false;
   for (const char c : finding.message) {
@@ -48,17 +48,18 @@ std::string patternOf(const Finding& finding) {
 }
 
 /// For people: errors first, then warnings; of many findings that differ in names only, the first.
-std::vector<Finding> shortened(std::vector<Finding> findings) {
-  std::stable_sort(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
-    const auto rank = [](const Finding& f) {
-      return f.level == "error" ? 0 : f.level == "warning" ? 1 : 2;
-    };
-    return rank(a) < rank(b);
-  });
+std::vector<ReviewFinding> shortened(std::vector<ReviewFinding> findings) {
+  std::stable_sort(findings.begin(), findings.end(),
+                   [](const ReviewFinding& a, const ReviewFinding& b) {
+                     const auto rank = [](const ReviewFinding& f) {
+                       return f.level == "error" ? 0 : f.level == "warning" ? 1 : 2;
+                     };
+                     return rank(a) < rank(b);
+                   });
   std::map<std::string, int> alike;
-  for (const Finding& finding : findings) ++alike[patternOf(finding)];
-  std::vector<Finding> shown;
-  for (Finding& finding : findings) {
+  for (const ReviewFinding& finding : findings) ++alike[patternOf(finding)];
+  std::vector<ReviewFinding> shown;
+  for (ReviewFinding& finding : findings) {
     int& count = alike[patternOf(finding)];
     if (count == 0) continue;
     if (count > 1) finding.message += fmt::format(" (and {} more like this)", count - 1);
@@ -181,14 +182,14 @@ class Check : public Command {
     summary.set("warnings_found", findings.count("warning"));
     summary.set("unusual", findings.count("unusual"));
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const Finding& finding : findings.list) {
+    for (const ReviewFinding& finding : findings.list) {
       list.push_back(
           {{"file", finding.file}, {"level", finding.level}, {"message", finding.message}});
     }
     summary.set("findings", list);
 
     Table table{"What was found", {"kind", "finding"}, {}};
-    for (const Finding& finding : shortened(findings.list)) {
+    for (const ReviewFinding& finding : shortened(findings.list)) {
       table.rows.push_back({finding.level, finding.message});
       if (!context.json) fmt::print("{}: {}\n", finding.level, finding.message);
     }

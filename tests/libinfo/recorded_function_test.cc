@@ -22,19 +22,19 @@ T power(const T& x) {
 }
 
 template <class T>
-Vector<T, 1> everyOperation(const Vector<T, 3>& point) {
+Vector<T, 1> everyOperation(const Vector<T, 3>& operands) {
   using std::cos, std::exp, std::log, std::sin, std::sqrt, std::tanh;
-  const T a = point[0] * point[1] - point[2] / point[0], b = sin(a) + cos(point[1]),
-          c = exp(-point[2]) * log(point[0]);
-  const T d = sqrt(point[1] + 2.0) / (1.0 + point[2] * point[2]), e = tanh(point[0] - point[2]),
-          g = power(point[1]);
-  const T h = 3.0 - point[0], k = 2.0 / point[1], l = b * b;
+  const T a = operands[0] * operands[1] - operands[2] / operands[0], b = sin(a) + cos(operands[1]),
+          c = exp(-operands[2]) * log(operands[0]);
+  const T d = sqrt(operands[1] + 2.0) / (1.0 + operands[2] * operands[2]),
+          e = tanh(operands[0] - operands[2]), g = power(operands[1]);
+  const T h = 3.0 - operands[0], k = 2.0 / operands[1], l = b * b;
   Vector<T, 1> y;
   y << l + c * d - e * g + h * k;
   return y;
 }
 
-const Vector<double, 3> point{0.7, 1.3, -0.4};
+const Vector<double, 3> operands{0.7, 1.3, -0.4};
 
 struct Recorded {
   Recording recording;
@@ -47,21 +47,21 @@ struct Recorded {
   double value(const Symbol& s) {
     double out = NAN;
     const Symbol outputs[] = {s};
-    RecordedFunction(recording, outputs).evaluate(point.data(), &out);
+    RecordedFunction(recording, outputs).evaluate(operands.data(), &out);
     return out;
   }
 };
 
 TEST(RecordedFunction, HasTheValueOfTheFunction) {
   Recorded f;
-  EXPECT_NEAR(f.value(f.y), everyOperation(point)[0], 1e-15);
+  EXPECT_NEAR(f.value(f.y), everyOperation(operands)[0], 1e-15);
 }
 
 TEST(RecordedFunction, DerivativesOfFirstAndSecondOrderEqualAutomaticDifferentiation) {
   Recorded f;
   const auto function = []<class T>(const Vector<T, 3>& at) { return everyOperation(at); };
-  const auto gradient = jacobian(function, point);
-  const auto hessian = contractedHessian(function, point, Vector<double, 1>(1.0));
+  const auto gradient = jacobian(function, operands);
+  const auto hessian = contractedHessian(function, operands, Vector<double, 1>(1.0));
   for (int i = 0; i < 3; ++i) {
     const Symbol first = f.recording.derivative(f.y, f.x[i]);
     EXPECT_NEAR(f.value(first), gradient(0, i), 1e-12);
@@ -77,7 +77,7 @@ TEST(RecordedFunction, ThirdDerivativesEqualFiniteDifferencesOfTheSecond) {
     const auto hessian = contractedHessian(function, at, Vector<double, 1>(1.0));
     return Vector<double, 3>(hessian(0, 0), hessian(0, 1), hessian(1, 2));
   };
-  const auto expected = finiteDifferenceJacobian(second, point);
+  const auto expected = finiteDifferenceJacobian(second, operands);
   const int pairs[3][2] = {{0, 0}, {0, 1}, {1, 2}};
   for (int k = 0; k < 3; ++k)
     for (int j = 0; j < 3; ++j) {
