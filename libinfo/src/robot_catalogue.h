@@ -15,14 +15,10 @@ inline Eigen::VectorXd startsAt(const std::vector<double>& values) {
 inline discover::Candidate effectOf(const Model& model, std::string id, std::string name,
                                     std::string sentence, discover::EffectKind kind,
                                     std::size_t quantity, double start) {
-  return {std::move(id),
-          std::move(name),
-          std::move(sentence),
-          kind,
-          {quantity},
-          {model.quantities[quantity].deviation},
-          {startsAt({start})},
-          {}};
+  return {std::move(id),       std::move(name),
+          std::move(sentence), kind,
+          {quantity},          {model.quantities[quantity].deviation},
+          {startsAt({start})}, {}};
 }
 
 // A nuisance that may be off by `times` its tolerance.

@@ -42,9 +42,7 @@ double noiseOf(const std::vector<Trial>& trials, Index channel, const std::strin
       if (std::abs(trial.times[k - 1] - trial.times[k - 2] - h) > 1e-3 * h ||
           std::abs(trial.times[k - 2] - trial.times[k - 3] - h) > 1e-3 * h)
         continue;
-      const auto at = [&](std::size_t i) {
-        return trial.measured(static_cast<Index>(i), channel);
-      };
+      const auto at = [&](std::size_t i) { return trial.measured(static_cast<Index>(i), channel); };
       const double third = at(k) - 3 * at(k - 1) + 3 * at(k - 2) - at(k - 3);
       if (!std::isfinite(third)) continue;
       sum += third * third;
@@ -133,8 +131,8 @@ Response RobotDisagreement::simulate(const OfTrial& one, const VectorXd& values,
                                      const VectorXd& latent, const std::vector<std::size_t>& shared,
                                      bool derivatives, bool latentToo, double stepFactor) const {
   const VectorXd numbers = values.head(static_cast<Index>(model_.quantities.size()));
-  const VectorXd start = values.segment(static_cast<Index>(one.start),
-                                        static_cast<Index>(model_.starts.size()));
+  const VectorXd start =
+      values.segment(static_cast<Index>(one.start), static_cast<Index>(model_.starts.size()));
   return model_.simulate({one.trial, one.samples, one.nodes, options_.step * stepFactor, numbers,
                           start, latent, shared, derivatives, latentToo});
 }

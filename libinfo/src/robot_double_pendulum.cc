@@ -151,17 +151,20 @@ void addEffectsOfPendulum(Model& model) {
     const std::string n = std::to_string(joint + 1);
     const std::string where = joint == 0 ? "between cart and link 1" : "between the links";
     list.push_back(effectOf(model, "visc_" + n, "viscous friction in joint " + n,
-                            "The joint " + where + " brakes in proportion to its rate, beyond the "
-                            "damping that the model has.",
+                            "The joint " + where +
+                                " brakes in proportion to its rate, beyond the "
+                                "damping that the model has.",
                             EffectKind::structure, kViscous1 + joint, 2e-4));
     list.push_back(effectOf(model, "coulomb_" + n, "dry friction in joint " + n,
-                            "The joint " + where + " brakes with a moment that does not depend on "
-                            "its rate.",
+                            "The joint " + where +
+                                " brakes with a moment that does not depend on "
+                                "its rate.",
                             EffectKind::structure, kCoulomb1 + joint, 5e-4));
     discover::Candidate sticking =
         effectOf(model, "stribeck_" + n, "dry friction that sticks in joint " + n,
-                 "The joint " + where + " brakes with a dry moment that is up to twice as large "
-                 "where it moves slowly.",
+                 "The joint " + where +
+                     " brakes with a dry moment that is up to twice as large "
+                     "where it moves slowly.",
                  EffectKind::structure, kStribeck1 + 2 * joint, 5e-4);
     sticking.quantities.push_back(kStribeckRate1 + 2 * joint);
     sticking.deviations.push_back(0.5);
@@ -205,7 +208,7 @@ Model doublePendulum() {
                   {"start angle of link 2", "rad", 1, 0.05, 2},
                   {"start rate of link 1", "rad/s", -1, 0.3, 20},
                   {"start rate of link 2", "rad/s", -1, 0.3, 20}};
-  model.states = {"link1 [rad]",      "link2 [rad]",      "rate of link1 [rad/s]",
+  model.states = {"link1 [rad]",           "link2 [rad]",      "rate of link1 [rad/s]",
                   "rate of link2 [rad/s]", "cart speed [m/s]", "cart acceleration [m/s²]"};
   addEffectsOfPendulum(model);
   model.simulate = walk<Pendulum>;

@@ -7,7 +7,7 @@ namespace {
 using discover::EffectKind;
 
 constexpr double kGravity = 9.81;
-constexpr double kSlowAir = 1e-4;      // [m/s], below it drag is smoothed
+constexpr double kSlowAir = 1e-4;       // [m/s], below it drag is smoothed
 constexpr double kStringDamping = 0.2;  // [N·s/m]
 constexpr double kKnee = 0.02;          // [N], over which saturation sets in
 
@@ -119,9 +119,9 @@ struct Bob {
 };
 
 // Tolerances of parameters: a mass is weighed to 3 %, a string measured to 2 %. Nominal values: the
-// thesis's true ones, section 4.5. Amplitudes: a sphere of 6 cm has a drag of 8e-4 N·s²/m², a sail a
-// hundred times that; a rubber string that gives 1 to 5 cm under its mass; load cells drift by some
-// per cent of 3 N.
+// thesis's true ones, section 4.5. Amplitudes: a sphere of 6 cm has a drag of 8e-4 N·s²/m², a sail
+// a hundred times that; a rubber string that gives 1 to 5 cm under its mass; load cells drift by
+// some per cent of 3 N.
 std::vector<discover::Quantity> quantitiesOfBob(double leastForce, double greatestForce) {
   return {
       {"mass", "kg", 0.12, 0.02, 0.7, 0.03, true},
@@ -184,7 +184,7 @@ Model suspendedMass(double leastForce, double greatestForce) {
   model.quantities = quantitiesOfBob(leastForce, greatestForce);
   model.nuisances = {kMass, kLength};
   model.starts = {{"start angle", "rad", -1, 0.05, 2}, {"start rate", "rad/s", -1, 0.3, 20}};
-  model.states = {"angle [rad]",     "rate [rad/s]",     "force [N]",
+  model.states = {"angle [rad]",         "rate [rad/s]",     "force [N]",
                   "rate of force [N/s]", "cart speed [m/s]", "cart acceleration [m/s²]"};
   addEffectsOfBob(model, leastForce, greatestForce);
   model.simulate = walk<Bob>;

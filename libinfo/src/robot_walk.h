@@ -89,7 +89,10 @@ class Walk {
   using State = std::array<T, static_cast<std::size_t>(n)>;
 
   Walk(const Request& request, std::size_t first, Response& response)
-      : request_(request), first_(first), response_(response), latent_(request.nodes, request.latent) {
+      : request_(request),
+        first_(first),
+        response_(response),
+        latent_(request.nodes, request.latent) {
     for (std::size_t i = 0; i < p_.size(); ++i) p_[i] = T(request.shared[static_cast<int>(i)]);
     slots_ = std::min(request.wanted.size() - std::min(first, request.wanted.size()),
                       static_cast<std::size_t>(kSlots));
@@ -210,7 +213,8 @@ class Walk {
       if (plainValue(s) == 1) input = u[2] + (s - 1.0) * (u[2] - u[0]);
       const auto channel = static_cast<std::size_t>(sample.channel);
       const T y = Plant::outputs(x, input, p_)[channel];
-      const T from = Plant::outputs(x0, u[0], p_)[channel], to = Plant::outputs(x1, u[2], p_)[channel];
+      const T from = Plant::outputs(x0, u[0], p_)[channel],
+              to = Plant::outputs(x1, u[2], p_)[channel];
       const auto at = static_cast<Eigen::Index>(sample_);
       response_.outputs[at] = plainValue(y);
       response_.speeds[at] = (plainValue(to) - plainValue(from)) / h;

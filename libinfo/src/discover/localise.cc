@@ -75,8 +75,7 @@ Localisation localise(const Likelihood& likelihood, const Fit& fit, const Fit& s
     linear.push_back(likelihood.linearise(t, fit, fit.values, {}, true));
     const auto& nodes = data.latentTimes(trial);
     const FirstOutput first(data, trial);
-    q.push_back(
-        atNodes(nodes, first.times, first.of(data.measured(trial) - linear[t].residuals)));
+    q.push_back(atNodes(nodes, first.times, first.of(data.measured(trial) - linear[t].residuals)));
     qDot.push_back(atNodes(nodes, first.times, first.of(linear[t].speeds)));
     MatrixXd u = data.inputs(trial), placed(static_cast<Index>(nodes.size()), u.cols());
     for (Index j = 0; j < u.cols(); ++j)

@@ -9,8 +9,8 @@
 namespace info::robot {
 
 struct DisagreementOptions {
-  double step = 0.005;           ///< longest time step [s] > 0
-  double latentSpacing = 0.05;   ///< between nodes of the latent acceleration [s] > 0
+  double step = 0.005;          ///< longest time step [s] > 0
+  double latentSpacing = 0.05;  ///< between nodes of the latent acceleration [s] > 0
   /// Noise of each channel [its unit] > 0; empty: from the data's third differences.
   std::vector<double> deviations;
   std::vector<std::string> without;  ///< ids of candidates that are left out
