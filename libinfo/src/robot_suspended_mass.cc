@@ -25,12 +25,12 @@ enum : std::size_t {
   kMassCount
 };
 
-// State (φ, φ̇, F, Ḟ, cart speed, cart acceleration); F is the force of the string.
+// State (φ, φ̇, F, Ḟ, cart speed, cart acceleration); F is the elastic part of the string's force.
 //
 // An elastic string is a filter between the force F* that an unstretchable one would have at the
 // same length and rates, and the force it has:
-//     C m F̈ + C b Ḟ + F = F*,   r = ℓ + C (F − m g)
-// which at C = 0 is F = F*. Its step is the L-stable one of two stages with γ = 1 − 1/√2, so that
+//     C m F̈ + C b Ḟ + F = F*,   r = ℓ + C (F − m g),   string's force F + C b Ḟ
+// which at C = 0 is F*. Its step is the L-stable one of two stages with γ = 1 − 1/√2, so that
 // stiff strings cost nothing; length and rates take F linear over a step.
 struct Bob {
   static constexpr int stateSize = 6, startSize = 2, outputSize = 1;
@@ -107,13 +107,14 @@ struct Bob {
   template <class T>
   static std::array<T, 1> outputs(const State<T>& x, const T&, const Numbers<T>& p) {
     using std::exp, std::log;
-    const T over = (x[2] - p[kSaturationAt]) * (1 / kKnee);
+    const T force = x[2] + p[kElastic] * (kStringDamping * x[3]);
+    const T over = (force - p[kSaturationAt]) * (1 / kKnee);
     T beyond(0.0);
     if (plainValue(over) > 30)
       beyond = over;
     else if (plainValue(over) > -30)
       beyond = log(1.0 + exp(over));
-    const T seen = x[2] - p[kSaturation] * (kKnee * beyond);
+    const T seen = force - p[kSaturation] * (kKnee * beyond);
     return {(1.0 + p[kGain]) * seen + p[kBias]};
   }
 };

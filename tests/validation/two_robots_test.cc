@@ -83,7 +83,8 @@ double distance(const RobotDisagreement& data, const VectorXd& values) {
 }
 
 TEST(TwoRobots, AgreeWithEveryEffectThatTheCatalogueHas) {
-  // largest distances measured are in validation/discovery/README.md
+  // largest distances, in deviations of the noise: 0.009 of the pendulum (dry friction), 0.11 where
+  // the load cell's knee is rounded, 0.08 with the elastic string, 2e-5 of all others
   for (const std::string system : systems) {
     const hidden::RobotKind& kind = hidden::robotKind(system);
     std::set<std::string> seen;
@@ -107,15 +108,13 @@ TEST(TwoRobots, AgreeWithEveryEffectThatTheCatalogueHas) {
       const double with = distance(data, v), without = distance(data, resting(data));
       EXPECT_LT(with, 0.15) << e.id;
       EXPECT_GT(without, 1) << e.id;
-      RecordProperty(system + " " + e.id, std::to_string(with) + " " + std::to_string(without));
-      printf("%s %s %.4f %.2f\n", system.c_str(), e.id.c_str(), with, without);
     }
     const RobotDisagreement plain = recorded(system, kind.nominal);
     EXPECT_LT(distance(plain, resting(plain)), 0.002);
-    printf("%s none %.6f\n", system.c_str(), distance(plain, resting(plain)));
-    for (const auto& c : plain.candidates())
-      if (c.kind != info::discover::EffectKind::parameter)
-        EXPECT_TRUE(seen.count(c.id)) << c.id << " cannot be hidden";
+    for (const auto& c : plain.candidates()) {
+      const bool parameter = c.kind == info::discover::EffectKind::parameter;
+      EXPECT_TRUE(parameter || seen.count(c.id) > 0) << c.id << " cannot be hidden";
+    }
   }
 }
 
@@ -165,12 +164,12 @@ TEST(TwoRobots, EffectsOfZeroAmplitudeChangeNothingAndEveryDerivativeThereSaysSo
       const VectorXd slope = data.predict(0, v, {}, {c.quantities[0]}, false).gamma.col(0);
       EXPECT_TRUE(slope.allFinite()) << c.id;
       EXPECT_GT(slope.norm(), 0) << c.id;
-      // a step of the size where refits start does what the slope says, within a fifth
+      // from absence into presence (a string that gives a little rings, so little is little)
       const auto& q = data.quantities()[c.quantities[0]];
-      const double move = q.logarithmic ? 0.01 * q.nominal : 1e-3 * q.deviation;
+      const double move = 1e-7 * q.deviation * (q.logarithmic ? q.nominal : 1);
       v[static_cast<Index>(c.quantities[0])] += move;
       const VectorXd change = (data.outputs(0, v, {}) - y) / move;
-      EXPECT_LT((change - slope).norm(), 0.2 * slope.norm()) << system << ": " << c.id;
+      EXPECT_LT((change - slope).norm(), 2e-3 * slope.norm()) << system << ": " << c.id;
     }
   }
 }
@@ -200,8 +199,8 @@ TEST(TwoRobots, BrakesTakeEnergyOutOfAFreeSwing) {
           const double kinetic = 0.5 * (m1 * s1 * s1 + v[4] + m2 * d * d) * wA * wA +
                                  0.5 * (m2 * s2 * s2 + v[5]) * wB * wB +
                                  m2 * d * s2 * std::cos(x(k, 0) - x(k, 1)) * wA * wB;
-          e[k] = kinetic - 9.81 * ((m1 * s1 + m2 * d) * std::cos(x(k, 0)) +
-                                   m2 * s2 * std::cos(x(k, 1)));
+          e[k] = kinetic -
+                 9.81 * ((m1 * s1 + m2 * d) * std::cos(x(k, 0)) + m2 * s2 * std::cos(x(k, 1)));
         } else {
           const double m = v[0], l = v[1];
           e[k] = m * (0.5 * l * l * x(k, 1) * x(k, 1) - 9.81 * l * std::cos(x(k, 0)));
@@ -211,8 +210,8 @@ TEST(TwoRobots, BrakesTakeEnergyOutOfAFreeSwing) {
     };
     const VectorXd free = energy(v);
     EXPECT_LT((free.array() - free[0]).abs().maxCoeff(), 2e-6 * std::abs(free[0]));
-    for (const char* id : {"visc_1", "visc_2", "coulomb_1", "coulomb_2", "stribeck_1",
-                           "stribeck_2", "drag"}) {
+    for (const char* id :
+         {"visc_1", "visc_2", "coulomb_1", "coulomb_2", "stribeck_1", "stribeck_2", "drag"}) {
       const std::size_t c = candidateOf(data, id);
       if (c == data.candidates().size()) continue;
       VectorXd braked = v;
@@ -233,8 +232,7 @@ TEST(TwoRobots, HalfTheStepChangesLittle) {
         (data.refinedOutputs(0, v) - data.outputs(0, v, {})).cwiseAbs().maxCoeff() /
         data.deviations()[0];
     EXPECT_GT(change, 0);
-    EXPECT_LT(change, 0.05) << system;
-    printf("%s halved %.5f\n", system.c_str(), change);
+    EXPECT_LT(change, 0.05) << system;  // 0.007 and 0.009
   }
 }
 

@@ -101,7 +101,7 @@ RobotKind massKind() {
        1,
        {},
        false},
-      {"bias", se, true, "F + b is read", "N", 0.15, {}, true},
+      {"bias", se, true, "F + b is read", "N", 0.3, {}, true},
       {"gain", se, true, "(1 + g)·F is read", "", 0.2, {"mass"}, true},
       {"clock", se, true, "the force of T before is read", "s", 0.04, {}, false},
       {"mass", p, true, "× (1 + a)", "change", 0.2, {"gain"}, true},
