@@ -235,7 +235,7 @@ class Discover : public Command {
     const bio::EmgMapping& m = added.mapping;
     const bio::discover::SensorLaw& s = added.sensor;
     return !m.gain.empty() || m.delay != 0 || m.nonlinearity != 0 || !m.offset.empty() ||
-           !m.crosstalk.empty() || s.bias != 0 || s.gain != 0 || s.clock != 0;
+           !m.crosstalk.empty() || m.fatigue != 0 || s.bias != 0 || s.gain != 0 || s.clock != 0;
   }
 
   std::string model_;

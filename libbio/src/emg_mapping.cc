@@ -59,6 +59,12 @@ void check(const std::vector<std::string>& muscles, const EmgMapping& mapping) {
   if (!std::isfinite(mapping.delay)) {
     throw std::invalid_argument(fmt::format("EMG delay = {} s, must be finite", mapping.delay));
   }
+  if (!(std::abs(mapping.fatigue) <= 1) ||
+      !(mapping.fatigueTime > 0 && std::isfinite(mapping.fatigueTime))) {
+    throw std::invalid_argument(
+        fmt::format("EMG fatigue φ = {}, must be −1 to 1, with T = {} s, must be > 0",
+                    mapping.fatigue, mapping.fatigueTime));
+  }
   if (!(std::abs(mapping.nonlinearity) <= 6)) {
     throw std::invalid_argument(
         fmt::format("EMG nonlinearity = {}, must be −6 to 6", mapping.nonlinearity));
@@ -102,7 +108,33 @@ double slopeOfShape(double x, double A) {
   return A == 0 ? 1.0 : A * std::exp(A * x) / std::expm1(A);
 }
 
+/// ∫ dt from the first row, of straight lines between rows.
+Eigen::RowVectorXd integral(const Eigen::VectorXd& times, const Eigen::RowVectorXd& rows) {
+  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(rows.size());
+  for (Eigen::Index k = 1; k < rows.size(); ++k) {
+    sum[k] = sum[k - 1] + (times[k] - times[k - 1]) * (rows[k] + rows[k - 1]) / 2;
+  }
+  return sum;
+}
+
+/// e^{−I/T}
+Eigen::ArrayXd freshness(const EmgMapping& mapping, const Eigen::RowVectorXd& work) {
+  return (-work.transpose().array() / mapping.fatigueTime).exp();
+}
+
+Eigen::VectorXd timesOf(const ExcitationSignal& trial) {
+  return Eigen::VectorXd::Map(trial.times().data(),
+                              static_cast<Eigen::Index>(trial.times().size()));
+}
+
 }  // namespace
+
+Eigen::RowVectorXd EmgDerivatives::tired(Eigen::Index muscle,
+                                         const Eigen::RowVectorXd& change) const {
+  if (share.size() == 0) return change;
+  return share.row(muscle).cwiseProduct(change) -
+         tiring.row(muscle).cwiseProduct(integral(times, change));
+}
 
 ExcitationSignal drivenExcitation(const ExcitationSignal& trial,
                                   const std::vector<std::string>& muscles,
@@ -114,6 +146,9 @@ ExcitationSignal drivenExcitation(const ExcitationSignal& trial,
     for (Eigen::Index k = 0; k < rows.cols(); ++k) {
       rows(i, k) = std::clamp(gain * shaped(rows(i, k), mapping.nonlinearity).value, 0.0, 1.0);
     }
+    if (mapping.fatigue == 0) continue;
+    const Eigen::ArrayXd fresh = freshness(mapping, integral(timesOf(trial), rows.row(i)));
+    rows.row(i).array() *= 1 - mapping.fatigue * (1 - fresh.transpose());
   }
   std::vector<double> times = trial.times();
   for (double& t : times) t += mapping.delay;
@@ -126,11 +161,15 @@ EmgDerivatives emgDerivatives(const ExcitationSignal& trial,
   const Eigen::MatrixXd recorded = rowsOf(trial);
   const Eigen::MatrixXd rows = cleaned(recorded, muscles, mapping);
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(rows.rows(), rows.cols());
-  EmgDerivatives derivatives{none, none, none, recorded};
+  EmgDerivatives derivatives{none, none, none, recorded, none, none, timesOf(trial), {}, {}};
+  const double phi = mapping.fatigue, T = mapping.fatigueTime;
+  if (phi != 0) derivatives.share = derivatives.tiring = none;
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
     const double gain = gainOf(mapping, muscles[static_cast<std::size_t>(i)]);
+    Eigen::RowVectorXd level(rows.cols());
     for (Eigen::Index k = 0; k < rows.cols(); ++k) {
       const Shaped s = shaped(rows(i, k), mapping.nonlinearity);
+      level[k] = std::clamp(gain * s.value, 0.0, 1.0);
       if (gain * s.value > 1) continue;
       derivatives.gain(i, k) = s.value;
       derivatives.nonlinearity(i, k) = gain * s.inShape;
@@ -138,6 +177,13 @@ EmgDerivatives emgDerivatives(const ExcitationSignal& trial,
         derivatives.signal(i, k) = gain * slopeOfShape(rows(i, k), mapping.nonlinearity);
       }
     }
+    const Eigen::RowVectorXd work = integral(derivatives.times, level);
+    const Eigen::RowVectorXd fresh = freshness(mapping, work).matrix().transpose();
+    derivatives.fatigue.row(i) = level.array() * (fresh.array() - 1);
+    if (phi == 0) continue;
+    derivatives.fatigueTime.row(i) = level.array() * fresh.array() * work.array() * (phi / (T * T));
+    derivatives.share.row(i) = 1 - phi * (1 - fresh.array());
+    derivatives.tiring.row(i) = level.array() * fresh.array() * (phi / T);
   }
   return derivatives;
 }

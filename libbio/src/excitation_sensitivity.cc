@@ -47,16 +47,21 @@ ExcitationSensitivity::ExcitationSensitivity(const Arm& arm, const ParameterEffe
     const auto enter = [&](Index muscle, const Eigen::RowVectorXd& rows) {
       emg_.push_back({muscle, effect.column, effect.weight * rows});
     };
+    const auto enterAll = [&](const Eigen::MatrixXd& rows) {
+      for (Index i = 0; i < rows.rows(); ++i) enter(i, rows.row(i));
+    };
     if (target.what == EmgTarget::What::nonlinearity) {
-      for (Index i = 0; i < d.nonlinearity.rows(); ++i) enter(i, d.nonlinearity.row(i));
+      for (Index i = 0; i < d.nonlinearity.rows(); ++i) enter(i, d.tired(i, d.nonlinearity.row(i)));
       continue;
     }
+    if (target.what == EmgTarget::What::fatigue) enterAll(d.fatigue);
+    if (target.what == EmgTarget::What::fatigueTime) enterAll(d.fatigueTime);
     const Index i = index(target.muscle);
     if (i == d.gain.rows()) continue;
-    if (target.what == EmgTarget::What::gain) enter(i, d.gain.row(i));
-    if (target.what == EmgTarget::What::offset) enter(i, -d.signal.row(i));
+    if (target.what == EmgTarget::What::gain) enter(i, d.tired(i, d.gain.row(i)));
+    if (target.what == EmgTarget::What::offset) enter(i, d.tired(i, -d.signal.row(i)));
     if (target.what == EmgTarget::What::crosstalk) {
-      enter(i, -d.signal.row(i).cwiseProduct(d.rows.row(index(target.from))));
+      enter(i, d.tired(i, -d.signal.row(i).cwiseProduct(d.rows.row(index(target.from)))));
     }
   }
 }

@@ -270,6 +270,12 @@ void setTarget(ParameterCatalogue::Setting& setting, const ParameterTarget& targ
       case EmgTarget::What::nonlinearity:
         mapping.nonlinearity = value;
         break;
+      case EmgTarget::What::fatigue:
+        mapping.fatigue = value;
+        break;
+      case EmgTarget::What::fatigueTime:
+        mapping.fatigueTime = value;
+        break;
       case EmgTarget::What::gain:
         mapping.gain[emg->muscle] = value;
         break;

@@ -11,6 +11,8 @@ namespace bio {
 /// From the excitations of a trial to those that drive the muscles:
 ///     u_i(t) = min(1, g_i·S(z_i(t − d))),   S(x) = (e^{Ax} − 1)/(e^A − 1), S = x for A = 0
 ///     z_i = max(0, x_i − o_i − Σ_j c_ji·x_j)
+/// and a muscle that tires loses a share of that, the longer it has worked:
+///     u_i ← u_i·[1 − φ(1 − e^{−I_i/T})],   I_i = ∫u_i dt from the first row, u_i as above
 /// (S: Lloyd & Besier 2003, eq. 3, as in emg_stages.h). All of it acts on the rows of the trial,
 /// between which u stays straight. As it stands, the identity.
 struct EmgMapping {
@@ -25,22 +27,34 @@ struct EmgMapping {
   double nonlinearity = 0;                    ///< A [1], −6 to 6
   std::map<std::string, double> offset = {};  ///< o [1] by muscle; 0 where it has none
   std::vector<Crosstalk> crosstalk = {};
+  double fatigue = 0;      ///< φ [1], −1 to 1; below 0 it gains
+  double fatigueTime = 1;  ///< T [s] > 0 of full excitation
 };
 
 /// @param muscles  the signal's, in order
-/// @throws std::invalid_argument for a gain < 0, a delay that is not finite, A outside −6 … 6, or a
-///   gain, offset or crosstalk of a muscle that is not there
+/// @throws std::invalid_argument for a gain < 0, a delay that is not finite, A outside −6 … 6, φ
+///   outside −1 … 1, T not above 0, or a gain, offset or crosstalk of a muscle that is not there
 ExcitationSignal drivenExcitation(const ExcitationSignal& trial,
                                   const std::vector<std::string>& muscles,
                                   const EmgMapping& mapping);
 
-/// ∂u_i/∂g_i, ∂u_i/∂A and ∂u_i/∂z_i at the rows of the signal; rows = muscles, columns = rows. 0
-/// where u is held at 1, ∂u/∂z also where z is held at 0. ∂u/∂d is −du/dt.
+/// ∂u_i/∂g_i, ∂u_i/∂A and ∂u_i/∂z_i at the rows of the signal, before fatigue; rows = muscles,
+/// columns = rows. 0 where u is held at 1, ∂u/∂z also where z is held at 0. ∂u/∂d is −du/dt.
 struct EmgDerivatives {
   Eigen::MatrixXd gain;
   Eigen::MatrixXd nonlinearity;
-  Eigen::MatrixXd signal;  ///< ∂u/∂z: −1 times it is ∂u/∂o, −x_j times it ∂u/∂c_ji
-  Eigen::MatrixXd rows;    ///< x: the trial's own
+  Eigen::MatrixXd signal;   ///< ∂u/∂z: −1 times it is ∂u/∂o, −x_j times it ∂u/∂c_ji
+  Eigen::MatrixXd rows;     ///< x: the trial's own
+  Eigen::MatrixXd fatigue;  ///< ∂u/∂φ
+  Eigen::MatrixXd fatigueTime;  ///< ∂u/∂T [1/s]
+
+  /// From the change of u_i before fatigue at the rows to that of u_i:
+  ///     δ[u w] = w δu − u (φ/T) e^{−I/T} ∫δu dt
+  Eigen::RowVectorXd tired(Eigen::Index muscle, const Eigen::RowVectorXd& change) const;
+
+  Eigen::VectorXd times;   ///< of the rows [s]
+  Eigen::MatrixXd share;   ///< w = 1 − φ(1 − e^{−I/T}); empty: nothing tires
+  Eigen::MatrixXd tiring;  ///< u (φ/T) e^{−I/T} [1/s]
 };
 EmgDerivatives emgDerivatives(const ExcitationSignal& trial,
                               const std::vector<std::string>& muscles, const EmgMapping& mapping);

@@ -115,6 +115,25 @@ ElbowDisagreement::ElbowDisagreement(const Model& model, const ArmOptions& arm,
                     options_.speedDeviation);
     trials_.push_back(std::move(one));
   }
+  latentLag_ = activationLag();
+}
+
+double ElbowDisagreement::activationLag() const {
+  double sum = 0, count = 0;
+  for (const OfTrial& one : trials_) {
+    const auto& times = one.excitation.times();
+    VectorXd u(one.excitation.numMuscles());
+    std::size_t hint = 0;
+    for (const double t : times) {
+      one.excitation.at(t, hint, u);
+      for (Index i = 0; i < u.size(); ++i) {
+        const auto& law = widest_.arm().muscles()[static_cast<std::size_t>(i)].activation;
+        sum += 2 / (law.rateConstant(u[i], true) + law.rateConstant(u[i], false));
+        ++count;
+      }
+    }
+  }
+  return count > 0 ? sum / count : 0;
 }
 
 ParameterCatalogue::Setting ElbowDisagreement::settingAt(
@@ -201,10 +220,11 @@ ElbowDisagreement::Prediction ElbowDisagreement::predict(int trial, const Vector
   const OfTrial& one = of(trial);
   const auto K = static_cast<Index>(one.times.size());
   const auto numNodes = static_cast<Index>(latentToo ? one.nodes.size() : 0);
-  Prediction result{VectorXd::Constant(K, nan),
-                    MatrixXd::Constant(K, static_cast<Index>(wanted.size()), nan),
-                    MatrixXd::Constant(latentToo ? K : 0, numNodes, nan),
-                    VectorXd::Constant(numNodes, options_.latentFloor), VectorXd::Constant(K, nan)};
+  Prediction result{
+      VectorXd::Constant(K, nan), MatrixXd::Constant(K, static_cast<Index>(wanted.size()), nan),
+      MatrixXd::Constant(latentToo ? K : 0, numNodes, nan),
+      MatrixXd::Constant(numNodes, 1, options_.latentFloor), VectorXd::Constant(K, nan)};
+  if (!values.allFinite()) return result;
   const ParameterCatalogue::Setting setting = settingAt(one, values, wanted);
   const SensorLaw sensor = widest_.sensorAt(values);
   const auto own = widest_.quantities().size();
@@ -244,10 +264,9 @@ ElbowDisagreement::Prediction ElbowDisagreement::predict(int trial, const Vector
         atNodes.fibreLength.col(k) = s.motion.fibreLength.col(row);
       }
       const MuscleReport muscles = reportMuscles(arm, atNodes, widest_.freeIndex());
-      const MatrixXd moments = muscles.momentArm.cwiseProduct(muscles.tendonForce);
-      const double floor = options_.latentFloor;
-      result.latentScale =
-          (moments.colwise().squaredNorm().transpose().array() + floor * floor).sqrt().matrix();
+      result.latentScale.resize(numNodes, muscles.momentArm.rows() + 1);
+      result.latentScale << muscles.momentArm.cwiseProduct(muscles.tendonForce).transpose(),
+          VectorXd::Constant(numNodes, options_.latentFloor);
     }
   } catch (const std::exception&) {
     return result;  // outside the model's domain

@@ -34,6 +34,15 @@ VectorXd withCoordinates(const Hypothesis& h, VectorXd values, const VectorXd& x
 
 }  // namespace
 
+double latentCorrelation(double interval, double time, double lag) {
+  if (!(lag > 0)) return std::exp(-interval / time);
+  if (std::abs(lag - time) < 1e-3 * time) {  // the limit of equal times
+    const double x = 2 * interval / (time + lag);
+    return (1 + x) * std::exp(-x);
+  }
+  return (time * std::exp(-interval / time) - lag * std::exp(-interval / lag)) / (time - lag);
+}
+
 struct Likelihood::Point {
   VectorXd values, xi;
   std::vector<VectorXd> eta;
@@ -67,15 +76,15 @@ Likelihood::Likelihood(const Disagreement& data, std::vector<int> trials, const 
     MatrixXd K(n, n);
     for (Index i = 0; i < n; ++i)
       for (Index j = 0; j < n; ++j)
-        K(i, j) = std::exp(
-            -std::abs(nodes[static_cast<std::size_t>(i)] - nodes[static_cast<std::size_t>(j)]) /
-            latentTime);
-    const VectorXd G = data.predict(trial, values, {}, {}, true).latentScale;
-    if (G.size() != n || !G.allFinite())
+        K(i, j) = latentCorrelation(
+            std::abs(nodes[static_cast<std::size_t>(i)] - nodes[static_cast<std::size_t>(j)]),
+            latentTime, data.latentLag());
+    const MatrixXd G = data.predict(trial, values, {}, {}, true).latentScale;
+    if (G.rows() != n || G.cols() < 1 || !G.allFinite())
       throw std::invalid_argument(
           fmt::format("{}: the scale of the latent force must be finite at its {} nodes",
                       data.trialName(trial), n));
-    roots_.push_back(G.asDiagonal() * MatrixXd(K.llt().matrixL()));
+    roots_.push_back(K.cwiseProduct(G * G.transpose()).llt().matrixL());
   }
 }
 
@@ -96,6 +105,15 @@ double Likelihood::cost(const Noise& noise, const Point& point) const {
     const VectorXd y = data_.outputs(trials_[t], point.values, force);
     cost += 0.5 * (data_.measured(trials_[t]) - y).squaredNorm() / (noise.output * noise.output);
   }
+  return std::isfinite(cost) ? cost : kInfinity;
+}
+
+double Likelihood::costOf(const std::vector<Linear>& trials, const Noise& noise,
+                          const Point& point) {
+  double cost = 0.5 * point.xi.squaredNorm();
+  for (std::size_t t = 0; t < trials.size(); ++t)
+    cost += 0.5 * point.eta[t].squaredNorm() +
+            0.5 * trials[t].residuals.squaredNorm() / (noise.output * noise.output);
   return std::isfinite(cost) ? cost : kInfinity;
 }
 
@@ -229,20 +247,21 @@ std::optional<Fit> Likelihood::tryFit(const Hypothesis& hypothesis, const Noise&
   Fit fit;
   fit.hypothesis = hypothesis;
   fit.noise = noise;
-  fit.cost = cost(noise, point);
-  if (!std::isfinite(fit.cost)) {
+  const auto linearised = [&](const Point& at) {
+    std::vector<Linear> linear;
+    for (std::size_t t = 0; t < trials_.size(); ++t)
+      linear.push_back(
+          linearise(t, hypothesis, noise.latent, at.values, at.xi, at.eta[t], {}, false));
+    return linear;
+  };
+  std::vector<Linear> trials = linearised(point);
+  fit.cost = costOf(trials, noise, point);
+  if (!std::isfinite(fit.cost) && !eta.empty()) {
     for (VectorXd& e : point.eta) e.setZero();
-    fit.cost = cost(noise, point);
+    trials = linearised(point);
+    fit.cost = costOf(trials, noise, point);
   }
   if (!std::isfinite(fit.cost)) return std::nullopt;
-
-  std::vector<Linear> trials(trials_.size());
-  const auto relinearise = [&] {
-    for (std::size_t t = 0; t < trials_.size(); ++t)
-      trials[t] =
-          linearise(t, hypothesis, noise.latent, point.values, point.xi, point.eta[t], {}, false);
-  };
-  relinearise();
 
   double damping = 1e-6;
   for (fit.iterations = 0; fit.iterations < options.iterations; ++fit.iterations) {
@@ -254,19 +273,25 @@ std::optional<Fit> Likelihood::tryFit(const Hypothesis& hypothesis, const Noise&
         fit.converged = true;
         break;
       }
-      const double nextCost = cost(noise, next.to);
+      // the first attempt mostly succeeds, and then its derivatives are needed, too
+      std::vector<Linear> there;
+      double nextCost = kInfinity;
+      if (next.to.values.allFinite()) {
+        if (attempt == 0) there = linearised(next.to);
+        nextCost = attempt == 0 ? costOf(there, noise, next.to) : cost(noise, next.to);
+      }
       if (nextCost < fit.cost) {
         accepted = true;
         const double ratio = (fit.cost - nextCost) / std::max(next.gain, 1e-12);
         damping = std::max(1e-8, damping * (ratio > 0.7 ? 0.1 : ratio > 0.3 ? 0.5 : 2));
         fit.cost = nextCost;
         point = std::move(next.to);
+        trials = attempt == 0 ? std::move(there) : linearised(point);
       } else {
         damping = std::max(1e-3, damping * 8);
       }
     }
     if (!accepted) break;
-    relinearise();
   }
   fit.values = std::move(point.values);
   fit.xi = std::move(point.xi);

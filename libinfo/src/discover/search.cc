@@ -292,6 +292,28 @@ void Search::race(const Effects& base, const std::vector<std::size_t>& candidate
   improve(base, absent(leader, from), size);
 }
 
+bool Search::settle(const Effects& base) {
+  const double before = at(base).score;
+  std::vector<std::pair<double, std::size_t>> better;
+  for (std::size_t c = 0; c < data_.candidates().size(); ++c) {
+    if (std::find(base.begin(), base.end(), c) != base.end()) continue;
+    const auto known = entries_.find(with(base, c));
+    if (known == entries_.end() || !(known->second.score > before + options_.evidence)) continue;
+    if (significance(known->second) < 2) better.emplace_back(known->second.score, c);
+  }
+  if (better.empty()) return false;
+  const std::size_t best = std::max_element(better.begin(), better.end())->second;
+  drop(with(base, best), best);
+  const double after = at(base).score;
+  if (!(after > before + options_.evidence)) return false;
+  std::erase_if(entries_, [&](const auto& known) {
+    const auto& [effects, entry] = known;
+    return effects.size() > base.size() && entry.score < after &&
+           std::includes(effects.begin(), effects.end(), base.begin(), base.end());
+  });
+  return true;
+}
+
 void Search::drop(const Effects& effects, std::size_t effect) {
   const Entry& entry = at(effects);
   if (!entry.works()) return;

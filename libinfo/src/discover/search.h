@@ -55,6 +55,9 @@ class Search {
   const Fit& simulation(const Effects& effects);
   /// Fits `base` + each candidate; then again from the leader's nuisances, and `base` too.
   void race(const Effects& base, const std::vector<std::size_t>& candidates);
+  /// A candidate that gains though it is absent has only found a better base: fits that from its
+  /// nuisances. True if `base` gained; what has been raced on it and is now behind is forgotten.
+  bool settle(const Effects& base);
   /// Fits `effects` without one of them, from where the fit of all of them is.
   void drop(const Effects& effects, std::size_t effect);
   /// Least |amplitude − nominal|/deviation over its effects.

@@ -12,9 +12,12 @@ class Selection {
       const bool first = chosen_.empty();
       if (static_cast<int>(chosen_.size()) >= options_.maxEffects || (!first && !promising()))
         break;
-      const std::vector<std::size_t> list =
-          search_.shortlist(chosen_, first ? options_.finalists : 5);
-      search_.race(chosen_, list);
+      std::vector<std::size_t> list;
+      for (int attempt = 0; attempt < 3; ++attempt) {
+        list = search_.shortlist(chosen_, first ? options_.finalists : 5);
+        search_.race(chosen_, list);
+        if (!search_.settle(chosen_)) break;
+      }
       const Effects before = chosen_;
       chosen_ = best();
       while (swapOne()) {

@@ -117,9 +117,10 @@ void spectrum(const Likelihood& likelihood, const Fit& fit, Unknown& unknown) {
       }
       sum += cosine * cosine + sine * sine;
     }
-    // against the spectrum that the prior of the force has, which falls as 1/(1 + (2πfℓ)²)
+    // against the spectrum that the prior of the force has, 1/[(1 + (2πfℓ)²)(1 + (2πfτ)²)]
     const double slow = 2 * std::numbers::pi * f * fit.noise.latentTime;
-    sum *= 1 + slow * slow;
+    const double lag = 2 * std::numbers::pi * f * likelihood.data().latentLag();
+    sum *= (1 + slow * slow) * (1 + lag * lag);
     density.push_back(sum);
     if (sum > peak) {
       peak = sum;

@@ -30,6 +30,7 @@ struct EffectEntry {
 /// | tilt | gravity's moment is that of q + δ | δ rad |
 /// | const | +c | c N·m |
 /// | handforce | horizontal force at that mass centre, in the plane of the joint | F N |
+/// | fatigue | u_i·[1 − φ(1 − e^{−∫u_i dt/T})], every muscle | φ |
 /// | delay, shape, crosstalk_A_B, gain_i, offset_i | EmgMapping | |
 /// | mass, tau, Fmax_i, lopt_i, lslack_i, tendon, wrap_i | factors and shifts of parameters | |
 /// | bias, gain, clock | SensorLaw | |

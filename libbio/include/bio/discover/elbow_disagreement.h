@@ -29,9 +29,10 @@ struct ElbowOptions {
 /// is a difference of simulations. Before the start of a trial, where a clock offset may look, the
 /// coordinate goes on with its first speed.
 ///
-/// The latent force is a torque on the coordinate, its scale
-///     G(t) = √(Σ_i (r_i F_i)² + τ_0²)   [N·m]
-/// with the moments of the muscles: an error of so many per cent of each muscle's force.
+/// The latent force is a torque on the coordinate with a channel for each muscle, the size of its
+/// moment r_i F_i, and one of the constant size τ_0 [N·m]: independent errors of so many per cent of
+/// each muscle's force, and of something else. Its lag is that of the activations, 1/k at the mean
+/// excitation, k midway between rising and falling.
 class ElbowDisagreement : public info::discover::Disagreement {
  public:
   using Quantity = info::discover::Quantity;
@@ -51,6 +52,7 @@ class ElbowDisagreement : public info::discover::Disagreement {
   const std::vector<double>& times(int trial) const override { return of(trial).times; }
   const Eigen::VectorXd& measured(int trial) const override { return of(trial).measured; }
   const std::vector<double>& latentTimes(int trial) const override { return of(trial).nodes; }
+  double latentLag() const override { return latentLag_; }
   Prediction predict(int trial, const Eigen::VectorXd& values, const Eigen::VectorXd& latent,
                      const std::vector<std::size_t>& wanted, bool latentToo) const override;
   Eigen::VectorXd outputs(int trial, const Eigen::VectorXd& values,
@@ -74,6 +76,7 @@ class ElbowDisagreement : public info::discover::Disagreement {
     std::vector<double> nodes;
     std::size_t angle, speed;  ///< quantities of its start
   };
+  double activationLag() const;
   const OfTrial& of(int trial) const { return trials_.at(static_cast<std::size_t>(trial)); }
   ParameterCatalogue::Setting settingAt(const OfTrial& one, const Eigen::VectorXd& values,
                                         const std::vector<std::size_t>& wanted) const;
@@ -89,6 +92,7 @@ class ElbowDisagreement : public info::discover::Disagreement {
   std::vector<Quantity> quantities_;  ///< the model's, then the trials' starts
   std::vector<std::size_t> nuisances_;
   std::vector<OfTrial> trials_;
+  double latentLag_ = 0;
 };
 
 }  // namespace bio::discover

@@ -24,6 +24,7 @@ const std::vector<EffectEntry>& effectEntries() {
       {"tilt", addTilt},
       {"const", addConstantTorque},
       {"handforce", addHandForce},
+      {"fatigue", addFatigue},
       {"delay", addDelay},
       {"shape", addShape},
       {"crosstalk", addCrosstalk},

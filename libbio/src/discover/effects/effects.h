@@ -19,6 +19,7 @@ void addConstantTorque(WidestModel& model);
 void addHandForce(WidestModel& model);
 void addDelay(WidestModel& model);
 void addShape(WidestModel& model);
+void addFatigue(WidestModel& model);
 void addCrosstalk(WidestModel& model);
 void addElectrodeGains(WidestModel& model);
 void addBaselines(WidestModel& model);

@@ -47,8 +47,9 @@ struct Candidate {
 ///     ẋ = f(x,u,θ) + Σ_c φ_c(x,u,t;β_c) + d(t),      y_k = g(x(t_k);β) + v_k,   v_k ~ N(0, σ²)
 ///
 /// The latent generalised force d(t) is given by its values at latentTimes(), straight lines
-/// between; its prior is an Ornstein–Uhlenbeck process of size σ_d·G(t), with the scale G(t) that
-/// predict() returns (muscle-shaped noise: G² = Σ_i (moment_i)² + τ_0²; else 1).
+/// between; its prior is the sum of independent Ornstein–Uhlenbeck processes behind a lag
+/// (latentLag()), of sizes σ_d·G_c(t), one for each channel c of the scale that predict() returns (one for each muscle, the size of its
+/// moment, and one of constant size; else a single 1).
 ///
 /// Laws. Pure: equal arguments give equal results, from any thread. Where the simulation fails the
 /// outputs are not finite.
@@ -78,12 +79,15 @@ class Disagreement {
   virtual const Eigen::VectorXd& measured(int trial) const = 0;
   /// Nodes of the latent force [s], equally spaced over the trial.
   virtual const std::vector<double>& latentTimes(int trial) const = 0;
+  /// τ [s] ≥ 0, time constant of a lag that smooths the latent force: errors of an input reach the
+  /// force through the actuators' dynamics.
+  virtual double latentLag() const { return 0; }
 
   struct Prediction {
     Eigen::VectorXd outputs;      ///< y at times(trial)
     Eigen::MatrixXd gamma;        ///< dy/dq of the wanted quantities: samples × wanted
     Eigen::MatrixXd latentGamma;  ///< dy/dd: samples × latent nodes; empty unless asked for
-    Eigen::VectorXd latentScale;  ///< G at the latent nodes; empty unless asked for
+    Eigen::MatrixXd latentScale;  ///< G: latent nodes × channels; empty unless asked for
     Eigen::VectorXd speeds;       ///< rate of the output at times(trial), for the map over (q, q̇)
   };
   /// @param values   of all quantities

@@ -41,9 +41,14 @@ struct FitOptions {
   double tolerance = 0.02;  ///< nats that another step may still gain
 };
 
+/// Correlation over an interval Δ [s] of an Ornstein–Uhlenbeck process of time constant ℓ behind a
+/// lag τ:
+///     κ(Δ) = (ℓ e^{−Δ/ℓ} − τ e^{−Δ/τ})/(ℓ − τ),   e^{−Δ/ℓ} for τ = 0
+double latentCorrelation(double interval, double time, double lag);
+
 /// Gaussian likelihood of whole trials: docs/decisions/030-batch-likelihood.md.
 ///
-/// The latent force is d = σ_d·diag(G)·L·η at its nodes, LLᵀ = exp(−|t_i−t_j|/ℓ), η ~ N(0, 1). All
+/// The latent force is d = σ_d·L·η at its nodes, LLᵀ = (GGᵀ)∘κ(|t_i−t_j|), η ~ N(0, 1). All
 /// that is uncertain is then N(0, 1) before the data, and with residuals e = ỹ − y(ξ, η)
 ///     J = ½|e|²/σ_y² + ½|ξ|² + ½|η|²
 ///     log Z = −J − ½ log|H| − N·log(σ_y√2π),   H = 1 + ΓᵀΓ/σ_y² over (ξ, η)
@@ -109,6 +114,7 @@ class Likelihood {
   struct Normal;
   struct Step;
   double cost(const Noise& noise, const Point& point) const;
+  static double costOf(const std::vector<Linear>& trials, const Noise& noise, const Point& point);
   Normal normalEquations(const std::vector<Linear>& trials, const Noise& noise,
                          const Point& point) const;
   Step step(const Hypothesis& hypothesis, const Normal& normal, const Point& point,
@@ -121,7 +127,7 @@ class Likelihood {
 
   const Disagreement& data_;
   std::vector<int> trials_;
-  std::vector<Eigen::MatrixXd> roots_;  ///< diag(G)·L per trial
+  std::vector<Eigen::MatrixXd> roots_;  ///< L per trial
 };
 
 }  // namespace info::discover
