@@ -31,7 +31,7 @@ namespace {
 // Samples of the first output alone.
 struct FirstOutput {
   FirstOutput(const Disagreement& data, int trial) {
-    const auto& channels = data.channels(trial);
+    const auto& channels = data.outputOfSample(trial);
     for (std::size_t k = 0; k < data.times(trial).size(); ++k) {
       if (!channels.empty() && channels[k] != 0) continue;
       which.push_back(static_cast<Index>(k));

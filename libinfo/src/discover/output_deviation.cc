@@ -23,7 +23,7 @@ OutputDeviation estimateOutputDeviation(const Disagreement& data, const std::vec
     }
   };
   for (const int trial : trials) {
-    const auto& channels = data.channels(trial);
+    const auto& channels = data.outputOfSample(trial);
     const int last = channels.empty() ? 0 : *std::max_element(channels.begin(), channels.end());
     for (int channel = 0; channel <= last; ++channel) {
       std::vector<double> t, y;

@@ -71,7 +71,7 @@ class Disagreement {
   /// Which output each sample is of, 0 for the first, where several are measured; empty: there is
   /// one. Samples of one time follow each other, in the order of outputs; all of them have the same
   /// noise (a model weights them). Maps over (q, q̇) show the first.
-  virtual const std::vector<int>& channels(int /*trial*/) const {
+  virtual const std::vector<int>& outputOfSample(int /*trial*/) const {
     static const std::vector<int> one;
     return one;
   }

@@ -37,7 +37,7 @@ class RobotDisagreement final : public discover::Disagreement {
   int numTrials() const override { return static_cast<int>(trials_.size()); }
   std::string trialName(int trial) const override { return of(trial).trial.name; }
   const std::vector<double>& times(int trial) const override { return of(trial).times; }
-  const std::vector<int>& channels(int trial) const override { return of(trial).channels; }
+  const std::vector<int>& outputOfSample(int trial) const override { return of(trial).channels; }
   const Eigen::VectorXd& measured(int trial) const override { return of(trial).measured; }
   const std::vector<double>& latentTimes(int trial) const override { return of(trial).nodes; }
   Prediction predict(int trial, const Eigen::VectorXd& values, const Eigen::VectorXd& latent,
