@@ -15,21 +15,21 @@ namespace {
 
 using Eigen::Index;
 
-[[noreturn]] void fail(const std::string& file, const std::string& what) {
+[[noreturn]] void refuseTrial(const std::string& file, const std::string& what) {
   throw std::invalid_argument(fmt::format("{}: {}", file, what));
 }
 
 // Columns of motion_optimised.csv: what was planned, not measured.
-const std::set<std::string> planned = {"cart_m",
-                                       "angle_rad",
-                                       "angle1_rad",
-                                       "angle2_rad",
-                                       "cart_m_per_s",
-                                       "rate_rad_per_s",
-                                       "rate1_rad_per_s",
-                                       "rate2_rad_per_s",
-                                       "momentum1_kg_m2_per_s",
-                                       "momentum2_kg_m2_per_s"};
+const std::set<std::string> plannedStates = {"cart_m",
+                                             "angle_rad",
+                                             "angle1_rad",
+                                             "angle2_rad",
+                                             "cart_m_per_s",
+                                             "rate_rad_per_s",
+                                             "rate1_rad_per_s",
+                                             "rate2_rad_per_s",
+                                             "momentum1_kg_m2_per_s",
+                                             "momentum2_kg_m2_per_s"};
 
 }  // namespace
 
@@ -40,20 +40,20 @@ info::robot::Trial readRobotTrial(const std::string& file,
   info::robot::Trial trial;
   trial.name = file;
   const Eigen::VectorXd times = bio::timesOf(table);
-  if (times.size() < 2) fail(file, "holds 1 row, a trial must hold at least 2");
+  if (times.size() < 2) refuseTrial(file, "holds 1 row, a trial must hold at least 2");
   trial.times.assign(times.begin(), times.end());
   trial.measured.setConstant(times.size(), static_cast<Index>(channels.size()), std::nan(""));
   std::vector<std::string> found(channels.size());
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const std::string& name = table.columns[i];
     const auto values = table.values.col(static_cast<Index>(i));
-    if (name == "time" || name == "time_s" || planned.count(name) > 0) continue;
+    if (name == "time" || name == "time_s" || plannedStates.count(name) > 0) continue;
     if (name == "input") {
       for (Index k = 0; k < values.size(); ++k)
         if (!std::isfinite(values[k]))
-          fail(file, fmt::format("column input: row {} is empty, every row needs the cart's "
-                                 "acceleration [m/s²]",
-                                 k + 1));
+          refuseTrial(file, fmt::format("column input: row {} is empty, every row needs the cart's "
+                                        "acceleration [m/s²]",
+                                        k + 1));
       trial.acceleration.assign(values.begin(), values.end());
       continue;
     }
@@ -64,7 +64,7 @@ info::robot::Trial readRobotTrial(const std::string& file,
           !(isAngle && inDegrees))
         continue;
       if (!found[c].empty())
-        fail(file, fmt::format("columns {} and {} mean the same", found[c], name));
+        refuseTrial(file, fmt::format("columns {} and {} mean the same", found[c], name));
       known = true;
       found[c] = name;
       const bool turn = isAngle && (inDegrees || (name == channels[c].name && table.inDegrees));
@@ -75,22 +75,23 @@ info::robot::Trial readRobotTrial(const std::string& file,
                                  .select(0, trial.measured.col(static_cast<Index>(c)).array().abs())
                                  .maxCoeff();
       if (isAngle && largest > 20)
-        fail(file, fmt::format("column {}: {:.4g} rad, must be within ±20 rad; degrees are called "
-                               "{}_deg",
-                               name, largest, channels[c].name));
+        refuseTrial(file,
+                    fmt::format("column {}: {:.4g} rad, must be within ±20 rad; degrees are called "
+                                "{}_deg",
+                                name, largest, channels[c].name));
     }
     if (known) continue;
     const std::string what = fmt::format("column {} means nothing here", name);
-    if (!ignoreExtra) fail(file, what + "; --ignore-extra passes over it");
+    if (!ignoreExtra) refuseTrial(file, what + "; --ignore-extra passes over it");
     warnings.push_back(fmt::format("{}: {}, passed over", file, what));
   }
   if (trial.acceleration.empty())
-    fail(file, "has no column input, the cart's commanded acceleration [m/s²]");
+    refuseTrial(file, "has no column input, the cart's commanded acceleration [m/s²]");
   for (std::size_t c = 0; c < channels.size(); ++c)
     if (found[c].empty())
-      fail(file, fmt::format("has no column {}_{}", channels[c].name,
-                             channels[c].unit == "rad" ? "deg (or _rad), the measured angle"
-                                                       : "N, the measured force"));
+      refuseTrial(file, fmt::format("has no column {}_{}", channels[c].name,
+                                    channels[c].unit == "rad" ? "deg (or _rad), the measured angle"
+                                                              : "N, the measured force"));
   return trial;
 }
 
