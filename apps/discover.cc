@@ -8,6 +8,7 @@
 #include "arm_input.h"
 #include "arm_options.h"
 #include "bio/discover/add_effects.h"
+#include "bio/discover/elbow_disagreement.h"
 #include "bio/osim_file.h"
 #include "discover_report.h"
 #include "discover_robot.h"
