@@ -8,8 +8,10 @@
 #include "arm_input.h"
 #include "arm_options.h"
 #include "bio/discover/add_effects.h"
+#include "bio/discover/elbow_disagreement.h"
 #include "bio/osim_file.h"
 #include "discover_report.h"
+#include "discover_robot.h"
 #include "driven_trial.h"
 #include "follow_up.h"
 #include "info/version.h"
@@ -35,10 +37,12 @@ class Discover : public Command {
 
   void addOptions(CLI::App& options) override {
     addModelArgument(options, model_);
-    options.add_option("TRIAL", trials_, "trials with a measured angle")
-        ->required()
+    options
+        .add_option("TRIAL", trials_,
+                    "trials with a measured angle; with --system there is no MODEL")
         ->check(CLI::ExistingFile)
         ->type_name("");
+    addRobotOptions(options, robot_);
     options.add_option("--hold-out", heldOut_, "trial to judge by only; may be repeated")
         ->check(CLI::ExistingFile)
         ->allow_extra_args(false)
@@ -57,10 +61,30 @@ class Discover : public Command {
         ->check(CLI::Range(1, 3))
         ->capture_default_str()
         ->type_name("N");
+    const std::size_t common = options.get_options().size();
     addSimulationOptions(options, simulation_);
+    const auto all = options.get_options();
+    for (std::size_t i = common; i < all.size(); ++i) {
+      const std::string name = all[i]->get_name();
+      if (name != "--step" && name != "--ignore-extra") armOptions_.push_back(all[i]);
+    }
   }
 
   ExitStatus run(const CommandContext& context) override {
+    if (!robot_.system.empty()) {
+      robot_.trials = trials_;
+      robot_.trials.insert(robot_.trials.begin(), model_);
+      robot_.heldOut = heldOut_;
+      robot_.without = without_;
+      robot_.maxEffects = maxEffects_;
+      robot_.ignoreExtra = simulation_.ignoreExtra;
+      robot_.step = simulation_.step;
+      mustSuitRobots();
+      return discoverInRobot(robot_, context);
+    }
+    if (trials_.empty()) throw std::invalid_argument("TRIAL is required (see --help)");
+    if (!robot_.with.empty()) throw std::invalid_argument("--with goes with --system");
+    if (!robot_.noise.empty()) throw std::invalid_argument("--noise goes with --system");
     std::vector<std::string> files = trials_;
     files.insert(files.end(), heldOut_.begin(), heldOut_.end());
     std::vector<std::string> names = {"verdict.json", "with_effect.osim"};
@@ -81,27 +105,38 @@ class Discover : public Command {
     const Found found = find(model, arm, coordinate, trials);
     const bio::discover::ElbowDisagreement& data = *found.data;
     const info::discover::Verdict& verdict = found.verdict;
-    const bool isAngle = data.widest().coordinate().isRotation;
+    const DiscoverWording wording = wordingOf(data);
     if (trials_.size() == 1 && heldOut_.empty()) {
       summary.warn(
           "one trial and none held out: whether a name holds for other motions remains untested; "
           "add trials, or one with --hold-out");
     }
     const std::string next = followUp(data, verdict);
-    const DiscoverFindings findings{model_,  files, data,    found.options,
-                                    verdict, next,  isAngle, found.wallSeconds};
+    const DiscoverFindings findings{model_,        files,   data, wording,
+                                    found.options, verdict, next, found.wallSeconds};
     summary.set("integrator", simulation_.integrator);
     summary.set("step_s", found.step);
-    tell(findings, summary);
+    tellFindings(findings, summary);
     folder.write("verdict.json",
                  [&](std::ostream& out) { out << verdictJson(findings).dump(2) << '\n'; });
-    if (mayBeAdded(verdict)) addTo(model, arm, coordinate, trials, findings, summary, folder);
+    if (mayBeAdded(verdict)) addTo(model, arm, coordinate, trials, data, verdict, summary, folder);
     deliver(context, summary, discoverReport(findings), folder);
     if (found.interrupted) throw Interrupted{};
     return verdict.finding == Finding::numerical ? ExitStatus::answerIsNo : ExitStatus::done;
   }
 
  private:
+  /// Options of the elbow that say nothing of a robot.
+  void mustSuitRobots() const {
+    if (noise_) throw std::invalid_argument("--noise-deg: with --system it is --noise");
+    for (const CLI::Option* option : armOptions_) {
+      if (option->count() > 0) {
+        throw std::invalid_argument(
+            fmt::format("{} does not go with --system", option->get_name()));
+      }
+    }
+  }
+
   std::string observed() const {
     if (simulation_.coordinates.size() != 1) {
       throw std::invalid_argument(fmt::format("--coordinate: {} are free; discover observes one",
@@ -158,46 +193,38 @@ class Discover : public Command {
     return options;
   }
 
+  static DiscoverWording wordingOf(const bio::discover::ElbowDisagreement& data) {
+    const bio::Coordinate& coordinate = data.widest().coordinate();
+    const bool isAngle = coordinate.isRotation;
+    DiscoverWording wording;
+    wording.outputs = {{coordinate.name, isAngle ? "deg" : "m", 1}};
+    wording.unit = isAngle ? radian : 1;
+    wording.gapEnd = isAngle ? "_deg" : "_m";
+    wording.force = isAngle ? "Torque [N·m]" : "Force [N]";
+    wording.forceUnit = "N·m";
+    wording.ofForce = "part of the muscles' moments";
+    wording.push = "a push";
+    wording.inputs = "muscles";
+    wording.input = "muscle";
+    wording.commands = "excitations";
+    wording.present = data.widest().present();
+    return wording;
+  }
+
   /// Surrogates are not added: they would hide what is unknown.
   static bool mayBeAdded(const info::discover::Verdict& verdict) {
     return verdict.reached == Stage::finished && !verdict.surrogate && !verdict.effects.empty() &&
            verdict.finding != Finding::numerical;
   }
 
-  static void tell(const DiscoverFindings& f, Summary& summary) {
-    const auto& verdict = f.verdict;
-    const double unit = f.isAngle ? radian : 1;
-    summary.set("verdict", verdictWord(verdict));
-    summary.set("noise", unit * verdict.outputDeviation);
-    summary.set("noise_is", verdict.deviationEstimated ? "from the data" : "given");
-    for (const auto& effect : verdict.effects) {
-      const std::string id = f.data.candidates()[effect.candidate].id;
-      nlohmann::ordered_json values;
-      for (const auto& one : effect.estimates) {
-        const auto& quantity = f.data.quantities()[one.quantity];
-        values[quantity.name] = {
-            {"value", one.value}, {"sd", one.deviation}, {"unit", quantity.unit}};
-      }
-      summary.set("effect." + id, values);
-    }
-    if (verdict.gap.closedFromCalibrated) {
-      summary.set("gap_closed_train", *verdict.gap.closedFromCalibrated);
-    }
-    if (verdict.heldOut && verdict.heldOut->closedFromCalibrated) {
-      summary.set("gap_closed_held_out", *verdict.heldOut->closedFromCalibrated);
-    }
-    summary.set("fits", verdict.fits);
-    summary.set("search_wall_s", f.wallSeconds);
-    summary.set("next_experiment", f.nextExperiment);
-  }
-
   /// Writes the model with the effects, and the trials where EMG or sensor were at fault.
   void addTo(const bio::Model& model, const bio::ArmOptions& arm, const std::string& coordinate,
-             const std::vector<bio::Trial>& trials, const DiscoverFindings& f,
-             const Summary& summary, OutputFolder& folder) const {
+             const std::vector<bio::Trial>& trials, const bio::discover::ElbowDisagreement& data,
+             const info::discover::Verdict& verdict, const Summary& summary,
+             OutputFolder& folder) const {
     std::vector<bio::discover::EffectToAdd> effects;
-    for (const auto& found : f.verdict.effects) {
-      const auto& candidate = f.data.candidates()[found.candidate];
+    for (const auto& found : verdict.effects) {
+      const auto& candidate = data.candidates()[found.candidate];
       bio::discover::EffectToAdd effect;
       effect.id = candidate.id;
       const auto n = static_cast<Eigen::Index>(found.estimates.size());
@@ -208,7 +235,7 @@ class Discover : public Command {
         effect.deviations[i] = found.estimates[static_cast<std::size_t>(i)].deviation;
       }
       effect.logBayesFactor = found.logBayesFactor;
-      effect.probability = f.verdict.vetoed ? 0 : found.probability;
+      effect.probability = verdict.vetoed ? 0 : found.probability;
       effects.push_back(std::move(effect));
     }
     bio::discover::EffectProvenance provenance{"fisherhill " + std::string(info::version()), {}};
@@ -225,7 +252,7 @@ class Discover : public Command {
       folder.writeFile(drivenName(i), [&](const std::filesystem::path& path) {
         bio::writeTable(
             drivenTable(bio::discover::asTrueSensor(trials[i], coordinate, added.sensor),
-                        f.data.widest().arm(), added.mapping),
+                        data.widest().arm(), added.mapping),
             path);
       });
     }
@@ -243,6 +270,8 @@ class Discover : public Command {
   std::optional<double> noise_;
   int maxEffects_ = 3;
   SimulationOptions simulation_;
+  RobotRequest robot_;
+  std::vector<const CLI::Option*> armOptions_;
 };
 
 }  // namespace

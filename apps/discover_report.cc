@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "angle_unit.h"
 #include "info/discover/hypothesis.h"
 #include "interval_drawing.h"
 #include "text.h"
@@ -23,7 +22,7 @@ using info::discover::Score;
 /// Writes the parts of one report.
 class Writer {
  public:
-  explicit Writer(const DiscoverFindings& f) : f_(f), unit_(f.isAngle ? radian : 1) {}
+  explicit Writer(const DiscoverFindings& f) : f_(f), unit_(f.wording.unit) {}
 
   Report write() {
     report_.title = fmt::format("What {} lacks", f_.modelFile);
@@ -43,11 +42,13 @@ class Writer {
                                      gapOfHeldOut ? " on trials that were held out" : "");
     }
     for (int t = 0; t < f_.data.numTrials(); ++t) {
-      Figure figure = motion(t);
-      if (t == 0) {
-        report_.mainFigure = std::move(figure);
-      } else {
-        others_.push_back(std::move(figure));
+      for (std::size_t output = 0; output < f_.wording.outputs.size(); ++output) {
+        Figure figure = motion(t, output);
+        if (t == 0 && output == 0) {
+          report_.mainFigure = std::move(figure);
+        } else {
+          others_.push_back(std::move(figure));
+        }
       }
     }
     effects();
@@ -74,41 +75,55 @@ class Writer {
   }
   void section(const std::string& title) { report_.details.emplace_back(Section{title}); }
   void say(const std::string& text) { report_.details.emplace_back(Paragraph{text}); }
-  std::string outputUnit() const { return f_.isAngle ? "deg" : "m"; }
+  std::string outputUnit() const { return f_.wording.outputs.front().unit; }
 
-  std::vector<double> shown(const VectorXd& values) const {
-    const VectorXd result = unit_ * values;
+  /// Samples of one output among those of a trial.
+  std::vector<Index> samplesOf(int t, std::size_t output) const {
+    const auto& which = f_.data.outputOfSample(t);
+    std::vector<Index> samples;
+    for (std::size_t k = 0; k < f_.data.times(t).size(); ++k) {
+      if (which.empty() || static_cast<std::size_t>(which[k]) == output)
+        samples.push_back(static_cast<Index>(k));
+    }
+    return samples;
+  }
+  /// In the unit in which the output is shown, without its weight.
+  std::vector<double> shown(const VectorXd& values, const std::vector<Index>& samples,
+                            std::size_t output) const {
+    const VectorXd result = unit_ / f_.wording.outputs[output].weight * values(samples);
     return {result.begin(), result.end()};
   }
 
   /// Measured, base after calibration, and with the effects; the band is the measurement's noise
   /// together with what the amplitudes leave open, 95 %.
-  Figure motion(int t) const {
+  Figure motion(int t, std::size_t output) const {
     const auto& verdict = f_.verdict;
-    const std::vector<double>& times = f_.data.times(t);
-    Figure figure{
-        .title = f_.data.trialName(t) + (isHeldOut(t) ? " (held out)" : ""),
-        .xLabel = "Time [s]",
-        .yLabel = fmt::format("{} [{}]", f_.data.widest().coordinate().name, outputUnit())};
+    const std::vector<Index> samples = samplesOf(t, output);
+    std::vector<double> times;
+    for (const Index k : samples) times.push_back(f_.data.times(t)[static_cast<std::size_t>(k)]);
+    const ShownOutput& shownOutput = f_.wording.outputs[output];
+    Figure figure{.title = f_.data.trialName(t) + (isHeldOut(t) ? " (held out)" : ""),
+                  .xLabel = "Time [s]",
+                  .yLabel = fmt::format("{} [{}]", shownOutput.name, shownOutput.unit)};
     figure.series.push_back({.name = "measured",
                              .x = times,
-                             .y = shown(f_.data.measured(t)),
+                             .y = shown(f_.data.measured(t), samples, output),
                              .style = SeriesStyle::points});
     if (verdict.base.size() > 0) {
       figure.series.push_back({.name = "calibrated, nothing added",
                                .x = times,
-                               .y = shown(f_.data.outputs(t, verdict.base, {})),
+                               .y = shown(f_.data.outputs(t, verdict.base, {}), samples, output),
                                .style = SeriesStyle::dashed});
     }
     if (!verdict.effects.empty()) {
       const VectorXd after = f_.data.outputs(t, verdict.values, {});
-      Series series{.name = "with the effect", .x = times, .y = shown(after)};
+      Series series{.name = "with the effect", .x = times, .y = shown(after, samples, output)};
       const VectorXd wide = 1.96 * info::discover::predictedDeviation(f_.data, verdict, t);
-      series.bandLow = shown(after - wide);
-      series.bandHigh = shown(after + wide);
+      series.bandLow = shown(after - wide, samples, output);
+      series.bandHigh = shown(after + wide, samples, output);
       figure.series.push_back(std::move(series));
       figure.caption =
-          "Simulations from the start to the end, without looking at the measured angle. The band: "
+          "Simulations from the start to the end, without looking at what was measured. The band: "
           "95 % of measurements, with the uncertainty of the effect's size.";
     }
     return figure;
@@ -147,7 +162,7 @@ class Writer {
         list += (list.empty() ? "" : ", ") + candidate(c).name;
       }
       say(fmt::format("These data cannot tell apart: {}{}.", list,
-                      effect.exact ? " (no angle alone ever could, for some of them)" : ""));
+                      effect.exact ? " (what was measured never could, for some of them)" : ""));
     }
     if (verdict.vetoed) {
       say("What is left over has the wrong size, so that no probability is given.");
@@ -183,10 +198,11 @@ class Writer {
     Figure times{.title = "Score over time",
                  .xLabel = "Time [s]",
                  .yLabel = "Score [deviations]",
-                 .caption =
-                     "How far a push of 0.25 s would help at each time, after every parameter and "
+                 .caption = fmt::format(
+                     "How far {} of 0.25 s would help at each time, after every parameter and "
                      "start has done its best; within ±2 is noise. Dots: significant (false "
-                     "discoveries at most 5 %)."};
+                     "discoveries at most 5 %).",
+                     f_.wording.push)};
     Series marks{.name = "significant", .style = SeriesStyle::points};
     for (const int trial : map.trials) {
       Series series{.name = f_.data.trialName(trial)};
@@ -203,14 +219,19 @@ class Writer {
     }
     if (!marks.x.empty()) times.series.push_back(std::move(marks));
     report_.details.emplace_back(std::move(times));
-    report_.details.emplace_back(VectorDrawing{
-        "Score over angle and speed", cells(map.cells),
-        fmt::format("Orange: the arm is pushed up more than the model knows, blue: down; framed: "
-                    "significant. {}",
-                    map.cells.empty() ? "" : "White: the arm was never there.")});
+    if (f_.wording.hasMap) {
+      report_.details.emplace_back(VectorDrawing{
+          "Score over angle and speed", cells(map.cells),
+          fmt::format("Orange: {} is pushed up more than the model knows, blue: down; framed: "
+                      "significant. {}",
+                      f_.wording.outputs.front().name,
+                      map.cells.empty() ? "" : "White: it was never there.")});
+    } else {
+      say("There is no map over angle and speed: no angle was measured.");
+    }
     Figure force{.title = "The force that is missing",
                  .xLabel = "Time [s]",
-                 .yLabel = f_.isAngle ? "Torque [N·m]" : "Force [N]",
+                 .yLabel = f_.wording.force,
                  .caption =
                      "Posterior mean of the latent force with ±2 standard deviations; from "
                      "the base model, by smoothing, nothing is differentiated twice."};
@@ -225,7 +246,9 @@ class Writer {
       force.series.push_back(std::move(series));
     }
     report_.details.emplace_back(std::move(force));
-    Table muscles{"Score by muscle", {"muscle", "score [deviations]", "significant"}, {}};
+    Table muscles{"Score by " + f_.wording.input,
+                  {f_.wording.input, "score [deviations]", "significant"},
+                  {}};
     for (const Score& one : map.inputs) {
       muscles.rows.push_back({one.input, numberText(one.z, 3), one.significant ? "yes" : "no"});
     }
@@ -272,7 +295,7 @@ class Writer {
         "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" font-weight=\"bold\">{} [{}]</text>"
         "<text transform=\"translate(22 {}) rotate(-90)\" text-anchor=\"middle\" "
         "font-weight=\"bold\">Speed [{}/s]</text>\n",
-        (left + right) / 2, bottom + 46, htmlText(f_.data.widest().coordinate().name), outputUnit(),
+        (left + right) / 2, bottom + 46, htmlText(f_.wording.outputs.front().name), outputUnit(),
         (top + bottom) / 2, outputUnit());
     return svg + "</svg>\n";
   }
@@ -308,10 +331,10 @@ class Writer {
     table.rows.push_back(
         {"Ljung–Box over 20 lags, probability", numberText(a.ljungBoxProbability, 2),
          numberText(b.ljungBoxProbability, 2), fmt::format("> {}", f_.options.level)});
-    table.rows.push_back({"follows past excitations, probability",
+    table.rows.push_back({fmt::format("follows past {}, probability", f_.wording.commands),
                           numberText(a.inputProbability, 2), numberText(b.inputProbability, 2),
                           fmt::format("> {}", f_.options.level)});
-    table.rows.push_back({"latent force that is still needed, part of the muscles' moments",
+    table.rows.push_back({"latent force that is still needed, " + f_.wording.ofForce,
                           numberText(f_.verdict.latentSizeBefore, 2),
                           numberText(f_.verdict.latentSizeAfter, 2),
                           fmt::format("≤ {}", f_.options.latentTolerance)});
@@ -323,10 +346,10 @@ class Writer {
     const auto& u = *f_.verdict.unknown;
     section("Something without a name");
     say(
-        fmt::format("The missing force has a root mean square of {} N·m; {} % of its power lies "
+        fmt::format("The missing force has a root mean square of {} {}; {} % of its power lies "
                     "within 0.5 Hz of {} Hz.",
-                    numberText(u.forceSize, 3), numberText(100 * u.peakShare, 2),
-                    numberText(u.peakFrequency, 2)));
+                    numberText(u.forceSize, 3), f_.wording.forceUnit,
+                    numberText(100 * u.peakShare, 2), numberText(u.peakFrequency, 2)));
     if (!u.formula.empty()) {
       say(fmt::format("As a formula, a surrogate: {} ({} % of its power{}).", u.formula,
                       numberText(100 * u.explained, 2),
@@ -369,7 +392,7 @@ class Writer {
     report_.details.emplace_back(std::move(table));
     say("The smallest size of each effect that would have stood out by five standard deviations, "
         "beside what was found, all parameters free.");
-    for (const auto& [id, present] : f_.data.widest().present()) {
+    for (const auto& [id, present] : f_.wording.present) {
       say(fmt::format("The model has {} already ({}); it was not a candidate.", id, present));
     }
   }

@@ -1,6 +1,5 @@
 #include "discover_verdict.h"
 
-#include "angle_unit.h"
 #include "info/discover/hypothesis.h"
 
 namespace app {
@@ -26,8 +25,8 @@ ordered_json parametersJson(const DiscoverFindings& f, const std::vector<Estimat
 }
 
 ordered_json gapJson(const DiscoverFindings& f, const Gap& gap) {
-  const double unit = f.isAngle ? radian : 1;
-  const std::string end = f.isAngle ? "_deg" : "_m";
+  const double unit = f.wording.unit;
+  const std::string& end = f.wording.gapEnd;
   ordered_json json;
   json["rmse_nominal" + end] = number(unit * gap.nominal);
   json["rmse_calibrated" + end] = number(unit * gap.calibrated);
@@ -41,10 +40,10 @@ ordered_json gapJson(const DiscoverFindings& f, const Gap& gap) {
 }
 
 ordered_json localisationJson(const DiscoverFindings& f) {
-  const double unit = f.isAngle ? radian : 1;
+  const double unit = f.wording.unit;
   ordered_json json{{"time_spans", ordered_json::array()},
                     {"state_regions", ordered_json::array()},
-                    {"muscles", ordered_json::array()}};
+                    {f.wording.inputs, ordered_json::array()}};
   const auto& map = f.verdict.localisation;
   for (const Score& one : map.times) {
     if (!one.significant) continue;
@@ -54,19 +53,39 @@ ordered_json localisationJson(const DiscoverFindings& f) {
                                   {"score", number(one.z)}});
   }
   for (const Score& one : map.cells) {
-    if (!one.significant) continue;
+    if (!one.significant || !f.wording.hasMap) continue;
     json["state_regions"].push_back({{"from", {unit * one.lowerQ, unit * one.lowerQDot}},
                                      {"to", {unit * one.upperQ, unit * one.upperQDot}},
                                      {"score", number(one.z)}});
   }
   for (const Score& one : map.inputs) {
-    json["muscles"].push_back(
+    json[f.wording.inputs].push_back(
         {{"name", one.input}, {"score", number(one.z)}, {"significant", one.significant}});
   }
   return json;
 }
 
 }  // namespace
+
+void tellFindings(const DiscoverFindings& f, Summary& summary) {
+  const auto& verdict = f.verdict;
+  summary.set("verdict", verdictWord(verdict));
+  summary.set("noise", f.wording.unit * verdict.outputDeviation);
+  summary.set("noise_is", verdict.deviationEstimated ? "from the data" : "given");
+  for (const auto& effect : verdict.effects) {
+    const std::string id = f.data.candidates()[effect.candidate].id;
+    summary.set("effect." + id, parametersJson(f, effect.estimates));
+  }
+  if (verdict.gap.closedFromCalibrated) {
+    summary.set("gap_closed_train", *verdict.gap.closedFromCalibrated);
+  }
+  if (verdict.heldOut && verdict.heldOut->closedFromCalibrated) {
+    summary.set("gap_closed_held_out", *verdict.heldOut->closedFromCalibrated);
+  }
+  summary.set("fits", verdict.fits);
+  summary.set("search_wall_s", f.wallSeconds);
+  summary.set("next_experiment", f.nextExperiment);
+}
 
 std::string verdictWord(const info::discover::Verdict& verdict) {
   return verdict.reached == info::discover::Stage::finished ||
@@ -109,7 +128,7 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   json["probability_vetoed"] = verdict.vetoed;
   json["numerical_error_in_noise_sd"] = number(verdict.numericalError);
   json["already_in_the_model"] = ordered_json::object();
-  for (const auto& [id, where] : f.data.widest().present()) {
+  for (const auto& [id, where] : f.wording.present) {
     json["already_in_the_model"][id] = where;
   }
   json["evidence"] = ordered_json::array();
@@ -127,6 +146,11 @@ ordered_json verdictJson(const DiscoverFindings& f) {
                        {"explained", number(verdict.unknown->explained)},
                        {"peak_Hz", number(verdict.unknown->peakFrequency)},
                        {"rms_Nm", number(verdict.unknown->forceSize)}};
+    if (f.wording.forceUnit != "N·m") {
+      json["unknown"].erase("rms_Nm");
+      json["unknown"]["rms"] = number(verdict.unknown->forceSize);
+      json["unknown"]["rms_unit"] = f.wording.forceUnit;
+    }
   }
   return json;
 }

@@ -1,25 +1,51 @@
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "bio/discover/elbow_disagreement.h"
 #include "info/discover/discover.h"
+#include "summary.h"
 
 namespace app {
+
+/// One thing that was measured, as people read it.
+struct ShownOutput {
+  std::string name;   ///< e.g. "elbow_flexion"
+  std::string unit;   ///< e.g. "deg"
+  double weight = 1;  ///< of it in Disagreement::measured
+};
+
+/// What a model's own numbers are called.
+struct DiscoverWording {
+  std::vector<ShownOutput> outputs;  ///< by Disagreement::outputOfSample
+  double unit = 1;                   ///< outputs are shown as so many times their values
+  std::string gapEnd;                ///< of names in verdict.json: "_deg", "_m" or "_N"
+  std::string force;                 ///< the latent force: "Torque [N·m]"
+  std::string forceUnit;             ///< "N·m"
+  std::string ofForce;               ///< what its size counts: "part of the muscles' moments"
+  std::string push;                  ///< what a score means: "a push"
+  std::string inputs, input;         ///< "muscles", "muscle"
+  std::string commands;              ///< what drives: "excitations"
+  bool hasMap = true;                ///< false: the first output has no map over it and its rate
+  std::map<std::string, std::string> present;  ///< effects that the model has already, and where
+};
 
 /// What was found, and all that it was made of.
 struct DiscoverFindings {
   const std::string& modelFile;
   const std::vector<std::string>& trialFiles;  ///< those held out last
-  const bio::discover::ElbowDisagreement& data;
+  const info::discover::Disagreement& data;
+  const DiscoverWording& wording;
   const info::discover::Options& options;
   const info::discover::Verdict& verdict;
   const std::string& nextExperiment;
-  bool isAngle;        ///< outputs are shown in degrees
   double wallSeconds;  ///< of the search
 };
+
+/// The findings as figures of summary.json.
+void tellFindings(const DiscoverFindings& findings, Summary& summary);
 
 /// verdict.json as design/cli.md has it.
 nlohmann::ordered_json verdictJson(const DiscoverFindings& findings);

@@ -169,9 +169,11 @@ Outcome judge(const std::string& name, const Json& label, const Json& verdict) {
   if (gap != verdict.end() && gap->contains("held_out") && (*gap)["held_out"].is_object()) {
     const Json& heldOut = (*gap)["held_out"];
     o.gapClosed = finite(heldOut, "gap_closed");
-    const auto after = finite(heldOut, "rmse_after_deg");
-    const auto floor = finite(heldOut, "noise_floor_deg");
-    if (after && floor && *floor > 0) o.overFloor = *after / *floor;
+    for (const std::string unit : {"_deg", "_N"}) {
+      const auto after = finite(heldOut, ("rmse_after" + unit).c_str());
+      const auto floor = finite(heldOut, ("noise_floor" + unit).c_str());
+      if (after && floor && *floor > 0) o.overFloor = *after / *floor;
+    }
   }
   o.seconds = finite(verdict, "wall_s");
   return o;

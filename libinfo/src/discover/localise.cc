@@ -28,6 +28,21 @@ void benjaminiHochberg(std::vector<Score>& scores, double share) {
 
 namespace {
 
+// Samples of the first output alone.
+struct FirstOutput {
+  FirstOutput(const Disagreement& data, int trial) {
+    const auto& channels = data.outputOfSample(trial);
+    for (std::size_t k = 0; k < data.times(trial).size(); ++k) {
+      if (!channels.empty() && channels[k] != 0) continue;
+      which.push_back(static_cast<Index>(k));
+      times.push_back(data.times(trial)[k]);
+    }
+  }
+  VectorXd of(const VectorXd& samples) const { return samples(which); }
+  std::vector<Index> which;
+  std::vector<double> times;
+};
+
 // y at latent nodes, straight between samples
 VectorXd atNodes(const std::vector<double>& nodes, const std::vector<double>& times,
                  const VectorXd& y) {
@@ -59,11 +74,12 @@ Localisation localise(const Likelihood& likelihood, const Fit& fit, const Fit& s
     const int trial = likelihood.trials()[t];
     linear.push_back(likelihood.linearise(t, fit, fit.values, {}, true));
     const auto& nodes = data.latentTimes(trial);
-    const auto& times = data.times(trial);
-    q.push_back(atNodes(nodes, times, data.measured(trial) - linear[t].residuals));
-    qDot.push_back(atNodes(nodes, times, linear[t].speeds));
+    const FirstOutput first(data, trial);
+    q.push_back(atNodes(nodes, first.times, first.of(data.measured(trial) - linear[t].residuals)));
+    qDot.push_back(atNodes(nodes, first.times, first.of(linear[t].speeds)));
     MatrixXd u = data.inputs(trial), placed(static_cast<Index>(nodes.size()), u.cols());
-    for (Index j = 0; j < u.cols(); ++j) placed.col(j) = atNodes(nodes, times, u.col(j));
+    for (Index j = 0; j < u.cols(); ++j)
+      placed.col(j) = atNodes(nodes, first.times, first.of(u.col(j)));
     inputs.push_back(placed);
     range[0] = std::min(range[0], q[t].minCoeff());
     range[1] = std::max(range[1], q[t].maxCoeff());

@@ -66,8 +66,15 @@ class Disagreement {
 
   virtual int numTrials() const = 0;
   virtual std::string trialName(int trial) const = 0;
-  /// Times of the measured samples [s], rising.
+  /// Times of the measured samples [s], rising; several outputs share a time.
   virtual const std::vector<double>& times(int trial) const = 0;
+  /// Which output each sample is of, 0 for the first, where several are measured; empty: there is
+  /// one. Samples of one time follow each other, in the order of outputs; all of them have the same
+  /// noise (a model weights them). Maps over (q, q̇) show the first.
+  virtual const std::vector<int>& outputOfSample(int /*trial*/) const {
+    static const std::vector<int> one;
+    return one;
+  }
   /// What was measured there; NaN is not allowed, missing samples have no time.
   virtual const Eigen::VectorXd& measured(int trial) const = 0;
   /// Nodes of the latent force [s], equally spaced over the trial.

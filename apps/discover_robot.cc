@@ -1,0 +1,302 @@
+#include "discover_robot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+
+#include "angle_unit.h"
+#include "discover_report.h"
+#include "info/systems/robot_disagreement.h"
+#include "info/version.h"
+#include "input_rules.h"
+#include "interruption.h"
+#include "progress_bar.h"
+#include "result.h"
+#include "robot_trial.h"
+
+namespace app {
+namespace {
+
+using info::discover::Finding;
+using info::discover::Stage;
+using info::robot::RobotDisagreement;
+using nlohmann::ordered_json;
+
+info::robot::Model plainModel(const std::string& system,
+                              const std::vector<info::robot::Trial>& trials) {
+  if (system == "double-pendulum") return info::robot::doublePendulum();
+  double least = HUGE_VAL, greatest = -HUGE_VAL;
+  for (const auto& trial : trials)
+    for (const double force : trial.measured.reshaped()) {
+      if (std::isnan(force)) continue;
+      least = std::min(least, force);
+      greatest = std::max(greatest, force);
+    }
+  if (!(greatest > least))
+    throw std::invalid_argument("the trials hold no measured force that changes");
+  return info::robot::suspendedMass(least, greatest);
+}
+
+/// Builds the effects of a with_effect.json into the model; they are no candidates any more.
+void buildIn(const std::string& file, info::robot::Model& model,
+             std::map<std::string, std::string>& present) {
+  std::ifstream stream(file);
+  try {
+    const ordered_json json = ordered_json::parse(stream);
+    if (json.at("system") != model.name)
+      throw std::invalid_argument(
+          fmt::format("is of system {}, not {}", json.at("system").get<std::string>(), model.name));
+    for (const auto& effect : json.at("effects")) {
+      const std::string id = effect.at("id");
+      const auto at = std::find_if(model.candidates.begin(), model.candidates.end(),
+                                   [&](const auto& c) { return c.id == id; });
+      if (at == model.candidates.end())
+        throw std::invalid_argument(fmt::format("effect {} is not in the catalogue", id));
+      for (const std::size_t q : at->quantities) {
+        info::discover::Quantity& quantity = model.quantities[q];
+        const double value = effect.at("parameters").at(quantity.name).at("value");
+        if (!(value >= quantity.lower && value <= quantity.upper))
+          throw std::invalid_argument(fmt::format("{}: {} {}, must be {} to {}", quantity.name,
+                                                  value, quantity.unit, quantity.lower,
+                                                  quantity.upper));
+        quantity.nominal = value;
+      }
+      if (at->kind == info::discover::EffectKind::parameter) {
+        at->starts = {Eigen::VectorXd::Constant(1, model.quantities[at->quantities[0]].nominal)};
+      } else {
+        model.candidates.erase(at);
+        present[id] = file;
+      }
+    }
+  } catch (const std::exception& error) {
+    throw std::invalid_argument(fmt::format("{}: {}", file, error.what()));
+  }
+}
+
+DiscoverWording wordingOf(const RobotDisagreement& data) {
+  DiscoverWording wording;
+  bool angles = true;
+  for (std::size_t c = 0; c < data.model().channels.size(); ++c) {
+    const auto& channel = data.model().channels[c];
+    const bool isAngle = channel.unit == "rad";
+    angles = angles && isAngle;
+    wording.outputs.push_back(
+        {channel.name, isAngle ? "deg" : channel.unit, data.weight(static_cast<int>(c))});
+  }
+  wording.unit = angles ? radian : 1;
+  wording.gapEnd = angles ? "_deg" : "_N";
+  wording.force = "Acceleration of the cart [m/s²]";
+  wording.forceUnit = "m/s²";
+  wording.ofForce = "an acceleration of the cart [m/s²]";
+  wording.push = "an extra acceleration of the cart";
+  wording.inputs = "inputs";
+  wording.input = "input";
+  wording.commands = "commands";
+  wording.hasMap = angles;
+  return wording;
+}
+
+/// What would tell the members of a class apart, or what to record next.
+std::string nextExperiment(const RobotDisagreement& data, const info::discover::Verdict& verdict) {
+  const auto has = [&](const auto& effect, std::initializer_list<const char*> beginnings) {
+    return std::count_if(effect.equals.begin(), effect.equals.end(), [&](std::size_t c) {
+      return std::any_of(beginnings.begin(), beginnings.end(), [&](const char* with) {
+        return data.candidates()[c].id.rfind(with, 0) == 0;
+      });
+    });
+  };
+  for (const auto& effect : verdict.effects) {
+    if (effect.equals.size() < 2) continue;
+    if (has(effect, {"gain", "mass", "bias"}) > 1)
+      return "Let the robot hang still, once as it is and once with a known mass or angle added: "
+             "the sensor then shows its gain and bias, and nothing moves.";
+    if (has(effect, {"visc", "coulomb", "stribeck", "drag", "damping"}) > 1)
+      return "Let it swing freely from a large angle until it rests: dry friction makes the "
+             "amplitude fall in a straight line, viscosity by the same share each time, drag "
+             "fastest at the start.";
+    if (has(effect, {"lag", "clock"}) > 1)
+      return "Hold the cart and push the links by hand: a clock shifts what the sensors show, the "
+             "cart's lag does not.";
+    if (has(effect, {"tilt", "bias"}) > 1)
+      return "Turn the robot about the vertical by half a turn: a tilt changes its sign, a bias "
+             "stays.";
+    return "Repeat a trial with another motion of the cart, faster and wider; "
+           "`fisherhill robot` finds one that tells the parameters apart.";
+  }
+  if (verdict.reached != Stage::finished && verdict.finding != Finding::numerical)
+    return "None yet: run this to its end.";
+  switch (verdict.finding) {
+    case Finding::unknown:
+      return "Hold the cart still and let the robot swing: what is missing then shows without the "
+             "drive.";
+    case Finding::none:
+      return "To see less than the table of detectable sizes says, record longer, faster and over "
+             "more of the range.";
+    case Finding::numerical:
+      return "None yet: repeat this with a shorter --step.";
+    default:
+      return "Repeat one trial that was not used here, with --with with_effect.json.";
+  }
+}
+
+class RobotSearch {
+ public:
+  RobotSearch(const RobotRequest& request, const CommandContext& context)
+      : request_(request), context_(context) {}
+
+  ExitStatus run() {
+    std::vector<std::string> files = request_.trials;
+    files.insert(files.end(), request_.heldOut.begin(), request_.heldOut.end());
+    const std::vector<std::string> names = {"verdict.json", "with_effect.json"};
+    OutputFolder folder(context_, names);
+    Summary summary(context_);
+    // the first input is the model's, as everywhere
+    std::vector<info::robot::Trial> trials;
+    const std::vector<info::robot::Channel> channels =
+        request_.system == "double-pendulum" ? info::robot::doublePendulum().channels
+                                             : info::robot::suspendedMass(0, 1).channels;
+    for (const std::string& file : files) {
+      summary.addInput(file);
+      std::vector<std::string> warnings;
+      trials.push_back(readRobotTrial(file, channels, request_.ignoreExtra, warnings));
+      for (const std::string& warning : warnings) summary.warn(warning);
+    }
+    mustDiffer(summary);
+    info::robot::Model model = plainModel(request_.system, trials);
+    std::map<std::string, std::string> present;
+    if (!request_.with.empty()) {
+      buildIn(request_.with, model, present);
+      summary.addInput(request_.with);
+    }
+    resultsMustNotBeInputs(summary, folder, names);
+    find(model, trials);
+    if (request_.trials.size() == 1 && request_.heldOut.empty())
+      summary.warn(
+          "one trial and none held out: whether a name holds for other motions remains untested; "
+          "add trials, or one with --hold-out");
+    DiscoverWording wording = wordingOf(*data_);
+    wording.present = present;
+    const std::string next = nextExperiment(*data_, verdict_);
+    const std::string name = "the " + request_.system;
+    const DiscoverFindings findings{name,     files,    *data_, wording,
+                                    options_, verdict_, next,   wallSeconds_};
+    summary.set("system", request_.system);
+    summary.set("step_s", step_);
+    for (std::size_t c = 0; c < channels.size(); ++c)
+      summary.set(fmt::format("noise_{}_{}", channels[c].name, wording.outputs[c].unit),
+                  wording.unit * data_->deviations()[c]);
+    tellFindings(findings, summary);
+    folder.write("verdict.json",
+                 [&](std::ostream& out) { out << verdictJson(findings).dump(2) << '\n'; });
+    if (mayBeAdded())
+      folder.write("with_effect.json",
+                   [&](std::ostream& out) { out << repaired(findings, summary).dump(2) << '\n'; });
+    deliver(context_, summary, discoverReport(findings), folder);
+    if (interrupted_) throw Interrupted{};
+    return verdict_.finding == Finding::numerical ? ExitStatus::answerIsNo : ExitStatus::done;
+  }
+
+ private:
+  void mustDiffer(const Summary& summary) const {
+    const auto& inputs = summary.inputs();
+    for (std::size_t i = 0; i < inputs.size(); ++i)
+      for (std::size_t j = i + 1; j < inputs.size(); ++j) {
+        if (inputs[i].sha256 != inputs[j].sha256) continue;
+        const std::size_t training = request_.trials.size();
+        throw std::invalid_argument(
+            i < training && j >= training
+                ? fmt::format("{}: is held out, and estimated from as {}", inputs[j].path,
+                              inputs[i].path)
+                : fmt::format("{}: is the same trial as {}", inputs[j].path, inputs[i].path));
+      }
+  }
+
+  /// Steps that are too long look like an effect: shorter ones, unless they were asked for.
+  void find(const info::robot::Model& model, const std::vector<info::robot::Trial>& trials) {
+    const auto begin = std::chrono::steady_clock::now();
+    info::robot::DisagreementOptions asked;
+    asked.without = request_.without;
+    for (std::size_t c = 0; c < request_.noise.size(); ++c) {
+      const bool isAngle = c < model.channels.size() && model.channels[c].unit == "rad";
+      asked.deviations.push_back(isAngle ? request_.noise[c] * degree : request_.noise[c]);
+    }
+    options_.maxEffects = request_.maxEffects;
+    for (std::size_t i = 0; i < request_.heldOut.size(); ++i)
+      options_.heldOut.push_back(static_cast<int>(request_.trials.size() + i));
+    for (step_ = request_.step.value_or(asked.step);; step_ /= 2) {
+      asked.step = step_;
+      data_ = std::make_unique<RobotDisagreement>(model, trials, asked);
+      if (!request_.noise.empty()) options_.outputDeviation = data_->deviations().front();
+      ProgressBar bar("discover");
+      options_.progress = [&](const info::discover::Progress& at) {
+        interrupted_ = interruptionRequested();
+        if (!interrupted_) bar.update(at.fraction);
+        return !interrupted_;
+      };
+      verdict_ = info::discover::run(*data_, options_);
+      options_.progress = {};
+      if (verdict_.finding != Finding::numerical || request_.step || step_ < 1e-3) break;
+    }
+    wallSeconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  }
+
+  /// Surrogates are not added: they would hide what is unknown.
+  bool mayBeAdded() const {
+    return verdict_.reached == Stage::finished && !verdict_.surrogate &&
+           !verdict_.effects.empty() && verdict_.finding != Finding::numerical;
+  }
+
+  /// The effects, and where they come from.
+  static ordered_json repaired(const DiscoverFindings& f, const Summary& summary) {
+    const auto& data = dynamic_cast<const RobotDisagreement&>(f.data);
+    ordered_json json;
+    json["system"] = data.model().name;
+    json["effects"] = verdictJson(f)["effects"];
+    json["tool"] = "fisherhill " + std::string(info::version());
+    json["data"] = ordered_json::array();
+    for (const Summary::InputFile& input : summary.inputs())
+      json["data"].push_back({{"file", input.path}, {"sha256", input.sha256}});
+    return json;
+  }
+
+  const RobotRequest& request_;
+  const CommandContext& context_;
+  std::unique_ptr<RobotDisagreement> data_;
+  info::discover::Options options_;
+  info::discover::Verdict verdict_;
+  double step_ = 0, wallSeconds_ = 0;
+  bool interrupted_ = false;
+};
+
+}  // namespace
+
+void addRobotOptions(CLI::App& options, RobotRequest& request) {
+  options
+      .add_option("--system", request.system,
+                  "a robot instead of MODEL: double-pendulum (columns time, input [m/s^2, the "
+                  "cart's commanded acceleration], link1_deg and link2_deg [absolute angles from "
+                  "hanging down; or _rad]) or suspended-mass (time, input, force_N)")
+      ->check(CLI::IsMember({"double-pendulum", "suspended-mass"}))
+      ->type_name("NAME");
+  options
+      .add_option("--with", request.with,
+                  "with --system: a with_effect.json whose effects the model then has")
+      ->check(CLI::ExistingFile)
+      ->type_name("FILE");
+  options
+      .add_option("--noise", request.noise,
+                  "with --system: standard deviation of each measured column [deg or N]; default: "
+                  "from the data themselves")
+      ->check(CLI::PositiveNumber)
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("SD");
+}
+
+ExitStatus discoverInRobot(const RobotRequest& request, const CommandContext& context) {
+  return RobotSearch(request, context).run();
+}
+
+}  // namespace app
