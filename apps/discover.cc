@@ -15,6 +15,7 @@
 #include "info/version.h"
 #include "input_rules.h"
 #include "interruption.h"
+#include "json_text.h"
 #include "progress_bar.h"
 #include "result.h"
 
@@ -94,7 +95,7 @@ class Discover : public Command {
     summary.set("step_s", found.step);
     tell(findings, summary);
     folder.write("verdict.json",
-                 [&](std::ostream& out) { out << verdictJson(findings).dump(2) << '\n'; });
+                 [&](std::ostream& out) { out << jsonText(verdictJson(findings), 2) << '\n'; });
     if (mayBeAdded(verdict)) addTo(model, arm, coordinate, trials, findings, summary, folder);
     deliver(context, summary, discoverReport(findings), folder);
     if (found.interrupted) throw Interrupted{};
