@@ -35,8 +35,8 @@ double asNumber(const toml::value& value) {
   return value.is_integer() ? static_cast<double>(value.as_integer()) : value.as_floating();
 }
 
-// A line without comments and what stands in quotes.
-std::string codeOf(std::string_view line) {
+// A line without comments and what stands in quotes; nothing if a text of several lines begins.
+std::optional<std::string> codeOf(std::string_view line) {
   std::string code;
   char quote = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -48,6 +48,7 @@ std::string codeOf(std::string_view line) {
     } else if (c == '#') {
       break;
     } else if (c == '"' || c == '\'') {
+      if (line.substr(i, 3) == std::string(3, c)) return std::nullopt;
       quote = c;
     } else {
       code += c;
@@ -56,14 +57,20 @@ std::string codeOf(std::string_view line) {
   return code;
 }
 
-// toml11 calls itself for every level, until the stack is full.
-void checkNesting(std::string_view text, const std::string& file) {
+// What toml11 3.7 does not survive: it calls itself for every level until the stack is full, and it
+// reads beyond the end of a text of several lines that is not closed.
+void checkSurvivable(std::string_view text, const std::string& file) {
   constexpr int deepest = 100;
   int brackets = 0;
   for (int number = 1; !text.empty(); ++number) {
     const auto end = std::min(text.find('\n'), text.size());
+    const std::optional<std::string> code = codeOf(text.substr(0, end));
+    if (!code) {
+      throw FileError(
+          fmt::format("{}:{}: a text in three quotes, must be in one line", file, number));
+    }
     int dots = 0;
-    for (const char c : codeOf(text.substr(0, end))) {
+    for (const char c : *code) {
       if (c == '[' || c == '{') ++brackets;
       if (c == ']' || c == '}') brackets = std::max(0, brackets - 1);
       dots = c == '.' ? dots + 1 : c == ',' || c == '=' ? 0 : dots;
@@ -87,7 +94,7 @@ TomlTable::TomlTable(std::string file, std::string name, toml::value value)
 
 TomlTable TomlTable::read(const std::string& file) {
   const std::string text = readTextFile(file);
-  checkNesting(text, file);
+  checkSurvivable(text, file);
   std::istringstream stream(text);
   try {
     return {file, "", toml::parse(stream, file)};

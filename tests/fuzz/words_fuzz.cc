@@ -12,19 +12,25 @@ using bio::Arm;
 using bio::Model;
 using bio::ParameterCatalogue;
 
-ParameterCatalogue elbowCatalogue() {
+const ParameterCatalogue& elbowCatalogue() {
   static const Model model = bio::readOsim(FISHERHILL_SOURCE_DIR "/models/elbow8.osim");
   bio::ArmOptions options;
   options.skeleton.freeCoordinates = {"elbow_flexion"};
   static const Arm arm(model, options);
-  return {model, arm, {Eigen::VectorXd::Constant(1, 0.5), {}}};
+  static const ParameterCatalogue catalogue(model, arm, {Eigen::VectorXd::Constant(1, 0.5), {}});
+  return catalogue;
 }
 
 }  // namespace
 
+extern "C" int LLVMFuzzerInitialize(int*, char***) {
+  elbowCatalogue();
+  return 0;
+}
+
 // What is typed on the command line: numbers, angles, assignments, names of parameters.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const ParameterCatalogue catalogue = elbowCatalogue();
+  const ParameterCatalogue& catalogue = elbowCatalogue();
   const std::string word(fuzz::textOf(data, size));
   const auto refused = [](auto read) {
     try {

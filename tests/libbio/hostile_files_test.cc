@@ -71,6 +71,14 @@ TEST_F(HostileFiles, AConfigurationCannotNestUntilTheStackIsFull) {
               HasSubstr("[[electrode]]"));
 }
 
+TEST_F(HostileFiles, AConfigurationHasNoTextOfSeveralLines) {
+  for (const std::string quotes : {"\'\'\'", "\"\"\""}) {
+    EXPECT_THAT(configRefusal("[[electrode]]\nchannel = " + quotes + "\nbiceps\n"),
+                HasSubstr("emg.toml:2: a text in three quotes, must be in one line"));
+    EXPECT_THAT(configRefusal("a = \"#\" # " + quotes), HasSubstr("[[electrode]]"));
+  }
+}
+
 TEST_F(HostileFiles, WholeNumbersBeyondAllBoundsAreRefused) {
   EXPECT_THAT(configRefusal("[notch]\nharmonics = -9223372036854775808\n"),
               HasSubstr("must be a whole number"));
