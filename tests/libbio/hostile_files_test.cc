@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include <chrono>
+#include <ctime>
 
 #include "bio/emg_config.h"
 #include "bio/expression.h"
@@ -87,7 +87,9 @@ TEST_F(HostileFiles, WholeNumbersBeyondAllBoundsAreRefused) {
 TEST_F(HostileFiles, AShortRecordingCannotAskForMoreMemoryThanItFills) {
   // 50,000 lines of one column, then one of 20,000: 8 GB, if every column began in the first line.
   RecordingLayout layout;
-  layout.columns = {{.number = 1, .name = "x", .rate = 1000}};
+  layout.columns.resize(1);
+  layout.columns[0].number = 1;
+  layout.columns[0].rate = 1000;
   const std::string text = times(50000, "1\n") + times(20000, "1 ") + "\n";
   EXPECT_THAT(refusalOf([&] { readRecording(folder_.file("wide.txt", text), layout); }),
               HasSubstr("wide.txt:50001: column 2: '1' after a line that ends before this column"));
@@ -98,20 +100,20 @@ TEST_F(HostileFiles, AShortRecordingCannotAskForMoreMemoryThanItFills) {
 }
 
 TEST_F(HostileFiles, ALongFormulaIsReadAtOnce) {
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   const std::string text = "0" + times(200000, "+1.0");
   const Expression formula(text, {});
   EXPECT_EQ(formula.evaluate<double>(nullptr), 200000);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2));
+  EXPECT_LT(std::clock() - start, 2 * CLOCKS_PER_SEC);
 }
 
 TEST_F(HostileFiles, APatternOfManyStarsIsMatchedAtOnce) {
   const testing::ShippedElbow elbow;
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   const std::string stars = times(40, "*i");
   EXPECT_THAT(refusalOf<std::invalid_argument>([&] { elbow.catalogue.select({stars}); }),
               HasSubstr("no parameter matches"));
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2));
+  EXPECT_LT(std::clock() - start, 2 * CLOCKS_PER_SEC);
   const std::vector<std::size_t> radius = {elbow.catalogue.find("TRI.radius")};
   for (const std::string pattern : {"TRI*adius", "*RI.*us", "**TRI.radius*", "TRI.ra*a*ius"}) {
     const bool holds = pattern != "TRI.ra*a*ius";
