@@ -17,6 +17,7 @@
 #include "info/version.h"
 #include "input_rules.h"
 #include "interruption.h"
+#include "json_text.h"
 #include "progress_bar.h"
 #include "result.h"
 
@@ -118,7 +119,7 @@ class Discover : public Command {
     summary.set("step_s", found.step);
     tellFindings(findings, summary);
     folder.write("verdict.json",
-                 [&](std::ostream& out) { out << verdictJson(findings).dump(2) << '\n'; });
+                 [&](std::ostream& out) { out << jsonText(verdictJson(findings), 2) << '\n'; });
     if (mayBeAdded(verdict)) addTo(model, arm, coordinate, trials, data, verdict, summary, folder);
     deliver(context, summary, discoverReport(findings), folder);
     if (found.interrupted) throw Interrupted{};

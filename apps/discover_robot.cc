@@ -12,6 +12,7 @@
 #include "info/version.h"
 #include "input_rules.h"
 #include "interruption.h"
+#include "json_text.h"
 #include "progress_bar.h"
 #include "result.h"
 #include "robot_trial.h"
@@ -189,10 +190,11 @@ class RobotSearch {
                   wording.unit * data_->deviations()[c]);
     tellFindings(findings, summary);
     folder.write("verdict.json",
-                 [&](std::ostream& out) { out << verdictJson(findings).dump(2) << '\n'; });
+                 [&](std::ostream& out) { out << jsonText(verdictJson(findings), 2) << '\n'; });
     if (mayBeAdded())
-      folder.write("with_effect.json",
-                   [&](std::ostream& out) { out << repaired(findings, summary).dump(2) << '\n'; });
+      folder.write("with_effect.json", [&](std::ostream& out) {
+        out << jsonText(repaired(findings, summary), 2) << '\n';
+      });
     deliver(context_, summary, discoverReport(findings), folder);
     if (interrupted_) throw Interrupted{};
     return verdict_.finding == Finding::numerical ? ExitStatus::answerIsNo : ExitStatus::done;

@@ -12,6 +12,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "json_text.h"
 #include "render.h"
 
 namespace app {
@@ -82,7 +83,7 @@ std::vector<FigurePicture> figurePictures(const Report& report) {
   }
   const TemporaryFolder folder;
   const fs::path file = folder.path / "figures.json";
-  std::ofstream(file) << list.dump();
+  std::ofstream(file) << jsonText(list);
   runAndWait({pictureProgram().string(), "charts", file.string(), folder.path.string()});
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     std::ifstream stream(folder.path / fmt::format("{}.png", i), std::ios::binary);

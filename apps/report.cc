@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "info/version.h"
+#include "json_text.h"
 #include "report_assets.h"
 #include "text.h"
 
@@ -53,7 +54,7 @@ void mustBeAsLong(const Figure& figure, const Series& series, const std::vector<
 /// JSON inside a script element must not be able to end that element.
 std::string scriptText(const Json& json) {
   std::string text;
-  for (const char c : json.dump()) text += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  for (const char c : jsonText(json)) text += c == '<' ? std::string("\\u003c") : std::string(1, c);
   return text;
 }
 
@@ -137,7 +138,7 @@ void addFigureRows(Table& table, const std::string& name, const Json& value) {
   } else if (value.is_string()) {
     table.rows.push_back({name, value.get<std::string>()});
   } else if (!value.is_structured()) {
-    table.rows.push_back({name, value.dump()});
+    table.rows.push_back({name, jsonText(value)});
   }
 }
 

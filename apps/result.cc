@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "json_text.h"
 #include "text.h"
 
 namespace app {
@@ -16,7 +17,7 @@ void printFigure(const std::string& name, const nlohmann::ordered_json& value) {
   const std::string text = value.is_number_float() ? numberText(value.get<double>())
                            : value.is_string()     ? value.get<std::string>()
                            : value.is_null()       ? "–"
-                                                   : value.dump();
+                                                   : jsonText(value);
   fmt::print("  {:<32} {}\n", name, text);
 }
 
@@ -27,11 +28,11 @@ void deliver(const CommandContext& context, const Summary& summary, const Report
   nlohmann::ordered_json json = summary.toJson();
   folder.write("report.html", [&](std::ostream& out) { out << renderReport(report, summary); });
   json["files"] = folder.files();
-  folder.write("summary.json", [&](std::ostream& out) { out << json.dump(2) << '\n'; });
+  folder.write("summary.json", [&](std::ostream& out) { out << jsonText(json, 2) << '\n'; });
   folder.commit();
 
   if (context.json) {
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", jsonText(json, 2));
     return;
   }
   fmt::print("{}\n", report.verdict);

@@ -4,11 +4,12 @@
 
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <numbers>
-#include <sstream>
 
+#include "bio/file_error.h"
+#include "bio/table_file.h"
 #include "info/random_stream.h"
+#include "json_text.h"
 #include "progress_bar.h"
 #include "robot_figures.h"
 #include "text.h"
@@ -23,33 +24,18 @@ using Eigen::VectorXd;
 
 // The column `input` of a motion table.
 Inputs readStart(const std::string& file, std::size_t count) {
-  std::ifstream stream(file);
-  if (!stream) throw std::runtime_error(fmt::format("{}: cannot be read", file));
-  std::string line;
-  std::getline(stream, line);
-  std::size_t column = 0, at = 0;
-  bool found = false;
-  std::stringstream header(line);
-  for (std::string name; std::getline(header, name, ','); ++at)
-    if (name == "input") {
-      column = at;
-      found = true;
-    }
-  if (!found) throw std::runtime_error(fmt::format("{}: line 1: no column named input", file));
+  const bio::Table table = bio::readTable(file, bio::TableKind::any);
+  if (!bio::hasColumn(table, "input"))
+    throw bio::FileError(fmt::format("{}: no column named input", file));
+  const VectorXd values = table.values.col(bio::columnIndex(table, "input"));
   Inputs inputs;
-  for (std::size_t number = 2; std::getline(stream, line); ++number) {
-    std::stringstream cells(line);
-    std::string cell;
-    for (std::size_t i = 0; i <= column; ++i) std::getline(cells, cell, ',');
-    char* end = nullptr;
-    const double value = std::strtod(cell.c_str(), &end);
-    if (cell.empty() || *end != 0 || !std::isfinite(value))
-      throw std::runtime_error(
-          fmt::format("{}: line {}: input is \"{}\", rule: a finite number", file, number, cell));
-    inputs.push_back(VectorXd::Constant(1, value));
+  for (Index k = 0; k < values.size(); ++k) {
+    if (!std::isfinite(values[k]))
+      throw bio::FileError(fmt::format("{}: row {}: input is empty, rule: a number", file, k + 1));
+    inputs.push_back(VectorXd::Constant(1, values[k]));
   }
   if (inputs.size() != count)
-    throw std::runtime_error(
+    throw bio::FileError(
         fmt::format("{}: {} rows, rule: {} for this time step", file, inputs.size(), count));
   return inputs;
 }
@@ -246,7 +232,8 @@ void tellSearch(const Found& found, const std::vector<std::string>& columns, Sum
   report.details.emplace_back(Section{"The search"});
   if (found.robust) tellRobust(*found.robust, summary, report);
   report.details.emplace_back(costFigure(found.search));
-  folder.write("search.json", [&](std::ostream& out) { out << searchJson(found).dump(2) << '\n'; });
+  folder.write("search.json",
+               [&](std::ostream& out) { out << jsonText(searchJson(found), 2) << '\n'; });
   writeMotion(folder, "motion_initial.csv", found.before, columns);
   writeMotion(folder, "motion_optimised.csv", found.after, columns);
 }

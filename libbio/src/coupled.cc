@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "coupled_stepping.h"
 
 namespace bio {
@@ -30,6 +32,11 @@ ArmState initialState(const Arm& arm, const Eigen::VectorXd& q, const Excitation
     for (std::size_t i = 0; i < arm.numMuscles(); ++i) {
       const auto si = static_cast<Eigen::Index>(i);
       const double length = configuration.length(i).length;
+      if (!std::isfinite(length)) {
+        throw NoStaticEquilibrium(
+            fmt::format("muscle '{}': muscle–tendon length at the start = {} m, must be finite",
+                        arm.muscles()[i].name, length));
+      }
       const StaticEquilibrium rest =
           staticEquilibrium(arm.muscles()[i].muscle, state.activation[si], length);
       if (!rest.isUsable()) {

@@ -4,8 +4,11 @@
 
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <stdexcept>
 #include <utility>
+
+#include "text_file.h"
 
 namespace bio {
 
@@ -25,7 +28,7 @@ class Expression::Parser {
  private:
   [[noreturn]] void fail(const std::string& what) const {
     throw std::invalid_argument(
-        fmt::format("expression '{}', character {}: {}", text_, at_ + 1, what));
+        onOneLine(fmt::format("expression '{}', character {}: {}", text_, at_ + 1, what)));
   }
   void skipSpace() {
     while (at_ < text_.size() && std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
@@ -99,18 +102,13 @@ class Expression::Parser {
   }
   double number(const char* otherwise) {
     skipSpace();
-    std::size_t used = 0;
     double value = 0;
-    if (at_ < text_.size() &&
-        (std::isdigit(static_cast<unsigned char>(text_[at_])) || text_[at_] == '.')) {
-      try {
-        value = std::stod(text_.substr(at_), &used);
-      } catch (const std::exception&) {
-        used = 0;
-      }
-    }
-    if (used == 0) fail(otherwise);
-    at_ += used;
+    const bool begins = at_ < text_.size() &&
+                        (std::isdigit(static_cast<unsigned char>(text_[at_])) || text_[at_] == '.');
+    const char* const first = text_.data() + at_;
+    const auto [end, error] = std::from_chars(first, text_.data() + text_.size(), value);
+    if (!begins || error != std::errc()) fail(otherwise);
+    at_ += static_cast<std::size_t>(end - first);
     return value;
   }
   void atom() {

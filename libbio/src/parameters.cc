@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string_view>
 
 #include "parameter_collector.h"
 
@@ -131,14 +132,14 @@ std::string canonical(std::string name) {
 
 /// Edits from one word to another (Levenshtein).
 std::size_t editDistance(const std::string& a, const std::string& b) {
+  const auto lowered = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
     std::size_t diagonal = row[0];
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t changed =
-          diagonal + (std::tolower(a[i - 1]) == std::tolower(b[j - 1]) ? 0 : 1);
+      const std::size_t changed = diagonal + (lowered(a[i - 1]) == lowered(b[j - 1]) ? 0 : 1);
       diagonal = row[j];
       row[j] = std::min({changed, row[j] + 1, row[j - 1] + 1});
     }
@@ -146,11 +147,25 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-bool matches(const char* pattern, const char* text) {
-  if (*pattern == '\0') return *text == '\0';
-  if (*pattern == '*')
-    return matches(pattern + 1, text) || (*text != '\0' && matches(pattern, text + 1));
-  return *pattern == *text && matches(pattern + 1, text + 1);
+/// Whether the text is the pattern with something for every `*`. The last `*` passed takes one more
+/// character whenever what follows it does not fit; earlier ones need never be looked at again.
+bool matches(std::string_view pattern, std::string_view text) {
+  std::size_t p = 0, t = 0, star = pattern.npos, taken = 0;
+  while (t < text.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      taken = t;
+    } else if (p < pattern.size() && pattern[p] == text[t]) {
+      ++p;
+      ++t;
+    } else if (star != pattern.npos) {
+      p = star + 1;
+      t = ++taken;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', p) == pattern.npos;
 }
 
 }  // namespace
@@ -209,7 +224,7 @@ std::vector<std::size_t> ParameterCatalogue::select(const std::vector<std::strin
       const std::size_t before = selection.size();
       bool any = false;
       for (std::size_t i = 0; i < parameters_.size(); ++i) {
-        if (parameters_[i].isGroup || !matches(pattern.c_str(), parameters_[i].name.c_str())) {
+        if (parameters_[i].isGroup || !matches(pattern, parameters_[i].name)) {
           continue;
         }
         any = true;

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <sstream>
 
 #include "bio/file_error.h"
+#include "text_file.h"
 
 namespace bio {
 namespace {
@@ -45,8 +45,7 @@ std::pair<std::string, std::string> splitUnit(const std::string& text) {
 }  // namespace
 
 std::vector<std::string> linesOf(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw FileError(fmt::format("{}: cannot be read", file));
+  std::istringstream stream(readTextFile(file));
   std::vector<std::string> lines;
   for (std::string line; std::getline(stream, line);) {
     if (line.ends_with('\r')) line.pop_back();
@@ -81,11 +80,20 @@ std::vector<RawColumn> numberColumns(const std::string& file, const std::vector<
                                      std::size_t firstLine, char separator) {
   std::vector<std::vector<double>> columns;
   std::vector<std::size_t> lengths;  // up to the last value
+  std::size_t width = 0;             // of the shortest line so far
   for (std::size_t i = firstLine - 1; i < lines.size(); ++i) {
     const std::size_t row = i + 1 - firstLine;
     const std::vector<std::string> cells = cellsOf(lines[i], separator);
+    if (row == 0) width = cells.size();
     for (std::size_t k = 0; k < cells.size(); ++k) {
       if (cells[k].empty()) continue;
+      // Where cells are not separated, nobody can tell which row a value belongs to.
+      if (k >= width) {
+        throw FileError(
+            fmt::format("{}:{}: column {}: '{}' after a line that ends before this "
+                        "column, a column must go on to its end",
+                        file, i + 1, k + 1, cells[k]));
+      }
       double value = 0;
       if (!parse(cells[k], value) || !std::isfinite(value)) {
         throw FileError(
@@ -99,6 +107,7 @@ std::vector<RawColumn> numberColumns(const std::string& file, const std::vector<
       columns[k].push_back(value);
       lengths[k] = row + 1;
     }
+    width = std::min(width, cells.size());
   }
   std::vector<RawColumn> out;
   for (std::size_t k = 0; k < columns.size(); ++k) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <fstream>
 #include <sstream>
 
@@ -17,6 +18,11 @@ std::string readTextFile(const std::filesystem::path& file) {
   }
   if (std::filesystem::is_directory(file, error)) {
     throw FileError(fmt::format("{}: is a directory, must be a file", file.string()));
+  }
+  // Some devices never end.
+  if (std::filesystem::is_character_file(file, error) ||
+      std::filesystem::is_block_file(file, error)) {
+    throw FileError(fmt::format("{}: is a device, must be a file", file.string()));
   }
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
@@ -38,6 +44,13 @@ void writeTextFile(const std::filesystem::path& file, const std::string& text) {
     std::filesystem::remove(temporary, ignored);
     throw FileError(fmt::format("{}: cannot be written", file.string()));
   }
+}
+
+std::string onOneLine(std::string text) {
+  for (char& c : text) {
+    if (std::iscntrl(static_cast<unsigned char>(c))) c = ' ';
+  }
+  return text;
 }
 
 }  // namespace bio

@@ -4,9 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <fstream>
+#include <sstream>
+#include <string_view>
 
 #include "bio/file_error.h"
+#include "text_file.h"
 
 namespace bio {
 namespace {
@@ -33,6 +35,54 @@ double asNumber(const toml::value& value) {
   return value.is_integer() ? static_cast<double>(value.as_integer()) : value.as_floating();
 }
 
+// A line without comments and what stands in quotes; nothing if a text of several lines begins.
+std::optional<std::string> codeOf(std::string_view line) {
+  std::string code;
+  char quote = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (quote == '"' && c == '\\') {
+      ++i;
+    } else if (quote != 0) {
+      if (c == quote) quote = 0;
+    } else if (c == '#') {
+      break;
+    } else if (c == '"' || c == '\'') {
+      if (line.substr(i, 3) == std::string(3, c)) return std::nullopt;
+      quote = c;
+    } else {
+      code += c;
+    }
+  }
+  return code;
+}
+
+// What toml11 3.7 does not survive: it calls itself for every level until the stack is full, and it
+// reads beyond the end of a text of several lines that is not closed.
+void checkSurvivable(std::string_view text, const std::string& file) {
+  constexpr int deepest = 100;
+  int brackets = 0;
+  for (int number = 1; !text.empty(); ++number) {
+    const auto end = std::min(text.find('\n'), text.size());
+    const std::optional<std::string> code = codeOf(text.substr(0, end));
+    if (!code) {
+      throw FileError(
+          fmt::format("{}:{}: a text in three quotes, must be in one line", file, number));
+    }
+    int dots = 0;
+    for (const char c : *code) {
+      if (c == '[' || c == '{') ++brackets;
+      if (c == ']' || c == '}') brackets = std::max(0, brackets - 1);
+      dots = c == '.' ? dots + 1 : c == ',' || c == '=' ? 0 : dots;
+      if (brackets > deepest || dots > deepest) {
+        throw FileError(fmt::format("{}:{}: tables or lists in each other, must be at most {} deep",
+                                    file, number, deepest));
+      }
+    }
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+}
+
 int lineOf(const toml::value& value) {
   return static_cast<int>(value.location().line());
 }
@@ -43,8 +93,9 @@ TomlTable::TomlTable(std::string file, std::string name, toml::value value)
     : file_(std::move(file)), name_(std::move(name)), value_(std::move(value)) {}
 
 TomlTable TomlTable::read(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw FileError(fmt::format("{}: cannot be read", file));
+  const std::string text = readTextFile(file);
+  checkSurvivable(text, file);
+  std::istringstream stream(text);
   try {
     return {file, "", toml::parse(stream, file)};
   } catch (const toml::exception& e) {
@@ -86,7 +137,7 @@ std::optional<double> TomlTable::number(const std::string& key) {
 std::optional<int> TomlTable::integer(const std::string& key) {
   const toml::value* value = find(key);
   if (value == nullptr) return std::nullopt;
-  if (!value->is_integer() || std::abs(value->as_integer()) > 1'000'000) {
+  if (!value->is_integer() || value->as_integer() > 1'000'000 || value->as_integer() < -1'000'000) {
     fail(key, "must be a whole number");
   }
   return static_cast<int>(value->as_integer());

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "json_text.h"
 #include "sha256.h"
 #include "support/scratch_folder.h"
 
@@ -29,6 +30,13 @@ TEST(Sha256, RefusesWhatIsNoFile) {
   const ScratchFolder scratch;
   EXPECT_THROW(sha256OfFile(scratch / "missing"), std::runtime_error);
   EXPECT_THROW(sha256OfFile(scratch.path()), std::runtime_error);
+}
+
+TEST(Summary, ShowsBytesThatAreNotUtf8AsReplacementCharacters) {
+  Summary summary({});
+  summary.set("muscle", "TRI\xFFlong");
+  const auto json = nlohmann::json::parse(jsonText(summary.toJson()));
+  EXPECT_EQ(json["muscle"], "TRI\uFFFDlong");
 }
 
 TEST(Summary, WritesWhatHasNoValueAsNull) {

@@ -211,7 +211,7 @@ lowpass_Hz = 6
 
 TEST_F(EmgConfigs, NameFileLineKeyAndRuleOfWhatIsWrong) {
   EXPECT_THAT([] { bio::readEmgConfig("/no/c.toml"); },
-              ThrowsMessage<bio::FileError>(HasSubstr("/no/c.toml: cannot be read")));
+              ThrowsMessage<bio::FileError>(HasSubstr("/no/c.toml: there is no such file")));
   fails("[input\n", "1: no valid TOML");
   fails("[input]\nformat = \"csv\"\n",
         "2: [input] format = \"csv\", must be one of automatic, columns");

@@ -158,7 +158,7 @@ TEST_F(Recordings, ToleratesRoundedTimesButNotAMissingRow) {
 TEST_F(Recordings, NamesFileLineAndColumnOfWhatItCannotRead) {
   bio::RecordingLayout layout;
   layout.columns = {column(1, "x", 10, "mV")};
-  fails("/no/such/file.txt", layout, "/no/such/file.txt: cannot be read");
+  fails("/no/such/file.txt", layout, "/no/such/file.txt: there is no such file");
   fails(file("empty.txt", ""), layout, "empty.txt: is empty");
   fails(file("blank.txt", "\n \n"), layout, "nothing but empty lines");
   fails(file("word.txt", "1\t2\n3\tx\n"), layout, "word.txt:2: column 2: 'x' is not a number");

@@ -1,14 +1,16 @@
 #pragma once
 
 #include <stdexcept>
+#include <string>
 
 namespace bio {
 
 /// A file that cannot be used. what() is one line: `file:line: element 'name': quantity = value,
-/// rule` (or `file: …` when no line is to blame).
+/// rule` (or `file: …` when no line is to blame). Line breaks and other control characters that the
+/// file's own words bring in become spaces.
 class FileError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit FileError(const std::string& message);
 };
 
 }  // namespace bio

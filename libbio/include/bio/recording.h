@@ -65,7 +65,8 @@ RecordingFormat detectFormat(const std::string& file);
 /// mV, uV, deg, rad or g. A table column that is filled only in every k-th row has the rate of the
 /// table / k.
 /// @throws FileError "file:line: column …" for anything that is not a number, a rate or unit that
-/// is missing or contradicts the declaration, a declared column that is not there, a table whose
+/// is missing or contradicts the declaration, a value in a column that ended earlier (a gap must
+/// have its separators), a declared column that is not there, a table whose
 /// times are not equally spaced (any sample further than a quarter of an interval from its place)
 Recording readRecording(const std::string& file, const RecordingLayout& layout = {});
 

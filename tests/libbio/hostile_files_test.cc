@@ -1,0 +1,140 @@
+#include <gmock/gmock.h>
+
+#include <ctime>
+
+#include "bio/emg_config.h"
+#include "bio/expression.h"
+#include "bio/file_error.h"
+#include "bio/osim_file.h"
+#include "bio/recording.h"
+#include "support/scratch_folder.h"
+#include "support/shipped_elbow.h"
+
+// Files that mean harm, or look as if: they are refused with one line, at once, and without taking
+// the machine's memory or the stack.
+namespace bio {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class HostileFiles : public ::testing::Test {
+ protected:
+  // The one line that `read` refuses with.
+  template <class Refusal = FileError, class Read>
+  static std::string refusalOf(Read read) {
+    try {
+      read();
+    } catch (const Refusal& refusal) {
+      EXPECT_THAT(refusal.what(), Not(HasSubstr("\n")));
+      return refusal.what();
+    }
+    return "read without complaint";
+  }
+  std::string configRefusal(const std::string& text) const {
+    return refusalOf([&] { readEmgConfig(folder_.file("emg.toml", text)); });
+  }
+  support::ScratchFolder folder_;
+};
+
+std::string times(int count, const std::string& text) {
+  std::string all;
+  for (int i = 0; i < count; ++i) all += text;
+  return all;
+}
+
+TEST_F(HostileFiles, LineBreaksInNamesStayOutOfMessages) {
+  const std::string model =
+      "<OpenSimDocument Version='40000'><Model><BodySet><objects>"
+      "<Body name='two&#10;lines'/></objects></BodySet></Model></OpenSimDocument>";
+  EXPECT_THAT(refusalOf([&] { readOsim(folder_.file("m.osim", model)); }),
+              HasSubstr("Body 'two lines': mass is missing"));
+  EXPECT_THAT(refusalOf<std::invalid_argument>([] { Expression("q +\n unknown", {"q"}); }),
+              HasSubstr("unknown name 'unknown'"));
+}
+
+TEST_F(HostileFiles, DevicesAreNoFiles) {
+  EXPECT_THAT(refusalOf([] { readOsim("/dev/zero"); }), HasSubstr("/dev/zero: is a device"));
+  EXPECT_THAT(refusalOf([] { readRecording("/dev/zero"); }), HasSubstr("is a device"));
+  EXPECT_THAT(refusalOf([] { readEmgConfig("/dev/zero"); }), HasSubstr("is a device"));
+}
+
+TEST_F(HostileFiles, AConfigurationCannotNestUntilTheStackIsFull) {
+  const std::string tooDeep = "emg.toml:2: tables or lists in each other, must be at most 100 deep";
+  EXPECT_THAT(configRefusal("\na = " + times(100000, "[")), HasSubstr(tooDeep));
+  EXPECT_THAT(configRefusal("\na = " + times(100000, "{b = ")), HasSubstr(tooDeep));
+  EXPECT_THAT(configRefusal("\na" + times(100000, ".b") + " = 1"), HasSubstr(tooDeep));
+  EXPECT_THAT(configRefusal("\n[a" + times(100000, ".b") + "]"), HasSubstr(tooDeep));
+  // What is not nested may hold as many brackets and dots as it likes.
+  EXPECT_THAT(configRefusal("# " + times(200, "[.") + "\na = [" + times(200, "[0.5], ") +
+                            "]\nb = \"\\\"" + times(200, "{.") + "\""),
+              HasSubstr("[[electrode]]"));
+}
+
+TEST_F(HostileFiles, AConfigurationHasNoTextOfSeveralLines) {
+  for (const std::string quotes : {"\'\'\'", "\"\"\""}) {
+    EXPECT_THAT(configRefusal("[[electrode]]\nchannel = " + quotes + "\nbiceps\n"),
+                HasSubstr("emg.toml:2: a text in three quotes, must be in one line"));
+    EXPECT_THAT(configRefusal("a = \"#\" # " + quotes), HasSubstr("[[electrode]]"));
+  }
+}
+
+TEST_F(HostileFiles, WholeNumbersBeyondAllBoundsAreRefused) {
+  EXPECT_THAT(configRefusal("[notch]\nharmonics = -9223372036854775808\n"),
+              HasSubstr("must be a whole number"));
+}
+
+TEST_F(HostileFiles, AShortRecordingCannotAskForMoreMemoryThanItFills) {
+  // 50,000 lines of one column, then one of 20,000: 8 GB, if every column began in the first line.
+  RecordingLayout layout;
+  layout.columns.resize(1);
+  layout.columns[0].number = 1;
+  layout.columns[0].rate = 1000;
+  const std::string text = times(50000, "1\n") + times(20000, "1 ") + "\n";
+  EXPECT_THAT(refusalOf([&] { readRecording(folder_.file("wide.txt", text), layout); }),
+              HasSubstr("wide.txt:50001: column 2: '1' after a line that ends before this column"));
+  // The same where the first line is wide, too.
+  const std::string gap = times(20000, "1 ") + "\n" + text;
+  EXPECT_THAT(refusalOf([&] { readRecording(folder_.file("gap.txt", gap), layout); }),
+              HasSubstr("gap.txt:50002: column 2: '1' after a line"));
+}
+
+TEST_F(HostileFiles, ALongFormulaIsReadAtOnce) {
+  const std::clock_t start = std::clock();
+  const std::string text = "0" + times(200000, "+1.0");
+  const Expression formula(text, {});
+  EXPECT_EQ(formula.evaluate<double>(nullptr), 200000);
+  EXPECT_LT(std::clock() - start, 2 * CLOCKS_PER_SEC);
+}
+
+TEST_F(HostileFiles, APatternOfManyStarsIsMatchedAtOnce) {
+  const fixtures::ShippedElbow elbow;
+  const std::clock_t start = std::clock();
+  const std::string stars = times(40, "*i");
+  EXPECT_THAT(refusalOf<std::invalid_argument>([&] { elbow.catalogue.select({stars}); }),
+              HasSubstr("no parameter matches"));
+  EXPECT_LT(std::clock() - start, 2 * CLOCKS_PER_SEC);
+  const std::vector<std::size_t> radius = {elbow.catalogue.find("TRI.radius")};
+  for (const std::string pattern : {"TRI*adius", "*RI.*us", "**TRI.radius*", "TRI.ra*a*ius"}) {
+    const bool holds = pattern != "TRI.ra*a*ius";
+    try {
+      EXPECT_EQ(elbow.catalogue.select({pattern}), radius) << pattern;
+      EXPECT_TRUE(holds) << pattern;
+    } catch (const std::invalid_argument&) {
+      EXPECT_FALSE(holds) << pattern;
+    }
+  }
+}
+
+TEST_F(HostileFiles, AMuscleOfNoFiniteLengthIsNamed) {
+  fixtures::ShippedElbow elbow;
+  elbow.model.muscles[0].path.points[0].location.x() = 1e300;
+  const Arm arm(elbow.model, fixtures::ShippedElbow::options());
+  const std::string refusal = refusalOf<NoStaticEquilibrium>(
+      [&] { initialState(arm, Eigen::VectorXd::Constant(1, 0.5), elbow.excitation, 0); });
+  EXPECT_THAT(refusal, HasSubstr("muscle '" + elbow.model.muscles[0].name +
+                                 "': muscle–tendon length at the start = inf m, must be finite"));
+}
+
+}  // namespace
+}  // namespace bio
