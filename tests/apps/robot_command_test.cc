@@ -224,6 +224,10 @@ TEST(RobotCommand, TellsWrongUseInOneLine) {
   fails({"robot", "double-pendulum", "--discrete", "--as-is"}, "go with optimising");
   fails({"robot", "double-pendulum", "--warm-start", FISHERHILL_SOURCE_DIR "/README.md"},
         "README.md:");
+  const support::ScratchFolder scratch;
+  fails({"robot", "double-pendulum", "--warm-start",
+         scratch.file("short.csv", "time,input\n0,1\n5\n")},
+        "short.csv:3: row has 1 cells, must have 2");
   const auto inSteps = [&](std::vector<std::string> more, const std::string& message) {
     more.insert(more.begin(), {"robot", "double-pendulum", "--discrete", "--trials", "2"});
     fails(std::move(more), message);

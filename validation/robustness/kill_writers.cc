@@ -5,7 +5,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -146,14 +148,11 @@ class Trial {
       }
     }
     const pid_t child = started(command_.words);
-    // At any moment, or within 20 ms of the first byte that is written.
-    const bool early = unit(random) < 0.4;
-    const auto begin = Clock::now();
-    const double wait = early ? unit(random) * duration_ : 0.02 * unit(random) * unit(random);
-    if (!early) waitForWriting(child, before.size());
-    const double rest =
-        early ? wait - std::chrono::duration<double>(Clock::now() - begin).count() : wait;
-    if (rest > 0) std::this_thread::sleep_for(std::chrono::duration<double>(rest));
+    // At any moment, within 20 ms of the first byte that is written, or as results get their names.
+    const double choice = unit(random);
+    const double wait = choice < 0.3 ? unit(random) * duration_ : 0.02 * std::pow(unit(random), 2);
+    if (choice >= 0.3) waitForWriting(child, before.size(), choice >= 0.65);
+    if (choice < 0.65) std::this_thread::sleep_for(std::chrono::duration<double>(wait));
     ::kill(child, SIGKILL);
     int status = 0;
     ::waitpid(child, &status, 0);
@@ -175,18 +174,22 @@ class Trial {
     return files;
   }
 
-  // Until a file is there that was not before, or the program has ended.
-  void waitForWriting(pid_t child, std::size_t before) const {
+  // Until a file is there that was not before, or one under its own name, or the program has ended.
+  void waitForWriting(pid_t child, std::size_t before, bool named) const {
     siginfo_t info = {};
     for (;;) {
-      std::size_t now = 0;
+      std::size_t files = 0, results = 0;
       std::error_code ignored;
-      for (fs::directory_iterator at(out_, ignored), end; at != end; at.increment(ignored)) ++now;
-      if (now > before) return;
+      for (fs::directory_iterator at(out_, ignored), end; at != end; at.increment(ignored)) {
+        ++files;
+        const bool temporary = at->path().filename().string().starts_with(".unfinished-");
+        results += !temporary && at->file_size(ignored) != 4;  // "old\n"
+      }
+      if (named ? results > 0 : files > before) return;
       info.si_pid = 0;
       ::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT);
       if (info.si_pid == child) return;
-      std::this_thread::sleep_for(std::chrono::microseconds(200));
+      if (!named) std::this_thread::sleep_for(std::chrono::microseconds(200));
     }
   }
 

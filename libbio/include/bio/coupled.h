@@ -68,8 +68,8 @@ struct Trajectory {
   double wallSeconds = 0;  ///< stepping alone, without set-up and analysis
 };
 
-/// Thrown when a muscle has no static equilibrium at the start; names muscle, length and
-/// activation.
+/// Thrown when a muscle has no static equilibrium at the start, or no finite length; names muscle,
+/// length and activation.
 class NoStaticEquilibrium : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
