@@ -481,6 +481,8 @@ std::vector<EffectRow> makeTable() {
 }  // namespace
 
 std::vector<Reading> EffectRow::readings(double amplitude) const {
+  // a baseline is what must be taken off the EMG
+  if (id == "offset") return {{quantity, unit, amplitude}, {"level", unit, -amplitude}};
   if (!relative) return {{quantity, unit, amplitude}};
   return {{quantity, "", amplitude},
           {"factor", "", 1 + amplitude},
