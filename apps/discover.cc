@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
+#include <cmath>
 
 #include "angle_unit.h"
 #include "arm_input.h"
@@ -12,20 +12,19 @@
 #include "bio/osim_file.h"
 #include "discover_report.h"
 #include "discover_robot.h"
+#include "discover_search.h"
 #include "driven_trial.h"
 #include "follow_up.h"
 #include "info/version.h"
 #include "input_rules.h"
 #include "interruption.h"
 #include "json_text.h"
-#include "progress_bar.h"
 #include "result.h"
 
 namespace app {
 namespace {
 
 using info::discover::Finding;
-using info::discover::Stage;
 
 class Discover : public Command {
  public:
@@ -103,16 +102,26 @@ class Discover : public Command {
     resultsMustNotBeInputs(summary, folder, names);
     const bio::ArmOptions arm = armOptions(simulation_);
     const std::string coordinate = observed();
-    const Found found = find(model, arm, coordinate, trials);
-    const bio::discover::ElbowDisagreement& data = *found.data;
+    std::unique_ptr<bio::discover::ElbowDisagreement> elbow;
+    const auto attempt = [&](double step) {
+      bio::discover::ElbowOptions options;
+      options.simulation = simulationOptions(simulation_, 0, 1);
+      options.simulation.step = step;
+      options.without = without_;
+      elbow = std::make_unique<bio::discover::ElbowDisagreement>(model, arm, coordinate, trials,
+                                                                 options);
+      SearchAttempt one{*elbow, engineOptions(maxEffects_, trials_.size(), heldOut_.size())};
+      const bool isAngle = elbow->widest().coordinate().isRotation;
+      if (noise_) one.options.outputDeviation = isAngle ? *noise_ / radian : *noise_;
+      return one;
+    };
+    const DiscoverSearch found =
+        searchForEffects(attempt, simulation_.stepOrDefault(), simulation_.step ? HUGE_VAL : 0.003);
+    const bio::discover::ElbowDisagreement& data = *elbow;
     const info::discover::Verdict& verdict = found.verdict;
     const DiscoverWording wording = wordingOf(data);
-    if (trials_.size() == 1 && heldOut_.empty()) {
-      summary.warn(
-          "one trial and none held out: whether a name holds for other motions remains untested; "
-          "add trials, or one with --hold-out");
-    }
-    const std::string next = followUp(data, verdict);
+    warnOfOneTrial(summary, trials_.size(), heldOut_.size());
+    const std::string next = followUp(data, verdict, followUpsOfArms());
     const DiscoverFindings findings{model_,        files,   data, wording,
                                     found.options, verdict, next, found.wallSeconds};
     summary.set("integrator", simulation_.integrator);
@@ -146,54 +155,6 @@ class Discover : public Command {
     return simulation_.coordinates.front();
   }
 
-  struct Found {
-    std::unique_ptr<bio::discover::ElbowDisagreement> data;
-    info::discover::Options options;
-    info::discover::Verdict verdict;
-    double step = 0;         ///< [s]
-    double wallSeconds = 0;  ///< of all attempts
-    bool interrupted = false;
-  };
-  /// Steps that are too long look like an effect: shorter ones, unless they were asked for.
-  Found find(const bio::Model& model, const bio::ArmOptions& arm, const std::string& coordinate,
-             const std::vector<bio::Trial>& trials) const {
-    Found found;
-    const auto begin = std::chrono::steady_clock::now();
-    for (found.step = simulation_.stepOrDefault();; found.step /= 2) {
-      bio::discover::ElbowOptions elbow;
-      elbow.simulation = simulationOptions(simulation_, 0, 1);
-      elbow.simulation.step = found.step;
-      elbow.without = without_;
-      found.data =
-          std::make_unique<bio::discover::ElbowDisagreement>(model, arm, coordinate, trials, elbow);
-      found.options = engineOptions(found.data->widest().coordinate().isRotation);
-      ProgressBar bar("discover");
-      found.options.progress = [&](const info::discover::Progress& at) {
-        found.interrupted = interruptionRequested();
-        if (!found.interrupted) bar.update(at.fraction);
-        return !found.interrupted;
-      };
-      found.verdict = info::discover::run(*found.data, found.options);
-      found.options.progress = {};
-      if (found.verdict.finding != Finding::numerical || simulation_.step || found.step < 0.003) {
-        break;
-      }
-    }
-    found.wallSeconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    return found;
-  }
-
-  info::discover::Options engineOptions(bool isAngle) const {
-    info::discover::Options options;
-    if (noise_) options.outputDeviation = isAngle ? *noise_ / radian : *noise_;
-    options.maxEffects = maxEffects_;
-    for (std::size_t i = 0; i < heldOut_.size(); ++i) {
-      options.heldOut.push_back(static_cast<int>(trials_.size() + i));
-    }
-    return options;
-  }
-
   static DiscoverWording wordingOf(const bio::discover::ElbowDisagreement& data) {
     const bio::Coordinate& coordinate = data.widest().coordinate();
     const bool isAngle = coordinate.isRotation;
@@ -210,12 +171,6 @@ class Discover : public Command {
     wording.commands = "excitations";
     wording.present = data.widest().present();
     return wording;
-  }
-
-  /// Surrogates are not added: they would hide what is unknown.
-  static bool mayBeAdded(const info::discover::Verdict& verdict) {
-    return verdict.reached == Stage::finished && !verdict.surrogate && !verdict.effects.empty() &&
-           verdict.finding != Finding::numerical;
   }
 
   /// Writes the model with the effects, and the trials where EMG or sensor were at fault.

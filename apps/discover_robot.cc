@@ -3,17 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
+#include <cmath>
 #include <fstream>
 
 #include "angle_unit.h"
 #include "discover_report.h"
+#include "discover_search.h"
+#include "follow_up.h"
 #include "info/systems/robot_disagreement.h"
 #include "info/version.h"
 #include "input_rules.h"
 #include "interruption.h"
 #include "json_text.h"
-#include "progress_bar.h"
 #include "result.h"
 #include "robot_trial.h"
 
@@ -21,7 +22,6 @@ namespace app {
 namespace {
 
 using info::discover::Finding;
-using info::discover::Stage;
 using info::robot::RobotDisagreement;
 using nlohmann::ordered_json;
 
@@ -99,47 +99,28 @@ DiscoverWording wordingOf(const RobotDisagreement& data) {
   return wording;
 }
 
-/// What would tell the members of a class apart, or what to record next.
-std::string nextExperiment(const RobotDisagreement& data, const info::discover::Verdict& verdict) {
-  const auto has = [&](const auto& effect, std::initializer_list<const char*> beginnings) {
-    return std::count_if(effect.equals.begin(), effect.equals.end(), [&](std::size_t c) {
-      return std::any_of(beginnings.begin(), beginnings.end(), [&](const char* with) {
-        return data.candidates()[c].id.rfind(with, 0) == 0;
-      });
-    });
-  };
-  for (const auto& effect : verdict.effects) {
-    if (effect.equals.size() < 2) continue;
-    if (has(effect, {"gain", "mass", "bias"}) > 1)
-      return "Let the robot hang still, once as it is and once with a known mass or angle added: "
-             "the sensor then shows its gain and bias, and nothing moves.";
-    if (has(effect, {"visc", "coulomb", "stribeck", "drag", "damping"}) > 1)
-      return "Let it swing freely from a large angle until it rests: dry friction makes the "
-             "amplitude fall in a straight line, viscosity by the same share each time, drag "
-             "fastest at the start.";
-    if (has(effect, {"lag", "clock"}) > 1)
-      return "Hold the cart and push the links by hand: a clock shifts what the sensors show, the "
-             "cart's lag does not.";
-    if (has(effect, {"tilt", "bias"}) > 1)
-      return "Turn the robot about the vertical by half a turn: a tilt changes its sign, a bias "
-             "stays.";
-    return "Repeat a trial with another motion of the cart, faster and wider; "
-           "`fisherhill robot` finds one that tells the parameters apart.";
-  }
-  if (verdict.reached != Stage::finished && verdict.finding != Finding::numerical)
-    return "None yet: run this to its end.";
-  switch (verdict.finding) {
-    case Finding::unknown:
-      return "Hold the cart still and let the robot swing: what is missing then shows without the "
-             "drive.";
-    case Finding::none:
-      return "To see less than the table of detectable sizes says, record longer, faster and over "
-             "more of the range.";
-    case Finding::numerical:
-      return "None yet: repeat this with a shorter --step.";
-    default:
-      return "Repeat one trial that was not used here, with --with with_effect.json.";
-  }
+const FollowUps& followUpsOfRobots() {
+  static const FollowUps known{
+      {
+          {{"gain", "mass", "bias"},
+           "Let the robot hang still, once as it is and once with a known mass or angle added: "
+           "the sensor then shows its gain and bias, and nothing moves."},
+          {{"visc", "coulomb", "stribeck", "drag", "damping"},
+           "Let it swing freely from a large angle until it rests: dry friction makes the "
+           "amplitude fall in a straight line, viscosity by the same share each time, drag "
+           "fastest at the start."},
+          {{"lag", "clock"},
+           "Hold the cart and push the links by hand: a clock shifts what the sensors show, the "
+           "cart's lag does not."},
+          {{"tilt", "bias"},
+           "Turn the robot about the vertical by half a turn: a tilt changes its sign, a bias "
+           "stays."},
+      },
+      "Repeat a trial with another motion of the cart, faster and wider; `fisherhill robot` "
+      "finds one that tells the parameters apart.",
+      "Hold the cart still and let the robot swing: what is missing then shows without the drive.",
+      "Repeat one trial that was not used here, with --with with_effect.json."};
+  return known;
 }
 
 class RobotSearch {
@@ -153,7 +134,6 @@ class RobotSearch {
     const std::vector<std::string> names = {"verdict.json", "with_effect.json"};
     OutputFolder folder(context_, names);
     Summary summary(context_);
-    // the first input is the model's, as everywhere
     std::vector<info::robot::Trial> trials;
     const std::vector<info::robot::Channel> channels =
         request_.system == "double-pendulum" ? info::robot::doublePendulum().channels
@@ -164,7 +144,7 @@ class RobotSearch {
       trials.push_back(readRobotTrial(file, channels, request_.ignoreExtra, warnings));
       for (const std::string& warning : warnings) summary.warn(warning);
     }
-    mustDiffer(summary);
+    inputsMustDiffer(summary, request_.trials.size(), 0);
     info::robot::Model model = plainModel(request_.system, trials);
     std::map<std::string, std::string> present;
     if (!request_.with.empty()) {
@@ -172,82 +152,51 @@ class RobotSearch {
       summary.addInput(request_.with);
     }
     resultsMustNotBeInputs(summary, folder, names);
-    find(model, trials);
-    if (request_.trials.size() == 1 && request_.heldOut.empty())
-      summary.warn(
-          "one trial and none held out: whether a name holds for other motions remains untested; "
-          "add trials, or one with --hold-out");
+    const DiscoverSearch found =
+        searchForEffects([&](double step) { return attempt(model, trials, step); },
+                         request_.step.value_or(info::robot::DisagreementOptions{}.step),
+                         request_.step ? HUGE_VAL : 1e-3);
+    const info::discover::Verdict& verdict = found.verdict;
+    warnOfOneTrial(summary, request_.trials.size(), request_.heldOut.size());
     DiscoverWording wording = wordingOf(*data_);
     wording.present = present;
-    const std::string next = nextExperiment(*data_, verdict_);
+    const std::string next = followUp(*data_, verdict, followUpsOfRobots());
     const std::string name = "the " + request_.system;
-    const DiscoverFindings findings{name,     files,    *data_, wording,
-                                    options_, verdict_, next,   wallSeconds_};
+    const DiscoverFindings findings{name,          files,   *data_, wording,
+                                    found.options, verdict, next,   found.wallSeconds};
     summary.set("system", request_.system);
-    summary.set("step_s", step_);
+    summary.set("step_s", found.step);
     for (std::size_t c = 0; c < channels.size(); ++c)
       summary.set(fmt::format("noise_{}_{}", channels[c].name, wording.outputs[c].unit),
                   wording.unit * data_->deviations()[c]);
     tellFindings(findings, summary);
     folder.write("verdict.json",
                  [&](std::ostream& out) { out << jsonText(verdictJson(findings), 2) << '\n'; });
-    if (mayBeAdded())
+    if (mayBeAdded(verdict))
       folder.write("with_effect.json", [&](std::ostream& out) {
         out << jsonText(repaired(findings, summary), 2) << '\n';
       });
     deliver(context_, summary, discoverReport(findings), folder);
-    if (interrupted_) throw Interrupted{};
-    return verdict_.finding == Finding::numerical ? ExitStatus::answerIsNo : ExitStatus::done;
+    if (found.interrupted) throw Interrupted{};
+    return verdict.finding == Finding::numerical ? ExitStatus::answerIsNo : ExitStatus::done;
   }
 
  private:
-  void mustDiffer(const Summary& summary) const {
-    const auto& inputs = summary.inputs();
-    for (std::size_t i = 0; i < inputs.size(); ++i)
-      for (std::size_t j = i + 1; j < inputs.size(); ++j) {
-        if (inputs[i].sha256 != inputs[j].sha256) continue;
-        const std::size_t training = request_.trials.size();
-        throw std::invalid_argument(
-            i < training && j >= training
-                ? fmt::format("{}: is held out, and estimated from as {}", inputs[j].path,
-                              inputs[i].path)
-                : fmt::format("{}: is the same trial as {}", inputs[j].path, inputs[i].path));
-      }
-  }
-
-  /// Steps that are too long look like an effect: shorter ones, unless they were asked for.
-  void find(const info::robot::Model& model, const std::vector<info::robot::Trial>& trials) {
-    const auto begin = std::chrono::steady_clock::now();
+  /// The robot at a time step, and what the engine is told.
+  SearchAttempt attempt(const info::robot::Model& model,
+                        const std::vector<info::robot::Trial>& trials, double step) {
     info::robot::DisagreementOptions asked;
+    asked.step = step;
     asked.without = request_.without;
     for (std::size_t c = 0; c < request_.noise.size(); ++c) {
       const bool isAngle = c < model.channels.size() && model.channels[c].unit == "rad";
       asked.deviations.push_back(isAngle ? request_.noise[c] * degree : request_.noise[c]);
     }
-    options_.maxEffects = request_.maxEffects;
-    for (std::size_t i = 0; i < request_.heldOut.size(); ++i)
-      options_.heldOut.push_back(static_cast<int>(request_.trials.size() + i));
-    for (step_ = request_.step.value_or(asked.step);; step_ /= 2) {
-      asked.step = step_;
-      data_ = std::make_unique<RobotDisagreement>(model, trials, asked);
-      if (!request_.noise.empty()) options_.outputDeviation = data_->deviations().front();
-      ProgressBar bar("discover");
-      options_.progress = [&](const info::discover::Progress& at) {
-        interrupted_ = interruptionRequested();
-        if (!interrupted_) bar.update(at.fraction);
-        return !interrupted_;
-      };
-      verdict_ = info::discover::run(*data_, options_);
-      options_.progress = {};
-      if (verdict_.finding != Finding::numerical || request_.step || step_ < 1e-3) break;
-    }
-    wallSeconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  }
-
-  /// Surrogates are not added: they would hide what is unknown.
-  bool mayBeAdded() const {
-    return verdict_.reached == Stage::finished && !verdict_.surrogate &&
-           !verdict_.effects.empty() && verdict_.finding != Finding::numerical;
+    data_ = std::make_unique<RobotDisagreement>(model, trials, asked);
+    SearchAttempt one{*data_, engineOptions(request_.maxEffects, request_.trials.size(),
+                                            request_.heldOut.size())};
+    if (!request_.noise.empty()) one.options.outputDeviation = data_->deviations().front();
+    return one;
   }
 
   /// The effects, and where they come from.
@@ -266,10 +215,6 @@ class RobotSearch {
   const RobotRequest& request_;
   const CommandContext& context_;
   std::unique_ptr<RobotDisagreement> data_;
-  info::discover::Options options_;
-  info::discover::Verdict verdict_;
-  double step_ = 0, wallSeconds_ = 0;
-  bool interrupted_ = false;
 };
 
 }  // namespace
@@ -289,8 +234,8 @@ void addRobotOptions(CLI::App& options, RobotRequest& request) {
       ->type_name("FILE");
   options
       .add_option("--noise", request.noise,
-                  "with --system: standard deviation of each measured column [deg or N]; default: "
-                  "from the data themselves")
+                  "with --system: standard deviation of each measured column [deg or N]; "
+                  "default: from the data themselves")
       ->check(CLI::PositiveNumber)
       ->delimiter(',')
       ->allow_extra_args(false)

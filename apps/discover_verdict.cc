@@ -144,10 +144,10 @@ ordered_json verdictJson(const DiscoverFindings& f) {
     json["unknown"] = {{"formula", verdict.unknown->formula},
                        {"stable", verdict.unknown->stable},
                        {"explained", number(verdict.unknown->explained)},
-                       {"peak_Hz", number(verdict.unknown->peakFrequency)},
-                       {"rms_Nm", number(verdict.unknown->forceSize)}};
-    if (f.wording.forceUnit != "N·m") {
-      json["unknown"].erase("rms_Nm");
+                       {"peak_Hz", number(verdict.unknown->peakFrequency)}};
+    if (f.wording.forceUnit == "N·m") {
+      json["unknown"]["rms_Nm"] = number(verdict.unknown->forceSize);
+    } else {
       json["unknown"]["rms"] = number(verdict.unknown->forceSize);
       json["unknown"]["rms_unit"] = f.wording.forceUnit;
     }

@@ -7,12 +7,12 @@
 
 namespace app {
 
-void inputsMustDiffer(const Summary& summary, std::size_t training) {
+void inputsMustDiffer(const Summary& summary, std::size_t training, std::size_t first) {
   const auto& inputs = summary.inputs();
-  for (std::size_t i = 1; i < inputs.size(); ++i) {
+  for (std::size_t i = first; i < inputs.size(); ++i) {
     for (std::size_t j = i + 1; j < inputs.size(); ++j) {
       if (inputs[i].sha256 != inputs[j].sha256) continue;
-      const bool between = i <= training && j > training;
+      const bool between = i < first + training && j >= first + training;
       throw std::invalid_argument(
           between ? fmt::format("{}: is held out, and estimated from as {}", inputs[j].path,
                                 inputs[i].path)

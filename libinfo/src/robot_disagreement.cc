@@ -7,6 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "info/discover/output_deviation.h"
+
 namespace info::robot {
 
 using Eigen::Index;
@@ -33,25 +35,13 @@ void mustBeSound(const Trial& trial, std::size_t channels) {
   }
 }
 
-// Noise of a channel from third differences of neighbouring rows, as info/discover does.
 double noiseOf(const std::vector<Trial>& trials, Index channel, const std::string& name) {
-  double sum = 0, count = 0;
-  for (const Trial& trial : trials)
-    for (std::size_t k = 3; k < trial.times.size(); ++k) {
-      const double h = trial.times[k] - trial.times[k - 1];
-      if (std::abs(trial.times[k - 1] - trial.times[k - 2] - h) > 1e-3 * h ||
-          std::abs(trial.times[k - 2] - trial.times[k - 3] - h) > 1e-3 * h)
-        continue;
-      const auto at = [&](std::size_t i) { return trial.measured(static_cast<Index>(i), channel); };
-      const double third = at(k) - 3 * at(k - 1) + 3 * at(k - 2) - at(k - 3);
-      if (!std::isfinite(third)) continue;
-      sum += third * third;
-      ++count;
-    }
-  if (!(sum > 0) || count < 5)
+  discover::ThirdDifferences differences;
+  for (const Trial& trial : trials) differences.add(trial.times, trial.measured.col(channel));
+  if (!(differences.squares > 0) || differences.count < 5)
     throw std::invalid_argument(fmt::format(
         "{}: the trials must hold at least eight equally spaced values that scatter", name));
-  return std::sqrt(sum / (20 * count));
+  return differences.deviation();
 }
 
 }  // namespace

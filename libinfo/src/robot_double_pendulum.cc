@@ -1,3 +1,4 @@
+#include "info/systems/cart_double_pendulum.h"
 #include "robot_catalogue.h"
 #include "robot_walk.h"
 
@@ -114,18 +115,23 @@ struct Pendulum {
 // damping's at 5 rad/s 0.0025 N·m; sensors and clocks as data sheets allow, a few degrees, 5 %, 50
 // ms.
 std::vector<discover::Quantity> quantitiesOfPendulum() {
-  const double plate1 = 0.085 * (0.305 * 0.305 + 0.0445 * 0.0445) / 12;
-  const double plate2 = 0.0847 * (0.305 * 0.305 + 0.0381 * 0.0381) / 12;
-  const double pivots = 0.305 - 2 * 0.0127;
+  constexpr double mass1 = 0.085, damping = 5e-4;
+  const CartDoublePendulum<> rig;
+  const auto plate = [](double mass, double length, double width) {
+    return mass * (length * length + width * width) / 12;
+  };
+  const double plate1 = plate(mass1, rig.length1, rig.width1);
+  const double plate2 = plate(rig.mass2, rig.length2, rig.width2);
+  const double pivots = rig.length1 - 2 * rig.offset;
   return {
-      {"mass of link 1", "kg", 0.085, 0.02, 0.35, 0.03, true},
-      {"mass of link 2", "kg", 0.0847, 0.02, 0.35, 0.03, true},
-      {"mass centre of link 1", "m", 0.146, 0.04, 0.28, 0.02, true},
-      {"mass centre of link 2", "m", 0.125, 0.03, 0.28, 0.02, true},
+      {"mass of link 1", "kg", mass1, 0.02, 0.35, 0.03, true},
+      {"mass of link 2", "kg", rig.mass2, 0.02, 0.35, 0.03, true},
+      {"mass centre of link 1", "m", rig.com1, 0.04, 0.28, 0.02, true},
+      {"mass centre of link 2", "m", rig.com2, 0.03, 0.28, 0.02, true},
       {"inertia of link 1", "kg·m²", plate1, plate1 / 4, plate1 * 4, 0.05, true},
       {"inertia of link 2", "kg·m²", plate2, plate2 / 4, plate2 * 4, 0.05, true},
       {"distance of the pivots", "m", pivots, pivots / 2, pivots * 2, 0.005, true},
-      {"damping of both joints", "N·m·s/rad", 5e-4, 2e-5, 1e-2, 0.3, true},
+      {"damping of both joints", "N·m·s/rad", damping, 2e-5, 1e-2, 0.3, true},
       {"viscosity 1", "N·m·s/rad", 0, 0, 0.05, 2e-3},
       {"viscosity 2", "N·m·s/rad", 0, 0, 0.05, 2e-3},
       {"dry moment 1", "N·m", 0, 0, 0.1, 5e-3},

@@ -29,17 +29,25 @@ hidden::RobotDataSet hiding(const ScratchFolder& scratch, const std::string& sys
   return set;
 }
 
+std::string robotFileOf(const ScratchFolder& scratch, const char* name) {
+  return (scratch / "set" / name).string();
+}
+
+/// What the program says of the set, written to `out` in the scratch folder.
+json verdictOnRobot(const ScratchFolder& scratch, const std::string& system) {
+  const ProgramResult result =
+      runFisherHill({"discover", "--system", system, robotFileOf(scratch, "train_1.sto"),
+                     robotFileOf(scratch, "train_2.sto"), robotFileOf(scratch, "train_3.sto"),
+                     "--hold-out", robotFileOf(scratch, "held_out.sto"), "--max-effects", "1",
+                     "--out", (scratch / "out").string()});
+  if (result.status != 0) throw std::runtime_error(result.err);
+  return json::parse(contentOf(scratch / "out" / "verdict.json"));
+}
+
 TEST(DiscoverRobotCommand, NamesTheDryFrictionOfADoublePendulumAndFindsNothingMoreOnceItIsBuiltIn) {
   const ScratchFolder scratch;
   const auto set = hiding(scratch, "double-pendulum", "coulomb_1", 10000);
-  const auto file = [&](const char* name) { return (scratch / "set" / name).string(); };
-  const std::string out = (scratch / "out").string();
-  const ProgramResult result =
-      runFisherHill({"discover", "--system", "double-pendulum", file("train_1.sto"),
-                     file("train_2.sto"), file("train_3.sto"), "--hold-out", file("held_out.sto"),
-                     "--max-effects", "1", "--out", out});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const auto verdict = json::parse(contentOf(out + "/verdict.json"));
+  const json verdict = verdictOnRobot(scratch, "double-pendulum");
   EXPECT_EQ(verdict["verdict"], "named") << verdict["sentence"];
   ASSERT_EQ(verdict["effects"].size(), 1u);
   EXPECT_EQ(verdict["effects"][0]["id"], "coulomb_1");
@@ -49,14 +57,15 @@ TEST(DiscoverRobotCommand, NamesTheDryFrictionOfADoublePendulumAndFindsNothingMo
   EXPECT_LT(moment["sd"].get<double>(), 0.2 * truth);
   EXPECT_GT(verdict["gap"]["held_out"]["gap_closed"].get<double>(), 0.9);
   EXPECT_TRUE(verdict["localisation"].contains("inputs"));
-  const std::string report = contentOf(out + "/report.html");
+  const std::string report = contentOf(scratch / "out" / "report.html");
   for (const char* title : {"link1 [deg]", "link2 [deg]", "What is missing", "Score over time",
                             "Score over angle and speed", "Acceleration of the cart"})
     EXPECT_THAT(report, HasSubstr(title));
 
   const ProgramResult again =
-      runFisherHill({"discover", "--system", "double-pendulum", "--with", out + "/with_effect.json",
-                     file("train_1.sto"), "--max-effects", "1", "--json"});
+      runFisherHill({"discover", "--system", "double-pendulum", "--with",
+                     (scratch / "out" / "with_effect.json").string(),
+                     robotFileOf(scratch, "train_1.sto"), "--max-effects", "1", "--json"});
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(json::parse(again.out)["verdict"], "none");
 }
@@ -64,14 +73,7 @@ TEST(DiscoverRobotCommand, NamesTheDryFrictionOfADoublePendulumAndFindsNothingMo
 TEST(DiscoverRobotCommand, NamesTheBiasOfALoadCell) {
   const ScratchFolder scratch;
   const auto set = hiding(scratch, "suspended-mass", "bias", 10000);
-  const auto file = [&](const char* name) { return (scratch / "set" / name).string(); };
-  const std::string out = (scratch / "out").string();
-  const ProgramResult result =
-      runFisherHill({"discover", "--system", "suspended-mass", file("train_1.sto"),
-                     file("train_2.sto"), file("train_3.sto"), "--hold-out", file("held_out.sto"),
-                     "--max-effects", "1", "--out", out});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const auto verdict = json::parse(contentOf(out + "/verdict.json"));
+  const json verdict = verdictOnRobot(scratch, "suspended-mass");
   EXPECT_EQ(verdict["verdict"], "named") << verdict["sentence"];
   ASSERT_EQ(verdict["effects"].size(), 1u);
   EXPECT_EQ(verdict["effects"][0]["id"], "bias");
@@ -79,7 +81,7 @@ TEST(DiscoverRobotCommand, NamesTheBiasOfALoadCell) {
   EXPECT_NEAR(bias["value"].get<double>(), set.label["effects"][0]["amplitude"].get<double>(),
               2 * bias["sd"].get<double>());
   EXPECT_TRUE(verdict["gap"]["train"].contains("rmse_after_N"));
-  EXPECT_THAT(contentOf(out + "/report.html"), HasSubstr("no angle was measured"));
+  EXPECT_THAT(contentOf(scratch / "out" / "report.html"), HasSubstr("no angle was measured"));
 }
 
 TEST(DiscoverRobotCommand, RefusesBadInputInOneLine) {

@@ -362,6 +362,9 @@ TEST(LatentForce, NodesMatchDifferencesOfSimulationsWithAnExternalForce) {
     }
   }
   EXPECT_GT(largest, 0.01);
+  // 0.1 s/(c₂ + c₁u/2) with c₁ = 7.667, c₂ = 1.46 and excitations of 0 to 0.3
+  EXPECT_GT(c.data.latentLag(), 0.038);
+  EXPECT_LT(c.data.latentLag(), 0.069);
   // a channel for each muscle, the last of constant size
   ASSERT_EQ(at.latentScale.cols(), 9);
   EXPECT_TRUE((at.latentScale.col(8).array() == 0.5).all());

@@ -113,6 +113,67 @@ TEST(JointFit, WhitensToTheInnovationsOfAKalmanFilterThatKnowsTheStart) {
   }
 }
 
+// A filter of first order behind an Ornstein–Uhlenbeck process, as a linear system of two states:
+// correlation e^{AΔ}P of its second, P stationary.
+TEST(LatentCorrelation, IsThatOfALagBehindAnOrnsteinUhlenbeckProcess) {
+  const double time = 0.08;
+  for (const double lag : {0.02, 0.05, 0.0799999, 0.08, 0.2}) {
+    Eigen::Matrix2d A, P;
+    A << -1 / time, 0, 1 / lag, -1 / lag;
+    const double cross = time / (time + lag);
+    P << 1, cross, cross, cross;
+    for (const double interval : {0.0, 0.01, 0.1, 0.4}) {
+      Eigen::Matrix2d forward = Eigen::Matrix2d::Identity();
+      constexpr int steps = 20000;
+      const Eigen::Matrix2d half = A * (interval / steps / 2);
+      const Eigen::Matrix2d one =
+          (Eigen::Matrix2d::Identity() - half).inverse() * (Eigen::Matrix2d::Identity() + half);
+      for (int i = 0; i < steps; ++i) forward = (one * forward).eval();
+      EXPECT_NEAR(latentCorrelation(interval, time, lag), (forward * P)(1, 1) / cross, 1e-5)
+          << lag << " s, " << interval << " s";
+    }
+  }
+  EXPECT_EQ(latentCorrelation(0.1, time, 0), std::exp(-0.1 / time));
+}
+
+// Several channels behind a lag: for a linear model the evidence is that of one normal distribution
+// of all samples.
+TEST(JointFit, OfChannelsBehindALagHasTheEvidenceOfTheirJointNormalDistribution) {
+  LinearDisagreement data = drawn(2, 50, 0.4);
+  data.lag = 0.03;
+  data.scale = MatrixXd::Zero(50, 3);
+  data.scale.col(0).head(25).setConstant(0.8);
+  data.scale.col(1).tail(30).setLinSpaced(0.2, 1.1);
+  data.scale.col(2).setConstant(0.4);
+  const Likelihood likelihood(data, {0, 1}, nominalValues(data), kTime);
+  const Hypothesis h = makeHypothesis(data, {0}, {0, 1});
+  const Fit fit = likelihood.fit(h, {kOutput, kLatent, kTime}, nominalValues(data), {}, kExact);
+
+  MatrixXd K(50, 50);
+  for (Index i = 0; i < 50; ++i)
+    for (Index j = 0; j < 50; ++j)
+      K(i, j) = kLatent * kLatent * data.scale.row(i).dot(data.scale.row(j)) *
+                latentCorrelation(LinearDisagreement::kStep * std::abs(double(i - j)), kTime, 0.03);
+  std::vector<std::size_t> wanted;
+  for (const FreeQuantity& q : h.free) wanted.push_back(q.quantity);
+  VectorXd e(100);
+  MatrixXd J(100, static_cast<Index>(wanted.size())), S = MatrixXd::Zero(100, 100);
+  for (int t = 0; t < 2; ++t) {
+    const auto p = data.predict(t, nominalValues(data), {}, wanted, true);
+    e.segment(50 * t, 50) = data.measured(t) - p.outputs;
+    J.middleRows(50 * t, 50) = p.gamma;
+    S.block(50 * t, 50 * t, 50, 50) = p.latentGamma * K * p.latentGamma.transpose();
+  }
+  for (std::size_t i = 0; i < h.free.size(); ++i)
+    J.col(static_cast<Index>(i)) *= h.free[i].deviation;
+  S += J * J.transpose() + kOutput * kOutput * MatrixXd::Identity(100, 100);
+  const Eigen::LLT<MatrixXd> factor = S.llt();
+  const double expected = -0.5 * e.dot(factor.solve(e)) -
+                          MatrixXd(factor.matrixL()).diagonal().array().log().sum() -
+                          100 * std::log(std::sqrt(2 * std::numbers::pi));
+  EXPECT_NEAR(fit.logEvidence, expected, 1e-6);
+}
+
 TEST(JointFit, OfASimulationIsLinearRegressionWithPriors) {
   const LinearDisagreement data = drawn(2, 40, 0.4);
   const Likelihood likelihood(data, {0, 1}, nominalValues(data));

@@ -78,6 +78,7 @@ class LinearDisagreement : public info::discover::Disagreement {
     return measured_[static_cast<std::size_t>(trial)];
   }
   const std::vector<double>& latentTimes(int) const override { return times_; }
+  double latentLag() const override { return lag; }
 
   Prediction predict(int trial, const VectorXd& values, const VectorXd& latent,
                      const std::vector<std::size_t>& wanted, bool latentToo) const override {
@@ -92,7 +93,7 @@ class LinearDisagreement : public info::discover::Disagreement {
       p.gamma.col(static_cast<Eigen::Index>(j)) = outputs(trial, unit, {});
     }
     if (latentToo) {
-      p.latentScale = VectorXd::Ones(n);
+      p.latentScale = scale.size() == 0 ? MatrixXd(MatrixXd::Ones(n, 1)) : scale;
       p.latentGamma.resize(n, n);
       for (Eigen::Index j = 0; j < n; ++j)
         p.latentGamma.col(j) = outputs(trial, VectorXd::Zero(values.size()), VectorXd::Unit(n, j));
@@ -117,6 +118,8 @@ class LinearDisagreement : public info::discover::Disagreement {
   }
   std::vector<std::string> inputNames() const override { return {"u"}; }
 
+  MatrixXd scale;  ///< of the latent force, samples × channels; empty: 1
+  double lag = 0;  ///< [s]
   Eigen::Matrix2d F;
   Eigen::Vector2d B;
 

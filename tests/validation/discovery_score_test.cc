@@ -97,19 +97,6 @@ TEST(Judge, DeclaredEquivalentsAreRightButTellNoAmplitude) {
   EXPECT_FALSE(o.z.has_value());
 }
 
-TEST(Judge, WhatTheCommandCallsByAnotherNameIsTheSame) {
-  const Outcome o = judge(
-      "a", labelOf("single", Json::array({truthOf("crosstalk", 0.06, {"crosstalk_reverse"})})),
-      verdictOf("ambiguous",
-                Json::array({effectOf("crosstalk_BIC_TRI", "input", 0.5, 0.05, 0.01, "share", "")}),
-                Json::array({"crosstalk_BIC_TRI", "crosstalk_TRI_BIC"})));
-  EXPECT_TRUE(o.firstIsRight && o.classHasTruth);
-  EXPECT_NEAR(o.z.value(), -1, 1e-9);
-  EXPECT_FALSE(judge("a", labelOf("single", Json::array({truthOf("crosstalk", 0.06)})),
-                     verdictOf("named", Json::array({effectOf("crosstalk_BRA_TRI", "input", 1)})))
-                   .firstIsRight);
-}
-
 TEST(Judge, AWrongNameWithTheTruthInItsClassIsNotConfidentlyWrong) {
   const Json label = labelOf("single", Json::array({truthOf("visc", 0.3)}));
   const Json effects = Json::array({effectOf("coulomb", "structure", 0.96)});

@@ -30,7 +30,8 @@ TEST(HiddenData, ItsRecordReplaysToTheSameMotion) {
   truth.numbers = shipped();
   RandomNumbers random(5, 0);
   drawNuisances(truth, random);
-  for (const char* id : {"delay", "shape", "crosstalk", "gain_TRI", "offset", "visc", "clock"}) {
+  for (const char* id :
+       {"delay", "shape", "crosstalk_BIC_TRI", "gain_TRI", "offset", "visc", "clock"}) {
     hiddenEffect(id).apply(truth, hiddenEffect(id).amplitude(0.5), random);
   }
   TrialPlan plan;

@@ -204,8 +204,8 @@ TEST(TrueElbow, TheInputChainDoesWhatTheTableSays) {
   EXPECT_NEAR(at("offset", 1, 0.5)[7], 0.19, 1e-12);
   EXPECT_NEAR(at("gain_TRI", 1, 0.5)[2], 0.2 * (1 - 0.4), 1e-12);
   EXPECT_NEAR(at("gain_TRI", 1, 0.5)[3], 0.2, 1e-12);
-  EXPECT_NEAR(at("crosstalk", 1, 0)[0], 0.1 - 0.06 * 0.3, 1e-12);
-  EXPECT_NEAR(at("crosstalk", 1, 0)[4], 0.2, 1e-12);
+  EXPECT_NEAR(at("crosstalk_BIC_TRI", 1, 0)[0], 0.1 - 0.06 * 0.3, 1e-12);
+  EXPECT_NEAR(at("crosstalk_BIC_TRI", 1, 0)[4], 0.2, 1e-12);
   EXPECT_NEAR(at("shape", 1, 0.5)[0], std::expm1(-0.3) / std::expm1(-1.5), 1e-12);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdio>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -50,5 +51,20 @@ struct Arguments {
     return value;
   }
 };
+
+/// What main() returns: the program's own status; 2 after a line on standard error for wrong use, 1
+/// for what went wrong.
+template <class Program>
+int statusOf(const char* name, const Program& program) {
+  try {
+    return program();
+  } catch (const std::invalid_argument& error) {
+    std::fprintf(stderr, "%s: %s\n", name, error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", name, error.what());
+    return 1;
+  }
+}
 
 }  // namespace hidden

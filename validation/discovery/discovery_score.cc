@@ -7,7 +7,6 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -29,24 +28,9 @@ bool has(const std::vector<std::string>& list, const std::string& item) {
   return std::find(list.begin(), list.end(), item) != list.end();
 }
 
-// What `fisherhill discover` calls some of what labels know by another name.
-const std::map<std::string, std::string> calledElsewhere = {
-    {"crosstalk", "crosstalk_BIC_TRI"},
-    {"crosstalk_reverse", "crosstalk_TRI_BIC"},
-    {"sensorgain", "gain"},
-};
-
-std::string elsewhere(const std::string& id) {
-  const auto other = calledElsewhere.find(id);
-  return other == calledElsewhere.end() ? id : other->second;
-}
-
 std::vector<std::string> accepted(const Json& effect) {
   auto names = effect.value("equivalents", std::vector<std::string>{});
   names.insert(names.begin(), effect.at("id").get<std::string>());
-  for (std::size_t i = names.size(); i > 0; --i) {
-    names.push_back(elsewhere(names[i - 1]));
-  }
   return names;
 }
 
@@ -178,8 +162,7 @@ Outcome judge(const std::string& name, const Json& label, const Json& verdict) {
   for (const Json& truth : hiding) {
     for (const Json& effect : effects) {
       // an equivalent has its own amplitude, which the truth does not tell
-      const std::string said = effect.at("id"), id = truth.at("id");
-      if (o.claims && !o.z && (said == id || said == elsewhere(id))) o.z = deviation(effect, truth);
+      if (o.claims && !o.z && effect.at("id") == truth.at("id")) o.z = deviation(effect, truth);
     }
   }
   const auto gap = verdict.find("gap");

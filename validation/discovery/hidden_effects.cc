@@ -207,7 +207,7 @@ std::vector<EffectRow> makeTable() {
        false,
        {},
        input<&InputChain::shape>});
-  add({"crosstalk",
+  add({"crosstalk_BIC_TRI",
        "EMG crosstalk, biceps into triceps",
        in,
        true,
@@ -217,7 +217,7 @@ std::vector<EffectRow> makeTable() {
        "",
        0.06,
        false,
-       {"crosstalk_reverse"},
+       {"crosstalk_TRI_BIC"},
        input<&InputChain::crosstalk>});
   add({"gain_TRI",
        "electrode gain of the triceps",
@@ -377,7 +377,7 @@ std::vector<EffectRow> makeTable() {
        false,
        {},
        sensor<&Sensor::bias>});
-  add({"sensorgain",
+  add({"gain",
        "angle sensor gain",
        se,
        true,

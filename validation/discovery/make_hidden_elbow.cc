@@ -51,7 +51,7 @@ int make(const hidden::Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
+  return hidden::statusOf("make_hidden_elbow", [&] {
     const hidden::Arguments arguments(
         argc, argv,
         {"seed", "suite", "effect", "size", "emg-noise", "nuisances", "model", "out", "labels"},
@@ -61,11 +61,5 @@ int main(int argc, char** argv) {
       return 0;
     }
     return make(arguments);
-  } catch (const std::invalid_argument& e) {
-    fmt::print(stderr, "make_hidden_elbow: {}\n", e.what());
-    return 2;
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "make_hidden_elbow: {}\n", e.what());
-    return 1;
-  }
+  });
 }

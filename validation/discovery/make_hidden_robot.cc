@@ -49,7 +49,7 @@ int make(const hidden::Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
+  return hidden::statusOf("make_hidden_robot", [&] {
     const hidden::Arguments arguments(argc, argv,
                                       {"system", "seed", "suite", "effect", "size", "input-noise",
                                        "nuisances", "seconds", "out", "labels"},
@@ -59,11 +59,5 @@ int main(int argc, char** argv) {
       return 0;
     }
     return make(arguments);
-  } catch (const std::invalid_argument& e) {
-    fmt::print(stderr, "make_hidden_robot: {}\n", e.what());
-    return 2;
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "make_hidden_robot: {}\n", e.what());
-    return 1;
-  }
+  });
 }

@@ -224,7 +224,6 @@ ElbowDisagreement::Prediction ElbowDisagreement::predict(int trial, const Vector
       VectorXd::Constant(K, nan), MatrixXd::Constant(K, static_cast<Index>(wanted.size()), nan),
       MatrixXd::Constant(latentToo ? K : 0, numNodes, nan),
       MatrixXd::Constant(numNodes, 1, options_.latentFloor), VectorXd::Constant(K, nan)};
-  if (!values.allFinite()) return result;
   const ParameterCatalogue::Setting setting = settingAt(one, values, wanted);
   const SensorLaw sensor = widest_.sensorAt(values);
   const auto own = widest_.quantities().size();

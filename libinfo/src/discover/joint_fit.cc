@@ -94,27 +94,22 @@ Index Likelihood::samples() const {
   return n;
 }
 
-double Likelihood::cost(const Noise& noise, const Point& point) const {
-  double cost = 0.5 * point.xi.squaredNorm();
-  for (std::size_t t = 0; t < trials_.size(); ++t) {
-    VectorXd force;
-    if (point.eta[t].size() != 0) {
-      force = noise.latent * (roots_[t] * point.eta[t]);
-      cost += 0.5 * point.eta[t].squaredNorm();
-    }
-    const VectorXd y = data_.outputs(trials_[t], point.values, force);
-    cost += 0.5 * (data_.measured(trials_[t]) - y).squaredNorm() / (noise.output * noise.output);
-  }
+// J of residuals whose squares have this sum.
+double Likelihood::cost(const Noise& noise, const Point& point, double squares) {
+  double cost = 0.5 * point.xi.squaredNorm() + 0.5 * squares / (noise.output * noise.output);
+  for (const VectorXd& eta : point.eta) cost += 0.5 * eta.squaredNorm();
   return std::isfinite(cost) ? cost : kInfinity;
 }
 
-double Likelihood::costOf(const std::vector<Linear>& trials, const Noise& noise,
-                          const Point& point) {
-  double cost = 0.5 * point.xi.squaredNorm();
-  for (std::size_t t = 0; t < trials.size(); ++t)
-    cost += 0.5 * point.eta[t].squaredNorm() +
-            0.5 * trials[t].residuals.squaredNorm() / (noise.output * noise.output);
-  return std::isfinite(cost) ? cost : kInfinity;
+double Likelihood::simulatedCost(const Noise& noise, const Point& point) const {
+  double squares = 0;
+  for (std::size_t t = 0; t < trials_.size(); ++t) {
+    VectorXd force;
+    if (point.eta[t].size() != 0) force = noise.latent * (roots_[t] * point.eta[t]);
+    const VectorXd y = data_.outputs(trials_[t], point.values, force);
+    squares += (data_.measured(trials_[t]) - y).squaredNorm();
+  }
+  return cost(noise, point, squares);
 }
 
 Likelihood::Linear Likelihood::linearise(std::size_t at, const Hypothesis& hypothesis,
@@ -254,12 +249,17 @@ std::optional<Fit> Likelihood::tryFit(const Hypothesis& hypothesis, const Noise&
           linearise(t, hypothesis, noise.latent, at.values, at.xi, at.eta[t], {}, false));
     return linear;
   };
+  const auto costOf = [&](const std::vector<Linear>& linear, const Point& at) {
+    double squares = 0;
+    for (const Linear& l : linear) squares += l.residuals.squaredNorm();
+    return cost(noise, at, squares);
+  };
   std::vector<Linear> trials = linearised(point);
-  fit.cost = costOf(trials, noise, point);
+  fit.cost = costOf(trials, point);
   if (!std::isfinite(fit.cost) && !eta.empty()) {
     for (VectorXd& e : point.eta) e.setZero();
     trials = linearised(point);
-    fit.cost = costOf(trials, noise, point);
+    fit.cost = costOf(trials, point);
   }
   if (!std::isfinite(fit.cost)) return std::nullopt;
 
@@ -278,7 +278,7 @@ std::optional<Fit> Likelihood::tryFit(const Hypothesis& hypothesis, const Noise&
       double nextCost = kInfinity;
       if (next.to.values.allFinite()) {
         if (attempt == 0) there = linearised(next.to);
-        nextCost = attempt == 0 ? costOf(there, noise, next.to) : cost(noise, next.to);
+        nextCost = attempt == 0 ? costOf(there, next.to) : simulatedCost(noise, next.to);
       }
       if (nextCost < fit.cost) {
         accepted = true;

@@ -22,6 +22,12 @@ constexpr double kHopeless = 0.03;
 // with so large a latent force the base is too far from the data for linear steps
 constexpr double kPoor = 0.2;
 
+// η of another σ_d with the same latent force.
+std::vector<VectorXd> forceKept(std::vector<VectorXd> eta, double from, double to) {
+  for (VectorXd& one : eta) one *= from / to;
+  return eta;
+}
+
 }  // namespace
 
 Search::Search(const Disagreement& data, std::vector<int> trials, const Options& options,
@@ -33,16 +39,6 @@ Search::Search(const Disagreement& data, std::vector<int> trials, const Options&
       report_(std::move(report)) {
   likelihood_.emplace(data_, trials_, nominalValues(data_), options_.latentTime);
 }
-
-namespace {
-
-// η of another σ_d with the same latent force.
-std::vector<VectorXd> forceKept(std::vector<VectorXd> eta, double from, double to) {
-  for (VectorXd& one : eta) one *= from / to;
-  return eta;
-}
-
-}  // namespace
 
 // Follows σ_d from `size` to where the evidence is largest: MacKay's fixed point
 //     σ_d² ← σ_d²·|η|²/(γ + σ_d/s)

@@ -48,8 +48,8 @@ struct Candidate {
 ///
 /// The latent generalised force d(t) is given by its values at latentTimes(), straight lines
 /// between; its prior is the sum of independent Ornstein–Uhlenbeck processes behind a lag
-/// (latentLag()), of sizes σ_d·G_c(t), one for each channel c of the scale that predict() returns (one for each muscle, the size of its
-/// moment, and one of constant size; else a single 1).
+/// (latentLag()), of sizes σ_d·G_c(t), one for each channel c of the scale that predict() returns
+/// (one for each muscle, the size of its moment, and one of constant size; else a single 1).
 ///
 /// Laws. Pure: equal arguments give equal results, from any thread. Where the simulation fails the
 /// outputs are not finite.

@@ -113,8 +113,8 @@ class Likelihood {
   struct Point;
   struct Normal;
   struct Step;
-  double cost(const Noise& noise, const Point& point) const;
-  static double costOf(const std::vector<Linear>& trials, const Noise& noise, const Point& point);
+  static double cost(const Noise& noise, const Point& point, double squares);
+  double simulatedCost(const Noise& noise, const Point& point) const;
   Normal normalEquations(const std::vector<Linear>& trials, const Noise& noise,
                          const Point& point) const;
   Step step(const Hypothesis& hypothesis, const Normal& normal, const Point& point,

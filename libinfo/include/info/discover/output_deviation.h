@@ -1,10 +1,22 @@
 #pragma once
 
+#include <Eigen/Dense>
 #include <vector>
 
 #include "info/discover/disagreement.h"
 
 namespace info::discover {
+
+/// Third differences of samples that are equally spaced, Σ(Δ³y)²; those beside a gap, a value that
+/// is not finite or another spacing are left out.
+struct ThirdDifferences {
+  double squares = 0;
+  double count = 0;
+  /// @param times  [s], as many as values
+  void add(const std::vector<double>& times, const Eigen::Ref<const Eigen::VectorXd>& values);
+  /// Of white noise: third differences have twenty times its variance.
+  double deviation() const;
+};
 
 /// σ_y from the third differences of equally spaced samples, Σ(Δ³y)²/20: exact for noise on a curve
 /// that a parabola follows over four samples; slower curves add little.

@@ -97,11 +97,12 @@ Model doublePendulum();
 /// | id | effect | amplitude |
 /// |---|---|---|
 /// | drag | −k·|v|·v on the mass, v its velocity | k ≥ 0 [N·s²/m²] |
-/// | elastic | the string is C·(F − mg) longer than it hangs, inner damping 0.2 N·s/m | C ≥ 0 [m/N]
-/// | | lag | T·ȧ_c = a − a_c between command a and cart a_c | T ≥ 0 [s] | | saturation | the share
-/// s of all force beyond K is lost | s ≥ 0, 1: everything | | bias, gain | (1 + g)·F + b is read |
-/// b [N], g | | clock | the sensor shows what was T before | T ≥ 0 [s] | | mass, length | errors of
-/// parameters; gain and mass are the same to these data but for drag | |
+/// | elastic | the string is C·(F − mg) longer, inner damping 0.2 N·s/m | C ≥ 0 [m/N] |
+/// | lag | T·ȧ_c = a − a_c between command a and cart a_c | T ≥ 0 [s] |
+/// | saturation | the share s of all force beyond K is lost | s ≥ 0, 1: everything |
+/// | bias, gain | (1 + g)·F + b is read | b [N], g |
+/// | clock | the sensor shows what was T before | T ≥ 0 [s] |
+/// | mass, length | errors of parameters; gain and mass differ by drag alone | |
 /// @param leastForce, greatestForce  measured [N]: where saturation may begin
 Model suspendedMass(double leastForce, double greatestForce);
 
