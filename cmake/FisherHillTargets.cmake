@@ -82,3 +82,12 @@ function(fisherhill_test name)
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST
     PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS "${arg_LABELS}")
 endfunction()
+
+# fisherhill_count_allocations(test): support::allocations() tells how often memory was taken by malloc() or
+# operator new.
+function(fisherhill_count_allocations test)
+  set(counter ${PROJECT_SOURCE_DIR}/tests/support/allocations.cc)
+  target_sources(${test} PRIVATE ${counter})
+  set_source_files_properties(${counter} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  target_link_options(${test} PRIVATE -Wl,--wrap=malloc,--wrap=aligned_alloc)
+endfunction()

@@ -2,31 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
 #include <numbers>
 
 #include "../../libbio/src/arm_dynamics.h"
+#include "support/allocations.h"
 #include "support/elbow_model.h"
 #include "support/numbers.h"
-
-namespace {
-std::atomic<long> allocations{0};
-}
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
 
 namespace bio {
 namespace {
@@ -241,9 +222,9 @@ TEST(Coupled, NothingIsAllocatedInAStep) {
     const Case c = liftingCase();
     const double step = integrator == Integrator::rungeKutta4 ? 1e-4 : 0.01;
     const auto count = [&](double duration) {
-      const long before = allocations;
+      const long before = support::allocations();
       simulate(c.arm, c.excitation, c.start, options(integrator, step, duration));
-      return allocations - before;
+      return support::allocations() - before;
     };
     count(0.1);
     EXPECT_EQ(count(0.2), count(2.0));

@@ -26,6 +26,9 @@ void* __wrap_aligned_alloc(std::size_t align, std::size_t size) {
   if (void* place = std::malloc(size)) return place;
   throw std::bad_alloc();
 }
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  return std::malloc(size);
+}
 [[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t align) {
   if (void* place = std::aligned_alloc(static_cast<std::size_t>(align), size)) return place;
   throw std::bad_alloc();
