@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "bio/file_error.h"
-#include "bio/table_file.h"
+#include "bio/trial_table.h"
 
 namespace bio {
 namespace {
@@ -69,13 +69,21 @@ Meaning meaningOf(const Model& model, const Table& table, const std::string& col
 
 class TrialReader {
  public:
-  TrialReader(const std::filesystem::path& file, const Model& model, const TrialOptions& options)
-      : file_(file.string()), model_(model), options_(options), table_(readTable(file)) {}
+  TrialReader(Table table, const std::string& name, const Model& model, const TrialOptions& options)
+      : file_(name), model_(model), options_(options), table_(std::move(table)) {}
 
   Trial read() {
     trial_.file = file_;
     trial_.times = timesOf(table_);
-    if (trial_.times.size() < 2) fail("holds 1 row, a trial must hold at least 2");
+    if (const Eigen::Index rows = trial_.times.size(); rows < 2) {
+      fail(fmt::format("holds {} row{}, a trial must hold at least 2", rows, rows == 1 ? "" : "s"));
+    }
+    for (Eigen::Index row = 0; row < trial_.times.size(); ++row) {
+      const double before = row == 0 ? -HUGE_VAL : trial_.times[row - 1];
+      if (!(trial_.times[row] > before && std::isfinite(trial_.times[row]))) {
+        fail(fmt::format("time = {} s in row {}, must be finite and rise", trial_.times[row], row));
+      }
+    }
     sortColumns();
     readExcitations();
     return std::move(trial_);
@@ -188,10 +196,15 @@ class TrialReader {
 
 Trial readTrial(const std::filesystem::path& file, const Model& model,
                 const TrialOptions& options) {
+  return trialFrom(readTable(file), file.string(), model, options);
+}
+
+Trial trialFrom(const Table& table, const std::string& name, const Model& model,
+                const TrialOptions& options) {
   if (!(options.baseline >= 0 && options.baseline <= 1)) {
     throw std::domain_error(fmt::format("baseline = {}, must be 0 to 1", options.baseline));
   }
-  return TrialReader(file, model, options).read();
+  return TrialReader(table, name, model, options).read();
 }
 
 double excitationAt(const Trial& trial, Eigen::Index muscle, double t) {

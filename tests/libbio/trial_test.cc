@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "bio/file_error.h"
+#include "bio/trial_table.h"
 #include "support/numbers.h"
 #include "support/scratch_folder.h"
 
@@ -132,6 +133,39 @@ TEST_F(TrialFile, SaysInOneLineWhatIsWrong) {
             "trial.csv: columns 'elbow_flexion' and 'elbow_flexion_deg' both give 'elbow_flexion', "
             "must be one");
   EXPECT_THROW(read("time,BRA\n0,0\n1,0\n", {.baseline = 2}), std::domain_error);
+}
+
+TEST(TrialFromTable, IsTheTrialOfAFileWithTheSameColumns) {
+  const support::ScratchFolder folder;
+  const Table table{"",
+                    false,
+                    {},
+                    {"time", "BRA", "elbow_flexion_deg"},
+                    (Eigen::MatrixXd(2, 3) << 0, 0.5, 90, 0.1, 0.25, NAN).finished()};
+  const Trial trial = trialFrom(table, "columns", twoMuscles());
+  const Trial same = readTrial(
+      folder.file("a.csv", "time,BRA,elbow_flexion_deg\n0,0.5,90\n0.1,0.25,\n"), twoMuscles());
+  EXPECT_EQ(trial.file, "columns");
+  EXPECT_EQ(trial.times, same.times);
+  EXPECT_EQ(trial.muscles, same.muscles);
+  EXPECT_EQ(trial.excitations, same.excitations);
+  ASSERT_THAT(trial.measured, SizeIs(1));
+  EXPECT_EQ(trial.measured[0].times, same.measured[0].times);
+  EXPECT_EQ(trial.measured[0].values, same.measured[0].values);
+}
+
+TEST(TrialFromTable, RefusesTimesThatDoNotRise) {
+  for (const double second : {0.0, -1.0, HUGE_VAL, std::nan("")}) {
+    const Table table{
+        "", false, {}, {"time", "BRA"}, (Eigen::MatrixXd(2, 2) << 0, 0.5, second, 0.25).finished()};
+    try {
+      trialFrom(table, "columns", twoMuscles());
+      ADD_FAILURE() << second;
+    } catch (const FileError& error) {
+      EXPECT_THAT(error.what(), testing::AllOf(testing::StartsWith("columns: time = "),
+                                               HasSubstr("s in row 1, must be finite and rise")));
+    }
+  }
 }
 
 }  // namespace
