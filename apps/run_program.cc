@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <new>
 
-#include "info/version.h"
+#include "command_line.h"
 #include "interruption.h"
 #include "text.h"
 
@@ -49,42 +49,20 @@ int runCommand(Command& command, const CommandContext& context) {
 
 int runProgram(const std::vector<std::string>& arguments,
                std::vector<std::unique_ptr<Command>> commands) {
-  CLI::App program("Simulate, identify and explain how muscles move limbs.", "fisherhill");
-  program.set_version_flag("--version", fmt::format("fisherhill {}", info::version()));
-  program.require_subcommand(1);
-  program.footer("\n`fisherhill SUBCOMMAND --help` shows its options and an example.");
-
-  std::vector<CommandContext> contexts(commands.size());
-  std::vector<CLI::App*> subcommands;
-  for (std::size_t i = 0; i < commands.size(); ++i) {
-    const Command::About about = commands[i]->about();
-    CLI::App* subcommand = program.add_subcommand(about.name, about.purpose);
-    subcommand->footer("\nExample:\n  " + about.example);
-    commands[i]->addOptions(*subcommand);
-    contexts[i].subcommand = about.name;
-    contexts[i].commandLine = arguments;
-    addCommonOptions(*subcommand, contexts[i]);
-    subcommands.push_back(subcommand);
-  }
-
+  CommandLine line(std::move(commands));
+  CommandLine::Chosen chosen;
   try {
-    std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
-    if (!reversed.empty()) reversed.pop_back();
-    program.parse(reversed);
+    chosen = line.parse(arguments);
   } catch (const CLI::Success& request) {  // --help, --version
-    return program.exit(request);
+    return line.program().exit(request);
   } catch (const CLI::ParseError& error) {
-    const CLI::App* subcommand = parsedSubcommand(program);
+    const CLI::App* subcommand = parsedSubcommand(line.program());
     const std::string name = subcommand ? subcommand->get_name() : "";
     return fail(name, fmt::format("{} (see fisherhill {}--help)", oneLine(error.what()),
                                   name.empty() ? "" : name + " "));
   }
-
   catchInterruption();
-  for (std::size_t i = 0; i < commands.size(); ++i) {
-    if (subcommands[i]->parsed()) return runCommand(*commands[i], contexts[i]);
-  }
-  return fail("", "no subcommand was given");
+  return runCommand(*chosen.command, *chosen.context);
 }
 
 }  // namespace app

@@ -83,6 +83,15 @@ TEST(Readme, ListsExactlyTheSubcommandsThereAre) {
   EXPECT_EQ(rows, subcommands) << "rows of the table, subcommands";
 }
 
+TEST(Version, IsTheSameInTheProgramTheBuildAndTheCitation) {
+  const std::string version = support::runFisherHill({"--version"}).out;
+  const std::string number = version.substr(version.find(' ') + 1, version.size() - 12);
+  EXPECT_EQ(version, "fisherhill " + number + "\n");
+  EXPECT_THAT(contentOf(source / "CMakeLists.txt"), testing::HasSubstr("VERSION " + number + " "));
+  EXPECT_THAT(contentOf(source / "CITATION.cff"),
+              testing::HasSubstr("\nversion: " + number + "\n"));
+}
+
 TEST(Contributing, ItsCommandsAreTheLaunchersOwn) {
   const std::string launcher = contentOf(source / "start");
   for (const std::string& line : shellLines(source / "CONTRIBUTING.md")) {

@@ -1,0 +1,27 @@
+#include <iostream>
+#include <string>
+
+#include "command_line.h"
+#include "completion.h"
+#include "described_commands.h"
+#include "info/version.h"
+#include "manual_page.h"
+
+// describe_commands man|bash|zsh: what is installed beside the program, read off its command line.
+int main(int count, char** arguments) {
+  const std::string what = count == 2 ? arguments[1] : "";
+  app::CommandLine line(app::allCommands());
+  const app::DescribedCommand program = app::describe(line.program());
+  if (what == "man") {
+    std::cout << app::manualPage(program, info::version());
+  } else if (what == "bash") {
+    std::cout << app::bashCompletion(program);
+  } else if (what == "zsh") {
+    std::cout << app::zshCompletion(program);
+  } else {
+    std::cerr << "describe_commands: one of man, bash and zsh is needed\n";
+    return 2;
+  }
+  std::cout.flush();
+  return std::cout ? 0 : 1;
+}
