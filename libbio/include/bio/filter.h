@@ -34,10 +34,10 @@ enum class Passes { once, forwardAndBackward };
 ///     band-pass  Ω = (w² − w_l w_h)/((w_h − w_l) w)          band-stop  the reciprocal
 /// so a band-pass or band-stop of order n has 2n poles and slopes of order n on both sides. Unit
 /// gain at 0 (low-pass, band-stop), fs/2 (high-pass) or the band's centre, |Ω| = 1 at every edge.
-/// Source: Butterworth 1930; Oppenheim & Schafer, Discrete-Time Signal Processing, section 7.1.
+/// Edges (cutoff, low, high) are in Hz, 0 < edge < sampleRate/2, low < high. Source: Butterworth
+/// 1930; Oppenheim & Schafer, Discrete-Time Signal Processing, section 7.1.
 ///
 /// @param order n, 1 to 10
-/// @param cutoff,low,high edges [Hz], 0 < edge < sampleRate/2, low < high
 /// @param sampleRate fs [Hz] > 0
 /// @throws std::invalid_argument naming the edge, order or rate that breaks its rule
 Filter butterworthLowPass(int order, double cutoff, double sampleRate,
