@@ -54,4 +54,7 @@ set(CPACK_COMPONENT_PYTHON_DESCRIPTION
 musculoskeletal models, and Fisher information, bounds and estimation for systems
 defined in Python, with NumPy arrays.")
 
+# what is packed needs none of the validation programs
+set(CMAKE_SKIP_PACKAGE_ALL_DEPENDENCY ON)
+
 include(CPack)

@@ -53,6 +53,51 @@ TEST(Readme, EveryCommandOfTheProgramWorks) {
   EXPECT_EQ(result.status, 0) << result.err << result.out;
 }
 
+/// A command of a ```console block, and the lines shown below it.
+struct ShownRun {
+  std::string command;
+  std::vector<std::string> output;
+};
+
+std::vector<ShownRun> consoleRuns(const std::filesystem::path& file) {
+  std::vector<ShownRun> runs;
+  std::istringstream text(contentOf(file));
+  bool inside = false;
+  for (std::string line; std::getline(text, line);) {
+    if (line.starts_with("```")) {
+      inside = !inside && line == "```console";
+    } else if (inside && line.starts_with("$ ")) {
+      runs.push_back({line.substr(2), {}});
+    } else if (inside && line != "  …") {
+      runs.back().output.push_back(line);
+    }
+  }
+  return runs;
+}
+
+TEST(Readme, TourPrintsWhatItShows) {
+  const ScratchFolder scratch;
+  for (const char* data : {"models", "emg_data"}) {
+    std::filesystem::create_directory_symlink(source / data, scratch / data);
+  }
+  const std::string path = "PATH='" + std::string(FISHERHILL_PROGRAM_FOLDER) + "':$PATH; ";
+  int shown = 0;
+  for (const ShownRun& run : consoleRuns(source / "README.md")) {
+    // takes ten seconds; DiscoverCommand.NamesTheDamping… is the same command
+    if (run.command.starts_with("fisherhill discover ")) continue;
+#ifndef FISHERHILL_HAS_VIEW
+    if (run.command.starts_with("fisherhill render ")) continue;
+#endif
+    const auto result = support::runProgram({"bash", "-c", path + run.command}, scratch.path());
+    EXPECT_EQ(result.status, 0) << run.command << result.err;
+    for (const std::string& line : run.output) {
+      EXPECT_THAT("\n" + result.out, testing::HasSubstr("\n" + line + "\n")) << run.command;
+      ++shown;
+    }
+  }
+  EXPECT_GT(shown, 10);
+}
+
 TEST(Readme, ItsTestCommandIsWhatCiRuns) {
   const std::vector<std::string> lines = shellLines(source / "README.md");
   const std::string ci = contentOf(source / ".ci/run");
