@@ -29,8 +29,8 @@ std::vector<std::string> sourcesBelow(const std::string& folder) {
   return files;
 }
 
-const std::vector<std::string> folders = {"libinfo", "libbio",     "apps",
-                                          "tests",   "validation", "bench"};
+const std::vector<std::string> folders = {"libinfo",    "libbio", "apps",  "tests",
+                                          "validation", "bench",  "python"};
 
 void expectIncludesOnly(const std::string& pattern,
                         const std::function<bool(const std::string&)>& mayInclude) {

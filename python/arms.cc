@@ -1,0 +1,228 @@
+#include "arms.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "bio/osim_file.h"
+#include "bio/replay.h"
+#include "bio/trial_table.h"
+#include "interruptible.h"
+
+namespace python {
+namespace {
+
+bio::Trial trialOf(const bio::Model& model, const py::dict& columns, const std::string& name,
+                   bool ignoreExtra) {
+  bio::Table table;
+  for (const auto& [key, values] : columns) {
+    const auto column = values.cast<Eigen::VectorXd>();
+    const auto index = static_cast<Eigen::Index>(table.columns.size());
+    if (index == 0) table.values.resize(column.size(), static_cast<Eigen::Index>(columns.size()));
+    table.columns.push_back(key.cast<std::string>());
+    if (column.size() != table.values.rows()) {
+      throw std::invalid_argument(fmt::format("{}: column '{}' has {} rows, must be {} as '{}' has",
+                                              name, table.columns.back(), column.size(),
+                                              table.values.rows(), table.columns.front()));
+    }
+    table.values.col(index) = column;
+  }
+  return bio::trialFrom(table, name, model, {ignoreExtra});
+}
+
+py::dict measuredOf(const bio::Trial& trial) {
+  py::dict measured;
+  for (const bio::MeasuredMotion& one : trial.measured) {
+    measured[one.coordinate.c_str()] = py::make_tuple(one.times, one.values);
+  }
+  return measured;
+}
+
+std::vector<std::string> coordinatesOf(const bio::Model& model) {
+  std::vector<std::string> names;
+  for (const bio::Joint& joint : model.joints) {
+    for (const bio::Coordinate& one : joint.coordinates) names.push_back(one.name);
+  }
+  return names;
+}
+
+std::vector<std::string> musclesOf(const bio::Model& model) {
+  std::vector<std::string> names;
+  for (const bio::Muscle& one : model.muscles) {
+    if (one.enabled) names.push_back(one.name);
+  }
+  return names;
+}
+
+const char* outcomeOf(bio::Outcome outcome) {
+  switch (outcome) {
+    case bio::Outcome::completed:
+      return "completed";
+    case bio::Outcome::noSolution:
+      return "no solution";
+    case bio::Outcome::unstable:
+      return "unstable";
+    case bio::Outcome::stopped:
+      return "stopped";
+  }
+  return "";
+}
+
+/// Root mean square error against what was measured, by coordinate.
+py::dict errorsOf(const bio::Arm& arm, const bio::Trial& trial, const bio::Trajectory& motion) {
+  py::dict errors;
+  for (const bio::MeasuredMotion& measured : trial.measured) {
+    const auto& free = arm.skeleton().coordinates();
+    const bool isFree = std::any_of(free.begin(), free.end(), [&](const bio::Coordinate& one) {
+      return one.name == measured.coordinate;
+    });
+    if (isFree && motion.time.back() >= measured.times[0]) {
+      errors[measured.coordinate.c_str()] = bio::compareWithMeasured(arm, motion, measured).rms;
+    }
+  }
+  return errors;
+}
+
+py::object replay(const bio::Model& model, const bio::Trial& trial,
+                  const std::map<std::string, double>& initial, const py::kwargs& keywords) {
+  const ArmChoice choice = armChoice(keywords);
+  bio::Trajectory motion;
+  bio::MuscleReport muscles;
+  double energyError = 0;
+  std::unique_ptr<bio::Arm> arm;
+  interruptible([&](const std::atomic<bool>& goOn) {
+    arm = std::make_unique<bio::Arm>(model, choice.armOptions());
+    const bio::ExcitationSignal excitation = bio::excitationOf(trial, *arm);
+    bio::SimulationOptions options = during(trial, choice.simulation());
+    options.externalForce = bio::externalForceOf(trial, *arm);
+    options.progress = [&](double) { return goOn.load(); };
+    const bio::ArmState start = bio::initialState(*arm, bio::startCoordinates(trial, *arm, initial),
+                                                  excitation, options.startTime);
+    motion = bio::simulate(*arm, excitation, start, options);
+    muscles = bio::reportMuscles(*arm, motion);
+    energyError = bio::energyError(*arm, motion);
+  });
+  std::vector<std::string> coordinates, names;
+  for (const auto& one : arm->skeleton().coordinates()) coordinates.push_back(one.name);
+  for (const auto& one : arm->muscles()) names.push_back(one.name);
+  return results("time"_a = py::array_t<double>(py::cast(motion.time)),
+                 "coordinates"_a = coordinates, "muscles"_a = names,
+                 "q"_a = motion.q.transpose().eval(), "q_dot"_a = motion.qDot.transpose().eval(),
+                 "activation"_a = motion.activation.transpose().eval(),
+                 "fibre_length"_a = motion.fibreLength.transpose().eval(),
+                 "tendon_force"_a = muscles.tendonForce.transpose().eval(),
+                 "moment_arm"_a = muscles.momentArm.transpose().eval(),
+                 "rms_error"_a = errorsOf(*arm, trial, motion), "energy_error"_a = energyError,
+                 "outcome"_a = outcomeOf(motion.outcome), "why"_a = motion.why,
+                 "steps"_a = motion.steps, "newton_iterations"_a = motion.newtonIterations,
+                 "warnings"_a = arm->warnings());
+}
+
+}  // namespace
+
+bio::ArmOptions ArmChoice::armOptions() const {
+  bio::ArmOptions options;
+  options.skeleton.freeCoordinates = coordinates;
+  options.skeleton.lockedValues = locks;
+  return options;
+}
+
+bio::SimulationOptions ArmChoice::simulation() const {
+  static const std::map<std::string, bio::Integrator> integrators = {
+      {"vi", bio::Integrator::variational},
+      {"vi-left", bio::Integrator::variationalLeft},
+      {"rk4", bio::Integrator::rungeKutta4},
+      {"cvode", bio::Integrator::cvode}};
+  const auto found = integrators.find(integrator);
+  if (found == integrators.end()) {
+    throw std::invalid_argument(
+        fmt::format("integrator '{}', must be vi, vi-left, rk4 or cvode", integrator));
+  }
+  bio::SimulationOptions options;
+  options.integrator = found->second;
+  options.step = step != 0 ? step : integrator == "rk4" ? 2e-4 : 0.01;
+  return options;
+}
+
+ArmChoice armChoice(const py::kwargs& keywords) {
+  ArmChoice choice;
+  for (const auto& [key, value] : keywords) {
+    const auto name = key.cast<std::string>();
+    if (name == "coordinate") {
+      choice.coordinates = py::isinstance<py::str>(value)
+                               ? std::vector<std::string>{value.cast<std::string>()}
+                               : value.cast<std::vector<std::string>>();
+    } else if (name == "lock") {
+      choice.locks = value.cast<std::map<std::string, double>>();
+    } else if (name == "integrator") {
+      choice.integrator = value.cast<std::string>();
+    } else if (name == "step") {
+      choice.step = value.cast<double>();
+      if (!(choice.step > 0)) {
+        throw std::invalid_argument(fmt::format("step = {} s, must be > 0", choice.step));
+      }
+    } else {
+      throw std::invalid_argument(fmt::format("unknown argument '{}'", name));
+    }
+  }
+  return choice;
+}
+
+bio::SimulationOptions during(const bio::Trial& trial, bio::SimulationOptions options) {
+  options.startTime = trial.times[0];
+  options.duration = trial.times[trial.times.size() - 1] - options.startTime;
+  return options;
+}
+
+void defineArms(py::module_& module) {
+  py::class_<bio::Model>(module, "Model", "A musculoskeletal model.")
+      .def_readonly("name", &bio::Model::name)
+      .def_readonly("warnings", &bio::Model::warnings, "what was read but is not simulated")
+      .def_property_readonly("coordinates", &coordinatesOf)
+      .def_property_readonly("muscles", &musclesOf, "those that are enabled")
+      .def(
+          "write",
+          [](const bio::Model& model, const std::string& file) { bio::writeOsim(model, file); },
+          "file"_a, "Writes the model as an .osim file.")
+      .def("__repr__", [](const bio::Model& model) {
+        return fmt::format("<fisherhill.Model '{}', {} muscles>", model.name,
+                           musclesOf(model).size());
+      });
+  py::class_<bio::Trial>(module, "Trial", "Excitations, and what was measured beside them.")
+      .def_readonly("name", &bio::Trial::file)
+      .def_readonly("times", &bio::Trial::times, "[s]")
+      .def_readonly("muscles", &bio::Trial::muscles)
+      .def_readonly("excitations", &bio::Trial::excitations, "0 to 1; times × muscles")
+      .def_property_readonly("measured", &measuredOf,
+                             "{coordinate: (times [s], values [rad] or [m])}")
+      .def_readonly("warnings", &bio::Trial::warnings)
+      .def("__repr__", [](const bio::Trial& trial) {
+        return fmt::format("<fisherhill.Trial '{}', {} rows>", trial.file, trial.times.size());
+      });
+  module.def(
+      "load_model", [](const std::string& file) { return bio::readOsim(file); }, "file"_a,
+      "Reads an OpenSim 3 or 4 model (.osim).");
+  module.def(
+      "load_trial",
+      [](const std::string& file, const bio::Model& model, bool ignoreExtra) {
+        return bio::readTrial(file, model, {ignoreExtra});
+      },
+      "file"_a, "model"_a, py::kw_only(), "ignore_extra"_a = false,
+      "Reads a trial (.sto, .mot or .csv) of the model.");
+  module.def(
+      "make_trial", &trialOf, "model"_a, "columns"_a, py::kw_only(), "name"_a = "trial",
+      "ignore_extra"_a = false,
+      "A trial from arrays, {column: values}; columns are called as in a file: 'time' [s], "
+      "muscles (excitation, 0 to 1), 'elbow_flexion' [rad] or 'elbow_flexion_deg'; NaN where "
+      "the coordinate was not measured.");
+  module.def(
+      "replay", &replay, "model"_a, "trial"_a, py::kw_only(),
+      "initial"_a = std::map<std::string, double>(),
+      "The motion that a trial's excitations make: time, q, q_dot, activation, fibre_length, "
+      "tendon_force, moment_arm (rows = times; SI units, radians), rms_error {coordinate: rad}, "
+      "energy_error [J], outcome.\n\n"
+      "Further keywords: coordinate='elbow_flexion' (or a list), lock={name: rad}, "
+      "integrator='vi' ('vi-left', 'rk4', 'cvode'), step=0.01.");
+}
+
+}  // namespace python

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bio/arm.h"
+#include "bio/coupled.h"
+#include "bio/model.h"
+#include "bio/trial.h"
+#include "namespace.h"
+
+namespace python {
+
+/// What most functions of arms are given, as keyword arguments.
+struct ArmChoice {
+  std::vector<std::string> coordinates = {"elbow_flexion"};  ///< free
+  std::map<std::string, double> locks;                       ///< [rad] or [m]
+  std::string integrator = "vi";
+  double step = 0;  ///< [s]; 0: the integrator's default
+
+  bio::ArmOptions armOptions() const;
+  /// @throws std::invalid_argument for an integrator that there is not
+  bio::SimulationOptions simulation() const;
+};
+
+/// Reads `coordinate` (a name or a list of them), `lock`, `integrator` and `step`.
+/// @throws std::invalid_argument for any other keyword
+ArmChoice armChoice(const py::kwargs& keywords);
+
+/// A trial's place in time.
+bio::SimulationOptions during(const bio::Trial& trial, bio::SimulationOptions options);
+
+void defineArms(py::module_& module);
+void defineSensitivity(py::module_& module);
+void defineCalibration(py::module_& module);
+void defineDiscovery(py::module_& module);
+
+}  // namespace python

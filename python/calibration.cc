@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "arms.h"
+#include "bio/calibrate.h"
+#include "interruptible.h"
+
+namespace python {
+namespace {
+
+using Pairs = std::map<std::string, std::pair<double, double>>;
+
+info::RobustLoss lossOf(const std::string& name) {
+  info::RobustLoss loss;
+  if (name == "gaussian") return loss;
+  if (name != "huber" && name != "student") {
+    throw std::invalid_argument(fmt::format("loss '{}', must be gaussian, huber or student", name));
+  }
+  loss.kind = name == "huber" ? info::RobustLoss::Kind::huber : info::RobustLoss::Kind::student;
+  return loss;
+}
+
+py::object estimateOf(const bio::CalibratedParameter& one) {
+  return results("value"_a = one.value, "sd"_a = one.deviation, "lower"_a = one.lower,
+                 "upper"_a = one.upper, "unit"_a = one.asked.unit, "model"_a = one.model,
+                 "identifiable"_a = one.identifiable, "at_bound"_a = one.atBound,
+                 "why"_a = one.why);
+}
+
+/// [rad]; NaN without trials.
+double rmse(const std::optional<bio::TrialSet>& set, const Eigen::MatrixXd& predicted) {
+  return set && predicted.size() > 0 ? std::sqrt(set->meanSquare(predicted)) : NAN;
+}
+
+py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& trials,
+                     const std::vector<std::string>& parameters,
+                     const std::vector<bio::Trial>& holdOut, std::optional<double> noise,
+                     bool priors, const Pairs& prior, const Pairs& bounds, const std::string& loss,
+                     bool ownStart, int starts, std::uint64_t seed, int threads,
+                     const py::kwargs& keywords) {
+  const ArmChoice choice = armChoice(keywords);
+  bio::CalibrationOptions options;
+  options.trials.parameters = parameters;
+  options.trials.ownStart = ownStart;
+  options.trials.simulation = choice.simulation();
+  options.trials.simulation.duration = 1;
+  options.trials.threads = threads;
+  options.priors = priors;
+  for (const auto& [name, values] : prior) options.prior[name] = {values.first, values.second};
+  options.bounds = bounds;
+  options.noise = noise;
+  options.loss = lossOf(loss);
+  options.starts = starts;
+  options.seed = seed;
+  for (const auto* list : {&trials, &holdOut}) {
+    for (const bio::Trial& trial : *list) {
+      if (trial.applied.empty()) continue;
+      throw std::invalid_argument(
+          trial.file + ": has a torque from outside, which calibration does not take into account");
+    }
+  }
+  std::optional<bio::TrialSet> training, heldOut;
+  bio::Calibration found;
+  interruptible([&](const std::atomic<bool>& goOn) {
+    training.emplace(model, choice.armOptions(), trials, options.trials);
+    if (!holdOut.empty()) {
+      bio::TrialSetOptions others = options.trials;
+      others.ownStart = false;
+      heldOut.emplace(model, choice.armOptions(), holdOut, others);
+    }
+    options.progress = [&](double) { return goOn.load(); };
+    found = bio::calibrate(*training, heldOut ? &*heldOut : nullptr, options);
+  });
+  if (!found.failure.empty()) throw std::runtime_error(found.failure);
+  py::dict estimates;
+  for (const auto& one : found.parameters) estimates[one.asked.name.c_str()] = estimateOf(one);
+  return results("estimates"_a = estimates, "correlation"_a = found.correlation,
+                 "converged"_a = found.converged, "why"_a = info::describe(found.why),
+                 "iterations"_a = found.iterations, "noise"_a = found.noise.deviation,
+                 "effective_noise"_a = found.noise.effective,
+                 "rmse_before"_a = rmse(training, found.before),
+                 "rmse_after"_a = rmse(training, found.after),
+                 "rmse_held_out_before"_a = rmse(heldOut, found.heldOutBefore),
+                 "rmse_held_out"_a = rmse(heldOut, found.heldOutAfter),
+                 "model"_a = found.calibrated ? py::cast(found.calibrated->model) : py::none());
+}
+
+}  // namespace
+
+void defineCalibration(py::module_& module) {
+  module.def(
+      "calibrate", &calibrate, "model"_a, "trials"_a, "parameters"_a, py::kw_only(),
+      "hold_out"_a = std::vector<bio::Trial>(), "noise"_a = py::none(), "priors"_a = true,
+      "prior"_a = Pairs(), "bounds"_a = Pairs(), "loss"_a = "gaussian", "own_start"_a = false,
+      "starts"_a = 1, "seed"_a = 1, "threads"_a = 1,
+      "Estimates parameters (names) from measured motions: estimates {name: value, sd, lower, "
+      "upper, identifiable, why}, rmse_before, rmse_after, rmse_held_out [rad], and the calibrated "
+      "model. noise [rad]: found from the residuals unless given; prior={name: (mean, sd)}, "
+      "bounds={name: (low, high)}; loss: gaussian, huber or student. Further keywords as replay "
+      "has "
+      "them.");
+}
+
+}  // namespace python

@@ -1,0 +1,168 @@
+#include <fmt/format.h>
+
+#include <map>
+
+#include "info/estimate.h"
+#include "info/fisher.h"
+#include "info/identifiability.h"
+#include "python_system.h"
+
+namespace python {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// A standard deviation, one for each output, or a covariance matrix of the outputs.
+info::OutputCovariance covarianceOf(const py::object& noise, Eigen::Index outputs) {
+  const auto array = py::array_t<double, py::array::forcecast>::ensure(noise);
+  if (!array) throw py::error_already_set();
+  if (array.ndim() == 2) return info::OutputCovariance(array.cast<MatrixXd>());
+  const VectorXd given = array.ndim() == 0 ? VectorXd::Constant(outputs, noise.cast<double>())
+                                           : array.cast<VectorXd>();
+  const VectorXd deviation = given.size() == 1 ? VectorXd::Constant(outputs, given[0]) : given;
+  if (!(deviation.array() > 0).all()) {
+    throw std::invalid_argument("noise: a standard deviation is not > 0");
+  }
+  return info::OutputCovariance(MatrixXd(deviation.array().square().matrix().asDiagonal()));
+}
+
+std::vector<std::string> namesFor(const std::vector<std::string>& given, Eigen::Index count) {
+  if (!given.empty() && static_cast<Eigen::Index>(given.size()) != count) {
+    throw std::invalid_argument(
+        fmt::format("names: {}, must be {}, one for each parameter", given.size(), count));
+  }
+  std::vector<std::string> names = given;
+  for (Eigen::Index i = 0; given.empty() && i < count; ++i) names.push_back(fmt::format("θ{}", i));
+  return names;
+}
+
+using Priors = std::map<std::string, std::pair<double, double>>;
+
+std::vector<info::Parameter> parametersOf(const VectorXd& start,
+                                          const std::vector<std::string>& names,
+                                          const Priors& bounds, const Priors& prior) {
+  std::vector<info::Parameter> parameters;
+  for (Eigen::Index i = 0; i < start.size(); ++i) {
+    info::Parameter one{.name = names[static_cast<std::size_t>(i)], .start = start[i]};
+    if (const auto found = bounds.find(one.name); found != bounds.end()) {
+      std::tie(one.lower, one.upper) = found->second;
+    }
+    if (const auto found = prior.find(one.name); found != prior.end()) {
+      one.prior = info::GaussianPrior{found->second.first, found->second.second};
+    }
+    parameters.push_back(std::move(one));
+  }
+  for (const auto* named : {&bounds, &prior}) {
+    for (const auto& [name, values] : *named) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) {
+        throw std::invalid_argument(fmt::format("'{}' is not a parameter", name));
+      }
+    }
+  }
+  return parameters;
+}
+
+info::Method methodOf(const std::string& name) {
+  static const std::map<std::string, info::Method> methods = {
+      {"levenberg-marquardt", info::Method::levenbergMarquardt},
+      {"gauss-newton", info::Method::iteratedLeastSquares},
+      {"gradient-descent", info::Method::gradientDescent}};
+  const auto found = methods.find(name);
+  if (found != methods.end()) return found->second;
+  throw std::invalid_argument(fmt::format(
+      "method '{}', must be levenberg-marquardt, gauss-newton or gradient-descent", name));
+}
+
+MatrixXd fisherInformation(const py::object& gamma, const py::object& noise, Eigen::Index outputs) {
+  const auto array = py::array_t<double, py::array::forcecast | py::array::c_style>::ensure(gamma);
+  if (!array) throw py::error_already_set();
+  if (array.ndim() != 2 && array.ndim() != 3) {
+    throw std::invalid_argument(fmt::format(
+        "gamma: {} dimensions, must be (samples * outputs) x parameters or samples x outputs x "
+        "parameters",
+        array.ndim()));
+  }
+  const bool isStacked = array.ndim() == 2;
+  const Eigen::Index h = isStacked ? outputs : array.shape(1);
+  const Eigen::Index parameters = array.shape(array.ndim() - 1);
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const MatrixXd stacked = Eigen::Map<const RowMajor>(
+      array.data(), isStacked ? array.shape(0) : array.shape(0) * h, parameters);
+  return info::fisherInformation(stacked, covarianceOf(noise, h));
+}
+
+py::object estimate(const py::object& predict, const py::object& measured, const py::object& noise,
+                    const VectorXd& start, const std::vector<std::string>& names,
+                    py::object sensitivities, const Priors& bounds, const Priors& prior,
+                    const std::string& method, int iterations, double confidence) {
+  if (sensitivities.is_none() && py::hasattr(predict, "sensitivities")) {
+    sensitivities = predict.attr("sensitivities");
+  }
+  const info::Predictor predictor = predictorOf(predict, sensitivities);
+  const auto data = py::array_t<double, py::array::forcecast>::ensure(measured);
+  if (!data) throw py::error_already_set();
+  MatrixXd samples = data.cast<MatrixXd>();
+  if (data.ndim() == 1) samples = samples.reshaped(data.size(), 1).eval();
+  const MatrixXd outputs = samples.transpose();
+  info::Measurements measurements{outputs, covarianceOf(noise, outputs.rows()),
+                                  info::observedWhereNotNaN(outputs)};
+  info::EstimateOptions options;
+  options.method = methodOf(method);
+  options.maxIterations = iterations;
+  options.confidence = confidence;
+  const auto allNames = namesFor(names, start.size());
+  const info::Estimate found = info::estimate(
+      info::LeastSquares(predictor, measurements, parametersOf(start, allNames, bounds, prior)),
+      options);
+  return results(
+      "parameters"_a = found.parameters, "names"_a = allNames, "converged"_a = found.converged,
+      "why"_a = info::describe(found.why), "cost"_a = found.cost, "iterations"_a = found.iterations,
+      "evaluations"_a = found.evaluations, "information"_a = found.information,
+      "covariance"_a = found.covariance, "sd"_a = found.covariance.diagonal().cwiseSqrt().eval(),
+      "intervals"_a = MatrixXd(found.intervals), "at_bound"_a = found.atBound,
+      "reduced_chi_square"_a = found.reducedChiSquare);
+}
+
+py::object identifiability(const MatrixXd& information, const VectorXd& values,
+                           const std::vector<std::string>& names) {
+  const auto report = info::identifiability(
+      information, parametersOf(values, namesFor(names, values.size()), {}, {}),
+      (values.array() == 0).any() ? info::ParameterScale::linear
+                                  : info::ParameterScale::logarithmic);
+  return results("rank"_a = report.rank, "sentences"_a = report.sentences,
+                 "sd"_a = report.deviation, "correlation"_a = report.correlation,
+                 "determined"_a = report.determined);
+}
+
+}  // namespace
+
+void defineEstimation(py::module_& module) {
+  module.def(
+      "fisher_information", &fisherInformation, "gamma"_a, "noise"_a, py::kw_only(),
+      "outputs"_a = 1,
+      "Sum over samples of gamma^T Sigma^-1 gamma. gamma: samples x outputs x parameters, or "
+      "(samples * outputs) x parameters with `outputs`; noise: a standard deviation, one for "
+      "each output, or the covariance of the outputs.");
+  module.def("cramer_rao_bound", &info::cramerRaoBound, "information"_a,
+             "names"_a = std::vector<std::string>(),
+             "The inverse: no unbiased estimator has a smaller covariance. ValueError names what "
+             "has no information.");
+  module.def(
+      "identifiability", &identifiability, "information"_a, "values"_a,
+      "names"_a = std::vector<std::string>(),
+      "Which parameters, or combinations of them, are determined, in words: sentences, rank, "
+      "sd, correlation.");
+  module.def(
+      "estimate", &estimate, "predict"_a, "measured"_a, "noise"_a, "start"_a, py::kw_only(),
+      "names"_a = std::vector<std::string>(), "sensitivities"_a = py::none(), "bounds"_a = Priors(),
+      "prior"_a = Priors(), "method"_a = "levenberg-marquardt", "iterations"_a = 100,
+      "confidence"_a = 0.95,
+      "Weighted least squares within bounds={name: (low, high)}, with prior={name: (mean, sd)}. "
+      "predict(theta) gives samples x outputs, as `measured` (NaN: not measured); a System does. "
+      "sensitivities(theta) gives gamma; without it (and without predict.sensitivities) central "
+      "differences do. Back come parameters, sd, covariance (the Cramer-Rao bound there), "
+      "intervals, converged, why, reduced_chi_square.");
+}
+
+}  // namespace python

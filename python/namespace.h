@@ -1,0 +1,19 @@
+#pragma once
+
+#include <pybind11/eigen.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+/// What the module's functions give back: a types.SimpleNamespace, whose members are NumPy arrays,
+/// numbers, strings, lists and dictionaries.
+namespace python {
+
+namespace py = pybind11;
+using namespace py::literals;
+
+template <class... Members>
+py::object results(Members&&... members) {
+  return py::module_::import("types").attr("SimpleNamespace")(std::forward<Members>(members)...);
+}
+
+}  // namespace python

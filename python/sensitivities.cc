@@ -1,0 +1,106 @@
+#include "arms.h"
+#include "bio/arm_experiment.h"
+#include "bio/parameter_information.h"
+#include "bio/replay.h"
+#include "interruptible.h"
+
+namespace python {
+namespace {
+
+/// When the coordinate was measured; if it was not, every row of the simulation.
+std::vector<double> observedTimes(const bio::Trial& trial, const std::string& coordinate,
+                                  double step) {
+  for (const bio::MeasuredMotion& one : trial.measured) {
+    if (one.coordinate == coordinate) return {one.times.begin(), one.times.end()};
+  }
+  std::vector<double> times;
+  const double begin = trial.times[0], end = trial.times[trial.times.size() - 1];
+  for (int k = 0; begin + k * step <= end + 1e-9; ++k) times.push_back(begin + k * step);
+  return times;
+}
+
+py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& trials,
+                       const std::vector<std::string>& parameters, double noise,
+                       const py::kwargs& keywords) {
+  const ArmChoice choice = armChoice(keywords);
+  if (trials.empty()) throw std::invalid_argument("trials: there is none, must be at least one");
+  std::vector<Eigen::MatrixXd> gammas;
+  std::vector<Eigen::VectorXd> outputs;
+  std::vector<std::vector<double>> times;
+  bio::ParameterInformation information;
+  Eigen::VectorXd values;
+  interruptible([&](const std::atomic<bool>& goOn) {
+    const bio::Arm arm(model, choice.armOptions());
+    const std::string coordinate = choice.coordinates.front();
+    std::vector<std::size_t> selection;
+    for (const bio::Trial& trial : trials) {
+      bio::SimulationOptions options = during(trial, choice.simulation());
+      options.externalForce = bio::externalForceOf(trial, arm);
+      options.progress = [&](double) { return goOn.load(); };
+      const bio::ParameterCatalogue catalogue(model, arm,
+                                              {bio::startCoordinates(trial, arm, {}), {}});
+      selection = catalogue.select(parameters);
+      values = catalogue.values(selection);
+      times.push_back(observedTimes(trial, coordinate, options.step));
+      const bio::ArmExperiment experiment(catalogue, choice.armOptions(),
+                                          bio::excitationOf(trial, arm), coordinate, times.back(),
+                                          selection, options);
+      auto at = experiment.withSensitivities(values);
+      if (!goOn) return;
+      if (!at.outputs.allFinite()) {
+        throw std::invalid_argument(trial.file +
+                                    ": the simulation does not reach the end of the trial");
+      }
+      outputs.push_back(std::move(at.outputs));
+      gammas.push_back(std::move(at.gamma));
+      if (gammas.size() == trials.size()) {
+        information = bio::informationAbout(catalogue, selection, gammas, noise);
+      }
+    }
+  });
+  std::vector<std::string> names, units;
+  for (const info::Parameter& one : information.parameters) {
+    names.push_back(one.name);
+    units.push_back(one.unit);
+  }
+  return results("names"_a = names, "units"_a = units, "values"_a = values, "times"_a = times,
+                 "outputs"_a = outputs, "gamma"_a = gammas, "fisher"_a = information.fisher,
+                 "normalised_sensitivity"_a = information.normalisedSensitivity,
+                 "bound_alone"_a = information.boundAlone, "bound_joint"_a = information.boundJoint,
+                 "identifiable"_a = information.identifiable,
+                 "correlation"_a = information.correlation, "sentences"_a = information.sentences);
+}
+
+py::list listParameters(const bio::Model& model, const py::kwargs& keywords) {
+  const ArmChoice choice = armChoice(keywords);
+  const bio::Arm arm(model, choice.armOptions());
+  Eigen::VectorXd q(arm.skeleton().numCoordinates());
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    q[i] = arm.skeleton().coordinates()[static_cast<std::size_t>(i)].defaultValue;
+  }
+  const bio::ParameterCatalogue catalogue(model, arm, {q, {}});
+  py::list list;
+  for (const bio::ModelParameter& p : catalogue.parameters()) {
+    list.append(results("name"_a = p.name, "value"_a = p.value, "unit"_a = p.unit,
+                        "meaning"_a = p.meaning, "lower"_a = p.lower, "upper"_a = p.upper,
+                        "deviation"_a = p.deviation, "is_group"_a = p.isGroup));
+  }
+  return list;
+}
+
+}  // namespace
+
+void defineSensitivity(py::module_& module) {
+  module.def("list_parameters", &listParameters, "model"_a,
+             "Every parameter of the model that moves the arm: name, value, unit, meaning, …");
+  module.def(
+      "sensitivity", &sensitivity, "model"_a, "trials"_a, "parameters"_a, py::kw_only(),
+      "noise"_a = 1.0 / 57.29577951308232,
+      "Exact sensitivities of the coordinate to parameters (names, may hold *, or ['all']) at the "
+      "measured times, and what measuring it with the given noise [rad] tells: gamma (one array "
+      "per "
+      "trial, times × parameters), fisher, bound_alone, bound_joint, identifiable, sentences. "
+      "Further keywords as replay has them.");
+}
+
+}  // namespace python

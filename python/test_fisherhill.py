@@ -1,0 +1,222 @@
+"""The module against closed forms, against itself and against its own rules; run from the top of the source tree."""
+
+import math
+import os
+import signal
+import threading
+import time
+import unittest
+
+import numpy as np
+
+import fisherhill as fh
+
+ELBOW = "models/elbow8.osim"
+SLOW = "emg_data/curl_slow.sto"
+HIDDEN = "emg_data/hidden_a/train_1.sto"
+DEGREE = math.pi / 180
+
+
+class Arms(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.model = fh.load_model(ELBOW)
+        cls.trial = fh.load_trial(SLOW, cls.model)
+
+    def columns(self):
+        t, angle = self.trial.measured["elbow_flexion"]
+        measured = np.full(len(self.trial.times), np.nan)
+        measured[np.searchsorted(self.trial.times, t)] = angle
+        columns = dict(zip(self.trial.muscles, self.trial.excitations.T))
+        return {"time": self.trial.times, **columns, "elbow_flexion": measured}
+
+    def test_replay_gives_rows_for_times_and_columns_for_muscles(self):
+        motion = fh.replay(self.model, self.trial)
+        rows = len(motion.time)
+        self.assertEqual(motion.outcome, "completed")
+        self.assertEqual(motion.q.shape, (rows, 1))
+        self.assertEqual(motion.tendon_force.shape, (rows, len(motion.muscles)))
+        self.assertEqual(motion.muscles, self.model.muscles)
+        t, angle = self.trial.measured["elbow_flexion"]
+        error = np.sqrt(np.mean((np.interp(t, motion.time, motion.q[:, 0]) - angle) ** 2))
+        # linear here, the cubic of Hermite there
+        self.assertAlmostEqual(error, motion.rms_error["elbow_flexion"], places=4)
+
+    def test_a_trial_of_arrays_is_the_trial_of_the_file(self):
+        trial = fh.make_trial(self.model, self.columns())
+        np.testing.assert_array_equal(fh.replay(self.model, trial).q, fh.replay(self.model, self.trial).q)
+
+    def test_integrators_agree_on_the_motion(self):
+        fine = fh.replay(self.model, self.trial, integrator="cvode").q[-1, 0]
+        for integrator, step, bound in (("vi", 0.005, 2e-3), ("rk4", 2e-4, 2e-3)):
+            other = fh.replay(self.model, self.trial, integrator=integrator, step=step).q[-1, 0]
+            self.assertLess(abs(other - fine), bound)
+
+    def test_sensitivity_is_the_difference_of_two_motions(self):
+        name, h = "hand.mass", 1e-4
+        found = fh.sensitivity(self.model, [self.trial], [name])
+        value = found.values[0]
+        outputs = []
+        for mass in (value - h, value + h):
+            moved = fh.calibrate(self.model, [self.trial], [name], prior={name: (mass, 1e-9)},
+                                 bounds={name: (0.1, 2)}).model
+            outputs.append(fh.sensitivity(moved, [self.trial], [name]).outputs[0])
+        difference = (outputs[1] - outputs[0]) / (2 * h)
+        scale = np.abs(found.gamma[0]).max()
+        np.testing.assert_allclose(found.gamma[0][:, 0], difference, atol=1e-3 * scale)
+        self.assertAlmostEqual(found.fisher[0, 0], np.sum(found.gamma[0] ** 2) / DEGREE**2, delta=1e-6 * found.fisher[0, 0])
+        self.assertAlmostEqual(found.bound_alone[0] ** -2, found.fisher[0, 0], delta=1e-6 * found.fisher[0, 0])
+
+    def test_calibrate_finds_the_mass_that_made_the_data(self):
+        motion = fh.replay(self.model, self.trial)
+        heavy = fh.calibrate(self.model, [self.trial], ["hand.mass"], prior={"hand.mass": (0.6, 1e-9)}).model
+        truth = fh.replay(heavy, self.trial, step=0.01)
+        columns = self.columns()
+        columns["elbow_flexion"] = np.interp(columns["time"], truth.time, truth.q[:, 0])
+        made = fh.make_trial(self.model, columns)
+        found = fh.calibrate(self.model, [made], ["hand.mass"], noise=0.5 * DEGREE, priors=False)
+        self.assertTrue(found.converged)
+        mass = found.estimates["hand.mass"]
+        self.assertTrue(mass.identifiable)
+        self.assertAlmostEqual(mass.value, 0.6, places=3)
+        self.assertLess(found.rmse_after, found.rmse_before)
+        self.assertLess(abs(fh.replay(found.model, made).q[-1, 0] - truth.q[-1, 0]), 1e-3)
+        self.assertNotEqual(motion.q[-1, 0], truth.q[-1, 0])
+
+    def test_discover_names_the_damping_that_is_hidden(self):
+        trial = fh.load_trial(HIDDEN, self.model)
+        found = fh.discover(self.model, [trial], noise=0.5 * DEGREE, max_effects=1)
+        self.assertEqual(found.verdict, "named")
+        self.assertEqual([one.id for one in found.effects], ["visc"])
+        viscosity = found.effects[0].parameters["visc.viscosity"]
+        self.assertLess(abs(viscosity.value - 0.3), 3 * viscosity.sd)  # emg_data/answers/hidden.json
+        self.assertGreater(found.gap.closed, 0.9)
+
+    def test_a_broken_rule_is_a_value_error_of_one_line(self):
+        broken = (
+            lambda: fh.load_model("no/such.osim"),
+            lambda: fh.load_model(SLOW),
+            lambda: fh.load_trial(ELBOW, self.model),
+            lambda: fh.make_trial(self.model, {"time": [0, 1], "BRA": [0, 2]}),
+            lambda: fh.make_trial(self.model, {"time": [0, 0], "BRA": [0, 1]}),
+            lambda: fh.make_trial(self.model, {"time": [0, 1], "BRA": [0, 1, 0]}),
+            lambda: fh.make_trial(self.model, {}),
+            lambda: fh.replay(self.model, self.trial, integrator="euler"),
+            lambda: fh.replay(self.model, self.trial, step=0),
+            lambda: fh.replay(self.model, self.trial, stride=1),
+            lambda: fh.replay(self.model, self.trial, coordinate="knee"),
+            lambda: fh.sensitivity(self.model, [], ["hand.mass"]),
+            lambda: fh.sensitivity(self.model, [self.trial], ["hand.weight"]),
+            lambda: fh.calibrate(self.model, [self.trial], ["hand.mass"], loss="l1"),
+        )
+        for i, one in enumerate(broken):
+            with self.subTest(i), self.assertRaises(ValueError) as raised:
+                one()
+            self.assertEqual(str(raised.exception).count("\n"), 0)
+            self.assertGreater(len(str(raised.exception)), 10)
+
+    def test_ctrl_c_ends_a_long_call_soon_and_other_threads_run_meanwhile(self):
+        trial = fh.load_trial(HIDDEN, self.model)
+        ticks = []
+        threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+        ticker = threading.Thread(target=lambda: [ticks.append(time.sleep(0.01)) for _ in range(30)])
+        ticker.start()
+        begin = time.monotonic()
+        with self.assertRaises(KeyboardInterrupt):
+            fh.discover(self.model, [trial], max_effects=3)
+        self.assertLess(time.monotonic() - begin, 10)  # 0.6 s where nobody else works
+        self.assertGreater(len(ticks), 5)
+        ticker.join()
+
+
+class Systems(unittest.TestCase):
+    """x' = -a x + b u; from x0 with constant u: x = b u/a + (x0 - b u/a) exp(-a t)."""
+
+    times = np.linspace(0, 2, 41)
+
+    def system(self, **given):
+        return fh.System(lambda x, u, theta, t: [-theta[0] * x[0] + theta[1] * u[0]], [1.0], self.times,
+                         inputs=np.full((41, 1), 0.5), **given)
+
+    def exact(self, theta):
+        a, b = theta
+        t, rest = self.times, 0.5 * b / a
+        x = rest + (1 - rest) * np.exp(-a * t)
+        d_a = -0.5 * b / a**2 * (1 - np.exp(-a * t)) - (1 - rest) * t * np.exp(-a * t)
+        d_b = 0.5 / a * (1 - np.exp(-a * t))
+        return x, np.stack([d_a, d_b], axis=1)
+
+    def with_derivatives(self):
+        return self.system(f_x=lambda x, u, theta, t: [[-theta[0]]], f_theta=lambda x, u, theta, t: [[-x[0], u[0]]])
+
+    def test_motion_and_sensitivities_are_the_closed_form(self):
+        theta = np.array([1.3, 0.7])
+        x, gamma = self.exact(theta)
+        for system in (self.system(), self.with_derivatives()):
+            np.testing.assert_allclose(system(theta)[:, 0], x, atol=2e-7)
+            np.testing.assert_allclose(system.sensitivities(theta), gamma, atol=1e-6)
+        fine = self.system(substeps=4)(theta)[:, 0]
+        self.assertGreater(np.abs(self.system()(theta)[:, 0] - x).max() / np.abs(fine - x).max(), 100)  # 4^4 = 256
+
+    def test_outputs_and_their_derivatives_may_be_chosen(self):
+        theta = np.array([1.3, 0.7])
+        given = dict(g=lambda x, u, theta: [x[0] ** 2, theta[1]])
+        plain = self.system(**given)
+        exact = self.system(f_x=lambda x, u, theta, t: [[-theta[0]]], f_theta=lambda x, u, theta, t: [[-x[0], u[0]]],
+                            g_x=lambda x, u, theta: [[2 * x[0]], [0]], g_theta=lambda x, u, theta: [[0, 0], [0, 1]], **given)
+        self.assertEqual(plain(theta).shape, (41, 2))
+        np.testing.assert_allclose(plain.sensitivities(theta), exact.sensitivities(theta), atol=1e-8)
+
+    def test_information_and_bound_are_the_closed_form(self):
+        _, gamma = self.exact([1.3, 0.7])
+        information = fh.fisher_information(gamma, 0.1)
+        np.testing.assert_allclose(information, gamma.T @ gamma / 0.01, rtol=1e-12)
+        np.testing.assert_allclose(fh.cramer_rao_bound(information), np.linalg.inv(information), rtol=1e-9)
+        both = fh.fisher_information(np.stack([gamma, 2 * gamma], axis=1), [0.1, 0.2])
+        np.testing.assert_allclose(both, 2 * information, rtol=1e-12)
+        self.assertEqual(fh.identifiability(information, [1.3, 0.7]).rank, 2)
+        with self.assertRaisesRegex(ValueError, "spring"):
+            fh.cramer_rao_bound([[1.0, 0], [0, 0]], ["mass", "spring"])
+
+    def test_estimate_is_unbiased_and_as_scattered_as_the_bound_says(self):
+        theta, noise = np.array([1.3, 0.7]), 0.02
+        system = self.with_derivatives()
+        random = np.random.default_rng(1)
+        clean = system(theta)
+        found = [fh.estimate(system, clean + noise * random.standard_normal(clean.shape), noise, [1.0, 1.0]).parameters
+                 for _ in range(100)]
+        bound = np.sqrt(np.diag(fh.cramer_rao_bound(fh.fisher_information(system.sensitivities(theta), noise))))
+        # of 100 draws: the mean within 4 deviations of it, the scatter within 4·7 %
+        self.assertTrue(np.all(np.abs(np.mean(found, axis=0) - theta) < 4 * bound / 10))
+        np.testing.assert_allclose(np.std(found, axis=0, ddof=1) / bound, 1, atol=0.28)
+
+    def test_a_plain_function_and_gaps_and_priors_do_too(self):
+        line = lambda theta: theta[0] + theta[1] * self.times
+        measured = line([1, 2])
+        measured[5:20] = np.nan
+        found = fh.estimate(line, measured, 0.1, [0, 0], names=["offset", "slope"], method="gauss-newton")
+        np.testing.assert_allclose(found.parameters, [1, 2], atol=1e-8)
+        design = np.stack([np.ones(41), self.times], axis=1)[~np.isnan(measured)]
+        np.testing.assert_allclose(found.covariance, 0.01 * np.linalg.inv(design.T @ design), rtol=1e-6)
+        held = fh.estimate(line, measured, 0.1, [0, 0], names=["offset", "slope"], bounds={"slope": (0, 1.5)},
+                           prior={"offset": (1, 1e-6)})
+        np.testing.assert_allclose(held.parameters, [1, 1.5], atol=1e-4)
+        self.assertEqual(held.at_bound, [False, True])
+
+    def test_mistakes_are_said_and_what_python_raises_comes_back(self):
+        for build in (lambda: fh.System(lambda *a: [0], [0.0], [1, 0]),
+                      lambda: fh.System(lambda *a: [0], [0.0], [0, 1], inputs=[[0.0]]),
+                      lambda: fh.System(lambda *a: [0], [0.0], [0, 1], f_x=lambda *a: [[0]]),
+                      lambda: fh.System(lambda *a: [0, 1], [0.0], [0, 1])([1.0]),
+                      lambda: fh.fisher_information([1.0], 1),
+                      lambda: fh.fisher_information([[1.0]], -1),
+                      lambda: fh.estimate(lambda theta: theta, [1.0], 1, [0.0], method="magic"),
+                      lambda: fh.estimate(lambda theta: theta, [1.0], 1, [0.0], prior={"mass": (0, 1)})):
+            with self.assertRaises(ValueError):
+                build()
+        with self.assertRaises(ZeroDivisionError):
+            fh.System(lambda x, u, theta, t: [1 / 0], [0.0], [0, 1])([1.0])
+
+
+if __name__ == "__main__":
+    unittest.main()
