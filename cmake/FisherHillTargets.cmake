@@ -11,16 +11,13 @@ if(FISHERHILL_SANITIZE)
     -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(fisherhill_flags INTERFACE -fsanitize=address,undefined)
 endif()
-# GCC frees memory only once it has taken 1 GB: searching for what could be freed took a tenth of its time.
-if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  add_compile_options($<$<COMPILE_LANGUAGE:CXX>:--param=ggc-min-heapsize=500000>)
-endif()
-
 # In tests a local may be called as another file's helper; the others are GCC 12's false alarms (its
 # bug 105651, and Eigen's temporaries of AD scalars).
 add_library(fisherhill_test_flags INTERFACE)
 target_compile_options(fisherhill_test_flags INTERFACE -Wno-shadow
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow -Wno-maybe-uninitialized>)
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow -Wno-maybe-uninitialized>
+  # a test's own code is not what takes long to run
+  $<$<CONFIG:Release>:-O1>)
 
 # Headers that nearly every file of a kind reads, parsed once per kind. Files must not rely on them:
 # the check that every public header compiles alone builds without.
@@ -59,7 +56,8 @@ function(fisherhill_test name)
   if(NOT TARGET test_headers)
     file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/test_headers.cc CONTENT "")
     add_library(test_headers OBJECT ${PROJECT_BINARY_DIR}/test_headers.cc)
-    target_link_libraries(test_headers PRIVATE fisherhill_flags Eigen3::Eigen GTest::gmock)
+    target_link_libraries(test_headers
+      PRIVATE fisherhill_flags fisherhill_test_flags Eigen3::Eigen GTest::gmock)
     target_precompile_headers(test_headers PRIVATE
       ${standard_headers} <filesystem> <gmock/gmock.h> <gtest/gtest.h>)
   endif()

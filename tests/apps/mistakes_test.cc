@@ -390,10 +390,12 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(CtrlC, EndsALongReplayWithStatus130AndNothingHalfWritten) {
   const ScratchFolder scratch;
   const std::string out = (scratch / "out").string();
-  const ProgramResult result = support::runProgram(
-      {"timeout", "--preserve-status", "--signal=INT", "1", FISHERHILL_PROGRAM, "replay", model,
-       "emg_data/curl_slow.sto", "--integrator", "rk4", "--step", "1e-7", "--out", out},
-      FISHERHILL_SOURCE_DIR);
+  // --foreground: one signal, not another one for the whole group, which would end it at once
+  const ProgramResult result =
+      support::runProgram({"timeout", "--foreground", "--preserve-status", "--signal=INT", "1",
+                           FISHERHILL_PROGRAM, "replay", model, "emg_data/curl_slow.sto",
+                           "--integrator", "rk4", "--step", "1e-7", "--out", out},
+                          FISHERHILL_SOURCE_DIR);
   EXPECT_EQ(result.status, 130) << result.err;
   EXPECT_EQ(result.err, "fisherhill replay: interrupted; nothing was written\n");
   EXPECT_THAT(scratch.listing(), testing::IsEmpty());
