@@ -177,6 +177,44 @@ TEST(Score, CountsMissesAndMissingVerdicts) {
   EXPECT_EQ(s.asJson()["shares"][2]["misses"].size(), 1u);
 }
 
+// Of 100, a target of 90 % leaves 90 ± 3 to chance; of 4 the bound is 3.6 − 1.2.
+TEST(Score, SaysWhatChanceMakesOfATarget) {
+  Row row;
+  row.bound = 0.9;
+  const auto within = [&](int k, int n) {
+    row.k = k;
+    row.n = n;
+    return row.within(2);
+  };
+  EXPECT_TRUE(within(84, 100) && within(100, 100) && within(3, 4) && within(0, 0));
+  EXPECT_FALSE(within(83, 100) || within(2, 4));
+  row.bound = 0.02;
+  row.atMost = true;
+  EXPECT_TRUE(within(0, 6) && within(1, 24) && within(4, 100));
+  EXPECT_FALSE(within(1, 6) || within(2, 24) || within(5, 100));
+
+  // of 16 values 8 ± 2 are on the right side of their median
+  Spread spread;
+  spread.bound = 1;
+  spread.atMost = true;
+  spread.values.assign(16, 2.0);
+  std::fill_n(spread.values.begin(), 4, 0.5);
+  EXPECT_TRUE(spread.within(2));
+  spread.values[3] = 2;
+  EXPECT_FALSE(spread.within(2));
+  spread.atMost = false;
+  EXPECT_TRUE(spread.within(2));
+}
+
+TEST(Judge, ALabelWithoutASizeLeavesTheEstimateAlone) {
+  const Json label =
+      labelOf("single", Json::array({{{"id", "visc"}, {"readings", Json::array()}}}));
+  const Outcome o =
+      judge("a", label, verdictOf("named", Json::array({effectOf("visc", "structure", 0.99)})));
+  EXPECT_TRUE(o.firstIsRight);
+  EXPECT_FALSE(o.z.has_value());
+}
+
 TEST(Score, ReadsFoldersAndSaysWhichFileIsBroken) {
   const support::ScratchFolder folder;
   const auto write = [&](const std::string& name, const std::string& text) {
