@@ -12,9 +12,6 @@
 namespace info {
 namespace {
 
-using detail::BothUnknown;
-using detail::LengthUnknown;
-
 void check(const ActiveEstimationTask& task) {
   const auto positive = [](const char* what, double value, const char* unit) {
     if (!(value > 0 && std::isfinite(value)))
@@ -166,20 +163,20 @@ ActiveEstimationResult runInThreads(const ActiveEstimationTask& task,
 
 ActiveEstimationResult runActiveEstimation(const ActiveEstimationTask& task) {
   check(task);
-  return task.estimateMass ? runInOneThread<BothUnknown>(task)
+  return task.estimateMass ? runInOneThread<MassAndLengthUnknown>(task)
                            : runInOneThread<LengthUnknown>(task);
 }
 
 ActiveEstimationResult runActiveEstimationInRealTime(
     const ActiveEstimationTask& task, const std::function<bool(double time)>& keepGoing) {
   check(task);
-  return task.estimateMass ? runInThreads<BothUnknown>(task, keepGoing)
+  return task.estimateMass ? runInThreads<MassAndLengthUnknown>(task, keepGoing)
                            : runInThreads<LengthUnknown>(task, keepGoing);
 }
 
 Action<1> firstAction(const ActiveEstimationTask& task) {
   check(task);
-  if (task.estimateMass) return Trial<BothUnknown>(task).controller.decide();
+  if (task.estimateMass) return Trial<MassAndLengthUnknown>(task).controller.decide();
   return Trial<LengthUnknown>(task).controller.decide();
 }
 

@@ -129,8 +129,8 @@ Action<1> ControllerModule<S>::decide() {
 }
 
 template class EstimatorModule<LengthUnknown>;
-template class EstimatorModule<BothUnknown>;
+template class EstimatorModule<MassAndLengthUnknown>;
 template class ControllerModule<LengthUnknown>;
-template class ControllerModule<BothUnknown>;
+template class ControllerModule<MassAndLengthUnknown>;
 
 }  // namespace info::detail

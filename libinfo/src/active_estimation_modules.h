@@ -1,10 +1,9 @@
 #pragma once
 
-#include "info/free_parameters.h"
-#include "info/integrate.h"
 #include "info/latest_value.h"
 #include "info/sample_log.h"
 #include "info/systems/active_estimation.h"
+#include "info/systems/instances.h"
 
 /// The modules of active_estimation.h and what they exchange.
 namespace info::detail {
@@ -14,9 +13,7 @@ struct Command {
   double from = 0, to = 0;  // [s]
 };
 
-/// The suspended mass with its length, or mass and length, unknown; S is one of the two.
-using LengthUnknown = FreeParameters<SuspendedMass, 1>;
-using BothUnknown = FreeParameters<SuspendedMass, 0, 1>;
+// In what follows S is LengthUnknown or MassAndLengthUnknown.
 
 template <class S>
 struct EstimateMessage {
@@ -161,8 +158,8 @@ class ControllerModule {
 
 // Instantiated once, in active_estimation_modules.cc.
 extern template class EstimatorModule<LengthUnknown>;
-extern template class EstimatorModule<BothUnknown>;
+extern template class EstimatorModule<MassAndLengthUnknown>;
 extern template class ControllerModule<LengthUnknown>;
-extern template class ControllerModule<BothUnknown>;
+extern template class ControllerModule<MassAndLengthUnknown>;
 
 }  // namespace info::detail

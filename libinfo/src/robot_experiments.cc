@@ -6,10 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "info/integrate.h"
 #include "info/monte_carlo.h"
-#include "info/predictor.h"
-#include "info/systems/suspended_mass.h"
+#include "info/systems/instances.h"
 
 namespace info {
 namespace {

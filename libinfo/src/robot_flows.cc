@@ -1,8 +1,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "info/systems/instances.h"
 #include "info/systems/robot_designs.h"
-#include "info/systems/suspended_mass.h"
 
 namespace info {
 namespace {

@@ -1,8 +1,7 @@
 #include <stdexcept>
 
-#include "info/predictor.h"
+#include "info/systems/instances.h"
 #include "info/systems/robot_experiments.h"
-#include "info/variational.h"
 
 namespace info {
 
@@ -12,7 +11,7 @@ PlannedExperiment doublePendulumStepExperiment(const std::vector<double>& positi
     throw std::invalid_argument("cart motion: there must be at least one sample");
   CartDoublePendulum<> system;
   system.dampingUnit = 1e-2;
-  using Map = VariationalIntegrator<CartDoublePendulum<>>;
+  using Map = DoublePendulumSteps;
   const Map map(system, timeStep);
   std::vector<InputOf<Map>> inputs;
   for (double x : position) inputs.push_back(InputOf<Map>(x));

@@ -1,8 +1,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "info/systems/instances.h"
 #include "info/systems/robot_designs.h"
-#include "info/variational.h"
 
 namespace info {
 
@@ -10,7 +10,7 @@ ExtendedStepMap doublePendulumSteps(double timeStep, double dampingUnit,
                                     const Vector<double, 2>& theta) {
   CartDoublePendulum<> system;
   system.dampingUnit = dampingUnit;
-  return extend(VariationalIntegrator<CartDoublePendulum<>>(system, timeStep), theta);
+  return extend(DoublePendulumSteps(system, timeStep), theta);
 }
 
 StepTask doublePendulumStepTask(double timeStep, std::size_t stepsPerSample) {

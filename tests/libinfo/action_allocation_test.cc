@@ -39,10 +39,10 @@ void expectNoAllocations(const ActiveEstimationTask& task) {
 
 TEST(SequentialActionControl, AllocatesNothingInAControlCycle) {
   ActiveEstimationTask task;
-  expectNoAllocations<detail::LengthUnknown>(task);
+  expectNoAllocations<LengthUnknown>(task);
   task.action.searchTime = true;
   task.estimateMass = true;
-  expectNoAllocations<detail::BothUnknown>(task);
+  expectNoAllocations<MassAndLengthUnknown>(task);
 }
 
 TEST(Allocations, AreCountedWhetherEigenOrNewTakesThem) {

@@ -4,10 +4,9 @@
 
 #include <cmath>
 
-#include "info/integrate.h"
 #include "info/symmetric_eigen.h"
+#include "info/systems/instances.h"
 #include "info/systems/robot_designs.h"
-#include "info/systems/suspended_mass.h"
 #include "support/throws_saying.h"
 
 namespace {

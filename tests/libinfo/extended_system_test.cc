@@ -2,9 +2,9 @@
 
 #include <gmock/gmock.h>
 
-#include "info/integrate.h"
+#include "info/systems/instances.h"
+#include "info/systems/pendulum.h"
 #include "info/systems/robot_designs.h"
-#include "info/systems/suspended_mass.h"
 
 namespace {
 
@@ -62,7 +62,8 @@ TEST(ExtendedStepMap, DifferentiatesAnExplicitMap) {
 }
 
 TEST(ExtendedStepMap, DifferentiatesAnImplicitMap) {
-  checkStep(extend(ImplicitMidpoint<SuspendedMass>{{}, 0.05}, massTheta), bob, 0.7, -0.4);
+  checkStep(extend(ImplicitMidpoint<Pendulum>{{}, 0.05}, {0.8, 0.1}), VectorXd{{0.5, 1.1}}, 0.7,
+            -0.4);
 }
 
 TEST(ExtendedStepMap, DifferentiatesAVariationalIntegrator) {

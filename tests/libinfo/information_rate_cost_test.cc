@@ -2,14 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include "info/free_parameters.h"
-#include "info/systems/suspended_mass.h"
+#include "info/systems/instances.h"
 
 namespace {
 
 using namespace info;
-using Both = FreeParameters<SuspendedMass, 0, 1>;
-using Length = FreeParameters<SuspendedMass, 1>;
+using Both = MassAndLengthUnknown;
+using Length = LengthUnknown;
 
 TEST(InformationRateCost, IsTheInverseOfTheInformationOfOneParameter) {
   InformationRateCost<Length> cost;

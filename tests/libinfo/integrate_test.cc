@@ -4,9 +4,8 @@
 
 #include "info/adaptive.h"
 #include "info/sensitivity.h"
-#include "info/systems/cart_double_pendulum.h"
 #include "info/systems/damped_oscillator.h"
-#include "info/variational.h"
+#include "info/systems/instances.h"
 
 namespace {
 

@@ -3,18 +3,16 @@
 #include <gmock/gmock.h>
 
 #include "info/fisher.h"
-#include "info/free_parameters.h"
-#include "info/integrate.h"
 #include "info/random_stream.h"
-#include "info/systems/suspended_mass.h"
+#include "info/systems/instances.h"
 
 namespace {
 
 using namespace info;
 using testing::HasSubstr;
 
-using BothMap = Rk4<FreeParameters<SuspendedMass, 0, 1>>;
-using LengthMap = Rk4<FreeParameters<SuspendedMass, 1>>;
+using BothMap = Rk4<MassAndLengthUnknown>;
+using LengthMap = Rk4<LengthUnknown>;
 constexpr double kStep = 0.01;
 
 double inputAt(std::size_t k) {
@@ -88,8 +86,9 @@ TEST(OnlineLeastSquares, AgreesWithTheBatchEstimator) {
   Eigen::MatrixXd measured(1, 300);
   for (int k = 0; k < 300; ++k) measured(0, k) = data.forces[std::size_t(k)];
   const LeastSquares batch(
-      makePredictor(kBothMap, Experiment<BothMap>{Vector<double, 4>::Zero(), data.inputs,
-                                                  stepsEvery(0, 1, 299)}),
+      makePredictor(Rk4<SuspendedMass>{{}, kStep},
+                    Experiment<Rk4<SuspendedMass>>{Vector<double, 4>::Zero(), data.inputs,
+                                                   stepsEvery(0, 1, 299)}),
       {measured, OutputCovariance(Eigen::MatrixXd::Constant(1, 1, 0.01))}, bothFrom(0.2, 0.37));
   const Estimate whole = estimate(batch);
   ASSERT_TRUE(whole.converged);

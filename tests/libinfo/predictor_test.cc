@@ -4,10 +4,9 @@
 
 #include <cmath>
 
-#include "info/integrate.h"
 #include "info/systems/damped_oscillator.h"
+#include "info/systems/instances.h"
 #include "info/systems/pendulum.h"
-#include "info/systems/suspended_mass.h"
 
 namespace {
 
@@ -108,49 +107,32 @@ TEST(Predictor, OfSomeParametersInOtherUnitsFollowsTheChainRule) {
                std::invalid_argument);
 }
 
-// An implicit step that has no solution: x₁ = x + Δt·θ(1 + x₁²) beyond its fold.
-struct Runaway {
-  static constexpr int stateSize = 1, inputSize = 1, parameterSize = 1, outputSize = 1;
-  std::vector<std::string> parameterNames() const { return {"rate"}; }
-  template <class T>
-  info::Vector<T, 1> residual(const info::Vector<T, 1>& x1, const info::Vector<T, 1>& x,
-                              const info::Vector<T, 1>&, const info::Vector<T, 1>&,
-                              const info::Vector<T, 1>& theta) const {
-    info::Vector<T, 1> r;
-    r << x1[0] - x[0] - theta[0] * (1.0 + x1[0] * x1[0]);
-    return r;
-  }
-  template <class T>
-  info::Vector<T, 1> g(const info::Vector<T, 1>& x, const info::Vector<T, 1>&,
-                       const info::Vector<T, 1>&) const {
-    return x;
-  }
-};
-
+// No step solves an equation with a torque that is not a number.
 TEST(Predictor, LeavesSamplesAfterAnUnsolvedStepUndefined) {
+  using Map = info::ImplicitMidpoint<info::Pendulum>;
+  std::vector<info::Vector<double, 1>> inputs(9, info::Vector<double, 1>(0.1));
+  inputs[5][0] = NAN;
   const auto predictor = info::makePredictor(
-      Runaway{}, info::Experiment<Runaway>{
-                     info::Vector<double, 1>(0.0),
-                     std::vector<info::Vector<double, 1>>(9, info::Vector<double, 1>(0.0)),
-                     info::stepsEvery(1, 1, 8)});
-  const MatrixXd outputs = predictor.outputs(VectorXd::Constant(1, 0.2));
-  EXPECT_TRUE(std::isfinite(outputs(0, 0)));
-  EXPECT_TRUE(std::isnan(outputs(0, 7)));
-  const auto at = predictor.withSensitivities(VectorXd::Constant(1, 0.2));
-  EXPECT_TRUE(std::isfinite(at.gamma(0, 0)));
-  EXPECT_TRUE(std::isnan(at.gamma(7, 0)));
-  EXPECT_TRUE(std::isnan(predictor.contractedCurvature(VectorXd::Constant(1, 0.2), outputs)(0, 0)));
+      Map{{}, 0.05},
+      info::Experiment<Map>{Eigen::Vector2d(1, 0), inputs, info::stepsEvery(1, 1, 8)});
+  const Eigen::Vector2d theta(0.8, 0.1);
+  const MatrixXd outputs = predictor.outputs(theta);
+  EXPECT_TRUE(outputs.leftCols(4).allFinite());
+  EXPECT_TRUE(outputs.rightCols(4).array().isNaN().all());
+  const auto at = predictor.withSensitivities(theta);
+  EXPECT_TRUE(at.gamma.topRows(4).allFinite());
+  EXPECT_TRUE(at.gamma.bottomRows(4).array().isNaN().all());
+  EXPECT_TRUE(std::isnan(predictor.contractedCurvature(theta, outputs)(0, 0)));
 }
 
 TEST(Predictor, RefusesSamplesBeyondTheInputs) {
+  using Map = info::ImplicitMidpoint<info::Pendulum>;
   const std::vector<info::Vector<double, 1>> inputs(5, info::Vector<double, 1>(0.0));
-  EXPECT_THROW(info::makePredictor(Runaway{}, {info::Vector<double, 1>(0.0), inputs, {5}}),
-               info::DimensionError);
-  EXPECT_THROW(info::makePredictor(Runaway{}, {info::Vector<double, 1>(0.0), inputs, {}}),
-               info::DimensionError);
-  const auto predictor =
-      info::makePredictor(Runaway{}, {info::Vector<double, 1>(0.0), inputs, {4}});
-  EXPECT_THROW(predictor.outputs(VectorXd::Ones(2)), info::DimensionError);
+  const Eigen::Vector2d start(1, 0);
+  EXPECT_THROW(info::makePredictor(Map{{}, 0.05}, {start, inputs, {5}}), info::DimensionError);
+  EXPECT_THROW(info::makePredictor(Map{{}, 0.05}, {start, inputs, {}}), info::DimensionError);
+  const auto predictor = info::makePredictor(Map{{}, 0.05}, {start, inputs, {4}});
+  EXPECT_THROW(predictor.outputs(VectorXd::Ones(3)), info::DimensionError);
 }
 
 }  // namespace

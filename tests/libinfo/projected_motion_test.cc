@@ -5,10 +5,9 @@
 #include <cmath>
 
 #include "info/discrete_projection.h"
-#include "info/integrate.h"
 #include "info/projection.h"
 #include "info/symmetric_eigen.h"
-#include "info/systems/suspended_mass.h"
+#include "info/systems/instances.h"
 
 namespace {
 

@@ -2,16 +2,15 @@
 
 #include <gmock/gmock.h>
 
-#include "info/free_parameters.h"
-#include "info/systems/suspended_mass.h"
+#include "info/systems/instances.h"
 
 namespace {
 
 using namespace info;
 using testing::HasSubstr;
 
-using Length = FreeParameters<SuspendedMass, 1>;
-using Both = FreeParameters<SuspendedMass, 0, 1>;
+using Length = LengthUnknown;
+using Both = MassAndLengthUnknown;
 
 InformationRateCost<Length> lengthCost() {
   InformationRateCost<Length> cost;

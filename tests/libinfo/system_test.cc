@@ -3,11 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "info/integrate.h"
-#include "info/sensitivity.h"
-#include "info/systems/cart_double_pendulum.h"
+#include "info/systems/instances.h"
 #include "info/systems/pendulum.h"
-#include "info/variational.h"
 
 namespace {
 

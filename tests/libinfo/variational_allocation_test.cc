@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "info/systems/cart_double_pendulum.h"
-#include "info/variational.h"
+#include "info/systems/instances.h"
 #include "support/allocations.h"
 
 namespace {

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "info/sensitivity.h"
-#include "info/systems/cart_double_pendulum.h"
+#include "info/systems/instances.h"
 #include "support/dual_variational_map.h"
 
 namespace {

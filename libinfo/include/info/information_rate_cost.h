@@ -33,33 +33,46 @@ struct InformationRateCost {
   };
 
   double value(const S& system, const StateOf<S>& x, const StateSensitivityOf<S>& psi,
-               const InputOf<S>& u, const ParametersOf<S>& theta) const {
-    const StateOf<S> off = x - desired;
-    return inverseRate(extendedOutput(system, x, psi, u, theta).along).trace() +
-           off.dot(stateWeight * off);
-  }
-
+               const InputOf<S>& u, const ParametersOf<S>& theta) const;
   Gradient gradient(const S& system, const StateOf<S>& x, const StateSensitivityOf<S>& psi,
-                    const InputOf<S>& u, const ParametersOf<S>& theta) const {
-    // dl = −tr(M⁻¹ dM M⁻¹) = ⟨P, dΓ⟩,  P = −2 Σ⁻¹ Γ S M⁻² S
-    const Matrix<double, l, p> gamma = extendedOutput(system, x, psi, u, theta).along;
-    const Matrix<double, p, p> inverse = inverseRate(gamma);
-    const Matrix<double, p, p> square = inverse * inverse;
-    const Matrix<double, l, p> P =
-        -2 * inverseCovariance * gamma * scale.asDiagonal() * square * scale.asDiagonal();
-    const auto d = extendedOutputDerivatives(system, x, psi, u, theta);
-    const Vector<double, n + m> along = d.dpsiw.transpose() * P.reshaped();
-    return {along.template head<n>() + 2 * stateWeight * (x - desired),
-            d.dw.template leftCols<n>().transpose() * P, along.template tail<m>()};
-  }
+                    const InputOf<S>& u, const ParametersOf<S>& theta) const;
 
  private:
-  Matrix<double, p, p> inverseRate(const Matrix<double, l, p>& gamma) const {
-    Matrix<double, p, p> M =
-        scale.asDiagonal() * (gamma.transpose() * inverseCovariance * gamma) * scale.asDiagonal();
-    M.diagonal().array() += epsilon;
-    return M.inverse();
-  }
+  Matrix<double, p, p> inverseRate(const Matrix<double, l, p>& gamma) const;
 };
+
+template <SmoothSystem S>
+double InformationRateCost<S>::value(const S& system, const StateOf<S>& x,
+                                     const StateSensitivityOf<S>& psi, const InputOf<S>& u,
+                                     const ParametersOf<S>& theta) const {
+  const StateOf<S> off = x - desired;
+  return inverseRate(extendedOutput(system, x, psi, u, theta).along).trace() +
+         off.dot(stateWeight * off);
+}
+
+template <SmoothSystem S>
+typename InformationRateCost<S>::Gradient InformationRateCost<S>::gradient(
+    const S& system, const StateOf<S>& x, const StateSensitivityOf<S>& psi, const InputOf<S>& u,
+    const ParametersOf<S>& theta) const {
+  // dl = −tr(M⁻¹ dM M⁻¹) = ⟨P, dΓ⟩,  P = −2 Σ⁻¹ Γ S M⁻² S
+  const Matrix<double, l, p> gamma = extendedOutput(system, x, psi, u, theta).along;
+  const Matrix<double, p, p> inverse = inverseRate(gamma);
+  const Matrix<double, p, p> square = inverse * inverse;
+  const Matrix<double, l, p> P =
+      -2 * inverseCovariance * gamma * scale.asDiagonal() * square * scale.asDiagonal();
+  const auto d = extendedOutputDerivatives(system, x, psi, u, theta);
+  const Vector<double, n + m> along = d.dpsiw.transpose() * P.reshaped();
+  return {along.template head<n>() + 2 * stateWeight * (x - desired),
+          d.dw.template leftCols<n>().transpose() * P, along.template tail<m>()};
+}
+
+template <SmoothSystem S>
+Matrix<double, InformationRateCost<S>::p, InformationRateCost<S>::p>
+InformationRateCost<S>::inverseRate(const Matrix<double, l, p>& gamma) const {
+  Matrix<double, p, p> M =
+      scale.asDiagonal() * (gamma.transpose() * inverseCovariance * gamma) * scale.asDiagonal();
+  M.diagonal().array() += epsilon;
+  return M.inverse();
+}
 
 }  // namespace info
