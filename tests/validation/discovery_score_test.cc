@@ -130,6 +130,17 @@ TEST(Judge, TwoEffectsNeedBothNames) {
       both(Json::array({effectOf("payload", "structure", 1), effectOf("visc", "structure", 1)})));
 }
 
+TEST(Judge, SeveralNamesWithoutRivalsAreUnqualified) {
+  const Json label = labelOf("out", Json::array({truthOf("cable_1", 0.04)}));
+  const Json effects =
+      Json::array({effectOf("gain_1", "sensor", 1), effectOf("I_1", "parameter", 1)});
+  EXPECT_TRUE(judge("a", label, verdictOf("named", effects, {"gain_1", "I_1"})).unqualified);
+  EXPECT_FALSE(
+      judge("a", label, verdictOf("ambiguous", effects, {"gain_1", "I_1", "m_1"})).unqualified);
+  EXPECT_FALSE(
+      judge("a", label, verdictOf("named", effects, {"gain_1", "I_1", "m_1"})).unqualified);
+}
+
 TEST(Judge, NoneAndNumericalClaimNothing) {
   for (const char* word : {"none", "numerical"}) {
     const Outcome o = judge("a", labelOf("null", Json::array()), verdictOf(word, Json::array()));

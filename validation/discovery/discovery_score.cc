@@ -161,7 +161,8 @@ Outcome judge(const std::string& name, const Json& label, const Json& verdict) {
     o.confident = finite(effects[0], "probability").value_or(0) >= 0.95;
   }
   const std::set<std::string> candidates(o.inClass.begin(), o.inClass.end());
-  o.unqualified = (o.verdict == "named" || o.verdict == "parameter") && candidates.size() <= 1;
+  o.unqualified = (o.verdict == "named" || o.verdict == "parameter") &&
+                  candidates.size() <= std::max<std::size_t>(1, o.named.size());
   for (const Json& truth : hiding) {
     for (const Json& effect : effects) {
       // an equivalent has its own amplitude, which the truth does not tell

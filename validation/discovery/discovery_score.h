@@ -27,7 +27,7 @@ struct Outcome {
   bool classHasTruth = false;   ///< a truth is among names and class
   bool allNamed = false;        ///< every truth is among the names
   bool confident = false;       ///< first name's probability ≥ 0.95
-  bool unqualified = false;     ///< "named" or "parameter", with no second candidate in the class
+  bool unqualified = false;     ///< "named" or "parameter", and none of its names has a rival
   std::optional<double> z;      ///< (estimate − truth)/sd of the first right name's amplitude
   std::optional<double> gapClosed, overFloor, seconds;
 
