@@ -5,6 +5,7 @@
 
 #include <fstream>
 
+#include "repaired_table.h"
 #include "support/scratch_folder.h"
 
 namespace hidden {
@@ -129,6 +130,17 @@ TEST(Judge, TwoEffectsNeedBothNames) {
       both(Json::array({effectOf("payload", "structure", 1), effectOf("visc", "structure", 1)})));
 }
 
+TEST(Judge, SeveralNamesWithoutRivalsAreUnqualified) {
+  const Json label = labelOf("out", Json::array({truthOf("cable_1", 0.04)}));
+  const Json effects =
+      Json::array({effectOf("gain_1", "sensor", 1), effectOf("I_1", "parameter", 1)});
+  EXPECT_TRUE(judge("a", label, verdictOf("named", effects, {"gain_1", "I_1"})).unqualified);
+  EXPECT_FALSE(
+      judge("a", label, verdictOf("ambiguous", effects, {"gain_1", "I_1", "m_1"})).unqualified);
+  EXPECT_FALSE(
+      judge("a", label, verdictOf("named", effects, {"gain_1", "I_1", "m_1"})).unqualified);
+}
+
 TEST(Judge, NoneAndNumericalClaimNothing) {
   for (const char* word : {"none", "numerical"}) {
     const Outcome o = judge("a", labelOf("null", Json::array()), verdictOf(word, Json::array()));
@@ -177,6 +189,44 @@ TEST(Score, CountsMissesAndMissingVerdicts) {
   EXPECT_EQ(s.asJson()["shares"][2]["misses"].size(), 1u);
 }
 
+// Of 100, a target of 90 % leaves 90 ± 3 to chance; of 4 the bound is 3.6 − 1.2.
+TEST(Score, SaysWhatChanceMakesOfATarget) {
+  Row row;
+  row.bound = 0.9;
+  const auto within = [&](int k, int n) {
+    row.k = k;
+    row.n = n;
+    return row.within(2);
+  };
+  EXPECT_TRUE(within(84, 100) && within(100, 100) && within(3, 4) && within(0, 0));
+  EXPECT_FALSE(within(83, 100) || within(2, 4));
+  row.bound = 0.02;
+  row.atMost = true;
+  EXPECT_TRUE(within(0, 6) && within(1, 24) && within(4, 100));
+  EXPECT_FALSE(within(1, 6) || within(2, 24) || within(5, 100));
+
+  // of 16 values 8 ± 2 are on the right side of their median
+  Spread spread;
+  spread.bound = 1;
+  spread.atMost = true;
+  spread.values.assign(16, 2.0);
+  std::fill_n(spread.values.begin(), 4, 0.5);
+  EXPECT_TRUE(spread.within(2));
+  spread.values[3] = 2;
+  EXPECT_FALSE(spread.within(2));
+  spread.atMost = false;
+  EXPECT_TRUE(spread.within(2));
+}
+
+TEST(Judge, ALabelWithoutASizeLeavesTheEstimateAlone) {
+  const Json label =
+      labelOf("single", Json::array({{{"id", "visc"}, {"readings", Json::array()}}}));
+  const Outcome o =
+      judge("a", label, verdictOf("named", Json::array({effectOf("visc", "structure", 0.99)})));
+  EXPECT_TRUE(o.firstIsRight);
+  EXPECT_FALSE(o.z.has_value());
+}
+
 TEST(Score, ReadsFoldersAndSaysWhichFileIsBroken) {
   const support::ScratchFolder folder;
   const auto write = [&](const std::string& name, const std::string& text) {
@@ -199,6 +249,33 @@ TEST(Score, ReadsFoldersAndSaysWhichFileIsBroken) {
     EXPECT_THAT(e.what(), testing::HasSubstr("verdict.json"));
   }
   EXPECT_THROW(readOutcomes(folder.path() / "nowhere", folder.path()), std::runtime_error);
+}
+
+TEST(RepairedTable, HasALineForEverySetWithWhatTheRepairedModelIsSaidToLack) {
+  const support::ScratchFolder folder;
+  const auto write = [&](const std::string& name, const Json& json) {
+    const auto file = folder.path() / name;
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file) << json.dump();
+  };
+  Json truth = truthOf("visc", 0.3);
+  truth["amplitude"] = 0.3;
+  truth["unit"] = "N m s";
+  write("labels/x.json", labelOf("single", Json::array({truth})));
+  Json verdict = verdictOf("named", Json::array({effectOf("visc", "structure", 0.99, 0.29, 0.02)}),
+                           Json::array({"visc"}));
+  verdict["gap"] = {{"held_out", {{"gap_closed", 0.985}, {"gap_closed_from_nominal", nullptr}}}};
+  verdict["wall_s"] = 12;
+  write("verdicts/x/verdict.json", verdict);
+  const auto table = [&] {
+    return repairedTable(folder.path() / "labels", folder.path() / "verdicts",
+                         folder.path() / "repaired");
+  };
+  EXPECT_THAT(table(),
+              testing::EndsWith("\n| x | visc 0.3 N m s | named; visc 0.29 ± 0.02 N m s | -0.50 | "
+                                "98.5 % | no gap | no verdict | 12 |\n"));
+  write("repaired/x/verdict.json", verdictOf("none", Json::array()));
+  EXPECT_THAT(table(), testing::HasSubstr("| none | 12 |"));
 }
 
 }  // namespace

@@ -46,11 +46,12 @@ std::string lastWord(const std::string& name) {
 }
 
 // (estimate − truth)/sd: the parameter whose name, or its last word, the label knows; else the
-// first one beside the first reading.
+// first one beside the first reading. Nothing where the label tells no size.
 std::optional<double> deviation(const Json& estimate, const Json& truth) {
   const Json parameters = estimate.value("parameters", Json::object());
   if (parameters.empty()) return {};
   const Json& readings = truth.at("readings");
+  if (readings.empty()) return {};
   const Json* parameter = &*parameters.begin();
   const Json* wanted = &readings.front();
   bool known = false;
@@ -89,6 +90,8 @@ Row row(const std::vector<Outcome>& all, const std::string& metric, const std::s
   Row r;
   r.metric = metric;
   r.target = target;
+  r.bound = bound;
+  r.atMost = atMost;
   for (const Outcome& o : all) {
     if (!in(o)) continue;
     const bool counted = counts(o);
@@ -104,7 +107,7 @@ Row row(const std::vector<Outcome>& all, const std::string& metric, const std::s
 template <class Value>
 Spread spread(const std::vector<Outcome>& all, const std::string& metric, const std::string& unit,
               const std::string& target, double bound, bool atMost, Value&& value) {
-  Spread s{metric, unit, target, {}, false};
+  Spread s{metric, unit, target, {}, bound, atMost, false};
   for (const Outcome& o : all) {
     if (const std::optional<double> v = value(o)) s.values.push_back(*v);
   }
@@ -158,7 +161,8 @@ Outcome judge(const std::string& name, const Json& label, const Json& verdict) {
     o.confident = finite(effects[0], "probability").value_or(0) >= 0.95;
   }
   const std::set<std::string> candidates(o.inClass.begin(), o.inClass.end());
-  o.unqualified = (o.verdict == "named" || o.verdict == "parameter") && candidates.size() <= 1;
+  o.unqualified = (o.verdict == "named" || o.verdict == "parameter") &&
+                  candidates.size() <= std::max<std::size_t>(1, o.named.size());
   for (const Json& truth : hiding) {
     for (const Json& effect : effects) {
       // an equivalent has its own amplitude, which the truth does not tell
@@ -177,6 +181,19 @@ Outcome judge(const std::string& name, const Json& label, const Json& verdict) {
   }
   o.seconds = finite(verdict, "wall_s");
   return o;
+}
+
+bool Row::within(double deviations) const {
+  const double expected = n * bound, slack = deviations * std::sqrt(n * bound * (1 - bound));
+  return atMost ? k <= expected + slack : k >= expected - slack;
+}
+
+bool Spread::within(double deviations) const {
+  const auto right = std::count_if(values.begin(), values.end(), [&](double value) {
+    return atMost ? value <= bound : value >= bound;
+  });
+  const auto n = static_cast<double>(values.size());
+  return static_cast<double>(right) >= n / 2 - deviations * std::sqrt(n) / 2;
 }
 
 double Spread::median() const {

@@ -27,7 +27,7 @@ struct Outcome {
   bool classHasTruth = false;   ///< a truth is among names and class
   bool allNamed = false;        ///< every truth is among the names
   bool confident = false;       ///< first name's probability ≥ 0.95
-  bool unqualified = false;     ///< "named" or "parameter", with no second candidate in the class
+  bool unqualified = false;     ///< "named" or "parameter", and none of its names has a rival
   std::optional<double> z;      ///< (estimate − truth)/sd of the first right name's amplitude
   std::optional<double> gapClosed, overFloor, seconds;
 
@@ -42,10 +42,17 @@ Outcome judge(const std::string& name, const Json& label, const Json& verdict);
 struct Row {
   std::string metric;
   int k = 0, n = 0;
-  std::string target;  ///< e.g. "≤ 2 %"
-  bool met = false;    ///< by the share itself; false if n = 0
+  std::string target;   ///< e.g. "≤ 2 %"
+  double bound = 0;     ///< of the target
+  bool atMost = false;  ///< the share is to be at most that, else at least
+  bool met = false;     ///< by the share itself; false if n = 0
   std::vector<std::string> misses;
   Interval interval() const { return wilson(k, n); }
+  /// Whether k is no further on the wrong side of the target than chance makes it: a tool that
+  /// just meets the target p has n·p ± √(n·p(1 − p)) counted (binomial).
+  ///     k ≤ n·p + d·√(n·p(1 − p)), or k ≥ n·p − d·√(n·p(1 − p))
+  /// @param deviations d; true for n = 0
+  bool within(double deviations) const;
 };
 
 /// Medians and worst values of a quantity.
@@ -53,7 +60,12 @@ struct Spread {
   std::string metric, unit, target;
   std::vector<double> values;  ///< rising
   double median() const;       ///< NaN if empty
+  double bound = 0;            ///< of the target
+  bool atMost = false;         ///< the median is to be at most that, else at least
   bool met = false;
+  /// The same for a median that just meets its target: how many of the values are on the right
+  /// side is then binomial with p = 1/2.
+  bool within(double deviations) const;
 };
 
 struct Score {

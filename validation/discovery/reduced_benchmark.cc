@@ -8,23 +8,13 @@
 #include <vector>
 
 #include "discovery/arguments.h"
-#include "discovery/reduced_truth.h"
+#include "discovery/reduced_plan.h"
 #include "discovery/wilson.h"
 #include "info/discover/discover.h"
-#include "info/random_stream.h"
 
 namespace {
 
 using namespace info::discover;
-
-const std::vector<std::string> kEffects = {"visc",    "coulomb", "stribeck", "drag",    "stiffness",
-                                           "limit",   "payload", "tilt",     "const",   "handforce",
-                                           "fatigue", "delay",   "shape",    "tri<bic", "bic<tri",
-                                           "wrapBIC", "wrapTRI", "bias",     "gain",    "clock"};
-const std::vector<std::string> kParameters = {"tau",     "FmaxBIC", "FmaxBRA", "FmaxBRD", "FmaxTRI",
-                                              "loptBIC", "loptBRA", "loptBRD", "loptTRI", "mass"};
-const std::vector<std::string> kOutside = {"cubic",  "powerdamp",  "qdamp",
-                                           "tremor", "hysteresis", "flwidth"};
 
 struct Tally {
   int hits = 0, of = 0;
@@ -38,68 +28,40 @@ void print(const char* what, const Tally& tally) {
              100.0 * tally.hits / tally.of, 100 * interval.low, 100 * interval.high);
 }
 
-double truthOf(const std::string& id, double size) {
-  static const double tolerance[] = {0.2, 0.15, 0.15, 0.15, 0.15, 0.04, 0.04, 0.04, 0.04, 0.05};
-  for (std::size_t i = 0; i < kParameters.size(); ++i)
-    if (kParameters[i] == id) return std::exp(size * 5 * tolerance[i]);  // 5 σ at full size
-  return size * reduced::fullSize(id);
-}
-
 int score(const hidden::Arguments& arguments) {
   if (arguments.words.size() != 2)
     throw std::invalid_argument("first and last seed are needed, e.g. 0 20");
   const std::uint64_t first = std::stoull(arguments.words[0]),
                       last = std::stoull(arguments.words[1]);
-  const std::string suite = arguments.text("suite", "null"), only = arguments.text("only");
-  const double size = arguments.number("size", 1), emgNoise = arguments.number("emg-noise", 0),
-               step = arguments.number("step", 0.01);
+  reduced::Plan plan;
+  plan.suite = arguments.text("suite", "null");
+  plan.effect = arguments.text("only");
+  plan.size = arguments.number("size", 1);
+  plan.emgNoise = arguments.number("emg-noise", 0);
+  plan.trials = static_cast<int>(arguments.number("trials", 4));
+  plan.seconds = arguments.number("seconds", 4.6);
+  const std::string& suite = plan.suite;
+  const double size = plan.size, emgNoise = plan.emgNoise, step = arguments.number("step", 0.01);
   const bool verbose = arguments.has("verbose"), known = !arguments.has("estimate-sigma"),
              leaveOut = arguments.has("leave-out");
   Tally detected, top, inClass, falseName, confident, coverage, both, unknown, structureNamed;
   std::vector<double> closed, seconds, floors;
   for (std::uint64_t seed = first; seed < last; ++seed) {
-    info::RandomStream pick(seed, 99);
-    reduced::Recipe recipe;
-    recipe.trials = 4;  // the last one is held out
-    recipe.emgNoise = emgNoise;
-    std::vector<std::string> truth;
-    const auto choose = [&](const std::vector<std::string>& from) {
-      const auto i = static_cast<std::size_t>(pick.uniform() * static_cast<double>(from.size()));
-      truth.push_back(only.empty() || !truth.empty() ? from[i] : only);
-    };
-    if (suite == "single") choose(kEffects);
-    if (suite == "parameter") choose(kParameters);
-    if (suite == "out") choose(kOutside);
-    if (suite == "equivalents") choose({"tilt", "handforce", "delay", "clock", "payload"});
-    if (suite == "two") {
-      choose(kEffects);
-      do {
-        truth.resize(1);
-        choose(kEffects);
-      } while (truth[0] == truth[1]);
-    }
-    for (const auto& id : truth) {
-      const bool sign = pick.uniform() < 0.5;
-      double amount = truthOf(id, size);
-      if (suite == "parameter" && sign) amount = 1 / amount;
-      const bool bothWays = id == "tilt" || id == "const" || id == "handforce" || id == "shape" ||
-                            id == "wrapBIC" || id == "wrapTRI" || id == "bias" || id == "gain";
-      if (bothWays && sign) amount = -amount;
-      recipe.effects.emplace_back(id, amount);
-    }
-    std::vector<std::string> hidden;
-    if (leaveOut) hidden = truth;
-    std::vector<reduced::Trial> trials;
+    plan.seed = seed;
+    reduced::DataSet set;
     try {
-      trials = reduced::record(recipe, seed);
+      set = reduced::makeDataSet(plan);
     } catch (const std::domain_error&) {
       fmt::print("seed {}: the arm went out of range, left out\n", seed);
       continue;
     }
-    const reduced::Elbow elbow(std::move(trials), hidden, step);
+    const reduced::Recipe& recipe = set.recipe;
+    const std::vector<std::string> truth = set.hidden();
+    const std::vector<std::string> hidden = leaveOut ? truth : std::vector<std::string>{};
+    const reduced::Elbow elbow(std::move(set.trials), hidden, step);
     Options options;
     if (known) options.outputDeviation = recipe.outputNoise;
-    options.heldOut = {3};
+    options.heldOut = {plan.trials - 1};
     options.latentTolerance = emgNoise > 0 ? 2 * emgNoise : 0.02;
     const auto begin = std::chrono::steady_clock::now();
     const Verdict v = run(elbow, options);
@@ -212,13 +174,14 @@ int score(const hidden::Arguments& arguments) {
 
 int main(int argc, char** argv) {
   try {
-    return score(hidden::Arguments(argc, argv, {"suite", "size", "emg-noise", "step", "only"},
-                                   {"leave-out", "estimate-sigma", "verbose"}));
+    return score(hidden::Arguments(
+        argc, argv, {"suite", "size", "emg-noise", "step", "only", "trials", "seconds"},
+        {"leave-out", "estimate-sigma", "verbose"}));
   } catch (const std::exception& error) {
     fmt::print(stderr,
                "reduced_benchmark: {}\nusage: reduced_benchmark FIRST LAST [--suite null|single|"
                "parameter|two|equivalents|out] [--size s] [--emg-noise c] [--only id] "
-               "[--leave-out] [--estimate-sigma] [--verbose]\n",
+               "[--trials n] [--seconds s] [--leave-out] [--estimate-sigma] [--verbose]\n",
                error.what());
     return 2;
   }

@@ -234,16 +234,22 @@ double fullSize(const std::string& effect) {
 }
 
 std::vector<Trial> record(const Recipe& recipe, std::uint64_t seed) {
-  RandomStream draw(seed, 0);
+  RandomStream draw(seed, 0), again(seed, 98);
   Arm arm;
   const double on = recipe.nuisances ? 1 : 0;
+  // beyond 2.5 deviations it would be a parameter error, not a tolerance
+  const auto within = [&] {
+    double z = draw.normal();
+    while (std::abs(z) > 2.5) z = again.normal();
+    return on * z;
+  };
   for (int i = 0; i < 4; ++i) {
-    arm.strength[i] *= std::exp(on * 0.15 * draw.normal());
+    arm.strength[i] *= std::exp(0.15 * within());
     // a longer optimal length, the same path: the straight length stays
-    arm.best[i] *= std::exp(on * 0.04 * draw.normal());
+    arm.best[i] *= std::exp(0.04 * within());
   }
-  arm.weight *= std::exp(on * 0.05 * draw.normal());
-  arm.rise *= std::exp(on * 0.2 * draw.normal());
+  arm.weight *= std::exp(0.05 * within());
+  arm.rise *= std::exp(0.2 * within());
   for (const auto& [id, size] : recipe.effects) {
     static const std::string muscles[4] = {"BIC", "BRA", "BRD", "TRI"};
     bool parameter = false;

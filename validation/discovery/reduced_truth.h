@@ -16,7 +16,8 @@ struct Recipe {
   std::vector<std::pair<std::string, double>> effects;
   double emgNoise = 0;  ///< relative, 80 ms Ornstein–Uhlenbeck, of what the muscles get
   double outputNoise = 0.5 * 0.017453292519943295;  ///< [rad]
-  bool nuisances = true;  ///< parameters drawn from their tolerances; false: nominal
+  /// Parameters drawn from their tolerances, those beyond 2.5 deviations again; false: nominal
+  bool nuisances = true;
   int trials = 3;
   double seconds = 4.6;
 };

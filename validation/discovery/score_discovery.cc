@@ -1,7 +1,8 @@
 // Compares verdicts with labels and prints the benchmark's table.
 //
-//     score_discovery --labels DIR --verdicts DIR [--json FILE]
+//     score_discovery --labels DIR --verdicts DIR [--repaired DIR] [--json FILE]
 //
+// --repaired: verdicts on the models repaired with what was found, for a table of every set.
 // Exit status 1 if a target with data is missed, 2 for wrong use or a file that cannot be read.
 
 #include <fmt/format.h>
@@ -10,16 +11,20 @@
 
 #include "arguments.h"
 #include "discovery_score.h"
+#include "repaired_table.h"
 
 int main(int argc, char** argv) {
   try {
-    const hidden::Arguments arguments(argc, argv, {"labels", "verdicts", "json"});
+    const hidden::Arguments arguments(argc, argv, {"labels", "verdicts", "repaired", "json"});
     if (!arguments.has("labels") || !arguments.has("verdicts")) {
       throw std::invalid_argument("--labels and --verdicts are needed");
     }
     const auto score =
         hidden::score(hidden::readOutcomes(arguments.text("labels"), arguments.text("verdicts")));
     fmt::print("{}", score.asMarkdown());
+    if (arguments.has("repaired"))
+      fmt::print("\n{}", hidden::repairedTable(arguments.text("labels"), arguments.text("verdicts"),
+                                               arguments.text("repaired")));
     if (arguments.has("json")) {
       std::ofstream stream(arguments.text("json"));
       stream << score.asJson().dump(2) << '\n';

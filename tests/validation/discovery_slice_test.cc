@@ -1,0 +1,106 @@
+// A slice of the blind benchmark (validation/discovery) for every day: data sets from the
+// benchmark's own generators, verdicts of the engine, judged by the benchmark's scorer. What holds
+// is the design's target less two binomial deviations, computed from the number of sets:
+// Row::within and Spread::within of discovery_score.h. Of 8 single effects with a target of 97 %,
+// for example, 7.76 − 2·√(8·0.97·0.03) = 6.8, so that 7 right names pass; of 6 null sets with 2 %,
+// 0.12 + 2·√(6·0.02·0.98) = 0.8, so that none may be given a name.
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "angle_unit.h"
+#include "discover_verdict.h"
+#include "discovery/reduced_plan.h"
+#include "discovery_score.h"
+#include "hidden_robots.h"
+#include "support/run_program.h"
+#include "support/scratch_folder.h"
+
+namespace {
+
+using hidden::Outcome;
+
+// The program's verdict on a set of the reduced elbow, which no command reads from files.
+Outcome onReducedElbow(const reduced::Plan& plan) {
+  reduced::DataSet set = reduced::makeDataSet(plan);
+  const reduced::Elbow elbow(std::move(set.trials));
+  info::discover::Options options;
+  options.outputDeviation = set.recipe.outputNoise;
+  options.latentTolerance = 0.02;
+  options.heldOut = {plan.trials - 1};
+  const auto begin = std::chrono::steady_clock::now();
+  const info::discover::Verdict verdict = info::discover::run(elbow, options);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  app::DiscoverWording wording;
+  wording.unit = app::radian;
+  wording.gapEnd = "_deg";
+  wording.inputs = "muscles";
+  const std::string name = plan.suite + " " + std::to_string(plan.seed);
+  return hidden::judge(
+      name, set.label,
+      app::verdictJson({name, {}, elbow, wording, options, verdict, name, taken.count()}));
+}
+
+// Through files and the command, the truth being read by the scorer alone.
+Outcome onRobot(const hidden::RobotPlan& plan) {
+  const support::ScratchFolder scratch;
+  hidden::writeRobotDataSet(hidden::makeRobotDataSet(plan), hidden::robotKind(plan.system),
+                            scratch / "set", scratch / "labels");
+  const auto file = [&](const char* name) { return (scratch / "set" / name).string(); };
+  const auto result = support::runFisherHill(
+      {"discover", "--system", plan.system, file("train_1.sto"), file("train_2.sto"),
+       file("train_3.sto"), "--hold-out", file("held_out.sto"), "--out",
+       (scratch / "verdicts" / "set").string()});
+  EXPECT_EQ(result.status, 0) << result.err;
+  return hidden::readOutcomes(scratch / "labels", scratch / "verdicts").at(0);
+}
+
+void expectTargets(const std::vector<Outcome>& outcomes) {
+  const hidden::Score score = hidden::score(outcomes);
+  for (const hidden::Row& row : score.rows) {
+    EXPECT_TRUE(row.target == "–" || row.within(2)) << row.metric;
+  }
+  for (const hidden::Spread& spread : score.spreads) EXPECT_TRUE(spread.within(2)) << spread.metric;
+  std::printf("%s", score.asMarkdown().c_str());
+}
+
+void expectTargetsOnReducedElbows(const std::string& suite, std::uint64_t first, int count) {
+  std::vector<Outcome> outcomes;
+  for (int i = 0; i < count; ++i) {
+    reduced::Plan plan;
+    plan.suite = suite;
+    plan.seed = first + static_cast<std::uint64_t>(i);
+    outcomes.push_back(onReducedElbow(plan));
+  }
+  expectTargets(outcomes);
+}
+
+void expectTargetsOnRobots(const std::string& system, std::uint64_t first, int single, int null) {
+  std::vector<Outcome> outcomes;
+  for (int i = 0; i < single + null; ++i) {
+    hidden::RobotPlan plan;
+    plan.system = system;
+    plan.suite = i < single ? "single" : "null";
+    plan.seed = first + static_cast<std::uint64_t>(i);
+    outcomes.push_back(onRobot(plan));
+  }
+  expectTargets(outcomes);
+}
+
+TEST(DiscoverySlice, OfReducedElbowsWithNothingHidden) {
+  expectTargetsOnReducedElbows("null", 45000, 6);
+}
+TEST(DiscoverySlice, OfReducedElbowsWithOneEffect) {
+  expectTargetsOnReducedElbows("single", 45100, 8);
+}
+TEST(DiscoverySlice, OfReducedElbowsWithOneWrongParameter) {
+  expectTargetsOnReducedElbows("parameter", 45200, 2);
+}
+TEST(DiscoverySlice, OfDoublePendulums) {
+  expectTargetsOnRobots("double-pendulum", 45300, 3, 1);
+}
+TEST(DiscoverySlice, OfSuspendedMasses) {
+  expectTargetsOnRobots("suspended-mass", 45400, 3, 1);
+}
+
+}  // namespace
