@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "bio/simulation_names.h"
+
 namespace app {
 
 std::map<std::string, double> byName(const std::vector<Assignment>& assignments) {
@@ -27,10 +29,7 @@ bio::ArmOptions armOptions(const SimulationOptions& options) {
 bio::SimulationOptions simulationOptions(const SimulationOptions& options, double startTime,
                                          double duration) {
   bio::SimulationOptions simulation;
-  simulation.integrator = options.integrator == "vi-left" ? bio::Integrator::variationalLeft
-                          : options.integrator == "rk4"   ? bio::Integrator::rungeKutta4
-                          : options.integrator == "cvode" ? bio::Integrator::cvode
-                                                          : bio::Integrator::variational;
+  simulation.integrator = bio::integratorNamed(options.integrator).value();
   simulation.startTime = startTime;
   simulation.duration = duration;
   simulation.step = options.stepOrDefault();

@@ -204,10 +204,6 @@ class Calibrate : public Command {
     std::vector<bio::Trial> trials;
     for (const std::string& file : files) {
       trials.push_back(bio::readTrial(file, model, {simulation_.ignoreExtra}));
-      if (!trials.back().applied.empty()) {
-        throw std::invalid_argument(fmt::format(
-            "{}: has a torque from outside, which calibration does not take into account", file));
-      }
       for (const std::string& warning : trials.back().warnings) summary.warn(warning);
     }
     return trials;

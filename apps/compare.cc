@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "arm_input.h"
+#include "bio/simulation_names.h"
 #include "compare_report.h"
 #include "figure_pictures.h"
 #include "progress_bar.h"
@@ -81,7 +82,7 @@ class Compare : public Command {
     const CompareFindings findings{model_,  trial_,     input.trial, arm,   *rotation,
                                    options, comparison, also,        chosen};
     if (chosen != nullptr) {
-      summary.setSimulation(shortName(chosen->integrator), chosen->step, options.duration,
+      summary.setSimulation(bio::name(chosen->integrator), chosen->step, options.duration,
                             chosen->wallSeconds);
     } else {
       summary.setSimulation(simulation_.integrator, simulation_.stepOrDefault(), options.duration,
@@ -140,9 +141,7 @@ class Compare : public Command {
   }
 
   static bio::Integrator integratorNamed(const std::string& name) {
-    for (const auto integrator : bio::CompareOptions{}.integrators) {
-      if (shortName(integrator) == name) return integrator;
-    }
+    if (const auto found = bio::integratorNamed(name)) return *found;
     throw std::invalid_argument(
         fmt::format("--integrators: '{}' is none of rk4, vi, vi-left, cvode", name));
   }
@@ -168,7 +167,7 @@ class Compare : public Command {
       return std::abs(std::log(cell.step / simulation_.stepOrDefault()));
     };
     const auto isAsked = [&](const bio::CompareCell& cell) {
-      return shortName(cell.integrator) == simulation_.integrator;
+      return bio::name(cell.integrator) == simulation_.integrator;
     };
     for (const bio::CompareCell& cell : comparison.cells) {
       if (best == nullptr || (isAsked(cell) && !isAsked(*best)) ||

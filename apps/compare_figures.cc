@@ -7,6 +7,7 @@
 #include <map>
 
 #include "angle_unit.h"
+#include "bio/simulation_names.h"
 #include "text.h"
 
 namespace app {
@@ -59,41 +60,13 @@ Figure emptyMotionFigure(const CompareFindings& f, const std::string& title) {
 
 void addCell(const CompareFindings& f, const bio::CompareCell& cell, Figure& figure,
              SeriesStyle style = SeriesStyle::dashed) {
-  const std::string ending = isOk(cell) ? "" : fmt::format(" ({})", statusName(cell.outcome));
+  const std::string ending = isOk(cell) ? "" : fmt::format(" ({})", bio::name(cell.outcome));
   figure.series.push_back(motionSeries(
-      f, fmt::format("{} at {} s{}", shortName(cell.integrator), numberText(cell.step), ending),
+      f, fmt::format("{} at {} s{}", bio::name(cell.integrator), numberText(cell.step), ending),
       cell.time, cell.q, style));
 }
 
 }  // namespace
-
-std::string shortName(bio::Integrator integrator) {
-  switch (integrator) {
-    case bio::Integrator::rungeKutta4:
-      return "rk4";
-    case bio::Integrator::variational:
-      return "vi";
-    case bio::Integrator::variationalLeft:
-      return "vi-left";
-    case bio::Integrator::cvode:
-      break;
-  }
-  return "cvode";
-}
-
-const char* statusName(bio::Outcome outcome) {
-  switch (outcome) {
-    case bio::Outcome::completed:
-      return "ok";
-    case bio::Outcome::unstable:
-      return "unstable";
-    case bio::Outcome::noSolution:
-      return "no solution";
-    case bio::Outcome::stopped:
-      break;
-  }
-  return "stopped";
-}
 
 bool isOk(const bio::CompareCell& cell) {
   return cell.outcome == bio::Outcome::completed;
@@ -188,7 +161,7 @@ Figure errorFigure(const CompareFindings& f) {
       if (std::isnan(order.order)) continue;
       figure.caption +=
           fmt::format("{}Observed order of {}: {:.2f}, from {} s to {} s.",
-                      figure.caption.empty() ? "" : " ", shortName(integrator), order.order,
+                      figure.caption.empty() ? "" : " ", bio::name(integrator), order.order,
                       numberText(order.steps.front()), numberText(order.steps.back()));
     }
     Series series{.name = longName(integrator)};
@@ -218,7 +191,7 @@ ReportPart failureTimeline(const CompareFindings& f) {
     if (fails) {
       figure.series.push_back(std::move(series));
     } else {
-      others += (others.empty() ? "" : ", ") + shortName(integrator);
+      others += std::string(others.empty() ? "" : ", ") + bio::name(integrator);
     }
   }
   if (figure.series.empty()) return Paragraph{"Every run reached the end of the trial."};

@@ -8,9 +8,6 @@
 // The figures of a comparison.
 namespace app {
 
-/// ok, unstable, no solution or stopped.
-const char* statusName(bio::Outcome outcome);
-
 bool isOk(const bio::CompareCell& cell);
 
 /// The cells of one integrator, steps rising.

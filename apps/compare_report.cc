@@ -7,6 +7,7 @@
 
 #include "angle_unit.h"
 #include "bio/replay.h"
+#include "bio/simulation_names.h"
 #include "compare_figures.h"
 #include "text.h"
 
@@ -20,10 +21,9 @@ Table cellTable(const CompareFindings& f) {
               {}};
   for (const bio::CompareCell& cell : f.comparison.cells) {
     table.rows.push_back(
-        {shortName(cell.integrator), numberText(cell.step),
-         isOk(cell)
-             ? (cell.halvedSteps > 0 ? fmt::format("ok, {} halved", cell.halvedSteps) : "ok")
-             : fmt::format("{} at {} s", statusName(cell.outcome), numberText(cell.failedAt)),
+        {bio::name(cell.integrator), numberText(cell.step),
+         isOk(cell) ? (cell.halvedSteps > 0 ? fmt::format("ok, {} halved", cell.halvedSteps) : "ok")
+                    : fmt::format("{} at {} s", bio::name(cell.outcome), numberText(cell.failedAt)),
          numberText(cell.error.rms * radian, 3), numberText(cell.error.largest * radian, 3),
          numberText(cell.wallSeconds * 1e3, 4), numberText(cell.newtonPerStep, 3),
          numberText(cell.energyError, 3)});
@@ -35,7 +35,7 @@ Table failureTable(const CompareFindings& f) {
   Table table{"How runs failed", {"integrator", "step [s]", "why"}, {}};
   for (const bio::CompareCell& cell : f.comparison.cells) {
     if (isOk(cell)) continue;
-    table.rows.push_back({shortName(cell.integrator), numberText(cell.step), cell.why});
+    table.rows.push_back({bio::name(cell.integrator), numberText(cell.step), cell.why});
   }
   return table;
 }
@@ -43,7 +43,7 @@ Table failureTable(const CompareFindings& f) {
 Table limitTable(const CompareFindings& f) {
   Table table{"", {"integrator", "stable at [s]", "not stable at [s]", "how it fails there"}, {}};
   for (const bio::StepLimit& limit : f.comparison.limits) {
-    table.rows.push_back({shortName(limit.integrator), numberText(limit.stable),
+    table.rows.push_back({bio::name(limit.integrator), numberText(limit.stable),
                           numberText(limit.failing), limit.why});
   }
   return table;
@@ -64,20 +64,20 @@ std::string verdictOf(const CompareFindings& f) {
   std::string text;
   if (isOk(*f.chosen)) {
     text = fmt::format("{} at {} s is {:.2g} deg (RMS) from the converged reference",
-                       shortName(f.chosen->integrator), numberText(f.chosen->step),
+                       bio::name(f.chosen->integrator), numberText(f.chosen->step),
                        f.chosen->error.rms * radian);
   } else {
-    text = fmt::format("{} at {} s does not reach the end", shortName(f.chosen->integrator),
+    text = fmt::format("{} at {} s does not reach the end", bio::name(f.chosen->integrator),
                        numberText(f.chosen->step));
   }
   for (const bio::StepLimit& limit : f.comparison.limits) {
     if (std::isnan(limit.stable)) {
-      text += fmt::format("; no stable step of {} was found", shortName(limit.integrator));
+      text += fmt::format("; no stable step of {} was found", bio::name(limit.integrator));
     } else if (std::isnan(limit.failing)) {
       text += fmt::format("; {} is stable at every step tried, to {:.2g} s",
-                          shortName(limit.integrator), limit.stable);
+                          bio::name(limit.integrator), limit.stable);
     } else {
-      text += fmt::format("; {} is stable to {:.2g} s", shortName(limit.integrator), limit.stable);
+      text += fmt::format("; {} is stable to {:.2g} s", bio::name(limit.integrator), limit.stable);
     }
   }
   return text + ".";
@@ -126,8 +126,8 @@ void writeCells(const bio::Comparison& comparison, std::ostream& out) {
   out << "integrator,step_s,status,failed_at_s,rms_deg,max_deg,wall_ms,newton_per_step,"
          "energy_error_J\n";
   for (const bio::CompareCell& one : comparison.cells) {
-    out << fmt::format("{},{},{},{},{},{},{},{},{}\n", shortName(one.integrator), cell(one.step),
-                       statusName(one.outcome), cell(one.failedAt), cell(one.error.rms * radian),
+    out << fmt::format("{},{},{},{},{},{},{},{},{}\n", bio::name(one.integrator), cell(one.step),
+                       bio::name(one.outcome), cell(one.failedAt), cell(one.error.rms * radian),
                        cell(one.error.largest * radian), cell(one.wallSeconds * 1e3),
                        cell(one.newtonPerStep), cell(one.energyError));
   }
@@ -138,13 +138,13 @@ void tellCompare(const CompareFindings& f, Summary& summary) {
   const bio::ConvergedReference& reference = f.comparison.reference;
   Json stable = {{"rk4", nullptr}, {"vi", nullptr}};
   for (const bio::StepLimit& limit : f.comparison.limits) {
-    stable[shortName(limit.integrator)] = limit.stable;
+    stable[bio::name(limit.integrator)] = limit.stable;
   }
   Json observed = {{"vi", nullptr}, {"vi-left", nullptr}, {"rk4", nullptr}};
   Json used = Json::object();
   for (const bio::ObservedOrder& order : f.comparison.orders) {
-    observed[shortName(order.integrator)] = order.order;
-    used[shortName(order.integrator)] = order.steps;
+    observed[bio::name(order.integrator)] = order.order;
+    used[bio::name(order.integrator)] = order.steps;
   }
   summary.set("largest_stable_step_s", stable);
   summary.set("observed_order", observed);
@@ -154,7 +154,7 @@ void tellCompare(const CompareFindings& f, Summary& summary) {
     summary.set("why", reference.motion.why);
     return;
   }
-  summary.set("status", statusName(f.chosen->outcome));
+  summary.set("status", bio::name(f.chosen->outcome));
   summary.set("rms_deg", f.chosen->error.rms * radian);
   summary.set("max_deg", f.chosen->error.largest * radian);
   summary.set("newton_iterations_per_step", f.chosen->newtonPerStep);

@@ -32,9 +32,6 @@ struct CompareFindings {
   const bio::CompareCell* chosen;  ///< the run of --integrator and --step; null without a reference
 };
 
-/// vi, vi-left, rk4 or cvode.
-std::string shortName(bio::Integrator integrator);
-
 /// compare.csv: one row per integrator and step; an empty cell is not known.
 void writeCells(const bio::Comparison& comparison, std::ostream& out);
 

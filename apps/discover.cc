@@ -110,13 +110,15 @@ class Discover : public Command {
       options.without = without_;
       elbow = std::make_unique<bio::discover::ElbowDisagreement>(model, arm, coordinate, trials,
                                                                  options);
-      SearchAttempt one{*elbow, engineOptions(maxEffects_, trials_.size(), heldOut_.size())};
+      info::discover::Attempt one{*elbow,
+                                  engineOptions(maxEffects_, trials_.size(), heldOut_.size())};
       const bool isAngle = elbow->widest().coordinate().isRotation;
       if (noise_) one.options.outputDeviation = isAngle ? *noise_ / radian : *noise_;
       return one;
     };
     const DiscoverSearch found =
-        searchForEffects(attempt, simulation_.stepOrDefault(), simulation_.step ? HUGE_VAL : 0.003);
+        searchForEffects(attempt, simulation_.stepOrDefault(),
+                         simulation_.step ? HUGE_VAL : bio::discover::shortestSearchStep);
     const bio::discover::ElbowDisagreement& data = *elbow;
     const info::discover::Verdict& verdict = found.verdict;
     const DiscoverWording wording = wordingOf(data);

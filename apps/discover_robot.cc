@@ -183,8 +183,8 @@ class RobotSearch {
 
  private:
   /// The robot at a time step, and what the engine is told.
-  SearchAttempt attempt(const info::robot::Model& model,
-                        const std::vector<info::robot::Trial>& trials, double step) {
+  info::discover::Attempt attempt(const info::robot::Model& model,
+                                  const std::vector<info::robot::Trial>& trials, double step) {
     info::robot::DisagreementOptions asked;
     asked.step = step;
     asked.without = request_.without;
@@ -193,8 +193,8 @@ class RobotSearch {
       asked.deviations.push_back(isAngle ? request_.noise[c] * degree : request_.noise[c]);
     }
     data_ = std::make_unique<RobotDisagreement>(model, trials, asked);
-    SearchAttempt one{*data_, engineOptions(request_.maxEffects, request_.trials.size(),
-                                            request_.heldOut.size())};
+    info::discover::Attempt one{*data_, engineOptions(request_.maxEffects, request_.trials.size(),
+                                                      request_.heldOut.size())};
     if (!request_.noise.empty()) one.options.outputDeviation = data_->deviations().front();
     return one;
   }

@@ -1,6 +1,7 @@
 #include "discover_search.h"
 
 #include <chrono>
+#include <optional>
 
 #include "interruption.h"
 #include "progress_bar.h"
@@ -17,23 +18,24 @@ info::discover::Options engineOptions(int maxEffects, std::size_t training, std:
   return options;
 }
 
-DiscoverSearch searchForEffects(const std::function<SearchAttempt(double step)>& attempt,
+DiscoverSearch searchForEffects(const std::function<info::discover::Attempt(double step)>& attempt,
                                 double step, double shortest) {
-  DiscoverSearch search;
   const auto begin = std::chrono::steady_clock::now();
-  for (search.step = step;; search.step /= 2) {
-    SearchAttempt one = attempt(search.step);
-    ProgressBar bar("discover");
-    one.options.progress = [&](const info::discover::Progress& at) {
-      search.interrupted = interruptionRequested();
-      if (!search.interrupted) bar.update(at.fraction);
-      return !search.interrupted;
+  std::optional<ProgressBar> bar;
+  bool interrupted = false;
+  const auto shown = [&](double at) {
+    info::discover::Attempt one = attempt(at);
+    bar.emplace("discover");
+    one.options.progress = [&](const info::discover::Progress& progress) {
+      interrupted = interruptionRequested();
+      if (!interrupted) bar->update(progress.fraction);
+      return !interrupted;
     };
-    search.verdict = info::discover::run(one.data, one.options);
-    one.options.progress = {};
-    search.options = std::move(one.options);
-    if (search.verdict.finding != Finding::numerical || search.step < shortest) break;
-  }
+    return one;
+  };
+  DiscoverSearch search{info::discover::runAtShorterSteps(shown, step, shortest)};
+  search.options.progress = {};
+  search.interrupted = interrupted;
   search.wallSeconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return search;

@@ -4,6 +4,7 @@
 
 #include "angle_unit.h"
 #include "bio/replay.h"
+#include "bio/simulation_names.h"
 #include "text.h"
 
 namespace app {
@@ -114,10 +115,7 @@ std::string comparison(const ReplayFindings& f) {
 
 void tellReplay(const ReplayFindings& f, Summary& summary) {
   const bio::Trajectory& motion = f.motion;
-  summary.set("status", motion.outcome == bio::Outcome::completed    ? "ok"
-                        : motion.outcome == bio::Outcome::unstable   ? "unstable"
-                        : motion.outcome == bio::Outcome::noSolution ? "no solution"
-                                                                     : "stopped");
+  summary.set("status", bio::name(motion.outcome));
   if (!motion.why.empty()) summary.set("why", motion.why);
   for (const bio::Coordinate& coordinate : f.arm.skeleton().coordinates()) {
     const auto* measured = measuredOf(f, coordinate.name);

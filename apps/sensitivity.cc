@@ -10,6 +10,7 @@
 #include "arm_input.h"
 #include "arm_options.h"
 #include "bio/arm_experiment.h"
+#include "bio/replay.h"
 #include "progress_bar.h"
 #include "result.h"
 #include "sensitivity_report.h"
@@ -83,7 +84,8 @@ class Sensitivity : public Command {
     for (const std::string& file : trials_) {
       TrialInput input = readTrialInput(file, model, arm, simulation_, summary);
       bio::ParameterCatalogue catalogue(model, arm, {input.start.q, {}});
-      std::vector<double> times = observedTimes(input, arm);
+      std::vector<double> times = bio::observedTimes(
+          input.trial, arm.skeleton().coordinates().front().name, simulation_.stepOrDefault());
       studies.push_back({std::move(input), std::move(catalogue), std::move(times)});
     }
     const Study& first = studies.front();
@@ -157,11 +159,7 @@ class Sensitivity : public Command {
   }
 
   ExitStatus listParameters(const bio::Model& model, const bio::Arm& arm) const {
-    Eigen::VectorXd q(arm.skeleton().numCoordinates());
-    for (Eigen::Index i = 0; i < q.size(); ++i) {
-      q[i] = arm.skeleton().coordinates()[static_cast<std::size_t>(i)].defaultValue;
-    }
-    const bio::ParameterCatalogue catalogue(model, arm, {q, {}});
+    const bio::ParameterCatalogue catalogue(model, arm, {arm.skeleton().defaultValues(), {}});
     std::string text;
     for (const bio::ModelParameter& p : catalogue.parameters()) {
       text += fmt::format("{:<44} {:>12.6g} {:<10} {}{}\n", p.name, p.value, p.unit, p.meaning,
@@ -169,23 +167,6 @@ class Sensitivity : public Command {
     }
     std::cout << text;
     return ExitStatus::done;
-  }
-
-  /// When the coordinate was measured; if it was not, every row of the simulation.
-  std::vector<double> observedTimes(const TrialInput& input, const bio::Arm& arm) const {
-    const std::string& name = arm.skeleton().coordinates().front().name;
-    const double end = input.startTime + input.duration;
-    std::vector<double> times;
-    for (const bio::MeasuredMotion& measured : input.trial.measured) {
-      if (measured.coordinate == name) times.assign(measured.times.begin(), measured.times.end());
-    }
-    if (times.empty()) {
-      const double step = simulation_.stepOrDefault();
-      for (std::size_t k = 0; input.startTime + static_cast<double>(k) * step <= end + 1e-9; ++k) {
-        times.push_back(input.startTime + static_cast<double>(k) * step);
-      }
-    }
-    return times;
   }
 
   void checkValues(const bio::ModelParameter& parameter) const {

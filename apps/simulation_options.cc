@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "bio/simulation_names.h"
+
 namespace app {
 namespace {
 
@@ -30,7 +32,7 @@ CLI::Option* addAssignments(CLI::App& subcommand, const std::string& name,
 }  // namespace
 
 double SimulationOptions::stepOrDefault() const {
-  return step.value_or(integrator == "rk4" ? 2e-4 : 0.01);
+  return step.value_or(bio::defaultStep(bio::integratorNamed(integrator).value()));
 }
 
 void addModelOptions(CLI::App& subcommand, SimulationOptions& options) {

@@ -20,8 +20,7 @@ struct SimulationOptions {
   std::vector<std::string> wrapAsCylinder;  ///< ellipsoids to take as cylinders
   bool ignoreExtra = false;                 ///< pass over a trial's unknown columns
 
-  /// Δt [s]: as given, else 0.01 for the variational integrators and for CVODE's output, 2e-4 for
-  /// RK4, which is unstable at long steps.
+  /// Δt [s]: as given, else the integrator's own.
   double stepOrDefault() const;
 };
 

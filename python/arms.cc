@@ -6,6 +6,7 @@
 
 #include "bio/osim_file.h"
 #include "bio/replay.h"
+#include "bio/simulation_names.h"
 #include "bio/trial_table.h"
 #include "interruptible.h"
 
@@ -54,20 +55,6 @@ std::vector<std::string> musclesOf(const bio::Model& model) {
   return names;
 }
 
-const char* outcomeOf(bio::Outcome outcome) {
-  switch (outcome) {
-    case bio::Outcome::completed:
-      return "completed";
-    case bio::Outcome::noSolution:
-      return "no solution";
-    case bio::Outcome::unstable:
-      return "unstable";
-    case bio::Outcome::stopped:
-      return "stopped";
-  }
-  return "";
-}
-
 /// Root mean square error against what was measured, by coordinate.
 py::dict errorsOf(const bio::Arm& arm, const bio::Trial& trial, const bio::Trajectory& motion) {
   py::dict errors;
@@ -113,7 +100,7 @@ py::object replay(const bio::Model& model, const bio::Trial& trial,
                  "tendon_force"_a = muscles.tendonForce.transpose().eval(),
                  "moment_arm"_a = muscles.momentArm.transpose().eval(),
                  "rms_error"_a = errorsOf(*arm, trial, motion), "energy_error"_a = energyError,
-                 "outcome"_a = outcomeOf(motion.outcome), "why"_a = motion.why,
+                 "outcome"_a = bio::name(motion.outcome), "why"_a = motion.why,
                  "steps"_a = motion.steps, "newton_iterations"_a = motion.newtonIterations,
                  "warnings"_a = arm->warnings());
 }
@@ -128,19 +115,14 @@ bio::ArmOptions ArmChoice::armOptions() const {
 }
 
 bio::SimulationOptions ArmChoice::simulation() const {
-  static const std::map<std::string, bio::Integrator> integrators = {
-      {"vi", bio::Integrator::variational},
-      {"vi-left", bio::Integrator::variationalLeft},
-      {"rk4", bio::Integrator::rungeKutta4},
-      {"cvode", bio::Integrator::cvode}};
-  const auto found = integrators.find(integrator);
-  if (found == integrators.end()) {
+  const auto found = bio::integratorNamed(integrator);
+  if (!found) {
     throw std::invalid_argument(
         fmt::format("integrator '{}', must be vi, vi-left, rk4 or cvode", integrator));
   }
   bio::SimulationOptions options;
-  options.integrator = found->second;
-  options.step = step != 0 ? step : integrator == "rk4" ? 2e-4 : 0.01;
+  options.integrator = *found;
+  options.step = step.value_or(bio::defaultStep(*found));
   return options;
 }
 
@@ -158,8 +140,8 @@ ArmChoice armChoice(const py::kwargs& keywords) {
       choice.integrator = value.cast<std::string>();
     } else if (name == "step") {
       choice.step = value.cast<double>();
-      if (!(choice.step > 0)) {
-        throw std::invalid_argument(fmt::format("step = {} s, must be > 0", choice.step));
+      if (!(*choice.step > 0)) {
+        throw std::invalid_argument(fmt::format("step = {} s, must be > 0", *choice.step));
       }
     } else {
       throw std::invalid_argument(fmt::format("unknown argument '{}'", name));
@@ -220,7 +202,7 @@ void defineArms(py::module_& module) {
       "initial"_a = std::map<std::string, double>(),
       "The motion that a trial's excitations make: time, q, q_dot, activation, fibre_length, "
       "tendon_force, moment_arm (rows = times; SI units, radians), rms_error {coordinate: rad}, "
-      "energy_error [J], outcome.\n\n"
+      "energy_error [J], outcome ('ok', 'unstable', 'no solution').\n\n"
       "Further keywords: coordinate='elbow_flexion' (or a list), lock={name: rad}, "
       "integrator='vi' ('vi-left', 'rk4', 'cvode'), step=0.01.");
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,7 @@ struct ArmChoice {
   std::vector<std::string> coordinates = {"elbow_flexion"};  ///< free
   std::map<std::string, double> locks;                       ///< [rad] or [m]
   std::string integrator = "vi";
-  double step = 0;  ///< [s]; 0: the integrator's default
+  std::optional<double> step;  ///< [s]; none: the integrator's default
 
   bio::ArmOptions armOptions() const;
   /// @throws std::invalid_argument for an integrator that there is not

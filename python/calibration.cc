@@ -10,8 +10,6 @@
 namespace python {
 namespace {
 
-using Pairs = std::map<std::string, std::pair<double, double>>;
-
 info::RobustLoss lossOf(const std::string& name) {
   info::RobustLoss loss;
   if (name == "gaussian") return loss;
@@ -54,13 +52,6 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
   options.loss = lossOf(loss);
   options.starts = starts;
   options.seed = seed;
-  for (const auto* list : {&trials, &holdOut}) {
-    for (const bio::Trial& trial : *list) {
-      if (trial.applied.empty()) continue;
-      throw std::invalid_argument(
-          trial.file + ": has a torque from outside, which calibration does not take into account");
-    }
-  }
   std::optional<bio::TrialSet> training, heldOut;
   bio::Calibration found;
   interruptible([&](const std::atomic<bool>& goOn) {

@@ -3,7 +3,7 @@
 
 #include "arms.h"
 #include "bio/discover/elbow_disagreement.h"
-#include "info/discover/discover.h"
+#include "info/discover/shorter_steps.h"
 #include "interruptible.h"
 
 namespace python {
@@ -11,7 +11,6 @@ namespace {
 
 using bio::discover::ElbowDisagreement;
 using info::discover::Estimate;
-using info::discover::Finding;
 using info::discover::Gap;
 using info::discover::Verdict;
 
@@ -49,7 +48,6 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
   if (choice.coordinates.size() != 1) {
     throw std::invalid_argument("coordinate: several are free; discover observes one");
   }
-  const bool stepWasGiven = choice.step != 0;
   info::discover::Options options;
   options.maxEffects = maxEffects;
   options.outputDeviation = noise;
@@ -62,19 +60,19 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
   elbow.simulation.duration = 1;
   elbow.without = without;
   std::unique_ptr<ElbowDisagreement> data;
-  Verdict verdict;
+  info::discover::SteppedVerdict found;
   interruptible([&](const std::atomic<bool>& goOn) {
     options.progress = [&](const info::discover::Progress&) { return goOn.load(); };
-    // steps that are too long look like an effect
-    for (;; elbow.simulation.step /= 2) {
+    const auto attempt = [&](double step) {
+      elbow.simulation.step = step;
       data = std::make_unique<ElbowDisagreement>(model, choice.armOptions(),
                                                  choice.coordinates.front(), trials, elbow);
-      verdict = info::discover::run(*data, options);
-      if (verdict.finding != Finding::numerical || stepWasGiven || elbow.simulation.step < 0.003) {
-        break;
-      }
-    }
+      return info::discover::Attempt{*data, options};
+    };
+    found = info::discover::runAtShorterSteps(
+        attempt, elbow.simulation.step, choice.step ? HUGE_VAL : bio::discover::shortestSearchStep);
   });
+  const Verdict& verdict = found.verdict;
   py::list effects;
   for (const auto& effect : verdict.effects) effects.append(effectOf(*data, effect));
   py::dict undetectable;
@@ -86,7 +84,7 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
                  "surrogate"_a = verdict.surrogate, "probability_vetoed"_a = verdict.vetoed,
                  "noise"_a = verdict.outputDeviation, "gap"_a = gapOf(verdict.gap),
                  "gap_held_out"_a = verdict.heldOut ? gapOf(*verdict.heldOut) : py::none(),
-                 "undetectable_below"_a = undetectable, "step"_a = elbow.simulation.step,
+                 "undetectable_below"_a = undetectable, "step"_a = found.step,
                  "fits"_a = verdict.fits);
 }
 

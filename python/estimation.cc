@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <map>
-
 #include "info/estimate.h"
 #include "info/fisher.h"
 #include "info/identifiability.h"
@@ -37,11 +35,9 @@ std::vector<std::string> namesFor(const std::vector<std::string>& given, Eigen::
   return names;
 }
 
-using Priors = std::map<std::string, std::pair<double, double>>;
-
 std::vector<info::Parameter> parametersOf(const VectorXd& start,
                                           const std::vector<std::string>& names,
-                                          const Priors& bounds, const Priors& prior) {
+                                          const Pairs& bounds, const Pairs& prior) {
   std::vector<info::Parameter> parameters;
   for (Eigen::Index i = 0; i < start.size(); ++i) {
     info::Parameter one{.name = names[static_cast<std::size_t>(i)], .start = start[i]};
@@ -94,7 +90,7 @@ MatrixXd fisherInformation(const py::object& gamma, const py::object& noise, Eig
 
 py::object estimate(const py::object& predict, const py::object& measured, const py::object& noise,
                     const VectorXd& start, const std::vector<std::string>& names,
-                    py::object sensitivities, const Priors& bounds, const Priors& prior,
+                    py::object sensitivities, const Pairs& bounds, const Pairs& prior,
                     const std::string& method, int iterations, double confidence) {
   if (sensitivities.is_none() && py::hasattr(predict, "sensitivities")) {
     sensitivities = predict.attr("sensitivities");
@@ -155,8 +151,8 @@ void defineEstimation(py::module_& module) {
       "sd, correlation.");
   module.def(
       "estimate", &estimate, "predict"_a, "measured"_a, "noise"_a, "start"_a, py::kw_only(),
-      "names"_a = std::vector<std::string>(), "sensitivities"_a = py::none(), "bounds"_a = Priors(),
-      "prior"_a = Priors(), "method"_a = "levenberg-marquardt", "iterations"_a = 100,
+      "names"_a = std::vector<std::string>(), "sensitivities"_a = py::none(), "bounds"_a = Pairs(),
+      "prior"_a = Pairs(), "method"_a = "levenberg-marquardt", "iterations"_a = 100,
       "confidence"_a = 0.95,
       "Weighted least squares within bounds={name: (low, high)}, with prior={name: (mean, sd)}. "
       "predict(theta) gives samples x outputs, as `measured` (NaN: not measured); a System does. "

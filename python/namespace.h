@@ -4,12 +4,19 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <map>
+#include <string>
+#include <utility>
+
 /// What the module's functions give back: a types.SimpleNamespace, whose members are NumPy arrays,
 /// numbers, strings, lists and dictionaries.
 namespace python {
 
 namespace py = pybind11;
 using namespace py::literals;
+
+/// Two numbers by name: bounds (low, high), priors (mean, sd).
+using Pairs = std::map<std::string, std::pair<double, double>>;
 
 template <class... Members>
 py::object results(Members&&... members) {

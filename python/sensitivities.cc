@@ -1,3 +1,5 @@
+#include <numbers>
+
 #include "arms.h"
 #include "bio/arm_experiment.h"
 #include "bio/parameter_information.h"
@@ -6,18 +8,6 @@
 
 namespace python {
 namespace {
-
-/// When the coordinate was measured; if it was not, every row of the simulation.
-std::vector<double> observedTimes(const bio::Trial& trial, const std::string& coordinate,
-                                  double step) {
-  for (const bio::MeasuredMotion& one : trial.measured) {
-    if (one.coordinate == coordinate) return {one.times.begin(), one.times.end()};
-  }
-  std::vector<double> times;
-  const double begin = trial.times[0], end = trial.times[trial.times.size() - 1];
-  for (int k = 0; begin + k * step <= end + 1e-9; ++k) times.push_back(begin + k * step);
-  return times;
-}
 
 py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& trials,
                        const std::vector<std::string>& parameters, double noise,
@@ -41,7 +31,7 @@ py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& t
                                               {bio::startCoordinates(trial, arm, {}), {}});
       selection = catalogue.select(parameters);
       values = catalogue.values(selection);
-      times.push_back(observedTimes(trial, coordinate, options.step));
+      times.push_back(bio::observedTimes(trial, coordinate, options.step));
       const bio::ArmExperiment experiment(catalogue, choice.armOptions(),
                                           bio::excitationOf(trial, arm), coordinate, times.back(),
                                           selection, options);
@@ -74,11 +64,7 @@ py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& t
 py::list listParameters(const bio::Model& model, const py::kwargs& keywords) {
   const ArmChoice choice = armChoice(keywords);
   const bio::Arm arm(model, choice.armOptions());
-  Eigen::VectorXd q(arm.skeleton().numCoordinates());
-  for (Eigen::Index i = 0; i < q.size(); ++i) {
-    q[i] = arm.skeleton().coordinates()[static_cast<std::size_t>(i)].defaultValue;
-  }
-  const bio::ParameterCatalogue catalogue(model, arm, {q, {}});
+  const bio::ParameterCatalogue catalogue(model, arm, {arm.skeleton().defaultValues(), {}});
   py::list list;
   for (const bio::ModelParameter& p : catalogue.parameters()) {
     list.append(results("name"_a = p.name, "value"_a = p.value, "unit"_a = p.unit,
@@ -95,7 +81,7 @@ void defineSensitivity(py::module_& module) {
              "Every parameter of the model that moves the arm: name, value, unit, meaning, …");
   module.def(
       "sensitivity", &sensitivity, "model"_a, "trials"_a, "parameters"_a, py::kw_only(),
-      "noise"_a = 1.0 / 57.29577951308232,
+      "noise"_a = std::numbers::pi / 180,
       "Exact sensitivities of the coordinate to parameters (names, may hold *, or ['all']) at the "
       "measured times, and what measuring it with the given noise [rad] tells: gamma (one array "
       "per "

@@ -33,7 +33,7 @@ class Arms(unittest.TestCase):
     def test_replay_gives_rows_for_times_and_columns_for_muscles(self):
         motion = fh.replay(self.model, self.trial)
         rows = len(motion.time)
-        self.assertEqual(motion.outcome, "completed")
+        self.assertEqual(motion.outcome, "ok")
         self.assertEqual(motion.q.shape, (rows, 1))
         self.assertEqual(motion.tendon_force.shape, (rows, len(motion.muscles)))
         self.assertEqual(motion.muscles, self.model.muscles)

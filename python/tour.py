@@ -23,7 +23,7 @@ print(f"{motion.steps} steps, final angle {motion.q[-1, 0] * degrees:.1f} deg,",
       f"{motion.rms_error['elbow_flexion'] * degrees:.1f} deg RMS from what was measured")
 strongest = motion.muscles[np.argmax(motion.tendon_force.max(axis=0))]
 print(f"strongest pull: {strongest}, {motion.tendon_force.max():.0f} N")
-assert motion.outcome == "completed"
+assert motion.outcome == "ok"
 
 # %% [markdown]
 # ## What would the measured angle tell about parameters?

@@ -69,6 +69,18 @@ Eigen::VectorXd startCoordinates(const Trial& trial, const Arm& arm,
   return q;
 }
 
+std::vector<double> observedTimes(const Trial& trial, const std::string& coordinate, double step) {
+  for (const MeasuredMotion& measured : trial.measured) {
+    if (measured.coordinate == coordinate && measured.times.size() > 0) {
+      return {measured.times.begin(), measured.times.end()};
+    }
+  }
+  const double begin = trial.times[0], end = trial.times[trial.times.size() - 1];
+  std::vector<double> times;
+  for (int k = 0; begin + k * step <= end + 1e-9; ++k) times.push_back(begin + k * step);
+  return times;
+}
+
 MeasuredError compareWithMeasured(const Arm& arm, const Trajectory& trajectory,
                                   const MeasuredMotion& measured) {
   const int index = arm.skeleton().indexOf(measured.coordinate);
@@ -210,10 +222,7 @@ PathSample samplePaths(const Model& model, const Skeleton& skeleton,
   stepping::withCoordinates(skeleton.numCoordinates(), [&](auto N) {
     constexpr int count = decltype(N)::value;
     std::vector<RigidMotion<double, count>> moved(skeleton.numSegments());
-    Eigen::Matrix<double, count, 1> q;
-    for (int i = 0; i < count; ++i) {
-      q[i] = skeleton.coordinates()[static_cast<std::size_t>(i)].defaultValue;
-    }
+    Eigen::Matrix<double, count, 1> q = skeleton.defaultValues();
     for (Eigen::Index k = 0; k < values.size(); ++k) {
       q[0] = values[k];
       skeleton.motions<double, count>(q, moved.data());

@@ -257,6 +257,14 @@ const BodyPlacement& Skeleton::placeOf(const std::string& body) const {
   return place->second;
 }
 
+Eigen::VectorXd Skeleton::defaultValues() const {
+  Eigen::VectorXd q(numCoordinates());
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    q[i] = coordinates_[static_cast<std::size_t>(i)].defaultValue;
+  }
+  return q;
+}
+
 int Skeleton::indexOf(const std::string& coordinate) const {
   for (std::size_t i = 0; i < coordinates_.size(); ++i) {
     if (coordinates_[i].name == coordinate) return static_cast<int>(i);

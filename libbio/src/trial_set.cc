@@ -46,6 +46,10 @@ TrialSet::TrialSet(const Model& model, const ArmOptions& arm, std::vector<Trial>
   if (trials_.empty()) throw std::invalid_argument("no trial is given");
   if (arm_->numMuscles() == 0) throw std::invalid_argument("no muscle moves a free coordinate");
   for (const Trial& trial : trials_) {
+    if (!trial.applied.empty()) {
+      throw std::invalid_argument(
+          trial.file + ": has a torque from outside, which calibration does not take into account");
+    }
     const StartPoint start{startCoordinates(trial, *arm_, options.initial), {}};
     catalogues_.push_back(std::make_unique<const ParameterCatalogue>(model, *arm_, start));
   }

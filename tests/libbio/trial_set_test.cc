@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "bio/replay.h"
 #include "support/synthetic_elbow.h"
 
 namespace bio {
@@ -89,6 +90,16 @@ TEST(TrialSet, GivesNothingWhereThereIsNoSimulation) {
   EXPECT_THAT(trials.failure(0, impossible), HasSubstr("BRA"));
 }
 
+TEST(ObservedTimes, AreThoseOfTheMeasurementElseEqualSteps) {
+  const Trial trial = subject().trial("curl_slow", 0.3);
+  const Eigen::VectorXd& measured = trial.measured.front().times;
+  EXPECT_EQ(observedTimes(trial, "elbow_flexion", 0.1),
+            std::vector<double>(measured.begin(), measured.end()));
+  const double begin = trial.times[0];
+  EXPECT_EQ(observedTimes(trial, "pro_sup", 0.1),
+            (std::vector<double>{begin, begin + 0.1, begin + 2 * 0.1, begin + 3 * 0.1}));
+}
+
 TEST(TrialSet, RefusesWhatCannotBeEstimatedFrom) {
   const Trial good = subject().trial("curl_slow", 0.3);
   Trial unmeasured = good;
@@ -103,6 +114,9 @@ TEST(TrialSet, RefusesWhatCannotBeEstimatedFrom) {
         set({"hand.mass"}, {good, unmeasured});
       },
       "curl_slow.sto: no measured column of a free angle (elbow_flexion)");
+  Trial pushed = good;
+  pushed.applied.push_back({"elbow_flexion", Eigen::VectorXd::Zero(good.times.size())});
+  fails([&] { set({"hand.mass"}, {pushed}); }, "curl_slow.sto: has a torque from outside");
   fails([&] { set({"hand.mas"}, {good}); }, "no parameter is called 'hand.mas'");
   fails([&] { set({"hand.mass", "hand.mass"}, {good}); }, "'hand.mass' is given twice");
   fails([&] { set({"emg.gain", "emg.BRA.gain"}, {good}); }, "set the same number");

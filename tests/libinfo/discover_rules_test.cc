@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 #include "info/discover/decide.h"
+#include "info/discover/shorter_steps.h"
 #include "info/random_stream.h"
 #include "support/linear_disagreement.h"
 
@@ -277,6 +279,47 @@ TEST(Discover, StopsWhenToldTo) {
   const Verdict v = run(data, options);
   EXPECT_EQ(v.reached, Stage::localise);
   EXPECT_EQ(v.base.size(), static_cast<Index>(data.quantities().size()));
+}
+
+// As drawn(), with a simulation that changes by `error` deviations of σ_y at half the step.
+class Coarse : public LinearDisagreement {
+ public:
+  Coarse(LinearDisagreement data, double error)
+      : LinearDisagreement(std::move(data)), error_(error) {}
+  VectorXd refinedOutputs(int trial, const VectorXd& values) const override {
+    return outputs(trial, values, {}).array() + error_ * kOutput;
+  }
+
+ private:
+  double error_;
+};
+
+TEST(RunAtShorterSteps, HalvesTheStepUntilItNoLongerMattersOrIsTooShort) {
+  std::optional<Coarse> data;
+  std::vector<double> steps;
+  // of second order: 0.4 deviations at 0.02, 0.1 at 0.01
+  const auto attempt = [&](double step) {
+    steps.push_back(step);
+    data.emplace(drawn(5, 2, 1.1), 1000 * step * step);
+    Options options;
+    options.outputDeviation = kOutput;
+    return Attempt{*data, options};
+  };
+  const SteppedVerdict found = runAtShorterSteps(attempt, 0.04, 0.003);
+  EXPECT_EQ(steps, (std::vector<double>{0.04, 0.02, 0.01}));
+  EXPECT_EQ(found.step, 0.01);
+  EXPECT_NE(found.verdict.finding, Finding::numerical);
+  EXPECT_NEAR(found.verdict.numericalError, 0.1, 1e-9);
+  EXPECT_EQ(found.options.outputDeviation, kOutput);
+
+  steps.clear();
+  const SteppedVerdict tooShort = runAtShorterSteps(attempt, 0.04, 0.03);
+  EXPECT_EQ(steps, (std::vector<double>{0.04, 0.02}));
+  EXPECT_EQ(tooShort.verdict.finding, Finding::numerical);
+
+  steps.clear();
+  EXPECT_EQ(runAtShorterSteps(attempt, 0.04, HUGE_VAL).verdict.finding, Finding::numerical);
+  EXPECT_EQ(steps.size(), 1U);
 }
 
 }  // namespace

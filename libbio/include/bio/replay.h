@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "bio/coupled.h"
 #include "bio/table_file.h"
@@ -23,6 +24,9 @@ ExternalForce externalForceOf(const Trial& trial, const Arm& arm);
 /// @throws std::invalid_argument for a name that is not free, or a value that is not finite
 Eigen::VectorXd startCoordinates(const Trial& trial, const Arm& arm,
                                  const std::map<std::string, double>& given);
+
+/// When the coordinate was measured [s]; if it was not, the trial's times at equal steps.
+std::vector<double> observedTimes(const Trial& trial, const std::string& coordinate, double step);
 
 /// How far a simulation is from a measured coordinate, at the measured times that it covers.
 struct MeasuredError {

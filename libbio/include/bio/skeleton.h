@@ -80,6 +80,8 @@ class Skeleton {
 
   int numCoordinates() const { return static_cast<int>(coordinates_.size()); }
   const std::vector<Coordinate>& coordinates() const { return coordinates_; }
+  /// Default values of the free coordinates [rad] or [m].
+  Eigen::VectorXd defaultValues() const;
   std::size_t numSegments() const { return segments_.size(); }
   const std::vector<Segment>& segments() const { return segments_; }
   const Eigen::Vector3d& gravity() const { return gravity_; }

@@ -37,8 +37,9 @@ struct MeasuredSeries {
 class TrialSet {
  public:
   /// @throws std::invalid_argument, naming the file where there is one, for no trial, a trial
-  ///   without a measured free angle, an unknown name, one given twice or two that set the same
-  ///   number, a start as common parameter of several trials, another integrator
+  ///   with a torque from outside or without a measured free angle, an unknown name, one given
+  ///   twice or two that set the same number, a start as common parameter of several trials,
+  ///   another integrator
   TrialSet(const Model& model, const ArmOptions& arm, std::vector<Trial> trials,
            const TrialSetOptions& options);
 

@@ -24,12 +24,8 @@ WidestModel::WidestModel(const Model& model, const ArmOptions& arm, const std::s
   if (freeIndex_ < 0) {
     throw std::invalid_argument(fmt::format("observed coordinate '{}' is not free", coordinate));
   }
-  StartPoint start;
-  const auto& free = arm_->skeleton().coordinates();
-  start.q.resize(static_cast<Index>(free.size()));
-  for (std::size_t i = 0; i < free.size(); ++i)
-    start.q[static_cast<Index>(i)] = free[i].defaultValue;
-  parameters_ = std::make_unique<const ParameterCatalogue>(model, *arm_, start);
+  parameters_ = std::make_unique<const ParameterCatalogue>(
+      model, *arm_, StartPoint{arm_->skeleton().defaultValues(), {}});
   findBodies();
   findGroups();
 }
@@ -44,10 +40,7 @@ namespace {
 Placement<double> movement(const Arm& arm, std::size_t segment, int freeIndex, double q,
                            Eigen::Matrix3d* orientation) {
   return stepping::withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
-    Eigen::Matrix<double, decltype(N)::value, 1> at;
-    for (int i = 0; i < decltype(N)::value; ++i) {
-      at[i] = arm.skeleton().coordinates()[static_cast<std::size_t>(i)].defaultValue;
-    }
+    Eigen::Matrix<double, decltype(N)::value, 1> at = arm.skeleton().defaultValues();
     at[freeIndex] = q;
     ArmConfiguration<decltype(N)::value> configuration(arm);
     configuration.moveTo(at);
@@ -82,10 +75,7 @@ void WidestModel::findBodies() {
 }
 
 void WidestModel::findGroups() {
-  VectorXd q = VectorXd::Zero(arm_->skeleton().numCoordinates());
-  for (Index i = 0; i < q.size(); ++i) {
-    q[i] = arm_->skeleton().coordinates()[static_cast<std::size_t>(i)].defaultValue;
-  }
+  VectorXd q = arm_->skeleton().defaultValues();
   q[freeIndex_] = middle();
   Trajectory still;
   still.time = {0};
@@ -198,12 +188,8 @@ WidestModel::Numbers WidestModel::numbersAt(const VectorXd& values) const {
 ParameterCatalogue::Setting WidestModel::settingAt(const VectorXd& values,
                                                    const std::vector<std::size_t>& wanted) const {
   ParameterCatalogue::Setting setting{widest_, {}, {}, {}};
-  const auto coordinates = static_cast<Index>(arm_->skeleton().coordinates().size());
-  setting.start.q.resize(coordinates);
-  for (Index i = 0; i < coordinates; ++i) {
-    setting.start.q[i] = arm_->skeleton().coordinates()[static_cast<std::size_t>(i)].defaultValue;
-  }
-  setting.start.qDot = VectorXd::Zero(coordinates);
+  setting.start.q = arm_->skeleton().defaultValues();
+  setting.start.qDot = VectorXd::Zero(setting.start.q.size());
   const Numbers numbers = numbersAt(values);
   for (std::size_t i = 0; i < numbers_.size(); ++i) {
     const double value = numbers.at(i, numbers_[i]);

@@ -19,6 +19,10 @@ struct ElbowOptions {
   std::vector<std::string> without;  ///< ids of effects that are left out of the catalogue
 };
 
+/// A search whose steps were too long is repeated with half of them, unless they were shorter than
+/// this [s] (info::discover::runAtShorterSteps).
+inline constexpr double shortestSearchStep = 0.003;
+
 /// A model and recorded trials with one observed coordinate, every effect of the catalogue built
 /// in: what info::discover asks.
 ///
@@ -30,9 +34,9 @@ struct ElbowOptions {
 /// coordinate goes on with its first speed.
 ///
 /// The latent force is a torque on the coordinate with a channel for each muscle, the size of its
-/// moment r_i F_i, and one of the constant size τ_0 [N·m]: independent errors of so many per cent of
-/// each muscle's force, and of something else. Its lag is that of the activations, 1/k at the mean
-/// excitation, k midway between rising and falling.
+/// moment r_i F_i, and one of the constant size τ_0 [N·m]: independent errors of so many per cent
+/// of each muscle's force, and of something else. Its lag is that of the activations, 1/k at the
+/// mean excitation, k midway between rising and falling.
 class ElbowDisagreement : public info::discover::Disagreement {
  public:
   using Quantity = info::discover::Quantity;

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+
+#include "info/discover/discover.h"
+
+namespace info::discover {
+
+/// A model at one time step, and what the engine is told.
+struct Attempt {
+  const Disagreement& data;
+  Options options;
+};
+
+/// What was found at a step, and with which options.
+struct SteppedVerdict {
+  Verdict verdict;
+  Options options;
+  double step = 0;  ///< [s]
+};
+
+/// Steps that are too long look like an effect: run() again at half the step while the finding is
+/// `numerical` and the step is not below `shortest`.
+/// @param attempt   makes the model at a step [s]; it lives until the next call
+/// @param step      [s] the first
+/// @param shortest  [s]; infinite: only the first step is taken
+/// @throws what attempt and run() throw
+SteppedVerdict runAtShorterSteps(const std::function<Attempt(double step)>& attempt, double step,
+                                 double shortest);
+
+}  // namespace info::discover
