@@ -334,6 +334,12 @@ class Writer {
     table.rows.push_back({fmt::format("follows past {}, probability", f_.wording.commands),
                           numberText(a.inputProbability, 2), numberText(b.inputProbability, 2),
                           fmt::format("> {}", f_.options.level)});
+    const auto remainder = [&](const std::string& what, double base, double with) {
+      table.rows.push_back({"follows " + what + ", evidence [nats]", numberText(base, 2),
+                            numberText(with, 2), fmt::format("< {}", f_.options.remainder)});
+    };
+    remainder("the state (q, q̇)", a.remainder.ofState, b.remainder.ofState);
+    remainder("all past " + f_.wording.commands, a.remainder.ofInputs, b.remainder.ofInputs);
     table.rows.push_back({"latent force that is still needed, " + f_.wording.ofForce,
                           numberText(f_.verdict.latentSizeBefore, 2),
                           numberText(f_.verdict.latentSizeAfter, 2),

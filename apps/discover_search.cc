@@ -25,7 +25,7 @@ DiscoverSearch searchForEffects(const std::function<info::discover::Attempt(doub
   bool interrupted = false;
   const auto shown = [&](double at) {
     info::discover::Attempt one = attempt(at);
-    bar.emplace("discover");
+    if (!bar) bar.emplace("discover");
     one.options.progress = [&](const info::discover::Progress& progress) {
       interrupted = interruptionRequested();
       if (!interrupted) bar->update(progress.fraction);

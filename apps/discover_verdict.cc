@@ -65,6 +65,16 @@ ordered_json localisationJson(const DiscoverFindings& f) {
   return json;
 }
 
+ordered_json adequacyJson(const info::discover::Adequacy& a, double latentSize) {
+  return {{"mean_square", number(a.meanSquare)},
+          {"ljung_box_probability", number(a.ljungBoxProbability)},
+          {"input_probability", number(a.inputProbability)},
+          {"follows_state_nats", number(a.remainder.ofState)},
+          {"follows_inputs_nats", number(a.remainder.ofInputs)},
+          {"latent_size", number(latentSize)},
+          {"adequate", a.adequate()}};
+}
+
 }  // namespace
 
 void tellFindings(const DiscoverFindings& f, Summary& summary) {
@@ -117,6 +127,14 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   json["localisation"] = localisationJson(f);
   json["gap"] = {{"train", gapJson(f, verdict.gap)},
                  {"held_out", verdict.heldOut ? gapJson(f, *verdict.heldOut) : nullptr}};
+  json["innovations"] = {{"before", adequacyJson(verdict.before, verdict.latentSizeBefore)},
+                         {"after", adequacyJson(verdict.after, verdict.latentSizeAfter)}};
+  if (verdict.heldOutBefore && verdict.heldOutAfter) {
+    json["innovations"]["held_out_mean_square"] = {
+        {"before", number(verdict.heldOutBefore->meanSquare)},
+        {"after", number(verdict.heldOutAfter->meanSquare)},
+        {"highest", number(verdict.heldOutAfter->highest)}};
+  }
   json["undetectable_below"] = ordered_json::object();
   for (const auto& one : verdict.detectability) {
     json["undetectable_below"][candidates[one.candidate].id] = number(one.amplitude);

@@ -108,6 +108,10 @@ Adequacy adequacy(const Likelihood& likelihood, const Fit& fit, const AdequacyOp
     result.inputProbability =
         std::min(1.0, tests * std::erfc(result.inputScore / std::numbers::sqrt2));
   result.independent = result.inputProbability > options.level;
+
+  result.remainder = remainderEvidence(likelihood, fit);
+  result.causeless =
+      std::max(result.remainder.ofState, result.remainder.ofInputs) < options.evidence;
   return result;
 }
 

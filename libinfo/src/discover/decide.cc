@@ -77,8 +77,8 @@ Decision decide(const std::vector<Candidate>& candidates, const Judgement& judge
     decision.probability *= named.probability;
   }
   const Adequacy& after = judgement.after;
-  if (!after.white || !after.independent || judgement.latentAfter > options.latentTolerance ||
-      judgement.heldOutWorse) {
+  if (!after.white || !after.independent || !after.causeless ||
+      judgement.latentAfter > options.latentTolerance || judgement.heldOutWorse) {
     decision.finding = Finding::unknown;
     decision.surrogate = true;
     decision.probability = 0;

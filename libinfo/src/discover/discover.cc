@@ -58,12 +58,15 @@ class Work {
         trials_.push_back(t);
   }
 
-  Verdict run() {
+  Verdict run(Draft* draft) {
     try {
-      prepare();
+      prepare(draft != nullptr ? draft->get() : nullptr);
       stage_ = Stage::race;
       report(Stage::screen, 0.25, "");
       chosen_ = select(*search_, options_);
+      if (draft != nullptr)
+        *draft = std::make_shared<const Known>(
+            Known{search_->entries(), chosen_, search_->scaleValues()});
       judge();
       conclude();
       verdict_.reached = Stage::finished;
@@ -81,9 +84,10 @@ class Work {
     if (options_.progress && !options_.progress({stage, fraction_, doing})) throw Stopped();
   }
 
-  void prepare() {
+  void prepare(const Known* known) {
     AdequacyOptions& test = test_;
     test.level = options_.level;
+    test.evidence = options_.remainder;
     if (options_.outputDeviation) {
       verdict_.outputDeviation = *options_.outputDeviation;
     } else {
@@ -97,7 +101,10 @@ class Work {
                     [this](const std::string& doing) {
                       report(stage_, fraction_ + 0.5 * (0.9 - fraction_) * 0.05, doing);
                     });
-    search_->calibrate();
+    if (known != nullptr)
+      search_->adopt(*known);
+    else
+      search_->calibrate();
     base();
     verdict_.reached = Stage::localise;
     report(Stage::localise, 0.2, "");
@@ -177,6 +184,7 @@ class Work {
   struct HeldOut {
     double score = -HUGE_VAL;  // log of their probability given the others
     double error = HUGE_VAL;   // of the simulation, with starts of their own [unit of the output]
+    double meanSquare = HUGE_VAL;  // of their innovations given the others
   };
   HeldOut heldOut(const Entry& entry, const Likelihood& all, const Likelihood& held) const {
     HeldOut result;
@@ -187,8 +195,10 @@ class Work {
     const Hypothesis hypothesis = makeHypothesis(data_, entry.effects, all.trials());
     if (const auto first = all.tryFit(hypothesis, wide, entry.fit.values, {}, {10, 0.1})) {
       // log Z of all less that of those that were fitted
-      if (const auto fit = all.tryFit(hypothesis, entry.fit.noise, first->values, {}, {30, 0.05}))
+      if (const auto fit = all.tryFit(hypothesis, entry.fit.noise, first->values, {}, {30, 0.05})) {
         result.score = fit->logEvidence - entry.fit.logEvidence;
+        result.meanSquare = 2 * (fit->cost - entry.fit.cost) / static_cast<double>(held.samples());
+      }
     }
     const Hypothesis starts = startsOnly(data_, held.trials());
     if (const auto near = held.tryFit(starts, wide, entry.fit.values, {}, {10, 0.1})) {
@@ -302,10 +312,21 @@ class Work {
     other.after = with.error;
     closeGap(other);
     verdict_.heldOut = other;
+    verdict_.heldOutBefore = heldOutAdequacy(without.meanSquare, held);
+    verdict_.heldOutAfter =
+        chosen_.empty() ? verdict_.heldOutBefore : heldOutAdequacy(with.meanSquare, held);
+    judgement.strangeBefore = !verdict_.heldOutBefore->expected();
+    judgement.strangeAfter = !verdict_.heldOutAfter->expected();
     // by more than chance; a base that fits badly is no exact yardstick, so its simulation must be
     // no worse, too
     judgement.heldOutWorse =
         !chosen_.empty() && with.score < without.score - 3 && with.error > 0.95 * without.error;
+  }
+
+  HeldOutAdequacy heldOutAdequacy(double meanSquare, const Likelihood& held) const {
+    const auto n = static_cast<double>(held.samples());
+    return {meanSquare,
+            chiSquareQuantile(options_.level, n) / n * std::exp(3.29 * test_.deviationError)};
   }
 
   std::string sentence() const {
@@ -347,8 +368,8 @@ class Work {
 
 }  // namespace
 
-Verdict run(const Disagreement& data, const Options& options) {
-  return Work(data, options).run();
+Verdict run(const Disagreement& data, const Options& options, Draft* draft) {
+  return Work(data, options).run(draft);
 }
 
 VectorXd predictedDeviation(const Disagreement& data, const Verdict& verdict, int trial) {

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "node_states.h"
+
 namespace info::discover {
 
 using Eigen::Index;
@@ -26,39 +28,6 @@ void benjaminiHochberg(std::vector<Score>& scores, double share) {
   for (std::size_t i = 0; i < order.size(); ++i) scores[order[i]].significant = i < accepted;
 }
 
-namespace {
-
-// Samples of the first output alone.
-struct FirstOutput {
-  FirstOutput(const Disagreement& data, int trial) {
-    const auto& channels = data.outputOfSample(trial);
-    for (std::size_t k = 0; k < data.times(trial).size(); ++k) {
-      if (!channels.empty() && channels[k] != 0) continue;
-      which.push_back(static_cast<Index>(k));
-      times.push_back(data.times(trial)[k]);
-    }
-  }
-  VectorXd of(const VectorXd& samples) const { return samples(which); }
-  std::vector<Index> which;
-  std::vector<double> times;
-};
-
-// y at latent nodes, straight between samples
-VectorXd atNodes(const std::vector<double>& nodes, const std::vector<double>& times,
-                 const VectorXd& y) {
-  VectorXd result(static_cast<Index>(nodes.size()));
-  std::size_t k = 0;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    while (k + 2 < times.size() && times[k + 1] < nodes[i]) ++k;
-    const auto at = static_cast<Index>(k);
-    const double s = std::clamp((nodes[i] - times[k]) / (times[k + 1] - times[k]), 0.0, 1.0);
-    result[static_cast<Index>(i)] = (1 - s) * y[at] + s * y[at + 1];
-  }
-  return result;
-}
-
-}  // namespace
-
 Localisation localise(const Likelihood& likelihood, const Fit& fit, const Fit& smoothing,
                       const LocaliseOptions& options) {
   const Disagreement& data = likelihood.data();
@@ -66,21 +35,12 @@ Localisation localise(const Likelihood& likelihood, const Fit& fit, const Fit& s
   Localisation result;
   result.trials = likelihood.trials();
 
-  std::vector<Likelihood::Linear> linear;
-  std::vector<VectorXd> q, qDot;
-  std::vector<MatrixXd> inputs;
+  const NodeStates states = statesAtNodes(likelihood, fit);
+  const auto& linear = states.linear;
+  const auto& q = states.q;
+  const auto& qDot = states.qDot;
   double range[4] = {1e300, -1e300, 1e300, -1e300};
   for (std::size_t t = 0; t < n; ++t) {
-    const int trial = likelihood.trials()[t];
-    linear.push_back(likelihood.linearise(t, fit, fit.values, {}, true));
-    const auto& nodes = data.latentTimes(trial);
-    const FirstOutput first(data, trial);
-    q.push_back(atNodes(nodes, first.times, first.of(data.measured(trial) - linear[t].residuals)));
-    qDot.push_back(atNodes(nodes, first.times, first.of(linear[t].speeds)));
-    MatrixXd u = data.inputs(trial), placed(static_cast<Index>(nodes.size()), u.cols());
-    for (Index j = 0; j < u.cols(); ++j)
-      placed.col(j) = atNodes(nodes, first.times, first.of(u.col(j)));
-    inputs.push_back(placed);
     range[0] = std::min(range[0], q[t].minCoeff());
     range[1] = std::max(range[1], q[t].maxCoeff());
     range[2] = std::min(range[2], qDot[t].minCoeff());
@@ -143,7 +103,8 @@ Localisation localise(const Likelihood& likelihood, const Fit& fit, const Fit& s
   for (std::size_t j = 0; j < names.size(); ++j) {
     Score score;
     score.input = names[j];
-    add(score, [&](std::size_t of) { return VectorXd(inputs[of].col(static_cast<Index>(j))); });
+    add(score,
+        [&](std::size_t of) { return VectorXd(states.inputs[of].col(static_cast<Index>(j))); });
   }
 
   std::vector<MatrixXd> disturbances;

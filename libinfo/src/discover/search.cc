@@ -22,6 +22,13 @@ constexpr double kHopeless = 0.03;
 // with so large a latent force the base is too far from the data for linear steps
 constexpr double kPoor = 0.2;
 
+// nats by which a search at longer steps may be wrong about which of two hypotheses is better
+constexpr double kDraftError = 3;
+
+// a fit that is not done after so many iterations is given up if it is so many nats behind
+constexpr int kShort = 8;
+constexpr double kGivenUp = 60;
+
 // η of another σ_d with the same latent force.
 std::vector<VectorXd> forceKept(std::vector<VectorXd> eta, double from, double to) {
   for (VectorXd& one : eta) one *= from / to;
@@ -43,7 +50,8 @@ Search::Search(const Disagreement& data, std::vector<int> trials, const Options&
 // Follows σ_d from `size` to where the evidence is largest: MacKay's fixed point
 //     σ_d² ← σ_d²·|η|²/(γ + σ_d/s)
 // then compares with σ_d = 0. Keeps whatever is better than what was known of the hypothesis.
-void Search::improve(const Effects& effects, const VectorXd& start, double size, const Fit* near) {
+void Search::improve(const Effects& effects, const VectorXd& start, double size, const Fit* near,
+                     double hopeless) {
   const Hypothesis hypothesis = makeHypothesis(data_, effects, trials_);
   Entry found;
   found.effects = effects;
@@ -65,8 +73,16 @@ void Search::improve(const Effects& effects, const VectorXd& start, double size,
   std::vector<VectorXd> eta;
   if (near != nullptr) eta = forceKept(near->eta, near->noise.latent, size);
   for (int round = 0; round < 6 && size > kSmallest; ++round) {
-    std::optional<Fit> tried = fitted(size, values, eta, {25, 0.05});
+    std::optional<Fit> tried = fitted(size, values, eta, {kShort, 0.05});
     if (!tried) break;
+    if (!tried->converged) {
+      if (tried->logEvidence < hopeless) {
+        keep(std::move(*tried));
+        break;
+      }
+      tried = fitted(size, tried->values, tried->eta, {25 - kShort, 0.05});
+      if (!tried) break;
+    }
     Fit& fit = *tried;
     const double ratio =
         fit.latentPower / std::max(1e-9, fit.latentFreedom + size / options_.latentScale);
@@ -79,7 +95,7 @@ void Search::improve(const Effects& effects, const VectorXd& start, double size,
     size *= factor;
     if (size > 3) break;
   }
-  if (found.score == kFailed || size < kHopeless) {
+  if (found.score == kFailed || (size < kHopeless && found.score > hopeless)) {
     if (std::optional<Fit> simulation = fitted(0, values, {}, {12, 0.02})) {
       found.simulation = *simulation;
       keep(std::move(*simulation));
@@ -112,6 +128,37 @@ void Search::calibrate() {
   report_("base model");
   improve({}, values, kRaceSize);
   mustWork();
+}
+
+void Search::adopt(const Known& known) {
+  scaleValues_ = known.scaleValues;
+  likelihood_.emplace(data_, trials_, scaleValues_, options_.latentTime);
+  const auto again = [&](const Entry& entry) {
+    report_(describe(data_, entry.effects));
+    improve(entry.effects, entry.fit.values, entry.fit.noise.latent, &entry.fit);
+  };
+  const Entry& base = known.entries.at({});
+  again(base);
+  mustWork();
+  const double shift = at({}).score - base.score;
+  const Entry& chosen = known.entries.at(known.chosen);
+  const auto net = [&](const Entry& entry) {
+    return entry.score - options_.evidence * static_cast<double>(entry.effects.size());
+  };
+  for (const auto& [effects, entry] : known.entries) {
+    if (effects.empty()) continue;
+    const bool part =
+        std::includes(known.chosen.begin(), known.chosen.end(), effects.begin(), effects.end());
+    const bool rival = effects.size() == known.chosen.size() &&
+                       entry.score > chosen.score - options_.classWidth - kDraftError;
+    if (entry.works() && (part || rival || net(entry) > net(chosen) - kDraftError)) {
+      again(entry);
+    } else {
+      Entry kept = entry;
+      if (kept.works()) kept.score += shift;
+      entries_.emplace(effects, std::move(kept));
+    }
+  }
 }
 
 void Search::mustWork() const {
@@ -279,14 +326,17 @@ void Search::race(const Effects& base, const std::vector<std::size_t>& candidate
   const Fit near = at(base).fit;
   const VectorXd& values = near.values;
   const double raceSize = std::clamp(2 * at(base).fit.noise.latent, 0.01, kRaceSize);
+  bool news = false;
+  double best = at(base).score;  // so far
   for (const std::size_t c : candidates) {
     const auto effects = with(base, c);
     if (entries_.count(effects) != 0) continue;
+    news = true;
     report_(describe(data_, effects));
     // of several starts the one that a short fit likes best
     const Hypothesis hypothesis = makeHypothesis(data_, effects, trials_);
     const std::size_t starts = data_.candidates()[c].starts.size();
-    VectorXd best = started(c, 0, values);
+    VectorXd from = started(c, 0, values);
     double evidence = -1e300;
     for (std::size_t s = 0; starts > 1 && s < starts; ++s) {
       const auto fit = likelihood_->tryFit(
@@ -294,16 +344,17 @@ void Search::race(const Effects& base, const std::vector<std::size_t>& candidate
           forceKept(near.eta, near.noise.latent, raceSize), {5, 0.1});
       if (fit && fit->logEvidence > evidence) {
         evidence = fit->logEvidence;
-        best = fit->values;
+        from = fit->values;
       }
       ++fits_;
     }
-    improve(effects, best, raceSize, &near);
-    // what contains the base cannot be far worse: a wrong minimum, once more from the beginning
+    improve(effects, from, raceSize, &near, best - kGivenUp);
+    // what contains the base cannot be far worse: a wrong minimum, once more from the base itself
     if (at(effects).score < at(base).score - options_.evidence)
-      improve(effects, started(c, 0, nominalValues(data_)), kFirstSize);
+      improve(effects, absent(c, values), near.noise.latent, &near);
+    best = std::max(best, at(effects).score);
   }
-  if (candidates.empty()) return;
+  if (!news) return;
   // cross-starts: everything that is not far behind once more from the leader's nuisances
   const auto lead = [&] {
     std::size_t leader = candidates[0];
@@ -317,8 +368,12 @@ void Search::race(const Effects& base, const std::vector<std::size_t>& candidate
   const VectorXd from = first.fit.values;
   const double score = first.score;
   const double size = std::max(2e-3, first.fit.noise.latent);
+  std::vector<double> scores;
+  for (const std::size_t c : candidates) scores.push_back(at(with(base, c)).score);
+  std::sort(scores.rbegin(), scores.rend());
+  const double hopeful = std::min(score - 25, scores[std::min<std::size_t>(3, scores.size() - 1)]);
   for (const std::size_t c : candidates) {
-    if (c == leader || at(with(base, c)).score < score - 25) continue;
+    if (c == leader || at(with(base, c)).score < hopeful) continue;
     report_(describe(data_, with(base, c)));
     VectorXd start = absent(leader, from);
     const Entry& own = at(with(base, c));
@@ -339,7 +394,7 @@ bool Search::settle(const Effects& base) {
     if (std::find(base.begin(), base.end(), c) != base.end()) continue;
     const auto known = entries_.find(with(base, c));
     if (known == entries_.end() || !(known->second.score > before + options_.evidence)) continue;
-    if (significance(known->second) < 2) better.emplace_back(known->second.score, c);
+    if (significance(known->second, c) < 2) better.emplace_back(known->second.score, c);
   }
   if (better.empty()) return false;
   const std::size_t best = std::max_element(better.begin(), better.end())->second;
@@ -367,28 +422,51 @@ bool Entry::works() const {
   return score > kFailed;
 }
 
-double Search::significance(const Entry& entry) const {
-  if (!entry.works()) return 0;
-  double least = 1e300;
-  for (const std::size_t e : entry.effects) {
-    const std::size_t amplitude = data_.candidates()[e].quantities[0];
-    const int i = entry.fit.hypothesis.indexOf(amplitude);
-    // its deviation for given shape quantities: at amplitude 0 there is nothing to be shaped
-    std::vector<Index> own;
-    for (const std::size_t q : data_.candidates()[e].quantities) {
-      const int k = entry.fit.hypothesis.indexOf(q);
-      if (k == i || !entry.fit.atBound[static_cast<std::size_t>(k)]) own.push_back(k);
+void Search::reconcile() {
+  std::map<Effects, double> asked;  // the score of the larger one when it was asked last
+  for (bool again = true; again;) {
+    again = false;
+    for (const auto& [effects, entry] : entries_) {
+      if (!entry.works()) continue;
+      for (const std::size_t effect : effects) {
+        const Effects rest = without(effects, effect);
+        const auto known = entries_.find(rest);
+        if (known == entries_.end() || entry.score < known->second.score + 1) continue;
+        if (significance(entry, effect) > 2) continue;
+        double& score = asked[rest];
+        if (score != 0 && entry.score < score + 1) continue;
+        score = entry.score;
+        drop(effects, effect);
+        again = true;
+      }
     }
-    const MatrixXd covariance = entry.fit.covariance(own, own);
-    const double variance = covariance(0, 0) > 0 ? 1 / covariance.inverse()(0, 0) : 0;
-    const double deviation =
-        std::sqrt(variance) *
-        std::abs(entry.fit.hypothesis.free[static_cast<std::size_t>(i)].slope(entry.fit.xi[i]));
-    const double distance = std::abs(entry.fit.values[static_cast<Index>(amplitude)] -
-                                     data_.quantities()[amplitude].nominal);
-    least = std::min(least, deviation > 0 ? distance / deviation : 0.0);
   }
-  return entry.effects.empty() ? 0 : least;
+}
+
+double Search::significance(const Entry& entry, std::size_t effect) const {
+  const std::size_t amplitude = data_.candidates()[effect].quantities[0];
+  const int i = entry.fit.hypothesis.indexOf(amplitude);
+  // its deviation for given shape quantities: at amplitude 0 there is nothing to be shaped
+  std::vector<Index> own;
+  for (const std::size_t q : data_.candidates()[effect].quantities) {
+    const int k = entry.fit.hypothesis.indexOf(q);
+    if (k == i || !entry.fit.atBound[static_cast<std::size_t>(k)]) own.push_back(k);
+  }
+  const MatrixXd covariance = entry.fit.covariance(own, own);
+  const double variance = covariance(0, 0) > 0 ? 1 / covariance.inverse()(0, 0) : 0;
+  const double deviation =
+      std::sqrt(variance) *
+      std::abs(entry.fit.hypothesis.free[static_cast<std::size_t>(i)].slope(entry.fit.xi[i]));
+  const double distance = std::abs(entry.fit.values[static_cast<Index>(amplitude)] -
+                                   data_.quantities()[amplitude].nominal);
+  return deviation > 0 ? distance / deviation : 0.0;
+}
+
+double Search::significance(const Entry& entry) const {
+  if (!entry.works() || entry.effects.empty()) return 0;
+  double least = 1e300;
+  for (const std::size_t e : entry.effects) least = std::min(least, significance(entry, e));
+  return least;
 }
 
 }  // namespace info::discover

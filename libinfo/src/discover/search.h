@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <map>
 #include <optional>
@@ -23,6 +24,13 @@ struct Entry {
   bool works() const;             ///< false: no fit could be simulated
 };
 
+/// What a search leaves to another one.
+struct Known {
+  std::map<Effects, Entry> entries;
+  Effects chosen;               ///< what it chose of them
+  Eigen::VectorXd scaleValues;  ///< where the scale of the latent force was taken
+};
+
 /// What one linear step says of a candidate.
 struct Screened {
   std::size_t candidate = 0;
@@ -39,6 +47,9 @@ class Search {
 
   /// Base model by homotopy in σ_d, from the nominal values.
   void calibrate();
+  /// Instead of calibrate(): what another search knows. The base, what was chosen and what comes
+  /// near it are fitted again from there; the others keep their distance from the base.
+  void adopt(const Known& known);
   const Likelihood& likelihood() const { return *likelihood_; }
   /// Where the scale of the latent force was taken.
   const Eigen::VectorXd& scaleValues() const { return scaleValues_; }
@@ -60,16 +71,21 @@ class Search {
   /// A candidate that gains though it is absent has only found a better base: fits that from its
   /// nuisances. True if `base` gained; what has been raced on it and is now behind is forgotten.
   bool settle(const Effects& base);
+  /// Fits a hypothesis again where another that contains it is better though what it has more is
+  /// absent there (less than 2 deviations): the smaller one was in a wrong minimum.
+  void reconcile();
   /// Fits `effects` without one of them, from where the fit of all of them is.
   void drop(const Effects& effects, std::size_t effect);
   /// Least |amplitude − nominal|/deviation over its effects.
   double significance(const Entry& entry) const;
 
  private:
+  double significance(const Entry& entry, std::size_t effect) const;
   void mustWork() const;  ///< @throws std::domain_error if the base could not be fitted
   /// @param near  a fit whose latent force keeps the simulation near the data at the start; or null
+  /// @param hopeless  a first fit that is slow and below this score is not followed any further
   void improve(const Effects& effects, const Eigen::VectorXd& start, double size,
-               const Fit* near = nullptr);
+               const Fit* near = nullptr, double hopeless = -HUGE_VAL);
   /// Values with an effect's own quantities at one of its starts, or at nominal; those that are
   /// free anyway stay.
   Eigen::VectorXd started(std::size_t candidate, std::size_t start, Eigen::VectorXd values) const;

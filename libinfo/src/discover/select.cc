@@ -18,6 +18,7 @@ class Selection {
         search_.race(chosen_, list);
         if (!search_.settle(chosen_)) break;
       }
+      search_.reconcile();
       const Effects before = chosen_;
       chosen_ = best();
       while (swapOne()) {
@@ -68,6 +69,7 @@ class Selection {
       }
       search_.race(rest, search_.shortlist(rest, 5));
     }
+    search_.reconcile();
     chosen_ = best();
     return chosen_ != now;
   }

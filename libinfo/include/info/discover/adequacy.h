@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "info/discover/joint_fit.h"
+#include "info/discover/remainder.h"
 
 namespace info::discover {
 
@@ -17,18 +18,31 @@ struct Adequacy {
   double inputScore = 0;           ///< largest |z| of innovations against past inputs
   double inputProbability = 1;     ///< of one as large by chance, over all inputs and lags
   std::string input;               ///< which input that was
-  bool sized = true, white = true, independent = true;
-  bool adequate() const { return sized && white && independent; }
+  RemainderEvidence remainder;     ///< nats that a further force with a cause would gain
+  bool sized = true, white = true, independent = true, causeless = true;
+  bool adequate() const { return sized && white && independent && causeless; }
+};
+
+/// Are trials that were not fitted what the model, with its uncertain parameters and the scatter of
+/// its inputs, leads to expect? With J the least cost of a fit (joint_fit.h) to n more samples,
+///     mean square = 2(J of all trials − J of those that were fitted)/n
+/// which is that of their innovations: exactly so for a linear model, χ²(n)/n about 1.
+struct HeldOutAdequacy {
+  double meanSquare = 0;
+  double highest = 0;  ///< upper end of its band
+  bool expected() const { return meanSquare < highest; }
 };
 
 struct AdequacyOptions {
   double level = 0.001;
   int lags = 20;
+  double evidence = 2;        ///< nats that a further force with a cause may gain
   double deviationError = 0;  ///< relative standard error of σ_y where it was estimated: widens
 };
 
 /// Tests the whitened innovations of a fit: their size (χ²), their autocorrelation (Ljung and Box,
-/// lags pooled over trials), and their correlation with each input 0 to 0.2 s earlier.
+/// lags pooled over trials), their correlation with each input 0 to 0.2 s earlier, and whether what
+/// the fit leaves to chance follows the state or the inputs.
 Adequacy adequacy(const Likelihood& likelihood, const Fit& fit, const AdequacyOptions& options);
 
 /// Upper tail of χ² with n degrees of freedom, n > 0.

@@ -14,6 +14,8 @@ struct Judgement {
   Adequacy before, after;  ///< of the base, and with the chosen effects
   double latentBefore = 0, latentAfter = 0;  ///< σ_d
   double surprise = 0;                       ///< largest one among the base's parameters
+  /// held-out trials are further off than the base, or the chosen effects, lead to expect
+  bool strangeBefore = false, strangeAfter = false;
   bool heldOutWorse = false;  ///< trials that were held out speak against the chosen effects
 };
 

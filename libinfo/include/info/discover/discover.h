@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,6 +41,7 @@ struct Options {
   double latentTolerance = 0.1;    ///< up to this size the latent force may be noise of the inputs
   double evidence = 5;             ///< nats that a name must be ahead of the hypothesis without it
   double significance = 3.5;       ///< deviations that its amplitude must differ from absence by
+  double remainder = 2;            ///< nats that a further force with a cause may gain
   double classWidth = 4.6;         ///< nats: rivals no further behind than this stay in the class
   double surprise = 3;             ///< prior deviations beyond which a parameter is in error
   double level = 0.001;            ///< of every test of adequacy
@@ -113,14 +115,22 @@ struct Verdict {
   std::vector<Detectable> detectability;
   Gap gap;  ///< on the trials that were fitted
   std::optional<Gap> heldOut;
+  std::optional<HeldOutAdequacy> heldOutBefore, heldOutAfter;
   std::optional<Unknown> unknown;
   double numericalError = 0;  ///< largest change at half the time step, in σ_y; 0: not offered
   int fits = 0;               ///< how many
 };
 
+/// The hypotheses that a search has fitted, for a search of the same data at another time step to
+/// start from.
+struct Known;
+using Draft = std::shared_ptr<const Known>;
+
 /// Finds, names and judges what a model lacks.
+/// @param draft  if not null and not empty: starts from there; if not null, left as the search is
+///   after its race
 /// @throws std::invalid_argument if the data break a rule of Disagreement
-Verdict run(const Disagreement& data, const Options& options = {});
+Verdict run(const Disagreement& data, const Options& options = {}, Draft* draft = nullptr);
 
 /// Standard deviation of a trial's measurements about the simulation with the effects, at its
 /// times: √(σ_y² + Σ (dy/dA·σ_A)²) over the amplitudes A, each by itself.

@@ -19,9 +19,10 @@ struct SteppedVerdict {
   double step = 0;  ///< [s]
 };
 
-/// Steps that are too long look like an effect: run() again at half the step while the finding is
-/// `numerical` and the step is not below `shortest`.
-/// @param attempt   makes the model at a step [s]; it lives until the next call
+/// Steps that are too long look like an effect: run() again at half the step, from where it has
+/// ended, while the finding is `numerical` and the step is not below `shortest`.
+/// @param attempt   makes the model at a step [s], with the same quantities and latent nodes at
+///   each; it lives until the next call
 /// @param step      [s] the first
 /// @param shortest  [s]; infinite: only the first step is taken
 /// @throws what attempt and run() throw
