@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "info/discover/decide.h"
@@ -54,6 +55,9 @@ TEST(Decide, SaysUnknownWhenTheBaseDoesNotFitAndNothingEarnedItsPlace) {
   j.before.white = true;
   j.latentBefore = 0.2;
   EXPECT_EQ(decide(catalogue(), j, {}).finding, Finding::unknown);
+  j.latentBefore = 0;
+  j.strangeBefore = true;
+  EXPECT_EQ(decide(catalogue(), j, {}).finding, Finding::unknown);
 }
 
 TEST(Decide, SaysParameterWhenOneIsOffByMoreThanItsTolerance) {
@@ -94,12 +98,14 @@ TEST(Decide, ComparesEachOfSeveralEffectsInItsPlace) {
 }
 
 TEST(Decide, CallsALeaderASurrogateWhereSomethingIsLeft) {
-  for (int what = 0; what < 4; ++what) {
+  for (int what = 0; what < 6; ++what) {
     Judgement j = raced({{{0}, 30.0}}, {0});
     if (what == 0) j.after.white = false;
     if (what == 1) j.after.independent = false;
     if (what == 2) j.latentAfter = 0.2;
     if (what == 3) j.heldOutWorse = true;
+    if (what == 4) j.strangeAfter = true;
+    if (what == 5) j.after.causeless = false;
     const Decision d = decide(catalogue(), j, {});
     EXPECT_EQ(d.finding, Finding::unknown) << what;
     EXPECT_TRUE(d.surrogate);
@@ -228,6 +234,150 @@ TEST(Discover, FindsTheForceOnALinearOscillator) {
   const Eigen::VectorXd expected = (moved.array().square() + kOutput * kOutput).sqrt();
   EXPECT_NEAR((predictedDeviation(data, v, 0) - expected).cwiseAbs().maxCoeff(), 0, 1e-12);
   EXPECT_GT(moved.cwiseAbs().maxCoeff(), 0.1 * kOutput);
+}
+
+Eigen::MatrixXd correlation(Index n) {
+  Eigen::MatrixXd K(n, n);
+  for (Index i = 0; i < n; ++i)
+    for (Index j = 0; j < n; ++j)
+      K(i, j) = latentCorrelation(LinearDisagreement::kStep * std::abs(static_cast<double>(i - j)),
+                                  kTime, 0);
+  return K;
+}
+
+// The evidence as it is defined: y ~ N(y0, S) against N(y0, S + s²DKDᵀ) for the best s, over all
+// samples of both trials at once.
+double fieldEvidence(const LinearDisagreement& data, const Fit& fit) {
+  const Index n = data.measured(0).size();
+  Eigen::MatrixXd S = Eigen::MatrixXd::Zero(2 * n, 2 * n), D = S;
+  VectorXd e(2 * n), q(2 * n);
+  for (int t = 0; t < 2; ++t) {
+    const auto p = data.predict(t, fit.values, {}, {}, true);
+    D.block(t * n, t * n, n, n) = p.latentGamma;
+    e.segment(t * n, n) = data.measured(t) - data.outputs(t, nominalValues(data), {});
+    q.segment(t * n, n) = data.outputs(t, fit.values,
+                                       kLatent * Eigen::MatrixXd(correlation(n).llt().matrixL()) *
+                                           fit.eta[static_cast<std::size_t>(t)]);
+    S.block(t * n, t * n, n, n) =
+        kLatent * kLatent * p.latentGamma * correlation(n) * p.latentGamma.transpose();
+  }
+  S.diagonal().array() += kOutput * kOutput;
+  for (const FreeQuantity& free : fit.hypothesis.free) {
+    VectorXd column(2 * n);
+    for (int t = 0; t < 2; ++t)
+      column.segment(t * n, n) = data.predict(t, fit.values, {}, {free.quantity}, false).gamma;
+    S += free.deviation * free.deviation * column * column.transpose();
+  }
+  q.array() -= q.mean();
+  q /= std::sqrt(q.squaredNorm() / static_cast<double>(q.size()));
+  Eigen::MatrixXd K(2 * n, 2 * n);
+  for (Index i = 0; i < 2 * n; ++i)
+    for (Index j = 0; j < 2 * n; ++j) K(i, j) = std::exp(-0.5 * (q[i] - q[j]) * (q[i] - q[j]));
+  const Eigen::MatrixXd field = D * K * D.transpose();
+  const auto logDensity = [&](double variance) {
+    const Eigen::LLT<Eigen::MatrixXd> factor(S + variance * field);
+    return -0.5 * factor.matrixL().solve(e).squaredNorm() -
+           Eigen::MatrixXd(factor.matrixL()).diagonal().array().log().sum();
+  };
+  double best = -HUGE_VAL;
+  for (double variance = 1e-5; variance < 1e4; variance *= 1.5)
+    best = std::max(best, logDensity(variance) - logDensity(0));
+  return best;
+}
+
+// As drawn(), with a force of its own.
+LinearDisagreement driven(std::uint64_t seed,
+                          const std::function<double(double x, Index k)>& force) {
+  LinearDisagreement data = drawn(seed, 0, 1);
+  for (int t = 0; t < 2; ++t) {
+    VectorXd d = VectorXd::Zero(data.measured(t).size());
+    for (Index k = 0; k < d.size(); ++k)  // y_k depends on forces before it only
+      d[k] = force(data.outputs(t, nominalValues(data), d)[k], k);
+    data.measure(t, data.measured(t) + data.outputs(t, nominalValues(data), d) -
+                        data.outputs(t, nominalValues(data), {}));
+  }
+  return data;
+}
+
+RemainderEvidence remainderOf(const LinearDisagreement& data, Fit* fitted = nullptr) {
+  const Likelihood likelihood(data, {0, 1}, nominalValues(data), kTime);
+  const Fit fit = likelihood.fit(makeHypothesis(data, {}, {0, 1}), {kOutput, kLatent, kTime},
+                                 nominalValues(data));
+  if (fitted != nullptr) *fitted = fit;
+  return remainderEvidence(likelihood, fit);
+}
+
+TEST(Remainder, HasTheEvidenceOfAGaussianProcessOverTheState) {
+  for (const double size : {2.0, 4.0, 8.0}) {
+    const LinearDisagreement data =
+        driven(11, [&](double x, Index) { return size * std::tanh(4 * x); });
+    Fit fit;
+    const double found = remainderOf(data, &fit).ofState + std::log(5.0);
+    const double exact = fieldEvidence(data, fit);
+    EXPECT_GT(exact, 0.5);
+    // five sizes instead of many
+    EXPECT_LT(found, exact + 0.05) << size;
+    EXPECT_GT(found, exact - 1) << size;
+  }
+}
+
+TEST(Remainder, IsSeldomFoundWhereThereIsNone) {
+  int ofState = 0, ofInputs = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    const RemainderEvidence evidence = remainderOf(drawn(seed, 0, 1));
+    ofState += evidence.ofState > 2;
+    ofInputs += evidence.ofInputs > 2;
+  }
+  // Bayes factors of e² by chance: less than e⁻² of the time
+  EXPECT_LE(ofState, 3);
+  EXPECT_LE(ofInputs, 3);
+}
+
+TEST(Remainder, OfAnInputThatComesLateFollowsTheInputs) {
+  const LinearDisagreement data = driven(12, [&](double, Index k) {
+    return k < 4 ? 0.0 : 2.5 * std::sin(0.3 * static_cast<double>(k - 4));
+  });
+  EXPECT_GT(remainderOf(data).ofInputs, 5);
+}
+
+TEST(Discover, FindsATrialStrangeThatWasHeldOutAndIsOfAnotherModel) {
+  LinearDisagreement data(3, 80);
+  VectorXd truth = nominalValues(data);
+  data.draw(4, truth, kOutput, 0, kTime);
+  Options options;
+  options.outputDeviation = kOutput;
+  options.latentScale = 1;
+  options.latentTime = kTime;
+  options.heldOut = {2};
+  const Verdict same = run(data, options);
+  EXPECT_EQ(same.finding, Finding::none);
+  EXPECT_NEAR(same.heldOutBefore.value().meanSquare, 1, 0.5);
+  truth[1] = 1;
+  LinearDisagreement other(3, 80);
+  other.draw(4, truth, kOutput, 0, kTime);
+  data.measure(2, other.measured(2));
+  const Verdict strange = run(data, options);
+  EXPECT_EQ(strange.finding, Finding::unknown);
+  EXPECT_GT(strange.heldOutBefore.value().meanSquare, strange.heldOutBefore->highest);
+}
+
+TEST(Discover, StartsFromADraft) {
+  const LinearDisagreement data = drawn(5, 2, 1.1);
+  Options options;
+  options.outputDeviation = kOutput;
+  options.latentScale = 1;
+  options.latentTime = kTime;
+  options.latentTolerance = 0.6;
+  Draft draft;
+  const Verdict first = run(data, options, &draft);
+  ASSERT_NE(draft, nullptr);
+  const Verdict again = run(data, options, &draft);
+  EXPECT_LT(again.fits, first.fits);
+  EXPECT_EQ(again.finding, first.finding);
+  ASSERT_EQ(again.effects.size(), 1U);
+  EXPECT_NEAR(again.effects[0].estimates[0].value, first.effects[0].estimates[0].value,
+              0.1 * first.effects[0].estimates[0].deviation);
+  EXPECT_NEAR(again.effects[0].logBayesFactor, first.effects[0].logBayesFactor, 0.2);
 }
 
 // As drawn(), but what is pushed cannot be simulated, or nothing can.

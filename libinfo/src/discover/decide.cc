@@ -59,8 +59,8 @@ Decision decide(const std::vector<Candidate>& candidates, const Judgement& judge
   Decision decision;
   const Finalist* leader = find(judgement.raced, judgement.chosen);
   if (judgement.chosen.empty() || leader == nullptr) {
-    const bool fits =
-        judgement.before.adequate() && judgement.latentBefore <= options.latentTolerance;
+    const bool fits = judgement.before.adequate() && !judgement.strangeBefore &&
+                      judgement.latentBefore <= options.latentTolerance;
     decision.finding = !fits                                   ? Finding::unknown
                        : judgement.surprise > options.surprise ? Finding::parameter
                                                                : Finding::none;
@@ -78,7 +78,8 @@ Decision decide(const std::vector<Candidate>& candidates, const Judgement& judge
   }
   const Adequacy& after = judgement.after;
   if (!after.white || !after.independent || !after.causeless ||
-      judgement.latentAfter > options.latentTolerance || judgement.heldOutWorse) {
+      judgement.latentAfter > options.latentTolerance || judgement.heldOutWorse ||
+      judgement.strangeAfter) {
     decision.finding = Finding::unknown;
     decision.surrogate = true;
     decision.probability = 0;

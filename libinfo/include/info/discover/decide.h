@@ -26,15 +26,16 @@ struct Decision {
   bool vetoed = false, surrogate = false;
 };
 
-/// The rules, in this order; adequate means: all tests passed, and σ_d within what inputs may
-/// scatter.
-///   nothing chosen, base adequate:   `parameter` if one is off by more than `surprise`, else
-///   `none` nothing chosen, base inadequate: `unknown` chosen, but not white, not independent of
-///   the inputs, latent force too large, or worse on what was held out: `unknown`, the chosen ones
-///   are a surrogate chosen: each in a class with all that are no further behind than `classWidth`
-///   in its place, and with its declared equivalents. Every class of one: `named`, or `parameter`
-///   if that is all they are; otherwise `ambiguous`. Innovations of the wrong size veto the
-///   probability.
+/// The rules, in this order. Adequate means: all tests passed, σ_d within what inputs may scatter,
+/// and held-out trials as expected.
+/// - Nothing chosen, base adequate: `parameter` if one is off by more than `surprise`, else `none`.
+/// - Nothing chosen, base inadequate: `unknown`.
+/// - Chosen, but what is left is not white or has a cause, the latent force is too large, or what
+///   was held out is strange or speaks against it: `unknown`, the chosen ones are a surrogate.
+/// - Chosen: each in a class with all that are no further behind than `classWidth` in its place,
+/// and
+///   with its declared equivalents. Every class of one: `named`, or `parameter` if that is all they
+///   are; otherwise `ambiguous`. Innovations of the wrong size veto the probability.
 Decision decide(const std::vector<Candidate>& candidates, const Judgement& judgement,
                 const Options& options);
 
