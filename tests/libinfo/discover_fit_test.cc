@@ -95,7 +95,7 @@ TEST(JointFit, WhitensToTheInnovationsOfAKalmanFilterThatKnowsTheStart) {
   const double rho = std::exp(-LinearDisagreement::kStep / kTime);
   Eigen::Vector3d m(fit.values[4], fit.values[5], 0);
   Eigen::Matrix3d P = Eigen::Vector3d(0, 0, kLatent * kLatent).asDiagonal();
-  const VectorXd white = likelihood.innovations(0, fit);
+  const VectorXd white = likelihood.whitened(0, fit).innovations;
   for (Index k = 0; k < white.size(); ++k) {
     const double S = P(0, 0) + kOutput * kOutput, e = data.measured(0)[k] - m[0];
     EXPECT_NEAR(white[k], e / std::sqrt(S), 1e-8) << k;

@@ -193,6 +193,32 @@ TEST(Localise, ScoresAreStandardNormalWhenNothingIsMissing) {
   EXPECT_LT(significant, 20);
 }
 
+// Parameters that were fitted leave correlations in white noise; they must not count as missing.
+TEST(Adequacy, FindsWhiteNoiseWhiteThoughParametersWereFitted) {
+  double sum = 0;
+  int small = 0;
+  constexpr int kSets = 200;
+  for (std::uint64_t seed = 0; seed < kSets; ++seed) {
+    info::RandomStream random(seed, 78);
+    LinearDisagreement data(5, 40);
+    VectorXd truth = nominalValues(data);
+    truth[0] += 0.2 * random.normal();
+    for (Index i = 4; i < truth.size(); ++i) truth[i] = 0.3 * random.normal();
+    data.draw(seed, truth, 0.01 * kOutput, 0, kTime);
+    const std::vector<int> trials = {0, 1, 2, 3, 4};
+    const Likelihood likelihood(data, trials, nominalValues(data), kTime);
+    const Fit fit = likelihood.fit(makeHypothesis(data, {}, trials), {0.01 * kOutput, 0, kTime},
+                                   nominalValues(data));
+    AdequacyOptions options;
+    options.lags = 8;
+    const double probability = adequacy(likelihood, fit, options).ljungBoxProbability;
+    sum += probability;
+    small += probability < 0.05;
+  }
+  EXPECT_NEAR(sum / kSets, 0.5, 3 * 0.29 / std::sqrt(kSets));
+  EXPECT_LT(small, 22);
+}
+
 TEST(Adequacy, SeesAForceThatTheModelLacks) {
   const LinearDisagreement data = drawn(1, 3, 1);
   const Likelihood likelihood(data, {0, 1}, nominalValues(data), kTime);

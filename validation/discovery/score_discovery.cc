@@ -1,9 +1,11 @@
 // Compares verdicts with labels and prints the benchmark's table.
 //
-//     score_discovery --labels DIR --verdicts DIR [--repaired DIR] [--json FILE]
+//     score_discovery --labels DIR --verdicts DIR [--repaired DIR] [--as-suite NAME] [--json FILE]
 //
 // --repaired: verdicts on the models repaired with what was found, for a table of every set.
-// Exit status 1 if a target with data is missed, 2 for wrong use or a file that cannot be read.
+// --as-suite: judges every set as one of this suite: "out" where the true effect was left out of
+// the catalogue. Exit status 1 if a target with data is missed, 2 for wrong use or a file that
+// cannot be read.
 
 #include <fmt/format.h>
 
@@ -15,12 +17,15 @@
 
 int main(int argc, char** argv) {
   try {
-    const hidden::Arguments arguments(argc, argv, {"labels", "verdicts", "repaired", "json"});
+    const hidden::Arguments arguments(argc, argv,
+                                      {"labels", "verdicts", "repaired", "as-suite", "json"});
     if (!arguments.has("labels") || !arguments.has("verdicts")) {
       throw std::invalid_argument("--labels and --verdicts are needed");
     }
-    const auto score =
-        hidden::score(hidden::readOutcomes(arguments.text("labels"), arguments.text("verdicts")));
+    auto outcomes = hidden::readOutcomes(arguments.text("labels"), arguments.text("verdicts"));
+    if (arguments.has("as-suite"))
+      for (auto& outcome : outcomes) outcome.suite = arguments.text("as-suite");
+    const auto score = hidden::score(outcomes);
     fmt::print("{}", score.asMarkdown());
     if (arguments.has("repaired"))
       fmt::print("\n{}", hidden::repairedTable(arguments.text("labels"), arguments.text("verdicts"),

@@ -47,8 +47,16 @@ Adequacy adequacy(const Likelihood& likelihood, const Fit& fit, const AdequacyOp
   const Disagreement& data = likelihood.data();
   std::vector<VectorXd> series;
   double power = 0, count = 0;
+  // what parameters that were fitted take away at each lag
+  VectorXd taken = VectorXd::Zero(options.lags + 1);
   for (std::size_t t = 0; t < likelihood.trials().size(); ++t) {
-    series.push_back(likelihood.innovations(t, fit));
+    Likelihood::Whitened whitened = likelihood.whitened(t, fit);
+    const MatrixXd carried = whitened.gamma * fit.covariance;
+    for (Index lag = 0; lag <= std::min<Index>(options.lags, carried.rows() - 1); ++lag) {
+      const Index pairs = carried.rows() - lag;
+      taken[lag] += carried.topRows(pairs).cwiseProduct(whitened.gamma.bottomRows(pairs)).sum();
+    }
+    series.push_back(std::move(whitened.innovations));
     power += series.back().squaredNorm();
     count += static_cast<double>(series.back().size());
   }
@@ -71,7 +79,8 @@ Adequacy adequacy(const Likelihood& likelihood, const Fit& fit, const AdequacyOp
     double pairs = 0;
     for (const VectorXd& s : series)
       pairs += std::max(0.0, static_cast<double>(s.size()) - static_cast<double>(lag));
-    result.ljungBox += pairs * rho[lag] * rho[lag];
+    const double expected = -taken[static_cast<Index>(lag)] / pairs * count / (count - taken[0]);
+    result.ljungBox += pairs * (rho[lag] - expected) * (rho[lag] - expected);
   }
   result.ljungBoxProbability = chiSquareTail(result.ljungBox, options.lags);
   result.white = result.ljungBoxProbability > options.level;

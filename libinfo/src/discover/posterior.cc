@@ -131,14 +131,16 @@ Likelihood::Projected Likelihood::project(const Fit& fit, const std::vector<Line
   return projected;
 }
 
-VectorXd Likelihood::innovations(std::size_t at, const Fit& fit) const {
+Likelihood::Whitened Likelihood::whitened(std::size_t at, const Fit& fit) const {
   const Linear l = linearise(at, fit, fit.values, {}, false);
-  if (l.latent.cols() == 0) return l.residuals / fit.noise.output;
+  if (l.latent.cols() == 0) return {l.residuals / fit.noise.output, l.gamma / fit.noise.output};
   const Index n = l.residuals.size();
   MatrixXd S = MatrixXd::Zero(n, n);
   S.selfadjointView<Eigen::Lower>().rankUpdate(l.latent);
   S.diagonal().array() += fit.noise.output * fit.noise.output;
-  return S.llt().matrixL().solve(VectorXd(l.residuals + l.latent * fit.eta[at]));
+  const Eigen::LLT<MatrixXd> factor(S);
+  return {factor.matrixL().solve(VectorXd(l.residuals + l.latent * fit.eta[at])),
+          factor.matrixL().solve(l.gamma)};
 }
 
 VectorXd Likelihood::force(std::size_t at, const Fit& fit) const {

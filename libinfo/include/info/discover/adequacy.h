@@ -41,8 +41,9 @@ struct AdequacyOptions {
 };
 
 /// Tests the whitened innovations of a fit: their size (χ²), their autocorrelation (Ljung and Box,
-/// lags pooled over trials), their correlation with each input 0 to 0.2 s earlier, and whether what
-/// the fit leaves to chance follows the state or the inputs.
+/// lags pooled over trials, less what fitted parameters make of white noise), their correlation
+/// with each input 0 to 0.2 s earlier, and whether what the fit leaves to chance follows the state
+/// or the inputs.
 Adequacy adequacy(const Likelihood& likelihood, const Fit& fit, const AdequacyOptions& options);
 
 /// Upper tail of χ² with n degrees of freedom, n > 0.

@@ -99,8 +99,13 @@ class Likelihood {
   Projected project(const Fit& fit, const std::vector<Linear>& trials,
                     const std::vector<Eigen::MatrixXd>& disturbances) const;
 
-  /// Innovations L⁻¹(e + Wη) with LLᵀ = σ_y² + WWᵀ: white, N(0, 1), in the order of time.
-  Eigen::VectorXd innovations(std::size_t at, const Fit& fit) const;
+  /// What would be white if ξ were known, with LLᵀ = σ_y² + WWᵀ, in the order of time. With ξ fitted
+  /// the innovations' covariance is 1 − (L⁻¹Γ) cov(ξ) (L⁻¹Γ)ᵀ.
+  struct Whitened {
+    Eigen::VectorXd innovations;  ///< L⁻¹(e + Wη)
+    Eigen::MatrixXd gamma;        ///< L⁻¹Γ
+  };
+  Whitened whitened(std::size_t at, const Fit& fit) const;
 
   /// Latent force at its nodes [unit of the generalised force], and its posterior deviation.
   Eigen::VectorXd force(std::size_t at, const Fit& fit) const;
