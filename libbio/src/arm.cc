@@ -10,6 +10,7 @@ namespace bio {
 
 Arm::Arm(const Model& model, const ArmOptions& options)
     : skeleton_(model, options.skeleton), coordinateForces_(model, skeleton_) {
+  const std::vector<Posture> postures = samplePostures(skeleton_);
   for (const Muscle& muscle : model.muscles) {
     if (!muscle.enabled) {
       notes_.push_back(fmt::format("muscle '{}' is switched off in the model", muscle.name));
@@ -17,7 +18,7 @@ Arm::Arm(const Model& model, const ArmOptions& options)
     }
     std::optional<MusclePath> compiled;
     try {
-      compiled.emplace(model, skeleton_, muscle, options.wrapAsCylinder);
+      compiled.emplace(model, skeleton_, muscle, options.wrapAsCylinder, postures);
     } catch (const UnsupportedWrap& e) {
       warnings_.push_back(fmt::format("{}: the muscle is left out", e.what()));
       continue;

@@ -27,12 +27,12 @@ struct Encounter {
 class Compiler {
  public:
   Compiler(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
-           const std::vector<std::string>& wrapAsCylinder)
+           const std::vector<std::string>& wrapAsCylinder, const std::vector<Posture>& postures)
       : model_(model),
         skeleton_(skeleton),
         muscle_(muscle),
         wrapAsCylinder_(wrapAsCylinder),
-        postures_(samplePostures(skeleton)) {}
+        postures_(postures) {}
 
   CompiledPath compile() {
     for (std::size_t i = 0; i < muscle_.path.points.size(); ++i) addNode(i);
@@ -337,7 +337,7 @@ class Compiler {
   const Skeleton& skeleton_;
   const Muscle& muscle_;
   const std::vector<std::string>& wrapAsCylinder_;
-  std::vector<Posture> postures_;
+  const std::vector<Posture>& postures_;
   std::vector<PointCondition> conditionKeys_;
   std::vector<CandidateWrap> wraps_;
   CompiledPath path_;
@@ -346,9 +346,10 @@ class Compiler {
 }  // namespace
 
 CompiledPath compilePath(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
-                         const std::vector<std::string>& wrapAsCylinder) {
+                         const std::vector<std::string>& wrapAsCylinder,
+                         const std::vector<Posture>& postures) {
   for (const std::string& name : wrapAsCylinder) findWrapObject(model, name);
-  return Compiler(model, skeleton, muscle, wrapAsCylinder).compile();
+  return Compiler(model, skeleton, muscle, wrapAsCylinder, postures).compile();
 }
 
 }  // namespace bio

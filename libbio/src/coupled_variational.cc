@@ -84,10 +84,17 @@ class VariationalStepper {
     options_.externalForce.add(middle, row_, external_);
     const double share = symmetric_ ? h / 2 : h;  // of the forces in F⁻
     double previous = 0;                          // largest correction of the iteration before
+    Vector at, place;  // where the configuration was computed, and where it is
     for (result.iterations = 1; result.iterations <= options_.maxIterations; ++result.iterations) {
       const Vector q_m = (begin.q + end.q) / 2;
       const Vector v = (end.q - begin.q) / h;
-      configuration_.moveTo(q_m);
+      if (result.iterations > 1 && (q_m - at).cwiseAbs().maxCoeff() < near) {
+        configuration_.shift(q_m - place);
+      } else {
+        configuration_.moveTo(q_m);
+        at = q_m;
+      }
+      place = q_m;
       const InertiaJet<N>& inertia = configuration_.inertia();
 
       // skeleton: M v and ½ vᵀ∂M v − ∂V with their derivatives in the end configuration
@@ -205,6 +212,7 @@ class VariationalStepper {
   }
 
  private:
+  static constexpr double near = 5e-6;              ///< [rad] or [m] of what shift() is used for
   static constexpr double worthwhile = 1e-4;        ///< corrections above are always followed
   static constexpr double largestTurn = 0.3;        ///< [rad] per iteration
   static constexpr double largestFibreStep = 0.25;  ///< of ℓ0 per iteration
@@ -254,7 +262,10 @@ class VariationalRun {
     now_.p = configuration_.inertia().massMatrix * start.qDot;
     now_.fibreLength = start.fibreLength;
     velocity_ = start.qDot;
+    velocityBefore_ = velocity_;
     fibreVelocity_ = Eigen::VectorXd::Zero(start.fibreLength.size());
+    fibreVelocityBefore_ = fibreVelocity_;
+    length_ = lengthBefore_ = options.step;
     next_ = now_;
     recorder_.add(options.startTime, now_.q, start.qDot, activation_, now_.fibreLength, 0, 0, 0);
     if (tape_) tape_->begin(now_.q, now_.fibreLength, activation_);
@@ -337,8 +348,11 @@ class VariationalRun {
     player_.advance(t0, tMiddle, activation_);
     middle_ = activation_;
     player_.advance(tMiddle, t1, activation_);
-    next_.q = now_.q + h * velocity_;
-    next_.fibreLength = now_.fibreLength + h * fibreVelocity_;
+    // the parabola through the last three ends
+    const double bend = h * (h + length_) / (length_ + lengthBefore_);
+    next_.q = now_.q + (h + bend) * velocity_ - bend * velocityBefore_;
+    next_.fibreLength =
+        now_.fibreLength + (h + bend) * fibreVelocity_ - bend * fibreVelocityBefore_;
     result_ = stepper_.solve(h, tMiddle, now_, middle_, next_);
     count(result_.iterations);
     if (!result_.converged) {  // again from rest, in case the extrapolation was the trouble
@@ -399,8 +413,12 @@ class VariationalRun {
   void accept(const TimeMark& begin, const TimeMark& end) {
     const double h = end.value - begin.value;
     if (tape_) tape_->add(begin.index, end.index, next_.q, next_.fibreLength, middle_, activation_);
+    velocityBefore_ = velocity_;
     velocity_ = (next_.q - now_.q) / h;
+    fibreVelocityBefore_.swap(fibreVelocity_);
     fibreVelocity_ = (next_.fibreLength - now_.fibreLength) / h;
+    lengthBefore_ = length_;
+    length_ = h;
     now_.q.swap(next_.q);
     now_.p.swap(next_.p);
     now_.fibreLength.swap(next_.fibreLength);
@@ -415,7 +433,7 @@ class VariationalRun {
 
   /// q̇ = M⁻¹p at the end of the last step.
   Vector speed() {
-    if (!arm_.skeleton().hasConstantInertia()) configuration_.moveTo(now_.q);
+    if (!arm_.skeleton().hasConstantInertia()) configuration_.moveSkeletonTo(now_.q);
     return configuration_.inertia().massMatrix.ldlt().solve(now_.p);
   }
 
@@ -428,8 +446,10 @@ class VariationalRun {
   Recorder recorder_;
   Eigen::VectorXd activation_, middle_;
   Ends now_, next_;
-  Vector velocity_;
-  Eigen::VectorXd fibreVelocity_;
+  // mean speeds of the last two steps, and their lengths [s]
+  Vector velocity_, velocityBefore_;
+  Eigen::VectorXd fibreVelocity_, fibreVelocityBefore_;
+  double length_, lengthBefore_;
   double muscleWork_ = 0;
   double passiveWork_ = 0;
   double externalWork_ = 0;

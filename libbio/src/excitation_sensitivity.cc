@@ -2,27 +2,10 @@
 
 #include <algorithm>
 
-#include "info/dual.h"
-
 namespace bio::stepping {
 namespace {
 
 using Eigen::Index;
-
-/// ∂a₁ in u₀, u₁, a₀, h and the constants of the dynamics, through the scalar type.
-struct PieceDerivatives {
-  double value;
-  Eigen::Matrix<double, 7, 1> d;
-};
-
-PieceDerivatives pieceDerivatives(const SchutteActivation<double>& law, double u0, double u1,
-                                  double a0, double h) {
-  using D = info::Dual<7>;
-  const SchutteActivation<D> dynamics{D(law.timeScale, 7, 4), D(law.activation1, 7, 5),
-                                      D(law.activation2, 7, 6)};
-  const D end = stepActivation(dynamics, D(u0, 7, 0), D(u1, 7, 1), D(a0, 7, 2), D(h, 7, 3));
-  return {end.value(), end.derivatives()};
-}
 
 }  // namespace
 
@@ -33,9 +16,11 @@ ExcitationSensitivity::ExcitationSensitivity(const Arm& arm, const ParameterEffe
     : arm_(arm),
       effects_(effects),
       driven_(driven),
+      emg_(arm.numMuscles()),
       from_(static_cast<Index>(arm.numMuscles())),
       to_(from_),
       now_(from_) {
+  findColumns();
   if (effects.emg.empty()) return;
   const std::vector<std::string> muscles = muscleNames(arm);
   const EmgDerivatives d = emgDerivatives(trial, muscles, mapping);
@@ -45,7 +30,7 @@ ExcitationSensitivity::ExcitationSensitivity(const Arm& arm, const ParameterEffe
     };
     const EmgTarget& target = effect.target;
     const auto enter = [&](Index muscle, const Eigen::RowVectorXd& rows) {
-      emg_.push_back({muscle, effect.column, effect.weight * rows});
+      emg_[static_cast<std::size_t>(muscle)].push_back({effect.column, effect.weight * rows});
     };
     const auto enterAll = [&](const Eigen::MatrixXd& rows) {
       for (Index i = 0; i < rows.rows(); ++i) enter(i, rows.row(i));
@@ -66,22 +51,40 @@ ExcitationSensitivity::ExcitationSensitivity(const Arm& arm, const ParameterEffe
   }
 }
 
-double ExcitationSensitivity::between(const Eigen::RowVectorXd& rows, double t) const {
+void ExcitationSensitivity::findColumns() {
+  for (const auto& muscle : effects_.muscles) {
+    for (const QuantityEffect& effect : muscle.activation) columns_.push_back(effect.column);
+  }
+  for (const QuantityEffect& effect : effects_.delay) columns_.push_back(effect.column);
+  for (const auto& effect : effects_.emg) columns_.push_back(effect.column);
+  std::sort(columns_.begin(), columns_.end());
+  columns_.erase(std::unique(columns_.begin(), columns_.end()), columns_.end());
+}
+
+Index ExcitationSensitivity::placeOf(Index column) const {
+  if (isSpread_) return column;
+  return std::lower_bound(columns_.begin(), columns_.end(), column) - columns_.begin();
+}
+
+ExcitationSensitivity::Between ExcitationSensitivity::between(double t) const {
   const std::vector<double>& times = driven_.times();
-  if (!(t > times.front())) return rows[0];
-  if (t >= times.back()) return rows[rows.size() - 1];
+  if (!(t > times.front())) return {0, 0};
+  if (t >= times.back()) return {static_cast<Index>(times.size()) - 1, 0};
   std::size_t k = nextRow_ > 0 ? std::min(nextRow_, times.size() - 1) - 1 : 0;
   if (times[k] > t) k = 0;
   while (times[k + 1] <= t) ++k;
-  const auto c = static_cast<Index>(k);
-  const double w = (t - times[k]) / (times[k + 1] - times[k]);
-  return (1 - w) * rows[c] + w * rows[c + 1];
+  return {static_cast<Index>(k), (t - times[k]) / (times[k + 1] - times[k])};
 }
 
 void ExcitationSensitivity::start(double time, SensitivityMatrix& rows) {
   rows.setZero();
   nextRow_ = 0;
-  for (const RowsOfColumn& one : emg_) rows(one.muscle, one.column) += between(one.rows, time);
+  const Between here = between(time);
+  for (std::size_t i = 0; i < emg_.size(); ++i) {
+    for (const RowsOfColumn& one : emg_[i]) {
+      rows(static_cast<Index>(i), placeOf(one.column)) += here.of(one.rows);
+    }
+  }
   // later by d: the excitation at the start is that of d earlier; none is known before the first
   // row
   const std::vector<double>& times = driven_.times();
@@ -91,7 +94,7 @@ void ExcitationSensitivity::start(double time, SensitivityMatrix& rows) {
   driven_.at(times[k], hint_, from_);
   driven_.at(times[k + 1], hint_, to_);
   for (const QuantityEffect& effect : effects_.delay) {
-    rows.col(effect.column) -= effect.factor * (to_ - from_) / (times[k + 1] - times[k]);
+    rows.col(placeOf(effect.column)) -= effect.factor * (to_ - from_) / (times[k + 1] - times[k]);
   }
 }
 
@@ -113,11 +116,12 @@ void ExcitationSensitivity::advance(double t0, double t1, const Eigen::RowVector
     const double stop = endsOnRow ? rows[nextRow_] : t1;
     const double h = stop - t;
     driven_.at(stop, hint_, to_);
+    const Between atBegin = between(t), atEnd = between(stop);
     for (Index i = 0; i < out.rows(); ++i) {
       const auto si = static_cast<std::size_t>(i);
       const auto& effects = effects_.muscles[si];
-      const PieceDerivatives p =
-          pieceDerivatives(arm_.muscles()[si].activation, from_[i], to_[i], now_[i], h);
+      const ActivationStep p = stepActivationWithDerivatives(arm_.muscles()[si].activation,
+                                                             from_[i], to_[i], now_[i], h);
       now_[i] = p.value;
       auto row = out.row(i);
       if (first) {
@@ -131,15 +135,14 @@ void ExcitationSensitivity::advance(double t0, double t1, const Eigen::RowVector
       if (!endsOnRow && dt1) row += (p.d[1] * slope + p.d[3]) * *dt1;
       // a delay moves the rows of the trial; at a held time the excitation is of earlier
       for (const QuantityEffect& effect : effects_.delay) {
-        row[effect.column] += effect.factor * ((beginsOnRow ? -p.d[3] : -p.d[0] * slope) +
-                                               (endsOnRow ? p.d[3] : -p.d[1] * slope));
+        row[placeOf(effect.column)] += effect.factor * ((beginsOnRow ? -p.d[3] : -p.d[0] * slope) +
+                                                        (endsOnRow ? p.d[3] : -p.d[1] * slope));
       }
-      for (const RowsOfColumn& one : emg_) {
-        if (one.muscle != i) continue;
-        row[one.column] += p.d[0] * between(one.rows, t) + p.d[1] * between(one.rows, stop);
+      for (const RowsOfColumn& one : emg_[si]) {
+        row[placeOf(one.column)] += p.d[0] * atBegin.of(one.rows) + p.d[1] * atEnd.of(one.rows);
       }
       for (const QuantityEffect& effect : effects.activation) {
-        row[effect.column] += effect.factor * p.d[4 + static_cast<Index>(effect.quantity)];
+        row[placeOf(effect.column)] += effect.factor * p.d[4 + static_cast<Index>(effect.quantity)];
       }
     }
     from_.swap(to_);

@@ -15,6 +15,13 @@ class ExcitationSensitivity {
                         const ExcitationSignal& trial, const ExcitationSignal& driven,
                         const EmgMapping& mapping);
 
+  /// The columns of θ that activations follow, rising, while times are fixed: those of the rows
+  /// below. All others are zero.
+  const std::vector<Eigen::Index>& columns() const { return columns_; }
+  /// From now on rows have a column for every θ, because a time moves.
+  void spread() { isSpread_ = true; }
+  bool isSpread() const { return isSpread_; }
+
   /// d(activation)/dθ at the start, where it equals the excitation; rows = muscles.
   void start(double time, SensitivityMatrix& rows);
 
@@ -25,18 +32,32 @@ class ExcitationSensitivity {
                SensitivityMatrix& out);
 
  private:
-  /// Straight lines between the rows of the trial, as ExcitationSignal draws them.
-  double between(const Eigen::RowVectorXd& rows, double t) const;
+  /// Straight lines between the rows of the trial, as ExcitationSignal draws them: the row before t
+  /// and the weight of the one behind.
+  struct Between {
+    Eigen::Index row;
+    double weight;
+    double of(const Eigen::RowVectorXd& rows) const {
+      if (weight == 0) return rows[row];
+      return (1 - weight) * rows[row] + weight * rows[row + 1];
+    }
+  };
+  Between between(double t) const;
 
   const Arm& arm_;
   const ParameterEffects& effects_;
   const ExcitationSignal& driven_;
   /// What a column adds to the excitation of a muscle, at the rows of the trial.
   struct RowsOfColumn {
-    Eigen::Index muscle, column;
+    Eigen::Index column;
     Eigen::RowVectorXd rows;
   };
-  std::vector<RowsOfColumn> emg_;
+  Eigen::Index placeOf(Eigen::Index column) const;
+  void findColumns();
+
+  std::vector<std::vector<RowsOfColumn>> emg_;  ///< of each muscle
+  std::vector<Eigen::Index> columns_;
+  bool isSpread_ = false;
   std::size_t hint_ = 0;     ///< of the signal
   std::size_t nextRow_ = 0;  ///< first row of the signal behind the time reached
   Eigen::VectorXd from_, to_, now_;

@@ -133,6 +133,14 @@ void ParameterEffects::addBody(const Arm& arm, const Body& body, int component, 
   change.mass *= weight;
   change.massMoment *= weight;
   change.secondMoment *= weight;
+  // what moves several bodies of a segment is one change of that
+  for (OfSegment& other : segments) {
+    if (other.segment != place.segment || other.column != column) continue;
+    other.change.mass += change.mass;
+    other.change.massMoment += change.massMoment;
+    other.change.secondMoment += change.secondMoment;
+    return;
+  }
   segments.push_back({place.segment, std::move(change), column});
 }
 

@@ -39,7 +39,12 @@ std::vector<Vec3<double>> arc(const PathSurface& surface, const SpanSurface& way
 
 MusclePath::MusclePath(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
                        const std::vector<std::string>& wrapAsCylinder)
-    : compiled_(compilePath(model, skeleton, muscle, wrapAsCylinder)) {
+    : MusclePath(model, skeleton, muscle, wrapAsCylinder, samplePostures(skeleton)) {}
+
+MusclePath::MusclePath(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
+                       const std::vector<std::string>& wrapAsCylinder,
+                       const std::vector<Posture>& postures)
+    : compiled_(compilePath(model, skeleton, muscle, wrapAsCylinder, postures)) {
   for (const PathPoint& point : muscle.path.points) parameters_.points.push_back(point.location);
   // a moving point that only locked coordinates move sits where its functions say
   for (const PathNode& node : compiled_.nodes) {

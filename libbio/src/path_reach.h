@@ -1,19 +1,8 @@
 #pragma once
 
-#include <vector>
-
 #include "bio/compiled_path.h"
 
 namespace bio {
-
-/// The skeleton in one configuration.
-struct Posture {
-  std::vector<double> q;
-  std::vector<Placement<double>> placements;  ///< of all segments
-};
-
-/// The default posture, then a grid over the coordinates' ranges, nearest to the default first.
-std::vector<Posture> samplePostures(const Skeleton& skeleton);
 
 /// A path point in ground.
 Vec3<double> nodePosition(const CompiledPath& path, const PathNode& node, const Posture& posture);

@@ -43,7 +43,9 @@ class SensitivityPass {
     inertia_.setZero(N, columns);
     slope_.setZero(N, columns);
     fibre_.setZero(numMuscles_, columns);
-    trialFibre_ = activation_ = middle_ = fibre_;
+    trialFibre_ = fibre_;
+    activation_.setZero(numMuscles_, static_cast<Index>(excitation_.columns().size()));
+    middle_ = activation_;
     row_.setZero(columns);
     unit_ = row_;
     unit_[numParameters] = 1;
@@ -117,8 +119,8 @@ class SensitivityPass {
       const EquilibriumDerivatives d =
           equilibriumDerivatives(muscle, start.activation[si], path.length, rest);
       auto fibre = fibre_.row(si);
-      fibre = d.dl_dActivation * activation_.row(si) +
-              d.dl_dMuscleTendonLength * (path.dL_dq.transpose() * dq_);
+      fibre = d.dl_dMuscleTendonLength * (path.dL_dq.transpose() * dq_);
+      addActivation(d.dl_dActivation, activation_, si, fibre);
       for (const QuantityEffect& effect : effects_.muscles[i].fibre) {
         fibre[effect.column] += effect.factor * d.dl_dQuantity[effect.quantity];
       }
@@ -151,9 +153,13 @@ class SensitivityPass {
     std::size_t begun = begunNodes_;
     while (begun < times.size() && times[begun == 0 ? 0 : begun - 1] < t) ++begun;
     if (begun == begunNodes_) return;
-    begunNodes_ = begun;
+    constexpr std::size_t together = 8;  // rather than one by one
+    begunNodes_ = std::min(times.size(), (begun + together - 1) / together * together);
     for (Rows* rows : {&dq_, &dp_, &forward_, &force_, &inertia_, &slope_}) widen(*rows);
-    for (auto* rows : {&fibre_, &trialFibre_, &activation_, &middle_}) widen(*rows);
+    for (auto* rows : {&fibre_, &trialFibre_}) widen(*rows);
+    if (excitation_.isSpread()) {
+      for (auto* rows : {&activation_, &middle_}) widen(*rows);
+    }
     for (RowVector* row : {&row_, &middleTime_, &unit_}) widen(*row);
   }
   template <class RowsOf>
@@ -163,6 +169,33 @@ class SensitivityPass {
     if (before == columns) return;
     rows.conservativeResize(Eigen::NoChange, columns);
     rows.rightCols(columns - before).setZero();
+  }
+
+  /// Adds factor·∂a/∂θ of a muscle to a row with a column for every θ.
+  template <class Row>
+  void addActivation(double factor, const SensitivityMatrix& activation, Index muscle,
+                     Row&& row) const {
+    if (excitation_.isSpread()) {
+      row += factor * activation.row(muscle);
+      return;
+    }
+    const std::vector<Index>& columns = excitation_.columns();
+    for (std::size_t j = 0; j < columns.size(); ++j) {
+      row[columns[j]] += factor * activation(muscle, static_cast<Index>(j));
+    }
+  }
+
+  /// A time that moves takes the activations with it: a column for every θ.
+  void spreadActivation() {
+    if (excitation_.isSpread()) return;
+    const std::vector<Index>& columns = excitation_.columns();
+    SensitivityMatrix all = SensitivityMatrix::Zero(numMuscles_, dq_.cols());
+    for (std::size_t j = 0; j < columns.size(); ++j) {
+      all.col(columns[j]) = activation_.col(static_cast<Index>(j));
+    }
+    middle_.setZero(numMuscles_, dq_.cols());
+    activation_ = std::move(all);
+    excitation_.spread();
   }
 
   void follow(const StepTape& tape, std::size_t i) {
@@ -208,6 +241,7 @@ class SensitivityPass {
     const auto activation = tape.middleActivation(i + 1);
     const bool timeMoves = dt0 || dt1;
     if (timeMoves) {
+      spreadActivation();
       row_.setZero();
       if (dt1) row_ += *dt1;
       if (dt0) row_ -= *dt0;  // dh
@@ -267,8 +301,9 @@ class SensitivityPass {
       auto trial = trialFibre_.row(sm);
       const double half = r.dV_dMuscleTendonLength / 2 * perJ;
       trial = ((1 / h + r.dV_dFibreLength / 2) * perJ) * fibre_.row(sm) +
-              (r.dV_dActivation * perJ) * middle_.row(sm) + (half * path.dL_dq[0]) * dq_.row(0);
+              (half * path.dL_dq[0]) * dq_.row(0);
       for (int k = 1; k < N; ++k) trial += (half * path.dL_dq[k]) * dq_.row(k);
+      addActivation(r.dV_dActivation * perJ, middle_, sm, trial);
       if (timeMoves) trial += ((l1[sm] - l0[sm]) / (h * h) * perJ) * row_;
       addMuscleParameters(m, q_m, activation[sm], l_m, path, r, perJ, trial);
 
@@ -297,8 +332,10 @@ class SensitivityPass {
     forward_.noalias() = (-perJ * atBegin) * dq_;
     forward_.noalias() += perJ * dp_;
     forward_.noalias() += (share * perJ) * force_;
-    forward_.noalias() -= perJ * inertia_;
-    forward_.noalias() += (h / 2 * perJ) * slope_;
+    if (changesInertia()) {
+      forward_.noalias() -= perJ * inertia_;
+      forward_.noalias() += (h / 2 * perJ) * slope_;
+    }
     if (timeMoves) {
       const Vector inTime = -residual_v * v / h - L_q / 2 - share / h * f;
       forward_.noalias() -= (perJ * inTime) * row_;
@@ -309,7 +346,7 @@ class SensitivityPass {
     const Matrix beginToEnd = momentum_q / 2 - momentum_v / h;
     dp_.noalias() = endToEnd * forward_;
     dp_.noalias() += beginToEnd * dq_;
-    dp_ += inertia_ + h / 2 * slope_;
+    if (changesInertia()) dp_ += inertia_ + h / 2 * slope_;
     if (symmetric_) dp_ += endShare * force_;
     if (timeMoves) {
       const Vector inTime = -momentum_v * v / h + L_q / 2 + endShare / h * f;
@@ -401,9 +438,12 @@ class SensitivityPass {
     force_(nodes_.coordinate, first + 1) += w;
   }
 
+  bool changesInertia() const { return !effects_.segments.empty() || !effects_.gravity.empty(); }
+
   /// inertia_ = ∂(M v)/∂θ and slope_ = ∂(½ vᵀ∂M v − ∂V)/∂θ, linear in the segments' moments:
   /// with Ẋ = Σ v_l ∂_lX, (M v)_k = tr(∂_kX P Ẋᵀ) and ½ vᵀ∂_kM v = tr(∂_kẊ P Ẋᵀ).
   void addInertia(const Vector& v) {
+    if (!changesInertia()) return;  // both stay 0
     inertia_.setZero();
     slope_.setZero();
     for (const auto& effect : effects_.segments) {
@@ -450,7 +490,11 @@ class SensitivityPass {
     const Trajectory& motion = result.motion;
     const Vector q = motion.q.col(row);
     const Vector qDot = motion.qDot.col(row);
-    configuration_.moveTo(q);
+    if (options_.muscles) {
+      configuration_.moveTo(q);
+    } else if (!arm_.skeleton().hasConstantInertia() || changesInertia()) {
+      configuration_.moveSkeletonTo(q);
+    }
     const InertiaJet<N>& inertia = configuration_.inertia();
     // q̇ = M⁻¹p
     addInertia(qDot);
@@ -482,7 +526,12 @@ class SensitivityPass {
       const FibreParameterDerivatives d =
           fibreParameterDerivatives(arm_.muscles()[i].muscle, activation, l, path.length);
       result.fibreLength[i].row(row) = fibre_.row(si).head(numParameters_);
-      result.activation[i].row(row) = activation_.row(si).head(numParameters_);
+      result.activation[i].row(row).setZero();
+      if (excitation_.isSpread()) {
+        result.activation[i].row(row) = activation_.row(si).head(numParameters_);
+      } else {
+        addActivation(1, activation_, si, result.activation[i].row(row));
+      }
       auto force = result.tendonForce[i].row(row);
       force = (r.dF_dFibreLength * fibre_.row(si) +
                r.dF_dMuscleTendonLength * (path.dL_dq.transpose() * dq_))

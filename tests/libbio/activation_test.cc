@@ -141,6 +141,27 @@ TEST(StepActivation, DerivativesFlowThroughTheScalarType) {
   }
 }
 
+// Written out, against the scalar type: in u₀, u₁, a₀, h, t_s, c₁ and c₂.
+TEST(StepActivation, HasTheDerivativesOfTheScalarType) {
+  using D = info::Dual<7>;
+  for (const double c1 : {7.667, 0.0}) {
+    for (const Step& s : steps) {
+      for (const double h : {0.001, 0.01, 0.2}) {
+        const SchutteActivation<D> dynamics{D(0.1, 7, 4), D(c1, 7, 5), D(1.459854, 7, 6)};
+        const D expected =
+            stepActivation(dynamics, D(s.u0, 7, 0), D(s.u1, 7, 1), D(s.a0, 7, 2), D(h, 7, 3));
+        const ActivationStep step =
+            stepActivationWithDerivatives({0.1, c1, 1.459854}, s.u0, s.u1, s.a0, h);
+        EXPECT_NEAR(step.value, expected.value(), 1e-15);
+        for (int i = 0; i < 7; ++i) {
+          EXPECT_NEAR(step.d[i], expected.derivatives()[i], 1e-10)  // measured 5e-12, in h
+              << i << " at " << s.u0 << ' ' << s.u1 << ' ' << s.a0 << ' ' << h;
+        }
+      }
+    }
+  }
+}
+
 TEST(StepActivations, MovesEveryMuscleByItsOwnDynamics) {
   const std::vector<SchutteActivation<double>> dynamics = {schutte, {0.2, 5, 1}};
   const std::vector<double> u0 = {0.1, 0.2}, u1 = {0.5, 0.6};

@@ -216,6 +216,31 @@ TEST(Coupled, AStepThatCannotBeSolvedIsAResultWithTimeAndReason) {
   EXPECT_EQ(motion.time.size(), 1u);
 }
 
+// Half the shift, an eighth of the error in what has two derivatives, a quarter in what has one.
+TEST(ArmConfiguration, ShiftedALittleItIsThatOfThePlaceToItsOrder) {
+  const Arm arm = elbowArm({"elbow_flexion", "shoulder_elv"});
+  const Eigen::Vector2d q(1.1, 0.4), along(1, -0.7);
+  const auto errors = [&](double size) {
+    ArmConfiguration<2> shifted(arm), there(arm);
+    shifted.moveTo(q);
+    shifted.shift(size / 2 * along);
+    shifted.shift(size / 2 * along);
+    there.moveTo(q + size * along);
+    const auto &a = shifted.inertia(), &b = there.inertia();
+    double third = std::abs(a.potential - b.potential) + (a.massMatrix - b.massMatrix).norm();
+    double second = (a.dV - b.dV).norm() + (a.dM[0] - b.dM[0]).norm() + (a.dM[1] - b.dM[1]).norm();
+    for (std::size_t i = 0; i < arm.numMuscles(); ++i) {
+      third += std::abs(shifted.length(i).length - there.length(i).length);
+      second += (shifted.length(i).dL_dq - there.length(i).dL_dq).norm();
+    }
+    return Eigen::Array2d(third, second);
+  };
+  const Eigen::Array2d ratio = errors(4e-3) / errors(2e-3);
+  EXPECT_NEAR(ratio[0], 8, 0.2) << errors(2e-3);
+  EXPECT_NEAR(ratio[1], 4, 0.2) << errors(2e-3);
+  EXPECT_GT(errors(2e-3).minCoeff(), 1e-12);
+}
+
 TEST(Coupled, NothingIsAllocatedInAStep) {
   for (const Integrator integrator :
        {Integrator::variational, Integrator::variationalLeft, Integrator::rungeKutta4}) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cmath>
 #include <span>
 
@@ -111,6 +112,16 @@ T stepActivation(const Dynamics& dynamics, const T& u0, const T& u1, const T& a0
   const T a1 = u1 - detail::lagAfter(dynamics, slope, uCrossing, T(0.0), rest, !rising);
   return a1;
 }
+
+/// stepActivation of Schutte's dynamics and its derivatives.
+struct ActivationStep {
+  double value;                   ///< a₁
+  Eigen::Matrix<double, 7, 1> d;  ///< in u₀, u₁, a₀, h, t_s, c₁ and c₂, in this order
+};
+/// By hand where the excitation stays above or stays below the activation, else through the scalar
+/// type.
+ActivationStep stepActivationWithDerivatives(const SchutteActivation<double>& dynamics, double u0,
+                                             double u1, double a0, double h);
 
 /// stepActivation for many muscles with the same step: a[i] moves from excitation u0[i] to u1[i].
 /// All spans have the same length.

@@ -29,8 +29,8 @@ struct ArmMuscle {
 };
 
 /// A model compiled for simulation: the skeleton that the free coordinates leave, the muscles that
-/// they move, and the passive coordinate forces. A muscle whose path moves over a surface without an
-/// exact geodesic (UnsupportedWrap) is left out with a warning. Constant; state is passed to it.
+/// they move, and the passive coordinate forces. A muscle whose path moves over a surface without
+/// an exact geodesic (UnsupportedWrap) is left out with a warning. Constant; state is passed to it.
 class Arm {
  public:
   /// @throws std::invalid_argument what Skeleton and MusclePath throw, non-physical muscle
@@ -47,7 +47,8 @@ class Arm {
 
   /// One line each: muscles that move but cannot be simulated and are left out.
   const std::vector<std::string>& warnings() const { return warnings_; }
-  /// One line each: muscles left out because nothing moves them, spans taken as constant, wraps out of reach.
+  /// One line each: muscles left out because nothing moves them, spans taken as constant, wraps out
+  /// of reach.
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
@@ -72,10 +73,43 @@ class ArmConfiguration {
       : arm_(&arm), motions_(arm.skeleton().numSegments()), lengths_(arm.numMuscles()) {}
 
   void moveTo(const Vector& q) {
-    arm_->skeleton().template motions<double, N>(q, motions_.data());
-    inertia_ = arm_->skeleton().template inertia<N>(q, motions_.data());
+    moveSkeletonTo(q);
     for (std::size_t i = 0; i < lengths_.size(); ++i) {
       lengths_[i] = arm_->muscles()[i].path.template length<N>(q, motions_.data());
+    }
+  }
+
+  /// Leaves the lengths where they are.
+  void moveSkeletonTo(const Vector& q) {
+    arm_->skeleton().template motions<double, N>(q, motions_.data());
+    inertia_ = arm_->skeleton().template inertia<N>(q, motions_.data());
+  }
+
+  /// Lengths and inertia at q + d by their Taylor polynomials at q, as far as their derivatives are
+  /// known: lengths, M and V lack what is of third order in d, ∂ℓ, ∂M and ∂V what is of second.
+  /// The placements stay where they are.
+  void shift(const Vector& d) {
+    for (LengthJet<N>& path : lengths_) {
+      const Vector change = path.d2L_dq2 * d;
+      path.length += d.dot(path.dL_dq + change / 2);
+      path.dL_dq += change;
+    }
+    const Vector change = inertia_.d2V * d;
+    inertia_.potential += d.dot(inertia_.dV + change / 2);
+    inertia_.dV += change;
+    if (arm_->skeleton().hasConstantInertia()) return;
+    for (int i = 0; i < N; ++i) {
+      for (int j = 0; j < N; ++j) {
+        const auto& bend = inertia_.d2M[static_cast<std::size_t>(pairIndex(i, j))];
+        inertia_.massMatrix +=
+            d[i] * (inertia_.dM[static_cast<std::size_t>(i)] / N + d[j] / 2 * bend);
+      }
+    }
+    for (int i = 0; i < N; ++i) {
+      for (int j = 0; j < N; ++j) {
+        inertia_.dM[static_cast<std::size_t>(i)] +=
+            d[j] * inertia_.d2M[static_cast<std::size_t>(pairIndex(i, j))];
+      }
     }
   }
 

@@ -88,9 +88,21 @@ class UnsupportedWrap : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
+/// The skeleton in one configuration.
+struct Posture {
+  std::vector<double> q;
+  std::vector<Placement<double>> placements;  ///< of all segments
+};
+
+/// The default posture, then a grid over the coordinates' ranges, nearest to the default first:
+/// where compilePath looks which surfaces a span can touch. One list serves all muscles.
+std::vector<Posture> samplePostures(const Skeleton& skeleton);
+
 /// See MusclePath.
+/// @param postures  samplePostures(skeleton)
 CompiledPath compilePath(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
-                         const std::vector<std::string>& wrapAsCylinder);
+                         const std::vector<std::string>& wrapAsCylinder,
+                         const std::vector<Posture>& postures);
 
 /// Conditional points stay active this far beyond their range, as in OpenSim [rad] or [m].
 constexpr double conditionMargin = 1e-5;

@@ -62,6 +62,9 @@ class MusclePath {
   ///   points in some posture
   MusclePath(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
              const std::vector<std::string>& wrapAsCylinder);
+  /// The same for one of many muscles, with postures = samplePostures(skeleton).
+  MusclePath(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
+             const std::vector<std::string>& wrapAsCylinder, const std::vector<Posture>& postures);
 
   /// False if no free coordinate changes the length.
   bool moves() const;

@@ -281,20 +281,18 @@ ElbowDisagreement::Prediction ElbowDisagreement::predict(int trial, const Vector
     const double value = w->value(q, qDot), slope = w->slope(q, qDot);
     result.outputs[i] = factor * value + sensor.bias;
     result.speeds[i] = factor * slope;
-    const auto along = [&](const SensitivityMatrix& Q, const SensitivityMatrix& QDot, Index j) {
-      return factor * w->value(Q.col(j), QDot.col(j));
-    };
+    const Eigen::RowVectorXd along = factor * w->rows(s.q[c], s.qDot[c]);
     for (std::size_t j = 0; j < wanted.size(); ++j) {
       double& entry = result.gamma(i, static_cast<Index>(j));
-      entry = column[j] >= 0 ? along(s.q[c], s.qDot[c], column[j]) : 0;
+      entry = column[j] >= 0 ? along[column[j]] : 0;
       if (wanted[j] >= own) continue;
       const Meaning::Kind kind = widest_.kindOf(wanted[j]);
       if (kind == Meaning::Kind::bias) entry = 1;
       if (kind == Meaning::Kind::gain) entry = value;
       if (kind == Meaning::Kind::clock) entry = -factor * slope;
     }
-    for (Index k = 0; k < numNodes; ++k) {
-      result.latentGamma(i, k) = along(s.qOfNodes[c], s.qDotOfNodes[c], k);
+    if (numNodes > 0) {
+      result.latentGamma.row(i) = factor * w->rows(s.qOfNodes[c], s.qDotOfNodes[c]);
     }
   }
   return result;
