@@ -124,8 +124,15 @@ class Discover : public Command {
     const DiscoverWording wording = wordingOf(data);
     warnOfOneTrial(summary, trials_.size(), heldOut_.size());
     const std::string next = followUp(data, verdict, followUpsOfArms());
-    const DiscoverFindings findings{model_,        files,   data, wording,
-                                    found.options, verdict, next, found.wallSeconds};
+    const DiscoverFindings findings{model_,
+                                    files,
+                                    data,
+                                    wording,
+                                    found.options,
+                                    verdict,
+                                    next,
+                                    found.wallSeconds,
+                                    found.processorSeconds};
     summary.set("integrator", simulation_.integrator);
     summary.set("step_s", found.step);
     tellFindings(findings, summary);

@@ -1,6 +1,7 @@
 #include "discover_search.h"
 
 #include <chrono>
+#include <ctime>
 #include <optional>
 
 #include "interruption.h"
@@ -21,6 +22,7 @@ info::discover::Options engineOptions(int maxEffects, std::size_t training, std:
 DiscoverSearch searchForEffects(const std::function<info::discover::Attempt(double step)>& attempt,
                                 double step, double shortest) {
   const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t used = std::clock();
   std::optional<ProgressBar> bar;
   bool interrupted = false;
   const auto shown = [&](double at) {
@@ -38,6 +40,7 @@ DiscoverSearch searchForEffects(const std::function<info::discover::Attempt(doub
   search.interrupted = interrupted;
   search.wallSeconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  search.processorSeconds = static_cast<double>(std::clock() - used) / CLOCKS_PER_SEC;
   return search;
 }
 

@@ -13,7 +13,8 @@ namespace app {
 info::discover::Options engineOptions(int maxEffects, std::size_t training, std::size_t heldOut);
 
 struct DiscoverSearch : info::discover::SteppedVerdict {
-  double wallSeconds = 0;  ///< of all attempts
+  double wallSeconds = 0;       ///< of all attempts
+  double processorSeconds = 0;  ///< the same, of all threads together
   bool interrupted = false;
 };
 

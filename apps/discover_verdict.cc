@@ -143,6 +143,7 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   json["noise_sd"] = number(verdict.outputDeviation);
   json["noise_estimated"] = verdict.deviationEstimated;
   json["wall_s"] = number(f.wallSeconds);
+  json["processor_s"] = number(f.processorSeconds);
   json["probability_vetoed"] = verdict.vetoed;
   json["numerical_error_in_noise_sd"] = number(verdict.numericalError);
   json["already_in_the_model"] = ordered_json::object();

@@ -41,7 +41,8 @@ struct DiscoverFindings {
   const info::discover::Options& options;
   const info::discover::Verdict& verdict;
   const std::string& nextExperiment;
-  double wallSeconds;  ///< of the search
+  double wallSeconds;       ///< of the search
+  double processorSeconds;  ///< of the search, all threads together
 };
 
 /// The findings as figures of summary.json.

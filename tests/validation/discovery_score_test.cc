@@ -69,6 +69,8 @@ TEST(Judge, ARightNameWithItsAmplitude) {
   EXPECT_NEAR(o.gapClosed.value(), 0.99, 1e-12);
   EXPECT_NEAR(o.overFloor.value(), 1.02, 1e-12);
   EXPECT_NEAR(o.seconds.value(), 12.5, 1e-12);
+  verdict["processor_s"] = 9;  // says more where the machine is shared
+  EXPECT_EQ(judge("a", labelOf("single", Json::array({truthOf("visc", 0.3)})), verdict).seconds, 9);
 }
 
 TEST(Judge, UnitsAndOtherNamesOfTheSameAmplitude) {

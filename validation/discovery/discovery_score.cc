@@ -179,7 +179,8 @@ Outcome judge(const std::string& name, const Json& label, const Json& verdict) {
       if (after && floor && *floor > 0) o.overFloor = *after / *floor;
     }
   }
-  o.seconds = finite(verdict, "wall_s");
+  o.seconds = finite(verdict, "processor_s");
+  if (!o.seconds) o.seconds = finite(verdict, "wall_s");
   return o;
 }
 

@@ -78,7 +78,8 @@ struct Score {
 Score score(const std::vector<Outcome>& outcomes);
 
 /// Reads every NAME.json of a folder of labels and NAME/verdict.json (or NAME.json) of a folder of
-/// verdicts. Run times come from `wall_s` of the verdict, else of summary.json beside it.
+/// verdicts. Run times come from `processor_s` of the
+/// verdict, else from `wall_s`, else from that of summary.json beside it.
 /// @throws std::runtime_error naming the file that cannot be read, or if there is no label
 std::vector<Outcome> readOutcomes(const std::filesystem::path& labels,
                                   const std::filesystem::path& verdicts);
