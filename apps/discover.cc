@@ -15,6 +15,7 @@
 #include "discover_search.h"
 #include "driven_trial.h"
 #include "follow_up.h"
+#include "foresee.h"
 #include "info/version.h"
 #include "input_rules.h"
 #include "interruption.h"
@@ -103,8 +104,8 @@ class Discover : public Command {
     const bio::ArmOptions arm = armOptions(simulation_);
     const std::string coordinate = observed();
     std::unique_ptr<bio::discover::ElbowDisagreement> elbow;
+    bio::discover::ElbowOptions options;
     const auto attempt = [&](double step) {
-      bio::discover::ElbowOptions options;
       options.simulation = simulationOptions(simulation_, 0, 1);
       options.simulation.step = step;
       options.without = without_;
@@ -123,16 +124,13 @@ class Discover : public Command {
     const info::discover::Verdict& verdict = found.verdict;
     const DiscoverWording wording = wordingOf(data);
     warnOfOneTrial(summary, trials_.size(), heldOut_.size());
-    const std::string next = followUp(data, verdict, followUpsOfArms());
-    const DiscoverFindings findings{model_,
-                                    files,
-                                    data,
-                                    wording,
-                                    found.options,
-                                    verdict,
-                                    next,
-                                    found.wallSeconds,
-                                    found.processorSeconds};
+    const std::vector<ForeseenExperiment> foreseen =
+        foresee(model, arm, trials.front(), options, data, verdict);
+    std::string next = foreseenSentence(foreseen, data, verdict);
+    if (next.empty()) next = followUp(data, verdict, followUpsOfArms());
+    const DiscoverFindings findings{
+        model_,  files, data,     wording,           found.options,
+        verdict, next,  foreseen, found.wallSeconds, found.processorSeconds};
     summary.set("integrator", simulation_.integrator);
     summary.set("step_s", found.step);
     tellFindings(findings, summary);

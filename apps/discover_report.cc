@@ -62,6 +62,7 @@ class Writer {
     detectability();
     section("Next experiment");
     say(f_.nextExperiment);
+    if (!f_.foreseen.empty()) report_.details.emplace_back(foreseenTable());
     if (!others_.empty()) {
       section("The other trials");
       for (Figure& figure : others_) report_.details.emplace_back(std::move(figure));
@@ -317,6 +318,19 @@ class Writer {
     };
     row("fitted", f_.verdict.gap);
     if (f_.verdict.heldOut) row("held out", *f_.verdict.heldOut);
+    return table;
+  }
+
+  Table foreseenTable() const {
+    Table table{"What experiments are expected to tell", {"experiment"}, {}};
+    for (std::size_t i = 1; i < f_.verdict.rivals.size(); ++i)
+      table.columns.push_back(fmt::format("{} from {} [nats]", rivalName(f_.data, f_.verdict, 0),
+                                          rivalName(f_.data, f_.verdict, i)));
+    for (const ForeseenExperiment& one : f_.foreseen) {
+      std::vector<std::string> row{one.sentence};
+      for (const double nats : one.nats) row.push_back(numberText(nats, 2));
+      table.rows.push_back(std::move(row));
+    }
     return table;
   }
 

@@ -161,16 +161,11 @@ class RobotSearch {
     DiscoverWording wording = wordingOf(*data_);
     wording.present = present;
     const std::string next = followUp(*data_, verdict, followUpsOfRobots());
+    const std::vector<ForeseenExperiment> foreseen;  // of arms only
     const std::string name = "the " + request_.system;
-    const DiscoverFindings findings{name,
-                                    files,
-                                    *data_,
-                                    wording,
-                                    found.options,
-                                    verdict,
-                                    next,
-                                    found.wallSeconds,
-                                    found.processorSeconds};
+    const DiscoverFindings findings{
+        name,    files, *data_,   wording,           found.options,
+        verdict, next,  foreseen, found.wallSeconds, found.processorSeconds};
     summary.set("system", request_.system);
     summary.set("step_s", found.step);
     for (std::size_t c = 0; c < channels.size(); ++c)

@@ -140,6 +140,13 @@ ordered_json verdictJson(const DiscoverFindings& f) {
     json["undetectable_below"][candidates[one.candidate].id] = number(one.amplitude);
   }
   json["next_experiment"] = f.nextExperiment;
+  for (const ForeseenExperiment& one : f.foreseen) {
+    ordered_json nats = ordered_json::object();
+    for (std::size_t i = 0; i < one.nats.size(); ++i)
+      nats[rivalName(f.data, verdict, i + 1)] = number(one.nats[i]);
+    json["planned_experiments"].push_back(
+        {{"what", one.sentence}, {"of", rivalName(f.data, verdict, 0)}, {"expected_nats", nats}});
+  }
   json["noise_sd"] = number(verdict.outputDeviation);
   json["noise_estimated"] = verdict.deviationEstimated;
   json["wall_s"] = number(f.wallSeconds);

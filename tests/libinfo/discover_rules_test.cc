@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "info/discover/decide.h"
+#include "info/discover/separation.h"
 #include "info/discover/shorter_steps.h"
 #include "info/random_stream.h"
 #include "support/linear_disagreement.h"
@@ -404,6 +405,87 @@ TEST(Discover, StartsFromADraft) {
   EXPECT_NEAR(again.effects[0].estimates[0].value, first.effects[0].estimates[0].value,
               0.1 * first.effects[0].estimates[0].deviation);
   EXPECT_NEAR(again.effects[0].logBayesFactor, first.effects[0].logBayesFactor, 0.2);
+}
+
+// What the outputs of a planned trial are expected to be under a hypothesis that was fitted: mean
+// and covariance, written out for the oscillator.
+struct Expected {
+  VectorXd mean;
+  Eigen::MatrixXd covariance;
+};
+Expected expectedOutputs(const LinearDisagreement& planned, const Fit& fit) {
+  Expected expected;
+  VectorXd values = nominalValues(planned);
+  values.head(4) = fit.values.head(4);
+  expected.mean = planned.outputs(0, values, {});
+  const Index n = expected.mean.size();
+  expected.covariance = kOutput * kOutput * Eigen::MatrixXd::Identity(n, n);
+  for (std::size_t start : {4, 5}) {
+    const VectorXd column = 0.3 * planned.predict(0, values, {}, {start}, false).gamma;
+    expected.covariance += column * column.transpose();
+  }
+  for (std::size_t i = 0; i < fit.hypothesis.free.size(); ++i)
+    for (std::size_t j = 0; j < fit.hypothesis.free.size(); ++j) {
+      const FreeQuantity &a = fit.hypothesis.free[i], &b = fit.hypothesis.free[j];
+      if (a.quantity >= 4 || b.quantity >= 4) continue;
+      expected.covariance += fit.covariance(static_cast<Index>(i), static_cast<Index>(j)) *
+                             a.deviation * b.deviation *
+                             planned.predict(0, values, {}, {a.quantity}, false).gamma *
+                             planned.predict(0, values, {}, {b.quantity}, false).gamma.transpose();
+    }
+  return expected;
+}
+
+TEST(ExpectedSeparation, IsWhatIsLeftOfTheDifferenceAndBelowTheDivergence) {
+  LinearDisagreement data(2, 30);
+  VectorXd truth = nominalValues(data);
+  truth[1] = 1;
+  data.draw(3, truth, kOutput, 0, kTime);
+  const Likelihood likelihood(data, {0, 1}, nominalValues(data), kTime);
+  const auto fitted = [&](const std::vector<std::size_t>& effects) {
+    return likelihood.fit(makeHypothesis(data, effects, {0, 1}), {kOutput, 0, kTime},
+                          nominalValues(data), {}, {50, 1e-9});
+  };
+  const Fit push = fitted({0}), base = fitted({});
+  const LinearDisagreement planned(1, 50);
+  const VectorXd nothing = VectorXd::Zero(static_cast<Index>(planned.quantities().size()));
+  const double found = expectedSeparation(planned, nothing, data, push, base);
+  const Expected a = expectedOutputs(planned, push), b = expectedOutputs(planned, base);
+  const VectorXd difference = a.mean - b.mean;
+  // noise and start are common, so they are in the sum once
+  Eigen::MatrixXd S = a.covariance + b.covariance;
+  S -= expectedOutputs(planned, likelihood.fit(startsOnly(data, {0, 1}), {kOutput, 0, kTime},
+                                               nominalValues(data)))
+           .covariance;
+  EXPECT_NEAR(found, 0.5 * difference.dot(S.llt().solve(difference)), 1e-6 * found);
+  EXPECT_GT(found, 5);
+  // Kullback and Leibler's divergence, the expected log Bayes factor of linear models
+  const Eigen::MatrixXd ratio = b.covariance.llt().solve(a.covariance);
+  const double divergence =
+      0.5 * (difference.dot(b.covariance.llt().solve(difference)) + ratio.trace() -
+             static_cast<double>(difference.size()) - std::log(ratio.determinant()));
+  EXPECT_LT(found, divergence);
+  EXPECT_GT(found, 0.2 * divergence);
+  EXPECT_NEAR(expectedSeparation(planned, nothing, data, push, push), 0, 1e-12);
+}
+
+TEST(ExpectedSeparation, ChangesWithWhatTheExperimenterChanges) {
+  const LinearDisagreement data = drawn(5, 2, 1.1);
+  const Likelihood likelihood(data, {0, 1}, nominalValues(data), kTime);
+  const auto fitted = [&](std::size_t effect) {
+    return likelihood.fit(makeHypothesis(data, {effect}, {0, 1}), {kOutput, kLatent, kTime},
+                          nominalValues(data));
+  };
+  const Fit push = fitted(0), bias = fitted(2);
+  const LinearDisagreement planned(1, 50), longer(1, 100);
+  VectorXd known = VectorXd::Zero(static_cast<Index>(planned.quantities().size()));
+  const double one = expectedSeparation(planned, known, data, push, bias);
+  EXPECT_GT(expectedSeparation(longer, known, data, push, bias), one);
+  // a known change that both have moves both alike: the model is linear
+  known[1] = 3;
+  EXPECT_NEAR(expectedSeparation(planned, known, data, push, bias), one, 1e-6 * one);
+  EXPECT_THROW(expectedSeparation(planned, VectorXd::Zero(2), data, push, bias),
+               std::invalid_argument);
 }
 
 // As drawn(), but what is pushed cannot be simulated, or nothing can.

@@ -235,6 +235,7 @@ class Work {
     verdict_.probability = decision.probability;
     verdict_.vetoed = decision.vetoed;
     verdict_.surrogate = decision.surrogate;
+    collectRivals();
     // the parameter that is off, where no race was needed to see it
     if (decision.finding == Finding::parameter && decision.effects.empty())
       for (std::size_t c = 0; c < data_.candidates().size(); ++c)
@@ -269,6 +270,18 @@ class Work {
     if (decision.finding == Finding::unknown && options_.symbolic)
       verdict_.unknown = describeUnknown(search_->likelihood(), smoothing);
     verdict_.sentence = sentence();
+  }
+
+  void collectRivals() {
+    for (const NamedEffect& named : verdict_.effects)
+      for (const std::size_t rival : named.equals) {
+        if (rival == named.candidate) continue;
+        const auto known = search_->entries().find(with(without(chosen_, named.candidate), rival));
+        if (known != search_->entries().end() && known->second.works())
+          verdict_.rivals.push_back(known->second.fit);
+      }
+    if (!verdict_.rivals.empty())
+      verdict_.rivals.insert(verdict_.rivals.begin(), search_->at(chosen_).fit);
   }
 
   Fit refit(const Entry& entry, double size) const {

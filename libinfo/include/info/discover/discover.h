@@ -112,6 +112,9 @@ struct Verdict {
   Adequacy before, after;
   Localisation localisation;
   std::vector<Finalist> finalists;  ///< best first
+  /// Where names cannot be told apart: the fit with the effects, then one for each rival in place
+  /// of what it cannot be told from, where it was fitted.
+  std::vector<Fit> rivals;
   std::vector<Detectable> detectability;
   Gap gap;  ///< on the trials that were fitted
   std::optional<Gap> heldOut;
