@@ -144,7 +144,9 @@ ExcitationSignal drivenExcitation(const ExcitationSignal& trial,
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
     const double gain = gainOf(mapping, muscles[static_cast<std::size_t>(i)]);
     for (Eigen::Index k = 0; k < rows.cols(); ++k) {
-      rows(i, k) = std::clamp(gain * shaped(rows(i, k), mapping.nonlinearity).value, 0.0, 1.0);
+      const double z = rows(i, k);
+      const double level = mapping.nonlinearity == 0 ? z : shaped(z, mapping.nonlinearity).value;
+      rows(i, k) = std::clamp(gain * level, 0.0, 1.0);
     }
     if (mapping.fatigue == 0) continue;
     const Eigen::ArrayXd fresh = freshness(mapping, integral(timesOf(trial), rows.row(i)));

@@ -59,10 +59,16 @@ class PiecewiseCubic {
 
   /// The segment that holds x; a knot belongs to the segment on its right.
   const Segment& segmentAt(double x) const {
-    // Counting the knots below x has no branch to mispredict and vectorises.
-    std::ptrdiff_t count = 0;
-    for (const double knot : knots_) count += knot <= x ? 1 : 0;
-    return segments_[static_cast<std::size_t>(count)];
+    // Halving the knots that may be the last one below x, without a branch to mispredict.
+    const double* first = knots_.data();
+    std::size_t left = knots_.size();
+    while (left > 1) {
+      const std::size_t half = left / 2;
+      first += first[half - 1] <= x ? half : 0;
+      left -= half;
+    }
+    const auto before = static_cast<std::size_t>(first - knots_.data());
+    return segments_[before + (left == 1 && *first <= x ? 1 : 0)];
   }
 
  private:
