@@ -19,16 +19,16 @@ info::discover::Options engineOptions(int maxEffects, std::size_t training, std:
 }
 
 DiscoverSearch searchForEffects(const std::function<info::discover::Attempt(double step)>& attempt,
-                                double step, double shortest) {
+                                double step, double shortest, bool quiet) {
   const auto begin = std::chrono::steady_clock::now();
   std::optional<ProgressBar> bar;
   bool interrupted = false;
   const auto shown = [&](double at) {
     info::discover::Attempt one = attempt(at);
-    bar.emplace("discover");
+    if (!quiet) bar.emplace("discover");
     one.options.progress = [&](const info::discover::Progress& progress) {
       interrupted = interruptionRequested();
-      if (!interrupted) bar->update(progress.fraction);
+      if (!interrupted && bar) bar->update(progress.fraction);
       return !interrupted;
     };
     return one;
