@@ -1,9 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <fstream>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "support/run_program.h"
 #include "support/scratch_folder.h"
@@ -130,7 +132,7 @@ TEST(EnsembleCommand, GoesOnAfterAKillAndGivesTheSameBytes) {
   int kills = 0;
   ProgramResult last;
   for (int i = 0; i < 40; ++i) {
-    const std::string limit = std::to_string(0.04 + 0.02 * i);
+    const std::string limit = std::to_string(0.04 * std::pow(1.4, i));
     last = runEnsemble(cut, with(work, {"--threads", "1"}), {"timeout", "-s", "KILL", limit});
     if (last.status != 137) break;
     ++kills;
@@ -205,6 +207,86 @@ TEST(EnsembleCommand, SobolsIndicesSayWhichParameterMovesTheEnd) {
   EXPECT_EQ(lines.size(), 4u);
 }
 
+/// A folder of data sets "a", "b", …: half a second of a shipped trial each, shifted by rows.
+void writeSets(const ScratchFolder& scratch, int count) {
+  const auto lines = linesOf(contentOf(FISHERHILL_SOURCE_DIR "/emg_data/hidden_a/train_1.sto"));
+  const auto header =
+      static_cast<std::size_t>(std::find(lines.begin(), lines.end(), "endheader") - lines.begin());
+  for (int set = 0; set < count; ++set) {
+    std::string text = "cut\nversion=1\nnRows=51\nnColumns=10\ninDegrees=no\n";
+    for (std::size_t i = header; i < header + 2; ++i) text += lines[i] + "\n";
+    for (std::size_t i = 0; i < 51; ++i) {
+      text += lines[header + 2 + i + 30 * static_cast<std::size_t>(set)] + "\n";
+    }
+    const std::string folder = std::string("sets/") + static_cast<char>('a' + set);
+    std::filesystem::create_directories(scratch / folder);
+    scratch.file(folder + "/train_1.sto", text);
+  }
+  std::filesystem::create_directories(scratch / "sets/of_no_use");
+}
+
+const Words quick = {"--noise-deg", "5", "--max-effects", "1"};
+
+ProgramResult discoverSets(const ScratchFolder& scratch, const std::string& out, const Words& more,
+                           Words before = {}) {
+  Words words = std::move(before);
+  for (const std::string& word :
+       {std::string(FISHERHILL_PROGRAM), std::string("ensemble"), model, std::string("--discover"),
+        (scratch / "sets").string(), std::string("--out"), (scratch / out).string()}) {
+    words.push_back(word);
+  }
+  return support::runProgram(with(with(words, quick), more), FISHERHILL_SOURCE_DIR);
+}
+
+TEST(EnsembleCommand, AsksOfEveryDataSetWhatDiscoverAsksOfOne) {
+  const ScratchFolder scratch;
+  writeSets(scratch, 2);
+  const ProgramResult result = discoverSets(scratch, "out", {});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(linesOf(result.out).front().find("Of 2 data sets: "), 0u) << result.out;
+  const auto lines = linesOf(contentOf(scratch / "out/verdicts.csv"));
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(lines[0], "set,verdict,effects,probability,gap_closed_train,gap_closed_held_out");
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::string name(1, static_cast<char>('a' + i));
+    const ProgramResult alone = runFisherHill(
+        with({"discover", model, (scratch / ("sets/" + name + "/train_1.sto")).string(), "--out",
+              (scratch / ("alone_" + name)).string()},
+             quick));
+    ASSERT_EQ(alone.status, 0) << alone.err;
+    auto one = nlohmann::json::parse(contentOf(scratch / ("alone_" + name + "/verdict.json")));
+    auto many =
+        nlohmann::json::parse(contentOf(scratch / ("out/verdicts/" + name + "/verdict.json")));
+    one.erase("wall_s");
+    many.erase("wall_s");
+    EXPECT_EQ(one, many);
+    EXPECT_EQ(lines[i + 1].find(name + "," + one["verdict"].get<std::string>() + ","), 0u);
+  }
+  // nothing is asked twice
+  std::filesystem::remove_all(scratch / "out/verdicts");
+  EXPECT_THAT(discoverSets(scratch, "out", {}).err, HasSubstr("verdicts.csv exists already"));
+}
+
+TEST(EnsembleCommand, DiscoveryGoesOnAfterAKillAndLooksAtNoSetTwice) {
+  const ScratchFolder scratch;
+  writeSets(scratch, 3);
+  ASSERT_EQ(discoverSets(scratch, "whole", {}).status, 0);
+  ProgramResult last;
+  std::string before;
+  for (int i = 0; i < 60; ++i) {
+    last = discoverSets(scratch, "cut", {"--threads", "1"},
+                        {"timeout", "-s", "KILL", std::to_string(0.25 * std::pow(1.6, i))});
+    if (last.status != 137) break;
+    const std::string growing = contentOf(scratch / "cut/unfinished.csv");
+    EXPECT_TRUE(growing.starts_with(before));
+    before = growing;
+  }
+  ASSERT_EQ(last.status, 0) << last.err;
+  EXPECT_EQ(contentOf(scratch / "cut/verdicts.csv"), contentOf(scratch / "whole/verdicts.csv"));
+  const auto rows = linesOf(before).size();
+  EXPECT_EQ(summaryIn((scratch / "cut").string())["computed"], 3 - (rows < 2 ? 0 : rows - 2));
+}
+
 #ifdef FISHERHILL_MPIRUN
 
 Words ranks(int n) {
@@ -217,11 +299,22 @@ TEST(EnsembleCommand, SameBytesWhateverTheRanks) {
   ASSERT_EQ(runEnsemble(alone, four).status, 0);
   for (const int n : {1, 2, 4}) {
     const std::string out = (scratch / std::to_string(n)).string();
-    const ProgramResult result = runEnsemble(out, four, ranks(n));
+    const Words threads = {"--threads", n == 2 ? "2" : "1"};
+    const ProgramResult result = runEnsemble(out, with(four, threads), ranks(n));
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(summaryIn(out)["ranks"], n);
     EXPECT_EQ(resultsIn(out), resultsIn(alone));
   }
+}
+
+TEST(EnsembleCommand, RanksShareTheDataSets) {
+  const ScratchFolder scratch;
+  writeSets(scratch, 2);
+  ASSERT_EQ(discoverSets(scratch, "alone", {}).status, 0);
+  const ProgramResult result = discoverSets(scratch, "ranks", {}, ranks(2));
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(contentOf(scratch / "ranks/verdicts.csv"), contentOf(scratch / "alone/verdicts.csv"));
+  EXPECT_TRUE(std::filesystem::exists(scratch / "ranks/verdicts/b/verdict.json"));
 }
 
 TEST(EnsembleCommand, OnlyOneRankSaysWhatIsWrong) {
