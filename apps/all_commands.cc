@@ -5,6 +5,7 @@
 #include "design.h"
 #include "discover.h"
 #include "emg.h"
+#include "ensemble.h"
 #include "moment_arms.h"
 #include "render.h"
 #include "replay.h"
@@ -21,6 +22,7 @@ std::vector<std::unique_ptr<Command>> allCommands() {
   commands.push_back(designCommand());
   commands.push_back(discoverCommand());
   commands.push_back(emgCommand());
+  commands.push_back(ensembleCommand(threadCrew));
   commands.push_back(momentArmsCommand());
   commands.push_back(renderCommand(drawInOtherProgram));
   commands.push_back(replayCommand());

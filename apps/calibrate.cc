@@ -1,7 +1,6 @@
 #include "calibrate.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -12,45 +11,12 @@
 #include "driven_trial.h"
 #include "info/version.h"
 #include "input_rules.h"
+#include "named_pairs.h"
 #include "progress_bar.h"
 #include "result.h"
 
 namespace app {
 namespace {
-
-/// NAME=A:B
-struct NamedPair {
-  std::string name;
-  double first, second;
-};
-
-NamedPair parsePair(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  const std::size_t colon = text.find(':', equals == text.npos ? 0 : equals);
-  if (equals == text.npos || equals == 0 || colon == text.npos) {
-    throw std::invalid_argument(fmt::format("'{}' must be NAME=NUMBER:NUMBER", text));
-  }
-  return {text.substr(0, equals), parseNumber(text.substr(equals + 1, colon - equals - 1)),
-          parseNumber(text.substr(colon + 1))};
-}
-
-/// Names are kept as typed; the library knows what they mean.
-std::vector<NamedPair> parsePairs(const std::vector<std::string>& texts, const char* option) {
-  std::vector<NamedPair> pairs;
-  for (const std::string& text : texts) {
-    try {
-      pairs.push_back(parsePair(text));
-    } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument(fmt::format("{}: {}", option, error.what()));
-    }
-    for (std::size_t i = 0; i + 1 < pairs.size(); ++i) {
-      if (pairs[i].name == pairs.back().name) {
-        throw std::invalid_argument(fmt::format("{}: '{}' is given twice", option, pairs[i].name));
-      }
-    }
-  }
-  return pairs;
-}
 
 class Calibrate : public Command {
  public:

@@ -26,6 +26,7 @@ struct CommandContext {
   bool json = false;                         ///< the summary alone on standard output
   std::uint64_t seed = 1;                    ///< same seed, same bits
   int threads = 1;                           ///< ≥ 1
+  bool quiet = false;  ///< a part of another command: it says nothing but errors
 };
 
 /// Adds --out, --force, --json, --seed and --threads to a subcommand.

@@ -11,6 +11,17 @@ namespace app {
 
 using info::discover::Finding;
 
+namespace {
+
+/// Processor time of this thread.
+double threadSeconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+}  // namespace
+
 info::discover::Options engineOptions(int maxEffects, std::size_t training, std::size_t heldOut) {
   info::discover::Options options;
   options.maxEffects = maxEffects;
@@ -20,17 +31,17 @@ info::discover::Options engineOptions(int maxEffects, std::size_t training, std:
 }
 
 DiscoverSearch searchForEffects(const std::function<info::discover::Attempt(double step)>& attempt,
-                                double step, double shortest) {
+                                double step, double shortest, bool quiet) {
   const auto begin = std::chrono::steady_clock::now();
-  const std::clock_t used = std::clock();
+  const double used = threadSeconds();
   std::optional<ProgressBar> bar;
   bool interrupted = false;
   const auto shown = [&](double at) {
     info::discover::Attempt one = attempt(at);
-    if (!bar) bar.emplace("discover");
+    if (!quiet && !bar) bar.emplace("discover");
     one.options.progress = [&](const info::discover::Progress& progress) {
       interrupted = interruptionRequested();
-      if (!interrupted) bar->update(progress.fraction);
+      if (!interrupted && bar) bar->update(progress.fraction);
       return !interrupted;
     };
     return one;
@@ -40,7 +51,7 @@ DiscoverSearch searchForEffects(const std::function<info::discover::Attempt(doub
   search.interrupted = interrupted;
   search.wallSeconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  search.processorSeconds = static_cast<double>(std::clock() - used) / CLOCKS_PER_SEC;
+  search.processorSeconds = threadSeconds() - used;
   return search;
 }
 

@@ -14,13 +14,13 @@ info::discover::Options engineOptions(int maxEffects, std::size_t training, std:
 
 struct DiscoverSearch : info::discover::SteppedVerdict {
   double wallSeconds = 0;       ///< of all attempts
-  double processorSeconds = 0;  ///< the same, of all threads together
+  double processorSeconds = 0;  ///< the same, of the processor
   bool interrupted = false;
 };
 
-/// info::discover::runAtShorterSteps with a bar; Ctrl-C ends it with what is there.
+/// info::discover::runAtShorterSteps with a bar (not if quiet); Ctrl-C ends it with what is there.
 DiscoverSearch searchForEffects(const std::function<info::discover::Attempt(double step)>& attempt,
-                                double step, double shortest);
+                                double step, double shortest, bool quiet = false);
 
 /// Says what is lost where nothing judges the one trial.
 void warnOfOneTrial(Summary& summary, std::size_t training, std::size_t heldOut);

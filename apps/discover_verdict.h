@@ -44,7 +44,7 @@ struct DiscoverFindings {
   const std::string& nextExperiment;
   const std::vector<ForeseenExperiment>& foreseen;
   double wallSeconds;       ///< of the search
-  double processorSeconds;  ///< of the search, all threads together
+  double processorSeconds;  ///< of the search, which has one thread
 };
 
 /// The findings as figures of summary.json.

@@ -31,6 +31,7 @@ void deliver(const CommandContext& context, const Summary& summary, const Report
   folder.write("summary.json", [&](std::ostream& out) { out << jsonText(json, 2) << '\n'; });
   folder.commit();
 
+  if (context.quiet) return;
   if (context.json) {
     fmt::print("{}\n", jsonText(json, 2));
     return;

@@ -35,6 +35,18 @@ double SimulationOptions::stepOrDefault() const {
   return step.value_or(bio::defaultStep(bio::integratorNamed(integrator).value()));
 }
 
+nlohmann::ordered_json settingsOf(const SimulationOptions& options) {
+  const auto listed = [](const std::vector<Assignment>& assignments) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::object();
+    for (const Assignment& one : assignments) list[one.name] = one.value;
+    return list;
+  };
+  return {{"integrator", options.integrator},   {"step_s", options.stepOrDefault()},
+          {"coordinates", options.coordinates}, {"locked", listed(options.locks)},
+          {"initial", listed(options.initial)}, {"wrap_as_cylinder", options.wrapAsCylinder},
+          {"ignore_extra", options.ignoreExtra}};
+}
+
 void addModelOptions(CLI::App& subcommand, SimulationOptions& options) {
   subcommand
       .add_option("--coordinate", options.coordinates,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,9 @@ struct SimulationOptions {
 };
 
 void addSimulationOptions(CLI::App& subcommand, SimulationOptions& options);
+
+/// All of them as one object, to compare with another run's.
+nlohmann::ordered_json settingsOf(const SimulationOptions& options);
 
 /// Only the options that choose a model's free coordinates: --coordinate, --lock and
 /// --wrap-as-cylinder.

@@ -40,6 +40,7 @@ void Summary::setSimulation(const std::string& integrator, double step, double d
 
 void Summary::warn(const std::string& sentence) {
   warnings_.push_back(oneLine(sentence));
+  if (context_.quiet) return;
   fmt::print(stderr, "fisherhill {}: warning: {}\n", context_.subcommand, warnings_.back());
 }
 

@@ -8,7 +8,21 @@
 
 namespace bio {
 
-Arm::Arm(const Model& model, const ArmOptions& options)
+Arm::Arm(const Model& model, const ArmOptions& options) : Arm(model, options, nullptr, {}) {}
+
+Arm::Arm(const Model& model, const ArmOptions& options, const Arm& like,
+         const std::vector<std::string>& shaped)
+    : Arm(model, options, &like, shaped) {}
+
+const MusclePath* Arm::pathOf(const std::string& muscle) const {
+  for (const ArmMuscle& one : muscles_) {
+    if (one.name == muscle) return &one.path;
+  }
+  return nullptr;
+}
+
+Arm::Arm(const Model& model, const ArmOptions& options, const Arm* like,
+         const std::vector<std::string>& shaped)
     : skeleton_(model, options.skeleton), coordinateForces_(model, skeleton_) {
   const std::vector<Posture> postures = samplePostures(skeleton_);
   for (const Muscle& muscle : model.muscles) {
@@ -17,8 +31,15 @@ Arm::Arm(const Model& model, const ArmOptions& options)
       continue;
     }
     std::optional<MusclePath> compiled;
+    const bool isShaped = std::find(shaped.begin(), shaped.end(), muscle.name) != shaped.end();
+    const MusclePath* ready = like && !isShaped ? like->pathOf(muscle.name) : nullptr;
+    if (like && !isShaped && !ready) continue;  // left out there, for a reason that still holds
     try {
-      compiled.emplace(model, skeleton_, muscle, options.wrapAsCylinder, postures);
+      if (ready) {
+        compiled = *ready;
+      } else {
+        compiled.emplace(model, skeleton_, muscle, options.wrapAsCylinder, postures);
+      }
     } catch (const UnsupportedWrap& e) {
       warnings_.push_back(fmt::format("{}: the muscle is left out", e.what()));
       continue;

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "info/monte_carlo.h"
+#include "info/quantile.h"
 
 namespace info {
 namespace {
@@ -18,15 +19,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// Linear between the order statistics.
-double quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  const double place = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, values.size() - 1);
-  return std::lerp(values[below], values[above], place - static_cast<double>(below));
-}
 
 /// Noise like the residuals, series by series in blocks.
 MatrixXd drawBlocks(const MatrixXd& residuals, const std::vector<Index>& series, Index blockLength,
@@ -118,8 +110,8 @@ BootstrapResult bootstrap(const LeastSquares& problem, const Estimate& estimated
     result.deviation[j] = std::sqrt((row.array() - row.mean()).square().sum() /
                                     static_cast<double>(result.converged - 1));
     const std::vector<double> values(row.begin(), row.end());
-    result.intervals(j, 0) = quantile(values, tail);
-    result.intervals(j, 1) = quantile(values, 1 - tail);
+    result.intervals(j, 0) = quantileOf(values, tail);
+    result.intervals(j, 1) = quantileOf(values, 1 - tail);
   }
   return result;
 }

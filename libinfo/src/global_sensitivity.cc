@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "info/monte_carlo.h"
+#include "info/quantile.h"
 #include "info/random_stream.h"
 
 namespace info {
@@ -32,17 +33,6 @@ const std::vector<int>& primes() {
     return found;
   }();
   return list;
-}
-
-void check(int parameters, const EnsembleOptions& options) {
-  if (parameters < 1 || 2 * parameters > maxDimension) {
-    throw std::invalid_argument(fmt::format("global sensitivity: {} parameters, must be 1 to {}",
-                                            parameters, maxDimension / 2));
-  }
-  if (options.samples < 2) {
-    throw std::invalid_argument(
-        fmt::format("global sensitivity: {} samples, must be ≥ 2", options.samples));
-  }
 }
 
 /// All points through the model, in parallel; an empty vector where it is undefined.
@@ -73,17 +63,104 @@ Runs runAll(const CubeModel& model, const std::vector<VectorXd>& points,
   return runs;
 }
 
-/// Mean and its standard error.
+/// Mean and its standard error; every value counts as often as its weight says.
 struct Mean {
   double value = 0, error = 0;
 };
+Mean meanOf(const std::vector<double>& x, const std::vector<double>& weights) {
+  const double n = std::accumulate(weights.begin(), weights.end(), 0.0);
+  if (!(n > 0)) return {std::nan(""), std::nan("")};
+  double mean = 0, squares = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) mean += weights[i] * x[i];
+  mean /= n;
+  for (std::size_t i = 0; i < x.size(); ++i) squares += weights[i] * (x[i] - mean) * (x[i] - mean);
+  return {mean, n > 1 ? std::sqrt(squares / (n - 1) / n) : std::nan("")};
+}
 Mean meanOf(const std::vector<double>& x) {
-  if (x.empty()) return {std::nan(""), std::nan("")};
-  const auto n = static_cast<double>(x.size());
-  const double mean = std::accumulate(x.begin(), x.end(), 0.0) / n;
-  double squares = 0;
-  for (const double value : x) squares += (value - mean) * (value - mean);
-  return {mean, x.size() > 1 ? std::sqrt(squares / (n - 1) / n) : std::nan("")};
+  return meanOf(x, std::vector<double>(x.size(), 1.0));
+}
+
+/// Indices of base points that count as often as their weights say.
+SobolResult weightedIndices(const std::vector<VectorXd>& outputs, Index p,
+                            const std::vector<double>& weights) {
+  const auto stride = static_cast<std::size_t>(p + 2);
+  const std::size_t n = weights.size();
+  SobolResult result;
+  result.first.setConstant(p, std::nan(""));
+  result.total = result.firstDeviation = result.totalDeviation = result.first;
+  result.runs = static_cast<int>(outputs.size());
+  for (const VectorXd& y : outputs) result.undefined += y.size() == 0 ? 1 : 0;
+
+  // mean and variance over A and B; the mean is taken off, which steadies the estimate of S
+  VectorXd mean;
+  double count = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      const VectorXd& y = outputs[k * stride + side];
+      if (y.size() == 0 || weights[k] == 0) continue;
+      if (mean.size() == 0) mean = VectorXd::Zero(y.size());
+      mean += weights[k] * y;
+      count += weights[k];
+    }
+  }
+  if (count < 2) return result;
+  mean /= count;
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      const VectorXd& y = outputs[k * stride + side];
+      if (y.size() == 0 || weights[k] == 0) continue;
+      result.variance += weights[k] * (y - mean).squaredNorm() / (count - 1);
+    }
+  }
+  if (!(result.variance > 0)) return result;
+  std::vector<double> first, total, used;
+  for (Index i = 0; i < p; ++i) {
+    first.clear();
+    total.clear();
+    used.clear();
+    for (std::size_t k = 0; k < n; ++k) {
+      const VectorXd& A = outputs[k * stride];
+      const VectorXd& B = outputs[k * stride + 1];
+      const VectorXd& mixed = outputs[k * stride + 2 + static_cast<std::size_t>(i)];
+      if (A.size() == 0 || B.size() == 0 || mixed.size() == 0 || weights[k] == 0) continue;
+      first.push_back((B - mean).dot(mixed - A) / result.variance);
+      total.push_back((A - mixed).squaredNorm() / (2 * result.variance));
+      used.push_back(weights[k]);
+    }
+    const Mean S = meanOf(first, used), T = meanOf(total, used);
+    result.first[i] = S.value;
+    result.firstDeviation[i] = S.error;
+    result.total[i] = T.value;
+    result.totalDeviation[i] = T.error;
+  }
+  return result;
+}
+
+void checkParameters(int parameters) {
+  if (parameters < 1 || 2 * parameters > maxDimension) {
+    throw std::invalid_argument(fmt::format("global sensitivity: {} parameters, must be 1 to {}",
+                                            parameters, maxDimension / 2));
+  }
+}
+
+/// How many base points these outputs are of.
+std::size_t basePoints(const std::vector<VectorXd>& outputs, int parameters) {
+  checkParameters(parameters);
+  const auto stride = static_cast<std::size_t>(parameters) + 2;
+  if (outputs.size() % stride != 0 || outputs.size() < 2 * stride) {
+    throw std::invalid_argument(
+        fmt::format("Sobol's indices: {} outputs, must be {} for each of at least 2 base points",
+                    outputs.size(), stride));
+  }
+  return outputs.size() / stride;
+}
+
+void check(int parameters, const EnsembleOptions& options) {
+  checkParameters(parameters);
+  if (options.samples < 2) {
+    throw std::invalid_argument(
+        fmt::format("global sensitivity: {} samples, must be ≥ 2", options.samples));
+  }
 }
 
 }  // namespace
@@ -176,70 +253,68 @@ MorrisResult morris(const CubeModel& model, int parameters, const EnsembleOption
   return result;
 }
 
+VectorXd sobolPoint(std::uint64_t index, int parameters, std::uint64_t seed) {
+  checkParameters(parameters);
+  const std::uint64_t stride = static_cast<std::uint64_t>(parameters) + 2;
+  const VectorXd both = haltonPoint(index / stride, 2 * parameters, seed);
+  const std::uint64_t run = index % stride;
+  if (run == 1) return both.tail(parameters);
+  VectorXd point = both.head(parameters);
+  if (run >= 2) {
+    const auto i = static_cast<Index>(run - 2);
+    point[i] = both[parameters + i];
+  }
+  return point;
+}
+
 SobolResult sobol(const CubeModel& model, int parameters, const EnsembleOptions& options) {
   check(parameters, options);
-  const Index p = parameters;
-  const auto n = static_cast<std::size_t>(options.samples);
-  const auto stride = static_cast<std::size_t>(p + 2);
-  std::vector<VectorXd> points;
-  points.reserve(n * stride);
-  for (std::size_t k = 0; k < n; ++k) {
-    const VectorXd both = haltonPoint(k, 2 * parameters, options.seed);
-    const VectorXd A = both.head(p), B = both.tail(p);
-    points.push_back(A);
-    points.push_back(B);
-    for (Index i = 0; i < p; ++i) {
-      VectorXd mixed = A;
-      mixed[i] = B[i];
-      points.push_back(std::move(mixed));
-    }
-  }
+  const std::size_t count =
+      static_cast<std::size_t>(options.samples) * (static_cast<std::size_t>(parameters) + 2);
+  std::vector<VectorXd> points(count);
+  for (std::size_t i = 0; i < count; ++i) points[i] = sobolPoint(i, parameters, options.seed);
   const Runs runs = runAll(model, points, options);
-  SobolResult result;
-  result.first.setConstant(p, std::nan(""));
-  result.total = result.firstDeviation = result.totalDeviation = result.first;
-  result.runs = static_cast<int>(points.size());
-  result.undefined = runs.undefined;
+  SobolResult result = sobolIndices(runs.outputs, parameters);
   result.complete = runs.complete;
-
-  // mean and variance over A and B; the mean is taken off, which steadies the estimate of S
-  VectorXd mean;
-  double count = 0;
-  for (std::size_t k = 0; k < n; ++k) {
-    for (std::size_t side = 0; side < 2; ++side) {
-      const VectorXd& y = runs.outputs[k * stride + side];
-      if (y.size() == 0) continue;
-      if (mean.size() == 0) mean = VectorXd::Zero(y.size());
-      mean += y;
-      ++count;
-    }
-  }
-  if (count < 2) return result;
-  mean /= count;
-  for (std::size_t k = 0; k < n; ++k) {
-    for (std::size_t side = 0; side < 2; ++side) {
-      const VectorXd& y = runs.outputs[k * stride + side];
-      if (y.size() != 0) result.variance += (y - mean).squaredNorm() / (count - 1);
-    }
-  }
-  if (!(result.variance > 0)) return result;
-  for (Index i = 0; i < p; ++i) {
-    std::vector<double> first, total;
-    for (std::size_t k = 0; k < n; ++k) {
-      const VectorXd& A = runs.outputs[k * stride];
-      const VectorXd& B = runs.outputs[k * stride + 1];
-      const VectorXd& mixed = runs.outputs[k * stride + 2 + static_cast<std::size_t>(i)];
-      if (A.size() == 0 || B.size() == 0 || mixed.size() == 0) continue;
-      first.push_back((B - mean).dot(mixed - A) / result.variance);
-      total.push_back((A - mixed).squaredNorm() / (2 * result.variance));
-    }
-    const Mean S = meanOf(first), T = meanOf(total);
-    result.first[i] = S.value;
-    result.firstDeviation[i] = S.error;
-    result.total[i] = T.value;
-    result.totalDeviation[i] = T.error;
-  }
   return result;
+}
+
+SobolResult sobolIndices(const std::vector<VectorXd>& outputs, int parameters) {
+  const std::size_t n = basePoints(outputs, parameters);
+  return weightedIndices(outputs, parameters, std::vector<double>(n, 1.0));
+}
+
+SobolIntervals bootstrapSobol(const std::vector<VectorXd>& outputs, int parameters, int replicates,
+                              std::uint64_t seed, double confidence) {
+  const std::size_t n = basePoints(outputs, parameters);
+  if (replicates < 20) {
+    throw std::invalid_argument(fmt::format("bootstrap: replicates = {} must be ≥ 20", replicates));
+  }
+  if (!(confidence > 0 && confidence < 1)) {
+    throw std::invalid_argument(
+        fmt::format("bootstrap: confidence = {} must be in (0, 1)", confidence));
+  }
+  const Index p = parameters;
+  Eigen::MatrixXd first(replicates, p), total(replicates, p);
+  for (Index r = 0; r < replicates; ++r) {
+    RandomStream random(seed, static_cast<std::uint64_t>(r));
+    std::vector<double> weights(n, 0.0);
+    for (std::size_t k = 0; k < n; ++k) weights[random.bits() % n] += 1;
+    const SobolResult again = weightedIndices(outputs, p, weights);
+    first.row(r) = again.first;
+    total.row(r) = again.total;
+  }
+  SobolIntervals intervals{Eigen::MatrixX2d(p, 2), Eigen::MatrixX2d(p, 2)};
+  const double tail = 0.5 * (1 - confidence);
+  for (Index i = 0; i < p; ++i) {
+    const std::vector<double> S(first.col(i).begin(), first.col(i).end());
+    const std::vector<double> T(total.col(i).begin(), total.col(i).end());
+    for (Index side = 0; side < 2; ++side) {
+      intervals.first(i, side) = quantileOf(S, side == 0 ? tail : 1 - tail);
+      intervals.total(i, side) = quantileOf(T, side == 0 ? tail : 1 - tail);
+    }
+  }
+  return intervals;
 }
 
 }  // namespace info

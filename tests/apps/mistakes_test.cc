@@ -128,6 +128,52 @@ INSTANTIATE_TEST_SUITE_P(
          "is not a folder"}}),
     nameOf);
 
+/// `fisherhill ensemble` on the shipped trial, with what comes behind.
+std::vector<std::string> ensembleWith(std::vector<std::string> more) {
+  std::vector<std::string> all = {"ensemble", model, slow, "--out", "$/out"};
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Ensemble, EveryMistake,
+    testing::ValuesIn(std::vector<Mistake>{
+        {"NoTrial", {"ensemble", model, "--out", "$/out"}, "TRIAL is required"},
+        {"NoDraws", ensembleWith({"--draws", "0"}), "--draws"},
+        {"UnknownParameter", ensembleWith({"--parameters", "TRI.radios"}),
+         "no parameter is called 'TRI.radios'; nearest: TRI.radius"},
+        {"UnknownDistribution", ensembleWith({"--distribution", "cauchy"}), "cauchy"},
+        {"NoSpread", ensembleWith({"--spread", "0"}), "--spread"},
+        {"PriorOfAnother",
+         ensembleWith({"--parameters", "hand.mass", "--prior", "ulna.mass=1:0.1"}),
+         "--prior: ulna.mass is not one of the --parameters"},
+        {"PriorZero", ensembleWith({"--parameters", "hand.mass", "--prior", "hand.mass=0.5:0"}),
+         "hand.mass [kg]: deviation = 0 must be > 0"},
+        {"BoundsExclude", ensembleWith({"--parameters", "hand.mass", "--bounds", "hand.mass=2:3"}),
+         "must lie within 2 and 3"},
+        {"SobolOfAll", ensembleWith({"--sobol"}), "--sobol: 285 parameters, at most 32"},
+        {"SobolOfOnePoint", ensembleWith({"--sobol", "--draws", "1", "--parameters", "hand.mass"}),
+         "--draws must be at least 2"},
+        {"NothingMeasured",
+         {"ensemble", model, "$/good.csv", "--sobol", "--output", "rms_error", "--parameters",
+          "hand.mass", "--out", "$/out"},
+         "$/good.csv has no measured elbow_flexion"},
+        {"UnknownOutput", ensembleWith({"--output", "speed"}), "--output"},
+        {"TrialAndSets", ensembleWith({"--discover", "$"}), "there is no TRIAL"},
+        {"NoSets",
+         {"ensemble", model, "--discover", "$", "--out", "$/out"},
+         "no subfolder has files called train_*.sto"},
+        {"SetsWithoutOut", {"ensemble", model, "--discover", "$"}, "--out is missing"},
+        {"DrawsOfSets",
+         {"ensemble", model, "--discover", "$", "--draws", "9", "--out", "$/out"},
+         "--draws does not go with --discover"},
+        {"NoiseOfDraws", ensembleWith({"--noise-deg", "1"}), "--noise-deg goes with --discover"},
+        {"BadTrial", {"ensemble", model, "$/nan.csv", "--out", "$/out"}, "$/nan.csv"},
+        {"NotAModel", {"ensemble", "$/text.osim", slow}, "$/text.osim"},
+        {"OutIsAFile", {"ensemble", model, slow, "--out", "$/good.csv"}, "is not a folder"},
+    }),
+    nameOf);
+
 INSTANTIATE_TEST_SUITE_P(
     Sensitivity, EveryMistake,
     testing::ValuesIn(std::vector<Mistake>{

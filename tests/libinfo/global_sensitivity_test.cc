@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/throws_saying.h"
+
 namespace info {
 namespace {
 
@@ -33,6 +35,62 @@ TEST(GlobalSensitivity, SobolIndicesOfIshigamisFunction) {
   EXPECT_LT((r.total - total).cwiseAbs().maxCoeff(), 0.03) << r.total.transpose();
   EXPECT_EQ(r.runs, 4096 * 5);
   EXPECT_GT(r.firstDeviation.minCoeff(), 0);
+}
+
+/// All runs of Saltelli's scheme on Ishigami's function.
+std::vector<VectorXd> ishigamiRuns(int basePoints, std::uint64_t seed) {
+  std::vector<VectorXd> outputs;
+  for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(basePoints) * 5; ++i) {
+    outputs.push_back(ishigami(sobolPoint(i, 3, seed)));
+  }
+  return outputs;
+}
+
+TEST(GlobalSensitivity, OutputsComputedElsewhereGiveTheSameIndices) {
+  EnsembleOptions options;
+  options.samples = 200;
+  options.seed = 7;
+  const SobolResult inside = sobol(ishigami, 3, options);
+  const SobolResult outside = sobolIndices(ishigamiRuns(200, 7), 3);
+  EXPECT_EQ(inside.first, outside.first);
+  EXPECT_EQ(inside.totalDeviation, outside.totalDeviation);
+  // run 2 + i differs from run 0 in coordinate i alone, which is run 1's
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    VectorXd mixed = sobolPoint(50, 3, 7);
+    mixed[i] = sobolPoint(51, 3, 7)[i];
+    EXPECT_EQ(sobolPoint(52 + static_cast<std::uint64_t>(i), 3, 7), mixed);
+  }
+}
+
+TEST(GlobalSensitivity, BootstrapIntervalsHoldTheTrueIndicesOfIshigamisFunction) {
+  const double V1 = 0.5 * std::pow(1 + 0.1 * std::pow(pi, 4) / 5, 2), V2 = 49.0 / 8;
+  const double V13 = 0.01 * std::pow(pi, 8) * (1.0 / 18 - 1.0 / 50), V = V1 + V2 + V13;
+  const Eigen::Vector3d first(V1 / V, V2 / V, 0), total((V1 + V13) / V, V2 / V, V13 / V);
+  int held = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const auto runs = ishigamiRuns(256, seed);
+    const SobolIntervals at = bootstrapSobol(runs, 3, 200, seed);
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      held += at.first(i, 0) <= first[i] && first[i] <= at.first(i, 1);
+      held += at.total(i, 0) <= total[i] && total[i] <= at.total(i, 1);
+    }
+    // 2·1.96 standard errors, and more where the variance itself is uncertain: 2.9 to 6.5 here
+    const SobolResult r = sobolIndices(runs, 3);
+    const Eigen::ArrayXd wide =
+        (at.total.col(1) - at.total.col(0)).array() / r.totalDeviation.array();
+    EXPECT_GT(wide.minCoeff(), 2) << wide.transpose();
+    EXPECT_LT(wide.maxCoeff(), 9) << wide.transpose();
+  }
+  EXPECT_GE(held, 54);  // of 60: 95 % would be 57
+}
+
+TEST(GlobalSensitivity, OutputsThatAreNoWholeSchemeAreRefused) {
+  auto runs = ishigamiRuns(4, 1);
+  runs.pop_back();
+  support::throwsSaying([&] { (void)sobolIndices(runs, 3); }, "19 outputs, must be 5 for each");
+  support::throwsSaying([&] { (void)bootstrapSobol(ishigamiRuns(4, 1), 3, 19, 1); },
+                        "replicates = 19");
+  support::throwsSaying([&] { (void)sobolPoint(0, 33, 1); }, "33 parameters, must be 1 to 32");
 }
 
 TEST(GlobalSensitivity, SobolIndicesOfASumAreItsVariances) {

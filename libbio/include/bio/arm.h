@@ -37,6 +37,13 @@ class Arm {
   ///   parameters, a moving muscle of a class other than Schutte's
   Arm(const Model& model, const ArmOptions& options);
 
+  /// The same, quicker, for a model that differs from another arm's in numbers alone: paths are
+  /// taken from that arm, but for those of the muscles named. Its remarks are not repeated.
+  /// @param like    made with the same options
+  /// @param shaped  muscles one of whose path points or wrap objects differs
+  Arm(const Model& model, const ArmOptions& options, const Arm& like,
+      const std::vector<std::string>& shaped);
+
   const Skeleton& skeleton() const { return skeleton_; }
   const CoordinateForces& coordinateForces() const { return coordinateForces_; }
   const std::vector<ArmMuscle>& muscles() const { return muscles_; }
@@ -52,6 +59,11 @@ class Arm {
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
+  Arm(const Model& model, const ArmOptions& options, const Arm* like,
+      const std::vector<std::string>& shaped);
+  /// The path that may be taken as it is; null: compile it.
+  const MusclePath* pathOf(const std::string& muscle) const;
+
   Skeleton skeleton_;
   CoordinateForces coordinateForces_;
   std::vector<std::unique_ptr<const SchutteCurves>> curves_;

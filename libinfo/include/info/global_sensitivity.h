@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 namespace info {
 
@@ -49,6 +50,29 @@ struct SobolResult {
 };
 /// @throws std::invalid_argument as morris
 SobolResult sobol(const CubeModel& model, int parameters, const EnsembleOptions& options = {});
+
+/// Run `index` of those that sobol() makes, a function of its arguments alone: base point
+/// k = index/(p + 2), of which run 0 is A_k, run 1 is B_k, and run 2 + i is A_k with coordinate i
+/// of B_k. A_k and B_k are the halves of point k of Halton's sequence in 2p dimensions.
+/// @throws std::invalid_argument for a number of parameters that is not 1 to 32
+Eigen::VectorXd sobolPoint(std::uint64_t index, int parameters, std::uint64_t seed);
+
+/// The indices from outputs that somebody else has computed at the points 0 … n·(p + 2) − 1.
+/// @param outputs  empty where the model is undefined
+/// @throws std::invalid_argument as morris, or if the outputs are not n·(p + 2)
+SobolResult sobolIndices(const std::vector<Eigen::VectorXd>& outputs, int parameters);
+
+/// How far chance in the choice of base points may have moved the indices.
+struct SobolIntervals {
+  Eigen::MatrixX2d first, total;  ///< from quantile to quantile
+};
+/// Percentile bootstrap: base points are drawn anew with replacement, all runs of a point together.
+/// Halton's points fill the cube more evenly than chance, so the intervals are rather too wide.
+/// @param replicates ≥ 20
+/// @param confidence in (0, 1)
+/// @throws std::invalid_argument for options out of range, and as sobolIndices
+SobolIntervals bootstrapSobol(const std::vector<Eigen::VectorXd>& outputs, int parameters,
+                              int replicates, std::uint64_t seed, double confidence = 0.95);
 
 /// Point `index` of Halton's sequence with digits permuted at random for each prime base (the
 /// permutation depends on seed and base alone): fills the unit cube more evenly than chance.

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command_context.h"
+#include "simulation_options.h"
+
+namespace app {
+
+/// What is asked about an arm: which effect does its model lack?
+struct ArmDiscoveryRequest {
+  std::string model;                 ///< file
+  std::vector<std::string> trials;   ///< files, with a measured coordinate
+  std::vector<std::string> heldOut;  ///< files of trials to judge by only
+  std::vector<std::string> without;  ///< ids of effects to leave out of the catalogue
+  std::optional<double> noise;       ///< standard deviation of what was measured [deg] or [m]
+  int maxEffects = 3;                ///< that may act together
+  SimulationOptions simulation;
+};
+
+struct ArmDiscovery {
+  ExitStatus status;
+  nlohmann::ordered_json verdict;  ///< verdict.json
+};
+
+/// Searches, writes verdict.json, the model with the effect and a report, and delivers them.
+/// @throws std::exception for bad input, Interrupted after Ctrl-C
+ArmDiscovery discoverInArm(const ArmDiscoveryRequest& request, const CommandContext& context);
+
+}  // namespace app

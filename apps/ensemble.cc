@@ -1,0 +1,365 @@
+#include "ensemble.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "arm_input.h"
+#include "arm_options.h"
+#include "ensemble_discovery.h"
+#include "ensemble_draws.h"
+#include "ensemble_report.h"
+#include "info/random_stream.h"
+#include "info/version.h"
+#include "input_rules.h"
+#include "missing_rows.h"
+#include "named_pairs.h"
+#include "result.h"
+#include "sensitivity_report.h"
+
+namespace app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Everything that the rows are a function of, beside their numbers.
+struct EnsembleStudy {
+  TrialInput input;
+  bio::ParameterCatalogue catalogue;
+  std::vector<DrawnParameter> parameters;
+  std::unique_ptr<bio::ArmEnsemble> ensemble;
+  std::unique_ptr<DrawTable> table;
+  bio::Coordinate coordinate;
+  std::optional<bio::MeasuredMotion> measured;
+};
+
+class Ensemble : public Command {
+ public:
+  explicit Ensemble(std::function<std::unique_ptr<Crew>()> gather) : gather_(std::move(gather)) {}
+
+  About about() const override {
+    return {"ensemble", "Simulate a trial with many draws of the parameters",
+            "fisherhill ensemble models/elbow8.osim emg_data/curl_slow.sto --draws 1000 "
+            "--parameters TRI.radius,hand.mass --out out/ensemble"};
+  }
+
+  void addOptions(CLI::App& options) override {
+    app_ = &options;
+    addModelArgument(options, model_);
+    options.add_option("TRIAL", trial_, "excitations, and the measured coordinate if there is one")
+        ->check(CLI::ExistingFile)
+        ->type_name("");
+    const std::string group = "Ensemble";
+    const auto list = [&](const char* name, std::vector<std::string>& target, const char* text) {
+      return options.add_option(name, target, text)
+          ->allow_extra_args(false)
+          ->delimiter(',')
+          ->group(group);
+    };
+    options
+        .add_option("--draws", draws_, "how many simulations; with --sobol: how many base points")
+        ->check(CLI::Range(1, 10000000))
+        ->capture_default_str()
+        ->type_name("N")
+        ->group(group);
+    list("--parameters", names_,
+         "what is drawn, by name; a name may hold *. Default: every parameter")
+        ->type_name("NAMES");
+    options
+        .add_option("--distribution", distribution_,
+                    "normal, or uniform over √3 standard deviations; both within the bounds")
+        ->check(CLI::IsMember({"normal", "uniform"}))
+        ->capture_default_str()
+        ->group(group);
+    options.add_option("--spread", spread_, "factor on every standard deviation")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str()
+        ->type_name("FACTOR")
+        ->group(group);
+    list("--prior", priors_,
+         "law of a parameter instead of the default, in its unit; may be repeated")
+        ->type_name("NAME=MEAN:SD");
+    list("--bounds", bounds_, "bounds instead of the default; may be repeated")
+        ->type_name("NAME=LOW:HIGH");
+    options.add_option("--band-points", bandPoints_, "times at which the band of motions is told")
+        ->check(CLI::Range(2, 1000))
+        ->capture_default_str()
+        ->type_name("N")
+        ->group(group);
+    options.add_flag("--sobol", sobol_, "which part of the output's variance each parameter makes")
+        ->group(group);
+    options.add_option("--output", output_, "whose variance --sobol takes apart")
+        ->check(CLI::IsMember(DrawTable::outputNames()))
+        ->capture_default_str()
+        ->group(group);
+    const std::string sets = "Discovery over many data sets";
+    options
+        .add_option("--discover", discover_,
+                    "in place of TRIAL: what does the model lack? Asked of every subfolder with "
+                    "train_*.sto and held_out.sto; needs --out")
+        ->check(CLI::ExistingDirectory)
+        ->type_name("DIR")
+        ->group(sets);
+    options
+        .add_option("--noise-deg", noise_,
+                    "with --discover: standard deviation of the measured angle; default: from the "
+                    "data themselves")
+        ->check(CLI::PositiveNumber)
+        ->type_name("DEG")
+        ->group(sets);
+    options
+        .add_option("--max-effects", maxEffects_, "with --discover: effects that may act together")
+        ->check(CLI::Range(1, 3))
+        ->capture_default_str()
+        ->type_name("N")
+        ->group(sets);
+    addSimulationOptions(options, simulation_);
+  }
+
+  ExitStatus run(const CommandContext& given) override {
+    const std::unique_ptr<Crew> crew = gather_();
+    CommandContext context = given;
+    context.quiet = !crew->leads();
+    const int threads = app_->get_option("--threads")->count() > 0 ? context.threads
+                                                                   : crew->defaultThreads(context);
+    if (crew->leads()) checkChoice(context);
+    if (!crew->leads() && !crew->start()) return ExitStatus::done;
+    if (!discover_.empty()) {
+      return discoverInSets({model_, {}, {}, {}, noise_, maxEffects_, simulation_}, discover_,
+                            context, *crew, threads);
+    }
+    if (!crew->leads()) {
+      Summary summary(context);
+      const auto study = prepare(summary);
+      crew->work({{}, rowOf(*study, context.seed), {}}, threads);
+      return ExitStatus::done;
+    }
+    std::vector<std::string> files = {"draws.csv", "band.csv"};
+    if (sobol_) files.push_back("sobol.csv");
+    OutputFolder folder(context, files);
+    Summary summary(context);
+    const auto made = prepare(summary);
+    const EnsembleStudy& study = *made;
+    resultsMustNotBeInputs(summary, folder, files);
+    RowFile file(folder.path("unfinished.csv"), settings(study, summary, context.seed),
+                 study.table->columns(), context.force);
+    const auto begin = std::chrono::steady_clock::now();
+    const std::size_t computed = computeMissing(*crew, threads, file, total(study),
+                                                rowOf(study, context.seed), context, "simulations");
+    const double wall =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+
+    const EnsembleFindings findings = findingsOf(study, file, context.seed);
+    folder.write("draws.csv", [&](std::ostream& out) { writeDraws(findings, out); });
+    folder.write("band.csv", [&](std::ostream& out) { writeBand(findings, out); });
+    if (findings.sobol) {
+      folder.write("sobol.csv", [&](std::ostream& out) { writeSobol(findings, out); });
+    }
+    summary.setSimulation(simulation_.integrator, simulation_.stepOrDefault(), study.input.duration,
+                          wall);
+    summary.set("computed", computed);
+    summary.set("ranks", crew->ranks());
+    tellEnsemble(findings, summary);
+    deliver(context, summary, ensembleReport(findings), folder);
+    file.remove();
+    return ExitStatus::done;
+  }
+
+ private:
+  void checkChoice(const CommandContext& context) const {
+    if (discover_.empty()) {
+      if (trial_.empty()) throw std::invalid_argument("TRIAL is required (see --help)");
+      for (const char* option : {"--noise-deg", "--max-effects"}) {
+        if (app_->get_option(option)->count() == 0) continue;
+        throw std::invalid_argument(fmt::format("{} goes with --discover", option));
+      }
+      return;
+    }
+    if (!trial_.empty()) throw std::invalid_argument("with --discover there is no TRIAL");
+    for (const CLI::Option* option : app_->get_options()) {
+      if (option->get_group() != "Ensemble" || option->count() == 0) continue;
+      throw std::invalid_argument(
+          fmt::format("{} does not go with --discover", option->get_name()));
+    }
+    if (!context.out) throw std::invalid_argument("--discover: --out is missing");
+  }
+
+  /// By pointer, since the ensemble points into it.
+  std::unique_ptr<const EnsembleStudy> prepare(Summary& summary) const {
+    if (simulation_.coordinates.empty()) throw std::invalid_argument("--coordinate: none given");
+    const bio::Model model = readModel(model_, summary);
+    const bio::Arm arm = movableArm(model, model_, simulation_, summary);
+    TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
+    bio::ParameterCatalogue catalogue(model, arm, {input.start.q, {}});
+    auto made = std::make_unique<EnsembleStudy>(
+        EnsembleStudy{std::move(input), std::move(catalogue), {}, {}, {}, {}, {}});
+    EnsembleStudy& study = *made;
+    study.coordinate = arm.skeleton().coordinates().front();
+    for (const bio::MeasuredMotion& motion : study.input.trial.measured) {
+      if (motion.coordinate == study.coordinate.name) study.measured = motion;
+    }
+    const auto selection =
+        study.catalogue.select(names_.empty() ? std::vector<std::string>{"all"} : names_);
+    if (sobol_ && selection.size() > 32) {
+      throw std::invalid_argument(fmt::format(
+          "--sobol: {} parameters, at most 32; choose them with --parameters", selection.size()));
+    }
+    if (sobol_ && draws_ < 2) throw std::invalid_argument("--sobol: --draws must be at least 2");
+    if (sobol_ && output_ == "rms_error" && !study.measured) {
+      throw std::invalid_argument(
+          fmt::format("--output rms_error: {} has no measured {}", trial_, study.coordinate.name));
+    }
+    study.parameters = laws(study.catalogue, selection);
+    std::vector<double> course;
+    for (int i = 0; i < bandPoints_; ++i) {
+      course.push_back(study.input.startTime + study.input.duration * i / (bandPoints_ - 1));
+    }
+    bio::SimulationOptions options =
+        simulationOptions(simulation_, study.input.startTime, study.input.duration);
+    options.externalForce = study.input.externalForce;
+    study.ensemble = std::make_unique<bio::ArmEnsemble>(
+        study.catalogue, armOptions(simulation_), study.input.excitation, study.coordinate.name,
+        study.measured, course, selection, options);
+    study.table = std::make_unique<DrawTable>(
+        study.parameters, course, shownFactor(study.coordinate), shownUnit(study.coordinate));
+    return made;
+  }
+
+  /// What is believed of each parameter.
+  std::vector<DrawnParameter> laws(const bio::ParameterCatalogue& catalogue,
+                                   const std::vector<std::size_t>& selection) const {
+    std::vector<DrawnParameter> drawn;
+    for (const std::size_t index : selection) {
+      const bio::ModelParameter& p = catalogue.parameters()[index];
+      drawn.push_back(
+          {p.name,
+           p.unit,
+           p.value,
+           {distribution_ == "normal" ? info::Marginal::Shape::normal : info::Marginal::Shape::even,
+            p.value, p.deviation, p.lower, p.upper}});
+    }
+    const auto place = [&](const NamedPair& pair, const char* option) -> DrawnParameter& {
+      const auto at = std::find(selection.begin(), selection.end(), catalogue.find(pair.name));
+      if (at == selection.end()) {
+        throw std::invalid_argument(
+            fmt::format("{}: {} is not one of the --parameters", option, pair.name));
+      }
+      return drawn[static_cast<std::size_t>(at - selection.begin())];
+    };
+    for (const NamedPair& prior : parsePairs(priors_, "--prior")) {
+      DrawnParameter& one = place(prior, "--prior");
+      one.law.mean = prior.first;
+      one.law.deviation = prior.second;
+    }
+    for (const NamedPair& bounds : parsePairs(bounds_, "--bounds")) {
+      DrawnParameter& one = place(bounds, "--bounds");
+      one.law.lower = bounds.first;
+      one.law.upper = bounds.second;
+    }
+    for (DrawnParameter& one : drawn) {
+      one.law.deviation *= spread_;
+      try {
+        (void)one.law.quantile(0.5);
+      } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument(
+            fmt::format("{} [{}]: {}", one.name, one.unit.empty() ? "1" : one.unit, error.what()));
+      }
+    }
+    return drawn;
+  }
+
+  /// How many rows there are to be.
+  std::uint64_t total(const EnsembleStudy& study) const {
+    const auto n = static_cast<std::uint64_t>(draws_);
+    return sobol_ ? n * (study.parameters.size() + 2) : n;
+  }
+
+  /// A row is a function of seed and number alone: its parameters are quantiles of a point of the
+  /// unit cube, which comes from the number's own random stream, or from Saltelli's scheme.
+  std::function<std::string(std::uint64_t)> rowOf(const EnsembleStudy& study,
+                                                  std::uint64_t seed) const {
+    return [this, &study, seed](std::uint64_t number) {
+      const auto p = static_cast<int>(study.parameters.size());
+      Eigen::VectorXd theta(p);
+      if (sobol_) {
+        theta = info::sobolPoint(number, p, seed);
+      } else {
+        info::RandomStream random(seed, number);
+        for (double& u : theta) u = random.uniform();
+      }
+      for (Eigen::Index i = 0; i < p; ++i) {
+        theta[i] = study.parameters[static_cast<std::size_t>(i)].law.quantile(theta[i]);
+      }
+      return study.table->row(study.ensemble->run(theta), theta);
+    };
+  }
+
+  /// All that the rows depend on; how many there are is not among it.
+  Json settings(const EnsembleStudy& study, const Summary& summary, std::uint64_t seed) const {
+    Json json;
+    json["program"] = "fisherhill ensemble";
+    json["version"] = info::version();
+    json["model_sha256"] = summary.inputs()[0].sha256;
+    json["trial_sha256"] = summary.inputs()[1].sha256;
+    json["seed"] = seed;
+    json["scheme"] = sobol_ ? "sobol" : "draws";
+    json["distribution"] = distribution_;
+    json["band_points"] = bandPoints_;
+    json["simulation"] = settingsOf(simulation_);
+    json["parameters"] = Json::array();
+    for (const DrawnParameter& one : study.parameters) {
+      json["parameters"].push_back(
+          {one.name, one.law.mean, one.law.deviation, one.law.lower, one.law.upper});
+    }
+    return json;
+  }
+
+  EnsembleFindings findingsOf(const EnsembleStudy& study, const RowFile& file,
+                              std::uint64_t seed) const {
+    EnsembleFindings findings{model_,       trial_,           study.coordinate.name,
+                              *study.table, study.parameters, study.ensemble->nominal(),
+                              {},           study.measured};
+    for (std::uint64_t number = 0; number < total(study); ++number) {
+      findings.rows.push_back(study.table->parse(number, file.rows().at(number)));
+    }
+    if (!sobol_) return findings;
+    const auto names = DrawTable::outputNames();
+    const auto output =
+        static_cast<std::size_t>(std::find(names.begin(), names.end(), output_) - names.begin());
+    std::vector<Eigen::VectorXd> values;
+    for (const DrawTable::Row& row : findings.rows) {
+      const double y = row.outputs[output];
+      values.push_back(std::isfinite(y) ? Eigen::VectorXd::Constant(1, y) : Eigen::VectorXd());
+    }
+    const auto p = static_cast<int>(study.parameters.size());
+    constexpr int replicates = 500;
+    findings.sobol = SobolFinding{output_, info::sobolIndices(values, p),
+                                  info::bootstrapSobol(values, p, replicates, seed), draws_};
+    return findings;
+  }
+
+  std::function<std::unique_ptr<Crew>()> gather_;
+  CLI::App* app_ = nullptr;
+  std::string model_, trial_;
+  int draws_ = 1000;
+  std::vector<std::string> names_, priors_, bounds_;
+  std::string distribution_ = "normal";
+  double spread_ = 1;
+  int bandPoints_ = 46;
+  bool sobol_ = false;
+  std::string output_ = "final";
+  std::string discover_;
+  std::optional<double> noise_;
+  int maxEffects_ = 3;
+  SimulationOptions simulation_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> ensembleCommand(std::function<std::unique_ptr<Crew>()> gather) {
+  return std::make_unique<Ensemble>(std::move(gather));
+}
+
+}  // namespace app

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "command.h"
+#include "crew.h"
+
+namespace app {
+
+/// `fisherhill ensemble MODEL TRIAL`: many simulations with drawn parameters.
+/// @param gather  makes the crew that does the work
+std::unique_ptr<Command> ensembleCommand(std::function<std::unique_ptr<Crew>()> gather);
+
+}  // namespace app

@@ -1,0 +1,184 @@
+#include "ensemble_discovery.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+
+#include "arm_input.h"
+#include "arm_options.h"
+#include "info/version.h"
+#include "json_text.h"
+#include "missing_rows.h"
+#include "result.h"
+
+namespace app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+struct DataSet {
+  std::string name;
+  std::vector<std::string> training, heldOut;
+};
+
+const std::vector<std::string>& verdictColumns() {
+  static const std::vector<std::string> names = {"number",
+                                                 "set",
+                                                 "verdict",
+                                                 "effects",
+                                                 "probability",
+                                                 "gap_closed_train",
+                                                 "gap_closed_held_out"};
+  return names;
+}
+
+std::vector<DataSet> dataSetsIn(const fs::path& folder) {
+  std::vector<DataSet> sets;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (!entry.is_directory()) continue;
+    DataSet set{entry.path().filename().string(), {}, {}};
+    for (const auto& file : fs::directory_iterator(entry.path())) {
+      const std::string name = file.path().filename().string();
+      if (!name.ends_with(".sto")) continue;
+      if (name.starts_with("train_")) set.training.push_back(file.path().string());
+      if (name.starts_with("held_out")) set.heldOut.push_back(file.path().string());
+    }
+    if (set.training.empty()) continue;
+    if (set.name.find_first_of(",\n\"") != set.name.npos) {
+      throw std::invalid_argument(fmt::format(
+          "--discover {}: the name of folder '{}' must have no comma, quote or line break",
+          folder.string(), set.name));
+    }
+    std::sort(set.training.begin(), set.training.end());
+    std::sort(set.heldOut.begin(), set.heldOut.end());
+    sets.push_back(std::move(set));
+  }
+  if (sets.empty()) {
+    throw std::invalid_argument(
+        fmt::format("--discover {}: no subfolder has files called train_*.sto", folder.string()));
+  }
+  std::sort(sets.begin(), sets.end(),
+            [](const DataSet& a, const DataSet& b) { return a.name < b.name; });
+  return sets;
+}
+
+/// Every file is read once before anything long begins; all become inputs of the summary.
+void checkSets(const ArmDiscoveryRequest& each, const std::vector<DataSet>& sets,
+               Summary& summary) {
+  const bio::Model model = readModel(each.model, summary);
+  (void)movableArm(model, each.model, each.simulation, summary);
+  for (const DataSet& set : sets) {
+    for (const auto* files : {&set.training, &set.heldOut}) {
+      for (const std::string& file : *files) {
+        summary.addInput(file);
+        (void)bio::readTrial(file, model, {each.simulation.ignoreExtra});
+      }
+    }
+  }
+}
+
+Json discoverySettings(const ArmDiscoveryRequest& each, const Summary& summary) {
+  Json json;
+  json["program"] = "fisherhill ensemble --discover";
+  json["version"] = info::version();
+  json["noise"] = each.noise ? Json(*each.noise) : Json();
+  json["without"] = each.without;
+  json["max_effects"] = each.maxEffects;
+  json["simulation"] = settingsOf(each.simulation);
+  json["inputs"] = Json::array();
+  for (const Summary::InputFile& input : summary.inputs()) {
+    json["inputs"].push_back({fs::path(input.path).filename().string(), input.sha256});
+  }
+  return json;
+}
+
+std::string numberCell(const Json& value) {
+  return value.is_number() ? fmt::format("{:.6g}", value.get<double>()) : std::string();
+}
+
+std::string verdictRow(const DataSet& set, const Json& verdict) {
+  std::vector<std::string> ids;
+  for (const Json& effect : verdict.at("effects")) ids.push_back(effect.at("id"));
+  const auto closed = [&](const char* which) {
+    const Json& gap = verdict.at("gap").at(which);
+    return gap.is_object() ? numberCell(gap.at("gap_closed")) : std::string();
+  };
+  const Json& effects = verdict.at("effects");
+  return fmt::format("{},{},{},{},{},{}", set.name, verdict.at("verdict").get<std::string>(),
+                     fmt::join(ids, "+"),
+                     effects.empty() ? "" : numberCell(effects.front().at("probability")),
+                     closed("train"), closed("held_out"));
+}
+
+Report discoveryReport(const std::vector<std::vector<std::string>>& rows, const std::string& model,
+                       const std::map<std::string, int>& counts) {
+  std::vector<std::string> parts;
+  for (const auto& [verdict, count] : counts) parts.push_back(fmt::format("{} {}", count, verdict));
+  Report report{
+      .title = fmt::format("What {} lacks, by {} data sets", model, rows.size()),
+      .verdict = fmt::format("Of {} data sets: {}.", rows.size(), fmt::join(parts, ", "))};
+  Table table{
+      .title = "Verdicts",
+      .columns = {"set", "verdict", "effects", "probability", "gap closed", "gap closed, held out"},
+      .rows = rows};
+  report.details = {table, Paragraph{"verdicts/NAME/report.html has the reasons."}};
+  return report;
+}
+
+}  // namespace
+
+ExitStatus discoverInSets(const ArmDiscoveryRequest& each, const fs::path& folder,
+                          const CommandContext& context, Crew& crew, int threads) {
+  const std::vector<DataSet> sets = dataSetsIn(folder);
+  const auto row = [&](std::uint64_t number) {
+    const DataSet& set = sets[number];
+    ArmDiscoveryRequest request = each;
+    request.trials = set.training;
+    request.heldOut = set.heldOut;
+    CommandContext one = context;
+    one.quiet = true;
+    one.force = true;  // what a killed run has left there is made anew
+    one.out = *context.out / "verdicts" / set.name;
+    return verdictRow(set, discoverInArm(request, one).verdict);
+  };
+  if (!crew.leads()) {
+    crew.work({{}, row, {}}, threads);
+    return ExitStatus::done;
+  }
+  OutputFolder results(context, {"verdicts.csv"});
+  Summary summary(context);
+  checkSets(each, sets, summary);
+  RowFile file(results.path("unfinished.csv"), discoverySettings(each, summary), verdictColumns(),
+               context.force);
+  const auto begin = std::chrono::steady_clock::now();
+  const std::size_t computed =
+      computeMissing(crew, threads, file, sets.size(), row, context, "data sets");
+  const double wall =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+
+  std::vector<std::vector<std::string>> rows;
+  std::map<std::string, int> counts;
+  results.write("verdicts.csv", [&](std::ostream& out) {
+    const auto& columns = verdictColumns();
+    out << fmt::format("{}\n", fmt::join(columns.begin() + 1, columns.end(), ","));
+    for (const auto& [number, text] : file.rows()) out << text << '\n';
+  });
+  for (const auto& [number, text] : file.rows()) {
+    rows.push_back(cellsOf(text));
+    ++counts[rows.back()[1]];
+  }
+  summary.setSimulation(each.simulation.integrator, each.simulation.stepOrDefault(), 0, wall);
+  summary.set("sets", sets.size());
+  summary.set("computed", computed);
+  summary.set("ranks", crew.ranks());
+  summary.set("verdicts", counts);
+  deliver(context, summary, discoveryReport(rows, each.model, counts), results);
+  file.remove();
+  return ExitStatus::done;
+}
+
+}  // namespace app

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bio/ensemble.h"
+#include "info/marginal.h"
+
+namespace app {
+
+/// A parameter that is drawn, and its law.
+struct DrawnParameter {
+  std::string name, unit;
+  double value;  ///< in the model [unit]
+  info::Marginal law;
+};
+
+/// One number that every run of an ensemble gives, as people read it.
+struct EnsembleOutput {
+  std::string name;   ///< "rms_error", as --output has it
+  std::string words;  ///< "RMS error"
+  double (*of)(const bio::EnsembleRun&);
+};
+
+/// The rows of draws.csv and band.csv as text and back. A row of the growing file has a run's
+/// outcome, its outputs, its parameters and its course; every number is as people read it, degrees
+/// or millimetres. A number that there is not is an empty cell.
+class DrawTable {
+ public:
+  /// @param shown      degrees or millimetres of a unit of the coordinate
+  /// @param shownUnit  "deg" or "mm"
+  DrawTable(const std::vector<DrawnParameter>& parameters, const std::vector<double>& course,
+            double shown, const std::string& shownUnit);
+
+  static const std::vector<EnsembleOutput>& outputs();
+  /// Names of the outputs, for --output.
+  static std::vector<std::string> outputNames();
+
+  /// Columns of the growing file, the number's first.
+  std::vector<std::string> columns() const;
+  /// How many of them draws.csv has: all but the course.
+  std::size_t shortColumns() const { return columns().size() - course_.size(); }
+  std::string columnOf(const EnsembleOutput& output) const { return output.name + "_" + unit_; }
+
+  /// All cells but the number.
+  std::string row(const bio::EnsembleRun& run, const Eigen::VectorXd& theta) const;
+
+  /// A row as numbers; NaN for an empty cell.
+  struct Row {
+    std::string outcome;
+    double failedAt = 0;
+    std::vector<double> outputs = {};  ///< in the order of outputs()
+    std::vector<double> parameters = {};
+    std::vector<double> course = {};
+    std::string head = {};  ///< the cells that draws.csv has
+  };
+  /// @throws std::runtime_error if a cell is no number
+  Row parse(std::uint64_t number, const std::string& text) const;
+
+  double shown() const { return shown_; }
+  const std::string& unit() const { return unit_; }
+  const std::vector<double>& course() const { return course_; }
+
+ private:
+  std::vector<std::string> parameters_;  ///< "TRI.radius [m]"
+  std::vector<double> course_;
+  double shown_;
+  std::string unit_;
+};
+
+}  // namespace app

@@ -1,0 +1,39 @@
+#include "missing_rows.h"
+
+#include <fmt/format.h>
+
+#include "interruption.h"
+#include "progress_bar.h"
+
+namespace app {
+
+std::size_t computeMissing(Crew& crew, int threads, RowFile& file, std::uint64_t total,
+                           const std::function<std::string(std::uint64_t)>& row,
+                           const CommandContext& context, const std::string& things) {
+  RowWork work;
+  for (std::uint64_t number = 0; number < total; ++number) {
+    if (!file.rows().contains(number)) work.numbers.push_back(number);
+  }
+  const std::size_t missing = work.numbers.size();
+  std::uint64_t done = total - missing;
+  work.row = row;
+  ProgressBar bar("ensemble");
+  work.take = [&](std::uint64_t number, const std::string& text) {
+    file.append(number, text);
+    bar.update(static_cast<double>(++done) / static_cast<double>(total));
+  };
+  try {
+    crew.start();
+    crew.work(work, threads);
+  } catch (const Interrupted&) {
+    if (context.out) {
+      fmt::print(stderr,
+                 "fisherhill {}: {} of {} {} are done; the same command goes on from there\n",
+                 context.subcommand, done, total, things);
+    }
+    throw;
+  }
+  return missing;
+}
+
+}  // namespace app

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "crew.h"
+#include "row_file.h"
+
+namespace app {
+
+/// Has a crew compute the rows 0 … total − 1 that a file lacks, with a bar; every row is in the
+/// file as soon as it is finished. After Ctrl-C it says how to go on.
+/// @param things  what a row stands for, "simulations"
+/// @return how many were computed
+/// @throws Interrupted, and what `row` and RowFile::append throw
+std::size_t computeMissing(Crew& crew, int threads, RowFile& file, std::uint64_t total,
+                           const std::function<std::string(std::uint64_t)>& row,
+                           const CommandContext& context, const std::string& things);
+
+}  // namespace app

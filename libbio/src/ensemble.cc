@@ -1,0 +1,110 @@
+#include "bio/ensemble.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "bio/coupled_sensitivity.h"
+#include "bio/simulation_names.h"
+#include "motion_weights.h"
+
+namespace bio {
+namespace {
+
+EnsembleRun notFinished(std::string outcome, double failedAt, std::size_t course) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  return {std::move(outcome),
+          failedAt,
+          none,
+          none,
+          none,
+          none,
+          none,
+          Eigen::VectorXd::Constant(static_cast<Eigen::Index>(course), none)};
+}
+
+/// Muscles with a path point or a wrap object among the targets of these parameters.
+std::vector<std::string> shapedMuscles(const ParameterCatalogue& catalogue,
+                                       const std::vector<std::size_t>& selection) {
+  std::vector<std::string> names;
+  const Model& model = catalogue.model();
+  for (const std::size_t index : selection) {
+    for (const ParameterTarget& target : catalogue.parameters().at(index).targets) {
+      if (const auto* point = std::get_if<PointTarget>(&target)) {
+        names.push_back(model.muscles[point->muscle].name);
+      } else if (const auto* wrap = std::get_if<WrapTarget>(&target)) {
+        const std::string& object = model.wrapObjects[wrap->wrap].name;
+        for (const Muscle& muscle : model.muscles) {
+          for (const PathWrap& over : muscle.path.wraps) {
+            if (over.wrapObject == object) names.push_back(muscle.name);
+          }
+        }
+      }
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
+ArmEnsemble::ArmEnsemble(const ParameterCatalogue& catalogue, const ArmOptions& arm,
+                         ExcitationSignal trial, const std::string& coordinate,
+                         std::optional<MeasuredMotion> measured, std::vector<double> course,
+                         std::vector<std::size_t> selection, const SimulationOptions& options)
+    : catalogue_(&catalogue),
+      armOptions_(arm),
+      trial_(std::move(trial)),
+      measured_(std::move(measured)),
+      course_(std::move(course)),
+      selection_(std::move(selection)),
+      options_(options),
+      arm_(catalogue.model(), arm),
+      shaped_(shapedMuscles(catalogue, selection_)),
+      coordinate_(arm_.skeleton().indexOf(coordinate)) {
+  if (coordinate_ < 0) {
+    throw std::invalid_argument(fmt::format("observed coordinate '{}' is not free", coordinate));
+  }
+  const Trajectory motion = simulateSetting(arm_, catalogue.nominal(), trial_, options_);
+  if (motion.outcome != Outcome::completed) {
+    throw std::invalid_argument(
+        fmt::format("the model's own motion does not reach the end of the trial: {}", motion.why));
+  }
+  nominalMotion_ = motion.q.row(coordinate_);
+  nominal_ = describe(motion);
+}
+
+EnsembleRun ArmEnsemble::describe(const Trajectory& motion) const {
+  if (motion.outcome != Outcome::completed) {
+    return notFinished(name(motion.outcome), motion.failedAt, course_.size());
+  }
+  EnsembleRun run =
+      notFinished(name(motion.outcome), std::numeric_limits<double>::quiet_NaN(), course_.size());
+  const auto q = motion.q.row(coordinate_);
+  if (measured_) run.rmsError = compareWithMeasured(arm_, motion, *measured_).rms;
+  run.rmsFromNominal =
+      std::sqrt((q - nominalMotion_).squaredNorm() / static_cast<double>(q.size()));
+  run.last = q[q.size() - 1];
+  run.lowest = q.minCoeff();
+  run.highest = q.maxCoeff();
+  for (std::size_t i = 0; i < course_.size(); ++i) {
+    if (const auto w = weightsAt(motion.time, course_[i])) {
+      run.atCourse[static_cast<Eigen::Index>(i)] = w->value(q, motion.qDot.row(coordinate_));
+    }
+  }
+  return run;
+}
+
+EnsembleRun ArmEnsemble::run(const Eigen::VectorXd& theta) const {
+  const ParameterCatalogue::Setting setting = catalogue_->at(selection_, theta);
+  try {
+    const Arm arm(setting.model, armOptions_, arm_, shaped_);
+    return describe(simulateSetting(arm, setting, trial_, options_));
+  } catch (const std::logic_error&) {  // outside the model's domain
+  } catch (const NoStaticEquilibrium&) {
+  }
+  return notFinished("impossible", std::numeric_limits<double>::quiet_NaN(), course_.size());
+}
+
+}  // namespace bio

@@ -1,0 +1,102 @@
+#include "bio/ensemble.h"
+
+#include <gtest/gtest.h>
+
+#include "bio/arm_experiment.h"
+#include "info/random_stream.h"
+#include "support/shipped_elbow.h"
+#include "support/throws_saying.h"
+
+namespace bio {
+namespace {
+
+using fixtures::forSeconds;
+using fixtures::ShippedElbow;
+
+const std::vector<double> course = {0, 0.25, 1.0};
+
+ArmEnsemble ensembleOn(const ShippedElbow& elbow, const std::vector<std::size_t>& selection) {
+  return {elbow.catalogue,
+          ShippedElbow::options(),
+          elbow.excitation,
+          "elbow_flexion",
+          elbow.trial.measured.front(),
+          course,
+          selection,
+          forSeconds(1.0)};
+}
+
+// The second way compiles every path anew and knows nothing of ensembles.
+TEST(ArmEnsemble, RunsAreThoseOfArmsCompiledFromNothing) {
+  const ShippedElbow elbow;
+  for (const std::vector<std::string>& names :
+       {std::vector<std::string>{"TRI.radius", "hand.mass", "BRA.tendon_slack_length"},
+        {"BIClong.point5.x", "ulna.mass_center.y", "initial.elbow_flexion", "emg.delay"},
+        {"all"}}) {
+    const auto selection = elbow.catalogue.select(names);
+    const ArmEnsemble ensemble = ensembleOn(elbow, selection);
+    const ArmExperiment experiment(elbow.catalogue, ShippedElbow::options(), elbow.excitation,
+                                   "elbow_flexion", course, selection, forSeconds(1.0));
+    const Trajectory nominal = experiment.simulate(elbow.catalogue.values(selection));
+    info::RandomStream random(3, 0);
+    for (int draw = 0; draw < 4; ++draw) {
+      Eigen::VectorXd theta = elbow.catalogue.values(selection);
+      for (std::size_t i = 0; i < selection.size(); ++i) {
+        const ModelParameter& p = elbow.catalogue.parameters()[selection[i]];
+        theta[static_cast<Eigen::Index>(i)] += 0.2 * p.deviation * random.normal();
+        theta[static_cast<Eigen::Index>(i)] =
+            std::clamp(theta[static_cast<Eigen::Index>(i)], p.lower, p.upper);
+      }
+      const EnsembleRun run = ensemble.run(theta);
+      const Trajectory motion = experiment.simulate(theta);
+      ASSERT_EQ(run.outcome, "ok");
+      EXPECT_TRUE(std::isnan(run.failedAt));
+      EXPECT_EQ(run.last, motion.q(0, motion.q.cols() - 1));
+      EXPECT_EQ(run.lowest, motion.q.minCoeff());
+      EXPECT_EQ(run.highest, motion.q.maxCoeff());
+      EXPECT_EQ(run.atCourse, experiment.outputs(theta));
+      const Eigen::ArrayXd change = (motion.q - nominal.q).row(0).transpose();
+      EXPECT_NEAR(run.rmsFromNominal, std::sqrt(change.square().mean()), 1e-14);
+      EXPECT_EQ(run.rmsError,
+                compareWithMeasured(elbow.arm, motion, elbow.trial.measured.front()).rms);
+    }
+  }
+}
+
+TEST(ArmEnsemble, TheNominalRunIsNoDistanceFromItself) {
+  const ShippedElbow elbow;
+  const ArmEnsemble ensemble = ensembleOn(elbow, elbow.catalogue.select({"TRI.radius"}));
+  EXPECT_EQ(ensemble.nominal().rmsFromNominal, 0);
+  EXPECT_GT(ensemble.nominal().rmsError, 0);
+}
+
+TEST(ArmEnsemble, WhatCannotBeSimulatedIsAnOutcome) {
+  const ShippedElbow elbow;
+  const ArmEnsemble ensemble = ensembleOn(elbow, elbow.catalogue.select({"TRI.radius"}));
+  const EnsembleRun run = ensemble.run(Eigen::VectorXd::Constant(1, -0.01));
+  EXPECT_EQ(run.outcome, "impossible");
+  EXPECT_TRUE(std::isnan(run.last));
+  EXPECT_EQ(run.atCourse.size(), 3);
+  EXPECT_FALSE(run.atCourse.array().isFinite().any());
+  support::throwsSaying([&] { (void)ensemble.run(Eigen::VectorXd::Zero(2)); },
+                        "2 values for 1 parameters");
+}
+
+TEST(ArmEnsemble, RefusesACoordinateThatIsNotFreeAndAModelThatDoesNotFinish) {
+  const ShippedElbow elbow;
+  const auto make = [&](const std::string& coordinate, const SimulationOptions& options) {
+    return [&elbow, coordinate, options] {
+      (void)ArmEnsemble(elbow.catalogue, ShippedElbow::options(), elbow.excitation, coordinate, {},
+                        course, {}, options);
+    };
+  };
+  support::throwsSaying(make("pro_sup", forSeconds(1)),
+                        "observed coordinate 'pro_sup' is not free");
+  SimulationOptions impatient = forSeconds(1);
+  impatient.maxIterations = 1;
+  impatient.maxHalvings = 0;
+  support::throwsSaying(make("elbow_flexion", impatient), "does not reach the end of the trial");
+}
+
+}  // namespace
+}  // namespace bio
