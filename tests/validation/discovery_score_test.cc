@@ -73,6 +73,22 @@ TEST(Judge, ARightNameWithItsAmplitude) {
   EXPECT_EQ(judge("a", labelOf("single", Json::array({truthOf("visc", 0.3)})), verdict).seconds, 9);
 }
 
+TEST(Judge, WhatIsSaidToBeTooSmallAndWhatIsOnlyASurrogate) {
+  Json truth = truthOf("visc", 0.3);
+  truth["amplitude"] = -0.3;
+  const Json label = labelOf("single", Json::array({truth}));
+  Json verdict = verdictOf("none", Json::array());
+  EXPECT_TRUE(judge("a", label, verdict).detectable);  // it says nothing
+  verdict["undetectable_below"] = {{"visc", 0.31}, {"drag", 0.1}};
+  EXPECT_FALSE(judge("a", label, verdict).detectable);
+  verdict["undetectable_below"]["visc"] = 0.29;
+  EXPECT_TRUE(judge("a", label, verdict).detectable);
+
+  const Json effects = Json::array({effectOf("visc", "structure", 0.99, 0.34, 0.02)});
+  EXPECT_TRUE(judge("a", label, verdictOf("named", effects)).firstIsRight);
+  EXPECT_FALSE(judge("a", label, verdictOf("unknown", effects)).firstIsRight);
+}
+
 TEST(Judge, UnitsAndOtherNamesOfTheSameAmplitude) {
   const Json label = labelOf(
       "single", Json::array({{{"id", "wrap_TRI"},

@@ -152,7 +152,14 @@ Outcome judge(const std::string& name, const Json& label, const Json& verdict) {
   for (const Json& truth : hiding) {
     const auto names = accepted(truth);
     const auto given = [&](const std::string& id) { return has(names, id); };
-    o.firstIsRight = o.firstIsRight || (!o.named.empty() && given(o.named[0]));
+    o.firstIsRight =
+        o.firstIsRight || (o.verdict != "unknown" && !o.named.empty() && given(o.named[0]));
+    const auto known = verdict.find("undetectable_below");
+    const auto amplitude = finite(truth, "amplitude");
+    if (known != verdict.end() && amplitude) {
+      const auto least = finite(*known, truth.at("id").get<std::string>().c_str());
+      o.detectable = o.detectable && (!least || std::abs(*amplitude) >= *least);
+    }
     o.classHasTruth = o.classHasTruth || std::any_of(all.begin(), all.end(), given);
     o.allNamed = o.allNamed && std::any_of(o.named.begin(), o.named.end(), given);
   }
@@ -228,6 +235,15 @@ Score score(const std::vector<Outcome>& outcomes) {
                   withNoise(false, false), firstIsRight));
   r.push_back(row(outcomes, "right name first, noisy EMG, full size", "≥ 85 %", 0.85, false,
                   withNoise(true, true), firstIsRight));
+  const auto visible = [&](const auto& chosen) {
+    return [=](const Outcome& o) { return chosen(o) && o.detectable; };
+  };
+  r.push_back(row(outcomes, "the same, clean, full size, not called too small to see", "–", 0,
+                  false, visible(withNoise(false, true)), firstIsRight));
+  r.push_back(row(outcomes, "the same, clean, smaller, not called too small to see", "–", 0, false,
+                  visible(withNoise(false, false)), firstIsRight));
+  r.push_back(row(outcomes, "the same, noisy, full size, not called too small to see", "–", 0,
+                  false, visible(withNoise(true, true)), firstIsRight));
   r.push_back(row(outcomes, "right name first, noisy EMG, smaller", "–", 0, false,
                   withNoise(true, false), firstIsRight));
   r.push_back(row(

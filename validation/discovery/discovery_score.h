@@ -23,9 +23,10 @@ struct Outcome {
   std::vector<std::string> named, inClass;
   bool claims = false;          ///< says that something is missing or wrong
   bool namesStructure = false;  ///< its first name is no parameter and no equivalent of the truth
-  bool firstIsRight = false;    ///< its first name is a truth
+  bool firstIsRight = false;    ///< its first name is a truth; "unknown" names nothing
   bool classHasTruth = false;   ///< a truth is among names and class
   bool allNamed = false;        ///< every truth is among the names
+  bool detectable = true;       ///< not said to be too small to be seen (undetectable_below)
   bool confident = false;       ///< first name's probability ≥ 0.95
   bool unqualified = false;     ///< "named" or "parameter", and none of its names has a rival
   std::optional<double> z;      ///< (estimate − truth)/sd of the first right name's amplitude
