@@ -54,6 +54,17 @@ set(CPACK_COMPONENT_PYTHON_DESCRIPTION
 musculoskeletal models, and Fisher information, bounds and estimation for systems
 defined in Python, with NumPy arrays.")
 
+# What Debian calls the changelog of the package; what has changed is told by CHANGELOG.md beside it.
+configure_file(${PROJECT_SOURCE_DIR}/packaging/changelog.in ${PROJECT_BINARY_DIR}/changelog @ONLY)
+execute_process(COMMAND gzip -9nf ${PROJECT_BINARY_DIR}/changelog COMMAND_ERROR_IS_FATAL ANY)
+foreach(package IN ITEMS fisherhill:Runtime libfisherhill-dev:Development)
+  string(REPLACE ":" ";" package ${package})
+  list(GET package 0 name)
+  list(GET package 1 component)
+  install(FILES ${PROJECT_BINARY_DIR}/changelog.gz
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component})
+endforeach()
+
 # what is packed needs none of the validation programs
 set(CMAKE_SKIP_PACKAGE_ALL_DEPENDENCY ON)
 
