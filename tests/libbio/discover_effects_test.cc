@@ -469,5 +469,23 @@ TEST(PlannedExperiments, RepeatATrialWithWhatTheExperimenterKnows) {
               0.7, 1e-12);
 }
 
+TEST(ElbowDisagreement, TellsDelayFromClockWhereSomethingPushes) {
+  const ShippedElbow elbow;
+  Trial trial = cut(elbow.trial, 0.2);
+  const auto equivalentsOf = [&](const std::string& id) {
+    const ElbowDisagreement data(elbow.model, ShippedElbow::options(), "elbow_flexion", {trial});
+    for (const Candidate& candidate : data.candidates()) {
+      if (candidate.id == id) return candidate.equivalents;
+    }
+    return std::vector<std::string>{"not there"};
+  };
+  EXPECT_EQ(equivalentsOf("delay"), std::vector<std::string>{"clock"});
+  trial.applied = {{"elbow_flexion", VectorXd::Constant(trial.times.size(), 0.5)}};
+  EXPECT_EQ(equivalentsOf("delay"), std::vector<std::string>{"clock"});  // always the same push
+  trial.applied[0].values[3] = 0;
+  EXPECT_TRUE(equivalentsOf("delay").empty());
+  EXPECT_TRUE(equivalentsOf("clock").empty());
+}
+
 }  // namespace
 }  // namespace bio::discover

@@ -116,6 +116,13 @@ ElbowDisagreement::ElbowDisagreement(const Model& model, const ArmOptions& arm,
     trials_.push_back(std::move(one));
   }
   latentLag_ = activationLag();
+  // the arm answers a push at once, but late muscles late; a clock that is off shifts both
+  const bool isPushed = std::any_of(trials_.begin(), trials_.end(), [&](const OfTrial& one) {
+    return std::any_of(one.trial.applied.begin(), one.trial.applied.end(), [&](const auto& push) {
+      return push.coordinate == coordinate && push.values.maxCoeff() > push.values.minCoeff();
+    });
+  });
+  if (isPushed) widest_.separate("delay", "clock");
 }
 
 double ElbowDisagreement::activationLag() const {

@@ -161,6 +161,13 @@ void WidestModel::forget(const std::vector<std::string>& ids) {
   });
 }
 
+void WidestModel::separate(const std::string& one, const std::string& other) {
+  for (Candidate& candidate : candidates_) {
+    if (candidate.id == one) std::erase(candidate.equivalents, other);
+    if (candidate.id == other) std::erase(candidate.equivalents, one);
+  }
+}
+
 VectorXd WidestModel::nominal() const {
   VectorXd values(static_cast<Index>(quantities_.size()));
   for (Index i = 0; i < values.size(); ++i) {

@@ -33,6 +33,8 @@ inline constexpr double shortestSearchStep = 0.003;
 /// is a difference of simulations. Before the start of a trial, where a clock offset may look, the
 /// coordinate goes on with its first speed.
 ///
+/// Where a torque from outside pushes the coordinate, delay and clock are no equivalents.
+///
 /// The latent force is a torque on the coordinate with a channel for each muscle, the size of its
 /// moment r_i F_i, and one of the constant size τ_0 [N·m]: independent errors of so many per cent
 /// of each muscle's force, and of something else. Its lag is that of the activations, 1/k at the

@@ -98,6 +98,8 @@ class WidestModel {
   std::size_t addLaw(ExpressionBasedCoordinateForce law);
   /// Takes candidates off the list; their quantities stay, at nominal.
   void forget(const std::vector<std::string>& ids);
+  /// Two candidates are no equivalents: these data can tell them apart.
+  void separate(const std::string& one, const std::string& other);
   /// Says which quantities the law added last belongs to, the amplitude first.
   void lawFollows(std::vector<std::size_t> quantities);
 
