@@ -40,8 +40,7 @@ HotJobs::HotJobs()
                                       "*.tendon_slack_length", "*.pennation_angle", "*.damping",
                                       "*.time_scale", "*.activation1", "*.activation2"})) {
   sixty_.resize(60);
-  // discover's hypothesis: every nuisance, the two laws that it tried last, and the amplitudes of
-  // the others
+  // every nuisance, and the first quantities of candidates up to 60
   const auto& quantities = data_.quantities();
   values_.resize(static_cast<Index>(quantities.size()));
   for (std::size_t i = 0; i < quantities.size(); ++i) {

@@ -212,7 +212,7 @@ class VariationalStepper {
   }
 
  private:
-  static constexpr double near = 5e-6;              ///< [rad] or [m] of what shift() is used for
+  static constexpr double near = 7e-6;              ///< [rad] or [m] of what shift() is used for
   static constexpr double worthwhile = 1e-4;        ///< corrections above are always followed
   static constexpr double largestTurn = 0.3;        ///< [rad] per iteration
   static constexpr double largestFibreStep = 0.25;  ///< of ℓ0 per iteration

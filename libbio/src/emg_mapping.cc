@@ -140,6 +140,10 @@ ExcitationSignal drivenExcitation(const ExcitationSignal& trial,
                                   const std::vector<std::string>& muscles,
                                   const EmgMapping& mapping) {
   check(muscles, mapping);
+  const bool changesNothing = mapping.gain.empty() && mapping.delay == 0 &&
+                              mapping.nonlinearity == 0 && mapping.offset.empty() &&
+                              mapping.crosstalk.empty() && mapping.fatigue == 0;
+  if (changesNothing) return trial;
   Eigen::MatrixXd rows = cleaned(rowsOf(trial), muscles, mapping);
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
     const double gain = gainOf(mapping, muscles[static_cast<std::size_t>(i)]);

@@ -105,11 +105,11 @@ SpanEnd<T, N> intoFrame(const Placement<double>& X, const SpanEnd<T, N>& x) {
   SpanEnd<T, N> y;
   y.fixed = x.fixed;
   const Vec3<T> d = x.jet.value - X.p.template cast<T>();
-  y.jet.value.noalias() = R * d;
+  y.jet.value.noalias() = R.lazyProduct(d);
   if (x.fixed) return y;
-  for (std::size_t i = 0; i < N; ++i) y.jet.first[i].noalias() = R * x.jet.first[i];
+  for (std::size_t i = 0; i < N; ++i) y.jet.first[i].noalias() = R.lazyProduct(x.jet.first[i]);
   for (std::size_t ij = 0; ij < numPairs(N); ++ij) {
-    y.jet.second[ij].noalias() = R * x.jet.second[ij];
+    y.jet.second[ij].noalias() = R.lazyProduct(x.jet.second[ij]);
   }
   return y;
 }

@@ -68,12 +68,13 @@ RigidMotion<T, N> identityMotion() {
 template <class T, int N, class Point>
 PointMotionJet<T, N> movePoint(const RigidMotion<T, N>& X, const Point& point) {
   PointMotionJet<T, N> jet;
-  jet.value.noalias() = X.value.R * point + X.value.p;
+  // lazily: three numbers are no work for Eigen's kernels
+  jet.value.noalias() = X.value.R.lazyProduct(point) + X.value.p;
   for (std::size_t i = 0; i < N; ++i) {
-    jet.first[i].noalias() = X.first[i].R * point + X.first[i].p;
+    jet.first[i].noalias() = X.first[i].R.lazyProduct(point) + X.first[i].p;
   }
   for (std::size_t ij = 0; ij < numPairs(N); ++ij) {
-    jet.second[ij].noalias() = X.second[ij].R * point + X.second[ij].p;
+    jet.second[ij].noalias() = X.second[ij].R.lazyProduct(point) + X.second[ij].p;
   }
   return jet;
 }
