@@ -1,4 +1,5 @@
 #include "info/estimate.h"
+#include "info/marginal.h"
 
 #include <fmt/format.h>
 
@@ -293,13 +294,7 @@ std::string describe(Termination why) {
 double normalQuantile(double confidence) {
   if (!(confidence > 0 && confidence < 1))
     throw std::invalid_argument(fmt::format("confidence {} must be between 0 and 1", confidence));
-  // bisection on erfc, then it is as exact as erfc
-  double low = 0, high = 40;
-  for (int i = 0; i < 200 && low < high; ++i) {
-    const double middle = 0.5 * (low + high);
-    (std::erfc(middle / std::sqrt(2.0)) > 1 - confidence ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
+  return -standardNormalQuantile((1 - confidence) / 2);
 }
 
 Estimate estimate(const LeastSquares& problem, const VectorXd& start,

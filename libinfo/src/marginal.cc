@@ -32,7 +32,7 @@ double lowerQuantile(double p) {
 
 }  // namespace
 
-double normalQuantile(double p) {
+double standardNormalQuantile(double p) {
   if (!(p >= 0 && p <= 1)) {
     throw std::invalid_argument(fmt::format("normal law: share {} must be 0 to 1", p));
   }
@@ -57,7 +57,8 @@ double Marginal::quantile(double u) const {
   }
   const double from = normalShare((lower - mean) / deviation);
   const double to = normalShare((upper - mean) / deviation);
-  return std::clamp(mean + deviation * normalQuantile(std::lerp(from, to, u)), lower, upper);
+  return std::clamp(mean + deviation * standardNormalQuantile(std::lerp(from, to, u)), lower,
+                    upper);
 }
 
 }  // namespace info

@@ -20,14 +20,14 @@ double normalShare(double x) {
 
 TEST(Marginal, NormalQuantileIsTheInverseOfTheShareBelow) {
   for (double p = 1e-300; p < 1; p = p < 0.01 ? p * 7 : p + 0.013) {
-    EXPECT_NEAR(normalShare(normalQuantile(p)) / p, 1, 1e-12 * (1 - std::log(p))) << p;
+    EXPECT_NEAR(normalShare(standardNormalQuantile(p)) / p, 1, 1e-12 * (1 - std::log(p))) << p;
   }
-  EXPECT_NEAR(normalQuantile(0.5), 0, 1e-15);
+  EXPECT_NEAR(standardNormalQuantile(0.5), 0, 1e-15);
   // tables of the normal law
-  EXPECT_NEAR(normalQuantile(0.975), 1.959963984540054, 1e-14);
-  EXPECT_NEAR(normalQuantile(0.001), -3.090232306167813, 1e-14);
-  EXPECT_EQ(normalQuantile(0), -inf);
-  EXPECT_EQ(normalQuantile(1), inf);
+  EXPECT_NEAR(standardNormalQuantile(0.975), 1.959963984540054, 1e-14);
+  EXPECT_NEAR(standardNormalQuantile(0.001), -3.090232306167813, 1e-14);
+  EXPECT_EQ(standardNormalQuantile(0), -inf);
+  EXPECT_EQ(standardNormalQuantile(1), inf);
 }
 
 TEST(Marginal, DrawsOfAWideLawHaveItsMeanAndDeviation) {
@@ -82,7 +82,7 @@ TEST(Marginal, BrokenRulesAreNamed) {
   support::throwsSaying(share({even, 2, 1, -1, 1}, 0.5), "mean = 2 must lie within");
   support::throwsSaying(share({even, nan, 1, -1, 1}, 0.5), "mean = nan");
   support::throwsSaying(share({even, 0, 1, -1, 1}, nan), "share nan");
-  support::throwsSaying([] { (void)normalQuantile(-0.1); }, "share -0.1 must be 0 to 1");
+  support::throwsSaying([] { (void)standardNormalQuantile(-0.1); }, "share -0.1 must be 0 to 1");
 }
 
 }  // namespace

@@ -24,6 +24,6 @@ struct Marginal {
 /// Φ⁻¹(p): the standard normal law has the share p below it; −∞ at 0, ∞ at 1. Rational start
 /// (Abramowitz & Stegun 26.2.23), then Halley's iteration on Φ: as exact as erfc.
 /// @throws std::invalid_argument for p outside 0 to 1
-double normalQuantile(double p);
+double standardNormalQuantile(double p);
 
 }  // namespace info
