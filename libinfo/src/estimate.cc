@@ -1,5 +1,4 @@
 #include "info/estimate.h"
-#include "info/marginal.h"
 
 #include <fmt/format.h>
 
@@ -9,6 +8,7 @@
 #include <stdexcept>
 
 #include "info/identifiability.h"
+#include "info/marginal.h"
 #include "info/symmetric_eigen.h"
 
 namespace info {
