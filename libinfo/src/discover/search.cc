@@ -426,16 +426,20 @@ void Search::reconcile() {
   std::map<Effects, double> asked;  // the score of the larger one when it was asked last
   for (bool again = true; again;) {
     again = false;
+    double best = kFailed;
+    for (const auto& [effects, entry] : entries_) best = std::max(best, entry.score);
     for (const auto& [effects, entry] : entries_) {
       if (!entry.works()) continue;
       for (const std::size_t effect : effects) {
         const Effects rest = without(effects, effect);
         const auto known = entries_.find(rest);
-        if (known == entries_.end() || entry.score < known->second.score + 1) continue;
-        if (significance(entry, effect) > 2) continue;
-        double& score = asked[rest];
-        if (score != 0 && entry.score < score + 1) continue;
-        score = entry.score;
+        // one that was never raced is worth a fit if it would be among the best
+        const bool gains = known != entries_.end() ? entry.score > known->second.score + 1
+                                                   : entry.score > best - 2 * options_.evidence;
+        if (!gains || significance(entry, effect) > 2) continue;
+        const auto before = asked.find(rest);
+        if (before != asked.end() && entry.score < before->second + 1) continue;
+        asked[rest] = entry.score;
         drop(effects, effect);
         again = true;
       }

@@ -72,7 +72,8 @@ class Search {
   /// nuisances. True if `base` gained; what has been raced on it and is now behind is forgotten.
   bool settle(const Effects& base);
   /// Fits a hypothesis again where another that contains it is better though what it has more is
-  /// absent there (less than 2 deviations): the smaller one was in a wrong minimum.
+  /// absent there (less than 2 deviations): the smaller one was in a wrong minimum, or was never
+  /// raced.
   void reconcile();
   /// Fits `effects` without one of them, from where the fit of all of them is.
   void drop(const Effects& effects, std::size_t effect);
