@@ -38,7 +38,7 @@ Outcome onReducedElbow(const reduced::Plan& plan) {
   const std::string name = plan.suite + " " + std::to_string(plan.seed);
   return hidden::judge(
       name, set.label,
-      app::verdictJson({name, {}, elbow, wording, options, verdict, name, taken.count()}));
+      app::verdictJson({name, {}, elbow, wording, options, verdict, name, {}, taken.count(), taken.count()}));
 }
 
 // Through files and the command, the truth being read by the scorer alone.
