@@ -17,7 +17,8 @@ namespace {
 
 constexpr double emptyCell = std::numeric_limits<double>::quiet_NaN();
 
-std::string trimmed(const std::string& text) {
+/// Without blanks and quotes at its ends.
+std::string unquoted(const std::string& text) {
   const auto first = text.find_first_not_of(" \t\r\"");
   if (first == std::string::npos) return "";
   return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
@@ -39,7 +40,7 @@ std::string cell(const std::vector<std::string>& cells, std::size_t k) {
 std::pair<std::string, std::string> splitUnit(const std::string& text) {
   const auto open = text.rfind('(');
   if (open == std::string::npos || !text.ends_with(')')) return {text, ""};
-  return {trimmed(text.substr(0, open)), text.substr(open + 1, text.size() - open - 2)};
+  return {unquoted(text.substr(0, open)), text.substr(open + 1, text.size() - open - 2)};
 }
 
 }  // namespace
@@ -65,7 +66,7 @@ std::vector<std::string> cellsOf(const std::string& line, char separator) {
   std::size_t begin = 0;
   while (true) {
     const std::size_t end = line.find(separator, begin);
-    cells.push_back(trimmed(line.substr(begin, end - begin)));
+    cells.push_back(unquoted(line.substr(begin, end - begin)));
     if (end == std::string::npos) return cells;
     begin = end + 1;
   }
@@ -122,7 +123,7 @@ std::vector<RawColumn> numberColumns(const std::string& file, const std::vector<
 std::vector<RawColumn> readPlainColumns(const std::string& file) {
   const std::vector<std::string> lines = linesOf(file);
   const auto first = std::find_if(lines.begin(), lines.end(),
-                                  [](const std::string& line) { return !trimmed(line).empty(); });
+                                  [](const std::string& line) { return !unquoted(line).empty(); });
   if (first == lines.end()) throw FileError(fmt::format("{}: holds no numbers", file));
   char separator = ' ';
   for (const char candidate : {'\t', ';', ','}) {
@@ -162,7 +163,7 @@ std::vector<RawColumn> readTrigno(const std::string& file) {
     column.unit = unit;
     // "2148.1481 Hz"
     std::string rate = cell(rates, k);
-    if (rate.ends_with("Hz")) rate = trimmed(rate.substr(0, rate.size() - 2));
+    if (rate.ends_with("Hz")) rate = unquoted(rate.substr(0, rate.size() - 2));
     if (!parse(rate, column.rate) || !(column.rate > 0) || !std::isfinite(column.rate)) {
       throw FileError(fmt::format("{}:7: column {} '{}': rate '{}', must be a number > 0 and Hz",
                                   file, k + 1, column.header, cell(rates, k)));

@@ -177,7 +177,8 @@ TEST(Start, NamesAPackageForEveryLibraryThatIsLookedFor) {
       {"nlohmann_json", "nlohmann-json3-dev"},
       {"Threads", "g++"},
       {"VTK", "libvtk9-dev"},
-      {"X11", "libx11-dev"}};
+      {"X11", "libx11-dev"},
+      {"MPI", "libopenmpi-dev"}};
   std::size_t at = 0;
   while ((at = cmake.find("find_package(", at)) != cmake.npos) {
     at += std::string_view("find_package(").size();
