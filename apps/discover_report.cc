@@ -358,6 +358,12 @@ class Writer {
                           numberText(f_.verdict.latentSizeBefore, 2),
                           numberText(f_.verdict.latentSizeAfter, 2),
                           fmt::format("≤ {}", f_.options.latentTolerance)});
+    const auto &before = f_.verdict.heldOutBefore, &after = f_.verdict.heldOutAfter;
+    if (before && after) {
+      table.rows.push_back({"mean square of the innovations of what was held out [1]",
+                            numberText(before->meanSquare, 3), numberText(after->meanSquare, 3),
+                            fmt::format("< {}", numberText(after->highest, 3))});
+    }
     table.rows.push_back({"adequate", word(a.adequate()), word(b.adequate()), ""});
     return table;
   }
