@@ -231,13 +231,19 @@ TEST(Adequacy, SeesAForceThatTheModelLacks) {
   EXPECT_TRUE(adequacy(likelihood, push, {}).adequate());
 }
 
-TEST(Discover, FindsTheForceOnALinearOscillator) {
-  const LinearDisagreement data = drawn(5, 2, 1.1);
+// What the engine is told of drawn().
+Options optionsOfDrawn() {
   Options options;
   options.outputDeviation = kOutput;
   options.latentScale = 1;
   options.latentTime = kTime;
   options.latentTolerance = 0.6;
+  return options;
+}
+
+TEST(Discover, FindsTheForceOnALinearOscillator) {
+  const LinearDisagreement data = drawn(5, 2, 1.1);
+  Options options = optionsOfDrawn();
   int calls = 0;
   options.progress = [&](const Progress& p) {
     EXPECT_GE(p.fraction, 0);
@@ -390,11 +396,7 @@ TEST(Discover, FindsATrialStrangeThatWasHeldOutAndIsOfAnotherModel) {
 
 TEST(Discover, StartsFromADraft) {
   const LinearDisagreement data = drawn(5, 2, 1.1);
-  Options options;
-  options.outputDeviation = kOutput;
-  options.latentScale = 1;
-  options.latentTime = kTime;
-  options.latentTolerance = 0.6;
+  const Options options = optionsOfDrawn();
   Draft draft;
   const Verdict first = run(data, options, &draft);
   ASSERT_NE(draft, nullptr);
@@ -511,12 +513,7 @@ class Fragile : public LinearDisagreement {
 };
 
 TEST(Discover, GoesOnWithoutACandidateThatCannotBeSimulated) {
-  Options options;
-  options.outputDeviation = kOutput;
-  options.latentScale = 1;
-  options.latentTime = kTime;
-  options.latentTolerance = 0.6;
-  const Verdict v = run(Fragile(drawn(5, 2, 1.1), false), options);
+  const Verdict v = run(Fragile(drawn(5, 2, 1.1), false), optionsOfDrawn());
   EXPECT_EQ(v.reached, Stage::finished);
   ASSERT_EQ(v.effects.size(), 1U);
   EXPECT_EQ(v.effects[0].candidate, 0U);
