@@ -24,7 +24,7 @@ const MusclePath* Arm::pathOf(const std::string& muscle) const {
 Arm::Arm(const Model& model, const ArmOptions& options, const Arm* like,
          const std::vector<std::string>& shaped)
     : skeleton_(model, options.skeleton), coordinateForces_(model, skeleton_) {
-  const std::vector<Posture> postures = samplePostures(skeleton_);
+  std::vector<Posture> postures;  // sampled for the first path that is compiled
   for (const Muscle& muscle : model.muscles) {
     if (!muscle.enabled) {
       notes_.push_back(fmt::format("muscle '{}' is switched off in the model", muscle.name));
@@ -38,6 +38,7 @@ Arm::Arm(const Model& model, const ArmOptions& options, const Arm* like,
       if (ready) {
         compiled = *ready;
       } else {
+        if (postures.empty()) postures = samplePostures(skeleton_);
         compiled.emplace(model, skeleton_, muscle, options.wrapAsCylinder, postures);
       }
     } catch (const UnsupportedWrap& e) {

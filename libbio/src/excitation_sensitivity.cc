@@ -3,11 +3,8 @@
 #include <algorithm>
 
 namespace bio::stepping {
-namespace {
 
 using Eigen::Index;
-
-}  // namespace
 
 ExcitationSensitivity::ExcitationSensitivity(const Arm& arm, const ParameterEffects& effects,
                                              const ExcitationSignal& trial,
