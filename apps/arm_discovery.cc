@@ -14,7 +14,7 @@
 #include "discover_search.h"
 #include "driven_trial.h"
 #include "follow_up.h"
-#include "foresee.h"
+#include "foreseen_words.h"
 #include "info/version.h"
 #include "input_rules.h"
 #include "interruption.h"
@@ -141,9 +141,9 @@ ArmDiscovery discoverInArm(const ArmDiscoveryRequest& request, const CommandCont
   const info::discover::Verdict& verdict = found.verdict;
   const DiscoverWording wording = wordingOf(data);
   warnOfOneTrial(summary, request.trials.size(), request.heldOut.size());
-  const std::vector<ForeseenExperiment> foreseen =
-      foresee(model, arm, trials.front(), options, data, verdict);
-  std::string next = foreseenSentence(foreseen, data, verdict);
+  const std::vector<bio::discover::ForeseenExperiment> foreseen =
+      bio::discover::foresee(model, arm, trials.front(), options, data, verdict);
+  std::string next = foreseenSentence(foreseen, data, verdict, found.options.evidence);
   if (next.empty()) next = followUp(data, verdict, followUpsOfArms());
   const DiscoverFindings findings{
       request.model, files, data,     wording,           found.options,

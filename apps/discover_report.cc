@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foreseen_words.h"
 #include "info/discover/hypothesis.h"
 #include "interval_drawing.h"
 #include "text.h"
@@ -326,7 +327,7 @@ class Writer {
     for (std::size_t i = 1; i < f_.verdict.rivals.size(); ++i)
       table.columns.push_back(fmt::format("{} from {} [nats]", rivalName(f_.data, f_.verdict, 0),
                                           rivalName(f_.data, f_.verdict, i)));
-    for (const ForeseenExperiment& one : f_.foreseen) {
+    for (const bio::discover::ForeseenExperiment& one : f_.foreseen) {
       std::vector<std::string> row{one.sentence};
       for (const double nats : one.nats) row.push_back(numberText(nats, 2));
       table.rows.push_back(std::move(row));

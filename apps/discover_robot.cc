@@ -161,7 +161,7 @@ class RobotSearch {
     DiscoverWording wording = wordingOf(*data_);
     wording.present = present;
     const std::string next = followUp(*data_, verdict, followUpsOfRobots());
-    const std::vector<ForeseenExperiment> foreseen;  // of arms only
+    const std::vector<bio::discover::ForeseenExperiment> foreseen;  // of arms only
     const std::string name = "the " + request_.system;
     const DiscoverFindings findings{
         name,    files, *data_,   wording,           found.options,

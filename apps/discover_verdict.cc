@@ -1,5 +1,6 @@
 #include "discover_verdict.h"
 
+#include "foreseen_words.h"
 #include "info/discover/hypothesis.h"
 
 namespace app {
@@ -140,7 +141,7 @@ ordered_json verdictJson(const DiscoverFindings& f) {
     json["undetectable_below"][candidates[one.candidate].id] = number(one.amplitude);
   }
   json["next_experiment"] = f.nextExperiment;
-  for (const ForeseenExperiment& one : f.foreseen) {
+  for (const bio::discover::ForeseenExperiment& one : f.foreseen) {
     ordered_json nats = ordered_json::object();
     for (std::size_t i = 0; i < one.nats.size(); ++i)
       nats[rivalName(f.data, verdict, i + 1)] = number(one.nats[i]);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "foresee.h"
+#include "bio/discover/foresee.h"
 #include "info/discover/discover.h"
 #include "summary.h"
 
@@ -42,7 +42,7 @@ struct DiscoverFindings {
   const info::discover::Options& options;
   const info::discover::Verdict& verdict;
   const std::string& nextExperiment;
-  const std::vector<ForeseenExperiment>& foreseen;
+  const std::vector<bio::discover::ForeseenExperiment>& foreseen;
   double wallSeconds;       ///< of the search
   double processorSeconds;  ///< of the search, which has one thread
 };

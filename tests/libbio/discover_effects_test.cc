@@ -12,7 +12,7 @@
 
 #include "bio/discover/add_effects.h"
 #include "bio/discover/elbow_disagreement.h"
-#include "bio/discover/planned.h"
+#include "support/cut_trial.h"
 #include "support/scratch_folder.h"
 #include "support/shipped_elbow.h"
 
@@ -21,24 +21,10 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
+using fixtures::cut;
 using fixtures::ShippedElbow;
 using info::discover::Candidate;
 using support::ScratchFolder;
-
-/// The beginning of a trial.
-Trial cut(Trial trial, double seconds) {
-  Index rows = 0;
-  while (rows < trial.times.size() && trial.times[rows] <= seconds + 1e-9) ++rows;
-  trial.times.conservativeResize(rows);
-  trial.excitations.conservativeResize(rows, Eigen::NoChange);
-  for (MeasuredMotion& motion : trial.measured) {
-    Index samples = 0;
-    while (samples < motion.times.size() && motion.times[samples] <= seconds + 1e-9) ++samples;
-    motion.times.conservativeResize(samples);
-    motion.values.conservativeResize(samples);
-  }
-  return trial;
-}
 
 struct Case {
   explicit Case(double seconds = 0.6, const std::string& model = "elbow8",
@@ -430,43 +416,6 @@ TEST(ElbowDisagreement, RefusesWhatItCannotUse) {
   options = {};
   options.simulation.integrator = Integrator::cvode;
   EXPECT_THROW(make("elbow_flexion", {elbow.trial}, options), std::invalid_argument);
-}
-
-TEST(PlannedExperiments, RepeatATrialWithWhatTheExperimenterKnows) {
-  const Case one;
-  const Coordinate& coordinate = one.data.widest().coordinate();
-  Trial trial = one.elbow.trial;
-  const auto planned = plannedExperiments(trial, coordinate);
-  ASSERT_GE(planned.size(), 4U);
-  EXPECT_TRUE(planned.front().known.empty() && planned.front().trial.applied.empty());
-  std::set<std::string> sentences;
-  int pushed = 0;
-  for (const PlannedExperiment& experiment : planned) {
-    EXPECT_TRUE(sentences.insert(experiment.sentence).second) << experiment.sentence;
-    EXPECT_EQ(experiment.trial.excitations, trial.excitations);
-    for (const auto& [quantity, change] : experiment.known) {
-      EXPECT_NO_THROW(one.data.widest().find(quantity)) << quantity;
-      EXPECT_GT(change, 0);
-    }
-    for (const AppliedForce& push : experiment.trial.applied) {
-      ++pushed;
-      EXPECT_EQ(push.coordinate, "elbow_flexion");
-      // as much up as down in turn, and nothing for most of the time
-      EXPECT_GT(push.values.maxCoeff(), 0.2);
-      EXPECT_NEAR(push.values.maxCoeff(), -push.values.minCoeff(), 1e-9);
-      EXPECT_GT((push.values.array() == 0).count(), push.values.size() / 2);
-      EXPECT_EQ(push.values[0], 0);
-    }
-  }
-  EXPECT_EQ(pushed, 3);
-  // what pushes already stays
-  trial.applied = {{"elbow_flexion", VectorXd::Constant(trial.times.size(), 0.7)}};
-  const auto both = plannedExperiments(trial, coordinate);
-  ASSERT_EQ(both.back().trial.applied.size(), 1U);
-  EXPECT_NEAR((both.back().trial.applied[0].values - planned.back().trial.applied[0].values)
-                  .cwiseAbs()
-                  .maxCoeff(),
-              0.7, 1e-12);
 }
 
 TEST(ElbowDisagreement, TellsDelayFromClockWhereSomethingPushes) {
