@@ -1,0 +1,270 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "info/discover/adequacy.h"
+#include "info/discover/localise.h"
+#include "info/discover/separation.h"
+#include "info/random_stream.h"
+#include "support/drawn_oscillator.h"
+
+namespace {
+
+using namespace info::discover;
+using Eigen::Index;
+using Eigen::VectorXd;
+using support::drawn;
+using support::kLatent;
+using support::kOutput;
+using support::kTime;
+
+// Whatever the nuisances are, scores of the map are N(0, 1) if nothing is missing.
+TEST(Localise, ScoresAreStandardNormalWhenNothingIsMissing) {
+  double sum = 0, squares = 0, count = 0;
+  int significant = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    info::RandomStream random(seed, 77);
+    const LinearDisagreement data = drawn(seed, 0, 1 + 0.2 * random.normal());
+    const Likelihood likelihood(data, {0, 1}, nominalValues(data), kTime);
+    const Fit fit = likelihood.fit(makeHypothesis(data, {}, {0, 1}), {kOutput, kLatent, kTime},
+                                   nominalValues(data));
+    const Localisation map = localise(likelihood, fit, fit, {0.5, 4, 1, 0.05});
+    for (const Score& s : map.times) {
+      sum += s.z;
+      squares += s.z * s.z;
+      ++count;
+      significant += s.significant;
+    }
+    const Adequacy tests = adequacy(likelihood, fit, {});
+    EXPECT_TRUE(tests.adequate()) << seed;
+  }
+  // 40 × about 34 scores, neighbours correlated
+  EXPECT_NEAR(sum / count, 0, 0.1);
+  EXPECT_NEAR(squares / count, 1, 0.12);
+  EXPECT_LT(significant, 20);
+}
+
+// Parameters that were fitted leave correlations in white noise; they must not count as missing.
+TEST(Adequacy, FindsWhiteNoiseWhiteThoughParametersWereFitted) {
+  double sum = 0;
+  int small = 0;
+  constexpr int kSets = 200;
+  for (std::uint64_t seed = 0; seed < kSets; ++seed) {
+    info::RandomStream random(seed, 78);
+    LinearDisagreement data(5, 40);
+    VectorXd truth = nominalValues(data);
+    truth[0] += 0.2 * random.normal();
+    for (Index i = 4; i < truth.size(); ++i) truth[i] = 0.3 * random.normal();
+    data.draw(seed, truth, 0.01 * kOutput, 0, kTime);
+    const std::vector<int> trials = {0, 1, 2, 3, 4};
+    const Likelihood likelihood(data, trials, nominalValues(data), kTime);
+    const Fit fit = likelihood.fit(makeHypothesis(data, {}, trials), {0.01 * kOutput, 0, kTime},
+                                   nominalValues(data));
+    AdequacyOptions options;
+    options.lags = 8;
+    const double probability = adequacy(likelihood, fit, options).ljungBoxProbability;
+    sum += probability;
+    small += probability < 0.05;
+  }
+  EXPECT_NEAR(sum / kSets, 0.5, 3 * 0.29 / std::sqrt(kSets));
+  EXPECT_LT(small, 22);
+}
+
+TEST(Adequacy, SeesAForceThatTheModelLacks) {
+  const LinearDisagreement data = drawn(1, 3, 1);
+  const Likelihood likelihood(data, {0, 1}, nominalValues(data), kTime);
+  const Fit base = likelihood.fit(makeHypothesis(data, {}, {0, 1}), {kOutput, kLatent, kTime},
+                                  nominalValues(data));
+  EXPECT_FALSE(adequacy(likelihood, base, {}).adequate());
+  const Fit push = likelihood.fit(makeHypothesis(data, {0}, {0, 1}), {kOutput, kLatent, kTime},
+                                  nominalValues(data));
+  EXPECT_TRUE(adequacy(likelihood, push, {}).adequate());
+}
+
+Eigen::MatrixXd correlation(Index n) {
+  Eigen::MatrixXd K(n, n);
+  for (Index i = 0; i < n; ++i)
+    for (Index j = 0; j < n; ++j)
+      K(i, j) = latentCorrelation(LinearDisagreement::kStep * std::abs(static_cast<double>(i - j)),
+                                  kTime, 0);
+  return K;
+}
+
+// The evidence as it is defined: y ~ N(y0, S) against N(y0, S + s²DKDᵀ) for the best s, over all
+// samples of both trials at once.
+double fieldEvidence(const LinearDisagreement& data, const Fit& fit) {
+  const Index n = data.measured(0).size();
+  Eigen::MatrixXd S = Eigen::MatrixXd::Zero(2 * n, 2 * n), D = S;
+  VectorXd e(2 * n), q(2 * n);
+  for (int t = 0; t < 2; ++t) {
+    const auto p = data.predict(t, fit.values, {}, {}, true);
+    D.block(t * n, t * n, n, n) = p.latentGamma;
+    e.segment(t * n, n) = data.measured(t) - data.outputs(t, nominalValues(data), {});
+    q.segment(t * n, n) = data.outputs(t, fit.values,
+                                       kLatent * Eigen::MatrixXd(correlation(n).llt().matrixL()) *
+                                           fit.eta[static_cast<std::size_t>(t)]);
+    S.block(t * n, t * n, n, n) =
+        kLatent * kLatent * p.latentGamma * correlation(n) * p.latentGamma.transpose();
+  }
+  S.diagonal().array() += kOutput * kOutput;
+  for (const FreeQuantity& free : fit.hypothesis.free) {
+    VectorXd column(2 * n);
+    for (int t = 0; t < 2; ++t)
+      column.segment(t * n, n) = data.predict(t, fit.values, {}, {free.quantity}, false).gamma;
+    S += free.deviation * free.deviation * column * column.transpose();
+  }
+  q.array() -= q.mean();
+  q /= std::sqrt(q.squaredNorm() / static_cast<double>(q.size()));
+  Eigen::MatrixXd K(2 * n, 2 * n);
+  for (Index i = 0; i < 2 * n; ++i)
+    for (Index j = 0; j < 2 * n; ++j) K(i, j) = std::exp(-0.5 * (q[i] - q[j]) * (q[i] - q[j]));
+  const Eigen::MatrixXd field = D * K * D.transpose();
+  const auto logDensity = [&](double variance) {
+    const Eigen::LLT<Eigen::MatrixXd> factor(S + variance * field);
+    return -0.5 * factor.matrixL().solve(e).squaredNorm() -
+           Eigen::MatrixXd(factor.matrixL()).diagonal().array().log().sum();
+  };
+  double best = -HUGE_VAL;
+  for (double variance = 1e-5; variance < 1e4; variance *= 1.5)
+    best = std::max(best, logDensity(variance) - logDensity(0));
+  return best;
+}
+
+// As drawn(), with a force of its own.
+LinearDisagreement driven(std::uint64_t seed,
+                          const std::function<double(double x, Index k)>& force) {
+  LinearDisagreement data = drawn(seed, 0, 1);
+  for (int t = 0; t < 2; ++t) {
+    VectorXd d = VectorXd::Zero(data.measured(t).size());
+    for (Index k = 0; k < d.size(); ++k)  // y_k depends on forces before it only
+      d[k] = force(data.outputs(t, nominalValues(data), d)[k], k);
+    data.measure(t, data.measured(t) + data.outputs(t, nominalValues(data), d) -
+                        data.outputs(t, nominalValues(data), {}));
+  }
+  return data;
+}
+
+RemainderEvidence remainderOf(const LinearDisagreement& data, Fit* fitted = nullptr) {
+  const Likelihood likelihood(data, {0, 1}, nominalValues(data), kTime);
+  const Fit fit = likelihood.fit(makeHypothesis(data, {}, {0, 1}), {kOutput, kLatent, kTime},
+                                 nominalValues(data));
+  if (fitted != nullptr) *fitted = fit;
+  return remainderEvidence(likelihood, fit);
+}
+
+TEST(Remainder, HasTheEvidenceOfAGaussianProcessOverTheState) {
+  for (const double size : {2.0, 4.0, 8.0}) {
+    const LinearDisagreement data =
+        driven(11, [&](double x, Index) { return size * std::tanh(4 * x); });
+    Fit fit;
+    const double found = remainderOf(data, &fit).ofState + std::log(5.0);
+    const double exact = fieldEvidence(data, fit);
+    EXPECT_GT(exact, 0.5);
+    // five sizes instead of many
+    EXPECT_LT(found, exact + 0.05) << size;
+    EXPECT_GT(found, exact - 1) << size;
+  }
+}
+
+TEST(Remainder, IsSeldomFoundWhereThereIsNone) {
+  int ofState = 0, ofInputs = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    const RemainderEvidence evidence = remainderOf(drawn(seed, 0, 1));
+    ofState += evidence.ofState > 2;
+    ofInputs += evidence.ofInputs > 2;
+  }
+  // Bayes factors of e² by chance: less than e⁻² of the time
+  EXPECT_LE(ofState, 3);
+  EXPECT_LE(ofInputs, 3);
+}
+
+TEST(Remainder, OfAnInputThatComesLateFollowsTheInputs) {
+  const LinearDisagreement data = driven(12, [&](double, Index k) {
+    return k < 4 ? 0.0 : 2.5 * std::sin(0.3 * static_cast<double>(k - 4));
+  });
+  EXPECT_GT(remainderOf(data).ofInputs, 5);
+}
+
+// What the outputs of a planned trial are expected to be under a hypothesis that was fitted: mean
+// and covariance, written out for the oscillator.
+struct Expected {
+  VectorXd mean;
+  Eigen::MatrixXd covariance;
+};
+Expected expectedOutputs(const LinearDisagreement& planned, const Fit& fit) {
+  Expected expected;
+  VectorXd values = nominalValues(planned);
+  values.head(4) = fit.values.head(4);
+  expected.mean = planned.outputs(0, values, {});
+  const Index n = expected.mean.size();
+  expected.covariance = kOutput * kOutput * Eigen::MatrixXd::Identity(n, n);
+  for (std::size_t start : {4, 5}) {
+    const VectorXd column = 0.3 * planned.predict(0, values, {}, {start}, false).gamma;
+    expected.covariance += column * column.transpose();
+  }
+  for (std::size_t i = 0; i < fit.hypothesis.free.size(); ++i)
+    for (std::size_t j = 0; j < fit.hypothesis.free.size(); ++j) {
+      const FreeQuantity &a = fit.hypothesis.free[i], &b = fit.hypothesis.free[j];
+      if (a.quantity >= 4 || b.quantity >= 4) continue;
+      expected.covariance += fit.covariance(static_cast<Index>(i), static_cast<Index>(j)) *
+                             a.deviation * b.deviation *
+                             planned.predict(0, values, {}, {a.quantity}, false).gamma *
+                             planned.predict(0, values, {}, {b.quantity}, false).gamma.transpose();
+    }
+  return expected;
+}
+
+TEST(ExpectedSeparation, IsWhatIsLeftOfTheDifferenceAndBelowTheDivergence) {
+  LinearDisagreement data(2, 30);
+  VectorXd truth = nominalValues(data);
+  truth[1] = 1;
+  data.draw(3, truth, kOutput, 0, kTime);
+  const Likelihood likelihood(data, {0, 1}, nominalValues(data), kTime);
+  const auto fitted = [&](const std::vector<std::size_t>& effects) {
+    return likelihood.fit(makeHypothesis(data, effects, {0, 1}), {kOutput, 0, kTime},
+                          nominalValues(data), {}, {50, 1e-9});
+  };
+  const Fit push = fitted({0}), base = fitted({});
+  const LinearDisagreement planned(1, 50);
+  const VectorXd nothing = VectorXd::Zero(static_cast<Index>(planned.quantities().size()));
+  const double found = expectedSeparation(planned, nothing, data, push, base);
+  const Expected a = expectedOutputs(planned, push), b = expectedOutputs(planned, base);
+  const VectorXd difference = a.mean - b.mean;
+  // noise and start are common, so they are in the sum once
+  Eigen::MatrixXd S = a.covariance + b.covariance;
+  S -= expectedOutputs(planned, likelihood.fit(startsOnly(data, {0, 1}), {kOutput, 0, kTime},
+                                               nominalValues(data)))
+           .covariance;
+  EXPECT_NEAR(found, 0.5 * difference.dot(S.llt().solve(difference)), 1e-6 * found);
+  EXPECT_GT(found, 5);
+  // Kullback and Leibler's divergence, the expected log Bayes factor of linear models
+  const Eigen::MatrixXd ratio = b.covariance.llt().solve(a.covariance);
+  const double divergence =
+      0.5 * (difference.dot(b.covariance.llt().solve(difference)) + ratio.trace() -
+             static_cast<double>(difference.size()) - std::log(ratio.determinant()));
+  EXPECT_LT(found, divergence);
+  EXPECT_GT(found, 0.2 * divergence);
+  EXPECT_NEAR(expectedSeparation(planned, nothing, data, push, push), 0, 1e-12);
+}
+
+TEST(ExpectedSeparation, ChangesWithWhatTheExperimenterChanges) {
+  const LinearDisagreement data = drawn(5, 2, 1.1);
+  const Likelihood likelihood(data, {0, 1}, nominalValues(data), kTime);
+  const auto fitted = [&](std::size_t effect) {
+    return likelihood.fit(makeHypothesis(data, {effect}, {0, 1}), {kOutput, kLatent, kTime},
+                          nominalValues(data));
+  };
+  const Fit push = fitted(0), bias = fitted(2);
+  const LinearDisagreement planned(1, 50), longer(1, 100);
+  VectorXd known = VectorXd::Zero(static_cast<Index>(planned.quantities().size()));
+  const double one = expectedSeparation(planned, known, data, push, bias);
+  EXPECT_GT(expectedSeparation(longer, known, data, push, bias), one);
+  // a known change that both have moves both alike: the model is linear
+  known[1] = 3;
+  EXPECT_NEAR(expectedSeparation(planned, known, data, push, bias), one, 1e-6 * one);
+  EXPECT_THROW(expectedSeparation(planned, VectorXd::Zero(2), data, push, bias),
+               std::invalid_argument);
+}
+
+}  // namespace

@@ -1,0 +1,180 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+
+#include "info/discover/shorter_steps.h"
+#include "support/drawn_oscillator.h"
+
+namespace {
+
+using namespace info::discover;
+using Eigen::Index;
+using Eigen::VectorXd;
+using support::drawn;
+using support::kLatent;
+using support::kOutput;
+using support::kTime;
+
+// What the engine is told of drawn().
+Options optionsOfDrawn() {
+  Options options;
+  options.outputDeviation = kOutput;
+  options.latentScale = 1;
+  options.latentTime = kTime;
+  options.latentTolerance = 0.6;
+  return options;
+}
+
+TEST(Discover, FindsTheForceOnALinearOscillator) {
+  const LinearDisagreement data = drawn(5, 2, 1.1);
+  Options options = optionsOfDrawn();
+  int calls = 0;
+  options.progress = [&](const Progress& p) {
+    EXPECT_GE(p.fraction, 0);
+    EXPECT_LE(p.fraction, 1);
+    return ++calls > 0;
+  };
+  const Verdict v = run(data, options);
+  EXPECT_EQ(v.reached, Stage::finished);
+  EXPECT_GT(calls, 5);
+  ASSERT_EQ(v.effects.size(), 1U);
+  // push and shove are the same force; the one-sided prior is worth log 2
+  EXPECT_EQ(v.finding, Finding::ambiguous);
+  EXPECT_NEAR(v.effects[0].estimates[0].value, 2, 4 * v.effects[0].estimates[0].deviation);
+  EXPECT_NEAR(v.latentSizeAfter, kLatent, 0.1);
+
+  // the band about the simulation: the model is linear, so a deviation more moves it by dy/dA·σ_A
+  const Estimate& push = v.effects[0].estimates[0];
+  Eigen::VectorXd values = v.values;
+  values[static_cast<Eigen::Index>(push.quantity)] += push.deviation;
+  const Eigen::VectorXd moved = data.outputs(0, values, {}) - data.outputs(0, v.values, {});
+  const Eigen::VectorXd expected = (moved.array().square() + kOutput * kOutput).sqrt();
+  EXPECT_NEAR((predictedDeviation(data, v, 0) - expected).cwiseAbs().maxCoeff(), 0, 1e-12);
+  EXPECT_GT(moved.cwiseAbs().maxCoeff(), 0.1 * kOutput);
+}
+
+TEST(Discover, FindsATrialStrangeThatWasHeldOutAndIsOfAnotherModel) {
+  LinearDisagreement data(3, 80);
+  VectorXd truth = nominalValues(data);
+  data.draw(4, truth, kOutput, 0, kTime);
+  Options options;
+  options.outputDeviation = kOutput;
+  options.latentScale = 1;
+  options.latentTime = kTime;
+  options.heldOut = {2};
+  const Verdict same = run(data, options);
+  EXPECT_EQ(same.finding, Finding::none);
+  EXPECT_NEAR(same.heldOutBefore.value().meanSquare, 1, 0.5);
+  truth[1] = 1;
+  LinearDisagreement other(3, 80);
+  other.draw(4, truth, kOutput, 0, kTime);
+  data.measure(2, other.measured(2));
+  const Verdict strange = run(data, options);
+  EXPECT_EQ(strange.finding, Finding::unknown);
+  EXPECT_GT(strange.heldOutBefore.value().meanSquare, strange.heldOutBefore->highest);
+}
+
+TEST(Discover, StartsFromADraft) {
+  const LinearDisagreement data = drawn(5, 2, 1.1);
+  const Options options = optionsOfDrawn();
+  Draft draft;
+  const Verdict first = run(data, options, &draft);
+  ASSERT_NE(draft, nullptr);
+  const Verdict again = run(data, options, &draft);
+  EXPECT_LT(again.fits, first.fits);
+  EXPECT_EQ(again.finding, first.finding);
+  ASSERT_EQ(again.effects.size(), 1U);
+  EXPECT_NEAR(again.effects[0].estimates[0].value, first.effects[0].estimates[0].value,
+              0.1 * first.effects[0].estimates[0].deviation);
+  EXPECT_NEAR(again.effects[0].logBayesFactor, first.effects[0].logBayesFactor, 0.2);
+}
+
+// As drawn(), but what is pushed cannot be simulated, or nothing can.
+class Fragile : public LinearDisagreement {
+ public:
+  Fragile(LinearDisagreement data, bool always)
+      : LinearDisagreement(std::move(data)), always_(always) {}
+  Prediction predict(int trial, const VectorXd& values, const VectorXd& latent,
+                     const std::vector<std::size_t>& wanted, bool latentToo) const override {
+    Prediction p = LinearDisagreement::predict(trial, values, latent, wanted, latentToo);
+    if (fails(values)) p.outputs.setConstant(std::nan(""));
+    return p;
+  }
+  VectorXd outputs(int trial, const VectorXd& values, const VectorXd& latent) const override {
+    VectorXd y = LinearDisagreement::outputs(trial, values, latent);
+    if (fails(values)) y.setConstant(std::nan(""));
+    return y;
+  }
+
+ private:
+  bool fails(const VectorXd& values) const { return always_ || values[2] != 0; }
+  bool always_;
+};
+
+TEST(Discover, GoesOnWithoutACandidateThatCannotBeSimulated) {
+  const Verdict v = run(Fragile(drawn(5, 2, 1.1), false), optionsOfDrawn());
+  EXPECT_EQ(v.reached, Stage::finished);
+  ASSERT_EQ(v.effects.size(), 1U);
+  EXPECT_EQ(v.effects[0].candidate, 0U);
+  for (const Finalist& f : v.finalists) EXPECT_TRUE(std::isfinite(f.logEvidence));
+}
+
+TEST(Discover, SaysThatTheModelCannotBeSimulated) {
+  Options options;
+  options.outputDeviation = kOutput;
+  EXPECT_THROW(run(Fragile(drawn(5, 2, 1.1), true), options), std::domain_error);
+}
+
+TEST(Discover, StopsWhenToldTo) {
+  const LinearDisagreement data = drawn(5, 2, 1.1);
+  Options options;
+  options.outputDeviation = kOutput;
+  options.progress = [](const Progress& p) { return p.stage < Stage::race; };
+  const Verdict v = run(data, options);
+  EXPECT_EQ(v.reached, Stage::localise);
+  EXPECT_EQ(v.base.size(), static_cast<Index>(data.quantities().size()));
+}
+
+// As drawn(), with a simulation that changes by `error` deviations of σ_y at half the step.
+class Coarse : public LinearDisagreement {
+ public:
+  Coarse(LinearDisagreement data, double error)
+      : LinearDisagreement(std::move(data)), error_(error) {}
+  VectorXd refinedOutputs(int trial, const VectorXd& values) const override {
+    return outputs(trial, values, {}).array() + error_ * kOutput;
+  }
+
+ private:
+  double error_;
+};
+
+TEST(RunAtShorterSteps, HalvesTheStepUntilItNoLongerMattersOrIsTooShort) {
+  std::optional<Coarse> data;
+  std::vector<double> steps;
+  // of second order: 0.4 deviations at 0.02, 0.1 at 0.01
+  const auto attempt = [&](double step) {
+    steps.push_back(step);
+    data.emplace(drawn(5, 2, 1.1), 1000 * step * step);
+    Options options;
+    options.outputDeviation = kOutput;
+    return Attempt{*data, options};
+  };
+  const SteppedVerdict found = runAtShorterSteps(attempt, 0.04, 0.003);
+  EXPECT_EQ(steps, (std::vector<double>{0.04, 0.02, 0.01}));
+  EXPECT_EQ(found.step, 0.01);
+  EXPECT_NE(found.verdict.finding, Finding::numerical);
+  EXPECT_NEAR(found.verdict.numericalError, 0.1, 1e-9);
+  EXPECT_EQ(found.options.outputDeviation, kOutput);
+
+  steps.clear();
+  const SteppedVerdict tooShort = runAtShorterSteps(attempt, 0.04, 0.03);
+  EXPECT_EQ(steps, (std::vector<double>{0.04, 0.02}));
+  EXPECT_EQ(tooShort.verdict.finding, Finding::numerical);
+
+  steps.clear();
+  EXPECT_EQ(runAtShorterSteps(attempt, 0.04, HUGE_VAL).verdict.finding, Finding::numerical);
+  EXPECT_EQ(steps.size(), 1U);
+}
+
+}  // namespace
