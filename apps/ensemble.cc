@@ -138,12 +138,12 @@ class Ensemble : public Command {
     }
     std::vector<std::string> files = {"draws.csv", "band.csv"};
     if (sobol_) files.push_back("sobol.csv");
-    OutputFolder folder(context, files);
+    OutputFolder folder(mayGoOn(context), files);
     Summary summary(context);
     const auto made = prepare(summary);
     const EnsembleStudy& study = *made;
     resultsMustNotBeInputs(summary, folder, files);
-    RowFile file(folder.path("unfinished.csv"), settings(study, summary, context.seed),
+    RowFile file(folder.path(unfinishedRows), settings(study, summary, context.seed),
                  study.table->columns(), context.force);
     const auto begin = std::chrono::steady_clock::now();
     const std::size_t computed = computeMissing(*crew, threads, file, total(study),

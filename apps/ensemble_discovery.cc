@@ -149,10 +149,10 @@ ExitStatus discoverInSets(const ArmDiscoveryRequest& each, const fs::path& folde
     crew.work({{}, row, {}}, threads);
     return ExitStatus::done;
   }
-  OutputFolder results(context, {"verdicts.csv"});
+  OutputFolder results(mayGoOn(context), {"verdicts.csv"});
   Summary summary(context);
   checkSets(each, sets, summary);
-  RowFile file(results.path("unfinished.csv"), discoverySettings(each, summary), verdictColumns(),
+  RowFile file(results.path(unfinishedRows), discoverySettings(each, summary), verdictColumns(),
                context.force);
   const auto begin = std::chrono::steady_clock::now();
   const std::size_t computed =

@@ -2,10 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "interruption.h"
 #include "progress_bar.h"
 
 namespace app {
+
+CommandContext mayGoOn(CommandContext context) {
+  if (context.out && std::filesystem::exists(*context.out / unfinishedRows)) context.force = true;
+  return context;
+}
 
 std::size_t computeMissing(Crew& crew, int threads, RowFile& file, std::uint64_t total,
                            const std::function<std::string(std::uint64_t)>& row,

@@ -8,6 +8,14 @@
 
 namespace app {
 
+/// Where rows are kept in the folder of results until all are there.
+inline constexpr const char* unfinishedRows = "unfinished.csv";
+
+/// How the folder of results is to be opened: results beside unfinished rows are of a run that was
+/// killed while it gave them their names, so they may be overwritten. Whether those rows are of the
+/// same settings is RowFile's to say, before anything is written.
+CommandContext mayGoOn(CommandContext context);
+
 /// Has a crew compute the rows 0 … total − 1 that a file lacks, with a bar; every row is in the
 /// file as soon as it is finished. After Ctrl-C it says how to go on.
 /// @param things  what a row stands for, "simulations"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -56,6 +57,24 @@ nlohmann::json summaryIn(const std::string& folder) {
 /// The result files that say nothing of when and how they were made.
 std::string resultsIn(const std::string& folder) {
   return contentOf(folder + "/draws.csv") + contentOf(folder + "/band.csv");
+}
+
+/// All results have their names, and the rows that the folder was made of are gone.
+bool isDone(const std::string& folder) {
+  return std::filesystem::exists(folder + "/summary.json") &&
+         !std::filesystem::exists(folder + "/unfinished.csv");
+}
+
+/// Starts `ensemble` and ends it by a signal, later and later until it has finished rows.
+ProgramResult endedAtWork(const std::string& out, const Words& work, const std::string& signal) {
+  ProgramResult result;
+  for (double limit = 0.2; limit < 60; limit *= 1.6) {
+    // --foreground: one signal, not another one for the whole group, which would end it at once
+    result =
+        runEnsemble(out, work, {"timeout", "--foreground", "-s", signal, std::to_string(limit)});
+    if (linesOf(contentOf(out + "/unfinished.csv")).size() > 4) break;
+  }
+  return result;
 }
 
 TEST(EnsembleCommand, GivesARowForEveryDrawWithItsParametersAndOutputs) {
@@ -136,6 +155,7 @@ TEST(EnsembleCommand, GoesOnAfterAKillAndGivesTheSameBytes) {
     last = runEnsemble(cut, with(work, {"--threads", "1"}), {"timeout", "-s", "KILL", limit});
     if (last.status != 137) break;
     ++kills;
+    if (isDone(cut)) break;  // killed as it was about to end
     // a kill in the middle of a row: the file ends anywhere
     const std::string growing = cut + "/unfinished.csv";
     const std::string content = contentOf(growing);
@@ -143,7 +163,7 @@ TEST(EnsembleCommand, GoesOnAfterAKillAndGivesTheSameBytes) {
       std::filesystem::resize_file(growing, content.size() - 11);
     }
   }
-  ASSERT_EQ(last.status, 0) << last.err;
+  ASSERT_TRUE(isDone(cut)) << last.err;
   EXPECT_GT(kills, 0);
   EXPECT_EQ(resultsIn(cut), resultsIn(whole));
   EXPECT_LT(summaryIn(cut)["computed"].get<int>(), 60);
@@ -154,7 +174,7 @@ TEST(EnsembleCommand, RefusesToGoOnWithOtherSettings) {
   const ScratchFolder scratch;
   const std::string out = (scratch / "out").string();
   const Words many = {"--draws", "100000", "--parameters", "hand.mass"};
-  ASSERT_EQ(runEnsemble(out, many, {"timeout", "-s", "KILL", "0.5"}).status, 137);
+  ASSERT_EQ(endedAtWork(out, many, "KILL").status, 137);
   const std::string before = contentOf(out + "/unfinished.csv");
   for (const auto& [more, words] : std::vector<std::pair<Words, std::string>>{
            {{"--seed", "2"}, "seed is 1 there, 2 here"},
@@ -173,11 +193,35 @@ TEST(EnsembleCommand, RefusesToGoOnWithOtherSettings) {
   EXPECT_EQ(summaryIn(out)["computed"], 0);
 }
 
+TEST(EnsembleCommand, GoesOnAfterAKillWhileItNamesTheResults) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "out").string(), growing = out + "/unfinished.csv";
+  const Words many = {"--draws", "100000", "--parameters", "hand.mass"};
+  const Words few = {"--draws", "3", "--parameters", "hand.mass"};
+  ASSERT_EQ(endedAtWork(out, many, "KILL").status, 137);
+  const std::string rows = contentOf(growing);
+  ASSERT_EQ(runEnsemble(out, few).status, 0);
+  const std::string results = resultsIn(out);
+  // some have their names, and the rows are there still
+  std::ofstream(growing) << rows;
+  std::filesystem::remove(out + "/summary.json");
+  const ProgramResult other = runEnsemble(out, with(few, {"--seed", "2"}));
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, HasSubstr("seed is 1 there, 2 here"));
+  EXPECT_EQ(resultsIn(out), results);
+  const ProgramResult again = runEnsemble(out, few);
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(resultsIn(out), results);
+  EXPECT_FALSE(std::filesystem::exists(growing));
+  // without them nothing is overwritten
+  EXPECT_EQ(runEnsemble(out, few).status, 2);
+}
+
 TEST(EnsembleCommand, CtrlCKeepsWhatIsDoneAndSaysHowToGoOn) {
   const ScratchFolder scratch;
   const std::string out = (scratch / "out").string();
   const Words many = {"--draws", "100000", "--parameters", "hand.mass"};
-  const ProgramResult result = runEnsemble(out, many, {"timeout", "-s", "INT", "0.5"});
+  const ProgramResult result = endedAtWork(out, many, "INT");
   EXPECT_THAT(result.err, HasSubstr("the same command goes on from there"));
   EXPECT_THAT(result.err, HasSubstr("interrupted; finished parts are in " + out));
   EXPECT_GT(linesOf(contentOf(out + "/unfinished.csv")).size(), 2u);
@@ -278,12 +322,12 @@ TEST(EnsembleCommand, DiscoveryGoesOnAfterAKillAndLooksAtNoSetTwice) {
   for (int i = 0; i < 60; ++i) {
     last = discoverSets(scratch, "cut", {"--threads", "1"},
                         {"timeout", "-s", "KILL", std::to_string(0.25 * std::pow(1.6, i))});
-    if (last.status != 137) break;
+    if (last.status != 137 || isDone((scratch / "cut").string())) break;
     const std::string growing = contentOf(scratch / "cut/unfinished.csv");
     EXPECT_TRUE(growing.starts_with(before));
     before = growing;
   }
-  ASSERT_EQ(last.status, 0) << last.err;
+  ASSERT_TRUE(isDone((scratch / "cut").string())) << last.err;
   EXPECT_EQ(contentOf(scratch / "cut/verdicts.csv"), contentOf(scratch / "whole/verdicts.csv"));
   const auto rows = linesOf(before).size();
   EXPECT_EQ(summaryIn((scratch / "cut").string())["computed"], 3 - (rows < 2 ? 0 : rows - 2));
