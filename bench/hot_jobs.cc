@@ -1,10 +1,13 @@
 #include "hot_jobs.h"
 
+#include <atomic>
 #include <cmath>
-#include <numeric>
-#include <random>
 #include <stdexcept>
-#include <thread>
+
+#include "bio/ensemble.h"
+#include "bio/simulation_names.h"
+#include "info/monte_carlo.h"
+#include "info/random_stream.h"
 
 namespace bio::bench {
 
@@ -100,28 +103,16 @@ int HotJobs::ensemble(int count, int threads) const {
   const auto drawn = elbow_.catalogue.select(
       {"*.max_isometric_force", "*.optimal_fiber_length", "*.tendon_slack_length"});
   const Eigen::VectorXd nominal = elbow_.catalogue.values(drawn);
-  std::vector<int> completed(static_cast<std::size_t>(threads), 0);
-  const auto work = [&](int thread) {
-    std::mt19937_64 random(static_cast<unsigned>(thread));
-    std::normal_distribution<double> normal;
-    int reached = 0;
-    for (int i = thread; i < count; i += threads) {
-      Eigen::VectorXd values = nominal;
-      for (double& value : values) value *= std::exp(0.01 * normal(random));
-      const auto setting = elbow_.catalogue.at(drawn, values);
-      try {
-        const Arm arm(setting.model, fixtures::ShippedElbow::options());
-        const Trajectory motion = simulateSetting(arm, setting, elbow_.excitation, options());
-        if (motion.outcome == Outcome::completed) ++reached;
-      } catch (const NoStaticEquilibrium&) {
-      }
-    }
-    completed[static_cast<std::size_t>(thread)] = reached;
-  };
-  std::vector<std::thread> workers;
-  for (int thread = 0; thread < threads; ++thread) workers.emplace_back(work, thread);
-  for (std::thread& worker : workers) worker.join();
-  return std::accumulate(completed.begin(), completed.end(), 0);
+  const ArmEnsemble ensemble(elbow_.catalogue, fixtures::ShippedElbow::options(), elbow_.excitation,
+                             "elbow_flexion", std::nullopt, {}, drawn, options());
+  std::atomic<int> completed = 0;
+  info::parallelFor(count, threads, [&](int i) {
+    info::RandomStream random(1, static_cast<std::uint64_t>(i));
+    Eigen::VectorXd values = nominal;
+    for (double& value : values) value *= std::exp(0.01 * random.normal());
+    if (ensemble.run(values).outcome == name(Outcome::completed)) ++completed;
+  });
+  return completed;
 }
 
 }  // namespace bio::bench

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <numbers>
 #include <string>
 
 #include "hot_jobs.h"
@@ -44,7 +45,8 @@ void row(const std::string& work, const Times& t, double simulation, const std::
 
 /// Largest and RMS difference of the elbow's angle from the converged motion [deg].
 std::pair<double, double> error(const bio::Trajectory& motion, const bio::Trajectory& converged) {
-  const Eigen::VectorXd off = (motion.q - converged.q).row(0).transpose() * (180 / M_PI);
+  const Eigen::VectorXd off =
+      (motion.q - converged.q).row(0).transpose() * (180 / std::numbers::pi);
   return {off.cwiseAbs().maxCoeff(), std::sqrt(off.squaredNorm() / double(off.size()))};
 }
 
