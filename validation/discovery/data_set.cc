@@ -147,10 +147,15 @@ DataSet makeDataSet(const ElbowNumbers& nominal, const DataSetPlan& plan) {
   Truth base;
   base.numbers = nominal;
   RandomNumbers person(plan.seed, 0), hiding(plan.seed, 1);
-  const auto nuisances = drawNuisances(base, person, plan.nuisances);
+  const std::vector<std::string> chosen = chosenEffects(plan);
+  std::vector<std::string> replaced;
+  for (const std::string& id : chosen) {
+    if (const std::string& own = hiddenEffect(id).inPlaceOf; !own.empty()) replaced.push_back(own);
+  }
+  const auto nuisances = drawNuisances(base, person, plan.nuisances, replaced);
   Truth truth = base;
   Json effects = Json::array();
-  for (const std::string& id : chosenEffects(plan)) {
+  for (const std::string& id : chosen) {
     const EffectRow& row = hiddenEffect(id);
     row.apply(truth, row.amplitude(plan.size), hiding);
     effects.push_back(describe(row, row.amplitude(plan.size)));

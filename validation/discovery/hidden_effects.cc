@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -45,7 +46,12 @@ void holdMass(Truth& truth, double mass) {
   truth.numbers.forearm.push_back({"payload", mass, truth.numbers.hand, Eigen::Matrix3d::Zero()});
 }
 
-using Names = std::vector<std::string>;
+// "TRI*.max_isometric_force": any text where the star stands.
+bool matches(const std::string& pattern, const std::string& name) {
+  const std::size_t star = std::min(pattern.find('*'), pattern.size());
+  if (star == pattern.size()) return pattern == name;
+  return name.starts_with(pattern.substr(0, star)) && name.ends_with(pattern.substr(star + 1));
+}
 
 std::vector<EffectRow> makeTable() {
   const std::string s = "structure", in = "input", g = "geometry", se = "sensor", p = "parameter";
@@ -251,10 +257,11 @@ std::vector<EffectRow> makeTable() {
        "both time constants of every muscle × (1 + a)",
        "change",
        "",
-       0.8,
+       1.0,
        true,
        {},
-       [](Truth& truth, double a, RandomNumbers&) { slowActivation(truth, 1 + a); }});
+       [](Truth& truth, double a, RandomNumbers&) { slowActivation(truth, 1 + a); },
+       "activation.time"});
   add({"Fmax_TRI",
        "strength of the triceps",
        p,
@@ -267,7 +274,8 @@ std::vector<EffectRow> makeTable() {
        {"gain_TRI"},
        [](Truth& truth, double a, RandomNumbers&) {
          scale<&HillMuscle::maxForce>(truth, "TRI", a);
-       }});
+       },
+       "TRI*.max_isometric_force"});
   add({"Fmax_BIC",
        "strength of the biceps",
        p,
@@ -280,7 +288,8 @@ std::vector<EffectRow> makeTable() {
        {"gain_BIC"},
        [](Truth& truth, double a, RandomNumbers&) {
          scale<&HillMuscle::maxForce>(truth, "BIC", a);
-       }});
+       },
+       "BIC*.max_isometric_force"});
   add({"Fmax_BRA",
        "strength of the brachialis",
        p,
@@ -293,7 +302,8 @@ std::vector<EffectRow> makeTable() {
        {"gain_BRA"},
        [](Truth& truth, double a, RandomNumbers&) {
          scale<&HillMuscle::maxForce>(truth, "BRA", a);
-       }});
+       },
+       "BRA*.max_isometric_force"});
   add({"lopt_BRA",
        "optimal fibre length of the brachialis",
        p,
@@ -306,7 +316,8 @@ std::vector<EffectRow> makeTable() {
        {},
        [](Truth& truth, double a, RandomNumbers&) {
          scale<&HillMuscle::fibreLength>(truth, "BRA", a);
-       }});
+       },
+       "BRA*.optimal_fiber_length"});
   add({"lslack_TRI",
        "tendon slack length of the triceps",
        p,
@@ -314,12 +325,13 @@ std::vector<EffectRow> makeTable() {
        "ℓs of the three heads × (1 + a)",
        "change",
        "",
-       0.03,
+       0.036,
        true,
        {},
        [](Truth& truth, double a, RandomNumbers&) {
          scale<&HillMuscle::slackLength>(truth, "TRI", a);
-       }});
+       },
+       "TRI*.tendon_slack_length"});
   add({"mass",
        "mass of forearm and hand",
        p,
@@ -330,7 +342,8 @@ std::vector<EffectRow> makeTable() {
        0.2,
        true,
        {"payload"},
-       [](Truth& truth, double a, RandomNumbers&) { scaleMass(truth, 1 + a); }});
+       [](Truth& truth, double a, RandomNumbers&) { scaleMass(truth, 1 + a); },
+       "forearm.mass"});
   add({"tendon",
        "tendon compliance",
        s,
@@ -528,10 +541,14 @@ std::string effectsAsMarkdown() {
   return text;
 }
 
-std::vector<Nuisance> drawNuisances(Truth& truth, RandomNumbers& random, double share) {
+std::vector<Nuisance> drawNuisances(Truth& truth, RandomNumbers& random, double share,
+                                    const std::vector<std::string>& notDrawn) {
   std::vector<Nuisance> drawn;
   const auto draw = [&](const std::string& name, double deviation) {
-    drawn.push_back({name, std::exp(share * deviation * random.normalWithin(2.5))});
+    const double factor = std::exp(share * deviation * random.normalWithin(2.5));
+    const bool stays = std::any_of(notDrawn.begin(), notDrawn.end(),
+                                   [&](const auto& pattern) { return matches(pattern, name); });
+    drawn.push_back({name, stays ? 1 : factor});
     return drawn.back().factor;
   };
   for (HillMuscle& m : truth.numbers.muscles) {

@@ -50,6 +50,9 @@ struct EffectRow {
   bool relative;    ///< a relative change: the quantity is multiplied by 1 + amplitude
   std::vector<std::string> equivalents;  ///< names that count as right (design, declared)
   void (*apply)(Truth&, double amplitude, RandomNumbers&);
+  /// The nuisances whose place this takes, "TRI*.max_isometric_force": a parameter is off by just
+  /// the amplitude, whatever the person's own draw
+  std::string inPlaceOf = {};
 
   double amplitude(double size) const { return size * fullSize; }
   std::vector<Reading> readings(double amplitude) const;
@@ -72,7 +75,10 @@ struct Nuisance {
 /// Makes the nominal elbow a person: F0 15 % and ℓ0 4 %, ℓs 1 % per muscle, mass of everything
 /// beyond the elbow 5 %, activation time constants of all muscles together 20 % (standard
 /// deviations of the logarithm; draws beyond 2.5 deviations are repeated).
-/// @param share  of these deviations; 0: the nominal model, which no person is
-std::vector<Nuisance> drawNuisances(Truth& truth, RandomNumbers& random, double share = 1);
+/// @param share     of these deviations; 0: the nominal model, which no person is
+/// @param notDrawn  nuisances that stay nominal, `*` for any middle; the others are what they would
+///                  be without this list
+std::vector<Nuisance> drawNuisances(Truth& truth, RandomNumbers& random, double share = 1,
+                                    const std::vector<std::string>& notDrawn = {});
 
 }  // namespace hidden
