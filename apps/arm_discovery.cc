@@ -59,13 +59,28 @@ bool concernsTrials(const bio::discover::Augmented& added) {
          !m.crosstalk.empty() || m.fatigue != 0 || s.bias != 0 || s.gain != 0 || s.clock != 0;
 }
 
+/// What is missing has no name, but a formula that explains it.
+bool isFormula(const info::discover::Verdict& verdict) {
+  return verdict.finding == info::discover::Finding::unknown && verdict.formula &&
+         verdict.formula->wins;
+}
+
 /// Writes the model with the effects, and the trials where EMG or sensor were at fault.
 void addTo(const std::string& modelFile, const bio::Model& model, const bio::ArmOptions& arm,
            const std::string& coordinate, const std::vector<bio::Trial>& trials,
            const bio::discover::ElbowDisagreement& data, const info::discover::Verdict& verdict,
            const Summary& summary, OutputFolder& folder) {
   std::vector<bio::discover::EffectToAdd> effects;
+  std::vector<info::discover::FormulaTerm> formula;
+  if (isFormula(verdict)) {
+    const info::discover::RacedFormula& found = *verdict.formula;
+    const auto n = static_cast<Eigen::Index>(found.values.size());
+    formula = found.terms;
+    effects.push_back({"formula", Eigen::VectorXd::Map(found.values.data(), n),
+                       Eigen::VectorXd::Map(found.deviations.data(), n), found.logBayesFactor, 0});
+  }
   for (const auto& found : verdict.effects) {
+    if (isFormula(verdict)) break;
     const auto& candidate = data.candidates()[found.candidate];
     bio::discover::EffectToAdd effect;
     effect.id = candidate.id;
@@ -85,7 +100,7 @@ void addTo(const std::string& modelFile, const bio::Model& model, const bio::Arm
     provenance.data.push_back(fmt::format("{} SHA-256 {}", input.path, input.sha256));
   }
   const bio::discover::Augmented added =
-      bio::discover::addEffects(model, arm, coordinate, effects, provenance);
+      bio::discover::addEffects(model, arm, coordinate, effects, provenance, formula);
   folder.writeFile("with_effect.osim", [&](const std::filesystem::path& path) {
     bio::rewriteOsim(modelFile, added.model, path);
   });
@@ -112,7 +127,8 @@ ArmDiscovery discoverInArm(const ArmDiscoveryRequest& request, const CommandCont
   std::vector<bio::Trial> trials;
   for (const std::string& file : files) {
     summary.addInput(file);
-    trials.push_back(bio::readTrial(file, model, {request.simulation.ignoreExtra}));
+    trials.push_back(bio::readTrial(
+        file, model, {.ignoreExtra = request.simulation.ignoreExtra, .knownChanges = true}));
     for (const std::string& warning : trials.back().warnings) summary.warn(warning);
   }
   inputsMustDiffer(summary, request.trials.size());
@@ -153,7 +169,7 @@ ArmDiscovery discoverInArm(const ArmDiscoveryRequest& request, const CommandCont
   tellFindings(findings, summary);
   const nlohmann::ordered_json json = verdictJson(findings);
   folder.write("verdict.json", [&](std::ostream& out) { out << jsonText(json, 2) << '\n'; });
-  if (mayBeAdded(verdict))
+  if (mayBeAdded(verdict) || isFormula(verdict))
     addTo(request.model, model, arm, coordinate, trials, data, verdict, summary, folder);
   deliver(context, summary, discoverReport(findings), folder);
   if (found.interrupted) throw Interrupted{};

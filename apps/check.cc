@@ -96,7 +96,7 @@ Contents checkTrial(const std::string& file, const std::vector<bio::Model>& mode
                     Findings& findings) {
   const bio::Table table = bio::readTable(file);
   for (const bio::Model& model : models) {
-    const bio::Trial trial = bio::readTrial(file, model);
+    const bio::Trial trial = bio::readTrial(file, model, {.knownChanges = true});
     for (const std::string& warning : trial.warnings) findings.add(file, "warning", warning);
     for (const bio::Remark& remark : bio::reviewTrial(trial, model)) {
       findings.add(file, "unusual", fmt::format("{}: {}", remark.subject, remark.message));

@@ -378,11 +378,30 @@ class Writer {
                     numberText(u.forceSize, 3), f_.wording.forceUnit,
                     numberText(100 * u.peakShare, 2), numberText(u.peakFrequency, 2)));
     if (!u.formula.empty()) {
-      say(fmt::format("As a formula, a surrogate: {} ({} % of its power{}).", u.formula,
-                      numberText(100 * u.explained, 2),
-                      u.stable ? "; chosen in at least 90 % of the bootstraps"
-                               : "; not stable, do not trust it"));
+      say(fmt::format(
+          "As a formula, a surrogate: {} ({} nats more than the latent force alone, {} % "
+          "of its power{}).",
+          u.formula, numberText(u.evidence, 3), numberText(100 * u.explained, 2),
+          u.stable ? "; chosen in at least 90 % of the bootstraps"
+                   : "; not stable, do not trust its form"));
     }
+    if (f_.verdict.formula) raced(*f_.verdict.formula);
+  }
+
+  void raced(const info::discover::RacedFormula& formula) {
+    std::string text = fmt::format(
+        "Fitted and raced like a name: {}, {} nats better than the model "
+        "without it",
+        formula.text, numberText(formula.logBayesFactor, 3));
+    const info::discover::Gap& gap = formula.heldOut ? *formula.heldOut : formula.gap;
+    if (gap.closedFromCalibrated)
+      text += fmt::format("; it closes {} % of the gap{}",
+                          numberText(100 * *gap.closedFromCalibrated, 3),
+                          formula.heldOut ? " on the trial that was held out" : "");
+    say(text + (formula.wins
+                    ? ". It leaves nothing else to be seen, and is in with_effect.osim."
+                    : ". It does not explain everything, or has rivals: do not take it for "
+                      "the effect."));
   }
 
   void parameters() {

@@ -170,6 +170,7 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   if (verdict.unknown) {
     json["unknown"] = {{"formula", verdict.unknown->formula},
                        {"stable", verdict.unknown->stable},
+                       {"evidence_nats", number(verdict.unknown->evidence)},
                        {"explained", number(verdict.unknown->explained)},
                        {"peak_Hz", number(verdict.unknown->peakFrequency)}};
     if (f.wording.forceUnit == "N·m") {
@@ -178,6 +179,23 @@ ordered_json verdictJson(const DiscoverFindings& f) {
       json["unknown"]["rms"] = number(verdict.unknown->forceSize);
       json["unknown"]["rms_unit"] = f.wording.forceUnit;
     }
+  }
+  if (verdict.formula) {
+    const info::discover::RacedFormula& raced = *verdict.formula;
+    ordered_json& race = json["unknown"]["raced"];
+    race = {{"formula", raced.text},
+            {"wins", raced.wins},
+            {"log_bayes_factor", number(raced.logBayesFactor)},
+            {"amplitude_over_sd", number(raced.significance)},
+            {"adequate", raced.after.adequate()},
+            {"terms", ordered_json::array()},
+            {"gap",
+             {{"train", gapJson(f, raced.gap)},
+              {"held_out", raced.heldOut ? gapJson(f, *raced.heldOut) : nullptr}}}};
+    for (std::size_t k = 0; k < raced.values.size(); ++k)
+      race["terms"].push_back({{"expression", raced.terms[k].expression},
+                               {"value", number(raced.values[k])},
+                               {"sd", number(raced.deviations[k])}});
   }
   return json;
 }

@@ -31,15 +31,25 @@ bio::Table drivenTable(const bio::Trial& trial, const bio::Arm& arm,
   table.name = "driven excitations";
   table.columns = {"time"};
   table.columns.insert(table.columns.end(), muscles.begin(), muscles.end());
+  if (trial.known.massInHand != 0) {
+    table.metadata["known_mass_in_hand_kg"] = fmt::format("{}", trial.known.massInHand);
+  }
   const auto n = static_cast<Eigen::Index>(muscles.size());
   const auto measured = static_cast<Eigen::Index>(trial.measured.size());
+  const auto applied = static_cast<Eigen::Index>(trial.applied.size());
   table.values = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(times.size()),
-                                           1 + n + measured, std::nan(""));
+                                           1 + n + measured + applied, std::nan(""));
+  const bio::ExternalForce external = bio::externalForceOf(trial, arm);
   Eigen::Index row = 0;
   std::size_t hint = 0;
   for (const double t : times) {
     table.values(row, 0) = t;
     driven.at(t, hint, table.values.row(row).segment(1, n).transpose());
+    for (Eigen::Index k = 0; k < applied; ++k) {
+      const auto& coordinate = trial.applied[static_cast<std::size_t>(k)].coordinate;
+      table.values(row, 1 + n + measured + k) =
+          external.at(t).value[arm.skeleton().indexOf(coordinate)];
+    }
     ++row;
   }
   for (Eigen::Index k = 0; k < measured; ++k) {
@@ -49,6 +59,11 @@ bio::Table drivenTable(const bio::Trial& trial, const bio::Arm& arm,
       const auto place = std::distance(times.begin(), times.find(motion.times[i]));
       table.values(place, 1 + n + k) = motion.values[i];
     }
+  }
+  for (const bio::AppliedForce& push : trial.applied) {
+    const int index = arm.skeleton().indexOf(push.coordinate);
+    const bool turns = arm.skeleton().coordinates()[static_cast<std::size_t>(index)].isRotation;
+    table.columns.push_back(push.coordinate + (turns ? ".torque" : ".force"));
   }
   return table;
 }

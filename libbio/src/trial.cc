@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -84,6 +85,7 @@ class TrialReader {
         fail(fmt::format("time = {} s in row {}, must be finite and rise", trial_.times[row], row));
       }
     }
+    readKnownChanges();
     sortColumns();
     readExcitations();
     return std::move(trial_);
@@ -96,6 +98,23 @@ class TrialReader {
   [[noreturn]] void fail(Eigen::Index column, Eigen::Index row, const std::string& message) const {
     fail(fmt::format("column '{}' at time = {} s: {}",
                      table_.columns[static_cast<std::size_t>(column)], trial_.times(row), message));
+  }
+
+  void readKnownChanges() {
+    const auto at = table_.metadata.find("known_mass_in_hand_kg");
+    if (at == table_.metadata.end()) return;
+    double& mass = trial_.known.massInHand;
+    const char* last = at->second.data() + at->second.size();
+    const auto [end, error] = std::from_chars(at->second.data(), last, mass);
+    if (error != std::errc() || end != last || !(mass >= 0 && mass <= 100)) {
+      fail(fmt::format("header: {} = '{}', must be a number from 0 to 100", at->first, at->second));
+    }
+    if (mass != 0 && !options_.knownChanges) {
+      fail(
+          fmt::format("recorded with {} kg in the hand (header: {}), which only 'discover' takes "
+                      "into account",
+                      at->second, at->first));
+    }
   }
 
   void sortColumns() {

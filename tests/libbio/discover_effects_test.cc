@@ -12,6 +12,7 @@
 
 #include "bio/discover/add_effects.h"
 #include "bio/discover/elbow_disagreement.h"
+#include "info/discover/hypothesis.h"
 #include "support/cut_trial.h"
 #include "support/scratch_folder.h"
 #include "support/shipped_elbow.h"
@@ -434,6 +435,76 @@ TEST(ElbowDisagreement, TellsDelayFromClockWhereSomethingPushes) {
   trial.applied[0].values[3] = 0;
   EXPECT_TRUE(equivalentsOf("delay").empty());
   EXPECT_TRUE(equivalentsOf("clock").empty());
+}
+
+TEST(Formula, IsAnEffectLikeAnyOther) {
+  const Case c;
+  const std::vector<info::discover::FormulaTerm> terms = {{"q^3", -1.5, 3},
+                                                          {"qdot*abs(qdot)", 0.4, 2}};
+  const auto widened = c.data.withFormula(terms, {0, 2});
+  ASSERT_TRUE(widened);
+  ASSERT_EQ(widened->candidates().size(), 3U);
+  EXPECT_EQ(widened->candidates()[1].id, c.data.candidates()[2].id);
+  const Candidate& formula = widened->candidates()[2];
+  EXPECT_EQ(formula.id, "formula");
+  ASSERT_EQ(formula.quantities.size(), 2U);
+  VectorXd values = info::discover::nominalValues(*widened);
+  const auto c1 = static_cast<Index>(formula.quantities[0]),
+             r2 = static_cast<Index>(formula.quantities[1]);
+  values[r2] = 0.4;
+  EXPECT_EQ(widened->outputs(0, values, {}), c.outputs(c.nominal()));  // absent, bit for bit
+  values[c1] = -1.5;
+  const VectorXd with = widened->outputs(0, values, {});
+  EXPECT_GT((with - c.outputs(c.nominal())).cwiseAbs().maxCoeff(), 0.01);
+  const auto at = widened->predict(0, values, {}, formula.quantities, false);
+  for (Index j = 0; j < 2; ++j) {
+    const auto f = [&](double step) {
+      VectorXd moved = values;
+      moved[j == 0 ? c1 : r2] += step;
+      return widened->outputs(0, moved, {});
+    };
+    EXPECT_LT(disagreement(at.gamma.col(j), f, 1), 5e-4) << j;
+  }
+  // and in a model it is OpenSim's force, found again
+  const Augmented added =
+      addEffects(c.elbow.model, ShippedElbow::options(), "elbow_flexion",
+                 {{"formula", Eigen::Vector2d(-1.5, 0.4), {}, 0, 0}}, {"a test", {}}, terms);
+  ASSERT_EQ(added.model.expressionForces.size(), c.elbow.model.expressionForces.size() + 1);
+  const ElbowDisagreement repaired(added.model, ShippedElbow::options(), "elbow_flexion",
+                                   {cut(c.elbow.trial, 0.6)}, Case::exact());
+  const VectorXd again = repaired.outputs(0, info::discover::nominalValues(repaired), {});
+  EXPECT_LT((again - with).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_FALSE(repaired.withFormula(terms, {}));
+}
+
+TEST(ElbowDisagreement, AKnownMassIsInTheHandBesidesWhatIsMissing) {
+  const ShippedElbow elbow;
+  const Trial empty = cut(elbow.trial, 0.5);
+  Trial loaded = empty;
+  loaded.known.massInHand = 0.7;
+  const auto make = [&](std::vector<Trial> trials) {
+    return ElbowDisagreement(elbow.model, ShippedElbow::options(), "elbow_flexion",
+                             std::move(trials));
+  };
+  const ElbowDisagreement data = make({empty, loaded});
+  const auto mass = static_cast<Index>(data.widest().find("payload.mass"));
+  VectorXd values = info::discover::nominalValues(data), heavier = values;
+  values[mass] = 0.2;
+  heavier[mass] = 0.9;
+  EXPECT_EQ(data.outputs(1, values, {}), data.outputs(0, heavier, {}));
+  EXPECT_NE(data.outputs(1, values, {}), data.outputs(0, values, {}));
+  const auto known = static_cast<std::size_t>(mass);
+  EXPECT_EQ(data.predict(1, values, {}, {known}, false).gamma,
+            data.predict(0, heavier, {}, {known}, false).gamma);
+  // a force on the hand does not grow with a mass, a tilt's moment does: where the mass differs
+  const auto equivalents = [](const ElbowDisagreement& of) {
+    for (const Candidate& candidate : of.candidates()) {
+      if (candidate.id == "tilt") return candidate.equivalents;
+    }
+    return std::vector<std::string>{"not there"};
+  };
+  EXPECT_TRUE(equivalents(data).empty());
+  EXPECT_EQ(equivalents(make({loaded, loaded})), std::vector<std::string>{"handforce"});
 }
 
 }  // namespace

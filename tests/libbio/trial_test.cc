@@ -60,6 +60,30 @@ TEST_F(TrialFile, TakesExcitationsInTheOrderOfTheModel) {
   EXPECT_THAT(trial.measured, SizeIs(0));
 }
 
+TEST_F(TrialFile, AKnownMassIsReadOrRefused) {
+  const auto text = [](const std::string& value) {
+    return "t\nknown_mass_in_hand_kg=" + value +
+           "\nendheader\ntime\tBRA\tTRIlong\n0\t0\t0\n1\t0\t0\n";
+  };
+  const TrialOptions heeds{.knownChanges = true};
+  EXPECT_EQ(read(text("1.25"), heeds, "t.sto").known.massInHand, 1.25);
+  EXPECT_FALSE(read(text("0"), {}, "t.sto").known.any());
+  // whoever would simulate the arm without it must not read the trial at all
+  for (const auto& [value, options, message] :
+       {std::tuple{"1.25", TrialOptions{}, "recorded with 1.25 kg in the hand"},
+        {"-1", heeds, "known_mass_in_hand_kg = '-1', must be a number from 0 to 100"},
+        {"1 kg", heeds, "'1 kg', must be a number"},
+        {"nan", heeds, "'nan', must be a number"},
+        {"", heeds, "'', must be a number"}}) {
+    try {
+      read(text(value), options, "t.sto");
+      ADD_FAILURE() << value << " was read";
+    } catch (const FileError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(message));
+    }
+  }
+}
+
 TEST_F(TrialFile, ExcitationIsLinearBetweenRowsAndConstantOutside) {
   const Trial trial = read("time,TRIlong,BRA\n0,0.2,0.5\n2,0.4,1\n3,0.4,0\n");
   EXPECT_DOUBLE_EQ(excitationAt(trial, 0, 0.5), 0.625);

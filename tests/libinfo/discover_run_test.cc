@@ -177,4 +177,19 @@ TEST(RunAtShorterSteps, HalvesTheStepUntilItNoLongerMattersOrIsTooShort) {
   EXPECT_EQ(steps.size(), 1U);
 }
 
+TEST(RunAtShorterSteps, GoesOnWhereTheModelCannotBeSimulatedAtALongStep) {
+  std::optional<Fragile> data;
+  std::vector<double> steps;
+  const auto attempt = [&](double step) {
+    steps.push_back(step);
+    data.emplace(drawn(5, 2, 1.1), step > 0.015);
+    Options options;
+    options.outputDeviation = kOutput;
+    return Attempt{*data, options};
+  };
+  EXPECT_EQ(runAtShorterSteps(attempt, 0.04, 0.003).step, 0.01);
+  EXPECT_EQ(steps, (std::vector<double>{0.04, 0.02, 0.01}));
+  EXPECT_THROW(runAtShorterSteps(attempt, 0.04, 0.03), std::domain_error);
+}
+
 }  // namespace

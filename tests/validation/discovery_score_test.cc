@@ -116,6 +116,42 @@ TEST(Judge, DeclaredEquivalentsAreRightButTellNoAmplitude) {
   EXPECT_FALSE(o.z.has_value());
 }
 
+TEST(Judge, EquivalentsAreAClassUntilAFollowUpTellsThem) {
+  const Json label = labelOf("equivalents", Json::array({truthOf("delay", 0.04, {"clock"})}));
+  const Json clock = Json::array({effectOf("clock", "sensor", 0.52)}),
+             delay = Json::array({effectOf("delay", "input", 0.99)});
+  const Outcome both = judge("s", label, verdictOf("ambiguous", clock, {"clock", "delay"}));
+  EXPECT_TRUE(both.asClass && both.firstIsRight);
+  EXPECT_FALSE(both.uniquelyRight || both.firstIsTrue);
+  const Outcome alone = judge("s", label, verdictOf("named", delay, {"delay"}));
+  EXPECT_TRUE(alone.uniquelyRight && alone.firstIsTrue);
+  EXPECT_FALSE(alone.asClass);
+  // the twin, and the truth with a rival, are not the one right name
+  EXPECT_FALSE(judge("s", label, verdictOf("named", clock, {"clock"})).uniquelyRight);
+  EXPECT_FALSE(judge("s", label, verdictOf("ambiguous", delay, {"delay", "tau"})).uniquelyRight);
+  EXPECT_FALSE(judge("s", label, verdictOf("named", delay, {"delay", "tau"})).uniquelyRight);
+}
+
+TEST(Score, ComparesProbabilitiesWithTheShareThatIsRight) {
+  std::vector<Outcome> outcomes(8);
+  for (std::size_t i = 0; i < 4; ++i) {
+    outcomes[i].probability = 0.96;
+    outcomes[i].firstIsTrue = i > 0;
+  }
+  for (std::size_t i = 4; i < 6; ++i) {
+    outcomes[i].probability = 0.5;
+    outcomes[i].firstIsTrue = i == 4;
+  }
+  outcomes[6].probability = 0.99;  // no name of the catalogue could be right
+  outcomes[6].suite = "out";
+  const Calibration c = score(outcomes).calibration;
+  EXPECT_EQ(c.n, 6);
+  ASSERT_EQ(c.bins.size(), 2U);
+  EXPECT_NEAR(c.bins[1].probability, 0.96, 1e-12);
+  EXPECT_NEAR(c.bins[1].right, 0.75, 1e-12);
+  EXPECT_NEAR(c.error, 4 * 0.21 / 6, 1e-12);
+}
+
 TEST(Judge, AWrongNameWithTheTruthInItsClassIsNotConfidentlyWrong) {
   const Json label = labelOf("single", Json::array({truthOf("visc", 0.3)}));
   const Json effects = Json::array({effectOf("coulomb", "structure", 0.96)});

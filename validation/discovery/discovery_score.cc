@@ -168,6 +168,20 @@ Outcome judge(const std::string& name, const Json& label, const Json& verdict) {
     o.confident = finite(effects[0], "probability").value_or(0) >= 0.95;
   }
   const std::set<std::string> candidates(o.inClass.begin(), o.inClass.end());
+  for (const Json& truth : hiding) {
+    const std::string id = truth.at("id");
+    const auto mates = truth.value("equivalents", std::vector<std::string>{});
+    o.asClass = o.asClass || (candidates.count(id) > 0 &&
+                              std::any_of(mates.begin(), mates.end(), [&](const auto& mate) {
+                                return candidates.count(mate) > 0;
+                              }));
+    o.uniquelyRight = o.verdict == "named" && hiding.size() == 1 && o.named == std::vector{id} &&
+                      (candidates.empty() || candidates == std::set{id});
+    o.firstIsTrue = o.firstIsTrue || (!o.named.empty() && o.named[0] == id);
+  }
+  static const std::set<std::string> naming = {"named", "ambiguous", "parameter"};
+  if (naming.count(o.verdict) > 0 && !o.named.empty())
+    o.probability = finite(effects[0], "probability");
   o.unqualified = (o.verdict == "named" || o.verdict == "parameter") &&
                   candidates.size() <= std::max<std::size_t>(1, o.named.size());
   for (const Json& truth : hiding) {
@@ -203,6 +217,34 @@ bool Spread::within(double deviations) const {
   const auto n = static_cast<double>(values.size());
   return static_cast<double>(right) >= n / 2 - deviations * std::sqrt(n) / 2;
 }
+
+namespace {
+
+// Sets without a truth count: whatever is named there is wrong.
+Calibration calibrationOf(const std::vector<Outcome>& outcomes) {
+  constexpr int parts = 10;
+  std::vector<Calibration::Bin> bins(parts);
+  Calibration c;
+  for (const Outcome& o : outcomes) {
+    if (!o.probability || *o.probability <= 0 || o.suite == "out") continue;  // 0: vetoed
+    auto& bin = bins[static_cast<std::size_t>(
+        std::clamp(static_cast<int>(*o.probability * parts), 0, parts - 1))];
+    ++bin.n;
+    bin.probability += *o.probability;
+    bin.right += o.firstIsTrue;
+  }
+  for (Calibration::Bin& bin : bins) {
+    if (bin.n == 0) continue;
+    bin.probability /= bin.n, bin.right /= bin.n;
+    c.n += bin.n;
+    c.error += bin.n * std::abs(bin.right - bin.probability);
+    c.bins.push_back(bin);
+  }
+  if (c.n > 0) c.error /= c.n;
+  return c;
+}
+
+}  // namespace
 
 double Spread::median() const {
   const std::size_t n = values.size();
@@ -258,6 +300,10 @@ Score score(const std::vector<Outcome>& outcomes) {
                   [](const Outcome& o) { return o.allNamed; }));
   r.push_back(row(outcomes, "out of catalogue: no unqualified name", "≥ 90 %", 0.9, false,
                   of("out"), [](const Outcome& o) { return o.hasVerdict && !o.unqualified; }));
+  r.push_back(row(outcomes, "equivalents: given as a class of both", "100 %", 1, false,
+                  of("equivalents"), [](const Outcome& o) { return o.asClass; }));
+  r.push_back(row(outcomes, "equivalents after the follow-up: the one right name", "≥ 92 %", 0.92,
+                  false, of("follow-up"), [](const Outcome& o) { return o.uniquelyRight; }));
   r.push_back(row(outcomes, "parameter within 2 sd of the truth", "–", 0, false, hasZ,
                   [](const Outcome& o) { return std::abs(*o.z) <= 2; }));
   Row coverage = row(outcomes, "95 % interval covers the truth", "90–98 %", 0.9, false, hasZ,
@@ -274,6 +320,7 @@ Score score(const std::vector<Outcome>& outcomes) {
              [&](const Outcome& o) { return hidden(o) ? o.overFloor : std::nullopt; }));
   s.spreads.push_back(spread(outcomes, "time per data set", "s", "≤ 60 s", 60, true,
                              [](const Outcome& o) { return o.seconds; }));
+  s.calibration = calibrationOf(outcomes);
   Spread& time = s.spreads.back();
   time.met = !time.values.empty() && time.values.back() <= 60;
   return s;
@@ -304,6 +351,10 @@ Json Score::asJson() const {
                                {"target", s.target},
                                {"met", any ? Json(s.met) : Json()}});
   }
+  json["calibration"] = {{"n", calibration.n}, {"error", calibration.error}};
+  for (const Calibration::Bin& bin : calibration.bins)
+    json["calibration"]["bins"].push_back(
+        {{"n", bin.n}, {"probability", bin.probability}, {"right", bin.right}});
   return json;
 }
 
@@ -327,6 +378,16 @@ std::string Score::asMarkdown() const {
                               s.values.size(), s.median(), s.unit, s.values.front(),
                               s.values.back(), s.target, yes(any, s.met))
                 : fmt::format("| {} | 0 | – | – | {} | – |\n", s.metric, s.target);
+  }
+  if (calibration.n > 0) {
+    text += fmt::format(
+        "\nProbability of the first name and share of first names that are the truth itself "
+        "({} names, calibration error {:.3f}, target ≤ 0.05):",
+        calibration.n, calibration.error);
+    for (const auto& bin : calibration.bins)
+      text += fmt::format(" {:.2f}: {:.2f} of {};", bin.probability, bin.right, bin.n);
+    text.back() = '.';
+    text += '\n';
   }
   text += "\nMisses\n\n";
   for (const Row& r : rows) {

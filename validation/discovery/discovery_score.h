@@ -28,8 +28,13 @@ struct Outcome {
   bool allNamed = false;        ///< every truth is among the names
   bool detectable = true;       ///< not said to be too small to be seen (undetectable_below)
   bool confident = false;       ///< first name's probability ≥ 0.95
-  bool unqualified = false;     ///< "named" or "parameter", and none of its names has a rival
-  std::optional<double> z;      ///< (estimate − truth)/sd of the first right name's amplitude
+  bool asClass = false;         ///< a truth is named in one class with a declared equivalent
+  bool uniquelyRight = false;   ///< "named", and the truth itself is the only name, without a rival
+  /// of the first name, where it is a claim of "named", "ambiguous" or "parameter"
+  std::optional<double> probability;
+  bool firstIsTrue = false;  ///< the first name is the truth itself, no equivalent
+  bool unqualified = false;  ///< "named" or "parameter", and none of its names has a rival
+  std::optional<double> z;   ///< (estimate − truth)/sd of the first right name's amplitude
   std::optional<double> gapClosed, overFloor, seconds;
 
   bool confidentlyWrong() const { return confident && claims && !classHasTruth; }
@@ -69,9 +74,22 @@ struct Spread {
   bool within(double deviations) const;
 };
 
+/// Whether probabilities mean what they say: names that are given with about the same one, beside
+/// the share of them that is the truth.
+struct Calibration {
+  struct Bin {
+    int n = 0;
+    double probability = 0, right = 0;  ///< means
+  };
+  std::vector<Bin> bins;  ///< of [0, 0.1), …, [0.9, 1]; those without a name are left out
+  int n = 0;
+  double error = 0;  ///< expected calibration error, Σ n_b/n·|right − probability|
+};
+
 struct Score {
   std::vector<Row> rows;
   std::vector<Spread> spreads;
+  Calibration calibration;
   Json asJson() const;
   std::string asMarkdown() const;
 };

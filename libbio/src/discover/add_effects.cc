@@ -67,8 +67,9 @@ Augmented augmentedModel(const WidestModel& widest, const Eigen::VectorXd& value
 }
 
 Augmented addEffects(const Model& model, const ArmOptions& arm, const std::string& coordinate,
-                     const std::vector<EffectToAdd>& effects, const EffectProvenance& provenance) {
-  const WidestModel widest = widestModel(model, arm, coordinate);
+                     const std::vector<EffectToAdd>& effects, const EffectProvenance& provenance,
+                     const std::vector<info::discover::FormulaTerm>& formula) {
+  const WidestModel widest = widestModel(model, arm, coordinate, {}, formula);
   Eigen::VectorXd values = widest.nominal();
   std::string credits = "Effects added by " + provenance.tool;
   for (std::size_t i = 0; i < provenance.data.size(); ++i) {

@@ -54,7 +54,7 @@ ExternalForce together(const ExternalForce& external, const std::vector<double>&
 ElbowDisagreement::ElbowDisagreement(const Model& model, const ArmOptions& arm,
                                      const std::string& coordinate, std::vector<Trial> trials,
                                      ElbowOptions options)
-    : widest_(widestModel(model, arm, coordinate, options.without)),
+    : widest_(widestModel(model, arm, coordinate, options.without, options.formula)),
       options_(std::move(options)),
       quantities_(widest_.quantities()),
       nuisances_(widest_.nuisances()) {
@@ -74,7 +74,7 @@ ElbowDisagreement::ElbowDisagreement(const Model& model, const ArmOptions& arm,
   }
   const Coordinate& observed = widest_.coordinate();
   for (Trial& trial : trials) {
-    OfTrial one{std::move(trial), {}, {}, {}, {}, {}, 0, 0};
+    OfTrial one{std::move(trial), {}, {}, {}, {}, {}, {}, 0, 0};
     for (const MeasuredMotion& motion : one.trial.measured) {
       if (motion.coordinate != coordinate) continue;
       one.times.assign(motion.times.begin(), motion.times.end());
@@ -86,6 +86,7 @@ ElbowDisagreement::ElbowDisagreement(const Model& model, const ArmOptions& arm,
     }
     one.excitation = excitationOf(one.trial, widest_.arm());
     one.external = externalForceOf(one.trial, widest_.arm());
+    one.known = knownChanges(one.trial);
     const double first = one.trial.times[0], last = one.times.back();
     const double intervals =
         std::max(1.0, std::ceil((last - first) / options_.latentSpacing - 1e-9));
@@ -123,6 +124,26 @@ ElbowDisagreement::ElbowDisagreement(const Model& model, const ArmOptions& arm,
     });
   });
   if (isPushed) widest_.separate("delay", "clock");
+  // gravity's moment grows with a mass, that of a force on the hand does not
+  const bool isLoaded = std::any_of(trials_.begin(), trials_.end(), [&](const OfTrial& one) {
+    return one.known != trials_.front().known;
+  });
+  if (isLoaded) widest_.separate("tilt", "handforce");
+}
+
+VectorXd ElbowDisagreement::knownChanges(const Trial& trial) const {
+  VectorXd changes = VectorXd::Zero(static_cast<Index>(widest_.quantities().size()));
+  if (!trial.known.any()) return changes;
+  const auto& quantities = widest_.quantities();
+  const auto mass = std::find_if(quantities.begin(), quantities.end(),
+                                 [](const auto& one) { return one.name == "payload.mass"; });
+  if (mass == quantities.end()) {
+    throw std::invalid_argument(
+        fmt::format("{}: {} kg in the hand, but the model moves no body that could hold it",
+                    trial.file, trial.known.massInHand));
+  }
+  changes[mass - quantities.begin()] = trial.known.massInHand;
+  return changes;
 }
 
 double ElbowDisagreement::activationLag() const {
@@ -150,7 +171,7 @@ ParameterCatalogue::Setting ElbowDisagreement::settingAt(
         fmt::format("{} values for {} quantities", values.size(), quantities_.size()));
   }
   const auto own = static_cast<Index>(widest_.quantities().size());
-  ParameterCatalogue::Setting setting = widest_.settingAt(values.head(own), wanted);
+  ParameterCatalogue::Setting setting = widest_.settingAt(values.head(own) + one.known, wanted);
   setting.start.q[widest_.freeIndex()] = values[static_cast<Index>(one.angle)];
   setting.start.qDot[widest_.freeIndex()] = values[static_cast<Index>(one.speed)];
   return setting;
@@ -234,7 +255,7 @@ ElbowDisagreement::Prediction ElbowDisagreement::predict(int trial, const Vector
   const ParameterCatalogue::Setting setting = settingAt(one, values, wanted);
   const SensorLaw sensor = widest_.sensorAt(values);
   const auto own = widest_.quantities().size();
-  const VectorXd modelValues = values.head(static_cast<Index>(own));
+  const VectorXd modelValues = values.head(static_cast<Index>(own)) + one.known;
 
   // columns of the simulation: those of the sensor, and of other trials, have none
   std::vector<ParameterDirection> directions;
@@ -317,6 +338,24 @@ MatrixXd ElbowDisagreement::inputs(int trial) const {
 
 std::vector<std::string> ElbowDisagreement::inputNames() const {
   return muscleNames(widest_.arm());
+}
+
+std::unique_ptr<info::discover::Disagreement> ElbowDisagreement::withFormula(
+    const std::vector<info::discover::FormulaTerm>& terms,
+    const std::vector<std::size_t>& kept) const {
+  ElbowOptions options = options_;
+  options.formula = terms;
+  for (std::size_t c = 0; c < candidates().size(); ++c) {
+    if (std::find(kept.begin(), kept.end(), c) == kept.end())
+      options.without.push_back(candidates()[c].id);
+  }
+  std::vector<Trial> trials;
+  for (const OfTrial& one : trials_) trials.push_back(one.trial);
+  auto widened = std::make_unique<ElbowDisagreement>(widest_.base(), widest_.armOptions(),
+                                                     widest_.coordinate().name, std::move(trials),
+                                                     std::move(options));
+  if (!widened->widest().knows("formula")) return nullptr;
+  return widened;
 }
 
 }  // namespace bio::discover

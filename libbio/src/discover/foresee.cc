@@ -10,25 +10,6 @@ namespace bio::discover {
 
 using Eigen::Index;
 
-namespace {
-
-/// What the experimenter changes, for each quantity of the planned experiment; empty if one is not
-/// there.
-Eigen::VectorXd knownChanges(const info::discover::Disagreement& planned,
-                             const std::vector<std::pair<std::string, double>>& known) {
-  const auto& quantities = planned.quantities();
-  Eigen::VectorXd changes = Eigen::VectorXd::Zero(static_cast<Index>(quantities.size()));
-  for (const auto& [name, change] : known) {
-    const auto at = std::find_if(quantities.begin(), quantities.end(),
-                                 [&](const auto& quantity) { return quantity.name == name; });
-    if (at == quantities.end()) return {};
-    changes[at - quantities.begin()] = change;
-  }
-  return changes;
-}
-
-}  // namespace
-
 double ForeseenExperiment::least() const {
   return nats.empty() ? 0 : *std::min_element(nats.begin(), nats.end());
 }
@@ -42,12 +23,10 @@ std::vector<ForeseenExperiment> foresee(const Model& model, const ArmOptions& ar
   const Coordinate& coordinate = data.widest().coordinate();
   for (const auto& experiment : plannedExperiments(trial, coordinate)) {
     const ElbowDisagreement planned(model, arm, coordinate.name, {experiment.trial}, options);
-    const Eigen::VectorXd known = knownChanges(planned, experiment.known);
-    if (known.size() == 0) continue;
     // where the arm would go
     Eigen::VectorXd values = info::discover::nominalValues(planned);
     const auto own = static_cast<Index>(data.widest().quantities().size());
-    values.head(own) = verdict.values.head(own) + known.head(own);
+    values.head(own) = verdict.values.head(own);
     const Eigen::VectorXd motion = planned.outputs(0, values, {});
     if (!motion.allFinite() || motion.minCoeff() < coordinate.rangeMin ||
         motion.maxCoeff() > coordinate.rangeMax)
@@ -55,8 +34,8 @@ std::vector<ForeseenExperiment> foresee(const Model& model, const ArmOptions& ar
     ForeseenExperiment one{experiment.sentence, {}};
     try {
       for (std::size_t rival = 1; rival < verdict.rivals.size(); ++rival)
-        one.nats.push_back(info::discover::expectedSeparation(
-            planned, known, data, verdict.rivals.front(), verdict.rivals[rival]));
+        one.nats.push_back(info::discover::expectedSeparation(planned, data, verdict.rivals.front(),
+                                                              verdict.rivals[rival]));
     } catch (const std::domain_error&) {
       continue;
     }

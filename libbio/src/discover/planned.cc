@@ -42,17 +42,14 @@ std::vector<PlannedExperiment> plannedExperiments(const Trial& trial,
                                                   const Coordinate& coordinate) {
   const std::string file = std::filesystem::path(trial.file).filename().string();
   std::vector<PlannedExperiment> planned;
-  planned.push_back({fmt::format("repeat {} as it was", file), trial, {}});
+  planned.push_back({fmt::format("repeat {} as it was", file), trial});
   for (const double mass : {0.1, 0.3, 1.0}) {
-    planned.push_back({fmt::format("repeat {} with a known mass of {} kg in the hand", file, mass),
-                       trial,
-                       {{"payload.mass", mass}}});
-  }
-  for (const double degrees : {10.0, 30.0}) {
-    planned.push_back(
-        {fmt::format("repeat {} with the upper arm tilted by {}°, measured", file, degrees),
-         trial,
-         {{"tilt.angle", degrees * std::numbers::pi / 180}}});
+    Trial loaded = trial;
+    loaded.known.massInHand += mass;
+    planned.push_back({fmt::format("repeat {} with a known mass of {} kg in the hand (header line "
+                                   "known_mass_in_hand_kg={})",
+                                   file, loaded.known.massInHand, loaded.known.massInHand),
+                       loaded});
   }
   const bool turns = coordinate.isRotation;
   for (const double size : {0.25, 0.5, 1.0}) {
@@ -60,8 +57,7 @@ std::vector<PlannedExperiment> plannedExperiments(const Trial& trial,
         {fmt::format("repeat {} with recorded pushes of {} {} and 0.2 s from outside, up and down "
                      "in turn, one a second (column {}.{})",
                      file, size, turns ? "N·m" : "N", coordinate.name, turns ? "torque" : "force"),
-         pushed(trial, coordinate.name, size),
-         {}});
+         pushed(trial, coordinate.name, size)});
   }
   return planned;
 }

@@ -266,6 +266,34 @@ void Search::race(const Effects& base, const std::vector<std::size_t>& candidate
   improve(base, absent(leader, from), size, &first.fit);
 }
 
+void Search::raceFromNominal(std::size_t most) {
+  struct Start {
+    double evidence;
+    std::size_t candidate;
+    VectorXd values;
+  };
+  std::vector<Start> starts;
+  const VectorXd nominal = nominalValues(data_);
+  for (std::size_t c = 0; c < data_.candidates().size(); ++c) {
+    report_(describe(data_, {c}));
+    const Hypothesis hypothesis = makeHypothesis(data_, {c}, trials_);
+    Start best{-HUGE_VAL, c, {}};
+    for (std::size_t s = 0; s < data_.candidates()[c].starts.size(); ++s) {
+      const auto fit = likelihood_->tryFit(hypothesis, {output_, kFirstSize, options_.latentTime},
+                                           started(c, s, nominal), {}, {6, 0.1});
+      ++fits_;
+      if (fit && fit->logEvidence > best.evidence) best = {fit->logEvidence, c, fit->values};
+    }
+    if (best.values.size() > 0) starts.push_back(std::move(best));
+  }
+  std::sort(starts.begin(), starts.end(),
+            [](const Start& a, const Start& b) { return a.evidence > b.evidence; });
+  for (std::size_t i = 0; i < std::min(most, starts.size()); ++i) {
+    report_(describe(data_, {starts[i].candidate}));
+    improve({starts[i].candidate}, starts[i].values, kFirstSize);
+  }
+}
+
 bool Search::settle(const Effects& base) {
   const double before = at(base).score;
   std::vector<std::pair<double, std::size_t>> better;

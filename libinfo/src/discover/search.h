@@ -68,6 +68,10 @@ class Search {
   const Fit& simulation(const Effects& effects);
   /// Fits `base` + each candidate; then again from the leader's nuisances, and `base` too.
   void race(const Effects& base, const std::vector<std::size_t>& candidates);
+  /// Fits single candidates once more, from the nominal values and a large latent force: the `most`
+  /// that short fits from there like best. A base that lacks something may have gone far away from
+  /// what is true with it.
+  void raceFromNominal(std::size_t most);
   /// A candidate that gains though it is absent has only found a better base: fits that from its
   /// nuisances. True if `base` gained; what has been raced on it and is now behind is forgotten.
   bool settle(const Effects& base);

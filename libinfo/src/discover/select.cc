@@ -3,6 +3,8 @@
 namespace info::discover {
 namespace {
 
+constexpr std::size_t kFromNominal = 4;  // single names that are raced once more
+
 class Selection {
  public:
   Selection(Search& search, const Options& options) : search_(search), options_(options) {}
@@ -12,6 +14,7 @@ class Selection {
       const bool first = chosen_.empty();
       if (static_cast<int>(chosen_.size()) >= options_.maxEffects || (!first && !promising()))
         break;
+      if (!first && simplify()) continue;
       std::vector<std::size_t> list;
       for (int attempt = 0; attempt < 3; ++attempt) {
         list = search_.shortlist(chosen_, first ? options_.finalists : 5);
@@ -29,6 +32,18 @@ class Selection {
   }
 
  private:
+  // Before a second name is given, single ones are tried from elsewhere: a base that is far off may
+  // have led to makeshifts for one effect that explains everything.
+  bool simplify() {
+    if (simplified_) return false;
+    simplified_ = true;
+    search_.raceFromNominal(kFromNominal);
+    search_.reconcile();
+    const Effects before = chosen_;
+    chosen_ = best();
+    return chosen_ != before;
+  }
+
   // The best of all that have been raced where every effect is significant and earns its place.
   Effects best() const {
     Effects best;
@@ -67,7 +82,7 @@ class Selection {
         if (search_.entries().count(fewer) == 0) continue;
         search_.race(fewer, {rest.back()});
       }
-      search_.race(rest, search_.shortlist(rest, 5));
+      search_.race(rest, search_.shortlist(rest, 7));
     }
     search_.reconcile();
     chosen_ = best();
@@ -95,6 +110,7 @@ class Selection {
   Search& search_;
   const Options& options_;
   Effects chosen_;
+  bool simplified_ = false;
 };
 
 }  // namespace

@@ -17,15 +17,13 @@ namespace {
 // One hypothesis in the experiment that is planned.
 class Foreseen {
  public:
-  Foreseen(const Disagreement& planned, const VectorXd& known, const Disagreement& fitted,
-           const Fit& fit)
+  Foreseen(const Disagreement& planned, const Disagreement& fitted, const Fit& fit)
       : planned_(planned), fit_(fit) {
     const auto& quantities = planned.quantities();
     values_ = nominalValues(planned);
     for (std::size_t i = 0; i < fitted.quantities().size(); ++i)
       if (fitted.quantities()[i].trial < 0)
         values_[find(fitted.quantities()[i].name)] = fit.values[static_cast<Index>(i)];
-    values_ += known;
     std::vector<Index> lasting;
     for (std::size_t i = 0; i < fit.hypothesis.free.size(); ++i) {
       const FreeQuantity& free = fit.hypothesis.free[i];
@@ -95,11 +93,9 @@ class Foreseen {
 
 }  // namespace
 
-double expectedSeparation(const Disagreement& planned, const VectorXd& known,
-                          const Disagreement& fitted, const Fit& a, const Fit& b) {
-  if (known.size() != static_cast<Index>(planned.quantities().size()))
-    throw std::invalid_argument("the planned experiment: one known change for each quantity");
-  const Foreseen first(planned, known, fitted, a), second(planned, known, fitted, b);
+double expectedSeparation(const Disagreement& planned, const Disagreement& fitted, const Fit& a,
+                          const Fit& b) {
+  const Foreseen first(planned, fitted, a), second(planned, fitted, b);
   const double latent = std::max(a.noise.latent, b.noise.latent);
   double nats = 0;
   for (int trial = 0; trial < planned.numTrials(); ++trial) {

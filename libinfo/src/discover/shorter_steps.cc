@@ -1,5 +1,7 @@
 #include "info/discover/shorter_steps.h"
 
+#include <stdexcept>
+
 namespace info::discover {
 
 SteppedVerdict runAtShorterSteps(const std::function<Attempt(double step)>& attempt, double step,
@@ -7,9 +9,13 @@ SteppedVerdict runAtShorterSteps(const std::function<Attempt(double step)>& atte
   Draft draft;
   while (true) {
     Attempt one = attempt(step);
-    Verdict verdict = run(one.data, one.options, &draft);
-    if (verdict.finding != Finding::numerical || step < shortest)
-      return {std::move(verdict), std::move(one.options), step};
+    try {
+      Verdict verdict = run(one.data, one.options, &draft);
+      if (verdict.finding != Finding::numerical || step < shortest)
+        return {std::move(verdict), std::move(one.options), step};
+    } catch (const std::domain_error&) {
+      if (step < shortest) throw;
+    }
     step /= 2;
   }
 }

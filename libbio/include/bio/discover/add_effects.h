@@ -27,7 +27,7 @@ Augmented augmentedModel(const WidestModel& widest, const Eigen::VectorXd& value
 
 /// One effect to add, and what is known of it.
 struct EffectToAdd {
-  std::string id;              ///< of a candidate
+  std::string id;              ///< of a candidate, or "formula"
   Eigen::VectorXd values;      ///< of its quantities, the amplitude first
   Eigen::VectorXd deviations;  ///< of the estimates; empty: not known
   double logBayesFactor = 0;   ///< nats
@@ -48,7 +48,8 @@ struct EffectProvenance {
 /// this
 ///   model, or present in it already; values that are too many or too few
 Augmented addEffects(const Model& model, const ArmOptions& arm, const std::string& coordinate,
-                     const std::vector<EffectToAdd>& effects, const EffectProvenance& provenance);
+                     const std::vector<EffectToAdd>& effects, const EffectProvenance& provenance,
+                     const std::vector<info::discover::FormulaTerm>& formula = {});
 
 /// The trial as a sensor without fault would have measured it, q(t) = (y(t + clock) − bias)/(1 +
 /// gain); samples whose time falls out of the trial are lost.

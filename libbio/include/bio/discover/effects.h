@@ -41,10 +41,16 @@ const std::vector<EffectEntry>& effectEntries();
 /// bodies (5 %), the time scale of activation (20 %).
 void addNuisances(WidestModel& model);
 
+/// Adds a candidate "formula", a force that the catalogue has no name for, c·(e_1 + r_2·e_2 + …);
+/// in a model an ExpressionBasedCoordinateForce. Its quantities are c, r_2, ….
+void addFormula(WidestModel& model, const std::vector<info::discover::FormulaTerm>& terms);
+
 /// addNuisances, and every entry but those whose ids are in `without`.
 /// @param without  ids of entries or of candidates
+/// @param formula  if not empty, also addFormula of it
 /// @throws std::invalid_argument for an id that is neither, with those there are
 WidestModel widestModel(const Model& model, const ArmOptions& arm, const std::string& coordinate,
-                        const std::vector<std::string>& without = {});
+                        const std::vector<std::string>& without = {},
+                        const std::vector<info::discover::FormulaTerm>& formula = {});
 
 }  // namespace bio::discover

@@ -17,6 +17,7 @@ struct ElbowOptions {
   double startDeviation = 0.035;     ///< prior of each trial's first angle [rad] > 0
   double speedDeviation = 0.1;       ///< prior of each trial's first speed [rad/s] > 0
   std::vector<std::string> without;  ///< ids of effects that are left out of the catalogue
+  std::vector<info::discover::FormulaTerm> formula;  ///< of a candidate "formula"; empty: none
 };
 
 /// A search whose steps were too long is repeated with half of them, unless they were shorter than
@@ -33,7 +34,9 @@ inline constexpr double shortestSearchStep = 0.003;
 /// is a difference of simulations. Before the start of a trial, where a clock offset may look, the
 /// coordinate goes on with its first speed.
 ///
-/// Where a torque from outside pushes the coordinate, delay and clock are no equivalents.
+/// Where a torque from outside pushes the coordinate, delay and clock are no equivalents. A mass in
+/// the hand that a trial is known to have (Trial::known) is in its model besides what is missing;
+/// where it differs between trials, tilt and handforce are no equivalents.
 ///
 /// The latent force is a torque on the coordinate with a channel for each muscle, the size of its
 /// moment r_i F_i, and one of the constant size τ_0 [N·m]: independent errors of so many per cent
@@ -46,7 +49,8 @@ class ElbowDisagreement : public info::discover::Disagreement {
 
   /// @param coordinate  observed; measured in every trial; samples that are missing have no time
   /// @throws std::invalid_argument what WidestModel throws, no trial, a trial without a measured
-  ///   value of the coordinate, an integrator without sensitivities, an option out of range
+  ///   value of the coordinate, an integrator without sensitivities, an option out of range, a
+  ///   known mass in the hand of an arm that has none
   ElbowDisagreement(const Model& model, const ArmOptions& arm, const std::string& coordinate,
                     std::vector<Trial> trials, ElbowOptions options = {});
 
@@ -66,6 +70,10 @@ class ElbowDisagreement : public info::discover::Disagreement {
   Eigen::VectorXd refinedOutputs(int trial, const Eigen::VectorXd& values) const override;
   Eigen::MatrixXd inputs(int trial) const override;
   std::vector<std::string> inputNames() const override;
+  /// Null if the model has a force of a formula already.
+  std::unique_ptr<info::discover::Disagreement> withFormula(
+      const std::vector<info::discover::FormulaTerm>& terms,
+      const std::vector<std::size_t>& kept) const override;
 
   /// Model and effects, without the trials' starts.
   const WidestModel& widest() const { return widest_; }
@@ -80,9 +88,11 @@ class ElbowDisagreement : public info::discover::Disagreement {
     std::vector<double> times;
     Eigen::VectorXd measured;
     std::vector<double> nodes;
+    Eigen::VectorXd known;     ///< what Trial::known adds to the model's quantities
     std::size_t angle, speed;  ///< quantities of its start
   };
   double activationLag() const;
+  Eigen::VectorXd knownChanges(const Trial& trial) const;
   const OfTrial& of(int trial) const { return trials_.at(static_cast<std::size_t>(trial)); }
   ParameterCatalogue::Setting settingAt(const OfTrial& one, const Eigen::VectorXd& values,
                                         const std::vector<std::size_t>& wanted) const;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "bio/trial.h"
@@ -13,13 +12,11 @@ namespace bio::discover {
 struct PlannedExperiment {
   std::string sentence;  ///< what to do
   Trial trial;
-  /// quantities of the widest model that the experimenter changes, and by how much
-  std::vector<std::pair<std::string, double>> known;
 };
 
-/// What is easily done with an arm: a known mass in the hand (payload.mass, 0.1 to 1 kg), the upper
-/// arm tilted by a known angle (tilt.angle, 10 to 30°), and recorded pushes of 0.2 s from outside
-/// on the coordinate, ±0.25 to ±1 N·m (N for a translation), one a second. The first is no change.
+/// What is easily done with an arm: a known mass in the hand (0.1 to 1 kg, besides one that is
+/// there already), and recorded pushes of 0.2 s from outside on the coordinate, ±0.25 to ±1 N·m (N
+/// for a translation), one a second. The first is no change.
 /// @param trial       recorded; its torque from outside stays
 /// @param coordinate  what is pushed and observed
 std::vector<PlannedExperiment> plannedExperiments(const Trial& trial, const Coordinate& coordinate);

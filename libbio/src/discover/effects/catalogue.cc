@@ -59,7 +59,8 @@ void mustBeKnown(const WidestModel& widest, const std::vector<std::string>& ids)
 }  // namespace
 
 WidestModel widestModel(const Model& model, const ArmOptions& arm, const std::string& coordinate,
-                        const std::vector<std::string>& without) {
+                        const std::vector<std::string>& without,
+                        const std::vector<info::discover::FormulaTerm>& formula) {
   WidestModel widest(model, arm, coordinate);
   addNuisances(widest);
   for (const EffectEntry& entry : effectEntries()) {
@@ -67,6 +68,7 @@ WidestModel widestModel(const Model& model, const ArmOptions& arm, const std::st
   }
   mustBeKnown(widest, without);
   widest.forget(without);
+  if (!formula.empty()) addFormula(widest, formula);
   return widest;
 }
 
@@ -94,6 +96,29 @@ Candidate candidate(const WidestModel& model, std::string id, std::string name,
 
 std::string lawName(const WidestModel& model, const std::string& id) {
   return model.coordinate().name + "_" + id;
+}
+
+void addFormula(WidestModel& model, const std::vector<info::discover::FormulaTerm>& terms) {
+  ExpressionEffect effect{"formula",
+                          "force without a name",
+                          "A force that no effect of the catalogue is, as a formula of the state.",
+                          "",
+                          {},
+                          {},
+                          {{}}};
+  std::string sum;
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const std::string name = k == 0 ? "c" : fmt::format("r{}", k + 1);
+    const double deviation = terms[k].deviation;
+    sum += k == 0 ? terms[k].expression : fmt::format("+{}*({})", name, terms[k].expression);
+    effect.constants.push_back(name);
+    // bounds only keep fits from running away
+    effect.quantities.push_back(
+        shape("formula." + name, "", 0, -20 * deviation, 20 * deviation, deviation));
+    effect.starts[0].push_back(terms[k].start);
+  }
+  effect.expression = fmt::format("c*({})", sum);
+  addExpression(model, effect);
 }
 
 void addExpression(WidestModel& model, const ExpressionEffect& effect) {

@@ -26,7 +26,7 @@ void addShape(WidestModel& model) {
                 {Meaning::Kind::shift, {{model.number(EmgTarget{What::nonlinearity, ""}, 0)}}});
   model.add(candidate(model, "shape", "EMG nonlinearity",
                       "Excitation is not proportional to EMG: (e^{Au} - 1)/(e^A - 1).",
-                      EffectKind::input, {A}, {{-0.5}, {0.5}}));
+                      EffectKind::input, {A}, {{-1.5}, {-0.5}, {0.5}, {1.5}}));
 }
 
 /// What each muscle of one group shows of the mean of another's.

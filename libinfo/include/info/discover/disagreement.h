@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,13 @@ struct Candidate {
   /// (limit angles, time constants) vanish from the likelihood at amplitude 0, so they get a grid.
   std::vector<Eigen::VectorXd> starts;
   std::vector<std::string> equivalents;  ///< ids that the same data can never tell from it
+};
+
+/// One term of a force c·(e_1 + r_2·e_2 + …) on what is observed.
+struct FormulaTerm {
+  std::string expression;  ///< e_k in q and qdot, e.g. "qdot*abs(qdot)"
+  double start = 0;        ///< where fits start: c of the first term, r_k of the others
+  double deviation = 1;    ///< prior of that about 0
 };
 
 /// Model, recorded inputs and recorded outputs of several trials, with every effect of a catalogue
@@ -110,6 +118,13 @@ class Disagreement {
   /// test of input independence; may have no columns.
   virtual Eigen::MatrixXd inputs(int trial) const = 0;
   virtual std::vector<std::string> inputNames() const = 0;
+
+  /// The same data and model with a candidate "formula" of these terms, at least one, its
+  /// quantities c, r_2, …; of the other candidates only `kept` (indices). Null: not offered.
+  virtual std::unique_ptr<Disagreement> withFormula(
+      const std::vector<FormulaTerm>& /*terms*/, const std::vector<std::size_t>& /*kept*/) const {
+    return nullptr;
+  }
 };
 
 }  // namespace info::discover

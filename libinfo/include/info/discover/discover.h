@@ -91,6 +91,21 @@ struct Detectable {
   double amplitude = 0;  ///< [unit of the amplitude]; infinite: they can never show it
 };
 
+/// How the formula of what has no name (Unknown) did in the race against the effects that imitate
+/// it best. It is no name: what it says is how the force looks.
+struct RacedFormula {
+  bool wins = false;          ///< alone: as a name it would have been given without a rival
+  double logBayesFactor = 0;  ///< nats by which it improves on the base model
+  double significance = 0;    ///< |c|/deviation, for given r_k
+  std::vector<FormulaTerm> terms;
+  std::string text;            ///< with values, e.g. "-1.48·(q³ - 3.6·q²)"
+  std::vector<double> values;  ///< c, then r_2, … (FormulaTerm)
+  std::vector<double> deviations;
+  Adequacy after;  ///< of the innovations, with the formula
+  Gap gap;         ///< on the trials that were fitted
+  std::optional<Gap> heldOut;
+};
+
 /// What was found. Everything up to `reached` is filled in.
 struct Verdict {
   Stage reached = Stage::calibrate;
@@ -120,6 +135,8 @@ struct Verdict {
   std::optional<Gap> heldOut;
   std::optional<HeldOutAdequacy> heldOutBefore, heldOutAfter;
   std::optional<Unknown> unknown;
+  /// Where all terms of its formula follow the state and the data offer it (withFormula)
+  std::optional<RacedFormula> formula;
   double numericalError = 0;  ///< largest change at half the time step, in σ_y; 0: not offered
   int fits = 0;               ///< how many
 };

@@ -17,13 +17,13 @@ namespace info::discover {
 /// adjust as far as it still can. That the uncertainties of both are correlated (they come from the
 /// same data) is left aside, so the true value is rather larger.
 ///
-/// @param planned  trials that are planned; what was measured in them is not looked at, but for
-///   the starts. Quantities of `fitted` that belong to no trial are found in it by name.
+/// @param planned  trials that are planned, with what the experimenter changes in them; what was
+///   measured in them is not looked at, but for the starts. Quantities of `fitted` that belong to
+///   no trial are found in it by name.
 /// @param fitted   what a and b were fitted to
-/// @param known    added to the quantities of `planned`: what the experimenter changes, e.g. a mass
-/// @throws std::invalid_argument if a quantity is missing in `planned`, or `known` has another size
+/// @throws std::invalid_argument if a quantity is missing in `planned`
 /// @throws std::domain_error if one of them cannot be simulated there
-double expectedSeparation(const Disagreement& planned, const Eigen::VectorXd& known,
-                          const Disagreement& fitted, const Fit& a, const Fit& b);
+double expectedSeparation(const Disagreement& planned, const Disagreement& fitted, const Fit& a,
+                          const Fit& b);
 
 }  // namespace info::discover

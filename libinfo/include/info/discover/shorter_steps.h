@@ -20,7 +20,8 @@ struct SteppedVerdict {
 };
 
 /// Steps that are too long look like an effect: run() again at half the step, from where it has
-/// ended, while the finding is `numerical` and the step is not below `shortest`.
+/// ended, while the finding is `numerical`, or the model cannot be simulated over the trials at all
+/// (std::domain_error), and the step is not below `shortest`.
 /// @param attempt   makes the model at a step [s], with the same quantities and latent nodes at
 ///   each; it lives until the next call
 /// @param step      [s] the first
