@@ -10,8 +10,9 @@ namespace bio {
 namespace {
 
 using lanes::HingeArm;
-using lanes::Real;
-using Solve = void (*)(const lanes::LaneArm<Real>&, lanes::LaneStep&);
+using lanes::Lanes;
+using lanes::Single;
+using Solve = void (*)(const lanes::LaneArm<Lanes>&, lanes::LaneStep&);
 
 Solve solver(LaneInstructions instructions) {
 #ifdef FISHERHILL_WIDE_LANES
@@ -53,7 +54,7 @@ class LaneGroup {
  public:
   struct Member {
     const LaneJob* job;
-    const HingeArm<double>* arm;
+    const HingeArm<Single>* arm;
     const lanes::ActivationCourse* course;
     Trajectory* result;
   };
@@ -68,14 +69,7 @@ class LaneGroup {
       drivers_.push_back(std::make_unique<lanes::LaneDriver>(
           *m.job->arm, *m.job->excitation, *m.job->start, options, *m.course, m.arm->mass));
     }
-    const std::size_t n = arms_.muscles.size();
-    fibreLength_.resize(n);
-    fibreLengthEnd_.resize(n);
-    activation_.resize(n);
-    muscles_.resize(n);
-    step_.fibreLength = fibreLength_.data();
-    step_.fibreLengthEnd = fibreLengthEnd_.data();
-    step_.activation = activation_.data();
+    muscles_.resize(arms_.muscles.size());
     step_.muscles = muscles_.data();
     step_.newtonTolerance = options.newtonTolerance;
     step_.maxIterations = options.maxIterations;
@@ -83,7 +77,7 @@ class LaneGroup {
   }
 
   void run(Solve solve) {
-    const lanes::LaneArm<Real> arm = arms_.view();
+    const lanes::LaneArm<Lanes> arm = arms_.view();
     while (ask()) {
       solve(arm, step_);
       for (std::size_t l = 0; l < drivers_.size(); ++l) {
@@ -118,16 +112,15 @@ class LaneGroup {
     step_.length[lane] = step_.length[from];
     step_.qEnd[lane] = step_.q[lane] = step_.q[from];
     step_.p[lane] = step_.p[from];
-    for (std::size_t i = 0; i < fibreLength_.size(); ++i) {
-      fibreLengthEnd_[i][lane] = fibreLength_[i][lane] = fibreLength_[i][from];
-      activation_[i][lane] = activation_[i][from];
+    for (lanes::MuscleStep& m : muscles_) {
+      m.fibreLengthEnd[lane] = m.fibreLength[lane] = m.fibreLength[from];
+      m.activation[lane] = m.activation[from];
     }
   }
 
   std::vector<Member> members_;
-  HingeArm<Real> arms_;
+  HingeArm<Lanes> arms_;
   std::vector<std::unique_ptr<lanes::LaneDriver>> drivers_;
-  std::vector<Real> fibreLength_, fibreLengthEnd_, activation_;
   std::vector<lanes::MuscleStep> muscles_;
   lanes::LaneStep step_{};
 };
@@ -141,7 +134,7 @@ std::vector<Trajectory> simulateTogether(std::span<const LaneJob> jobs,
                       options.integrator == Integrator::variationalLeft) &&
                      !options.progress;
   std::vector<Trajectory> results(jobs.size());
-  std::vector<std::optional<HingeArm<double>>> arms(jobs.size());
+  std::vector<std::optional<HingeArm<Single>>> arms(jobs.size());
   std::vector<bool> waiting(jobs.size(), true);
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     stepping::checkSimulation(*jobs[i].arm, *jobs[i].excitation, *jobs[i].start, options);

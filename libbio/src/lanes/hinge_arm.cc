@@ -12,8 +12,8 @@ using End = detail::SpanEnd<double, 1>;
 using Angle = Eigen::Matrix<double, 1, 1>;
 
 /// From place and derivatives at q = 0.
-Turning<double> turningPoint(const End& end) {
-  Turning<double> point{};
+Turning<Single> turningPoint(const End& end) {
+  Turning<Single> point{};
   for (int i = 0; i < 3; ++i) {
     point.middle[i] = end.jet.value[i];
     if (end.fixed) continue;
@@ -28,7 +28,7 @@ class HingeCompiler {
  public:
   explicit HingeCompiler(const Arm& arm) : arm_(&arm), moved_(arm.skeleton().numSegments()) {}
 
-  std::optional<HingeArm<double>> compile() {
+  std::optional<HingeArm<Single>> compile() {
     const Skeleton& skeleton = arm_->skeleton();
     if (skeleton.numCoordinates() != 1 || !skeleton.hasConstantInertia()) return {};
     skeleton.motions<double, 1>(zero_, moved_.data());
@@ -48,7 +48,7 @@ class HingeCompiler {
  private:
   bool add(const ArmMuscle& given) {
     const SchutteMuscle<double>& m = given.muscle;
-    LaneMuscle<double> muscle{};
+    LaneMuscle<Single> muscle{};
     muscle.force = m.quantities().maxIsometricForce;
     muscle.perFibre = m.perFibre();
     muscle.perTendon = m.perTendon();
@@ -88,10 +88,10 @@ class HingeCompiler {
     if (a.motion >= 0 || b.motion >= 0) return false;
     const End P = detail::spanEnd<double, 1>(path, a, a.p_S, zero_, moved_.data());
     const End Q = detail::spanEnd<double, 1>(path, b, b.p_S, zero_, moved_.data());
-    const Turning<double> from = turningPoint(P);
-    const Turning<double> to = turningPoint(Q);
+    const Turning<Single> from = turningPoint(P);
+    const Turning<Single> to = turningPoint(Q);
     // |Q − P|²: what turns of the difference is as long in all directions of its plane
-    LaneSpan<double> line{};
+    LaneSpan<Single> line{};
     for (int i = 0; i < 3; ++i) {
       const double middle = to.middle[i] - from.middle[i];
       const double along = to.along[i] - from.along[i];
@@ -121,18 +121,18 @@ class HingeCompiler {
   const Arm* arm_;
   const Angle zero_{0.0};
   std::vector<Motion> moved_;
-  HingeArm<double> out_;
+  HingeArm<Single> out_;
 };
 
 // Every number of a list's element into a lane -----------------------------------------------------
 
-void put(Curve<Real>& to, int lane, const Curve<double>& from) {
+void put(Curve<Lanes>& to, int lane, const Curve<Single>& from) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   to.lower[lane] = to.upper[lane] = none;  // no piece yet
   to.of[lane] = from.of[0];
 }
 
-void put(LaneMuscle<Real>& to, int lane, const LaneMuscle<double>& from) {
+void put(LaneMuscle<Lanes>& to, int lane, const LaneMuscle<Single>& from) {
   to.force[lane] = from.force;
   to.perFibre[lane] = from.perFibre;
   to.perTendon[lane] = from.perTendon;
@@ -145,22 +145,22 @@ void put(LaneMuscle<Real>& to, int lane, const LaneMuscle<double>& from) {
   put(to.passive, lane, from.passive);
 }
 
-void put(Condition<Real>& to, int lane, const Condition<double>& from) {
+void put(Condition<Lanes>& to, int lane, const Condition<Single>& from) {
   to.lower[lane] = from.lower;
   to.upper[lane] = from.upper;
 }
 
-void put(Variant<Real>& to, int lane, const Variant<double>& from) {
+void put(Variant<Lanes>& to, int lane, const Variant<Single>& from) {
   to.fixedLength[lane] = from.fixedLength;
 }
 
-void put(LaneSpan<Real>& to, int lane, const LaneSpan<double>& from) {
+void put(LaneSpan<Lanes>& to, int lane, const LaneSpan<Single>& from) {
   to.constant[lane] = from.constant;
   to.cosine[lane] = from.cosine;
   to.sine[lane] = from.sine;
 }
 
-void put(Cylinder<Real>& to, int lane, const Cylinder<double>& from) {
+void put(Cylinder<Lanes>& to, int lane, const Cylinder<Single>& from) {
   to.side[lane] = from.side;
   to.radius[lane] = from.radius;
   to.halfLength[lane] = from.halfLength;
@@ -185,35 +185,35 @@ bool match(const std::vector<A>& a, const std::vector<A>& b, Same same) {
 
 }  // namespace
 
-std::optional<HingeArm<double>> hingeArm(const Arm& arm) {
+std::optional<HingeArm<Single>> hingeArm(const Arm& arm) {
   return HingeCompiler(arm).compile();
 }
 
-bool sameStructure(const HingeArm<double>& a, const HingeArm<double>& b) {
+bool sameStructure(const HingeArm<Single>& a, const HingeArm<Single>& b) {
   return a.hasForces == b.hasForces && a.conditions.size() == b.conditions.size() &&
          match(a.muscles, b.muscles,
-               [](const LaneMuscle<double>& x, const LaneMuscle<double>& y) {
+               [](const LaneMuscle<Single>& x, const LaneMuscle<Single>& y) {
                  return x.clampsForce == y.clampsForce && x.hasPassiveCurve == y.hasPassiveCurve &&
                         x.numConditions == y.numConditions && x.firstVariant == y.firstVariant;
                }) &&
          match(a.variants, b.variants,
-               [](const Variant<double>& x, const Variant<double>& y) {
+               [](const Variant<Single>& x, const Variant<Single>& y) {
                  return x.numSpans == y.numSpans;
                }) &&
          match(a.spans, b.spans,
-               [](const LaneSpan<double>& x, const LaneSpan<double>& y) {
+               [](const LaneSpan<Single>& x, const LaneSpan<Single>& y) {
                  return x.numCylinders == y.numCylinders;
                }) &&
-         match(a.cylinders, b.cylinders, [](const Cylinder<double>& x, const Cylinder<double>& y) {
+         match(a.cylinders, b.cylinders, [](const Cylinder<Single>& x, const Cylinder<Single>& y) {
            return x.surface == y.surface && x.fixed[0] == y.fixed[0] && x.fixed[1] == y.fixed[1];
          });
 }
 
-HingeArm<Real> lanesFor(const HingeArm<double>& arm) {
-  HingeArm<Real> lanes;
+HingeArm<Lanes> lanesFor(const HingeArm<Single>& arm) {
+  HingeArm<Lanes> lanes;
   lanes.hasForces = arm.hasForces;
-  for (const LaneMuscle<double>& m : arm.muscles) {
-    LaneMuscle<Real> muscle{};
+  for (const LaneMuscle<Single>& m : arm.muscles) {
+    LaneMuscle<Lanes> muscle{};
     muscle.clampsForce = m.clampsForce;
     muscle.hasPassiveCurve = m.hasPassiveCurve;
     muscle.firstCondition = m.firstCondition;
@@ -222,14 +222,14 @@ HingeArm<Real> lanesFor(const HingeArm<double>& arm) {
     lanes.muscles.push_back(muscle);
   }
   lanes.conditions.resize(arm.conditions.size());
-  for (const Variant<double>& v : arm.variants) {
+  for (const Variant<Single>& v : arm.variants) {
     lanes.variants.push_back({Real{}, v.firstSpan, v.numSpans});
   }
-  for (const LaneSpan<double>& s : arm.spans) {
+  for (const LaneSpan<Single>& s : arm.spans) {
     lanes.spans.push_back({Real{}, Real{}, Real{}, s.firstCylinder, s.numCylinders});
   }
-  for (const Cylinder<double>& c : arm.cylinders) {
-    Cylinder<Real> cylinder{};
+  for (const Cylinder<Single>& c : arm.cylinders) {
+    Cylinder<Lanes> cylinder{};
     cylinder.surface = c.surface;
     cylinder.fixed[0] = c.fixed[0];
     cylinder.fixed[1] = c.fixed[1];
@@ -238,7 +238,7 @@ HingeArm<Real> lanesFor(const HingeArm<double>& arm) {
   return lanes;
 }
 
-void setLane(HingeArm<Real>& lanes, int lane, const HingeArm<double>& arm) {
+void setLane(HingeArm<Lanes>& lanes, int lane, const HingeArm<Single>& arm) {
   putAll(lanes.muscles, lane, arm.muscles);
   putAll(lanes.conditions, lane, arm.conditions);
   putAll(lanes.variants, lane, arm.variants);

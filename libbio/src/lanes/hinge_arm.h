@@ -9,19 +9,20 @@
 namespace bio::lanes {
 
 /// The lists behind a LaneArm.
-template <class T>
+template <class Of>
 struct HingeArm {
-  std::vector<LaneMuscle<T>> muscles;
-  std::vector<Condition<T>> conditions;
-  std::vector<Variant<T>> variants;
-  std::vector<LaneSpan<T>> spans;
-  std::vector<Cylinder<T>> cylinders;
+  using T = typename Of::Number;
+  std::vector<LaneMuscle<Of>> muscles;
+  std::vector<Condition<Of>> conditions;
+  std::vector<Variant<Of>> variants;
+  std::vector<LaneSpan<Of>> spans;
+  std::vector<Cylinder<Of>> cylinders;
   T mass, gravityCosine, gravitySine;
   bool hasForces = false;
   const CoordinateForces* forces[width] = {};
 
-  LaneArm<T> view() {
-    LaneArm<T> arm{static_cast<int>(muscles.size()),
+  LaneArm<Of> view() {
+    LaneArm<Of> arm{static_cast<int>(muscles.size()),
                    mass,
                    gravityCosine,
                    gravitySine,
@@ -42,15 +43,15 @@ struct HingeArm {
 /// forces are those of `arm`, which must outlive it; they are set in lane 0.
 /// Nothing if the arm has more coordinates, a slider, path points that move in their bodies,
 /// conditions on a coupled coordinate, or paths over spheres.
-std::optional<HingeArm<double>> hingeArm(const Arm& arm);
+std::optional<HingeArm<Single>> hingeArm(const Arm& arm);
 
 /// Whether two arms differ in numbers alone.
-bool sameStructure(const HingeArm<double>& a, const HingeArm<double>& b);
+bool sameStructure(const HingeArm<Single>& a, const HingeArm<Single>& b);
 
 /// Lists for arms of this structure; every lane must be set before use.
-HingeArm<Real> lanesFor(const HingeArm<double>& arm);
+HingeArm<Lanes> lanesFor(const HingeArm<Single>& arm);
 
 /// An arm of the same structure into a lane.
-void setLane(HingeArm<Real>& lanes, int lane, const HingeArm<double>& arm);
+void setLane(HingeArm<Lanes>& lanes, int lane, const HingeArm<Single>& arm);
 
 }  // namespace bio::lanes

@@ -67,10 +67,11 @@ bool LaneDriver::ask(int lane, LaneStep& step) {
   step.p[lane] = p_;
   step.qEnd[lane] = q_ + (h + bend) * velocity_ - bend * velocityBefore_;
   for (Index i = 0; i < fibre_.size(); ++i) {
-    step.fibreLength[i][lane] = fibre_[i];
-    step.fibreLengthEnd[i][lane] =
+    MuscleStep& muscle = step.muscles[i];
+    muscle.fibreLength[lane] = fibre_[i];
+    muscle.fibreLengthEnd[lane] =
         fibre_[i] + (h + bend) * fibreVelocity_[i] - bend * fibreVelocityBefore_[i];
-    step.activation[i][lane] = middle_[i];
+    muscle.activation[lane] = middle_[i];
   }
   if (!options_->externalForce.empty()) {
     std::size_t hint = row_ - 1;
@@ -102,7 +103,7 @@ void LaneDriver::take(int lane, const LaneStep& step) {
   }
   qEnd_ = step.qEnd[lane];
   pEnd_ = step.pEnd[lane];
-  for (Index i = 0; i < fibre_.size(); ++i) fibreEnd_[i] = step.fibreLengthEnd[i][lane];
+  for (Index i = 0; i < fibre_.size(); ++i) fibreEnd_[i] = step.muscles[i].fibreLengthEnd[lane];
   works_[0] = step.muscleWork[lane];
   works_[1] = step.passiveWork[lane];
   works_[2] = step.externalWork[lane];

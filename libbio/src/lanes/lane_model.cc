@@ -9,7 +9,7 @@
 
 namespace bio::lanes {
 
-void movePieces(Curve<Real>& curve, const Real& x) {
+void movePieces(Curve<Lanes>& curve, const Real& x) {
   constexpr double endless = std::numeric_limits<double>::infinity();
   for (int l = 0; l < width; ++l) {
     if (x[l] >= curve.lower[l] && x[l] < curve.upper[l]) continue;
@@ -32,7 +32,7 @@ void exponentialPassiveForce(const Real& l, Real& value, Real& slope) {
   slope = 8 * value;
 }
 
-bool touchesWithin(const Cylinder<Real>& cylinder, const Real (&P)[3], const Real (&Q)[3],
+bool touchesWithin(const Cylinder<Lanes>& cylinder, const Real (&P)[3], const Real (&Q)[3],
                    int lane) {
   return cylinderTouches(cylinder.radius[lane], 2 * cylinder.halfLength[lane],
                          cylinder.side[lane] > 0 ? Side::counterclockwise : Side::clockwise,
@@ -40,7 +40,7 @@ bool touchesWithin(const Cylinder<Real>& cylinder, const Real (&P)[3], const Rea
                          {Q[0][lane], Q[1][lane], Q[2][lane]});
 }
 
-void passiveForce(const LaneArm<Real>& arm, const Mask& lanes, const Real& q, const Real& qDot,
+void passiveForce(const LaneArm<Lanes>& arm, const Mask& lanes, const Real& q, const Real& qDot,
                   PassiveForce& out) {
   using Number = Eigen::Matrix<double, 1, 1>;
   out = {Real{}, Real{}, Real{}};

@@ -16,7 +16,7 @@ struct CurveJet {
   Real value, slope;
 };
 
-inline CurveJet evaluate(Curve<Real>& c, const Real& x) {
+inline CurveJet evaluate(Curve<Lanes>& c, const Real& x) {
   if (!all((x >= c.lower) & (x < c.upper))) movePieces(c, x);
   const Real t = x - c.start;
   return {c.value + t * (c.slope + t * (c.quadratic + t * c.cubic)),
@@ -25,7 +25,7 @@ inline CurveJet evaluate(Curve<Real>& c, const Real& x) {
 
 /// L = √(k₀ + k₁ cos q + k₂ sin q):  L′ = (k₂ cos q − k₁ sin q)/2L,
 /// L″ = (−(k₁ cos q + k₂ sin q)/2 − L′²)/L
-inline void addStraight(PathJet& jet, const LaneSpan<Real>& span, const SineCosine& turn,
+inline void addStraight(PathJet& jet, const LaneSpan<Lanes>& span, const SineCosine& turn,
                         const Mask& where) {
   const Real changing = span.cosine * turn.cosine + span.sine * turn.sine;
   const Real length = squareRoot(span.constant + changing);
@@ -43,7 +43,7 @@ struct EndJet {
   Real value[3], first[3], second[3];
 };
 
-inline void follow(const Turning<Real>& point, bool fixed, const SineCosine& turn, EndJet& end) {
+inline void follow(const Turning<Lanes>& point, bool fixed, const SineCosine& turn, EndJet& end) {
   for (int i = 0; i < 3; ++i) {
     if (fixed) {
       end.value[i] = point.middle[i];
@@ -58,7 +58,7 @@ inline void follow(const Turning<Real>& point, bool fixed, const SineCosine& tur
 
 /// wrapCylinderDyads and addCylinder along q; adds the span where it touches, of the lanes asked
 /// for. Returns where it did.
-inline Mask addCylinder(PathJet& jet, const Cylinder<Real>& cylinder, const SineCosine& turn,
+inline Mask addCylinder(PathJet& jet, const Cylinder<Lanes>& cylinder, const SineCosine& turn,
                         const Mask& where) {
   EndJet P, Q;
   follow(cylinder.ends[0], cylinder.fixed[0], turn, P);
@@ -127,15 +127,15 @@ inline Mask addCylinder(PathJet& jet, const Cylinder<Real>& cylinder, const Sine
 }
 
 /// The muscle–tendon length in the variant of every lane; adds it where asked for.
-inline void addVariant(PathJet& jet, const LaneArm<Real>& arm, const Variant<Real>& variant,
+inline void addVariant(PathJet& jet, const LaneArm<Lanes>& arm, const Variant<Lanes>& variant,
                        const SineCosine& turn, const Mask& where) {
   jet.length += choose(where, variant.fixedLength, same(0));
   Mask used[maxCylinders] = {};
   for (int i = variant.firstSpan; i < variant.firstSpan + variant.numSpans; ++i) {
-    const LaneSpan<Real>& span = arm.spans[i];
+    const LaneSpan<Lanes>& span = arm.spans[i];
     Mask left = where;
     for (int k = span.firstCylinder; k < span.firstCylinder + span.numCylinders; ++k) {
-      const Cylinder<Real>& cylinder = arm.cylinders[k];
+      const Cylinder<Lanes>& cylinder = arm.cylinders[k];
       const Mask taken = addCylinder(jet, cylinder, turn, left & ~used[cylinder.surface]);
       used[cylinder.surface] |= taken;
       left &= ~taken;
@@ -144,7 +144,7 @@ inline void addVariant(PathJet& jet, const LaneArm<Real>& arm, const Variant<Rea
   }
 }
 
-inline PathJet muscleTendonLength(const LaneArm<Real>& arm, const LaneMuscle<Real>& muscle,
+inline PathJet muscleTendonLength(const LaneArm<Lanes>& arm, const LaneMuscle<Lanes>& muscle,
                                   const Real& q, const SineCosine& turn) {
   PathJet jet{same(0), same(0), same(0)};
   const Mask everywhere = q == q;
@@ -155,7 +155,7 @@ inline PathJet muscleTendonLength(const LaneArm<Real>& arm, const LaneMuscle<Rea
   for (int bits = 0; bits < 1 << muscle.numConditions; ++bits) {
     Mask where = everywhere;
     for (int i = 0; i < muscle.numConditions; ++i) {
-      const Condition<Real>& condition = arm.conditions[muscle.firstCondition + i];
+      const Condition<Lanes>& condition = arm.conditions[muscle.firstCondition + i];
       const Mask holds = (q >= condition.lower) & (q <= condition.upper);
       where &= ((bits >> i) & 1) != 0 ? holds : ~holds;
     }
@@ -170,7 +170,7 @@ struct Rate {
   Real dV_dFibreLength, dV_dMuscleTendonLength, dF_dFibreLength, dF_dMuscleTendonLength;
 };
 
-inline Rate fibreRate(LaneMuscle<Real>& muscle, const Real& activation, const Real& fibreLength,
+inline Rate fibreRate(LaneMuscle<Lanes>& muscle, const Real& activation, const Real& fibreLength,
                       const Real& muscleTendonLength) {
   const Real none = same(0);
   // pennation; outside the fibre's domain everything becomes NaN
@@ -261,7 +261,7 @@ inline Mask isLast(const Real& correction, const Real& previous, double toleranc
 }
 
 /// See VariationalStepper::solve, whose comments are not repeated.
-inline void solve(const LaneArm<Real>& arm, LaneStep& step) {
+inline void solve(const LaneArm<Lanes>& arm, LaneStep& step) {
   constexpr double largestTurn = 0.3;
   constexpr double largestFibreStep = 0.25;
   const Real none = same(0);
@@ -293,15 +293,15 @@ inline void solve(const LaneArm<Real>& arm, LaneStep& step) {
     Real eliminated = none;
     Real carried = none;
     for (int i = 0; i < arm.numMuscles; ++i) {
-      LaneMuscle<Real>& muscle = arm.muscles[i];
+      LaneMuscle<Lanes>& muscle = arm.muscles[i];
       MuscleStep& kept = step.muscles[i];
       const PathJet path = muscleTendonLength(arm, muscle, q_m, turn);
-      const Real l_m = (step.fibreLength[i] + step.fibreLengthEnd[i]) / 2;
-      const Rate r = fibreRate(muscle, step.activation[i], l_m, path.length);
+      const Real l_m = (kept.fibreLength + kept.fibreLengthEnd) / 2;
+      const Rate r = fibreRate(muscle, kept.activation, l_m, path.length);
       force -= r.tendonForce * path.slope;
       dTau -= r.dF_dMuscleTendonLength / 2 * path.slope * path.slope;
       dTau -= r.tendonForce / 2 * path.curvature;
-      kept.residual = (step.fibreLengthEnd[i] - step.fibreLength[i]) / h - r.fibreVelocity;
+      kept.residual = (kept.fibreLengthEnd - kept.fibreLength) / h - r.fibreVelocity;
       kept.inverse = 1 / (perStep - r.dV_dFibreLength / 2);
       const Real G = share / 2 * r.dF_dFibreLength * kept.inverse * path.slope;
       eliminated -= G * r.dV_dMuscleTendonLength / 2 * path.slope;
@@ -329,8 +329,9 @@ inline void solve(const LaneArm<Real>& arm, LaneStep& step) {
     shorten = choose(fibreSize * shorten > largestFibreStep, largestFibreStep / fibreSize, shorten);
     step.qEnd = choose(running, step.qEnd + shorten * dq, step.qEnd);
     for (int i = 0; i < arm.numMuscles; ++i) {
-      Real& end = step.fibreLengthEnd[i];
-      end = choose(running, end + shorten * step.muscles[i].residual, end);
+      MuscleStep& kept = step.muscles[i];
+      kept.fibreLengthEnd = choose(running, kept.fibreLengthEnd + shorten * kept.residual,
+                                   kept.fibreLengthEnd);
     }
     const Real correction = larger(size, fibreSize);
     const Mask last =

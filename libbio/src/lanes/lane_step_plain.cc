@@ -2,7 +2,7 @@
 
 namespace bio::lanes {
 
-void solvePlain(const LaneArm<Real>& arm, LaneStep& step) {
+void solvePlain(const LaneArm<Lanes>& arm, LaneStep& step) {
   solve(arm, step);
 }
 

@@ -2,7 +2,7 @@
 
 namespace bio::lanes {
 
-void solveWide(const LaneArm<Real>& arm, LaneStep& step) {
+void solveWide(const LaneArm<Lanes>& arm, LaneStep& step) {
   solve(arm, step);
 }
 
