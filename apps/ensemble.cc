@@ -146,8 +146,8 @@ class Ensemble : public Command {
     RowFile file(folder.path(unfinishedRows), settings(study, summary, context.seed),
                  study.table->columns(), context.force);
     const auto begin = std::chrono::steady_clock::now();
-    const std::size_t computed = computeMissing(*crew, threads, file, total(study),
-                                                rowsOf(study, context.seed), context, "simulations");
+    const std::size_t computed = computeMissing(
+        *crew, threads, file, total(study), rowsOf(study, context.seed), context, "simulations");
     const double wall =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
@@ -294,8 +294,7 @@ class Ensemble : public Command {
     return work;
   }
 
-  Eigen::VectorXd draw(const EnsembleStudy& study, std::uint64_t number,
-                       std::uint64_t seed) const {
+  Eigen::VectorXd draw(const EnsembleStudy& study, std::uint64_t number, std::uint64_t seed) const {
     const auto p = static_cast<int>(study.parameters.size());
     Eigen::VectorXd theta(p);
     if (sobol_) {

@@ -128,8 +128,8 @@ ArmEnsemble::Draw ArmEnsemble::prepare(const Eigen::VectorXd& theta) const {
       draw.excitation = std::make_unique<const ExcitationSignal>(
           drivenExcitation(trial_, muscleNames(*arm), setting.mapping));
     }
-    draw.start = startOf(*arm, setting, draw.excitation ? *draw.excitation : driven_,
-                         options_.startTime);
+    draw.start =
+        startOf(*arm, setting, draw.excitation ? *draw.excitation : driven_, options_.startTime);
     draw.arm = std::move(arm);
     return draw;
   } catch (const std::logic_error&) {  // outside the model's domain
@@ -139,7 +139,7 @@ ArmEnsemble::Draw ArmEnsemble::prepare(const Eigen::VectorXd& theta) const {
 }
 
 EnsembleRun ArmEnsemble::run(const Eigen::VectorXd& theta) const {
-  return run({&theta, 1}).front();
+  return run(std::span(&theta, 1)).front();
 }
 
 std::vector<EnsembleRun> ArmEnsemble::run(std::span<const Eigen::VectorXd> thetas) const {

@@ -27,8 +27,9 @@ struct EnsembleRun {
 /// One trial, simulated with many values of some parameters. Immutable: may be used from several
 /// threads; a run is a pure function of its parameters.
 ///
-/// Runs go through simulateTogether. An arm is compiled for every run. Paths that no parameter of the selection shapes are taken from
-/// the nominal arm, since finding out where a path can touch what takes longer than all the rest.
+/// Runs go through simulateTogether. An arm is compiled for every run. Paths that no parameter of
+/// the selection shapes are taken from the nominal arm, since finding out where a path can touch
+/// what takes longer than all the rest.
 class ArmEnsemble {
  public:
   /// @param catalogue   made of `arm`; must outlive the ensemble

@@ -124,7 +124,8 @@ class HingeCompiler {
   HingeArm<Single> out_;
 };
 
-// Every number of a list's element into a lane -----------------------------------------------------
+// Every number of a list's element into a lane
+// -----------------------------------------------------
 
 void put(Curve<Lanes>& to, int lane, const Curve<Single>& from) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();

@@ -23,16 +23,16 @@ struct HingeArm {
 
   LaneArm<Of> view() {
     LaneArm<Of> arm{static_cast<int>(muscles.size()),
-                   mass,
-                   gravityCosine,
-                   gravitySine,
-                   hasForces,
-                   {},
-                   muscles.data(),
-                   conditions.data(),
-                   variants.data(),
-                   spans.data(),
-                   cylinders.data()};
+                    mass,
+                    gravityCosine,
+                    gravitySine,
+                    hasForces,
+                    {},
+                    muscles.data(),
+                    conditions.data(),
+                    variants.data(),
+                    spans.data(),
+                    cylinders.data()};
     for (int l = 0; l < width; ++l) arm.forces[l] = forces[l];
     return arm;
   }

@@ -8,8 +8,7 @@ using Eigen::Index;
 
 ActivationCourse::ActivationCourse(const Arm& arm, const ExcitationSignal& excitation,
                                    const ArmState& start, const SimulationOptions& options)
-    : middle(start.activation.size(), static_cast<Index>(stepping::numRows(options))),
-      end(middle) {
+    : middle(start.activation.size(), static_cast<Index>(stepping::numRows(options))), end(middle) {
   stepping::ActivationPlayer player(arm, excitation, options.startTime);
   Eigen::VectorXd activation = start.activation;
   end.col(0) = middle.col(0) = activation;
@@ -83,7 +82,7 @@ bool LaneDriver::ask(int lane, LaneStep& step) {
 }
 
 void LaneDriver::chooseActivation() {
-  if (course_) {
+  if (!within_) {
     middle_ = course_->middle.col(static_cast<Index>(row_));
     activation_ = course_->end.col(static_cast<Index>(row_));
     return;
@@ -159,7 +158,7 @@ bool LaneDriver::findSwitch() {
 /// The next step goes to this fraction of the rest of the row.
 void LaneDriver::meetSwitch(double to) {
   phase_ = Phase::meetSwitch;
-  course_ = nullptr;
+  within_ = true;
   fraction_ = to;
   t1_ = t0_ + to * (tEnd_ - t0_);
   activation_ = kept_;
@@ -185,6 +184,7 @@ void LaneDriver::accept(bool endsRow) {
   recorder_.add(t1_, Number(q_), Number(p_ / mass_), activation_, fibre_, sums_[0], sums_[1],
                 sums_[2]);
   ++recorder_.trajectory().steps;
+  within_ = false;  // the course goes on; it differs by 2e-13 where the excitation changes
   if (++row_ < rows_) {
     tEnd_ = stepping::rowTime(*options_, row_);
   } else {

@@ -52,7 +52,8 @@ class LaneDriver {
   const Arm* arm_;
   const ExcitationSignal* excitation_;
   const SimulationOptions* options_;
-  const ActivationCourse* course_;  ///< null once a step has ended within a row
+  const ActivationCourse* course_;
+  bool within_ = false;  ///< the step begins or ends within a row
   stepping::ActivationPlayer player_;
   stepping::Recorder recorder_;
   double mass_;

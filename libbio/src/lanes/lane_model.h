@@ -32,11 +32,11 @@ struct Turning {
 template <class Of>
 struct Cylinder {
   using T = typename Of::Number;
-  int surface;         ///< its place in the muscle's path
-  bool fixed[2];       ///< whether that end does not move
-  T side;              ///< 1 or −1
-  T radius;            ///< [m]
-  T halfLength;        ///< [m]
+  int surface;          ///< its place in the muscle's path
+  bool fixed[2];        ///< whether that end does not move
+  T side;               ///< 1 or −1
+  T radius;             ///< [m]
+  T halfLength;         ///< [m]
   Turning<Of> ends[2];  ///< in the cylinder's frame
 };
 
@@ -78,9 +78,9 @@ template <class Of>
 struct LaneArm {
   using T = typename Of::Number;
   int numMuscles;
-  T mass;                       ///< M [kg m²]
+  T mass;                        ///< M [kg m²]
   T gravityCosine, gravitySine;  ///< V = gravityCosine·cos q + gravitySine·sin q [J]
-  bool hasForces;               ///< passive ones of the coordinate
+  bool hasForces;                ///< passive ones of the coordinate
   const CoordinateForces* forces[width];
   LaneMuscle<Of>* muscles;
   const Condition<Of>* conditions;
@@ -108,9 +108,9 @@ struct MuscleStep {
 struct LaneStep {
   // given
   Mask wanted;
-  Real length;      ///< h [s]
-  Real q, p;        ///< at the begin
-  Real external;    ///< force at the middle of the step [N m]
+  Real length;    ///< h [s]
+  Real q, p;      ///< at the begin
+  Real external;  ///< force at the middle of the step [N m]
   double newtonTolerance;
   int maxIterations;
   bool symmetric;  ///< forces on both ends of the step
@@ -121,7 +121,7 @@ struct LaneStep {
   Mask converged;
   int iterations[width];
   Real muscleWork, passiveWork, externalWork;  ///< [J]
-  MuscleStep* muscles;  ///< all of the arm
+  MuscleStep* muscles;                         ///< all of the arm
 };
 
 /// Newton's iteration of VariationalStepper for every lane that is wanted. One per instruction set,
@@ -129,7 +129,8 @@ struct LaneStep {
 void solvePlain(const LaneArm<Lanes>& arm, LaneStep& step);
 void solveWide(const LaneArm<Lanes>& arm, LaneStep& step);
 
-// What the step asks for rarely, or from laws without lanes -----------------------------------------
+// What the step asks for rarely, or from laws without lanes
+// -----------------------------------------
 
 /// Finds the pieces that hold x again where a lane has left its own.
 void movePieces(Curve<Lanes>& curve, const Real& x);

@@ -5,7 +5,8 @@ namespace bio::lanes {
 /// Simulations that are advanced together, one per lane.
 inline constexpr int width = 4;
 
-/// Its alignment is said because GCC takes another one where the instruction set lacks such vectors.
+/// Its alignment is said because GCC takes another one where the instruction set lacks such
+/// vectors.
 using Real [[gnu::vector_size(width * sizeof(double)), gnu::aligned(width * sizeof(double))]] =
     double;
 /// All bits of a lane set: yes.

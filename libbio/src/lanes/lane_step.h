@@ -107,16 +107,16 @@ inline Mask addCylinder(PathJet& jet, const Cylinder<Lanes>& cylinder, const Sin
     const Real normal = eP[0] * P.first[1] - eP[1] * P.first[0];
     slope -= around * tangent + up * P.first[2];
     m += around * P.first[2] - up * tangent;
-    curvature += around / a * normal * normal - around * (eP[0] * P.second[0] + eP[1] * P.second[1]) -
-                 up * P.second[2];
+    curvature += around / a * normal * normal -
+                 around * (eP[0] * P.second[0] + eP[1] * P.second[1]) - up * P.second[2];
   }
   if (!cylinder.fixed[1]) {
     const Real tangent = eQ[0] * Q.first[0] + eQ[1] * Q.first[1];
     const Real normal = eQ[0] * Q.first[1] - eQ[1] * Q.first[0];
     slope += around * tangent + up * Q.first[2];
     m += up * tangent - around * Q.first[2];
-    curvature += around / b * normal * normal + around * (eQ[0] * Q.second[0] + eQ[1] * Q.second[1]) +
-                 up * Q.second[2];
+    curvature += around / b * normal * normal +
+                 around * (eQ[0] * Q.second[0] + eQ[1] * Q.second[1]) + up * Q.second[2];
   }
   curvature += perLength * m * m;
   const Real none = same(0);
@@ -175,8 +175,8 @@ inline Rate fibreRate(LaneMuscle<Lanes>& muscle, const Real& activation, const R
   const Real none = same(0);
   // pennation; outside the fibre's domain everything becomes NaN
   const Real square = muscle.thickness * muscle.thickness;
-  const Real projected = squareRoot(choose(fibreLength > muscle.thickness,
-                                           fibreLength * fibreLength - square, same(-1)));
+  const Real projected = squareRoot(
+      choose(fibreLength > muscle.thickness, fibreLength * fibreLength - square, same(-1)));
   const Real perProjected = 1 / projected;
   const Real kappa = fibreLength * perProjected;
   const Real dKappa = -square * perProjected * perProjected * perProjected;
@@ -232,9 +232,9 @@ inline Rate fibreRate(LaneMuscle<Lanes>& muscle, const Real& activation, const R
   Real v = choose(conjugate, 2 * c, choose(shortens, -sum, sum)) / choose(conjugate, sum, 2 * B);
   const Real perRoot = 1 / root;
   Real dv_dP = choose(shortens, shapeShortening - v, v + shapeLengthening) * perRoot;
-  Real dv_dA = -choose(shortens, shapeShortening * (1 + v),
-                       maxLengtheningForce * v + shapeLengthening) *
-               perRoot;
+  Real dv_dA =
+      -choose(shortens, shapeShortening * (1 + v), maxLengtheningForce * v + shapeLengthening) *
+      perRoot;
   const Mask linear = P < -B;
   if (any(linear)) {
     v = choose(linear, P / B, v);
@@ -330,8 +330,8 @@ inline void solve(const LaneArm<Lanes>& arm, LaneStep& step) {
     step.qEnd = choose(running, step.qEnd + shorten * dq, step.qEnd);
     for (int i = 0; i < arm.numMuscles; ++i) {
       MuscleStep& kept = step.muscles[i];
-      kept.fibreLengthEnd = choose(running, kept.fibreLengthEnd + shorten * kept.residual,
-                                   kept.fibreLengthEnd);
+      kept.fibreLengthEnd =
+          choose(running, kept.fibreLengthEnd + shorten * kept.residual, kept.fibreLengthEnd);
     }
     const Real correction = larger(size, fibreSize);
     const Mask last =
