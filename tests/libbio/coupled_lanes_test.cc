@@ -203,7 +203,7 @@ TEST(LanePaths, AreThoseOfTheConfiguration) {
   for (int angle = 0; angle < 8; ++angle) {
     for (const double along : {0.0, 0.06}) {
       Model model = elbow.model;
-      const double r = 1.1 * 0.016;
+      const double r = along > 0 ? 0.0176 : 0.03;
       const double turn = angle * std::numbers::pi / 4;
       for (Muscle& muscle : model.muscles) {
         if (muscle.name != "TRIlat") continue;

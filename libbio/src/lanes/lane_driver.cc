@@ -27,7 +27,6 @@ LaneDriver::LaneDriver(const Arm& arm, const ExcitationSignal& excitation, const
                        const SimulationOptions& options, const ActivationCourse& course,
                        double mass)
     : arm_(&arm),
-      excitation_(&excitation),
       options_(&options),
       course_(&course),
       player_(arm, excitation, options.startTime),

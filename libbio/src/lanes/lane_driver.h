@@ -50,7 +50,6 @@ class LaneDriver {
   double distance(double q) const { return switch_->distance(q); }
 
   const Arm* arm_;
-  const ExcitationSignal* excitation_;
   const SimulationOptions* options_;
   const ActivationCourse* course_;
   bool within_ = false;  ///< the step begins or ends within a row
