@@ -141,13 +141,14 @@ class MpiCrew : public Crew {
         for (;;) {
           const auto numbers = handout.chunk(static_cast<std::size_t>(threads));
           if (numbers.empty()) break;
-          RowWork own = work;
-          own.rows = [&](std::span<const std::uint64_t> batch) {
+          RowWork untilStopped = work;
+          untilStopped.rows = [&](std::span<const std::uint64_t> batch) {
             return handout.isStopped() ? std::vector<std::string>(batch.size()) : work.rows(batch);
           };
-          inBatches(own, numbers, threads, [&](std::uint64_t number, const std::string& row) {
-            if (!handout.isStopped()) handout.finished(number, row);
-          });
+          inBatches(untilStopped, numbers, threads,
+                    [&](std::uint64_t number, const std::string& row) {
+                      if (!handout.isStopped()) handout.finished(number, row);
+                    });
         }
       } catch (...) {
         ownFailure = std::current_exception();

@@ -198,19 +198,19 @@ void expectSamePaths(const Arm& arm) {
 TEST(LanePaths, AreThoseOfTheConfiguration) {
   const ShippedElbow elbow;
   expectSamePaths(elbow.arm);
-  // a point at several places round the triceps' cylinder, so that two spans may touch it, or it is
-  // met beyond its ends
+  // a further point at several places round the triceps' cylinder: in the ulna, so that two spans
+  // may touch it; in the humerus, beside its end
   for (int angle = 0; angle < 8; ++angle) {
-    for (const double along : {0.0, 0.06}) {
+    const double turn = angle * std::numbers::pi / 4;
+    const Eigen::Vector3d out(std::cos(turn), std::sin(turn), 0);
+    for (const bool turns : {false, true}) {
       Model model = elbow.model;
-      const double r = along > 0 ? 0.0176 : 0.03;
-      const double turn = angle * std::numbers::pi / 4;
       for (Muscle& muscle : model.muscles) {
         if (muscle.name != "TRIlat") continue;
-        PathPoint point = muscle.path.points.front();
-        ASSERT_EQ(point.body, "humerus");
-        point.location = {0.0028 + r * std::cos(turn), -0.2919 + r * std::sin(turn),
-                          -0.0119 + along};
+        PathPoint point = turns ? muscle.path.points.back() : muscle.path.points.front();
+        ASSERT_EQ(point.body, turns ? "ulna" : "humerus");
+        point.location = turns ? Eigen::Vector3d(0.03 * out)
+                               : Eigen::Vector3d(0.0028, -0.2919, 0.0481) + 0.0176 * out;
         auto& points = muscle.path.points;
         points.insert(points.end() - 1, point);
         for (PathWrap& wrap : muscle.path.wraps) wrap.firstPoint = wrap.lastPoint = -1;
