@@ -58,9 +58,7 @@ class PiecewiseCubic {
   }
 
   /// The segment that holds x; a knot belongs to the segment on its right.
-  const Segment& segmentAt(double x) const {
-    return segments_[indexAt(x)];
-  }
+  const Segment& segmentAt(double x) const { return segments_[indexAt(x)]; }
 
   /// The place of that segment in segments(); it holds knots()[place − 1] ≤ x < knots()[place].
   std::size_t indexAt(double x) const {
