@@ -133,7 +133,7 @@ class Ensemble : public Command {
     if (!crew->leads()) {
       Summary summary(context);
       const auto study = prepare(summary);
-      crew->work({{}, rowOf(*study, context.seed), {}}, threads);
+      crew->work(rowsOf(*study, context.seed), threads);
       return ExitStatus::done;
     }
     std::vector<std::string> files = {"draws.csv", "band.csv"};
@@ -146,8 +146,8 @@ class Ensemble : public Command {
     RowFile file(folder.path(unfinishedRows), settings(study, summary, context.seed),
                  study.table->columns(), context.force);
     const auto begin = std::chrono::steady_clock::now();
-    const std::size_t computed = computeMissing(*crew, threads, file, total(study),
-                                                rowOf(study, context.seed), context, "simulations");
+    const std::size_t computed = computeMissing(
+        *crew, threads, file, total(study), rowsOf(study, context.seed), context, "simulations");
     const double wall =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
@@ -278,22 +278,35 @@ class Ensemble : public Command {
 
   /// A row is a function of seed and number alone: its parameters are quantiles of a point of the
   /// unit cube, which comes from the number's own random stream, or from Saltelli's scheme.
-  std::function<std::string(std::uint64_t)> rowOf(const EnsembleStudy& study,
-                                                  std::uint64_t seed) const {
-    return [this, &study, seed](std::uint64_t number) {
-      const auto p = static_cast<int>(study.parameters.size());
-      Eigen::VectorXd theta(p);
-      if (sobol_) {
-        theta = info::sobolPoint(number, p, seed);
-      } else {
-        info::RandomStream random(seed, number);
-        for (double& u : theta) u = random.uniform();
+  RowWork rowsOf(const EnsembleStudy& study, std::uint64_t seed) const {
+    RowWork work;
+    work.together = 16;  // four times four lanes
+    work.rows = [this, &study, seed](std::span<const std::uint64_t> numbers) {
+      std::vector<Eigen::VectorXd> thetas;
+      for (const std::uint64_t number : numbers) thetas.push_back(draw(study, number, seed));
+      const std::vector<bio::EnsembleRun> runs = study.ensemble->run(thetas);
+      std::vector<std::string> rows;
+      for (std::size_t i = 0; i < runs.size(); ++i) {
+        rows.push_back(study.table->row(runs[i], thetas[i]));
       }
-      for (Eigen::Index i = 0; i < p; ++i) {
-        theta[i] = study.parameters[static_cast<std::size_t>(i)].law.quantile(theta[i]);
-      }
-      return study.table->row(study.ensemble->run(theta), theta);
+      return rows;
     };
+    return work;
+  }
+
+  Eigen::VectorXd draw(const EnsembleStudy& study, std::uint64_t number, std::uint64_t seed) const {
+    const auto p = static_cast<int>(study.parameters.size());
+    Eigen::VectorXd theta(p);
+    if (sobol_) {
+      theta = info::sobolPoint(number, p, seed);
+    } else {
+      info::RandomStream random(seed, number);
+      for (double& u : theta) u = random.uniform();
+    }
+    for (Eigen::Index i = 0; i < p; ++i) {
+      theta[i] = study.parameters[static_cast<std::size_t>(i)].law.quantile(theta[i]);
+    }
+    return theta;
   }
 
   /// All that the rows depend on; how many there are is not among it.

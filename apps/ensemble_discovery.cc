@@ -135,8 +135,9 @@ Report discoveryReport(const std::vector<std::vector<std::string>>& rows, const 
 ExitStatus discoverInSets(const ArmDiscoveryRequest& each, const fs::path& folder,
                           const CommandContext& context, Crew& crew, int threads) {
   const std::vector<DataSet> sets = dataSetsIn(folder);
-  const auto row = [&](std::uint64_t number) {
-    const DataSet& set = sets[number];
+  RowWork work;
+  work.rows = [&](std::span<const std::uint64_t> numbers) {  // one at a time
+    const DataSet& set = sets[numbers.front()];
     ArmDiscoveryRequest request = each;
     request.trials = set.training;
     request.heldOut = set.heldOut;
@@ -144,10 +145,10 @@ ExitStatus discoverInSets(const ArmDiscoveryRequest& each, const fs::path& folde
     one.quiet = true;
     one.force = true;  // what a killed run has left there is made anew
     one.out = *context.out / "verdicts" / set.name;
-    return verdictRow(set, discoverInArm(request, one).verdict);
+    return std::vector{verdictRow(set, discoverInArm(request, one).verdict)};
   };
   if (!crew.leads()) {
-    crew.work({{}, row, {}}, threads);
+    crew.work(work, threads);
     return ExitStatus::done;
   }
   OutputFolder results(mayGoOn(context), {"verdicts.csv"});
@@ -157,7 +158,7 @@ ExitStatus discoverInSets(const ArmDiscoveryRequest& each, const fs::path& folde
                context.force);
   const auto begin = std::chrono::steady_clock::now();
   const std::size_t computed =
-      computeMissing(crew, threads, file, sets.size(), row, context, "data sets");
+      computeMissing(crew, threads, file, sets.size(), work, context, "data sets");
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 

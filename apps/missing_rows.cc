@@ -15,15 +15,12 @@ CommandContext mayGoOn(CommandContext context) {
 }
 
 std::size_t computeMissing(Crew& crew, int threads, RowFile& file, std::uint64_t total,
-                           const std::function<std::string(std::uint64_t)>& row,
-                           const CommandContext& context, const std::string& things) {
-  RowWork work;
+                           RowWork work, const CommandContext& context, const std::string& things) {
   for (std::uint64_t number = 0; number < total; ++number) {
     if (!file.rows().contains(number)) work.numbers.push_back(number);
   }
   const std::size_t missing = work.numbers.size();
   std::uint64_t done = total - missing;
-  work.row = row;
   ProgressBar bar("ensemble");
   work.take = [&](std::uint64_t number, const std::string& text) {
     file.append(number, text);

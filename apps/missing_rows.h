@@ -19,10 +19,10 @@ CommandContext mayGoOn(CommandContext context);
 /// Has a crew compute the rows 0 … total − 1 that a file lacks, with a bar; every row is in the
 /// file as soon as it is finished. After Ctrl-C it says how to go on.
 /// @param things  what a row stands for, "simulations"
+/// @param work    its rows, and how many are best computed at once; the rest of it is set here
 /// @return how many were computed
-/// @throws Interrupted, and what `row` and RowFile::append throw
+/// @throws Interrupted, and what `work.rows` and RowFile::append throw
 std::size_t computeMissing(Crew& crew, int threads, RowFile& file, std::uint64_t total,
-                           const std::function<std::string(std::uint64_t)>& row,
-                           const CommandContext& context, const std::string& things);
+                           RowWork work, const CommandContext& context, const std::string& things);
 
 }  // namespace app

@@ -11,8 +11,6 @@
 #include <mutex>
 #include <thread>
 
-#include "info/monte_carlo.h"
-
 namespace app {
 namespace {
 
@@ -64,7 +62,9 @@ class Handout {
     const std::lock_guard lock(mutex_);
     const std::size_t left = stopped_ ? 0 : work_->numbers.size() - next_;
     const std::size_t share = left / (4 * static_cast<std::size_t>(workers_));
-    const std::size_t size = std::min(left, std::max(share, atLeast));
+    const std::size_t batch = work_->together;
+    const std::size_t whole = (std::max(share, atLeast) + batch - 1) / batch * batch;
+    const std::size_t size = std::min(left, whole);
     const auto from = work_->numbers.begin() + static_cast<std::ptrdiff_t>(next_);
     next_ += size;
     return {from, from + static_cast<std::ptrdiff_t>(size)};
@@ -141,11 +141,14 @@ class MpiCrew : public Crew {
         for (;;) {
           const auto numbers = handout.chunk(static_cast<std::size_t>(threads));
           if (numbers.empty()) break;
-          info::parallelFor(static_cast<int>(numbers.size()), threads, [&](int i) {
-            if (handout.isStopped()) return;
-            const std::uint64_t number = numbers[static_cast<std::size_t>(i)];
-            handout.finished(number, work.row(number));
-          });
+          RowWork untilStopped = work;
+          untilStopped.rows = [&](std::span<const std::uint64_t> batch) {
+            return handout.isStopped() ? std::vector<std::string>(batch.size()) : work.rows(batch);
+          };
+          inBatches(untilStopped, numbers, threads,
+                    [&](std::uint64_t number, const std::string& row) {
+                      if (!handout.isStopped()) handout.finished(number, row);
+                    });
         }
       } catch (...) {
         ownFailure = std::current_exception();
@@ -225,10 +228,10 @@ class MpiCrew : public Crew {
       sent = Clock::now();
     };
     if (threads == 1) {
-      for (const std::uint64_t number : numbers) {
-        message.add(number, work.row(number));
+      inBatches(work, numbers, 1, [&](std::uint64_t number, const std::string& row) {
+        message.add(number, row);
         sendIfLate();
-      }
+      });
       return;
     }
     std::mutex mutex;
@@ -236,9 +239,7 @@ class MpiCrew : public Crew {
     std::exception_ptr failure;
     std::jthread own([&] {
       try {
-        info::parallelFor(static_cast<int>(numbers.size()), threads, [&](int i) {
-          const std::uint64_t number = numbers[static_cast<std::size_t>(i)];
-          const std::string row = work.row(number);
+        inBatches(work, numbers, threads, [&](std::uint64_t number, const std::string& row) {
           const std::lock_guard lock(mutex);
           message.add(number, row);
         });

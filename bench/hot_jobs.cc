@@ -1,5 +1,6 @@
 #include "hot_jobs.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <stdexcept>
@@ -105,12 +106,18 @@ int HotJobs::ensemble(int count, int threads) const {
   const Eigen::VectorXd nominal = elbow_.catalogue.values(drawn);
   const ArmEnsemble ensemble(elbow_.catalogue, fixtures::ShippedElbow::options(), elbow_.excitation,
                              "elbow_flexion", std::nullopt, {}, drawn, options());
+  constexpr int together = 16;
   std::atomic<int> completed = 0;
-  info::parallelFor(count, threads, [&](int i) {
-    info::RandomStream random(1, static_cast<std::uint64_t>(i));
-    Eigen::VectorXd values = nominal;
-    for (double& value : values) value *= std::exp(0.01 * random.normal());
-    if (ensemble.run(values).outcome == name(Outcome::completed)) ++completed;
+  info::parallelFor((count + together - 1) / together, threads, [&](int batch) {
+    std::vector<Eigen::VectorXd> draws;
+    for (int i = batch * together; i < std::min(count, (batch + 1) * together); ++i) {
+      info::RandomStream random(1, static_cast<std::uint64_t>(i));
+      Eigen::VectorXd& values = draws.emplace_back(nominal);
+      for (double& value : values) value *= std::exp(0.01 * random.normal());
+    }
+    for (const EnsembleRun& run : ensemble.run(draws)) {
+      if (run.outcome == name(Outcome::completed)) ++completed;
+    }
   });
   return completed;
 }

@@ -170,6 +170,13 @@ PiecewiseLinear::PiecewiseLinear(const PiecewiseLinearFunction& points)
 FunctionEvaluator::FunctionEvaluator(const Function& function)
     : scale_(function.scale), shape_(compileShape(function)) {}
 
+bool FunctionEvaluator::isIdentity() const {
+  const auto* curve = std::get_if<PiecewiseCubic>(&shape_);
+  if (!curve || !curve->knots().empty()) return false;
+  const PiecewiseCubic::Segment& s = curve->segments().front();
+  return s.start == 0 && s.value == 0 && scale_ * s.slope == 1 && s.quadratic == 0 && s.cubic == 0;
+}
+
 CurveValue FunctionEvaluator::evaluate(double x) const {
   if (const auto* curve = std::get_if<PiecewiseCubic>(&shape_)) {
     const CurveValue y = curve->evaluate(x);

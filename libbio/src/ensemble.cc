@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 
+#include "bio/coupled_lanes.h"
 #include "bio/coupled_sensitivity.h"
 #include "bio/simulation_names.h"
 #include "motion_weights.h"
@@ -47,7 +49,24 @@ std::vector<std::string> shapedMuscles(const ParameterCatalogue& catalogue,
   return names;
 }
 
+bool changesExcitations(const ParameterCatalogue& catalogue,
+                        const std::vector<std::size_t>& selection) {
+  return std::any_of(selection.begin(), selection.end(), [&](std::size_t index) {
+    const auto& targets = catalogue.parameters().at(index).targets;
+    return std::any_of(targets.begin(), targets.end(), [](const ParameterTarget& target) {
+      return std::holds_alternative<EmgTarget>(target);
+    });
+  });
+}
+
 }  // namespace
+
+/// What one simulation is made of; no arm if there is none with these parameters.
+struct ArmEnsemble::Draw {
+  std::unique_ptr<const Arm> arm;
+  std::unique_ptr<const ExcitationSignal> excitation;  ///< unless it is the nominal one
+  ArmState start;
+};
 
 ArmEnsemble::ArmEnsemble(const ParameterCatalogue& catalogue, const ArmOptions& arm,
                          ExcitationSignal trial, const std::string& coordinate,
@@ -61,12 +80,16 @@ ArmEnsemble::ArmEnsemble(const ParameterCatalogue& catalogue, const ArmOptions& 
       selection_(std::move(selection)),
       options_(options),
       arm_(catalogue.model(), arm),
+      driven_(drivenExcitation(trial_, muscleNames(arm_), catalogue.nominal().mapping)),
+      drawsEmg_(changesExcitations(catalogue, selection_)),
       shaped_(shapedMuscles(catalogue, selection_)),
       coordinate_(arm_.skeleton().indexOf(coordinate)) {
   if (coordinate_ < 0) {
     throw std::invalid_argument(fmt::format("observed coordinate '{}' is not free", coordinate));
   }
-  const Trajectory motion = simulateSetting(arm_, catalogue.nominal(), trial_, options_);
+  const ArmState start = startOf(arm_, catalogue.nominal(), driven_, options_.startTime);
+  const LaneJob own{&arm_, &driven_, &start};
+  const Trajectory motion = simulateTogether({&own, 1}, options_).front();
   if (motion.outcome != Outcome::completed) {
     throw std::invalid_argument(
         fmt::format("the model's own motion does not reach the end of the trial: {}", motion.why));
@@ -96,15 +119,59 @@ EnsembleRun ArmEnsemble::describe(const Trajectory& motion) const {
   return run;
 }
 
-EnsembleRun ArmEnsemble::run(const Eigen::VectorXd& theta) const {
+ArmEnsemble::Draw ArmEnsemble::prepare(const Eigen::VectorXd& theta) const {
   const ParameterCatalogue::Setting setting = catalogue_->at(selection_, theta);
   try {
-    const Arm arm(setting.model, armOptions_, arm_, shaped_);
-    return describe(simulateSetting(arm, setting, trial_, options_));
+    Draw draw;
+    auto arm = std::make_unique<const Arm>(setting.model, armOptions_, arm_, shaped_);
+    if (drawsEmg_) {
+      draw.excitation = std::make_unique<const ExcitationSignal>(
+          drivenExcitation(trial_, muscleNames(*arm), setting.mapping));
+    }
+    draw.start =
+        startOf(*arm, setting, draw.excitation ? *draw.excitation : driven_, options_.startTime);
+    draw.arm = std::move(arm);
+    return draw;
   } catch (const std::logic_error&) {  // outside the model's domain
   } catch (const NoStaticEquilibrium&) {
   }
-  return notFinished("impossible", std::numeric_limits<double>::quiet_NaN(), course_.size());
+  return {};
+}
+
+EnsembleRun ArmEnsemble::run(const Eigen::VectorXd& theta) const {
+  return run(std::span(&theta, 1)).front();
+}
+
+std::vector<EnsembleRun> ArmEnsemble::run(std::span<const Eigen::VectorXd> thetas) const {
+  std::vector<EnsembleRun> runs(
+      thetas.size(),
+      notFinished("impossible", std::numeric_limits<double>::quiet_NaN(), course_.size()));
+  std::vector<Draw> draws;
+  std::vector<LaneJob> jobs;
+  std::vector<std::size_t> places;
+  for (const Eigen::VectorXd& theta : thetas) draws.push_back(prepare(theta));
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    const Draw& draw = draws[i];
+    if (!draw.arm) continue;
+    jobs.push_back(
+        {draw.arm.get(), draw.excitation ? draw.excitation.get() : &driven_, &draw.start});
+    places.push_back(i);
+  }
+  const auto simulate = [&](std::size_t first, std::size_t count) {
+    const auto motions = simulateTogether({jobs.data() + first, count}, options_);
+    for (std::size_t k = 0; k < count; ++k) runs[places[first + k]] = describe(motions[k]);
+  };
+  try {
+    simulate(0, jobs.size());
+  } catch (const std::logic_error&) {  // one of them leaves the model's domain: which?
+    for (std::size_t k = 0; k < jobs.size(); ++k) {
+      try {
+        simulate(k, 1);
+      } catch (const std::logic_error&) {
+      }
+    }
+  }
+  return runs;
 }
 
 }  // namespace bio

@@ -58,7 +58,10 @@ class PiecewiseCubic {
   }
 
   /// The segment that holds x; a knot belongs to the segment on its right.
-  const Segment& segmentAt(double x) const {
+  const Segment& segmentAt(double x) const { return segments_[indexAt(x)]; }
+
+  /// The place of that segment in segments(); it holds knots()[place − 1] ≤ x < knots()[place].
+  std::size_t indexAt(double x) const {
     // Halving the knots that may be the last one below x, without a branch to mispredict.
     const double* first = knots_.data();
     std::size_t left = knots_.size();
@@ -68,8 +71,11 @@ class PiecewiseCubic {
       left -= half;
     }
     const auto before = static_cast<std::size_t>(first - knots_.data());
-    return segments_[before + (left == 1 && *first <= x ? 1 : 0)];
+    return before + (left == 1 && *first <= x ? 1 : 0);
   }
+
+  const std::vector<double>& knots() const { return knots_; }
+  const std::vector<Segment>& segments() const { return segments_; }
 
  private:
   std::vector<double> knots_;
@@ -106,6 +112,9 @@ class FunctionEvaluator {
   explicit FunctionEvaluator(const Function& function);
 
   CurveValue evaluate(double x) const;
+
+  /// Whether it is made as f(x) = x.
+  bool isIdentity() const;
 
   template <class T>
   T value(const T& x) const {

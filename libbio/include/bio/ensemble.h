@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,9 @@ struct EnsembleRun {
 /// One trial, simulated with many values of some parameters. Immutable: may be used from several
 /// threads; a run is a pure function of its parameters.
 ///
-/// An arm is compiled for every run. Paths that no parameter of the selection shapes are taken from
-/// the nominal arm, since finding out where a path can touch what takes longer than all the rest.
+/// Runs go through simulateTogether. An arm is compiled for every run. Paths that no parameter of
+/// the selection shapes are taken from the nominal arm, since finding out where a path can touch
+/// what takes longer than all the rest.
 class ArmEnsemble {
  public:
   /// @param catalogue   made of `arm`; must outlive the ensemble
@@ -49,8 +51,13 @@ class ArmEnsemble {
   /// @param theta of the selection
   /// @throws std::invalid_argument for another number of values, or one that is not finite
   EnsembleRun run(const Eigen::VectorXd& theta) const;
+  /// The same for several at once, quicker if it is several times LaneJob's four; each is what it
+  /// would be alone, to the last bit.
+  std::vector<EnsembleRun> run(std::span<const Eigen::VectorXd> thetas) const;
 
  private:
+  struct Draw;
+  Draw prepare(const Eigen::VectorXd& theta) const;
   EnsembleRun describe(const Trajectory& motion) const;
 
   const ParameterCatalogue* catalogue_;
@@ -61,6 +68,8 @@ class ArmEnsemble {
   std::vector<std::size_t> selection_;
   SimulationOptions options_;
   Arm arm_;                          ///< nominal
+  ExcitationSignal driven_;          ///< nominal
+  bool drawsEmg_;                    ///< a parameter of the selection changes the excitations
   std::vector<std::string> shaped_;  ///< muscles whose paths the selection shapes
   int coordinate_;
   Eigen::RowVectorXd nominalMotion_;  ///< [rad] or [m], one column per row of time
