@@ -1,12 +1,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 #include <sstream>
 
@@ -244,20 +245,27 @@ TEST(EnsembleCommand, DrawsTogetherWhatACovarianceHoldsTogether) {
   const auto lines = linesOf(contentOf(out + "/draws.csv"));
   ASSERT_EQ(lines.size(), 401u);
   EXPECT_TRUE(lines[0].ends_with("BRA.pennation_angle [rad],hand.mass [kg],TRI.radius [m]"));
-  Eigen::MatrixXd draws(3, 400);
-  for (int k = 0; k < 400; ++k) {
-    const auto row = cells(lines[static_cast<std::size_t>(k) + 1]);
-    for (int i = 0; i < 3; ++i) draws(i, k) = std::stod(row[static_cast<std::size_t>(8 + i)]);
+  std::array<std::vector<double>, 3> draws;
+  for (std::size_t k = 1; k <= 400; ++k) {
+    const auto row = cells(lines[k]);
+    for (std::size_t i = 0; i < 3; ++i) draws[i].push_back(std::stod(row[8 + i]));
   }
-  const Eigen::MatrixXd off = draws.colwise() - draws.rowwise().mean();
-  const Eigen::MatrixXd sample = off * off.transpose() / 399;
-  const double pennation = sample(0, 0);
-  const Eigen::Matrix3d wanted{{pennation, 0, 0}, {0, 4e-4, -1.5e-5}, {0, -1.5e-5, 1e-6}};
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
+  const auto covariance = [&](std::size_t i, std::size_t j) {
+    const auto mean = [](const std::vector<double>& x) {
+      return std::accumulate(x.begin(), x.end(), 0.0) / 400;
+    };
+    const double a = mean(draws[i]), b = mean(draws[j]);
+    double sum = 0;
+    for (std::size_t k = 0; k < 400; ++k) sum += (draws[i][k] - a) * (draws[j][k] - b);
+    return sum / 399;
+  };
+  const double pennation = covariance(0, 0);
+  const double wanted[3][3] = {{pennation, 0, 0}, {0, 4e-4, -1.5e-5}, {0, -1.5e-5, 1e-6}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
       const double error =
-          std::sqrt((wanted(i, i) * wanted(j, j) + wanted(i, j) * wanted(i, j)) / 400);
-      EXPECT_NEAR(sample(i, j), wanted(i, j), 4 * error) << i << ' ' << j;
+          std::sqrt((wanted[i][i] * wanted[j][j] + wanted[i][j] * wanted[i][j]) / 400);
+      EXPECT_NEAR(covariance(i, j), wanted[i][j], 4 * error) << i << ' ' << j;
     }
   }
   const std::string one = (scratch / "one").string();
