@@ -36,7 +36,7 @@ GaussianCopula::GaussianCopula(const Eigen::MatrixXd& correlation) {
 
 Eigen::VectorXd GaussianCopula::shares(const Eigen::VectorXd& independent) const {
   // the ends would be infinite
-  static constexpr double end = 0x1p-54;
+  static constexpr double end = 0x1p-53;
   const Eigen::VectorXd z = lower_ * independent.unaryExpr([](double u) {
     return standardNormalQuantile(std::clamp(u, end, 1 - end));
   });
