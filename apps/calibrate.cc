@@ -11,6 +11,7 @@
 #include "driven_trial.h"
 #include "info/version.h"
 #include "input_rules.h"
+#include "named_covariance.h"
 #include "named_pairs.h"
 #include "progress_bar.h"
 #include "result.h"
@@ -89,7 +90,7 @@ class Calibrate : public Command {
 
   ExitStatus run(const CommandContext& context) override {
     const bio::CalibrationOptions typed = calibrationOptions(context);
-    std::vector<std::string> names = {"calibrated.osim"};
+    std::vector<std::string> names = {"calibrated.osim", "covariance.csv"};
     for (std::size_t i = 0; i < trials_.size() + heldOut_.size(); ++i) {
       names.push_back(drivenName(i));
     }
@@ -130,6 +131,11 @@ class Calibrate : public Command {
     if (calibration.calibrated) {
       writeModel(findings, summary, folder);
       writeDriven(findings, folder);
+      const NamedCovariance covariance = covarianceOf(calibration);
+      if (!covariance.names.empty()) {
+        folder.write("covariance.csv",
+                     [&](std::ostream& out) { writeCovariance(covariance, out); });
+      }
     }
     deliver(context, summary, calibrateReport(findings), folder);
     return calibration.failure.empty() && calibration.converged ? ExitStatus::done
@@ -191,6 +197,25 @@ class Calibrate : public Command {
     folder.writeFile("calibrated.osim", [&](const std::filesystem::path& path) {
       bio::rewriteOsim(model_, model, path);
     });
+  }
+
+  /// Of the model's parameters that have an interval, for `ensemble`.
+  static NamedCovariance covarianceOf(const bio::Calibration& calibration) {
+    NamedCovariance covariance;
+    std::vector<Eigen::Index> kept;
+    std::vector<double> deviations;
+    for (std::size_t i = 0; i < calibration.parameters.size(); ++i) {
+      const bio::CalibratedParameter& one = calibration.parameters[i];
+      if (one.ofTrial || one.asked.name.starts_with("emg.") || !(one.deviation > 0)) continue;
+      covariance.names.push_back(one.asked.name);
+      kept.push_back(static_cast<Eigen::Index>(i));
+      deviations.push_back(one.deviation);
+    }
+    const Eigen::Map<const Eigen::VectorXd> d(deviations.data(),
+                                              static_cast<Eigen::Index>(deviations.size()));
+    const Eigen::MatrixXd correlation = calibration.correlation(kept, kept);
+    covariance.values = d.asDiagonal() * correlation * d.asDiagonal();
+    return covariance;
   }
 
   void writeDriven(const CalibrateFindings& f, OutputFolder& folder) const {

@@ -7,19 +7,30 @@
 #include "info/version.h"
 #include "manual_page.h"
 
-// describe_commands man|bash|zsh: what is installed beside the program, read off its command line.
+// describe_commands man|man-mpi|man-render|bash|zsh: what is installed beside the program, read off
+// its command line.
 int main(int count, char** arguments) {
   const std::string what = count == 2 ? arguments[1] : "";
   app::CommandLine line(app::allCommands());
   const app::DescribedCommand program = app::describe(line.program());
   if (what == "man") {
     std::cout << app::manualPage(program, info::version());
+  } else if (what == "man-mpi") {
+    std::cout << app::helperPage(program, info::version(), "fisherhill-mpi", "ensemble",
+                                 "Started by mpirun, fisherhill ensemble becomes this program: the "
+                                 "ranks share the work, and "
+                                 "the result is the same whatever their number.",
+                                 "mpirun -n N");
+  } else if (what == "man-render") {
+    std::cout << app::helperPage(
+        program, info::version(), "fisherhill-render", "render",
+        "fisherhill render becomes this program, which alone needs the libraries that draw.", "");
   } else if (what == "bash") {
     std::cout << app::bashCompletion(program);
   } else if (what == "zsh") {
     std::cout << app::zshCompletion(program);
   } else {
-    std::cerr << "describe_commands: one of man, bash and zsh is needed\n";
+    std::cerr << "describe_commands: one of man, man-mpi, man-render, bash and zsh is needed\n";
     return 2;
   }
   std::cout.flush();

@@ -8,6 +8,7 @@
 
 #include "arm_input.h"
 #include "arm_options.h"
+#include "drawn_laws.h"
 #include "ensemble_discovery.h"
 #include "ensemble_draws.h"
 #include "ensemble_report.h"
@@ -15,7 +16,6 @@
 #include "info/version.h"
 #include "input_rules.h"
 #include "missing_rows.h"
-#include "named_pairs.h"
 #include "result.h"
 #include "sensitivity_report.h"
 
@@ -28,7 +28,7 @@ using Json = nlohmann::ordered_json;
 struct EnsembleStudy {
   TrialInput input;
   bio::ParameterCatalogue catalogue;
-  std::vector<DrawnParameter> parameters;
+  DrawnLaws laws;
   std::unique_ptr<bio::ArmEnsemble> ensemble;
   std::unique_ptr<DrawTable> table;
   bio::Coordinate coordinate;
@@ -64,25 +64,32 @@ class Ensemble : public Command {
         ->capture_default_str()
         ->type_name("N")
         ->group(group);
-    list("--parameters", names_,
+    list("--parameters", laws_.names,
          "what is drawn, by name; a name may hold *. Default: every parameter")
         ->type_name("NAMES");
     options
-        .add_option("--distribution", distribution_,
+        .add_option("--distribution", laws_.distribution,
                     "normal, or uniform over √3 standard deviations; both within the bounds")
         ->check(CLI::IsMember({"normal", "uniform"}))
         ->capture_default_str()
         ->group(group);
-    options.add_option("--spread", spread_, "factor on every standard deviation")
+    options.add_option("--spread", laws_.spread, "factor on every standard deviation")
         ->check(CLI::PositiveNumber)
         ->capture_default_str()
         ->type_name("FACTOR")
         ->group(group);
-    list("--prior", priors_,
+    list("--prior", laws_.priors,
          "law of a parameter instead of the default, in its unit; may be repeated")
         ->type_name("NAME=MEAN:SD");
-    list("--bounds", bounds_, "bounds instead of the default; may be repeated")
+    list("--bounds", laws_.bounds, "bounds instead of the default; may be repeated")
         ->type_name("NAME=LOW:HIGH");
+    options
+        .add_option("--covariance", laws_.covarianceFile,
+                    "covariance of normal laws, as calibrate writes it: names, then a row each; "
+                    "without --parameters these are drawn")
+        ->check(CLI::ExistingFile)
+        ->type_name("FILE.csv")
+        ->group(group);
     options.add_option("--band-points", bandPoints_, "times at which the band of motions is told")
         ->check(CLI::Range(2, 1000))
         ->capture_default_str()
@@ -171,6 +178,10 @@ class Ensemble : public Command {
   void checkChoice(const CommandContext& context) const {
     if (discover_.empty()) {
       if (trial_.empty()) throw std::invalid_argument("TRIAL is required (see --help)");
+      if (!laws_.covarianceFile.empty() && (sobol_ || laws_.distribution != "normal")) {
+        throw std::invalid_argument(fmt::format("--covariance does not go with --{}",
+                                                sobol_ ? "sobol" : "distribution uniform"));
+      }
       for (const char* option : {"--noise-deg", "--max-effects"}) {
         if (app_->get_option(option)->count() == 0) continue;
         throw std::invalid_argument(fmt::format("{} goes with --discover", option));
@@ -200,8 +211,9 @@ class Ensemble : public Command {
     for (const bio::MeasuredMotion& motion : study.input.trial.measured) {
       if (motion.coordinate == study.coordinate.name) study.measured = motion;
     }
-    const auto selection =
-        study.catalogue.select(names_.empty() ? std::vector<std::string>{"all"} : names_);
+    study.laws = drawnLaws(study.catalogue, laws_);
+    if (study.laws.together) summary.addInput(laws_.covarianceFile);
+    const std::vector<std::size_t>& selection = study.laws.selection;
     if (sobol_ && selection.size() > 32) {
       throw std::invalid_argument(fmt::format(
           "--sobol: {} parameters, at most 32; choose them with --parameters", selection.size()));
@@ -211,7 +223,6 @@ class Ensemble : public Command {
       throw std::invalid_argument(
           fmt::format("--output rms_error: {} has no measured {}", trial_, study.coordinate.name));
     }
-    study.parameters = laws(study.catalogue, selection);
     std::vector<double> course;
     for (int i = 0; i < bandPoints_; ++i) {
       course.push_back(study.input.startTime + study.input.duration * i / (bandPoints_ - 1));
@@ -223,57 +234,14 @@ class Ensemble : public Command {
         study.catalogue, armOptions(simulation_), study.input.excitation, study.coordinate.name,
         study.measured, course, selection, options);
     study.table = std::make_unique<DrawTable>(
-        study.parameters, course, shownFactor(study.coordinate), shownUnit(study.coordinate));
+        study.laws.parameters, course, shownFactor(study.coordinate), shownUnit(study.coordinate));
     return made;
-  }
-
-  /// What is believed of each parameter.
-  std::vector<DrawnParameter> laws(const bio::ParameterCatalogue& catalogue,
-                                   const std::vector<std::size_t>& selection) const {
-    std::vector<DrawnParameter> drawn;
-    for (const std::size_t index : selection) {
-      const bio::ModelParameter& p = catalogue.parameters()[index];
-      drawn.push_back(
-          {p.name,
-           p.unit,
-           p.value,
-           {distribution_ == "normal" ? info::Marginal::Shape::normal : info::Marginal::Shape::even,
-            p.value, p.deviation, p.lower, p.upper}});
-    }
-    const auto place = [&](const NamedPair& pair, const char* option) -> DrawnParameter& {
-      const auto at = std::find(selection.begin(), selection.end(), catalogue.find(pair.name));
-      if (at == selection.end()) {
-        throw std::invalid_argument(
-            fmt::format("{}: {} is not one of the --parameters", option, pair.name));
-      }
-      return drawn[static_cast<std::size_t>(at - selection.begin())];
-    };
-    for (const NamedPair& prior : parsePairs(priors_, "--prior")) {
-      DrawnParameter& one = place(prior, "--prior");
-      one.law.mean = prior.first;
-      one.law.deviation = prior.second;
-    }
-    for (const NamedPair& bounds : parsePairs(bounds_, "--bounds")) {
-      DrawnParameter& one = place(bounds, "--bounds");
-      one.law.lower = bounds.first;
-      one.law.upper = bounds.second;
-    }
-    for (DrawnParameter& one : drawn) {
-      one.law.deviation *= spread_;
-      try {
-        (void)one.law.quantile(0.5);
-      } catch (const std::invalid_argument& error) {
-        throw std::invalid_argument(
-            fmt::format("{} [{}]: {}", one.name, one.unit.empty() ? "1" : one.unit, error.what()));
-      }
-    }
-    return drawn;
   }
 
   /// How many rows there are to be.
   std::uint64_t total(const EnsembleStudy& study) const {
     const auto n = static_cast<std::uint64_t>(draws_);
-    return sobol_ ? n * (study.parameters.size() + 2) : n;
+    return sobol_ ? n * (study.laws.parameters.size() + 2) : n;
   }
 
   /// A row is a function of seed and number alone: its parameters are quantiles of a point of the
@@ -295,16 +263,17 @@ class Ensemble : public Command {
   }
 
   Eigen::VectorXd draw(const EnsembleStudy& study, std::uint64_t number, std::uint64_t seed) const {
-    const auto p = static_cast<int>(study.parameters.size());
+    const auto p = static_cast<int>(study.laws.parameters.size());
     Eigen::VectorXd theta(p);
     if (sobol_) {
       theta = info::sobolPoint(number, p, seed);
     } else {
       info::RandomStream random(seed, number);
       for (double& u : theta) u = random.uniform();
+      if (study.laws.together) theta = study.laws.together->shares(theta);
     }
     for (Eigen::Index i = 0; i < p; ++i) {
-      theta[i] = study.parameters[static_cast<std::size_t>(i)].law.quantile(theta[i]);
+      theta[i] = study.laws.parameters[static_cast<std::size_t>(i)].law.quantile(theta[i]);
     }
     return theta;
   }
@@ -318,11 +287,12 @@ class Ensemble : public Command {
     json["trial_sha256"] = summary.inputs()[1].sha256;
     json["seed"] = seed;
     json["scheme"] = sobol_ ? "sobol" : "draws";
-    json["distribution"] = distribution_;
+    json["distribution"] = laws_.distribution;
     json["band_points"] = bandPoints_;
     json["simulation"] = settingsOf(simulation_);
+    if (study.laws.together) json["covariance_sha256"] = summary.inputs()[2].sha256;
     json["parameters"] = Json::array();
-    for (const DrawnParameter& one : study.parameters) {
+    for (const DrawnParameter& one : study.laws.parameters) {
       json["parameters"].push_back(
           {one.name, one.law.mean, one.law.deviation, one.law.lower, one.law.upper});
     }
@@ -331,9 +301,14 @@ class Ensemble : public Command {
 
   EnsembleFindings findingsOf(const EnsembleStudy& study, const RowFile& file,
                               std::uint64_t seed) const {
-    EnsembleFindings findings{model_,       trial_,           study.coordinate.name,
-                              *study.table, study.parameters, study.ensemble->nominal(),
-                              {},           study.measured};
+    EnsembleFindings findings{model_,
+                              trial_,
+                              study.coordinate.name,
+                              *study.table,
+                              study.laws.parameters,
+                              study.ensemble->nominal(),
+                              {},
+                              study.measured};
     for (std::uint64_t number = 0; number < total(study); ++number) {
       findings.rows.push_back(study.table->parse(number, file.rows().at(number)));
     }
@@ -346,7 +321,7 @@ class Ensemble : public Command {
       const double y = row.outputs[output];
       values.push_back(std::isfinite(y) ? Eigen::VectorXd::Constant(1, y) : Eigen::VectorXd());
     }
-    const auto p = static_cast<int>(study.parameters.size());
+    const auto p = static_cast<int>(study.laws.parameters.size());
     constexpr int replicates = 500;
     findings.sobol = SobolFinding{output_, info::sobolIndices(values, p),
                                   info::bootstrapSobol(values, p, replicates, seed), draws_};
@@ -357,9 +332,7 @@ class Ensemble : public Command {
   CLI::App* app_ = nullptr;
   std::string model_, trial_;
   int draws_ = 1000;
-  std::vector<std::string> names_, priors_, bounds_;
-  std::string distribution_ = "normal";
-  double spread_ = 1;
+  LawRequest laws_;
   int bandPoints_ = 46;
   bool sobol_ = false;
   std::string output_ = "final";

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <stdexcept>
 
 #include "text.h"
 
@@ -73,8 +75,8 @@ bool isShared(const DescribedCommand& program, const DescribedOption& option) {
   });
 }
 
-std::string synopsis(const DescribedCommand& command) {
-  std::string text = bold("fisherhill " + command.name);
+std::string synopsis(const DescribedCommand& command, const std::string& name = "fisherhill") {
+  std::string text = bold(name + " " + command.name);
   for (const DescribedOption& argument : command.arguments) {
     const std::string shown = italic(argument.names.front()) + (argument.repeats ? "..." : "");
     text += " " + (argument.required ? shown : "[" + shown + "]");
@@ -114,14 +116,43 @@ std::string subcommandSection(const DescribedCommand& program, const DescribedCo
   return text + exampleBlock(command.footer);
 }
 
+std::string beginning(const std::string& name, const std::string& version,
+                      const std::string& purpose) {
+  std::string capital = name;
+  for (char& c : capital) c = static_cast<char>(std::toupper(c));
+  return fmt::format(
+      ".TH {} 1 \"\" \"FisherHill {}\" \"User Commands\"\n.SH NAME\n{} \\- {}\n.SH SYNOPSIS\n",
+      roff(capital), roff(version), roff(name),
+      roff(static_cast<char>(std::tolower(purpose[0])) + purpose.substr(1)));
+}
+
+const char* const exitStatus =
+    ".SH EXIT STATUS\n.TP\n0\ndone\n.TP\n1\nit ran, but the answer is \\(lqno\\(rq: a check "
+    "found "
+    "an error, a simulation has no solution\n.TP\n2\nwrong use or bad input, told in one line on "
+    "standard error\n.TP\n130\nstopped by Ctrl\\-C; finished parts are kept\n";
+
 }  // namespace
 
+std::string helperPage(const DescribedCommand& program, const std::string& version,
+                       const std::string& name, const std::string& command, const std::string& when,
+                       const std::string& before) {
+  const auto at = std::find_if(program.subcommands.begin(), program.subcommands.end(),
+                               [&](const DescribedCommand& one) { return one.name == command; });
+  if (at == program.subcommands.end()) {
+    throw std::invalid_argument(fmt::format("man page of {}: no subcommand {}", name, command));
+  }
+  std::string text = beginning(name, version, withoutPeriod(at->purpose));
+  if (!before.empty()) text += bold(before) + " ";
+  text += synopsis(*at, name) + "\n.SH DESCRIPTION\n" + roff(when) +
+          " It takes the same words and is seldom started by hand.\n.SH OPTIONS\n";
+  for (const DescribedOption& argument : at->arguments) text += entry(argument);
+  for (const DescribedOption& option : at->options) text += entry(option);
+  return text + exitStatus + ".SH SEE ALSO\n.BR fisherhill (1)\n";
+}
+
 std::string manualPage(const DescribedCommand& program, const std::string& version) {
-  const std::string purpose = withoutPeriod(program.purpose);
-  std::string text = fmt::format(
-      ".TH FISHERHILL 1 \"\" \"FisherHill {}\" \"User Commands\"\n"
-      ".SH NAME\nfisherhill \\- {}\n.SH SYNOPSIS\n",
-      roff(version), roff(static_cast<char>(std::tolower(purpose[0])) + purpose.substr(1)));
+  std::string text = beginning("fisherhill", version, withoutPeriod(program.purpose));
   for (const DescribedCommand& command : program.subcommands) {
     text += synopsis(command) + "\n.br\n";
   }
@@ -145,11 +176,8 @@ std::string manualPage(const DescribedCommand& program, const std::string& versi
   }
   text += ".SH OPTIONS\nOf the program itself.\n";
   for (const DescribedOption& option : program.options) text += entry(option);
+  text += exitStatus;
   text +=
-      ".SH EXIT STATUS\n.TP\n0\ndone\n.TP\n1\nit ran, but the answer is \\(lqno\\(rq: a check "
-      "found "
-      "an error, a simulation has no solution\n.TP\n2\nwrong use or bad input, told in one line on "
-      "standard error\n.TP\n130\nstopped by Ctrl\\-C; finished parts are kept\n"
       ".SH FILES\n.TP\n.I summary.json, report.html\nin the folder that \\fB\\-\\-out\\fR names, "
       "beside the subcommand's own files; they appear all together when a run succeeds\n";
   return text;

@@ -10,4 +10,14 @@ namespace app {
 /// Options that all subcommands share stand once, under COMMON OPTIONS.
 std::string manualPage(const DescribedCommand& program, const std::string& version);
 
+/// The man page of a program of its own that does one subcommand's work, fisherhill-mpi(1).
+/// @param name     the program's name
+/// @param command  the subcommand it does
+/// @param when     when `fisherhill` becomes it, one sentence
+/// @param before   what is typed before it; may be empty
+/// @throws std::invalid_argument if there is no such subcommand
+std::string helperPage(const DescribedCommand& program, const std::string& version,
+                       const std::string& name, const std::string& command, const std::string& when,
+                       const std::string& before);
+
 }  // namespace app

@@ -11,6 +11,8 @@
 #include <mutex>
 #include <thread>
 
+#include "interruption.h"
+
 namespace app {
 namespace {
 
@@ -19,6 +21,7 @@ using Clock = std::chrono::steady_clock;
 constexpr int tagRows = 1;     ///< rows, no question
 constexpr int tagRequest = 2;  ///< rows, and: give me more
 constexpr int tagChunk = 3;    ///< numbers; none: there is nothing left
+constexpr int tagStopped = 4;  ///< rows, the last ones: interrupted
 constexpr auto together = std::chrono::milliseconds(50);
 
 /// Finished rows as one message: number, length, text, again and again.
@@ -157,10 +160,14 @@ class MpiCrew : public Crew {
       ownDone = true;
     });
 
+    bool interrupted = false;
     const auto take = [&](std::uint64_t number, const std::string& row) {
       if (failure) return;
       try {
         work.take(number, row);
+      } catch (const Interrupted&) {  // this row was taken; those that are finished are still
+        interrupted = true;
+        handout.stop();
       } catch (...) {
         remember(std::current_exception());
       }
@@ -172,18 +179,23 @@ class MpiCrew : public Crew {
         take(number, row);
         idle = false;
       }
-      if (atWork > 0 && receive(take, handout, atWork)) idle = false;
+      if (interruptionRequested()) {
+        interrupted = true;
+        handout.stop();
+      }
+      if (atWork > 0 && receive(take, handout, atWork, interrupted)) idle = false;
       if (idle) std::this_thread::sleep_for(std::chrono::microseconds(200));
     }
     own.join();
     for (const auto& [number, row] : handout.takeFinished()) take(number, row);
     if (ownFailure) std::rethrow_exception(ownFailure);
     if (failure) std::rethrow_exception(failure);
+    if (interrupted) throw Interrupted{};
   }
 
   /// Receives one message if there is one, and answers a request. @return whether there was one
   template <class Take>
-  static bool receive(const Take& take, Handout& handout, int& atWork) {
+  static bool receive(const Take& take, Handout& handout, int& atWork, bool& interrupted) {
     int there = 0;
     MPI_Status status;
     MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &status);
@@ -198,6 +210,11 @@ class MpiCrew : public Crew {
       MPI_Send(numbers.data(), static_cast<int>(numbers.size()), MPI_UINT64_T, status.MPI_SOURCE,
                tagChunk, MPI_COMM_WORLD);
       if (numbers.empty()) --atWork;
+    }
+    if (status.MPI_TAG == tagStopped) {
+      --atWork;
+      interrupted = true;
+      handout.stop();
     }
     RowMessage::read(bytes, take);
     return true;
@@ -214,13 +231,24 @@ class MpiCrew : public Crew {
       std::vector<std::uint64_t> numbers(static_cast<std::size_t>(count));
       MPI_Recv(numbers.data(), count, MPI_UINT64_T, 0, tagChunk, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
       if (numbers.empty()) return;
-      compute(work, numbers, threads, message);
+      try {
+        compute(work, numbers, threads, message);
+      } catch (const Interrupted&) {
+      }
+      if (!interruptionRequested()) continue;
+      message.send(tagStopped);
+      return;
     }
   }
 
   /// Threads only compute; messages are the main thread's affair (MPI_THREAD_FUNNELED).
   static void compute(const RowWork& work, const std::vector<std::uint64_t>& numbers, int threads,
                       RowMessage& message) {
+    RowWork untilInterrupted = work;
+    untilInterrupted.rows = [&work](std::span<const std::uint64_t> batch) {
+      stopIfInterrupted();
+      return work.rows(batch);
+    };
     Clock::time_point sent = Clock::now();
     const auto sendIfLate = [&] {
       if (Clock::now() - sent < together && !message.isLarge()) return;
@@ -228,7 +256,7 @@ class MpiCrew : public Crew {
       sent = Clock::now();
     };
     if (threads == 1) {
-      inBatches(work, numbers, 1, [&](std::uint64_t number, const std::string& row) {
+      inBatches(untilInterrupted, numbers, 1, [&](std::uint64_t number, const std::string& row) {
         message.add(number, row);
         sendIfLate();
       });
@@ -239,10 +267,11 @@ class MpiCrew : public Crew {
     std::exception_ptr failure;
     std::jthread own([&] {
       try {
-        inBatches(work, numbers, threads, [&](std::uint64_t number, const std::string& row) {
+        const auto take = [&](std::uint64_t number, const std::string& row) {
           const std::lock_guard lock(mutex);
           message.add(number, row);
-        });
+        };
+        inBatches(untilInterrupted, numbers, threads, take);
       } catch (...) {
         failure = std::current_exception();
       }

@@ -14,6 +14,10 @@ namespace app {
 /// nothing but this. The others send rows as they are finished, those that take milliseconds
 /// together for at most a twentieth of a second, and ask for more when nothing is left of a chunk.
 /// So when a rank dies what is lost is what it was working on, and a twentieth of a second.
+///
+/// After Ctrl-C, which mpirun hands to the ranks as SIGTERM, every rank finishes the row it is at
+/// and sends what it has; in rank 0 work() then throws Interrupted, in the others it returns.
+/// mpirun kills whoever needs more than a second for that.
 std::unique_ptr<Crew> mpiCrew();
 
 }  // namespace app

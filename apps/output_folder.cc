@@ -46,30 +46,28 @@ OutputFolder::OutputFolder(const CommandContext& context, std::vector<std::strin
     throw std::runtime_error(
         fmt::format("--out {}: cannot be written to ({})", folder_.string(), error.message()));
   }
+  removeLeftovers(folder_);
 }
 
 OutputFolder::~OutputFolder() {
   if (!active()) return;
   std::error_code ignored;
-  if (!unfinished_.empty()) fs::remove(temporaryPath(unfinished_), ignored);
+  if (!unfinished_.empty()) fs::remove(mark_->temporaryPath(unfinished_), ignored);
   for (std::size_t i = committed_; i < finished_.size(); ++i) {
-    const fs::path temporary = temporaryPath(finished_[i]);
+    const fs::path temporary = mark_->temporaryPath(finished_[i]);
     if (interruptionRequested()) {
       fs::rename(temporary, path(finished_[i]), ignored);
     } else {
       fs::remove(temporary, ignored);
     }
   }
+  mark_.reset();
   // Only empty folders go: remove() refuses the others.
   for (auto p = foldersMade_.rbegin(); p != foldersMade_.rend(); ++p) fs::remove(*p, ignored);
 }
 
 fs::path OutputFolder::path(std::string_view name) const {
   return active() ? folder_ / name : fs::path();
-}
-
-fs::path OutputFolder::temporaryPath(const std::string& name) const {
-  return folder_ / fmt::format(".unfinished-{}-{}", getpid(), name);
 }
 
 void OutputFolder::mustNotExist(const std::string& name) const {
@@ -96,8 +94,9 @@ void OutputFolder::writeFile(const std::string& name,
                              const std::function<void(const fs::path&)>& writer) {
   if (!active()) return;
   mustNotExist(name);
+  if (!mark_) mark_.emplace(folder_);
   unfinished_ = name;
-  writer(temporaryPath(name));
+  writer(mark_->temporaryPath(name));
   unfinished_.clear();
   finished_.push_back(name);
 }
@@ -105,8 +104,9 @@ void OutputFolder::writeFile(const std::string& name,
 void OutputFolder::commit() {
   for (; committed_ < finished_.size(); ++committed_) {
     const std::string& name = finished_[committed_];
-    fs::rename(temporaryPath(name), path(name));
+    fs::rename(mark_->temporaryPath(name), path(name));
   }
+  mark_.reset();
 }
 
 }  // namespace app

@@ -2,12 +2,14 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "command_context.h"
+#include "writer_mark.h"
 
 namespace app {
 
@@ -16,7 +18,8 @@ namespace app {
 /// A file is first written under a temporary name in that folder; commit() renames them all.
 /// Without commit() nothing stays behind, not even the folder if it was made here; only after
 /// Ctrl-C the files finished so far are kept. Without --out nothing is written and nothing is an
-/// error.
+/// error. What a program that was killed has left under such names goes when the next one opens
+/// the folder.
 class OutputFolder {
  public:
   /// @param resultNames files the subcommand is going to write, beside summary.json and report.html
@@ -48,7 +51,6 @@ class OutputFolder {
   const std::vector<std::string>& files() const { return finished_; }
 
  private:
-  std::filesystem::path temporaryPath(const std::string& name) const;
   void mustNotExist(const std::string& name) const;
 
   std::filesystem::path folder_;
@@ -57,6 +59,7 @@ class OutputFolder {
   std::vector<std::string> finished_;  ///< complete, maybe still under their temporary names
   std::string unfinished_;             ///< the file being written
   std::size_t committed_ = 0;          ///< how many of finished_ have their own name
+  std::optional<WriterMark> mark_;     ///< while there are temporary names
 };
 
 }  // namespace app

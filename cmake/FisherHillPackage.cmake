@@ -42,8 +42,8 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
   "libeigen3-dev (>= 3.4), libsundials-dev (>= 6.4), libtbb-dev, libfmt-dev, libsimbody-dev, libtinyxml2-dev")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
 "Static C++20 libraries, headers and a CMake package config. FisherHill::info
-holds parameter sensitivities, Fisher information, bounds and estimation for any
-system; FisherHill::bio reads, simulates and calibrates models of limbs.")
+holds parameter sensitivities, Fisher information, bounds and estimation for
+any system; FisherHill::bio reads, simulates and calibrates models of limbs.")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-fisherhill)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
@@ -51,8 +51,8 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION
 "The Python module: replays, sensitivities, calibration and discovery with
-musculoskeletal models, and Fisher information, bounds and estimation for systems
-defined in Python, with NumPy arrays.")
+musculoskeletal models, and Fisher information, bounds and estimation for
+systems defined in Python, with NumPy arrays.")
 
 # What Debian calls the changelog of the package; what has changed is told by CHANGELOG.md beside it.
 configure_file(${PROJECT_SOURCE_DIR}/packaging/changelog.in ${PROJECT_BINARY_DIR}/changelog @ONLY)

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <Eigen/Dense>
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <stdexcept>
 
@@ -103,37 +101,6 @@ double CoordinateExpression::parameterDerivative(std::size_t constant, double q,
     values[2 + i] = i == constant ? D(constants_[i], 1, 0) : D(constants_[i]);
   }
   return expression_.evaluate(values).derivatives()[0];
-}
-
-std::string plainExpression(const ExpressionBasedCoordinateForce& law) {
-  std::string plain;
-  const std::string& text = law.expression;
-  for (std::size_t i = 0; i < text.size();) {
-    const auto isWord = [&](std::size_t at) {
-      return std::isalnum(static_cast<unsigned char>(text[at])) || text[at] == '_' ||
-             text[at] == '.';
-    };
-    std::size_t end = i;
-    while (end < text.size() && isWord(end)) ++end;
-    if (end == i) {
-      plain += text[i++];
-      continue;
-    }
-    const std::string word = text.substr(i, end - i);
-    const auto at = std::find_if(law.constants.begin(), law.constants.end(),
-                                 [&](const NamedConstant& c) { return c.name == word; });
-    if (at == law.constants.end()) {
-      plain += word;
-    } else if (!std::isfinite(at->value)) {
-      throw std::invalid_argument(fmt::format("expression of '{}': {} = {}, must be finite",
-                                              law.name, at->name, at->value));
-    } else {
-      plain +=
-          at->value < 0 ? fmt::format("({:.17g})", at->value) : fmt::format("{:.17g}", at->value);
-    }
-    i = end;
-  }
-  return plain;
 }
 
 CoordinateForces::CoordinateForces(const Model& model, const Skeleton& skeleton) {

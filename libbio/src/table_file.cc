@@ -72,7 +72,7 @@ std::vector<std::string_view> splitCells(std::string_view line, Separator separa
     const auto end = line.find(mark);
     std::string_view cell = trimmed(line.substr(0, end));
     if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') {
-      cell = cell.substr(1, cell.size() - 2);
+      cell = trimmed(cell.substr(1, cell.size() - 2));
     }
     cells.push_back(cell);
     if (end == std::string_view::npos) return cells;
@@ -230,8 +230,11 @@ void checkWritable(const Table& table, const std::string& file) {
   std::set<std::string> seen;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const std::string& name = table.columns[i];
-    if (name.empty() || name.find_first_of("\t\r\n,\"") != std::string::npos) {
-      fail(fmt::format("column name '{}', must be one word without tab, comma or quote", name));
+    if (name.empty() || name.find_first_of("\t\r\n,\"") != std::string::npos ||
+        trimmed(name).size() != name.size()) {
+      fail(fmt::format(
+          "column name '{}', must be without tab, comma or quote, and begin and end with no space",
+          name));
     }
     if (!seen.insert(name).second) fail(fmt::format("second column called '{}'", name));
     for (Eigen::Index r = 0; r < table.values.rows(); ++r) {

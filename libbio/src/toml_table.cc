@@ -57,13 +57,44 @@ std::optional<std::string> codeOf(std::string_view line) {
   return code;
 }
 
+// Whether a text is UTF-8: no stray or missing byte, nothing longer than need be, no half of a
+// pair, nothing beyond U+10FFFF.
+bool isUtf8(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto byte = [&](std::size_t at) {
+      return at < text.size() ? static_cast<unsigned char>(text[at]) : 0u;
+    };
+    const unsigned lead = byte(i);
+    const std::size_t length = lead < 0x80   ? 1
+                               : lead < 0xC2 ? 0
+                               : lead < 0xE0 ? 2
+                               : lead < 0xF0 ? 3
+                               : lead < 0xF5 ? 4
+                                             : 0;
+    if (length == 0) return false;
+    for (std::size_t k = 1; k < length; ++k) {
+      if ((byte(i + k) & 0xC0) != 0x80) return false;
+    }
+    const unsigned second = byte(i + 1);
+    if ((lead == 0xE0 && second < 0xA0) || (lead == 0xED && second > 0x9F) ||
+        (lead == 0xF0 && second < 0x90) || (lead == 0xF4 && second > 0x8F)) {
+      return false;
+    }
+    i += length;
+  }
+  return true;
+}
+
 // What toml11 3.7 does not survive: it calls itself for every level until the stack is full, and it
-// reads beyond the end of a text of several lines that is not closed.
+// reads beyond the end of a text of several lines that is not closed, or of one that is not UTF-8.
 void checkSurvivable(std::string_view text, const std::string& file) {
   constexpr int deepest = 100;
   int brackets = 0;
   for (int number = 1; !text.empty(); ++number) {
     const auto end = std::min(text.find('\n'), text.size());
+    if (!isUtf8(text.substr(0, end))) {
+      throw FileError(fmt::format("{}:{}: bytes that are no text, must be UTF-8", file, number));
+    }
     const std::optional<std::string> code = codeOf(text.substr(0, end));
     if (!code) {
       throw FileError(

@@ -11,11 +11,6 @@
 namespace info {
 namespace {
 
-/// Φ(x), exact in relative terms for x ≤ 0.
-double normalShare(double x) {
-  return 0.5 * std::erfc(-x / std::numbers::sqrt2);
-}
-
 /// Φ⁻¹(p) for 0 < p ≤ ½.
 double lowerQuantile(double p) {
   const double t = std::sqrt(-2 * std::log(p));
@@ -24,13 +19,17 @@ double lowerQuantile(double p) {
              t;
   for (int i = 0; i < 2; ++i) {  // the error is cubed: 4.5e-4 at first
     const double density = std::exp(-x * x / 2) / std::sqrt(2 * std::numbers::pi);
-    const double newton = (normalShare(x) - p) / density;
+    const double newton = (standardNormalShare(x) - p) / density;
     x -= newton / (1 + x * newton / 2);
   }
   return x;
 }
 
 }  // namespace
+
+double standardNormalShare(double x) {
+  return 0.5 * std::erfc(-x / std::numbers::sqrt2);
+}
 
 double standardNormalQuantile(double p) {
   if (!(p >= 0 && p <= 1)) {
@@ -55,8 +54,8 @@ double Marginal::quantile(double u) const {
     const double wide = std::sqrt(3.0) * deviation;
     return std::lerp(std::max(lower, mean - wide), std::min(upper, mean + wide), u);
   }
-  const double from = normalShare((lower - mean) / deviation);
-  const double to = normalShare((upper - mean) / deviation);
+  const double from = standardNormalShare((lower - mean) / deviation);
+  const double to = standardNormalShare((upper - mean) / deviation);
   return std::clamp(mean + deviation * standardNormalQuantile(std::lerp(from, to, u)), lower,
                     upper);
 }

@@ -27,8 +27,8 @@ TEST(CalibrateCommand, WritesTheModelTheSummaryAndTheReport) {
                                               "hand.mass", "--starts", "3", "--out", out});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(scratch.listing(),
-              testing::UnorderedElementsAre("out", "out/calibrated.osim", "out/report.html",
-                                            "out/summary.json"));
+              testing::UnorderedElementsAre("out", "out/calibrated.osim", "out/covariance.csv",
+                                            "out/report.html", "out/summary.json"));
   const auto json = nlohmann::json::parse(contentOf(out + "/summary.json"));
   EXPECT_EQ(json["inputs"].size(), 3u);
   EXPECT_LT(json["rmse_train_deg"].get<double>(),
@@ -42,6 +42,11 @@ TEST(CalibrateCommand, WritesTheModelTheSummaryAndTheReport) {
   EXPECT_GT(mass["sd"].get<double>(), 0);
   EXPECT_LT(mass["profile_interval"][0].get<double>(), mass["value"].get<double>());
   EXPECT_EQ(json["correlation"].size(), 2u);
+  const auto covariance = linesOf(contentOf(out + "/covariance.csv"));
+  ASSERT_EQ(covariance.size(), 3u);
+  EXPECT_EQ(covariance[0], "parameter,TRI.radius,hand.mass");
+  const double variance = std::stod(covariance[2].substr(covariance[2].rfind(',') + 1));
+  EXPECT_NEAR(variance, std::pow(mass["sd"].get<double>(), 2), 1e-6 * variance);
 
   const std::string report = contentOf(out + "/report.html");
   for (const char* title :

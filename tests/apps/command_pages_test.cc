@@ -84,6 +84,24 @@ TEST_F(Pages, ManPageHasEverySubcommandAndEveryOptionOfIt) {
   }
 }
 
+TEST_F(Pages, ProgramsOfTheirOwnHaveAPageWithEveryOptionOfTheirSubcommand) {
+  const std::string page =
+      helperPage(program, "1.2.3", "fisherhill-mpi", "ensemble", "It works.", "mpirun -n N");
+  EXPECT_TRUE(page.starts_with(".TH FISHERHILL\\-MPI 1 "));
+  EXPECT_THAT(page, testing::HasSubstr("\nfisherhill\\-mpi \\- simulate"));
+  EXPECT_THAT(page, testing::HasSubstr("\\fBmpirun \\-n N\\fR \\fBfisherhill\\-mpi ensemble\\fR"));
+  int options = 0;
+  for (const CLI::App* command : subcommandsOf(line.program())) {
+    if (command->get_name() != "ensemble") continue;
+    for (const std::string& option : optionsInHelp(*command)) {
+      EXPECT_THAT(page, testing::HasSubstr("\\fB" + inRoff(option) + "\\fR")) << option;
+      ++options;
+    }
+  }
+  EXPECT_GT(options, 15);
+  EXPECT_THROW(helperPage(program, "1.2.3", "x", "nothing", "", ""), std::invalid_argument);
+}
+
 TEST_F(Pages, ManPageTellsValuesAsTheyAreTyped) {
   const std::string page = manualPage(program, "1.2.3");
   for (const char* entry :

@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <set>
 #include <sstream>
 
 #include "support/run_program.h"
@@ -227,6 +230,85 @@ TEST(EnsembleCommand, CtrlCKeepsWhatIsDoneAndSaysHowToGoOn) {
   EXPECT_GT(linesOf(contentOf(out + "/unfinished.csv")).size(), 2u);
 }
 
+/// Two parameters and how they hang together, ρ = −0.75.
+const char* const twoTogether =
+    "parameter,TRI.radius,hand.mass\nTRI.radius,1e-06,-1.5e-05\nhand.mass,-1.5e-05,4e-04\n";
+
+TEST(EnsembleCommand, DrawsTogetherWhatACovarianceHoldsTogether) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "out").string();
+  const std::string file = scratch.file("c.csv", twoTogether);
+  const Words work = {
+      "--draws", "400",  "--covariance", file,
+      "--step",  "0.05", "--parameters", "BRA.pennation_angle,hand.mass,TRI.radius"};
+  ASSERT_EQ(runEnsemble(out, with(work, {"--threads", "2"})).status, 0);
+  const auto lines = linesOf(contentOf(out + "/draws.csv"));
+  ASSERT_EQ(lines.size(), 401u);
+  EXPECT_TRUE(lines[0].ends_with("BRA.pennation_angle [rad],hand.mass [kg],TRI.radius [m]"));
+  std::array<std::vector<double>, 3> draws;
+  for (std::size_t k = 1; k <= 400; ++k) {
+    const auto row = cells(lines[k]);
+    for (std::size_t i = 0; i < 3; ++i) draws[i].push_back(std::stod(row[8 + i]));
+  }
+  const auto covariance = [&](std::size_t i, std::size_t j) {
+    const auto mean = [](const std::vector<double>& x) {
+      return std::accumulate(x.begin(), x.end(), 0.0) / 400;
+    };
+    const double a = mean(draws[i]), b = mean(draws[j]);
+    double sum = 0;
+    for (std::size_t k = 0; k < 400; ++k) sum += (draws[i][k] - a) * (draws[j][k] - b);
+    return sum / 399;
+  };
+  const double pennation = covariance(0, 0);
+  const double wanted[3][3] = {{pennation, 0, 0}, {0, 4e-4, -1.5e-5}, {0, -1.5e-5, 1e-6}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const double error =
+          std::sqrt((wanted[i][i] * wanted[j][j] + wanted[i][j] * wanted[i][j]) / 400);
+      EXPECT_NEAR(covariance(i, j), wanted[i][j], 4 * error) << i << ' ' << j;
+    }
+  }
+  const std::string one = (scratch / "one").string();
+  ASSERT_EQ(runEnsemble(one, with(work, {"--threads", "1"})).status, 0);
+  EXPECT_EQ(resultsIn(one), resultsIn(out));
+}
+
+TEST(EnsembleCommand, ACovarianceAloneSaysWhatIsDrawn) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "out").string();
+  const std::string file = scratch.file("c.csv", twoTogether);
+  ASSERT_EQ(runEnsemble(out, {"--draws", "3", "--covariance", file}).status, 0);
+  EXPECT_TRUE(linesOf(contentOf(out + "/draws.csv"))[0].ends_with("TRI.radius [m],hand.mass [kg]"));
+  EXPECT_EQ(summaryIn(out)["inputs"][2]["path"], file);
+}
+
+TEST(EnsembleCommand, RefusesACovarianceThatIsNoneInOneLine) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "out").string();
+  const std::string good = scratch.file("good.csv", twoTogether);
+  const std::string tied = scratch.file("tied.csv", "TRI.radius,hand.mass\n1e-6,3e-5\n3e-5,4e-4\n");
+  const std::string other = scratch.file("other.csv", "TRI.radius,nothing\n1,0\n0,1\n");
+  const std::string spelt =
+      scratch.file("spelt.csv", "BRA.pennation,BRA.pennation_angle\n1,0\n0,1\n");
+  for (const auto& [more, words] : std::vector<std::pair<Words, std::string>>{
+           {{"--covariance", tied}, "tied.csv: not positive definite: the smallest eigenvalue"},
+           {{"--covariance", other}, "other.csv: "},
+           {{"--covariance", spelt}, "spelt.csv: BRA.pennation_angle is there under another name"},
+           {{"--covariance", good, "--parameters", "hand.mass"},
+            "good.csv: TRI.radius is not one of the --parameters"},
+           {{"--covariance", good, "--prior", "hand.mass=0.5:0.1"},
+            "--prior: hand.mass has its law from --covariance"},
+           {{"--covariance", good, "--sobol"}, "--covariance does not go with --sobol"},
+           {{"--covariance", good, "--distribution", "uniform"},
+            "--covariance does not go with --distribution uniform"}}) {
+    const ProgramResult result = runEnsemble(out, more);
+    EXPECT_EQ(result.status, 2);
+    EXPECT_EQ(linesOf(result.err).size(), 1u) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(words));
+  }
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
 TEST(EnsembleCommand, SobolsIndicesSayWhichParameterMovesTheEnd) {
   const ScratchFolder scratch;
   const std::string out = (scratch / "out").string();
@@ -361,6 +443,39 @@ TEST(EnsembleCommand, RanksShareTheDataSets) {
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(contentOf(scratch / "ranks/verdicts.csv"), contentOf(scratch / "alone/verdicts.csv"));
   EXPECT_TRUE(std::filesystem::exists(scratch / "ranks/verdicts/b/verdict.json"));
+}
+
+/// Whether a program lives that was started with this word.
+bool isAlive(const std::string& word) {
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    if (contentOf(entry.path() / "cmdline").find(word) != std::string::npos) return true;
+  }
+  return false;
+}
+
+TEST(EnsembleCommand, CtrlCStopsEveryRankKeepsTheRowsAndTheSameCommandGoesOn) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "out").string(), growing = out + "/unfinished.csv";
+  const Words work = {"--parameters", "hand.mass", "--step", "0.02"};
+  const Words many = with({"--draws", "100000"}, work), few = with({"--draws", "20"}, work);
+  // Ctrl-C as soon as there are rows; mpirun hears it in a group of its own, as on a terminal
+  const std::string untilRows =
+      "set -m; \"$@\" & job=$!; for i in {1..1200}; do sleep 0.05; "
+      "[ \"$(wc -l < \"$0\")\" -gt 40 ] && break; done 2>/dev/null; kill -INT $job; wait $job";
+  const ProgramResult result =
+      runEnsemble(out, many, with({"bash", "-c", untilRows, growing}, ranks(3)));
+  EXPECT_NE(result.status, 0);
+  EXPECT_THAT(result.err, HasSubstr("the same command goes on from there"));
+  EXPECT_FALSE(isAlive(out));
+  std::set<std::string> numbers;
+  for (const std::string& line : linesOf(contentOf(growing))) numbers.insert(cells(line)[0]);
+  std::size_t there = 0;
+  for (int i = 0; i < 20; ++i) there += numbers.count(std::to_string(i));
+  ASSERT_EQ(runEnsemble(out, few, ranks(2)).status, 0);
+  EXPECT_EQ(summaryIn(out)["computed"], 20 - there);
+  const std::string alone = (scratch / "alone").string();
+  ASSERT_EQ(runEnsemble(alone, few).status, 0);
+  EXPECT_EQ(resultsIn(out), resultsIn(alone));
 }
 
 TEST(EnsembleCommand, OnlyOneRankSaysWhatIsWrong) {

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <csignal>
 #include <stdexcept>
 
@@ -140,6 +143,103 @@ TEST(OutputFolderDeathTest, KeepsFinishedFilesAfterCtrlC) {
   EXPECT_EXIT(interruptedRun(), testing::ExitedWithCode(130), "");
   EXPECT_THAT(scratch.listing(), ElementsAre("out", "out/compare.csv"));
   EXPECT_EQ(contentOf(scratch / "out/compare.csv"), "finished");
+}
+
+/// A program that has written a file and half of another one into the folder, and waits.
+class HalfWriter {
+ public:
+  explicit HalfWriter(const std::filesystem::path& out) {
+    int ready[2];
+    if (pipe(ready) != 0) throw std::runtime_error("no pipe");
+    child_ = fork();
+    if (child_ == 0) {
+      OutputFolder folder(contextWithOut(out), {});
+      writeText(folder, "states.sto", "whole");
+      folder.write("forces.sto", [&](std::ostream& stream) {
+        stream << "half" << std::flush;
+        (void)!::write(ready[1], "x", 1);
+        for (;;) pause();
+      });
+    }
+    char one;
+    (void)!::read(ready[0], &one, 1);
+    close(ready[0]);
+    close(ready[1]);
+  }
+  ~HalfWriter() { kill(); }
+
+  void kill() {
+    if (child_ <= 0) return;
+    ::kill(child_, SIGKILL);
+    waitpid(child_, nullptr, 0);
+    child_ = 0;
+  }
+
+ private:
+  pid_t child_ = 0;
+};
+
+TEST(OutputFolder, ClearsAwayWhatAKilledProgramHasLeftAndNothingOfALivingOne) {
+  const ScratchFolder scratch;
+  scratch.file("notes.txt", "mine");
+  scratch.file(".unfinished-elsewhere-17-states.sto", "another machine's");
+  scratch.file(".unfinished-elsewhere-17", "");
+  scratch.file(".unfinished-notes", "mine");
+  const auto others = scratch.listing();
+  HalfWriter dead(scratch.path());
+  dead.kill();
+  EXPECT_EQ(scratch.listing().size(), others.size() + 3);  // its mark and two files
+  HalfWriter alive(scratch.path());  // it has opened the folder, so the dead one's are gone
+  const auto withTheLiving = scratch.listing();
+  EXPECT_EQ(withTheLiving.size(), others.size() + 3);
+  { OutputFolder folder(contextWithOut(scratch.path()), {}); }
+  EXPECT_EQ(scratch.listing(), withTheLiving);
+  alive.kill();
+  { OutputFolder folder(contextWithOut(scratch.path()), {}); }
+  EXPECT_EQ(scratch.listing(), others);
+  EXPECT_EQ(contentOf(scratch / "notes.txt"), "mine");
+}
+
+TEST(OutputFolder, TakesOnlyRegularFilesForLeftovers) {
+  const ScratchFolder scratch;
+  HalfWriter dead(scratch.path());
+  dead.kill();
+  std::string mark;
+  for (const std::string& name : scratch.listing()) {
+    if (mark.empty() || name.size() < mark.size()) mark = name;
+  }
+  scratch.file("precious", "mine");
+  const auto isThere = [&](const std::string& name) {
+    return std::filesystem::exists(std::filesystem::symlink_status(scratch / name));
+  };
+  std::filesystem::create_symlink(scratch / "precious", scratch / (mark + "-link"));
+  std::filesystem::create_directory(scratch / (mark + "-folder"));
+  { OutputFolder folder(contextWithOut(scratch.path()), {}); }
+  EXPECT_FALSE(isThere(mark));
+  // a mark that is only a link to somebody's file is none
+  std::filesystem::create_symlink(scratch / "precious", scratch / mark);
+  scratch.file(mark + "-states.sto", "kept with it");
+  { OutputFolder folder(contextWithOut(scratch.path()), {}); }
+  for (const std::string& name :
+       {mark, mark + "-states.sto", mark + "-folder", mark + "-link", std::string("precious")}) {
+    EXPECT_TRUE(isThere(name)) << name;
+  }
+}
+
+TEST(OutputFolder, TwoAtWorkInOneFolderKeepApart) {
+  const ScratchFolder scratch;
+  const HalfWriter other(scratch.path());
+  const auto before = scratch.listing();
+  CommandContext context = contextWithOut(scratch.path());
+  {
+    OutputFolder folder(context, {});
+    writeText(folder, "states.sto", "mine");
+    folder.commit();
+  }
+  auto after = before;
+  after.push_back("states.sto");
+  EXPECT_EQ(scratch.listing(), after);
+  EXPECT_EQ(contentOf(scratch / "states.sto"), "mine");
 }
 
 }  // namespace

@@ -53,6 +53,16 @@ TEST_F(HostileFiles, LineBreaksInNamesStayOutOfMessages) {
               HasSubstr("unknown name 'unknown'"));
 }
 
+TEST_F(HostileFiles, ConfigurationsAreUtf8) {
+  for (const char* bytes : {"\x9f\x93", "\xc0\xaf", "\xe2\x82", "\xed\xa0\x80", "\xf4\x90\x80\x80",
+                            "\xe0\x80\xaf", "\xf5\x80\x80\x80", "\xc3"}) {
+    EXPECT_THAT(
+        configRefusal(std::string("[input]\nsignal = '\"m") + bytes + "V\"'\nscale = 0.75\n"),
+        HasSubstr("emg.toml:2: bytes that are no text, must be UTF-8"));
+  }
+  EXPECT_THAT(configRefusal("[input]\nsignal = 'µ€\xf0\x9d\x9c\x83'\n"), Not(HasSubstr("UTF-8")));
+}
+
 TEST_F(HostileFiles, DevicesAreNoFiles) {
   EXPECT_THAT(refusalOf([] { readOsim("/dev/zero"); }), HasSubstr("/dev/zero: is a device"));
   EXPECT_THAT(refusalOf([] { readRecording("/dev/zero"); }), HasSubstr("is a device"));

@@ -61,6 +61,17 @@ TEST_F(TableFile, ReadsCommasQuotesAndWindowsLines) {
   EXPECT_TRUE(std::isnan(table.values(1, 1)));
 }
 
+// A name that begins with a space would be read back without it.
+TEST_F(TableFile, NamesHaveNoSpaceAtTheirEnds) {
+  const Table table = readTable(write("t.csv", "\"time\",\"  heart rate \"\n0,70\n"));
+  EXPECT_THAT(table.columns, ElementsAre("time", "heart rate"));
+  Table other = table;
+  other.columns[1] = " heart rate";
+  EXPECT_THROW(writeTable(other, folder_.path() / "o.sto"), FileError);
+  writeTable(table, folder_.path() / "o.sto");
+  EXPECT_EQ(readTable(folder_.path() / "o.sto").columns, table.columns);
+}
+
 TEST_F(TableFile, ReadsOldMotionFilesSeparatedBySpaces) {
   const Table table = readTable(write(
       "a.mot",

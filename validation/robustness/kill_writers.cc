@@ -22,7 +22,8 @@
 #include "support/scratch_folder.h"
 
 // Kill -9 at random moments while `fisherhill` writes: every file is then absent, the old one or
-// the complete new one; what lies about besides is called .unfinished-….
+// the complete new one; what lies about besides is called .unfinished-…, or unfinished.csv for an
+// ensemble, and is gone once the same command has gone through.
 //     kill_writers FISHERHILL KILLS SEED [COMMAND…]      (in the top folder of the source tree)
 namespace {
 
@@ -31,25 +32,31 @@ using Clock = std::chrono::steady_clock;
 
 struct Command {
   std::string name;
-  std::vector<std::string> words;  ///< without --out
+  /// Without --out. STATES stands for a motion, SHORT:TRIAL for half a second of a trial: whoever
+  /// computes for long is rarely killed while it writes.
+  std::vector<std::string> words;
 };
 
 const std::vector<Command>& commands() {
   const std::string model = "models/elbow8.osim", trial = "emg_data/curl_slow.sto",
-                    hidden = "emg_data/hidden_a/";
+                    brief = "SHORT:" + trial, hidden = "emg_data/hidden_a/";
   static const std::vector<Command> all = {
       {"replay", {"replay", model, trial}},
       {"emg",
        {"emg", "emg_data/curl_slow_raw.csv", "--config", "emg_data/configs/shipped_raw.toml"}},
       {"moment-arms", {"moment-arms", model, "--from", "0", "--to", "130", "--points", "131"}},
       {"check", {"check", model, trial}},
-      {"compare", {"compare", model, trial}},
+      {"compare", {"compare", model, brief, "--integrators", "vi", "--steps", "0.01"}},
       {"sensitivity", {"sensitivity", model, trial, "--all"}},
-      {"calibrate", {"calibrate", model, trial, "--parameters", "TRI.radius"}},
-      {"design", {"design", model, trial, "--parameters", "TRI.radius"}},
+      {"calibrate", {"calibrate", model, brief, "--parameters", "hand.mass"}},
+      {"design",
+       {"design", model, brief, "--parameters", "TRI.radius", "--candidates", "2", "--generations",
+        "0", "--iterations", "1"}},
       {"discover",
-       {"discover", model, hidden + "train_1.sto", hidden + "train_2.sto", "--hold-out",
-        hidden + "held_out.sto"}},
+       {"discover", model, "SHORT:" + hidden + "train_1.sto", "--noise-deg", "5", "--max-effects",
+        "1"}},
+      {"ensemble",
+       {"ensemble", model, trial, "--draws", "40", "--parameters", "TRI.radius,hand.mass"}},
       {"robot", {"robot", "double-pendulum", "--discrete", "--trials", "2"}},
       {"robot-baxter", {"robot", "baxter"}},
       {"render", {"render", model, "STATES", "--film", "--size", "320x240"}},
@@ -62,6 +69,28 @@ std::string contentOf(const fs::path& file) {
   std::ostringstream text;
   text << stream.rdbuf();
   return text.str();
+}
+
+/// The first half second of a trial, in a file of its own.
+fs::path shortened(const fs::path& trial, const fs::path& folder) {
+  std::ifstream from(trial);
+  std::string head, rows, line;
+  long count = 0;
+  for (bool inHead = true; std::getline(from, line) && count < 51;) {
+    if (inHead && !line.starts_with("nRows")) head += line + "\n";
+    if (!inHead) rows += line + "\n", count += line.starts_with("time") ? 0 : 1;
+    if (line == "endheader") inHead = false;
+  }
+  const std::string end = "endheader\n";
+  head.insert(head.size() - end.size(), fmt::format("nRows={}\n", count));
+  const fs::path file = folder / ("short_" + trial.filename().string());
+  std::ofstream(file) << head << rows;
+  return file;
+}
+
+bool isUnfinished(const fs::path& file) {
+  const std::string name = file.filename().string();
+  return name.starts_with(".unfinished-") || name == "unfinished.csv";
 }
 
 using Files = std::map<std::string, std::string>;
@@ -117,8 +146,9 @@ class Trial {
       : command_(std::move(command)), out_(scratch.path() / command_.name) {
     command_.words.insert(command_.words.begin(), std::move(program));
     command_.words.insert(command_.words.end(), {"--force", "--out", out_.string()});
-    // A film needs a motion.
     for (std::string& word : command_.words) {
+      if (word.starts_with("SHORT:")) word = shortened(word.substr(6), scratch.path()).string();
+      // A film needs a motion.
       if (word != "STATES") continue;
       const fs::path motion = scratch.path() / "motion";
       const pid_t child = started({command_.words[0], "replay", "models/elbow8.osim",
@@ -133,6 +163,25 @@ class Trial {
   }
 
   double duration() const { return duration_; }
+
+  /// The command once more where the last kill has left its files: all of them are new and nothing
+  /// else lies about.
+  void goOn(Tally& tally) {
+    const pid_t child = started(command_.words);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    const Files files = filesIn(out_);
+    for (const auto& [name, text] : files) {
+      if (isWhole(name, text, first_, second_)) continue;
+      ++tally.findings;
+      fmt::print("finding: {}: {} ({} bytes) after a run that was not killed\n", command_.name,
+                 name, text.size());
+    }
+    if (files.size() == first_.size()) return;
+    ++tally.findings;
+    fmt::print("finding: {}: {} files after a run that was not killed, not {}\n", command_.name,
+               files.size(), first_.size());
+  }
 
   void kill(std::mt19937_64& random, Tally& tally) {
     std::uniform_real_distribution<double> unit(0, 1);
@@ -182,8 +231,7 @@ class Trial {
       std::error_code ignored;
       for (fs::directory_iterator at(out_, ignored), end; at != end; at.increment(ignored)) {
         ++files;
-        const bool temporary = at->path().filename().string().starts_with(".unfinished-");
-        results += !temporary && at->file_size(ignored) != 4;  // "old\n"
+        results += !isUnfinished(at->path()) && at->file_size(ignored) != 4;  // "old\n"
       }
       if (named ? results > 0 : files > before) return;
       info.si_pid = 0;
@@ -196,7 +244,7 @@ class Trial {
   void judge(const Files& before, bool killed, Tally& tally) {
     long fresh = 0, old = 0;
     for (const auto& [name, text] : filesIn(out_)) {
-      if (fs::path(name).filename().string().starts_with(".unfinished-")) {
+      if (isUnfinished(name)) {
         ++tally.leftovers;
         continue;
       }
@@ -253,6 +301,7 @@ int main(int argc, char** argv) {
     Tally tally;
     Trial trial(argv[1], command, scratch);
     for (long i = 0; tally.kills < each && i < 3 * each; ++i) trial.kill(random, tally);
+    trial.goOn(tally);
     fmt::print("{:<13} {:>7.2f} {:>6} {:>5} {:>5} {:>4} {:>6} {:>4} {:>10} {:>9}\n", command.name,
                trial.duration(), tally.kills, tally.tooLate, tally.none, tally.old, tally.mixed,
                tally.all, tally.leftovers, tally.findings);

@@ -26,4 +26,7 @@ struct Marginal {
 /// @throws std::invalid_argument for p outside 0 to 1
 double standardNormalQuantile(double p);
 
+/// Φ(x): the share of the standard normal law below x; exact in relative terms for x ≤ 0.
+double standardNormalShare(double x);
+
 }  // namespace info
