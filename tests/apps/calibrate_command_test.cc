@@ -10,6 +10,7 @@
 namespace {
 
 using support::contentOf;
+using support::linesOf;
 using support::model;
 using support::ProgramResult;
 using support::runFisherHill;
