@@ -42,6 +42,7 @@ std::vector<Screened> Search::screen(const Effects& effects, bool simulation) co
           values[static_cast<Index>(q)] = candidates[c].starts[round][static_cast<Index>(i)];
       }
     }
+    if (which.empty()) continue;  // everything that there is has been chosen
     std::vector<Likelihood::Linear> linear;
     std::vector<MatrixXd> columns;
     for (std::size_t t = 0; t < trials_.size(); ++t) {
