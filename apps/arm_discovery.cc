@@ -65,22 +65,17 @@ bool isFormula(const info::discover::Verdict& verdict) {
          verdict.formula->wins;
 }
 
-/// Writes the model with the effects, and the trials where EMG or sensor were at fault.
-void addTo(const std::string& modelFile, const bio::Model& model, const bio::ArmOptions& arm,
-           const std::string& coordinate, const std::vector<bio::Trial>& trials,
-           const bio::discover::ElbowDisagreement& data, const info::discover::Verdict& verdict,
-           const Summary& summary, OutputFolder& folder) {
-  std::vector<bio::discover::EffectToAdd> effects;
-  std::vector<info::discover::FormulaTerm> formula;
+/// The effects that were found, or the formula in their place.
+std::vector<bio::discover::EffectToAdd> effectsToAdd(const bio::discover::ElbowDisagreement& data,
+                                                     const info::discover::Verdict& verdict) {
   if (isFormula(verdict)) {
     const info::discover::RacedFormula& found = *verdict.formula;
     const auto n = static_cast<Eigen::Index>(found.values.size());
-    formula = found.terms;
-    effects.push_back({"formula", Eigen::VectorXd::Map(found.values.data(), n),
-                       Eigen::VectorXd::Map(found.deviations.data(), n), found.logBayesFactor, 0});
+    return {{"formula", Eigen::VectorXd::Map(found.values.data(), n),
+             Eigen::VectorXd::Map(found.deviations.data(), n), found.logBayesFactor, 0}};
   }
+  std::vector<bio::discover::EffectToAdd> effects;
   for (const auto& found : verdict.effects) {
-    if (isFormula(verdict)) break;
     const auto& candidate = data.candidates()[found.candidate];
     bio::discover::EffectToAdd effect;
     effect.id = candidate.id;
@@ -95,12 +90,21 @@ void addTo(const std::string& modelFile, const bio::Model& model, const bio::Arm
     effect.probability = verdict.vetoed ? 0 : found.probability;
     effects.push_back(std::move(effect));
   }
+  return effects;
+}
+
+/// Writes the model with the effects, and the trials where EMG or sensor were at fault.
+void addTo(const std::string& modelFile, const bio::Model& model, const bio::ArmOptions& arm,
+           const std::string& coordinate, const std::vector<bio::Trial>& trials,
+           const bio::discover::ElbowDisagreement& data, const info::discover::Verdict& verdict,
+           const Summary& summary, OutputFolder& folder) {
   bio::discover::EffectProvenance provenance{"fisherhill " + std::string(info::version()), {}};
   for (const Summary::InputFile& input : summary.inputs()) {
     provenance.data.push_back(fmt::format("{} SHA-256 {}", input.path, input.sha256));
   }
-  const bio::discover::Augmented added =
-      bio::discover::addEffects(model, arm, coordinate, effects, provenance, formula);
+  const bio::discover::Augmented added = bio::discover::addEffects(
+      model, arm, coordinate, effectsToAdd(data, verdict), provenance,
+      isFormula(verdict) ? verdict.formula->terms : std::vector<info::discover::FormulaTerm>{});
   folder.writeFile("with_effect.osim", [&](const std::filesystem::path& path) {
     bio::rewriteOsim(modelFile, added.model, path);
   });

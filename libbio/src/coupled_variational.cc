@@ -2,6 +2,7 @@
 
 #include "activation_player.h"
 #include "coupled_tape.h"
+#include "switch_search.h"
 
 namespace bio::stepping {
 namespace {
@@ -328,42 +329,18 @@ class VariationalRun {
   }
 
   /// If a path gains or loses points within the step just solved: shortens the step to end there.
-  /// The length jumps at a switch, so a step across it would be of first order only.
   /// Returns which switch it then ends on, or null.
   const PathSwitch* findSwitch(double t0, double t1, const Eigen::VectorXd& activationAtStart,
                                double& split) {
-    // near enough to count as being there
-    const double onSwitch = std::min(1e-9, options_.newtonTolerance);  // [rad]
-    constexpr double worthwhile = 1e-3;  // of the step, from either end
-    const PathSwitch* first = nullptr;
-    double fraction = 1;
-    for (const PathSwitch& s : arm_.switches()) {
-      const double from = s.distance(now_.q[s.freeIndex]);
-      const double to = s.distance(next_.q[s.freeIndex]);
-      if (from * to >= 0 || std::abs(from) < 1e-6) continue;
-      if (from / (from - to) < fraction) {
-        fraction = from / (from - to);
-        first = &s;
-      }
-    }
-    if (first == nullptr || fraction < worthwhile || fraction > 1 - worthwhile) return nullptr;
-
-    // the secant through the last two ends, at first through the start
-    const double h = t1 - t0;
-    double before = 0;
-    double distanceBefore = first->distance(now_.q[first->freeIndex]);
-    for (int iteration = 0; iteration < 12; ++iteration) {
-      split = t0 + fraction * h;
+    SwitchSearch search(options_.newtonTolerance);
+    if (!search.begin(arm_.switches(), now_.q, next_.q)) return nullptr;
+    for (auto found = SwitchSearch::Found::again; found == SwitchSearch::Found::again;) {
+      split = t0 + search.fraction() * (t1 - t0);
       activation_ = activationAtStart;
       player_.restart(t0);
       if (!solve(t0, split)) break;
-      const double to = first->distance(next_.q[first->freeIndex]);
-      if (std::abs(to) < onSwitch) return first;
-      const double next = fraction - to * (fraction - before) / (to - distanceBefore);
-      before = fraction;
-      distanceBefore = to;
-      fraction = next;
-      if (!(fraction > worthwhile / 10 && fraction < 1)) break;
+      found = search.take(next_.q[search.which().freeIndex]);
+      if (found == SwitchSearch::Found::met) return &search.which();
     }
     // not to be met exactly: take the whole step as it is
     activation_ = activationAtStart;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "bio/curves.h"
+#include "bio/force_velocity.h"
 #include "bio/model.h"
 #include "info/dual.h"
 
@@ -158,11 +159,7 @@ class SchutteMuscle {
   T speedScale_;
 };
 
-/// The constants of the force–velocity relation: f_v(−1) = 0, f_v(0) = 1, f_v(∞) = 1.4.
 namespace schutte {
-inline constexpr double shapeShortening = 0.15;     ///< k_v
-inline constexpr double maxLengtheningForce = 1.4;  ///< f_v(∞)
-inline constexpr double shapeLengthening = 0.13 * shapeShortening / (shapeShortening + 1);  ///< σ
 
 /// f_v(v), v normalised by ℓ0/t_s. C⁰: its slope is 0 below −1 and jumps at −1 and at 0.
 template <class T>

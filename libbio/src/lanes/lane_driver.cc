@@ -48,7 +48,8 @@ LaneDriver::LaneDriver(const Arm& arm, const ExcitationSignal& excitation, const
       activation_(start.activation),
       middle_(activation_),
       kept_(activation_),
-      fibreEnd_(fibre_) {
+      fibreEnd_(fibre_),
+      search_(options.newtonTolerance) {
   recorder_.add(options.startTime, start.q, start.qDot, activation_, fibre_, 0, 0, 0);
 }
 
@@ -106,60 +107,33 @@ void LaneDriver::take(int lane, const LaneStep& step) {
   works_[1] = step.passiveWork[lane];
   works_[2] = step.externalWork[lane];
 
-  if (phase_ == Phase::wholeStep && findSwitch()) {
-    meetSwitch(fraction_);
+  if (phase_ == Phase::wholeStep && search_.begin(arm_->switches(), &q_, &qEnd_)) {
+    meetSwitch();
     return;
   }
   if (phase_ != Phase::meetSwitch) {
     accept(true);
     return;
   }
-  // the secant through the last two ends, at first through the start
-  const double onSwitch = std::min(1e-9, options_->newtonTolerance);  // [rad]
-  const double to = distance(qEnd_);
-  if (std::abs(to) < onSwitch) {
-    accept(false);
-    return;
+  switch (search_.take(qEnd_)) {
+    case stepping::SwitchSearch::Found::met:
+      accept(false);
+      return;
+    case stepping::SwitchSearch::Found::again:
+      meetSwitch();
+      return;
+    case stepping::SwitchSearch::Found::givenUp:
+      phase_ = Phase::jumpSwitch;
+      activation_ = kept_;
+      player_.restart(t0_);
   }
-  const double next = fraction_ - to * (fraction_ - fractionBefore_) / (to - distanceBefore_);
-  fractionBefore_ = fraction_;
-  distanceBefore_ = to;
-  if (++attempts_ < 12 && next > 1e-4 && next < 1) {
-    meetSwitch(next);
-    return;
-  }
-  phase_ = Phase::jumpSwitch;
-  activation_ = kept_;
-  player_.restart(t0_);
 }
 
-/// Whether a path gains or loses points within the step to the end of the row.
-bool LaneDriver::findSwitch() {
-  constexpr double worthwhile = 1e-3;  // of the step, from either end
-  switch_ = nullptr;
-  fraction_ = 1;
-  for (const PathSwitch& s : arm_->switches()) {
-    const double from = s.distance(q_);
-    const double to = s.distance(qEnd_);
-    if (from * to >= 0 || std::abs(from) < 1e-6) continue;
-    if (from / (from - to) < fraction_) {
-      fraction_ = from / (from - to);
-      switch_ = &s;
-    }
-  }
-  if (!switch_ || fraction_ < worthwhile || fraction_ > 1 - worthwhile) return false;
-  attempts_ = 0;
-  fractionBefore_ = 0;
-  distanceBefore_ = distance(q_);
-  return true;
-}
-
-/// The next step goes to this fraction of the rest of the row.
-void LaneDriver::meetSwitch(double to) {
+/// The next step goes to where the switch is looked for.
+void LaneDriver::meetSwitch() {
   phase_ = Phase::meetSwitch;
   within_ = true;
-  fraction_ = to;
-  t1_ = t0_ + to * (tEnd_ - t0_);
+  t1_ = t0_ + search_.fraction() * (tEnd_ - t0_);
   activation_ = kept_;
   player_.restart(t0_);
 }

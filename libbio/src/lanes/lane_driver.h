@@ -5,6 +5,7 @@
 #include "activation_player.h"
 #include "coupled_stepping.h"
 #include "lanes/lane_model.h"
+#include "switch_search.h"
 
 namespace bio::lanes {
 
@@ -44,10 +45,8 @@ class LaneDriver {
     failed
   };
   void chooseActivation();
-  bool findSwitch();
-  void meetSwitch(double to);
+  void meetSwitch();
   void accept(bool endsRow);
-  double distance(double q) const { return switch_->distance(q); }
 
   const Arm* arm_;
   const SimulationOptions* options_;
@@ -68,10 +67,7 @@ class LaneDriver {
   Eigen::VectorXd fibreEnd_;
   double works_[3] = {0, 0, 0};  ///< of the step
   double sums_[3] = {0, 0, 0};
-  // where the switch is looked for, as fractions of the step
-  const PathSwitch* switch_ = nullptr;
-  double fraction_ = 0, fractionBefore_ = 0, distanceBefore_ = 0;
-  int attempts_ = 0;
+  stepping::SwitchSearch search_;
 };
 
 }  // namespace bio::lanes

@@ -2,6 +2,7 @@
 
 // What Schutte's muscle does at a state, in lanes.
 
+#include "bio/force_velocity.h"
 #include "lanes/lane_model.h"
 #include "lanes/lane_numbers.h"
 
@@ -72,9 +73,9 @@ inline Rate fibreRate(LaneMuscle<Lanes>& muscle, const Real& activation, const R
   }
 
   // v(P, A): the root of the quadratic of its regime, written without cancellation
-  constexpr double shapeShortening = 0.15;
-  constexpr double maxLengtheningForce = 1.4;
-  constexpr double shapeLengthening = 0.13 * shapeShortening / (shapeShortening + 1);
+  using schutte::maxLengtheningForce;
+  using schutte::shapeLengthening;
+  using schutte::shapeShortening;
   const Real& B = muscle.damping;
   const Mask shortens = P < A;
   const Real b = choose(shortens, P + shapeShortening * (A + B),

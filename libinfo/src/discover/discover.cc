@@ -8,6 +8,7 @@
 
 #include "info/discover/decide.h"
 #include "info/discover/output_deviation.h"
+#include "race_formula.h"
 #include "select.h"
 
 namespace info::discover {
@@ -47,35 +48,6 @@ std::vector<Estimate> estimatesOf(const Fit& fit, const std::vector<std::size_t>
     result.push_back(e);
   }
   return result;
-}
-
-// The most certain term first: it is the amplitude. None if one does not follow the state.
-std::vector<FormulaTerm> termsOf(Unknown& unknown) {
-  auto& terms = unknown.terms;
-  std::stable_sort(terms.begin(), terms.end(), [](const SymbolicTerm& a, const SymbolicTerm& b) {
-    return std::abs(a.coefficient) * b.deviation > std::abs(b.coefficient) * a.deviation;
-  });
-  std::vector<FormulaTerm> formula;
-  for (const SymbolicTerm& term : terms) {
-    if (term.expression.empty()) return {};
-    // terms may cancel each other, so that each may be many times larger than their sum
-    const double deviation = std::max(30 * term.deviation, 3 * std::abs(term.coefficient));
-    const double unit = formula.empty() ? 1 : std::abs(terms.front().coefficient);
-    formula.push_back({term.expression,
-                       term.coefficient / (formula.empty() ? 1 : terms.front().coefficient),
-                       deviation / unit});
-  }
-  return formula;
-}
-
-std::string textOf(const Unknown& unknown, const std::vector<double>& values) {
-  const auto& terms = unknown.terms;
-  if (values.size() == 1) return SymbolicTerm::times(values[0], terms[0].name);
-  std::string sum = terms[0].name;
-  for (std::size_t k = 1; k < values.size(); ++k)
-    sum += fmt::format(" {} {}", values[k] < 0 ? '-' : '+',
-                       SymbolicTerm::times(std::abs(values[k]), terms[k].name));
-  return SymbolicTerm::times(values[0], "(" + sum + ")");
 }
 
 // Everything that run() carries from stage to stage.
@@ -298,7 +270,7 @@ class Work {
               [](const Detectable& a, const Detectable& b) { return a.candidate < b.candidate; });
     if (decision.finding == Finding::unknown && options_.symbolic) {
       verdict_.unknown = describeUnknown(search_->likelihood(), smoothing);
-      raceFormula();
+      verdict_.formula = raceFormula(data_, *verdict_.unknown, chosen_, optionsOfFormula());
     }
     verdict_.sentence = sentence();
   }
@@ -315,40 +287,15 @@ class Work {
       verdict_.rivals.insert(verdict_.rivals.begin(), search_->at(chosen_).fit);
   }
 
-  void raceFormula() {
-    const std::vector<FormulaTerm> terms = termsOf(*verdict_.unknown);
-    if (terms.empty()) return;
-    const auto widened = data_.withFormula(terms, chosen_);
-    if (!widened) return;
+  // The race of the formula is the last that is done.
+  Options optionsOfFormula() const {
     Options options = options_;
     options.outputDeviation = verdict_.outputDeviation;
-    options.symbolic = false;
     if (options_.progress)
-      options.progress = [this](const Progress& of) {
-        const double left = 0.97 - fraction_;
-        return options_.progress({Stage::decide, fraction_ + of.fraction * left, of.doing});
+      options.progress = [this, from = fraction_](const Progress& of) {
+        return options_.progress({Stage::decide, from + of.fraction * (0.97 - from), of.doing});
       };
-    const Verdict raced = Work(*widened, options).run(nullptr);
-    if (raced.reached != Stage::finished) return;
-    RacedFormula formula;
-    formula.terms = terms;
-    for (const Finalist& f : raced.finalists) {
-      if (f.effects.size() != 1 || widened->candidates()[f.effects[0]].id != "formula") continue;
-      formula.logBayesFactor = f.logEvidence;
-      formula.significance = f.significance;
-      for (const Estimate& estimate : f.estimates) {
-        formula.values.push_back(estimate.value);
-        formula.deviations.push_back(estimate.deviation);
-      }
-    }
-    if (formula.values.empty()) return;
-    formula.text = textOf(*verdict_.unknown, formula.values);
-    formula.wins = raced.finding == Finding::named && !raced.vetoed && raced.effects.size() == 1 &&
-                   widened->candidates()[raced.effects[0].candidate].id == "formula";
-    formula.after = raced.after;
-    formula.gap = raced.gap;
-    formula.heldOut = raced.heldOut;
-    verdict_.formula = formula;
+    return options;
   }
 
   Fit refit(const Entry& entry, double size) const {

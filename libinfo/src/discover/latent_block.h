@@ -14,4 +14,12 @@ inline Eigen::MatrixXd latentBlock(const Eigen::MatrixXd& W, double output) {
   return C;
 }
 
+/// σ_y² + WWᵀ, the covariance of one trial's n samples; lower triangle.
+inline Eigen::MatrixXd outputCovariance(const Eigen::MatrixXd& W, Eigen::Index n, double output) {
+  Eigen::MatrixXd S = Eigen::MatrixXd::Zero(n, n);
+  if (W.cols() != 0) S.selfadjointView<Eigen::Lower>().rankUpdate(W);
+  S.diagonal().array() += output * output;
+  return S;
+}
+
 }  // namespace info::discover

@@ -135,10 +135,7 @@ Likelihood::Whitened Likelihood::whitened(std::size_t at, const Fit& fit) const 
   const Linear l = linearise(at, fit, fit.values, {}, false);
   if (l.latent.cols() == 0) return {l.residuals / fit.noise.output, l.gamma / fit.noise.output};
   const Index n = l.residuals.size();
-  MatrixXd S = MatrixXd::Zero(n, n);
-  S.selfadjointView<Eigen::Lower>().rankUpdate(l.latent);
-  S.diagonal().array() += fit.noise.output * fit.noise.output;
-  const Eigen::LLT<MatrixXd> factor(S);
+  const Eigen::LLT<MatrixXd> factor(outputCovariance(l.latent, n, fit.noise.output));
   return {factor.matrixL().solve(VectorXd(l.residuals + l.latent * fit.eta[at])),
           factor.matrixL().solve(l.gamma)};
 }

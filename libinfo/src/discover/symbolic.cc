@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "info/random_stream.h"
+#include "latent_block.h"
 #include "node_states.h"
 
 namespace info::discover {
@@ -119,12 +120,11 @@ Remains remainsOf(const Likelihood& likelihood, const Fit& fit, const NodeStates
   for (std::size_t t = 0; t < states.linear.size(); ++t) {
     const auto& l = states.linear[t];
     const Index n = l.residuals.size();
-    MatrixXd S = MatrixXd::Zero(n, n), Q(n, p + m + 1);
-    if (l.latent.cols() > 0) S.selfadjointView<Eigen::Lower>().rankUpdate(l.latent);
-    S.diagonal().array() += fit.noise.output * fit.noise.output;
+    MatrixXd Q(n, p + m + 1);
     Q << l.gamma(Eigen::all, inside), l.force * library.columns[t], l.residuals;
     if (l.latent.cols() > 0) Q.col(p + m) += l.latent * fit.eta[t];
-    rows.middleRows(static_cast<Index>(blockOf.size()), n) = S.llt().matrixL().solve(Q);
+    rows.middleRows(static_cast<Index>(blockOf.size()), n) =
+        outputCovariance(l.latent, n, fit.noise.output).llt().matrixL().solve(Q);
     const auto& times = likelihood.data().times(likelihood.trials()[t]);
     for (const double time : times)
       blockOf.push_back(blocks + static_cast<int>((time - times.front()) / kBlock));
@@ -259,8 +259,15 @@ void findFormula(const Likelihood& likelihood, const Fit& fit, Unknown& unknown)
     unknown.terms.push_back({library.names[term], library.expressions[term], best.coefficients[at],
                              best.deviations[at], stability});
     unknown.stable = unknown.stable && stability >= 0.9;
+  }
+  const auto certainty = [](const SymbolicTerm& term) {
+    return std::abs(term.coefficient) / term.deviation;
+  };
+  std::stable_sort(unknown.terms.begin(), unknown.terms.end(),
+                   [&](const auto& a, const auto& b) { return certainty(a) > certainty(b); });
+  for (const SymbolicTerm& term : unknown.terms) {
     if (!unknown.formula.empty()) unknown.formula += " + ";
-    unknown.formula += SymbolicTerm::times(best.coefficients[at], library.names[term]);
+    unknown.formula += SymbolicTerm::times(term.coefficient, term.name);
   }
 }
 

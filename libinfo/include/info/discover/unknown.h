@@ -32,7 +32,7 @@ struct Unknown {
   double peakFrequency = 0;         ///< [Hz] of the latent force, relative to its prior
   double peakShare = 0;             ///< of its power within ±0.5 Hz of the peak
   double forceSize = 0;             ///< root mean square [unit of the generalised force]
-  std::vector<SymbolicTerm> terms;  ///< best subset, at most three
+  std::vector<SymbolicTerm> terms;  ///< best subset, at most three, the most certain first
   double evidence = 0;              ///< of them, against the latent force alone [nats]
   double explained = 0;             ///< share of the latent force's power that they take away
   bool stable = false;              ///< every term in 90 % of the bootstraps

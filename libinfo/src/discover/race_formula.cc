@@ -1,0 +1,67 @@
+#include "race_formula.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace info::discover {
+namespace {
+
+// None if one does not follow the state.
+std::vector<FormulaTerm> termsOf(const Unknown& unknown) {
+  std::vector<FormulaTerm> formula;
+  double unit = 1;  // of the others: the amplitude
+  for (const SymbolicTerm& term : unknown.terms) {
+    if (term.expression.empty()) return {};
+    // terms may cancel each other, so that each may be many times larger than their sum
+    const double deviation = std::max(30 * term.deviation, 3 * std::abs(term.coefficient));
+    formula.push_back({term.expression, term.coefficient / unit, deviation / std::abs(unit)});
+    unit = unknown.terms.front().coefficient;
+  }
+  return formula;
+}
+
+std::string textOf(const Unknown& unknown, const std::vector<double>& values) {
+  const auto& terms = unknown.terms;
+  if (values.size() == 1) return SymbolicTerm::times(values[0], terms[0].name);
+  std::string sum = terms[0].name;
+  for (std::size_t k = 1; k < values.size(); ++k)
+    sum += fmt::format(" {} {}", values[k] < 0 ? '-' : '+',
+                       SymbolicTerm::times(std::abs(values[k]), terms[k].name));
+  return SymbolicTerm::times(values[0], "(" + sum + ")");
+}
+
+}  // namespace
+
+std::optional<RacedFormula> raceFormula(const Disagreement& data, const Unknown& unknown,
+                                        const std::vector<std::size_t>& kept, Options options) {
+  RacedFormula formula;
+  formula.terms = termsOf(unknown);
+  if (formula.terms.empty()) return {};
+  const auto widened = data.withFormula(formula.terms, kept);
+  if (!widened) return {};
+  options.symbolic = false;
+  const Verdict raced = run(*widened, options);
+  if (raced.reached != Stage::finished) return {};
+  const auto isFormula = [&](std::size_t c) { return widened->candidates()[c].id == "formula"; };
+  const auto alone = std::find_if(
+      raced.finalists.begin(), raced.finalists.end(),
+      [&](const Finalist& f) { return f.effects.size() == 1 && isFormula(f.effects[0]); });
+  if (alone == raced.finalists.end()) return {};
+  formula.logBayesFactor = alone->logEvidence;
+  formula.significance = alone->significance;
+  for (const Estimate& estimate : alone->estimates) {
+    formula.values.push_back(estimate.value);
+    formula.deviations.push_back(estimate.deviation);
+  }
+  formula.text = textOf(unknown, formula.values);
+  formula.wins = raced.finding == Finding::named && !raced.vetoed && raced.effects.size() == 1 &&
+                 isFormula(raced.effects[0].candidate);
+  formula.after = raced.after;
+  formula.gap = raced.gap;
+  formula.heldOut = raced.heldOut;
+  return formula;
+}
+
+}  // namespace info::discover
