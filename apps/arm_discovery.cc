@@ -55,8 +55,9 @@ DiscoverWording wordingOf(const bio::discover::ElbowDisagreement& data) {
 bool concernsTrials(const bio::discover::Augmented& added) {
   const bio::EmgMapping& m = added.mapping;
   const bio::discover::SensorLaw& s = added.sensor;
-  return !m.gain.empty() || m.delay != 0 || m.nonlinearity != 0 || !m.offset.empty() ||
-         !m.crosstalk.empty() || m.fatigue != 0 || s.bias != 0 || s.gain != 0 || s.clock != 0;
+  return !added.muscles.empty() || !m.gain.empty() || m.delay != 0 || m.nonlinearity != 0 ||
+         !m.offset.empty() || !m.crosstalk.empty() || m.fatigue != 0 || s.bias != 0 ||
+         s.gain != 0 || s.clock != 0;
 }
 
 /// What is missing has no name, but a formula that explains it.
@@ -93,7 +94,8 @@ std::vector<bio::discover::EffectToAdd> effectsToAdd(const bio::discover::ElbowD
   return effects;
 }
 
-/// Writes the model with the effects, and the trials where EMG or sensor were at fault.
+/// Writes the model with the effects, and the trials where EMG or sensor were at fault or a muscle
+/// was switched on.
 void addTo(const std::string& modelFile, const bio::Model& model, const bio::ArmOptions& arm,
            const std::string& coordinate, const std::vector<bio::Trial>& trials,
            const bio::discover::ElbowDisagreement& data, const info::discover::Verdict& verdict,
@@ -109,10 +111,12 @@ void addTo(const std::string& modelFile, const bio::Model& model, const bio::Arm
     bio::rewriteOsim(modelFile, added.model, path);
   });
   if (!concernsTrials(added)) return;
+  const bio::Arm repaired(added.model, arm);
   for (std::size_t i = 0; i < trials.size(); ++i) {
     folder.writeFile(drivenName(i), [&](const std::filesystem::path& path) {
-      bio::writeTable(drivenTable(bio::discover::asTrueSensor(trials[i], coordinate, added.sensor),
-                                  data.widest().arm(), added.mapping),
+      const bio::Trial driving = bio::discover::withProxies(trials[i], data.widest());
+      bio::writeTable(drivenTable(bio::discover::asTrueSensor(driving, coordinate, added.sensor),
+                                  repaired, added.mapping),
                       path);
     });
   }

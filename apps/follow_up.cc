@@ -25,6 +25,9 @@ const FollowUps& followUpsOfArms() {
           {{"stiffness", "tilt", "limit", "wrap_", "gain", "bias", "Fmax_"},
            "Move the relaxed arm slowly through its whole range with a dynamometer (column "
            "elbow_flexion.torque): what is passive shows, muscles do not."},
+          {{"missing_", "Fmax_", "gain_"},
+           "Record the EMG of the muscle that is switched off in the model (a column with its "
+           "name): it tells the muscle from its synergists."},
           {{"visc", "coulomb", "stribeck", "drag", "powerdamp"},
            "Repeat the trial at half and at twice the speed: dry friction does not care, viscous "
            "damping doubles, drag grows fourfold."},

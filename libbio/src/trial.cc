@@ -180,6 +180,9 @@ class TrialReader {
     for (const Muscle& muscle : model_.muscles) {
       if (muscle.enabled) trial_.muscles.push_back(muscle.name);
     }
+    for (const Muscle& muscle : model_.muscles) {
+      if (!muscle.enabled && columnOf_.count(muscle.name)) trial_.muscles.push_back(muscle.name);
+    }
     trial_.excitations.resize(table_.values.rows(),
                               static_cast<Eigen::Index>(trial_.muscles.size()));
     for (std::size_t m = 0; m < trial_.muscles.size(); ++m) {

@@ -105,14 +105,14 @@ TEST(Effects, AreAllThereWithTheirWords) {
       }
     }
   }
-  for (const char* id :
-       {"visc",       "coulomb",  "stribeck",     "drag",         "powerdamp",
-        "stiffness",  "limit",    "payload",      "tilt",         "const",
-        "handforce",  "fatigue",  "delay",        "shape",        "crosstalk_BIC_TRI",
-        "gain_TRI",   "gain_BRA", "offset",       "offset_BIC",   "tau",
-        "mass",       "tendon",   "Fmax_TRI",     "Fmax_TRIlong", "lopt_BIC",
-        "lslack_BRD", "wrap_TRI", "wrap_BIC_BRD", "bias",         "gain",
-        "clock"}) {
+  for (const char* id : {"visc",         "coulomb",   "stribeck",   "drag",
+                         "powerdamp",    "stiffness", "limit",      "payload",
+                         "tilt",         "const",     "handforce",  "spring",
+                         "fatigue",      "delay",     "shape",      "crosstalk_BIC_TRI",
+                         "gain_TRI",     "gain_BRA",  "offset",     "offset_BIC",
+                         "tau",          "mass",      "tendon",     "Fmax_TRI",
+                         "Fmax_TRIlong", "lopt_BIC",  "lslack_BRD", "wrap_TRI",
+                         "wrap_BIC_BRD", "bias",      "gain",       "clock"}) {
     EXPECT_TRUE(ids.contains(id)) << id;
   }
   // what is equivalent to something is equivalent to something there is
@@ -417,6 +417,89 @@ TEST(ElbowDisagreement, RefusesWhatItCannotUse) {
   options = {};
   options.simulation.integrator = Integrator::cvode;
   EXPECT_THROW(make("elbow_flexion", {elbow.trial}, options), std::invalid_argument);
+}
+
+/// The shipped elbow as someone has it who left the brachioradialis out.
+struct WithoutBRD {
+  WithoutBRD() {
+    for (Muscle& muscle : model.muscles) muscle.enabled = muscle.name != "BRD";
+  }
+  ElbowDisagreement data(const Trial& of, const Model& in) const {
+    return {in, ShippedElbow::options(), "elbow_flexion", {of}, Case::exact()};
+  }
+  ShippedElbow elbow;
+  Model model = elbow.model;
+  Trial trial = cut(elbow.trial, 0.5);
+};
+
+TEST(MissingMuscle, IsTheOneThatTheModelSwitchedOff) {
+  const WithoutBRD c;
+  const ElbowDisagreement data = c.data(c.trial, c.model);
+  ASSERT_TRUE(data.widest().knows("missing_BRD"));
+  EXPECT_FALSE(c.data(c.trial, c.elbow.model).widest().knows("missing_BRD"));
+  const auto strength = static_cast<Index>(data.widest().find("missing_BRD.strength"));
+  VectorXd values = info::discover::nominalValues(data);
+  const VectorXd without = data.outputs(0, values, {});
+  // absent, even where its derivative is asked for
+  const auto at = data.predict(0, values, {}, {static_cast<std::size_t>(strength)}, false);
+  EXPECT_LT((at.outputs - without).cwiseAbs().maxCoeff(), 1e-12);
+  values[strength] = 1;
+  const VectorXd with = data.outputs(0, values, {});
+  EXPECT_GT((with - without).cwiseAbs().maxCoeff(), 0.01);
+  // as strong as in the file, with its own EMG: the model with that muscle, bit for bit
+  const ElbowDisagreement whole = c.data(c.trial, c.elbow.model);
+  EXPECT_EQ(with, whole.outputs(0, info::discover::nominalValues(whole), {}));
+  for (const double r : {0.0, 0.6}) {
+    values[strength] = r;
+    const VectorXd gamma =
+        data.predict(0, values, {}, {static_cast<std::size_t>(strength)}, true).gamma;
+    const auto f = [&](double step) {
+      VectorXd moved = values;
+      moved[strength] += step;
+      return data.outputs(0, moved, {});
+    };
+    const VectorXd slope = r > 0 ? difference(f, 1e-4) : VectorXd((f(1e-5) - f(0)) / 1e-5);
+    EXPECT_LT((gamma - slope).cwiseAbs().maxCoeff() / slope.cwiseAbs().maxCoeff(),
+              r > 0 ? 1e-5 : 1e-3);
+  }
+}
+
+TEST(MissingMuscle, HasTheMeanEmgOfThoseThatPullAsItDoesIfItHasNone) {
+  const WithoutBRD c;
+  Trial trial = c.trial;
+  const auto own = std::find(trial.muscles.begin(), trial.muscles.end(), "BRD");
+  ASSERT_EQ(own + 1, trial.muscles.end());
+  trial.muscles.pop_back();
+  trial.excitations.conservativeResize(Eigen::NoChange, trial.excitations.cols() - 1);
+  const ElbowDisagreement data = c.data(trial, c.model);
+  EXPECT_EQ(data.widest().proxies().at("BRD"),
+            (std::vector<std::string>{"BIClong", "BICshort", "BRA"}));
+  const Trial proxied = withProxies(trial, data.widest());
+  ASSERT_EQ(proxied.muscles.back(), "BRD");
+  const auto column = [&](const std::string& muscle) {
+    const auto at = std::find(proxied.muscles.begin(), proxied.muscles.end(), muscle);
+    return VectorXd(proxied.excitations.col(at - proxied.muscles.begin()));
+  };
+  EXPECT_LT((3 * column("BRD") - column("BIClong") - column("BICshort") - column("BRA"))
+                .cwiseAbs()
+                .maxCoeff(),
+            1e-15);
+  // its own EMG goes before
+  EXPECT_EQ(withProxies(c.trial, data.widest()).excitations, c.trial.excitations);
+}
+
+TEST(MissingMuscle, IsSwitchedOnInTheModelWithTheEffect) {
+  const WithoutBRD c;
+  const auto added = [&](double strength) {
+    return addEffects(c.model, ShippedElbow::options(), "elbow_flexion",
+                      {{"missing_BRD", Eigen::Vector3d(strength, 1, 1), {}, 0, 0}}, {"a test", {}});
+  };
+  Augmented whole = added(1);
+  EXPECT_EQ(whole.muscles, std::vector<std::string>{"BRD"});
+  whole.model.credits = c.elbow.model.credits;
+  EXPECT_EQ(whole.model, c.elbow.model);
+  const WidestModel widest = widestModel(c.model, ShippedElbow::options(), "elbow_flexion");
+  EXPECT_EQ(augmentedModel(widest, widest.nominal()).model, c.model);
 }
 
 TEST(ElbowDisagreement, TellsDelayFromClockWhereSomethingPushes) {

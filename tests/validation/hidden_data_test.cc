@@ -122,7 +122,7 @@ TEST(HiddenData, AHiddenParameterIsOffByJustItsAmplitude) {
 
 TEST(HiddenData, SeedsGoThroughAllEffectsOfASuite) {
   for (const auto& [suite, number] :
-       {std::pair{"single", 22}, {"parameter", 7}, {"out", 6}, {"equivalents", 4}}) {
+       {std::pair{"single", 24}, {"parameter", 7}, {"out", 6}, {"equivalents", 4}}) {
     std::set<std::string> seen;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
       DataSetPlan plan;
@@ -207,6 +207,30 @@ TEST(MakeHiddenElbow, SaysNoToWrongUse) {
   EXPECT_EQ(run("--seed x --out a --labels b --model c"), 2);
   EXPECT_EQ(run("--colour red"), 2);
   EXPECT_EQ(run("--suite none --out a --labels b --model c"), 2);
+}
+
+TEST(HiddenData, AMissingMuscleIsSwitchedOffInTheModelAndHasNoEmg) {
+  DataSetPlan plan;
+  plan.effects = {"missing_BRD"};
+  plan.seed = 20400;
+  const DataSet set = makeDataSet(shipped(), plan);
+  EXPECT_EQ(set.leftOut, "BRD");
+  EXPECT_EQ(set.label["effects"][0]["id"], "missing_BRD");
+  const std::string table = asTable(set.trials[0], "", set.leftOut);
+  EXPECT_THAT(table, testing::HasSubstr("nColumns=9\n"));
+  EXPECT_THAT(table, testing::HasSubstr("BRA\telbow_flexion_deg\n"));
+  const std::string model = withoutMuscle(root + "/models/elbow8.osim", "BRD");
+  const std::string before = support::contentOf(root + "/models/elbow8.osim");
+  const auto count = [](const std::string& text, const std::string& word) {
+    int n = 0;
+    for (auto at = text.find(word); at != text.npos; at = text.find(word, at + 1)) ++n;
+    return n;
+  };
+  const std::string on = "<appliesForce>true", off = "<appliesForce>false";
+  EXPECT_EQ(count(model, on), count(before, on) - 1);
+  EXPECT_EQ(count(model, off), count(before, off) + 1);
+  EXPECT_LT(model.find("name=\"BRD\""), model.find(off));
+  EXPECT_THROW(withoutMuscle(root + "/models/elbow8.osim", "ABC"), std::runtime_error);
 }
 
 }  // namespace

@@ -179,14 +179,27 @@ TEST(TrueElbow, RestsWhereNoFibreMoves) {
 
 TEST(TrueElbow, EffectsWithoutSizeChangeNothing) {
   const Recording recording = effort(0.4);
-  const TrueElbow plain(shipped(), {}, {});
-  StiffSolver solver(plain, recording, plain.start(recording, 1.0), 1e-8);
-  const double q = solver.advanceTo(0.4)[0];
+  const auto endOf = [&](const ElbowNumbers& numbers) {
+    const TrueElbow plain(numbers, {}, {});
+    StiffSolver solver(plain, recording, plain.start(recording, 1.0), 1e-8);
+    return solver.advanceTo(0.4)[0];
+  };
+  const double whole = endOf(shipped());
   for (const EffectRow& row : hiddenEffects()) {
+    double q = whole;
+    if (!row.leftOut.empty()) {
+      ElbowNumbers lacking = shipped();
+      for (HillMuscle& m : lacking.muscles) {
+        if (m.name == row.leftOut) m.maxForce = 0;
+      }
+      q = endOf(lacking);
+      EXPECT_GT(std::abs(q - whole), 0.1);
+    }
     const Truth truth = with(row.id, 0);
     const TrueElbow elbow(truth.numbers, truth.chain, truth.extras);
     StiffSolver other(elbow, recording, elbow.start(recording, 1.0), 1e-8);
-    EXPECT_NEAR(other.advanceTo(0.4)[0], q, 1e-12) << row.id;
+    // a muscle without force may be driven in another way, so that the solver's steps differ
+    EXPECT_NEAR(other.advanceTo(0.4)[0], q, row.leftOut.empty() ? 1e-12 : 1e-6) << row.id;
   }
 }
 

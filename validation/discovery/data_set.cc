@@ -153,21 +153,27 @@ DataSet makeDataSet(const ElbowNumbers& nominal, const DataSetPlan& plan) {
     if (const std::string& own = hiddenEffect(id).inPlaceOf; !own.empty()) replaced.push_back(own);
   }
   const auto nuisances = drawNuisances(base, person, plan.nuisances, replaced);
-  Truth truth = base;
+  Truth truth = base, bare;
+  bare.numbers = nominal;
+  DataSet set;
   Json effects = Json::array();
   for (const std::string& id : chosen) {
     const EffectRow& row = hiddenEffect(id);
     row.apply(truth, row.amplitude(plan.size), hiding);
     effects.push_back(describe(row, row.amplitude(plan.size)));
+    if (row.leftOut.empty()) continue;
+    set.leftOut = row.leftOut;
+    for (Truth* lacking : {&base, &bare}) {
+      for (HillMuscle& m : lacking->numbers.muscles) {
+        if (m.name == row.leftOut) m.maxForce = 0;
+      }
+    }
   }
 
   std::vector<std::string> names = {"train_1", "train_2", "train_3", "held_out"};
   if (plan.suite == "equivalents") names.emplace_back("follow_up");
   const bool timing = truth.chain.delay != 0 || truth.sensor.clock != 0;
-  DataSet set;
   Json strength = Json::array();
-  Truth bare;
-  bare.numbers = nominal;
   for (std::size_t i = 0; i < names.size(); ++i) {
     TrialPlan trialPlan;
     trialPlan.emgNoise = plan.emgNoise;
@@ -200,18 +206,28 @@ DataSet makeDataSet(const ElbowNumbers& nominal, const DataSetPlan& plan) {
   return set;
 }
 
-std::string asTable(const NamedTrial& named, const std::string& title) {
-  static const char* muscles = "TRIlong\tTRIlat\tTRImed\tANC\tBIClong\tBICshort\tBRA\tBRD";
+std::string asTable(const NamedTrial& named, const std::string& title, const std::string& leftOut) {
+  static const std::array<std::string, 8> names = {"TRIlong", "TRIlat",   "TRImed", "ANC",
+                                                   "BIClong", "BICshort", "BRA",    "BRD"};
   const Recording& truth = named.trial.truth;
   const bool pushed = !truth.torque.empty();
+  std::string muscles;
+  int columns = pushed ? 3 : 2;
+  for (const std::string& name : names) {
+    if (name == leftOut) continue;
+    muscles += "\t" + name;
+    ++columns;
+  }
   std::string text = fmt::format("{}\nversion=1\nnRows={}\nnColumns={}\ninDegrees=no\n", title,
-                                 truth.times.size(), pushed ? 11 : 10);
+                                 truth.times.size(), columns);
   if (named.knownMass > 0) text += fmt::format("known_mass_in_hand_kg={:g}\n", named.knownMass);
-  text += fmt::format("endheader\ntime\t{}\telbow_flexion_deg{}\n", muscles,
+  text += fmt::format("endheader\ntime{}\telbow_flexion_deg{}\n", muscles,
                       pushed ? "\telbow_flexion.torque" : "");
   for (std::size_t k = 0; k < truth.times.size(); ++k) {
     text += fmt::format("{:.10g}", truth.times[k]);
-    for (const double u : named.trial.recorded[k]) text += fmt::format("\t{:.10g}", u);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (names[i] != leftOut) text += fmt::format("\t{:.10g}", named.trial.recorded[k][i]);
+    }
     text += fmt::format("\t{:.10g}", named.trial.measured_deg[k]);
     if (pushed) text += fmt::format("\t{:.10g}", truth.torque[k]);
     text += '\n';
@@ -219,14 +235,15 @@ std::string asTable(const NamedTrial& named, const std::string& title) {
   return text;
 }
 
-void writeDataSet(const DataSet& set, const std::filesystem::path& folder,
-                  const std::filesystem::path& labels) {
+void writeDataSet(const DataSet& set, const std::filesystem::path& model,
+                  const std::filesystem::path& folder, const std::filesystem::path& labels) {
   const std::string name = folder.filename().string();
   for (const NamedTrial& trial : set.trials) {
     const bool after = trial.name == "follow_up";
     write((after ? folder / "follow_up" : folder) / (trial.name + ".sto"),
-          asTable(trial, name + " " + trial.name));
+          asTable(trial, name + " " + trial.name, set.leftOut));
   }
+  if (!set.leftOut.empty()) write(folder / "model.osim", withoutMuscle(model, set.leftOut));
   const std::string label = set.label.dump(2) + "\n";
   write(labels / (name + ".json"), label);
   write(folder / "truth.sha256", sha256(label) + "\n");

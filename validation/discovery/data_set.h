@@ -34,6 +34,8 @@ struct NamedTrial {
 struct DataSet {
   std::vector<NamedTrial> trials;  ///< train_1, train_2, train_3, held_out[, follow_up]
   nlohmann::ordered_json label;    ///< the truth, for the scorer alone
+  std::string
+      leftOut;  ///< muscle that the model to compare with lacks, and the files' EMG; or empty
 };
 
 /// Effects that a plan hides: those it names, else by seed, in turn. @throws std::invalid_argument
@@ -43,15 +45,17 @@ std::vector<std::string> chosenEffects(const DataSetPlan& plan);
 /// Draws the person and the trials. @throws std::runtime_error if 60 draws of a trial fail
 DataSet makeDataSet(const ElbowNumbers& nominal, const DataSetPlan& plan);
 
-/// One trial as an .sto table: time, eight EMG channels (0 … 1), the angle [deg], and the known
-/// torque where there is one.
-std::string asTable(const NamedTrial& trial, const std::string& title);
+/// One trial as an .sto table: time, eight EMG channels (0 … 1) but that of the muscle left out,
+/// the angle [deg], and the known torque where there is one.
+std::string asTable(const NamedTrial& trial, const std::string& title,
+                    const std::string& leftOut = {});
 
 /// Writes NAME.sto into `folder` (follow_up.sto into folder/follow_up) and truth.sha256 beside
-/// them, the label into labels/NAME-OF-FOLDER.json.
+/// them, the label into labels/NAME-OF-FOLDER.json; model.osim, `model` without the muscle left
+/// out, where there is one.
 /// @throws std::runtime_error if a file cannot be written
-void writeDataSet(const DataSet& set, const std::filesystem::path& folder,
-                  const std::filesystem::path& labels);
+void writeDataSet(const DataSet& set, const std::filesystem::path& model,
+                  const std::filesystem::path& folder, const std::filesystem::path& labels);
 
 /// SHA-256 as 64 hexadecimal digits.
 std::string sha256(const std::string& bytes);

@@ -130,6 +130,7 @@ class Reader {
     if (forearm_.count(bodies[0])) forearm_.insert(bodies[1]);
     if (nameOf(joint) == "elbow") {
       elbow_.hinge = origin_[bodies[0]] + offsets[0];
+      elbow_.shoulder = origin_[bodies[0]];
       elbow_.axis = vector(*child(joint, "SpatialTransform").FirstChildElement(), "axis");
       elbow_.axis.normalize();
       forearm_.insert(bodies[1]);
@@ -243,6 +244,24 @@ ElbowNumbers readElbow(const std::filesystem::path& file) {
   const Element* root = document.FirstChildElement("OpenSimDocument");
   if (!root) fail("no <OpenSimDocument> in " + file.string());
   return Reader(child(*root, "Model")).read();
+}
+
+std::string withoutMuscle(const std::filesystem::path& file, const std::string& muscle) {
+  tinyxml2::XMLDocument document;
+  if (document.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS) {
+    throw std::runtime_error(file.string() + ": cannot be read");
+  }
+  Element* element = document.RootElement()->FirstChildElement("Model");
+  for (const char* name : {"ForceSet", "objects", "Schutte1993Muscle_Deprecated"}) {
+    element = element ? element->FirstChildElement(name) : nullptr;
+  }
+  while (element && nameOf(*element) != muscle) element = element->NextSiblingElement();
+  Element* flag = element ? element->FirstChildElement("appliesForce") : nullptr;
+  if (!flag) fail("no muscle " + muscle + " that can be switched off");
+  flag->SetText("false");
+  tinyxml2::XMLPrinter printer;
+  document.Print(&printer);
+  return printer.CStr();
 }
 
 }  // namespace hidden

@@ -40,11 +40,12 @@ struct Cylinders {
 /// All that the true elbow is made of: one hinge, what turns about it, eight muscles and their
 /// paths. The upper arm and all other joints are held at 0.
 struct ElbowNumbers {
-  Vec gravity = Vec::Zero();  ///< [m/s²]
-  Vec hinge = Vec::Zero();    ///< a point of the axis in the ground [m]
-  Vec axis = Vec::UnitZ();    ///< unit, flexion positive
-  std::vector<Body> forearm;  ///< every body beyond the elbow
-  Vec hand = Vec::Zero();     ///< mass centre of the hand at 0 [m]
+  Vec gravity = Vec::Zero();   ///< [m/s²]
+  Vec hinge = Vec::Zero();     ///< a point of the axis in the ground [m]
+  Vec axis = Vec::UnitZ();     ///< unit, flexion positive
+  Vec shoulder = Vec::Zero();  ///< origin of the upper arm in the ground [m]
+  std::vector<Body> forearm;   ///< every body beyond the elbow
+  Vec hand = Vec::Zero();      ///< mass centre of the hand at 0 [m]
   std::vector<HillMuscle> muscles;
   std::vector<Path> paths;  ///< one per muscle
   Cylinders cylinders;
@@ -54,5 +55,9 @@ struct ElbowNumbers {
 /// reader, for that kind alone: frames without turns, all coordinates at 0, cylinders only.
 /// @throws std::runtime_error where the document is of another kind
 ElbowNumbers readElbow(const std::filesystem::path& file);
+
+/// The document with one muscle switched off (appliesForce = false).
+/// @throws std::runtime_error where it cannot be read or has no such muscle
+std::string withoutMuscle(const std::filesystem::path& file, const std::string& muscle);
 
 }  // namespace hidden

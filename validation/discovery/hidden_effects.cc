@@ -179,6 +179,35 @@ std::vector<EffectRow> makeTable() {
        false,
        {"tilt"},
        extra<&Extras::handForce>});
+  add({"spring",
+       "elastic band",
+       s,
+       true,
+       "−k·max(0, L − 0.28 m)·∂L/∂q, L from the hand's mass centre to the shoulder",
+       "k",
+       "N/m",
+       40.0,
+       false,
+       {},
+       extra<&Extras::band>});
+  add({"missing_BRD",
+       "missing brachioradialis",
+       s,
+       true,
+       "the model has the brachioradialis switched off, its EMG is not recorded; the person's has "
+       "F0 "
+       "times r and the mean EMG of biceps and brachialis",
+       "strength",
+       "",
+       1.0,
+       false,
+       {},
+       [](Truth& truth, double a, RandomNumbers&) {
+         scale<&HillMuscle::maxForce>(truth, "BRD", a - 1);
+         truth.chain.commonDrive = true;
+       },
+       "BRD*.max_isometric_force",
+       "BRD"});
   add({"fatigue",
        "muscle fatigue",
        s,

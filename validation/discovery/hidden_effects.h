@@ -53,6 +53,8 @@ struct EffectRow {
   /// The nuisances whose place this takes, "TRI*.max_isometric_force": a parameter is off by just
   /// the amplitude, whatever the person's own draw
   std::string inPlaceOf = {};
+  /// The muscle that the model has switched off, and whose EMG nobody recorded
+  std::string leftOut = {};
 
   double amplitude(double size) const { return size * fullSize; }
   std::vector<Reading> readings(double amplitude) const;

@@ -43,7 +43,8 @@ int make(const hidden::Arguments& arguments) {
   hidden::chosenEffects(plan);  // wrong use is found before work begins
   const auto nominal = hidden::readElbow(arguments.text("model"));
   const auto set = hidden::makeDataSet(nominal, plan);
-  hidden::writeDataSet(set, folder.has_filename() ? folder : folder.parent_path(),
+  hidden::writeDataSet(set, arguments.text("model"),
+                       folder.has_filename() ? folder : folder.parent_path(),
                        arguments.text("labels"));
   return 0;
 }

@@ -111,6 +111,13 @@ double TrueElbow::extraTorque(double t, double q, double w, double z) const {
     const Vec r = turned(numbers_.hand - numbers_.hinge, numbers_.axis, q);
     torque += numbers_.axis.dot(r.cross(Vec(e.handForce, 0, 0)));
   }
+  if (e.band != 0) {
+    const Vec r = turned(numbers_.hand - numbers_.hinge, numbers_.axis, q);
+    const Vec toShoulder = numbers_.shoulder - numbers_.hinge - r;
+    const double length = toShoulder.norm();
+    const double tension = e.band * std::max(0.0, length - e.bandRest);
+    torque += tension / length * numbers_.axis.dot(r.cross(toShoulder));
+  }
   const double off = q - 1.2;
   torque -= e.cubic * off * off * off + e.hysteresis * z + e.angleDamping * q * q / 1.44 * w;
   torque += e.tremor * std::sin(2 * std::numbers::pi * e.tremorFrequency * t + e.tremorPhase);
@@ -127,6 +134,7 @@ Eigen::Array<double, 8, 1> TrueElbow::excitation(const Recording& recording, dou
     return row(place.before) + place.share * (row(place.after) - row(place.before));
   };
   Channels u = between(recording.emg, t - chain_.delay);
+  if (chain_.commonDrive) u[7] = u.segment<3>(4).mean();
   u += chain_.offset;
   if (chain_.crosstalk != 0) u.head<3>() -= chain_.crosstalk * (u[4] + u[5]) / 2;
   for (std::size_t i = 0; i < chain_.gain.size(); ++i)

@@ -18,6 +18,7 @@ struct InputChain {
   double crosstalk = 0;      ///< share of the mean biceps EMG taken off each triceps channel
   double shape = 0;          ///< A of (e^{Au} − 1)/(e^A − 1); 0: straight
   std::vector<double> gain;  ///< per muscle; empty: 1
+  bool commonDrive = false;  ///< the brachioradialis gets the mean EMG of biceps and brachialis
 };
 
 /// Torques and forces that the nominal elbow lacks; absent by default. Torque τ + for flexion,
@@ -32,9 +33,10 @@ struct Extras {
   double limit = 0;  ///< K of −K·s(x)·beyond, s the quintic step, at both ends [N m/rad]
   double limitUpper = 90 * degree, limitLower = 40 * degree;  ///< [rad]
   double limitTransition = 30 * degree;                       ///< [rad]
-  double tilt = 0;                        ///< gravity's moment is that of q + δ [rad]
-  double constant = 0;                    ///< +τ_0 [N m]
-  double handForce = 0;                   ///< along the ground's x at the hand [N]
+  double tilt = 0;                   ///< gravity's moment is that of q + δ [rad]
+  double constant = 0;               ///< +τ_0 [N m]
+  double handForce = 0;              ///< along the ground's x at the hand [N]
+  double band = 0, bandRest = 0.28;  ///< −k·max(0, L − L_r)·∂L/∂q, hand to shoulder [N/m], [m]
   double fatigue = 0, fatigueTime = 0.3;  ///< contractile force × [1 − φ(1 − e^{−∫a dt/T})]
   double cubic = 0;                       ///< −k₃(q − 1.2)³ [N m/rad³]
   double hysteresis = 0;  ///< −α·z, ż = (w − |w|·z)/0.15, Bouc–Wen with n = 1 [N m]

@@ -34,7 +34,8 @@ struct KnownChanges {
 struct Trial {
   std::string file;
   Eigen::VectorXd times;             ///< [s] strictly rising, at least 2
-  std::vector<std::string> muscles;  ///< every enabled muscle of the model, in its order
+  std::vector<std::string> muscles;  ///< every enabled muscle of the model, in its order; then
+                                     ///< those switched off that have a column
   Eigen::MatrixXd excitations;       ///< 0 to 1; one row per time, one column per muscle
   std::vector<AppliedForce> applied;
   std::vector<MeasuredMotion> measured;

@@ -53,11 +53,22 @@ std::string wordsOf(const WidestModel& widest, const info::discover::Candidate& 
 
 Augmented augmentedModel(const WidestModel& widest, const Eigen::VectorXd& values) {
   ParameterCatalogue::Setting setting = widest.settingAt(values, {});
-  Augmented result{std::move(setting.model), std::move(setting.mapping), widest.sensorAt(values)};
+  Augmented result{
+      std::move(setting.model), std::move(setting.mapping), widest.sensorAt(values), {}};
   Model& model = result.model;
+  for (std::size_t i = 0; i < model.muscles.size(); ++i) {
+    if (!model.muscles[i].enabled) model.muscles[i] = widest.base().muscles[i];
+  }
   dropAbsent(model.springForces, widest.base().springForces.size());
   dropAbsent(model.limitForces, widest.base().limitForces.size());
   dropAbsent(model.expressionForces, widest.base().expressionForces.size());
+  for (const auto& [muscle, proxies] : widest.proxies()) {
+    const auto works = [&, name = &muscle](const Muscle& one) {
+      return one.name == *name && one.enabled;
+    };
+    if (std::any_of(model.muscles.begin(), model.muscles.end(), works))
+      result.muscles.push_back(muscle);
+  }
   for (ExpressionBasedCoordinateForce& force : model.expressionForces) {
     if (force.constants.empty()) continue;
     force.expression = plainExpression(force);

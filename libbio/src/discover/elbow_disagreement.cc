@@ -74,7 +74,7 @@ ElbowDisagreement::ElbowDisagreement(const Model& model, const ArmOptions& arm,
   }
   const Coordinate& observed = widest_.coordinate();
   for (Trial& trial : trials) {
-    OfTrial one{std::move(trial), {}, {}, {}, {}, {}, {}, 0, 0};
+    OfTrial one{withProxies(std::move(trial), widest_), {}, {}, {}, {}, {}, {}, 0, 0};
     for (const MeasuredMotion& motion : one.trial.measured) {
       if (motion.coordinate != coordinate) continue;
       one.times.assign(motion.times.begin(), motion.times.end());
@@ -195,13 +195,19 @@ SimulationOptions ElbowDisagreement::simulationOf(const OfTrial& one, const Vect
   return simulation;
 }
 
+// The arm may have muscles that the base model switched off.
+ExcitationSignal ElbowDisagreement::excitationFor(const OfTrial& one, const Arm& arm) const {
+  return arm.numMuscles() == widest_.arm().numMuscles() ? one.excitation
+                                                        : excitationOf(one.trial, arm);
+}
+
 Trajectory ElbowDisagreement::simulate(const OfTrial& one, const VectorXd& values,
                                        const VectorXd& latent, double stepFactor) const {
   const ParameterCatalogue::Setting setting = settingAt(one, values, {});
   SimulationOptions simulation = simulationOf(one, latent, widest_.sensorAt(values).clock);
   simulation.step *= stepFactor;
   const Arm arm(setting.model, widest_.armOptions());
-  return simulateSetting(arm, setting, one.excitation, simulation);
+  return simulateSetting(arm, setting, excitationFor(one, arm), simulation);
 }
 
 VectorXd ElbowDisagreement::outputsOf(const OfTrial& one, const VectorXd& values,
@@ -277,7 +283,7 @@ ElbowDisagreement::Prediction ElbowDisagreement::predict(int trial, const Vector
     options.simulation = simulationOf(one, latent, sensor.clock);
     if (latentToo) options.externalNodes = {widest_.freeIndex(), one.nodes};
     const Arm arm(setting.model, widest_.armOptions());
-    s = simulateWithSensitivities(arm, setting, directions, one.excitation, options);
+    s = simulateWithSensitivities(arm, setting, directions, excitationFor(one, arm), options);
     if (latentToo) {
       Trajectory atNodes;  // the nearest rows
       const auto rows = static_cast<Index>(s.motion.time.size());

@@ -36,26 +36,37 @@ const Coordinate& WidestModel::coordinate() const {
 
 namespace {
 
-/// The first derivative of a segment's placement in one coordinate.
-Placement<double> movement(const Arm& arm, std::size_t segment, int freeIndex, double q,
-                           Eigen::Matrix3d* orientation) {
+/// A segment's placement in ground, and its first derivative in one coordinate.
+struct Movement {
+  Placement<double> at, derivative;
+};
+
+Movement movement(const Arm& arm, std::size_t segment, int freeIndex, double q) {
   return stepping::withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
     Eigen::Matrix<double, decltype(N)::value, 1> at = arm.skeleton().defaultValues();
     at[freeIndex] = q;
     ArmConfiguration<decltype(N)::value> configuration(arm);
     configuration.moveTo(at);
     const auto& motion = configuration.motions()[segment];
-    if (orientation) *orientation = motion.value.R;
-    return Placement<double>(motion.first[static_cast<std::size_t>(freeIndex)]);
+    return Movement{Placement<double>(motion.value),
+                    Placement<double>(motion.first[static_cast<std::size_t>(freeIndex)])};
   });
 }
 
 }  // namespace
 
+Vector3d WidestModel::positionOf(const std::string& body, const Vector3d& point, double q) const {
+  const BodyPlacement& place = arm_->skeleton().placeOf(body);
+  const Vector3d inSegment = place.X_SB.R * point + place.X_SB.p;
+  if (place.segment == 0) return inSegment;
+  const Placement<double> X = movement(*arm_, place.segment, freeIndex_, q).at;
+  return X.R * inSegment + X.p;
+}
+
 Vector3d WidestModel::velocityOf(const std::string& body, double q) const {
   const BodyPlacement& place = arm_->skeleton().placeOf(body);
   if (place.segment == 0) return Vector3d::Zero();
-  const Placement<double> X_k = movement(*arm_, place.segment, freeIndex_, q, nullptr);
+  const Placement<double> X_k = movement(*arm_, place.segment, freeIndex_, q).derivative;
   const Vector3d center = place.X_SB.R * findBody(base_, body).massCenter + place.X_SB.p;
   return X_k.R * center + X_k.p;
 }
@@ -64,9 +75,8 @@ void WidestModel::findBodies() {
   for (const Body& body : base_.bodies) {
     const BodyPlacement& place = arm_->skeleton().placeOf(body.name);
     if (place.segment == 0 || !(body.mass > 0)) continue;
-    Eigen::Matrix3d R;
-    const Placement<double> X_k = movement(*arm_, place.segment, freeIndex_, middle(), &R);
-    const Eigen::Matrix3d turn = X_k.R * R.transpose();  // ω×
+    const Movement moved = movement(*arm_, place.segment, freeIndex_, middle());
+    const Eigen::Matrix3d turn = moved.derivative.R * moved.at.R.transpose();  // ω×
     const Vector3d omega(turn(2, 1), turn(0, 2), turn(1, 0));
     if (omega.norm() < 1e-9 && velocityOf(body.name, middle()).norm() < 1e-9) continue;
     movedBodies_.push_back(body.name);
@@ -74,15 +84,18 @@ void WidestModel::findBodies() {
   }
 }
 
-void WidestModel::findGroups() {
-  VectorXd q = arm_->skeleton().defaultValues();
+VectorXd WidestModel::momentArms(const Arm& arm) const {
+  VectorXd q = arm.skeleton().defaultValues();
   q[freeIndex_] = middle();
   Trajectory still;
   still.time = {0};
   still.q = q;
-  const auto n = static_cast<Index>(arm_->numMuscles());
-  still.fibreLength = VectorXd::Ones(n);
-  const VectorXd momentArm = reportMuscles(*arm_, still, freeIndex_).momentArm;
+  still.fibreLength = VectorXd::Ones(static_cast<Index>(arm.numMuscles()));
+  return reportMuscles(arm, still, freeIndex_).momentArm;
+}
+
+void WidestModel::findGroups() {
+  const VectorXd momentArm = momentArms(*arm_);
   for (std::size_t i = 0; i < arm_->numMuscles(); ++i) {
     const std::string& muscle = arm_->muscles()[i].name;
     std::size_t length = 0;
@@ -150,6 +163,15 @@ std::size_t WidestModel::addLaw(ExpressionBasedCoordinateForce law) {
   widest_.expressionForces.push_back(std::move(law));
   laws_.push_back({Law::List::expression, widest_.expressionForces.size() - 1, {}});
   return laws_.back().index;
+}
+std::size_t WidestModel::addMuscle(std::size_t muscle, std::vector<std::string> proxies) {
+  SchutteParameters& parameters = *widest_.muscles.at(muscle).schutte;
+  proxies_[base_.muscles[muscle].name] = std::move(proxies);
+  laws_.push_back({Law::List::muscle, muscle, {}});
+  // as good as none: a force beside which any other stays as it is
+  parameters.maxIsometricForce *= 1e-30;
+  return number(MuscleTarget{muscle, MuscleQuantity::maxIsometricForce},
+                parameters.maxIsometricForce);
 }
 void WidestModel::lawFollows(std::vector<std::size_t> quantities) {
   laws_.back().quantities = std::move(quantities);
@@ -225,6 +247,9 @@ ParameterCatalogue::Setting WidestModel::settingAt(const VectorXd& values,
       case Law::List::expression:
         setting.model.expressionForces[law.index].enabled = on;
         break;
+      case Law::List::muscle:
+        setting.model.muscles[law.index].enabled = on;
+        break;
     }
   }
   return setting;
@@ -264,6 +289,28 @@ SensorLaw WidestModel::sensorAt(const VectorXd& values) const {
     if (meanings_[i].kind == Meaning::Kind::clock) sensor.clock += value;
   }
   return sensor;
+}
+
+Trial withProxies(Trial trial, const WidestModel& widest) {
+  for (const auto& [muscle, proxies] : widest.proxies()) {
+    const auto has = [&](const std::string& name) {
+      return std::find(trial.muscles.begin(), trial.muscles.end(), name);
+    };
+    if (has(muscle) != trial.muscles.end()) continue;
+    VectorXd mean = VectorXd::Zero(trial.times.size());
+    for (const std::string& proxy : proxies) {
+      const auto at = has(proxy);
+      if (at == trial.muscles.end()) {
+        throw std::invalid_argument(
+            fmt::format("{}: no excitation of muscle '{}'", trial.file, proxy));
+      }
+      mean += trial.excitations.col(at - trial.muscles.begin());
+    }
+    trial.muscles.push_back(muscle);
+    trial.excitations.conservativeResize(Eigen::NoChange, trial.excitations.cols() + 1);
+    trial.excitations.rightCols<1>() = mean / static_cast<double>(proxies.size());
+  }
+  return trial;
 }
 
 }  // namespace bio::discover

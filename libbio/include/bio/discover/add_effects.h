@@ -13,13 +13,15 @@ namespace bio::discover {
 /// In the model, visc and stiffness are OpenSim's SpringGeneralizedForce, limit its
 /// CoordinateLimitForce, payload the mass of a body, coulomb, stribeck, drag, powerdamp, const and
 /// handforce its ExpressionBasedCoordinateForce, tilt the direction of gravity; errors of
-/// parameters change the parameter. A law is called <coordinate>_<id>, by which it is known again.
-/// EMG and sensor have no place in a model: who simulates passes excitations through `mapping`
-/// (drivenExcitation), and compares the sensor's reading.
+/// parameters change the parameter; a missing muscle is the model's own, switched on. A law is
+/// called <coordinate>_<id>, by which it is known again. EMG and sensor have no place in a model:
+/// who simulates passes excitations through `mapping` (drivenExcitation), and compares the sensor's
+/// reading. A muscle that was switched on needs an excitation (withProxies).
 struct Augmented {
   Model model;
   EmgMapping mapping;
   SensorLaw sensor;
+  std::vector<std::string> muscles;  ///< switched on
 };
 
 /// The model at values of all quantities of `widest`; laws that are absent are not in it.

@@ -30,7 +30,9 @@ struct EffectEntry {
 /// | tilt | gravity's moment is that of q + δ | δ rad |
 /// | const | +c | c N·m |
 /// | handforce | horizontal force at that mass centre, in the plane of the joint | F N |
+/// | spring | −k·max(0, L − L_r)·∂L/∂q, L from hand to shoulder (see band.cc) | k N/m |
 /// | fatigue | u_i·[1 − φ(1 − e^{−∫u_i dt/T})], every muscle | φ |
+/// | missing_i | a muscle that the model has but switched off, F0 = r·that of the model, its lengths within their tolerance | r |
 /// | delay, shape, crosstalk_A_B, gain_i, offset_i | EmgMapping | |
 /// | mass, tau, Fmax_i, lopt_i, lslack_i, tendon, wrap_i | factors and shifts of parameters | |
 /// | bias, gain, clock | SensorLaw | |

@@ -98,6 +98,7 @@ class ElbowDisagreement : public info::discover::Disagreement {
                                         const std::vector<std::size_t>& wanted) const;
   SimulationOptions simulationOf(const OfTrial& one, const Eigen::VectorXd& latent,
                                  double clock) const;
+  ExcitationSignal excitationFor(const OfTrial& one, const Arm& arm) const;
   Trajectory simulate(const OfTrial& one, const Eigen::VectorXd& values,
                       const Eigen::VectorXd& latent, double stepFactor) const;
   Eigen::VectorXd outputsOf(const OfTrial& one, const Eigen::VectorXd& values,

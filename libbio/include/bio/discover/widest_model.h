@@ -8,6 +8,7 @@
 
 #include "bio/arm.h"
 #include "bio/parameters.h"
+#include "bio/trial.h"
 #include "info/discover/disagreement.h"
 
 namespace bio::discover {
@@ -75,6 +76,10 @@ class WidestModel {
   const std::vector<std::string>& movedBodies() const { return movedBodies_; }
   /// Axis in ground about which the coordinate turns all of them, unit; zero if it does not.
   const Eigen::Vector3d& axis() const { return axis_; }
+  /// A point of a body, in ground, at q and the other coordinates' defaults.
+  Eigen::Vector3d positionOf(const std::string& body, const Eigen::Vector3d& point, double q) const;
+  /// Of an arm's muscles on the coordinate, at mid-range [m].
+  Eigen::VectorXd momentArms(const Arm& arm) const;
   /// ∂(mass centre of a body in ground)/∂q.
   Eigen::Vector3d velocityOf(const std::string& body, double q) const;
   bool knows(const std::string& id) const;              ///< a candidate of this id
@@ -96,6 +101,10 @@ class WidestModel {
   std::size_t addLaw(SpringGeneralizedForce law);
   std::size_t addLaw(CoordinateLimitForce law);
   std::size_t addLaw(ExpressionBasedCoordinateForce law);
+  /// A muscle that the base model has but switched off. It works while a quantity asks for it; its
+  /// F0 becomes as good as nothing, and is the number whose index is returned. Its EMG is that of
+  /// the trial, or the mean of those of `proxies` (at least one).
+  std::size_t addMuscle(std::size_t muscle, std::vector<std::string> proxies);
   /// Takes candidates off the list; their quantities stay, at nominal.
   void forget(const std::vector<std::string>& ids);
   /// Two candidates are no equivalents: these data can tell them apart.
@@ -111,6 +120,8 @@ class WidestModel {
   /// Ids of effects that the base model has already, and by which of its elements.
   const std::map<std::string, std::string>& present() const { return present_; }
   Eigen::VectorXd nominal() const;
+  /// Whose EMG stands for that of a muscle which was added.
+  const std::map<std::string, std::vector<std::string>>& proxies() const { return proxies_; }
 
   /// Model and EMG mapping at values; the start is the default position at rest.
   /// @param wanted  quantities whose derivatives will be asked for: their laws are on
@@ -127,7 +138,7 @@ class WidestModel {
     double nominal;
   };
   struct Law {
-    enum class List { spring, limit, expression } list;
+    enum class List { spring, limit, expression, muscle } list;
     std::size_t index;
     std::vector<std::size_t> quantities;
   };
@@ -160,6 +171,11 @@ class WidestModel {
   std::vector<Candidate> candidates_;
   std::map<std::string, std::string> present_;
   std::vector<Law> laws_;
+  std::map<std::string, std::vector<std::string>> proxies_;
 };
+
+/// The trial with an excitation for every muscle that was added: its own, or the mean of its
+/// proxies'. @throws std::invalid_argument if the trial lacks a proxy
+Trial withProxies(Trial trial, const WidestModel& widest);
 
 }  // namespace bio::discover

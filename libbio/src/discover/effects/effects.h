@@ -17,6 +17,8 @@ void addPayload(WidestModel& model);
 void addTilt(WidestModel& model);
 void addConstantTorque(WidestModel& model);
 void addHandForce(WidestModel& model);
+void addElasticBand(WidestModel& model);
+void addMissingMuscles(WidestModel& model);
 void addDelay(WidestModel& model);
 void addShape(WidestModel& model);
 void addFatigue(WidestModel& model);

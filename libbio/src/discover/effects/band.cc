@@ -1,0 +1,64 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "discover/effects/effects.h"
+
+// An elastic band. Priors: bands of physiotherapy, some ten to a few hundred N/m, as long at rest
+// as they are put on without force.
+
+namespace bio::discover {
+namespace {
+
+using Eigen::Vector3d;
+
+/// The body that the joint of the coordinate hangs on; empty: it is coupled to another joint.
+std::string parentOf(const WidestModel& model) {
+  for (const Joint& joint : model.base().joints) {
+    for (const Coordinate& coordinate : joint.coordinates) {
+      if (coordinate.name == model.coordinate().name) return joint.parentBody;
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+// Where the joint is a plain hinge L² = A + B cos q + C sin q.
+void addElasticBand(WidestModel& model) {
+  const std::string parent = parentOf(model);
+  if (parent.empty() || model.movedBodies().empty()) return;
+  const std::string& hand = model.movedBodies().back();
+  const Vector3d center = findBody(model.base(), hand).massCenter;
+  const auto squaredLength = [&](double q) {
+    const Vector3d anchor = model.positionOf(parent, Vector3d::Zero(), q);
+    return (model.positionOf(hand, center, q) - anchor).squaredNorm();
+  };
+  const double half = std::numbers::pi / 2;
+  const double A = (squaredLength(0) + squaredLength(2 * half)) / 2;
+  const double B = squaredLength(0) - A, C = squaredLength(half) - A;
+  for (const double q : {0.7, 1.9}) {
+    const double hinge = A + B * std::cos(q) + C * std::sin(q);
+    if (std::abs(squaredLength(q) - hinge) > 1e-9 * A) return;
+  }
+  if (!(std::hypot(B, C) > 1e-3 * A)) return;  // anchored on the axis: it pulls nowhere
+  const Coordinate& q = model.coordinate();
+  const double atLower = std::sqrt(squaredLength(q.rangeMin)),
+               atUpper = std::sqrt(squaredLength(q.rangeMax)),
+               longest = std::sqrt(A + std::hypot(B, C)), shortest = std::min(atLower, atUpper);
+  const std::string length =
+      fmt::format("sqrt({:.17g}+({:.17g})*cos(q)+({:.17g})*sin(q))", A, B, C);
+  const std::string slope = fmt::format("(({:.17g})*cos(q)-({:.17g})*sin(q))/(2*{})", C, B, length);
+  addExpression(model, {"spring",
+                        "elastic band",
+                        fmt::format("An elastic band pulls the {} towards the near end of the {}.",
+                                    hand, parent),
+                        fmt::format("-k*max({}-rest,0)*{}", length, slope),
+                        {"k", "rest"},
+                        {amplitude("spring.stiffness", "N/m", 0, 1000, 50),
+                         shape("spring.rest", "m", shortest, 0, longest, 0.3 * longest)},
+                        {{20, 0.5 * shortest}, {20, shortest}, {20, (shortest + longest) / 2}}});
+}
+
+}  // namespace bio::discover
