@@ -61,6 +61,27 @@ TEST(Decide, SaysParameterWhenOneIsOffByMoreThanItsTolerance) {
             Finding::parameter);
 }
 
+TEST(Decide, SaysUnknownWhenALawFitsOnlyAtTheEdgeOfItsShape) {
+  std::vector<Candidate> all = catalogue();
+  all[0].quantities = {0, 4};
+  Judgement j = raced({{{0}, 30.0}, {{1}, 20.0}}, {0});
+  Estimate amplitude, form;
+  amplitude.quantity = 0;
+  form.quantity = 4;
+  const auto found = [&] {
+    j.raced[1].estimates = {amplitude, form};
+    return decide(all, j, {});
+  };
+  EXPECT_EQ(found().finding, Finding::named);
+  amplitude.atBound = true;  // strong, but that law
+  EXPECT_EQ(found().finding, Finding::named);
+  form.atBound = true;
+  EXPECT_EQ(found().finding, Finding::unknown);
+  EXPECT_TRUE(found().surrogate);
+  j.raced[2].logEvidence = 28;  // a rival may be right
+  EXPECT_EQ(found().finding, Finding::ambiguous);
+}
+
 TEST(Decide, NamesALeaderWithoutRivals) {
   const Decision d = decide(catalogue(), raced({{{0}, 30.0}, {{1}, 20.0}, {{3}, 10}}, {0}), {});
   EXPECT_EQ(d.finding, Finding::named);

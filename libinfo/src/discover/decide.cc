@@ -52,6 +52,14 @@ NamedEffect classOf(const std::vector<Candidate>& candidates, const Judgement& j
   return named;
 }
 
+// A law without rivals that fits only where a number that shapes it leaves its range.
+bool isStretched(const NamedEffect& named, const Candidate& candidate) {
+  return named.equals.size() == 1 &&
+         std::any_of(named.estimates.begin(), named.estimates.end(), [&](const Estimate& e) {
+           return e.atBound && e.quantity != candidate.quantities.front();
+         });
+}
+
 }  // namespace
 
 Decision decide(const std::vector<Candidate>& candidates, const Judgement& judgement,
@@ -66,12 +74,13 @@ Decision decide(const std::vector<Candidate>& candidates, const Judgement& judge
                                                                : Finding::none;
     return decision;
   }
-  bool alone = true, parameters = true;
+  bool alone = true, parameters = true, stretched = false;
   decision.probability = 1;
   for (const std::size_t effect : judgement.chosen) {
     decision.effects.push_back(classOf(candidates, judgement, *leader, effect, options));
     const NamedEffect& named = decision.effects.back();
     alone = alone && named.equals.size() == 1;
+    stretched = stretched || isStretched(named, candidates[effect]);
     for (const std::size_t c : named.equals)
       parameters = parameters && candidates[c].kind == EffectKind::parameter;
     decision.probability *= named.probability;
@@ -79,7 +88,7 @@ Decision decide(const std::vector<Candidate>& candidates, const Judgement& judge
   const Adequacy& after = judgement.after;
   if (!after.white || !after.independent || !after.causeless ||
       judgement.latentAfter > options.latentTolerance || judgement.heldOutWorse ||
-      judgement.strangeAfter) {
+      judgement.strangeAfter || stretched) {
     decision.finding = Finding::unknown;
     decision.surrogate = true;
     decision.probability = 0;

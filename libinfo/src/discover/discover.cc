@@ -40,11 +40,14 @@ std::vector<Estimate> estimatesOf(const Fit& fit, const std::vector<std::size_t>
     const int i = fit.hypothesis.indexOf(q);
     if (i < 0) continue;
     const auto at = static_cast<std::size_t>(i);
-    Estimate e{q, fit.values[static_cast<Index>(q)], fit.deviation(at), 0};
+    Estimate e{q, fit.values[static_cast<Index>(q)], fit.deviation(at), 0, false};
     // surprise counts the tolerance of the quantity itself, not that of a race
     FreeQuantity own = fit.hypothesis.free[at];
     own.deviation = data.quantities()[q].deviation;
     e.surprise = own.coordinate(e.value);
+    const Quantity& quantity = data.quantities()[q];
+    const double margin = 1e-6 * (quantity.upper - quantity.lower);
+    e.atBound = e.value - quantity.lower < margin || quantity.upper - e.value < margin;
     result.push_back(e);
   }
   return result;
@@ -375,7 +378,7 @@ class Work {
         return "Missing: " + names + (verdict_.vetoed ? "; what is left has the wrong size." : ".");
       case Finding::unknown:
         return "Something is missing that has no name here" +
-               (names.empty() ? std::string() : "; imitated best by: " + names) +
+               (names.empty() ? std::string() : "; imitated best by: " + names) + edges() +
                (verdict_.formula && verdict_.formula->wins
                     ? "; a force of " + verdict_.formula->text + " explains it."
                     : ".");
@@ -383,6 +386,15 @@ class Work {
         break;
     }
     return verdict_.sentence;
+  }
+
+  std::string edges() const {
+    std::string quantities;
+    for (const NamedEffect& e : verdict_.effects)
+      for (const Estimate& one : e.estimates)
+        if (one.atBound)
+          quantities += (quantities.empty() ? "" : ", ") + data_.quantities()[one.quantity].name;
+    return quantities.empty() ? "" : ", with " + quantities + " at the edge of what it may be";
   }
 
   const Disagreement& data_;

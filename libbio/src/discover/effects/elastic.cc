@@ -55,13 +55,15 @@ void addLimits(WidestModel& model) {
   };
   const std::size_t K = model.add(amplitude("limit.stiffness", "N m/rad", 0, 100, 10),
                                   {Meaning::Kind::shift, {{number(1)}, {number(3)}}});
-  const double upperAt = q.rangeMax - 0.2 * span, lowerAt = q.rangeMin + 0.2 * span;
-  const std::size_t upper =
-      model.add(shape("limit.upper", "rad", upperAt, model.middle(), q.rangeMax, 0.15 * span),
-                {Meaning::Kind::shift, {{number(0)}}});
-  const std::size_t lower =
-      model.add(shape("limit.lower", "rad", lowerAt, q.rangeMin, model.middle(), 0.15 * span),
-                {Meaning::Kind::shift, {{number(2)}}});
+  // tissue leaves the middle fifth of the range free: else this is a stiffness that grows
+  const double upperAt = q.rangeMax - 0.2 * span, lowerAt = q.rangeMin + 0.2 * span,
+               free = 0.1 * span;
+  const std::size_t upper = model.add(
+      shape("limit.upper", "rad", upperAt, model.middle() + free, q.rangeMax, 0.15 * span),
+      {Meaning::Kind::shift, {{number(0)}}});
+  const std::size_t lower = model.add(
+      shape("limit.lower", "rad", lowerAt, q.rangeMin, model.middle() - free, 0.15 * span),
+      {Meaning::Kind::shift, {{number(2)}}});
   const std::size_t transition =
       model.add(shape("limit.transition", "rad", 0.2 * span, 0.05 * span, span, 0.1 * span),
                 {Meaning::Kind::shift, {{number(5)}}});

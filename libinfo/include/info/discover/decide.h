@@ -32,6 +32,8 @@ struct Decision {
 /// - Nothing chosen, base inadequate: `unknown`.
 /// - Chosen, but what is left is not white or has a cause, the latent force is too large, or what
 ///   was held out is strange or speaks against it: `unknown`, the chosen ones are a surrogate.
+/// - Chosen, but one of them, in a class of its own, has a number that shapes it at a bound: the
+///   same, it is another law.
 /// - Chosen: each in a class with its declared equivalents and with all that are no further behind
 ///   than `classWidth` in its place. Every class of one: `named`, or `parameter` if that is all
 ///   they are; otherwise `ambiguous`. Innovations of the wrong size veto the probability.

@@ -61,6 +61,7 @@ struct Estimate {
   double deviation = 0;  ///< of the posterior, in the unit of the quantity
   double surprise =
       0;  ///< (value − nominal)/prior deviation; of the logarithm where that is normal
+  bool atBound = false;  ///< within a millionth of its range of a bound
 };
 
 /// A hypothesis that was raced.
