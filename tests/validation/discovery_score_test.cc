@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
+#include <numbers>
 
 #include "repaired_table.h"
 #include "support/scratch_folder.h"
@@ -150,6 +152,21 @@ TEST(Score, ComparesProbabilitiesWithTheShareThatIsRight) {
   EXPECT_NEAR(c.bins[1].probability, 0.96, 1e-12);
   EXPECT_NEAR(c.bins[1].right, 0.75, 1e-12);
   EXPECT_NEAR(c.error, 4 * 0.21 / 6, 1e-12);
+}
+
+// Of n names with one probability p the share that is right scatters by √(p(1 − p)/n), whose mean
+// size is √(2/π) of that.
+TEST(Score, SaysWhatChanceAloneMakesOfTheCalibrationError) {
+  std::vector<Outcome> outcomes(100);
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    outcomes[i].probability = 0.75;
+    outcomes[i].firstIsTrue = i < 75;
+  }
+  const Calibration c = score(outcomes).calibration;
+  EXPECT_NEAR(c.error, 0, 1e-12);
+  const double deviation = std::sqrt(0.75 * 0.25 / 100);
+  EXPECT_NEAR(c.chance, std::sqrt(2 / std::numbers::pi) * deviation, 0.1 * deviation);
+  EXPECT_NEAR(c.chanceHighest, 1.96 * deviation, 0.15 * deviation);
 }
 
 TEST(Judge, AWrongNameWithTheTruthInItsClassIsNotConfidentlyWrong) {

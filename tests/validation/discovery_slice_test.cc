@@ -9,6 +9,7 @@
 #include <chrono>
 
 #include "angle_unit.h"
+#include "data_set.h"
 #include "discover_verdict.h"
 #include "discovery/reduced_plan.h"
 #include "discovery_score.h"
@@ -38,21 +39,37 @@ Outcome onReducedElbow(const reduced::Plan& plan) {
   const std::string name = plan.suite + " " + std::to_string(plan.seed);
   return hidden::judge(
       name, set.label,
-      app::verdictJson({name, {}, elbow, wording, options, verdict, name, {}, taken.count(), taken.count()}));
+      app::verdictJson(
+          {name, {}, elbow, wording, options, verdict, name, {}, taken.count(), taken.count()}));
 }
 
-// Through files and the command, the truth being read by the scorer alone.
+// The command's verdict on a set in files, the truth being read by the scorer alone.
+Outcome byCommand(const support::ScratchFolder& scratch, std::vector<std::string> of) {
+  const auto file = [&](const char* name) { return (scratch / "set" / name).string(); };
+  of.insert(of.begin(), "discover");
+  for (const char* trial : {"train_1.sto", "train_2.sto", "train_3.sto"}) of.push_back(file(trial));
+  of.insert(of.end(),
+            {"--hold-out", file("held_out.sto"), "--out", (scratch / "verdicts" / "set").string()});
+  const auto result = support::runFisherHill(of);
+  EXPECT_EQ(result.status, 0) << result.err;
+  return hidden::readOutcomes(scratch / "labels", scratch / "verdicts").at(0);
+}
+
 Outcome onRobot(const hidden::RobotPlan& plan) {
   const support::ScratchFolder scratch;
   hidden::writeRobotDataSet(hidden::makeRobotDataSet(plan), hidden::robotKind(plan.system),
                             scratch / "set", scratch / "labels");
-  const auto file = [&](const char* name) { return (scratch / "set" / name).string(); };
-  const auto result = support::runFisherHill(
-      {"discover", "--system", plan.system, file("train_1.sto"), file("train_2.sto"),
-       file("train_3.sto"), "--hold-out", file("held_out.sto"), "--out",
-       (scratch / "verdicts" / "set").string()});
-  EXPECT_EQ(result.status, 0) << result.err;
-  return hidden::readOutcomes(scratch / "labels", scratch / "verdicts").at(0);
+  return byCommand(scratch, {"--system", plan.system});
+}
+
+// All eight muscles; the data set's own model, where it brings one.
+Outcome onElbow(const hidden::DataSetPlan& plan) {
+  const support::ScratchFolder scratch;
+  const std::filesystem::path shipped = std::string(FISHERHILL_SOURCE_DIR) + "/models/elbow8.osim";
+  hidden::writeDataSet(hidden::makeDataSet(hidden::readElbow(shipped), plan), shipped,
+                       scratch / "set", scratch / "labels");
+  const std::filesystem::path own = scratch / "set/model.osim";
+  return byCommand(scratch, {std::filesystem::exists(own) ? own.string() : shipped.string()});
 }
 
 void expectTargets(const std::vector<Outcome>& outcomes) {
@@ -95,6 +112,14 @@ TEST(DiscoverySlice, OfReducedElbowsWithOneEffect) {
 }
 TEST(DiscoverySlice, OfReducedElbowsWithOneWrongParameter) {
   expectTargetsOnReducedElbows("parameter", 45200, 2);
+}
+TEST(DiscoverySlice, OfElbowsWithEightMuscles) {
+  hidden::DataSetPlan nothing, visc, missing;
+  nothing.suite = "null";
+  visc.effects = {"visc"};
+  missing.effects = {"missing_BRD"};
+  nothing.seed = 45500, visc.seed = 45501, missing.seed = 45502;
+  expectTargets({onElbow(nothing), onElbow(visc), onElbow(missing)});
 }
 TEST(DiscoverySlice, OfDoublePendulums) {
   expectTargetsOnRobots("double-pendulum", 45300, 3, 1);

@@ -10,6 +10,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "random_numbers.h"
+
 namespace hidden {
 namespace {
 
@@ -220,18 +222,21 @@ bool Spread::within(double deviations) const {
 
 namespace {
 
-// Sets without a truth count: whatever is named there is wrong.
-Calibration calibrationOf(const std::vector<Outcome>& outcomes) {
+struct Claim {
+  double probability;
+  bool right;
+};
+
+Calibration binned(const std::vector<Claim>& claims) {
   constexpr int parts = 10;
   std::vector<Calibration::Bin> bins(parts);
   Calibration c;
-  for (const Outcome& o : outcomes) {
-    if (!o.probability || *o.probability <= 0 || o.suite == "out") continue;  // 0: vetoed
+  for (const Claim& claim : claims) {
     auto& bin = bins[static_cast<std::size_t>(
-        std::clamp(static_cast<int>(*o.probability * parts), 0, parts - 1))];
+        std::clamp(static_cast<int>(claim.probability * parts), 0, parts - 1))];
     ++bin.n;
-    bin.probability += *o.probability;
-    bin.right += o.firstIsTrue;
+    bin.probability += claim.probability;
+    bin.right += claim.right;
   }
   for (Calibration::Bin& bin : bins) {
     if (bin.n == 0) continue;
@@ -241,6 +246,28 @@ Calibration calibrationOf(const std::vector<Outcome>& outcomes) {
     c.bins.push_back(bin);
   }
   if (c.n > 0) c.error /= c.n;
+  return c;
+}
+
+// Sets without a truth count: whatever is named there is wrong.
+Calibration calibrationOf(const std::vector<Outcome>& outcomes) {
+  std::vector<Claim> claims;
+  for (const Outcome& o : outcomes) {
+    if (!o.probability || *o.probability <= 0 || o.suite == "out") continue;  // 0: vetoed
+    claims.push_back({*o.probability, o.firstIsTrue});
+  }
+  Calibration c = binned(claims);
+  if (claims.empty()) return c;
+  constexpr std::size_t draws = 2000;
+  RandomNumbers random(1, 0);
+  std::vector<double> errors;
+  for (std::size_t draw = 0; draw < draws; ++draw) {
+    for (Claim& claim : claims) claim.right = random.between(0, 1) < claim.probability;
+    errors.push_back(binned(claims).error);
+    c.chance += errors.back() / draws;
+  }
+  std::nth_element(errors.begin(), errors.begin() + draws * 19 / 20, errors.end());
+  c.chanceHighest = errors[draws * 19 / 20];
   return c;
 }
 
@@ -351,7 +378,10 @@ Json Score::asJson() const {
                                {"target", s.target},
                                {"met", any ? Json(s.met) : Json()}});
   }
-  json["calibration"] = {{"n", calibration.n}, {"error", calibration.error}};
+  json["calibration"] = {{"n", calibration.n},
+                         {"error", calibration.error},
+                         {"error_by_chance", calibration.chance},
+                         {"error_by_chance_95", calibration.chanceHighest}};
   for (const Calibration::Bin& bin : calibration.bins)
     json["calibration"]["bins"].push_back(
         {{"n", bin.n}, {"probability", bin.probability}, {"right", bin.right}});
@@ -382,8 +412,9 @@ std::string Score::asMarkdown() const {
   if (calibration.n > 0) {
     text += fmt::format(
         "\nProbability of the first name and share of first names that are the truth itself "
-        "({} names, calibration error {:.3f}, target ≤ 0.05):",
-        calibration.n, calibration.error);
+        "({} names, calibration error {:.3f}, target ≤ 0.05; true probabilities would give {:.3f}, "
+        "19 times of 20 below {:.3f}):",
+        calibration.n, calibration.error, calibration.chance, calibration.chanceHighest);
     for (const auto& bin : calibration.bins)
       text += fmt::format(" {:.2f}: {:.2f} of {};", bin.probability, bin.right, bin.n);
     text.back() = '.';
