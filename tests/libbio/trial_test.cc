@@ -60,6 +60,14 @@ TEST_F(TrialFile, TakesExcitationsInTheOrderOfTheModel) {
   EXPECT_THAT(trial.measured, SizeIs(0));
 }
 
+TEST_F(TrialFile, TheEmgOfAMuscleThatIsSwitchedOffComesLast) {
+  const Trial trial = read("time,off,TRIlong,BRA\n0,0.3,0.2,0.5\n1,0.7,0.4,1\n");
+  EXPECT_THAT(trial.muscles, ElementsAre("BRA", "TRIlong", "off"));
+  EXPECT_EQ(trial.excitations(1, 2), 0.7);
+  EXPECT_EQ(messageOf("time,off,TRIlong,BRA\n0,1.3,0.2,0.5\n1,0.7,0.4,1\n"),
+            "trial.csv: column 'off' at time = 0 s: excitation = 1.3, must be 0 to 1");
+}
+
 TEST_F(TrialFile, AKnownMassIsReadOrRefused) {
   const auto text = [](const std::string& value) {
     return "t\nknown_mass_in_hand_kg=" + value +
