@@ -1,5 +1,7 @@
 #include "select.h"
 
+#include <algorithm>
+
 namespace info::discover {
 namespace {
 
@@ -7,6 +9,7 @@ constexpr std::size_t kFromNominal = 4;  // single names that are raced once mor
 // How many are raced in the place of one of several names: of five, const was none beside fatigue
 // (set 61112 of validation/discovery).
 constexpr int kRivals = 7;
+constexpr std::size_t kPartners = 2;  // rivals of each of two names that are tried together
 
 class Selection {
  public:
@@ -27,7 +30,7 @@ class Selection {
       search_.reconcile();
       const Effects before = chosen_;
       chosen_ = best();
-      while (swapOne()) {
+      while (swapOne() || swapTwo()) {
       }
       if (chosen_ == before && !replaceOne(list)) break;
     }
@@ -90,6 +93,46 @@ class Selection {
     search_.reconcile();
     chosen_ = best();
     return chosen_ != now;
+  }
+
+  // Two names may be makeshifts for each other's sake, so that neither gives way alone (Stribeck
+  // friction and one muscle's baseline for dry friction and the baseline of all, set 63112).
+  bool swapTwo() {
+    if (chosen_.size() < 2) return false;
+    const Effects now = chosen_;
+    for (std::size_t i = 0; i < now.size(); ++i)
+      for (std::size_t k = i + 1; k < now.size(); ++k) {
+        const Effects rest = without(without(now, now[i]), now[k]);
+        for (const std::size_t one : rivalsOf(now, now[i]))
+          for (const std::size_t other : rivalsOf(now, now[k])) {
+            const Effects first = with(rest, one);
+            if (one == other || search_.entries().count(with(first, other)) > 0) continue;
+            if (search_.entries().count(first) == 0) {
+              if (search_.entries().count(rest) == 0) continue;
+              search_.race(rest, {one});
+            }
+            search_.race(first, {other});
+          }
+      }
+    search_.reconcile();
+    chosen_ = best();
+    return chosen_ != now;
+  }
+
+  // The best of what has been raced in the place of one of several.
+  std::vector<std::size_t> rivalsOf(const Effects& effects, std::size_t effect) const {
+    const Effects rest = without(effects, effect);
+    std::vector<std::pair<double, std::size_t>> ranked;
+    for (const auto& [raced, entry] : search_.entries()) {
+      if (raced.size() != effects.size() || raced == effects || !entry.works()) continue;
+      for (const std::size_t one : raced)
+        if (without(raced, one) == rest) ranked.emplace_back(-entry.score, one);
+    }
+    std::sort(ranked.begin(), ranked.end());
+    std::vector<std::size_t> best;
+    for (std::size_t i = 0; i < std::min(ranked.size(), kPartners); ++i)
+      best.push_back(ranked[i].second);
+    return best;
   }
 
   // A newcomer that helps much but leaves nothing to one of those before it takes its place.
