@@ -26,7 +26,8 @@ class ArmDynamics {
         configuration_(arm),
         numMuscles_(static_cast<Eigen::Index>(arm.numMuscles())),
         u_(State::Zero(numMuscles_)),
-        rate_(arm.numMuscles()) {}
+        rate_(arm.numMuscles()),
+        pieces_(arm.numMuscles()) {}
 
   Eigen::Index size() const { return 2 * N + 2 * numMuscles_; }
 
@@ -122,7 +123,7 @@ class ArmDynamics {
       const auto si = static_cast<std::size_t>(i);
       rate_[si] =
           fibreRateDerivatives(arm_.muscles()[si].muscle, y[2 * N + i], y[2 * N + numMuscles_ + i],
-                               configuration_.length(si).length);
+                               configuration_.length(si).length, pieces_[si]);
       muscle_ -= rate_[si].tendonForce * configuration_.length(si).dL_dq;
     }
     Vector force = muscle_ + passive_ + external_ - inertia.dV;
@@ -144,6 +145,7 @@ class ArmDynamics {
   Eigen::Index numMuscles_;
   State u_;
   std::vector<FibreRateDerivatives> rate_;
+  std::vector<SchuttePieces> pieces_;  ///< of the last state
   std::size_t hint_ = 0;
   std::size_t externalRow_ = 0;
   Vector qDot_, acceleration_, muscle_, passive_, external_;

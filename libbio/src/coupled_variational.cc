@@ -20,6 +20,7 @@ class VariationalStepper {
         configuration_(arm),
         symmetric_(options.integrator == Integrator::variational),
         rate_(arm.numMuscles()),
+        pieces_(arm.numMuscles()),
         inverse_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(arm.numMuscles()))),
         residual_(inverse_) {}
 
@@ -93,7 +94,8 @@ class VariationalStepper {
         const auto si = static_cast<Eigen::Index>(i);
         const LengthJet<N>& path = configuration_.length(i);
         const double l_m = (begin.fibreLength[si] + end.fibreLength[si]) / 2;
-        rate_[i] = fibreRateDerivatives(arm_.muscles()[i].muscle, activation[si], l_m, path.length);
+        rate_[i] = fibreRateDerivatives(arm_.muscles()[i].muscle, activation[si], l_m, path.length,
+                                        pieces_[i]);
         const FibreRateDerivatives& r = rate_[i];
         muscle_ -= r.tendonForce * path.dL_dq;
         dTau.noalias() -= (r.dF_dMuscleTendonLength / 2 * path.dL_dq) * path.dL_dq.transpose();
@@ -194,6 +196,7 @@ class VariationalStepper {
   ArmConfiguration<N> configuration_;
   bool symmetric_;
   std::vector<FibreRateDerivatives> rate_;
+  std::vector<SchuttePieces> pieces_;  ///< of the last iterate
   Eigen::VectorXd inverse_;
   Eigen::VectorXd residual_;
   Vector muscle_;

@@ -162,6 +162,13 @@ PiecewiseCubic::PiecewiseCubic(std::vector<double> knots, std::vector<Segment> s
   }
 }
 
+PiecewiseCubic::Piece PiecewiseCubic::pieceAt(double x) const {
+  const std::size_t index = indexAt(x);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  return {index == 0 ? -infinity : knots_[index - 1],
+          index == knots_.size() ? infinity : knots_[index], &segments_[index]};
+}
+
 CubicSpline::CubicSpline(const SplineFunction& points) : PiecewiseCubic(spline(points)) {}
 
 PiecewiseLinear::PiecewiseLinear(const PiecewiseLinearFunction& points)

@@ -67,7 +67,8 @@ std::vector<Eigen::Vector3d> MusclePath::polyline(const std::vector<double>& q,
                                                   const std::vector<Placement<double>>& placements,
                                                   double step) const {
   const Posture posture{q, placements};
-  const PathVariant& variant = activeVariant(compiled_, q);
+  const PathVariant& variant = activeVariant(
+      compiled_, Eigen::Map<const Eigen::VectorXd>(q.data(), static_cast<Eigen::Index>(q.size())));
   const auto position = [&](std::size_t node) {
     return nodePosition(compiled_, compiled_.nodes[node], posture);
   };

@@ -27,7 +27,8 @@ struct ForceBalance {
 
 template <bool second>
 inline ForceBalance forceBalance(const SchutteMuscle<double>& muscle, double activation,
-                                 double fibreLength, double muscleTendonLength) {
+                                 double fibreLength, double muscleTendonLength,
+                                 SchuttePieces& last) {
   ForceBalance f;
   const double perFibre = muscle.perFibre();
   const double perTendon = muscle.perTendon();
@@ -44,7 +45,7 @@ inline ForceBalance forceBalance(const SchutteMuscle<double>& muscle, double act
   // Tendon.
   const double strain = (muscleTendonLength - d) * perTendon - 1;
   if (!(strain < 0)) {
-    const CurveValue tendon = curves.tendonForce.evaluate(strain);
+    const CurveValue tendon = curves.tendonForce.evaluate(strain, last.tendonForce);
     f.tendon = tendon.value;
     f.tendonSlope = tendon.slope;
     f.tendonCurvature = tendon.curvature;
@@ -54,12 +55,12 @@ inline ForceBalance forceBalance(const SchutteMuscle<double>& muscle, double act
   const double l = fibreLength * perFibre;
   CurveValue passive;
   if (curves.passiveForce) {
-    passive = curves.passiveForce->evaluate(l);
+    passive = curves.passiveForce->evaluate(l, last.passiveForce);
   } else {
     const double value = std::exp(8 * l - 12);
     passive = {value, 8 * value, 64 * value, 512 * value};
   }
-  const CurveValue active = curves.activeForce.evaluate(l);
+  const CurveValue active = curves.activeForce.evaluate(l, last.activeForce);
   const bool floored = activation < muscle.options().activationFloor;
   const double act = floored ? muscle.options().activationFloor : activation;
   if (!(active.value < 0)) {
@@ -211,13 +212,23 @@ SchutteQuantities<double> schutteQuantities(const SchutteParameters& p) {
 
 FibreRateDerivatives fibreRateDerivatives(const SchutteMuscle<double>& muscle, double activation,
                                           double fibreLength, double muscleTendonLength) {
-  const ForceBalance f = forceBalance<false>(muscle, activation, fibreLength, muscleTendonLength);
+  SchuttePieces last;
+  return fibreRateDerivatives(muscle, activation, fibreLength, muscleTendonLength, last);
+}
+
+FibreRateDerivatives fibreRateDerivatives(const SchutteMuscle<double>& muscle, double activation,
+                                          double fibreLength, double muscleTendonLength,
+                                          SchuttePieces& last) {
+  const ForceBalance f =
+      forceBalance<false>(muscle, activation, fibreLength, muscleTendonLength, last);
   return assemble(muscle, f, velocity(f.P, f.A, muscle.quantities().damping));
 }
 
 FibreRateHessian fibreRateHessian(const SchutteMuscle<double>& muscle, double activation,
                                   double fibreLength, double muscleTendonLength) {
-  const ForceBalance f = forceBalance<true>(muscle, activation, fibreLength, muscleTendonLength);
+  SchuttePieces last;
+  const ForceBalance f =
+      forceBalance<true>(muscle, activation, fibreLength, muscleTendonLength, last);
   const double B = muscle.quantities().damping;
   const Velocity u = velocity(f.P, f.A, B);
 

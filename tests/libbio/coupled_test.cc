@@ -5,9 +5,11 @@
 #include <numbers>
 
 #include "../../libbio/src/arm_dynamics.h"
+#include "bio/coupled_lanes.h"
 #include "support/allocations.h"
 #include "support/elbow_model.h"
 #include "support/numbers.h"
+#include "support/shipped_elbow.h"
 
 namespace bio {
 namespace {
@@ -253,6 +255,38 @@ TEST(Coupled, NothingIsAllocatedInAStep) {
     };
     count(0.1);
     EXPECT_EQ(count(0.2), count(2.0));
+  }
+}
+
+// Switches of paths are met, forces act on the coordinate and from outside, one lane is empty.
+TEST(SimulateTogether, AllocatesNothingInAStep) {
+  const fixtures::ShippedElbow elbow("elbow8_passive");
+  const ArmState start =
+      initialState(elbow.arm, Eigen::VectorXd::Constant(1, 0.5), elbow.excitation, 0);
+  const std::vector<LaneJob> jobs(3, {&elbow.arm, &elbow.excitation, &start});
+  SimulationOptions o;
+  o.externalForce = ExternalForce({0.5, 1, 2}, Eigen::Vector3d(0, 0.8, -0.3));
+  for (const LaneInstructions instructions : {LaneInstructions::best, LaneInstructions::plain}) {
+    long switchesMet = 0;
+    const auto count = [&](double duration) {
+      o.duration = duration;
+      const long before = support::allocations();
+      const auto motions = simulateTogether(jobs, o, instructions);
+      const long taken = support::allocations() - before;
+      EXPECT_EQ(motions.front().outcome, Outcome::completed);
+      EXPECT_EQ(motions.front().wallSeconds, 0) << "went by itself";
+      const Eigen::VectorXd angle = motions.front().q.row(0);
+      switchesMet = std::count_if(
+          elbow.arm.switches().begin(), elbow.arm.switches().end(), [&](const PathSwitch& s) {
+            return s.distance(angle.minCoeff()) * s.distance(angle.maxCoeff()) < 0;
+          });
+      return taken;
+    };
+    count(0.1);
+    const long few = count(0.2);
+    EXPECT_EQ(switchesMet, 0);
+    EXPECT_EQ(count(4.0), few);
+    EXPECT_GT(switchesMet, 0);
   }
 }
 

@@ -237,5 +237,38 @@ TEST(FunctionEvaluator, GivesTheSameThroughTheScalarType) {
   }
 }
 
+// Steps and leaps over splines, a polyline and a curve without knots; borders, ends, no number.
+TEST(PiecewiseCubic, IsTheSameWhicheverPieceHeldTheLastX) {
+  const SchutteParameters p = support::elbowCurves();
+  const PiecewiseCubic endless({}, {{1, 2, 3, 4, 5}});
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const PiecewiseCubic& curve :
+       {PiecewiseCubic(CubicSpline(p.tendonForceLength)),
+        PiecewiseCubic(CubicSpline(p.activeForceLength)),
+        PiecewiseCubic(PiecewiseLinear({{0, 1, 3}, {2, -1, 0}})), endless}) {
+    PiecewiseCubic::Piece last;
+    EXPECT_FALSE(last.holds(0));
+    std::vector<double> xs;
+    for (const double knot : curve.knots()) {
+      for (const double x : {knot, std::nextafter(knot, -9), knot, knot + 0.3, knot - 0.01}) {
+        xs.push_back(x);
+      }
+    }
+    xs.insert(xs.end(), {-5, -5.1, 40, 41, -infinity, 0.7, infinity, 0.7});
+    for (const double x : xs) {
+      const CurveValue expected = curve.evaluate(x), found = curve.evaluate(x, last);
+      EXPECT_EQ(last.segment, &curve.segmentAt(x)) << x;
+      if (!std::isfinite(x)) continue;
+      EXPECT_EQ(found.value, expected.value) << x;
+      EXPECT_EQ(found.slope, expected.slope) << x;
+      EXPECT_EQ(found.curvature, expected.curvature) << x;
+      EXPECT_EQ(found.third, expected.third) << x;
+      EXPECT_TRUE(last.holds(x)) << x;
+      EXPECT_TRUE(std::isnan(curve.evaluate(std::nan(""), last).value));
+      curve.evaluate(x, last);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace bio

@@ -211,10 +211,15 @@ TEST(SchutteMuscle, FirstDerivativesAgreeThreeWays) {
           {Dual3(q.maxIsometricForce), Dual3(q.optimalFibreLength), Dual3(q.tendonSlackLength),
            Dual3(q.pennation), Dual3(q.timeScale), Dual3(q.damping)},
           c.curves, {.clampForce = clamp});
+      SchuttePieces pieces;
       for (int i = 0; i < 100; ++i) {
         const State s = randomState(random, p);
         const FibreRateDerivatives d =
             fibreRateDerivatives(c.muscle, s.activation, s.fibreLength, s.muscleTendonLength);
+        const FibreRateDerivatives again = fibreRateDerivatives(
+            c.muscle, s.activation, s.fibreLength, s.muscleTendonLength, pieces);
+        EXPECT_EQ(again.dV_dFibreLength, d.dV_dFibreLength);
+        EXPECT_EQ(again.dF_dMuscleTendonLength, d.dF_dMuscleTendonLength);
         const auto rate = c.muscle.fibreVelocity(s.activation, s.fibreLength, s.muscleTendonLength);
         EXPECT_NEAR(d.fibreVelocity, rate.fibreVelocity, 1e-13 * (1 + std::abs(d.fibreVelocity)));
         EXPECT_NEAR(d.tendonForce, rate.tendonForce, 1e-12 * p.maxIsometricForce);

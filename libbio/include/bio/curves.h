@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <variant>
 #include <vector>
 
@@ -48,17 +49,26 @@ class PiecewiseCubic {
     return T(s.value) + t * inner;
   }
 
+  /// A segment of a curve with its borders; none to begin with, which holds no x.
+  struct Piece {
+    double lower = std::numeric_limits<double>::infinity();
+    double upper = -std::numeric_limits<double>::infinity();
+    const Segment* segment = nullptr;
+    bool holds(double x) const { return lower <= x && x < upper; }
+  };
+
   /// y, dy/dx, d²y/dx² and d³y/dx³.
-  CurveValue evaluate(double x) const {
-    const Segment& s = segmentAt(x);
-    const double t = x - s.start;
-    return {s.value + t * (s.slope + t * (s.quadratic + t * s.cubic)),
-            s.slope + t * (2 * s.quadratic + t * 3 * s.cubic), 2 * s.quadratic + 6 * t * s.cubic,
-            6 * s.cubic};
+  CurveValue evaluate(double x) const { return evaluate(segmentAt(x), x); }
+
+  /// The same without a search where x has stayed in the piece of this curve that held it last.
+  CurveValue evaluate(double x, Piece& last) const {
+    if (!last.holds(x)) last = pieceAt(x);
+    return evaluate(*last.segment, x);
   }
 
   /// The segment that holds x; a knot belongs to the segment on its right.
   const Segment& segmentAt(double x) const { return segments_[indexAt(x)]; }
+  Piece pieceAt(double x) const;
 
   /// The place of that segment in segments(); it holds knots()[place − 1] ≤ x < knots()[place].
   std::size_t indexAt(double x) const {
@@ -78,6 +88,13 @@ class PiecewiseCubic {
   const std::vector<Segment>& segments() const { return segments_; }
 
  private:
+  static CurveValue evaluate(const Segment& s, double x) {
+    const double t = x - s.start;
+    return {s.value + t * (s.slope + t * (s.quadratic + t * s.cubic)),
+            s.slope + t * (2 * s.quadratic + t * 3 * s.cubic), 2 * s.quadratic + 6 * t * s.cubic,
+            6 * s.cubic};
+  }
+
   std::vector<double> knots_;
   std::vector<Segment> segments_;
 };

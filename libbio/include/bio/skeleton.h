@@ -10,6 +10,10 @@
 #include "bio/rigid_motion.h"
 
 namespace bio {
+namespace detail {
+template <class T>
+struct CurveJet;
+}
 
 /// The placement of a frame in its parent: R = R_x(o_x) R_y(o_y) R_z(o_z), as OpenSim orients
 /// frames.
@@ -131,8 +135,15 @@ class Skeleton {
     std::vector<Factor> factors;
   };
 
+  /// The amount and its derivatives in q_k.
+  template <class T>
+  static detail::CurveJet<T> amountOf(const Factor& factor, const T& q_k);
+  /// X ← X·factor
   template <class T, int N>
   static void applyFactor(RigidMotion<T, N>& X, const Factor& factor, const T& q_k);
+  /// The same for X = 1, the ground, in whose derivatives there are only zeros to multiply.
+  template <class T, int N>
+  static void applyFirstFactor(RigidMotion<T, N>& X, const Factor& factor, const T& q_k);
 
   std::vector<Coordinate> coordinates_;
   std::map<std::string, CoordinateSource> sources_;

@@ -29,7 +29,40 @@ CurveJet<T> curveJet(const FunctionEvaluator& function, const T& x) {
   }
 }
 
+/// The turn A = aaᵀ + c(1 − aaᵀ) + sK about the unit axis a by an angle f(q_k), c = cos f, s = sin
+/// f, K the cross product with a, and its derivatives in q_k.
+template <class T>
+struct TurnJet {
+  Eigen::Matrix<T, 3, 3> A, A1, A2;
+};
+
+template <class T>
+TurnJet<T> turnAbout(const Eigen::Vector3d& a, const CurveJet<T>& angle) {
+  using Matrix = Eigen::Matrix<T, 3, 3>;
+  using std::cos;
+  using std::sin;
+  const T c = cos(angle.value);
+  const T s = sin(angle.value);
+  Eigen::Matrix3d skew;
+  skew << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
+  const Matrix K = skew.cast<T>();
+  const Matrix aa = (a * a.transpose()).eval().template cast<T>();
+  const Matrix across = Matrix::Identity() - aa;
+  const Matrix A_angle = c * K - s * across;
+  return {aa + c * across + s * K, A_angle * angle.slope,
+          (-(c * across + s * K)) * (angle.slope * angle.slope) + A_angle * angle.curvature};
+}
+
 }  // namespace detail
+
+template <class T>
+detail::CurveJet<T> Skeleton::amountOf(const Factor& factor, const T& q_k) {
+  if (factor.isIdentity) return {q_k, T(1.0), T(0.0)};
+  const auto inner = detail::curveJet(factor.coupling, q_k);
+  const auto outer = detail::curveJet(factor.amount, inner.value);
+  return {outer.value, T(outer.slope * inner.slope),
+          T(outer.curvature * inner.slope * inner.slope + outer.slope * inner.curvature)};
+}
 
 template <class T, int N>
 void Skeleton::applyFactor(RigidMotion<T, N>& X, const Factor& factor, const T& q_k) {
@@ -48,37 +81,12 @@ void Skeleton::applyFactor(RigidMotion<T, N>& X, const Factor& factor, const T& 
   for (auto& Y : X.first) afterConstant(Y);
   for (auto& Y : X.second) afterConstant(Y);
 
-  // the amount f(q_k) and its derivatives; both functions chained
-  T f = q_k;
-  T f1(1.0);
-  T f2(0.0);
-  if (!factor.isIdentity) {
-    const auto inner = detail::curveJet(factor.coupling, q_k);
-    const auto outer = detail::curveJet(factor.amount, inner.value);
-    f = outer.value;
-    f1 = outer.slope * inner.slope;
-    f2 = outer.curvature * inner.slope * inner.slope + outer.slope * inner.curvature;
-  }
-
   const auto pairOf = [&](std::size_t i) {
     return static_cast<std::size_t>(pairIndex(static_cast<int>(i), factor.freeIndex));
   };
+  const detail::CurveJet<T> amount = amountOf(factor, q_k);
   if (factor.turns) {
-    using std::cos;
-    using std::sin;
-    const T c = cos(f);
-    const T s = sin(f);
-    const Eigen::Vector3d& a = factor.axis;
-    Eigen::Matrix3d skew;
-    skew << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
-    const Matrix K = skew.cast<T>();
-    const Matrix aa = (a * a.transpose()).eval().template cast<T>();
-    const Matrix across = Matrix::Identity() - aa;
-    // A = aaᵀ + c(1 − aaᵀ) + sK and its derivatives in q_k
-    const Matrix A = aa + c * across + s * K;
-    const Matrix A_angle = c * K - s * across;
-    const Matrix A1 = A_angle * f1;
-    const Matrix A2 = (-(c * across + s * K)) * (f1 * f1) + A_angle * f2;
+    const auto [A, A1, A2] = detail::turnAbout(factor.axis, amount);
     // second derivatives first: they use the old first ones
     for (auto& Y : X.second) Y.R = (Y.R * A).eval();
     for (std::size_t i = 0; i < N; ++i) {
@@ -89,6 +97,7 @@ void Skeleton::applyFactor(RigidMotion<T, N>& X, const Factor& factor, const T& 
     X.first[k].R.noalias() += X.value.R * A1;
     X.value.R = (X.value.R * A).eval();
   } else {
+    const auto& [f, f1, f2] = amount;
     const Vector axis = factor.axis.template cast<T>();
     const auto along = [&](const Matrix& R) -> Vector { return R * axis; };
     for (auto& Y : X.second) Y.p += along(Y.R) * f;
@@ -101,12 +110,43 @@ void Skeleton::applyFactor(RigidMotion<T, N>& X, const Factor& factor, const T& 
 }
 
 template <class T, int N>
+void Skeleton::applyFirstFactor(RigidMotion<T, N>& X, const Factor& factor, const T& q_k) {
+  using Matrix = Eigen::Matrix<T, 3, 3>;
+  using Vector = Eigen::Matrix<T, 3, 1>;
+  const auto k = static_cast<std::size_t>(factor.freeIndex);
+  const auto kk = static_cast<std::size_t>(pairIndex(factor.freeIndex, factor.freeIndex));
+  const Matrix R = factor.before.R.template cast<T>();
+  X = identityMotion<T, N>();
+  X.value.p = factor.before.p.template cast<T>();
+  const detail::CurveJet<T> amount = amountOf(factor, q_k);
+  if (factor.turns) {
+    const auto [A, A1, A2] = detail::turnAbout(factor.axis, amount);
+    X.value.R.noalias() = R * A;
+    X.first[k].R.noalias() = R * A1;
+    X.second[kk].R.noalias() = R * A2;
+  } else {
+    const Vector along = R * factor.axis.template cast<T>();
+    X.value.R = R;
+    X.value.p += along * amount.value;
+    X.first[k].p = along * amount.slope;
+    X.second[kk].p = along * amount.curvature;
+  }
+}
+
+template <class T, int N>
 void Skeleton::motions(const Eigen::Matrix<T, N, 1>& q, RigidMotion<T, N>* out) const {
   out[0] = identityMotion<T, N>();
   for (std::size_t s = 1; s < segments_.size(); ++s) {
-    out[s] = out[segmentMotions_[s].parent];
-    for (const Factor& factor : segmentMotions_[s].factors) {
-      applyFactor<T, N>(out[s], factor, q[factor.freeIndex]);
+    const SegmentMotion& motion = segmentMotions_[s];
+    auto factor = motion.factors.begin();
+    if (motion.parent == 0 && factor != motion.factors.end()) {
+      applyFirstFactor<T, N>(out[s], *factor, q[factor->freeIndex]);
+      ++factor;
+    } else {
+      out[s] = out[motion.parent];
+    }
+    for (; factor != motion.factors.end(); ++factor) {
+      applyFactor<T, N>(out[s], *factor, q[factor->freeIndex]);
     }
   }
 }

@@ -1,7 +1,6 @@
 #include "lanes/lane_model.h"
 
 #include <cmath>
-#include <limits>
 
 #include "bio/coordinate_force.h"
 #include "bio/curves.h"
@@ -10,20 +9,16 @@
 namespace bio::lanes {
 
 void movePieces(Curve<Lanes>& curve, const Real& x) {
-  constexpr double endless = std::numeric_limits<double>::infinity();
   for (int l = 0; l < width; ++l) {
     if (x[l] >= curve.lower[l] && x[l] < curve.upper[l]) continue;
-    const PiecewiseCubic& cubic = *curve.of[l];
-    const std::size_t place = cubic.indexAt(x[l]);
-    const std::vector<double>& knots = cubic.knots();
-    const PiecewiseCubic::Segment& piece = cubic.segments()[place];
-    curve.lower[l] = place > 0 ? knots[place - 1] : -endless;
-    curve.upper[l] = place < knots.size() ? knots[place] : endless;
-    curve.start[l] = piece.start;
-    curve.value[l] = piece.value;
-    curve.slope[l] = piece.slope;
-    curve.quadratic[l] = piece.quadratic;
-    curve.cubic[l] = piece.cubic;
+    const PiecewiseCubic::Piece piece = curve.of[l]->pieceAt(x[l]);
+    curve.lower[l] = piece.lower;
+    curve.upper[l] = piece.upper;
+    curve.start[l] = piece.segment->start;
+    curve.value[l] = piece.segment->value;
+    curve.slope[l] = piece.segment->slope;
+    curve.quadratic[l] = piece.segment->quadratic;
+    curve.cubic[l] = piece.segment->cubic;
   }
 }
 
