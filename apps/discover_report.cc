@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "foreseen_words.h"
 #include "info/discover/hypothesis.h"
+#include "info/discover/separation.h"
 #include "interval_drawing.h"
 #include "text.h"
 

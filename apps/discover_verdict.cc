@@ -1,7 +1,7 @@
 #include "discover_verdict.h"
 
-#include "foreseen_words.h"
 #include "info/discover/hypothesis.h"
+#include "info/discover/separation.h"
 
 namespace app {
 namespace {

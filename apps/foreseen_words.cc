@@ -2,24 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cctype>
 
+#include "info/discover/separation.h"
 #include "text.h"
 
 namespace app {
-
-std::string rivalName(const info::discover::Disagreement& data,
-                      const info::discover::Verdict& verdict, std::size_t rival) {
-  const auto& first = verdict.rivals.front().hypothesis.effects;
-  std::string name;
-  for (const std::size_t effect : verdict.rivals[rival].hypothesis.effects) {
-    const bool common = std::find(first.begin(), first.end(), effect) != first.end();
-    if (rival != 0 && common) continue;
-    name += (name.empty() ? "" : " + ") + data.candidates()[effect].id;
-  }
-  return name;
-}
 
 std::string foreseenSentence(const std::vector<bio::discover::ForeseenExperiment>& foreseen,
                              const info::discover::Disagreement& data,

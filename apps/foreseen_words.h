@@ -7,10 +7,6 @@
 
 namespace app {
 
-/// "tilt + visc" of one of Verdict::rivals, without what the first of them has, too.
-std::string rivalName(const info::discover::Disagreement& data,
-                      const info::discover::Verdict& verdict, std::size_t rival);
-
 /// The first of the foreseen experiments in a sentence, if it would tell: at least `enough` nats
 /// against every rival; else empty.
 std::string foreseenSentence(const std::vector<bio::discover::ForeseenExperiment>& foreseen,

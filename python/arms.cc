@@ -14,8 +14,9 @@ namespace python {
 namespace {
 
 bio::Trial trialOf(const bio::Model& model, const py::dict& columns, const std::string& name,
-                   bool ignoreExtra) {
+                   bool ignoreExtra, double knownMassInHand) {
   bio::Table table;
+  table.metadata["known_mass_in_hand_kg"] = fmt::format("{}", knownMassInHand);
   for (const auto& [key, values] : columns) {
     const auto column = values.cast<Eigen::VectorXd>();
     const auto index = static_cast<Eigen::Index>(table.columns.size());
@@ -28,7 +29,7 @@ bio::Trial trialOf(const bio::Model& model, const py::dict& columns, const std::
     }
     table.values.col(index) = column;
   }
-  return bio::trialFrom(table, name, model, {ignoreExtra});
+  return bio::trialFrom(table, name, model, {.ignoreExtra = ignoreExtra, .knownChanges = true});
 }
 
 py::dict measuredOf(const bio::Trial& trial) {
@@ -73,6 +74,7 @@ py::dict errorsOf(const bio::Arm& arm, const bio::Trial& trial, const bio::Traje
 py::object replay(const bio::Model& model, const bio::Trial& trial,
                   const std::map<std::string, double>& initial, const py::kwargs& keywords) {
   const ArmChoice choice = armChoice(keywords);
+  mustBeOfTheModelAsItIs(trial);
   bio::Trajectory motion;
   bio::MuscleReport muscles;
   double energyError = 0;
@@ -150,6 +152,13 @@ ArmChoice armChoice(const py::kwargs& keywords) {
   return choice;
 }
 
+void mustBeOfTheModelAsItIs(const bio::Trial& trial) {
+  if (!trial.known.any()) return;
+  throw std::invalid_argument(
+      fmt::format("{}: recorded with {} kg in the hand, which only discover takes into account",
+                  trial.file, trial.known.massInHand));
+}
+
 bio::SimulationOptions during(const bio::Trial& trial, bio::SimulationOptions options) {
   options.startTime = trial.times[0];
   options.duration = trial.times[trial.times.size() - 1] - options.startTime;
@@ -177,6 +186,9 @@ void defineArms(py::module_& module) {
       .def_readonly("excitations", &bio::Trial::excitations, "0 to 1; times × muscles")
       .def_property_readonly("measured", &measuredOf,
                              "{coordinate: (times [s], values [rad] or [m])}")
+      .def_property_readonly(
+          "known_mass_in_hand", [](const bio::Trial& trial) { return trial.known.massInHand; },
+          "[kg] that the experimenter put there; only discover takes it into account")
       .def_readonly("warnings", &bio::Trial::warnings)
       .def("__repr__", [](const bio::Trial& trial) {
         return fmt::format("<fisherhill.Trial '{}', {} rows>", trial.file, trial.times.size());
@@ -187,16 +199,18 @@ void defineArms(py::module_& module) {
   module.def(
       "load_trial",
       [](const std::string& file, const bio::Model& model, bool ignoreExtra) {
-        return bio::readTrial(file, model, {ignoreExtra});
+        return bio::readTrial(file, model, {.ignoreExtra = ignoreExtra, .knownChanges = true});
       },
       "file"_a, "model"_a, py::kw_only(), "ignore_extra"_a = false,
-      "Reads a trial (.sto, .mot or .csv) of the model.");
+      "Reads a trial (.sto, .mot or .csv) of the model. A header line known_mass_in_hand_kg=1 says "
+      "that it was recorded so.");
   module.def(
       "make_trial", &trialOf, "model"_a, "columns"_a, py::kw_only(), "name"_a = "trial",
-      "ignore_extra"_a = false,
+      "ignore_extra"_a = false, "known_mass_in_hand"_a = 0.0,
       "A trial from arrays, {column: values}; columns are called as in a file: 'time' [s], "
       "muscles (excitation, 0 to 1), 'elbow_flexion' [rad] or 'elbow_flexion_deg'; NaN where "
-      "the coordinate was not measured.");
+      "the coordinate was not measured; 'elbow_flexion.torque' [N m] pushes from outside. "
+      "known_mass_in_hand [kg]: what was held on purpose.");
   module.def(
       "replay", &replay, "model"_a, "trial"_a, py::kw_only(),
       "initial"_a = std::map<std::string, double>(),

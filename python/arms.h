@@ -29,6 +29,10 @@ struct ArmChoice {
 /// @throws std::invalid_argument for any other keyword
 ArmChoice armChoice(const py::kwargs& keywords);
 
+/// For what simulates the model as it is.
+/// @throws std::invalid_argument for a trial that was recorded with something changed on purpose
+void mustBeOfTheModelAsItIs(const bio::Trial& trial);
+
 /// A trial's place in time.
 bio::SimulationOptions during(const bio::Trial& trial, bio::SimulationOptions options);
 

@@ -39,6 +39,8 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
                      bool ownStart, int starts, std::uint64_t seed, int threads,
                      const py::kwargs& keywords) {
   const ArmChoice choice = armChoice(keywords);
+  for (const auto* set : {&trials, &holdOut})
+    for (const bio::Trial& trial : *set) mustBeOfTheModelAsItIs(trial);
   bio::CalibrationOptions options;
   options.trials.parameters = parameters;
   options.trials.ownStart = ownStart;

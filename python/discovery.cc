@@ -3,6 +3,8 @@
 
 #include "arms.h"
 #include "bio/discover/elbow_disagreement.h"
+#include "bio/discover/foresee.h"
+#include "info/discover/separation.h"
 #include "info/discover/shorter_steps.h"
 #include "interruptible.h"
 
@@ -40,6 +42,43 @@ py::object gapOf(const Gap& gap) {
                  "noise_floor"_a = gap.floor, "closed"_a = gap.closedFromCalibrated);
 }
 
+/// What could be done to tell apart what these data cannot, the best first.
+py::list plannedOf(const ElbowDisagreement& data, const Verdict& verdict,
+                   const std::vector<bio::discover::ForeseenExperiment>& foreseen) {
+  py::list planned;
+  for (const auto& one : foreseen) {
+    py::dict nats;
+    for (std::size_t i = 0; i < one.nats.size(); ++i)
+      nats[rivalName(data, verdict, i + 1).c_str()] = one.nats[i];
+    planned.append(results("what"_a = one.sentence, "of"_a = rivalName(data, verdict, 0),
+                           "expected_nats"_a = nats));
+  }
+  return planned;
+}
+
+/// What is there without a name, and the formula that was raced for it.
+py::object unknownOf(const Verdict& verdict) {
+  if (!verdict.unknown) return py::none();
+  py::object raced = py::none();
+  if (verdict.formula) {
+    const info::discover::RacedFormula& race = *verdict.formula;
+    py::list terms;
+    for (std::size_t k = 0; k < race.values.size(); ++k)
+      terms.append(results("expression"_a = race.terms[k].expression, "value"_a = race.values[k],
+                           "sd"_a = race.deviations[k]));
+    raced = results("formula"_a = race.text, "wins"_a = race.wins, "terms"_a = terms,
+                    "log_bayes_factor"_a = race.logBayesFactor,
+                    "amplitude_over_sd"_a = race.significance, "adequate"_a = race.after.adequate(),
+                    "gap"_a = gapOf(race.gap),
+                    "gap_held_out"_a = race.heldOut ? gapOf(*race.heldOut) : py::none());
+  }
+  const info::discover::Unknown& unknown = *verdict.unknown;
+  return results("formula"_a = unknown.formula, "stable"_a = unknown.stable,
+                 "evidence"_a = unknown.evidence, "explained"_a = unknown.explained,
+                 "peak_frequency"_a = unknown.peakFrequency, "rms"_a = unknown.forceSize,
+                 "raced"_a = raced);
+}
+
 py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
                     const std::vector<bio::Trial>& holdOut, std::optional<double> noise,
                     const std::vector<std::string>& without, int maxEffects,
@@ -61,6 +100,7 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
   elbow.without = without;
   std::unique_ptr<ElbowDisagreement> data;
   info::discover::SteppedVerdict found;
+  std::vector<bio::discover::ForeseenExperiment> foreseen;
   interruptible([&](const std::atomic<bool>& goOn) {
     options.progress = [&](const info::discover::Progress&) { return goOn.load(); };
     const auto attempt = [&](double step) {
@@ -71,6 +111,9 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
     };
     found = info::discover::runAtShorterSteps(
         attempt, elbow.simulation.step, choice.step ? HUGE_VAL : bio::discover::shortestSearchStep);
+    if (goOn)
+      foreseen = bio::discover::foresee(model, choice.armOptions(), trials.front(), elbow, *data,
+                                        found.verdict);
   });
   const Verdict& verdict = found.verdict;
   py::list effects;
@@ -84,8 +127,9 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
                  "surrogate"_a = verdict.surrogate, "probability_vetoed"_a = verdict.vetoed,
                  "noise"_a = verdict.outputDeviation, "gap"_a = gapOf(verdict.gap),
                  "gap_held_out"_a = verdict.heldOut ? gapOf(*verdict.heldOut) : py::none(),
-                 "undetectable_below"_a = undetectable, "step"_a = found.step,
-                 "fits"_a = verdict.fits);
+                 "undetectable_below"_a = undetectable,
+                 "planned_experiments"_a = plannedOf(*data, verdict, foreseen),
+                 "unknown"_a = unknownOf(verdict), "step"_a = found.step, "fits"_a = verdict.fits);
 }
 
 }  // namespace
@@ -97,8 +141,13 @@ void defineDiscovery(py::module_& module) {
       "without"_a = std::vector<std::string>(), "max_effects"_a = 3,
       "What the model lacks: verdict ('named', 'ambiguous', 'parameter', 'none', 'unknown', "
       "'numerical'), sentence, effects (id, name, parameters, log_bayes_factor, probability, "
-      "cannot_be_told_from), gap and gap_held_out [rad], undetectable_below {id: amplitude}. noise "
-      "[rad]: from the data unless given. Further keywords as replay has them.");
+      "cannot_be_told_from), gap and gap_held_out [rad], undetectable_below {id: amplitude}; where "
+      "names cannot be told apart planned_experiments (what, of, expected_nats {rival: nats}), the "
+      "first trial repeated with a known mass in the hand or with pushes, the best first; where "
+      "nothing fits unknown (formula, stable, evidence [nats], explained, peak_frequency [Hz], rms "
+      "[N m] of the missing force, raced: the formula built into the model and raced like a name). "
+      "Trials may have a known mass in the hand. noise [rad]: from the data unless given. Further "
+      "keywords as replay has them.");
 }
 
 }  // namespace python

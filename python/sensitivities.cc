@@ -24,6 +24,7 @@ py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& t
     const std::string coordinate = choice.coordinates.front();
     std::vector<std::size_t> selection;
     for (const bio::Trial& trial : trials) {
+      mustBeOfTheModelAsItIs(trial);
       bio::SimulationOptions options = during(trial, choice.simulation());
       options.externalForce = bio::externalForceOf(trial, arm);
       options.progress = [&](double) { return goOn.load(); };

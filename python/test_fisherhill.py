@@ -3,6 +3,7 @@
 import math
 import os
 import signal
+import tempfile
 import threading
 import time
 import unittest
@@ -14,6 +15,7 @@ import fisherhill as fh
 ELBOW = "models/elbow8.osim"
 SLOW = "emg_data/curl_slow.sto"
 HIDDEN = "emg_data/hidden_a/train_1.sto"
+BRAKES = ["visc", "powerdamp", "drag", "coulomb", "stribeck"]
 DEGREE = math.pi / 180
 
 
@@ -91,6 +93,60 @@ class Arms(unittest.TestCase):
         viscosity = found.effects[0].parameters["visc.viscosity"]
         self.assertLess(abs(viscosity.value - 0.3), 3 * viscosity.sd)  # emg_data/answers/hidden.json
         self.assertGreater(found.gap.closed, 0.9)
+
+    def test_discover_plans_what_would_tell_names_apart(self):
+        trial = fh.load_trial(HIDDEN, self.model)
+        found = fh.discover(self.model, [trial], noise=0.5 * DEGREE, max_effects=1, without=BRAKES)
+        self.assertEqual(found.verdict, "ambiguous")
+        self.assertIsNone(found.unknown)
+        self.assertGreater(len(found.planned_experiments), 1)
+        least = []
+        for one in found.planned_experiments:
+            self.assertEqual(one.of, found.effects[0].id)
+            self.assertLessEqual(set(one.expected_nats), set(found.effects[0].cannot_be_told_from) - {one.of})
+            least.append(min(one.expected_nats.values()))
+        self.assertEqual(least, sorted(least, reverse=True))
+        self.assertGreater(least[0], 0)
+
+    def test_discover_gives_a_formula_of_what_has_no_name(self):
+        trial = fh.load_trial(HIDDEN, self.model)
+        found = fh.discover(self.model, [trial], noise=0.5 * DEGREE, max_effects=0)
+        self.assertEqual(found.verdict, "unknown")
+        self.assertEqual((found.effects, found.planned_experiments), ([], []))
+        self.assertGreater(found.unknown.evidence, 5)
+        self.assertGreater(found.unknown.rms, 0.05)
+        raced = found.unknown.raced
+        self.assertTrue(raced.wins)
+        self.assertEqual([one.expression for one in raced.terms], ["qdot"])  # viscous damping
+        self.assertLess(abs(raced.terms[0].value + 0.3), 3 * raced.terms[0].sd)
+        self.assertGreater(raced.gap.closed, 0.9)
+
+    def test_only_discover_takes_a_known_mass_in_the_hand(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "loaded.sto")
+            with open(SLOW, encoding="utf-8") as whole, open(file, "w", encoding="utf-8") as to:
+                to.write(whole.read().replace("endheader", "known_mass_in_hand_kg=0.8\nendheader", 1))
+            loaded = fh.load_trial(file, self.model)
+            heavy = os.path.join(folder, "heavy.osim")
+            with open(ELBOW, encoding="utf-8") as whole, open(heavy, "w", encoding="utf-8") as to:
+                to.write(whole.read().replace("<mass>0.5819</mass>", "<mass>1.3819</mass>", 1))
+            truth = fh.replay(fh.load_model(heavy), self.trial)
+        self.assertEqual(loaded.known_mass_in_hand, 0.8)
+        self.assertEqual(self.trial.known_mass_in_hand, 0)
+        for one in (lambda: fh.replay(self.model, loaded),
+                    lambda: fh.sensitivity(self.model, [loaded], ["hand.mass"]),
+                    lambda: fh.calibrate(self.model, [loaded], ["hand.mass"]),
+                    lambda: fh.calibrate(self.model, [self.trial], ["hand.mass"], hold_out=[loaded]),
+                    lambda: fh.make_trial(self.model, self.columns(), known_mass_in_hand=-1)):
+            with self.assertRaisesRegex(ValueError, "hand"):
+                one()
+        noise = 0.5 * DEGREE
+        columns = {name: values[self.trial.times <= 2.5] for name, values in self.columns().items()}
+        angle = np.interp(columns["time"], truth.time, truth.q[:, 0])
+        columns["elbow_flexion"] = angle + noise * np.random.default_rng(3).standard_normal(len(angle))
+        for mass, verdict in ((0.8, "none"), (0.0, "ambiguous")):  # a payload, or the forearm's mass
+            trial = fh.make_trial(self.model, columns, known_mass_in_hand=mass)
+            self.assertEqual(fh.discover(self.model, [trial], noise=noise, max_effects=1).verdict, verdict)
 
     def test_a_broken_rule_is_a_value_error_of_one_line(self):
         broken = (

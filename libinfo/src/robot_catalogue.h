@@ -7,6 +7,8 @@
 // What both robots' catalogues are written with.
 namespace info::robot {
 
+inline constexpr double kFrictionRate = 0.05;  // [rad/s], below it dry friction is smoothed
+
 inline Eigen::VectorXd startsAt(const std::vector<double>& values) {
   return Eigen::VectorXd::Map(values.data(), static_cast<Eigen::Index>(values.size()));
 }

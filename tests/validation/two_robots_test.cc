@@ -84,18 +84,20 @@ double distance(const RobotDisagreement& data, const VectorXd& values) {
 
 TEST(TwoRobots, AgreeWithEveryEffectThatTheCatalogueHas) {
   // largest distances, in deviations of the noise: 0.009 of the pendulum (dry friction), 0.11 where
-  // the load cell's knee is rounded, 0.08 with the elastic string, 2e-5 of all others
+  // the load cell's knee is rounded, 0.08 with the elastic string, 1e-4 of all others; without the
+  // effect 0.7 for the mass's tilt, 2.4 or more for all others
   for (const std::string system : systems) {
     const hidden::RobotKind& kind = hidden::robotKind(system);
     std::set<std::string> seen;
     for (const hidden::RobotEffect& e : kind.effects) {
-      if (!e.inCatalogue) continue;
+      if (!e.inCatalogue || e.id == "welded_2") continue;
       hidden::Numbers plant = kind.nominal;
       if (e.kind == "parameter")
         plant[e.id] *= 1 + e.fullSize;
       else
         plant[e.id] = e.fullSize;
       plant["saturation_at"] = 1.4;
+      plant["link_3_length"] = 0.1;
       const RobotDisagreement data = recorded(system, plant);
       const std::size_t c = candidateOf(data, e.id);
       ASSERT_LT(c, data.candidates().size()) << e.id;
@@ -104,10 +106,12 @@ TEST(TwoRobots, AgreeWithEveryEffectThatTheCatalogueHas) {
       const auto& quantities = data.candidates()[c].quantities;
       v[static_cast<Index>(quantities[0])] = plant[e.id];
       if (e.id == "saturation") v[static_cast<Index>(quantities[1])] = 1.4;
-      if (e.id == "tilt") v.tail(4) << -e.fullSize, -e.fullSize, 0, 0;  // it hangs askew
+      // it hangs askew
+      if (e.id == "tilt" && system == "double-pendulum")
+        v.tail(4) << -e.fullSize, -e.fullSize, 0, 0;
       const double with = distance(data, v), without = distance(data, resting(data));
       EXPECT_LT(with, 0.15) << e.id;
-      EXPECT_GT(without, 1) << e.id;
+      EXPECT_GT(without, 0.5) << e.id;
     }
     const RobotDisagreement plain = recorded(system, kind.nominal);
     EXPECT_LT(distance(plain, resting(plain)), 0.002);
@@ -115,6 +119,26 @@ TEST(TwoRobots, AgreeWithEveryEffectThatTheCatalogueHas) {
       const bool parameter = c.kind == info::discover::EffectKind::parameter;
       EXPECT_TRUE(parameter || seen.count(c.id) > 0) << c.id << " cannot be hidden";
     }
+  }
+}
+
+TEST(TwoRobots, AnEverStifferJointComesEverNearerToOneLinkFewer) {
+  // the twin is welded, which is no limit of anything there: an unknown moment
+  hidden::Numbers plant = hidden::robotKind("double-pendulum").nominal;
+  plant["welded_2"] = 1;
+  const RobotDisagreement data = recorded("double-pendulum", plant);
+  const std::size_t c = candidateOf(data, "locked_2");
+  VectorXd v = resting(data);
+  EXPECT_GT(distance(data, v), 10);
+  double before = 0;
+  for (const double stiffness : {7.5, 15.0, 30.0}) {
+    v[static_cast<Index>(data.candidates()[c].quantities[0])] = stiffness;
+    const double now = distance(data, v);
+    EXPECT_LT(now, 0.5 * 30 / stiffness);
+    if (before > 0) {
+      EXPECT_NEAR(before / now, 2, 0.1);
+    }
+    before = now;
   }
 }
 
@@ -189,6 +213,9 @@ TEST(TwoRobots, BrakesTakeEnergyOutOfAFreeSwing) {
     VectorXd v = resting(data);
     v[v.size() - (pendulum ? 4 : 2)] = 1;  // of the first link, or the string
     if (pendulum) v[7] = 0;                // the damping that the model has
+    const auto of = [&](const VectorXd& values, const char* id, std::size_t which = 0) {
+      return values[static_cast<Index>(data.candidates()[candidateOf(data, id)].quantities[which])];
+    };
     const auto energy = [&](const VectorXd& values) {
       const Eigen::MatrixXd x = data.states(0, values);
       VectorXd e(x.rows());
@@ -201,6 +228,16 @@ TEST(TwoRobots, BrakesTakeEnergyOutOfAFreeSwing) {
                                  m2 * d * s2 * std::cos(x(k, 0) - x(k, 1)) * wA * wB;
           e[k] = kinetic -
                  9.81 * ((m1 * s1 + m2 * d) * std::cos(x(k, 0)) + m2 * s2 * std::cos(x(k, 1)));
+          // what a locked joint stores, and the third link's
+          const double turn = x(k, 1) - x(k, 0), l = of(values, "link_3", 1);
+          const Eigen::Vector3d lengths(d, 0.2796, l), angles(x(k, 0), x(k, 1), x(k, 4));
+          const Eigen::Vector3d rates(wA, wB, x(k, 5));
+          const Eigen::Array3d arms = lengths.cwiseProduct(rates);
+          const double along = (arms * angles.array().cos()).sum(),
+                       upwards = (arms * angles.array().sin()).sum();
+          e[k] += 0.5 * of(values, "locked_2") * turn * turn +
+                  of(values, "link_3") * (0.5 * (along * along + upwards * upwards) -
+                                          9.81 * (lengths.array() * angles.array().cos()).sum());
         } else {
           const double m = v[0], l = v[1];
           e[k] = m * (0.5 * l * l * x(k, 1) * x(k, 1) - 9.81 * l * std::cos(x(k, 0)));
@@ -210,16 +247,19 @@ TEST(TwoRobots, BrakesTakeEnergyOutOfAFreeSwing) {
     };
     const VectorXd free = energy(v);
     EXPECT_LT((free.array() - free[0]).abs().maxCoeff(), 2e-6 * std::abs(free[0]));
-    for (const char* id :
-         {"visc_1", "visc_2", "coulomb_1", "coulomb_2", "stribeck_1", "stribeck_2", "drag"}) {
+    for (const char* id : {"visc_1", "visc_2", "coulomb_1", "coulomb_2", "stribeck_1", "stribeck_2",
+                           "drag", "visc", "coulomb", "locked_2", "link_3"}) {
       const std::size_t c = candidateOf(data, id);
       if (c == data.candidates().size()) continue;
       VectorXd braked = v;
-      braked[static_cast<Index>(data.candidates()[c].quantities[0])] = 0.003;
+      braked[static_cast<Index>(data.candidates()[c].quantities[0])] =
+          std::string(id) == "locked_2" ? 0.3
+          : std::string(id) == "link_3" ? 0.03
+                                        : 0.003;
       const VectorXd e = energy(braked);
       const VectorXd change = e.tail(e.size() - 1) - e.head(e.size() - 1);
       EXPECT_LT(change.maxCoeff(), 2e-8) << id;
-      EXPECT_LT(e[e.size() - 1], free[0] - 1e-4) << id;
+      EXPECT_LT(e[e.size() - 1], e[0] - 1e-4) << id;
     }
   }
 }

@@ -67,6 +67,34 @@ RobotKind pendulumKind() {
       {"damping", p, true, "of both joints × (1 + a)", "change", 3, {}, false},
       {"cable_1", s, false, "moment −k·angle of a cable in joint 1", "N m/rad", 0.04, {}, false},
       {"cogging_1", s, false, "moment −k·sin(6·angle) in joint 1", "N m", 0.02, {}, false},
+      {"locked_2",
+       s,
+       true,
+       "moment −k·(angle + w·2 ms) in joint 2: towards one link fewer",
+       "N m/rad",
+       1,
+       {},
+       false,
+       false},
+      {"welded_2",
+       s,
+       true,
+       "joint 2 does not turn: one link fewer",
+       "",
+       1,
+       {"locked_2"},
+       false,
+       false},
+      {"link_3",
+       s,
+       true,
+       "a mass on a light rod of 0.1 m ± 30 %, hung from link 2 at 0.2796 m; its joint brakes with "
+       "0.5/s of its inertia",
+       "kg",
+       0.005,
+       {},
+       false,
+       false},
   };
   k.columns = {"link1_deg", "link2_deg"};
   k.noise = {std::sqrt(1.12e-4), std::sqrt(4.79e-4)};
@@ -115,6 +143,17 @@ RobotKind massKind() {
        {},
        false},
       {"drift", se, false, "F + d·t is read", "N/s", 0.08, {}, true},
+      {"visc", s, true, "moment −b·w of the pivot", "N m s", 0.02, {}, false, false},
+      {"coulomb",
+       s,
+       true,
+       "moment −c·tanh(w/0.05 rad/s) of the pivot",
+       "N m",
+       0.02,
+       {},
+       false,
+       false},
+      {"tilt", s, true, "gravity's parts are those of the angle + δ", "rad", 0.2, {}, true, false},
   };
   k.columns = {"force_N"};
   k.noise = {std::sqrt(500.0 / 33044)};
@@ -265,9 +304,9 @@ std::string robotEffectsAsMarkdown() {
         "\n## {}\n\n| id | kind | law | full size | equivalents |\n|---|---|---|---|---|\n", name);
     for (const RobotEffect& e : robotKind(name).effects)
       text += fmt::format(
-          "| `{}` | {}{} | {} | {}{:g} {} | {} |\n", e.id, e.kind,
-          e.inCatalogue ? "" : ", no name in the catalogue", e.law, e.eitherSign ? "±" : "",
-          e.fullSize, e.unit,
+          "| `{}` | {}{}{} | {} | {}{:g} {} | {} |\n", e.id, e.kind,
+          e.inCatalogue ? "" : ", no name in the catalogue", e.bySeed ? "" : ", only by name",
+          e.law, e.eitherSign ? "±" : "", e.fullSize, e.unit,
           e.equivalents.empty() ? "–" : fmt::format("{}", fmt::join(e.equivalents, ", ")));
   }
   return text;
@@ -277,7 +316,7 @@ std::vector<std::string> chosenEffects(const RobotPlan& plan) {
   const RobotKind& kind = robotKind(plan.system);
   std::vector<const RobotEffect*> rows;
   for (const RobotEffect& e : kind.effects)
-    if (belongs(plan.suite, e)) rows.push_back(&e);
+    if (e.bySeed && belongs(plan.suite, e)) rows.push_back(&e);
   const std::size_t count = plan.suite == "null" ? 0 : plan.suite == "two" ? 2 : 1;
   if (!plan.effects.empty()) {
     if (plan.effects.size() != count)
@@ -319,6 +358,7 @@ RobotDataSet makeRobotDataSet(const RobotPlan& plan) {
     } else {
       value = plant[id] = amplitude;
       if (id == "saturation") plant["saturation_at"] = 1.4;
+      if (id == "link_3") plant["link_3_length"] = 0.1 * std::exp(0.3 * hiding.normalWithin(2.5));
     }
     effects.push_back(
         {{"id", e.id},

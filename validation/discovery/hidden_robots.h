@@ -20,6 +20,9 @@ struct RobotEffect {
   double fullSize;  ///< amplitude at --size 1; of a parameter its relative change
   std::vector<std::string> equivalents;
   bool eitherSign;  ///< by seed, unless named on the command line
+  /// false: hidden only where it is asked for by name, so that the seeds of earlier suites go on to
+  /// mean what they meant.
+  bool bySeed = true;
 };
 
 /// A robot of the blind benchmark.

@@ -103,72 +103,96 @@ double dryShare(double w) {
 }
 
 using V2 = Eigen::Vector2d;
+
+V2 pulledDown(double tilt) {
+  return 9.81 * V2(-std::sin(tilt), -std::cos(tilt));
+}
+
+// A link: its mass centre and the next joint lie on the line through its own joint.
+struct Link {
+  double m, s, inertia, next;
+};
 }  // namespace
 
 void observeDoublePendulum(const Numbers& plant, RobotRecord& record, double tolerance) {
-  const double m[2] = {plant.at("m_1"), plant.at("m_2")};
-  const double s[2] = {plant.at("com_1"), plant.at("com_2")};
-  const double inertia[2] = {plant.at("I_1"), plant.at("I_2")}, pivots = plant.at("pivots");
-  const V2 gravity = 9.81 * V2(-std::sin(plant.get("tilt")), -std::cos(plant.get("tilt")));
-  const auto moment = [&](int joint, double angle, double w) {
-    const std::string n = std::to_string(joint + 1);
+  std::vector<Link> links = {
+      {plant.at("m_1"), plant.at("com_1"), plant.at("I_1"), plant.at("pivots")},
+      {plant.at("m_2"), plant.at("com_2"), plant.at("I_2"), 0.2796}};
+  if (plant.get("link_3") > 0)
+    links.push_back({plant.get("link_3"), plant.at("link_3_length"), 0, 0});
+  const auto n = static_cast<Eigen::Index>(links.size());
+  const V2 gravity = pulledDown(plant.get("tilt"));
+  const auto moment = [&](Eigen::Index joint, double angle, double w) {
+    if (joint == 2) return -0.5 * links[2].m * links[2].s * links[2].s * w;
+    const std::string name = std::to_string(joint + 1);
     const double ratio = w / 0.5;
-    return -(plant.at("damping") + plant.get("visc_" + n)) * w -
-           plant.get("coulomb_" + n) * dryShare(w) -
-           plant.get("stribeck_" + n) * (1 + std::exp(-ratio * ratio)) * dryShare(w) -
-           plant.get("cable_" + n) * angle - plant.get("cogging_" + n) * std::sin(6 * angle);
+    return -(plant.at("damping") + plant.get("visc_" + name)) * w -
+           plant.get("coulomb_" + name) * dryShare(w) -
+           plant.get("stribeck_" + name) * (1 + std::exp(-ratio * ratio)) * dryShare(w) -
+           plant.get("locked_" + name) * (angle + 2e-3 * w) - plant.get("cable_" + name) * angle -
+           plant.get("cogging_" + name) * std::sin(6 * angle);
   };
-  // unknown: both angular accelerations, then both joints' reactions
+  const bool welded = plant.get("welded_2") > 0;
+  // unknown: the angular accelerations, the joints' reactions, and the weld's moment
   const Rate rate = [&](double t, const std::vector<double>& x, std::vector<double>& xDot) {
     const V2 cart(cartOf(plant, record, t, x, xDot), 0);
-    const double angle[2] = {x[2], x[3]}, w[2] = {x[4], x[5]};
-    V2 along[2], across[2];
-    for (int i = 0; i < 2; ++i) {
-      along[i] = V2(std::sin(angle[i]), -std::cos(angle[i]));
-      across[i] = V2(std::cos(angle[i]), std::sin(angle[i]));
+    const auto angles = Eigen::VectorXd::Map(x.data() + 2, n);
+    const auto w = Eigen::VectorXd::Map(x.data() + 2 + n, n);
+    Eigen::MatrixXd M = Eigen::MatrixXd::Zero(3 * n + 1, 3 * n + 1);
+    Eigen::VectorXd r = Eigen::VectorXd::Zero(3 * n + 1);
+    // of the joint: its speed, and its acceleration without what the angular ones make
+    V2 speed(x[1], 0), bent = cart;
+    Eigen::MatrixXd carried = Eigen::MatrixXd::Zero(2, n);
+    const auto reaction = [&](Eigen::Index i) { return n + 2 * i; };
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Link& link = links[static_cast<std::size_t>(i)];
+      const V2 along(std::sin(angles[i]), -std::cos(angles[i]));
+      const V2 across(std::cos(angles[i]), std::sin(angles[i]));
+      const V2 v = speed + link.s * w[i] * across;
+      const double air = i < 2 ? plant.get("drag") * v.norm() : 0;
+      // m a = R_i − R_{i+1} + m g + drag
+      M.block(2 * i, 0, 2, n) = link.m * carried;
+      M.block<2, 1>(2 * i, i) += link.m * link.s * across;
+      M.block<2, 2>(2 * i, reaction(i)) = -Eigen::Matrix2d::Identity();
+      if (i + 1 < n) M.block<2, 2>(2 * i, reaction(i + 1)) = Eigen::Matrix2d::Identity();
+      r.segment<2>(2 * i) = link.m * (gravity - bent + link.s * w[i] * w[i] * along) - air * v;
+      // moments about the mass centre: from R_i above it and −R_{i+1} below it
+      const Eigen::Index row = 2 * n + i;
+      const V2 up = -link.s * along, down = (link.next - link.s) * along;
+      M(row, i) = link.inertia;
+      M(row, reaction(i)) = up.y(), M(row, reaction(i) + 1) = -up.x();
+      if (i + 1 < n) M(row, reaction(i + 1)) = -down.y(), M(row, reaction(i + 1) + 1) = down.x();
+      const double own = i == 0 ? moment(0, angles[0], w[0])
+                                : moment(i, angles[i] - angles[i - 1], w[i] - w[i - 1]);
+      r[row] += own;
+      if (i > 0) r[row - 1] -= own;
+      // on to the next joint
+      carried.col(i) = link.next * across;
+      speed += link.next * w[i] * across;
+      bent -= link.next * w[i] * w[i] * along;
     }
-    const double joint[2] = {moment(0, angle[0], w[0]),
-                             moment(1, angle[1] - angle[0], w[1] - w[0])};
-    const V2 speed[2] = {V2(x[1], 0) + s[0] * w[0] * across[0],
-                         V2(x[1], 0) + pivots * w[0] * across[0] + s[1] * w[1] * across[1]};
-    Eigen::Matrix<double, 6, 6> M = Eigen::Matrix<double, 6, 6>::Zero();
-    Eigen::Matrix<double, 6, 1> r;
-    const V2 bend = w[0] * w[0] * along[0];
-    const V2 drag[2] = {-plant.get("drag") * speed[0].norm() * speed[0],
-                        -plant.get("drag") * speed[1].norm() * speed[1]};
-    // link 1: m a = R1 − R2 + m g + drag
-    M.block<2, 1>(0, 0) = m[0] * s[0] * across[0];
-    M.block<2, 2>(0, 2) = -Eigen::Matrix2d::Identity();
-    M.block<2, 2>(0, 4) = Eigen::Matrix2d::Identity();
-    r.segment<2>(0) = m[0] * (gravity - cart + s[0] * bend) + drag[0];
-    // link 2: m a = R2 + m g + drag
-    M.block<2, 1>(2, 0) = m[1] * pivots * across[0];
-    M.block<2, 1>(2, 1) = m[1] * s[1] * across[1];
-    M.block<2, 2>(2, 4) = -Eigen::Matrix2d::Identity();
-    r.segment<2>(2) =
-        m[1] * (gravity - cart + pivots * bend + s[1] * w[1] * w[1] * along[1]) + drag[1];
-    // moments about the mass centres
-    const V2 up1 = -s[0] * along[0], down1 = (pivots - s[0]) * along[0], up2 = -s[1] * along[1];
-    M(4, 0) = inertia[0];
-    M(4, 2) = up1.y(), M(4, 3) = -up1.x();
-    M(4, 4) = -down1.y(), M(4, 5) = down1.x();
-    r[4] = joint[0] - joint[1];
-    M(5, 1) = inertia[1];
-    M(5, 4) = up2.y(), M(5, 5) = -up2.x();
-    r[5] = joint[1];
-    const Eigen::Matrix<double, 6, 1> y = M.partialPivLu().solve(r);
-    xDot[2] = w[0], xDot[3] = w[1], xDot[4] = y[0], xDot[5] = y[1];
+    // the weld holds the second joint, or there is none
+    M(3 * n, 3 * n) = welded ? 0 : 1;
+    if (welded) {
+      M(3 * n, 0) = 1, M(3 * n, 1) = -1;
+      M(2 * n, 3 * n) = 1, M(2 * n + 1, 3 * n) = -1;
+    }
+    const Eigen::VectorXd y = M.partialPivLu().solve(r);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      xDot[static_cast<std::size_t>(2 + i)] = w[i];
+      xDot[static_cast<std::size_t>(2 + n + i)] = y[i];
+    }
   };
   record.seen.assign(2, std::vector<double>(record.times.size()));
   record.largestAngle = 0;
-  std::vector<double> x(6, 0);
+  std::vector<double> x(2 + 2 * links.size(), 0);
   // it hangs where gravity pulls
-  x[2] = x[3] = -plant.get("tilt");
+  for (std::size_t i = 0; i < links.size(); ++i) x[2 + i] = -plant.get("tilt");
   watch(plant, rate, x, record, tolerance, [&](double, std::size_t k) {
     for (std::size_t i = 0; i < 2; ++i) {
-      const std::string n = std::to_string(i + 1);
+      const std::string name = std::to_string(i + 1);
       record.largestAngle = std::max(record.largestAngle, std::abs(x[2 + i]));
-      record.seen[i][k] = (1 + plant.get("gain_" + n)) * x[2 + i] + plant.get("bias_" + n);
+      record.seen[i][k] = (1 + plant.get("gain_" + name)) * x[2 + i] + plant.get("bias_" + name);
     }
   });
 }
@@ -176,15 +200,20 @@ void observeDoublePendulum(const Numbers& plant, RobotRecord& record, double tol
 void observeSuspendedMass(const Numbers& plant, RobotRecord& record, double tolerance) {
   const double m = plant.at("mass"), length = plant.at("length"), C = plant.get("elastic");
   constexpr double g = 9.81, stringDamping = 0.2;
+  const double tilt = plant.get("tilt");
+  const V2 gravity = pulledDown(-tilt);  // its angles turn the other way round
   double force = 0;
   // place and speed relative to the cart, in a frame that falls with its acceleration
   const auto pulled = [&](double t, const std::vector<double>& x, std::vector<double>& xDot) {
     const double cart = cartOf(plant, record, t, x, xDot);
     const V2 place(x[2], x[3]), speed(x[4], x[5]);
     const V2 through = speed + V2(x[1], 0);
-    const V2 pull = m * V2(-cart, -g) - plant.get("drag") * through.norm() * through;
     const double r = place.norm(), growing = plant.get("creep") * length;
-    const V2 along = place / r;
+    const V2 along = place / r, across(along.y(), -along.x());
+    const double turning = across.dot(speed) / r;
+    const double pivot = -plant.get("visc") * turning - plant.get("coulomb") * dryShare(turning);
+    const V2 pull = m * (gravity - V2(cart, 0)) - plant.get("drag") * through.norm() * through +
+                    pivot / r * across;
     if (C > 0) {
       const double free = length - C * m * g + growing * t;
       force = (r - free) / C + stringDamping * (along.dot(speed) - growing);
@@ -200,7 +229,8 @@ void observeSuspendedMass(const Numbers& plant, RobotRecord& record, double tole
   record.seen.assign(1, std::vector<double>(record.times.size()));
   record.largestAngle = 0;
   record.leastForce = HUGE_VAL;
-  std::vector<double> x = {0, 0, 0, -length, 0, -plant.get("creep") * length}, xDot(6);
+  const V2 hanging = length * gravity.normalized(), growth = plant.get("creep") * hanging;
+  std::vector<double> x = {0, 0, hanging.x(), hanging.y(), growth.x(), growth.y()}, xDot(6);
   watch(plant, rate, x, record, tolerance, [&](double t, std::size_t k) {
     pulled(t, x, xDot);
     record.leastForce = std::min(record.leastForce, force);

@@ -38,9 +38,9 @@ struct RobotRecord {
 
 /// A robot as it is: its own dynamics, no code or derivation shared with the libraries.
 ///
-/// double-pendulum: two bodies in the plane with their joints' reactions, Newton's and Euler's
-/// equations of both solved together. Numbers m_1, m_2, com_1, com_2, I_1, I_2, pivots, damping and
-/// those of effects, see hidden_robots.cc.
+/// double-pendulum: bodies in the plane, two or three, with their joints' reactions, Newton's and
+/// Euler's equations of all solved together; a welded joint is one more unknown moment. Numbers
+/// m_1, m_2, com_1, com_2, I_1, I_2, pivots, damping and those of effects, see hidden_robots.cc.
 ///
 /// suspended-mass: a point mass in Cartesian coordinates, held by the reaction of a string or by
 /// a spring and damper. Numbers mass, length.

@@ -109,4 +109,15 @@ double expectedSeparation(const Disagreement& planned, const Disagreement& fitte
   return nats;
 }
 
+std::string rivalName(const Disagreement& data, const Verdict& verdict, std::size_t rival) {
+  const auto& first = verdict.rivals.front().hypothesis.effects;
+  std::string name;
+  for (const std::size_t effect : verdict.rivals[rival].hypothesis.effects) {
+    const bool common = std::find(first.begin(), first.end(), effect) != first.end();
+    if (rival != 0 && common) continue;
+    name += (name.empty() ? "" : " + ") + data.candidates()[effect].id;
+  }
+  return name;
+}
+
 }  // namespace info::discover

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <string>
 
+#include "info/discover/discover.h"
 #include "info/discover/joint_fit.h"
 
 namespace info::discover {
@@ -25,5 +27,8 @@ namespace info::discover {
 /// @throws std::domain_error if one of them cannot be simulated there
 double expectedSeparation(const Disagreement& planned, const Disagreement& fitted, const Fit& a,
                           const Fit& b);
+
+/// "tilt + visc" of one of Verdict::rivals, without what the first of them has, too.
+std::string rivalName(const Disagreement& data, const Verdict& verdict, std::size_t rival);
 
 }  // namespace info::discover

@@ -86,10 +86,15 @@ struct Model {
 /// | stribeck_1, stribeck_2 | τ_i −= c·[1 + e^{−(w_i/v)²}]·tanh(w_i/0.05 rad/s) | c ≥ 0 [N·m] |
 /// | drag | −k·|v|·v at the mass centre of each link, v its velocity | k ≥ 0 [N·s²/m²] |
 /// | tilt | gravity's moments are those of α + δ, β + δ | δ [rad] |
+/// | locked_2 | τ_2 −= k·(β − α + w_2·2 ms): one link fewer as k → ∞ | k ≥ 0 [N·m/rad] |
+/// | link_3 | a point mass m on a rod of length ℓ below the end of link 2 | m ≥ 0 [kg] |
 /// | lag | T·ȧ_c = a − a_c between command a and cart a_c | T ≥ 0 [s] |
 /// | bias_1, bias_2, gain_1, gain_2 | (1 + g)·angle + b is read | b [rad], g |
 /// | clock | sensors show what was T before | T ≥ 0 [s] |
 /// | m_1, m_2, com_1, com_2, I_1, I_2, pivots, damping | errors of parameters | |
+///
+/// The third link hangs L2 − 2·offset below joint 2, starts in line with link 2, and its joint
+/// brakes it by 0.5/s of mℓ² times its rate.
 Model doublePendulum();
 
 /// Cart with a mass on a string (suspended_mass.h), the string's force measured at its top [N].
@@ -98,6 +103,9 @@ Model doublePendulum();
 /// |---|---|---|
 /// | drag | −k·|v|·v on the mass, v its velocity | k ≥ 0 [N·s²/m²] |
 /// | elastic | the string is C·(F − mg) longer, inner damping 0.2 N·s/m | C ≥ 0 [m/N] |
+/// | visc | moment −b·φ̇ of the pivot | b ≥ 0 [N·m·s/rad] |
+/// | coulomb | moment −c·tanh(φ̇/0.05 rad/s) of the pivot | c ≥ 0 [N·m] |
+/// | tilt | gravity's parts are those of φ + δ; the start is measured from hanging | δ [rad] |
 /// | lag | T·ȧ_c = a − a_c between command a and cart a_c | T ≥ 0 [s] |
 /// | saturation | the share s of all force beyond K is lost | s ≥ 0, 1: everything |
 /// | bias, gain | (1 + g)·F + b is read | b [N], g |
