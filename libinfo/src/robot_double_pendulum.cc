@@ -160,8 +160,10 @@ struct Pendulum {
 // bearings scatters by a third from day to day. Nominal values: cart_double_pendulum.h, equation
 // (4.5). Amplitudes: of the size of what they stand beside: the weight's moment is 0.35 N·m, the
 // damping's at 5 rad/s 0.0025 N·m; sensors and clocks as data sheets allow, a few degrees, 5 %, 50
-// ms. Link 2 weighs 0.1 N·m about its joint: at 3 N·m/rad it sags by 2°, no more than is seen; what
-// is left hanging on a rig, a hook or a screw clamp, weighs some grams.
+// ms. Link 2 weighs 0.1 N·m about its joint: at 3 N·m/rad it sags by 2°, no more than is seen, and a
+// wider prior than 1 N·m/rad makes nothing of such a joint but a larger deviation
+// (docs/decisions/034-robots-links.md). What is left hanging on a rig, a hook or a screw clamp,
+// weighs some grams.
 std::vector<discover::Quantity> quantitiesOfPendulum() {
   constexpr double mass1 = 0.085, damping = 5e-4;
   const CartDoublePendulum<> rig;
@@ -196,7 +198,7 @@ std::vector<discover::Quantity> quantitiesOfPendulum() {
       {"gain of sensor 1", "", 0, -0.5, 0.5, 0.05},
       {"gain of sensor 2", "", 0, -0.5, 0.5, 0.05},
       {"clock offset", "s", 0, 0, 0.3, 0.03},
-      {"stiffness of joint 2", "N·m/rad", 0, 0, 30, 3},
+      {"stiffness of joint 2", "N·m/rad", 0, 0, 30, 1},
       {"mass of link 3", "kg", 0, 0, 0.1, 0.01},
       {"length of link 3", "m", 0.1, 0.03, 0.5, 0.5, true},
   };
