@@ -7,9 +7,9 @@ namespace {
 
 using discover::EffectKind;
 
-constexpr double kStillAir = 1e-4;      // [m/s], likewise drag
-constexpr double kLockLoss = 2e-3;      // [s], damping over stiffness of a locked joint
-constexpr double kSwivelLoss = 0.5;     // [1/s], damping over inertia of the third link's joint
+constexpr double kStillAir = 1e-4;   // [m/s], likewise drag
+constexpr double kLockLoss = 2e-3;   // [s], damping over stiffness of a locked joint
+constexpr double kSwivelLoss = 0.5;  // [1/s], damping over inertia of the third link's joint
 
 enum : std::size_t {
   kMass1,
@@ -48,23 +48,28 @@ double endOfLink2() {
   return rig.length2 - 2 * rig.offset;
 }
 
-// State (α, β, α̇, β̇, γ, γ̇, cart speed, cart acceleration).
+// State (α, β, α̇, β̇, cart speed, cart acceleration), with γ, γ̇ before the cart's where the third
+// link is looked at.
 //
 // The third link is a point mass m3 on a rod of length ℓ below the end of link 2. Its own equation,
 // divided by m3 ℓ, gives ℓ γ̈ whatever m3 is; put into the other two, it leaves terms in m3 alone.
+template <bool Third>
 struct Pendulum {
-  static constexpr int stateSize = 8, startSize = 4, outputSize = 2;
+  static constexpr int stateSize = Third ? 8 : 6, startSize = 4, outputSize = 2;
   static constexpr std::size_t sharedSize = kCount, lag = kLag, clock = kClock;
   template <class T>
   using Numbers = std::array<T, kCount>;
 
   template <class T>
-  using State = std::array<T, 8>;
+  using State = std::array<T, stateSize>;
 
   // The third link starts in line with the second.
   template <class T>
   static State<T> start(const std::array<T, 4>& s, const T&, const Numbers<T>&) {
-    return {s[0], s[1], s[2], s[3], s[1], s[3], T(0.0), T(0.0)};
+    if constexpr (Third)
+      return {s[0], s[1], s[2], s[3], s[1], s[3], T(0.0), T(0.0)};
+    else
+      return {s[0], s[1], s[2], s[3], T(0.0), T(0.0)};
   }
 
   // The moment that a joint's friction makes at its rate w.
@@ -82,10 +87,9 @@ struct Pendulum {
   static State<T> rate(const State<T>& x, const T& u, const Numbers<T>& p) {
     using std::cos, std::sin, std::sqrt;
     constexpr double g = 9.81;
-    static const double e = endOfLink2();
     const T &m1 = p[kMass1], &m2 = p[kMass2], &s1 = p[kCom1], &s2 = p[kCom2], &d = p[kPivots];
     const T cosA = cos(x[0]), sinA = sin(x[0]), cosB = cos(x[1]), sinB = sin(x[1]);
-    const T &wA = x[2], &wB = x[3], &V = x[6];
+    const T &wA = x[2], &wB = x[3], &V = x[stateSize - 2];
     const T cosAB = cosA * cosB + sinA * sinB, sinBA = sinB * cosA - cosB * sinA;
     // A α̈ + C β̈ = a, C α̈ + B β̈ = b
     T A = m1 * (s1 * s1) + p[kInertia1] + m2 * (d * d);
@@ -111,25 +115,31 @@ struct Pendulum {
     const T push2 = p[kDrag] * sqrt(x2 * x2 + z2 * z2 + kStillAir * kStillAir);
     a -= push1 * s1 * (x1 * cosA + z1 * sinA) + push2 * d * (x2 * cosA + z2 * sinA);
     b -= push2 * s2 * (x2 * cosB + z2 * sinB);
-    // the third link: ℓ γ̈ = c − d cos(α−γ) α̈ − e cos(β−γ) β̈
-    const T &m3 = p[kMass3], &l = p[kLength3], &wC = x[5];
-    const T cosC = cos(x[4]), sinC = sin(x[4]), downC = sinC * cosT + cosC * sinT;
-    const T cosAC = cosA * cosC + sinA * sinC, sinCA = sinC * cosA - cosC * sinA;
-    const T cosBC = cosB * cosC + sinB * sinC, sinCB = sinC * cosB - cosC * sinB;
-    const T bendA = d * (wA * wA), bendB = e * (wB * wB), bendC = l * (wC * wC);
-    const T swivel = kSwivelLoss * l * (wC - wB);
-    const T c = -(sinCA * bendA) - sinCB * bendB - g * downC - u * cosC - swivel;
-    const T a3 = sinBA * bendB + sinCA * bendC - g * downA - u * cosA;
-    const T b3 = sinCB * bendC - sinBA * bendA - g * downB - u * cosB;
-    A += m3 * (d * d * (1.0 - cosAC * cosAC));
-    B += m3 * (e * e * (1.0 - cosBC * cosBC));
-    C += m3 * (d * e * (cosAB - cosAC * cosBC));
-    a += m3 * (d * (a3 - cosAC * c));
-    b += m3 * (e * (b3 - cosBC * c) + l * swivel);
-    const T determinant = A * B - C * C;
-    const T alpha = (B * a - C * b) / determinant, beta = (A * b - C * a) / determinant;
-    const T gamma = (c - d * cosAC * alpha - e * cosBC * beta) / l;
-    return {wA, wB, alpha, beta, wC, gamma, u, T(0.0)};
+    if constexpr (!Third) {
+      const T determinant = A * B - C * C;
+      return {wA, wB, (B * a - C * b) / determinant, (A * b - C * a) / determinant, u, T(0.0)};
+    } else {
+      static const double e = endOfLink2();
+      // the third link: ℓ γ̈ = c − d cos(α−γ) α̈ − e cos(β−γ) β̈
+      const T &m3 = p[kMass3], &l = p[kLength3], &wC = x[5];
+      const T cosC = cos(x[4]), sinC = sin(x[4]), downC = sinC * cosT + cosC * sinT;
+      const T cosAC = cosA * cosC + sinA * sinC, sinCA = sinC * cosA - cosC * sinA;
+      const T cosBC = cosB * cosC + sinB * sinC, sinCB = sinC * cosB - cosC * sinB;
+      const T bendA = d * (wA * wA), bendB = e * (wB * wB), bendC = l * (wC * wC);
+      const T swivel = kSwivelLoss * l * (wC - wB);
+      const T c = -(sinCA * bendA) - sinCB * bendB - g * downC - u * cosC - swivel;
+      const T a3 = sinBA * bendB + sinCA * bendC - g * downA - u * cosA;
+      const T b3 = sinCB * bendC - sinBA * bendA - g * downB - u * cosB;
+      A += m3 * (d * d * (1.0 - cosAC * cosAC));
+      B += m3 * (e * e * (1.0 - cosBC * cosBC));
+      C += m3 * (d * e * (cosAB - cosAC * cosBC));
+      a += m3 * (d * (a3 - cosAC * c));
+      b += m3 * (e * (b3 - cosBC * c) + l * swivel);
+      const T determinant = A * B - C * C;
+      const T alpha = (B * a - C * b) / determinant, beta = (A * b - C * a) / determinant;
+      const T gamma = (c - d * cosAC * alpha - e * cosBC * beta) / l;
+      return {wA, wB, alpha, beta, wC, gamma, u, T(0.0)};
+    }
   }
 
   template <class T>
@@ -150,8 +160,10 @@ struct Pendulum {
 // bearings scatters by a third from day to day. Nominal values: cart_double_pendulum.h, equation
 // (4.5). Amplitudes: of the size of what they stand beside: the weight's moment is 0.35 N·m, the
 // damping's at 5 rad/s 0.0025 N·m; sensors and clocks as data sheets allow, a few degrees, 5 %, 50
-// ms. Link 2 weighs 0.1 N·m about its joint: at 3 N·m/rad it sags by 2°, no more than is seen; what
-// is left hanging on a rig, a hook or a screw clamp, weighs some grams.
+// ms. Link 2 weighs 0.1 N·m about its joint: at 3 N·m/rad it sags by 2°, no more than is seen, and a
+// wider prior than 1 N·m/rad makes nothing of such a joint but a larger deviation
+// (docs/decisions/034-robots-links.md). What is left hanging on a rig, a hook or a screw clamp,
+// weighs some grams.
 std::vector<discover::Quantity> quantitiesOfPendulum() {
   constexpr double mass1 = 0.085, damping = 5e-4;
   const CartDoublePendulum<> rig;
@@ -186,7 +198,7 @@ std::vector<discover::Quantity> quantitiesOfPendulum() {
       {"gain of sensor 1", "", 0, -0.5, 0.5, 0.05},
       {"gain of sensor 2", "", 0, -0.5, 0.5, 0.05},
       {"clock offset", "s", 0, 0, 0.3, 0.03},
-      {"stiffness of joint 2", "N·m/rad", 0, 0, 30, 3},
+      {"stiffness of joint 2", "N·m/rad", 0, 0, 30, 1},
       {"mass of link 3", "kg", 0, 0, 0.1, 0.01},
       {"length of link 3", "m", 0.1, 0.03, 0.5, 0.5, true},
   };
@@ -257,6 +269,21 @@ void addEffectsOfPendulum(Model& model) {
   for (std::size_t q = kMass1; q <= kDamping; ++q) list.push_back(errorOf(model, ids[q], q));
 }
 
+// The third link costs two states, so only those who ask for it pay. Model::states has it in any
+// case, 0 where it is not simulated.
+Response simulatePendulum(const Request& request) {
+  const bool third = request.shared[kMass3] != 0 ||
+                     std::any_of(request.wanted.begin(), request.wanted.end(),
+                                 [](std::size_t q) { return q == kMass3 || q == kLength3; });
+  if (third) return walk<Pendulum<true>>(request);
+  Response response = walk<Pendulum<false>>(request);
+  Eigen::MatrixXd states = Eigen::MatrixXd::Zero(response.states.rows(), 8);
+  states.leftCols(4) = response.states.leftCols(4);
+  states.rightCols(2) = response.states.rightCols(2);
+  response.states = std::move(states);
+  return response;
+}
+
 }  // namespace
 
 Model doublePendulum() {
@@ -273,7 +300,7 @@ Model doublePendulum() {
       "link1 [rad]", "link2 [rad]",           "rate of link1 [rad/s]", "rate of link2 [rad/s]",
       "link3 [rad]", "rate of link3 [rad/s]", "cart speed [m/s]",      "cart acceleration [m/s²]"};
   addEffectsOfPendulum(model);
-  model.simulate = walk<Pendulum>;
+  model.simulate = simulatePendulum;
   return model;
 }
 
