@@ -160,8 +160,8 @@ struct Pendulum {
 // bearings scatters by a third from day to day. Nominal values: cart_double_pendulum.h, equation
 // (4.5). Amplitudes: of the size of what they stand beside: the weight's moment is 0.35 N·m, the
 // damping's at 5 rad/s 0.0025 N·m; sensors and clocks as data sheets allow, a few degrees, 5 %, 50
-// ms. Link 2 weighs 0.1 N·m about its joint: at 3 N·m/rad it sags by 2°, no more than is seen, and a
-// wider prior than 1 N·m/rad makes nothing of such a joint but a larger deviation
+// ms. Link 2 weighs 0.1 N·m about its joint: at 3 N·m/rad it sags by 2°, no more than is seen, and
+// a wider prior than 1 N·m/rad makes nothing of such a joint but a larger deviation
 // (docs/decisions/034-robots-links.md). What is left hanging on a rig, a hook or a screw clamp,
 // weighs some grams.
 std::vector<discover::Quantity> quantitiesOfPendulum() {
