@@ -2,6 +2,8 @@
 
 // The columns of a run's sensitivities; not public.
 
+#include <algorithm>
+
 #include "bio/coupled_sensitivity.h"
 
 namespace bio::stepping {
