@@ -196,18 +196,22 @@ class Work {
     Noise wide = entry.fit.noise, still = entry.fit.noise;
     wide.latent = std::max(wide.latent, 0.1);
     still.latent = 0;
+    // log Z of all less that of those that were fitted
     const Hypothesis hypothesis = makeHypothesis(data_, entry.effects, all.trials());
-    if (const auto first = all.tryFit(hypothesis, wide, entry.fit.values, {}, {10, 0.1})) {
-      // log Z of all less that of those that were fitted
-      if (const auto fit = all.tryFit(hypothesis, entry.fit.noise, first->values, {}, {30, 0.05})) {
-        result.score = fit->logEvidence - entry.fit.logEvidence;
-        result.meanSquare = 2 * (fit->cost - entry.fit.cost) / static_cast<double>(held.samples());
-      }
-    }
+    const auto together = [&](const Eigen::VectorXd& from) {
+      const auto fit = all.tryFit(hypothesis, entry.fit.noise, from, {}, {30, 0.05});
+      if (!fit || fit->logEvidence - entry.fit.logEvidence <= result.score) return;
+      result.score = fit->logEvidence - entry.fit.logEvidence;
+      result.meanSquare = 2 * (fit->cost - entry.fit.cost) / static_cast<double>(held.samples());
+    };
+    if (const auto first = all.tryFit(hypothesis, wide, entry.fit.values, {}, {10, 0.1}))
+      together(first->values);
     const Hypothesis starts = startsOnly(data_, held.trials());
     if (const auto near = held.tryFit(starts, wide, entry.fit.values, {}, {10, 0.1})) {
-      if (const auto fit = held.tryFit(starts, still, near->values, {}, {30, 0.01}))
+      if (const auto fit = held.tryFit(starts, still, near->values, {}, {30, 0.01})) {
         result.error = held.simulationError(fit->values);
+        together(fit->values);  // where everything else is right already
+      }
     }
     return result;
   }
