@@ -13,7 +13,7 @@
 // respect to its state, the latent acceleration at its three stages and up to kSlots quantities;
 // the chain rule makes whole trials of it, so that the cost of a latent node is a column.
 //
-// A plant has `stateSize`, `sharedSize`, `startSize`, `outputSize`, places `lag` and `clock` among
+// A plant has `stateSize`, `sharedSize`, `startSize`, places `lag` and `clock` among
 // its quantities, and templates over the scalar
 //     start(s, u, p)           state at rest but for the start quantities s
 //     step(x, u, h, p)         its state (all but the last entry) after h; u at 0, h/2 and h
