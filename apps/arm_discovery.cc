@@ -152,7 +152,8 @@ ArmDiscovery discoverInArm(const ArmDiscoveryRequest& request, const CommandCont
     elbow =
         std::make_unique<bio::discover::ElbowDisagreement>(model, arm, coordinate, trials, options);
     info::discover::Attempt one{
-        *elbow, engineOptions(request.maxEffects, request.trials.size(), request.heldOut.size())};
+        *elbow, engineOptions(request.maxEffects, request.inputScatter, request.trials.size(),
+                              request.heldOut.size())};
     const bool isAngle = elbow->widest().coordinate().isRotation;
     if (request.noise)
       one.options.outputDeviation = isAngle ? *request.noise / radian : *request.noise;

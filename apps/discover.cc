@@ -5,6 +5,7 @@
 #include "arm_discovery.h"
 #include "arm_input.h"
 #include "discover_robot.h"
+#include "discover_search.h"
 
 namespace app {
 namespace {
@@ -44,6 +45,7 @@ class Discover : public Command {
         ->check(CLI::Range(1, 3))
         ->capture_default_str()
         ->type_name("N");
+    addInputScatter(options, inputScatter_);
     const std::size_t common = options.get_options().size();
     addSimulationOptions(options, simulation_);
     const auto all = options.get_options();
@@ -60,6 +62,7 @@ class Discover : public Command {
       robot_.heldOut = heldOut_;
       robot_.without = without_;
       robot_.maxEffects = maxEffects_;
+      robot_.inputScatter = inputScatter_;
       robot_.ignoreExtra = simulation_.ignoreExtra;
       robot_.step = simulation_.step;
       mustSuitRobots();
@@ -68,8 +71,8 @@ class Discover : public Command {
     if (trials_.empty()) throw std::invalid_argument("TRIAL is required (see --help)");
     if (!robot_.with.empty()) throw std::invalid_argument("--with goes with --system");
     if (!robot_.noise.empty()) throw std::invalid_argument("--noise goes with --system");
-    ArmDiscoveryRequest request{model_, trials_,     heldOut_,   without_,
-                                noise_, maxEffects_, simulation_};
+    ArmDiscoveryRequest request{model_, trials_,     heldOut_,      without_,
+                                noise_, maxEffects_, inputScatter_, simulation_};
     return discoverInArm(request, context).status;
   }
 
@@ -89,6 +92,7 @@ class Discover : public Command {
   std::vector<std::string> trials_, heldOut_, without_;
   std::optional<double> noise_;
   int maxEffects_ = 3;
+  std::optional<double> inputScatter_;
   SimulationOptions simulation_;
   RobotRequest robot_;
   std::vector<const CLI::Option*> armOptions_;

@@ -306,14 +306,15 @@ class Writer {
     const std::string unit = outputUnit();
     Table table{"Root mean square of measured − simulated",
                 {"trials", "model as it came [" + unit + "]", "calibrated [" + unit + "]",
-                 "with the effect [" + unit + "]", "noise [" + unit + "]", "of the range [%]",
-                 "gap closed [%]"},
+                 "with the effect [" + unit + "]", "to be expected [" + unit + "]",
+                 "noise [" + unit + "]", "of the range [%]", "gap closed [%]"},
                 {}};
     const auto row = [&](const char* name, const Gap& gap) {
       table.rows.push_back(
           {name, numberText(unit_ * gap.nominal, 3), numberText(unit_ * gap.calibrated, 3),
-           numberText(unit_ * gap.after, 3), numberText(unit_ * gap.floor, 3),
-           numberText(100 * gap.after / gap.range, 2),
+           numberText(unit_ * gap.after, 3),
+           gap.expected ? numberText(unit_ * *gap.expected, 3) : "–",
+           numberText(unit_ * gap.floor, 3), numberText(100 * gap.after / gap.range, 2),
            gap.closedFromCalibrated ? numberText(100 * *gap.closedFromCalibrated, 4)
                                     : "there was none"});
     };

@@ -195,8 +195,9 @@ class RobotSearch {
       asked.deviations.push_back(isAngle ? request_.noise[c] * degree : request_.noise[c]);
     }
     data_ = std::make_unique<RobotDisagreement>(model, trials, asked);
-    info::discover::Attempt one{*data_, engineOptions(request_.maxEffects, request_.trials.size(),
-                                                      request_.heldOut.size())};
+    info::discover::Attempt one{
+        *data_, engineOptions(request_.maxEffects, request_.inputScatter, request_.trials.size(),
+                              request_.heldOut.size())};
     if (!request_.noise.empty()) one.options.outputDeviation = data_->deviations().front();
     return one;
   }

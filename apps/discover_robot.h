@@ -18,6 +18,7 @@ struct RobotRequest {
   std::vector<std::string> trials, heldOut, without;
   std::optional<double> step;  ///< [s]
   int maxEffects = 3;
+  std::optional<double> inputScatter;
   bool ignoreExtra = false;
 };
 

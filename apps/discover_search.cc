@@ -1,8 +1,11 @@
 #include "discover_search.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
+#include <cmath>
 #include <ctime>
-#include <optional>
+#include <stdexcept>
 
 #include "interruption.h"
 #include "progress_bar.h"
@@ -22,9 +25,28 @@ double threadSeconds() {
 
 }  // namespace
 
-info::discover::Options engineOptions(int maxEffects, std::size_t training, std::size_t heldOut) {
+void addInputScatter(CLI::App& options, std::optional<double>& inputScatter,
+                     const std::string& when, const std::string& group) {
+  options
+      .add_option(
+          "--input-scatter", inputScatter,
+          when + fmt::format("share of each input's effect that may be noise of it; what is "
+                             "left beyond that is something missing; default: {}",
+                             info::discover::Options().latentTolerance))
+      ->type_name("S")
+      ->group(group);
+}
+
+info::discover::Options engineOptions(int maxEffects, const std::optional<double>& inputScatter,
+                                      std::size_t training, std::size_t heldOut) {
   info::discover::Options options;
   options.maxEffects = maxEffects;
+  if (inputScatter) {
+    if (!(*inputScatter >= 0) || !std::isfinite(*inputScatter))
+      throw std::invalid_argument(
+          fmt::format("--input-scatter: {} must be a number ≥ 0", *inputScatter));
+    options.latentTolerance = *inputScatter;
+  }
   for (std::size_t i = 0; i < heldOut; ++i)
     options.heldOut.push_back(static_cast<int>(training + i));
   return options;

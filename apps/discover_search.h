@@ -1,7 +1,10 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <cstddef>
 #include <functional>
+#include <optional>
+#include <string>
 
 #include "info/discover/shorter_steps.h"
 #include "summary.h"
@@ -10,7 +13,12 @@
 namespace app {
 
 /// Options of the engine; trials that are held out come last.
-info::discover::Options engineOptions(int maxEffects, std::size_t training, std::size_t heldOut);
+/// @param inputScatter  of --input-scatter; empty: the engine's own
+/// @throws std::invalid_argument if that is negative or no number
+info::discover::Options engineOptions(int maxEffects, const std::optional<double>& inputScatter,
+                                      std::size_t training, std::size_t heldOut);
+void addInputScatter(CLI::App& options, std::optional<double>& inputScatter,
+                     const std::string& when = {}, const std::string& group = "OPTIONS");
 
 struct DiscoverSearch : info::discover::SteppedVerdict {
   double wallSeconds = 0;       ///< of all attempts

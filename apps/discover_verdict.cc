@@ -32,6 +32,7 @@ ordered_json gapJson(const DiscoverFindings& f, const Gap& gap) {
   json["rmse_nominal" + end] = number(unit * gap.nominal);
   json["rmse_calibrated" + end] = number(unit * gap.calibrated);
   json["rmse_after" + end] = number(unit * gap.after);
+  if (gap.expected) json["rmse_expected" + end] = number(unit * *gap.expected);
   json["noise_floor" + end] = number(unit * gap.floor);
   json["gap_closed"] =
       gap.closedFromCalibrated ? number(*gap.closedFromCalibrated) : ordered_json(nullptr);

@@ -8,6 +8,7 @@
 
 #include "arm_input.h"
 #include "arm_options.h"
+#include "discover_search.h"
 #include "drawn_laws.h"
 #include "ensemble_discovery.h"
 #include "ensemble_draws.h"
@@ -122,6 +123,7 @@ class Ensemble : public Command {
         ->capture_default_str()
         ->type_name("N")
         ->group(sets);
+    addInputScatter(options, inputScatter_, "with --discover: ", sets);
     addSimulationOptions(options, simulation_);
   }
 
@@ -134,8 +136,8 @@ class Ensemble : public Command {
     if (crew->leads()) checkChoice(context);
     if (!crew->leads() && !crew->start()) return ExitStatus::done;
     if (!discover_.empty()) {
-      return discoverInSets({model_, {}, {}, {}, noise_, maxEffects_, simulation_}, discover_,
-                            context, *crew, threads);
+      return discoverInSets({model_, {}, {}, {}, noise_, maxEffects_, inputScatter_, simulation_},
+                            discover_, context, *crew, threads);
     }
     if (!crew->leads()) {
       Summary summary(context);
@@ -182,7 +184,7 @@ class Ensemble : public Command {
         throw std::invalid_argument(fmt::format("--covariance does not go with --{}",
                                                 sobol_ ? "sobol" : "distribution uniform"));
       }
-      for (const char* option : {"--noise-deg", "--max-effects"}) {
+      for (const char* option : {"--noise-deg", "--max-effects", "--input-scatter"}) {
         if (app_->get_option(option)->count() == 0) continue;
         throw std::invalid_argument(fmt::format("{} goes with --discover", option));
       }
@@ -339,6 +341,7 @@ class Ensemble : public Command {
   std::string discover_;
   std::optional<double> noise_;
   int maxEffects_ = 3;
+  std::optional<double> inputScatter_;
   SimulationOptions simulation_;
 };
 

@@ -89,6 +89,7 @@ Json discoverySettings(const ArmDiscoveryRequest& each, const Summary& summary) 
   json["noise"] = each.noise ? Json(*each.noise) : Json();
   json["without"] = each.without;
   json["max_effects"] = each.maxEffects;
+  json["input_scatter"] = each.inputScatter ? Json(*each.inputScatter) : Json();
   json["simulation"] = settingsOf(each.simulation);
   json["inputs"] = Json::array();
   for (const Summary::InputFile& input : summary.inputs()) {

@@ -103,6 +103,12 @@ double CoordinateExpression::parameterDerivative(std::size_t constant, double q,
   return expression_.evaluate(values).derivatives()[0];
 }
 
+bool CoordinateExpression::vanishes() const {
+  std::vector<std::optional<double>> known(2);
+  known.insert(known.end(), constants_.begin(), constants_.end());
+  return expression_.vanishes(known);
+}
+
 CoordinateForces::CoordinateForces(const Model& model, const Skeleton& skeleton) {
   const auto addLaws = [&](const auto& laws, auto&& lawOf) {
     for (const auto& law : laws) {
@@ -115,6 +121,10 @@ CoordinateForces::CoordinateForces(const Model& model, const Skeleton& skeleton)
   addLaws(model.springForces, [](const SpringGeneralizedForce& law) { return law; });
   addLaws(model.expressionForces,
           [](const ExpressionBasedCoordinateForce& law) { return CoordinateExpression(law); });
+  for (Acting& acting : acting_) {
+    const auto* expression = std::get_if<CoordinateExpression>(&acting.law);
+    acting.vanishes = expression != nullptr && expression->vanishes();
+  }
 }
 
 CoordinateForceValue CoordinateForces::evaluateLaw(const Acting& acting, double q, double qDot) {

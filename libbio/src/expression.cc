@@ -180,4 +180,55 @@ Expression::Expression(const std::string& text, const std::vector<std::string>& 
   Parser(text_, variables, program_).parse();
 }
 
+bool Expression::vanishes(const std::vector<std::optional<double>>& known) const {
+  std::vector<std::optional<double>> stack;  // what is known of the values
+  for (const Instruction& instruction : program_) {
+    const auto pop = [&] {
+      const std::optional<double> top = stack.back();
+      stack.pop_back();
+      return top;
+    };
+    switch (instruction.code) {
+      case Code::number:
+        stack.emplace_back(instruction.number);
+        break;
+      case Code::variable:
+        stack.push_back(known.at(instruction.variable));
+        break;
+      case Code::add:
+      case Code::subtract:
+      case Code::multiply:
+      case Code::divide:
+      case Code::min:
+      case Code::max: {
+        const std::optional<double> right = pop(), left = pop();
+        if (left && right) {
+          double two[2] = {*left, *right};
+          std::size_t top = 2;
+          run(instruction, two, two, top);
+          stack.emplace_back(two[0]);
+        } else if (instruction.code == Code::multiply &&
+                   ((left && *left == 0) || (right && *right == 0))) {
+          stack.emplace_back(0.0);
+        } else {
+          stack.emplace_back();
+        }
+        break;
+      }
+      default: {
+        const std::optional<double> of = pop();
+        if (of) {
+          double one[1] = {*of};
+          std::size_t top = 1;
+          run(instruction, one, one, top);
+          stack.emplace_back(one[0]);
+        } else {
+          stack.emplace_back();
+        }
+      }
+    }
+  }
+  return stack.at(0) && *stack[0] == 0;
+}
+
 }  // namespace bio

@@ -85,6 +85,20 @@ TEST(Expression, ErrorsSayWhereAndWhat) {
   EXPECT_THROW(Expression(std::string(5000, '('), {"q"}), std::invalid_argument);
 }
 
+TEST(Expression, KnowsWhenItVanishes) {
+  const auto vanishes = [](const std::string& text, std::optional<double> c) {
+    return Expression(text, {"q", "qdot", "c"}).vanishes({{}, {}, c});
+  };
+  for (const char* text : {"-c*qdot", "c*tanh(qdot/0.1)", "(2*c)*q + abs(c)*q*qdot", "q*(c-c)",
+                           "-c*exp(-(q/0.3)^2)*qdot", "min(c, 1)*q", "sqrt(c)"}) {
+    EXPECT_TRUE(vanishes(text, 0)) << text;
+    EXPECT_EQ(vanishes(text, 0.5), std::string(text) == "q*(c-c)") << text;
+    EXPECT_FALSE(vanishes(text, {})) << text;
+  }
+  for (const char* text : {"q", "c+q", "c*qdot - q", "exp(c)*q", "q/c", "c/q", "q-q"})
+    EXPECT_FALSE(vanishes(text, 0)) << text;
+}
+
 TEST(CoordinateForces, AddUpOnlyWhatActsOnFreeCoordinates) {
   Model model = fixtures::threeLinkArm();
   model.limitForces = {limits()};

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "info/discover/expected_error.h"
 #include "info/discover/joint_fit.h"
 #include "info/discover/output_deviation.h"
 #include "info/discover/truncated.h"
@@ -257,6 +258,93 @@ TEST(JointFit, CountsWhatTheLatentForceUsesUp) {
   const double slope =
       (at(kLatent * std::exp(h)).logEvidence - at(kLatent * std::exp(-h)).logEvidence) / (2 * h);
   EXPECT_NEAR(fit.latentPower - fit.latentFreedom, slope, 1e-3);
+}
+
+// A push that grows with the square of a gain of which little else is seen: a narrow valley whose
+// floor bends away from every straight step.
+class Valley : public LinearDisagreement {
+ public:
+  using LinearDisagreement::LinearDisagreement;
+  VectorXd outputs(int trial, const VectorXd& values, const VectorXd& latent) const override {
+    return LinearDisagreement::outputs(trial, straight(values), latent);
+  }
+  Prediction predict(int trial, const VectorXd& values, const VectorXd& latent,
+                     const std::vector<std::size_t>& wanted, bool latentToo) const override {
+    Prediction p = LinearDisagreement::predict(trial, values, latent, {}, latentToo);
+    p.gamma.resize(p.outputs.size(), static_cast<Index>(wanted.size()));
+    for (std::size_t j = 0; j < wanted.size(); ++j) {
+      VectorXd direction = VectorXd::Zero(values.size());
+      if (wanted[j] == 0) {
+        direction[0] = kSeen;
+        direction[1] = -2 * kSteep * values[0];
+      } else {
+        direction[static_cast<Index>(wanted[j])] = wanted[j] == 1 ? kSteep : 1;
+      }
+      p.gamma.col(static_cast<Index>(j)) = LinearDisagreement::outputs(trial, direction, {});
+    }
+    return p;
+  }
+
+ private:
+  static constexpr double kSeen = 0.3, kSteep = 30;
+  static VectorXd straight(VectorXd values) {
+    values[1] = kSteep * (values[1] - values[0] * values[0]);
+    values[0] *= kSeen;
+    return values;
+  }
+};
+
+TEST(JointFit, GoesAlongACurvedValley) {
+  Valley data(1, 80);
+  VectorXd truth = nominalValues(data), start = truth;
+  truth[0] = 1.6;
+  truth[1] = 1.6 * 1.6;
+  data.draw(5, truth, 1e-3, 0, kTime);
+  start[0] = 0.2;
+  start[1] = 0.2 * 0.2;
+  const Likelihood likelihood(data, {0}, nominalValues(data), kTime);
+  const Fit fit =
+      likelihood.fit(makeHypothesis(data, {0}, {0}), {1e-3, 0, kTime}, start, {}, {200, 1e-3});
+  EXPECT_TRUE(fit.converged);
+  EXPECT_NEAR(fit.values[0], 1.6, 3 * fit.deviation(0));
+  EXPECT_LE(fit.iterations, 60);  // 35; 168 with straight steps
+}
+
+// Drawn again and again from the priors, the mean square of new trials' errors is what was expected
+// of them; a fiftieth of it, at least, is what the fitted trial leaves unknown.
+TEST(ExpectedError, IsWhatNewTrialsHaveOnAverage) {
+  constexpr double kLoud = 0.1;
+  for (const double latent : {0.0, kLatent}) {
+    const Noise noise{kLoud, latent, kTime}, still{kLoud, 0, kTime};
+    double expected = 0, found = 0, certain = 0;
+    constexpr int kDraws = 3000;
+    for (int draw = 0; draw < kDraws; ++draw) {
+      LinearDisagreement data(2, 16);
+      info::RandomStream random(91, static_cast<std::uint64_t>(draw));
+      VectorXd truth = nominalValues(data);
+      for (const Index i : {0, 1, 4, 5, 6, 7})
+        truth[i] += data.quantities()[static_cast<std::size_t>(i)].deviation * random.normal();
+      data.draw(1000 + static_cast<std::uint64_t>(draw), truth, kLoud, latent, kTime);
+      const Likelihood seen(data, {0}, nominalValues(data), kTime);
+      const Likelihood held(data, {1}, nominalValues(data), kTime);
+      Fit fit = seen.fit(makeHypothesis(data, {0}, {0}), noise, nominalValues(data), {}, kExact);
+      const Fit starts = held.fit(startsOnly(data, {1}), still, fit.values, {}, kExact);
+      expected += std::pow(expectedError(held, starts, fit), 2);
+      found += std::pow(held.simulationError(starts.values), 2);
+      fit.covariance.setZero();
+      certain += std::pow(expectedError(held, starts, fit), 2);
+    }
+    EXPECT_GT(expected / certain, 1.02) << latent;
+    EXPECT_NEAR(found / expected, 1, 0.012) << latent;
+  }
+}
+
+TEST(ExpectedError, NeedsTheStartsOfTheTrialsThatWereHeldOut) {
+  const LinearDisagreement data = drawn(2, 25, 0.4);
+  const Likelihood both(data, {0, 1}, nominalValues(data)), held(data, {1}, nominalValues(data));
+  const Fit fit =
+      both.fit(makeHypothesis(data, {0}, {0, 1}), {kOutput, 0, kTime}, nominalValues(data));
+  EXPECT_THROW(expectedError(held, fit, fit), std::invalid_argument);
 }
 
 TEST(OutputDeviation, ComesFromThirdDifferences) {

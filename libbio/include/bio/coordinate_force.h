@@ -40,6 +40,8 @@ class CoordinateExpression {
   static constexpr std::size_t maxConstants = 6;
 
   CoordinateForceValue evaluate(double q, double qDot) const;
+  /// Whether τ is 0 everywhere, as with an amplitude of 0.
+  bool vanishes() const;
   /// ∂τ/∂c of one of the constants.
   double parameterDerivative(std::size_t constant, double q, double qDot) const;
 
@@ -64,6 +66,7 @@ class CoordinateForces {
            Eigen::Matrix<double, N, 1>& tau, Eigen::Matrix<double, N, N>& tau_q,
            Eigen::Matrix<double, N, N>& tau_qDot) const {
     for (const Acting& acting : acting_) {
+      if (acting.vanishes) continue;
       const CoordinateForceValue value = evaluateLaw(acting, q[acting.index], qDot[acting.index]);
       tau[acting.index] += value.force;
       tau_q(acting.index, acting.index) += value.dForce_dq;
@@ -79,6 +82,7 @@ class CoordinateForces {
     int index = 0;
     std::variant<CoordinateLimitForce, SpringGeneralizedForce, CoordinateExpression> law;
     std::string name;
+    bool vanishes = false;
   };
   static CoordinateForceValue evaluateLaw(const Acting& acting, double q, double qDot);
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,11 @@ class Expression {
     for (const Instruction& instruction : program_) run(instruction, values, stack, top);
     return stack[0];
   }
+
+  /// Whether the value is 0 wherever the variables that are not known may be, as long as every part
+  /// of the formula is finite there.
+  /// @param known one per variable; empty: it may be anything
+  bool vanishes(const std::vector<std::optional<double>>& known) const;
 
   const std::string& text() const { return text_; }
 

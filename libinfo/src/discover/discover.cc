@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "info/discover/decide.h"
+#include "info/discover/expected_error.h"
 #include "info/discover/output_deviation.h"
 #include "race_formula.h"
 #include "select.h"
@@ -32,6 +33,8 @@ const char* name(EffectKind kind) {
 }
 
 namespace {
+
+constexpr double kWorthSaying = 0.005;  // σ_d that the sentence mentions
 
 std::vector<Estimate> estimatesOf(const Fit& fit, const std::vector<std::size_t>& wanted,
                                   const Disagreement& data) {
@@ -189,6 +192,7 @@ class Work {
     double score = -HUGE_VAL;  // log of their probability given the others
     double error = HUGE_VAL;   // of the simulation, with starts of their own [unit of the output]
     double meanSquare = HUGE_VAL;  // of their innovations given the others
+    std::optional<Fit> starts;     // those of their own
   };
   HeldOut heldOut(const Entry& entry, const Likelihood& all, const Likelihood& held) const {
     HeldOut result;
@@ -208,9 +212,10 @@ class Work {
       together(first->values);
     const Hypothesis starts = startsOnly(data_, held.trials());
     if (const auto near = held.tryFit(starts, wide, entry.fit.values, {}, {10, 0.1})) {
-      if (const auto fit = held.tryFit(starts, still, near->values, {}, {30, 0.01})) {
+      if (auto fit = held.tryFit(starts, still, near->values, {}, {30, 0.01})) {
         result.error = held.simulationError(fit->values);
         together(fit->values);  // where everything else is right already
+        result.starts = std::move(fit);
       }
     }
     return result;
@@ -344,6 +349,7 @@ class Work {
     other.nominal = nominal(held);
     other.calibrated = without.error;
     other.after = with.error;
+    if (with.starts) other.expected = expectedError(held, *with.starts, after.fit);
     closeGap(other);
     verdict_.heldOut = other;
     verdict_.heldOutBefore = heldOutAdequacy(without.meanSquare, held);
@@ -363,6 +369,13 @@ class Work {
             chiSquareQuantile(options_.level, n) / n * std::exp(3.29 * test_.deviationError)};
   }
 
+  // How much of what is left is taken for noise of the inputs: a name rests on it.
+  std::string scatter() const {
+    if (verdict_.latentSizeAfter < kWorthSaying) return "";
+    return fmt::format(" {:.2g} % of the inputs' effect is taken for their noise.",
+                       100 * verdict_.latentSizeAfter);
+  }
+
   std::string sentence() const {
     const auto& candidates = data_.candidates();
     std::string names;
@@ -374,12 +387,13 @@ class Work {
     }
     switch (verdict_.finding) {
       case Finding::none:
-        return "No missing effect above the detectable size.";
+        return "No missing effect above the detectable size." + scatter();
       case Finding::parameter:
-        return "Parameter error: " + names + ".";
+        return "Parameter error: " + names + "." + scatter();
       case Finding::named:
       case Finding::ambiguous:
-        return "Missing: " + names + (verdict_.vetoed ? "; what is left has the wrong size." : ".");
+        return "Missing: " + names +
+               (verdict_.vetoed ? "; what is left has the wrong size." : ".") + scatter();
       case Finding::unknown:
         return "Something is missing that has no name here" +
                (names.empty() ? std::string() : "; imitated best by: " + names) + edges() +

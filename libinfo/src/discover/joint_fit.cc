@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "damped_system.h"
 #include "latent_block.h"
 
 namespace info::discover {
@@ -19,6 +20,10 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Where along a step its curvature is probed, and the largest 2|a|/|v| that a step is bent by, both
+// as Transtrum and Sethna give them (arXiv:1201.5885).
+constexpr double kProbe = 0.1, kMostBend = 0.75;
 
 std::vector<std::size_t> wantedOf(const Hypothesis& h) {
   std::vector<std::size_t> wanted;
@@ -48,17 +53,17 @@ struct Likelihood::Point {
   std::vector<VectorXd> eta;
 };
 
-// The normal equations over (ξ, η) at a point, η's own blocks apart.
+// The normal equations over (ξ, η) at a point.
 struct Likelihood::Normal {
-  MatrixXd information;
-  VectorXd gradient;
-  std::vector<MatrixXd> blocks, coupling;  // per trial
-  std::vector<VectorXd> latentRight;
+  DampedSystem::Blocks blocks;
+  JointVector downhill;  // −dJ/d(ξ, η)
 };
 
 struct Likelihood::Step {
   Point to;
-  double gain = 0;  // nats that the linear model promises
+  double gain = 0;            // nats that the linear model promises
+  JointVector move;           // straight ahead
+  std::vector<Index> moving;  // ξ that no bound holds back
 };
 
 Likelihood::Likelihood(const Disagreement& data, std::vector<int> trials, const VectorXd& values,
@@ -101,12 +106,15 @@ double Likelihood::cost(const Noise& noise, const Point& point, double squares) 
   return std::isfinite(cost) ? cost : kInfinity;
 }
 
+VectorXd Likelihood::latentForce(std::size_t at, const Noise& noise, const VectorXd& eta) const {
+  if (eta.size() == 0) return {};
+  return noise.latent * (roots_[at] * eta);
+}
+
 double Likelihood::simulatedCost(const Noise& noise, const Point& point) const {
   double squares = 0;
   for (std::size_t t = 0; t < trials_.size(); ++t) {
-    VectorXd force;
-    if (point.eta[t].size() != 0) force = noise.latent * (roots_[t] * point.eta[t]);
-    const VectorXd y = data_.outputs(trials_[t], point.values, force);
+    const VectorXd y = data_.outputs(trials_[t], point.values, latentForce(t, noise, point.eta[t]));
     squares += (data_.measured(trials_[t]) - y).squaredNorm();
   }
   return cost(noise, point, squares);
@@ -147,67 +155,81 @@ Likelihood::Normal Likelihood::normalEquations(const std::vector<Linear>& trials
                                                const Noise& noise, const Point& point) const {
   const double precision = 1 / (noise.output * noise.output);
   Normal normal;
-  normal.information = MatrixXd::Identity(point.xi.size(), point.xi.size());
-  normal.gradient = point.xi;
+  DampedSystem::Blocks& blocks = normal.blocks;
+  blocks.information = MatrixXd::Identity(point.xi.size(), point.xi.size());
+  normal.downhill.xi = -point.xi;
   for (std::size_t t = 0; t < trials.size(); ++t) {
     const Linear& l = trials[t];
-    normal.information.noalias() += precision * l.gamma.transpose() * l.gamma;
-    normal.gradient.noalias() -= precision * l.gamma.transpose() * l.residuals;
-    normal.blocks.push_back(latentBlock(l.latent, noise.output));
-    normal.coupling.push_back(precision * l.latent.transpose() * l.gamma);
-    normal.latentRight.push_back(precision * l.latent.transpose() * l.residuals - point.eta[t]);
+    blocks.information.noalias() += precision * l.gamma.transpose() * l.gamma;
+    blocks.latent.push_back(latentBlock(l.latent, noise.output));
+    blocks.coupling.push_back(precision * l.latent.transpose() * l.gamma);
+    normal.downhill.xi.noalias() += precision * l.gamma.transpose() * l.residuals;
+    normal.downhill.eta.push_back(precision * l.latent.transpose() * l.residuals - point.eta[t]);
   }
   return normal;
 }
 
-// A damped step within the bounds; each trial's latent force is eliminated, then follows.
+// A damped step within the bounds; what a bound holds back does not move.
 Likelihood::Step Likelihood::step(const Hypothesis& hypothesis, const Normal& normal,
-                                  const Point& point, double damping) const {
-  const Index p = point.xi.size();
-  MatrixXd R = normal.information;
-  VectorXd right = -normal.gradient;
-  R.diagonal() *= 1 + damping;
-  std::vector<Eigen::LLT<MatrixXd>> factors;
-  for (std::size_t t = 0; t < normal.blocks.size(); ++t) {
-    MatrixXd C = normal.blocks[t];
-    C.diagonal().array() += damping;
-    factors.push_back(C.llt());
-    if (normal.coupling[t].rows() == 0) continue;
-    const MatrixXd half = factors[t].matrixL().solve(normal.coupling[t]);
-    const VectorXd halfRight = factors[t].matrixL().solve(normal.latentRight[t]);
-    R.noalias() -= half.transpose() * half;
-    right.noalias() -= half.transpose() * halfRight;
-  }
-  // what a bound holds back does not move
-  std::vector<Index> moving;
-  for (Index i = 0; i < p; ++i) {
+                                  const DampedSystem& system, const Point& point) const {
+  const VectorXd pull = system.pull(normal.downhill);
+  Step step;
+  for (Index i = 0; i < point.xi.size(); ++i) {
     const FreeQuantity& q = hypothesis.free[static_cast<std::size_t>(i)];
-    const bool held = (point.xi[i] <= q.lowest && right[i] < 0) ||
-                      (point.xi[i] >= q.highest && right[i] > 0) || q.lowest >= q.highest;
-    if (!held) moving.push_back(i);
+    const bool held = (point.xi[i] <= q.lowest && pull[i] < 0) ||
+                      (point.xi[i] >= q.highest && pull[i] > 0) || q.lowest >= q.highest;
+    if (!held) step.moving.push_back(i);
   }
-  VectorXd move = VectorXd::Zero(p);
-  if (!moving.empty()) {
-    const MatrixXd free = R(moving, moving);
-    const VectorXd pull = right(moving);
-    const VectorXd solved = free.llt().solve(pull);
-    move(moving) = solved;
+  step.to = moved(hypothesis, point, {system.solve(pull, step.moving), {}}, 1);
+  step.move.xi = step.to.xi - point.xi;
+  step.move.eta = system.follow(normal.downhill, step.move.xi);
+  step.gain = 0.5 * normal.downhill.xi.dot(step.move.xi);
+  for (std::size_t t = 0; t < point.eta.size(); ++t) {
+    step.gain += 0.5 * normal.downhill.eta[t].dot(step.move.eta[t]);
+    step.to.eta[t] += step.move.eta[t];
   }
-  Step step{point, 0};
-  for (Index i = 0; i < p; ++i) {
-    const FreeQuantity& q = hypothesis.free[static_cast<std::size_t>(i)];
-    step.to.xi[i] = std::clamp(point.xi[i] + move[i], q.lowest, q.highest);
-  }
-  move = step.to.xi - point.xi;
-  step.gain = -0.5 * normal.gradient.dot(move);
-  for (std::size_t t = 0; t < normal.blocks.size(); ++t) {
-    if (normal.coupling[t].rows() == 0) continue;
-    const VectorXd eta = factors[t].solve(normal.latentRight[t] - normal.coupling[t] * move);
-    step.gain += 0.5 * normal.latentRight[t].dot(eta);
-    step.to.eta[t] += eta;
-  }
-  step.to.values = withCoordinates(hypothesis, point.values, step.to.xi);
   return step;
+}
+
+Likelihood::Point Likelihood::moved(const Hypothesis& hypothesis, const Point& from,
+                                    const JointVector& move, double share) {
+  Point to = from;
+  for (Index i = 0; i < to.xi.size(); ++i) {
+    const FreeQuantity& q = hypothesis.free[static_cast<std::size_t>(i)];
+    to.xi[i] = std::clamp(from.xi[i] + share * move.xi[i], q.lowest, q.highest);
+  }
+  for (std::size_t t = 0; t < move.eta.size(); ++t) to.eta[t] += share * move.eta[t];
+  to.values = withCoordinates(hypothesis, from.values, to.xi);
+  return to;
+}
+
+// Geodesic acceleration (docs/decisions/036-bent-steps.md). The outputs along a straight step v are
+// y + Jv + ½y_vv; one more simulation at h·v gives y_vv, and the step that meets their curve is
+// v + ½a with (JᵀJ/σ² + 1 + λ) a = −Jᵀy_vv/σ². Left straight where the bend is not small beside it.
+void Likelihood::bend(Step& step, const Hypothesis& hypothesis, const Noise& noise,
+                      const std::vector<Linear>& trials, const DampedSystem& system,
+                      const Point& point) const {
+  const double length = step.move.norm(), precision = 1 / (noise.output * noise.output);
+  if (!(length > 0) || !step.to.values.allFinite()) return;
+  const Point ahead = moved(hypothesis, point, step.move, kProbe);
+  JointVector right{VectorXd::Zero(point.xi.size()), {}};
+  for (std::size_t t = 0; t < trials.size(); ++t) {
+    const Linear& l = trials[t];
+    const VectorXd y = data_.outputs(trials_[t], ahead.values, latentForce(t, noise, ahead.eta[t]));
+    const VectorXd slope = (y - data_.measured(trials_[t]) + l.residuals) / kProbe;
+    VectorXd curve = slope - l.gamma * step.move.xi;
+    if (l.latent.cols() > 0) curve.noalias() -= l.latent * step.move.eta[t];
+    curve *= 2 / kProbe * precision;
+    right.xi.noalias() -= l.gamma.transpose() * curve;
+    right.eta.push_back(-(l.latent.transpose() * curve));
+  }
+  JointVector bent{system.solve(system.pull(right), step.moving), {}};
+  bent.eta = system.follow(right, bent.xi);
+  const double turn = bent.norm();
+  if (!(2 * turn <= kMostBend * length)) return;  // nor if the simulation failed there
+  for (std::size_t t = 0; t < bent.eta.size(); ++t) bent.eta[t] *= 0.5;
+  bent.xi *= 0.5;
+  step.to = moved(hypothesis, step.to, bent, 1);
 }
 
 Fit Likelihood::fit(const Hypothesis& hypothesis, const Noise& noise, const VectorXd& start,
@@ -267,12 +289,15 @@ std::optional<Fit> Likelihood::tryFit(const Hypothesis& hypothesis, const Noise&
   for (fit.iterations = 0; fit.iterations < options.iterations; ++fit.iterations) {
     const Normal normal = normalEquations(trials, noise, point);
     bool accepted = false;
+    double growth = 8;
     for (int attempt = 0; attempt < 12 && !accepted; ++attempt) {
-      Step next = step(hypothesis, normal, point, damping);
+      const DampedSystem system(normal.blocks, damping);
+      Step next = step(hypothesis, normal, system, point);
       if (std::abs(next.gain) < options.tolerance && damping < 0.1) {
         fit.converged = true;
         break;
       }
+      bend(next, hypothesis, noise, trials, system, point);
       // the first attempt mostly succeeds, and then its derivatives are needed, too
       std::vector<Linear> there;
       double nextCost = kInfinity;
@@ -288,7 +313,8 @@ std::optional<Fit> Likelihood::tryFit(const Hypothesis& hypothesis, const Noise&
         point = std::move(next.to);
         trials = attempt == 0 ? std::move(there) : linearised(point);
       } else {
-        damping = std::max(1e-3, damping * 8);
+        damping = std::max(fit.iterations == 0 ? 1e-3 : 1e-7, damping * growth);
+        growth *= 4;
       }
     }
     if (!accepted) break;

@@ -78,8 +78,8 @@ void Search::improve(const Effects& effects, const VectorXd& start, double size,
         keep(std::move(*tried));
         break;
       }
-      tried = fitted(size, tried->values, tried->eta, {kIterations - kShort, 0.05});
-      if (!tried) break;
+      if (auto further = fitted(size, tried->values, tried->eta, {kIterations - kShort, 0.05}))
+        tried = std::move(further);
     }
     Fit& fit = *tried;
     const double ratio =
@@ -94,7 +94,11 @@ void Search::improve(const Effects& effects, const VectorXd& start, double size,
     if (size > 3) break;
   }
   if (found.score == kFailed || (size < kHopeless && found.score > hopeless)) {
-    if (std::optional<Fit> simulation = fitted(0, values, {}, {12, 0.02})) {
+    std::optional<Fit> simulation = fitted(0, values, {}, {kShort, 0.02});
+    if (simulation && !simulation->converged && simulation->logEvidence > hopeless)
+      if (auto further = fitted(0, simulation->values, {}, {kIterations, 0.02}))
+        simulation = std::move(further);
+    if (simulation) {
       found.simulation = *simulation;
       keep(std::move(*simulation));
     }
@@ -205,7 +209,6 @@ void Search::race(const Effects& base, const std::vector<std::size_t>& candidate
   const VectorXd& values = near.values;
   const double raceSize = std::clamp(2 * at(base).fit.noise.latent, 0.01, kRaceSize);
   bool news = false;
-  double best = at(base).score;  // so far
   for (const std::size_t c : candidates) {
     const auto effects = with(base, c);
     if (entries_.count(effects) != 0) continue;
@@ -226,11 +229,10 @@ void Search::race(const Effects& base, const std::vector<std::size_t>& candidate
       }
       ++fits_;
     }
-    improve(effects, from, raceSize, &near, best - kGivenUp);
+    improve(effects, from, raceSize, &near, bestScore() - kGivenUp);
     // what contains the base cannot be far worse: a wrong minimum, once more from the base itself
     if (at(effects).score < at(base).score - options_.evidence)
       improve(effects, absent(c, values), near.noise.latent, &near);
-    best = std::max(best, at(effects).score);
   }
   if (!news) return;
   // cross-starts: everything that is not far behind, and the next three in any case, once more from
@@ -260,7 +262,7 @@ void Search::race(const Effects& base, const std::vector<std::size_t>& candidate
       const auto q = static_cast<Index>(data_.candidates()[c].quantities[i]);
       start[q] = own.fit.values[q];
     }
-    improve(with(base, c), start, size, &first.fit);
+    improve(with(base, c), start, size, &first.fit, bestScore() - kGivenUp);
   }
   report_(describe(data_, base));
   improve(base, absent(leader, from), size, &first.fit);
@@ -268,29 +270,43 @@ void Search::race(const Effects& base, const std::vector<std::size_t>& candidate
 
 void Search::raceFromNominal(std::size_t most) {
   struct Start {
-    double evidence;
     std::size_t candidate;
-    VectorXd values;
+    Hypothesis hypothesis;
+    Fit fit;
   };
   std::vector<Start> starts;
   const VectorXd nominal = nominalValues(data_);
+  const Noise wide{output_, kFirstSize, options_.latentTime};
+  const auto bestFirst = [&] {
+    std::sort(starts.begin(), starts.end(),
+              [](const Start& a, const Start& b) { return a.fit.logEvidence > b.fit.logEvidence; });
+  };
   for (std::size_t c = 0; c < data_.candidates().size(); ++c) {
     report_(describe(data_, {c}));
     const Hypothesis hypothesis = makeHypothesis(data_, {c}, trials_);
-    Start best{-HUGE_VAL, c, {}};
     for (std::size_t s = 0; s < data_.candidates()[c].starts.size(); ++s) {
-      const auto fit = likelihood_->tryFit(hypothesis, {output_, kFirstSize, options_.latentTime},
-                                           started(c, s, nominal), {}, {6, 0.1});
+      auto fit = likelihood_->tryFit(hypothesis, wide, started(c, s, nominal), {}, {3, 0.1});
       ++fits_;
-      if (fit && fit->logEvidence > best.evidence) best = {fit->logEvidence, c, fit->values};
+      if (fit) starts.push_back({c, hypothesis, std::move(*fit)});
     }
-    if (best.values.size() > 0) starts.push_back(std::move(best));
   }
-  std::sort(starts.begin(), starts.end(),
-            [](const Start& a, const Start& b) { return a.evidence > b.evidence; });
-  for (std::size_t i = 0; i < std::min(most, starts.size()); ++i) {
-    report_(describe(data_, {starts[i].candidate}));
-    improve({starts[i].candidate}, starts[i].values, kFirstSize);
+  bestFirst();  // the better half goes on
+  starts.erase(starts.begin() + static_cast<std::ptrdiff_t>((starts.size() + 1) / 2), starts.end());
+  for (Start& start : starts) {
+    report_(describe(data_, {start.candidate}));
+    auto fit =
+        likelihood_->tryFit(start.hypothesis, wide, start.fit.values, start.fit.eta, {3, 0.1});
+    ++fits_;
+    if (fit) start.fit = std::move(*fit);
+  }
+  bestFirst();
+  std::vector<std::size_t> taken;
+  for (const Start& start : starts) {
+    if (taken.size() >= most) break;
+    if (std::find(taken.begin(), taken.end(), start.candidate) != taken.end()) continue;
+    taken.push_back(start.candidate);
+    report_(describe(data_, {start.candidate}));
+    improve({start.candidate}, start.fit.values, kFirstSize, &start.fit);
   }
 }
 
@@ -325,6 +341,28 @@ void Search::drop(const Effects& effects, std::size_t effect) {
           std::clamp(2 * entry.fit.noise.latent, 0.01, kRaceSize), &entry.fit);
 }
 
+double Search::bestScore() const {
+  double best = kFailed;
+  for (const auto& [effects, entry] : entries_) best = std::max(best, entry.score);
+  return best;
+}
+
+bool Search::complete(double within) {
+  const double best = bestScore();
+  std::vector<Effects> unfinished;
+  for (const auto& [effects, entry] : entries_)
+    if (entry.works() && !entry.fit.converged && entry.score > best - within)
+      unfinished.push_back(effects);
+  bool gained = false;
+  for (const Effects& effects : unfinished) {
+    const Entry before = at(effects);
+    report_(describe(data_, effects));
+    improve(effects, before.fit.values, std::max(2e-3, before.fit.noise.latent), &before.fit);
+    gained = gained || at(effects).score > before.score + 1;
+  }
+  return gained;
+}
+
 bool Entry::works() const {
   return score > kFailed;
 }
@@ -333,8 +371,7 @@ void Search::reconcile() {
   std::map<Effects, double> asked;  // the score of the larger one when it was asked last
   for (bool again = true; again;) {
     again = false;
-    double best = kFailed;
-    for (const auto& [effects, entry] : entries_) best = std::max(best, entry.score);
+    const double best = bestScore();
     for (const auto& [effects, entry] : entries_) {
       if (!entry.works()) continue;
       for (const std::size_t effect : effects) {

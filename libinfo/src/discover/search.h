@@ -79,6 +79,9 @@ class Search {
   /// absent there (less than 2 deviations): the smaller one was in a wrong minimum, or was never
   /// raced.
   void reconcile();
+  /// Fits what is no further than so many nats behind the best and was not done goes on. True if
+  /// one of them gained a nat.
+  bool complete(double within);
   /// Fits `effects` without one of them, from where the fit of all of them is.
   void drop(const Effects& effects, std::size_t effect);
   /// Least |amplitude − nominal|/deviation over its effects.
@@ -86,7 +89,8 @@ class Search {
 
  private:
   double significance(const Entry& entry, std::size_t effect) const;
-  void mustWork() const;  ///< @throws std::domain_error if the base could not be fitted
+  double bestScore() const;  ///< of all hypotheses
+  void mustWork() const;     ///< @throws std::domain_error if the base could not be fitted
   /// @param near  a fit whose latent force keeps the simulation near the data at the start; or null
   /// @param hopeless  a first fit that is slow and below this score is not followed any further
   void improve(const Effects& effects, const Eigen::VectorXd& start, double size,

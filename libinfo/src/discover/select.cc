@@ -34,7 +34,9 @@ class Selection {
       }
       if (chosen_ == before && !replaceOne(list)) break;
     }
-    return chosen_;
+    // names that are told apart by fits which were not done
+    for (int i = 0; i < 2 && search_.complete(2 * options_.classWidth); ++i) search_.reconcile();
+    return chosen_ = best();
   }
 
  private:

@@ -15,6 +15,9 @@ struct Gap {
   double after = 0;       ///< with the effects
   double floor = 0;       ///< σ_y
   double range = 0;       ///< of the data, for normalised errors
+  /// What `after` may be expected to be of held-out trials, were the model found true
+  /// (expectedError); empty for those that were fitted
+  std::optional<double> expected;
   /// 1 − (after² − floor²)/(before² − floor²); empty if before² < 1.2·floor², three
   /// deviations of a mean square over 450 samples: no gap to close
   std::optional<double> closedFromCalibrated, closedFromNominal;

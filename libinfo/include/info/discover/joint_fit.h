@@ -9,6 +9,9 @@
 
 namespace info::discover {
 
+class DampedSystem;
+struct JointVector;
+
 /// How the data scatter about the model.
 struct Noise {
   double output = 0;         ///< σ_y > 0, of every sample
@@ -99,8 +102,8 @@ class Likelihood {
   Projected project(const Fit& fit, const std::vector<Linear>& trials,
                     const std::vector<Eigen::MatrixXd>& disturbances) const;
 
-  /// What would be white if ξ were known, with LLᵀ = σ_y² + WWᵀ, in the order of time. With ξ fitted
-  /// the innovations' covariance is 1 − (L⁻¹Γ) cov(ξ) (L⁻¹Γ)ᵀ.
+  /// What would be white if ξ were known, with LLᵀ = σ_y² + WWᵀ, in the order of time. With ξ
+  /// fitted the innovations' covariance is 1 − (L⁻¹Γ) cov(ξ) (L⁻¹Γ)ᵀ.
   struct Whitened {
     Eigen::VectorXd innovations;  ///< L⁻¹(e + Wη)
     Eigen::MatrixXd gamma;        ///< L⁻¹Γ
@@ -122,8 +125,14 @@ class Likelihood {
   double simulatedCost(const Noise& noise, const Point& point) const;
   Normal normalEquations(const std::vector<Linear>& trials, const Noise& noise,
                          const Point& point) const;
-  Step step(const Hypothesis& hypothesis, const Normal& normal, const Point& point,
-            double damping) const;
+  static Point moved(const Hypothesis& hypothesis, const Point& from, const JointVector& move,
+                     double share);
+  Step step(const Hypothesis& hypothesis, const Normal& normal, const DampedSystem& system,
+            const Point& point) const;
+  void bend(Step& step, const Hypothesis& hypothesis, const Noise& noise,
+            const std::vector<Linear>& trials, const DampedSystem& system,
+            const Point& point) const;
+  Eigen::VectorXd latentForce(std::size_t at, const Noise& noise, const Eigen::VectorXd& eta) const;
   Linear linearise(std::size_t at, const Hypothesis& hypothesis, double latentSize,
                    const Eigen::VectorXd& values, const Eigen::VectorXd& xi,
                    const Eigen::VectorXd& eta, const std::vector<std::size_t>& extra,
