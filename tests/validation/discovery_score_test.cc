@@ -61,8 +61,11 @@ Json verdictOf(const std::string& word, const Json& effects, const Json& inClass
 TEST(Judge, ARightNameWithItsAmplitude) {
   Json verdict = verdictOf("named", Json::array({effectOf("visc", "structure", 0.99, 0.34, 0.02)}),
                            Json::array({"visc"}));
-  verdict["gap"] = {
-      {"held_out", {{"gap_closed", 0.99}, {"rmse_after_deg", 0.51}, {"noise_floor_deg", 0.5}}}};
+  verdict["gap"] = {{"held_out",
+                     {{"gap_closed", 0.99},
+                      {"rmse_after_deg", 0.51},
+                      {"rmse_expected_deg", 0.54},
+                      {"noise_floor_deg", 0.5}}}};
   verdict["wall_s"] = 12.5;
   const Outcome o = judge("a", labelOf("single", Json::array({truthOf("visc", 0.3)})), verdict);
   EXPECT_TRUE(o.firstIsRight && o.classHasTruth && o.allNamed && o.claims && o.unqualified);
@@ -70,6 +73,7 @@ TEST(Judge, ARightNameWithItsAmplitude) {
   EXPECT_NEAR(o.z.value(), 2, 1e-12);
   EXPECT_NEAR(o.gapClosed.value(), 0.99, 1e-12);
   EXPECT_NEAR(o.overFloor.value(), 1.02, 1e-12);
+  EXPECT_NEAR(o.expectedOverFloor.value(), 1.08, 1e-12);
   EXPECT_NEAR(o.seconds.value(), 12.5, 1e-12);
   verdict["processor_s"] = 9;  // says more where the machine is shared
   EXPECT_EQ(judge("a", labelOf("single", Json::array({truthOf("visc", 0.3)})), verdict).seconds, 9);

@@ -200,6 +200,8 @@ Outcome judge(const std::string& name, const Json& label, const Json& verdict) {
       const auto after = finite(heldOut, ("rmse_after" + unit).c_str());
       const auto floor = finite(heldOut, ("noise_floor" + unit).c_str());
       if (after && floor && *floor > 0) o.overFloor = *after / *floor;
+      const auto expected = finite(heldOut, ("rmse_expected" + unit).c_str());
+      if (expected && floor && *floor > 0) o.expectedOverFloor = *expected / *floor;
     }
   }
   o.seconds = finite(verdict, "processor_s");
@@ -339,12 +341,19 @@ Score score(const std::vector<Outcome>& outcomes) {
   r.push_back(coverage);
 
   const auto hidden = [](const Outcome& o) { return !o.truth.empty() && o.suite != "out"; };
+  const auto clean = [&](const Outcome& o) { return hidden(o) && !(o.emgNoise > 0) && o.claims; };
   s.spreads.push_back(
       spread(outcomes, "gap closed on the held-out trial", "", "median ≥ 0.97", 0.97, false,
              [&](const Outcome& o) { return hidden(o) ? o.gapClosed : std::nullopt; }));
   s.spreads.push_back(
       spread(outcomes, "held-out error over the noise floor", "", "median ≤ 1.03", 1.03, true,
              [&](const Outcome& o) { return hidden(o) ? o.overFloor : std::nullopt; }));
+  s.spreads.push_back(
+      spread(outcomes, "the same, clean EMG, as verdicts expect it", "", "–", 0, false,
+             [&](const Outcome& o) { return clean(o) ? o.expectedOverFloor : std::nullopt; }));
+  s.spreads.push_back(
+      spread(outcomes, "the same, clean EMG, as it is", "", "–", 0, false,
+             [&](const Outcome& o) { return clean(o) ? o.overFloor : std::nullopt; }));
   s.spreads.push_back(spread(outcomes, "time per data set", "s", "≤ 60 s", 60, true,
                              [](const Outcome& o) { return o.seconds; }));
   s.calibration = calibrationOf(outcomes);
@@ -406,7 +415,7 @@ std::string Score::asMarkdown() const {
     const bool any = !s.values.empty();
     text += any ? fmt::format("| {} | {} | {:.4g} {} | {:.4g} – {:.4g} | {} | {} |\n", s.metric,
                               s.values.size(), s.median(), s.unit, s.values.front(),
-                              s.values.back(), s.target, yes(any, s.met))
+                              s.values.back(), s.target, s.target == "–" ? "–" : yes(any, s.met))
                 : fmt::format("| {} | 0 | – | – | {} | – |\n", s.metric, s.target);
   }
   if (calibration.n > 0) {

@@ -35,7 +35,7 @@ struct Outcome {
   bool firstIsTrue = false;  ///< the first name is the truth itself, no equivalent
   bool unqualified = false;  ///< "named" or "parameter", and none of its names has a rival
   std::optional<double> z;   ///< (estimate − truth)/sd of the first right name's amplitude
-  std::optional<double> gapClosed, overFloor, seconds;
+  std::optional<double> gapClosed, overFloor, expectedOverFloor, seconds;
 
   bool confidentlyWrong() const { return confident && claims && !classHasTruth; }
 };
