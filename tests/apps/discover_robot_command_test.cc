@@ -56,6 +56,12 @@ TEST(DiscoverRobotCommand, NamesTheDryFrictionOfADoublePendulumAndFindsNothingMo
   EXPECT_NEAR(moment["value"].get<double>(), truth, 2 * moment["sd"].get<double>());
   EXPECT_LT(moment["sd"].get<double>(), 0.2 * truth);
   EXPECT_GT(verdict["gap"]["held_out"]["gap_closed"].get<double>(), 0.9);
+  // three trials leave little unknown, so an error of about the noise is to be expected
+  const auto& heldOut = verdict["gap"]["held_out"];
+  const double floor = heldOut["noise_floor_deg"], expected = heldOut["rmse_expected_deg"];
+  EXPECT_GT(expected, 0.98 * floor);
+  EXPECT_LT(expected, 1.1 * floor);
+  EXPECT_NEAR(heldOut["rmse_after_deg"].get<double>(), expected, 0.15 * floor);
   EXPECT_TRUE(verdict["localisation"].contains("inputs"));
   const std::string report = contentOf(scratch / "out" / "report.html");
   for (const char* title : {"link1 [deg]", "link2 [deg]", "What is missing", "Score over time",
