@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -11,10 +12,13 @@
 #include "arm_input.h"
 #include "arm_options.h"
 #include "bio/arm_experiment.h"
+#include "bio/discover/separating_design.h"
+#include "bio/replay.h"
 #include "design_report.h"
 #include "interruption.h"
 #include "progress_bar.h"
 #include "result.h"
+#include "separating_report.h"
 
 namespace app {
 namespace {
@@ -48,8 +52,17 @@ class Design : public Command {
           ->allow_extra_args(false)
           ->type_name("NAMES");
     };
-    names("--parameters", parameters_, "to be known better; see sensitivity --list-parameters")
-        ->required();
+    names("--parameters", parameters_, "to be known better; see sensitivity --list-parameters");
+    names("--separate", separate_,
+          "two effects that discover knows, by id: the experiment that tells one from the other "
+          "instead, every parameter being as uncertain as its tolerance says");
+    options
+        .add_option(
+            "--size", sizes_,
+            "with --separate: how large an effect would be, in its unit; default: its prior "
+            "deviation")
+        ->type_name("ID=SIZE")
+        ->allow_extra_args(false);
     names("--nuisance", nuisance_,
           "unknown as well, but for their default priors; the bounds allow for that");
     options.add_flag("--priors", priors_, "the --parameters have their default priors too");
@@ -105,34 +118,21 @@ class Design : public Command {
 
   ExitStatus run(const CommandContext& context) override {
     check();
+    if (!separate_.empty()) return separate(context);
     OutputFolder folder(context, {"design.sto"});
     Summary summary(context);
     const bio::Model model = readModel(model_, summary);
     const bio::Arm arm = movableArm(model, model_, simulation_, summary);
     const TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
     const bio::ParameterCatalogue catalogue(model, arm, {input.start.q, {}});
-    const bio::Coordinate& coordinate = arm.skeleton().coordinates().front();
-    if (!coordinate.isRotation) {
-      throw std::invalid_argument(
-          fmt::format("--coordinate: '{}' is no rotation", coordinate.name));
-    }
+    const bio::Coordinate& coordinate = rotationOf(arm);
     const bio::SimulationOptions simulation =
         simulationOptions(simulation_, input.startTime, input.duration);
     const bio::ExperimentDesign design(arm, catalogue, catalogue.nominal(), input.trial, simulation,
                                        question(catalogue, coordinate), limits(coordinate),
                                        groups(arm, input.start.q), knots_);
     bio::DesignResult result;
-    {
-      ProgressBar bar("design");
-      settings_.seed = context.seed;
-      settings_.threads = context.threads;
-      settings_.progress = [&](double done) {
-        if (interruptionRequested()) return false;
-        bar.update(done);
-        return true;
-      };
-      result = design.search(settings_);
-    }
+    search(context, [&] { result = design.search(settings_); });
     folder.writeFile("design.sto", [&](const std::filesystem::path& path) {
       bio::writeTable(bio::designTable(arm, result.after, coordinate.name), path);
     });
@@ -154,7 +154,92 @@ class Design : public Command {
   }
 
  private:
+  template <class Search>
+  void search(const CommandContext& context, const Search& run) {
+    ProgressBar bar("design");
+    settings_.seed = context.seed;
+    settings_.threads = context.threads;
+    settings_.progress = [&](double done) {
+      if (interruptionRequested()) return false;
+      bar.update(done);
+      return true;
+    };
+    run();
+  }
+
+  ExitStatus separate(const CommandContext& context) {
+    OutputFolder folder(context, {"design.sto"});
+    Summary summary(context);
+    const bio::Model model = readModel(model_, summary);
+    const bio::Arm arm = movableArm(model, model_, simulation_, summary);
+    summary.addInput(trial_);
+    const bio::Trial trial = bio::readTrial(
+        trial_, model, {.ignoreExtra = simulation_.ignoreExtra, .knownChanges = true});
+    for (const std::string& warning : trial.warnings) summary.warn(warning);
+    const bio::Coordinate& coordinate = rotationOf(arm);
+    bio::discover::SeparationQuestion question;
+    question.first = separate_[0];
+    question.second = separate_[1];
+    for (const std::string& text : sizes_) {
+      const Assignment size = parseAssignment(text);
+      if (size.name != question.first && size.name != question.second) {
+        throw std::invalid_argument(
+            fmt::format("--size: '{}' is not one of --separate", size.name));
+      }
+      if (size.value == 0) throw std::invalid_argument("--size: " + text + ", must not be 0");
+      (size.name == question.first ? question.firstSize : question.secondSize) = size.value;
+    }
+    question.start = bio::startCoordinates(trial, arm, byName(simulation_.initial))[0];
+    question.noise = noise_deg_ * degree;
+    question.period = 1 / rate_Hz_;
+    const double duration = trial.times[trial.times.size() - 1] - trial.times[0];
+    bio::discover::ElbowOptions options;
+    options.simulation = simulationOptions(simulation_, trial.times[0], duration);
+    const bio::discover::SeparatingDesign design(
+        model, armOptions(simulation_), coordinate.name, trial, options, question,
+        limits(coordinate), groups(arm, arm.skeleton().defaultValues()), knots_);
+    bio::discover::SeparatingResult result;
+    const auto begin = std::chrono::steady_clock::now();
+    search(context, [&] { result = design.search(settings_); });
+    const double wall =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const SeparatingFindings findings{model_, trial_, design, result, coordinate};
+    folder.writeFile("design.sto", [&](const std::filesystem::path& path) {
+      bio::writeTable(separatingTable(findings), path);
+    });
+    summary.setSimulation(simulation_.integrator, options.simulation.step, duration, wall);
+    tellSeparation(findings, summary);
+    deliver(context, summary, separatingReport(findings), folder);
+    if (result.stopped) throw Interrupted{};
+    return result.improved ? ExitStatus::done : ExitStatus::answerIsNo;
+  }
+
+  static const bio::Coordinate& rotationOf(const bio::Arm& arm) {
+    const bio::Coordinate& coordinate = arm.skeleton().coordinates().front();
+    if (!coordinate.isRotation) {
+      throw std::invalid_argument(
+          fmt::format("--coordinate: '{}' is no rotation", coordinate.name));
+    }
+    return coordinate;
+  }
+
   void check() const {
+    if (parameters_.empty() == separate_.empty()) {
+      throw std::invalid_argument(
+          "either --parameters or --separate is required, and not both (see --help)");
+    }
+    if (!separate_.empty() && separate_.size() != 2) {
+      throw std::invalid_argument(
+          fmt::format("--separate: {} effects, must be two", separate_.size()));
+    }
+    if (!sizes_.empty() && separate_.empty()) {
+      throw std::invalid_argument("--size goes with --separate");
+    }
+    if (!separate_.empty() &&
+        (!nuisance_.empty() || priors_ || !givenPriors_.empty() || monteCarlo_ > 0)) {
+      throw std::invalid_argument(
+          "--nuisance, --priors, --prior and --monte-carlo do not go with --separate");
+    }
     const auto positive = [](const char* name, double value, const char* unit) {
       if (!(value > 0 && std::isfinite(value))) {
         throw std::invalid_argument(fmt::format("{}: {} {}, must be > 0", name, value, unit));
@@ -289,7 +374,7 @@ class Design : public Command {
   }
 
   std::string model_, trial_, criterion_ = "E";
-  std::vector<std::string> parameters_, nuisance_, givenPriors_, excite_, range_;
+  std::vector<std::string> parameters_, nuisance_, givenPriors_, excite_, range_, separate_, sizes_;
   bool priors_ = false;
   double noise_deg_ = 0.5, rate_Hz_ = 100, speed_deg_ = 500, knots_ = 0.3;
   bio::DesignLimits limits_ = {};

@@ -30,44 +30,12 @@ std::vector<double> equalTimes(double start, double duration, double interval) {
   return times;
 }
 
-/// Knots at most `interval` apart, equally spaced, from start to end.
-std::vector<double> knotsOf(double start, double duration, double interval) {
-  require(interval > 0 && duration / interval < 1e4,
-          fmt::format("interval of the knots = {} s, must be > 0 and not tiny", interval));
-  const double parts = std::max(1.0, std::ceil(duration / interval - 1e-9));
-  std::vector<double> knots;
-  for (double k = 0; k <= parts; ++k) knots.push_back(start + duration * k / parts);
-  return knots;
-}
-
-/// Both, sorted; where two are together, the first list's.
-std::vector<double> merged(const std::vector<double>& first, const std::vector<double>& second) {
-  std::vector<double> all = first;
-  for (const double t : second) {
-    const auto at = std::lower_bound(first.begin(), first.end(), t - sameTime);
-    if (at == first.end() || *at > t + sameTime) all.push_back(t);
-  }
-  std::sort(all.begin(), all.end());
-  return all;
-}
-
-std::vector<info::ProfileLimits> profileLimits(const DesignLimits& limits, std::size_t groups) {
-  std::vector<info::ProfileLimits> inputs;
-  if (limits.torque > 0) inputs.push_back({-limits.torque, limits.torque, limits.torqueRate, 0.0});
-  for (std::size_t g = 0; g < groups; ++g) {
-    inputs.push_back({limits.leastExcitation, limits.largestExcitation, limits.excitationRate, {}});
-  }
-  return inputs;
-}
-
-double largestSlope(const std::vector<double>& times, const MatrixXd& values) {
-  double largest = 0;
-  for (std::size_t k = 0; k + 1 < times.size(); ++k) {
-    const auto row = static_cast<Index>(k);
-    largest = std::max(largest, (values.row(row + 1) - values.row(row)).cwiseAbs().maxCoeff() /
-                                    (times[k + 1] - times[k]));
-  }
-  return largest;
+std::vector<double> measurements(const DesignQuestion& question,
+                                 const SimulationOptions& simulation) {
+  require(question.period > 0 && question.period <= simulation.duration,
+          fmt::format("period of the measurements = {} s, must be > 0 and at most the duration",
+                      question.period));
+  return equalTimes(simulation.startTime, simulation.duration, question.period);
 }
 
 MatrixXd valuesAt(const ExcitationSignal& signal, const std::vector<double>& times) {
@@ -91,29 +59,14 @@ ExperimentDesign::ExperimentDesign(const Arm& arm, const ParameterCatalogue& cat
       setting_(std::move(setting)),
       simulation_(simulation),
       question_(std::move(question)),
-      limits_(limits),
-      groups_(std::move(groups)),
       coordinate_(arm.skeleton().indexOf(question_.coordinate)),
-      profiles_(knotsOf(simulation.startTime, simulation.duration, knotInterval),
-                profileLimits(limits_, groups_.size())) {
+      inputs_(arm, trial, question_.coordinate, simulation.startTime, simulation.duration, limits,
+              std::move(groups), knotInterval, measurements(question_, simulation)) {
   require(coordinate_ >= 0,
           fmt::format("measured coordinate '{}' is not free", question_.coordinate));
   require(question_.noise > 0 && std::isfinite(question_.noise),
           fmt::format("noise = {}, must be > 0", question_.noise));
-  require(question_.period > 0 && question_.period <= simulation.duration,
-          fmt::format("period of the measurements = {} s, must be > 0 and at most the duration",
-                      question_.period));
-  require(limits_.torque >= 0 && std::isfinite(limits_.torque),
-          fmt::format("largest torque = {} N·m, must be ≥ 0", limits_.torque));
-  require(limits_.leastExcitation >= 0 && limits_.largestExcitation <= 1,
-          fmt::format("excitations {} to {}, must be within 0 to 1", limits_.leastExcitation,
-                      limits_.largestExcitation));
-  require(limits_.lower < limits_.upper,
-          fmt::format("range {} to {}, must rise", limits_.lower, limits_.upper));
-  require(limits_.surprise >= 0, fmt::format("surprise = {}, must be ≥ 0", limits_.surprise));
-  require(limits_.speed > 0, fmt::format("largest speed = {}, must be > 0", limits_.speed));
   require(!question_.parameters.empty(), "no parameter is asked for");
-  require(profiles_.size() > 0, "nothing may be changed: no torque and no muscle");
   require(question_.criterion != info::Optimality::conditionNumber,
           "the criterion must be E, A or D");
 
@@ -132,65 +85,21 @@ ExperimentDesign::ExperimentDesign(const Arm& arm, const ParameterCatalogue& cat
             fmt::format("parameter '{}' is named twice", catalogue.parameters()[index].name));
     scale_[i] = catalogue.parameters()[index].deviation;
   }
-
-  std::vector<std::string> seen;
-  for (const MuscleGroup& group : groups_) {
-    require(!group.muscles.empty(), fmt::format("group '{}' has no muscle", group.name));
-    columns_.emplace_back();
-    for (const std::string& name : group.muscles) {
-      const auto& all = arm.muscles();
-      const auto found =
-          std::find_if(all.begin(), all.end(), [&](const auto& m) { return m.name == name; });
-      require(found != all.end(), fmt::format("'{}' is no muscle of the arm", name));
-      require(std::count(seen.begin(), seen.end(), name) == 0,
-              fmt::format("muscle '{}' is in two groups", name));
-      seen.push_back(name);
-      columns_.back().push_back(found - all.begin());
-    }
-  }
-
-  const ExcitationSignal given = excitationOf(trial, arm);
-  rows_ = merged(given.times(), profiles_.knots());
-  measuredTimes_ = equalTimes(simulation.startTime, simulation.duration, question_.period);
-  rows_ = merged(rows_, measuredTimes_);
-  trialExcitation_ = valuesAt(given, rows_);
-  trialForce_ = externalForceOf(trial, arm);
 }
 
-ExperimentDesign::Inputs ExperimentDesign::inputsOf(const VectorXd& x) const {
-  MatrixXd excitation = trialExcitation_;
-  ExternalForce torque = trialForce_;
-  if (x.size() > 0) {
-    const MatrixXd values = profiles_.values(x, rows_);
-    Index input = 0;
-    if (hasTorque()) {
-      MatrixXd all = MatrixXd::Zero(values.rows(), arm_->skeleton().numCoordinates());
-      for (std::size_t k = 0; k < rows_.size() && !trialForce_.empty(); ++k) {
-        all.row(static_cast<Index>(k)) = trialForce_.at(rows_[k]).value.transpose();
-      }
-      all.col(coordinate_) = values.col(input++);
-      torque = ExternalForce(rows_, std::move(all));
-    }
-    for (const auto& columns : columns_) {
-      for (const Index column : columns) excitation.col(column) = values.col(input);
-      ++input;
-    }
-  }
-  return {ExcitationSignal(rows_, std::move(excitation)), std::move(torque)};
-}
-
-SensitivityTrajectory ExperimentDesign::simulateInputs(const Inputs& inputs) const {
+SensitivityTrajectory ExperimentDesign::simulateTrial(const Trial& trial) const {
   SensitivityOptions options{simulation_, false};
-  options.simulation.externalForce = inputs.torque;
-  return simulateWithSensitivities(*arm_, *catalogue_, setting_, wanted_, inputs.excitation,
-                                   options);
+  options.simulation.externalForce = externalForceOf(trial, *arm_);
+  return simulateWithSensitivities(*arm_, *catalogue_, setting_, wanted_,
+                                   excitationOf(trial, *arm_), options);
 }
 
 MatrixXd ExperimentDesign::gammaOf(const SensitivityTrajectory& s) const {
   const auto c = static_cast<std::size_t>(coordinate_);
-  MatrixXd gamma(static_cast<Index>(measuredTimes_.size()), static_cast<Index>(wanted_.size()));
-  for (std::size_t i = 0; i < measuredTimes_.size(); ++i) {
-    const MotionWeights w = weightsAt(s.motion.time, measuredTimes_[i]).value();
+  MatrixXd gamma(static_cast<Index>(inputs_.measuredTimes().size()),
+                 static_cast<Index>(wanted_.size()));
+  for (std::size_t i = 0; i < inputs_.measuredTimes().size(); ++i) {
+    const MotionWeights w = weightsAt(s.motion.time, inputs_.measuredTimes()[i]).value();
     gamma.row(static_cast<Index>(i)) = w.rows(s.q[c], s.qDot[c]);
   }
   return gamma;
@@ -237,7 +146,7 @@ info::InformationCost ExperimentDesign::cost(const MatrixXd& information,
 /// every row: √Σ(dq/dθ_i·deviation_i)².
 VectorXd ExperimentDesign::surpriseOf(const SensitivityTrajectory& s) const {
   const auto p = static_cast<Index>(question_.parameters.size());
-  const VectorXd off = limits_.surprise * scale_.cwiseMin(question_.priorDeviation).head(p);
+  const VectorXd off = limits().surprise * scale_.cwiseMin(question_.priorDeviation).head(p);
   return (s.q[static_cast<std::size_t>(coordinate_)].leftCols(p) * off.asDiagonal())
       .rowwise()
       .norm();
@@ -245,7 +154,7 @@ VectorXd ExperimentDesign::surpriseOf(const SensitivityTrajectory& s) const {
 
 VectorXd ExperimentDesign::surpriseAt(const DesignedExperiment& e) const {
   const auto p = static_cast<Index>(question_.parameters.size());
-  const VectorXd off = limits_.surprise * scale_.cwiseMin(question_.priorDeviation).head(p);
+  const VectorXd off = limits().surprise * scale_.cwiseMin(question_.priorDeviation).head(p);
   return (e.gamma.leftCols(p) * off.asDiagonal()).rowwise().norm();
 }
 
@@ -265,22 +174,23 @@ VectorXd ExperimentDesign::boundOverTime(const DesignedExperiment& e) const {
 
 double ExperimentDesign::penalty(const SensitivityTrajectory& s, double price) const {
   // from a margin inside the limits on, by the square, as a mean over the rows
-  const double margin = 0.02 * (limits_.upper - limits_.lower);
+  const double margin = 0.02 * (limits().upper - limits().lower);
   const VectorXd surprise = surpriseOf(s);
   double sum = 0;
   for (Index k = 0; k < surprise.size(); ++k) {
     const double q = s.motion.q(coordinate_, k);
-    const double below = std::max(0.0, limits_.lower + margin - q + surprise[k]) / margin;
-    const double above = std::max(0.0, q + surprise[k] - limits_.upper + margin) / margin;
+    const double below = std::max(0.0, limits().lower + margin - q + surprise[k]) / margin;
+    const double above = std::max(0.0, q + surprise[k] - limits().upper + margin) / margin;
     const double fast =
-        std::max(0.0, std::abs(s.motion.qDot(coordinate_, k)) / limits_.speed - 0.97) / 0.03;
+        std::max(0.0, std::abs(s.motion.qDot(coordinate_, k)) / limits().speed - 0.97) / 0.03;
     sum += below * below + above * above + fast * fast;
   }
   return price * sum / static_cast<double>(surprise.size());
 }
 
-DesignedExperiment ExperimentDesign::describe(VectorXd x, Inputs inputs) const {
-  SensitivityTrajectory s = simulateInputs(inputs);
+DesignedExperiment ExperimentDesign::describe(VectorXd x) const {
+  const Trial trial = inputs_.at(x);
+  SensitivityTrajectory s = simulateTrial(trial);
   if (s.motion.outcome != Outcome::completed) throw std::runtime_error(s.motion.why);
   DesignedExperiment e;
   e.inputs = std::move(x);
@@ -294,11 +204,11 @@ DesignedExperiment ExperimentDesign::describe(VectorXd x, Inputs inputs) const {
     const MatrixXd inverse = factor.solve(MatrixXd::Identity(scale_.size(), scale_.size()));
     e.bound = scale_.cwiseProduct(inverse.diagonal().cwiseSqrt());
   }
-  e.measuredTimes =
-      Eigen::Map<const VectorXd>(measuredTimes_.data(), static_cast<Index>(measuredTimes_.size()));
+  e.measuredTimes = Eigen::Map<const VectorXd>(inputs_.measuredTimes().data(),
+                                               static_cast<Index>(inputs_.measuredTimes().size()));
   e.measured.resize(e.measuredTimes.size());
-  for (std::size_t i = 0; i < measuredTimes_.size(); ++i) {
-    const MotionWeights w = weightsAt(s.motion.time, measuredTimes_[i]).value();
+  for (std::size_t i = 0; i < inputs_.measuredTimes().size(); ++i) {
+    const MotionWeights w = weightsAt(s.motion.time, inputs_.measuredTimes()[i]).value();
     e.measured[static_cast<Index>(i)] =
         w.value(s.motion.q.row(coordinate_), s.motion.qDot.row(coordinate_));
   }
@@ -308,64 +218,33 @@ DesignedExperiment ExperimentDesign::describe(VectorXd x, Inputs inputs) const {
   e.surprisedLowest = (s.motion.q.row(coordinate_).transpose() - surprise).minCoeff();
   e.surprisedHighest = (s.motion.q.row(coordinate_).transpose() + surprise).maxCoeff();
   e.fastest = s.motion.qDot.row(coordinate_).cwiseAbs().maxCoeff();
-  if (!inputs.torque.empty()) {
-    MatrixXd values(static_cast<Index>(rows_.size()), 1);
-    for (std::size_t k = 0; k < rows_.size(); ++k) {
-      values(static_cast<Index>(k), 0) = inputs.torque.at(rows_[k]).value[coordinate_];
-    }
-    e.largestTorque = values.cwiseAbs().maxCoeff();
-    e.largestTorqueRate = largestSlope(rows_, values);
-  }
-  for (const auto& columns : columns_) {
-    for (const Index column : columns) {
-      e.largestExcitationRate =
-          std::max(e.largestExcitationRate,
-                   largestSlope(rows_, valuesAt(inputs.excitation, rows_).col(column)));
-    }
-  }
+  e.largestTorque = inputs_.torqueOf(trial).cwiseAbs().maxCoeff();
+  e.largestTorqueRate = inputs_.largestTorqueRate(trial);
+  e.largestExcitationRate = inputs_.largestExcitationRate(trial);
   e.motion = std::move(s.motion);
-  e.excitation = std::move(inputs.excitation);
-  e.torque = std::move(inputs.torque);
+  e.excitation = excitationOf(trial, *arm_);
+  e.torque = externalForceOf(trial, *arm_);
   return e;
 }
 
 DesignedExperiment ExperimentDesign::before() const {
-  return describe({}, inputsOf({}));
+  return describe({});
 }
 
 DesignedExperiment ExperimentDesign::at(const VectorXd& x) const {
-  return describe(x, inputsOf(x));
+  return describe(x);
 }
 
 bool ExperimentDesign::keepsRange(double lowest, double highest, double fastest) const {
-  return lowest >= limits_.lower && highest <= limits_.upper && fastest <= limits_.speed;
+  return lowest >= limits().lower && highest <= limits().upper && fastest <= limits().speed;
 }
 
 bool ExperimentDesign::keepsLimits(const DesignedExperiment& e) const {
   constexpr double rounding = 1 + 1e-6;
   return keepsRange(e.surprisedLowest, e.surprisedHighest, e.fastest) &&
-         e.largestTorque <= limits_.torque * rounding &&
-         e.largestTorqueRate <= limits_.torqueRate * rounding &&
-         (e.inputs.size() == 0 || e.largestExcitationRate <= limits_.excitationRate * rounding);
-}
-
-VectorXd ExperimentDesign::startCoefficients() const {
-  MatrixXd atKnots = MatrixXd::Zero(static_cast<Index>(profiles_.knots().size()),
-                                    static_cast<Index>(profiles_.inputs().size()));
-  const ExcitationSignal trial(rows_, trialExcitation_);
-  const MatrixXd excitation = valuesAt(trial, profiles_.knots());
-  Index input = hasTorque() ? 1 : 0;
-  for (std::size_t k = 0; k < profiles_.knots().size() && hasTorque(); ++k) {
-    if (trialForce_.empty()) break;
-    atKnots(static_cast<Index>(k), 0) = trialForce_.at(profiles_.knots()[k]).value[coordinate_];
-  }
-  for (const auto& columns : columns_) {
-    for (const Index column : columns) {
-      atKnots.col(input) += excitation.col(column) / static_cast<double>(columns.size());
-    }
-    ++input;
-  }
-  return profiles_.project(profiles_.coefficients(atKnots));
+         e.largestTorque <= limits().torque * rounding &&
+         e.largestTorqueRate <= limits().torqueRate * rounding &&
+         (e.inputs.size() == 0 || e.largestExcitationRate <= limits().excitationRate * rounding);
 }
 
 std::vector<MuscleGroup> flexorsAndExtensors(const Arm& arm, const VectorXd& q, int coordinate) {

@@ -42,7 +42,7 @@ DesignResult ExperimentDesign::search(const DesignSearchSettings& settings) cons
   // One run, and the memory of the best one that keeps all limits.
   constexpr int population = 16;
   const double planned = settings.candidates + 1 + population * settings.generations +
-                         settings.iterations * (static_cast<double>(profiles_.size()) + 2);
+                         settings.iterations * (static_cast<double>(profiles().size()) + 2);
   std::mutex mutex;
   std::atomic<bool> stop{false};
   double best = result.costBefore;
@@ -54,7 +54,7 @@ DesignResult ExperimentDesign::search(const DesignSearchSettings& settings) cons
     double value = worthless;
     bool keeps = false;
     try {
-      const SensitivityTrajectory s = simulateInputs(inputsOf(x));
+      const SensitivityTrajectory s = simulateTrial(inputs_.at(x));
       outcome.possible = s.motion.outcome == Outcome::completed;
       if (outcome.possible) {
         outcome.information = scaledInformation(gammaOf(s));
@@ -62,7 +62,7 @@ DesignResult ExperimentDesign::search(const DesignSearchSettings& settings) cons
         value = phi(outcome.information);
         const VectorXd q = s.motion.q.row(coordinate_).transpose();
         const VectorXd surprise = surpriseOf(s);
-        keeps = profiles_.excess(x) < 1e-9 &&
+        keeps = profiles().excess(x) < 1e-9 &&
                 keepsRange((q - surprise).minCoeff(), (q + surprise).maxCoeff(),
                            s.motion.qDot.row(coordinate_).cwiseAbs().maxCoeff());
       }
@@ -87,11 +87,11 @@ DesignResult ExperimentDesign::search(const DesignSearchSettings& settings) cons
     const info::DesignOutcome outcome = run(x);
     return outcome.possible ? phi(outcome.information) + outcome.penalty : worthless;
   };
-  const auto project = [&](const VectorXd& x) { return profiles_.project(x); };
+  const auto project = [&](const VectorXd& x) { return profiles().project(x); };
 
   // Candidates: the trial's own inputs, and random ones about them; neighbouring knots are alike.
   std::vector<VectorXd> candidates(static_cast<std::size_t>(settings.candidates) + 1,
-                                   startCoefficients());
+                                   inputs_.own());
   std::vector<double> costs(candidates.size());
   info::parallelFor(static_cast<int>(candidates.size()), settings.threads, [&](int i) {
     const auto si = static_cast<std::size_t>(i);
@@ -101,7 +101,7 @@ DesignResult ExperimentDesign::search(const DesignSearchSettings& settings) cons
       VectorXd walk(candidates[si].size());
       double at = 0;
       for (Index k = 0; k < walk.size(); ++k) walk[k] = at = 0.8 * at + 0.6 * random.normal();
-      candidates[si] = profiles_.project(candidates[si] + size * walk);
+      candidates[si] = profiles().project(candidates[si] + size * walk);
     }
     costs[si] = costOf(candidates[si]);
   });

@@ -70,4 +70,28 @@ TEST(DesignCommand, SaysNoWhenNothingBetterIsFound) {
   EXPECT_THAT(result.out, HasSubstr("No experiment was found"));
 }
 
+TEST(DesignCommand, TellsTwoEffectsApart) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "design").string();
+  const ProgramResult result = support::runFisherHill(
+      {"design", "models/elbow8.osim", "emg_data/curl_slow.sto", "--separate", "delay,clock",
+       "--size", "delay=0.03", "--candidates", "8", "--generations", "1", "--out", out});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json summary = summaryIn(out);
+  EXPECT_EQ(summary["separates"], nlohmann::json({"delay", "clock"}));
+  EXPECT_EQ(summary["size"]["delay"], 0.03);
+  for (const char* id : {"delay", "clock"}) {
+    const double before = summary["nats_before"][id], after = summary["nats_after"][id];
+    EXPECT_GT(before, 0);
+    EXPECT_GT(after, 2 * before) << id;
+    EXPECT_NEAR(summary["bound_after"][id].get<double>(),
+                summary["size"][id].get<double>() / std::sqrt(2 * after), 1e-9);
+  }
+  const std::string played = (scratch / "replay").string();
+  const ProgramResult replay = support::runFisherHill(
+      {"replay", "models/elbow8.osim", out + "/design.sto", "--out", played});
+  ASSERT_EQ(replay.status, 0) << replay.err;
+  EXPECT_LT(summaryIn(played)["rms_error_deg"], 0.01);  // cubics between rows
+}
+
 }  // namespace

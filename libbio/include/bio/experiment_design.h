@@ -7,35 +7,13 @@
 #include <vector>
 
 #include "bio/coupled_sensitivity.h"
+#include "bio/design_inputs.h"
 #include "bio/table_file.h"
 #include "bio/trial.h"
-#include "info/bounded_profiles.h"
 #include "info/optimality.h"
 #include "info/trajectory_search.h"
 
 namespace bio {
-
-/// Muscles that are driven together, as a person or a stimulator drives them.
-struct MuscleGroup {
-  std::string name;
-  std::vector<std::string> muscles;
-};
-
-/// What an experimenter may do, and what the arm must not.
-struct DesignLimits {
-  double torque = 10;              ///< largest |torque| [N·m] (or force [N]) ≥ 0; 0: none
-  double torqueRate = 50;          ///< largest change [N·m/s] > 0
-  double leastExcitation = 0.01;   ///< of a driven group, 0 to 1
-  double largestExcitation = 0.5;  ///< of a driven group, 0 to 1
-  double excitationRate = 2;       ///< largest change of an excitation [1/s] > 0
-  double lower, upper;             ///< of the observed coordinate [rad] or [m]
-  double speed = 8.7;              ///< largest speed of the coordinate [rad/s] or [m/s]
-  /// The range is kept, to first order, also when the parameters asked for are off by so many of
-  /// their deviations (what is known beforehand, else the catalogue's) ≥ 0. Without it, the most
-  /// informative motion is an arm balanced where it is about to fall: a parameter that is off by a
-  /// hair sends it anywhere.
-  double surprise = 0.5;
-};
 
 /// What is measured, and what is asked.
 struct DesignQuestion {
@@ -116,12 +94,12 @@ class ExperimentDesign {
                    DesignLimits limits, std::vector<MuscleGroup> groups, double knotInterval = 0.3);
 
   /// The torque, if there is one, then the groups.
-  const info::BoundedProfiles& profiles() const { return profiles_; }
+  const info::BoundedProfiles& profiles() const { return inputs_.profiles(); }
   const Arm& arm() const { return *arm_; }
-  bool hasTorque() const { return limits_.torque > 0; }
-  const std::vector<MuscleGroup>& groups() const { return groups_; }
+  bool hasTorque() const { return inputs_.hasTorque(); }
+  const std::vector<MuscleGroup>& groups() const { return inputs_.groups(); }
   const DesignQuestion& question() const { return question_; }
-  const DesignLimits& limits() const { return limits_; }
+  const DesignLimits& limits() const { return inputs_.limits(); }
 
   /// The trial as it is. @throws NoStaticEquilibrium; std::runtime_error if it does not reach the
   /// end
@@ -148,18 +126,12 @@ class ExperimentDesign {
   const Eigen::VectorXd& scale() const { return scale_; }
 
  private:
-  struct Inputs {
-    ExcitationSignal excitation;
-    ExternalForce torque;
-  };
-  Inputs inputsOf(const Eigen::VectorXd& x) const;
-  SensitivityTrajectory simulateInputs(const Inputs& inputs) const;
+  SensitivityTrajectory simulateTrial(const Trial& trial) const;
   Eigen::MatrixXd gammaOf(const SensitivityTrajectory& s) const;
   Eigen::MatrixXd scaledInformation(const Eigen::MatrixXd& gamma) const;
-  DesignedExperiment describe(Eigen::VectorXd x, Inputs inputs) const;
+  DesignedExperiment describe(Eigen::VectorXd x) const;
   double penalty(const SensitivityTrajectory& s, double price) const;
   Eigen::VectorXd surpriseOf(const SensitivityTrajectory& s) const;
-  Eigen::VectorXd startCoefficients() const;
   bool keepsRange(double lowest, double highest, double fastest) const;
 
   const Arm* arm_;
@@ -167,17 +139,10 @@ class ExperimentDesign {
   ParameterCatalogue::Setting setting_;
   SimulationOptions simulation_;
   DesignQuestion question_;
-  DesignLimits limits_;
-  std::vector<MuscleGroup> groups_;
-  std::vector<std::vector<Eigen::Index>> columns_;  ///< of the groups' muscles in the excitation
   int coordinate_;
   std::vector<std::size_t> wanted_;  ///< parameters, then nuisance
   Eigen::VectorXd scale_;
-  std::vector<double> rows_;         ///< times of the trial and of the knots
-  Eigen::MatrixXd trialExcitation_;  ///< at rows_
-  ExternalForce trialForce_;
-  std::vector<double> measuredTimes_;
-  info::BoundedProfiles profiles_;
+  DesignInputs inputs_;
 };
 
 /// Muscles that bend the coordinate and muscles that stretch it, at its start value and the

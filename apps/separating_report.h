@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include "bio/discover/separating_design.h"
+#include "report.h"
+#include "summary.h"
+
+namespace app {
+
+/// What `design --separate` found.
+struct SeparatingFindings {
+  const std::string& modelFile;
+  const std::string& trialFile;
+  const bio::discover::SeparatingDesign& design;
+  const bio::discover::SeparatingResult& result;
+  const bio::Coordinate& coordinate;
+};
+
+void tellSeparation(const SeparatingFindings& findings, Summary& summary);
+
+Report separatingReport(const SeparatingFindings& findings);
+
+/// The designed experiment as a trial that can be replayed, with the base model's motion where the
+/// coordinate is to be measured.
+bio::Table separatingTable(const SeparatingFindings& findings);
+
+}  // namespace app
