@@ -132,6 +132,7 @@ class Writer {
   }
 
   bool isHeldOut(int t) const {
+    if (f_.verdict.heldOutFitted) return false;
     const auto& held = f_.options.heldOut;
     return std::find(held.begin(), held.end(), t) != held.end();
   }
@@ -365,6 +366,11 @@ class Writer {
       table.rows.push_back({"mean square of the innovations of what was held out [1]",
                             numberText(before->meanSquare, 3), numberText(after->meanSquare, 3),
                             fmt::format("< {}", numberText(after->highest, 3))});
+    }
+    if (f_.verdict.heldOut && f_.verdict.heldOut->probability) {
+      table.rows.push_back({"held-out errors as large as these, probability", "",
+                            numberText(*f_.verdict.heldOut->probability, 2),
+                            fmt::format("> {}", f_.options.secondLook)});
     }
     table.rows.push_back({"adequate", word(a.adequate()), word(b.adequate()), ""});
     return table;

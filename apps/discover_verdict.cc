@@ -33,6 +33,7 @@ ordered_json gapJson(const DiscoverFindings& f, const Gap& gap) {
   json["rmse_calibrated" + end] = number(unit * gap.calibrated);
   json["rmse_after" + end] = number(unit * gap.after);
   if (gap.expected) json["rmse_expected" + end] = number(unit * *gap.expected);
+  if (gap.probability) json["rmse_probability"] = number(*gap.probability);
   json["noise_floor" + end] = number(unit * gap.floor);
   json["gap_closed"] =
       gap.closedFromCalibrated ? number(*gap.closedFromCalibrated) : ordered_json(nullptr);
@@ -129,6 +130,7 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   json["localisation"] = localisationJson(f);
   json["gap"] = {{"train", gapJson(f, verdict.gap)},
                  {"held_out", verdict.heldOut ? gapJson(f, *verdict.heldOut) : nullptr}};
+  json["held_out_fitted"] = verdict.heldOutFitted;
   json["innovations"] = {{"before", adequacyJson(verdict.before, verdict.latentSizeBefore)},
                          {"after", adequacyJson(verdict.after, verdict.latentSizeAfter)}};
   if (verdict.heldOutBefore && verdict.heldOutAfter) {

@@ -39,8 +39,8 @@ py::object effectOf(const ElbowDisagreement& data, const info::discover::NamedEf
 
 py::object gapOf(const Gap& gap) {
   return results("nominal"_a = gap.nominal, "calibrated"_a = gap.calibrated, "after"_a = gap.after,
-                 "expected"_a = gap.expected, "noise_floor"_a = gap.floor,
-                 "closed"_a = gap.closedFromCalibrated);
+                 "expected"_a = gap.expected, "probability"_a = gap.probability,
+                 "noise_floor"_a = gap.floor, "closed"_a = gap.closedFromCalibrated);
 }
 
 /// What could be done to tell apart what these data cannot, the best first.

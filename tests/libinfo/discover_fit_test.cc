@@ -329,10 +329,10 @@ TEST(ExpectedError, IsWhatNewTrialsHaveOnAverage) {
       const Likelihood held(data, {1}, nominalValues(data), kTime);
       Fit fit = seen.fit(makeHypothesis(data, {0}, {0}), noise, nominalValues(data), {}, kExact);
       const Fit starts = held.fit(startsOnly(data, {1}), still, fit.values, {}, kExact);
-      expected += std::pow(expectedError(held, starts, fit), 2);
+      expected += std::pow(expectedError(held, starts, fit).rms, 2);
       found += std::pow(held.simulationError(starts.values), 2);
       fit.covariance.setZero();
-      certain += std::pow(expectedError(held, starts, fit), 2);
+      certain += std::pow(expectedError(held, starts, fit).rms, 2);
     }
     EXPECT_GT(expected / certain, 1.02) << latent;
     EXPECT_NEAR(found / expected, 1, 0.012) << latent;

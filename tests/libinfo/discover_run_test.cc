@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -73,6 +74,48 @@ TEST(Discover, FindsATrialStrangeThatWasHeldOutAndIsOfAnotherModel) {
   const Verdict strange = run(data, options);
   EXPECT_EQ(strange.finding, Finding::unknown);
   EXPECT_GT(strange.heldOutBefore.value().meanSquare, strange.heldOutBefore->highest);
+}
+
+// A push so small that two trials do not carry it, but three do: asked a second time of all trials
+// where the held-out one is off.
+TEST(Discover, LooksOnceMoreWhereWhatWasHeldOutIsOff) {
+  const auto with = [](double push) {
+    LinearDisagreement data(3, 80);
+    VectorXd truth = nominalValues(data);
+    truth[1] = push;
+    data.draw(4, truth, kOutput, 0, kTime);
+    return data;
+  };
+  Options options;
+  options.outputDeviation = kOutput;
+  options.latentScale = 1;
+  options.latentTime = kTime;
+  options.heldOut = {2};
+  const auto asked = [&](double push, double secondLook) {
+    const LinearDisagreement data = with(push);
+    options.secondLook = secondLook;
+    return runAtShorterSteps([&](double) { return Attempt{data, options}; }, 0.01, 0.003).verdict;
+  };
+  const Verdict never = asked(0.0556, 0);
+  EXPECT_EQ(never.finding, Finding::none);
+  EXPECT_GT(never.heldOut->probability.value(), 0.05);
+  const Verdict usual = asked(0.0556, 0.05);
+  EXPECT_EQ(usual.finding, Finding::none);
+  EXPECT_FALSE(usual.heldOutFitted);
+  EXPECT_EQ(usual.sentence, never.sentence);
+
+  const Verdict always = asked(0.0556, 1.01);
+  EXPECT_EQ(always.finding, Finding::ambiguous);  // push, shove and bias are all one force
+  EXPECT_TRUE(always.heldOutFitted);
+  EXPECT_FALSE(always.heldOut.has_value());
+  EXPECT_THAT(always.sentence, testing::HasSubstr("which were fitted, too"));
+  EXPECT_GT(always.fits, never.fits);
+
+  const Verdict nothing = asked(0.01, 1.01);
+  EXPECT_EQ(nothing.finding, Finding::none);
+  EXPECT_FALSE(nothing.heldOutFitted);
+  EXPECT_TRUE(nothing.heldOut.has_value());
+  EXPECT_EQ(nothing.sentence, asked(0.01, 0).sentence);  // not so far off that it would be told
 }
 
 TEST(Discover, StartsFromADraft) {

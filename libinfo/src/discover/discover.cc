@@ -349,7 +349,11 @@ class Work {
     other.nominal = nominal(held);
     other.calibrated = without.error;
     other.after = with.error;
-    if (with.starts) other.expected = expectedError(held, *with.starts, after.fit);
+    if (with.starts) {
+      const ExpectedError expected = expectedError(held, *with.starts, after.fit);
+      other.expected = expected.rms;
+      other.probability = expected.probability(with.error);
+    }
     closeGap(other);
     verdict_.heldOut = other;
     verdict_.heldOutBefore = heldOutAdequacy(without.meanSquare, held);

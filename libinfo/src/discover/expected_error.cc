@@ -2,6 +2,9 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <vector>
+
+#include "info/quadratic_form.h"
 
 namespace info::discover {
 
@@ -40,32 +43,53 @@ Uncertain uncertainOf(const Fit& fit, const Disagreement& data) {
 
 }  // namespace
 
-double expectedError(const Likelihood& held, const Fit& starts, const Fit& fit) {
+double ExpectedError::probability(double error) const {
+  return tailOfSquares(variances, error * error * static_cast<double>(variances.size()));
+}
+
+ExpectedError expectedError(const Likelihood& held, const Fit& starts, const Fit& fit) {
   if (starts.eta.size() != held.trials().size())
     throw std::invalid_argument("expected error: the starts must be those of the held-out trials");
   const Uncertain uncertain = uncertainOf(fit, held.data());
+  const Index samples = held.samples();
+  // what moves the trials: the parameters all of them, starts and inputs each its own
+  std::vector<Likelihood::Linear> trials;
+  Index columns = uncertain.root.cols();
   Fit scattered = starts;  // where inputs scatter, about nothing
   scattered.noise.latent = fit.noise.latent;
-  const double variance = fit.noise.output * fit.noise.output;
-  double squares = 0;
   for (std::size_t t = 0; t < held.trials().size(); ++t) {
     if (fit.noise.latent > 0)
       scattered.eta[t] =
           VectorXd::Zero(static_cast<Index>(held.data().latentTimes(held.trials()[t]).size()));
-    const Likelihood::Linear l =
-        held.linearise(t, scattered, starts.values, uncertain.quantities, false);
-    const MatrixXd& S = l.gamma;
-    const auto inner =
-        MatrixXd(S.transpose() * S + variance * MatrixXd::Identity(S.cols(), S.cols())).llt();
-    const auto left = [&](const MatrixXd& moved) {  // after the starts have followed
-      return (moved - S * inner.solve(S.transpose() * moved)).squaredNorm();
-    };
-    const Index n = l.residuals.size();
-    if (uncertain.root.size() != 0) squares += left(l.extra * uncertain.root);
-    if (l.latent.cols() != 0) squares += left(l.latent);
-    squares += left(S) + variance * left(MatrixXd::Identity(n, n));
+    trials.push_back(held.linearise(t, scattered, starts.values, uncertain.quantities, false));
+    columns += trials.back().latent.cols() + trials.back().gamma.cols();
   }
-  return std::sqrt(squares / static_cast<double>(held.samples()));
+  const double variance = fit.noise.output * fit.noise.output;
+  MatrixXd moved = MatrixXd::Zero(samples, columns);  // in units of N(0, 1)
+  MatrixXd P = MatrixXd::Identity(samples, samples);  // after the starts have followed
+  Index row = 0, column = uncertain.root.cols();
+  for (const Likelihood::Linear& l : trials) {
+    const Index n = l.residuals.size();
+    const MatrixXd& S = l.gamma;
+    MatrixXd inner = S.transpose() * S;
+    inner.diagonal().array() += variance;
+    const MatrixXd own = MatrixXd::Identity(n, n) - S * inner.llt().solve(MatrixXd(S.transpose()));
+    P.block(row, row, n, n) = own;
+    if (uncertain.root.size() != 0)
+      moved.block(row, 0, n, uncertain.root.cols()) = own * (l.extra * uncertain.root);
+    moved.block(row, column, n, S.cols()) = own * S;
+    column += S.cols();
+    if (l.latent.cols() != 0) moved.block(row, column, n, l.latent.cols()) = own * l.latent;
+    column += l.latent.cols();
+    row += n;
+  }
+  const MatrixXd covariance = moved * moved.transpose() + variance * P * P.transpose();
+  ExpectedError expected;
+  expected.variances = Eigen::SelfAdjointEigenSolver<MatrixXd>(covariance, Eigen::EigenvaluesOnly)
+                           .eigenvalues()
+                           .cwiseMax(0);
+  expected.rms = std::sqrt(expected.variances.sum() / static_cast<double>(samples));
+  return expected;
 }
 
 }  // namespace info::discover

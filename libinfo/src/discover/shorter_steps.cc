@@ -1,11 +1,18 @@
 #include "info/discover/shorter_steps.h"
 
+#include <fmt/format.h>
+
 #include <stdexcept>
 
 namespace info::discover {
 
-SteppedVerdict runAtShorterSteps(const std::function<Attempt(double step)>& attempt, double step,
-                                 double shortest) {
+namespace {
+
+constexpr double kTold = 0.01;  // one data set in a hundred has that by chance
+
+using MakeAttempt = std::function<Attempt(double step)>;
+
+SteppedVerdict runOnce(const MakeAttempt& attempt, double step, double shortest) {
   Draft draft;
   while (true) {
     Attempt one = attempt(step);
@@ -18,6 +25,52 @@ SteppedVerdict runAtShorterSteps(const std::function<Attempt(double step)>& atte
     }
     step /= 2;
   }
+}
+
+bool isWorthASecondLook(const Verdict& verdict, const Options& options) {
+  return verdict.reached == Stage::finished && verdict.finding == Finding::none &&
+         verdict.heldOut && verdict.heldOut->probability &&
+         *verdict.heldOut->probability < options.secondLook;
+}
+
+bool hasAName(const Verdict& verdict) {
+  return verdict.reached == Stage::finished &&
+         (verdict.finding == Finding::named || verdict.finding == Finding::ambiguous ||
+          verdict.finding == Finding::parameter);
+}
+
+}  // namespace
+
+SteppedVerdict runAtShorterSteps(const MakeAttempt& attempt, double step, double shortest) {
+  SteppedVerdict first = runOnce(attempt, step, shortest);
+  if (!isWorthASecondLook(first.verdict, first.options)) return first;
+  double last = first.step;
+  const auto withAll = [&](double at) {
+    last = at;
+    Attempt one = attempt(at);
+    one.options.heldOut.clear();
+    if (one.options.progress)
+      one.options.progress = [tell = one.options.progress](const Progress& of) {
+        return tell({of.stage, 0.99 + 0.01 * of.fraction, of.doing});
+      };
+    return one;
+  };
+  SteppedVerdict second = runOnce(withAll, first.step, shortest);
+  const int fits = first.verdict.fits + second.verdict.fits;
+  if (hasAName(second.verdict)) {
+    second.verdict.heldOutFitted = true;
+    second.verdict.sentence +=
+        " It shows only with the trials that were held out, which were fitted, too.";
+    second.verdict.fits = fits;
+    return second;
+  }
+  if (*first.verdict.heldOut->probability < kTold)
+    first.verdict.sentence += fmt::format(
+        " But the trials that were held out are further off than chance would have it (p = {:.1g}).",
+        *first.verdict.heldOut->probability);
+  first.verdict.fits = fits;
+  if (last != first.step) attempt(first.step);  // the caller's model is that of the verdict
+  return first;
 }
 
 }  // namespace info::discover

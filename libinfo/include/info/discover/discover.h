@@ -50,6 +50,9 @@ struct Options {
   int finalists = 9;         ///< most candidates that are raced at a time
   std::vector<int> heldOut;  ///< trials that are not fitted, only judged by
   bool symbolic = true;      ///< look for a formula when no name fits
+  /// runAtShorterSteps: where nothing was found and errors as large as those of the held-out trials
+  /// are less probable than this, these are fitted, too, and all is asked once more; 0: never
+  double secondLook = 0.05;
   /// Called between fits; false ends the work, and what has been finished is in the verdict.
   std::function<bool(const Progress&)> progress;
 };
@@ -116,6 +119,9 @@ struct Verdict {
   double probability = 0;            ///< of all effects together; 0 where it was vetoed
   bool vetoed = false;     ///< named, but the innovations are still not white: no probability
   bool surrogate = false;  ///< finding unknown: `effects` only imitates what is missing
+  /// Nothing was found without the held-out trials, whose errors were too large for that; all this
+  /// is of a fit of all trials, and none is left to judge by (Options::secondLook).
+  bool heldOutFitted = false;
 
   double outputDeviation = 0;  ///< σ_y
   bool deviationEstimated = false;

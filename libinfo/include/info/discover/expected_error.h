@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Dense>
+
 #include "info/discover/joint_fit.h"
 
 namespace info::discover {
@@ -12,10 +14,18 @@ namespace info::discover {
 /// (inputs scatter in new trials, too) and the trials' own starts S fitted to them, which takes
 /// P = 1 − S(SᵀS + σ_y²)⁻¹Sᵀ off,
 ///     E|e|² = tr P(Γ cov(ξ) Γᵀ + WWᵀ + SSᵀ + σ_y²)Pᵀ,   the result is √(E|e|²/N)
+///
+/// The sum of squares is a quadratic form in normal variables; `probability` is the chance that it
+/// is as large as it was (tailOfSquares).
 /// @param held    of the trials in question
 /// @param starts  startsOnly() fitted to them, without latent force, all else from `fit`
 /// @param fit     of other trials
 /// @throws std::invalid_argument if `starts` is of other trials
-double expectedError(const Likelihood& held, const Fit& starts, const Fit& fit);
+struct ExpectedError {
+  double rms = 0;                        ///< √(E|e|²/N) [unit of the output]
+  Eigen::VectorXd variances;             ///< of e, along its principal axes
+  double probability(double rms) const;  ///< of an error as large as that
+};
+ExpectedError expectedError(const Likelihood& held, const Fit& starts, const Fit& fit);
 
 }  // namespace info::discover

@@ -18,6 +18,7 @@ struct Gap {
   /// What `after` may be expected to be of held-out trials, were the model found true
   /// (expectedError); empty for those that were fitted
   std::optional<double> expected;
+  std::optional<double> probability;  ///< that `after` is as large as it is, were that model true
   /// 1 − (after² − floor²)/(before² − floor²); empty if before² < 1.2·floor², three
   /// deviations of a mean square over 450 samples: no gap to close
   std::optional<double> closedFromCalibrated, closedFromNominal;

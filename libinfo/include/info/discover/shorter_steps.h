@@ -22,6 +22,10 @@ struct SteppedVerdict {
 /// Steps that are too long look like an effect: run() again at half the step, from where it has
 /// ended, while the finding is `numerical`, or the model cannot be simulated over the trials at all
 /// (std::domain_error), and the step is not below `shortest`.
+///
+/// Where nothing was found and errors as large as those of the held-out trials are improbable
+/// (Options::secondLook), all trials are fitted and all is asked once more: a name that is found
+/// then is the answer, with Verdict::heldOutFitted; else the sentence says how improbable.
 /// @param attempt   makes the model at a step [s], with the same quantities and latent nodes at
 ///   each; it lives until the next call
 /// @param step      [s] the first
