@@ -40,8 +40,4 @@ function(fisherhill_install_data)
     FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md
           ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_SOURCE_DIR}/CITATION.cff
     DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fisherhill COMPONENT Runtime)
-  install(FILES ${PROJECT_SOURCE_DIR}/packaging/copyright
-    DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fisherhill COMPONENT Runtime)
-  install(FILES ${PROJECT_SOURCE_DIR}/packaging/copyright
-    DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libfisherhill-dev COMPONENT Development)
 endfunction()

@@ -1,5 +1,6 @@
-# Debian packages by `cpack -G DEB` in a built tree: fisherhill (program, models, trials, man page) and
-# libfisherhill-dev. Dependencies on libraries are what dpkg-shlibdeps finds in the binaries.
+# Debian packages by `cpack -G DEB` in a built tree: fisherhill (program, models, trials, man page),
+# libfisherhill-dev, and python3-fisherhill where the module is built. Dependencies on libraries are what
+# dpkg-shlibdeps finds in the binaries (docs/decisions/023-packages.md).
 set(FISHERHILL_PACKAGE_CONTACT "FisherHill authors <fisherhill@example.invalid>" CACHE STRING
   "Maintainer of the Debian packages")
 
@@ -15,8 +16,10 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_COMPONENTS_ALL Runtime Development)
-if(FISHERHILL_PYTHON)
+set(fisherhill_packages fisherhill:Runtime libfisherhill-dev:Development)
+if(TARGET fisherhill_python)
   list(APPEND CPACK_COMPONENTS_ALL Python)
+  list(APPEND fisherhill_packages python3-fisherhill:Python)
 endif()
 
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -48,7 +51,9 @@ any system; FisherHill::bio reads, simulates and calibrates models of limbs.")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-fisherhill)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
+# The module is one Python's own, by the name of its file; NumPy is found when it is imported.
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${FISHERHILL_PYTHON_DEPENDS}, python3-numpy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "fisherhill")
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION
 "The Python module: replays, sensitivities, calibration and discovery with
 musculoskeletal models, and Fisher information, bounds and estimation for
@@ -57,11 +62,11 @@ systems defined in Python, with NumPy arrays.")
 # What Debian calls the changelog of the package; what has changed is told by CHANGELOG.md beside it.
 configure_file(${PROJECT_SOURCE_DIR}/packaging/changelog.in ${PROJECT_BINARY_DIR}/changelog @ONLY)
 execute_process(COMMAND gzip -9nf ${PROJECT_BINARY_DIR}/changelog COMMAND_ERROR_IS_FATAL ANY)
-foreach(package IN ITEMS fisherhill:Runtime libfisherhill-dev:Development)
+foreach(package IN LISTS fisherhill_packages)
   string(REPLACE ":" ";" package ${package})
   list(GET package 0 name)
   list(GET package 1 component)
-  install(FILES ${PROJECT_BINARY_DIR}/changelog.gz
+  install(FILES ${PROJECT_BINARY_DIR}/changelog.gz ${PROJECT_SOURCE_DIR}/packaging/copyright
     DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component})
 endforeach()
 

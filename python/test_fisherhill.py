@@ -174,6 +174,8 @@ class Arms(unittest.TestCase):
 
     def test_ctrl_c_ends_a_long_call_soon_and_other_threads_run_meanwhile(self):
         trial = fh.load_trial(HIDDEN, self.model)
+        # what a shell starts in the background ignores Ctrl-C, and so does its Python
+        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
         ticks = []
         threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
         ticker = threading.Thread(target=lambda: [ticks.append(time.sleep(0.01)) for _ in range(30)])
