@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "angle_unit.h"
@@ -173,8 +174,11 @@ ArmDiscovery discoverInArm(const ArmDiscoveryRequest& request, const CommandCont
   const DiscoverFindings findings{
       request.model, files, data,     wording,           found.options,
       verdict,       next,  foreseen, found.wallSeconds, found.processorSeconds};
-  summary.set("integrator", request.simulation.integrator);
-  summary.set("step_s", found.step);
+  double longest = 0;
+  for (const bio::Trial& trial : trials) {
+    longest = std::max(longest, trial.times[trial.times.size() - 1] - trial.times[0]);
+  }
+  summary.setSimulation(request.simulation.integrator, found.step, longest, found.wallSeconds);
   tellFindings(findings, summary);
   const nlohmann::ordered_json json = verdictJson(findings);
   folder.write("verdict.json", [&](std::ostream& out) { out << jsonText(json, 2) << '\n'; });

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "angle_unit.h"
 #include "arm_options.h"
@@ -108,6 +109,7 @@ class Calibrate : public Command {
     const bio::TrialSet training(model, armOptions(simulation_), read(trials_, model, summary),
                                  typed.trials);
     for (const std::string& warning : training.arm().warnings()) summary.warn(warning);
+    boundsMustBePossible(training, typed);
     std::optional<bio::TrialSet> heldOut;
     if (!heldOut_.empty()) {
       bio::TrialSetOptions others = typed.trials;
@@ -117,6 +119,7 @@ class Calibrate : public Command {
 
     bio::CalibrationOptions options = typed;
     bio::Calibration calibration;
+    const auto begin = std::chrono::steady_clock::now();
     {
       ProgressBar bar("calibrate");
       options.progress = [&](double share) {
@@ -125,6 +128,13 @@ class Calibrate : public Command {
       };
       calibration = bio::calibrate(training, heldOut ? &*heldOut : nullptr, options);
     }
+    double longest = 0;
+    for (const bio::Trial& trial : training.trials()) {
+      longest = std::max(longest, trial.times[trial.times.size() - 1] - trial.times[0]);
+    }
+    summary.setSimulation(
+        simulation_.integrator, simulation_.stepOrDefault(), longest,
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     const CalibrateFindings findings{model_, training, heldOut ? &*heldOut : nullptr, options,
                                      calibration};
     tellCalibrate(findings, summary);
@@ -169,6 +179,20 @@ class Calibrate : public Command {
     options.profile = profile_;
     options.bootstrap = bootstrap_.value_or(0);
     return options;
+  }
+
+  /// No mass, strength or length is negative, whatever the bounds.
+  static void boundsMustBePossible(const bio::TrialSet& training,
+                                   const bio::CalibrationOptions& options) {
+    for (const std::size_t index : training.selection()) {
+      const bio::ModelParameter& one = training.catalogue().parameters()[index];
+      for (const auto& [name, bounds] : options.bounds) {
+        if (training.catalogue().find(name) != index || one.lower < 0 || bounds.first >= 0)
+          continue;
+        throw std::invalid_argument(fmt::format("--bounds: {} from {} {}, must not be below 0",
+                                                one.name, bounds.first, one.unit));
+      }
+    }
   }
 
   std::vector<bio::Trial> read(const std::vector<std::string>& files, const bio::Model& model,

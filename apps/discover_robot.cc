@@ -167,7 +167,13 @@ class RobotSearch {
         name,    files, *data_,   wording,           found.options,
         verdict, next,  foreseen, found.wallSeconds, found.processorSeconds};
     summary.set("system", request_.system);
+    double longest = 0;
+    for (const info::robot::Trial& trial : trials) {
+      longest = std::max(longest, trial.times.back() - trial.times.front());
+    }
     summary.set("step_s", found.step);
+    summary.set("duration_s", longest);
+    summary.set("wall_s", found.wallSeconds);
     for (std::size_t c = 0; c < channels.size(); ++c)
       summary.set(fmt::format("noise_{}_{}", channels[c].name, wording.outputs[c].unit),
                   wording.unit * data_->deviations()[c]);

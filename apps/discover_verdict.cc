@@ -84,6 +84,7 @@ void tellFindings(const DiscoverFindings& f, Summary& summary) {
   const auto& verdict = f.verdict;
   summary.set("verdict", verdictWord(verdict));
   summary.set("noise", f.wording.unit * verdict.outputDeviation);
+  summary.set("noise" + f.wording.gapEnd, f.wording.unit * verdict.outputDeviation);
   summary.set("noise_is", verdict.deviationEstimated ? "from the data" : "given");
   for (const auto& effect : verdict.effects) {
     const std::string id = f.data.candidates()[effect.candidate].id;

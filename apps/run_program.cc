@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <iostream>
 #include <new>
 
+#include "bio/nearest_name.h"
 #include "command_line.h"
 #include "interruption.h"
 #include "text.h"
@@ -21,6 +25,31 @@ int fail(const std::string& subcommand, const std::string& message) {
   const std::string who = subcommand.empty() ? "fisherhill" : "fisherhill " + subcommand;
   fmt::print(stderr, "{}: {}\n", who, oneLine(message));
   return status(ExitStatus::badInput);
+}
+
+/// What was printed must have arrived: a full disk behind standard output is no success.
+int printed(int result, const std::string& subcommand) {
+  std::cout.flush();
+  if (std::cout.good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return result;
+  return fail(subcommand, "standard output cannot be written");
+}
+
+/// The word that was probably meant by the first one that means nothing.
+std::string meantBy(const CLI::App& app, const std::vector<std::string>& arguments) {
+  std::vector<std::string> options, commands;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+  }
+  for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
+  for (const std::string& argument : arguments) {
+    const std::string word = argument.substr(0, argument.find('='));
+    const bool isOption = word.starts_with("--");
+    const auto& known = isOption ? options : commands;
+    if (known.empty() || std::find(known.begin(), known.end(), word) != known.end()) continue;
+    const std::string meant = bio::meantInstead(word, known);
+    if (!meant.empty()) return word + meant;
+  }
+  return "";
 }
 
 CLI::App* parsedSubcommand(const CLI::App& program) {
@@ -54,15 +83,20 @@ int runProgram(const std::vector<std::string>& arguments,
   try {
     chosen = line.parse(arguments);
   } catch (const CLI::Success& request) {  // --help, --version
-    return line.program().exit(request);
+    return printed(line.program().exit(request), "");
   } catch (const CLI::ParseError& error) {
     const CLI::App* subcommand = parsedSubcommand(line.program());
     const std::string name = subcommand ? subcommand->get_name() : "";
-    return fail(name, fmt::format("{} (see fisherhill {}--help)", oneLine(error.what()),
-                                  name.empty() ? "" : name + " "));
+    std::string what = oneLine(error.what());
+    const std::vector<std::string> words(arguments.begin() + (arguments.empty() ? 0 : 1),
+                                         arguments.end());
+    const std::string meant = meantBy(subcommand ? *subcommand : line.program(), words);
+    if (!meant.empty()) what += ": " + meant;
+    return fail(name,
+                fmt::format("{} (see fisherhill {}--help)", what, name.empty() ? "" : name + " "));
   }
   catchInterruption();
-  return runCommand(*chosen.command, *chosen.context);
+  return printed(runCommand(*chosen.command, *chosen.context), chosen.context->subcommand);
 }
 
 }  // namespace app

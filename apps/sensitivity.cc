@@ -11,6 +11,7 @@
 #include "arm_options.h"
 #include "bio/arm_experiment.h"
 #include "bio/replay.h"
+#include "input_rules.h"
 #include "progress_bar.h"
 #include "result.h"
 #include "sensitivity_report.h"
@@ -88,6 +89,7 @@ class Sensitivity : public Command {
           input.trial, arm.skeleton().coordinates().front().name, simulation_.stepOrDefault());
       studies.push_back({std::move(input), std::move(catalogue), std::move(times)});
     }
+    inputsMustDiffer(summary, trials_.size());
     const Study& first = studies.front();
     const bio::Coordinate& coordinate = arm.skeleton().coordinates().front();
     SensitivityFindings findings{

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "bio/nearest_name.h"
 #include "parameter_collector.h"
 
 namespace bio {
@@ -128,23 +129,6 @@ std::string canonical(std::string name) {
     replace(fmt::format(".mass_centre.{}", axis), fmt::format(".mass_center.{}", axis));
   }
   return name;
-}
-
-/// Edits from one word to another (Levenshtein).
-std::size_t editDistance(const std::string& a, const std::string& b) {
-  const auto lowered = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t changed = diagonal + (lowered(a[i - 1]) == lowered(b[j - 1]) ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({changed, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row.back();
 }
 
 /// Whether the text is the pattern with something for every `*`. The last `*` passed takes one more

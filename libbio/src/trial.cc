@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "bio/file_error.h"
+#include "bio/nearest_name.h"
 #include "bio/trial_table.h"
 
 namespace bio {
@@ -100,6 +101,14 @@ class TrialReader {
                      table_.columns[static_cast<std::size_t>(column)], trial_.times(row), message));
   }
 
+  std::vector<std::string> names() const {
+    std::vector<std::string> names = {"time"};
+    for (const Muscle& muscle : model_.muscles) names.push_back(muscle.name);
+    for (const Joint& joint : model_.joints)
+      for (const Coordinate& coordinate : joint.coordinates) names.push_back(coordinate.name);
+    return names;
+  }
+
   void readKnownChanges() {
     const auto at = table_.metadata.find("known_mass_in_hand_kg");
     if (at == table_.metadata.end()) return;
@@ -127,8 +136,8 @@ class TrialReader {
           fail(
               fmt::format("column '{}' is neither a muscle nor a coordinate of the model, nor a "
                           "torque on one, and "
-                          "such columns are not ignored",
-                          column));
+                          "such columns are not ignored{}",
+                          column, meantInstead(column, names())));
         }
         trial_.warnings.push_back(fmt::format("{}: column '{}' is ignored", file_, column));
         continue;

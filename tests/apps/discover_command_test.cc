@@ -27,6 +27,13 @@ TEST(DiscoverCommand, NamesTheDampingThatIsHiddenAddsItAndFindsNothingMore) {
                                             "out/verdict.json", "out/with_effect.osim"));
   const auto verdict = nlohmann::json::parse(contentOf(out + "/verdict.json"));
   EXPECT_EQ(verdict["verdict"], "named");
+  const auto told = nlohmann::json::parse(contentOf(out + "/summary.json"));
+  EXPECT_EQ(told["integrator"], "vi");
+  EXPECT_EQ(told["step_s"], 0.01);
+  EXPECT_NEAR(told["duration_s"].get<double>(), 4.5, 0.1);
+  EXPECT_GT(told["wall_s"].get<double>(), 0);
+  EXPECT_NEAR(told["noise_deg"].get<double>(), 0.5, 1e-12);
+  EXPECT_FALSE(verdict["held_out_fitted"].get<bool>());
   ASSERT_EQ(verdict["effects"].size(), 1u);
   const auto& effect = verdict["effects"][0];
   EXPECT_EQ(effect["id"], "visc");

@@ -30,6 +30,7 @@ void writeFiles(const ScratchFolder& scratch) {
   scratch.file("high.csv", "time,BIClong\n0,0.1\n0.1,1.2\n0.2,0.1\n");
   scratch.file("negative.csv", "time,BIClong\n0,0.1\n0.1,-0.2\n0.2,0.1\n");
   scratch.file("extra.csv", "time,BIClong,GLUTmax\n0,0.1,0\n0.1,0.1,0\n");
+  scratch.file("misspelt.csv", "time,BIClogn\n0,0.1\n0.1,0.1\n");
   scratch.file("torque_gap.csv", "time,BRA,elbow_flexion.torque\n0,0.1,1\n0.1,0.1,\n");
   scratch.file("torque_locked.csv", "time,BRA,pro_sup.torque\n0,0.1,1\n0.1,0.1,1\n");
   scratch.file("torque_of_nothing.csv", "time,BRA,knee.torque\n0,0.1,1\n0.1,0.1,1\n");
@@ -113,6 +114,8 @@ INSTANTIATE_TEST_SUITE_P(
         {"PriorTwice", calibrateWith({"--prior", "hand.mass=1:2,hand.mass=1:3"}), "twice"},
         {"PriorZero", calibrateWith({"--prior", "hand.mass=0.6:0"}), "hand.mass"},
         {"BoundsExclude", calibrateWith({"--bounds", "hand.mass=1:2"}), "hand.mass"},
+        {"BoundsBelowZero", calibrateWith({"--bounds", "hand.mass=-5:5"}),
+         "--bounds: hand.mass from -5 kg, must not be below 0"},
         {"BoundsAreWords", calibrateWith({"--bounds", "hand.mass=low:high"}), "--bounds"},
         {"NoiseZero", calibrateWith({"--noise-deg", "0"}), "--noise-deg"},
         {"NoiseNaN", calibrateWith({"--noise-deg", "nan"}), "noise"},
@@ -181,6 +184,13 @@ INSTANTIATE_TEST_SUITE_P(
     testing::ValuesIn(std::vector<Mistake>{
         {"NoTrial", {"sensitivity", model, "--all"}, "TRIAL is required"},
         {"NothingToDo", {"sensitivity", model, "$/good.csv"}, "nothing to do: give --all"},
+        {"TrialTwice", {"sensitivity", model, slow, slow, "--all"}, "is the same trial as"},
+        {"MisspeltOption",
+         {"sensitivity", model, slow, "--paremeters", "TRI.radius"},
+         "--paremeters, did you mean '--parameters'?"},
+        {"MisspeltMuscle",
+         {"sensitivity", model, "$/misspelt.csv", "--all"},
+         "column 'BIClogn' is neither"},
         {"UnknownParameter",
          {"sensitivity", model, "$/good.csv", "--parameters", "TRI.radios"},
          "no parameter is called 'TRI.radios'; nearest: TRI.radius"},
@@ -469,6 +479,34 @@ TEST(CtrlC, EndsALongReplayWithStatus130AndNothingHalfWritten) {
   EXPECT_EQ(result.status, 130) << result.err;
   EXPECT_EQ(result.err, "fisherhill replay: interrupted; nothing was written\n");
   EXPECT_THAT(scratch.listing(), testing::IsEmpty());
+}
+
+TEST(Mistakes, NamesThatWereMeantAreTold) {
+  const ProgramResult command = support::runFisherHill({"repaly", model, slow});
+  EXPECT_EQ(command.status, 2);
+  EXPECT_THAT(command.err, HasSubstr("repaly, did you mean 'replay'?"));
+  const ScratchFolder scratch;
+  writeFiles(scratch);
+  const ProgramResult column =
+      support::runFisherHill({"replay", model, (scratch / "misspelt.csv").string()});
+  EXPECT_EQ(column.status, 2);
+  EXPECT_THAT(column.err, HasSubstr("did you mean 'BIClong'?"));
+  const ProgramResult nothing = support::runFisherHill({"xylophone"});
+  EXPECT_EQ(nothing.status, 2);
+  EXPECT_THAT(nothing.err, testing::Not(HasSubstr("did you mean")));
+}
+
+// What was printed must have arrived.
+TEST(Mistakes, AFullDiskBehindStandardOutputIsNoSuccess) {
+  const std::string program = FISHERHILL_PROGRAM;
+  for (const std::string& words : {std::string("--help"), "check " + model + " --json",
+                                   "replay " + model + " " + slow + " --json"}) {
+    const ProgramResult result = support::runProgram(
+        {"sh", "-c", "exec " + program + " " + words + " > /dev/full"}, FISHERHILL_SOURCE_DIR);
+    EXPECT_EQ(result.status, 2) << words;
+    EXPECT_THAT(result.err, HasSubstr("standard output cannot be written")) << words;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  }
 }
 
 }  // namespace
