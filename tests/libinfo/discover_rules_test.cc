@@ -147,7 +147,11 @@ TEST(Adequacy, KnowsTheChiSquareDistribution) {
 }
 
 TEST(Gap, IsClosedByWhatIsLeftAboveTheFloor) {
-  Gap gap{10, 5, 2, 1, 100, {}, {}};
+  Gap gap;
+  gap.nominal = 10;
+  gap.calibrated = 5;
+  gap.after = 2;
+  gap.floor = 1;
   closeGap(gap);
   EXPECT_DOUBLE_EQ(*gap.closedFromCalibrated, 1 - 3.0 / 24);
   EXPECT_DOUBLE_EQ(*gap.closedFromNominal, 1 - 3.0 / 99);
