@@ -14,6 +14,7 @@
 #include "input_rules.h"
 #include "named_covariance.h"
 #include "named_pairs.h"
+#include "number_rules.h"
 #include "progress_bar.h"
 #include "result.h"
 
@@ -66,7 +67,7 @@ class Calibrate : public Command {
         .add_option("--noise-deg", noise_,
                     "standard deviation of the measured angle; default: from the residuals and "
                     "their autocorrelation")
-        ->check(CLI::PositiveNumber)
+        ->check(positive())
         ->type_name("DEG")
         ->group(group);
     options.add_option("--loss", loss_, "gaussian, or huber or student against outliers")

@@ -329,6 +329,14 @@ void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
   summary.set("estimates", estimates);
   summary.set("noise_deg", c.noise.deviation * radian);
   summary.set("noise_is", f.options.noise ? "given" : "from the residuals");
+  const double noises =
+      f.options.noise ? rmse(f.training, c.after) / (radian * *f.options.noise) : 0;
+  if (noises > 3) {
+    summary.warn(
+        fmt::format("what is left is {:.3g} times the noise given by --noise-deg: these "
+                    "parameters alone do not explain the trials",
+                    noises));
+  }
   summary.set("samples_per_independent_value", c.noise.correlationTime);
   summary.set("reduced_chi_square", number(c.reducedChiSquare));
   summary.set("iterations", c.iterations);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 
@@ -112,9 +113,14 @@ Contents checkTrial(const std::string& file, const std::vector<bio::Model>& mode
                             numberText(column.maxCoeff<Eigen::PropagateNumbers>()),
                             std::to_string(column.array().isNaN().count())});
     if (table.columns[i].starts_with("time")) continue;
-    figure.series.push_back({.name = table.columns[i],
-                             .x = {times.begin(), times.end()},
-                             .y = {column.begin(), column.end()}});
+    // what is measured in every other row only would be a line of gaps
+    Series series{.name = table.columns[i]};
+    for (Eigen::Index row = 0; row < times.size(); ++row) {
+      if (!std::isfinite(column[row])) continue;
+      series.x.push_back(times[row]);
+      series.y.push_back(column[row]);
+    }
+    figure.series.push_back(std::move(series));
   }
   const Eigen::Index rows = times.size();
   const double duration = times(rows - 1) - times(0);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <thread>
 
+#include "number_rules.h"
+
 namespace app {
 
 void addCommonOptions(CLI::App& subcommand, CommandContext& context) {
@@ -15,7 +17,7 @@ void addCommonOptions(CLI::App& subcommand, CommandContext& context) {
   subcommand.add_flag("--json", context.json, "print the summary alone, as JSON")->group(group);
   subcommand.add_option("--seed", context.seed, "start of every random sequence, ≥ 0")
       ->type_name("N")
-      ->check(CLI::NonNegativeNumber)
+      ->check(notNegative())
       ->capture_default_str()
       ->group(group);
   subcommand.add_option("--threads", context.threads, "threads to use; default: one per core")

@@ -6,6 +6,7 @@
 #include "arm_input.h"
 #include "discover_robot.h"
 #include "discover_search.h"
+#include "number_rules.h"
 
 namespace app {
 namespace {
@@ -35,7 +36,7 @@ class Discover : public Command {
     options
         .add_option("--noise-deg", noise_,
                     "standard deviation of the measured angle; default: from the data themselves")
-        ->check(CLI::PositiveNumber)
+        ->check(positive())
         ->type_name("DEG");
     options.add_option("--without", without_, "effects to leave out of the catalogue, by id")
         ->allow_extra_args(false)

@@ -15,6 +15,7 @@
 #include "input_rules.h"
 #include "interruption.h"
 #include "json_text.h"
+#include "number_rules.h"
 #include "result.h"
 #include "robot_trial.h"
 
@@ -245,7 +246,7 @@ void addRobotOptions(CLI::App& options, RobotRequest& request) {
       .add_option("--noise", request.noise,
                   "with --system: standard deviation of each measured column [deg or N]; "
                   "default: from the data themselves")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("SD");

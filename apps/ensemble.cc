@@ -17,6 +17,7 @@
 #include "info/version.h"
 #include "input_rules.h"
 #include "missing_rows.h"
+#include "number_rules.h"
 #include "result.h"
 #include "sensitivity_report.h"
 
@@ -75,7 +76,7 @@ class Ensemble : public Command {
         ->capture_default_str()
         ->group(group);
     options.add_option("--spread", laws_.spread, "factor on every standard deviation")
-        ->check(CLI::PositiveNumber)
+        ->check(positive())
         ->capture_default_str()
         ->type_name("FACTOR")
         ->group(group);
@@ -114,7 +115,7 @@ class Ensemble : public Command {
         .add_option("--noise-deg", noise_,
                     "with --discover: standard deviation of the measured angle; default: from the "
                     "data themselves")
-        ->check(CLI::PositiveNumber)
+        ->check(positive())
         ->type_name("DEG")
         ->group(sets);
     options

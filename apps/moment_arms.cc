@@ -6,6 +6,7 @@
 #include "arm_input.h"
 #include "arm_options.h"
 #include "bio/replay.h"
+#include "number_rules.h"
 #include "result.h"
 #include "text.h"
 
@@ -22,10 +23,13 @@ class MomentArms : public Command {
 
   void addOptions(CLI::App& options) override {
     addModelArgument(options, model_);
-    options.add_option("--from", from_,
-                       "first angle [deg], or position [mm] of a sliding coordinate");
-    options.add_option("--to", to_,
-                       "last angle [deg] or position [mm]; without: the coordinate's range");
+    options
+        .add_option("--from", from_, "first angle [deg], or position [mm] of a sliding coordinate")
+        ->check(finite());
+    options
+        .add_option("--to", to_,
+                    "last angle [deg] or position [mm]; without: the coordinate's range")
+        ->check(finite());
     options.add_option("--points", points_, "number of values, at least 2")->capture_default_str();
     addModelOptions(options, model_options_);
   }

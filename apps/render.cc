@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "arm_input.h"
+#include "number_rules.h"
 
 namespace app {
 namespace {
@@ -55,11 +56,11 @@ class Render : public Command {
         ->type_name("");
     auto* time = options.add_option("--time", options_.time,
                                     "moment of the picture [s]; default: the middle of the motion");
-    time->type_name("SECONDS");
+    time->check(finite())->type_name("SECONDS");
     options.add_flag("--film", options_.film, "the whole motion as arm.mp4 (needs ffmpeg)")
         ->excludes(time);
     options.add_option("--fps", options_.framesPerSecond, "pictures per second of the film")
-        ->check(CLI::Range(1.0, 240.0))
+        ->check(between(1, 240))
         ->type_name("N")
         ->capture_default_str();
     options

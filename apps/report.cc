@@ -11,6 +11,7 @@
 #include "json_text.h"
 #include "report_assets.h"
 #include "text.h"
+#include "thinned_series.h"
 
 namespace app {
 namespace {
@@ -177,15 +178,18 @@ nlohmann::ordered_json figureJson(const Figure& figure) {
                {"xLog", figure.xScale == AxisScale::logarithmic},
                {"yLog", figure.yScale == AxisScale::logarithmic},
                {"series", Json::array()}};
-  for (const Series& series : figure.series) {
-    mustBeAsLong(figure, series, series.y, "y");
+  for (const Series& whole : figure.series) {
+    mustBeAsLong(figure, whole, whole.y, "y");
+    if (!whole.bandLow.empty() || !whole.bandHigh.empty()) {
+      mustBeAsLong(figure, whole, whole.bandLow, "bandLow");
+      mustBeAsLong(figure, whole, whole.bandHigh, "bandHigh");
+    }
+    const Series series = thinned(whole);
     Json one = {{"name", series.name},
                 {"style", styleName(series.style)},
                 {"x", plotNumbers(series.x)},
                 {"y", plotNumbers(series.y)}};
     if (!series.bandLow.empty() || !series.bandHigh.empty()) {
-      mustBeAsLong(figure, series, series.bandLow, "bandLow");
-      mustBeAsLong(figure, series, series.bandHigh, "bandHigh");
       one["low"] = plotNumbers(series.bandLow);
       one["high"] = plotNumbers(series.bandHigh);
     }

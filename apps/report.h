@@ -41,7 +41,8 @@ struct Figure {
   AxisScale yScale = AxisScale::linear;
 };
 
-/// What draws a figure: title, labels, scales and series with at most six digits, NaN as null.
+/// What draws a figure: title, labels, scales and series with at most six digits, NaN as null; of
+/// very long ones the highest and lowest values (thinned_series.h).
 /// @throws std::invalid_argument if a series' x and y differ in length
 nlohmann::ordered_json figureJson(const Figure& figure);
 

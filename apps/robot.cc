@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "info/systems/laboratory.h"
+#include "number_rules.h"
 #include "quantity.h"
 #include "result.h"
 #include "robot_baxter.h"
@@ -87,20 +88,18 @@ class Robot : public Command {
     options
         .add_option("--measure-every", stepsPerSample_,
                     "with --discrete: measure after every so many steps of 0.02 s (1)")
-        ->check(CLI::PositiveNumber)
+        ->check(positive())
         ->type_name("N");
     options
         .add_option("--amplitude", amplitude_, "cart motion amplitude*(1 - cos(2 pi t/period)) [m]")
-        ->check(CLI::NonNegativeNumber)
+        ->check(notNegative())
         ->type_name("A");
-    options.add_option("--period", period_, "its period [s]")
-        ->check(CLI::PositiveNumber)
-        ->type_name("T");
+    options.add_option("--period", period_, "its period [s]")->check(positive())->type_name("T");
     options
         .add_option("--perturb", perturb_,
                     "add a small random smooth motion to the start, of about this input "
                     "[m/s^2; with --discrete m]")
-        ->check(CLI::PositiveNumber)
+        ->check(positive())
         ->type_name("SIZE");
     options
         .add_option("--warm-start", warmStart_, "start from the input of a motion_optimised.csv")
@@ -124,10 +123,10 @@ class Robot : public Command {
     options
         .add_option("--tolerance", tolerance_,
                     "end where no direction promises to lower the cost by more than this")
-        ->check(CLI::NonNegativeNumber)
+        ->check(notNegative())
         ->type_name("J");
     options.add_option("--iterations", iterations_, "of the search, at most (100)")
-        ->check(CLI::NonNegativeNumber)
+        ->check(notNegative())
         ->type_name("N");
     options
         .add_option("--robust", robust_,
@@ -173,7 +172,7 @@ class Robot : public Command {
         ->type_name("NAMES");
     options.add_flag("--undamped", undamped_, "double-pendulum with --unknown m1,m2: no damping");
     options.add_option("--trials", trials_, "simulated experiments, each estimated (300)")
-        ->check(CLI::PositiveNumber)
+        ->check(positive())
         ->type_name("N");
     options.add_flag("--convergence", convergence_,
                      "suspended-mass: how fast three estimators converge");

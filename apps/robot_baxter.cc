@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "interruption.h"
+#include "number_rules.h"
 #include "progress_bar.h"
 #include "text.h"
 
@@ -194,7 +195,7 @@ std::vector<CLI::Option*> addBaxterOptions(CLI::App& options, BaxterRequest& r) 
   const auto add = [&](CLI::Option* option) { all.push_back(option->group(group)); };
   const auto positive = [&](const char* name, double& value, const char* text, const char* unit) {
     add(options.add_option(name, value, text)
-            ->check(CLI::PositiveNumber)
+            ->check(app::positive())
             ->type_name(unit)
             ->capture_default_str());
   };
@@ -204,24 +205,24 @@ std::vector<CLI::Option*> addBaxterOptions(CLI::App& options, BaxterRequest& r) 
   add(options
           .add_option("--initial-length", r.initial,
                       "where the estimate starts, repeatable (nine, 0.308 to 0.468)")
-          ->check(CLI::Range(0.05, 1.5))
+          ->check(between(0.05, 1.5))
           ->type_name("M"));
   positive("--payload", r.payload, "mass on the string, known unless --estimate-mass", "KG");
   positive("--true-length", r.trueLength, "of the string", "M");
   positive("--noise", r.noise, "standard deviation of the load cell", "N");
   add(options
           .add_option("--disturbance", r.disturbance, "unmeasured acceleration of the string's top")
-          ->check(CLI::NonNegativeNumber)
+          ->check(notNegative())
           ->type_name("M/S2")
           ->capture_default_str());
   add(options
           .add_option("--tracking-weight", r.trackingWeight,
                       "bias towards the middle, without which nothing would move")
-          ->check(CLI::NonNegativeNumber)
+          ->check(notNegative())
           ->capture_default_str()
           ->type_name("Q"));
   add(options.add_option("--window", r.window, "look back so long; 0: to the start")
-          ->check(CLI::NonNegativeNumber)
+          ->check(notNegative())
           ->type_name("S"));
   add(options.add_flag("--estimate-mass", r.estimateMass, "learn the mass as well"));
   add(options.add_flag("--ignore-clipping", r.ignoreClipping,

@@ -224,6 +224,9 @@ void tellRobust(const RobustOutcome& outcome, Summary& summary, Report& report) 
 
 void tellSearch(const Found& found, const std::vector<std::string>& columns, Summary& summary,
                 Report& report, OutputFolder& folder) {
+  summary.set("step_s", found.after.step);
+  summary.set("duration_s", found.after.step * static_cast<double>(found.after.x.size() - 1));
+  summary.set("wall_s", 1e-3 * found.msPerIteration * std::max(1, found.search.iterations));
   summary.set("iterations", found.search.iterations);
   summary.set("ms_per_iteration", found.msPerIteration);
   summary.set("cost_initial", found.search.costs.front());

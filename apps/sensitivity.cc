@@ -12,6 +12,7 @@
 #include "bio/arm_experiment.h"
 #include "bio/replay.h"
 #include "input_rules.h"
+#include "json_text.h"
 #include "progress_bar.h"
 #include "result.h"
 #include "sensitivity_report.h"
@@ -79,7 +80,7 @@ class Sensitivity : public Command {
     Summary summary(context);
     const bio::Model model = readModel(model_, summary);
     const bio::Arm arm = movableArm(model, model_, simulation_, summary);
-    if (list_) return listParameters(model, arm);
+    if (list_) return listParameters(context, model, arm);
 
     std::vector<Study> studies;
     for (const std::string& file : trials_) {
@@ -160,8 +161,23 @@ class Sensitivity : public Command {
     return names;
   }
 
-  ExitStatus listParameters(const bio::Model& model, const bio::Arm& arm) const {
+  ExitStatus listParameters(const CommandContext& context, const bio::Model& model,
+                            const bio::Arm& arm) const {
     const bio::ParameterCatalogue catalogue(model, arm, {arm.skeleton().defaultValues(), {}});
+    if (context.json) {
+      nlohmann::ordered_json list = nlohmann::ordered_json::array();
+      for (const bio::ModelParameter& p : catalogue.parameters()) {
+        list.push_back({{"name", p.name},
+                        {"value", p.value},
+                        {"unit", p.unit},
+                        {"lower", p.lower},
+                        {"upper", p.upper},
+                        {"meaning", p.meaning},
+                        {"is_group", p.isGroup}});
+      }
+      std::cout << jsonText(list, 2) << '\n';
+      return ExitStatus::done;
+    }
     std::string text;
     for (const bio::ModelParameter& p : catalogue.parameters()) {
       text += fmt::format("{:<44} {:>12.6g} {:<10} {}{}\n", p.name, p.value, p.unit, p.meaning,

@@ -124,4 +124,14 @@ TEST(CalibrateCommand, SameSeedSameBits) {
   EXPECT_NE(run("3", "2"), run("4", "2"));
 }
 
+TEST(CalibrateCommand, SaysWhereTheParametersDoNotExplainTheTrials) {
+  const auto warnings = [](const std::string& noise) {
+    return support::runFisherHill({"calibrate", support::model, support::slow, "--parameters",
+                                   "TRI.radius", "--noise-deg", noise})
+        .err;
+  };
+  EXPECT_THAT(warnings("0.5"), testing::HasSubstr("times the noise given by --noise-deg"));
+  EXPECT_THAT(warnings("5"), testing::Not(testing::HasSubstr("times the noise given")));
+}
+
 }  // namespace

@@ -130,6 +130,17 @@ TEST(CheckCommand, MatchesATrialsColumnsWithTheModel) {
   EXPECT_THAT(differs.out, HasSubstr("GLUTmax"));
 }
 
+// A line with a gap behind every value would not be seen.
+TEST(CheckCommand, DrawsWhatWasMeasuredInEveryOtherRow) {
+  const ScratchFolder scratch;
+  const std::string file = scratch.file(
+      "sparse.csv", "time,BIClong,elbow_flexion\n0,0.1,0.5\n0.1,0.2,\n0.2,0.1,0.7\n0.3,0.1,\n");
+  const std::string out = (scratch / "out").string();
+  EXPECT_EQ(runFisherHill({"check", file, "--out", out}).status, 0);
+  const std::string report = support::contentOf(out + "/report.html");
+  EXPECT_THAT(report, HasSubstr(R"("x":[0.0,0.2],"y":[0.5,0.7])"));
+}
+
 TEST(CheckCommand, TheShippedModelsHaveNoErrorAndNoWarning) {
   for (const char* model : {"models/elbow8.osim", "models/elbow8_passive.osim"}) {
     const ProgramResult result = runFisherHill({"check", model, "--json"});

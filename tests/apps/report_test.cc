@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 namespace app {
@@ -44,6 +45,15 @@ TEST(Report, BeginsWithWhatWasRunTheVerdictAndTheFigure) {
 
 TEST(Report, KeepsWhatWasNotMeasuredAsAGap) {
   EXPECT_THAT(renderReport(smallReport(), Summary({})), HasSubstr("\"y\":[10.0,null,12.0]"));
+}
+
+TEST(Report, OfHalfAMillionRowsIsSmall) {
+  Report report = smallReport();
+  std::vector<double>& x = report.mainFigure->series[0].x;
+  x.resize(500000);
+  std::iota(x.begin(), x.end(), 0.0);
+  report.mainFigure->series[0].y = x;
+  EXPECT_LT(renderReport(report, Summary({})).size(), 500000u);  // 8 MB with every point
 }
 
 TEST(Report, NeedsNothingFromElsewhere) {

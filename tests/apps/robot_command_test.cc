@@ -77,6 +77,11 @@ TEST(RobotCommand, OptimisesTheDoublePendulumAndTriesBothMotions) {
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = nlohmann::json::parse(support::contentOf(out + "/summary.json"));
   EXPECT_GT(json["lambda_min_factor"].get<double>(), 1000);
+  const auto motion = support::linesOf(support::contentOf(out + "/motion_optimised.csv"));
+  EXPECT_NEAR(json["duration_s"].get<double>(), std::stod(motion.back()), 1e-9);
+  EXPECT_NEAR(json["step_s"].get<double>(), std::stod(motion.at(2)) - std::stod(motion.at(1)),
+              1e-9);
+  EXPECT_GT(json["wall_s"].get<double>(), 0);
   const auto before = json["bound_initial"], after = json["bound_optimised"],
              trials = json["monte_carlo_optimised"];
   EXPECT_NEAR(before[0][0].get<double>() / 2.71e-4, 1, 0.05);

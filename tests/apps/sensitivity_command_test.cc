@@ -99,4 +99,16 @@ TEST(SensitivityCommand, ListsItsParametersWithoutATrial) {
   }
 }
 
+TEST(SensitivityCommand, ListsItsParametersAsJson) {
+  const ProgramResult result = runFisherHill({"sensitivity", model, "--list-parameters", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto list = nlohmann::json::parse(result.out);
+  EXPECT_EQ(list.size(), 292u);  // 285 and seven groups
+  const auto mass = std::find_if(list.begin(), list.end(),
+                                 [](const auto& one) { return one["name"] == "hand.mass"; });
+  ASSERT_NE(mass, list.end());
+  EXPECT_EQ((*mass)["unit"], "kg");
+  EXPECT_GT((*mass)["value"].get<double>(), (*mass)["lower"].get<double>());
+}
+
 }  // namespace
