@@ -182,17 +182,20 @@ class Calibrate : public Command {
     return options;
   }
 
-  /// No mass, strength or length is negative, whatever the bounds.
+  /// What is positive by its nature: numbers of a muscle, masses, radii. A position is not.
+  static bool cannotBeNegative(const bio::ModelParameter& one) {
+    return one.lower >= 0 && (std::holds_alternative<bio::MuscleTarget>(one.targets.front()) ||
+                              one.unit == "kg" || one.name.ends_with(".radius"));
+  }
+
   static void boundsMustBePossible(const bio::TrialSet& training,
                                    const bio::CalibrationOptions& options) {
-    for (const std::size_t index : training.selection()) {
-      const bio::ModelParameter& one = training.catalogue().parameters()[index];
-      for (const auto& [name, bounds] : options.bounds) {
-        if (training.catalogue().find(name) != index || one.lower < 0 || bounds.first >= 0)
-          continue;
-        throw std::invalid_argument(fmt::format("--bounds: {} from {} {}, must not be below 0",
-                                                one.name, bounds.first, one.unit));
-      }
+    for (const auto& [name, bounds] : options.bounds) {
+      const bio::ModelParameter& one =
+          training.catalogue().parameters()[training.catalogue().find(name)];
+      if (bounds.first >= 0 || !cannotBeNegative(one)) continue;
+      throw std::invalid_argument(fmt::format("--bounds: {} from {} {}, must not be below 0",
+                                              one.name, bounds.first, one.unit));
     }
   }
 

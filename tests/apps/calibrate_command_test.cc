@@ -134,4 +134,13 @@ TEST(CalibrateCommand, SaysWhereTheParametersDoNotExplainTheTrials) {
   EXPECT_THAT(warnings("5"), testing::Not(testing::HasSubstr("times the noise given")));
 }
 
+// A position may lie on either side of its frame, though the default bounds keep it on one.
+TEST(CalibrateCommand, BoundsOfAPositionMayBeNegative) {
+  const ScratchFolder scratch;
+  const ProgramResult result = support::runFisherHill(
+      {"calibrate", "models/elbow8.osim", "emg_data/curl_slow.sto", "--parameters", "BRD.point2.x",
+       "--bounds", "BRD.point2.x=-0.02:0.06", "--out", (scratch / "out").string()});
+  EXPECT_NE(result.status, 2) << result.err;
+}
+
 }  // namespace
