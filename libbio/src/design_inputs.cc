@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "info/random_stream.h"
 #include "require.h"
 
 namespace bio {
@@ -162,6 +163,15 @@ VectorXd DesignInputs::own() const {
     }
   }
   return profiles_.project(profiles_.coefficients(atKnots));
+}
+
+VectorXd DesignInputs::random(std::uint64_t seed, std::uint64_t which) const {
+  info::RandomStream random(seed, which);
+  const double size = std::pow(2.0, -3 * random.uniform());
+  VectorXd walk(profiles_.size());
+  double at = 0;
+  for (Index k = 0; k < walk.size(); ++k) walk[k] = at = 0.8 * at + 0.6 * random.normal();
+  return profiles_.project(own() + size * walk);
 }
 
 VectorXd DesignInputs::torqueOf(const Trial& trial) const {

@@ -9,7 +9,6 @@
 #include "info/design_search.h"
 #include "info/evolution.h"
 #include "info/monte_carlo.h"
-#include "info/random_stream.h"
 
 namespace bio {
 
@@ -89,20 +88,13 @@ DesignResult ExperimentDesign::search(const DesignSearchSettings& settings) cons
   };
   const auto project = [&](const VectorXd& x) { return profiles().project(x); };
 
-  // Candidates: the trial's own inputs, and random ones about them; neighbouring knots are alike.
+  // Candidates: the trial's own inputs, and random ones about them.
   std::vector<VectorXd> candidates(static_cast<std::size_t>(settings.candidates) + 1,
                                    inputs_.own());
   std::vector<double> costs(candidates.size());
   info::parallelFor(static_cast<int>(candidates.size()), settings.threads, [&](int i) {
     const auto si = static_cast<std::size_t>(i);
-    if (i > 0) {
-      info::RandomStream random(settings.seed, static_cast<std::uint64_t>(i));
-      const double size = std::pow(2.0, -3 * random.uniform());
-      VectorXd walk(candidates[si].size());
-      double at = 0;
-      for (Index k = 0; k < walk.size(); ++k) walk[k] = at = 0.8 * at + 0.6 * random.normal();
-      candidates[si] = profiles().project(candidates[si] + size * walk);
-    }
+    if (i > 0) candidates[si] = inputs_.random(settings.seed, static_cast<std::uint64_t>(i));
     costs[si] = costOf(candidates[si]);
   });
   const auto first = std::min_element(costs.begin(), costs.end());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,9 @@ class DesignInputs {
   Trial at(const Eigen::VectorXd& x) const;
   /// Coefficients that come nearest to the trial's own inputs.
   Eigen::VectorXd own() const;
+  /// Random coefficients about those, for a search to begin with: walks along the knots of sizes
+  /// from an eighth of what is allowed to all of it. The same arguments give the same.
+  Eigen::VectorXd random(std::uint64_t seed, std::uint64_t which) const;
   /// A trial's torque from outside on the coordinate, in every row; zeros if it has none.
   Eigen::VectorXd torqueOf(const Trial& trial) const;
   /// Largest changes [unit/s] between rows: of the torque, and of the groups' excitations.

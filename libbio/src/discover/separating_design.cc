@@ -14,7 +14,6 @@
 #include "info/discover/hypothesis.h"
 #include "info/evolution.h"
 #include "info/monte_carlo.h"
-#include "info/random_stream.h"
 #include "require.h"
 
 namespace bio::discover {
@@ -196,21 +195,13 @@ SeparatingResult SeparatingDesign::search(const DesignSearchSettings& settings) 
   };
   const auto project = [&](const VectorXd& x) { return inputs_.profiles().project(x); };
 
-  // the trial's own inputs, and random ones about them; neighbouring knots are alike
+  // the trial's own inputs, and random ones about them
   std::vector<VectorXd> candidates(static_cast<std::size_t>(settings.candidates) + 1,
                                    inputs_.own());
   std::vector<double> costs(candidates.size());
   info::parallelFor(static_cast<int>(candidates.size()), settings.threads, [&](int i) {
     const auto si = static_cast<std::size_t>(i);
-    if (i > 0) {
-      info::RandomStream random(settings.seed, static_cast<std::uint64_t>(i));
-      const double size = std::pow(2.0, -3 * random.uniform());
-      double walk = 0;
-      VectorXd x = candidates[si];
-      for (Index k = 0; k < x.size(); ++k)
-        x[k] += size * (walk = 0.8 * walk + 0.6 * random.normal());
-      candidates[si] = project(x);
-    }
+    if (i > 0) candidates[si] = inputs_.random(settings.seed, static_cast<std::uint64_t>(i));
     costs[si] = costOf(candidates[si]);
   });
   if (settings.generations > 0 && !stop) {
