@@ -14,7 +14,7 @@ namespace {
 
 // the score of what could not be simulated at all
 constexpr double kFailed = -1e300;
-constexpr double kFirstSize = 0.3, kRaceSize = 0.1, kSmallest = 1e-3;
+constexpr double kWidest = 0.8, kFirstSize = 0.3, kRaceSize = 0.1, kSmallest = 1e-3;
 // with so large a latent force none at all is out of the question, and its fit is not worth the
 // time
 constexpr double kHopeless = 0.03;
@@ -121,6 +121,10 @@ void Search::improve(const Effects& effects, const VectorXd& start, double size,
 void Search::calibrate() {
   report_("base model");
   improve({}, nominalValues(data_), kFirstSize);
+  // a base that only a large force holds may have run away from the nominal one
+  for (const double size : {kWidest, kRaceSize})
+    if (!at({}).works() || at({}).fit.noise.latent > kFirstSize)
+      improve({}, nominalValues(data_), size);
   mustWork();
   // the scale of the latent force where the arm really goes, then once more from both ends
   const VectorXd values = at({}).fit.values;

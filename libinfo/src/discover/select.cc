@@ -32,7 +32,8 @@ class Selection {
       chosen_ = best();
       while (swapOne() || swapTwo()) {
       }
-      if (chosen_ == before && !replaceOne(list)) break;
+      if (chosen_ == before && !replaceOne(list) && !(chosen_.empty() && stranded() && simplify()))
+        break;
     }
     // names that are told apart by fits which were not done
     for (int i = 0; i < 2 && search_.complete(2 * options_.classWidth); ++i) search_.reconcile();
@@ -40,6 +41,10 @@ class Selection {
   }
 
  private:
+  // Without any name, and with a latent force that no noise of the inputs explains: the base may have
+  // run away, and every effect that was raced from there with it (sets 66012 and 66155).
+  bool stranded() const { return search_.at({}).fit.noise.latent > options_.latentTolerance; }
+
   // Before a second name is given, single ones are tried from elsewhere: a base that is far off may
   // have led to makeshifts for one effect that explains everything.
   bool simplify() {

@@ -38,10 +38,10 @@ struct Options {
   std::optional<double> outputDeviation;
   double latentTime = 0.08;        ///< ℓ [s] of the latent force
   double latentScale = 0.02;       ///< s of the prior exp(−σ_d/s) that prefers σ_d = 0
-  double latentTolerance = 0.1;    ///< up to this size the latent force may be noise of the inputs
+  double latentTolerance = 0.075;  ///< up to this size the latent force may be noise of the inputs
   double evidence = 5;             ///< nats that a name must be ahead of the hypothesis without it
   double significance = 3.5;       ///< deviations that its amplitude must differ from absence by
-  double remainder = 2;            ///< nats that a further force with a cause may gain
+  double remainder = 3;            ///< nats that a further force with a cause may gain
   double classWidth = 4.6;         ///< nats: rivals no further behind than this stay in the class
   double surprise = 3;             ///< prior deviations beyond which a parameter is in error
   double level = 0.001;            ///< of every test of adequacy
