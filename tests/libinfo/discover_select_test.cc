@@ -121,11 +121,11 @@ class Astray : public Disagreement {
   VectorXd measured_[2];
 };
 
-Verdict verdictOn(const Astray& data) {
+Verdict verdictOn(const Astray& data, double latentTolerance = 5) {  // 5 move outputs by kSigma
   Options options;
   options.outputDeviation = kSigma;
   options.latentScale = 1;
-  options.latentTolerance = 5;  // moves outputs by kSigma
+  options.latentTolerance = latentTolerance;
   return run(data, options);
 }
 
@@ -145,6 +145,16 @@ TEST(Search, RacesSingleEffectsFromTheNominalValuesBeforeASecondNameIsGiven) {
   data.makeshift[1] = Astray::wave(5);
   data.draw(1, 0, kPlace);
   expectTheRightOneAlone(data, verdictOn(data), 0, kPlace);
+}
+
+// As before, but what is left of e_3 is like neither makeshift. Beside a base that explains e_1 by θ no
+// effect gains anything, and the latent force takes what noise of the inputs cannot be.
+TEST(Search, RacesFromTheNominalValuesBeforeThereIsNoName) {
+  Astray data;
+  data.makeshift[0] = Astray::wave(6);
+  data.makeshift[1] = Astray::wave(7);
+  data.draw(3, 0, kPlace);
+  expectTheRightOneAlone(data, verdictOn(data, 2), 0, kPlace);
 }
 
 // A does what it ought to about θ = kPlace only, neither where the base model goes (2·kPlace,
