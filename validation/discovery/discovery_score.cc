@@ -72,6 +72,35 @@ std::optional<double> deviation(const Json& estimate, const Json& truth) {
   return (*value * unit - wanted->at("value").get<double>()) / (*sd * unit);
 }
 
+// What absence is of a quantity with this name.
+double absenceOf(const std::string& name) {
+  return lastWord(name) == "factor" ? 1 : 0;
+}
+
+// Amplitude over the least one that would have shown, five deviations: of the effect where it (or
+// else a declared equivalent, by its own amplitude) is named, else by `undetectable_below`.
+std::optional<double> visibility(const Json& verdict, const Json& truth) {
+  constexpr double needed = 5;
+  const Json effects = verdict.value("effects", Json::array());
+  for (const std::string& id : accepted(truth)) {
+    for (const Json& effect : effects) {
+      const Json parameters = effect.value("parameters", Json::object());
+      if (effect.at("id") != id || parameters.empty()) continue;
+      const auto& first = *parameters.items().begin();
+      const auto value = finite(first.value(), "value"), sd = finite(first.value(), "sd");
+      if (!value || !sd || !(*sd > 0)) continue;
+      const double z = id == truth.at("id") ? deviation(effect, truth).value_or(0) : 0;
+      return std::abs((*value - absenceOf(first.key())) / *sd - z) / needed;
+    }
+  }
+  const auto known = verdict.find("undetectable_below");
+  const auto amplitude = finite(truth, "amplitude");
+  if (known == verdict.end() || !amplitude) return {};
+  const auto least = finite(*known, truth.at("id").get<std::string>().c_str());
+  if (!least || !(*least > 0)) return {};
+  return std::abs(*amplitude) / *least;
+}
+
 std::string describe(const Outcome& o) {
   const std::string truth =
       o.truth.empty() ? "nothing" : fmt::format("{}", fmt::join(o.truth, "+"));
@@ -156,11 +185,9 @@ Outcome judge(const std::string& name, const Json& label, const Json& verdict) {
     const auto given = [&](const std::string& id) { return has(names, id); };
     o.firstIsRight =
         o.firstIsRight || (o.verdict != "unknown" && !o.named.empty() && given(o.named[0]));
-    const auto known = verdict.find("undetectable_below");
-    const auto amplitude = finite(truth, "amplitude");
-    if (known != verdict.end() && amplitude) {
-      const auto least = finite(*known, truth.at("id").get<std::string>().c_str());
-      o.detectable = o.detectable && (!least || std::abs(*amplitude) >= *least);
+    if (const auto seen = visibility(verdict, truth)) {
+      o.visibility = std::min(o.visibility.value_or(*seen), *seen);
+      o.detectable = o.detectable && *seen >= 1;
     }
     o.classHasTruth = o.classHasTruth || std::any_of(all.begin(), all.end(), given);
     o.allNamed = o.allNamed && std::any_of(o.named.begin(), o.named.end(), given);

@@ -26,10 +26,13 @@ struct Outcome {
   bool firstIsRight = false;    ///< its first name is a truth; "unknown" names nothing
   bool classHasTruth = false;   ///< a truth is among names and class
   bool allNamed = false;        ///< every truth is among the names
-  bool detectable = true;       ///< not said to be too small to be seen (undetectable_below)
-  bool confident = false;       ///< first name's probability ≥ 0.95
-  bool asClass = false;         ///< a truth is named in one class with a declared equivalent
-  bool uniquelyRight = false;   ///< "named", and the truth itself is the only name, without a rival
+  bool detectable = true;       ///< not too small to be seen by what the verdict says
+  /// Amplitude over the least that would have shown, five deviations: of what was named by its own
+  /// deviation, of the rest by `undetectable_below`; of the least visible truth
+  std::optional<double> visibility;
+  bool confident = false;      ///< first name's probability ≥ 0.95
+  bool asClass = false;        ///< a truth is named in one class with a declared equivalent
+  bool uniquelyRight = false;  ///< "named", and the truth itself is the only name, without a rival
   /// of the first name, where it is a claim of "named", "ambiguous" or "parameter"
   std::optional<double> probability;
   bool firstIsTrue = false;  ///< the first name is the truth itself, no equivalent

@@ -13,6 +13,7 @@
 
 #include "arguments.h"
 #include "discovery_score.h"
+#include "recovery.h"
 #include "repaired_table.h"
 
 int main(int argc, char** argv) {
@@ -26,7 +27,7 @@ int main(int argc, char** argv) {
     if (arguments.has("as-suite"))
       for (auto& outcome : outcomes) outcome.suite = arguments.text("as-suite");
     const auto score = hidden::score(outcomes);
-    fmt::print("{}", score.asMarkdown());
+    fmt::print("{}\n{}", score.asMarkdown(), hidden::recoveryTable(outcomes));
     if (arguments.has("repaired"))
       fmt::print("\n{}", hidden::repairedTable(arguments.text("labels"), arguments.text("verdicts"),
                                                arguments.text("repaired")));
