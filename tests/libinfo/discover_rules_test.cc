@@ -102,6 +102,22 @@ TEST(Decide, CallsRivalsWithinTheClassAndDeclaredEquivalentsAmbiguous) {
   EXPECT_TRUE(exact.effects[0].exact);
 }
 
+TEST(Decide, GivesDeclaredEquivalentsTheSameProbability) {
+  const double others = 4 * std::exp(-30.0);  // the base, once for every candidate
+  const auto behind = [](double nats) {
+    return decide(catalogue(), raced({{{2}, 30.0}, {{1}, 30.0 - nats}}, {2}), {}).probability;
+  };
+  EXPECT_NEAR(behind(0.7), 1 / (2 + others), 1e-12);
+  EXPECT_NEAR(behind(4.5), 1 / (2 + others), 1e-12);
+  EXPECT_NEAR(behind(10), 1 / (1 + std::exp(-10.0) + others), 1e-12);
+  // one that was not raced is no less probable
+  EXPECT_NEAR(decide(catalogue(), raced({{{2}, 30.0}}, {2}), {}).probability, 1 / (2 + others),
+              1e-12);
+  // a rival that is no declared equivalent has what its evidence gives it
+  EXPECT_NEAR(decide(catalogue(), raced({{{0}, 30.0}, {{1}, 29.3}}, {0}), {}).probability,
+              1 / (1 + std::exp(-0.7) + others), 1e-12);
+}
+
 TEST(Decide, ComparesEachOfSeveralEffectsInItsPlace) {
   const Decision d = decide(
       catalogue(), raced({{{0}, 30.0}, {{1}, 12.0}, {{0, 1}, 50.0}, {{0, 3}, 47.0}}, {0, 1}), {});

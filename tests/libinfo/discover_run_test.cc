@@ -90,6 +90,7 @@ TEST(Discover, LooksOnceMoreWhereWhatWasHeldOutIsOff) {
   options.outputDeviation = kOutput;
   options.latentScale = 1;
   options.latentTime = kTime;
+  options.latentTolerance = 0.1;
   options.heldOut = {2};
   const auto asked = [&](double push, double secondLook) {
     const LinearDisagreement data = with(push);

@@ -41,7 +41,9 @@ NamedEffect classOf(const std::vector<Candidate>& candidates, const Judgement& j
         std::find(declared.begin(), declared.end(), candidates[c].id) != declared.end();
     if (rival == nullptr && !equal) continue;
     const double behind = rival != nullptr ? rival->logEvidence - leader.logEvidence : 0;
-    if (rival != nullptr) sum += std::exp(behind);
+    // what tells declared equivalents apart within a class is their priors, not the data
+    const bool tied = equal && behind > -options.classWidth;
+    if (tied || rival != nullptr) sum += tied ? 1 : std::exp(behind);
     if (equal || behind > -options.classWidth) {
       named.equals.push_back(c);
       named.equalEvidence.push_back(behind);

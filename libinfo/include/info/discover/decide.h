@@ -37,6 +37,8 @@ struct Decision {
 /// - Chosen: each in a class with its declared equivalents and with all that are no further behind
 ///   than `classWidth` in its place. Every class of one: `named`, or `parameter` if that is all
 ///   they are; otherwise `ambiguous`. Innovations of the wrong size veto the probability.
+/// A name's probability is its share of exp(log Z) among what was raced in its place; declared
+/// equivalents no further behind than `classWidth` count as much as the leader.
 Decision decide(const std::vector<Candidate>& candidates, const Judgement& judgement,
                 const Options& options);
 
