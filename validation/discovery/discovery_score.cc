@@ -333,6 +333,10 @@ Score score(const std::vector<Outcome>& outcomes) {
                   withNoise(false, false), firstIsRight));
   r.push_back(row(outcomes, "right name first, noisy EMG, full size", "≥ 85 %", 0.85, false,
                   withNoise(true, true), firstIsRight));
+  r.push_back(row(
+      outcomes, "of the first of these, single effects without parameters in error", "–", 0, false,
+      [&](const Outcome& o) { return o.suite == "single" && withNoise(false, true)(o); },
+      firstIsRight));
   const auto visible = [&](const auto& chosen) {
     return [=](const Outcome& o) { return chosen(o) && o.detectable; };
   };
