@@ -136,8 +136,7 @@ ArmDiscovery discoverInArm(const ArmDiscoveryRequest& request, const CommandCont
   std::vector<bio::Trial> trials;
   for (const std::string& file : files) {
     summary.addInput(file);
-    trials.push_back(bio::readTrial(
-        file, model, {.ignoreExtra = request.simulation.ignoreExtra, .knownChanges = true}));
+    trials.push_back(readTrialFile(file, model, request.simulation, true));
     for (const std::string& warning : trials.back().warnings) summary.warn(warning);
   }
   inputsMustDiffer(summary, request.trials.size());

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "angle_unit.h"
+#include "arm_input.h"
 #include "arm_options.h"
 #include "bio/osim_file.h"
 #include "calibrate_report.h"
@@ -203,7 +204,7 @@ class Calibrate : public Command {
                                Summary& summary) const {
     std::vector<bio::Trial> trials;
     for (const std::string& file : files) {
-      trials.push_back(bio::readTrial(file, model, {simulation_.ignoreExtra}));
+      trials.push_back(readTrialFile(file, model, simulation_));
       for (const std::string& warning : trials.back().warnings) summary.warn(warning);
     }
     return trials;
