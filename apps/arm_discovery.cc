@@ -165,6 +165,7 @@ ArmDiscovery discoverInArm(const ArmDiscoveryRequest& request, const CommandCont
   const bio::discover::ElbowDisagreement& data = *elbow;
   const info::discover::Verdict& verdict = found.verdict;
   const DiscoverWording wording = wordingOf(data);
+  for (const std::string& warning : data.widest().arm().warnings()) summary.warn(warning);
   warnOfOneTrial(summary, request.trials.size(), request.heldOut.size());
   const std::vector<bio::discover::ForeseenExperiment> foreseen =
       bio::discover::foresee(model, arm, trials.front(), options, data, verdict);

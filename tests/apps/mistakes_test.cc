@@ -494,6 +494,19 @@ TEST(CtrlC, EndsALongReplayWithStatus130AndNothingHalfWritten) {
   EXPECT_THAT(scratch.listing(), testing::IsEmpty());
 }
 
+// As a start outside the range is told.
+TEST(Mistakes, ALockInDegreesThatAreMeantAsRadiansIsTold) {
+  const auto replay = [](const std::string& lock) {
+    return support::runFisherHill({"replay", model, slow, "--lock", lock});
+  };
+  const ProgramResult radians = replay("elv_angle=90");
+  EXPECT_EQ(radians.status, 0);
+  EXPECT_THAT(radians.err,
+              HasSubstr("elv_angle is locked at 5157 deg, outside its range, -90 to 130"));
+  EXPECT_EQ(replay("elv_angle=90deg").err, "");
+  EXPECT_EQ(replay("elv_angle=1.5").err, "");
+}
+
 TEST(Mistakes, NamesThatWereMeantAreTold) {
   const ProgramResult command = support::runFisherHill({"repaly", model, slow});
   EXPECT_EQ(command.status, 2);
