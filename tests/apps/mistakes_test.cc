@@ -494,6 +494,25 @@ TEST(CtrlC, EndsALongReplayWithStatus130AndNothingHalfWritten) {
   EXPECT_THAT(scratch.listing(), testing::IsEmpty());
 }
 
+// Commands that can pass over a column say how, others do not.
+TEST(Mistakes, AnUnknownColumnComesWithTheOptionThatIgnoresIt) {
+  const ScratchFolder scratch;
+  writeFiles(scratch);
+  const std::string file = (scratch / "misspelt.csv").string();
+  const std::string option = "(--ignore-extra ignores them)";
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"replay", model, file},
+        {"calibrate", model, file, "--parameters", "hand.mass"},
+        {"discover", model, file}}) {
+    const ProgramResult result = support::runFisherHill(words);
+    EXPECT_EQ(result.status, 2);
+    EXPECT_THAT(result.err, HasSubstr(option)) << words[0];
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1);
+  }
+  const ProgramResult check = support::runFisherHill({"check", model, file});
+  EXPECT_THAT(check.out + check.err, testing::Not(HasSubstr("--ignore-extra")));
+}
+
 // As a start outside the range is told.
 TEST(Mistakes, ALockInDegreesThatAreMeantAsRadiansIsTold) {
   const auto replay = [](const std::string& lock) {
