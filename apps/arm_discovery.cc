@@ -143,6 +143,7 @@ ArmDiscovery discoverInArm(const ArmDiscoveryRequest& request, const CommandCont
   resultsMustNotBeInputs(summary, folder, names);
   const bio::ArmOptions arm = armOptions(request.simulation);
   const std::string coordinate = observedIn(request.simulation);
+  for (const std::string& warning : bio::Arm(model, arm).warnings()) summary.warn(warning);
   std::unique_ptr<bio::discover::ElbowDisagreement> elbow;
   bio::discover::ElbowOptions options;
   const auto attempt = [&](double step) {
@@ -165,7 +166,6 @@ ArmDiscovery discoverInArm(const ArmDiscoveryRequest& request, const CommandCont
   const bio::discover::ElbowDisagreement& data = *elbow;
   const info::discover::Verdict& verdict = found.verdict;
   const DiscoverWording wording = wordingOf(data);
-  for (const std::string& warning : data.widest().arm().warnings()) summary.warn(warning);
   warnOfOneTrial(summary, request.trials.size(), request.heldOut.size());
   const std::vector<bio::discover::ForeseenExperiment> foreseen =
       bio::discover::foresee(model, arm, trials.front(), options, data, verdict);

@@ -522,6 +522,9 @@ TEST(Mistakes, ALockInDegreesThatAreMeantAsRadiansIsTold) {
   EXPECT_EQ(radians.status, 0);
   EXPECT_THAT(radians.err,
               HasSubstr("elv_angle is locked at 5157 deg, outside its range, -90 to 130"));
+  const ProgramResult discover =
+      support::runFisherHill({"discover", model, slow, "--lock", "elv_angle=90"});
+  EXPECT_THAT(discover.err, HasSubstr("elv_angle is locked at 5157 deg"));
   EXPECT_EQ(replay("elv_angle=90deg").err, "");
   EXPECT_EQ(replay("elv_angle=1.5").err, "");
 }
