@@ -136,14 +136,14 @@ ArmDiscovery discoverInArm(const ArmDiscoveryRequest& request, const CommandCont
   std::vector<bio::Trial> trials;
   for (const std::string& file : files) {
     summary.addInput(file);
-    trials.push_back(bio::readTrial(
-        file, model, {.ignoreExtra = request.simulation.ignoreExtra, .knownChanges = true}));
+    trials.push_back(readTrialFile(file, model, request.simulation, true));
     for (const std::string& warning : trials.back().warnings) summary.warn(warning);
   }
   inputsMustDiffer(summary, request.trials.size());
   resultsMustNotBeInputs(summary, folder, names);
   const bio::ArmOptions arm = armOptions(request.simulation);
   const std::string coordinate = observedIn(request.simulation);
+  for (const std::string& warning : bio::Arm(model, arm).warnings()) summary.warn(warning);
   std::unique_ptr<bio::discover::ElbowDisagreement> elbow;
   bio::discover::ElbowOptions options;
   const auto attempt = [&](double step) {

@@ -8,6 +8,7 @@
 #include "arm_options.h"
 #include "bio/osim_file.h"
 #include "bio/replay.h"
+#include "text.h"
 
 namespace app {
 namespace {
@@ -49,11 +50,23 @@ bio::Arm movableArm(const bio::Model& model, const std::string& file,
   return arm;
 }
 
+bio::Trial readTrialFile(const std::string& file, const bio::Model& model,
+                         const SimulationOptions& options, bool knownChanges) {
+  bio::Trial trial = bio::readTrial(
+      file, model, {.ignoreExtra = options.ignoreExtra, .knownChanges = knownChanges});
+  const double duration = trial.times[trial.times.size() - 1] - trial.times[0];
+  if (options.step && *options.step > duration) {
+    throw std::invalid_argument(fmt::format("{}: lasts {} s, --step {} s must not be longer", file,
+                                            numberText(duration), numberText(*options.step)));
+  }
+  return trial;
+}
+
 TrialInput readTrialInput(const std::string& file, const bio::Model& model, const bio::Arm& arm,
                           const SimulationOptions& options, Summary& summary) {
   summary.addInput(file);
   TrialInput input;
-  input.trial = bio::readTrial(file, model, {options.ignoreExtra});
+  input.trial = readTrialFile(file, model, options);
   for (const std::string& warning : input.trial.warnings) summary.warn(warning);
   input.excitation = bio::excitationOf(input.trial, arm);
   input.externalForce = bio::externalForceOf(input.trial, arm);

@@ -27,6 +27,12 @@ bio::Model readModel(const std::string& file, Summary& summary);
 bio::Arm movableArm(const bio::Model& model, const std::string& file,
                     const SimulationOptions& options, Summary& summary);
 
+/// A trial's file by the simulation options. The summary is not told.
+/// @param knownChanges  the command takes into account what was changed on purpose
+/// @throws what readTrial throws; std::invalid_argument if --step is longer than the trial
+bio::Trial readTrialFile(const std::string& file, const bio::Model& model,
+                         const SimulationOptions& options, bool knownChanges = false);
+
 /// A trial, and how it starts and drives an arm.
 struct TrialInput {
   bio::Trial trial;
@@ -36,7 +42,8 @@ struct TrialInput {
   double duration = 0;               ///< [s]
   bio::ArmState start;  ///< at rest: --initial, else the first measured value, else the default
 };
-/// @throws what readTrial, excitationOf, externalForceOf, startCoordinates and initialState throw
+/// @throws what readTrialFile, excitationOf, externalForceOf, startCoordinates and initialState
+/// throw
 TrialInput readTrialInput(const std::string& file, const bio::Model& model, const bio::Arm& arm,
                           const SimulationOptions& options, Summary& summary);
 

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "angle_unit.h"
+#include "arm_input.h"
 #include "arm_options.h"
 #include "bio/osim_file.h"
 #include "calibrate_report.h"
@@ -15,6 +16,7 @@
 #include "named_covariance.h"
 #include "named_pairs.h"
 #include "number_rules.h"
+#include "parameter_list.h"
 #include "progress_bar.h"
 #include "result.h"
 
@@ -35,7 +37,6 @@ class Calibrate : public Command {
         ->check(CLI::ExistingFile)
         ->type_name("");
     options.add_option("TRIAL", trials_, "trials to estimate from, with a measured angle")
-        ->required()
         ->check(CLI::ExistingFile)
         ->type_name("");
     const std::string group = "Calibration";
@@ -46,8 +47,8 @@ class Calibrate : public Command {
           ->group(group);
     };
     list("--parameters", parameters_, "what to estimate, by name, e.g. TRI.radius,hand.mass")
-        ->required()
         ->type_name("NAMES");
+    addListParameters(options, list_);
     list("--hold-out", heldOut_, "trial to test the estimate on; may be repeated")
         ->check(CLI::ExistingFile)
         ->type_name("TRIAL");
@@ -91,6 +92,7 @@ class Calibrate : public Command {
   }
 
   ExitStatus run(const CommandContext& context) override {
+    if (list_) return listAll(context);
     const bio::CalibrationOptions typed = calibrationOptions(context);
     std::vector<std::string> names = {"calibrated.osim", "covariance.csv"};
     for (std::size_t i = 0; i < trials_.size() + heldOut_.size(); ++i) {
@@ -154,7 +156,18 @@ class Calibrate : public Command {
   }
 
  private:
+  ExitStatus listAll(const CommandContext& context) const {
+    Summary summary(context);
+    const bio::Model model = readModel(model_, summary);
+    return listParameters(context, model, movableArm(model, model_, simulation_, summary));
+  }
+
   bio::CalibrationOptions calibrationOptions(const CommandContext& context) const {
+    if (trials_.empty()) throw std::invalid_argument("TRIAL is required");
+    if (parameters_.empty()) {
+      throw std::invalid_argument(
+          "--parameters is required; --list-parameters prints what there is");
+    }
     bio::CalibrationOptions options;
     for (const std::string& name : parameters_) {
       if (name.empty()) throw std::invalid_argument("--parameters: a name is empty");
@@ -203,7 +216,7 @@ class Calibrate : public Command {
                                Summary& summary) const {
     std::vector<bio::Trial> trials;
     for (const std::string& file : files) {
-      trials.push_back(bio::readTrial(file, model, {simulation_.ignoreExtra}));
+      trials.push_back(readTrialFile(file, model, simulation_));
       for (const std::string& warning : trials.back().warnings) summary.warn(warning);
     }
     return trials;
@@ -265,7 +278,7 @@ class Calibrate : public Command {
 
   std::string model_;
   std::vector<std::string> trials_, heldOut_, parameters_, priors_, bounds_, profile_;
-  bool ownStart_ = false, noPriors_ = false;
+  bool ownStart_ = false, noPriors_ = false, list_ = false;
   std::optional<double> noise_;
   std::string loss_ = "gaussian";
   int starts_ = 1;

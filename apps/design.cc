@@ -173,8 +173,7 @@ class Design : public Command {
     const bio::Model model = readModel(model_, summary);
     const bio::Arm arm = movableArm(model, model_, simulation_, summary);
     summary.addInput(trial_);
-    const bio::Trial trial = bio::readTrial(
-        trial_, model, {.ignoreExtra = simulation_.ignoreExtra, .knownChanges = true});
+    const bio::Trial trial = readTrialFile(trial_, model, simulation_, true);
     for (const std::string& warning : trial.warnings) summary.warn(warning);
     const bio::Coordinate& coordinate = rotationOf(arm);
     bio::discover::SeparationQuestion question;

@@ -75,8 +75,7 @@ void checkSets(const ArmDiscoveryRequest& each, const std::vector<DataSet>& sets
     for (const auto* files : {&set.training, &set.heldOut}) {
       for (const std::string& file : *files) {
         summary.addInput(file);
-        (void)bio::readTrial(file, model,
-                             {.ignoreExtra = each.simulation.ignoreExtra, .knownChanges = true});
+        (void)readTrialFile(file, model, each.simulation, true);
       }
     }
   }

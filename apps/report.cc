@@ -67,14 +67,24 @@ std::string html(const Paragraph& paragraph) {
   return fmt::format("<p>{}</p>\n", htmlText(paragraph.text));
 }
 
+/// The caption, and what is not drawn.
+std::string captionOf(const Figure& figure, const Json& drawn) {
+  bool isThinned = false;
+  for (std::size_t i = 0; i < figure.series.size(); ++i) {
+    isThinned = isThinned || drawn["series"][i]["x"].size() < figure.series[i].x.size();
+  }
+  if (!isThinned) return figure.caption;
+  return fmt::format("{}{}Of long curves only the lowest and highest values of {} parts are drawn.",
+                     figure.caption, figure.caption.empty() ? "" : " ", thinnedParts);
+}
+
 std::string html(const Figure& figure) {
   std::string text =
       fmt::format("<figure>\n<h3>{}</h3>\n<div class=\"plot\"></div>\n", htmlText(figure.title));
-  text += fmt::format("<script type=\"application/json\">{}</script>\n",
-                      scriptText(figureJson(figure)));
-  if (!figure.caption.empty()) {
-    text += fmt::format("<figcaption>{}</figcaption>\n", htmlText(figure.caption));
-  }
+  const Json drawn = figureJson(figure);
+  text += fmt::format("<script type=\"application/json\">{}</script>\n", scriptText(drawn));
+  const std::string caption = captionOf(figure, drawn);
+  if (!caption.empty()) text += fmt::format("<figcaption>{}</figcaption>\n", htmlText(caption));
   return text + "</figure>\n";
 }
 

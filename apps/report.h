@@ -42,7 +42,7 @@ struct Figure {
 };
 
 /// What draws a figure: title, labels, scales and series with at most six digits, NaN as null; of
-/// very long ones the highest and lowest values (thinned_series.h).
+/// very long ones the highest and lowest values (thinned_series.h); the report says so.
 /// @throws std::invalid_argument if a series' x and y differ in length
 nlohmann::ordered_json figureJson(const Figure& figure);
 

@@ -10,6 +10,7 @@
 #include <new>
 
 #include "bio/nearest_name.h"
+#include "bio/unknown_column.h"
 #include "command_line.h"
 #include "interruption.h"
 #include "text.h"
@@ -57,7 +58,8 @@ CLI::App* parsedSubcommand(const CLI::App& program) {
   return parsed.empty() ? nullptr : parsed.front();
 }
 
-int runCommand(Command& command, const CommandContext& context) {
+/// @param options  what the subcommand was parsed by
+int runCommand(Command& command, const CommandContext& context, const CLI::App& options) {
   try {
     return status(command.run(context));
   } catch (const Interrupted&) {
@@ -65,6 +67,10 @@ int runCommand(Command& command, const CommandContext& context) {
     fmt::print(stderr, "fisherhill {}: interrupted; {}\n", context.subcommand,
                kept ? "finished parts are in " + context.out->string() : "nothing was written");
     return status(ExitStatus::interrupted);
+  } catch (const bio::UnknownColumn& error) {
+    const bool canIgnore = options.get_option_no_throw("--ignore-extra") != nullptr;
+    return fail(context.subcommand,
+                error.what() + std::string(canIgnore ? " (--ignore-extra ignores them)" : ""));
   } catch (const std::bad_alloc&) {
     return fail(context.subcommand, "not enough memory");
   } catch (const std::exception& error) {
@@ -96,7 +102,8 @@ int runProgram(const std::vector<std::string>& arguments,
                 fmt::format("{} (see fisherhill {}--help)", what, name.empty() ? "" : name + " "));
   }
   catchInterruption();
-  return printed(runCommand(*chosen.command, *chosen.context), chosen.context->subcommand);
+  return printed(runCommand(*chosen.command, *chosen.context, *parsedSubcommand(line.program())),
+                 chosen.context->subcommand);
 }
 
 }  // namespace app

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <numbers>
 
 #include "arm_input.h"
@@ -12,7 +11,7 @@
 #include "bio/arm_experiment.h"
 #include "bio/replay.h"
 #include "input_rules.h"
-#include "json_text.h"
+#include "parameter_list.h"
 #include "progress_bar.h"
 #include "result.h"
 #include "sensitivity_report.h"
@@ -40,7 +39,7 @@ class Sensitivity : public Command {
     options.add_option("TRIAL", trials_, "excitations, and when the coordinate was measured")
         ->check(CLI::ExistingFile)
         ->type_name("");
-    options.add_flag("--list-parameters", list_, "print every parameter of the model and stop");
+    addListParameters(options, list_);
     options.add_option("--parameter", swept_, "parameter to sweep over --values")
         ->type_name("NAME")
         ->allow_extra_args(false);
@@ -159,32 +158,6 @@ class Sensitivity : public Command {
     if (!profile_.empty()) names.push_back("profile.csv");
     if (!global_.empty()) names.push_back("global.csv");
     return names;
-  }
-
-  ExitStatus listParameters(const CommandContext& context, const bio::Model& model,
-                            const bio::Arm& arm) const {
-    const bio::ParameterCatalogue catalogue(model, arm, {arm.skeleton().defaultValues(), {}});
-    if (context.json) {
-      nlohmann::ordered_json list = nlohmann::ordered_json::array();
-      for (const bio::ModelParameter& p : catalogue.parameters()) {
-        list.push_back({{"name", p.name},
-                        {"value", p.value},
-                        {"unit", p.unit},
-                        {"lower", p.lower},
-                        {"upper", p.upper},
-                        {"meaning", p.meaning},
-                        {"is_group", p.isGroup}});
-      }
-      std::cout << jsonText(list, 2) << '\n';
-      return ExitStatus::done;
-    }
-    std::string text;
-    for (const bio::ModelParameter& p : catalogue.parameters()) {
-      text += fmt::format("{:<44} {:>12.6g} {:<10} {}{}\n", p.name, p.value, p.unit, p.meaning,
-                          p.isGroup ? " (group)" : "");
-    }
-    std::cout << text;
-    return ExitStatus::done;
   }
 
   void checkValues(const bio::ModelParameter& parameter) const {

@@ -7,7 +7,7 @@
 namespace app {
 namespace {
 
-constexpr std::size_t parts = 2000;
+constexpr std::size_t parts = thinnedParts;
 
 /// Places of the lowest and highest of values[from..to), and of the first that is no number.
 void addExtremes(const std::vector<double>& values, std::size_t from, std::size_t to,

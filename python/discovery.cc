@@ -128,7 +128,7 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
                  "surrogate"_a = verdict.surrogate, "probability_vetoed"_a = verdict.vetoed,
                  "noise"_a = verdict.outputDeviation, "gap"_a = gapOf(verdict.gap),
                  "gap_held_out"_a = verdict.heldOut ? gapOf(*verdict.heldOut) : py::none(),
-                 "undetectable_below"_a = undetectable,
+                 "held_out_fitted"_a = verdict.heldOutFitted, "undetectable_below"_a = undetectable,
                  "planned_experiments"_a = plannedOf(*data, verdict, foreseen),
                  "unknown"_a = unknownOf(verdict), "step"_a = found.step, "fits"_a = verdict.fits);
 }
@@ -142,7 +142,10 @@ void defineDiscovery(py::module_& module) {
       "without"_a = std::vector<std::string>(), "max_effects"_a = 3,
       "What the model lacks: verdict ('named', 'ambiguous', 'parameter', 'none', 'unknown', "
       "'numerical'), sentence, effects (id, name, parameters, log_bayes_factor, probability, "
-      "cannot_be_told_from), gap and gap_held_out [rad], undetectable_below {id: amplitude}; where "
+      "cannot_be_told_from), gap and gap_held_out [rad] (nominal, calibrated, after, noise_floor, "
+      "closed; of held-out trials also expected, what `after` could be expected to be, and "
+      "probability, that it is as large as it is), held_out_fitted: whether these were so far off "
+      "that they were fitted, too; undetectable_below {id: amplitude}; where "
       "names cannot be told apart planned_experiments (what, of, expected_nats {rival: nats}), the "
       "first trial repeated with a known mass in the hand or with pushes, the best first; where "
       "nothing fits unknown (formula, stable, evidence [nats], explained, peak_frequency [Hz], rms "

@@ -94,6 +94,18 @@ class Arms(unittest.TestCase):
         self.assertLess(abs(viscosity.value - 0.3), 3 * viscosity.sd)  # emg_data/answers/hidden.json
         self.assertGreater(found.gap.closed, 0.9)
 
+    def test_discover_tells_what_could_be_expected_of_held_out_trials(self):
+        trials = [fh.load_trial(HIDDEN.replace("train_1", one), self.model) for one in ("train_1", "train_2")]
+        found = fh.discover(self.model, trials[:1], hold_out=trials[1:], noise=0.5 * DEGREE, max_effects=1)
+        self.assertEqual([one.id for one in found.effects], ["visc"])
+        held = found.gap_held_out
+        self.assertGreater(held.expected, held.noise_floor)  # what is left unknown comes on top
+        self.assertGreater(held.probability, 0.05)  # else it would be fitted, too
+        self.assertLessEqual(held.probability, 1)
+        self.assertIs(found.held_out_fitted, False)
+        self.assertIsNone(found.gap.expected)  # fitted trials are as near as the fit brought them
+        self.assertIsNone(found.gap.probability)
+
     def test_discover_plans_what_would_tell_names_apart(self):
         trial = fh.load_trial(HIDDEN, self.model)
         found = fh.discover(self.model, [trial], noise=0.5 * DEGREE, max_effects=1, without=BRAKES)

@@ -11,6 +11,7 @@
 #include "bio/file_error.h"
 #include "bio/nearest_name.h"
 #include "bio/trial_table.h"
+#include "bio/unknown_column.h"
 
 namespace bio {
 namespace {
@@ -133,11 +134,11 @@ class TrialReader {
       const Meaning meaning = meaningOf(model_, table_, column);
       if (meaning.kind == Meaning::Kind::extra) {
         if (!options_.ignoreExtra) {
-          fail(
-              fmt::format("column '{}' is neither a muscle nor a coordinate of the model, nor a "
-                          "torque on one, and "
-                          "such columns are not ignored{}",
-                          column, meantInstead(column, names())));
+          throw UnknownColumn(
+              fmt::format("{}: column '{}' is neither a muscle nor a coordinate of the model, nor "
+                          "a torque on one, and such columns are not ignored{}",
+                          file_, column, meantInstead(column, names())),
+              column);
         }
         trial_.warnings.push_back(fmt::format("{}: column '{}' is ignored", file_, column));
         continue;

@@ -9,6 +9,7 @@
 
 #include "bio/coupled.h"
 #include "bio/table_file.h"
+#include "bio/unknown_column.h"
 
 namespace bio::view {
 namespace {
@@ -130,10 +131,10 @@ ArmMotion readArmMotion(const std::filesystem::path& file, const Model& model, b
     const ColumnMeaning meaning = meaningOf(column, model);
     if (meaning.meaning == Meaning::foreign) {
       if (ignoreExtra) continue;
-      throw std::invalid_argument(
-          fmt::format("{}: column '{}' belongs to no coordinate or muscle of the model '{}'; "
-                      "--ignore-extra passes over such columns",
-                      file.string(), column, model.name));
+      throw UnknownColumn(
+          fmt::format("{}: column '{}' belongs to no coordinate or muscle of the model '{}'",
+                      file.string(), column, model.name),
+          column);
     }
     if (meaning.meaning == Meaning::nothingShown) continue;
     Eigen::VectorXd values = filled(motion.time, table.values.col(static_cast<Eigen::Index>(c)));

@@ -26,8 +26,8 @@ struct ArmMotion {
 /// the name ends in `_deg`, in radians if it ends in `_rad`. Cells that were not measured are
 /// filled by straight lines. Speeds, other states and excitations are passed over.
 /// @throws FileError what readTable throws
-/// @throws std::invalid_argument for a column that belongs to nothing in the model unless
-///   `ignoreExtra`, or if no column gives a coordinate
+/// @throws UnknownColumn for a column that belongs to nothing in the model unless `ignoreExtra`
+/// @throws std::invalid_argument if no column gives a coordinate
 ArmMotion readArmMotion(const std::filesystem::path& file, const Model& model, bool ignoreExtra);
 
 /// The value of one series at a time between straight lines; the end values outside.

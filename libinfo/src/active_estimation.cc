@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <stdexcept>
@@ -113,40 +114,46 @@ ActiveEstimationResult runInThreads(const ActiveEstimationTask& task,
   Trial<S> trial(task);
   CycleTimes control(cyclesOf(task, kControllerPeriod)), receive(cyclesOf(task, kReceiverPeriod)),
       estimate(cyclesOf(task, kEstimatorPeriod)), move(cyclesOf(task, CompliantArm::tick));
-  std::atomic<bool> stop = false, priority = true;
+  std::atomic<bool> priority = true;
   const Clock::time_point start = Clock::now() + std::chrono::milliseconds(50);
   const Clock::time_point end = start + std::chrono::duration_cast<Clock::duration>(
                                             std::chrono::duration<double>(task.duration));
   const auto run = [&](double period, int urgency, CycleTimes& times, auto body) {
-    return std::jthread([&, period, urgency, body] {
+    return std::jthread([&, period, urgency, body](const std::stop_token& stop) {
       if (!askForRealTime(urgency)) priority = false;
-      runPeriodically(start, end, period, times, [&](std::size_t cycle) {
+      const auto cycleOn = [&](std::size_t cycle) {
         body(cycle);
-        return !stop;
-      });
+        return true;
+      };
+      runPeriodically(start, end, period, times, cycleOn, stop);
     });
   };
   {
     // the arm makes up for ticks that its thread slept through: time in the world does not wait
-    const auto arm = run(CompliantArm::tick, 40, move, [&](std::size_t cycle) {
+    const auto moveArm = [&](std::size_t cycle) {
       while (std::lround(trial.arm.time() / CompliantArm::tick) <= static_cast<long>(cycle))
         trial.arm.tick();
-    });
-    const auto receiver =
-        run(kReceiverPeriod, 30, receive, [&](std::size_t) { trial.receiver.cycle(); });
-    const auto controller = run(kControllerPeriod, 35, control, [&](std::size_t cycle) {
-      trial.controller.cycle(static_cast<double>(cycle) * kControllerPeriod);
-    });
-    const auto estimator = run(kEstimatorPeriod, 10, estimate, [&](std::size_t cycle) {
-      if (cycle > 0) trial.estimator.cycle(static_cast<double>(cycle) * kEstimatorPeriod);
-    });
-    while (Clock::now() < end) {
+    };
+    // a keepGoing that throws leaves through their destructors, which stop and join
+    std::array<std::jthread, 4> modules = {
+        run(CompliantArm::tick, 40, move, moveArm),
+        run(kReceiverPeriod, 30, receive, [&](std::size_t) { trial.receiver.cycle(); }),
+        run(kControllerPeriod, 35, control,
+            [&](std::size_t cycle) {
+              trial.controller.cycle(static_cast<double>(cycle) * kControllerPeriod);
+            }),
+        run(kEstimatorPeriod, 10, estimate, [&](std::size_t cycle) {
+          if (cycle > 0) trial.estimator.cycle(static_cast<double>(cycle) * kEstimatorPeriod);
+        })};
+    bool goOn = true;
+    while (goOn && Clock::now() < end) {
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
-      if (keepGoing && !stop &&
-          !keepGoing(std::chrono::duration<double>(Clock::now() - start).count()))
-        stop = true;
-      if (stop) break;
+      goOn = !keepGoing || keepGoing(std::chrono::duration<double>(Clock::now() - start).count());
     }
+    for (std::jthread& module : modules) {
+      if (!goOn) module.request_stop();
+    }
+    for (std::jthread& module : modules) module.join();
   }
   // what came in after the estimator's last turn
   trial.receiver.cycle();

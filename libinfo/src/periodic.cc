@@ -8,6 +8,20 @@
 #include <thread>
 
 namespace info {
+namespace {
+
+/// Sleeps in naps of at most a tenth of a second; false: stopped before the time has come.
+bool sleepUntil(Clock::time_point due, const std::stop_token& stop) {
+  constexpr auto nap = std::chrono::milliseconds(100);
+  while (!stop.stop_requested()) {
+    const bool last = due - Clock::now() <= nap;
+    std::this_thread::sleep_until(last ? due : Clock::now() + nap);
+    if (last) return !stop.stop_requested();
+  }
+  return false;
+}
+
+}  // namespace
 
 void CycleTimes::add(double late, double busy, double period) {
   ++cycles_;
@@ -27,14 +41,15 @@ DeadlineReport CycleTimes::report() const {
 }
 
 void runPeriodically(Clock::time_point start, Clock::time_point end, double period,
-                     CycleTimes& times, const std::function<bool(std::size_t)>& body) {
+                     CycleTimes& times, const std::function<bool(std::size_t)>& body,
+                     const std::stop_token& stop) {
   const auto step =
       std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period));
   const auto seconds = [](Clock::duration d) { return std::chrono::duration<double>(d).count(); };
   for (std::size_t cycle = 0;;) {
     const Clock::time_point due = start + static_cast<Clock::rep>(cycle) * step;
     if (due >= end) return;
-    std::this_thread::sleep_until(due);
+    if (!sleepUntil(due, stop)) return;
     const Clock::time_point woke = Clock::now();
     const bool more = body(cycle);
     const Clock::time_point done = Clock::now();

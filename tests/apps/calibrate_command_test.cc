@@ -143,4 +143,11 @@ TEST(CalibrateCommand, BoundsOfAPositionMayBeNegative) {
   EXPECT_NE(result.status, 2) << result.err;
 }
 
+TEST(CalibrateCommand, ListsTheParametersOfSensitivityWithoutATrial) {
+  const ProgramResult list = runFisherHill({"calibrate", model, "--list-parameters"});
+  EXPECT_EQ(list.status, 0) << list.err;
+  EXPECT_THAT(list.out, HasSubstr("TRI.radius"));
+  EXPECT_EQ(list.out, runFisherHill({"sensitivity", model, "--list-parameters"}).out);
+}
+
 }  // namespace

@@ -94,6 +94,8 @@ INSTANTIATE_TEST_SUITE_P(
         {"NoTrial", {"calibrate", model, "--parameters", "hand.mass"}, "TRIAL"},
         {"NoParameters", {"calibrate", model, slow}, "--parameters"},
         {"EmptyParameters", calibrateWith({}, ""), "--parameters"},
+        {"StepBeyondTheTrial", calibrateWith({"--step", "10"}),
+         slow + ": lasts 4.5 s, --step 10 s must not be longer"},
         {"UnknownParameter", calibrateWith({}, "hand.mas"), "no parameter is called 'hand.mas'"},
         {"ParameterTwice", calibrateWith({}, "hand.mass,hand.mass"), "'hand.mass' is given twice"},
         {"GroupAndMember", calibrateWith({}, "emg.gain,emg.BRA.gain"), "set the same number"},
@@ -392,6 +394,9 @@ INSTANTIATE_TEST_SUITE_P(
         {"UnknownIntegrator", {"replay", model, "$/good.csv", "--integrator", "euler"}, "euler"},
         {"StepZero", {"replay", model, "$/good.csv", "--step", "0", "--out", "$/out"}, "--step"},
         {"StepNaN", {"replay", model, "$/good.csv", "--step", "nan", "--out", "$/out"}, "--step"},
+        {"StepBeyondTheTrial",
+         {"replay", model, slow, "--step", "10", "--out", "$/out"},
+         slow + ": lasts 4.5 s, --step 10 s must not be longer"},
         {"UnknownCoordinate",
          {"replay", model, "$/good.csv", "--coordinate", "knee", "--out", "$/out"},
          "knee"},
@@ -487,6 +492,41 @@ TEST(CtrlC, EndsALongReplayWithStatus130AndNothingHalfWritten) {
   EXPECT_EQ(result.status, 130) << result.err;
   EXPECT_EQ(result.err, "fisherhill replay: interrupted; nothing was written\n");
   EXPECT_THAT(scratch.listing(), testing::IsEmpty());
+}
+
+// Commands that can pass over a column say how, others do not.
+TEST(Mistakes, AnUnknownColumnComesWithTheOptionThatIgnoresIt) {
+  const ScratchFolder scratch;
+  writeFiles(scratch);
+  const std::string file = (scratch / "misspelt.csv").string();
+  const std::string option = "(--ignore-extra ignores them)";
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"replay", model, file},
+        {"calibrate", model, file, "--parameters", "hand.mass"},
+        {"discover", model, file}}) {
+    const ProgramResult result = support::runFisherHill(words);
+    EXPECT_EQ(result.status, 2);
+    EXPECT_THAT(result.err, HasSubstr(option)) << words[0];
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1);
+  }
+  const ProgramResult check = support::runFisherHill({"check", model, file});
+  EXPECT_THAT(check.out + check.err, testing::Not(HasSubstr("--ignore-extra")));
+}
+
+// As a start outside the range is told.
+TEST(Mistakes, ALockInDegreesThatAreMeantAsRadiansIsTold) {
+  const auto replay = [](const std::string& lock) {
+    return support::runFisherHill({"replay", model, slow, "--lock", lock});
+  };
+  const ProgramResult radians = replay("elv_angle=90");
+  EXPECT_EQ(radians.status, 0);
+  EXPECT_THAT(radians.err,
+              HasSubstr("elv_angle is locked at 5157 deg, outside its range, -90 to 130"));
+  const ProgramResult discover =
+      support::runFisherHill({"discover", model, slow, "--lock", "elv_angle=90"});
+  EXPECT_THAT(discover.err, HasSubstr("elv_angle is locked at 5157 deg"));
+  EXPECT_EQ(replay("elv_angle=90deg").err, "");
+  EXPECT_EQ(replay("elv_angle=1.5").err, "");
 }
 
 TEST(Mistakes, NamesThatWereMeantAreTold) {

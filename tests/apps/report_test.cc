@@ -56,6 +56,20 @@ TEST(Report, OfHalfAMillionRowsIsSmall) {
   EXPECT_LT(renderReport(report, Summary({})).size(), 500000u);  // 8 MB with every point
 }
 
+TEST(Report, SaysWhereNotEveryPointIsDrawn) {
+  const std::string words = "only the lowest and highest values of 2000 parts are drawn";
+  Report report = smallReport();
+  report.mainFigure->caption = "An angle.";
+  EXPECT_THAT(renderReport(report, Summary({})),
+              AllOf(HasSubstr("<figcaption>An angle.</figcaption>"), Not(HasSubstr(words))));
+  std::vector<double>& x = report.mainFigure->series[0].x;
+  x.resize(9000);
+  std::iota(x.begin(), x.end(), 0.0);
+  report.mainFigure->series[0].y = x;
+  EXPECT_THAT(renderReport(report, Summary({})),
+              HasSubstr("<figcaption>An angle. Of long curves " + words + ".</figcaption>"));
+}
+
 TEST(Report, NeedsNothingFromElsewhere) {
   const std::string html = renderReport(smallReport(), Summary({}));
   EXPECT_THAT(html,

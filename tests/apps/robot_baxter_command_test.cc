@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <chrono>
 #include <nlohmann/json.hpp>
 
 #include "support/run_program.h"
@@ -58,6 +59,20 @@ TEST(RobotBaxter, RunsInThreadsAndPrintsItsDeadlines) {
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(result.out, AllOf(HasSubstr("four threads in real time"),
                                 HasSubstr("deadline_misses"), HasSubstr("cycle_ms.worst")));
+}
+
+TEST(RobotBaxter, EndsInRealTimeSoonAfterCtrlC) {
+  const support::ScratchFolder scratch;
+  const std::string out = (scratch / "out").string();
+  const auto begin = std::chrono::steady_clock::now();
+  const ProgramResult result = support::runProgram(
+      {"timeout", "--foreground", "--preserve-status", "--signal=INT", "1", FISHERHILL_PROGRAM,
+       "robot", "baxter", "--real-time", "--duration", "30", "--out", out});
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  EXPECT_EQ(result.status, 130) << result.err;
+  EXPECT_EQ(result.err, "fisherhill robot: interrupted; nothing was written\n");
+  EXPECT_THAT(scratch.listing(), testing::IsEmpty());
+  EXPECT_LT(taken.count(), 10);  // 1.2 s where nothing else runs
 }
 
 TEST(RobotBaxter, SaysWhyNothingWouldMoveWithoutATrackingBias) {

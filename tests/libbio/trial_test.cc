@@ -6,6 +6,7 @@
 
 #include "bio/file_error.h"
 #include "bio/trial_table.h"
+#include "bio/unknown_column.h"
 #include "support/numbers.h"
 #include "support/scratch_folder.h"
 
@@ -137,6 +138,12 @@ TEST_F(TrialFile, ExtraColumnsAreIgnoredOnlyWhenAskedFor) {
       messageOf(text),
       "trial.csv: column 'knee' is neither a muscle nor a coordinate of the model, nor a torque on "
       "one, and such columns are not ignored");
+  try {
+    read(text);
+    FAIL() << "taken";
+  } catch (const UnknownColumn& error) {
+    EXPECT_EQ(error.column(), "knee");
+  }
   EXPECT_THAT(read(text, {.ignoreExtra = true}).warnings,
               ElementsAre(HasSubstr("column 'knee' is ignored")));
 }

@@ -204,6 +204,19 @@ TEST(ActiveEstimation, EndsATrialInThreadsWhenAsked) {
   EXPECT_LT(std::chrono::duration<double>(Clock::now() - begin).count(), 5);
 }
 
+TEST(ActiveEstimation, EndsATrialInThreadsByAnException) {
+  ActiveEstimationTask task = trial(0.428);
+  task.duration = 30;
+  const auto begin = Clock::now();
+  EXPECT_THROW(runActiveEstimationInRealTime(task,
+                                             [](double time) {
+                                               if (time > 0.3) throw std::runtime_error("enough");
+                                               return true;
+                                             }),
+               std::runtime_error);
+  EXPECT_LT(std::chrono::duration<double>(Clock::now() - begin).count(), 5);
+}
+
 TEST(ActiveEstimation, SeesNothingToDoAtRestWithoutATrackingBias) {
   ActiveEstimationTask task = trial(0.428);
   EXPECT_EQ(firstAction(task).why, ActionEnd::acts);

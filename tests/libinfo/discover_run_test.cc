@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <optional>
 
@@ -74,6 +76,30 @@ TEST(Discover, FindsATrialStrangeThatWasHeldOutAndIsOfAnotherModel) {
   const Verdict strange = run(data, options);
   EXPECT_EQ(strange.finding, Finding::unknown);
   EXPECT_GT(strange.heldOutBefore.value().meanSquare, strange.heldOutBefore->highest);
+}
+
+/// Counts how often a trial is predicted.
+struct Counted : LinearDisagreement {
+  using LinearDisagreement::LinearDisagreement;
+  Prediction predict(int trial, const VectorXd& values, const VectorXd& latent,
+                     const std::vector<std::size_t>& wanted, bool latentToo) const override {
+    ++asked[static_cast<std::size_t>(trial)];
+    return LinearDisagreement::predict(trial, values, latent, wanted, latentToo);
+  }
+  mutable std::array<std::atomic<int>, 3> asked = {};
+};
+
+TEST(Discover, FitsHeldOutTrialsOnceWhereNothingIsMissing) {
+  Counted data(3, 80);
+  data.draw(4, nominalValues(data), kOutput, 0, kTime);
+  Options options;
+  options.outputDeviation = kOutput;
+  options.latentScale = 1;
+  options.latentTime = kTime;
+  options.heldOut = {2};
+  EXPECT_EQ(run(data, options).finding, Finding::none);
+  EXPECT_GT(data.asked[2], 0);
+  EXPECT_LE(data.asked[2], 18);  // 14; 24 if the base were fitted a second time as what was chosen
 }
 
 // A push so small that two trials do not carry it, but three do: asked a second time of all trials

@@ -51,4 +51,19 @@ TEST(RunPeriodically, EndsWhenTheBodySaysSo) {
   EXPECT_EQ(runs, 3);
 }
 
+TEST(RunPeriodically, WakesWhenItIsStopped) {
+  const auto start = Clock::now();
+  CycleTimes times(10);
+  int runs = 0;
+  {
+    const std::jthread task([&](const std::stop_token& stop) {
+      const auto count = [&](std::size_t) { return ++runs > 0; };
+      runPeriodically(start, start + std::chrono::seconds(40), 20, times, count, stop);
+    });
+    std::this_thread::sleep_for(milliseconds(200));
+  }
+  EXPECT_EQ(runs, 1);
+  EXPECT_LT(Clock::now() - start, std::chrono::seconds(5));  // 0.3 s where nothing else runs
+}
+
 }  // namespace

@@ -52,7 +52,7 @@ class Arm {
   /// Where a path of this arm gains or loses conditional points, each once.
   const std::vector<PathSwitch>& switches() const { return switches_; }
 
-  /// One line each: muscles that move but cannot be simulated and are left out.
+  /// One line each: muscles that move but cannot be simulated and are left out, odd locks.
   const std::vector<std::string>& warnings() const { return warnings_; }
   /// One line each: muscles left out because nothing moves them, spans taken as constant, wraps out
   /// of reach.

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <functional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -39,8 +40,10 @@ using Clock = std::chrono::steady_clock;
 /// Runs body(cycle) at start, start + period, … until `end` or until it returns false, sleeping in
 /// between, and records every cycle. A cycle that ends late makes the next one start at the next
 /// time that is due; those in between are skipped, so that a slow task never falls behind for good.
+/// @param stop ends it between two cycles, within a tenth of a second also where it sleeps
 void runPeriodically(Clock::time_point start, Clock::time_point end, double period,
-                     CycleTimes& times, const std::function<bool(std::size_t)>& body);
+                     CycleTimes& times, const std::function<bool(std::size_t)>& body,
+                     const std::stop_token& stop = {});
 
 /// Asks for real-time scheduling of the calling thread (SCHED_FIFO); false if not allowed.
 bool askForRealTime(int priority);

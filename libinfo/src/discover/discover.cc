@@ -342,7 +342,8 @@ class Work {
     const VectorXd& scale = search_->scaleValues();
     const Likelihood all(data_, every, scale, options_.latentTime);
     const Likelihood held(data_, options_.heldOut, scale, options_.latentTime);
-    const HeldOut without = heldOut(before, all, held), with = heldOut(after, all, held);
+    const HeldOut without = heldOut(before, all, held);
+    const HeldOut with = chosen_.empty() ? without : heldOut(after, all, held);
     Gap other;
     other.floor = gap.floor;
     other.range = gap.range;

@@ -5,6 +5,7 @@
 
 #include <numbers>
 
+#include "bio/unknown_column.h"
 #include "support/elbow_model.h"
 #include "support/scratch_folder.h"
 #include "view/arm_motion.h"
@@ -168,8 +169,10 @@ TEST_F(MotionFile, ColumnsOfAnotherModelAreNamed) {
   try {
     read(knee);
     FAIL() << "taken";
-  } catch (const std::invalid_argument& error) {
+  } catch (const bio::UnknownColumn& error) {
     EXPECT_THAT(error.what(), HasSubstr("'/jointset/knee/knee_angle/value'"));
+    EXPECT_THAT(error.what(), testing::Not(HasSubstr("--"))) << "the command line is the program's";
+    EXPECT_EQ(error.column(), "/jointset/knee/knee_angle/value");
   }
   EXPECT_EQ(read(knee, true).coordinates.size(), 1u);
   EXPECT_THROW(read("time,BRA\n0,0.1\n1,0.1\n"), std::invalid_argument) << "no coordinate";

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "bio/arm.h"
+#include "command.h"
+
+/// --list-parameters, for commands that take names of parameters; it needs no trial.
+namespace app {
+
+void addListParameters(CLI::App& options, bool& list);
+
+/// Prints every parameter of the model, its name, value, unit and meaning; with --json its limits,
+/// too.
+ExitStatus listParameters(const CommandContext& context, const bio::Model& model,
+                          const bio::Arm& arm);
+
+}  // namespace app
