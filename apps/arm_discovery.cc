@@ -143,7 +143,8 @@ ArmDiscovery discoverInArm(const ArmDiscoveryRequest& request, const CommandCont
   resultsMustNotBeInputs(summary, folder, names);
   const bio::ArmOptions arm = armOptions(request.simulation);
   const std::string coordinate = observedIn(request.simulation);
-  for (const std::string& warning : bio::Arm(model, arm).warnings()) summary.warn(warning);
+  const bio::Arm asked(model, arm);
+  for (const std::string& warning : asked.warnings()) summary.warn(warning);
   std::unique_ptr<bio::discover::ElbowDisagreement> elbow;
   bio::discover::ElbowOptions options;
   const auto attempt = [&](double step) {

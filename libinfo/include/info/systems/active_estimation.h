@@ -78,8 +78,8 @@ struct ActiveEstimationResult {
 ActiveEstimationResult runActiveEstimation(const ActiveEstimationTask& task);
 
 /// Four threads at their own rates in real time: takes task.duration. Deadlines are reported.
-/// @param keepGoing asked about 20 times a second; false ends the trial, and so does what it throws,
-///   which is passed on
+/// @param keepGoing asked about 20 times a second; false ends the trial, and so does an exception
+///   of its own, which is passed on
 ActiveEstimationResult runActiveEstimationInRealTime(
     const ActiveEstimationTask& task, const std::function<bool(double time)>& keepGoing = {});
 
