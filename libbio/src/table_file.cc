@@ -31,11 +31,13 @@ std::string lowered(std::string_view text) {
   return low;
 }
 
-// The lines of a text with their numbers; a line may end in CR LF, the text may begin with a BOM.
+constexpr std::string_view byteOrderMark = "\xEF\xBB\xBF";
+
+// The lines of a text with their numbers; a line may end in CR LF, the text may begin with BOMs.
 class Lines {
  public:
   explicit Lines(std::string_view text) : left_(text) {
-    if (left_.starts_with("\xEF\xBB\xBF")) left_.remove_prefix(3);
+    while (left_.starts_with(byteOrderMark)) left_.remove_prefix(byteOrderMark.size());
   }
   bool next(std::string_view& line) {
     if (left_.empty()) return false;
@@ -226,6 +228,11 @@ void checkWritable(const Table& table, const std::string& file) {
   if (table.values.cols() != static_cast<Eigen::Index>(table.columns.size())) {
     fail(fmt::format("{} columns of values, must be {} as there are names", table.values.cols(),
                      table.columns.size()));
+  }
+  const std::string first = table.columns.empty() ? "" : table.columns.front();
+  for (const std::string& name : {table.name, first}) {
+    if (name.starts_with(byteOrderMark))
+      fail(fmt::format("name '{}', must not begin with a byte order mark", name));
   }
   std::set<std::string> seen;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {

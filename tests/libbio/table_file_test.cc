@@ -62,6 +62,20 @@ TEST_F(TableFile, ReadsCommasQuotesAndWindowsLines) {
 }
 
 // A name that begins with a space would be read back without it.
+TEST_F(TableFile, ByteOrderMarksAtTheStartAreNoPartOfANameAndAreNotWritten) {
+  const std::string mark = "\xEF\xBB\xBF", rows = "endheader\ntime\tBRA\n0\t0.5\n";
+  EXPECT_EQ(readTable(write("a.sto", mark + mark + "trial\n" + rows)).name, "trial");
+  EXPECT_THAT(messageOf("b.sto", mark + mark + rows), HasSubstr("read without complaint"));
+  for (const char* name : {"c.sto", "c.csv"}) {
+    Table table = readTable(write("d.sto", "trial\n" + rows));
+    table.name = mark + "endheader";
+    EXPECT_THROW(writeTable(table, folder_ / name), FileError);
+    table.name = "trial";
+    table.columns[0] = mark + "time";
+    EXPECT_THROW(writeTable(table, folder_ / name), FileError);
+  }
+}
+
 TEST_F(TableFile, NamesHaveNoSpaceAtTheirEnds) {
   const Table table = readTable(write("t.csv", "\"time\",\"  heart rate \"\n0,70\n"));
   EXPECT_THAT(table.columns, ElementsAre("time", "heart rate"));
