@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "angle_unit.h"
@@ -175,11 +174,8 @@ ArmDiscovery discoverInArm(const ArmDiscoveryRequest& request, const CommandCont
   const DiscoverFindings findings{
       request.model, files, data,     wording,           found.options,
       verdict,       next,  foreseen, found.wallSeconds, found.processorSeconds};
-  double longest = 0;
-  for (const bio::Trial& trial : trials) {
-    longest = std::max(longest, trial.times[trial.times.size() - 1] - trial.times[0]);
-  }
-  summary.setSimulation(request.simulation.integrator, found.step, longest, found.wallSeconds);
+  summary.setSimulation(request.simulation.integrator, found.step, longestDuration(trials),
+                        found.wallSeconds);
   tellFindings(findings, summary);
   const nlohmann::ordered_json json = verdictJson(findings);
   folder.write("verdict.json", [&](std::ostream& out) { out << jsonText(json, 2) << '\n'; });

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "arm_options.h"
@@ -54,12 +55,18 @@ bio::Trial readTrialFile(const std::string& file, const bio::Model& model,
                          const SimulationOptions& options, bool knownChanges) {
   bio::Trial trial = bio::readTrial(
       file, model, {.ignoreExtra = options.ignoreExtra, .knownChanges = knownChanges});
-  const double duration = trial.times[trial.times.size() - 1] - trial.times[0];
+  const double duration = trial.duration();
   if (options.step && *options.step > duration) {
     throw std::invalid_argument(fmt::format("{}: lasts {} s, --step {} s must not be longer", file,
                                             numberText(duration), numberText(*options.step)));
   }
   return trial;
+}
+
+double longestDuration(const std::vector<bio::Trial>& trials) {
+  double longest = 0;
+  for (const bio::Trial& trial : trials) longest = std::max(longest, trial.duration());
+  return longest;
 }
 
 TrialInput readTrialInput(const std::string& file, const bio::Model& model, const bio::Arm& arm,
@@ -71,7 +78,7 @@ TrialInput readTrialInput(const std::string& file, const bio::Model& model, cons
   input.excitation = bio::excitationOf(input.trial, arm);
   input.externalForce = bio::externalForceOf(input.trial, arm);
   input.startTime = input.trial.times[0];
-  input.duration = input.trial.times[input.trial.times.size() - 1] - input.startTime;
+  input.duration = input.trial.duration();
   input.start =
       bio::initialState(arm, bio::startCoordinates(input.trial, arm, byName(options.initial)),
                         input.excitation, input.startTime);

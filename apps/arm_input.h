@@ -33,6 +33,9 @@ bio::Arm movableArm(const bio::Model& model, const std::string& file,
 bio::Trial readTrialFile(const std::string& file, const bio::Model& model,
                          const SimulationOptions& options, bool knownChanges = false);
 
+/// [s] of the longest one; 0 without trials.
+double longestDuration(const std::vector<bio::Trial>& trials);
+
 /// A trial, and how it starts and drives an arm.
 struct TrialInput {
   bio::Trial trial;

@@ -131,12 +131,8 @@ class Calibrate : public Command {
       };
       calibration = bio::calibrate(training, heldOut ? &*heldOut : nullptr, options);
     }
-    double longest = 0;
-    for (const bio::Trial& trial : training.trials()) {
-      longest = std::max(longest, trial.times[trial.times.size() - 1] - trial.times[0]);
-    }
     summary.setSimulation(
-        simulation_.integrator, simulation_.stepOrDefault(), longest,
+        simulation_.integrator, simulation_.stepOrDefault(), longestDuration(training.trials()),
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     const CalibrateFindings findings{model_, training, heldOut ? &*heldOut : nullptr, options,
                                      calibration};

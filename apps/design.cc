@@ -191,7 +191,7 @@ class Design : public Command {
     question.start = bio::startCoordinates(trial, arm, byName(simulation_.initial))[0];
     question.noise = noise_deg_ * degree;
     question.period = 1 / rate_Hz_;
-    const double duration = trial.times[trial.times.size() - 1] - trial.times[0];
+    const double duration = trial.duration();
     bio::discover::ElbowOptions options;
     options.simulation = simulationOptions(simulation_, trial.times[0], duration);
     const bio::discover::SeparatingDesign design(

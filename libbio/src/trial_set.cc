@@ -19,10 +19,6 @@ bool isStart(const ModelParameter& parameter) {
   return std::holds_alternative<InitialTarget>(parameter.targets.front());
 }
 
-double durationOf(const Trial& trial) {
-  return trial.times[trial.times.size() - 1] - trial.times[0];
-}
-
 }  // namespace
 
 std::vector<std::size_t> selectDistinct(const ParameterCatalogue& catalogue,
@@ -61,7 +57,7 @@ TrialSet::TrialSet(const Model& model, const ArmOptions& arm, std::vector<Trial>
     const Trial& trial = trials_[series.trial];
     SimulationOptions simulation = options.simulation;
     simulation.startTime = trial.times[0];
-    simulation.duration = durationOf(trial);
+    simulation.duration = trial.duration();
     simulation.progress = {};
     experiments_.emplace_back(*catalogues_[series.trial], arm, excitationOf(trial, *arm_),
                               series.coordinate, series.times, all, simulation);

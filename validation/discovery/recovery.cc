@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "wilson.h"
+
 namespace hidden {
 
 std::vector<RecoveryBin> recoveryByDetectability(const std::vector<Outcome>& outcomes) {

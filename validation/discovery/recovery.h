@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "discovery_score.h"
+#include "outcome.h"
 
 namespace hidden {
 

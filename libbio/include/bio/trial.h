@@ -41,6 +41,9 @@ struct Trial {
   std::vector<MeasuredMotion> measured;
   KnownChanges known;
   std::vector<std::string> warnings;  ///< one line each
+
+  /// [s]
+  double duration() const { return times[times.size() - 1] - times[0]; }
 };
 
 struct TrialOptions {

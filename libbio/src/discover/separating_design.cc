@@ -39,10 +39,6 @@ std::vector<double> measuredTimes(const Trial& trial, double period) {
   return times;
 }
 
-double durationOf(const Trial& trial) {
-  return trial.times[trial.times.size() - 1] - trial.times[0];
-}
-
 PresentEffect presentIn(const ElbowDisagreement& data, const std::string& id, double size) {
   const auto& candidates = data.candidates();
   const auto at = std::find_if(candidates.begin(), candidates.end(),
@@ -87,7 +83,7 @@ SeparatingDesign::SeparatingDesign(const Model& model, const ArmOptions& arm,
       coordinate_(coordinate),
       options_(options),
       question_(std::move(question)),
-      inputs_(Arm(model, arm), trial, coordinate, trial.times[0], durationOf(trial), limits,
+      inputs_(Arm(model, arm), trial, coordinate, trial.times[0], trial.duration(), limits,
               std::move(groups), knotInterval, measuredTimes(trial, question_.period)) {
   require(question_.noise > 0 && std::isfinite(question_.noise),
           fmt::format("noise = {}, must be > 0", question_.noise));
