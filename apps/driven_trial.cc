@@ -31,9 +31,7 @@ bio::Table drivenTable(const bio::Trial& trial, const bio::Arm& arm,
   table.name = "driven excitations";
   table.columns = {"time"};
   table.columns.insert(table.columns.end(), muscles.begin(), muscles.end());
-  if (trial.known.massInHand != 0) {
-    table.metadata["known_mass_in_hand_kg"] = fmt::format("{}", trial.known.massInHand);
-  }
+  table.metadata.merge(bio::headerOf(trial.known));
   const auto n = static_cast<Eigen::Index>(muscles.size());
   const auto measured = static_cast<Eigen::Index>(trial.measured.size());
   const auto applied = static_cast<Eigen::Index>(trial.applied.size());

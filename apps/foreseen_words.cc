@@ -17,7 +17,8 @@ std::string foreseenSentence(const std::vector<bio::discover::ForeseenExperiment
   std::string rivals;
   for (std::size_t i = 0; i < best.nats.size(); ++i)
     rivals += fmt::format("{}{} ({} nats)", i == 0 ? "" : ", ", rivalName(data, verdict, i + 1),
-                          numberText(best.nats[i], 2));
+                          best.nats[i] < 10 ? numberText(best.nats[i], 2)
+                                            : fmt::format("{:.0f}", best.nats[i]));
   std::string what = best.sentence;
   what.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(what.front())));
   return fmt::format(

@@ -246,9 +246,7 @@ bio::Table separatingTable(const SeparatingFindings& f) {
   bio::Table table;
   table.name = "designed experiment";
   table.metadata["predicted"] = f.coordinate.name + " is predicted, not measured";
-  if (trial.known.massInHand != 0) {
-    table.metadata["known_mass_in_hand_kg"] = fmt::format("{}", trial.known.massInHand);
-  }
+  table.metadata.merge(bio::headerOf(trial.known));
   table.columns = {"time"};
   table.columns.insert(table.columns.end(), trial.muscles.begin(), trial.muscles.end());
   for (const bio::AppliedForce& force : trial.applied) {

@@ -14,9 +14,9 @@ namespace python {
 namespace {
 
 bio::Trial trialOf(const bio::Model& model, const py::dict& columns, const std::string& name,
-                   bool ignoreExtra, double knownMassInHand) {
+                   bool ignoreExtra, double knownMassInHand, double knownArmTurn) {
   bio::Table table;
-  table.metadata["known_mass_in_hand_kg"] = fmt::format("{}", knownMassInHand);
+  table.metadata = bio::headerOf({knownMassInHand, knownArmTurn});
   for (const auto& [key, values] : columns) {
     const auto column = values.cast<Eigen::VectorXd>();
     const auto index = static_cast<Eigen::Index>(table.columns.size());
@@ -154,9 +154,8 @@ ArmChoice armChoice(const py::kwargs& keywords) {
 
 void mustBeOfTheModelAsItIs(const bio::Trial& trial) {
   if (!trial.known.any()) return;
-  throw std::invalid_argument(
-      fmt::format("{}: recorded with {} kg in the hand, which only discover takes into account",
-                  trial.file, trial.known.massInHand));
+  throw std::invalid_argument(fmt::format("{}: recorded {}, which only discover takes into account",
+                                          trial.file, bio::inWords(trial.known)));
 }
 
 bio::SimulationOptions during(const bio::Trial& trial, bio::SimulationOptions options) {
@@ -189,6 +188,10 @@ void defineArms(py::module_& module) {
       .def_property_readonly(
           "known_mass_in_hand", [](const bio::Trial& trial) { return trial.known.massInHand; },
           "[kg] that the experimenter put there; only discover takes it into account")
+      .def_property_readonly(
+          "known_arm_turn", [](const bio::Trial& trial) { return trial.known.armTurn; },
+          "[rad] by which the experimenter turned the whole arm; only discover takes it into "
+          "account")
       .def_readonly("warnings", &bio::Trial::warnings)
       .def("__repr__", [](const bio::Trial& trial) {
         return fmt::format("<fisherhill.Trial '{}', {} rows>", trial.file, trial.times.size());
@@ -202,15 +205,16 @@ void defineArms(py::module_& module) {
         return bio::readTrial(file, model, {.ignoreExtra = ignoreExtra, .knownChanges = true});
       },
       "file"_a, "model"_a, py::kw_only(), "ignore_extra"_a = false,
-      "Reads a trial (.sto, .mot or .csv) of the model. A header line known_mass_in_hand_kg=1 says "
-      "that it was recorded so.");
+      "Reads a trial (.sto, .mot or .csv) of the model. Header lines known_mass_in_hand_kg=1 and "
+      "known_arm_turn_deg=-45 say that it was recorded so.");
   module.def(
       "make_trial", &trialOf, "model"_a, "columns"_a, py::kw_only(), "name"_a = "trial",
-      "ignore_extra"_a = false, "known_mass_in_hand"_a = 0.0,
+      "ignore_extra"_a = false, "known_mass_in_hand"_a = 0.0, "known_arm_turn"_a = 0.0,
       "A trial from arrays, {column: values}; columns are called as in a file: 'time' [s], "
       "muscles (excitation, 0 to 1), 'elbow_flexion' [rad] or 'elbow_flexion_deg'; NaN where "
       "the coordinate was not measured; 'elbow_flexion.torque' [N m] pushes from outside. "
-      "known_mass_in_hand [kg]: what was held on purpose.");
+      "known_mass_in_hand [kg]: what was held on purpose; known_arm_turn [rad]: by how much the "
+      "whole arm was turned against the ground, positive as the coordinate rises.");
   module.def(
       "replay", &replay, "model"_a, "trial"_a, py::kw_only(),
       "initial"_a = std::map<std::string, double>(),

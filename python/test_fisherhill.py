@@ -153,6 +153,10 @@ class Arms(unittest.TestCase):
                     lambda: fh.make_trial(self.model, self.columns(), known_mass_in_hand=-1)):
             with self.assertRaisesRegex(ValueError, "hand"):
                 one()
+        turned = fh.make_trial(self.model, self.columns(), known_arm_turn=-45 * DEGREE)
+        self.assertAlmostEqual(turned.known_arm_turn, -45 * DEGREE)
+        with self.assertRaisesRegex(ValueError, "the arm turned by -45 deg, which only discover"):
+            fh.replay(self.model, turned)
         noise = 0.5 * DEGREE
         columns = {name: values[self.trial.times <= 2.5] for name, values in self.columns().items()}
         angle = np.interp(columns["time"], truth.time, truth.q[:, 0])

@@ -56,6 +56,8 @@ void setFull(const Electrode& electrode, ElectrodeTrace& trace) {
                       electrode.channel, trace.full, trace.unit, trace.fullSource));
 }
 
+constexpr int mostRows = 100'000'000;
+
 // Rows common to all electrodes and inside the span that was asked for.
 Eigen::VectorXd rowTimes(const std::vector<ElectrodeTrace>& traces, const EmgConfig& config) {
   double first = -std::numeric_limits<double>::infinity();
@@ -73,6 +75,10 @@ Eigen::VectorXd rowTimes(const std::vector<ElectrodeTrace>& traces, const EmgCon
   const double count = std::floor((end - begin) * config.outputRate + 1e-6);
   require(count >= 1, fmt::format("output from {} s to {} s: holds fewer than two rows at {} Hz",
                                   begin, end, config.outputRate));
+  require(count < mostRows,
+          fmt::format("output from {} s to {} s at {} Hz: would hold more than {} "
+                      "rows",
+                      begin, end, config.outputRate, mostRows));
   const auto rows = static_cast<Eigen::Index>(count) + 1;
   return Eigen::VectorXd::NullaryExpr(
       rows, [&](Eigen::Index i) { return begin + static_cast<double>(i) / config.outputRate; });

@@ -4,11 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <sstream>
-#include <string_view>
 
 #include "bio/file_error.h"
 #include "text_file.h"
+#include "toml_hazards.h"
 
 namespace bio {
 namespace {
@@ -35,83 +37,9 @@ double asNumber(const toml::value& value) {
   return value.is_integer() ? static_cast<double>(value.as_integer()) : value.as_floating();
 }
 
-// A line without comments and what stands in quotes; nothing if a text of several lines begins.
-std::optional<std::string> codeOf(std::string_view line) {
-  std::string code;
-  char quote = 0;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (quote == '"' && c == '\\') {
-      ++i;
-    } else if (quote != 0) {
-      if (c == quote) quote = 0;
-    } else if (c == '#') {
-      break;
-    } else if (c == '"' || c == '\'') {
-      if (line.substr(i, 3) == std::string(3, c)) return std::nullopt;
-      quote = c;
-    } else {
-      code += c;
-    }
-  }
-  return code;
-}
-
-// Whether a text is UTF-8: no stray or missing byte, nothing longer than need be, no half of a
-// pair, nothing beyond U+10FFFF.
-bool isUtf8(std::string_view text) {
-  for (std::size_t i = 0; i < text.size();) {
-    const auto byte = [&](std::size_t at) {
-      return at < text.size() ? static_cast<unsigned char>(text[at]) : 0u;
-    };
-    const unsigned lead = byte(i);
-    const std::size_t length = lead < 0x80   ? 1
-                               : lead < 0xC2 ? 0
-                               : lead < 0xE0 ? 2
-                               : lead < 0xF0 ? 3
-                               : lead < 0xF5 ? 4
-                                             : 0;
-    if (length == 0) return false;
-    for (std::size_t k = 1; k < length; ++k) {
-      if ((byte(i + k) & 0xC0) != 0x80) return false;
-    }
-    const unsigned second = byte(i + 1);
-    if ((lead == 0xE0 && second < 0xA0) || (lead == 0xED && second > 0x9F) ||
-        (lead == 0xF0 && second < 0x90) || (lead == 0xF4 && second > 0x8F)) {
-      return false;
-    }
-    i += length;
-  }
-  return true;
-}
-
-// What toml11 3.7 does not survive: it calls itself for every level until the stack is full, and it
-// reads beyond the end of a text of several lines that is not closed, or of one that is not UTF-8.
-void checkSurvivable(std::string_view text, const std::string& file) {
-  constexpr int deepest = 100;
-  int brackets = 0;
-  for (int number = 1; !text.empty(); ++number) {
-    const auto end = std::min(text.find('\n'), text.size());
-    if (!isUtf8(text.substr(0, end))) {
-      throw FileError(fmt::format("{}:{}: bytes that are no text, must be UTF-8", file, number));
-    }
-    const std::optional<std::string> code = codeOf(text.substr(0, end));
-    if (!code) {
-      throw FileError(
-          fmt::format("{}:{}: a text in three quotes, must be in one line", file, number));
-    }
-    int dots = 0;
-    for (const char c : *code) {
-      if (c == '[' || c == '{') ++brackets;
-      if (c == ']' || c == '}') brackets = std::max(0, brackets - 1);
-      dots = c == '.' ? dots + 1 : c == ',' || c == '=' ? 0 : dots;
-      if (brackets > deepest || dots > deepest) {
-        throw FileError(fmt::format("{}:{}: tables or lists in each other, must be at most {} deep",
-                                    file, number, deepest));
-      }
-    }
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
+// 1e400 is read as the largest number there is.
+bool isTooLarge(const toml::value& value) {
+  return std::abs(asNumber(value)) == std::numeric_limits<double>::max();
 }
 
 int lineOf(const toml::value& value) {
@@ -125,7 +53,7 @@ TomlTable::TomlTable(std::string file, std::string name, toml::value value)
 
 TomlTable TomlTable::read(const std::string& file) {
   const std::string text = readTextFile(file);
-  checkSurvivable(text, file);
+  refuseTomlHazards(text, file);
   std::istringstream stream(text);
   try {
     return {file, "", toml::parse(stream, file)};
@@ -162,6 +90,7 @@ std::optional<double> TomlTable::number(const std::string& key) {
   const toml::value* value = find(key);
   if (value == nullptr) return std::nullopt;
   if (!isNumber(*value)) fail(key, "must be a number");
+  if (isTooLarge(*value)) fail(key, "is too large a number");
   return asNumber(*value);
 }
 
@@ -195,6 +124,7 @@ std::optional<std::vector<double>> TomlTable::numbers(const std::string& key) {
   std::vector<double> out;
   for (const toml::value& item : value->as_array()) {
     if (!isNumber(item)) fail(key, "must be a list of numbers");
+    if (isTooLarge(item)) fail(key, "holds too large a number");
     out.push_back(asNumber(item));
   }
   return out;

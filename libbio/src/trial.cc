@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -111,19 +110,14 @@ class TrialReader {
   }
 
   void readKnownChanges() {
-    const auto at = table_.metadata.find("known_mass_in_hand_kg");
-    if (at == table_.metadata.end()) return;
-    double& mass = trial_.known.massInHand;
-    const char* last = at->second.data() + at->second.size();
-    const auto [end, error] = std::from_chars(at->second.data(), last, mass);
-    if (error != std::errc() || end != last || !(mass >= 0 && mass <= 100)) {
-      fail(fmt::format("header: {} = '{}', must be a number from 0 to 100", at->first, at->second));
+    try {
+      trial_.known = knownChangesIn(table_.metadata);
+    } catch (const std::invalid_argument& error) {
+      fail(error.what());
     }
-    if (mass != 0 && !options_.knownChanges) {
-      fail(
-          fmt::format("recorded with {} kg in the hand (header: {}), which only 'discover' takes "
-                      "into account",
-                      at->second, at->first));
+    if (trial_.known.any() && !options_.knownChanges) {
+      fail(fmt::format("recorded {} (header), which only 'discover' takes into account",
+                       inWords(trial_.known)));
     }
   }
 

@@ -10,19 +10,20 @@ namespace {
 using Eigen::VectorXd;
 
 // What drove the muscles changes; what pushed from outside and what the hand held do not.
-TEST(DrivenTrial, KeepsTheTorqueFromOutsideAndTheKnownMass) {
+TEST(DrivenTrial, KeepsTheTorqueFromOutsideAndWhatIsKnown) {
   const std::string root = FISHERHILL_SOURCE_DIR;
   const bio::Model model = bio::readOsim(root + "/models/elbow8.osim");
   const bio::Arm arm(model, {{{"elbow_flexion"}, {}}, {}, {}});
   bio::Trial trial = bio::readTrial(root + "/emg_data/curl_slow.sto", model);
   const VectorXd torque = (3 * trial.times).array().sin();
   trial.applied = {{"elbow_flexion", torque}};
-  trial.known.massInHand = 1.25;
+  trial.known = {1.25, -0.5};
   bio::EmgMapping mapping;
   mapping.delay = 0.013;
   const bio::Table table = app::drivenTable(trial, arm, mapping);
   const bio::Trial driven = bio::trialFrom(table, "driven", model, {.knownChanges = true});
   EXPECT_EQ(driven.known.massInHand, 1.25);
+  EXPECT_NEAR(driven.known.armTurn, -0.5, 1e-12);
   ASSERT_EQ(driven.applied.size(), 1U);
   ASSERT_EQ(driven.measured.size(), 1U);
   EXPECT_GT(driven.times.size(), trial.times.size());  // excitations bend between the rows now

@@ -588,6 +588,59 @@ TEST(ElbowDisagreement, AKnownMassIsInTheHandBesidesWhatIsMissing) {
   };
   EXPECT_TRUE(equivalents(data).empty());
   EXPECT_EQ(equivalents(make({loaded, loaded})), std::vector<std::string>{"handforce"});
+  // whoever leaves the payload out of the catalogue may still know of a mass
+  ElbowOptions without;
+  without.without = {"payload"};
+  const ElbowDisagreement less(elbow.model, ShippedElbow::options(), "elbow_flexion", {loaded},
+                               without);
+  EXPECT_EQ(less.outputs(0, info::discover::nominalValues(less), {}),
+            make({loaded}).outputs(0, info::discover::nominalValues(make({loaded})), {}));
+}
+
+// Gravity is that of q + turn; the force on the hand, and what a tilt adds, follow.
+TEST(ElbowDisagreement, AnArmThatIsKnownToBeTurned) {
+  const ShippedElbow elbow;
+  const Trial upright = cut(elbow.trial, 0.5);
+  Trial turned = upright;
+  turned.known.armTurn = -0.4;
+  const ElbowDisagreement data(elbow.model, ShippedElbow::options(), "elbow_flexion",
+                               {upright, turned}, Case::exact());
+  const auto index = [&](const char* name) { return static_cast<Index>(data.widest().find(name)); };
+  const Index tilt = index("tilt.angle"), force = index("handforce.force");
+  const VectorXd nominal = info::discover::nominalValues(data);
+  VectorXd tilted = nominal;
+  tilted[tilt] = -0.4;
+  EXPECT_EQ(data.outputs(1, nominal, {}), data.outputs(0, tilted, {}));
+  EXPECT_GT((data.outputs(1, nominal, {}) - data.outputs(0, nominal, {})).norm(), 0.1);
+  // a force on the hand is not that of an arm whose gravity alone is turned
+  VectorXd pushed = nominal, pushedAndTilted = tilted;
+  pushed[force] = pushedAndTilted[force] = 3;
+  EXPECT_GT((data.outputs(1, pushed, {}) - data.outputs(0, pushedAndTilted, {})).norm(), 0.01);
+  // derivatives where both are there
+  VectorXd values = pushed;
+  values[tilt] = 0.1;
+  for (const Index quantity : {tilt, force}) {
+    const auto f = [&](double step) {
+      VectorXd moved = values;
+      moved[quantity] += step;
+      return data.outputs(1, moved, {});
+    };
+    const auto gamma = data.predict(1, values, {}, {static_cast<std::size_t>(quantity)}, false);
+    EXPECT_LT(disagreement(gamma.gamma.col(0), f, 1), 5e-4) << quantity;
+  }
+  // the law of a model that has the force already would turn with the arm
+  const Augmented added =
+      addEffects(elbow.model, ShippedElbow::options(), "elbow_flexion",
+                 {{"handforce", VectorXd::Constant(1, 2), {}, 0, 0}}, {"a test", {}});
+  EXPECT_NO_THROW(
+      ElbowDisagreement(added.model, ShippedElbow::options(), "elbow_flexion", {upright}));
+  try {
+    ElbowDisagreement(added.model, ShippedElbow::options(), "elbow_flexion", {turned});
+    ADD_FAILURE() << "was simulated";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("elbow_flexion_handforce"), std::string::npos)
+        << error.what();
+  }
 }
 
 }  // namespace

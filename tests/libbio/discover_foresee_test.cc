@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <set>
+#include <utility>
 
+#include "bio/discover/passive_motion.h"
 #include "bio/discover/planned.h"
 #include "info/discover/joint_fit.h"
 #include "support/cut_trial.h"
@@ -55,53 +59,110 @@ TEST(PlannedExperiments, RepeatATrialWithWhatTheExperimenterKnows) {
               0.7, 1e-12);
 }
 
-// Gravity's moment grows with a known mass, that of a force on the hand does not.
-TEST(Foresee, AKnownMassTellsTiltFromAForceOnTheHand) {
+TEST(PassiveMotions, FollowTheSweepThatTheyPlan) {
   const ShippedElbow elbow;
+  Trial trial = elbow.trial;
+  trial.known.massInHand = 0.5;
+  trial.applied = {{"elbow_flexion", VectorXd::Constant(trial.times.size(), 0.7)}};
   const ElbowOptions options;
-  const auto of = [&](const Trial& trial) {
-    return ElbowDisagreement(elbow.model, ShippedElbow::options(), "elbow_flexion", {trial},
-                             options);
-  };
-  // an arm that is tilted
-  Trial trial = cut(elbow.trial, 3);
-  {
-    const ElbowDisagreement upright = of(trial);
-    VectorXd values = info::discover::nominalValues(upright);
-    values[static_cast<Eigen::Index>(upright.widest().find("tilt.angle"))] = 0.12;
-    trial.measured.front().values = upright.outputs(0, values, {});
+  const ElbowDisagreement data(elbow.model, ShippedElbow::options(), "elbow_flexion", {trial},
+                               options);
+  const auto planned = passiveMotions(trial, data.widest());
+  ASSERT_EQ(planned.size(), 4U);
+  std::set<std::pair<double, double>> known;
+  for (const PlannedExperiment& one : planned) {
+    known.insert({one.trial.known.massInHand, std::round(100 * one.trial.known.armTurn)});
+    EXPECT_NE(one.sentence.find("known_mass_in_hand_kg="), std::string::npos) << one.sentence;
+    EXPECT_EQ(one.sentence.find("known_arm_turn_deg=-45") != std::string::npos,
+              one.trial.known.armTurn != 0);
+    ASSERT_EQ(one.trial.applied.size(), 1U);
+    EXPECT_LE(one.trial.excitations.maxCoeff(), 0.01);
+    // the arm goes about where it should: up to 84.5 or 110.5°, and back
+    const ElbowDisagreement moved(elbow.model, ShippedElbow::options(), "elbow_flexion",
+                                  {one.trial}, options);
+    const VectorXd motion = moved.outputs(0, info::discover::nominalValues(moved), {});
+    const VectorXd& wanted = one.trial.measured.front().values;
+    const double degree = std::numbers::pi / 180;
+    EXPECT_NEAR(wanted.minCoeff(), 13 * degree, 1e-8);
+    EXPECT_NEAR(wanted.maxCoeff(), (one.trial.known.armTurn == 0 ? 84.5 : 110.5) * degree, 1e-8);
+    EXPECT_LT((motion - wanted).cwiseAbs().maxCoeff(), 12 * degree) << one.sentence;
   }
-  const ElbowDisagreement data = of(trial);
-  const info::discover::Likelihood likelihood(data, {0}, info::discover::nominalValues(data));
-  const auto fitted = [&](const std::string& id) {
+  EXPECT_EQ(known.size(), 4U);
+}
+
+// A shipped trial of an arm with an effect in it, and what is fitted to it.
+struct Arms {
+  Arms(const char* quantity, double value) {
+    const ElbowDisagreement bare = of(trial);
+    VectorXd values = info::discover::nominalValues(bare);
+    values[static_cast<Eigen::Index>(bare.widest().find(quantity))] = value;
+    trial.measured.front().values = bare.outputs(0, values, {});
+  }
+  ElbowDisagreement of(const Trial& one) const {
+    return ElbowDisagreement(elbow.model, ShippedElbow::options(), "elbow_flexion", {one}, options);
+  }
+  info::discover::Fit fitted(const ElbowDisagreement& data, const std::string& id) const {
+    const info::discover::Likelihood likelihood(data, {0}, info::discover::nominalValues(data));
     const auto& candidates = data.candidates();
     const auto at = std::find_if(candidates.begin(), candidates.end(),
                                  [&](const auto& one) { return one.id == id; });
     const auto effect = static_cast<std::size_t>(at - candidates.begin());
     return likelihood.fit(info::discover::makeHypothesis(data, {effect}, {0}), {0.0087, 0, 0.08},
                           info::discover::nominalValues(data), {}, {15, 0.1});
-  };
+  }
+  std::vector<ForeseenExperiment> told(const info::discover::Verdict& verdict) const {
+    return foresee(elbow.model, ShippedElbow::options(), trial, options, of(trial), verdict);
+  }
+
+  ShippedElbow elbow;
+  ElbowOptions options;
+  Trial trial = cut(elbow.trial, 3);
+};
+
+// The largest of those whose sentence has these words.
+double best(const std::vector<ForeseenExperiment>& foreseen, const std::string& words) {
+  double nats = -1;
+  for (const ForeseenExperiment& one : foreseen) {
+    if (one.sentence.find(words) != one.sentence.npos) nats = std::max(nats, one.least());
+  }
+  return nats;
+}
+
+// Gravity's moment grows with a known mass, that of a force on the hand does not.
+TEST(Foresee, AKnownMassTellsTiltFromAForceOnTheHand) {
+  const Arms arms("tilt.angle", 0.12);
+  const ElbowDisagreement data = arms.of(arms.trial);
   info::discover::Verdict verdict;
-  const auto told = [&] {
-    return foresee(elbow.model, ShippedElbow::options(), trial, options, data, verdict);
-  };
-  EXPECT_TRUE(told().empty());
-  verdict.rivals = {fitted("tilt"), fitted("handforce")};
+  EXPECT_TRUE(arms.told(verdict).empty());
+  verdict.rivals = {arms.fitted(data, "tilt"), arms.fitted(data, "handforce")};
   verdict.values = verdict.rivals.front().values;
-  const auto foreseen = told();
+  const auto foreseen = arms.told(verdict);
   ASSERT_GE(foreseen.size(), 3U);
-  double asItWas = -1, mass = -1, pushes = -1;
   for (const ForeseenExperiment& one : foreseen) {
     ASSERT_EQ(one.nats.size(), 1U);
     EXPECT_GE(one.least(), 0);
     EXPECT_LE(one.least(), foreseen.front().least());
-    if (one.sentence.ends_with("as it was")) asItWas = one.least();
-    if (one.sentence.find("known mass") != one.sentence.npos) mass = std::max(mass, one.least());
-    if (one.sentence.find("pushes") != one.sentence.npos) pushes = std::max(pushes, one.least());
   }
-  EXPECT_GE(asItWas, 0);
-  EXPECT_GE(pushes, 0);
-  EXPECT_GT(mass, 10 * std::max(asItWas, pushes));
+  EXPECT_GE(best(foreseen, "as it was"), 0);
+  EXPECT_GE(best(foreseen, "pushes"), 0);
+  EXPECT_GT(best(foreseen, "known_mass"),
+            10 * std::max(best(foreseen, "as it was"), best(foreseen, "pushes")));
+}
+
+// Both are smooth in the angle; where the arm is turned, the force comes from elsewhere.
+TEST(Foresee, ATurnedArmTellsAForceOnTheHandFromAStiffness) {
+  const Arms arms("handforce.force", 1);
+  const ElbowDisagreement data = arms.of(arms.trial);
+  info::discover::Verdict verdict;
+  verdict.rivals = {arms.fitted(data, "handforce"), arms.fitted(data, "stiffness")};
+  verdict.values = verdict.rivals.front().values;
+  const auto foreseen = arms.told(verdict);
+  const double turned = best(foreseen, "known_arm_turn_deg=-45");
+  EXPECT_GT(turned, 5);
+  for (const char* words : {"as it was", "pushes", "repeat"}) {
+    EXPECT_GE(best(foreseen, words), 0) << words;
+    EXPECT_GT(turned, 3 * best(foreseen, words)) << words;
+  }
 }
 
 }  // namespace

@@ -255,6 +255,10 @@ TEST_F(EmgConfigs, NameFileLineKeyAndRuleOfWhatIsWrong) {
   fails(least + "[excitation]\nshape = 2\n", "7: [excitation] shape = 2, must lie within -3 and 0");
   fails(least + "[excitation]\nrate_Hz = 12\n",
         "7: [excitation] rate_Hz = 12, must be more than twice");
+  fails(least + "[excitation]\nrate_Hz = 71e946\n",
+        "7: [excitation] rate_Hz = 1.7976931348623157e+308, is too large a number");
+  fails("[notch]\nlines_Hz = [50, -1e400]\n",
+        "2: [notch] lines_Hz = [50,-1.7976931348623157e+308], holds too large a number");
   fails(least + "[excitation]\nstart_s = 2\nend_s = 1\n",
         "8: [excitation] end_s = 1, must be after");
   fails(least + "[measured]\nsign = 1\n", "6: [measured] needs a key 'channel'");

@@ -178,6 +178,8 @@ TEST(Emg, NamesChannelQuantityAndRuleOfWhatItCannotUse) {
   c = envelopeConfig();
   c.outputRate = 10;
   fails(good, c, "output rate 10 Hz");
+  c.outputRate = 1e300;
+  fails(good, c, "would hold more than 100000000 rows");
   c = envelopeConfig();
   c.end = 9;
   fails(good, c, "to 9 s");

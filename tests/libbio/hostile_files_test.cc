@@ -89,6 +89,29 @@ TEST_F(HostileFiles, AConfigurationHasNoTextOfSeveralLines) {
   }
 }
 
+TEST_F(HostileFiles, AListWithoutAnItemHasNoKeys) {
+  const auto refused = [](const std::string& name) {
+    return "emg.toml: '" + name + "' is a list without an item, must have no keys of its own";
+  };
+  EXPECT_THAT(configRefusal("i=[]\n[i.k]\n"), HasSubstr(refused("i")));
+  EXPECT_THAT(configRefusal("a.i = [ # none\n\n ]\n[ a . \"i\" . k ]\n"), HasSubstr(refused("i")));
+  EXPECT_THAT(configRefusal("i=[]\ni.k = 1\n"), HasSubstr(refused("i")));
+  EXPECT_THAT(configRefusal("[t]\nx = { i = [\t] }\n[[t.x.i.k]]\n"), HasSubstr(refused("i")));
+  EXPECT_THAT(configRefusal("'i' = []\n[\"\\u0069\".k]\n"), HasSubstr(refused("i")));
+  // elsewhere such lists are what they were
+  for (const char* text : {"i = []\n[j.k]\n", "i = [\n1]\n[j]\ni = []\n", "a = '[i]'\ni = []\n",
+                           "i = []  # [i.k]\n", "a = [\n[1],\n[]]\n[b.c]\n"}) {
+    EXPECT_THAT(configRefusal(text), Not(HasSubstr("without an item"))) << text;
+  }
+}
+
+TEST_F(HostileFiles, BinaryNumbersFitIntoWholeOnes) {
+  EXPECT_THAT(configRefusal("\na = 0b" + times(63, "1") + "\n"),
+              HasSubstr("emg.toml:2: a binary number, must have at most 62 digits"));
+  EXPECT_THAT(configRefusal("a = 0b1" + times(61, "_0") + " # 0b" + times(70, "1") + "\n"),
+              Not(HasSubstr("binary")));
+}
+
 TEST_F(HostileFiles, WholeNumbersBeyondAllBoundsAreRefused) {
   EXPECT_THAT(configRefusal("[notch]\nharmonics = -9223372036854775808\n"),
               HasSubstr("must be a whole number"));

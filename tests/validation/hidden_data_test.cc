@@ -1,10 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <sstream>
 
 #include "data_set.h"
+#include "passive_trial.h"
 #include "stiff_solver.h"
 #include "support/scratch_folder.h"
 
@@ -51,6 +53,34 @@ TEST(HiddenData, ItsRecordReplaysToTheSameMotion) {
   }
   EXPECT_NEAR(rms(noise), 0.5, 0.1);  // 151 values: 3.5 deviations
   EXPECT_GT(std::abs(trial.angle.back() - trial.angle.front()), 1 * degree);
+}
+
+TEST(HiddenData, ARelaxedArmIsMovedByWhatIsRecorded) {
+  Truth truth;
+  truth.numbers = shipped();
+  RandomNumbers random(6, 0);
+  drawNuisances(truth, random);
+  truth.extras.turn = -45 * degree;
+  TrialPlan plan;
+  plan.passive = true;
+  const Trial trial = makePassiveTrial(truth, plan, random);
+  EXPECT_LT(trial.tracking_deg, 3);
+  EXPECT_GT(*std::max_element(trial.angle.begin(), trial.angle.end()), 100 * degree);
+  for (const auto& row : trial.recorded) {
+    for (const double u : row) EXPECT_LT(u, 0.02);
+  }
+  const auto again = replayed(truth, trial.truth, trial.angle.front(), 1e-10);
+  double torque = 0;
+  for (std::size_t k = 0; k < again.size(); ++k) {
+    EXPECT_NEAR(again[k], trial.angle[k], 1e-6);
+    torque = std::max(torque, std::abs(trial.truth.torque[k]));
+  }
+  EXPECT_GT(torque, 1);
+  // without the turn, the same torque would do something else
+  truth.extras.turn = 0;
+  EXPECT_GT(
+      std::abs(replayed(truth, trial.truth, trial.angle.front(), 1e-6)[200] - trial.angle[200]),
+      0.2);
 }
 
 TEST(HiddenData, TheSensorIsLateScaledAndShifted) {

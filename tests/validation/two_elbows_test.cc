@@ -3,7 +3,12 @@
 #include <numbers>
 
 #include "bio/discover/add_effects.h"
+#include "bio/discover/elbow_disagreement.h"
+#include "data_set.h"
+#include "info/discover/joint_fit.h"
+#include "passive_trial.h"
 #include "stiff_solver.h"
+#include "support/scratch_folder.h"
 #include "support/shipped_elbow.h"
 #include "true_elbow.h"
 
@@ -73,6 +78,50 @@ TEST(TwoElbows, MoveAlikeOnAnElasticBand) {
           .model;
   EXPECT_LT(apart(model, theirs.trial, elbow).angle, 1e-4);
   EXPECT_GT(apart(theirs.model, theirs.trial, elbow).angle, 1);
+}
+
+// A relaxed arm that somebody else moves, turned as a whole and with a known mass in the hand:
+// where gravity and a force on the hand come from then.
+TEST(TwoElbows, MoveAlikeWhereTheArmIsTurned) {
+  const bio::fixtures::ShippedElbow theirs;
+  const support::ScratchFolder scratch;
+  Truth truth;
+  truth.numbers = readElbow(theirs.root() + "/models/elbow8.osim");
+  truth.numbers.forearm.push_back({"known", 1, truth.numbers.hand, Eigen::Matrix3d::Zero()});
+  truth.extras.handForce = 2;
+  truth.extras.tilt = -0.1;
+  truth.extras.turn = -45 * degree;
+  TrialPlan plan;
+  plan.angleNoise = 0;
+  RandomNumbers random(8, 0);
+  const NamedTrial made{"moved", makePassiveTrial(truth, plan, random), 1, -45};
+  const auto file = scratch.file("moved.sto", asTable(made, "moved"));
+  bio::discover::ElbowOptions options;
+  options.simulation.step = 0.002;
+  const bio::discover::ElbowDisagreement data(
+      theirs.model, theirs.options(), "elbow_flexion",
+      {bio::readTrial(file, theirs.model, {.knownChanges = true})}, options);
+  Eigen::VectorXd values = info::discover::nominalValues(data);
+  const auto at = [&](const char* name) -> double& {
+    std::size_t i = 0;
+    while (data.quantities().at(i).name != name) ++i;
+    return values[static_cast<Eigen::Index>(i)];
+  };
+  const auto largest = [&] {
+    const Eigen::VectorXd angle = data.outputs(0, values, {});
+    double far = 0;
+    for (std::size_t k = 0; k < made.trial.angle.size(); ++k) {
+      far = std::max(far, std::abs(angle[static_cast<Eigen::Index>(k)] - made.trial.angle[k]));
+    }
+    return far / degree;
+  };
+  EXPECT_GT(largest(), 5);
+  at("trial1.initial.elbow_flexion") = made.trial.angle.front();
+  at("handforce.force") = 2;
+  at("tilt.angle") = -0.1;
+  EXPECT_LT(largest(), 0.02);
+  at("handforce.force") = -2;
+  EXPECT_GT(largest(), 5);
 }
 
 TEST(TwoElbows, HaveTheSameLengthsAndMomentArms) {

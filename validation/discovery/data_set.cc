@@ -10,6 +10,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "passive_trial.h"
+
 namespace hidden {
 namespace {
 
@@ -69,7 +71,8 @@ Json drawTrial(NamedTrial& named, const Truth& truth, const Truth& nominal, cons
     RandomNumbers random(seed, stream + attempt);
     NamedTrial drawn = named;
     try {
-      drawn.trial = makeTrial(truth, plan, random);
+      drawn.trial =
+          plan.passive ? makePassiveTrial(truth, plan, random) : makeTrial(truth, plan, random);
     } catch (const std::runtime_error& e) {
       why = e.what();
       continue;
@@ -178,15 +181,21 @@ DataSet makeDataSet(const ElbowNumbers& nominal, const DataSetPlan& plan) {
     TrialPlan trialPlan;
     trialPlan.emgNoise = plan.emgNoise;
     NamedTrial named{names[i], {}, 0};
-    Truth held = truth;
-    // what tells delay from clock is a push that no EMG announces; tilt from a force, a known mass
+    Truth held = truth, known = bare;
+    // what tells delay from clock is a push that no EMG announces; tilt from a force, a known mass;
+    // a force from a stiffness, an arm that is turned
     if (named.name == "follow_up" && timing) trialPlan.torquePulses = true;
     if (named.name == "follow_up" && !timing) {
+      trialPlan.passive = true;
       named.knownMass = 1;
-      held.numbers.forearm.push_back(
-          {"known", named.knownMass, nominal.hand, Eigen::Matrix3d::Zero()});
+      named.knownTurn = -45;
+      for (Truth* one : {&held, &known}) {
+        one->numbers.forearm.push_back(
+            {"known", named.knownMass, nominal.hand, Eigen::Matrix3d::Zero()});
+        one->extras.turn = named.knownTurn * degree;
+      }
     }
-    const Json nominalDistance = drawTrial(named, held, bare, trialPlan, plan.seed, 100 * (i + 1));
+    const Json nominalDistance = drawTrial(named, held, known, trialPlan, plan.seed, 100 * (i + 1));
     if (named.name != "follow_up") {
       strength.push_back({{"trial", named.name},
                           {"tracking_rms_deg", std::round(100 * named.trial.tracking_deg) / 100},
@@ -220,6 +229,7 @@ std::string asTable(const NamedTrial& named, const std::string& title, const std
   }
   std::string text = fmt::format("{}\nversion=1\nnRows={}\nnColumns={}\ninDegrees=no\n", title,
                                  truth.times.size(), columns);
+  if (named.knownTurn != 0) text += fmt::format("known_arm_turn_deg={:g}\n", named.knownTurn);
   if (named.knownMass > 0) text += fmt::format("known_mass_in_hand_kg={:g}\n", named.knownMass);
   text += fmt::format("endheader\ntime{}\telbow_flexion_deg{}\n", muscles,
                       pushed ? "\telbow_flexion.torque" : "");

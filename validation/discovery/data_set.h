@@ -28,7 +28,9 @@ struct DataSetPlan {
 struct NamedTrial {
   std::string name;
   Trial trial;
-  double knownMass = 0;  ///< held in the hand, and written in the file's header [kg]
+  // what is known, and written in the file's header
+  double knownMass = 0;  ///< held in the hand [kg]
+  double knownTurn = 0;  ///< of the whole arm [deg]
 };
 
 struct DataSet {
@@ -46,7 +48,7 @@ std::vector<std::string> chosenEffects(const DataSetPlan& plan);
 DataSet makeDataSet(const ElbowNumbers& nominal, const DataSetPlan& plan);
 
 /// One trial as an .sto table: time, eight EMG channels (0 … 1) but that of the muscle left out,
-/// the angle [deg], and the known torque where there is one.
+/// the angle [deg], the known torque where there is one; known mass and turn in the header.
 std::string asTable(const NamedTrial& trial, const std::string& title,
                     const std::string& leftOut = {});
 

@@ -120,6 +120,11 @@ Channels recordingOf(const InputChain& chain, const Channels& v, const Channels*
 
 }  // namespace
 
+std::array<double, 8> recordedAs(const InputChain& chain,
+                                 const std::array<double, 8>& excitations) {
+  return recordingOf(chain, excitations, nullptr);
+}
+
 std::vector<double> throughSensor(const Sensor& sensor, const Recording& recording,
                                   const std::vector<double>& angle) {
   std::vector<double> seen;

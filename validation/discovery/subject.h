@@ -12,6 +12,7 @@ struct TrialPlan {
   double emgNoise = 0;        ///< relative, Ornstein–Uhlenbeck of 80 ms, at the muscle
   double angleNoise = 0.5;    ///< [deg]
   bool torquePulses = false;  ///< known pulses from outside
+  bool passive = false;       ///< relaxed, moved by somebody else (passive_trial.h)
 };
 
 struct Trial {
@@ -21,6 +22,9 @@ struct Trial {
   std::vector<double> measured_deg;             ///< through the sensor, with noise, 0.01° steps
   double tracking_deg = 0;                      ///< RMS distance from the target
 };
+
+/// The EMG, as a file can hold it, that gives these excitations through the chain.
+std::array<double, 8> recordedAs(const InputChain& chain, const std::array<double, 8>& excitations);
 
 /// What an angle sensor shows without noise [rad]: q after clock, gain and bias.
 std::vector<double> throughSensor(const Sensor& sensor, const Recording& times,

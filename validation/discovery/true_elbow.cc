@@ -106,9 +106,9 @@ double TrueElbow::extraTorque(double t, double q, double w, double z) const {
   const double above = q - e.limitUpper, below = e.limitLower - q;
   torque += e.limit * (smootherStep(below / e.limitTransition) * below -
                        smootherStep(above / e.limitTransition) * above);
-  if (e.tilt != 0) torque += gravityMoment(q + e.tilt) - gravityMoment(q);
+  if (e.tilt != 0 || e.turn != 0) torque += gravityMoment(q + e.tilt + e.turn) - gravityMoment(q);
   if (e.handForce != 0) {
-    const Vec r = turned(numbers_.hand - numbers_.hinge, numbers_.axis, q);
+    const Vec r = turned(numbers_.hand - numbers_.hinge, numbers_.axis, q + e.turn);
     torque += numbers_.axis.dot(r.cross(Vec(e.handForce, 0, 0)));
   }
   if (e.band != 0) {

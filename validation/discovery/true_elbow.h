@@ -34,6 +34,7 @@ struct Extras {
   double limitUpper = 90 * degree, limitLower = 40 * degree;  ///< [rad]
   double limitTransition = 30 * degree;                       ///< [rad]
   double tilt = 0;                   ///< gravity's moment is that of q + δ [rad]
+  double turn = 0;                   ///< the whole arm is turned so about the hinge [rad]
   double constant = 0;               ///< +τ_0 [N m]
   double handForce = 0;              ///< along the ground's x at the hand [N]
   double band = 0, bandRest = 0.28;  ///< −k·max(0, L − L_r)·∂L/∂q, hand to shoulder [N/m], [m]

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bio/known_changes.h"
 #include "bio/model.h"
 
 namespace bio {
@@ -22,12 +23,6 @@ struct MeasuredMotion {
 struct AppliedForce {
   std::string coordinate;
   Eigen::VectorXd values;  ///< [N·m] or [N], finite; positive pushes the coordinate up
-};
-
-/// What the experimenter changed on purpose for a whole trial, and knows.
-struct KnownChanges {
-  double massInHand = 0;  ///< [kg] ≥ 0, at the mass centre of the farthest body that moves
-  bool any() const { return massInHand != 0; }
 };
 
 /// What drives a simulation, and what was measured beside it.
@@ -57,13 +52,13 @@ struct TrialOptions {
 /// driven muscle (0 to 1 in every row), and a column per measured coordinate – an angle is in
 /// degrees when the header says inDegrees=yes or the name ends in `_deg`, else in radians. A column
 /// `elbow_flexion.torque` [N·m] (of a translation: `.force` [N]) is what pushes from outside.
-/// A line `known_mass_in_hand_kg=1` of a header gives Trial::known. OpenSim's paths count as names:
+/// Lines of a header give Trial::known (known_changes.h). OpenSim's paths count as names:
 /// `/forceset/BRA/activation` is not an excitation, `/forceset/BRA` and
 /// `/jointset/elbow/elbow_flexion/value` are understood. Empty cells and NaN: not measured.
 /// A muscle without a column gets the baseline, with a warning.
 /// @throws FileError naming file, column and row for a value outside its range, a muscle or a
-/// torque with gaps, a column that is neither, two columns of one meaning, a known mass that is no
-/// number from 0 to 100 or that the caller cannot take into account, or a table that table_file.h
+/// torque with gaps, a column that is neither, two columns of one meaning, known changes out of
+/// range or that the caller cannot take into account, or a table that table_file.h
 /// refuses
 Trial readTrial(const std::filesystem::path& file, const Model& model,
                 const TrialOptions& options = {});

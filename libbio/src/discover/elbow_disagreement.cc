@@ -126,7 +126,7 @@ ElbowDisagreement::ElbowDisagreement(const Model& model, const ArmOptions& arm,
   if (isPushed) widest_.separate("delay", "clock");
   // gravity's moment grows with a mass, that of a force on the hand does not
   const bool isLoaded = std::any_of(trials_.begin(), trials_.end(), [&](const OfTrial& one) {
-    return one.known != trials_.front().known;
+    return one.trial.known.massInHand != trials_.front().trial.known.massInHand;
   });
   if (isLoaded) widest_.separate("tilt", "handforce");
 }
@@ -134,15 +134,25 @@ ElbowDisagreement::ElbowDisagreement(const Model& model, const ArmOptions& arm,
 VectorXd ElbowDisagreement::knownChanges(const Trial& trial) const {
   VectorXd changes = VectorXd::Zero(static_cast<Index>(widest_.quantities().size()));
   if (!trial.known.any()) return changes;
-  const auto& quantities = widest_.quantities();
-  const auto mass = std::find_if(quantities.begin(), quantities.end(),
-                                 [](const auto& one) { return one.name == "payload.mass"; });
-  if (mass == quantities.end()) {
+  const auto change = [&](const std::string& name, double value, const char* why) {
+    if (value == 0) return;
+    const auto& quantities = widest_.quantities();
+    const auto at = std::find_if(quantities.begin(), quantities.end(),
+                                 [&](const auto& one) { return one.name == name; });
+    if (at == quantities.end()) {
+      throw std::invalid_argument(
+          fmt::format("{}: recorded {}, but {}", trial.file, inWords(trial.known), why));
+    }
+    changes[at - quantities.begin()] = value;
+  };
+  change("known.mass", trial.known.massInHand, "the model moves no body that could hold it");
+  change("known.turn", trial.known.armTurn, "the coordinate does not turn bodies across gravity");
+  if (trial.known.armTurn != 0 && widest_.present().count("handforce") > 0) {
     throw std::invalid_argument(
-        fmt::format("{}: {} kg in the hand, but the model moves no body that could hold it",
-                    trial.file, trial.known.massInHand));
+        fmt::format("{}: recorded {}, but the model has a force on the hand ({}) that would turn "
+                    "with the arm",
+                    trial.file, inWords(trial.known), widest_.present().at("handforce")));
   }
-  changes[mass - quantities.begin()] = trial.known.massInHand;
   return changes;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "bio/discover/passive_motion.h"
 #include "bio/discover/planned.h"
 #include "info/discover/separation.h"
 
@@ -21,7 +22,10 @@ std::vector<ForeseenExperiment> foresee(const Model& model, const ArmOptions& ar
   std::vector<ForeseenExperiment> foreseen;
   if (verdict.rivals.size() < 2) return foreseen;
   const Coordinate& coordinate = data.widest().coordinate();
-  for (const auto& experiment : plannedExperiments(trial, coordinate)) {
+  std::vector<PlannedExperiment> experiments = plannedExperiments(trial, coordinate);
+  for (PlannedExperiment& one : passiveMotions(trial, data.widest()))
+    experiments.push_back(std::move(one));
+  for (const PlannedExperiment& experiment : experiments) {
     const ElbowDisagreement planned(model, arm, coordinate.name, {experiment.trial}, options);
     // where the arm would go
     Eigen::VectorXd values = info::discover::nominalValues(planned);

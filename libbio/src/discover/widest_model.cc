@@ -208,7 +208,8 @@ WidestModel::Numbers WidestModel::numbersAt(const VectorXd& values) const {
       if (meanings_[i].kind == Meaning::Kind::scale) {
         numbers.product[k] *= part.weight == 1 ? value : std::pow(value, part.weight);
       }
-      if (meanings_[i].kind == Meaning::Kind::shift) numbers.sum[k] += part.weight * value;
+      if (meanings_[i].kind == Meaning::Kind::shift || meanings_[i].kind == Meaning::Kind::tilt)
+        numbers.sum[k] += part.weight * value;
     }
   }
   return numbers;
@@ -259,11 +260,13 @@ ParameterDirection WidestModel::direction(const VectorXd& values, std::size_t qu
   const Meaning& meaning = meanings_.at(quantity);
   ParameterDirection direction;
   if (meaning.kind == Meaning::Kind::tilt) {
-    const double angle = values[static_cast<Index>(quantity)];
+    double angle = 0;
+    for (std::size_t i = 0; i < meanings_.size(); ++i) {
+      if (meanings_[i].kind == Meaning::Kind::tilt) angle += values[static_cast<Index>(i)];
+    }
     const Vector3d turned = Eigen::AngleAxisd(-angle, axis_) * base_.gravity;
     const Vector3d rate = -axis_.cross(turned);
     for (int k = 0; k < 3; ++k) direction.push_back({GravityTarget{k}, rate[k], 1});
-    return direction;
   }
   if (meaning.parts.empty()) return direction;
   const Numbers numbers = numbersAt(values);

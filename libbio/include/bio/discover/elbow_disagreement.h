@@ -36,7 +36,8 @@ inline constexpr double shortestSearchStep = 0.003;
 ///
 /// Where a torque from outside pushes the coordinate, delay and clock are no equivalents. A mass in
 /// the hand that a trial is known to have (Trial::known) is in its model besides what is missing;
-/// where it differs between trials, tilt and handforce are no equivalents.
+/// where it differs between trials, tilt and handforce are no equivalents. In one whose arm is
+/// known to be turned, gravity and a force on the hand come from where they then come from.
 ///
 /// The latent force is a torque on the coordinate with a channel for each muscle, the size of its
 /// moment r_i F_i, and one of the constant size τ_0 [N·m]: independent errors of so many per cent

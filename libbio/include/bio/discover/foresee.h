@@ -15,9 +15,9 @@ struct ForeseenExperiment {
   double least() const;      ///< the smallest of them
 };
 
-/// Simulates the planned experiments (planned.h) with all that cannot be told apart
-/// (info/discover/separation.h); the best first. What leaves the range of the coordinate, or cannot
-/// be simulated, is left out. Empty where nothing is ambiguous.
+/// Simulates the planned experiments (planned.h, passive_motion.h) with all that cannot be told
+/// apart (info/discover/separation.h); the best first. What leaves the range of the coordinate, or
+/// cannot be simulated, is left out. Empty where nothing is ambiguous.
 /// @param trial    what is repeated
 /// @param options  those of `data`
 std::vector<ForeseenExperiment> foresee(const Model& model, const ArmOptions& arm,

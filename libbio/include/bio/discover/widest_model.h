@@ -18,8 +18,8 @@ struct Meaning {
   enum class Kind {
     scale,  ///< multiplies each number by value^weight
     shift,  ///< adds weight·value to each number
-    tilt,   ///< turns gravity, so that its moment about the axis is that of q + value
-    bias,   ///< of the sensor, y = (1 + gain)·q(t − clock) + bias
+    tilt,  ///< turns gravity, so that its moment about the axis is that of q + value; adds as shift
+    bias,  ///< of the sensor, y = (1 + gain)·q(t − clock) + bias
     gain,
     clock
   };
@@ -92,6 +92,10 @@ class WidestModel {
   /// Those of a parameter of the model, by its path name.
   std::vector<Meaning::Part> numbers(const std::string& parameter);
   std::size_t add(Quantity quantity, Meaning meaning);
+  /// A quantity moves one number more.
+  void extend(std::size_t quantity, Meaning::Part part) {
+    meanings_.at(quantity).parts.push_back(part);
+  }
   void addNuisance(std::size_t quantity) { nuisances_.push_back(quantity); }
   void add(Candidate candidate) { candidates_.push_back(std::move(candidate)); }
   /// An effect that the base model has already, so that it is no candidate.

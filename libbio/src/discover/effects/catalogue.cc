@@ -65,6 +65,7 @@ WidestModel widestModel(const Model& model, const ArmOptions& arm, const std::st
                         const std::vector<info::discover::FormulaTerm>& formula) {
   WidestModel widest(model, arm, coordinate);
   addNuisances(widest);
+  addKnownChanges(widest);
   for (const EffectEntry& entry : effectEntries()) {
     if (std::find(without.begin(), without.end(), entry.id) == without.end()) entry.add(widest);
   }
@@ -123,10 +124,12 @@ void addFormula(WidestModel& model, const std::vector<info::discover::FormulaTer
   addExpression(model, effect);
 }
 
-void addExpression(WidestModel& model, const ExpressionEffect& effect) {
+std::optional<std::size_t> addExpression(WidestModel& model, const ExpressionEffect& effect) {
   const std::string law = lawName(model, effect.id);
   for (const ExpressionBasedCoordinateForce& force : model.base().expressionForces) {
-    if (force.name == law && force.enabled) return model.addPresent(effect.id, law);
+    if (force.name != law || !force.enabled) continue;
+    model.addPresent(effect.id, law);
+    return {};
   }
   std::vector<NamedConstant> constants;
   for (const std::string& name : effect.constants) constants.push_back({name, 0});
@@ -141,6 +144,7 @@ void addExpression(WidestModel& model, const ExpressionEffect& effect) {
   model.add(candidate(model, effect.id, effect.name, effect.sentence,
                       info::discover::EffectKind::structure, quantities, effect.starts,
                       effect.equivalents));
+  return force;
 }
 
 }  // namespace bio::discover

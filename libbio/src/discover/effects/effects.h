@@ -2,10 +2,15 @@
 
 // The effects, one function each; not public.
 
+#include <optional>
+
 #include "bio/discover/effects.h"
 
 namespace bio::discover {
 
+/// `known.mass` [kg] and `known.turn` [rad], which trials are known to have, where the model can
+/// have them; no candidates. Before all others.
+void addKnownChanges(WidestModel& model);
 void addViscousDamping(WidestModel& model);
 void addCoulombFriction(WidestModel& model);
 void addStribeckFriction(WidestModel& model);
@@ -67,6 +72,7 @@ struct ExpressionEffect {
   std::vector<std::vector<double>> starts;
   std::vector<std::string> equivalents = {};
 };
-void addExpression(WidestModel& model, const ExpressionEffect& effect);
+/// @return the law's index in the model's list; nothing if it is present
+std::optional<std::size_t> addExpression(WidestModel& model, const ExpressionEffect& effect);
 
 }  // namespace bio::discover

@@ -24,6 +24,17 @@ Vector3d horizontal(const WidestModel& model) {
 
 }  // namespace
 
+void addKnownChanges(WidestModel& model) {
+  if (!model.movedBodies().empty()) {
+    model.add(amplitude("known.mass", "kg", 0, 100, 1),
+              {Meaning::Kind::shift, model.numbers(model.movedBodies().back() + ".mass")});
+  }
+  if (!horizontal(model).isZero()) {
+    model.add(amplitude("known.turn", "rad", -std::numbers::pi, std::numbers::pi, 1),
+              {Meaning::Kind::tilt, {}});
+  }
+}
+
 void addPayload(WidestModel& model) {
   if (model.movedBodies().empty()) return;
   const std::string& hand = model.movedBodies().back();
@@ -54,8 +65,8 @@ void addConstantTorque(WidestModel& model) {
                         {{0.2}}});
 }
 
-// τ(q) = F e·∂p/∂q = F(A cos q + B sin q) where the joint is a plain hinge, with e horizontal and
-// p the mass centre of the hand.
+// τ(q) = F e·∂p/∂q = F(A cos(q + t) + B sin(q + t)) where the joint is a plain hinge, with e
+// horizontal, p the mass centre of the hand and t the known turn of the arm.
 void addHandForce(WidestModel& model) {
   const Vector3d e = horizontal(model);
   if (e.isZero()) return;
@@ -66,14 +77,16 @@ void addHandForce(WidestModel& model) {
     if (std::abs(arm(q) - A * std::cos(q) - B * std::sin(q)) > 1e-9) return;
   }
   const double sign = A < 0 ? -1 : 1;
-  addExpression(model, {"handforce",
-                        "horizontal force on the hand",
-                        fmt::format("A constant horizontal force acts on the {}.", hand),
-                        fmt::format("F*(({:.17g})*cos(q)+({:.17g})*sin(q))", sign * A, sign * B),
-                        {"F"},
-                        {amplitude("handforce.force", "N", -30, 30, 3)},
-                        {{0.5}},
-                        {"tilt"}});
+  const auto force = addExpression(
+      model, {"handforce",
+              "horizontal force on the hand",
+              fmt::format("A constant horizontal force acts on the {}.", hand),
+              fmt::format("F*(({:.17g})*cos(q+t)+({:.17g})*sin(q+t))", sign * A, sign * B),
+              {"F", "t"},
+              {amplitude("handforce.force", "N", -30, 30, 3)},
+              {{0.5}},
+              {"tilt"}});
+  if (force) model.extend(model.find("known.turn"), {model.number(ExpressionTarget{*force, 1}, 0)});
 }
 
 }  // namespace bio::discover
