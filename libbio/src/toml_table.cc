@@ -23,8 +23,9 @@ std::string firstLine(const std::string& text) {
   return line;
 }
 
+// Without a width: toml11 never comes to the end of some texts beside a long key.
 std::string shown(const toml::value& value) {
-  std::string text = toml::format(value);
+  std::string text = toml::format(value, std::numeric_limits<std::size_t>::max());
   while (!text.empty() && text.back() == '\n') text.pop_back();
   return text.find('\n') == std::string::npos ? text : "…";
 }

@@ -112,6 +112,11 @@ TEST_F(HostileFiles, BinaryNumbersFitIntoWholeOnes) {
               Not(HasSubstr("binary")));
 }
 
+TEST_F(HostileFiles, AMessageShowsATextBesideALongKey) {
+  EXPECT_THAT(configRefusal("[[normalise]]\na" + times(90, "b") + " = \"\\f\"\n"),
+              HasSubstr("emg.toml:1: normalise = "));
+}
+
 TEST_F(HostileFiles, WholeNumbersBeyondAllBoundsAreRefused) {
   EXPECT_THAT(configRefusal("[notch]\nharmonics = -9223372036854775808\n"),
               HasSubstr("must be a whole number"));

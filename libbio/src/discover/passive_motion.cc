@@ -92,6 +92,43 @@ double torqueOf(const WidestModel& model, ArmConfiguration<1>& bodies,
   return torque - passive[0] - muscles.momentAt(p.q);
 }
 
+// The trial with the arm relaxed and moved from `low` to `high` and back by a torque that is known.
+Trial movedPassively(Trial trial, const WidestModel& model, double low, double high) {
+  const std::string& coordinate = model.coordinate().name;
+  trial.excitations.rowwise() = trial.excitations.colwise().minCoeff().cwiseMin(relaxed).eval();
+  const RestingMuscles muscles(model.arm(), trial, low, high);
+  ArmConfiguration<1> bodies(model.arm());
+  const auto at = [&](double t) {
+    return sweepAt((t - trial.times[0]) / trial.duration(), trial.duration(), low, high);
+  };
+  VectorXd torque(trial.times.size());
+  for (Index i = 0; i < torque.size(); ++i)
+    torque[i] = torqueOf(model, bodies, muscles, trial.known, at(trial.times[i]));
+  std::erase_if(trial.applied, [&](const auto& one) { return one.coordinate == coordinate; });
+  trial.applied.push_back({coordinate, torque});
+  for (MeasuredMotion& measured : trial.measured) {
+    if (measured.coordinate != coordinate) continue;
+    for (Index i = 0; i < measured.times.size(); ++i) measured.values[i] = at(measured.times[i]).q;
+  }
+  return trial;
+}
+
+std::string sentenceOf(const Trial& moved, const Coordinate& coordinate, double low, double high) {
+  const bool turns = coordinate.isRotation;
+  const double unit = turns ? std::numbers::pi / 180 : 1;
+  std::string changed = inWords(moved.known), header;
+  if (!changed.empty()) changed.insert(0, ", ");
+  if (moved.known.armTurn != 0)
+    changed += " (as a whole, about the joint, positive as the coordinate rises)";
+  for (const auto& [line, value] : headerOf(moved.known))
+    header += fmt::format("{}{}={}", header.empty() ? ", header " : " and ", line, value);
+  return fmt::format(
+      "relax, let somebody else move the arm slowly from {:.4g} to {:.4g} {} and back within "
+      "{:.3g} s{}, and record what moves it (column {}.{}{})",
+      low / unit, high / unit, turns ? "deg" : "m", moved.duration(), changed, coordinate.name,
+      turns ? "torque" : "force", header);
+}
+
 }  // namespace
 
 std::vector<PlannedExperiment> passiveMotions(const Trial& trial, const WidestModel& model) {
@@ -100,49 +137,21 @@ std::vector<PlannedExperiment> passiveMotions(const Trial& trial, const WidestMo
   const Coordinate& coordinate = model.coordinate();
   const double span = coordinate.rangeMax - coordinate.rangeMin;
   if (!std::isfinite(span) || !(span > 0)) return planned;
-  ArmConfiguration<1> bodies(model.arm());
   const auto can = [&](const char* change) {
     return std::any_of(model.quantities().begin(), model.quantities().end(),
                        [&](const auto& one) { return one.name == change; });
   };
-  const bool turns = coordinate.isRotation;
-  const double unit = turns ? std::numbers::pi / 180 : 1;
   for (const double turn : {0.0, -45.0}) {
     if (turn != 0 && !can("known.turn")) continue;
     for (const double mass : {0.0, 1.0}) {
       if (mass != 0 && !can("known.mass")) continue;
       const double low = coordinate.rangeMin + 0.1 * span,
                    high = coordinate.rangeMin + (turn == 0 ? 0.65 : 0.85) * span;
-      Trial moved = trial;
-      moved.known.massInHand += mass;
-      moved.known.armTurn += turn * std::numbers::pi / 180;
-      moved.excitations.rowwise() = trial.excitations.colwise().minCoeff().cwiseMin(relaxed).eval();
-      const RestingMuscles muscles(model.arm(), moved, low, high);
-      const auto at = [&](double t) {
-        return sweepAt((t - trial.times[0]) / trial.duration(), trial.duration(), low, high);
-      };
-      VectorXd torque(trial.times.size());
-      for (Index i = 0; i < torque.size(); ++i)
-        torque[i] = torqueOf(model, bodies, muscles, moved.known, at(trial.times[i]));
-      std::erase_if(moved.applied,
-                    [&](const auto& one) { return one.coordinate == coordinate.name; });
-      moved.applied.push_back({coordinate.name, torque});
-      for (MeasuredMotion& measured : moved.measured) {
-        if (measured.coordinate != coordinate.name) continue;
-        for (Index i = 0; i < measured.times.size(); ++i)
-          measured.values[i] = at(measured.times[i]).q;
-      }
-      std::string known;
-      for (const auto& [line, value] : headerOf(moved.known))
-        known += fmt::format("{}{}={}", known.empty() ? ", header " : " and ", line, value);
-      const std::string changed = inWords(moved.known);
-      planned.push_back(
-          {fmt::format("relax, let somebody else move the arm slowly from {:.3g} to {:.3g} {} and "
-                       "back within {:.3g} s{}{}, and record what moves it (column {}.{}{})",
-                       low / unit, high / unit, turns ? "deg" : "m", trial.duration(),
-                       changed.empty() ? "" : ", ", changed, coordinate.name,
-                       turns ? "torque" : "force", known),
-           std::move(moved)});
+      Trial changed = trial;
+      changed.known.massInHand += mass;
+      changed.known.armTurn += turn * std::numbers::pi / 180;
+      Trial moved = movedPassively(std::move(changed), model, low, high);
+      planned.push_back({sentenceOf(moved, coordinate, low, high), std::move(moved)});
     }
   }
   return planned;
