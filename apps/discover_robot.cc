@@ -144,6 +144,12 @@ class RobotSearch {
       std::vector<std::string> warnings;
       trials.push_back(readRobotTrial(file, channels, request_.ignoreExtra, warnings));
       for (const std::string& warning : warnings) summary.warn(warning);
+      const double duration = trials.back().times.back() - trials.back().times.front();
+      if (request_.step && *request_.step > duration) {
+        throw std::invalid_argument(fmt::format("{}: lasts {} s, --step {} s must not be longer",
+                                                file, numberText(duration),
+                                                numberText(*request_.step)));
+      }
     }
     inputsMustDiffer(summary, request_.trials.size(), 0);
     info::robot::Model model = plainModel(request_.system, trials);

@@ -160,7 +160,11 @@ void mustBeOfTheModelAsItIs(const bio::Trial& trial) {
 
 bio::SimulationOptions during(const bio::Trial& trial, bio::SimulationOptions options) {
   options.startTime = trial.times[0];
-  options.duration = trial.times[trial.times.size() - 1] - options.startTime;
+  options.duration = trial.duration();
+  if (options.step > options.duration) {
+    throw std::invalid_argument(fmt::format("{}: lasts {} s, step {} s must not be longer",
+                                            trial.file, options.duration, options.step));
+  }
   return options;
 }
 

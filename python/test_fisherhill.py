@@ -176,6 +176,7 @@ class Arms(unittest.TestCase):
             lambda: fh.make_trial(self.model, {}),
             lambda: fh.replay(self.model, self.trial, integrator="euler"),
             lambda: fh.replay(self.model, self.trial, step=0),
+            lambda: fh.replay(self.model, self.trial, step=5),
             lambda: fh.replay(self.model, self.trial, stride=1),
             lambda: fh.replay(self.model, self.trial, coordinate="knee"),
             lambda: fh.sensitivity(self.model, [], ["hand.mass"]),

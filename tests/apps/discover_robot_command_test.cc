@@ -118,6 +118,7 @@ TEST(DiscoverRobotCommand, RefusesBadInputInOneLine) {
   refused({table("c.csv", "time,input\n0,0\n0.01,0\n")}, "has no column force_N");
   refused({table("d.csv", "time,input,force_N\n0,,1\n0.01,0,1\n")}, "row 1 is empty");
   refused({good, good}, "is the same trial as");
+  refused({good, "--step", "0.2"}, "good.csv: lasts 0.11 s, --step 0.2 s must not be longer");
   refused({good, "--without", "visc_1"}, "not in the catalogue of suspended-mass");
   refused({good, "--integrator", "rk4"}, "does not go with --system");
   refused({good, "--noise", "1,2"}, "2 values for 1 channels");

@@ -113,6 +113,16 @@ TEST(DiscoverySlice, OfReducedElbowsWithOneEffect) {
 TEST(DiscoverySlice, OfReducedElbowsWithOneWrongParameter) {
   expectTargetsOnReducedElbows("parameter", 45200, 2);
 }
+// What was raced from the base's fit said "another muscle's optimal length, probability 1".
+TEST(DiscoverySlice, AWrongParameterIsNotTakenForAnother) {
+  reduced::Plan plan;
+  plan.suite = "parameter";
+  plan.seed = 13010;
+  const Outcome outcome = onReducedElbow(plan);
+  EXPECT_TRUE(outcome.claims);
+  EXPECT_TRUE(outcome.classHasTruth);
+  EXPECT_FALSE(outcome.confidentlyWrong());
+}
 TEST(DiscoverySlice, OfElbowsWithEightMuscles) {
   hidden::DataSetPlan nothing, visc, missing;
   nothing.suite = "null";

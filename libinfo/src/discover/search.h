@@ -57,6 +57,7 @@ class Search {
   const std::map<Effects, Entry>& entries() const { return entries_; }
   int fits() const { return fits_; }
 
+  const Disagreement& data() const { return data_; }
   /// One-step gains of all candidates that are not yet in `effects`, at the fits with and without
   /// latent force.
   std::vector<Screened> screen(const Effects& effects, bool simulation) const;

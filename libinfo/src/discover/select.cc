@@ -18,8 +18,11 @@ class Selection {
   Effects run() {
     for (int round = 0; round < 2 * options_.maxEffects; ++round) {
       const bool first = chosen_.empty();
-      if (static_cast<int>(chosen_.size()) >= options_.maxEffects || (!first && !promising()))
+      if (static_cast<int>(chosen_.size()) >= options_.maxEffects) break;
+      if (!first && !promising()) {
+        if (onlyParameter() && simplify()) continue;
         break;
+      }
       if (!first && simplify()) continue;
       std::vector<std::size_t> list;
       for (int attempt = 0; attempt < 3; ++attempt) {
@@ -41,9 +44,16 @@ class Selection {
   }
 
  private:
-  // Without any name, and with a latent force that no noise of the inputs explains: the base may have
-  // run away, and every effect that was raced from there with it (sets 66012 and 66155).
+  // Without any name, and with a latent force that no noise of the inputs explains: the base may
+  // have run away, and every effect that was raced from there with it (sets 66012 and 66155).
   bool stranded() const { return search_.at({}).fit.noise.latent > options_.latentTolerance; }
+
+  // A parameter that is said to be off may stand for another one: where all of them are uncertain,
+  // the fits have several minima, and what was raced from the base's found the nearest ones.
+  bool onlyParameter() const {
+    return chosen_.size() == 1 &&
+           search_.data().candidates()[chosen_.front()].kind == EffectKind::parameter;
+  }
 
   // Before a second name is given, single ones are tried from elsewhere: a base that is far off may
   // have led to makeshifts for one effect that explains everything.
