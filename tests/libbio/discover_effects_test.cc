@@ -388,6 +388,19 @@ TEST(ElbowDisagreement, DerivativesInNuisancesMatchDifferencesUnderALatentForceA
   }
 }
 
+// The prior of a trial's start is about the first measured value, which a sensor that is off has
+// shown.
+TEST(ElbowDisagreement, StartsWhereTheSensorShowsTheFirstAngle) {
+  const Case c(0.3);
+  VectorXd values = c.nominal();
+  const double shown = c.outputs(values)[0];
+  values[static_cast<Index>(c.find("bias").quantities[0])] = 0.07;
+  values[static_cast<Index>(c.find("gain").quantities[0])] = -0.1;
+  const VectorXd off = c.outputs(values);
+  EXPECT_NEAR(off[0], shown, 1e-12);
+  EXPECT_GT(std::abs(off.tail(1)[0] - c.outputs(c.nominal()).tail(1)[0]), 1e-3);
+}
+
 TEST(ElbowDisagreement, SaysNothingWhereTheSimulationFails) {
   const Case c(0.3);
   VectorXd values = c.nominal();

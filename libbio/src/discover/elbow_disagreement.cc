@@ -182,7 +182,9 @@ ParameterCatalogue::Setting ElbowDisagreement::settingAt(
   }
   const auto own = static_cast<Index>(widest_.quantities().size());
   ParameterCatalogue::Setting setting = widest_.settingAt(values.head(own) + one.known, wanted);
-  setting.start.q[widest_.freeIndex()] = values[static_cast<Index>(one.angle)];
+  const SensorLaw sensor = widest_.sensorAt(values);
+  setting.start.q[widest_.freeIndex()] =
+      (values[static_cast<Index>(one.angle)] - sensor.bias) / (1 + sensor.gain);
   setting.start.qDot[widest_.freeIndex()] = values[static_cast<Index>(one.speed)];
   return setting;
 }
@@ -272,16 +274,21 @@ ElbowDisagreement::Prediction ElbowDisagreement::predict(int trial, const Vector
   const SensorLaw sensor = widest_.sensorAt(values);
   const auto own = widest_.quantities().size();
   const VectorXd modelValues = values.head(static_cast<Index>(own)) + one.known;
+  const auto kindOf = [&](std::size_t quantity) {
+    return quantity < own ? std::optional(widest_.kindOf(quantity)) : std::nullopt;
+  };
 
-  // columns of the simulation: those of the sensor, and of other trials, have none
+  // columns of the simulation: the clock, and starts of other trials, have none
   std::vector<ParameterDirection> directions;
   std::vector<Index> column(wanted.size(), -1);
   for (std::size_t j = 0; j < wanted.size(); ++j) {
     ParameterDirection direction;
     const int c = widest_.freeIndex();
-    if (wanted[j] == one.angle) direction = {{InitialTarget{c, false}}};
-    if (wanted[j] == one.speed) direction = {{InitialTarget{c, true}}};
     if (wanted[j] < own) direction = widest_.direction(modelValues, wanted[j]);
+    const auto kind = kindOf(wanted[j]);
+    if (wanted[j] == one.angle || kind == Meaning::Kind::bias || kind == Meaning::Kind::gain)
+      direction = {{InitialTarget{c, false}}};
+    if (wanted[j] == one.speed) direction = {{InitialTarget{c, true}}};
     if (direction.empty()) continue;
     column[j] = static_cast<Index>(directions.size());
     directions.push_back(std::move(direction));
@@ -319,6 +326,7 @@ ElbowDisagreement::Prediction ElbowDisagreement::predict(int trial, const Vector
   const auto q = s.motion.q.row(widest_.freeIndex());
   const auto qDot = s.motion.qDot.row(widest_.freeIndex());
   const double factor = 1 + sensor.gain;
+  const double firstAngle = setting.start.q[widest_.freeIndex()];
   for (Index i = 0; i < K; ++i) {
     const auto w = lookAt(s.motion.time, one.times[static_cast<std::size_t>(i)] - sensor.clock);
     if (!w) continue;
@@ -329,10 +337,11 @@ ElbowDisagreement::Prediction ElbowDisagreement::predict(int trial, const Vector
     for (std::size_t j = 0; j < wanted.size(); ++j) {
       double& entry = result.gamma(i, static_cast<Index>(j));
       entry = column[j] >= 0 ? along[column[j]] : 0;
-      if (wanted[j] >= own) continue;
-      const Meaning::Kind kind = widest_.kindOf(wanted[j]);
-      if (kind == Meaning::Kind::bias) entry = 1;
-      if (kind == Meaning::Kind::gain) entry = value;
+      // what the sensor shows of the first angle stays where it is
+      const auto kind = kindOf(wanted[j]);
+      if (wanted[j] == one.angle) entry /= factor;
+      if (kind == Meaning::Kind::bias) entry = 1 - entry / factor;
+      if (kind == Meaning::Kind::gain) entry = value - entry * firstAngle / factor;
       if (kind == Meaning::Kind::clock) entry = -factor * slope;
     }
     if (numNodes > 0) {

@@ -71,6 +71,7 @@ class Work {
       stage_ = Stage::race;
       report(Stage::screen, 0.25, "");
       chosen_ = select(*search_, options_);
+      search_->sharpen(chosen_, options_.classWidth);
       if (draft != nullptr)
         *draft = std::make_shared<const Known>(
             Known{search_->entries(), chosen_, search_->scaleValues()});
@@ -200,13 +201,11 @@ class Work {
     Noise wide = entry.fit.noise, still = entry.fit.noise;
     wide.latent = std::max(wide.latent, 0.1);
     still.latent = 0;
-    // log Z of all less that of those that were fitted
     const Hypothesis hypothesis = makeHypothesis(data_, entry.effects, all.trials());
+    std::optional<Fit> best;
     const auto together = [&](const Eigen::VectorXd& from) {
-      const auto fit = all.tryFit(hypothesis, entry.fit.noise, from, {}, {30, 0.05});
-      if (!fit || fit->logEvidence - entry.fit.logEvidence <= result.score) return;
-      result.score = fit->logEvidence - entry.fit.logEvidence;
-      result.meanSquare = 2 * (fit->cost - entry.fit.cost) / static_cast<double>(held.samples());
+      auto fit = all.tryFit(hypothesis, entry.fit.noise, from, {}, {30, 0.05});
+      if (fit && (!best || fit->logEvidence > best->logEvidence)) best = std::move(fit);
     };
     if (const auto first = all.tryFit(hypothesis, wide, entry.fit.values, {}, {10, 0.1}))
       together(first->values);
@@ -217,6 +216,12 @@ class Work {
         together(fit->values);  // where everything else is right already
         result.starts = std::move(fit);
       }
+    }
+    if (best) {
+      if (search_->isLoud(*best)) best = all.marginal(*best);
+      // log Z of all less that of those that were fitted
+      result.score = best->logEvidence - entry.fit.logEvidence;
+      result.meanSquare = 2 * (best->cost - entry.fit.cost) / static_cast<double>(held.samples());
     }
     return result;
   }

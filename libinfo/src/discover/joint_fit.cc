@@ -271,10 +271,11 @@ std::optional<Fit> Likelihood::tryFit(const Hypothesis& hypothesis, const Noise&
           linearise(t, hypothesis, noise.latent, at.values, at.xi, at.eta[t], {}, false));
     return linear;
   };
+  const VectorXd tilt = options.tilt.size() == 0 ? VectorXd(VectorXd::Zero(p)) : options.tilt;
   const auto costOf = [&](const std::vector<Linear>& linear, const Point& at) {
     double squares = 0;
     for (const Linear& l : linear) squares += l.residuals.squaredNorm();
-    return cost(noise, at, squares);
+    return cost(noise, at, squares) + tilt.dot(at.xi);
   };
   std::vector<Linear> trials = linearised(point);
   fit.cost = costOf(trials, point);
@@ -287,7 +288,8 @@ std::optional<Fit> Likelihood::tryFit(const Hypothesis& hypothesis, const Noise&
 
   double damping = 1e-6;
   for (fit.iterations = 0; fit.iterations < options.iterations; ++fit.iterations) {
-    const Normal normal = normalEquations(trials, noise, point);
+    Normal normal = normalEquations(trials, noise, point);
+    normal.downhill.xi -= tilt;
     bool accepted = false;
     double growth = 8;
     for (int attempt = 0; attempt < 12 && !accepted; ++attempt) {
@@ -303,7 +305,8 @@ std::optional<Fit> Likelihood::tryFit(const Hypothesis& hypothesis, const Noise&
       double nextCost = kInfinity;
       if (next.to.values.allFinite()) {
         if (attempt == 0) there = linearised(next.to);
-        nextCost = attempt == 0 ? costOf(there, next.to) : simulatedCost(noise, next.to);
+        nextCost = attempt == 0 ? costOf(there, next.to)
+                                : simulatedCost(noise, next.to) + tilt.dot(next.to.xi);
       }
       if (nextCost < fit.cost) {
         accepted = true;
@@ -322,7 +325,8 @@ std::optional<Fit> Likelihood::tryFit(const Hypothesis& hypothesis, const Noise&
   fit.values = std::move(point.values);
   fit.xi = std::move(point.xi);
   fit.eta = std::move(point.eta);
-  finish(fit, trials);
+  fit.cost -= tilt.dot(fit.xi);
+  finish(fit, trials, tilt);
   return fit;
 }
 

@@ -20,12 +20,12 @@ double Fit::deviation(std::size_t free) const {
 }
 
 // Laplace's evidence, the posterior covariance, and what the latent force has used up.
-void Likelihood::finish(Fit& fit, const std::vector<Linear>& trials) const {
+void Likelihood::finish(Fit& fit, const std::vector<Linear>& trials, const VectorXd& tilt) const {
   const Hypothesis& h = fit.hypothesis;
   const Index p = fit.xi.size();
   const double precision = 1 / (fit.noise.output * fit.noise.output);
   MatrixXd R = MatrixXd::Identity(p, p);
-  VectorXd gradient = fit.xi;
+  VectorXd gradient = fit.xi + tilt;
   double logDeterminant = 0;
   fit.latentPower = 0;
   fit.latentFreedom = 0;

@@ -27,6 +27,11 @@ constexpr double kDraftError = 3;
 constexpr int kIterations = 25, kShort = 8;
 constexpr double kGivenUp = 60;
 
+// Likelihood::marginal gains a few nats, and more where a hypothesis damps the model; what is
+// further behind stays behind. The second: nats by which a fit must be better than the one before
+// for that to be worth doing again.
+constexpr double kMarginalGain = 10, kNews = 0.2;
+
 // η of another σ_d with the same latent force.
 std::vector<VectorXd> forceKept(std::vector<VectorXd> eta, double from, double to) {
   for (VectorXd& one : eta) one *= from / to;
@@ -56,7 +61,7 @@ void Search::improve(const Effects& effects, const VectorXd& start, double size,
   found.score = kFailed;
   const auto keep = [&](Fit fit) {
     ++fits_;
-    const double score = fit.logEvidence - fit.noise.latent / options_.latentScale;
+    const double score = scoreOf(fit);
     if (score > found.score) {
       found.score = score;
       found.fit = std::move(fit);
@@ -103,7 +108,13 @@ void Search::improve(const Effects& effects, const VectorXd& start, double size,
       keep(std::move(*simulation));
     }
   }
+  found.jointScore = found.score;
   const auto known = entries_.find(effects);
+  const bool news = known == entries_.end() || found.jointScore > known->second.jointScore + kNews;
+  if (news && found.works() && isLoud(found.fit) && found.score > bestScore() - kMarginalGain) {
+    found.fit = likelihood_->marginal(found.fit);
+    found.score = scoreOf(found.fit);
+  }
   if (known == entries_.end()) {
     entries_.emplace(effects, std::move(found));
     return;
@@ -114,8 +125,13 @@ void Search::improve(const Effects& effects, const VectorXd& start, double size,
     old.simulation = std::move(found.simulation);
   if (found.score > old.score) {
     old.score = found.score;
+    old.jointScore = found.jointScore;
     old.fit = std::move(found.fit);
   }
+}
+
+double Search::scoreOf(const Fit& fit) const {
+  return fit.logEvidence - fit.noise.latent / options_.latentScale;
 }
 
 void Search::calibrate() {
@@ -365,6 +381,16 @@ bool Search::complete(double within) {
     gained = gained || at(effects).score > before.score + 1;
   }
   return gained;
+}
+
+void Search::sharpen(const Effects& effects, double within) {
+  const double score = at(effects).score;
+  for (auto& [others, entry] : entries_) {
+    if (!entry.works() || entry.score < score - within || !isLoud(entry.fit)) continue;
+    report_(describe(data_, others));
+    entry.fit = likelihood_->marginal(entry.fit);
+    entry.score = scoreOf(entry.fit);
+  }
 }
 
 bool Entry::works() const {

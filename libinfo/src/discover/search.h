@@ -21,6 +21,7 @@ struct Entry {
   Fit fit;
   std::optional<Fit> simulation;  ///< the same without latent force, where it was fitted
   double score = 0;               ///< log Z − σ_d/s
+  double jointScore = 0;          ///< the same before Likelihood::marginal
   bool works() const;             ///< false: no fit could be simulated
 };
 
@@ -83,6 +84,10 @@ class Search {
   /// Fits what is no further than so many nats behind the best and was not done goes on. True if
   /// one of them gained a nat.
   bool complete(double within);
+  /// A smaller latent force moves no estimate by a deviation: Likelihood::marginal is left out.
+  bool isLoud(const Fit& fit) const { return fit.noise.latent >= options_.latentScale / 4; }
+  /// Takes Likelihood::marginal of `effects` and of all within so many nats once more.
+  void sharpen(const Effects& effects, double within);
   /// Fits `effects` without one of them, from where the fit of all of them is.
   void drop(const Effects& effects, std::size_t effect);
   /// Least |amplitude − nominal|/deviation over its effects.
@@ -91,7 +96,8 @@ class Search {
  private:
   double significance(const Entry& entry, std::size_t effect) const;
   double bestScore() const;  ///< of all hypotheses
-  void mustWork() const;     ///< @throws std::domain_error if the base could not be fitted
+  double scoreOf(const Fit& fit) const;
+  void mustWork() const;  ///< @throws std::domain_error if the base could not be fitted
   /// @param near  a fit whose latent force keeps the simulation near the data at the start; or null
   /// @param hopeless  a first fit that is slow and below this score is not followed any further
   void improve(const Effects& effects, const Eigen::VectorXd& start, double size,

@@ -27,7 +27,8 @@ inline constexpr double shortestSearchStep = 0.003;
 /// A model and recorded trials with one observed coordinate, every effect of the catalogue built
 /// in: what info::discover asks.
 ///
-/// Each trial is simulated from its own first angle (the first measured value is what is known of
+/// Each trial is simulated from its own first angle (the first measured value, as a sensor that may be
+/// off shows it, is what is known of
 /// it) over its rows, driven by its excitations and by the torque it has from outside. y(t_k) is
 /// the cubic of Hermite between rows. All derivatives are exact: parameters, laws and latent nodes
 /// by the implicit function theorem (coupled_sensitivity.h), EMG and sensor by the chain rule; none
@@ -90,7 +91,7 @@ class ElbowDisagreement : public info::discover::Disagreement {
     Eigen::VectorXd measured;
     std::vector<double> nodes;
     Eigen::VectorXd known;     ///< what Trial::known adds to the model's quantities
-    std::size_t angle, speed;  ///< quantities of its start
+    std::size_t angle, speed;  ///< quantities of its start, the angle as the sensor shows it
   };
   double activationLag() const;
   Eigen::VectorXd knownChanges(const Trial& trial) const;

@@ -19,7 +19,8 @@ struct Noise {
   double latentTime = 0.08;  ///< ℓ [s] > 0: the latent force forgets itself within
 };
 
-/// A hypothesis fitted to the trials: the most probable parameters, starts and latent forces.
+/// A hypothesis fitted to the trials: the most probable parameters, starts and latent forces, of
+/// all together (Likelihood::fit) or of the parameters by themselves (Likelihood::marginal).
 struct Fit {
   Hypothesis hypothesis;
   Noise noise;
@@ -41,7 +42,8 @@ struct Fit {
 
 struct FitOptions {
   int iterations = 15;
-  double tolerance = 0.02;  ///< nats that another step may still gain
+  double tolerance = 0.02;    ///< nats that another step may still gain
+  Eigen::VectorXd tilt = {};  ///< c: what is minimised is J + cᵀξ; empty: 0
 };
 
 /// Correlation over an interval Δ [s] of an Ornstein–Uhlenbeck process of time constant ℓ behind a
@@ -78,6 +80,17 @@ class Likelihood {
                             const Eigen::VectorXd& start,
                             const std::vector<Eigen::VectorXd>& eta = {},
                             const FitOptions& options = {}) const;
+
+  /// The same hypothesis with the parameters most probable by themselves, whatever the latent
+  /// forces are: the minimum over ξ of
+  ///     min_η J + ½ log|H_ηη(ξ)|,   H_ηη = 1 + WᵀW/σ_y²,   W = dy/dη
+  /// and the latent forces that go with them. A fit of all together lacks the second term, which is
+  /// larger where latent forces move the model more: it prefers too little damping, so that small
+  /// forces do, by two deviations at 5 % of EMG noise (docs/decisions/042-marginal-mode.md).
+  ///
+  /// That term's slope is taken where `near` is and held; what comes out is `near` of a second call
+  /// that does better. `near` itself where there is no latent force, or where the simulation fails.
+  Fit marginal(const Fit& near) const;
 
   /// What the data say at a fit about further disturbances of the outputs.
   struct Linear {
@@ -137,7 +150,8 @@ class Likelihood {
                    const Eigen::VectorXd& values, const Eigen::VectorXd& xi,
                    const Eigen::VectorXd& eta, const std::vector<std::size_t>& extra,
                    bool force) const;
-  void finish(Fit& fit, const std::vector<Linear>& trials) const;
+  void finish(Fit& fit, const std::vector<Linear>& trials, const Eigen::VectorXd& tilt) const;
+  Eigen::VectorXd logDeterminantSlope(const Fit& fit) const;
 
   const Disagreement& data_;
   std::vector<int> trials_;
