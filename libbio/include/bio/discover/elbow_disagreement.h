@@ -27,13 +27,13 @@ inline constexpr double shortestSearchStep = 0.003;
 /// A model and recorded trials with one observed coordinate, every effect of the catalogue built
 /// in: what info::discover asks.
 ///
-/// Each trial is simulated from its own first angle (the first measured value, as a sensor that may be
-/// off shows it, is what is known of
-/// it) over its rows, driven by its excitations and by the torque it has from outside. y(t_k) is
-/// the cubic of Hermite between rows. All derivatives are exact: parameters, laws and latent nodes
-/// by the implicit function theorem (coupled_sensitivity.h), EMG and sensor by the chain rule; none
-/// is a difference of simulations. Before the start of a trial, where a clock offset may look, the
-/// coordinate goes on with its first speed.
+/// Each trial is simulated from its own first angle over its rows, driven by its excitations and by
+/// the torque it has from outside; what is known of that angle is the first measured value, as a
+/// sensor that may be off shows it. y(t_k) is the cubic of Hermite between rows. All derivatives are
+/// exact: parameters, laws and latent nodes by the implicit function theorem
+/// (coupled_sensitivity.h), EMG and sensor by the chain rule; none is a difference of simulations.
+/// Before the start of a trial, where a clock offset may look, the coordinate goes on with its first
+/// speed.
 ///
 /// Where a torque from outside pushes the coordinate, delay and clock are no equivalents. A mass in
 /// the hand that a trial is known to have (Trial::known) is in its model besides what is missing;
