@@ -38,7 +38,9 @@ class MomentArms : public Command {
     OutputFolder folder(context, {"moment_arms.csv"});
     Summary summary(context);
     const bio::Model model = readModel(model_, summary);
-    const bio::Skeleton skeleton(model, armOptions(model_options_).skeleton);
+    const bio::SkeletonOptions options = armOptions(model_options_).skeleton;
+    const bio::Skeleton skeleton(model, options);
+    for (const std::string& remark : lockRemarks(model, options)) summary.warn(remark);
     const bio::Coordinate& coordinate = skeleton.coordinates().front();
     const double unit = coordinate.isRotation ? degree : 1e-3;
     const double first = from_ ? *from_ : coordinate.rangeMin / unit;

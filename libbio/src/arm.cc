@@ -3,33 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 
 namespace bio {
-namespace {
-
-/// What is locked outside its range: an angle that was meant in degrees, as a rule.
-std::vector<std::string> lockRemarks(const Model& model, const SkeletonOptions& options) {
-  std::vector<std::string> remarks;
-  for (const Joint& joint : model.joints) {
-    for (const Coordinate& c : joint.coordinates) {
-      const auto locked = options.lockedValues.find(c.name);
-      if (locked == options.lockedValues.end()) continue;
-      const double unit = c.isRotation ? 180 / std::numbers::pi : 1e3;
-      const double margin = c.isRotation ? std::numbers::pi / 180 : 1e-3;
-      const double value = locked->second;
-      if (value >= c.rangeMin - margin && value <= c.rangeMax + margin) continue;
-      remarks.push_back(fmt::format(
-          "{} is locked at {:.4g} {}, outside its range, {:.4g} to {:.4g}", c.name, value * unit,
-          c.isRotation ? "deg" : "mm", c.rangeMin * unit, c.rangeMax * unit));
-    }
-  }
-  return remarks;
-}
-
-}  // namespace
 
 Arm::Arm(const Model& model, const ArmOptions& options) : Arm(model, options, nullptr, {}) {}
 

@@ -525,6 +525,9 @@ TEST(Mistakes, ALockInDegreesThatAreMeantAsRadiansIsTold) {
   const ProgramResult discover =
       support::runFisherHill({"discover", model, slow, "--lock", "elv_angle=90"});
   EXPECT_THAT(discover.err, HasSubstr("elv_angle is locked at 5157 deg"));
+  const ProgramResult arms =
+      support::runFisherHill({"moment-arms", model, "--points", "5", "--lock", "elv_angle=90"});
+  EXPECT_THAT(arms.err, HasSubstr("elv_angle is locked at 5157 deg"));
   EXPECT_EQ(replay("elv_angle=90deg").err, "");
   EXPECT_EQ(replay("elv_angle=1.5").err, "");
 }

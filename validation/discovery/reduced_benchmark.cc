@@ -57,8 +57,9 @@ int score(const hidden::Arguments& arguments) {
     }
     const reduced::Recipe& recipe = set.recipe;
     const std::vector<std::string> truth = set.hidden();
-    const std::vector<std::string> hidden = leaveOut ? truth : std::vector<std::string>{};
-    const reduced::Elbow elbow(std::move(set.trials), hidden, step);
+    const std::vector<std::string> lacking =
+        leaveOut ? set.explaining() : std::vector<std::string>{};
+    const reduced::Elbow elbow(std::move(set.trials), lacking, step);
     Options options;
     if (known) options.outputDeviation = recipe.outputNoise;
     options.heldOut = {plan.trials - 1};
@@ -112,7 +113,9 @@ int score(const hidden::Arguments& arguments) {
       closed.push_back(*v.heldOut->closedFromCalibrated);
     if (v.heldOut && says) floors.push_back(v.heldOut->after / v.heldOut->floor);
     if (verbose ||
-        (suite != "null" && suite != "out" && !(says && all && v.effects.size() == truth.size())) ||
+        (suite != "null" && suite != "out" && !leaveOut &&
+         !(says && all && v.effects.size() == truth.size())) ||
+        ((suite == "out" || leaveOut) && says && v.finding != Finding::ambiguous) ||
         (suite == "null" && v.finding != Finding::none)) {
       std::string said, table;
       for (const NamedEffect& e : v.effects) {

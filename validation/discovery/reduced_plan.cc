@@ -76,6 +76,13 @@ std::vector<std::string> DataSet::hidden() const {
   return ids;
 }
 
+std::vector<std::string> DataSet::explaining() const {
+  std::vector<std::string> ids = hidden();
+  for (const std::string& id : hidden())
+    for (const std::string& equal : equivalentsOf(id)) ids.push_back(equal);
+  return ids;
+}
+
 DataSet makeDataSet(const Plan& plan) {
   info::RandomStream pick(plan.seed, 99);
   const auto choose = [&](const Ids& from) {

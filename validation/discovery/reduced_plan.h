@@ -31,6 +31,8 @@ struct DataSet {
   nlohmann::ordered_json label;
 
   std::vector<std::string> hidden() const;  ///< ids
+  /// These and their declared equivalents: what a catalogue must lack that has no name for them.
+  std::vector<std::string> explaining() const;
 };
 
 /// @throws std::invalid_argument for an unknown suite or effect; std::domain_error if the arm goes

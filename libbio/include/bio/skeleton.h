@@ -26,6 +26,10 @@ struct SkeletonOptions {
   std::map<std::string, double> lockedValues;  ///< overrides defaults [rad] or [m]
 };
 
+/// A line for each coordinate that is locked outside its range by more than 1° or 1 mm: an angle that
+/// was meant in degrees, as a rule.
+std::vector<std::string> lockRemarks(const Model& model, const SkeletonOptions& options);
+
 /// Bodies that no free coordinate moves against each other, as one rigid body.
 struct Segment {
   std::string name;  ///< of its first body; "ground" for segment 0
