@@ -196,6 +196,36 @@ TEST(Discover, SaysThatTheModelCannotBeSimulated) {
   EXPECT_THROW(run(Fragile(drawn(5, 2, 1.1), true), options), std::domain_error);
 }
 
+// As drawn(), but beyond a gain of 1.02 it falls unless a force holds it.
+class Falling : public LinearDisagreement {
+ public:
+  explicit Falling(LinearDisagreement data) : LinearDisagreement(std::move(data)) {}
+  Prediction predict(int trial, const VectorXd& values, const VectorXd& latent,
+                     const std::vector<std::size_t>& wanted, bool latentToo) const override {
+    Prediction p = LinearDisagreement::predict(trial, values, latent, wanted, latentToo);
+    if (falls(values, latent)) p.outputs.setConstant(std::nan(""));
+    return p;
+  }
+  VectorXd outputs(int trial, const VectorXd& values, const VectorXd& latent) const override {
+    VectorXd y = LinearDisagreement::outputs(trial, values, latent);
+    if (falls(values, latent)) y.setConstant(std::nan(""));
+    return y;
+  }
+
+ private:
+  static bool falls(const VectorXd& values, const VectorXd& latent) {
+    return values[0] > 1.02 && !(latent.size() != 0 && latent.cwiseAbs().maxCoeff() > 0.3);
+  }
+};
+
+TEST(Discover, GoesOnWhereTheBaseModelStandsByItsLatentForceOnly) {
+  const Verdict v = run(Falling(drawn(5, 2, 1.3)), optionsOfDrawn());
+  EXPECT_EQ(v.reached, Stage::finished);
+  ASSERT_EQ(v.effects.size(), 1U);
+  EXPECT_NEAR(v.values[0], 1.3, 0.1);
+  EXPECT_NEAR(v.effects[0].estimates[0].value, 2, 4 * v.effects[0].estimates[0].deviation);
+}
+
 TEST(Discover, StopsWhenToldTo) {
   const LinearDisagreement data = drawn(5, 2, 1.1);
   Options options;

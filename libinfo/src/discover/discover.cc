@@ -73,8 +73,8 @@ class Work {
       chosen_ = select(*search_, options_);
       search_->sharpen(chosen_, options_.classWidth);
       if (draft != nullptr)
-        *draft = std::make_shared<const Known>(
-            Known{search_->entries(), chosen_, search_->scaleValues()});
+        *draft = std::make_shared<const Known>(Known{
+            search_->entries(), chosen_, search_->scaleValues(), search_->hasRacedFromNominal()});
       judge();
       conclude();
       verdict_.reached = Stage::finished;
@@ -316,9 +316,13 @@ class Work {
   }
 
   Fit refit(const Entry& entry, double size) const {
-    return search_->likelihood().fit(entry.fit.hypothesis,
-                                     {verdict_.outputDeviation, size, options_.latentTime},
-                                     entry.fit.values);
+    const Fit& old = entry.fit;
+    const Noise noise{verdict_.outputDeviation, size, options_.latentTime};
+    const Likelihood& likelihood = search_->likelihood();
+    if (auto fit = likelihood.tryFit(old.hypothesis, noise, old.values)) return std::move(*fit);
+    // it stands by its latent force only
+    return likelihood.fit(old.hypothesis, noise, old.values,
+                          forceKept(old.eta, old.noise.latent, size));
   }
 
   void gaps(const Entry& before, const Entry& after, Judgement& judgement) {

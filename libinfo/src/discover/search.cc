@@ -32,13 +32,12 @@ constexpr double kGivenUp = 60;
 // for that to be worth doing again.
 constexpr double kMarginalGain = 10, kNews = 0.2;
 
-// η of another σ_d with the same latent force.
+}  // namespace
+
 std::vector<VectorXd> forceKept(std::vector<VectorXd> eta, double from, double to) {
   for (VectorXd& one : eta) one *= from / to;
   return eta;
 }
-
-}  // namespace
 
 Search::Search(const Disagreement& data, std::vector<int> trials, const Options& options,
                double outputDeviation, Report report)
@@ -143,16 +142,19 @@ void Search::calibrate() {
       improve({}, nominalValues(data_), size);
   mustWork();
   // the scale of the latent force where the arm really goes, then once more from both ends
-  const VectorXd values = at({}).fit.values;
-  scaleValues_ = values;
-  likelihood_.emplace(data_, trials_, values, options_.latentTime);
+  const Fit first = at({}).fit;
+  scaleValues_ = first.values;
+  likelihood_.emplace(data_, trials_, first.values, options_.latentTime);
   entries_.clear();
   report_("base model");
-  improve({}, values, kRaceSize);
+  improve({}, first.values, kRaceSize);
+  // where it went it may stand by its latent force only
+  if (!at({}).works()) improve({}, first.values, first.noise.latent, &first);
   mustWork();
 }
 
 void Search::adopt(const Known& known) {
+  racedFromNominal_ = known.racedFromNominal;
   scaleValues_ = known.scaleValues;
   likelihood_.emplace(data_, trials_, scaleValues_, options_.latentTime);
   const auto again = [&](const Entry& entry) {
@@ -216,9 +218,18 @@ VectorXd Search::absent(std::size_t candidate, VectorXd values) const {
 const Fit& Search::simulation(const Effects& effects) {
   Entry& entry = entries_.at(effects);
   if (!entry.simulation) {
-    entry.simulation =
-        likelihood_->fit(makeHypothesis(data_, effects, trials_), {output_, 0, options_.latentTime},
-                         entry.fit.values, {}, {25, 0.02});
+    const Hypothesis hypothesis = makeHypothesis(data_, effects, trials_);
+    const Noise still{output_, 0, options_.latentTime};
+    entry.simulation = likelihood_->tryFit(hypothesis, still, entry.fit.values, {}, {25, 0.02});
+    if (!entry.simulation) {  // it stands by its latent force only
+      VectorXd values = nominalValues(data_);
+      for (const std::size_t e : effects)
+        for (const std::size_t i : ownQuantities(e)) {
+          const auto q = static_cast<Index>(data_.candidates()[e].quantities[i]);
+          values[q] = entry.fit.values[q];
+        }
+      entry.simulation = likelihood_->fit(hypothesis, still, values, {}, {25, 0.02});
+    }
     ++fits_;
   }
   return *entry.simulation;
@@ -289,6 +300,7 @@ void Search::race(const Effects& base, const std::vector<std::size_t>& candidate
 }
 
 void Search::raceFromNominal(std::size_t most) {
+  racedFromNominal_ = true;
   struct Start {
     std::size_t candidate;
     Hypothesis hypothesis;

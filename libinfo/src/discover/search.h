@@ -30,7 +30,11 @@ struct Known {
   std::map<Effects, Entry> entries;
   Effects chosen;               ///< what it chose of them
   Eigen::VectorXd scaleValues;  ///< where the scale of the latent force was taken
+  bool racedFromNominal = false;
 };
+
+/// η of another σ_d with the same latent force.
+std::vector<Eigen::VectorXd> forceKept(std::vector<Eigen::VectorXd> eta, double from, double to);
 
 /// What one linear step says of a candidate.
 struct Screened {
@@ -66,7 +70,8 @@ class Search {
   std::vector<Screened> probe(const Effects& effects);
   /// Union of the best of both modes, the best of each kind, and declared equivalents.
   std::vector<std::size_t> shortlist(const Effects& effects, int most);
-  /// The fit without latent force, made where it is not there yet.
+  /// The fit without latent force, made where it is not there yet; from the nominal values where
+  /// the model cannot be simulated without that force at those of its fit.
   const Fit& simulation(const Effects& effects);
   /// Fits `base` + each candidate; then again from the leader's nuisances, and `base` too.
   void race(const Effects& base, const std::vector<std::size_t>& candidates);
@@ -74,6 +79,8 @@ class Search {
   /// that short fits from there like best. A base that lacks something may have gone far away from
   /// what is true with it.
   void raceFromNominal(std::size_t most);
+  /// Here, or in the search that this one has adopted.
+  bool hasRacedFromNominal() const { return racedFromNominal_; }
   /// A candidate that gains though it is absent has only found a better base: fits that from its
   /// nuisances. True if `base` gained; what has been raced on it and is now behind is forgotten.
   bool settle(const Effects& base);
@@ -118,6 +125,7 @@ class Search {
   Eigen::VectorXd scaleValues_;
   std::map<Effects, Entry> entries_;
   int fits_ = 0;
+  bool racedFromNominal_ = false;
 };
 
 }  // namespace info::discover

@@ -58,8 +58,7 @@ class Selection {
   // Before a second name is given, single ones are tried from elsewhere: a base that is far off may
   // have led to makeshifts for one effect that explains everything.
   bool simplify() {
-    if (simplified_) return false;
-    simplified_ = true;
+    if (search_.hasRacedFromNominal()) return false;
     search_.raceFromNominal(kFromNominal);
     search_.reconcile();
     const Effects before = chosen_;
@@ -173,7 +172,6 @@ class Selection {
   Search& search_;
   const Options& options_;
   Effects chosen_;
-  bool simplified_ = false;
 };
 
 }  // namespace
