@@ -312,6 +312,39 @@ TEST(JointFit, GoesAlongACurvedValley) {
 
 // Drawn again and again from the priors, the mean square of new trials' errors is what was expected
 // of them; a fiftieth of it, at least, is what the fitted trial leaves unknown.
+// Linear but for the push, of which only |push| acts: J has a kink at 0.
+class Kinked : public LinearDisagreement {
+ public:
+  using LinearDisagreement::LinearDisagreement;
+  VectorXd outputs(int trial, const VectorXd& values, const VectorXd& latent) const override {
+    VectorXd acting = values;
+    acting[1] = std::abs(values[1]);
+    return LinearDisagreement::outputs(trial, acting, latent);
+  }
+  Prediction predict(int trial, const VectorXd& values, const VectorXd& latent,
+                     const std::vector<std::size_t>& wanted, bool latentToo) const override {
+    Prediction p = LinearDisagreement::predict(trial, values, latent, wanted, latentToo);
+    for (std::size_t j = 0; j < wanted.size(); ++j)
+      if (wanted[j] == 1 && values[1] < 0) p.gamma.col(static_cast<Index>(j)) *= -1;
+    return p;
+  }
+};
+
+// The data ask for a push below 0, by less than its deviation: the kink is the minimum, and from
+// there Newton's steps promise some tenths of a nat that are not to be had.
+TEST(JointFit, IsDoneWhereNothingIsToBeHadAtAKink) {
+  Kinked data(1, 80);
+  VectorXd truth = nominalValues(data);
+  truth[1] = -0.014;
+  data.measure(0, data.LinearDisagreement::outputs(0, truth, {}));
+  truth[1] = 0.3;
+  const Likelihood likelihood(data, {0}, nominalValues(data), kTime);
+  const Fit fit =
+      likelihood.fit(makeHypothesis(data, {0}, {0}), {kOutput, 0, kTime}, truth, {}, {25, 0.02});
+  EXPECT_TRUE(fit.converged);
+  EXPECT_NEAR(fit.values[1], 0, 0.01);
+}
+
 TEST(ExpectedError, IsWhatNewTrialsHaveOnAverage) {
   constexpr double kLoud = 0.1;
   for (const double latent : {0.0, kLatent}) {

@@ -25,6 +25,12 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // as Transtrum and Sethna give them (arXiv:1201.5885).
 constexpr double kProbe = 0.1, kMostBend = 0.75;
 
+// Where J has a kink (a muscle that just touches its cylinder, an excitation cut off at 0) Newton's
+// step promises what it cannot keep. After so many iterations without gain, and with less than so
+// many nats promised, nothing more is to be had there.
+constexpr int kIdle = 3;
+constexpr double kAtAKink = 1;
+
 std::vector<std::size_t> wantedOf(const Hypothesis& h) {
   std::vector<std::size_t> wanted;
   for (const FreeQuantity& q : h.free) wanted.push_back(q.quantity);
@@ -287,9 +293,15 @@ std::optional<Fit> Likelihood::tryFit(const Hypothesis& hypothesis, const Noise&
   if (!std::isfinite(fit.cost)) return std::nullopt;
 
   double damping = 1e-6;
+  int idle = 0;  // iterations in a row that gained next to nothing
   for (fit.iterations = 0; fit.iterations < options.iterations; ++fit.iterations) {
     Normal normal = normalEquations(trials, noise, point);
     normal.downhill.xi -= tilt;
+    if (idle >= kIdle &&
+        step(hypothesis, normal, DampedSystem(normal.blocks, 0), point).gain < kAtAKink) {
+      fit.converged = true;
+      break;
+    }
     bool accepted = false;
     double growth = 8;
     for (int attempt = 0; attempt < 12 && !accepted; ++attempt) {
@@ -312,6 +324,7 @@ std::optional<Fit> Likelihood::tryFit(const Hypothesis& hypothesis, const Noise&
         accepted = true;
         const double ratio = (fit.cost - nextCost) / std::max(next.gain, 1e-12);
         damping = std::max(1e-8, damping * (ratio > 0.7 ? 0.1 : ratio > 0.3 ? 0.5 : 2));
+        idle = fit.cost - nextCost < options.tolerance ? idle + 1 : 0;
         fit.cost = nextCost;
         point = std::move(next.to);
         trials = attempt == 0 ? std::move(there) : linearised(point);
