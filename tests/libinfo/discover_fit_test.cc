@@ -345,6 +345,36 @@ TEST(JointFit, IsDoneWhereNothingIsToBeHadAtAKink) {
   EXPECT_NEAR(fit.values[1], 0, 0.01);
 }
 
+// Linear, but without derivatives beyond a gain of 1.1.
+class Rough : public LinearDisagreement {
+ public:
+  using LinearDisagreement::LinearDisagreement;
+  Prediction predict(int trial, const VectorXd& values, const VectorXd& latent,
+                     const std::vector<std::size_t>& wanted, bool latentToo) const override {
+    Prediction p = LinearDisagreement::predict(trial, values, latent, wanted, latentToo);
+    if (values[0] > 1.1) p.gamma.setConstant(std::nan(""));
+    return p;
+  }
+};
+
+TEST(JointFit, StaysWhereThereAreDerivatives) {
+  Rough data(1, 80);
+  VectorXd values = nominalValues(data);
+  values[0] = 1.3;
+  data.draw(5, values, kOutput, 0, kTime);
+  const Likelihood likelihood(data, {0}, nominalValues(data), kTime);
+  const Hypothesis base = makeHypothesis(data, {}, {0});
+  EXPECT_FALSE(likelihood.tryFit(base, {kOutput, 0, kTime}, values).has_value());
+  for (const double latent : {0.0, 0.3}) {
+    const Fit fit = likelihood.fit(base, {kOutput, latent, kTime}, nominalValues(data));
+    EXPECT_TRUE(std::isfinite(fit.logEvidence));
+    EXPECT_TRUE(fit.covariance.allFinite());
+    EXPECT_GT(fit.values[0], 1.05);
+    EXPECT_LE(fit.values[0], 1.1);
+    EXPECT_TRUE(likelihood.marginal(fit).values.allFinite());
+  }
+}
+
 TEST(ExpectedError, IsWhatNewTrialsHaveOnAverage) {
   constexpr double kLoud = 0.1;
   for (const double latent : {0.0, kLatent}) {

@@ -278,9 +278,13 @@ std::optional<Fit> Likelihood::tryFit(const Hypothesis& hypothesis, const Noise&
     return linear;
   };
   const VectorXd tilt = options.tilt.size() == 0 ? VectorXd(VectorXd::Zero(p)) : options.tilt;
+  // ∞ also where a simulation has no derivatives: nothing goes on from there
   const auto costOf = [&](const std::vector<Linear>& linear, const Point& at) {
     double squares = 0;
-    for (const Linear& l : linear) squares += l.residuals.squaredNorm();
+    for (const Linear& l : linear) {
+      if (!l.gamma.allFinite() || !l.latent.allFinite()) return kInfinity;
+      squares += l.residuals.squaredNorm();
+    }
     return cost(noise, at, squares) + tilt.dot(at.xi);
   };
   std::vector<Linear> trials = linearised(point);
@@ -315,10 +319,12 @@ std::optional<Fit> Likelihood::tryFit(const Hypothesis& hypothesis, const Noise&
       // the first attempt mostly succeeds, and then its derivatives are needed, too
       std::vector<Linear> there;
       double nextCost = kInfinity;
-      if (next.to.values.allFinite()) {
-        if (attempt == 0) there = linearised(next.to);
-        nextCost = attempt == 0 ? costOf(there, next.to)
-                                : simulatedCost(noise, next.to) + tilt.dot(next.to.xi);
+      const bool promising =
+          next.to.values.allFinite() &&
+          (attempt == 0 || simulatedCost(noise, next.to) + tilt.dot(next.to.xi) < fit.cost);
+      if (promising) {
+        there = linearised(next.to);
+        nextCost = costOf(there, next.to);
       }
       if (nextCost < fit.cost) {
         accepted = true;
@@ -327,7 +333,7 @@ std::optional<Fit> Likelihood::tryFit(const Hypothesis& hypothesis, const Noise&
         idle = fit.cost - nextCost < options.tolerance ? idle + 1 : 0;
         fit.cost = nextCost;
         point = std::move(next.to);
-        trials = attempt == 0 ? std::move(there) : linearised(point);
+        trials = std::move(there);
       } else {
         damping = std::max(fit.iterations == 0 ? 1e-3 : 1e-7, damping * growth);
         growth *= 4;

@@ -74,6 +74,10 @@ std::vector<Screened> Search::screen(const Effects& effects, bool simulation) co
       s.gain = (blocked ? 0 : 0.5 * variance * g * g / growth) - 0.5 * std::log(growth);
       s.information =
           std::max(projected.information(static_cast<Index>(i), static_cast<Index>(i)), 0.0);
+      if (!std::isfinite(s.gain)) {  // it has no derivative here
+        s.gain = -HUGE_VAL;
+        s.information = 0;
+      }
       const auto known = std::find_if(result.begin(), result.end(), [&](const Screened& r) {
         return r.candidate == s.candidate;
       });

@@ -66,7 +66,8 @@ SteppedVerdict runAtShorterSteps(const MakeAttempt& attempt, double step, double
   }
   if (*first.verdict.heldOut->probability < kTold)
     first.verdict.sentence += fmt::format(
-        " But the trials that were held out are further off than chance would have it (p = {:.1g}).",
+        " But the trials that were held out are further off than chance would have it (p = "
+        "{:.1g}).",
         *first.verdict.heldOut->probability);
   first.verdict.fits = fits;
   if (last != first.step) attempt(first.step);  // the caller's model is that of the verdict
