@@ -129,7 +129,7 @@ Table adequacyTable(const DiscoverFindings& f) {
   if (f.verdict.heldOut && f.verdict.heldOut->probability) {
     table.rows.push_back({"held-out errors as large as these, probability", "",
                           numberText(*f.verdict.heldOut->probability, 2),
-                          fmt::format("> {}", f.options.secondLook)});
+                          fmt::format("> {}", f.options.farOff)});
   }
   table.rows.push_back({"adequate", word(a.adequate()), word(b.adequate()), ""});
   return table;

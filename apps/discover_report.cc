@@ -105,7 +105,10 @@ class Writer {
                       effect.exact ? " (what was measured never could, for some of them)" : ""));
     }
     if (verdict.vetoed) {
-      say("What is left over has the wrong size, so that no probability is given.");
+      say(verdict.after.sized
+              ? "The trials that were held out are further off than these parameters and their "
+                "deviations explain, so that no probability is given."
+              : "What is left over has the wrong size, so that no probability is given.");
     }
   }
 

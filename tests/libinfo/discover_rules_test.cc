@@ -144,13 +144,15 @@ TEST(Decide, CallsALeaderASurrogateWhereSomethingIsLeft) {
   }
 }
 
-TEST(Decide, LetsInnovationsOfTheWrongSizeVetoTheProbability) {
-  Judgement j = raced({{{0}, 30.0}}, {0});
-  j.after.sized = false;
-  const Decision d = decide(catalogue(), j, {});
-  EXPECT_EQ(d.finding, Finding::named);
-  EXPECT_TRUE(d.vetoed);
-  EXPECT_EQ(d.probability, 0);
+TEST(Decide, LetsInnovationsOfTheWrongSizeAndHeldOutTrialsFarOffVetoTheProbability) {
+  for (const bool size : {true, false}) {
+    Judgement j = raced({{{0}, 30.0}}, {0});
+    (size ? j.after.sized : j.heldOutFarOff) = !size;
+    const Decision d = decide(catalogue(), j, {});
+    EXPECT_EQ(d.finding, Finding::named);
+    EXPECT_TRUE(d.vetoed);
+    EXPECT_EQ(d.probability, 0);
+  }
 }
 
 TEST(Adequacy, KnowsTheChiSquareDistribution) {

@@ -102,6 +102,37 @@ TEST(Discover, FitsHeldOutTrialsOnceWhereNothingIsMissing) {
   EXPECT_LE(data.asked[2], 18);  // 14; 24 if the base were fitted a second time as what was chosen
 }
 
+// A held-out trial whose push is a fifth larger, which no fit of the others knows of.
+TEST(Discover, GivesANameNoProbabilityWhereWhatWasHeldOutIsFarOff) {
+  const auto asked = [](double other) {
+    LinearDisagreement data(3, 80);
+    VectorXd truth = nominalValues(data);
+    truth[1] = 1;
+    data.draw(4, truth, kOutput, 0, kTime);
+    LinearDisagreement more(3, 80);
+    truth[1] = other;
+    more.draw(4, truth, kOutput, 0, kTime);
+    data.measure(2, more.measured(2));
+    Options options;
+    options.outputDeviation = kOutput;
+    options.latentScale = 1;
+    options.latentTime = kTime;
+    options.heldOut = {2};
+    return run(data, options);
+  };
+  const Verdict same = asked(1);
+  EXPECT_EQ(same.finding, Finding::ambiguous);  // push or shove
+  EXPECT_FALSE(same.vetoed);
+  EXPECT_GT(same.probability, 0);
+  EXPECT_EQ(same.sentence.find("held out"), std::string::npos);
+  const Verdict off = asked(1.2);
+  EXPECT_EQ(off.finding, Finding::ambiguous);
+  EXPECT_TRUE(off.vetoed);
+  EXPECT_EQ(off.probability, 0);
+  EXPECT_NE(off.sentence.find("held out are further off than chance"), std::string::npos)
+      << off.sentence;
+}
+
 // A push so small that two trials do not carry it, but three do: asked a second time of all trials
 // where the held-out one is off.
 TEST(Discover, LooksOnceMoreWhereWhatWasHeldOutIsOff) {

@@ -263,6 +263,9 @@ TEST(Judge, SeveralNamesWithoutRivalsAreUnqualified) {
   const Json effects =
       Json::array({effectOf("gain_1", "sensor", 1), effectOf("I_1", "parameter", 1)});
   EXPECT_TRUE(judge("a", label, verdictOf("named", effects, {"gain_1", "I_1"})).unqualified);
+  Json vetoed = verdictOf("named", effects, {"gain_1", "I_1"});
+  vetoed["probability_vetoed"] = true;
+  EXPECT_FALSE(judge("a", label, vetoed).unqualified);
   EXPECT_FALSE(
       judge("a", label, verdictOf("ambiguous", effects, {"gain_1", "I_1", "m_1"})).unqualified);
   EXPECT_FALSE(

@@ -173,7 +173,8 @@ Outcome judge(const std::string& name, const Json& label, const Json& verdict) {
   if (naming.count(o.verdict) > 0 && !o.named.empty())
     o.probability = finite(effects[0], "probability");
   o.unqualified = (o.verdict == "named" || o.verdict == "parameter") &&
-                  candidates.size() <= std::max<std::size_t>(1, o.named.size());
+                  candidates.size() <= std::max<std::size_t>(1, o.named.size()) &&
+                  !verdict.value("probability_vetoed", false);
   for (const Json& truth : hiding) {
     for (const Json& effect : effects) {
       // an equivalent has its own amplitude, which the truth does not tell

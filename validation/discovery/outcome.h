@@ -34,8 +34,9 @@ struct Outcome {
   /// of the first name, where it is a claim of "named", "ambiguous" or "parameter"
   std::optional<double> probability;
   bool firstIsTrue = false;  ///< the first name is the truth itself, no equivalent
-  bool unqualified = false;  ///< "named" or "parameter", and none of its names has a rival
-  std::optional<double> z;   ///< (estimate − truth)/sd of the first right name's amplitude
+  /// "named" or "parameter", none of its names has a rival, and it has a probability
+  bool unqualified = false;
+  std::optional<double> z;  ///< (estimate − truth)/sd of the first right name's amplitude
   std::optional<double> gapClosed, overFloor, expectedOverFloor, seconds;
 
   bool confidentlyWrong() const { return confident && claims && !classHasTruth; }

@@ -97,7 +97,7 @@ Decision decide(const std::vector<Candidate>& candidates, const Judgement& judge
     return decision;
   }
   decision.finding = !alone ? Finding::ambiguous : parameters ? Finding::parameter : Finding::named;
-  if (!after.sized) {
+  if (!after.sized || judgement.heldOutFarOff) {
     decision.vetoed = true;
     decision.probability = 0;
   }

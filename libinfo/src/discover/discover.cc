@@ -371,6 +371,7 @@ class Work {
         chosen_.empty() ? verdict_.heldOutBefore : heldOutAdequacy(with.meanSquare, held);
     judgement.strangeBefore = !verdict_.heldOutBefore->expected();
     judgement.strangeAfter = !verdict_.heldOutAfter->expected();
+    judgement.heldOutFarOff = other.probability && *other.probability < options_.farOff;
     // by more than chance; a base that fits badly is no exact yardstick, so its simulation must be
     // no worse, too
     judgement.heldOutWorse =
@@ -390,6 +391,16 @@ class Work {
                        100 * verdict_.latentSizeAfter);
   }
 
+  std::string farOff() const {
+    if (!verdict_.heldOut || !verdict_.heldOut->probability ||
+        !(*verdict_.heldOut->probability < options_.farOff))
+      return "";
+    return fmt::format(
+        " But the trials that were held out are further off than chance would have it (p = "
+        "{:.1g}).",
+        *verdict_.heldOut->probability);
+  }
+
   std::string sentence() const {
     const auto& candidates = data_.candidates();
     std::string names;
@@ -401,13 +412,15 @@ class Work {
     }
     switch (verdict_.finding) {
       case Finding::none:
-        return "No missing effect above the detectable size." + scatter();
+        return "No missing effect above the detectable size." + scatter() + farOff();
       case Finding::parameter:
-        return "Parameter error: " + names + "." + scatter();
+        return "Parameter error: " + names + "." + scatter() + farOff();
       case Finding::named:
       case Finding::ambiguous:
         return "Missing: " + names +
-               (verdict_.vetoed ? "; what is left has the wrong size." : ".") + scatter();
+               (verdict_.vetoed && !verdict_.after.sized ? "; what is left has the wrong size."
+                                                         : ".") +
+               scatter() + farOff();
       case Finding::unknown:
         return "Something is missing that has no name here" +
                (names.empty() ? std::string() : "; imitated best by: " + names) + edges() +

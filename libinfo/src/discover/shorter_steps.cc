@@ -8,8 +8,6 @@ namespace info::discover {
 
 namespace {
 
-constexpr double kTold = 0.01;  // one data set in a hundred has that by chance
-
 using MakeAttempt = std::function<Attempt(double step)>;
 
 SteppedVerdict runOnce(const MakeAttempt& attempt, double step, double shortest) {
@@ -64,11 +62,6 @@ SteppedVerdict runAtShorterSteps(const MakeAttempt& attempt, double step, double
     second.verdict.fits = fits;
     return second;
   }
-  if (*first.verdict.heldOut->probability < kTold)
-    first.verdict.sentence += fmt::format(
-        " But the trials that were held out are further off than chance would have it (p = "
-        "{:.1g}).",
-        *first.verdict.heldOut->probability);
   first.verdict.fits = fits;
   if (last != first.step) attempt(first.step);  // the caller's model is that of the verdict
   return first;

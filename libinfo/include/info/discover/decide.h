@@ -16,7 +16,8 @@ struct Judgement {
   double surprise = 0;                       ///< largest one among the base's parameters
   /// held-out trials are further off than the base, or the chosen effects, lead to expect
   bool strangeBefore = false, strangeAfter = false;
-  bool heldOutWorse = false;  ///< trials that were held out speak against the chosen effects
+  bool heldOutWorse = false;   ///< trials that were held out speak against the chosen effects
+  bool heldOutFarOff = false;  ///< their simulation is: Options::farOff
 };
 
 struct Decision {
@@ -36,7 +37,8 @@ struct Decision {
 ///   same, it is another law.
 /// - Chosen: each in a class with its declared equivalents and with all that are no further behind
 ///   than `classWidth` in its place. Every class of one: `named`, or `parameter` if that is all
-///   they are; otherwise `ambiguous`. Innovations of the wrong size veto the probability.
+///   they are; otherwise `ambiguous`. Innovations of the wrong size, and held-out trials that are
+///   far off, veto the probability.
 /// A name's probability is its share of exp(log Z) among what was raced in its place; declared
 /// equivalents no further behind than `classWidth` count as much as the leader.
 Decision decide(const std::vector<Candidate>& candidates, const Judgement& judgement,

@@ -53,6 +53,8 @@ struct Options {
   /// runAtShorterSteps: where nothing was found and errors as large as those of the held-out trials
   /// are less probable than this, these are fitted, too, and all is asked once more; 0: never
   double secondLook = 0.05;
+  /// Less probable errors of held-out trials are told of, and a name has no probability with them.
+  double farOff = 0.01;
   /// Called between fits; false ends the work, and what has been finished is in the verdict.
   std::function<bool(const Progress&)> progress;
 };
@@ -117,7 +119,9 @@ struct Verdict {
   std::string sentence;              ///< the finding in plain words
   std::vector<NamedEffect> effects;  ///< in the order they were found; for unknown: the surrogate
   double probability = 0;            ///< of all effects together; 0 where it was vetoed
-  bool vetoed = false;     ///< named, but the innovations are still not white: no probability
+  /// Named, but without a probability: the innovations have the wrong size, or the held-out trials
+  /// are too far off (Options::farOff).
+  bool vetoed = false;
   bool surrogate = false;  ///< finding unknown: `effects` only imitates what is missing
   /// Nothing was found without the held-out trials, whose errors were too large for that; all this
   /// is of a fit of all trials, and none is left to judge by (Options::secondLook).
