@@ -127,6 +127,16 @@ TEST(Effects, AreAllThereWithTheirWords) {
   }
 }
 
+// With no length at rest it would pull as a weight does.
+TEST(Effects, AnElasticBandIsNotDrawnOutFurtherThanRubberIs) {
+  const Case c(0.3);
+  const auto& rest = c.data.quantities()[c.find("spring").quantities.at(1)];
+  EXPECT_EQ(rest.name, "spring.rest");
+  // from the shoulder to the hand's mass centre, the arm stretched
+  EXPECT_NEAR(rest.upper, 0.6, 0.01);
+  EXPECT_NEAR(rest.lower, rest.upper / 6, 1e-12);
+}
+
 TEST(Effects, ThatTheModelHasAreNoCandidates) {
   const Case c(0.3, "elbow8_passive");
   EXPECT_EQ(c.data.widest().present().at("visc"), "elbow_flexion_damping");
