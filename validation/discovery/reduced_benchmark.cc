@@ -95,7 +95,7 @@ int score(const hidden::Arguments& arguments) {
     if (suite == "null") falseName.count(says);
     if (suite == "parameter") structureNamed.count(says && structure);
     if (suite == "out" || leaveOut)
-      unknown.count(!says || v.finding == Finding::ambiguous);
+      unknown.count(!says || v.finding == Finding::ambiguous || v.vetoed);
     else if (!truth.empty()) {
       top.count(says && all && v.effects.size() == truth.size());
       if (v.finding != Finding::none) inClass.count(allClass);

@@ -78,8 +78,10 @@ std::vector<std::string> DataSet::hidden() const {
 
 std::vector<std::string> DataSet::explaining() const {
   std::vector<std::string> ids = hidden();
-  for (const std::string& id : hidden())
+  for (const std::string& id : hidden()) {
     for (const std::string& equal : equivalentsOf(id)) ids.push_back(equal);
+    if (id == "coulomb") ids.push_back("stribeck");  // which is dry friction and more
+  }
   return ids;
 }
 
