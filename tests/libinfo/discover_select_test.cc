@@ -24,6 +24,7 @@ constexpr int kSamples = 60, kWaves = 8;
 class Astray : public Disagreement {
  public:
   double gamma = 0, centre = 0;
+  double ridge = 0;  ///< where not 0 θ acts by 20 (θ − ridge)² e_1 + θ e_2 instead
   VectorXd makeshift[2] = {VectorXd::Zero(kWaves), VectorXd::Zero(kWaves)};
   VectorXd stranger = VectorXd::Zero(kWaves);  ///< is measured, too
 
@@ -70,7 +71,7 @@ class Astray : public Disagreement {
   std::vector<std::string> inputNames() const override { return {}; }
 
   VectorXd outputs(int, const VectorXd& values, const VectorXd& latent) const override {
-    VectorXd y = waves_ * (values[0] * base() + values[1] * right(values[0]) +
+    VectorXd y = waves_ * (base(values[0]) + values[1] * right(values[0]) +
                            values[2] * makeshift[0] + values[3] * makeshift[1]);
     if (latent.size() != 0) y += kForce * latent;
     return y;
@@ -81,8 +82,8 @@ class Astray : public Disagreement {
     p.outputs = outputs(trial, values, latent);
     p.speeds = VectorXd::Zero(kSamples);
     MatrixXd slopes(kWaves, 4);
-    slopes << base() + values[1] * window(values[0]).slope * (near() - away()), right(values[0]),
-        makeshift[0], makeshift[1];
+    slopes << baseSlope(values[0]) + values[1] * window(values[0]).slope * (near() - away()),
+        right(values[0]), makeshift[0], makeshift[1];
     p.gamma.resize(kSamples, static_cast<Index>(wanted.size()));
     for (std::size_t j = 0; j < wanted.size(); ++j)
       p.gamma.col(static_cast<Index>(j)) = waves_ * slopes.col(static_cast<Index>(wanted[j]));
@@ -106,7 +107,14 @@ class Astray : public Disagreement {
     if (z >= 1) return {0, 0};
     return {1 - z * z * (3 - 2 * z), -6 * z * (1 - z) / 0.35 / kPlace * (from < 0 ? -1 : 1)};
   }
-  VectorXd base() const { return wave(1) + gamma * wave(2); }
+  VectorXd base(double theta) const {
+    if (ridge == 0) return theta * (wave(1) + gamma * wave(2));
+    return 20 * (theta - ridge) * (theta - ridge) * wave(1) + theta * wave(2);
+  }
+  VectorXd baseSlope(double theta) const {
+    if (ridge == 0) return wave(1) + gamma * wave(2);
+    return 40 * (theta - ridge) * wave(1) + wave(2);
+  }
   VectorXd near() const { return wave(1) + wave(3); }
   VectorXd away() const { return wave(4); }
   VectorXd right(double theta) const {
@@ -172,6 +180,19 @@ TEST(Search, RacesFromTheNominalValuesOnceOnly) {
   EXPECT_EQ(first.finding, Finding::unknown);
   EXPECT_EQ(again.finding, Finding::unknown);
   EXPECT_LT(again.fits, first.fits / 4);
+}
+
+// Nothing is missing. θ = 0.35 is beyond a ridge at 0.05, and all that goes down from the nominal 0
+// ends at −0.25, where a makeshift is welcome.
+TEST(Search, LooksForOtherMinimaOfTheBaseModel) {
+  Astray data;
+  data.ridge = 0.05;
+  data.makeshift[0] = Astray::wave(2);
+  data.makeshift[1] = Astray::wave(7);
+  data.draw(5, 0.35, 0);
+  const Verdict v = verdictOn(data);
+  EXPECT_EQ(v.finding, Finding::none) << v.sentence;
+  EXPECT_NEAR(v.values[0], 0.35, 0.02);
 }
 
 // A does what it ought to about θ = kPlace only, neither where the base model goes (2·kPlace,

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "info/random_stream.h"
+
 namespace info::discover {
 
 using Eigen::Index;
@@ -14,7 +16,13 @@ namespace {
 
 // the score of what could not be simulated at all
 constexpr double kFailed = -1e300;
-constexpr double kWidest = 0.8, kFirstSize = 0.3, kRaceSize = 0.1, kSmallest = 1e-3;
+constexpr double kWidest = 0.8, kFirstSize = 0.3, kRaceSize = 0.1, kSmallSize = 0.005;
+constexpr double kSmallest = 1e-3;
+// A large latent force leads to a minimum, and lets go of the parameters in it; others may be much
+// lower (docs/decisions/046-several-minima.md). So many starts with a small one, and how far they
+// are drawn [prior deviations].
+constexpr std::uint64_t kStarts = 6;
+constexpr double kSpread = 0.7;
 // with so large a latent force none at all is out of the question, and its fit is not worth the
 // time
 constexpr double kHopeless = 0.03;
@@ -151,6 +159,22 @@ void Search::calibrate() {
   // where it went it may stand by its latent force only
   if (!at({}).works()) improve({}, first.values, first.noise.latent, &first);
   mustWork();
+  for (std::uint64_t start = 0; start < kStarts; ++start) {
+    report_("base model");
+    improve({}, drawn(start), kSmallSize, nullptr, bestScore() - kGivenUp);
+  }
+}
+
+// The nominal values, and after those values from the prior.
+VectorXd Search::drawn(std::uint64_t start) const {
+  VectorXd values = nominalValues(data_);
+  if (start == 0) return values;
+  RandomStream random(1, start);
+  for (const FreeQuantity& q : makeHypothesis(data_, {}, trials_).free)
+    if (data_.quantities()[q.quantity].trial < 0)
+      values[static_cast<Index>(q.quantity)] =
+          q.value(std::clamp(kSpread * random.normal(), q.lowest, q.highest));
+  return values;
 }
 
 void Search::adopt(const Known& known) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
@@ -50,7 +51,7 @@ class Search {
   Search(const Disagreement& data, std::vector<int> trials, const Options& options,
          double outputDeviation, Report report);
 
-  /// Base model by homotopy in σ_d, from the nominal values.
+  /// Base model by homotopy in σ_d, from the nominal values; then from several starts without.
   void calibrate();
   /// Instead of calibrate(): what another search knows. The base, what was chosen and what comes
   /// near it are fitted again from there; the others keep their distance from the base.
@@ -109,6 +110,7 @@ class Search {
   /// @param hopeless  a first fit that is slow and below this score is not followed any further
   void improve(const Effects& effects, const Eigen::VectorXd& start, double size,
                const Fit* near = nullptr, double hopeless = -HUGE_VAL);
+  Eigen::VectorXd drawn(std::uint64_t start) const;
   /// Values with an effect's own quantities at one of its starts, or at nominal; those that are
   /// free anyway stay.
   Eigen::VectorXd started(std::size_t candidate, std::size_t start, Eigen::VectorXd values) const;
