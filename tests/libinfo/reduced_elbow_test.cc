@@ -106,6 +106,49 @@ TEST(ReducedElbow, DerivativesMatchDifferences) {
   }
 }
 
+// Every kind of term that discovery makes, one of them with an exponent of 0.
+TEST(ReducedElbow, FormulasHaveTheirDerivativesAndVanishWithTheirAmplitude) {
+  const Elbow elbow(reduced::record(plain(), 8));
+  std::vector<info::discover::FormulaTerm> terms;
+  for (const char* expression :
+       {"((q-1.3)/0.4)^3", "((q+0.2)/2)^2", "1", "q", "q^2", "((q-1.3)/0.4)^0", "qdot", "qdot/1.5",
+        "qdot*abs(qdot)", "qdot*abs(qdot)/2.5", "qdot^3", "tanh(qdot/0.05)", "q*qdot", "sin(q)",
+        "cos(q)"})
+    terms.push_back({expression, terms.empty() ? 0.05 : 0.3, 0.1});
+  const auto widened = elbow.withFormula(terms, {0, 5});
+  ASSERT_TRUE(widened);
+  ASSERT_EQ(widened->candidates().size(), 3U);
+  EXPECT_EQ(widened->candidates()[1].id, elbow.candidates()[5].id);
+  const auto& formula = widened->candidates().back();
+  EXPECT_EQ(formula.id, "formula");
+  ASSERT_EQ(formula.quantities.size(), terms.size());
+
+  VectorXd v = info::discover::nominalValues(*widened);
+  const VectorXd base = widened->outputs(0, v, {});
+  EXPECT_EQ(base, elbow.outputs(0, info::discover::nominalValues(elbow), {}));
+  for (std::size_t k = 1; k < terms.size(); ++k)
+    v[static_cast<Index>(formula.quantities[k])] = terms[k].start;
+  EXPECT_EQ(widened->outputs(0, v, {}), base);
+  v[static_cast<Index>(formula.quantities[0])] = terms[0].start;
+  const auto p = widened->predict(0, v, {}, formula.quantities, false);
+  EXPECT_EQ(p.outputs, widened->outputs(0, v, {}));
+  EXPECT_GT((p.outputs - base).norm(), 1e-2);
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const auto at = static_cast<Index>(formula.quantities[k]);
+    const double h = 1e-5;
+    VectorXd up = v, down = v;
+    up[at] += h;
+    down[at] -= h;
+    const VectorXd difference =
+        (widened->outputs(0, up, {}) - widened->outputs(0, down, {})) / (2 * h);
+    EXPECT_GT(difference.norm(), 0) << terms[k].expression;
+    EXPECT_LT((p.gamma.col(static_cast<Index>(k)) - difference).norm(), 2e-4 * difference.norm())
+        << terms[k].expression;
+  }
+  for (const char* strange : {"q^2 + 1", "exp(q)", "", "((q-1.3)/0.4)^3)"})
+    EXPECT_FALSE(elbow.withFormula({{strange, 1, 1}}, {})) << strange;
+}
+
 TEST(ReducedElbow, EffectsOfZeroAmplitudeChangeNothing) {
   const Elbow elbow(reduced::record(plain(), 7));
   const VectorXd base = info::discover::nominalValues(elbow);

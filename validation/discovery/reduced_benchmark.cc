@@ -21,6 +21,18 @@ struct Tally {
   void count(bool hit) { hits += hit, ++of; }
 };
 
+// The least amplitude of an effect that would have shown: five deviations of the estimate where it
+// was named, else what the verdict says.
+double leastVisible(const Verdict& v, const std::vector<Candidate>& candidates,
+                    const std::string& id) {
+  for (const NamedEffect& e : v.effects)
+    if (candidates[e.candidate].id == id && !e.estimates.empty())
+      return 5 * e.estimates[0].deviation;
+  for (const Detectable& d : v.detectability)
+    if (candidates[d.candidate].id == id) return d.amplitude;
+  return HUGE_VAL;
+}
+
 void print(const char* what, const Tally& tally) {
   if (tally.of == 0) return;
   const hidden::Interval interval = hidden::wilson(tally.hits, tally.of);
@@ -44,7 +56,8 @@ int score(const hidden::Arguments& arguments) {
   const double size = plan.size, emgNoise = plan.emgNoise, step = arguments.number("step", 0.01);
   const bool verbose = arguments.has("verbose"), known = !arguments.has("estimate-sigma"),
              leaveOut = arguments.has("leave-out");
-  Tally detected, top, inClass, falseName, confident, coverage, both, unknown, structureNamed;
+  Tally detected, top, visible, inClass, falseName, confident, coverage, both, unknown,
+      structureNamed;
   std::vector<double> closed, seconds, floors;
   for (std::uint64_t seed = first; seed < last; ++seed) {
     plan.seed = seed;
@@ -97,7 +110,11 @@ int score(const hidden::Arguments& arguments) {
     if (suite == "out" || leaveOut)
       unknown.count(!says || v.finding == Finding::ambiguous || v.vetoed);
     else if (!truth.empty()) {
-      top.count(says && all && v.effects.size() == truth.size());
+      const bool right = says && all && v.effects.size() == truth.size();
+      top.count(right);
+      if (truth.size() == 1 && suite != "parameter" &&
+          std::abs(recipe.effects[0].second) >= leastVisible(v, candidates, truth[0]))
+        visible.count(right);
       if (v.finding != Finding::none) inClass.count(allClass);
       confident.count(says && v.probability >= 0.95 && !allClass);
       if (truth.size() == 2) both.count(says && allClass);
@@ -143,6 +160,14 @@ int score(const hidden::Arguments& arguments) {
                                   v.heldOut->after / v.heldOut->floor)
                     : std::string(),
           v.fits, seconds.back(), table);
+      std::string remainder;
+      for (const Cause cause : kCauses)
+        remainder += fmt::format(" {} {:.1f}", name(cause), v.after.remainder.of(cause));
+      fmt::print("    what is left follows, nats:{}\n", remainder);
+      if (v.nameless)
+        fmt::print("    without a name: follows the {}, {:.1f} nats, {:.1f} ahead of the names\n",
+                   info::discover::name(v.nameless->follows), v.nameless->logBayesFactor,
+                   v.nameless->ahead);
       if (v.unknown)
         fmt::print("    formula {} (explains {:.2f}, stable {}), peak {:.1f} Hz share {:.2f}\n",
                    v.unknown->formula, v.unknown->explained, v.unknown->stable,
@@ -161,6 +186,7 @@ int score(const hidden::Arguments& arguments) {
   print("false names", falseName);
   print("structure named, only a parameter wrong", structureNamed);
   print("right name(s) first", top);
+  print("– of effects that would have shown", visible);
   print("true name(s) in the class, of detected", inClass);
   print("both named", both);
   print("confidently wrong", confident);

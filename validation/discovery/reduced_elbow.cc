@@ -257,6 +257,22 @@ Elbow::Solution Elbow::solve(int which, double h, const VectorXd& values, const 
     return latent.size() == 0 ? 0.0 : latent[node] + share * (latent[node + 1] - latent[node]);
   };
 
+  const auto numTerms = static_cast<Index>(formula_.size());
+  std::vector<StateTerm::Value> terms(formula_.size());
+  // c·(e_1 + r_2·e_2 + …); of each term its share r_k
+  const auto ratio = [&](Index k) { return k == 0 ? 1 : values[formulaAt_ + k]; };
+  const auto formula = [&](double angle, double speed) {
+    StateTerm::Value sum{0, 0, 0};
+    for (Index k = 0; k < numTerms; ++k) {
+      const StateTerm::Value e = formula_[static_cast<std::size_t>(k)].at(angle, speed);
+      terms[static_cast<std::size_t>(k)] = e;
+      sum = {sum.value + ratio(k) * e.value, sum.byQ + ratio(k) * e.byQ,
+             sum.bySpeed + ratio(k) * e.bySpeed};
+    }
+    return sum;
+  };
+  const double amplitude = numTerms > 0 ? values[formulaAt_] : 0;
+
   Index sample = 0;
   Instant now;
   std::array<double, kMuscles> level, used;
@@ -277,7 +293,8 @@ Elbow::Solution Elbow::solve(int which, double h, const VectorXd& values, const 
       Index node = 0;
       double share = 0;
       const double d = force(t0 + reach, node, share);
-      evaluate<derivatives>(values, qs, ws, level, used, d, now);
+      const StateTerm::Value shape = formula(qs, ws);
+      evaluate<derivatives>(values, qs, ws, level, used, d + amplitude * shape.value, now);
       vq[s] = ws;
       vw[s] = now.acceleration;
       if (latentToo && s == 0 && share < 1e-6) solution.scale[node] = now.scale;
@@ -290,11 +307,18 @@ Elbow::Solution Elbow::solve(int which, double h, const VectorXd& values, const 
           nowQ = Sq.head(active) + reach * kq[s - 1].head(active);
           nowW = Sw.head(active) + reach * kw[s - 1].head(active);
         }
+        now.byQ += amplitude * shape.byQ / now.inertia;
+        now.bySpeed += amplitude * shape.bySpeed / now.inertia;
         kq[s].head(active) = nowW;
         kw[s].head(active) = now.byQ * nowQ + now.bySpeed * nowW;
         for (Index j = 0; j < P; ++j) {
           const std::size_t i = wanted[static_cast<std::size_t>(j)];
           if (i < kShared) kw[s][j] += now.direct[i];
+          const Index k = static_cast<Index>(i) - formulaAt_;
+          if (numTerms > 0 && k >= 0)
+            kw[s][j] +=
+                (k == 0 ? shape.value : amplitude * terms[static_cast<std::size_t>(k)].value) /
+                now.inertia;
         }
         for (std::size_t c = 0; c < 5; ++c)
           for (Index j = 0; j < P; ++j) {
@@ -397,6 +421,33 @@ VectorXd Elbow::outputs(int trial, const VectorXd& values, const VectorXd& laten
 
 VectorXd Elbow::refinedOutputs(int trial, const VectorXd& values) const {
   return solve<false>(trial, 0.5 * step_, values, {}, {}, false).outputs;
+}
+
+std::unique_ptr<info::discover::Disagreement> Elbow::withFormula(
+    const std::vector<info::discover::FormulaTerm>& terms,
+    const std::vector<std::size_t>& kept) const {
+  auto widened = std::make_unique<Elbow>(*this);
+  widened->candidates_.clear();
+  for (const std::size_t c : kept) widened->candidates_.push_back(candidates_[c]);
+  if (formula_.empty()) widened->formulaAt_ = static_cast<Index>(quantities_.size());
+  widened->quantities_.resize(static_cast<std::size_t>(widened->formulaAt_));
+  widened->formula_.clear();
+  info::discover::Candidate candidate{"formula", "force without a name", "", {}, {}, {}, {}, {}};
+  VectorXd starts(static_cast<Index>(terms.size()));
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const auto term = StateTerm::parse(terms[k].expression);
+    if (!term) return nullptr;
+    widened->formula_.push_back(*term);
+    candidate.quantities.push_back(widened->quantities_.size());
+    const double deviation = terms[k].deviation;
+    candidate.deviations.push_back(deviation);
+    starts[static_cast<Index>(k)] = terms[k].start;
+    widened->quantities_.push_back(
+        {"formula " + std::to_string(k + 1), "", 0, -20 * deviation, 20 * deviation, deviation});
+  }
+  candidate.starts = {starts};
+  widened->candidates_.push_back(std::move(candidate));
+  return widened;
 }
 
 MatrixXd Elbow::inputs(int which) const {

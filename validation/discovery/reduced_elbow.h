@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "discovery/reduced_formula.h"
 #include "info/discover/disagreement.h"
 
 namespace reduced {
@@ -52,6 +53,10 @@ class Elbow final : public info::discover::Disagreement {
   Eigen::VectorXd refinedOutputs(int trial, const Eigen::VectorXd& values) const override;
   Eigen::MatrixXd inputs(int trial) const override;
   std::vector<std::string> inputNames() const override { return {"BIC", "BRA", "BRD", "TRI"}; }
+  /// Null if StateTerm knows one of the terms not.
+  std::unique_ptr<info::discover::Disagreement> withFormula(
+      const std::vector<info::discover::FormulaTerm>& terms,
+      const std::vector<std::size_t>& kept) const override;
 
  private:
   struct Solution;
@@ -63,6 +68,8 @@ class Elbow final : public info::discover::Disagreement {
 
   std::vector<Trial> trials_;
   double step_;
+  std::vector<StateTerm> formula_;
+  Eigen::Index formulaAt_ = 0;  ///< its first quantity
   std::vector<info::discover::Quantity> quantities_;
   std::vector<std::size_t> nuisances_;
   std::vector<info::discover::Candidate> candidates_;
