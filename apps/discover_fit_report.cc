@@ -13,6 +13,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 using info::discover::Adequacy;
+using info::discover::Cause;
 using info::discover::Gap;
 
 /// Samples of one output among those of a trial.
@@ -110,12 +111,17 @@ Table adequacyTable(const DiscoverFindings& f) {
   table.rows.push_back({fmt::format("follows past {}, probability", f.wording.commands),
                         numberText(a.inputProbability, 2), numberText(b.inputProbability, 2),
                         fmt::format("> {}", f.options.level)});
-  const auto remainder = [&](const std::string& what, double base, double with) {
-    table.rows.push_back({"follows " + what + ", evidence [nats]", numberText(base, 2),
-                          numberText(with, 2), fmt::format("< {}", f.options.remainder)});
+  const auto remainder = [&](Cause cause, const std::string& what) {
+    if (a.remainder.of(cause) == 0 && b.remainder.of(cause) == 0) return;  // none of the kind
+    table.rows.push_back(
+        {"follows " + what + ", evidence [nats]", numberText(a.remainder.of(cause), 2),
+         numberText(b.remainder.of(cause), 2), fmt::format("< {}", f.options.remainder)});
   };
-  remainder("the state (q, q̇)", a.remainder.ofState, b.remainder.ofState);
-  remainder("all past " + f.wording.commands, a.remainder.ofInputs, b.remainder.ofInputs);
+  remainder(Cause::state, "the state (q, q̇)");
+  remainder(Cause::inputs, "all past " + f.wording.commands);
+  remainder(Cause::acceleration, "the acceleration");
+  remainder(Cause::sensor, "what the sensor shows");
+  remainder(Cause::moments, fmt::format("each {}'s moment and the angle", f.wording.input));
   table.rows.push_back({"latent force that is still needed, " + f.wording.ofForce,
                         numberText(f.verdict.latentSizeBefore, 2),
                         numberText(f.verdict.latentSizeAfter, 2),

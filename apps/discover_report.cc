@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "discover_fit_report.h"
+#include "discover_unknown_report.h"
 #include "discover_where_report.h"
 #include "info/discover/separation.h"
 #include "interval_drawing.h"
@@ -54,7 +55,7 @@ class Writer {
     section("How well it fits");
     report_.details.emplace_back(gapTable(f_));
     report_.details.emplace_back(adequacyTable(f_));
-    if (f_.verdict.unknown) unknown();
+    for (ReportPart& part : withoutName(f_)) report_.details.push_back(std::move(part));
     parameters();
     detectability();
     section("Next experiment");
@@ -132,6 +133,7 @@ class Writer {
                     "each; a name needs {} nats more than what goes without it, and rivals no more "
                     "than {} behind stay in its class.",
                     f_.options.evidence, f_.options.classWidth)});
+    if (const std::string behind = namesAgainstForces(f_); !behind.empty()) say(behind);
   }
 
   Table foreseenTable() const {
@@ -145,41 +147,6 @@ class Writer {
       table.rows.push_back(std::move(row));
     }
     return table;
-  }
-
-  void unknown() {
-    const auto& u = *f_.verdict.unknown;
-    section("Something without a name");
-    say(
-        fmt::format("The missing force has a root mean square of {} {}; {} % of its power lies "
-                    "within 0.5 Hz of {} Hz.",
-                    numberText(u.forceSize, 3), f_.wording.forceUnit,
-                    numberText(100 * u.peakShare, 2), numberText(u.peakFrequency, 2)));
-    if (!u.formula.empty()) {
-      say(fmt::format(
-          "As a formula, a surrogate: {} ({} nats more than the latent force alone, {} % "
-          "of its power{}).",
-          u.formula, numberText(u.evidence, 3), numberText(100 * u.explained, 2),
-          u.stable ? "; chosen in at least 90 % of the bootstraps"
-                   : "; not stable, do not trust its form"));
-    }
-    if (f_.verdict.formula) raced(*f_.verdict.formula);
-  }
-
-  void raced(const info::discover::RacedFormula& formula) {
-    std::string text = fmt::format(
-        "Fitted and raced like a name: {}, {} nats better than the model "
-        "without it",
-        formula.text, numberText(formula.logBayesFactor, 3));
-    const info::discover::Gap& gap = formula.heldOut ? *formula.heldOut : formula.gap;
-    if (gap.closedFromCalibrated)
-      text += fmt::format("; it closes {} % of the gap{}",
-                          numberText(100 * *gap.closedFromCalibrated, 3),
-                          formula.heldOut ? " on the trial that was held out" : "");
-    say(text + (formula.wins
-                    ? ". It leaves nothing else to be seen, and is in with_effect.osim."
-                    : ". It does not explain everything, or has rivals: do not take it for "
-                      "the effect."));
   }
 
   void parameters() {

@@ -69,13 +69,14 @@ ordered_json localisationJson(const DiscoverFindings& f) {
 }
 
 ordered_json adequacyJson(const info::discover::Adequacy& a, double latentSize) {
-  return {{"mean_square", number(a.meanSquare)},
-          {"ljung_box_probability", number(a.ljungBoxProbability)},
-          {"input_probability", number(a.inputProbability)},
-          {"follows_state_nats", number(a.remainder.ofState)},
-          {"follows_inputs_nats", number(a.remainder.ofInputs)},
-          {"latent_size", number(latentSize)},
-          {"adequate", a.adequate()}};
+  ordered_json json = {{"mean_square", number(a.meanSquare)},
+                       {"ljung_box_probability", number(a.ljungBoxProbability)},
+                       {"input_probability", number(a.inputProbability)}};
+  for (const info::discover::Cause cause : info::discover::kCauses)
+    json[fmt::format("follows_{}_nats", name(cause))] = number(a.remainder.of(cause));
+  json["latent_size"] = number(latentSize);
+  json["adequate"] = a.adequate();
+  return json;
 }
 
 }  // namespace
@@ -170,6 +171,15 @@ ordered_json verdictJson(const DiscoverFindings& f) {
                                 {"log_bayes_factor", number(one.logEvidence)},
                                 {"probability", number(one.probability)},
                                 {"amplitude_over_sd", number(one.significance)}});
+  }
+  if (verdict.nameless) {
+    const info::discover::NamelessForce& force = *verdict.nameless;
+    ordered_json besides = ordered_json::array();
+    for (const std::size_t c : force.besides) besides.push_back(candidates[c].id);
+    json["force_without_a_name"] = {{"follows", info::discover::name(force.follows)},
+                                    {"beside", besides},
+                                    {"log_bayes_factor", number(force.logBayesFactor)},
+                                    {"nats_ahead_of_names", number(force.ahead)}};
   }
   if (verdict.unknown) {
     json["unknown"] = {{"formula", verdict.unknown->formula},

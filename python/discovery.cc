@@ -80,6 +80,19 @@ py::object unknownOf(const Verdict& verdict) {
                  "raced"_a = raced);
 }
 
+/// The best smooth force of the angle or the speed alone, beside the names.
+py::object namelessOf(const ElbowDisagreement& data, const Verdict& verdict) {
+  if (!verdict.nameless) return py::none();
+  const info::discover::NamelessForce& force = *verdict.nameless;
+  std::vector<std::string> besides;
+  for (const std::size_t c : force.besides) besides.push_back(data.candidates()[c].id);
+  return results("follows"_a = info::discover::name(force.follows), "beside"_a = besides,
+                 "log_bayes_factor"_a = force.logBayesFactor, "nats_ahead_of_names"_a = force.ahead,
+                 "at"_a = Eigen::VectorXd(Eigen::VectorXd::Map(
+                     force.at.data(), static_cast<Eigen::Index>(force.at.size()))),
+                 "force"_a = force.force, "sd"_a = force.deviation);
+}
+
 py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
                     const std::vector<bio::Trial>& holdOut, std::optional<double> noise,
                     const std::vector<std::string>& without, int maxEffects,
@@ -130,7 +143,9 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
                  "gap_held_out"_a = verdict.heldOut ? gapOf(*verdict.heldOut) : py::none(),
                  "held_out_fitted"_a = verdict.heldOutFitted, "undetectable_below"_a = undetectable,
                  "planned_experiments"_a = plannedOf(*data, verdict, foreseen),
-                 "unknown"_a = unknownOf(verdict), "step"_a = found.step, "fits"_a = verdict.fits);
+                 "unknown"_a = unknownOf(verdict),
+                 "force_without_a_name"_a = namelessOf(*data, verdict), "step"_a = found.step,
+                 "fits"_a = verdict.fits);
 }
 
 }  // namespace
@@ -149,7 +164,12 @@ void defineDiscovery(py::module_& module) {
       "names cannot be told apart planned_experiments (what, of, expected_nats {rival: nats}), the "
       "first trial repeated with a known mass in the hand or with pushes, the best first; where "
       "nothing fits unknown (formula, stable, evidence [nats], explained, peak_frequency [Hz], rms "
-      "[N m] of the missing force, raced: the formula built into the model and raced like a name). "
+      "[N m] of the missing force, raced: the formula built into the model and raced like a name); "
+      "where something is missing force_without_a_name, the best smooth function of the angle or "
+      "of "
+      "the speed alone (follows, beside: names that stay, log_bayes_factor, nats_ahead_of_names: "
+      "above 0 the names are makeshifts; force and its sd [N m] at angles [rad] or speeds "
+      "[rad/s]). "
       "Trials may have a known mass in the hand. noise [rad]: from the data unless given. Further "
       "keywords as replay has them.");
 }

@@ -90,6 +90,12 @@ class Arms(unittest.TestCase):
         found = fh.discover(self.model, [trial], noise=0.5 * DEGREE, max_effects=1)
         self.assertEqual(found.verdict, "named")
         self.assertEqual([one.id for one in found.effects], ["visc"])
+        force = found.force_without_a_name
+        self.assertEqual(force.follows, "speed")  # as viscosity does
+        self.assertLess(force.nats_ahead_of_names, 0)
+        self.assertEqual(force.at.shape, force.force.shape)
+        damped = np.abs(force.force + 0.3 * force.at)  # N m
+        self.assertLess((damped - 4 * force.sd).max(), 0.05)
         viscosity = found.effects[0].parameters["visc.viscosity"]
         self.assertLess(abs(viscosity.value - 0.3), 3 * viscosity.sd)  # emg_data/answers/hidden.json
         self.assertGreater(found.gap.closed, 0.9)

@@ -583,6 +583,22 @@ TEST(Formula, IsAnEffectLikeAnyOther) {
   EXPECT_FALSE(repaired.withFormula(terms, {}));
 }
 
+// As forces without a name are written, about a middle on either side of 0.
+TEST(Formula, MayBeAPowerAboutAMiddle) {
+  const Case c;
+  const auto outputs = [&](const char* expression, double amplitude) {
+    const auto widened = c.data.withFormula({{expression, 1, 1}}, {});
+    VectorXd values = info::discover::nominalValues(*widened);
+    values[static_cast<Index>(widened->candidates()[0].quantities[0])] = amplitude;
+    return widened->outputs(0, values, {});
+  };
+  const VectorXd plain = outputs("q", -0.7);
+  EXPECT_LT((outputs("((q-0)/0.5)^1", -0.35) - plain).cwiseAbs().maxCoeff(), 1e-9);
+  // (q + 2)² − (q − 2)² = 8q
+  const VectorXd right = outputs("(((q+2)/2)^2-((q-2)/2)^2)", -0.35);
+  EXPECT_LT((right - plain).cwiseAbs().maxCoeff(), 1e-9);
+}
+
 TEST(ElbowDisagreement, AKnownMassIsInTheHandBesidesWhatIsMissing) {
   const ShippedElbow elbow;
   const Trial empty = cut(elbow.trial, 0.5);

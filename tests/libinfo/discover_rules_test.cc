@@ -128,7 +128,7 @@ TEST(Decide, ComparesEachOfSeveralEffectsInItsPlace) {
 }
 
 TEST(Decide, CallsALeaderASurrogateWhereSomethingIsLeft) {
-  for (int what = 0; what < 6; ++what) {
+  for (int what = 0; what < 7; ++what) {
     Judgement j = raced({{{0}, 30.0}}, {0});
     if (what == 0) j.after.white = false;
     if (what == 1) j.after.independent = false;
@@ -136,6 +136,7 @@ TEST(Decide, CallsALeaderASurrogateWhereSomethingIsLeft) {
     if (what == 3) j.heldOutWorse = true;
     if (what == 4) j.strangeAfter = true;
     if (what == 5) j.after.causeless = false;
+    if (what == 6) j.namelessWins = true;
     const Decision d = decide(catalogue(), j, {});
     EXPECT_EQ(d.finding, Finding::unknown) << what;
     EXPECT_TRUE(d.surrogate);

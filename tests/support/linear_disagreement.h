@@ -85,7 +85,7 @@ class LinearDisagreement : public info::discover::Disagreement {
     const auto n = static_cast<Eigen::Index>(times_.size());
     Prediction p;
     p.outputs = outputs(trial, values, latent);
-    p.speeds = VectorXd::Zero(n);
+    p.speeds = tellsSpeeds ? speeds(p.outputs) : VectorXd(VectorXd::Zero(n));
     p.gamma.resize(n, static_cast<Eigen::Index>(wanted.size()));
     for (std::size_t j = 0; j < wanted.size(); ++j) {
       VectorXd unit = VectorXd::Zero(values.size());
@@ -120,10 +120,18 @@ class LinearDisagreement : public info::discover::Disagreement {
 
   MatrixXd scale;  ///< of the latent force, samples × channels; empty: 1
   double lag = 0;  ///< [s]
+  bool tellsSpeeds = false;
   Eigen::Matrix2d F;
   Eigen::Vector2d B;
 
  private:
+  static VectorXd speeds(const VectorXd& y) {
+    const Eigen::Index n = y.size();
+    VectorXd slopes = VectorXd::Zero(n);
+    slopes.segment(1, n - 2) = (y.tail(n - 2) - y.head(n - 2)) / (2 * kStep);
+    return slopes;
+  }
+
   std::vector<info::discover::Quantity> quantities_;
   std::vector<std::size_t> nuisances_;
   std::vector<info::discover::Candidate> candidates_;

@@ -21,10 +21,16 @@ namespace {
 
 using hidden::Outcome;
 
-// The program's verdict on a set of the reduced elbow, which no command reads from files.
-Outcome onReducedElbow(const reduced::Plan& plan) {
+// The program's verdict on a set of the reduced elbow, which no command reads from files, and what
+// the scorer makes of it.
+struct OnReducedElbow {
+  nlohmann::ordered_json verdict;
+  Outcome outcome;
+};
+OnReducedElbow verdictOnReducedElbow(const reduced::Plan& plan, bool leaveOut) {
   reduced::DataSet set = reduced::makeDataSet(plan);
-  const reduced::Elbow elbow(std::move(set.trials));
+  const std::vector<std::string> lacking = leaveOut ? set.explaining() : std::vector<std::string>{};
+  const reduced::Elbow elbow(std::move(set.trials), lacking);
   info::discover::Options options;
   options.outputDeviation = set.recipe.outputNoise;
   options.latentTolerance = 0.02;
@@ -37,10 +43,14 @@ Outcome onReducedElbow(const reduced::Plan& plan) {
   wording.gapEnd = "_deg";
   wording.inputs = "muscles";
   const std::string name = plan.suite + " " + std::to_string(plan.seed);
-  return hidden::judge(
-      name, set.label,
-      app::verdictJson(
-          {name, {}, elbow, wording, options, verdict, name, {}, taken.count(), taken.count()}));
+  OnReducedElbow result;
+  result.verdict = app::verdictJson(
+      {name, {}, elbow, wording, options, verdict, name, {}, taken.count(), taken.count()});
+  result.outcome = hidden::judge(name, set.label, result.verdict);
+  return result;
+}
+Outcome onReducedElbow(const reduced::Plan& plan) {
+  return verdictOnReducedElbow(plan, false).outcome;
 }
 
 // The command's verdict on a set in files, the truth being read by the scorer alone.
@@ -122,6 +132,18 @@ TEST(DiscoverySlice, AWrongParameterIsNotTakenForAnother) {
   EXPECT_TRUE(outcome.claims);
   EXPECT_TRUE(outcome.classHasTruth);
   EXPECT_FALSE(outcome.confidentlyWrong());
+}
+// Joint limits that the catalogue lacks were "another wrap radius", with probability 1. A force
+// that follows the angle alone explains more.
+TEST(DiscoverySlice, WhatIsLeftOutOfTheCatalogueIsNotTakenForAnother) {
+  reduced::Plan plan;
+  plan.suite = "single";
+  plan.effect = "limit";
+  plan.seed = 13403;
+  const auto json = verdictOnReducedElbow(plan, true).verdict;
+  EXPECT_EQ(json.at("verdict"), "unknown");
+  EXPECT_EQ(json.at("force_without_a_name").at("follows"), "angle");
+  EXPECT_GT(json.at("force_without_a_name").at("nats_ahead_of_names"), 5);
 }
 TEST(DiscoverySlice, OfElbowsWithEightMuscles) {
   hidden::DataSetPlan nothing, visc, missing;

@@ -119,8 +119,10 @@ Adequacy adequacy(const Likelihood& likelihood, const Fit& fit, const AdequacyOp
   result.independent = result.inputProbability > options.level;
 
   result.remainder = remainderEvidence(likelihood, fit);
-  result.causeless =
-      std::max(result.remainder.ofState, result.remainder.ofInputs) < options.evidence;
+  result.causeless = true;
+  for (const Cause cause : kCauses)
+    if (cause != Cause::sensor && !(result.remainder.of(cause) < options.evidence))
+      result.causeless = false;
   return result;
 }
 

@@ -90,7 +90,7 @@ Decision decide(const std::vector<Candidate>& candidates, const Judgement& judge
   const Adequacy& after = judgement.after;
   if (!after.white || !after.independent || !after.causeless ||
       judgement.latentAfter > options.latentTolerance || judgement.heldOutWorse ||
-      judgement.strangeAfter || stretched) {
+      judgement.strangeAfter || stretched || judgement.namelessWins) {
     decision.finding = Finding::unknown;
     decision.surrogate = true;
     decision.probability = 0;

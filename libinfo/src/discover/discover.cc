@@ -9,6 +9,7 @@
 #include "info/discover/decide.h"
 #include "info/discover/expected_error.h"
 #include "info/discover/output_deviation.h"
+#include "nameless.h"
 #include "race_formula.h"
 #include "select.h"
 
@@ -30,6 +31,10 @@ const char* name(Stage stage) {
 const char* name(EffectKind kind) {
   static constexpr const char* kNames[] = {"structure", "input", "geometry", "sensor", "parameter"};
   return kNames[static_cast<int>(kind)];
+}
+
+const char* name(NamelessForce::Follows follows) {
+  return follows == NamelessForce::Follows::angle ? "angle" : "speed";
 }
 
 namespace {
@@ -82,7 +87,7 @@ class Work {
     } catch (const Stopped&) {
       verdict_.sentence = "stopped before the end";
     }
-    if (search_) verdict_.fits = search_->fits();
+    if (search_) verdict_.fits = search_->fits() + namelessFits_;
     return verdict_;
   }
 
@@ -247,7 +252,16 @@ class Work {
 
     gaps(before, after, judgement);
     if (stepsTooLong()) return;
-    const Decision decision = decide(data_.candidates(), judgement, options_);
+    Decision decision = decide(data_.candidates(), judgement, options_);
+    const Fit smoothing =
+        before.fit.noise.latent > 0 ? before.fit : refit(before, options_.latentScale);
+    if (options_.symbolic && (!chosen_.empty() || decision.finding == Finding::unknown)) {
+      verdict_.nameless = raceNameless(
+          *search_, chosen_, smoothing, options_, verdict_.outputDeviation,
+          [this](const std::string& doing) { report(stage_, fraction_, doing); }, namelessFits_);
+      judgement.namelessWins = verdict_.nameless && verdict_.nameless->wins();
+      if (judgement.namelessWins) decision = decide(data_.candidates(), judgement, options_);
+    }
     verdict_.finding = decision.finding;
     verdict_.effects = decision.effects;
     verdict_.probability = decision.probability;
@@ -276,8 +290,6 @@ class Work {
       map = refit(before, after.fit.noise.latent);
     else if (decision.finding == Finding::none && small)
       map = before.fit;
-    const Fit smoothing =
-        before.fit.noise.latent > 0 ? before.fit : refit(before, options_.latentScale);
     verdict_.localisation =
         localise(search_->likelihood(), map, smoothing, {0.25, 8, 6, options_.falseDiscoveries});
     for (const Screened& s : search_->screen(chosen_, false))
@@ -287,7 +299,7 @@ class Work {
               [](const Detectable& a, const Detectable& b) { return a.candidate < b.candidate; });
     if (decision.finding == Finding::unknown && options_.symbolic) {
       verdict_.unknown = describeUnknown(search_->likelihood(), smoothing);
-      verdict_.formula = raceFormula(data_, *verdict_.unknown, chosen_, optionsOfFormula());
+      verdict_.formula = raceFormula(*search_, *verdict_.unknown, chosen_, optionsOfFormula());
     }
     verdict_.sentence = sentence();
   }
@@ -424,6 +436,7 @@ class Work {
       case Finding::unknown:
         return "Something is missing that has no name here" +
                (names.empty() ? std::string() : "; imitated best by: " + names) + edges() +
+               cause() + nameless() +
                (verdict_.formula && verdict_.formula->wins
                     ? "; a force of " + verdict_.formula->text + " explains it."
                     : ".");
@@ -431,6 +444,30 @@ class Work {
         break;
     }
     return verdict_.sentence;
+  }
+
+  std::string cause() const {
+    const Adequacy& left = chosen_.empty() ? verdict_.before : verdict_.after;
+    if (left.causeless) return "";
+    switch (left.remainder.strongest()) {
+      case Cause::state:
+        return "; what is left follows angle and speed";
+      case Cause::inputs:
+        return "; what is left follows the inputs";
+      case Cause::acceleration:
+        return "; what is left follows the acceleration, as an inertia does";
+      case Cause::sensor:
+        return "; what is left follows what the sensor shows, as its own errors do";
+      case Cause::moments:
+        return "; what is left follows the inputs' moments and the angle, as their levers do";
+    }
+    return "";
+  }
+
+  std::string nameless() const {
+    if (!verdict_.nameless || !verdict_.nameless->wins()) return "";
+    return fmt::format("; a force that follows the {} alone explains {}",
+                       name(verdict_.nameless->follows), chosen_.empty() ? "some of it" : "more");
   }
 
   std::string edges() const {
@@ -450,6 +487,7 @@ class Work {
   Effects chosen_;
   Stage stage_ = Stage::calibrate;
   double fraction_ = 0;
+  int namelessFits_ = 0;
   Verdict verdict_;
 };
 

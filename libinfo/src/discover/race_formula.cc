@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "translation.h"
+
 namespace info::discover {
 namespace {
 
@@ -34,15 +36,18 @@ std::string textOf(const Unknown& unknown, const std::vector<double>& values) {
 
 }  // namespace
 
-std::optional<RacedFormula> raceFormula(const Disagreement& data, const Unknown& unknown,
-                                        const std::vector<std::size_t>& kept, Options options) {
+std::optional<RacedFormula> raceFormula(const Search& search, const Unknown& unknown,
+                                        const Effects& kept, Options options) {
   RacedFormula formula;
   formula.terms = termsOf(unknown);
   if (formula.terms.empty()) return {};
-  const auto widened = data.withFormula(formula.terms, kept);
+  const auto widened = search.data().withFormula(formula.terms, kept);
   if (!widened) return {};
   options.symbolic = false;
-  const Verdict raced = run(*widened, options);
+  Draft draft;
+  if (auto known = knownOf(search, kept, *widened))
+    draft = std::make_shared<const Known>(std::move(*known));
+  const Verdict raced = run(*widened, options, &draft);
   if (raced.reached != Stage::finished) return {};
   const auto isFormula = [&](std::size_t c) { return widened->candidates()[c].id == "formula"; };
   const auto alone = std::find_if(

@@ -1,16 +1,17 @@
 #pragma once
 
 #include "info/discover/discover.h"
+#include "search.h"
 
 // Not public.
 
 namespace info::discover {
 
 /// Puts the formula of what has no name into the model and races it: run() on the same data with
-/// the formula and the effects in `kept` alone. Nothing if a term does not follow the state, if the
-/// data do not offer it, or if the work was stopped.
+/// the formula and the effects in `kept` alone, from what a search knows of these. Nothing if a
+/// term does not follow the state, if the data do not offer it, or if the work was stopped.
 /// @param options  of that race; `symbolic` is taken as false
-std::optional<RacedFormula> raceFormula(const Disagreement& data, const Unknown& unknown,
-                                        const std::vector<std::size_t>& kept, Options options);
+std::optional<RacedFormula> raceFormula(const Search& search, const Unknown& unknown,
+                                        const Effects& kept, Options options);
 
 }  // namespace info::discover

@@ -17,7 +17,7 @@ constexpr Index kDirections = 15;
 constexpr int kSizes = 5;
 constexpr Index kLags = 5;
 
-VectorXd scaled(const std::vector<VectorXd>& trials) {
+VectorXd joined(const std::vector<VectorXd>& trials) {
   Index n = 0;
   for (const VectorXd& x : trials) n += x.size();
   VectorXd all(n);
@@ -26,10 +26,20 @@ VectorXd scaled(const std::vector<VectorXd>& trials) {
     all.segment(at, x.size()) = x;
     at += x.size();
   }
-  all.array() -= all.mean();
-  const double deviation = std::sqrt(all.squaredNorm() / static_cast<double>(n));
-  if (deviation > 0) all /= deviation;
   return all;
+}
+
+// Of mean square 1, if it is not 0.
+VectorXd sized(VectorXd x) {
+  const double size = std::sqrt(x.squaredNorm() / static_cast<double>(x.size()));
+  if (size > 0) x /= size;
+  return x;
+}
+
+VectorXd scaled(const std::vector<VectorXd>& trials) {
+  VectorXd all = joined(trials);
+  all.array() -= all.mean();
+  return sized(std::move(all));
 }
 
 // B with BBᵀ ≈ K of rank `rank`: Cholesky's factor, the largest remaining variance first.
@@ -47,16 +57,10 @@ MatrixXd pivotedRoot(const MatrixXd& K, Index rank) {
   return B;
 }
 
-// Of forces with these columns at the nodes of all trials, one trial below the other.
+// Of disturbances with these columns at the samples of each trial.
 double evidenceOf(const Likelihood& likelihood, const Fit& fit, const NodeStates& states,
-                  const MatrixXd& forces) {
-  if (forces.cols() == 0) return 0;
-  std::vector<MatrixXd> disturbances;
-  Index at = 0;
-  for (const auto& linear : states.linear) {
-    disturbances.push_back(linear.force * forces.middleRows(at, linear.force.cols()));
-    at += linear.force.cols();
-  }
+                  const std::vector<MatrixXd>& disturbances) {
+  if (disturbances.front().cols() == 0) return 0;
   const auto projected = likelihood.project(fit, states.linear, disturbances);
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(projected.information);
   const VectorXd information = eigen.eigenvalues().cwiseMax(0);
@@ -73,6 +77,18 @@ double evidenceOf(const Likelihood& likelihood, const Fit& fit, const NodeStates
     best = std::max(best, gain);
   }
   return best - std::log(static_cast<double>(kSizes));
+}
+
+// What forces with these columns at the nodes of all trials, one trial below the other, do to the
+// outputs.
+std::vector<MatrixXd> outputsOf(const NodeStates& states, const MatrixXd& forces) {
+  std::vector<MatrixXd> disturbances;
+  Index at = 0;
+  for (const auto& linear : states.linear) {
+    disturbances.push_back(linear.force * forces.middleRows(at, linear.force.cols()));
+    at += linear.force.cols();
+  }
+  return disturbances;
 }
 
 MatrixXd fieldOfState(const NodeStates& states) {
@@ -110,12 +126,88 @@ MatrixXd pastInputs(const Likelihood& likelihood, const NodeStates& states) {
   return past;
 }
 
+// q̈ at the nodes, by differences of the simulated speeds
+MatrixXd accelerations(const Likelihood& likelihood, const NodeStates& states) {
+  std::vector<VectorXd> all;
+  for (std::size_t t = 0; t < states.qDot.size(); ++t) {
+    const VectorXd& w = states.qDot[t];
+    const auto& nodes = likelihood.data().latentTimes(likelihood.trials()[t]);
+    VectorXd slope(w.size());
+    for (Index i = 0; i < w.size(); ++i) {
+      const Index before = std::max<Index>(i - 1, 0), after = std::min<Index>(i + 1, w.size() - 1);
+      slope[i] = (w[after] - w[before]) /
+                 (nodes[static_cast<std::size_t>(after)] - nodes[static_cast<std::size_t>(before)]);
+    }
+    all.push_back(std::move(slope));
+  }
+  return sized(joined(all));
+}
+
+// 1, y, y² and ẏ of the first output at its samples
+std::vector<MatrixXd> sensorErrors(const Likelihood& likelihood, const NodeStates& states) {
+  const Disagreement& data = likelihood.data();
+  std::vector<VectorXd> outputs, squares, speeds;
+  for (std::size_t t = 0; t < states.linear.size(); ++t) {
+    outputs.push_back(data.measured(likelihood.trials()[t]) - states.linear[t].residuals);
+    speeds.push_back(states.linear[t].speeds);
+  }
+  const VectorXd y = scaled(outputs), ySquared = scaled({y.cwiseAbs2()}), yDot = scaled(speeds);
+  std::vector<MatrixXd> columns;
+  Index at = 0;
+  for (std::size_t t = 0; t < outputs.size(); ++t) {
+    const Index n = outputs[t].size();
+    MatrixXd own(n, 4);
+    own << VectorXd::Ones(n), y.segment(at, n), ySquared.segment(at, n), yDot.segment(at, n);
+    const auto& channels = data.outputOfSample(likelihood.trials()[t]);
+    for (Index k = 0; !channels.empty() && k < n; ++k)
+      if (channels[static_cast<std::size_t>(k)] != 0) own.row(k).setZero();
+    columns.push_back(std::move(own));
+    at += n;
+  }
+  return columns;
+}
+
+// Every channel's moment times z and z² − 1, z the scaled output
+MatrixXd moments(const Likelihood& likelihood, const Fit& fit, const NodeStates& states) {
+  const VectorXd q = scaled(states.q);
+  MatrixXd columns;
+  Index at = 0;
+  for (const int trial : likelihood.trials()) {
+    const MatrixXd G = likelihood.data().predict(trial, fit.values, {}, {}, true).latentScale;
+    const Index n = G.rows(), m = G.cols() > 1 ? G.cols() - 1 : 0;
+    if (at == 0) columns.resize(q.size(), 2 * m);
+    const VectorXd z = q.segment(at, n);
+    columns.middleRows(at, n).leftCols(m) = z.asDiagonal() * G.leftCols(m);
+    columns.middleRows(at, n).rightCols(m) =
+        (z.cwiseAbs2().array() - 1).matrix().asDiagonal() * G.leftCols(m);
+    at += n;
+  }
+  for (Index j = 0; j < columns.cols(); ++j) columns.col(j) = sized(columns.col(j));
+  return columns;
+}
+
 }  // namespace
+
+const char* name(Cause cause) {
+  static constexpr const char* kNames[] = {"state", "inputs", "acceleration", "sensor", "moments"};
+  return kNames[static_cast<int>(cause)];
+}
+
+Cause RemainderEvidence::strongest() const {
+  return kCauses[static_cast<std::size_t>(std::max_element(nats.begin(), nats.end()) -
+                                          nats.begin())];
+}
 
 RemainderEvidence remainderEvidence(const Likelihood& likelihood, const Fit& fit) {
   const NodeStates states = statesAtNodes(likelihood, fit);
-  return {evidenceOf(likelihood, fit, states, fieldOfState(states)),
-          evidenceOf(likelihood, fit, states, pastInputs(likelihood, states))};
+  const auto of = [&](const std::vector<MatrixXd>& disturbances) {
+    return evidenceOf(likelihood, fit, states, disturbances);
+  };
+  return {{of(outputsOf(states, fieldOfState(states))),
+           of(outputsOf(states, pastInputs(likelihood, states))),
+           of(outputsOf(states, accelerations(likelihood, states))),
+           of(sensorErrors(likelihood, states)),
+           of(outputsOf(states, moments(likelihood, fit, states)))}};
 }
 
 }  // namespace info::discover

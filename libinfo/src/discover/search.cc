@@ -209,6 +209,13 @@ void Search::adopt(const Known& known) {
   }
 }
 
+void Search::take(const Known& known) {
+  scaleValues_ = known.scaleValues;
+  likelihood_.emplace(data_, trials_, scaleValues_, options_.latentTime);
+  entries_ = known.entries;
+  racedFromNominal_ = known.racedFromNominal;
+}
+
 void Search::mustWork() const {
   if (!at({}).works())
     throw std::domain_error(
@@ -259,36 +266,38 @@ const Fit& Search::simulation(const Effects& effects) {
   return *entry.simulation;
 }
 
-void Search::race(const Effects& base, const std::vector<std::size_t>& candidates) {
+void Search::raceOne(const Effects& base, std::size_t candidate) {
+  const auto effects = with(base, candidate);
+  if (entries_.count(effects) != 0) return;
   const Fit near = at(base).fit;
   const VectorXd& values = near.values;
-  const double raceSize = std::clamp(2 * at(base).fit.noise.latent, 0.01, kRaceSize);
-  bool news = false;
-  for (const std::size_t c : candidates) {
-    const auto effects = with(base, c);
-    if (entries_.count(effects) != 0) continue;
-    news = true;
-    report_(describe(data_, effects));
-    // of several starts the one that a short fit likes best
-    const Hypothesis hypothesis = makeHypothesis(data_, effects, trials_);
-    const std::size_t starts = data_.candidates()[c].starts.size();
-    VectorXd from = started(c, 0, values);
-    double evidence = -1e300;
-    for (std::size_t s = 0; starts > 1 && s < starts; ++s) {
-      const auto fit = likelihood_->tryFit(
-          hypothesis, {output_, raceSize, options_.latentTime}, started(c, s, values),
-          forceKept(near.eta, near.noise.latent, raceSize), {5, 0.1});
-      if (fit && fit->logEvidence > evidence) {
-        evidence = fit->logEvidence;
-        from = fit->values;
-      }
-      ++fits_;
+  const double raceSize = std::clamp(2 * near.noise.latent, 0.01, kRaceSize);
+  report_(describe(data_, effects));
+  // of several starts the one that a short fit likes best
+  const Hypothesis hypothesis = makeHypothesis(data_, effects, trials_);
+  const std::size_t starts = data_.candidates()[candidate].starts.size();
+  VectorXd from = started(candidate, 0, values);
+  double evidence = -1e300;
+  for (std::size_t s = 0; starts > 1 && s < starts; ++s) {
+    const auto fit = likelihood_->tryFit(
+        hypothesis, {output_, raceSize, options_.latentTime}, started(candidate, s, values),
+        forceKept(near.eta, near.noise.latent, raceSize), {5, 0.1});
+    if (fit && fit->logEvidence > evidence) {
+      evidence = fit->logEvidence;
+      from = fit->values;
     }
-    improve(effects, from, raceSize, &near, bestScore() - kGivenUp);
-    // what contains the base cannot be far worse: a wrong minimum, once more from the base itself
-    if (at(effects).score < at(base).score - options_.evidence)
-      improve(effects, absent(c, values), near.noise.latent, &near);
+    ++fits_;
   }
+  improve(effects, from, raceSize, &near, bestScore() - kGivenUp);
+  // what contains the base cannot be far worse: a wrong minimum, once more from the base itself
+  if (at(effects).score < at(base).score - options_.evidence)
+    improve(effects, absent(candidate, values), near.noise.latent, &near);
+}
+
+void Search::race(const Effects& base, const std::vector<std::size_t>& candidates) {
+  const std::size_t known = entries_.size();
+  for (const std::size_t c : candidates) raceOne(base, c);
+  const bool news = entries_.size() > known;
   if (!news) return;
   // cross-starts: everything that is not far behind, and the next three in any case, once more from
   // the leader's nuisances

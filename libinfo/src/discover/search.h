@@ -56,6 +56,8 @@ class Search {
   /// Instead of calibrate(): what another search knows. The base, what was chosen and what comes
   /// near it are fitted again from there; the others keep their distance from the base.
   void adopt(const Known& known);
+  /// The same of the same data at the same time step: all is as it was there.
+  void take(const Known& known);
   const Likelihood& likelihood() const { return *likelihood_; }
   /// Where the scale of the latent force was taken.
   const Eigen::VectorXd& scaleValues() const { return scaleValues_; }
@@ -74,7 +76,9 @@ class Search {
   /// The fit without latent force, made where it is not there yet; from the nominal values where
   /// the model cannot be simulated without that force at those of its fit.
   const Fit& simulation(const Effects& effects);
-  /// Fits `base` + each candidate; then again from the leader's nuisances, and `base` too.
+  /// Fits `base` + a candidate, if that has not been done.
+  void raceOne(const Effects& base, std::size_t candidate);
+  /// The same of each candidate; then again from the leader's nuisances, and `base` too.
   void race(const Effects& base, const std::vector<std::size_t>& candidates);
   /// Fits single candidates once more, from the nominal values and a large latent force: the `most`
   /// that short fits from there like best. A base that lacks something may have gone far away from

@@ -219,6 +219,26 @@ std::string SymbolicTerm::times(double coefficient, const std::string& name) {
                      : fmt::format("{:.3g}·{}", coefficient, name);
 }
 
+VectorXd linearCoefficients(const Likelihood& likelihood, const Fit& fit, const NodeStates& states,
+                            const std::vector<StateForce>& forces, double deviation) {
+  const auto n = static_cast<Index>(forces.size());
+  Library library;
+  library.names.resize(forces.size());
+  for (std::size_t t = 0; t < states.q.size(); ++t) {
+    MatrixXd columns(states.q[t].size(), n);
+    for (Index j = 0; j < n; ++j)
+      for (Index i = 0; i < columns.rows(); ++i)
+        columns(i, j) = forces[static_cast<std::size_t>(j)].at(states.q[t][i], states.qDot[t][i]);
+    library.columns.push_back(std::move(columns));
+  }
+  MatrixXd normal = MatrixXd::Identity(n, n) / (deviation * deviation);
+  VectorXd right = VectorXd::Zero(n);
+  const Remains remains = remainsOf(likelihood, fit, states, library);
+  for (const MatrixXd& block : remains.normal) normal += block;
+  for (const VectorXd& block : remains.right) right += block;
+  return normal.ldlt().solve(right);
+}
+
 void findFormula(const Likelihood& likelihood, const Fit& fit, Unknown& unknown) {
   const NodeStates states = statesAtNodes(likelihood, fit);
   const Library library = libraryOf(likelihood, fit, states);

@@ -18,7 +18,7 @@ struct Adequacy {
   double inputScore = 0;           ///< largest |z| of innovations against past inputs
   double inputProbability = 1;     ///< of one as large by chance, over all inputs and lags
   std::string input;               ///< which input that was
-  RemainderEvidence remainder;     ///< nats that a further force with a cause would gain
+  RemainderEvidence remainder;     ///< nats that a further disturbance with a cause would gain
   bool sized = true, white = true, independent = true, causeless = true;
   bool adequate() const { return sized && white && independent && causeless; }
 };
@@ -36,14 +36,14 @@ struct HeldOutAdequacy {
 struct AdequacyOptions {
   double level = 0.001;
   int lags = 20;
-  double evidence = 2;        ///< nats that a further force with a cause may gain
+  double evidence = 2;        ///< nats that a further disturbance with a cause may gain
   double deviationError = 0;  ///< relative standard error of σ_y where it was estimated: widens
 };
 
 /// Tests the whitened innovations of a fit: their size (χ²), their autocorrelation (Ljung and Box,
 /// lags pooled over trials, less what fitted parameters make of white noise), their correlation
-/// with each input 0 to 0.2 s earlier, and whether what the fit leaves to chance follows the state
-/// or the inputs.
+/// with each input 0 to 0.2 s earlier, and whether what the fit leaves to chance has a Cause
+/// other than the sensor.
 Adequacy adequacy(const Likelihood& likelihood, const Fit& fit, const AdequacyOptions& options);
 
 /// Upper tail of χ² with n degrees of freedom, n > 0.

@@ -18,6 +18,7 @@ struct Judgement {
   bool strangeBefore = false, strangeAfter = false;
   bool heldOutWorse = false;   ///< trials that were held out speak against the chosen effects
   bool heldOutFarOff = false;  ///< their simulation is: Options::farOff
+  bool namelessWins = false;   ///< NamelessForce::wins()
 };
 
 struct Decision {
@@ -35,6 +36,7 @@ struct Decision {
 ///   was held out is strange or speaks against it: `unknown`, the chosen ones are a surrogate.
 /// - Chosen, but one of them, in a class of its own, has a number that shapes it at a bound: the
 ///   same, it is another law.
+/// - Chosen, but a force without a name explains more: the same.
 /// - Chosen: each in a class with its declared equivalents and with all that are no further behind
 ///   than `classWidth` in its place. Every class of one: `named`, or `parameter` if that is all
 ///   they are; otherwise `ambiguous`. Innovations of the wrong size, and held-out trials that are

@@ -112,6 +112,22 @@ struct RacedFormula {
   std::optional<Gap> heldOut;
 };
 
+/// A force without a name, a smooth function of the angle or of the speed alone, as it did in the
+/// race against the names (docs/decisions/047-forces-without-a-name.md).
+struct NamelessForce {
+  enum class Follows { angle, speed };
+  Follows follows = Follows::angle;
+  std::vector<std::size_t> besides;  ///< names that stay beside it: candidates
+  double logBayesFactor = 0;         ///< nats by which it improves on the base model, with those
+  /// Nats by which it beats the names, or the base model where there are none; Options::evidence
+  /// paid for each effect. Above 0 the names are makeshifts.
+  double ahead = 0;
+  std::vector<double> at;     ///< where the trials have been [unit of the output, or of its rate]
+  Eigen::VectorXd force;      ///< there [unit of the generalised force]
+  Eigen::VectorXd deviation;  ///< of that
+  bool wins() const { return ahead > 0; }
+};
+
 /// What was found. Everything up to `reached` is filled in.
 struct Verdict {
   Stage reached = Stage::calibrate;
@@ -148,6 +164,8 @@ struct Verdict {
   std::optional<Unknown> unknown;
   /// Where all terms of its formula follow the state and the data offer it (withFormula)
   std::optional<RacedFormula> formula;
+  /// Where something is missing, and the data offer it (withFormula)
+  std::optional<NamelessForce> nameless;
   double numericalError = 0;  ///< largest change at half the time step, in σ_y; 0: not offered
   int fits = 0;               ///< how many
 };
@@ -171,5 +189,6 @@ Eigen::VectorXd predictedDeviation(const Disagreement& data, const Verdict& verd
 const char* name(Finding finding);
 const char* name(Stage stage);
 const char* name(EffectKind kind);
+const char* name(NamelessForce::Follows follows);
 
 }  // namespace info::discover

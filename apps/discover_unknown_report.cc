@@ -1,0 +1,102 @@
+#include "discover_unknown_report.h"
+
+#include <fmt/format.h>
+
+#include "text.h"
+
+namespace app {
+namespace {
+
+using info::discover::NamelessForce;
+
+Paragraph formulaOf(const info::discover::Unknown& u) {
+  return {
+      fmt::format("As a formula, a surrogate: {} ({} nats more than the latent force alone, {} % "
+                  "of its power{}).",
+                  u.formula, numberText(u.evidence, 3), numberText(100 * u.explained, 2),
+                  u.stable ? "; chosen in at least 90 % of the bootstraps"
+                           : "; not stable, do not trust its form")};
+}
+
+Paragraph raced(const info::discover::RacedFormula& formula) {
+  std::string text = fmt::format(
+      "Fitted and raced like a name: {}, {} nats better than the model "
+      "without it",
+      formula.text, numberText(formula.logBayesFactor, 3));
+  const info::discover::Gap& gap = formula.heldOut ? *formula.heldOut : formula.gap;
+  if (gap.closedFromCalibrated)
+    text +=
+        fmt::format("; it closes {} % of the gap{}", numberText(100 * *gap.closedFromCalibrated, 3),
+                    formula.heldOut ? " on the trial that was held out" : "");
+  return {text + (formula.wins ? ". It leaves nothing else to be seen, and is in with_effect.osim."
+                               : ". It does not explain everything, or has rivals: do not take it "
+                                 "for the effect.")};
+}
+
+// "viscous damping, dry friction"; "" for none
+std::string besides(const DiscoverFindings& f, const NamelessForce& force) {
+  std::string names;
+  for (const std::size_t c : force.besides)
+    names += (names.empty() ? "" : ", ") + f.data.candidates()[c].name;
+  return names;
+}
+
+Figure curve(const DiscoverFindings& f, const NamelessForce& force) {
+  const bool angle = force.follows == NamelessForce::Follows::angle;
+  const ShownOutput& output = f.wording.outputs.front();
+  const std::string names = besides(f, force);
+  Figure figure{
+      .title = "A force without a name",
+      .xLabel = angle ? fmt::format("{} [{}]", output.name, output.unit)
+                      : fmt::format("Speed [{}/s]", output.unit),
+      .yLabel = f.wording.force,
+      .caption = fmt::format(
+          "Fitted together with all parameters, ±2 standard deviations: any smooth function "
+          "of the {} alone{}. Its form tells what to look for.",
+          info::discover::name(force.follows), names.empty() ? "" : ", beside " + names)};
+  Series series{.name = "force"};
+  for (std::size_t i = 0; i < force.at.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    series.x.push_back(f.wording.unit * force.at[i]);
+    series.y.push_back(force.force[k]);
+    series.bandLow.push_back(force.force[k] - 2 * force.deviation[k]);
+    series.bandHigh.push_back(force.force[k] + 2 * force.deviation[k]);
+  }
+  figure.series.push_back(std::move(series));
+  return figure;
+}
+
+}  // namespace
+
+std::vector<ReportPart> withoutName(const DiscoverFindings& f) {
+  if (!f.verdict.unknown) return {};
+  const info::discover::Unknown& u = *f.verdict.unknown;
+  std::vector<ReportPart> parts;
+  parts.emplace_back(Section{"Something without a name"});
+  parts.emplace_back(Paragraph{
+      fmt::format("The missing force has a root mean square of {} {}; {} % of its power lies "
+                  "within 0.5 Hz of {} Hz.",
+                  numberText(u.forceSize, 3), f.wording.forceUnit, numberText(100 * u.peakShare, 2),
+                  numberText(u.peakFrequency, 2))});
+  if (!u.formula.empty()) parts.emplace_back(formulaOf(u));
+  if (f.verdict.formula) parts.emplace_back(raced(*f.verdict.formula));
+  if (f.verdict.nameless && f.verdict.nameless->wins()) {
+    parts.emplace_back(Paragraph{fmt::format(
+        "A force that follows the {} alone, whatever its form, is {} nats ahead of {}.",
+        info::discover::name(f.verdict.nameless->follows), numberText(f.verdict.nameless->ahead, 3),
+        f.verdict.effects.empty() ? "the model without it"
+                                  : "the names above: they are makeshifts")});
+    parts.emplace_back(curve(f, *f.verdict.nameless));
+  }
+  return parts;
+}
+
+std::string namesAgainstForces(const DiscoverFindings& f) {
+  if (!f.verdict.nameless || f.verdict.nameless->wins()) return "";
+  return fmt::format(
+      "A force without a name, any smooth function of the angle or of the speed alone, is {} nats "
+      "behind the names.",
+      numberText(-f.verdict.nameless->ahead, 3));
+}
+
+}  // namespace app

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "info/discover/discover.h"
+#include "search.h"
+
+// Not public.
+
+namespace info::discover {
+
+/// Races forces without a name, each a smooth function of the angle or of the speed alone, against
+/// the names that a search has chosen, or against none
+/// (docs/decisions/047-forces-without-a-name.md). The better one of them; nothing if the data do
+/// not offer formulas, or if neither could be fitted.
+/// @param smoothing  the base model with latent force: where the arm really goes
+/// @param fits  grows by how many there were
+std::optional<NamelessForce> raceNameless(const Search& search, const Effects& chosen,
+                                          const Fit& smoothing, const Options& options,
+                                          double outputDeviation, const Search::Report& report,
+                                          int& fits);
+
+}  // namespace info::discover
