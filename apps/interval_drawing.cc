@@ -4,14 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "text.h"
 
 namespace app {
 namespace {
 
-constexpr double width = 960, rowHeight = 30, topMargin = 34, bottomMargin = 52, left = 300,
-                 right = 930;
+constexpr double width = 960, rowHeight = 30, topMargin = 34, bottomMargin = 52, right = 930;
+// Names stand left of the scale, which gives way to long ones as far as that. A character is 7.4
+// wide on average (DejaVu Sans of 15), names of many capitals more.
+constexpr double leastLeft = 300, mostLeft = 640, gap = 14, perCharacter = 8.2;
+
+// Of UTF-8 text.
+std::ptrdiff_t characters(const std::string& text) {
+  return std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; });
+}
 
 /// 1, 2 or 5 times a power of ten, so that about six steps fit into the span.
 double tickStep(double span) {
@@ -24,6 +32,7 @@ double tickStep(double span) {
 
 struct Scale {
   double low, high;
+  double left;  ///< where `low` is drawn
   double place(double value) const {
     const double inside = std::clamp(value, low, high);
     return left + (inside - low) / (high - low) * (right - left);
@@ -47,7 +56,10 @@ Scale scaleOf(const std::vector<IntervalRow>& rows) {
     }
   }
   const double margin = high > low ? 0.05 * (high - low) : 1;
-  return {low - margin, high + margin};
+  std::ptrdiff_t longest = 0;
+  for (const IntervalRow& row : rows) longest = std::max(longest, characters(row.name));
+  return {low - margin, high + margin,
+          std::clamp(gap + perCharacter * static_cast<double>(longest), leastLeft, mostLeft)};
 }
 
 std::string bar(const Scale& scale, double y, const std::pair<double, double>& ends,
@@ -62,6 +74,7 @@ std::string bar(const Scale& scale, double y, const std::pair<double, double>& e
 
 std::string intervalDrawing(const std::vector<IntervalRow>& rows, const std::string& xLabel) {
   const Scale scale = scaleOf(rows);
+  const double left = scale.left;
   const double bottom = topMargin + rowHeight * static_cast<double>(rows.size());
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" width=\"100%\" "
@@ -93,8 +106,14 @@ std::string intervalDrawing(const std::vector<IntervalRow>& rows, const std::str
   // rows
   double y = topMargin + rowHeight / 2;
   for (const IntervalRow& row : rows) {
-    svg += fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>\n", left - 14,
-                       y + 5, htmlText(row.name));
+    // one that is longer still is narrowed rather than cut off
+    const double room = left - gap;
+    const std::string narrow =
+        perCharacter * static_cast<double>(characters(row.name)) > room
+            ? fmt::format(" textLength=\"{:.1f}\" lengthAdjust=\"spacingAndGlyphs\"", room)
+            : "";
+    svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\"{}>{}</text>\n",
+                       left - gap, y + 5, narrow, htmlText(row.name));
     if (row.before) svg += bar(scale, y, *row.before, "#bbbbbb", 10);
     if (row.interval) svg += bar(scale, y, *row.interval, "#0072B2", 4);
     if (row.estimate) {

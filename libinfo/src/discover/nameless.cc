@@ -117,7 +117,7 @@ void drawInto(NamelessForce& drawn, const Family& family, const Fit& fit,
   for (int i = 0; i < kPoints; ++i) {
     const double x = family.lowest + (family.highest - family.lowest) * i / (kPoints - 1);
     drawn.at.push_back(x);
-    VectorXd terms(static_cast<Index>(n));
+    VectorXd terms(static_cast<Index>(n));  // which look at one of both alone
     for (std::size_t k = 0; k < n; ++k) terms[static_cast<Index>(k)] = family.terms[k].at(x, x);
     double sum = terms[0];
     VectorXd slope = values[0] * terms;  // in r_k

@@ -73,8 +73,7 @@ class Translation {
  private:
   const Disagreement& from_;
   const Disagreement& to_;
-  std::vector<Index>
-      source_;  // for each quantity of the other catalogue where it comes from, or −1
+  std::vector<Index> source_;  // where each quantity of the other catalogue comes from, or −1
 };
 
 }  // namespace
