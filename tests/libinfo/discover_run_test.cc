@@ -227,10 +227,10 @@ TEST(Discover, SaysThatTheModelCannotBeSimulated) {
   EXPECT_THROW(run(Fragile(drawn(5, 2, 1.1), true), options), std::domain_error);
 }
 
-// As drawn(), but beyond a gain of 1.02 it falls unless a force holds it.
+// As drawn(), but beyond a gain of 1.02, or a push of 1, it falls unless a force holds it.
 class Falling : public LinearDisagreement {
  public:
-  explicit Falling(LinearDisagreement data) : LinearDisagreement(std::move(data)) {}
+  Falling(LinearDisagreement data, bool push) : LinearDisagreement(std::move(data)), push_(push) {}
   Prediction predict(int trial, const VectorXd& values, const VectorXd& latent,
                      const std::vector<std::size_t>& wanted, bool latentToo) const override {
     Prediction p = LinearDisagreement::predict(trial, values, latent, wanted, latentToo);
@@ -244,16 +244,27 @@ class Falling : public LinearDisagreement {
   }
 
  private:
-  static bool falls(const VectorXd& values, const VectorXd& latent) {
-    return values[0] > 1.02 && !(latent.size() != 0 && latent.cwiseAbs().maxCoeff() > 0.3);
+  bool falls(const VectorXd& values, const VectorXd& latent) const {
+    return (push_ ? values[1] + values[2] > 1 : values[0] > 1.02) &&
+           !(latent.size() != 0 && latent.cwiseAbs().maxCoeff() > 0.3);
   }
+  bool push_;
 };
 
 TEST(Discover, GoesOnWhereTheBaseModelStandsByItsLatentForceOnly) {
-  const Verdict v = run(Falling(drawn(5, 2, 1.3)), optionsOfDrawn());
+  const Verdict v = run(Falling(drawn(5, 2, 1.3), false), optionsOfDrawn());
   EXPECT_EQ(v.reached, Stage::finished);
   ASSERT_EQ(v.effects.size(), 1U);
   EXPECT_NEAR(v.values[0], 1.3, 0.1);
+  EXPECT_NEAR(v.effects[0].estimates[0].value, 2, 4 * v.effects[0].estimates[0].deviation);
+}
+
+// Without its force it stands nowhere with that push, whatever the other parameters are.
+TEST(Discover, GoesOnWhereAnEffectStandsByTheLatentForceOnly) {
+  const Verdict v = run(Falling(drawn(5, 2, 1.1), true), optionsOfDrawn());
+  EXPECT_EQ(v.reached, Stage::finished);
+  ASSERT_FALSE(v.effects.empty());
+  EXPECT_LT(v.effects[0].candidate, 2U);  // push or shove
   EXPECT_NEAR(v.effects[0].estimates[0].value, 2, 4 * v.effects[0].estimates[0].deviation);
 }
 

@@ -253,13 +253,17 @@ const Fit& Search::simulation(const Effects& effects) {
     const Noise still{output_, 0, options_.latentTime};
     entry.simulation = likelihood_->tryFit(hypothesis, still, entry.fit.values, {}, {25, 0.02});
     if (!entry.simulation) {  // it stands by its latent force only
-      VectorXd values = nominalValues(data_);
+      const VectorXd nominal = nominalValues(data_);
+      VectorXd values = nominal;
       for (const std::size_t e : effects)
         for (const std::size_t i : ownQuantities(e)) {
           const auto q = static_cast<Index>(data_.candidates()[e].quantities[i]);
           values[q] = entry.fit.values[q];
         }
-      entry.simulation = likelihood_->fit(hypothesis, still, values, {}, {25, 0.02});
+      entry.simulation = likelihood_->tryFit(hypothesis, still, values, {}, {25, 0.02});
+      // nor may the nominal model stand with the effects as they are beside other parameters
+      if (!entry.simulation)
+        entry.simulation = likelihood_->fit(hypothesis, still, nominal, {}, {25, 0.02});
     }
     ++fits_;
   }
