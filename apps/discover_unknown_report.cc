@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "text.h"
 
 namespace app {
@@ -80,7 +82,7 @@ std::vector<ReportPart> withoutName(const DiscoverFindings& f) {
                   numberText(u.peakFrequency, 2))});
   if (!u.formula.empty()) parts.emplace_back(formulaOf(u));
   if (f.verdict.formula) parts.emplace_back(raced(*f.verdict.formula));
-  if (f.verdict.nameless && f.verdict.nameless->wins()) {
+  if (f.verdict.nameless && f.verdict.nameless->wins) {
     parts.emplace_back(Paragraph{fmt::format(
         "A force that follows the {} alone, whatever its form, is {} nats ahead of {}.",
         info::discover::name(f.verdict.nameless->follows), numberText(f.verdict.nameless->ahead, 3),
@@ -92,11 +94,13 @@ std::vector<ReportPart> withoutName(const DiscoverFindings& f) {
 }
 
 std::string namesAgainstForces(const DiscoverFindings& f) {
-  if (!f.verdict.nameless || f.verdict.nameless->wins()) return "";
+  const auto& force = f.verdict.nameless;
+  if (!force || force->wins || f.verdict.effects.empty()) return "";
   return fmt::format(
       "A force without a name, any smooth function of the angle or of the speed alone, is {} nats "
-      "behind the names.",
-      numberText(-f.verdict.nameless->ahead, 3));
+      "{}.",
+      numberText(std::abs(force->ahead), 3),
+      force->ahead > 0 ? "ahead of the names, too little to doubt them" : "behind the names");
 }
 
 }  // namespace app

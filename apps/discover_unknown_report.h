@@ -13,7 +13,7 @@ namespace app {
 std::vector<ReportPart> withoutName(const DiscoverFindings& findings);
 
 /// How far the best force without a name is behind the names, in a sentence; "" where it was not
-/// raced, or is not behind.
+/// raced, where it wins, or where there are no names.
 std::string namesAgainstForces(const DiscoverFindings& findings);
 
 }  // namespace app

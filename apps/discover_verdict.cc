@@ -179,7 +179,8 @@ ordered_json verdictJson(const DiscoverFindings& f) {
     json["force_without_a_name"] = {{"follows", info::discover::name(force.follows)},
                                     {"beside", besides},
                                     {"log_bayes_factor", number(force.logBayesFactor)},
-                                    {"nats_ahead_of_names", number(force.ahead)}};
+                                    {"nats_ahead_of_names", number(force.ahead)},
+                                    {"wins", force.wins}};
   }
   if (verdict.unknown) {
     json["unknown"] = {{"formula", verdict.unknown->formula},

@@ -88,6 +88,7 @@ py::object namelessOf(const ElbowDisagreement& data, const Verdict& verdict) {
   for (const std::size_t c : force.besides) besides.push_back(data.candidates()[c].id);
   return results("follows"_a = info::discover::name(force.follows), "beside"_a = besides,
                  "log_bayes_factor"_a = force.logBayesFactor, "nats_ahead_of_names"_a = force.ahead,
+                 "wins"_a = force.wins,
                  "at"_a = Eigen::VectorXd(Eigen::VectorXd::Map(
                      force.at.data(), static_cast<Eigen::Index>(force.at.size()))),
                  "force"_a = force.force, "sd"_a = force.deviation);
@@ -167,8 +168,9 @@ void defineDiscovery(py::module_& module) {
       "[N m] of the missing force, raced: the formula built into the model and raced like a name); "
       "where something is missing force_without_a_name, the best smooth function of the angle or "
       "of "
-      "the speed alone (follows, beside: names that stay, log_bayes_factor, nats_ahead_of_names: "
-      "above 0 the names are makeshifts; force and its sd [N m] at angles [rad] or speeds "
+      "the speed alone (follows, beside: names that stay, log_bayes_factor, nats_ahead_of_names, "
+      "wins: "
+      "the names are makeshifts; force and its sd [N m] at angles [rad] or speeds "
       "[rad/s]). "
       "Trials may have a known mass in the hand. noise [rad]: from the data unless given. Further "
       "keywords as replay has them.");

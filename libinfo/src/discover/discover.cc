@@ -259,7 +259,7 @@ class Work {
       verdict_.nameless = raceNameless(
           *search_, chosen_, smoothing, options_, verdict_.outputDeviation,
           [this](const std::string& doing) { report(stage_, fraction_, doing); }, namelessFits_);
-      judgement.namelessWins = verdict_.nameless && verdict_.nameless->wins();
+      judgement.namelessWins = verdict_.nameless && verdict_.nameless->wins;
       if (judgement.namelessWins) decision = decide(data_.candidates(), judgement, options_);
     }
     verdict_.finding = decision.finding;
@@ -465,7 +465,7 @@ class Work {
   }
 
   std::string nameless() const {
-    if (!verdict_.nameless || !verdict_.nameless->wins()) return "";
+    if (!verdict_.nameless || !verdict_.nameless->wins) return "";
     return fmt::format("; a force that follows the {} alone explains {}",
                        name(verdict_.nameless->follows), chosen_.empty() ? "some of it" : "more");
   }

@@ -167,6 +167,7 @@ std::optional<NamelessForce> raceNameless(const Search& search, const Effects& c
       best->follows = family.follows;
       best->logBayesFactor = race.at(all).score - race.at({}).score;
       best->ahead = ahead;
+      best->wins = ahead > options.remainder;
       drawInto(*best, family, race.at(all).fit, widened->candidates()[*formula]);
       for (const std::size_t e : rest)
         best->besides.push_back(*placeOf(search.data(), widened->candidates()[e].id));

@@ -18,7 +18,7 @@ struct Judgement {
   bool strangeBefore = false, strangeAfter = false;
   bool heldOutWorse = false;   ///< trials that were held out speak against the chosen effects
   bool heldOutFarOff = false;  ///< their simulation is: Options::farOff
-  bool namelessWins = false;   ///< NamelessForce::wins()
+  bool namelessWins = false;   ///< NamelessForce::wins
 };
 
 struct Decision {

@@ -41,7 +41,8 @@ struct Options {
   double latentTolerance = 0.075;  ///< up to this size the latent force may be noise of the inputs
   double evidence = 5;             ///< nats that a name must be ahead of the hypothesis without it
   double significance = 3.5;       ///< deviations that its amplitude must differ from absence by
-  double remainder = 3;            ///< nats that a further force with a cause may gain
+  double remainder =
+      3;  ///< nats that a further disturbance with a cause may gain, or a force without a name
   double classWidth = 4.6;         ///< nats: rivals no further behind than this stay in the class
   double surprise = 3;             ///< prior deviations beyond which a parameter is in error
   double level = 0.001;            ///< of every test of adequacy
@@ -120,12 +121,12 @@ struct NamelessForce {
   std::vector<std::size_t> besides;  ///< names that stay beside it: candidates
   double logBayesFactor = 0;         ///< nats by which it improves on the base model, with those
   /// Nats by which it beats the names, or the base model where there are none; Options::evidence
-  /// paid for each effect. Above 0 the names are makeshifts.
+  /// paid for each effect.
   double ahead = 0;
+  bool wins = false;          ///< by more than Options::remainder: the names are makeshifts
   std::vector<double> at;     ///< where the trials have been [unit of the output, or of its rate]
   Eigen::VectorXd force;      ///< there [unit of the generalised force]
   Eigen::VectorXd deviation;  ///< of that
-  bool wins() const { return ahead > 0; }
 };
 
 /// What was found. Everything up to `reached` is filled in.
