@@ -348,17 +348,26 @@ TEST(JointFit, IsDoneWhereNothingIsToBeHadAtAKink) {
 // Linear, but without derivatives beyond a gain of 1.1.
 class Rough : public LinearDisagreement {
  public:
-  using LinearDisagreement::LinearDisagreement;
+  Rough(int trials, int samples, double beyond)
+      : LinearDisagreement(trials, samples), beyond_(beyond) {}
   Prediction predict(int trial, const VectorXd& values, const VectorXd& latent,
                      const std::vector<std::size_t>& wanted, bool latentToo) const override {
     Prediction p = LinearDisagreement::predict(trial, values, latent, wanted, latentToo);
-    if (values[0] > 1.1) p.gamma.setConstant(std::nan(""));
+    if (values[0] > 1.1) p.gamma.setConstant(beyond_);
     return p;
   }
+
+ private:
+  double beyond_;
 };
 
-TEST(JointFit, StaysWhereThereAreDerivatives) {
-  Rough data(1, 80);
+class Derivatives : public ::testing::TestWithParam<double> {};
+
+// of 1e200 the squares are none
+INSTANTIATE_TEST_SUITE_P(JointFit, Derivatives, ::testing::Values(std::nan(""), 1e200));
+
+TEST_P(Derivatives, AFitStaysWhereTheyAreNumbers) {
+  Rough data(1, 80, GetParam());
   VectorXd values = nominalValues(data);
   values[0] = 1.3;
   data.draw(5, values, kOutput, 0, kTime);
@@ -424,6 +433,8 @@ TEST(OutputDeviation, ComesFromThirdDifferences) {
 TEST(Truncated, MassesAgreeWithQuadrature) {
   EXPECT_NEAR(logNormalWithin(-1, 2), std::log(0.818594614120364), 1e-12);
   EXPECT_NEAR(logNormalWithin(30, 31), -454.321243956343, 1e-9);
+  EXPECT_EQ(logNormalWithin(1, -1), -HUGE_VAL);
+  EXPECT_EQ(logNormalWithin(HUGE_VAL, -HUGE_VAL), -HUGE_VAL);
   double sum = 0;
   for (int i = 0; i < 200000; ++i) {
     const double x = (i + 0.5) * 1e-5;

@@ -21,7 +21,7 @@ DampedSystem::DampedSystem(const Blocks& blocks, double damping)
     MatrixXd C = blocks.latent[t];
     C.diagonal().array() += damping;
     factors_.push_back(C.llt());
-    if (blocks.coupling[t].rows() == 0) continue;
+    if (blocks.coupling[t].size() == 0) continue;
     const MatrixXd half = factors_[t].matrixL().solve(blocks.coupling[t]);
     reduced_.noalias() -= half.transpose() * half;
   }
@@ -30,7 +30,7 @@ DampedSystem::DampedSystem(const Blocks& blocks, double damping)
 VectorXd DampedSystem::pull(const JointVector& right) const {
   VectorXd pull = right.xi;
   for (std::size_t t = 0; t < factors_.size(); ++t)
-    if (blocks_.coupling[t].rows() > 0)
+    if (blocks_.coupling[t].size() > 0)
       pull.noalias() -= blocks_.coupling[t].transpose() * factors_[t].solve(right.eta[t]);
   return pull;
 }

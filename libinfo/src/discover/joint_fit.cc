@@ -278,11 +278,14 @@ std::optional<Fit> Likelihood::tryFit(const Hypothesis& hypothesis, const Noise&
     return linear;
   };
   const VectorXd tilt = options.tilt.size() == 0 ? VectorXd(VectorXd::Zero(p)) : options.tilt;
-  // ∞ also where a simulation has no derivatives: nothing goes on from there
+  // ∞ also where a simulation has no derivatives, or such that their squares are no numbers:
+  // nothing goes on from there
   const auto costOf = [&](const std::vector<Linear>& linear, const Point& at) {
     double squares = 0;
     for (const Linear& l : linear) {
-      if (!l.gamma.allFinite() || !l.latent.allFinite()) return kInfinity;
+      if (!std::isfinite((l.gamma.squaredNorm() + l.latent.squaredNorm()) /
+                         (noise.output * noise.output)))
+        return kInfinity;
       squares += l.residuals.squaredNorm();
     }
     return cost(noise, at, squares) + tilt.dot(at.xi);

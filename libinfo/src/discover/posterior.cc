@@ -40,8 +40,8 @@ void Likelihood::finish(Fit& fit, const std::vector<Linear>& trials, const Vecto
     const auto block = latentBlock(l.latent, fit.noise.output).llt();
     const MatrixXd L = block.matrixL();
     logDeterminant += 2 * L.diagonal().array().log().sum();
-    const MatrixXd half =
-        block.matrixL().solve(MatrixXd(precision * l.latent.transpose() * l.gamma));
+    MatrixXd half = precision * l.latent.transpose() * l.gamma;
+    if (p > 0) block.matrixL().solveInPlace(half);  // Eigen refers to what an empty one has not
     R.noalias() -= half.transpose() * half;
     const MatrixXd inverse = block.matrixL().solve(MatrixXd::Identity(L.rows(), L.rows()));
     fit.latentPower += fit.eta[t].squaredNorm();

@@ -1,6 +1,7 @@
 #include "info/discover/truncated.h"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace info::discover {
@@ -14,6 +15,7 @@ double logNormalBelow(double x) {
 }
 
 double logNormalWithin(double lowest, double highest) {
+  if (lowest > highest) return -std::numeric_limits<double>::infinity();
   // in the tail that is the smaller one, differences keep their digits
   if (lowest > 0) return logNormalWithin(-highest, -lowest);
   const double upper = logNormalBelow(highest), lower = logNormalBelow(lowest);
