@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "discover_fit_report.h"
 #include "discover_unknown_report.h"
@@ -52,11 +53,14 @@ class Writer {
     effects();
     if (!f_.verdict.finalists.empty()) evidence();
     for (ReportPart& part : whereTheyDisagree(f_)) report_.details.push_back(std::move(part));
-    section("How well it fits");
-    report_.details.emplace_back(gapTable(f_));
-    report_.details.emplace_back(adequacyTable(f_));
-    for (ReportPart& part : withoutName(f_)) report_.details.push_back(std::move(part));
-    parameters();
+    // stopped before there was a base model?
+    if (f_.verdict.base.size() > 0) {
+      section("How well it fits");
+      if (!std::isnan(f_.verdict.gap.floor)) report_.details.emplace_back(gapTable(f_));
+      report_.details.emplace_back(adequacyTable(f_));
+      for (ReportPart& part : withoutName(f_)) report_.details.push_back(std::move(part));
+      parameters();
+    }
     detectability();
     section("Next experiment");
     say(f_.nextExperiment);

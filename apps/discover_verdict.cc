@@ -133,8 +133,11 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   json["gap"] = {{"train", gapJson(f, verdict.gap)},
                  {"held_out", verdict.heldOut ? gapJson(f, *verdict.heldOut) : nullptr}};
   json["held_out_fitted"] = verdict.heldOutFitted;
-  json["innovations"] = {{"before", adequacyJson(verdict.before, verdict.latentSizeBefore)},
-                         {"after", adequacyJson(verdict.after, verdict.latentSizeAfter)}};
+  json["innovations"] = {{"before", nullptr}, {"after", nullptr}};
+  if (verdict.base.size() > 0) {  // else stopped before there was a base model
+    json["innovations"] = {{"before", adequacyJson(verdict.before, verdict.latentSizeBefore)},
+                           {"after", adequacyJson(verdict.after, verdict.latentSizeAfter)}};
+  }
   if (verdict.heldOutBefore && verdict.heldOutAfter) {
     json["innovations"]["held_out_mean_square"] = {
         {"before", number(verdict.heldOutBefore->meanSquare)},

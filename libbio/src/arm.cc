@@ -57,6 +57,7 @@ Arm::Arm(const Model& model, const ArmOptions& options, const Arm* like,
           fmt::format("muscle '{}' is a {}; only Schutte1993Muscle_Deprecated can be simulated",
                       muscle.name, muscle.className));
     }
+    if (options.tabulatePaths && !like) path.tabulate(skeleton_);
     for (const std::string& note : path.notes()) notes_.push_back(note);
     for (const PathSwitch& s : path.switches()) {
       const bool known =

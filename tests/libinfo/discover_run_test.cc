@@ -276,6 +276,28 @@ TEST(Discover, StopsWhenToldTo) {
   const Verdict v = run(data, options);
   EXPECT_EQ(v.reached, Stage::localise);
   EXPECT_EQ(v.base.size(), static_cast<Index>(data.quantities().size()));
+  EXPECT_EQ(v.finalists.size(), 1U);  // the base
+  EXPECT_FALSE(v.localisation.times.empty());
+}
+
+// What has been raced by then is told, with its evidence.
+TEST(Discover, TellsWhatItHasRacedWhenItIsStopped) {
+  const LinearDisagreement data = drawn(5, 2, 1.1);
+  Options options;
+  options.outputDeviation = kOutput;
+  const Verdict whole = run(data, options);
+  ASSERT_EQ(whole.effects.size(), 1U);
+  options.progress = [](const Progress& p) { return p.stage < Stage::decide; };
+  const Verdict v = run(data, options);
+  EXPECT_NE(v.reached, Stage::finished);
+  EXPECT_EQ(v.finding, Finding::none);
+  EXPECT_TRUE(v.effects.empty());
+  ASSERT_EQ(v.finalists.size(), whole.finalists.size());
+  for (std::size_t i = 0; i < v.finalists.size(); ++i)
+    EXPECT_EQ(v.finalists[i].logEvidence, whole.finalists[i].logEvidence);
+  EXPECT_THAT(v.sentence, testing::HasSubstr("stopped before the end"));
+  EXPECT_THAT(v.sentence,
+              testing::HasSubstr(data.candidates()[whole.effects[0].candidate].id + " leads"));
 }
 
 // As drawn(), with a simulation that changes by `error` deviations of σ_y at half the step.

@@ -18,6 +18,7 @@ struct ArmOptions {
   std::vector<std::string>
       wrapAsCylinder;     ///< ellipsoids with two equal semi-axes to take as cylinders
   SchutteOptions muscle;  ///< activation floor, treatment of negative forces
+  bool tabulatePaths = false;  ///< MusclePath::tabulate; pays after a few simulations
 };
 
 /// One muscle ready to be simulated.
@@ -38,7 +39,8 @@ class Arm {
   Arm(const Model& model, const ArmOptions& options);
 
   /// The same, quicker, for a model that differs from another arm's in numbers alone: paths are
-  /// taken from that arm, but for those of the muscles named. Its remarks are not repeated.
+  /// taken from that arm, tables and all, but for those of the muscles named, which get no tables.
+  /// Its remarks are not repeated.
   /// @param like    made with the same options
   /// @param shaped  muscles one of whose path points or wrap objects differs
   Arm(const Model& model, const ArmOptions& options, const Arm& like,

@@ -2,11 +2,13 @@
 
 #include <Eigen/Dense>
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "bio/compiled_path.h"
 #include "bio/model.h"
+#include "bio/path_table.h"
 #include "bio/rigid_motion.h"
 #include "bio/skeleton.h"
 
@@ -75,6 +77,13 @@ class MusclePath {
   /// What evaluation works on.
   const CompiledPath& compiled() const { return compiled_; }
 
+  /// From now on length<1> looks into a table (path_table.h) over the range of the one free
+  /// coordinate and a tenth of it on either side; copies share it. Nothing is done where the
+  /// skeleton has more coordinates, or that one no range.
+  void tabulate(const Skeleton& skeleton);
+  /// Null unless tabulated.
+  const PathTable* table() const { return table_.get(); }
+
   /// `moved` is what Skeleton::motions(q, ·) returned.
   template <int N>
   LengthJet<N> length(const Eigen::Matrix<double, N, 1>& q,
@@ -102,6 +111,7 @@ class MusclePath {
 
   CompiledPath compiled_;
   PathParameters<double> parameters_;
+  std::shared_ptr<const PathTable> table_;
 };
 
 // Compiled once, in src/instances; other scalars need bio/path_length.h.

@@ -269,6 +269,17 @@ LengthJet<N, T> noLength() {
 template <int N>
 LengthJet<N> MusclePath::length(const Eigen::Matrix<double, N, 1>& q,
                                 const RigidMotion<double, N>* moved) const {
+  if constexpr (N == 1) {
+    PathTable::Value found;
+    if (table_ && table_->find(q[0], found)) {
+      LengthJet<1> jet;
+      jet.length = found.length;
+      jet.dL_dq[0] = found.slope;
+      jet.d2L_dq2(0, 0) = found.curvature;
+      jet.wrapped = found.wrapped;
+      return jet;
+    }
+  }
   const PathVariant& variant = activeVariant(compiled_, q);
   LengthJet<N> jet = detail::noLength<N, double>();
   jet.length = variant.fixedLength;

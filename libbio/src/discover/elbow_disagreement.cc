@@ -49,12 +49,18 @@ ExternalForce together(const ExternalForce& external, const std::vector<double>&
   return {times, sum};
 }
 
+/// There will be thousands of simulations.
+ArmOptions withTables(ArmOptions arm) {
+  arm.tabulatePaths = true;
+  return arm;
+}
+
 }  // namespace
 
 ElbowDisagreement::ElbowDisagreement(const Model& model, const ArmOptions& arm,
                                      const std::string& coordinate, std::vector<Trial> trials,
                                      ElbowOptions options)
-    : widest_(widestModel(model, arm, coordinate, options.without, options.formula)),
+    : widest_(widestModel(model, withTables(arm), coordinate, options.without, options.formula)),
       options_(std::move(options)),
       quantities_(widest_.quantities()),
       nuisances_(widest_.nuisances()) {
@@ -218,7 +224,7 @@ Trajectory ElbowDisagreement::simulate(const OfTrial& one, const VectorXd& value
   const ParameterCatalogue::Setting setting = settingAt(one, values, {});
   SimulationOptions simulation = simulationOf(one, latent, widest_.sensorAt(values).clock);
   simulation.step *= stepFactor;
-  const Arm arm(setting.model, widest_.armOptions());
+  const Arm arm = widest_.armOf(setting);
   return simulateSetting(arm, setting, excitationFor(one, arm), simulation);
 }
 
@@ -299,7 +305,7 @@ ElbowDisagreement::Prediction ElbowDisagreement::predict(int trial, const Vector
   try {
     options.simulation = simulationOf(one, latent, sensor.clock);
     if (latentToo) options.externalNodes = {widest_.freeIndex(), one.nodes};
-    const Arm arm(setting.model, widest_.armOptions());
+    const Arm arm = widest_.armOf(setting);
     s = simulateWithSensitivities(arm, setting, directions, excitationFor(one, arm), options);
     if (latentToo) {
       Trajectory atNodes;  // the nearest rows

@@ -256,6 +256,26 @@ ParameterCatalogue::Setting WidestModel::settingAt(const VectorXd& values,
   return setting;
 }
 
+Arm WidestModel::armOf(const ParameterCatalogue::Setting& setting) const {
+  const Model& model = setting.model;
+  const auto isShaped = [&](std::size_t m) {
+    const Path& path = model.muscles[m].path;
+    if (path != base_.muscles[m].path || !base_.muscles[m].enabled) return true;
+    for (std::size_t w = 0; w < model.wrapObjects.size(); ++w) {
+      if (model.wrapObjects[w] == base_.wrapObjects[w]) continue;
+      for (const PathWrap& over : path.wraps) {
+        if (over.wrapObject == model.wrapObjects[w].name) return true;
+      }
+    }
+    return false;
+  };
+  std::vector<std::string> shaped;
+  for (std::size_t m = 0; m < model.muscles.size(); ++m) {
+    if (model.muscles[m].enabled && isShaped(m)) shaped.push_back(model.muscles[m].name);
+  }
+  return {model, armOptions_, *arm_, shaped};
+}
+
 ParameterDirection WidestModel::direction(const VectorXd& values, std::size_t quantity) const {
   const Meaning& meaning = meanings_.at(quantity);
   ParameterDirection direction;

@@ -85,7 +85,7 @@ class Work {
       verdict_.reached = Stage::finished;
       report(Stage::finished, 1, "");
     } catch (const Stopped&) {
-      verdict_.sentence = "stopped before the end";
+      verdict_.sentence = "stopped before the end" + keepWhatIsThere();
     }
     if (search_) verdict_.fits = search_->fits() + namelessFits_;
     return verdict_;
@@ -96,6 +96,26 @@ class Work {
     fraction_ = std::max(fraction_, fraction);
     if (options_.progress && !options_.progress({stage, fraction_, doing})) throw Stopped();
   }
+
+  // What was raced before the search was stopped, and where the base disagrees. Says which name
+  // leads.
+  std::string keepWhatIsThere() {
+    if (!search_ || search_->entries().count({}) == 0 || !search_->at({}).works()) return "";
+    judge();
+    const Entry& entry = search_->at({});
+    const Fit& map = entry.simulation ? *entry.simulation : entry.fit;
+    if (entry.fit.noise.latent > 0)
+      verdict_.localisation = localise(search_->likelihood(), map, entry.fit, mapOptions());
+    const auto best = std::max_element(
+        verdict_.finalists.begin(), verdict_.finalists.end(),
+        [](const Finalist& a, const Finalist& b) { return a.logEvidence < b.logEvidence; });
+    if (best->effects.empty()) return "";
+    return fmt::format("; of {} fitted so far {} leads, {:.1f} nats from the base model",
+                       verdict_.finalists.size() - 1, describe(data_, best->effects),
+                       best->logEvidence);
+  }
+
+  LocaliseOptions mapOptions() const { return {0.25, 8, 6, options_.falseDiscoveries}; }
 
   void prepare(const Known* known) {
     AdequacyOptions& test = test_;
@@ -156,6 +176,7 @@ class Work {
 
   void judge() {
     const double ofBase = search_->at({}).score;
+    verdict_.finalists.clear();
     for (const auto& [effects, entry] : search_->entries()) {
       if (!entry.works()) continue;
       Finalist f;
@@ -290,8 +311,7 @@ class Work {
       map = refit(before, after.fit.noise.latent);
     else if (decision.finding == Finding::none && small)
       map = before.fit;
-    verdict_.localisation =
-        localise(search_->likelihood(), map, smoothing, {0.25, 8, 6, options_.falseDiscoveries});
+    verdict_.localisation = localise(search_->likelihood(), map, smoothing, mapOptions());
     for (const Screened& s : search_->screen(chosen_, false))
       verdict_.detectability.push_back(
           {s.candidate, s.information > 0 ? 5 / std::sqrt(s.information) : HUGE_VAL});

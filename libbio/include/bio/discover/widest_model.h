@@ -131,6 +131,8 @@ class WidestModel {
   /// @param wanted  quantities whose derivatives will be asked for: their laws are on
   ParameterCatalogue::Setting settingAt(const Eigen::VectorXd& values,
                                         const std::vector<std::size_t>& wanted) const;
+  /// The arm of a setting; paths are those of arm() where their numbers are.
+  Arm armOf(const ParameterCatalogue::Setting& setting) const;
   /// How the numbers follow a quantity; empty for one of the sensor.
   ParameterDirection direction(const Eigen::VectorXd& values, std::size_t quantity) const;
   SensorLaw sensorAt(const Eigen::VectorXd& values) const;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -10,11 +11,11 @@ namespace info::discover {
 /// How far simulation (no latent force) and data are apart, root mean square over all samples, in
 /// the unit of the output.
 struct Gap {
-  double nominal = 0;     ///< base model as it came, starts fitted
-  double calibrated = 0;  ///< base model after calibration
-  double after = 0;       ///< with the effects
-  double floor = 0;       ///< σ_y
-  double range = 0;       ///< of the data, for normalised errors
+  double nominal = NAN;     ///< base model as it came, starts fitted; NaN: not looked at yet
+  double calibrated = NAN;  ///< base model after calibration
+  double after = NAN;       ///< with the effects
+  double floor = NAN;       ///< σ_y
+  double range = NAN;       ///< of the data, for normalised errors
   /// What `after` may be expected to be of held-out trials, were the model found true
   /// (expectedError); empty for those that were fitted
   std::optional<double> expected;
