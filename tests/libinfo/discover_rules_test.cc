@@ -140,8 +140,9 @@ TEST(Decide, CallsALeaderASurrogateWhereSomethingIsLeft) {
     const Decision d = decide(catalogue(), j, {});
     EXPECT_EQ(d.finding, Finding::unknown) << what;
     EXPECT_TRUE(d.surrogate);
-    EXPECT_EQ(d.effects.size(), 1U);
+    ASSERT_EQ(d.effects.size(), 1U);
     EXPECT_EQ(d.probability, 0);
+    EXPECT_TRUE(std::isnan(d.effects[0].probability)) << what;
   }
 }
 

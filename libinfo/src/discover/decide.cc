@@ -94,6 +94,7 @@ Decision decide(const std::vector<Candidate>& candidates, const Judgement& judge
     decision.finding = Finding::unknown;
     decision.surrogate = true;
     decision.probability = 0;
+    for (NamedEffect& one : decision.effects) one.probability = std::nan("");
     return decision;
   }
   decision.finding = !alone ? Finding::ambiguous : parameters ? Finding::parameter : Finding::named;

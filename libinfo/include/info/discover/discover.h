@@ -84,9 +84,10 @@ struct Finalist {
 /// An effect that is said to be missing, and what it cannot be told from.
 struct NamedEffect {
   std::size_t candidate = 0;
-  std::vector<Estimate> estimates;    ///< of its quantities, the amplitude first
-  double logBayesFactor = 0;          ///< nats by which it improves on the others alone
-  double probability = 0;             ///< of this name against the others in its place
+  std::vector<Estimate> estimates;  ///< of its quantities, the amplitude first
+  double logBayesFactor = 0;        ///< nats by which it improves on the others alone
+  /// Of this name against the others in its place; NaN of a surrogate, which is not believed.
+  double probability = 0;
   std::vector<std::size_t> equals;    ///< candidates in its class, itself first
   std::vector<double> equalEvidence;  ///< log Z of those less that of the leader
   bool exact = false;                 ///< true: some of them are equivalent by declaration
