@@ -133,6 +133,17 @@ TEST(Recovery, WhatIsNamedIsAsVisibleAsItsOwnDeviationSays) {
   gain["readings"][0]["name"] = "factor";
   EXPECT_NEAR(visibility(effectOf("gain_TRI", "input", 1, 0.5, 0.1, "factor"), gain).value(),
               0.4 / 0.1 / 5, 1e-12);
+  // a value that was multiplied by 0.8: 0.14 m, 0.028 m of it the change
+  Json centre = truthOf("com_1", 0.112);
+  centre["readings"][0]["name"] = "com_1";
+  centre["unit"] = "change";
+  centre["amplitude"] = -0.2;
+  EXPECT_NEAR(visibility(effectOf("com_1", "parameter", 1, 0.11, 0.002, "com_1"), centre).value(),
+              0.028 / 0.002 / 5, 1e-12);
+  Json silent = verdictOf("none", Json::array());
+  silent["undetectable_below"] = {{"com_1", 0.037}};
+  EXPECT_NEAR(judge("a", labelOf("parameter", Json::array({centre})), silent).visibility.value(),
+              0.028 / 0.037, 1e-12);
   // an equivalent by its own amplitude
   EXPECT_NEAR(
       visibility(effectOf("clock", "sensor", 1, 0.04, 0.002), truthOf("delay", 0.03, {"clock"}))

@@ -80,17 +80,29 @@ double absenceOf(const std::string& name) {
   return lastWord(name) == "factor" ? 1 : 0;
 }
 
+// The change of a quantity that the label tells as a share of its nominal value but reads as a
+// value (a robot's: × (1 + a), com_1 = 0.112 m), in that value's unit.
+std::optional<double> changeOf(const Json& truth) {
+  const auto share = finite(truth, "amplitude");
+  const Json& readings = truth.at("readings");
+  if (!share || !(*share > -1) || truth.value("unit", "") != "change" || readings.empty() ||
+      readings.front().at("name") != truth.at("id"))
+    return {};
+  return readings.front().at("value").get<double>() * *share / (1 + *share);
+}
+
 // Amplitude over the least one that would have shown, five deviations: of the effect where it (or
 // else a declared equivalent, by its own amplitude) is named, else by `undetectable_below`.
 std::optional<double> visibility(const Json& verdict, const Json& truth) {
   constexpr double needed = 5;
+  const auto change = changeOf(truth);
   const Json effects = verdict.value("effects", Json::array());
   for (const std::string& id : accepted(truth)) {
     for (const Json& effect : effects) {
       if (effect.at("id") != id) continue;
       if (id == truth.at("id")) {
         if (const auto own = compared(effect, truth))
-          return std::abs(own->truth - absenceOf(own->reading)) / own->sd / needed;
+          return std::abs(change.value_or(own->truth - absenceOf(own->reading))) / own->sd / needed;
         continue;
       }
       const Json parameters = effect.value("parameters", Json::object());
@@ -101,7 +113,7 @@ std::optional<double> visibility(const Json& verdict, const Json& truth) {
     }
   }
   const auto known = verdict.find("undetectable_below");
-  const auto amplitude = finite(truth, "amplitude");
+  const auto amplitude = change ? change : finite(truth, "amplitude");
   if (known == verdict.end() || !amplitude) return {};
   const auto least = finite(*known, truth.at("id").get<std::string>().c_str());
   if (!least || !(*least > 0)) return {};
