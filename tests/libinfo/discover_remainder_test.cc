@@ -189,6 +189,26 @@ TEST(Remainder, IsSeldomFoundWhereThereIsNone) {
   for (const Cause cause : kCauses) EXPECT_LE(found[cause], 3) << name(cause);
 }
 
+// A latent force makes accelerations, and is no inertia for that: the more of it there is, the more
+// of the motion's acceleration is its own.
+TEST(Remainder, OfALargeLatentForceDoesNotFollowTheAccelerationThatItMakes) {
+  int found = 0;
+  double sum = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    LinearDisagreement data(2, 80);
+    data.tellsSpeeds = true;
+    data.draw(seed, nominalValues(data), kOutput / 10, 10 * kLatent, kTime);
+    const Likelihood likelihood(data, {0, 1}, nominalValues(data), kTime);
+    const Fit fit = likelihood.fit(makeHypothesis(data, {}, {0, 1}),
+                                   {kOutput / 10, 10 * kLatent, kTime}, nominalValues(data));
+    const double nats = remainderEvidence(likelihood, fit).of(Cause::acceleration);
+    found += nats > 2;
+    sum += nats;
+  }
+  EXPECT_LE(found, 3);
+  EXPECT_LT(sum / 40, 0);
+}
+
 TEST(Remainder, OfAnInputThatComesLateFollowsTheInputs) {
   const LinearDisagreement data = driven(12, [&](double, Index k) {
     return k < 4 ? 0.0 : 2.5 * std::sin(0.3 * static_cast<double>(k - 4));

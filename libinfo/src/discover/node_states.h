@@ -11,6 +11,7 @@ namespace info::discover {
 struct NodeStates {
   std::vector<Likelihood::Linear> linear;  ///< with dy/dd
   std::vector<Eigen::VectorXd> q, qDot;    ///< of the first output
+  std::vector<Eigen::MatrixXd> response;   ///< ∂q/∂d: nodes × nodes
   std::vector<Eigen::MatrixXd> inputs;     ///< nodes × inputs
 };
 

@@ -126,19 +126,35 @@ MatrixXd pastInputs(const Likelihood& likelihood, const NodeStates& states) {
   return past;
 }
 
-// q̈ at the nodes, by differences of the simulated speeds
-MatrixXd accelerations(const Likelihood& likelihood, const NodeStates& states) {
+// q̈ at the nodes as it would be without the latent force there: second differences of the simulated
+// motion, less what the forces at a node and beside it have turned at once. With that in, every
+// force would follow the acceleration that it makes
+// (docs/decisions/049-accelerations-of-their-own.md).
+MatrixXd accelerations(const Likelihood& likelihood, const Fit& fit, const NodeStates& states) {
   std::vector<VectorXd> all;
-  for (std::size_t t = 0; t < states.qDot.size(); ++t) {
-    const VectorXd& w = states.qDot[t];
-    const auto& nodes = likelihood.data().latentTimes(likelihood.trials()[t]);
-    VectorXd slope(w.size());
-    for (Index i = 0; i < w.size(); ++i) {
-      const Index before = std::max<Index>(i - 1, 0), after = std::min<Index>(i + 1, w.size() - 1);
-      slope[i] = (w[after] - w[before]) /
-                 (nodes[static_cast<std::size_t>(after)] - nodes[static_cast<std::size_t>(before)]);
+  for (std::size_t t = 0; t < states.q.size(); ++t) {
+    const VectorXd& q = states.q[t];
+    const MatrixXd& response = states.response[t];
+    const VectorXd force = fit.eta[t].size() > 0 ? likelihood.force(t, fit) : VectorXd();
+    const Disagreement& data = likelihood.data();
+    const auto& nodes = data.latentTimes(likelihood.trials()[t]);
+    const double last = data.times(likelihood.trials()[t]).back();
+    const auto bend = [](const auto& x, Index i) { return x[i + 1] - 2 * x[i] + x[i - 1]; };
+    VectorXd own = VectorXd::Zero(q.size());
+    Index i = 1;
+    for (; i + 1 < q.size() && nodes[static_cast<std::size_t>(i + 1)] < last + 1e-9; ++i) {
+      const double width =
+          nodes[static_cast<std::size_t>(i)] - nodes[static_cast<std::size_t>(i - 1)];
+      own[i] = bend(q, i);
+      for (Index j = i - 1; force.size() > 0 && j <= i + 1; ++j)
+        own[i] -= bend(response.col(j), i) * force[j];
+      own[i] /= width * width;
     }
-    all.push_back(std::move(slope));
+    if (i > 1) {  // there are no differences at the ends
+      own[0] = own[1];
+      own.tail(q.size() - i).setConstant(own[i - 1]);
+    }
+    all.push_back(std::move(own));
   }
   return sized(joined(all));
 }
@@ -205,7 +221,7 @@ RemainderEvidence remainderEvidence(const Likelihood& likelihood, const Fit& fit
   };
   return {{of(outputsOf(states, fieldOfState(states))),
            of(outputsOf(states, pastInputs(likelihood, states))),
-           of(outputsOf(states, accelerations(likelihood, states))),
+           of(outputsOf(states, accelerations(likelihood, fit, states))),
            of(sensorErrors(likelihood, states)),
            of(outputsOf(states, moments(likelihood, fit, states)))}};
 }
