@@ -130,7 +130,8 @@ struct NamelessForce {
   Eigen::VectorXd deviation;  ///< of that
 };
 
-/// What was found. Everything up to `reached` is filled in.
+/// What was found. Everything up to `reached` is filled in; of a search that was stopped after the
+/// base model was fitted also the localisation, and the finalists that there were by then.
 struct Verdict {
   Stage reached = Stage::calibrate;
   Finding finding = Finding::none;
