@@ -55,7 +55,7 @@ class RenderCommand : public testing::Test {
   }
 
   void expectNothingLeftRunning() {
-    for (int tenths = 0; tenths < 50 && processesMarked(mark_) > 0; ++tenths) {
+    for (int tenths = 0; tenths < 200 && processesMarked(mark_) > 0; ++tenths) {
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
     EXPECT_EQ(processesMarked(mark_), 0);

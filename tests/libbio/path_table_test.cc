@@ -87,6 +87,17 @@ TEST(PathTable, HasNoPieceWhereThePathStartsToWrap) {
   EXPECT_TRUE(found.wrapped);
 }
 
+TEST(PathTable, HasNoPieceWhereThePathWrapsInBetweenOnly) {
+  const PathTable table(0, 1, 50, [](double q) {
+    Value value = smooth(q);
+    value.wrapped = std::abs(q - 0.41) < 0.004;
+    return value;
+  });
+  Value found;
+  EXPECT_FALSE(table.find(0.41, found));
+  EXPECT_EQ(table.standing(), 49u);
+}
+
 TEST(PathTable, HasNoPieceBeyondItsEnds) {
   const PathTable table(0, 1, 50, smooth);
   Value found;

@@ -23,7 +23,7 @@ using support::kTime;
 // Whatever the nuisances are, scores of the map are N(0, 1) if nothing is missing.
 TEST(Localise, ScoresAreStandardNormalWhenNothingIsMissing) {
   double sum = 0, squares = 0, count = 0;
-  int significant = 0;
+  int significant = 0, inadequate = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     info::RandomStream random(seed, 77);
     const LinearDisagreement data = drawn(seed, 0, 1 + 0.2 * random.normal());
@@ -37,9 +37,11 @@ TEST(Localise, ScoresAreStandardNormalWhenNothingIsMissing) {
       ++count;
       significant += s.significant;
     }
-    const Adequacy tests = adequacy(likelihood, fit, {});
-    EXPECT_TRUE(tests.adequate()) << seed;
+    inadequate += adequacy(likelihood, fit, {}).adequate() ? 0 : 1;
   }
+  // each cause has 3 nats by chance in less than e⁻³ of all cases; seen of the acceleration: 2 of
+  // 1600
+  EXPECT_LE(inadequate, 1);
   // 40 × about 34 scores, neighbours correlated
   EXPECT_NEAR(sum / count, 0, 0.1);
   EXPECT_NEAR(squares / count, 1, 0.12);
