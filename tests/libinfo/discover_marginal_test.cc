@@ -211,4 +211,31 @@ TEST(MarginalFit, IsTheFitItselfWhereNothingChangesTheResponseToLatentForces) {
   EXPECT_EQ(likelihood.marginal(still).xi, still.xi);
 }
 
+// What answers a latent force five times as strongly from a value on, as a motion does that nearly
+// falls over: its slope leads far away.
+class Kinked : public LinearDisagreement {
+ public:
+  using LinearDisagreement::LinearDisagreement;
+  Prediction predict(int trial, const VectorXd& values, const VectorXd& latent,
+                     const std::vector<std::size_t>& wanted, bool latentToo) const override {
+    Prediction p = LinearDisagreement::predict(trial, values, latent, wanted, latentToo);
+    if (values[0] > from) p.latentGamma *= 5;
+    return p;
+  }
+  double from = HUGE_VAL;
+};
+
+TEST(MarginalFit, IsTheFitItselfWhereItWouldBeLedAstray) {
+  Kinked data(1, 60);
+  const VectorXd truth = nominalValues(data);
+  data.draw(4, truth, kOutput, kLatent, kTime);
+  const Likelihood likelihood(data, {0}, truth, kTime);
+  const Fit joint =
+      likelihood.fit(makeHypothesis(data, {}, {0}), {kOutput, kLatent, kTime}, truth, {}, kExact);
+  data.from = joint.values[0] + 1e-9;
+  const Fit same = likelihood.marginal(joint);
+  EXPECT_EQ(same.xi, joint.xi);
+  EXPECT_EQ(same.logEvidence, joint.logEvidence);
+}
+
 }  // namespace

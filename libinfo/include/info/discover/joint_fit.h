@@ -89,7 +89,8 @@ class Likelihood {
   /// forces do, by two deviations at 5 % of EMG noise (docs/decisions/042-marginal-mode.md).
   ///
   /// That term's slope is taken where `near` is and held; what comes out is `near` of a second call
-  /// that does better. `near` itself where there is no latent force, or where the simulation fails.
+  /// that does better. `near` itself where there is no latent force, where the simulation fails,
+  /// and where what comes out has less evidence.
   Fit marginal(const Fit& near) const;
 
   /// What the data say at a fit about further disturbances of the outputs.
