@@ -7,6 +7,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "bio/nudge.h"
 #include "bio/replay.h"
 #include "info/monte_carlo.h"
 
@@ -138,21 +139,33 @@ Eigen::MatrixXd TrialSet::measured() const {
   return values;
 }
 
-info::Predictor TrialSet::predictor() const {
+std::vector<ArmExperiment> TrialSet::nudged(double frequency) const {
+  std::vector<ArmExperiment> held = experiments_;
+  for (std::size_t s = 0; s < series_.size(); ++s) {
+    for (const MeasuredSeries& other : series_) {
+      if (other.trial != series_[s].trial || other.times.size() < 4) continue;
+      held[s].hold(nudgeTo(*arm_, arm_->skeleton().indexOf(other.coordinate), other.times,
+                           other.values, frequency));
+    }
+  }
+  return held;
+}
+
+info::Predictor TrialSet::predictor(const std::vector<ArmExperiment>& experiments) const {
   // where the samples of each series begin
   std::vector<Index> begin = {0};
   for (const MeasuredSeries& series : series_) begin.push_back(begin.back() + series.values.size());
   info::Predictor predictor;
-  predictor.outputs = [this, begin](const Eigen::VectorXd& theta) {
+  predictor.outputs = [this, begin, &experiments](const Eigen::VectorXd& theta) {
     Eigen::MatrixXd y(1, begin.back());
     info::parallelFor(static_cast<int>(series_.size()), threads_, [&](int i) {
       const auto s = static_cast<std::size_t>(i);
       y.middleCols(begin[s], begin[s + 1] - begin[s]) =
-          experiments_[s].outputs(thetaOf(series_[s].trial, theta)).transpose();
+          experiments[s].outputs(thetaOf(series_[s].trial, theta)).transpose();
     });
     return y;
   };
-  predictor.withSensitivities = [this, begin](const Eigen::VectorXd& theta) {
+  predictor.withSensitivities = [this, begin, &experiments](const Eigen::VectorXd& theta) {
     info::Prediction all{Eigen::MatrixXd(1, begin.back()),
                          Eigen::MatrixXd::Zero(begin.back(), theta.size())};
     const auto common = static_cast<Index>(selection_.size());
@@ -162,7 +175,7 @@ info::Predictor TrialSet::predictor() const {
       const std::size_t trial = series_[s].trial;
       const Index first = begin[s], count = begin[s + 1] - begin[s];
       const ArmExperiment::Linearised part =
-          experiments_[s].withSensitivities(thetaOf(trial, theta));
+          experiments[s].withSensitivities(thetaOf(trial, theta));
       all.outputs.middleCols(first, count) = part.outputs.transpose();
       all.gamma.block(first, 0, count, common) = part.gamma.leftCols(common);
       all.gamma.block(first, common + static_cast<Index>(trial) * own, count, own) =

@@ -70,7 +70,8 @@ struct Calibration {
   int bootstrapConverged = 0;
   bool complete = true;  ///< false if the progress callback stopped it
   ResidualNoise noise;
-  double reducedChiSquare = 0;    ///< of single samples; near 1 where the noise is what was said
+  double noiseFloor = 0;        ///< what third differences of the measured angles have of it [rad]
+  double reducedChiSquare = 0;  ///< of single samples; near 1 where the noise is what was said
   Eigen::MatrixXd before, after;  ///< of the trials estimated from, 1 × samples [rad]
   Eigen::MatrixXd heldOutBefore, heldOutAfter;  ///< of the others
   /// The model, the EMG mapping and the first trial's start at the estimate.

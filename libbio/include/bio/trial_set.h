@@ -63,7 +63,12 @@ class TrialSet {
   /// 1 × samples [rad]
   Eigen::MatrixXd measured() const;
   /// 1 × samples; NaN where a simulation did not come so far. The set must outlive it.
-  info::Predictor predictor() const;
+  info::Predictor predictor() const { return predictor(experiments_); }
+  /// The experiments with every measured coordinate held near its measured course (nudge.h). Where
+  /// a series has fewer than four samples it holds nothing.
+  std::vector<ArmExperiment> nudged(double frequency) const;
+  /// Of these in place of the set's own; both must outlive it.
+  info::Predictor predictor(const std::vector<ArmExperiment>& experiments) const;
   /// Why the trial's simulation does not reach its end; empty if it does.
   std::string failure(std::size_t trial, const Eigen::VectorXd& theta) const;
   /// Mean square difference [rad²] of predictions from measurements: of all, and of each trial.

@@ -103,22 +103,4 @@ Augmented addEffects(const Model& model, const ArmOptions& arm, const std::strin
   return result;
 }
 
-Trial asTrueSensor(Trial trial, const std::string& coordinate, const SensorLaw& sensor) {
-  const double first = trial.times[0], last = trial.times[trial.times.size() - 1];
-  for (MeasuredMotion& motion : trial.measured) {
-    if (motion.coordinate != coordinate) continue;
-    std::vector<double> times, values;
-    for (Index i = 0; i < motion.times.size(); ++i) {
-      const double t = motion.times[i] - sensor.clock;
-      if (t < first || t > last) continue;
-      times.push_back(t);
-      values.push_back((motion.values[i] - sensor.bias) / (1 + sensor.gain));
-    }
-    const auto n = static_cast<Index>(times.size());
-    motion.times = Eigen::VectorXd::Map(times.data(), n);
-    motion.values = Eigen::VectorXd::Map(values.data(), n);
-  }
-  return trial;
-}
-
 }  // namespace bio::discover

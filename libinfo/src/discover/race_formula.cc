@@ -44,6 +44,7 @@ std::optional<RacedFormula> raceFormula(const Search& search, const Unknown& unk
   const auto widened = search.data().withFormula(formula.terms, kept);
   if (!widened) return {};
   options.symbolic = false;
+  options.judgeSamples = false;
   Draft draft;
   if (auto known = knownOf(search, kept, *widened))
     draft = std::make_shared<const Known>(std::move(*known));

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <set>
 
+#include "info/nudge_stages.h"
 #include "search.h"
 
 // What the fits that there are say: of candidates that have not been fitted, of effects that have.
@@ -16,23 +17,32 @@ namespace {
 
 // with so large a latent force the base is too far from the data for linear steps
 constexpr double kPoor = 0.2;
+// of nudgeStages: so firmly held that nothing runs away, so little that what is missing shows
+constexpr std::size_t kHeldStage = 2;
 
 }  // namespace
 
 std::vector<Screened> Search::screen(const Effects& effects, bool simulation) const {
   const Entry& entry = at(effects);
-  const Fit& fit = simulation ? entry.simulation.value() : entry.fit;
+  return screenAt(*likelihood_, simulation ? entry.simulation.value() : entry.fit, effects);
+}
+
+std::vector<Screened> Search::screenAt(const Likelihood& likelihood, const Fit& fit,
+                                       const Effects& effects) const {
   std::vector<Screened> result;
   const auto& candidates = data_.candidates();
   // candidates whose shape quantities have several starts are seen once for each
   std::size_t rounds = 1;
-  for (const Candidate& c : candidates) rounds = std::max(rounds, c.starts.size());
+  const auto roundsOf = [](const Candidate& c) {
+    return c.quantities.size() > 1 ? c.starts.size() : 1;
+  };
+  for (const Candidate& c : candidates) rounds = std::max(rounds, roundsOf(c));
   for (std::size_t round = 0; round < rounds; ++round) {
     std::vector<std::size_t> which, amplitudes;
     VectorXd values = fit.values;
     for (std::size_t c = 0; c < candidates.size(); ++c) {
       if (std::find(effects.begin(), effects.end(), c) != effects.end()) continue;
-      if (candidates[c].starts.size() <= round) continue;
+      if (roundsOf(candidates[c]) <= round) continue;
       which.push_back(c);
       amplitudes.push_back(candidates[c].quantities[0]);
       // shape quantities as this start has them, the amplitude absent
@@ -46,10 +56,10 @@ std::vector<Screened> Search::screen(const Effects& effects, bool simulation) co
     std::vector<Likelihood::Linear> linear;
     std::vector<MatrixXd> columns;
     for (std::size_t t = 0; t < trials_.size(); ++t) {
-      linear.push_back(likelihood_->linearise(t, fit, values, amplitudes, false));
+      linear.push_back(likelihood.linearise(t, fit, values, amplitudes, false));
       columns.push_back(linear.back().extra);
     }
-    const auto projected = likelihood_->project(fit, linear, columns);
+    const auto projected = likelihood.project(fit, linear, columns);
     for (std::size_t i = 0; i < which.size(); ++i) {
       const Candidate& c = candidates[which[i]];
       const Quantity& q = data_.quantities()[c.quantities[0]];
@@ -115,21 +125,95 @@ std::vector<Screened> Search::probe(const Effects& effects) {
   return result;
 }
 
+std::vector<Screened> Search::screenHeld(const Effects& effects) {
+  if (nudgedLikelihoods_.size() <= kHeldStage) return {};
+  const Likelihood& held = nudgedLikelihoods_[kHeldStage];
+  const Noise noise{nudgeStages[kHeldStage].spread * output_, 0, options_.latentTime};
+  const auto fitted = [&](const Effects& of, const VectorXd& from, int iterations) {
+    ++fits_;
+    return held.tryFit(makeHypothesis(data_, of, trials_), noise, from, {}, {iterations, 0.1});
+  };
+  VectorXd start = nominalValues(data_);
+  for (const std::size_t e : effects)
+    for (const std::size_t q : data_.candidates()[e].quantities)
+      start[static_cast<Index>(q)] = at(effects).fit.values[static_cast<Index>(q)];
+  const auto fit = fitted(effects, start, 12);
+  if (!fit) return {};
+  std::vector<Screened> result = screenAt(held, *fit, effects);
+  // what has a grid of starts has several minima: a linear step at 0 sees none of them
+  for (Screened& s : result) {
+    const Candidate& c = data_.candidates()[s.candidate];
+    if (!isGrid(c) || !effects.empty()) continue;
+    if (gridStarts_.count(s.candidate) == 0)
+      gridStarts_[s.candidate] = searchGrid(s.candidate, *fit);
+    s.gain = std::max(s.gain, gridStarts_[s.candidate].gain);
+  }
+  std::sort(result.begin(), result.end(),
+            [](const Screened& a, const Screened& b) { return a.gain > b.gain; });
+  return result;
+}
+
+// The amplitude along its grid, then by golden section beside the best, the nuisances fitted at
+// each: a fit of all together is led away by them.
+Search::GridStart Search::searchGrid(std::size_t candidate, const Fit& base) const {
+  const Likelihood& held = nudgedLikelihoods_[kHeldStage];
+  const auto amplitude = static_cast<Index>(data_.candidates()[candidate].quantities[0]);
+  GridStart best;
+  const auto at = [&](double x) {
+    VectorXd values = base.values;
+    values[amplitude] = x;
+    const auto fit = held.tryFit(base.hypothesis, base.noise, values, {}, {4, 0.3});
+    const double gain = fit ? fit->logEvidence - base.logEvidence : -HUGE_VAL;
+    if (gain > best.gain) best = {fit->values, gain};
+    return gain;
+  };
+  std::vector<double> grid = {data_.quantities()[static_cast<std::size_t>(amplitude)].nominal};
+  for (const VectorXd& start : data_.candidates()[candidate].starts) grid.push_back(start[0]);
+  std::sort(grid.begin(), grid.end());
+  std::size_t top = 0;
+  double most = -HUGE_VAL;
+  for (std::size_t k = 0; k < grid.size(); ++k)
+    if (const double gain = at(grid[k]); gain > most) {
+      most = gain;
+      top = k;
+    }
+  double low = grid[top > 0 ? top - 1 : 0], high = grid[std::min(top + 1, grid.size() - 1)];
+  constexpr double kGolden = 0.381966;
+  double left = low + kGolden * (high - low), right = high - kGolden * (high - low);
+  double ofLeft = at(left), ofRight = at(right);
+  for (int k = 0; k < 6; ++k) {
+    if (ofLeft > ofRight) {
+      high = right;
+      right = left;
+      ofRight = ofLeft;
+      left = low + kGolden * (high - low);
+      ofLeft = at(left);
+    } else {
+      low = left;
+      left = right;
+      ofLeft = ofRight;
+      right = high - kGolden * (high - low);
+      ofRight = at(right);
+    }
+  }
+  return best;
+}
+
 std::vector<std::size_t> Search::shortlist(const Effects& effects, int most) {
   this->simulation(effects);
   const bool poor = at(effects).fit.noise.latent > kPoor;
-  const auto filter = poor ? probe(effects) : screen(effects, false);
+  const auto held = screenHeld(effects);
+  const auto filter = !poor ? screen(effects, false) : held.empty() ? probe(effects) : held;
   const auto simulation = screen(effects, true);
   std::vector<std::size_t> list;
   const auto add = [&](const Screened& s) {
     if (s.information > 0 && std::find(list.begin(), list.end(), s.candidate) == list.end())
       list.push_back(s.candidate);
   };
-  // half of what there is room for comes from either mode in turn
-  for (std::size_t i = 0; i < filter.size() && static_cast<int>(list.size()) < most - 2; ++i) {
-    add(filter[i]);
-    if (static_cast<int>(list.size()) < most - 2) add(simulation[i]);
-  }
+  // what there is room for comes from all modes in turn
+  for (std::size_t i = 0; i < filter.size(); ++i)
+    for (const auto* mode : {&filter, &simulation, &held})
+      if (i < mode->size() && static_cast<int>(list.size()) < most - 2) add((*mode)[i]);
   if (most >= 6) {
     std::set<EffectKind> kinds;
     for (const std::size_t c : list) kinds.insert(data_.candidates()[c].kind);

@@ -53,8 +53,4 @@ Augmented addEffects(const Model& model, const ArmOptions& arm, const std::strin
                      const std::vector<EffectToAdd>& effects, const EffectProvenance& provenance,
                      const std::vector<info::discover::FormulaTerm>& formula = {});
 
-/// The trial as a sensor without fault would have measured it, q(t) = (y(t + clock) − bias)/(1 +
-/// gain); samples whose time falls out of the trial are lost.
-Trial asTrueSensor(Trial trial, const std::string& coordinate, const SensorLaw& sensor);
-
 }  // namespace bio::discover

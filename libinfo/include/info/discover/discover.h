@@ -11,6 +11,7 @@
 #include "info/discover/disagreement.h"
 #include "info/discover/gap.h"
 #include "info/discover/localise.h"
+#include "info/discover/recorded_noise.h"
 #include "info/discover/unknown.h"
 
 namespace info::discover {
@@ -50,6 +51,9 @@ struct Options {
   int maxEffects = 3;
   int finalists = 9;         ///< most candidates that are raced at a time
   std::vector<int> heldOut;  ///< trials that are not fitted, only judged by
+  /// Largest change at half the time step [σ_y]; with a larger one the finding is `numerical`.
+  double numericalTolerance = 0.2;
+  bool judgeSamples = true;  ///< leave out outliers, and samples whose noise is correlated
   bool symbolic = true;      ///< look for a formula when no name fits
   /// runAtShorterSteps: where nothing was found and errors as large as those of the held-out trials
   /// are less probable than this, these are fitted, too, and all is asked once more; 0: never
@@ -148,6 +152,7 @@ struct Verdict {
 
   double outputDeviation = 0;  ///< σ_y
   bool deviationEstimated = false;
+  RecordedNoise noise;                   ///< which samples were used, and why not all
   double latentSizeBefore = 0;           ///< σ_d with the base model
   double latentSizeAfter = 0;            ///< σ_d with the effects
   Eigen::VectorXd base;                  ///< all quantities, base model calibrated
