@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "support/replays.h"
 #include "support/run_program.h"
 #include "support/scratch_folder.h"
 #include "support/shipped_files.h"
@@ -27,9 +28,9 @@ TEST(CalibrateCommand, WritesTheModelTheSummaryAndTheReport) {
                                               "--parameters", "TRI.radius,hand.mass", "--profile",
                                               "hand.mass", "--starts", "3", "--out", out});
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_THAT(scratch.listing(),
-              testing::UnorderedElementsAre("out", "out/calibrated.osim", "out/covariance.csv",
-                                            "out/report.html", "out/summary.json"));
+  EXPECT_THAT(scratch.listing(), testing::UnorderedElementsAre(
+                                     "out", "out/calibrated.osim", "out/covariance.csv",
+                                     "out/parameters.csv", "out/report.html", "out/summary.json"));
   const auto json = nlohmann::json::parse(contentOf(out + "/summary.json"));
   EXPECT_EQ(json["inputs"].size(), 3u);
   EXPECT_LT(json["rmse_train_deg"].get<double>(),
@@ -67,6 +68,32 @@ TEST(CalibrateCommand, WritesTheModelTheSummaryAndTheReport) {
     EXPECT_THAT(osim, HasSubstr(input["sha256"].get<std::string>()));
   }
   EXPECT_THAT(osim, HasSubstr("kg (was 0.5819)"));
+}
+
+// Starts that were estimated, and a step of its own, are the calibrated model's.
+TEST(CalibrateCommand, ReplayOfTheCalibratedModelGivesItsFigures) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "out").string();
+  const ProgramResult result =
+      runFisherHill({"calibrate", model, slow, "--hold-out", fast, "--parameters",
+                     "TRI.radius,emg.BRA.gain", "--own-start", "--step", "0.02", "--out", out});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = nlohmann::json::parse(contentOf(out + "/summary.json"));
+  ASSERT_EQ(json["trials"].size(), 2u);
+  EXPECT_EQ(json["trials"][0]["replay_file"], out + "/driven_1.sto");
+  EXPECT_EQ(json["trials"][1]["replay_file"], out + "/driven_held_out_1.sto");
+  support::expectReplaysAgree(out + "/calibrated.osim", json["trials"]);
+  EXPECT_NEAR(json["trials"][0]["rmse_after_deg"].get<double>(),
+              json["rmse_train_deg"].get<double>(), 1e-9);
+  EXPECT_NEAR(json["trials"][1]["rmse_after_deg"].get<double>(),
+              json["rmse_held_out_deg"].get<double>(), 1e-9);
+  // as the fit itself has it
+  EXPECT_NEAR(json["trials"][0]["start"][0]["speed"].get<double>(),
+              json["estimates"]["initial.elbow_flexion.speed"]["value"].get<double>(), 1e-12);
+  const auto rows = linesOf(contentOf(out + "/parameters.csv"));
+  ASSERT_EQ(rows.size(), 5u);
+  EXPECT_EQ(rows[0], "name,unit,nominal,estimate,sd,prior_sd,prior_z");
+  EXPECT_THAT(rows[1], testing::StartsWith("TRI.radius,m,0.016,"));
 }
 
 TEST(CalibrateCommand, RefusesAnIntervalInWords) {

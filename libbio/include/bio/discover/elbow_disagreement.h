@@ -29,11 +29,11 @@ inline constexpr double shortestSearchStep = 0.003;
 ///
 /// Each trial is simulated from its own first angle over its rows, driven by its excitations and by
 /// the torque it has from outside; what is known of that angle is the first measured value, as a
-/// sensor that may be off shows it. y(t_k) is the cubic of Hermite between rows. All derivatives are
-/// exact: parameters, laws and latent nodes by the implicit function theorem
+/// sensor that may be off shows it. y(t_k) is the cubic of Hermite between rows. All derivatives
+/// are exact: parameters, laws and latent nodes by the implicit function theorem
 /// (coupled_sensitivity.h), EMG and sensor by the chain rule; none is a difference of simulations.
-/// Before the start of a trial, where a clock offset may look, the coordinate goes on with its first
-/// speed.
+/// Before the start of a trial, where a clock offset may look, the coordinate goes on with its
+/// first speed.
 ///
 /// Where a torque from outside pushes the coordinate, delay and clock are no equivalents. A mass in
 /// the hand that a trial is known to have (Trial::known) is in its model besides what is missing;
@@ -79,6 +79,16 @@ class ElbowDisagreement : public info::discover::Disagreement {
 
   /// Model and effects, without the trials' starts.
   const WidestModel& widest() const { return widest_; }
+  const ElbowOptions& options() const { return options_; }
+  /// The trial as it was given, with an excitation for every muscle that was added (withProxies).
+  const Trial& trial(int trial) const { return of(trial).trial; }
+  /// The whole simulation at values, without a latent force.
+  /// @throws what Arm, initialState and simulate throw
+  Trajectory motion(int trial, const Eigen::VectorXd& values) const;
+  /// The arm that it is of.
+  Arm armAt(int trial, const Eigen::VectorXd& values) const;
+  /// Where it starts: the coordinate itself, not what the sensor shows of it.
+  TrialStart startAt(int trial, const Eigen::VectorXd& values) const;
   /// Why the trial's simulation does not reach its end; empty if it does.
   std::string failure(int trial, const Eigen::VectorXd& values) const;
 
@@ -94,7 +104,6 @@ class ElbowDisagreement : public info::discover::Disagreement {
     std::size_t angle, speed;  ///< quantities of its start, the angle as the sensor shows it
   };
   double activationLag() const;
-  Eigen::VectorXd knownChanges(const Trial& trial) const;
   const OfTrial& of(int trial) const { return trials_.at(static_cast<std::size_t>(trial)); }
   ParameterCatalogue::Setting settingAt(const OfTrial& one, const Eigen::VectorXd& values,
                                         const std::vector<std::size_t>& wanted) const;
