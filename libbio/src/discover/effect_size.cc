@@ -18,21 +18,21 @@ double rootMeanSquare(const VectorXd& values) {
   return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
 }
 
-// The length of a fibre after a step of the implicit midpoint rule; NaN where there is none.
+// The length of a fibre after a step of the implicit midpoint rule, by Newton's method within a
+// bracket, since the velocity has kinks; NaN where there is none.
 double steppedFibre(const SchutteMuscle<double>& muscle, double activation, double length,
                     double muscleTendonLength, double h) {
+  double low = 2 * muscle.thickness() - length, high = muscleTendonLength + muscle.thickness();
   double next = length;
-  for (int i = 0; i < 50; ++i) {
+  for (int i = 0; i < 200 && std::isfinite(next); ++i) {
     const FibreRateDerivatives rate =
         fibreRateDerivatives(muscle, activation, (length + next) / 2, muscleTendonLength);
-    double change =
-        -((next - length) / h - rate.fibreVelocity) / (1 / h - rate.dV_dFibreLength / 2);
-    // no further than halfway to where the fibre has no pennation angle
-    const double room = (length + next) - 2 * muscle.thickness();
-    change = std::max(change, -room / 2);
-    next += change;
-    if (!std::isfinite(next)) break;
-    if (std::abs(change) < 1e-12) return next;
+    const double residual = (next - length) / h - rate.fibreVelocity;
+    (residual > 0 ? high : low) = next;
+    double better = next - residual / (1 / h - rate.dV_dFibreLength / 2);
+    if (!(better > low && better < high)) better = (low + high) / 2;
+    if (std::abs(better - next) < 1e-12 || high - low < 1e-12) return better;
+    next = better;
   }
   return EffectSize::unknown;
 }
