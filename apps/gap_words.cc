@@ -17,9 +17,13 @@ enum class Outcome { noise, expected, none, share };
 Outcome outcomeOf(const Gap& gap) {
   // the same three deviations of a mean square as closeGap() has
   if (gap.after * gap.after < 1.2 * gap.floor * gap.floor) return Outcome::noise;
-  if (gap.expected && gap.after * gap.after < 1.2 * *gap.expected * *gap.expected)
-    return Outcome::expected;
-  return gap.closedFromCalibrated && *gap.closedFromCalibrated > 0 ? Outcome::share : Outcome::none;
+  // a held-out trial that was nearer to the model as it came has gained nothing
+  const bool isWorse = gap.expected && gap.after >= gap.nominal;
+  if (!gap.closedFromCalibrated || !(*gap.closedFromCalibrated > 0) || isWorse)
+    return Outcome::none;
+  const bool isExpected =
+      gap.expected && gap.after * gap.after < 1.2 * *gap.expected * *gap.expected;
+  return isExpected && *gap.closedFromCalibrated > 0.5 ? Outcome::expected : Outcome::share;
 }
 
 /// Whole per cent of what is neither all nor nothing.

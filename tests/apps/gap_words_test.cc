@@ -50,6 +50,16 @@ TEST(GapWords, CompareHeldOutTrialsWithWhatWasToBeExpected) {
       words(one, true),
       "The residual on the held-out trial is what was to be expected (0.95°, expected 0.9°).");
   EXPECT_EQ(gapCell(one), "as was to be expected");
+  // little is explained where much uncertainty was to be expected
+  one = gap(3.7, 3.3, 0.5);
+  one.expected = 4.7;
+  EXPECT_EQ(words(one, true), "21 % of the excess error is explained on the held-out trial.");
+  // nearer than the calibrated model, but further off than the model as it came
+  one = gap(10.4, 9.1, 0.5);
+  one.nominal = 7;
+  one.expected = 0.6;
+  EXPECT_EQ(words(one, true),
+            "The fit does not carry over to the held-out trial (9.1°, expected 0.6°).");
 }
 
 TEST(GapWords, HaveTheUnitThatIsShown) {
