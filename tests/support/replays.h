@@ -12,9 +12,10 @@
 namespace support {
 
 /// `fisherhill replay` of a model on every trial that a verdict.json or a summary.json lists must
-/// give the root mean square error it has there, to 0.01 deg, and say that the model knows the
-/// start.
-inline void expectReplaysAgree(const std::string& model, const nlohmann::json& trials) {
+/// give the root mean square error it has there, to 0.01 deg, with the
+/// start and the step that the model has.
+inline void expectReplaysAgree(const std::string& model, const nlohmann::json& trials,
+                               double step) {
   ASSERT_FALSE(trials.empty());
   for (const auto& one : trials) {
     const std::string file = one["replay_file"];
@@ -24,6 +25,7 @@ inline void expectReplaysAgree(const std::string& model, const nlohmann::json& t
     EXPECT_NEAR(told["rms_error_deg"].get<double>(), one["rmse_after_deg"].get<double>(), 0.01)
         << file;
     EXPECT_EQ(told["start_from"], "model") << file;
+    EXPECT_EQ(told["step_s"], step) << file;
   }
 }
 
