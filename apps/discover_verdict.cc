@@ -173,9 +173,9 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   json["held_out_fitted"] = verdict.heldOutFitted;
   if (f.written) {
     const bool isCorrected = f.written->repaired && f.written->repaired->trials.front().driven;
-    json["rmse_after_is_of"] = isCorrected
-                                   ? "the driven trials, in which the sensor's errors are taken off"
-                                   : "the trials as they were recorded";
+    json["rmse_after_is_of"] =
+        isCorrected ? "the driven trials: what drove the muscles, the sensor's errors taken off"
+                    : "the trials as they were recorded";
     json["model"] =
         f.written->model.empty() ? ordered_json(nullptr) : ordered_json(f.written->model);
     json["trials"] = trialsJson(f);

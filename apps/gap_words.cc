@@ -44,8 +44,8 @@ std::string gapWords(const Gap& gap, double unit, const std::string& symbol, boo
     case Outcome::noise:
       return fmt::format("The residual{} is at the noise floor ({}).", where, figure(gap.after));
     case Outcome::expected:
-      return fmt::format("The residual{} is what was to be expected ({}, expected {}).", where,
-                         figure(gap.after), figure(*gap.expected));
+      return fmt::format("The residual{} is no larger than was to be expected ({}, expected {}).",
+                         where, figure(gap.after), figure(*gap.expected));
     case Outcome::share:
       return fmt::format("{} % of the excess error is explained{}.", percent(gap), where);
     case Outcome::none:
@@ -64,7 +64,7 @@ std::string gapCell(const Gap& gap) {
     case Outcome::noise:
       return "at the noise floor";
     case Outcome::expected:
-      return "as was to be expected";
+      return "no larger than expected";
     case Outcome::share:
       return fmt::format("{} %", percent(gap));
     case Outcome::none:

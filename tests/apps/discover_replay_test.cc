@@ -67,9 +67,10 @@ std::string delayed(const ScratchFolder& scratch, const std::string& trial, unsi
   const Columns states(out + "/states.sto");
   const Columns recorded(std::string(FISHERHILL_SOURCE_DIR) + "/" + trial);
   const std::size_t angle = states.find("/jointset/elbow/elbow_flexion/value");
-  const std::size_t own = recorded.find("elbow_flexion");
+  const std::size_t own = recorded.find("elbow_flexion_deg");
   std::mt19937 random(seed);
-  std::normal_distribution<double> noise(0, 0.5 / 57.29577951308232);
+  std::normal_distribution<double> noise(0, 0.5);
+  constexpr double radian = 57.29577951308232;  // in degrees
   std::ostringstream text;
   text << "trial\nversion=1\ninDegrees=no\nendheader\n";
   for (const std::string& name : recorded.names) text << name << '\t';
@@ -79,7 +80,7 @@ std::string delayed(const ScratchFolder& scratch, const std::string& trial, unsi
   for (std::size_t k = 0; k + rowsEarly < recorded.rows.size(); ++k) {
     for (std::size_t c = 0; c < recorded.names.size(); ++c) {
       const bool isExcitation = c != own && c != 0;
-      text << (c == own ? states.rows[k][angle] + noise(random)
+      text << (c == own ? radian * states.rows[k][angle] + noise(random)
                         : recorded.rows[isExcitation ? k + rowsEarly : k][c])
            << '\t';
     }

@@ -46,10 +46,10 @@ TEST(GapWords, CompareHeldOutTrialsWithWhatWasToBeExpected) {
             "The fit does not carry over to the held-out trial (3.2°, expected 0.6°).");
   one = gap(3, 0.95, 0.5);
   one.expected = 0.9;
-  EXPECT_EQ(
-      words(one, true),
-      "The residual on the held-out trial is what was to be expected (0.95°, expected 0.9°).");
-  EXPECT_EQ(gapCell(one), "as was to be expected");
+  EXPECT_EQ(words(one, true),
+            "The residual on the held-out trial is no larger than was to be expected (0.95°, "
+            "expected 0.9°).");
+  EXPECT_EQ(gapCell(one), "no larger than expected");
   // little is explained where much uncertainty was to be expected
   one = gap(3.7, 3.3, 0.5);
   one.expected = 4.7;
