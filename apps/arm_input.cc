@@ -8,7 +8,7 @@
 
 #include "arm_options.h"
 #include "bio/osim_file.h"
-#include "bio/replay.h"
+#include "sha256.h"
 #include "text.h"
 
 namespace app {
@@ -55,6 +55,7 @@ bio::Trial readTrialFile(const std::string& file, const bio::Model& model,
                          const SimulationOptions& options, bool knownChanges) {
   bio::Trial trial = bio::readTrial(
       file, model, {.ignoreExtra = options.ignoreExtra, .knownChanges = knownChanges});
+  trial.sha256 = sha256OfFile(file);
   const double duration = trial.duration();
   if (options.step && *options.step > duration) {
     throw std::invalid_argument(fmt::format("{}: lasts {} s, --step {} s must not be longer", file,
@@ -79,9 +80,11 @@ TrialInput readTrialInput(const std::string& file, const bio::Model& model, cons
   input.externalForce = bio::externalForceOf(input.trial, arm);
   input.startTime = input.trial.times[0];
   input.duration = input.trial.duration();
-  input.start =
-      bio::initialState(arm, bio::startCoordinates(input.trial, arm, byName(options.initial)),
-                        input.excitation, input.startTime);
+  const bio::TrialBeginning beginning =
+      bio::beginningOf(input.trial, model, arm, byName(options.initial));
+  input.from = beginning.from;
+  input.start = bio::initialState(arm, beginning.point.q, input.excitation, input.startTime);
+  input.start.qDot = beginning.point.qDot;
   return input;
 }
 

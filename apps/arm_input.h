@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bio/coupled.h"
+#include "bio/replay.h"
 #include "bio/trial.h"
 #include "simulation_options.h"
 #include "summary.h"
@@ -43,9 +44,11 @@ struct TrialInput {
   bio::ExternalForce externalForce;  ///< empty: none
   double startTime = 0;              ///< [s]
   double duration = 0;               ///< [s]
-  bio::ArmState start;  ///< at rest: --initial, else the first measured value, else the default
+  bio::TrialBeginning::From from;    ///< who says where it starts
+  bio::ArmState
+      start;  ///< as bio::beginningOf has it: --initial, else the model, else what was measured
 };
-/// @throws what readTrialFile, excitationOf, externalForceOf, startCoordinates and initialState
+/// @throws what readTrialFile, excitationOf, externalForceOf, beginningOf and initialState
 /// throw
 TrialInput readTrialInput(const std::string& file, const bio::Model& model, const bio::Arm& arm,
                           const SimulationOptions& options, Summary& summary);

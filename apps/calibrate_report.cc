@@ -18,6 +18,11 @@ double rmse(const bio::TrialSet& set, const Eigen::MatrixXd& predicted) {
   return std::sqrt(set.meanSquare(predicted)) * radian;
 }
 
+/// What replays of the calibrated model give [deg].
+double rmseAfter(const CalibrateFindings& f, bool heldOut) {
+  return f.calibrated->rms(heldOut) * radian;
+}
+
 std::vector<double> degrees(const Eigen::VectorXd& values) {
   const Eigen::VectorXd result = values * radian;
   return {result.begin(), result.end()};
@@ -254,10 +259,10 @@ std::string verdictOf(const CalibrateFindings& f) {
   }
   std::string text =
       fmt::format("The model is {:.3g} deg (RMS) from the measured angles, {:.3g} deg before",
-                  rmse(f.training, c.after), rmse(f.training, c.before));
+                  rmseAfter(f, false), rmse(f.training, c.before));
   if (f.heldOut) {
-    text += fmt::format("; on trials held out {:.3g} deg, {:.3g} deg before",
-                        rmse(*f.heldOut, c.heldOutAfter), rmse(*f.heldOut, c.heldOutBefore));
+    text += fmt::format("; on trials held out {:.3g} deg, {:.3g} deg before", rmseAfter(f, true),
+                        rmse(*f.heldOut, c.heldOutBefore));
   }
   text += fmt::format("; {} of {} parameter{} can be known from these trials", known, all,
                       all == 1 ? "" : "s");
@@ -306,6 +311,18 @@ std::string estimateWords(const bio::CalibratedParameter& one) {
                      withUnit(one.deviation, one.asked.unit, 3), was);
 }
 
+std::vector<info::discover::FittedNumber> fittedNumbers(const bio::Calibration& calibration) {
+  std::vector<info::discover::FittedNumber> numbers;
+  for (std::size_t i = 0; i < calibration.parameters.size(); ++i) {
+    const bio::CalibratedParameter& one = calibration.parameters[i];
+    const auto& prior = one.asked.prior;
+    numbers.push_back({i, one.asked.name, one.asked.unit, one.model, one.value, one.deviation,
+                       prior ? prior->deviation : std::nan(""),
+                       prior ? (one.value - prior->mean) / prior->deviation : std::nan("")});
+  }
+  return numbers;
+}
+
 void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
   const bio::Calibration& c = f.calibration;
   if (!c.failure.empty()) {
@@ -315,10 +332,9 @@ void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
   }
   summary.set("status", c.converged ? "ok" : "not converged");
   if (!c.converged) summary.set("why", info::describe(c.why));
-  summary.set("rmse_train_deg", rmse(f.training, c.after));
+  summary.set("rmse_train_deg", rmseAfter(f, false));
   summary.set("rmse_train_before_deg", rmse(f.training, c.before));
-  summary.set("rmse_held_out_deg",
-              f.heldOut ? number(rmse(*f.heldOut, c.heldOutAfter)) : Json(nullptr));
+  summary.set("rmse_held_out_deg", number(rmseAfter(f, true)));
   summary.set("rmse_held_out_before_deg",
               f.heldOut ? number(rmse(*f.heldOut, c.heldOutBefore)) : Json(nullptr));
   Json estimates = Json::object();

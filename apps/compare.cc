@@ -88,6 +88,7 @@ class Compare : public Command {
       summary.setSimulation(simulation_.integrator, simulation_.stepOrDefault(), options.duration,
                             comparison.reference.motion.wallSeconds);
     }
+    summary.set("start_from", bio::name(input.from));
     tellCompare(findings, summary);
     const Report report = compareReport(findings);
     if (png_ && folder.active()) {

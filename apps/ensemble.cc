@@ -206,7 +206,7 @@ class Ensemble : public Command {
     const bio::Model model = readModel(model_, summary);
     const bio::Arm arm = movableArm(model, model_, simulation_, summary);
     TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
-    bio::ParameterCatalogue catalogue(model, arm, {input.start.q, {}});
+    bio::ParameterCatalogue catalogue(model, arm, {input.start.q, input.start.qDot});
     auto made = std::make_unique<EnsembleStudy>(
         EnsembleStudy{std::move(input), std::move(catalogue), {}, {}, {}, {}, {}});
     EnsembleStudy& study = *made;

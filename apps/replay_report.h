@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "bio/coupled.h"
+#include "bio/replay.h"
 #include "bio/trial.h"
 #include "report.h"
 
@@ -15,9 +15,8 @@ struct ReplayFindings {
   const bio::Model& model;
   const bio::Trial& trial;
   const bio::Arm& arm;
-  const bio::Trajectory& motion;
+  const bio::TrialReplay& replay;
   const bio::MuscleReport& muscles;
-  const bio::SimulationOptions& options;
 };
 
 /// The figures that summary.json is to hold: rms_error_deg, newton_iterations_per_step, …

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 
+#include "bio/simulation_names.h"
 #include "coupled_stepping.h"
 #include "motion_weights.h"
 
@@ -69,6 +70,45 @@ Eigen::VectorXd startCoordinates(const Trial& trial, const Arm& arm,
   return q;
 }
 
+const char* name(TrialBeginning::From from) {
+  static constexpr const char* names[] = {"given", "model", "measured", "default"};
+  return names[static_cast<int>(from)];
+}
+
+TrialBeginning beginningOf(const Trial& trial, const Model& model, const Arm& arm,
+                           const std::map<std::string, double>& given) {
+  using From = TrialBeginning::From;
+  TrialBeginning beginning;
+  beginning.point.q = startCoordinates(trial, arm, given);
+  beginning.point.qDot = Eigen::VectorXd::Zero(beginning.point.q.size());
+  bool isMeasured = false, isFitted = false;
+  for (Eigen::Index i = 0; i < beginning.point.q.size(); ++i) {
+    const std::string& free = arm.skeleton().coordinates()[static_cast<std::size_t>(i)].name;
+    if (given.contains(free)) continue;
+    for (const MeasuredMotion& measured : trial.measured)
+      isMeasured = isMeasured || (measured.coordinate == free && measured.values.size() > 0);
+    for (const TrialStart& start : model.fitted.starts) {
+      if (trial.sha256.empty() || start.sha256 != trial.sha256 || start.coordinate != free)
+        continue;
+      beginning.point.q[i] = start.value;
+      beginning.point.qDot[i] = start.speed;
+      isFitted = true;
+    }
+  }
+  beginning.from = isFitted         ? From::model
+                   : !given.empty() ? From::given
+                   : isMeasured     ? From::measured
+                                    : From::defaults;
+  return beginning;
+}
+
+double stepOf(const Model& model, Integrator integrator, const std::optional<double>& given) {
+  if (given) return *given;
+  const bool isVariational =
+      integrator == Integrator::variational || integrator == Integrator::variationalLeft;
+  return isVariational && model.fitted.step ? *model.fitted.step : defaultStep(integrator);
+}
+
 std::vector<double> observedTimes(const Trial& trial, const std::string& coordinate, double step) {
   for (const MeasuredMotion& measured : trial.measured) {
     if (measured.coordinate == coordinate && measured.times.size() > 0) {
@@ -112,6 +152,30 @@ MeasuredError compareWithMeasured(const Arm& arm, const Trajectory& trajectory,
   }
   error.rms = std::sqrt(sum / static_cast<double>(error.count));
   return error;
+}
+
+TrialReplay replayTrial(const Arm& arm, const Trial& trial, SimulationOptions options,
+                        TrialBeginning beginning) {
+  TrialReplay replay;
+  const ExcitationSignal excitation = excitationOf(trial, arm);
+  options.startTime = trial.times[0];
+  options.duration = trial.duration();
+  options.externalForce = externalForceOf(trial, arm);
+  replay.beginning = std::move(beginning);
+  ArmState start = initialState(arm, replay.beginning.point.q, excitation, options.startTime);
+  start.qDot = replay.beginning.point.qDot;
+  replay.motion = simulate(arm, excitation, start, options);
+  for (const MeasuredMotion& measured : trial.measured) {
+    const bool isReached =
+        measured.times.size() > 0 && measured.times[0] <= replay.motion.time.back();
+    if (isReached && arm.skeleton().indexOf(measured.coordinate) >= 0) {
+      replay.errors.emplace_back(measured.coordinate,
+                                 compareWithMeasured(arm, replay.motion, measured));
+    }
+  }
+  options.progress = {};
+  replay.options = std::move(options);
+  return replay;
 }
 
 std::vector<std::string> rangeRemarks(const Arm& arm, const Trajectory& trajectory) {

@@ -116,7 +116,7 @@ class TrialReader {
       fail(error.what());
     }
     if (trial_.known.any() && !options_.knownChanges) {
-      fail(fmt::format("recorded {} (header), which only 'discover' takes into account",
+      fail(fmt::format("recorded {} (header), which only 'discover' and 'replay' take into account",
                        inWords(trial_.known)));
     }
   }

@@ -47,8 +47,9 @@ TrialSet::TrialSet(const Model& model, const ArmOptions& arm, std::vector<Trial>
       throw std::invalid_argument(
           trial.file + ": has a torque from outside, which calibration does not take into account");
     }
-    const StartPoint start{startCoordinates(trial, *arm_, options.initial), {}};
-    catalogues_.push_back(std::make_unique<const ParameterCatalogue>(model, *arm_, start));
+    beginnings_.push_back(beginningOf(trial, model, *arm_, options.initial));
+    catalogues_.push_back(
+        std::make_unique<const ParameterCatalogue>(model, *arm_, beginnings_.back().point));
   }
   collectParameters(options);
   collectSeries(options);
@@ -125,6 +126,12 @@ Eigen::VectorXd TrialSet::thetaOf(std::size_t trial, const Eigen::VectorXd& thet
   Eigen::VectorXd part(common + own);
   part << theta.head(common), theta.segment(common + static_cast<Index>(trial) * own, own);
   return part;
+}
+
+StartPoint TrialSet::startAt(std::size_t trial, const Eigen::VectorXd& theta) const {
+  std::vector<std::size_t> all = selection_;
+  all.insert(all.end(), own_.begin(), own_.end());
+  return catalogues_.at(trial)->at(all, thetaOf(trial, theta)).start;
 }
 
 Eigen::MatrixXd TrialSet::measured() const {

@@ -28,6 +28,7 @@ struct AppliedForce {
 /// What drives a simulation, and what was measured beside it.
 struct Trial {
   std::string file;
+  std::string sha256;                ///< of that file, where the caller gives it; else empty
   Eigen::VectorXd times;             ///< [s] strictly rising, at least 2
   std::vector<std::string> muscles;  ///< every enabled muscle of the model, in its order; then
                                      ///< those switched off that have a column

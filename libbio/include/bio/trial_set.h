@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bio/arm_experiment.h"
+#include "bio/replay.h"
 #include "bio/trial.h"
 #include "info/least_squares.h"
 
@@ -33,7 +34,8 @@ struct MeasuredSeries {
 /// measured angles of all trials one behind the other.
 ///
 /// Angles count alike, whichever coordinate they belong to. Each trial is simulated over all its
-/// rows, from its first measured value at rest.
+/// rows, from where beginningOf() says, its first measured value at rest unless the model knows
+/// better.
 class TrialSet {
  public:
   /// @throws std::invalid_argument, naming the file where there is one, for no trial, a trial
@@ -45,11 +47,16 @@ class TrialSet {
 
   const Arm& arm() const { return *arm_; }
   const std::vector<Trial>& trials() const { return trials_; }
+  /// Where each trial starts, before anything is estimated.
+  const std::vector<TrialBeginning>& beginnings() const { return beginnings_; }
   const std::vector<MeasuredSeries>& series() const { return series_; }
   /// Of a trial; they differ in the start only.
   const ParameterCatalogue& catalogue(std::size_t trial = 0) const { return *catalogues_[trial]; }
   /// Indices of the common parameters in the catalogue.
   const std::vector<std::size_t>& selection() const { return selection_; }
+
+  /// Where a trial starts at θ.
+  StartPoint startAt(std::size_t trial, const Eigen::VectorXd& theta) const;
 
   std::size_t numParameters() const { return parameters_.size(); }
   /// Number of those that are common; the others are starts of trials.
@@ -81,6 +88,7 @@ class TrialSet {
   Eigen::VectorXd thetaOf(std::size_t trial, const Eigen::VectorXd& theta) const;
 
   std::vector<Trial> trials_;
+  std::vector<TrialBeginning> beginnings_;
   int threads_;
   std::unique_ptr<const Arm> arm_;
   std::vector<std::unique_ptr<const ParameterCatalogue>> catalogues_;  ///< one per trial

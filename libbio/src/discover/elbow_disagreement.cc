@@ -10,6 +10,7 @@
 #include "bio/coupled_sensitivity.h"
 #include "bio/discover/effects.h"
 #include "bio/nudge.h"
+#include "bio/discover/with_known_changes.h"
 #include "bio/replay.h"
 #include "motion_weights.h"
 
@@ -89,7 +90,7 @@ ElbowDisagreement::ElbowDisagreement(const Model& model, const ArmOptions& arm,
     }
     one.excitation = excitationOf(one.trial, widest_.arm());
     one.external = externalForceOf(one.trial, widest_.arm());
-    one.known = knownChanges(one.trial);
+    one.known = knownChangesOf(one.trial, widest_);
     const double first = one.trial.times[0], last = one.times.back();
     const double intervals =
         std::max(1.0, std::ceil((last - first) / options_.latentSpacing - 1e-9));
@@ -154,31 +155,6 @@ VectorXd ElbowDisagreement::withTimedForces(const OfTrial& one, const VectorXd& 
     }
   }
   return sum;
-}
-
-VectorXd ElbowDisagreement::knownChanges(const Trial& trial) const {
-  VectorXd changes = VectorXd::Zero(static_cast<Index>(widest_.quantities().size()));
-  if (!trial.known.any()) return changes;
-  const auto change = [&](const std::string& name, double value, const char* why) {
-    if (value == 0) return;
-    const auto& quantities = widest_.quantities();
-    const auto at = std::find_if(quantities.begin(), quantities.end(),
-                                 [&](const auto& one) { return one.name == name; });
-    if (at == quantities.end()) {
-      throw std::invalid_argument(
-          fmt::format("{}: recorded {}, but {}", trial.file, inWords(trial.known), why));
-    }
-    changes[at - quantities.begin()] = value;
-  };
-  change("known.mass", trial.known.massInHand, "the model moves no body that could hold it");
-  change("known.turn", trial.known.armTurn, "the coordinate does not turn bodies across gravity");
-  if (trial.known.armTurn != 0 && widest_.present().count("handforce") > 0) {
-    throw std::invalid_argument(
-        fmt::format("{}: recorded {}, but the model has a force on the hand ({}) that would turn "
-                    "with the arm",
-                    trial.file, inWords(trial.known), widest_.present().at("handforce")));
-  }
-  return changes;
 }
 
 double ElbowDisagreement::activationLag() const {
@@ -285,6 +261,21 @@ VectorXd ElbowDisagreement::outputs(int trial, const VectorXd& values,
 
 VectorXd ElbowDisagreement::refinedOutputs(int trial, const VectorXd& values) const {
   return outputsOf(of(trial), values, {}, 0.5, nullptr);
+}
+
+Trajectory ElbowDisagreement::motion(int trial, const VectorXd& values) const {
+  return simulate(of(trial), values, {}, 1, nullptr);
+}
+
+Arm ElbowDisagreement::armAt(int trial, const VectorXd& values) const {
+  return widest_.armOf(settingAt(of(trial), values, {}));
+}
+
+TrialStart ElbowDisagreement::startAt(int trial, const VectorXd& values) const {
+  const OfTrial& one = of(trial);
+  const StartPoint start = settingAt(one, values, {}).start;
+  return {one.trial.file, one.trial.sha256, widest_.coordinate().name, start.q[widest_.freeIndex()],
+          start.qDot[widest_.freeIndex()]};
 }
 
 std::string ElbowDisagreement::failure(int trial, const VectorXd& values) const {

@@ -59,6 +59,7 @@ VectorXd speedsOf(const MeasuredMotion& motion) {
 }  // namespace
 
 Trial asTrueSensor(Trial trial, const std::string& coordinate, const SensorLaw& sensor) {
+  if (!sensor.isTrue()) trial.sha256.clear();  // it is not what is in the file
   const double first = trial.times[0], last = trial.times[trial.times.size() - 1];
   for (MeasuredMotion& motion : trial.measured) {
     if (motion.coordinate != coordinate || sensor.isTrue()) continue;

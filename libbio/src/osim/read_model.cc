@@ -69,6 +69,7 @@ Model readModel(const tinyxml2::XMLDocument& document, const std::string& file) 
   readConstraints(reading, model);
   readWrapObjects(reading, model);
   readForces(reading, model);
+  readFitted(reading, model);
   return std::move(reading.model);
 }
 

@@ -388,6 +388,8 @@ class Work {
     const Likelihood held(data_, options_.heldOut, scale, options_.latentTime);
     const HeldOut without = heldOut(before, all, held);
     const HeldOut with = chosen_.empty() ? without : heldOut(after, all, held);
+    keepStarts(without, verdict_.base);
+    verdict_.heldOutStarts = keepStarts(with, verdict_.values);
     Gap other;
     other.floor = gap.floor;
     other.range = gap.range;
@@ -411,6 +413,18 @@ class Work {
     // no worse, too
     judgement.heldOutWorse =
         !chosen_.empty() && with.score < without.score - 3 && with.error > 0.95 * without.error;
+  }
+
+  // Puts the starts of what was held out where those of the others are.
+  std::vector<Estimate> keepStarts(const HeldOut& held, VectorXd& values) const {
+    if (!held.starts) return {};
+    std::vector<std::size_t> starts;
+    for (const FreeQuantity& free : held.starts->hypothesis.free) {
+      starts.push_back(free.quantity);
+      const auto q = static_cast<Index>(free.quantity);
+      values[q] = held.starts->values[q];
+    }
+    return estimatesOf(*held.starts, starts, data_);
   }
 
   HeldOutAdequacy heldOutAdequacy(double meanSquare, const Likelihood& held) const {

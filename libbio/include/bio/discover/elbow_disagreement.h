@@ -84,6 +84,16 @@ class ElbowDisagreement : public info::discover::Disagreement {
   const WidestModel& widest() const { return widest_; }
   /// Forces that begin or end, together, at latentTimes(trial); empty if there is none.
   Eigen::VectorXd timedForce(int trial, const Eigen::VectorXd& values) const;
+  const ElbowOptions& options() const { return options_; }
+  /// The trial as it was given, with an excitation for every muscle that was added (withProxies).
+  const Trial& trial(int trial) const { return of(trial).trial; }
+  /// The whole simulation at values, without a latent force.
+  /// @throws what Arm, initialState and simulate throw
+  Trajectory motion(int trial, const Eigen::VectorXd& values) const;
+  /// The arm that it is of.
+  Arm armAt(int trial, const Eigen::VectorXd& values) const;
+  /// Where it starts: the coordinate itself, not what the sensor shows of it.
+  TrialStart startAt(int trial, const Eigen::VectorXd& values) const;
   /// Why the trial's simulation does not reach its end; empty if it does.
   std::string failure(int trial, const Eigen::VectorXd& values) const;
 
@@ -103,7 +113,6 @@ class ElbowDisagreement : public info::discover::Disagreement {
   Eigen::VectorXd withTimedForces(const OfTrial& one, const Eigen::VectorXd& values,
                                   const Eigen::VectorXd& latent) const;
   double activationLag() const;
-  Eigen::VectorXd knownChanges(const Trial& trial) const;
   const OfTrial& of(int trial) const { return trials_.at(static_cast<std::size_t>(trial)); }
   ParameterCatalogue::Setting settingAt(const OfTrial& one, const Eigen::VectorXd& values,
                                         const std::vector<std::size_t>& wanted) const;

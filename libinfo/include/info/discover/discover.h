@@ -103,6 +103,8 @@ struct Detectable {
   double amplitude = 0;  ///< [unit of the amplitude]; infinite: they can never show it
 };
 
+struct Verdict;
+
 /// How the formula of what has no name (Unknown) did in the race against the effects that imitate
 /// it best. It is no name: what it says is how the force looks.
 struct RacedFormula {
@@ -116,6 +118,9 @@ struct RacedFormula {
   Adequacy after;  ///< of the innovations, with the formula
   Gap gap;         ///< on the trials that were fitted
   std::optional<Gap> heldOut;
+  /// Where it wins: the data with the formula as a candidate, and what the race of it said.
+  std::shared_ptr<const Disagreement> data;
+  std::shared_ptr<const Verdict> verdict;
 };
 
 /// A force without a name, a smooth function of the angle or of the speed alone, as it did in the
@@ -159,6 +164,9 @@ struct Verdict {
   Eigen::VectorXd values;                ///< all quantities with the effects
   std::vector<Estimate> calibration;     ///< nuisances of the base model
   std::vector<Estimate> nuisancesAfter;  ///< with the effects
+  /// Starts of the trials that were held out, fitted to each of them alone, with the effects; their
+  /// values are in `values`, and without the effects in `base`.
+  std::vector<Estimate> heldOutStarts;
   Adequacy before, after;
   Localisation localisation;
   std::vector<Finalist> finalists;  ///< best first
