@@ -9,6 +9,7 @@
 #include "arm_input.h"
 #include "arm_options.h"
 #include "bio/osim_file.h"
+#include "bio/trial_review.h"
 #include "calibrate_report.h"
 #include "driven_trial.h"
 #include "info/version.h"
@@ -214,6 +215,10 @@ class Calibrate : public Command {
     for (const std::string& file : files) {
       trials.push_back(readTrialFile(file, model, simulation_));
       for (const std::string& warning : trials.back().warnings) summary.warn(warning);
+      for (const bio::MeasuredMotion& motion : trials.back().measured) {
+        const std::string why = bio::whyNotUsable(motion);
+        if (!why.empty()) summary.warn(fmt::format("{}: measured {} to be believed", file, why));
+      }
     }
     return trials;
   }

@@ -21,6 +21,7 @@ enum class ExitStatus {
 struct CommandContext {
   std::string subcommand;
   std::vector<std::string> commandLine;      ///< as typed, program name first
+  std::vector<std::filesystem::path> inputs;  ///< files that an option names: never written to
   std::optional<std::filesystem::path> out;  ///< folder for results; without it nothing is written
   bool force = false;                        ///< overwrite an existing result
   bool json = false;                         ///< the summary alone on standard output

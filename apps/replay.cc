@@ -21,6 +21,9 @@ class Replay : public Command {
     addModelArgument(options, model_);
     addTrialArgument(options, trial_);
     addSimulationOptions(options, simulation_);
+    options.add_flag("--strict", strict_,
+                     "exit with status 1 where the motion leaves a coordinate's range by more than "
+                     "a tenth of it, or a fibre 0.2 to 2 optimal lengths");
   }
 
   ExitStatus run(const CommandContext& context) override {
@@ -42,7 +45,11 @@ class Replay : public Command {
       };
       motion = bio::simulate(arm, input.excitation, input.start, options);
     }
-    for (const std::string& sentence : bio::rangeRemarks(arm, motion)) summary.warn(sentence);
+    const std::optional<bio::LeftRange> left = bio::leftRange(arm, motion);
+    if (left) summary.warn(left->what);
+    if (!left) {
+      for (const std::string& sentence : bio::rangeRemarks(arm, motion)) summary.warn(sentence);
+    }
     const bio::MuscleReport muscles = bio::reportMuscles(arm, motion);
     folder.writeFile("states.sto", [&](const std::filesystem::path& path) {
       bio::writeTable(bio::statesTable(model, arm, motion), path);
@@ -52,17 +59,19 @@ class Replay : public Command {
     });
 
     const ReplayFindings findings{model_, trial_, model,   input.trial,
-                                  arm,    motion, muscles, options};
+                                  arm,    motion, muscles, options,     left};
     summary.setSimulation(simulation_.integrator, options.step, input.duration, motion.wallSeconds);
     tellReplay(findings, summary);
     deliver(context, summary, replayReport(findings), folder);
-    return motion.outcome == bio::Outcome::completed ? ExitStatus::done : ExitStatus::answerIsNo;
+    const bool isFine = motion.outcome == bio::Outcome::completed && !(strict_ && left);
+    return isFine ? ExitStatus::done : ExitStatus::answerIsNo;
   }
 
  private:
   std::string model_;
   std::string trial_;
   SimulationOptions simulation_;
+  bool strict_ = false;
 };
 
 }  // namespace

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "bio/coupled.h"
+#include "bio/replay.h"
 #include "bio/trial.h"
 #include "report.h"
 
@@ -18,6 +20,7 @@ struct ReplayFindings {
   const bio::Trajectory& motion;
   const bio::MuscleReport& muscles;
   const bio::SimulationOptions& options;
+  const std::optional<bio::LeftRange>& left;
 };
 
 /// The figures that summary.json is to hold: rms_error_deg, newton_iterations_per_step, …
