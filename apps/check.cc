@@ -192,16 +192,16 @@ class Check : public Command {
             const std::vector<std::string>& limited, Summary& summary, Report& report) const {
     report.title = fmt::format("Check of {}", fmt::join(files_, ", "));
     const auto errors = findings.count("error");
-    report.verdict = errors > 0
-                         ? fmt::format("{} cannot be used as it stands.",
-                                       errors == 1 ? "One file" : fmt::format("{} files", errors))
-                     : !limited.empty()
-                         ? fmt::format("Every file can be read, but for simulations these models "
-                                       "are of no use: {}; paths and pictures of them can be made "
-                                       "(moment-arms, render).",
-                                       fmt::join(limited, ", "))
-                     : findings.list.empty() ? "Nothing is wrong and nothing is unusual."
-                                             : "Every file can be used; what is unusual is listed.";
+    report.verdict =
+        errors > 0         ? fmt::format("{} cannot be used as it stands.",
+                                 errors == 1 ? "One file" : fmt::format("{} files", errors))
+                : !limited.empty() ? fmt::format(
+                                         "Every file can be read, but for simulations these models "
+                                                 "are of no use: {}; paths and pictures of them can be made "
+                                                 "(moment-arms, render).",
+                                         fmt::join(limited, ", "))
+        : findings.list.empty() ? "Nothing is wrong and nothing is unusual."
+                                : "Every file can be used; what is unusual is listed.";
     summary.set("errors", errors);
     summary.set("warnings_found", findings.count("warning"));
     summary.set("unusual", findings.count("unusual"));

@@ -260,10 +260,10 @@ class Ensemble : public Command {
       if (isBelow || f.outputs[4][i] > c.rangeMax * shown + margin) ++left;
     }
     if (left == 0) return;
-    summary.warn(fmt::format("in {} of {} simulations {} leaves its range, {:.4g} to {:.4g} {}, by "
-                             "more than a tenth of it",
-                             left, f.count, c.name, c.rangeMin * shown, c.rangeMax * shown,
-                             study.table->unit()));
+    summary.warn(fmt::format(
+        "in {} of {} simulations {} leaves its range, {:.4g} to {:.4g} {}, by "
+        "more than a tenth of it",
+        left, f.count, c.name, c.rangeMin * shown, c.rangeMax * shown, study.table->unit()));
   }
 
   /// How many rows there are to be.
@@ -329,17 +329,16 @@ class Ensemble : public Command {
 
   EnsembleFindings findingsOf(const EnsembleStudy& study, const RowFile& file,
                               std::uint64_t seed) const {
-    EnsembleFindings findings{model_,
-                              trial_,
-                              study.coordinate.name,
-                              *study.table,
-                              study.laws.parameters,
-                              study.ensemble->nominal(),
-                              total(study),
-                              [&](std::uint64_t number) {
-                                return study.table->parse(number, file.row(number));
-                              },
-                              study.measured};
+    EnsembleFindings findings{
+        model_,
+        trial_,
+        study.coordinate.name,
+        *study.table,
+        study.laws.parameters,
+        study.ensemble->nominal(),
+        total(study),
+        [&](std::uint64_t number) { return study.table->parse(number, file.row(number)); },
+        study.measured};
     collect(findings);
     if (!sobol_) return findings;
     const auto names = DrawTable::outputNames();

@@ -34,8 +34,8 @@ std::string verdictOf(const EnsembleFindings& f) {
   std::string text = fmt::format(
       "{} of {} simulations with {} drawn parameters came to their end; {} ends at {} {} (median), "
       "90 % of them within {} to {} {}.",
-      finished, f.count, f.parameters.size(), f.coordinate, numberText(last.p50),
-      f.table.unit(), numberText(last.p5), numberText(last.p95), f.table.unit());
+      finished, f.count, f.parameters.size(), f.coordinate, numberText(last.p50), f.table.unit(),
+      numberText(last.p5), numberText(last.p95), f.table.unit());
   if (f.sobol && f.sobol->indices.variance > 0) {
     Eigen::Index most = 0;
     f.sobol->indices.total.maxCoeff(&most);

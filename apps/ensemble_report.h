@@ -33,8 +33,8 @@ struct EnsembleFindings {
   const DrawTable& table;
   const std::vector<DrawnParameter>& parameters;
   const bio::EnsembleRun& nominal;
-  std::uint64_t count;                                 ///< of rows
-  std::function<DrawTable::Row(std::uint64_t)> row;    ///< by number, below `count`
+  std::uint64_t count;                               ///< of rows
+  std::function<DrawTable::Row(std::uint64_t)> row;  ///< by number, below `count`
   std::optional<bio::MeasuredMotion> measured;
   std::map<std::string, std::uint64_t> outcomes = {};  ///< how many simulations ended so
   std::vector<std::vector<double>> outputs = {};       ///< by output, then by row; NaN: none

@@ -21,7 +21,8 @@ extern "C" void onInterruption(int signal) {
 }
 
 extern "C" void onImpatience(int) {
-  constexpr std::string_view words = "fisherhill: interrupted at work that cannot stop in between\n";
+  constexpr std::string_view words =
+      "fisherhill: interrupted at work that cannot stop in between\n";
   [[maybe_unused]] const ssize_t told = write(STDERR_FILENO, words.data(), words.size());
   _exit(130);
 }

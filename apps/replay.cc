@@ -58,8 +58,8 @@ class Replay : public Command {
       bio::writeTable(bio::forcesTable(arm, motion, muscles), path);
     });
 
-    const ReplayFindings findings{model_, trial_, model,   input.trial,
-                                  arm,    motion, muscles, options,     left};
+    const ReplayFindings findings{model_, trial_,  model,   input.trial, arm,
+                                  motion, muscles, options, left};
     summary.setSimulation(simulation_.integrator, options.step, input.duration, motion.wallSeconds);
     tellReplay(findings, summary);
     deliver(context, summary, replayReport(findings), folder);

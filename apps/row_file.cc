@@ -42,11 +42,11 @@ constexpr std::size_t checksumSize = 8;
 std::optional<std::uint64_t> numberOf(std::string_view line, std::size_t cells) {
   std::uint64_t number = 0;
   const auto [behind, error] = std::from_chars(line.data(), line.data() + line.size(), number);
-  const bool isRow = error == std::errc() && behind != line.data() + line.size() &&
-                     *behind == ',' && number <= greatestNumber &&
-                     static_cast<std::size_t>(std::count(line.begin(), line.end(), ',')) ==
-                         cells + 1 &&
-                     line.size() > checksumSize;
+  const bool isRow =
+      error == std::errc() && behind != line.data() + line.size() && *behind == ',' &&
+      number <= greatestNumber &&
+      static_cast<std::size_t>(std::count(line.begin(), line.end(), ',')) == cells + 1 &&
+      line.size() > checksumSize;
   if (!isRow) return std::nullopt;
   const std::size_t end = line.size() - checksumSize - 1;
   if (line[end] != ',' || checksumOf(line.substr(0, end)) != line.substr(end + 1)) {
@@ -123,7 +123,8 @@ void RowFile::open(const Json& given, bool replace) {
   std::string first, second;
   std::getline(stream, first);
   std::getline(stream, second);
-  const Json there = first.starts_with("# {") ? Json::parse(first.substr(2), nullptr, false) : Json();
+  const Json there =
+      first.starts_with("# {") ? Json::parse(first.substr(2), nullptr, false) : Json();
   if (!there.is_object()) {
     throw failure(path_, "is not the unfinished result of an ensemble; it is left as it is");
   }

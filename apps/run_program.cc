@@ -65,9 +65,9 @@ int runCommand(Command& command, const CommandContext& context, const CLI::App& 
     return status(command.run(context));
   } catch (const Interrupted&) {
     const bool kept = context.out && std::filesystem::exists(*context.out);
-    tell(fmt::format("fisherhill {}: interrupted; {}\n", context.subcommand,
-                     kept ? "finished parts are in " + context.out->string()
-                          : "nothing was written"));
+    tell(fmt::format(
+        "fisherhill {}: interrupted; {}\n", context.subcommand,
+        kept ? "finished parts are in " + context.out->string() : "nothing was written"));
     return status(ExitStatus::interrupted);
   } catch (const bio::UnknownColumn& error) {
     const bool canIgnore = options.get_option_no_throw("--ignore-extra") != nullptr;

@@ -71,9 +71,10 @@ Arm::Arm(const Model& model, const ArmOptions& options, const Arm* like,
     if (!like) {
       warnings_.insert(warnings_.end(), path.warnings().begin(), path.warnings().end());
       if (const double length = defaultLength(skeleton_, path); length < shortestPath) {
-        warnings_.push_back(fmt::format("muscle '{}': its path is {:.3g} m long in the default "
-                                        "posture, usually more than 1 mm",
-                                        muscle.name, length));
+        warnings_.push_back(
+            fmt::format("muscle '{}': its path is {:.3g} m long in the default "
+                        "posture, usually more than 1 mm",
+                        muscle.name, length));
       }
     }
     if (!path.moves()) {

@@ -172,18 +172,6 @@ class Compiler {
     path_.variants.push_back(std::move(variant));
   }
 
-  bool touches(const SpanSurface& way, const PathSpan& span, const Posture& posture) const {
-    const PathSurface& surface = path_.surfaces[way.surface];
-    const auto seen = [&](std::size_t node) {
-      return seenFrom(posture, surface.segment, surface.X_SC,
-                      nodePosition(path_, path_.nodes[node], posture));
-    };
-    const Vec3<double> P = seen(span.a), Q = seen(span.b);
-    if (surfaceIsOutOfPlay(surface, surface.radius, way.side, P, Q)) return false;
-    return surface.isSphere ? wrapSphere(surface.radius, way.way, P, Q).touches
-                            : wrapCylinder(surface.radius, way.side, P, Q).touches;
-  }
-
   std::string nameOf(const SpanSurface& way) const {
     return muscle_.path.wraps[path_.surfaces[way.surface].wrap].wrapObject;
   }
@@ -195,7 +183,7 @@ class Compiler {
       if (!occurs(bits, posture)) continue;
       std::vector<std::string> touched;
       for (const SpanSurface& way : span.surfaces) {
-        if (touches(way, span, posture)) touched.push_back(nameOf(way));
+        if (touches(path_, span, way, posture)) touched.push_back(nameOf(way));
       }
       if (touched.size() < 2) continue;
       warnOfSeveral(span, touched);

@@ -10,7 +10,7 @@ namespace bio {
 namespace {
 
 constexpr double negligible = 1e-14;  ///< [kg m²] or [kg]; a grain of sand at a millimetre has more
-constexpr double singular = 1e-10;    ///< least eigenvalue of a mass matrix with ones on its diagonal
+constexpr double singular = 1e-10;  ///< least eigenvalue of a mass matrix with ones on its diagonal
 
 Eigen::MatrixXd massMatrixOf(const Skeleton& skeleton) {
   return stepping::withCoordinates(skeleton.numCoordinates(), [&](auto N) -> Eigen::MatrixXd {
@@ -43,9 +43,10 @@ std::string whatMovesNoMass(const Skeleton& skeleton) {
   for (Eigen::Index k = 0; k < M.rows(); ++k) {
     if (M(k, k) > negligible) continue;
     const Coordinate& c = free[static_cast<std::size_t>(k)];
-    return fmt::format("coordinate '{}' moves no mass (inertia = {:.4g} {}), must move some: the "
-                       "bodies behind it need mass, or it has to be locked",
-                       c.name, M(k, k), c.isRotation ? "kg m²" : "kg");
+    return fmt::format(
+        "coordinate '{}' moves no mass (inertia = {:.4g} {}), must move some: the "
+        "bodies behind it need mass, or it has to be locked",
+        c.name, M(k, k), c.isRotation ? "kg m²" : "kg");
   }
   const Eigen::VectorXd scale = M.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * M * scale.asDiagonal();
@@ -56,9 +57,10 @@ std::string whatMovesNoMass(const Skeleton& skeleton) {
     if (std::abs(modes.eigenvectors()(k, 0)) < 1e-3) continue;
     names += (names.empty() ? "'" : ", '") + free[static_cast<std::size_t>(k)].name + "'";
   }
-  return fmt::format("coordinates {} can move together without moving any mass, must not: one of "
-                     "them has to be locked",
-                     names);
+  return fmt::format(
+      "coordinates {} can move together without moving any mass, must not: one of "
+      "them has to be locked",
+      names);
 }
 
 void requireMovedMass(const Model& model, const Skeleton& skeleton) {

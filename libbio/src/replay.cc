@@ -153,10 +153,11 @@ std::optional<LeftRange> leftRange(const Arm& arm, const Trajectory& trajectory)
     const double margin = std::max(0.1 * (c.rangeMax - c.rangeMin), 1 / unit);
     const Eigen::VectorXd q = trajectory.q.row(static_cast<Eigen::Index>(i));
     look(q, c.rangeMin - margin, c.rangeMax + margin, [&](double time) {
-      return fmt::format("{0} leaves its range, {1:.4g} to {2:.4g} {3}, by more than a tenth of it "
-                         "at {4:.3g} s and reaches {5:.4g} to {6:.4g} {3}",
-                         c.name, c.rangeMin * unit, c.rangeMax * unit, c.isRotation ? "deg" : "mm",
-                         time, q.minCoeff() * unit, q.maxCoeff() * unit);
+      return fmt::format(
+          "{0} leaves its range, {1:.4g} to {2:.4g} {3}, by more than a tenth of it "
+          "at {4:.3g} s and reaches {5:.4g} to {6:.4g} {3}",
+          c.name, c.rangeMin * unit, c.rangeMax * unit, c.isRotation ? "deg" : "mm", time,
+          q.minCoeff() * unit, q.maxCoeff() * unit);
     });
   }
   for (std::size_t i = 0; i < arm.numMuscles(); ++i) {
@@ -164,9 +165,10 @@ std::optional<LeftRange> leftRange(const Arm& arm, const Trajectory& trajectory)
     const Eigen::VectorXd l =
         trajectory.fibreLength.row(static_cast<Eigen::Index>(i)) * muscle.muscle.perFibre();
     look(l, 0.2, 2, [&](double time) {
-      return fmt::format("the fibres of {} leave 0.2 to 2 optimal lengths at {:.3g} s and reach "
-                         "{:.3g} to {:.3g}",
-                         muscle.name, time, l.minCoeff(), l.maxCoeff());
+      return fmt::format(
+          "the fibres of {} leave 0.2 to 2 optimal lengths at {:.3g} s and reach "
+          "{:.3g} to {:.3g}",
+          muscle.name, time, l.minCoeff(), l.maxCoeff());
     });
   }
   return first;

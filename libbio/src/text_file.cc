@@ -21,11 +21,11 @@ std::string readTextFile(const std::filesystem::path& file) {
     throw FileError(fmt::format("{}: is a directory, must be a file", file.string()));
   }
   // Some devices and pipes never end, others never begin.
-  const bool isPipe = std::filesystem::is_fifo(file, error) ||
-                      std::filesystem::is_socket(file, error);
+  const bool isPipe =
+      std::filesystem::is_fifo(file, error) || std::filesystem::is_socket(file, error);
   if (isPipe || !std::filesystem::is_regular_file(file, error)) {
-    throw FileError(fmt::format("{}: is a {}, must be a file", file.string(),
-                                isPipe ? "pipe" : "device"));
+    throw FileError(
+        fmt::format("{}: is a {}, must be a file", file.string(), isPipe ? "pipe" : "device"));
   }
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   if (!error && size > mostTextBytes) {

@@ -128,8 +128,8 @@ class TrialReader {
     for (const auto& [key, value] : table_.metadata) {
       const std::string nearest = nearestName(key, meant);
       if (nearest.empty() || nearest == key) continue;
-      trial_.warnings.push_back(fmt::format("{}: header: '{}' means nothing, did you mean '{}'?",
-                                            file_, key, nearest));
+      trial_.warnings.push_back(
+          fmt::format("{}: header: '{}' means nothing, did you mean '{}'?", file_, key, nearest));
     }
   }
 

@@ -29,10 +29,9 @@ void reviewSampling(const Trial& trial, std::vector<Remark>& remarks) {
                                            least, largest, median)});
   }
   if (median >= millisecondsBeyond) {
-    remarks.push_back({"time",
-                       fmt::format("rows are {:.4g} s apart, usually below 0.1 s: milliseconds?",
-                                   median),
-                       Weight::warning});
+    remarks.push_back(
+        {"time", fmt::format("rows are {:.4g} s apart, usually below 0.1 s: milliseconds?", median),
+         Weight::warning});
   } else if (median > 0.1) {
     remarks.push_back(
         {"time", fmt::format("rows are {:.4g} s apart, usually below 0.1 s", median)});
@@ -76,8 +75,7 @@ void reviewMotion(const MeasuredMotion& motion, const Coordinate& coordinate, do
   const double least = motion.values.minCoeff(), largest = motion.values.maxCoeff();
   const double widest = std::max(std::abs(least), std::abs(largest));
   const char* unit = coordinate.isRotation ? "rad" : "m";
-  const bool isOutside =
-      least < coordinate.rangeMin - 1e-3 || largest > coordinate.rangeMax + 1e-3;
+  const bool isOutside = least < coordinate.rangeMin - 1e-3 || largest > coordinate.rangeMax + 1e-3;
   if (coordinate.isRotation && isOutside && widest > certainlyDegreesBeyond) {
     remarks.push_back(
         {subject,
@@ -142,9 +140,10 @@ std::string whyNotUsable(const MeasuredMotion& motion, Eigen::Index fewest) {
   }
   const bool areTwo = (motion.values.array() == low || motion.values.array() == high).all();
   if (areTwo && count > 2) {
-    return fmt::format("'{}' has only two different values in {} samples, the steps of its sensor, "
-                       "must have more",
-                       motion.coordinate, count);
+    return fmt::format(
+        "'{}' has only two different values in {} samples, the steps of its sensor, "
+        "must have more",
+        motion.coordinate, count);
   }
   return "";
 }
@@ -174,11 +173,13 @@ std::vector<std::string> heldRemarks(const Trial& trial, const Model& model,
     const double unit = c.isRotation ? 180 / std::numbers::pi : 1e3;  // shown [deg] or [mm]
     const double furthest = (motion.values.array() - source.value).abs().maxCoeff() * unit;
     if (furthest <= 0.1) continue;
-    const std::string measured = fmt::format(
-        "{}: '{}' is measured, {:.4g} to {:.4g} {}", trial.file, c.name,
-        motion.values.minCoeff() * unit, motion.values.maxCoeff() * unit, c.isRotation ? "deg" : "mm");
+    const std::string measured =
+        fmt::format("{}: '{}' is measured, {:.4g} to {:.4g} {}", trial.file, c.name,
+                    motion.values.minCoeff() * unit, motion.values.maxCoeff() * unit,
+                    c.isRotation ? "deg" : "mm");
     if (options.lockedValues.contains(c.name)) {
-      remarks.push_back(fmt::format("{}, and held at {:.4g} as told", measured, source.value * unit));
+      remarks.push_back(
+          fmt::format("{}, and held at {:.4g} as told", measured, source.value * unit));
       continue;
     }
     const double mean = motion.values.mean();
@@ -186,7 +187,8 @@ std::vector<std::string> heldRemarks(const Trial& trial, const Model& model,
         "{}, but is not free and would be held at {:.4g}: --lock {}={} holds it at its mean, "
         "--coordinate {} frees it",
         measured, source.value * unit, c.name,
-        c.isRotation ? fmt::format("{:.4g}deg", mean * unit) : fmt::format("{:.6g}", mean), c.name));
+        c.isRotation ? fmt::format("{:.4g}deg", mean * unit) : fmt::format("{:.6g}", mean),
+        c.name));
   }
   return remarks;
 }

@@ -22,18 +22,18 @@ constexpr const char* threeRows = "time,BIClong\n0,0.1\n0.1,0.2\n0.2,0.1\n";
 
 /// `fisherhill` by way of a shell, which a redirection needs; ended after 20 s.
 ProgramResult inShell(const std::string& line) {
-  return support::runProgram({"timeout", "--foreground", "20", "bash", "-c", line,
-                              FISHERHILL_PROGRAM},
-                             FISHERHILL_SOURCE_DIR);
+  return support::runProgram(
+      {"timeout", "--foreground", "20", "bash", "-c", line, FISHERHILL_PROGRAM},
+      FISHERHILL_SOURCE_DIR);
 }
 
 TEST(InputFiles, PipesAndDevicesAreRefusedAtOnce) {
   const ScratchFolder scratch;
   const std::string pipe = (scratch / "trial.sto").string();
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  for (const std::string& command : {"replay " + model + " ", "check " + model + " ",
-                                     "sensitivity " + model + " ", "moment-arms ",
-                                     "emg emg_data/curl_slow_raw.csv --config "}) {
+  for (const std::string& command : std::vector<std::string>{
+           "replay " + model + " ", "check " + model + " ", "sensitivity " + model + " ",
+           "moment-arms ", "emg emg_data/curl_slow_raw.csv --config "}) {
     const ProgramResult fromPipe = inShell("exec \"$0\" " + command + pipe);
     EXPECT_EQ(fromPipe.status, 2) << command;
     EXPECT_THAT(fromPipe.err, HasSubstr(pipe + ": is a pipe, must be a file")) << command;
@@ -48,18 +48,18 @@ TEST(InputFiles, PipesAndDevicesAreRefusedAtOnce) {
 TEST(InputFiles, AResultNeverTakesTheirPlaceUnderWhateverName) {
   const ScratchFolder scratch;
   const std::string out = (scratch / "out").string();
-  ASSERT_EQ(support::runFisherHill({"replay", model, scratch.file("trial.csv", threeRows), "--out",
-                                    out})
-                .status,
-            0);
+  ASSERT_EQ(
+      support::runFisherHill({"replay", model, scratch.file("trial.csv", threeRows), "--out", out})
+          .status,
+      0);
   fs::copy_file(fs::path(FISHERHILL_SOURCE_DIR) / support::slow, scratch / "out/forces.sto",
                 fs::copy_options::overwrite_existing);
   const std::string trial = (scratch / "out/forces.sto").string();
   const std::string before = support::contentOf(trial);
   fs::create_hard_link(trial, scratch / "hard.sto");
   fs::create_symlink(trial, scratch / "soft.sto");
-  for (const std::string& name : {trial, (scratch / "hard.sto").string(),
-                                  (scratch / "soft.sto").string()}) {
+  for (const std::string& name :
+       {trial, (scratch / "hard.sto").string(), (scratch / "soft.sto").string()}) {
     const ProgramResult result =
         support::runFisherHill({"replay", model, name, "--out", out, "--force"});
     EXPECT_EQ(result.status, 2) << name;

@@ -37,8 +37,7 @@ std::string with(std::string text, const std::string& from, const std::string& t
 /// A trial of the elbow: one excitation and a measured column, 30 rows.
 std::string trialWith(const std::string& column, double first, double perRow,
                       const std::string& header = "", double interval = 0.01) {
-  std::string text =
-      header.empty() ? "" : "trial\nversion=1\n" + header + "\nendheader\n";
+  std::string text = header.empty() ? "" : "trial\nversion=1\n" + header + "\nendheader\n";
   const char separator = header.empty() ? ',' : '\t';
   text += std::string("time") + separator + "BRA" + separator + column + "\n";
   for (int k = 0; k < 30; ++k) {
@@ -62,8 +61,8 @@ struct Told : testing::Test {
 
 TEST_F(Told, AMeasuredCoordinateThatIsHeldElsewhereIsRefusedWithAdvice) {
   const std::string trial = scratch.file("up.csv", trialWith("shoulder_elv_deg", 80, 0.5));
-  for (const char* command : {"replay", "compare", "sensitivity", "calibrate", "ensemble", "design",
-                              "discover"}) {
+  for (const char* command :
+       {"replay", "compare", "sensitivity", "calibrate", "ensemble", "design", "discover"}) {
     std::vector<std::string> words = {command, model, trial};
     if (command != std::string("replay") && command != std::string("compare")) {
       words.insert(words.end(), {"--parameters", "hand.mass"});
@@ -111,9 +110,9 @@ TEST_F(Told, AMotionThatLeavesItsRangeHasAStatusOfItsOwn) {
       runFisherHill({"sensitivity", model, trial, "--parameters", "hand.mass", "--initial",
                      "elbow_flexion=90deg"});
   EXPECT_THAT(sensitivity.err, HasSubstr("warning: elbow_flexion leaves its range"));
-  const ProgramResult ensemble = runFisherHill({"ensemble", model, trial, "--parameters",
-                                                "hand.mass", "--initial", "elbow_flexion=90deg",
-                                                "--draws", "4"});
+  const ProgramResult ensemble =
+      runFisherHill({"ensemble", model, trial, "--parameters", "hand.mass", "--initial",
+                     "elbow_flexion=90deg", "--draws", "4"});
   EXPECT_THAT(ensemble.err, HasSubstr("with the model's own parameters elbow_flexion leaves"));
   EXPECT_THAT(ensemble.err, HasSubstr("in 4 of 4 simulations elbow_flexion leaves its range"));
 }
@@ -162,8 +161,8 @@ TEST_F(Told, ModelsThatAreNotPhysicalAreRefusedByElement) {
 
 TEST_F(Told, NamesThatCannotBeWrittenAreRefusedWhereTheyAreRead) {
   for (const char* name : {"BRA,2", "BRA&quot;", "BRA&#10;2", "BRA&#9;2", " BRA"}) {
-    const std::string file = scratch.file(
-        "named.osim", with(sourceText(model), "name=\"BRA\"", std::string("name=\"") + name + "\""));
+    const std::string file = scratch.file("named.osim", with(sourceText(model), "name=\"BRA\"",
+                                                             std::string("name=\"") + name + "\""));
     for (const ProgramResult& result :
          {runFisherHill({"check", file, "--json"}), runFisherHill({"replay", file, slow})}) {
       EXPECT_THAT(result.out + result.err, HasSubstr("its name must be without comma, quote, tab"))
@@ -209,8 +208,9 @@ TEST_F(Told, DegreesUnderARadiansNameAreRefusedAndMillisecondsTold) {
   const std::string slowly =
       scratch.file("ms.csv", trialWith("elbow_flexion_deg", 30, 0.1, "", 1.0));
   const ProgramResult result = replay(model, slowly);
-  EXPECT_THAT(result.err, HasSubstr("warning: " + slowly + ": time: rows are 1 s apart, usually "
-                                                           "below 0.1 s: milliseconds?"));
+  EXPECT_THAT(result.err, HasSubstr("warning: " + slowly +
+                                    ": time: rows are 1 s apart, usually "
+                                    "below 0.1 s: milliseconds?"));
 }
 
 // --- measured series that say nothing
@@ -229,6 +229,22 @@ TEST_F(Told, DegenerateMeasurementsAreToldToBeThat) {
   const ProgramResult calibrate =
       runFisherHill({"calibrate", model, few, "--parameters", "hand.mass"});
   EXPECT_THAT(calibrate.err, HasSubstr("warning: " + few + ": measured 'elbow_flexion' has 3"));
+}
+
+// --- steps
+
+TEST_F(Told, CalibrateNamesTheTrialWhoseStepsAreTooLong) {
+  const std::vector<std::string> words = {"calibrate", model,         slow,  "--parameters",
+                                          "hand.mass", "--noise-deg", "0.5", "--step"};
+  const auto with = [&](const char* step) {
+    std::vector<std::string> all = words;
+    all.push_back(step);
+    return runFisherHill(all).err;
+  };
+  EXPECT_THAT(with("0.1"), HasSubstr("warning: " + slow +
+                                     ": halving the step of 0.1 s changes the "
+                                     "simulated angles by up to "));
+  EXPECT_THAT(with("0.01"), Not(HasSubstr("halving the step")));
 }
 
 // --- integers
@@ -250,8 +266,7 @@ TEST_F(Told, ASeedThatIsTooLargeIsRefused) {
 
 TEST_F(Told, CheckSaysThatAModelWithoutSimulatedMusclesIsOfNoUseForSimulations) {
   const std::string file = scratch.file(
-      "other.osim",
-      with(sourceText(model), "Schutte1993Muscle_Deprecated", "Thelen2003Muscle"));
+      "other.osim", with(sourceText(model), "Schutte1993Muscle_Deprecated", "Thelen2003Muscle"));
   const ProgramResult result = runFisherHill({"check", file});
   EXPECT_THAT(result.out, Not(HasSubstr("Every file can be used")));
   EXPECT_THAT(result.out, HasSubstr("for simulations these models are of no use: " + file +

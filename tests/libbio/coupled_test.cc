@@ -307,9 +307,8 @@ TEST(Coupled, TheProgressCallbackCanStopARun) {
 // When a trial begins is of no account, before zero or long after.
 TEST(Coupled, AMotionIsTheSameWheneverItBegins) {
   const Case c = liftingCase({"elbow_flexion"}, 1.0);
-  for (const Integrator integrator :
-       {Integrator::variational, Integrator::variationalLeft, Integrator::rungeKutta4,
-        Integrator::cvode}) {
+  for (const Integrator integrator : {Integrator::variational, Integrator::variationalLeft,
+                                      Integrator::rungeKutta4, Integrator::cvode}) {
     SimulationOptions o =
         options(integrator, integrator == Integrator::rungeKutta4 ? 2.5e-4 : 0.01, 1.0);
     const Trajectory atZero = simulate(c.arm, c.excitation, c.start, o);

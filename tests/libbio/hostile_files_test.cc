@@ -68,7 +68,8 @@ TEST_F(HostileFiles, ConfigurationsAreUtf8) {
 TEST_F(HostileFiles, PipesAreNoFiles) {
   const std::string pipe = folder_.path() / "pipe.osim";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_THAT(refusalOf([&] { readOsim(pipe); }), HasSubstr("pipe.osim: is a pipe, must be a file"));
+  EXPECT_THAT(refusalOf([&] { readOsim(pipe); }),
+              HasSubstr("pipe.osim: is a pipe, must be a file"));
 }
 
 TEST_F(HostileFiles, AFileOfManyGigabytesIsNotRead) {

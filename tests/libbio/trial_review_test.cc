@@ -53,7 +53,8 @@ TEST(TrialReview, NamesEachUnusualQuantityOnce) {
       {[](Trial& t) { t.excitations(3, 0) = 0.9; },
        "excitation of 'BRA': jumps by 0.784 between rows, usually below 0.5"},
       {[](Trial& t) { t.measured[0].values *= 57; },
-       "measured 'elbow_flexion': values = 28.5 to 57 rad, must be within ±2π or the model's range: "
+       "measured 'elbow_flexion': values = 28.5 to 57 rad, must be within ±2π or the model's "
+       "range: "
        "degrees stand in a column 'elbow_flexion_deg', or under inDegrees=yes"},
       {[](Trial& t) { t.measured[0].values.array() -= 0.7; },
        "measured 'elbow_flexion': values = -0.2 to 0.3 rad, outside the model's range 0 to 2.3"},

@@ -16,8 +16,8 @@ namespace bio {
 struct ArmOptions {
   SkeletonOptions skeleton;  ///< which coordinates are free, where the others are held
   std::vector<std::string>
-      wrapAsCylinder;     ///< ellipsoids with two equal semi-axes to take as cylinders
-  SchutteOptions muscle;  ///< activation floor, treatment of negative forces
+      wrapAsCylinder;          ///< ellipsoids with two equal semi-axes to take as cylinders
+  SchutteOptions muscle;       ///< activation floor, treatment of negative forces
   bool tabulatePaths = false;  ///< MusclePath::tabulate; pays after a few simulations
 };
 

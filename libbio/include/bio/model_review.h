@@ -29,10 +29,10 @@ struct Remark {
 /// can have (a moment larger than the sum of the other two, or a radius of gyration above 1 m) and
 /// massless bodies at the end of the chain; lengths that look like millimetres (path points or mass
 /// centres more than 3 m from their body's origin, wrap objects above 0.5 m); muscles whose
-/// points are all at one place; muscles with F0 outside 1 to 20,000 N, ℓ0 outside 5 mm to 0.6 m, slack length over ℓ0 outside 0.1 to 15,
-/// pennation above 45°, Schutte curves that are negative, fall (tendon, passive) or do not peak
-/// near F/F0 = 1, ℓ/ℓ0 = 1 (active); transform axes that are not of length 1; models without
-/// muscles, or without a free coordinate.
+/// points are all at one place; muscles with F0 outside 1 to 20,000 N, ℓ0 outside 5 mm to 0.6 m,
+/// slack length over ℓ0 outside 0.1 to 15, pennation above 45°, Schutte curves that are negative,
+/// fall (tendon, passive) or do not peak near F/F0 = 1, ℓ/ℓ0 = 1 (active); transform axes that are
+/// not of length 1; models without muscles, or without a free coordinate.
 ///
 /// Warnings: muscles that cannot be simulated, and coordinates that cannot be free since they move
 /// no mass.

@@ -22,8 +22,8 @@ namespace bio {
 std::vector<Remark> reviewTrial(const Trial& trial, const Model& model);
 
 /// Why a measured series says nothing about a model, or too little for its noise to be told from
-/// the motion: fewer than `fewest` values, one value throughout, two values throughout (steps of the
-/// sensor). Empty if it can be used.
+/// the motion: fewer than `fewest` values, one value throughout, two values throughout (steps of
+/// the sensor). Empty if it can be used.
 std::string whyNotUsable(const MeasuredMotion& motion, Eigen::Index fewest = 20);
 
 /// @throws std::invalid_argument naming the file for a series that whyNotUsable names
