@@ -47,8 +47,9 @@ class Replay : public Command {
     }
     const std::optional<bio::LeftRange> left = bio::leftRange(arm, motion);
     if (left) summary.warn(left->what);
-    if (!left) {
-      for (const std::string& sentence : bio::rangeRemarks(arm, motion)) summary.warn(sentence);
+    for (const std::string& sentence : bio::rangeRemarks(arm, motion)) {
+      const bool isSaid = left && sentence.starts_with(left->name + " leaves its range");
+      if (!isSaid) summary.warn(sentence);
     }
     const bio::MuscleReport muscles = bio::reportMuscles(arm, motion);
     folder.writeFile("states.sto", [&](const std::filesystem::path& path) {

@@ -170,11 +170,6 @@ void Reviewer::reviewMuscle(const Muscle& muscle) {
            (p.location - points.front().location).norm() < shortestPath;
   });
   if (atOnePlace) say(subject, "all its points are at one place: its path has no length");
-  if (!muscle.schutte) {
-    say(subject, "is a {}, which is not simulated: where it moves, a simulation refuses the model",
-        muscle.className);
-    remarks.back().weight = Weight::warning;
-  }
   if (muscle.schutte) {
     reviewParameters(subject, *muscle.schutte);
     reviewCurves(subject, *muscle.schutte);

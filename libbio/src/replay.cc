@@ -138,12 +138,12 @@ std::vector<std::string> rangeRemarks(const Arm& arm, const Trajectory& trajecto
 
 std::optional<LeftRange> leftRange(const Arm& arm, const Trajectory& trajectory) {
   std::optional<LeftRange> first;
-  const auto look = [&](const Eigen::VectorXd& values, double low, double high,
-                        const std::function<std::string(double)>& sentence) {
+  const auto look = [&](const std::string& name, const Eigen::VectorXd& values, double low,
+                        double high, const std::function<std::string(double)>& sentence) {
     for (Eigen::Index k = 0; k < values.size(); ++k) {
       if (values[k] >= low && values[k] <= high) continue;
       const double time = trajectory.time[static_cast<std::size_t>(k)];
-      if (!first || time < first->time) first = LeftRange{time, sentence(time)};
+      if (!first || time < first->time) first = LeftRange{time, name, sentence(time)};
       return;
     }
   };
@@ -152,7 +152,7 @@ std::optional<LeftRange> leftRange(const Arm& arm, const Trajectory& trajectory)
     const double unit = c.isRotation ? 180 / std::numbers::pi : 1e3;
     const double margin = std::max(0.1 * (c.rangeMax - c.rangeMin), 1 / unit);
     const Eigen::VectorXd q = trajectory.q.row(static_cast<Eigen::Index>(i));
-    look(q, c.rangeMin - margin, c.rangeMax + margin, [&](double time) {
+    look(c.name, q, c.rangeMin - margin, c.rangeMax + margin, [&](double time) {
       return fmt::format(
           "{0} leaves its range, {1:.4g} to {2:.4g} {3}, by more than a tenth of it "
           "at {4:.3g} s and reaches {5:.4g} to {6:.4g} {3}",
@@ -164,7 +164,7 @@ std::optional<LeftRange> leftRange(const Arm& arm, const Trajectory& trajectory)
     const ArmMuscle& muscle = arm.muscles()[i];
     const Eigen::VectorXd l =
         trajectory.fibreLength.row(static_cast<Eigen::Index>(i)) * muscle.muscle.perFibre();
-    look(l, 0.2, 2, [&](double time) {
+    look(muscle.name, l, 0.2, 2, [&](double time) {
       return fmt::format(
           "the fibres of {} leave 0.2 to 2 optimal lengths at {:.3g} s and reach "
           "{:.3g} to {:.3g}",

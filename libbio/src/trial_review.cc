@@ -28,7 +28,7 @@ void reviewSampling(const Trial& trial, std::vector<Remark>& remarks) {
                                            "(the median is {:.4g} s)",
                                            least, largest, median)});
   }
-  if (median >= millisecondsBeyond) {
+  if (median >= millisecondsBeyond && trial.duration() >= millisecondsFrom) {
     remarks.push_back(
         {"time", fmt::format("rows are {:.4g} s apart, usually below 0.1 s: milliseconds?", median),
          Weight::warning});

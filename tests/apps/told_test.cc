@@ -206,10 +206,10 @@ TEST_F(Told, DegreesUnderARadiansNameAreRefusedAndMillisecondsTold) {
   EXPECT_EQ(checked.status, 1);
   EXPECT_THAT(checked.out, HasSubstr("degrees stand in a column 'elbow_flexion_deg'"));
   const std::string slowly =
-      scratch.file("ms.csv", trialWith("elbow_flexion_deg", 30, 0.1, "", 1.0));
+      scratch.file("ms.csv", trialWith("elbow_flexion_deg", 60, 0.1, "", 10.0));
   const ProgramResult result = replay(model, slowly);
   EXPECT_THAT(result.err, HasSubstr("warning: " + slowly +
-                                    ": time: rows are 1 s apart, usually "
+                                    ": time: rows are 10 s apart, usually "
                                     "below 0.1 s: milliseconds?"));
 }
 

@@ -142,9 +142,6 @@ TEST(ModelReview, NamesEachUnusualQuantityOnce) {
          for (PathPoint& p : m.muscles[0].path.points) p = m.muscles[0].path.points[0];
        },
        "muscle 'TRIlong': all its points are at one place: its path has no length"},
-      {[](Model& m) { m.muscles[0].schutte.reset(), m.muscles[0].className = "Thelen2003Muscle"; },
-       "muscle 'TRIlong': is a Thelen2003Muscle, which is not simulated: where it moves, a "
-       "simulation refuses the model"},
       {[](Model& m) { m.muscles.clear(); }, "model: has no muscle"},
   };
   for (const Case& c : cases) {

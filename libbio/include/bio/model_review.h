@@ -34,8 +34,7 @@ struct Remark {
 /// fall (tendon, passive) or do not peak near F/F0 = 1, ℓ/ℓ0 = 1 (active); transform axes that are
 /// not of length 1; models without muscles, or without a free coordinate.
 ///
-/// Warnings: muscles that cannot be simulated, and coordinates that cannot be free since they move
-/// no mass.
+/// Warnings: coordinates that cannot be free since they move no mass.
 std::vector<Remark> reviewModel(const Model& model);
 
 /// Why nothing of a model can be simulated: no muscle, none of a class that is simulated, or no

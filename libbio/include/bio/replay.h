@@ -47,6 +47,7 @@ std::vector<std::string> rangeRemarks(const Arm& arm, const Trajectory& trajecto
 /// Where a motion first leaves what its model is made for.
 struct LeftRange {
   double time = 0;   ///< [s]
+  std::string name;  ///< of the coordinate or muscle
   std::string what;  ///< one sentence without full stop: what, when, how far
 };
 /// The first time at which a free coordinate is outside its range by more than a tenth of it (and

@@ -11,7 +11,8 @@ namespace bio {
 /// Lists what is unusual in a trial.
 ///
 /// Errors: a measured angle beyond 2π rad and outside its coordinate's range (degrees). Warnings: a
-/// measured angle beyond 4π rad that the range allows; rows 0.5 s apart or more (milliseconds?).
+/// measured angle beyond 4π rad that the range allows; rows 0.5 s apart or more over a minute
+/// or more (milliseconds?).
 /// Unusual: unequal sampling (an interval more than 1 % off the median one); rows further apart
 /// than 0.1 s;
 /// excitations that are 0 or 1 throughout, or that jump by more than 0.5 between rows; a measured
