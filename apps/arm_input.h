@@ -28,9 +28,11 @@ bio::Model readModel(const std::string& file, Summary& summary);
 bio::Arm movableArm(const bio::Model& model, const std::string& file,
                     const SimulationOptions& options, Summary& summary);
 
-/// A trial's file by the simulation options. The summary is not told.
+/// A trial's file by the simulation options. What reviewTrial warns of and heldRemarks are among
+/// its warnings; the summary is not told.
 /// @param knownChanges  the command takes into account what was changed on purpose
-/// @throws what readTrial throws; std::invalid_argument if --step is longer than the trial
+/// @throws what readTrial and heldRemarks throw; std::invalid_argument if --step is longer than the
+///   trial, or for an error of reviewTrial
 bio::Trial readTrialFile(const std::string& file, const bio::Model& model,
                          const SimulationOptions& options, bool knownChanges = false);
 

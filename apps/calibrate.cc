@@ -10,6 +10,7 @@
 #include "arm_options.h"
 #include "bio/osim_file.h"
 #include "bio/replay.h"
+#include "bio/trial_review.h"
 #include "calibrate_report.h"
 #include "fitted_table.h"
 #include "info/version.h"
@@ -144,6 +145,7 @@ class Calibrate : public Command {
     const CalibrateFindings findings{model_,  training,    heldOut ? &*heldOut : nullptr,
                                      options, calibration, calibrated ? &*calibrated : nullptr};
     tellCalibrate(findings, summary);
+    warnOfSteps(model, training, typed.trials, calibration, summary);
     if (calibrated) {
       writeDriven(*calibrated, summary, folder);
       writeModel(findings, calibrated->model, summary, folder);
@@ -223,8 +225,35 @@ class Calibrate : public Command {
     for (const std::string& file : files) {
       trials.push_back(readTrialFile(file, model, simulation_));
       for (const std::string& warning : trials.back().warnings) summary.warn(warning);
+      for (const bio::MeasuredMotion& motion : trials.back().measured) {
+        const std::string why = bio::whyNotUsable(motion);
+        if (!why.empty()) summary.warn(fmt::format("{}: measured {} to be believed", file, why));
+      }
     }
     return trials;
+  }
+
+  /// Steps that are too long look like an error of the model: the trials whose motion changes when
+  /// they are halved are named.
+  void warnOfSteps(const bio::Model& model, const bio::TrialSet& training,
+                   bio::TrialSetOptions halved, const bio::Calibration& c, Summary& summary) const {
+    if (!c.calibrated) return;
+    halved.simulation.step /= 2;
+    const bio::TrialSet finer(model, armOptions(simulation_), training.trials(), halved);
+    Eigen::VectorXd theta(static_cast<Eigen::Index>(c.parameters.size()));
+    for (std::size_t i = 0; i < c.parameters.size(); ++i) {
+      theta[static_cast<Eigen::Index>(i)] = c.parameters[i].value;
+    }
+    const auto changes = finer.largestDifferences(finer.predictor().outputs(theta), c.after);
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+      if (!(changes[i] > 0.2 * c.noise.deviation)) continue;
+      summary.warn(
+          fmt::format("{}: halving the step of {} s changes the simulated angles by up to "
+                      "{:.2g} deg, {:.2g} standard deviations of the noise: take shorter "
+                      "steps",
+                      training.trials()[i].file, numberText(2 * halved.simulation.step),
+                      changes[i] * radian, changes[i] / c.noise.deviation));
+    }
   }
 
   void writeModel(const CalibrateFindings& f, bio::Model model, const Summary& summary,

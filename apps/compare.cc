@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "arm_input.h"
+#include "bio/replay.h"
 #include "bio/simulation_names.h"
 #include "compare_report.h"
 #include "figure_pictures.h"
@@ -70,6 +71,9 @@ class Compare : public Command {
       ProgressBar bar("compare");
       options.progress = [&](double done) { bar.update(done); };
       comparison = bio::compareIntegrators(arm, input.excitation, input.start, options);
+    }
+    if (const auto left = bio::leftRange(arm, comparison.reference.motion)) {
+      summary.warn(left->what);
     }
     if (comparison.reference.completed()) {
       for (AlsoCurve& one : also) {

@@ -22,6 +22,9 @@ class Replay : public Command {
     addModelArgument(options, model_);
     addTrialArgument(options, trial_);
     addSimulationOptions(options, simulation_);
+    options.add_flag("--strict", strict_,
+                     "exit with status 1 where the motion leaves a coordinate's range by more than "
+                     "a tenth of it, or a fibre 0.2 to 2 optimal lengths");
   }
 
   ExitStatus run(const CommandContext& context) override {
@@ -49,7 +52,12 @@ class Replay : public Command {
                                 bio::beginningOf(trial, model, arm, byName(simulation_.initial)));
     }
     const bio::Trajectory& motion = replay.motion;
-    for (const std::string& sentence : bio::rangeRemarks(arm, motion)) summary.warn(sentence);
+    const std::optional<bio::LeftRange> left = bio::leftRange(arm, motion);
+    if (left) summary.warn(left->what);
+    for (const std::string& sentence : bio::rangeRemarks(arm, motion)) {
+      const bool isSaid = left && sentence.starts_with(left->name + " leaves its range");
+      if (!isSaid) summary.warn(sentence);
+    }
     const bio::MuscleReport muscles = bio::reportMuscles(arm, motion);
     folder.writeFile("states.sto", [&](const std::filesystem::path& path) {
       bio::writeTable(bio::statesTable(model, arm, motion), path);
@@ -58,18 +66,20 @@ class Replay : public Command {
       bio::writeTable(bio::forcesTable(arm, motion, muscles), path);
     });
 
-    const ReplayFindings findings{model_, trial_, model, trial, arm, replay, muscles};
+    const ReplayFindings findings{model_, trial_, model, trial, arm, replay, muscles, left};
     summary.setSimulation(simulation_.integrator, replay.options.step, replay.options.duration,
                           motion.wallSeconds);
     tellReplay(findings, summary);
     deliver(context, summary, replayReport(findings), folder);
-    return motion.outcome == bio::Outcome::completed ? ExitStatus::done : ExitStatus::answerIsNo;
+    const bool isFine = motion.outcome == bio::Outcome::completed && !(strict_ && left);
+    return isFine ? ExitStatus::done : ExitStatus::answerIsNo;
   }
 
  private:
   std::string model_;
   std::string trial_;
   SimulationOptions simulation_;
+  bool strict_ = false;
 };
 
 }  // namespace

@@ -116,8 +116,13 @@ std::string comparison(const ReplayFindings& f) {
 
 void tellReplay(const ReplayFindings& f, Summary& summary) {
   const bio::Trajectory& motion = f.replay.motion;
-  summary.set("status", bio::name(motion.outcome));
+  const bool left = f.left && motion.outcome == bio::Outcome::completed;
+  summary.set("status", left ? "left_range" : bio::name(motion.outcome));
   if (!motion.why.empty()) summary.set("why", motion.why);
+  if (f.left) {
+    summary.set("left_range_at_s", f.left->time);
+    summary.set("left_range", f.left->what);
+  }
   for (const bio::Coordinate& coordinate : f.arm.skeleton().coordinates()) {
     const auto* measured = measuredOf(f, coordinate.name);
     if (measured == nullptr) continue;
@@ -153,6 +158,10 @@ Report replayReport(const ReplayFindings& f) {
   }
   if (f.replay.motion.outcome != bio::Outcome::completed) {
     report.verdict = fmt::format("The simulation did not reach the end: {}.", f.replay.motion.why);
+  }
+  if (f.left) {
+    report.verdict = fmt::format("The motion leaves what the model is made for: {}. {}",
+                                 f.left->what, report.verdict);
   }
   report.mainFigure = motionFigure(f, 0);
   for (std::size_t i = 1; i < f.arm.skeleton().coordinates().size(); ++i) {

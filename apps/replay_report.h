@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "bio/coupled.h"
 #include "bio/replay.h"
 #include "bio/trial.h"
 #include "report.h"
@@ -17,6 +19,7 @@ struct ReplayFindings {
   const bio::Arm& arm;
   const bio::TrialReplay& replay;
   const bio::MuscleReport& muscles;
+  const std::optional<bio::LeftRange>& left;
 };
 
 /// The figures that summary.json is to hold: rms_error_deg, newton_iterations_per_step, …

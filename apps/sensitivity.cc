@@ -112,6 +112,10 @@ class Sensitivity : public Command {
     if (held) findings.profile = profile(studies, selection, *held);
     if (!global_.empty()) findings.global = ensembles(studies, selection, context, summary);
 
+    if (const auto left = bio::leftRange(
+            arm, findings.local ? findings.local->motion : findings.sweeps.front().nominal)) {
+      summary.warn(left->what);
+    }
     write(findings, folder);
     summary.setSimulation(simulation_.integrator, simulation_.stepOrDefault(), first.input.duration,
                           findings.local ? findings.local->motion.wallSeconds

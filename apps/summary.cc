@@ -4,6 +4,7 @@
 
 #include "info/version.h"
 #include "sha256.h"
+#include "standard_streams.h"
 #include "text.h"
 
 namespace app {
@@ -29,7 +30,7 @@ void Summary::setSimulation(const std::string& integrator, double step, double d
 void Summary::warn(const std::string& sentence) {
   warnings_.push_back(oneLine(sentence));
   if (context_.quiet) return;
-  fmt::print(stderr, "fisherhill {}: warning: {}\n", context_.subcommand, warnings_.back());
+  tell(fmt::format("fisherhill {}: warning: {}\n", context_.subcommand, warnings_.back()));
 }
 
 std::string Summary::commandLine() const {

@@ -98,6 +98,7 @@ class Calibrator {
       fit();
     } catch (const std::domain_error& error) {
       result_.failure = error.what();
+      if (!atStart_.allFinite()) result_.failure += fmt::format(" ({})", failureAt(start));
       return result_;
     }
     judge();

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <stdexcept>
 
+#include "moved_mass.h"
 #include "plausible.h"
 
 namespace bio {
@@ -23,6 +25,7 @@ struct Reviewer {
 
   void reviewBody(const Body& body);
   void reviewEndOfChain();
+  void reviewMovement();
   void reviewCoordinate(const Coordinate& coordinate);
   void reviewAxes(const Joint& joint);
   void reviewWrap(const WrapObject& wrap);
@@ -43,13 +46,11 @@ void Reviewer::reviewBody(const Body& body) {
         largest, sum - largest);
   }
   // Off-diagonal terms may make a matrix that no mass distribution has.
-  Eigen::Matrix3d tensor;
-  tensor << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2];
-  const Eigen::Vector3d principal =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor, Eigen::EigenvaluesOnly).eigenvalues();
-  if (principal.minCoeff() < -1e-12 * largest) {
-    say(subject, "least principal moment of inertia = {:.4g} kg m², usually ≥ 0",
+  const Eigen::Vector3d principal = principalMoments(body);
+  if (hasNegativeMoment(principal)) {
+    say(subject, "least principal moment of inertia = {:.4g} kg m², must be ≥ 0",
         principal.minCoeff());
+    remarks.back().weight = Weight::error;
   } else if (principal(2) > (principal(0) + principal(1)) * (1 + 1e-9) &&
              largest <= (sum - largest) * (1 + 1e-9)) {
     say(subject,
@@ -80,6 +81,32 @@ void Reviewer::reviewEndOfChain() {
     if (!(findBody(model, joint.childBody).mass > 0)) {
       say(fmt::format("body '{}'", joint.childBody),
           "mass = 0 kg at the end of the chain: joint '{}' has nothing to move", joint.name);
+    }
+  }
+}
+
+/// Not locked in the model, and of its own.
+bool mayBeFree(const Model& model, const Coordinate& coordinate) {
+  return !coordinate.locked &&
+         std::none_of(model.couplers.begin(), model.couplers.end(),
+                      [&](const CoordinateCoupler& c) { return c.dependent == coordinate.name; });
+}
+
+/// Why the coordinate cannot be free by itself; empty if it can.
+std::string whyNotFree(const Model& model, const Coordinate& coordinate) {
+  try {
+    return whatMovesNoMass(Skeleton(model, {{coordinate.name}, {}}));
+  } catch (const std::invalid_argument& error) {
+    return fmt::format("coordinate '{}' cannot be free: {}", coordinate.name, error.what());
+  }
+}
+
+void Reviewer::reviewMovement() {
+  for (const Joint& joint : model.joints) {
+    for (const Coordinate& coordinate : joint.coordinates) {
+      if (!mayBeFree(model, coordinate)) continue;
+      const std::string why = whyNotFree(model, coordinate);
+      if (!why.empty()) remarks.push_back({"model", why, Weight::warning});
     }
   }
 }
@@ -137,6 +164,12 @@ void Reviewer::reviewMuscle(const Muscle& muscle) {
           point.name, point.condition->lower, point.condition->upper);
     }
   }
+  const std::vector<PathPoint>& points = muscle.path.points;
+  const bool atOnePlace = std::all_of(points.begin(), points.end(), [&](const PathPoint& p) {
+    return !p.motion && p.body == points.front().body &&
+           (p.location - points.front().location).norm() < shortestPath;
+  });
+  if (atOnePlace) say(subject, "all its points are at one place: its path has no length");
   if (muscle.schutte) {
     reviewParameters(subject, *muscle.schutte);
     reviewCurves(subject, *muscle.schutte);
@@ -220,6 +253,7 @@ std::vector<Remark> reviewModel(const Model& model) {
     }
   }
   reviewer.reviewEndOfChain();
+  reviewer.reviewMovement();
   for (const WrapObject& wrap : model.wrapObjects) reviewer.reviewWrap(wrap);
   for (const Muscle& muscle : model.muscles) reviewer.reviewMuscle(muscle);
   reviewer.reviewForces();
@@ -230,6 +264,21 @@ std::vector<Remark> reviewModel(const Model& model) {
     reviewer.say("model", "gravity = {} m/s², usually 9.81 or 0", g);
   }
   return std::move(reviewer.remarks);
+}
+
+std::string whyNotSimulated(const Model& model) {
+  if (model.muscles.empty()) return "it has no muscle";
+  const auto isSimulated = [](const Muscle& muscle) { return muscle.schutte.has_value(); };
+  if (std::none_of(model.muscles.begin(), model.muscles.end(), isSimulated)) {
+    return fmt::format("none of its {} muscles is of a class that is simulated",
+                       model.muscles.size());
+  }
+  for (const Joint& joint : model.joints) {
+    for (const Coordinate& coordinate : joint.coordinates) {
+      if (mayBeFree(model, coordinate) && whyNotFree(model, coordinate).empty()) return "";
+    }
+  }
+  return "no coordinate that is not locked moves a mass";
 }
 
 }  // namespace bio

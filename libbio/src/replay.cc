@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <numbers>
 #include <optional>
 
@@ -199,6 +200,44 @@ std::vector<std::string> rangeRemarks(const Arm& arm, const Trajectory& trajecto
   return remarks;
 }
 
+std::optional<LeftRange> leftRange(const Arm& arm, const Trajectory& trajectory) {
+  std::optional<LeftRange> first;
+  const auto look = [&](const std::string& name, const Eigen::VectorXd& values, double low,
+                        double high, const std::function<std::string(double)>& sentence) {
+    for (Eigen::Index k = 0; k < values.size(); ++k) {
+      if (values[k] >= low && values[k] <= high) continue;
+      const double time = trajectory.time[static_cast<std::size_t>(k)];
+      if (!first || time < first->time) first = LeftRange{time, name, sentence(time)};
+      return;
+    }
+  };
+  for (std::size_t i = 0; i < arm.skeleton().coordinates().size(); ++i) {
+    const Coordinate& c = arm.skeleton().coordinates()[i];
+    const double unit = c.isRotation ? 180 / std::numbers::pi : 1e3;
+    const double margin = std::max(0.1 * (c.rangeMax - c.rangeMin), 1 / unit);
+    const Eigen::VectorXd q = trajectory.q.row(static_cast<Eigen::Index>(i));
+    look(c.name, q, c.rangeMin - margin, c.rangeMax + margin, [&](double time) {
+      return fmt::format(
+          "{0} leaves its range, {1:.4g} to {2:.4g} {3}, by more than a tenth of it "
+          "at {4:.3g} s and reaches {5:.4g} to {6:.4g} {3}",
+          c.name, c.rangeMin * unit, c.rangeMax * unit, c.isRotation ? "deg" : "mm", time,
+          q.minCoeff() * unit, q.maxCoeff() * unit);
+    });
+  }
+  for (std::size_t i = 0; i < arm.numMuscles(); ++i) {
+    const ArmMuscle& muscle = arm.muscles()[i];
+    const Eigen::VectorXd l =
+        trajectory.fibreLength.row(static_cast<Eigen::Index>(i)) * muscle.muscle.perFibre();
+    look(muscle.name, l, 0.2, 2, [&](double time) {
+      return fmt::format(
+          "the fibres of {} leave 0.2 to 2 optimal lengths at {:.3g} s and reach "
+          "{:.3g} to {:.3g}",
+          muscle.name, time, l.minCoeff(), l.maxCoeff());
+    });
+  }
+  return first;
+}
+
 Table statesTable(const Model& model, const Arm& arm, const Trajectory& trajectory) {
   const Skeleton& skeleton = arm.skeleton();
   const auto K = static_cast<Eigen::Index>(trajectory.time.size());
@@ -269,6 +308,7 @@ PathSample samplePaths(const Model& model, const Skeleton& skeleton,
       continue;
     }
     MusclePath& path = *compiled;
+    sample.warnings.insert(sample.warnings.end(), path.warnings().begin(), path.warnings().end());
     if (!path.moves()) {
       sample.notes.push_back(
           fmt::format("muscle '{}' is left out: no free coordinate moves it", muscle.name));

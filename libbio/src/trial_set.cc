@@ -223,4 +223,17 @@ double TrialSet::meanSquare(const Eigen::MatrixXd& predicted, std::size_t trial)
   return sum / static_cast<double>(count);
 }
 
+std::vector<double> TrialSet::largestDifferences(const Eigen::MatrixXd& a,
+                                                 const Eigen::MatrixXd& b) const {
+  std::vector<double> largest(trials_.size(), 0.0);
+  Index at = 0;
+  for (const MeasuredSeries& series : series_) {
+    const Index n = series.values.size();
+    const double difference = (a.middleCols(at, n) - b.middleCols(at, n)).cwiseAbs().maxCoeff();
+    largest[series.trial] = std::max(largest[series.trial], difference);
+    at += n;
+  }
+  return largest;
+}
+
 }  // namespace bio

@@ -83,6 +83,16 @@ TrialReplay replayTrial(const Arm& arm, const Trial& trial, SimulationOptions op
 /// the model's own passive forces holds it there.
 std::vector<std::string> rangeRemarks(const Arm& arm, const Trajectory& trajectory);
 
+/// Where a motion first leaves what its model is made for.
+struct LeftRange {
+  double time = 0;   ///< [s]
+  std::string name;  ///< of the coordinate or muscle
+  std::string what;  ///< one sentence without full stop: what, when, how far
+};
+/// The first time at which a free coordinate is outside its range by more than a tenth of it (and
+/// 1° or 1 mm), or a fibre outside 0.2 to 2 optimal lengths; nothing if there is none.
+std::optional<LeftRange> leftRange(const Arm& arm, const Trajectory& trajectory);
+
 /// States as OpenSim 4 names them: value and speed of every coordinate of the model (locked and
 /// coupled ones too), activation and fiber_length of every simulated muscle; radians and metres.
 Table statesTable(const Model& model, const Arm& arm, const Trajectory& trajectory);

@@ -81,6 +81,8 @@ class TrialSet {
   /// Mean square difference [rad²] of predictions from measurements: of all, and of each trial.
   double meanSquare(const Eigen::MatrixXd& predicted) const;
   double meanSquare(const Eigen::MatrixXd& predicted, std::size_t trial) const;
+  /// Largest difference of two predictions [rad], by trial.
+  std::vector<double> largestDifferences(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) const;
 
  private:
   void collectSeries(const TrialSetOptions& options);

@@ -12,6 +12,7 @@
 #include "bio/nudge.h"
 #include "bio/discover/with_known_changes.h"
 #include "bio/replay.h"
+#include "bio/trial_review.h"
 #include "motion_weights.h"
 
 namespace bio::discover {
@@ -81,6 +82,7 @@ ElbowDisagreement::ElbowDisagreement(const Model& model, const ArmOptions& arm,
     OfTrial one{withProxies(std::move(trial), widest_), {}, {}, {}, {}, {}, {}, {}, 0, 0};
     for (const MeasuredMotion& motion : one.trial.measured) {
       if (motion.coordinate != coordinate) continue;
+      requireUsable(one.trial.file, motion);
       one.times.assign(motion.times.begin(), motion.times.end());
       one.measured = motion.values;
     }

@@ -150,19 +150,22 @@ class Work {
   // in the end: a base that lacks something may run away, and then every step is too long.
   bool stepsTooLong() {
     const VectorXd& values = search_->simulation(chosen_).values;
+    int worst = 0;
     for (const int t : trials_) {
       const VectorXd refined = data_.refinedOutputs(t, values);
       if (refined.size() == 0) continue;
       const double change =
           (refined - data_.outputs(t, values, {})).cwiseAbs().maxCoeff() / verdict_.outputDeviation;
-      verdict_.numericalError = std::max(verdict_.numericalError, change);
+      if (!(change > verdict_.numericalError)) continue;
+      verdict_.numericalError = change;
+      worst = t;
     }
     if (verdict_.numericalError <= options_.numericalTolerance) return false;
     verdict_.finding = Finding::numerical;
     verdict_.sentence = fmt::format(
-        "Halving the time step changes the simulation by {:.2g} deviations of the "
+        "Halving the time step changes the simulation of {} by {:.2g} deviations of the "
         "measurement: take shorter steps first.",
-        verdict_.numericalError);
+        data_.trialName(worst), verdict_.numericalError);
     return true;
   }
 

@@ -1,0 +1,26 @@
+#pragma once
+
+// What a mass must be like to be moved; not public.
+
+#include <Eigen/Dense>
+
+#include "bio/model.h"
+#include "bio/skeleton.h"
+
+namespace bio {
+
+/// Principal moments of inertia about the mass centre, rising [kg m²].
+Eigen::Vector3d principalMoments(const Body& body);
+
+/// Whether the least of them is negative beyond rounding, which no distribution of mass has.
+bool hasNegativeMoment(const Eigen::Vector3d& principal);
+
+/// Which free coordinate, or which of them together, move no mass in the default posture; empty if
+/// all move some.
+std::string whatMovesNoMass(const Skeleton& skeleton);
+
+/// @throws std::invalid_argument if a free coordinate, or several together, move no mass in the
+///   default posture, or if a body that moves has a negative principal moment of inertia
+void requireMovedMass(const Model& model, const Skeleton& skeleton);
+
+}  // namespace bio
