@@ -9,6 +9,7 @@
 #include <map>
 
 #include "bio/file_error.h"
+#include "bio/length_jumps.h"
 #include "bio/model_review.h"
 #include "bio/osim_file.h"
 #include "bio/table_file.h"
@@ -88,6 +89,9 @@ Contents checkModel(const std::string& file, const bio::Model& model, Findings& 
   for (const std::string& warning : model.warnings) findings.add(file, "warning", warning);
   for (const std::string& remark : model.remarks) findings.add(file, "unusual", remark);
   for (const bio::Remark& remark : bio::reviewModel(model)) findings.add(file, remark);
+  for (const bio::LengthJump& jump : bio::lengthJumps(model)) {
+    findings.add(file, "unusual", fmt::format("muscle '{}': {}", jump.muscle, describe(jump)));
+  }
   std::size_t coordinates = 0;
   for (const bio::Joint& joint : model.joints) coordinates += joint.coordinates.size();
   return {Section{file},

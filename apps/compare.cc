@@ -101,7 +101,7 @@ class Compare : public Command {
       }
     }
     deliver(context, summary, report, folder);
-    return comparison.reference.completed() ? ExitStatus::done : ExitStatus::answerIsNo;
+    return comparison.reference.confirmed() ? ExitStatus::done : ExitStatus::answerIsNo;
   }
 
  private:

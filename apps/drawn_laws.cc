@@ -107,6 +107,7 @@ DrawnLaws drawnLaws(const bio::ParameterCatalogue& catalogue, const LawRequest& 
     DrawnParameter& one = drawn(bounds, "--bounds");
     one.law.lower = bounds.first;
     one.law.upper = bounds.second;
+    catalogue.requireBelowLimit(catalogue.find(bounds.name), bounds.second, "--bounds: ");
   }
   for (DrawnParameter& one : laws.parameters) {
     one.law.deviation *= request.spread;

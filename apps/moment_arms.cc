@@ -5,6 +5,7 @@
 #include "angle_unit.h"
 #include "arm_input.h"
 #include "arm_options.h"
+#include "bio/length_jumps.h"
 #include "bio/replay.h"
 #include "number_rules.h"
 #include "result.h"
@@ -53,6 +54,10 @@ class MomentArms : public Command {
     const bio::PathSample sample =
         bio::samplePaths(model, skeleton, model_options_.wrapAsCylinder, shown * unit);
     for (const std::string& warning : sample.warnings) summary.warn(warning);
+    for (const bio::LengthJump& jump : bio::lengthJumps(
+             model, skeleton, model_options_.wrapAsCylinder, first * unit, last * unit)) {
+      summary.warn(describe(jump));
+    }
     require(!sample.muscles.empty(),
             fmt::format("{}: coordinate '{}' moves no muscle", model_, coordinate.name));
 

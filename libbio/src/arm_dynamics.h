@@ -37,6 +37,9 @@ class ArmDynamics {
     return y;
   }
 
+  /// ArmConfiguration::holdConditions
+  void holdConditions(const Vector& at) { configuration_.holdConditions(at); }
+
   struct Power {
     double muscle = 0;    ///< of the muscles on the skeleton [W]
     double passive = 0;   ///< of the coordinate forces [W]

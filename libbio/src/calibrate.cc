@@ -67,6 +67,10 @@ class Calibrator {
     for (const auto& [name, bounds] : options_.bounds) {
       info::Parameter& parameter = asked_[indexOf(name, "bounds")];
       std::tie(parameter.lower, parameter.upper) = bounds;
+      const std::size_t common = indexOf(name, "bounds");
+      if (common >= training.numCommon()) continue;  // a trial's own
+      training.catalogue().requireBelowLimit(training.selection()[common], parameter.upper,
+                                             "upper bound of ");
     }
     for (const auto& [name, prior] : options_.prior) {
       const std::size_t i = indexOf(name, "prior");

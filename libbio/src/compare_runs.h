@@ -19,6 +19,7 @@ class Runs {
         reference_(&reference) {}
 
   ConvergedReference makeReference() const;
+  void confirm(ConvergedReference& reference) const;
   CompareCell cell(Integrator integrator, double step) const;
   StepLimit limit(Integrator integrator) const;
   ObservedOrder order(Integrator integrator) const;

@@ -20,7 +20,8 @@ struct Encounter {
   std::size_t span = 0;
   bool moves = false;
   bool penetrates = false;
-  double lengthChange = 0;  // of a span that must pass on the other side but meets nothing
+  double lengthChange = 0;    // of a span that must pass on the other side but meets nothing
+  std::size_t decidedIn = 0;  // the posture that tells the way
   SpanSurface way;
 };
 
@@ -238,7 +239,7 @@ class Compiler {
 
   SpanSurface wayRound(std::size_t index, const Vec3<double>& P, const Vec3<double>& Q) const {
     const PathSurface& surface = path_.surfaces[index];
-    SpanSurface way{index, Side::counterclockwise, Way::shorter};
+    SpanSurface way{index, Side::counterclockwise, Way::shorter, {}};
     if (surface.isSphere) {
       way.way = sphereWay(surface.quadrant, P, Q);
     } else {
@@ -265,10 +266,13 @@ class Compiler {
         if (!(closestApproach(surface, P, Q) < reach)) continue;
         encounter.penetrates = true;
         encounter.way = wayRound(wrap.surface, P, Q);
+        encounter.decidedIn = k;
       }
       if (encounter.penetrates) {
+        keepContinuous(wrap, span, bits, encounter);
         through.push_back(encounter);
       } else if (passesWrongSide(wrap, span, encounter)) {
+        keepContinuous(wrap, span, bits, encounter);
         around.push_back(encounter);
       }
     }
@@ -297,12 +301,31 @@ class Compiler {
     const auto [P, Q] = ends(wrap, span, postures_.front());
     if (!(closestApproach(surface, P, Q) < 2)) return false;
     encounter.way = wayRound(wrap.surface, P, Q);
-    if (surfaceIsOutOfPlay(surface, surface.radius, encounter.way.side, P, Q)) return false;
+    if (surfaceIsOutOfPlay(surface, surface.radius, encounter.way, P, Q)) return false;
     const Span<double> wrapped = surface.isSphere
                                      ? wrapSphere(surface.radius, encounter.way.way, P, Q)
                                      : wrapCylinder(surface.radius, encounter.way.side, P, Q);
     encounter.lengthChange = wrapped.length - (Q - P).norm();
     return wrapped.touches;
+  }
+
+  // Where a path round a cylinder slips off it: never in a posture in which the path occurs.
+  void keepContinuous(const CandidateWrap& wrap, const PathSpan& span, std::size_t bits,
+                      Encounter& encounter) const {
+    const PathSurface& surface = path_.surfaces[wrap.surface];
+    if (surface.isSphere || !encounter.moves) return;
+    const auto angle = [&](const std::pair<Vec3<double>, Vec3<double>>& at) {
+      return angleRound(encounter.way.side, at.first, at.second);
+    };
+    const double decided = angle(ends(wrap, span, postures_[encounter.decidedIn]));
+    std::vector<double> angles = {decided};
+    for (const Posture& posture : postures_) {
+      if (!occurs(bits, posture)) continue;
+      const auto at = ends(wrap, span, posture);
+      const double nearest = std::min(at.first.head<2>().norm(), at.second.head<2>().norm());
+      if (nearest > surface.radius) angles.push_back(angle(at));
+    }
+    encounter.way.slip = slipAngle(decided, std::move(angles));
   }
 
   void give(const Encounter& encounter, PathVariant& variant) {
@@ -366,7 +389,7 @@ class Compiler {
     const PathSurface& surface = path_.surfaces[way.surface];
     const Vec3<double> p_CP = seenFrom(posture, surface.segment, surface.X_SC, P);
     const Vec3<double> p_CQ = seenFrom(posture, surface.segment, surface.X_SC, Q);
-    if (surfaceIsOutOfPlay(surface, surface.radius, way.side, p_CP, p_CQ)) return (Q - P).norm();
+    if (surfaceIsOutOfPlay(surface, surface.radius, way, p_CP, p_CQ)) return (Q - P).norm();
     return surface.isSphere ? wrapSphere(surface.radius, way.way, p_CP, p_CQ).length
                             : wrapCylinder(surface.radius, way.side, p_CP, p_CQ).length;
   }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "arm_dynamics.h"
+#include "switch_crossing.h"
 
 namespace bio::stepping {
 namespace {
@@ -60,84 +61,174 @@ void cutWhereEnergyIsMadeUp(const Arm& arm, Trajectory& motion, double step) {
   }
 }
 
+/// The classical step of fourth order; its first stage serves steps of several lengths.
 template <int N>
-Trajectory runExplicit(const Arm& arm, const ExcitationSignal& excitation, const ArmState& start,
-                       const SimulationOptions& options) {
-  ArmDynamics<N> dynamics(arm, excitation, options.externalForce);
+class ExplicitStep {
+ public:
   using State = Eigen::VectorXd;
-  State y = dynamics.pack(start);
-  State stage = y, k1 = y, k2 = y, k3 = y, k4 = y;
-  const auto n = static_cast<Eigen::Index>(arm.numMuscles());
-  const std::size_t rows = numRows(options);
-  Recorder recorder(arm, rows);
-  Trajectory& trajectory = recorder.trajectory();
-  double muscleWork = 0;
-  double passiveWork = 0;
-  double externalWork = 0;
-  const auto record = [&](double t) {
-    recorder.add(t, y.template head<N>(), y.template segment<N>(N), y.segment(2 * N, n), y.tail(n),
-                 muscleWork, passiveWork, externalWork);
-  };
-  record(options.startTime);
-  FibreStability stability(arm.numMuscles());
-  const StopWatch watch;
-  for (std::size_t k = 1; k < rows; ++k) {
-    const double t = rowTime(options, k - 1);
-    const double h = rowTime(options, k) - t;
-    const auto p1 = dynamics.derivative(t, y, k1);
-    const std::size_t runaway = stability.update(h, dynamics);
-    if (runaway < arm.numMuscles()) {
-      trajectory.outcome = Outcome::unstable;
-      trajectory.failedAt = t;
-      trajectory.why = fmt::format(
-          "unstable at t = {:.6g} s: a step of {:.3g} s is beyond the limit of stability for the "
-          "fibre "
-          "of '{}' (h|∂V/∂ℓ| = {:.3g}, must stay below {})",
-          t, options.step, arm.muscles()[runaway].name, -h * dynamics.rate(runaway).dV_dFibreLength,
-          FibreStability::limit);
-      break;
-    }
-    stage = y + h / 2 * k1;
-    const auto p2 = dynamics.derivative(t + h / 2, stage, k2);
-    stage = y + h / 2 * k2;
-    const auto p3 = dynamics.derivative(t + h / 2, stage, k3);
-    stage = y + h * k3;
-    const auto p4 = dynamics.derivative(t + h, stage, k4);
-    y += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
-    muscleWork += h / 6 * (p1.muscle + 2 * p2.muscle + 2 * p3.muscle + p4.muscle);
-    passiveWork += h / 6 * (p1.passive + 2 * p2.passive + 2 * p3.passive + p4.passive);
-    externalWork += h / 6 * (p1.external + 2 * p2.external + 2 * p3.external + p4.external);
-    ++trajectory.steps;
-    if (!y.allFinite() || !(y.template segment<N>(N).cwiseAbs().maxCoeff() < largestSpeed)) {
-      trajectory.outcome = Outcome::unstable;
-      trajectory.failedAt = t;
-      trajectory.why =
-          fmt::format("unstable at t = {:.6g} s: {} with a step of {:.3g} s", t + h,
-                      y.allFinite() ? fmt::format("the speed exceeds {:.0f} rad/s", largestSpeed)
-                                    : std::string("a muscle fibre left its domain (not a number)"),
-                      options.step);
-      break;
-    }
-    record(t + h);
-    if (options.progress && !options.progress(t + h)) {
-      trajectory.outcome = Outcome::stopped;
-      trajectory.failedAt = t + h;
-      trajectory.why = fmt::format("stopped at t = {:.6g} s", t + h);
-      break;
-    }
+  using Power = typename ArmDynamics<N>::Power;
+
+  explicit ExplicitStep(ArmDynamics<N>& dynamics, const State& y)
+      : dynamics_(dynamics), stage_(y), k1_(y), k2_(y), k3_(y), k4_(y) {}
+
+  void begin(double t, const State& y) { p1_ = dynamics_.derivative(t, y, k1_); }
+
+  /// From y at t to `end` at t + h, after begin(t, y); returns the works.
+  Power finish(double t, double h, const State& y, State& end) {
+    stage_ = y + h / 2 * k1_;
+    const Power p2 = dynamics_.derivative(t + h / 2, stage_, k2_);
+    stage_ = y + h / 2 * k2_;
+    const Power p3 = dynamics_.derivative(t + h / 2, stage_, k3_);
+    stage_ = y + h * k3_;
+    const Power p4 = dynamics_.derivative(t + h, stage_, k4_);
+    end = y + h / 6 * (k1_ + 2 * k2_ + 2 * k3_ + k4_);
+    const auto mean = [&](double Power::*of) {
+      return h / 6 * (p1_.*of + 2 * p2.*of + 2 * p3.*of + p4.*of);
+    };
+    return {mean(&Power::muscle), mean(&Power::passive), mean(&Power::external)};
   }
-  trajectory.wallSeconds = watch.seconds();
-  Trajectory result = recorder.finish();
-  if (result.outcome == Outcome::completed) cutWhereEnergyIsMadeUp(arm, result, options.step);
-  return result;
-}
+
+ private:
+  ArmDynamics<N>& dynamics_;
+  State stage_, k1_, k2_, k3_, k4_;
+  Power p1_;
+};
+
+/// A whole motion in steps of one length, which end where a path gains or loses points.
+template <int N>
+class ExplicitRun {
+ public:
+  using State = Eigen::VectorXd;
+  using Vector = Eigen::Matrix<double, N, 1>;
+
+  ExplicitRun(const Arm& arm, const ExcitationSignal& excitation, const ArmState& start,
+              const SimulationOptions& options)
+      : arm_(arm),
+        options_(options),
+        dynamics_(arm, excitation, options.externalForce),
+        y_(dynamics_.pack(start)),
+        end_(y_),
+        step_(dynamics_, y_),
+        stability_(arm.numMuscles()),
+        recorder_(arm, numRows(options)) {
+    hold(y_.template head<N>());
+  }
+
+  Trajectory run() {
+    const StopWatch watch;
+    const std::size_t rows = numRows(options_);
+    Trajectory& trajectory = recorder_.trajectory();
+    record(options_.startTime);
+    for (std::size_t k = 1; k < rows; ++k) {
+      const double t = rowTime(options_, k - 1);
+      const double h = rowTime(options_, k) - t;
+      if (!advance(t, h)) break;
+      ++trajectory.steps;
+      record(t + h);
+      if (options_.progress && !options_.progress(t + h)) {
+        trajectory.outcome = Outcome::stopped;
+        trajectory.failedAt = t + h;
+        trajectory.why = fmt::format("stopped at t = {:.6g} s", t + h);
+        break;
+      }
+    }
+    trajectory.wallSeconds = watch.seconds();
+    Trajectory result = recorder_.finish();
+    if (result.outcome == Outcome::completed) cutWhereEnergyIsMadeUp(arm_, result, options_.step);
+    return result;
+  }
+
+ private:
+  void hold(const Vector& at) {
+    held_ = at;
+    if (!arm_.switches().empty()) dynamics_.holdConditions(held_);
+  }
+
+  void record(double t) {
+    const auto n = static_cast<Eigen::Index>(arm_.numMuscles());
+    recorder_.add(t, y_.template head<N>(), y_.template segment<N>(N), y_.segment(2 * N, n),
+                  y_.tail(n), work_.muscle, work_.passive, work_.external);
+  }
+
+  /// Moves y_ from t to t + h; false where that is no motion any more.
+  bool advance(double t, double h) {
+    step_.begin(t, y_);
+    const std::size_t runaway = stability_.update(h, dynamics_);
+    if (runaway < arm_.numMuscles()) {
+      return fail(t,
+                  fmt::format("a step of {:.3g} s is beyond the limit of stability for the "
+                              "fibre of '{}' (h|∂V/∂ℓ| = {:.3g}, must stay below {})",
+                              options_.step, arm_.muscles()[runaway].name,
+                              -h * dynamics_.rate(runaway).dV_dFibreLength, FibreStability::limit),
+                  t);
+    }
+    double done = 0;
+    for (int parts = 0; done < h; ++parts) {
+      if (parts > 0) step_.begin(t + done, y_);
+      const double part = h - done;
+      auto work = step_.finish(t + done, part, y_, end_);
+      const PathSwitch* met = parts < mostSwitchesInAStep ? crossed() : nullptr;
+      double taken = part;
+      if (met) {
+        const auto distance = [&](const State& y) { return met->distance(y[met->freeIndex]); };
+        const double before = met->distance(held_[met->freeIndex]);
+        taken = crossingOf(part, before, distance(y_), distance(end_), [&](double x) {
+          work = step_.finish(t + done, x, y_, end_);
+          return distance(end_);
+        });
+        hold(beyondSwitch(*met, Vector(end_.template head<N>()), before));
+      } else {
+        hold(end_.template head<N>());
+      }
+      y_.swap(end_);
+      work_.muscle += work.muscle;
+      work_.passive += work.passive;
+      work_.external += work.external;
+      if (!met) break;
+      done += taken;
+    }
+    if (y_.allFinite() && y_.template segment<N>(N).cwiseAbs().maxCoeff() < largestSpeed) {
+      return true;
+    }
+    return fail(
+        t,
+        fmt::format("{} with a step of {:.3g} s",
+                    y_.allFinite() ? fmt::format("the speed exceeds {:.0f} rad/s", largestSpeed)
+                                   : std::string("a muscle fibre left its domain (not a number)"),
+                    options_.step),
+        t + h);
+  }
+
+  const PathSwitch* crossed() const {
+    return firstCrossed(arm_.switches(), held_, Vector(y_.template head<N>()),
+                        Vector(end_.template head<N>()));
+  }
+
+  bool fail(double failedAt, const std::string& how, double at) {
+    Trajectory& trajectory = recorder_.trajectory();
+    trajectory.outcome = Outcome::unstable;
+    trajectory.failedAt = failedAt;
+    trajectory.why = fmt::format("unstable at t = {:.6g} s: {}", at, how);
+    return false;
+  }
+
+  const Arm& arm_;
+  const SimulationOptions& options_;
+  ArmDynamics<N> dynamics_;
+  State y_, end_;
+  ExplicitStep<N> step_;
+  FibreStability stability_;
+  Recorder recorder_;
+  Vector held_;
+  typename ArmDynamics<N>::Power work_;
+};
 
 }  // namespace
 
 Trajectory simulateRungeKutta4(const Arm& arm, const ExcitationSignal& excitation,
                                const ArmState& start, const SimulationOptions& options) {
   return withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
-    return runExplicit<decltype(N)::value>(arm, excitation, start, options);
+    return ExplicitRun<decltype(N)::value>(arm, excitation, start, options).run();
   });
 }
 

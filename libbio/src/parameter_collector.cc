@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "bio/path_gradient.h"
+#include "bio/radius_limit.h"
 
 namespace bio {
 namespace {
@@ -139,6 +140,24 @@ class Collector {
     }
   }
 
+  // A radius ends where a point of a path over the wrap object comes inside.
+  void limitRadius(ModelParameter& radius, const std::string& wrapObject) {
+    if (postures_.empty()) postures_ = samplePostures(arm_.skeleton());
+    for (const ArmMuscle& muscle : arm_.muscles()) {
+      const Path& path = model_.muscles[indexOf(muscle.name)].path;
+      for (std::size_t i = 0; i < path.wraps.size(); ++i) {
+        if (path.wraps[i].wrapObject != wrapObject) continue;
+        const RadiusLimit limit = radiusLimit(muscle.path.compiled(), i, postures_);
+        if (!(limit.radius < radius.limit)) continue;
+        radius.limit = limit.radius;
+        radius.whyLimited =
+            fmt::format("{}'s {}", muscle.name, describe(limit, path, arm_.skeleton()));
+      }
+    }
+    constexpr double margin = 0.005;
+    radius.upper = std::max(radius.value, std::min(radius.upper, (1 - margin) * radius.limit));
+  }
+
   void addWraps() {
     for (const TouchedWrap& touched : touched_) {
       std::size_t index = 0;
@@ -147,6 +166,7 @@ class Collector {
       const double radius = touched.radius;
       add(wrap.name + ".radius", "m", fmt::format("radius of the wrap object in {}", wrap.body),
           radius, around(radius, 0.3, 2, 0.15), {WrapTarget{index, 0}});
+      limitRadius(parameters_.back(), wrap.name);
       for (int axis = 0; axis < 3; ++axis) {
         const double value = wrap.frame.translation[axis];
         add(fmt::format("{}.translation.{}", wrap.name, axisName(axis)), "m",
@@ -305,6 +325,7 @@ class Collector {
   const StartPoint& start_;
   const EmgMapping& mapping_;
   std::vector<TouchedWrap> touched_;
+  std::vector<Posture> postures_;  // once they are needed
   std::vector<ModelParameter> parameters_;
 };
 

@@ -243,6 +243,14 @@ Eigen::VectorXd ParameterCatalogue::values(const std::vector<std::size_t>& selec
   return values;
 }
 
+void ParameterCatalogue::requireBelowLimit(std::size_t index, double value,
+                                           const std::string& what) const {
+  const ModelParameter& p = parameters_.at(index);
+  if (!(value >= p.limit)) return;
+  throw std::invalid_argument(fmt::format("{}{} = {:.6g} {}, must be below {:.6g} {}: {}", what,
+                                          p.name, value, p.unit, p.limit, p.unit, p.whyLimited));
+}
+
 std::vector<info::Parameter> ParameterCatalogue::asEstimated(
     const std::vector<std::size_t>& selection, bool withPriors) const {
   std::vector<info::Parameter> result;
@@ -318,6 +326,7 @@ ParameterCatalogue::Setting ParameterCatalogue::at(const std::vector<std::size_t
       throw std::invalid_argument(fmt::format("parameter {} = {} {}, must be finite",
                                               parameter.name, value, parameter.unit));
     }
+    requireBelowLimit(selection[i], value);
     setting.values[static_cast<Eigen::Index>(selection[i])] = value;
     for (const ParameterTarget& target : parameter.targets) {
       setTarget(setting, target, value, parameter.value);

@@ -102,7 +102,7 @@ std::vector<Eigen::Vector3d> MusclePath::polyline(const std::vector<double>& q,
       const PathSurface& surface = compiled_.surfaces[way.surface];
       const Vec3<double> p_CP = seenFrom(posture, surface.segment, surface.X_SC, line.back());
       const Vec3<double> p_CQ = seenFrom(posture, surface.segment, surface.X_SC, Q);
-      if (surfaceIsOutOfPlay(surface, surface.radius, way.side, p_CP, p_CQ)) continue;
+      if (surfaceIsOutOfPlay(surface, surface.radius, way, p_CP, p_CQ)) continue;
       const auto points = arc(surface, way, p_CP, p_CQ, step);
       if (points.empty()) continue;
       used[way.surface] = true;

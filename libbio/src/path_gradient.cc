@@ -133,7 +133,7 @@ void PathGradients::addSpan(const PathSpan& span, const Eigen::Matrix<double, N,
     };
     const PointMotionJet<double, N> P = seen(P_G);
     const PointMotionJet<double, N> Q = seen(Q_G);
-    if (surfaceIsOutOfPlay(surface, surface.radius, way.side, P.value, Q.value)) {
+    if (surfaceIsOutOfPlay(surface, surface.radius, way, P.value, Q.value)) {
       if (isFixed) break;  // the first object has it
       continue;
     }

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 namespace bio {
@@ -70,6 +72,41 @@ Side cylinderSide(WrapQuadrant quadrant, const Vec3<double>& p_CP, const Vec3<do
   // The middle of the shorter way is along u + w, of the longer way opposite.
   const Side longer = leftward ? Side::clockwise : Side::counterclockwise;
   return direction(quadrant).head<2>().dot(u + w) >= 0 ? shorter : longer;
+}
+
+double angleRound(Side side, const Vec3<double>& p_CP, const Vec3<double>& p_CQ) {
+  const double sigma = side == Side::counterclockwise ? 1.0 : -1.0;
+  const double across = sigma * (p_CP.x() * p_CQ.y() - p_CP.y() * p_CQ.x());
+  const double angle = std::atan2(across, p_CP.head<2>().dot(p_CQ.head<2>()));
+  return angle < 0 ? angle + 2 * std::numbers::pi : angle;
+}
+
+SlipAngle slipAngle(double decided, std::vector<double> angles) {
+  constexpr double turn = 2 * std::numbers::pi;
+  if (angles.empty()) return {};
+  std::sort(angles.begin(), angles.end());
+  angles.push_back(angles.front() + turn);
+  double widest = 0, middle = 0;
+  for (std::size_t i = 0; i + 1 < angles.size(); ++i) {
+    const double gap = angles[i + 1] - angles[i];
+    if (gap > widest) {
+      widest = gap;
+      middle = angles[i] + gap / 2;
+    }
+  }
+  if (middle < decided) middle += turn;
+  if (middle >= turn) return {};
+  middle = std::max(middle, std::numbers::pi);
+  return {std::cos(middle), std::sin(middle)};
+}
+
+bool hasSlippedOff(const SlipAngle& slip, Side side, const Vec3<double>& p_CP,
+                   const Vec3<double>& p_CQ) {
+  const double sigma = side == Side::counterclockwise ? 1.0 : -1.0;
+  const double across = sigma * (p_CP.x() * p_CQ.y() - p_CP.y() * p_CQ.x());
+  if (!(across < 0)) return false;
+  const double along = p_CP.x() * p_CQ.x() + p_CP.y() * p_CQ.y();
+  return slip.cosine * across - slip.sine * along > 0;
 }
 
 Way sphereWay(WrapQuadrant quadrant, const Vec3<double>& p_CP, const Vec3<double>& p_CQ) {

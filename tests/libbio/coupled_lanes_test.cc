@@ -81,6 +81,27 @@ TEST(SimulateTogether, MovesAsEachAloneWould) {
   }
 }
 
+// Beyond full extension, where the triceps slips off its cylinder and the brachialis loses a point.
+TEST(SimulateTogether, FollowsAFallBeyondFullExtension) {
+  const ShippedElbow elbow;
+  const ExcitationSignal none({0, 2}, Eigen::MatrixXd::Zero(2, elbow.excitation.numMuscles()));
+  std::vector<ArmState> starts;
+  for (const double angle : {1.05, 1.0, 0.95, 0.9}) {
+    starts.push_back(initialState(elbow.arm, Eigen::VectorXd::Constant(1, angle), none, 0));
+  }
+  std::vector<LaneJob> jobs;
+  for (const ArmState& start : starts) jobs.push_back({&elbow.arm, &none, &start});
+  SimulationOptions options = forSeconds(2);
+  options.step = 0.001;  // no step needs to be halved, which a lane leaves to others
+  const auto together = simulateTogether(jobs, options);
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const Trajectory alone = simulate(elbow.arm, none, starts[i], options);
+    EXPECT_EQ(together[i].wallSeconds, 0);
+    EXPECT_LT(alone.q.minCoeff(), -20 * std::numbers::pi / 180);
+    EXPECT_LT((together[i].q - alone.q).cwiseAbs().maxCoeff(), 1e-8);
+  }
+}
+
 // Pennate muscles, an exponential passive force, forces on one end of a step, a push from outside.
 TEST(SimulateTogether, KnowsWhatTheShippedArmsLack) {
   ShippedElbow elbow;

@@ -83,7 +83,7 @@ TEST_P(PathGradientAt, MatchesDifferencesOfCompiledPaths) {
   gradientsMatchDifferences<1>(elbow.model, {"elbow_flexion"},
                                Eigen::Matrix<double, 1, 1>(GetParam()), 3e-7);
 }
-INSTANTIATE_TEST_SUITE_P(OverTheRange, PathGradientAt, ::testing::Values(0.3, 0.7, 1.2, 1.9));
+INSTANTIATE_TEST_SUITE_P(OverTheRange, PathGradientAt, ::testing::Values(-0.5, 0.3, 0.7, 1.2, 1.9));
 
 TEST(PathGradient, MatchesDifferencesForTwoCoordinates) {
   const fixtures::ShippedElbow elbow;

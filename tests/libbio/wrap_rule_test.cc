@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <random>
 #include <stdexcept>
 
@@ -96,6 +98,52 @@ TEST(SphereWay, PassesTheNamedSide) {
   EXPECT_EQ(sphereWay(WrapQuadrant::minusX, V(2, 0, 0), V(0, 2, 0)), Way::longer);
   EXPECT_EQ(sphereWay(WrapQuadrant::minusZ, V(2, 0, -1), V(0, 2, -1)), Way::shorter);
   EXPECT_FALSE(sphereTouches(1, Way::shorter, V(0.5, 0, 0), V(0, 2, 0)));
+}
+
+constexpr double deg = std::numbers::pi / 180;
+
+V towards(double angle_deg) {
+  return V(3 * std::cos(angle_deg * deg), 3 * std::sin(angle_deg * deg), 0);
+}
+
+TEST(AngleRound, RunsFromZeroToATurnOnEitherSide) {
+  for (const double angle : {10.0, 100.0, 190.0, 350.0}) {
+    EXPECT_NEAR(angleRound(ccw, towards(20), towards(20 + angle)), angle * deg, 1e-14);
+    EXPECT_NEAR(angleRound(cw, towards(20), towards(20 - angle)), angle * deg, 1e-14);
+  }
+}
+
+// Where the angles that occur end is where the jump must not be.
+TEST(SlipAngle, LiesInTheMiddleOfTheWidestGap) {
+  const auto slipped = [](double decided, const std::vector<double>& angles_deg, double at) {
+    std::vector<double> angles;
+    for (const double a : angles_deg) angles.push_back(a * deg);
+    return hasSlippedOff(slipAngle(decided * deg, angles), ccw, towards(0), towards(at));
+  };
+  // an extensor: from 17 to 147 degrees, so that 262 is as far from both as can be
+  const std::vector<double> extensor = {147, 17, 80};
+  EXPECT_FALSE(slipped(147, extensor, 147));
+  EXPECT_FALSE(slipped(147, extensor, 261));
+  EXPECT_TRUE(slipped(147, extensor, 263));
+  EXPECT_TRUE(slipped(147, extensor, 359));
+  EXPECT_FALSE(slipped(147, extensor, 1));
+  // a path that goes more than half way round where its side was decided keeps it
+  EXPECT_FALSE(slipped(230, {170, 200, 230}, 300));
+  EXPECT_FALSE(slipped(230, {170, 200, 230}, 359));
+  // angles on either side of 0: the ones below are of a path that has slipped off
+  EXPECT_TRUE(slipped(120, {120, 60, 5, 340, 300}, 300));
+  EXPECT_TRUE(slipped(120, {120, 60, 5, 340, 300}, 211));
+  EXPECT_FALSE(slipped(120, {120, 60, 5, 340, 300}, 209));
+  // nothing known: never
+  EXPECT_FALSE(hasSlippedOff(SlipAngle{}, ccw, towards(0), towards(359)));
+  EXPECT_FALSE(hasSlippedOff(slipAngle(1, {}), cw, towards(0), towards(-359)));
+}
+
+TEST(SlipAngle, IsSeenFromThePathsOwnSide) {
+  const SlipAngle slip = slipAngle(100 * deg, {100 * deg, 20 * deg});
+  EXPECT_TRUE(hasSlippedOff(slip, cw, towards(0), towards(-300)));
+  EXPECT_FALSE(hasSlippedOff(slip, cw, towards(0), towards(-200)));
+  EXPECT_FALSE(hasSlippedOff(slip, cw, towards(0), towards(-60)));
 }
 
 }  // namespace

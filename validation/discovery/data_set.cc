@@ -10,6 +10,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "open_loop_trial.h"
 #include "passive_trial.h"
 
 namespace hidden {
@@ -27,7 +28,16 @@ bool belongs(const std::string& suite, const EffectRow& row) {
   if (suite == "equivalents") return twins.count(row.id) > 0;
   if (suite == "null") return false;
   throw std::invalid_argument(
-      fmt::format("suite '{}', must be null, single, parameter, two, out or equivalents", suite));
+      fmt::format("suite '{}', must be null, single, parameter, two, out, equivalents, far or "
+                  "violated",
+                  suite));
+}
+
+// The how-manieth of its kind a set is, by seed.
+std::uint64_t turnOf(const DataSetPlan& plan, const std::string& kind) {
+  if (plan.suite == "violated") return plan.seed / 30 * 10 + plan.seed % 10;
+  if (plan.suite != "far") return plan.seed;
+  return kind == "single" ? plan.seed / 4 * 2 + (plan.seed % 4 == 3 ? 1 : 0) : plan.seed / 4;
 }
 
 // Effects whose sum is one of them again.
@@ -59,33 +69,39 @@ Json distance_deg(const Truth& truth, const Truth& other, const NamedTrial& name
   }
 }
 
-// Trials are drawn until the nominal model follows one to within 30° RMS, at most 12 times; then
-// the one that it follows best is taken: the experimenter drops efforts that run away from every
-// model. Returns the nominal model's distance [deg].
+Trial made(const Truth& truth, const TrialPlan& plan, RandomNumbers& random) {
+  if (plan.passive) return makePassiveTrial(truth, plan, random);
+  if (plan.openLoop) return makeOpenLoopTrial(truth, plan, random);
+  return makeTrial(truth, plan, random);
+}
+
+// Trials are drawn until the nominal model follows one to within 30° RMS (40° in open loop), at
+// most 12 times; then the one that it follows best is taken: the experimenter drops efforts that
+// run away from every model. Returns the nominal model's distance [deg].
 Json drawTrial(NamedTrial& named, const Truth& truth, const Truth& nominal, const TrialPlan& plan,
                std::uint64_t seed, std::uint64_t stream) {
+  const double farthest = plan.openLoop ? 40 : 30;
   Json best;
   std::string why;
-  int made = 0;
-  for (std::uint64_t attempt = 0; attempt < 60 && made < 12; ++attempt) {
+  int done = 0;
+  for (std::uint64_t attempt = 0; attempt < 60 && done < 12; ++attempt) {
     RandomNumbers random(seed, stream + attempt);
     NamedTrial drawn = named;
     try {
-      drawn.trial =
-          plan.passive ? makePassiveTrial(truth, plan, random) : makeTrial(truth, plan, random);
+      drawn.trial = made(truth, plan, random);
     } catch (const std::runtime_error& e) {
       why = e.what();
       continue;
     }
-    ++made;
+    ++done;
     const Json distance = distance_deg(truth, nominal, drawn, false);
     const bool better = best.is_null() || (!distance.is_null() && distance < best);
-    if (made > 1 && !better) continue;
+    if (done > 1 && !better) continue;
     best = distance;
     named = std::move(drawn);
-    if (!best.is_null() && best <= 30) break;
+    if (!best.is_null() && best <= farthest) break;
   }
-  if (made == 0) throw std::runtime_error(named.name + ": 60 draws failed, the last: " + why);
+  if (done == 0) throw std::runtime_error(named.name + ": 60 draws failed, the last: " + why);
   return best;
 }
 
@@ -115,26 +131,42 @@ void write(const std::filesystem::path& file, const std::string& text) {
 
 }  // namespace
 
+std::string hides(const DataSetPlan& plan) {
+  if (plan.suite != "far" && plan.suite != "violated") return plan.suite;
+  if (!plan.effects.empty()) {
+    return hiddenEffect(plan.effects[0]).kind == "parameter" ? "parameter" : "single";
+  }
+  constexpr std::array<const char*, 4> far = {"null", "single", "parameter", "single"};
+  constexpr std::array<const char*, 3> violated = {"null", "single", "parameter"};
+  return plan.suite == "far" ? far[plan.seed % 4] : violated[plan.seed / 10 % 3];
+}
+
+const Violation& chosenViolation(const DataSetPlan& plan) {
+  if (!plan.violation.empty()) return violation(plan.violation);
+  return violations()[plan.seed % violations().size()];
+}
+
 std::vector<std::string> chosenEffects(const DataSetPlan& plan) {
+  const std::string kind = hides(plan);
   std::vector<const EffectRow*> rows;
   for (const EffectRow& row : hiddenEffects()) {
-    if (belongs(plan.suite, row) && row.id != unseen) rows.push_back(&row);
+    if (belongs(kind, row) && row.id != unseen) rows.push_back(&row);
   }
-  const std::size_t count = plan.suite == "null" ? 0 : plan.suite == "two" ? 2 : 1;
+  const std::size_t count = kind == "null" ? 0 : kind == "two" ? 2 : 1;
   if (!plan.effects.empty()) {
     if (plan.effects.size() != count) {
       throw std::invalid_argument(fmt::format("suite '{}' hides {} effects, {} are named",
                                               plan.suite, count, plan.effects.size()));
     }
     for (const std::string& id : plan.effects) {
-      if (!belongs(plan.suite, hiddenEffect(id))) {
+      if (!belongs(kind, hiddenEffect(id))) {
         throw std::invalid_argument(fmt::format("'{}' is not of suite '{}'", id, plan.suite));
       }
     }
     return plan.effects;
   }
   if (count == 0) return {};
-  if (count == 1) return {rows[plan.seed % rows.size()]->id};
+  if (count == 1) return {rows[turnOf(plan, kind) % rows.size()]->id};
   std::vector<std::pair<std::string, std::string>> pairs;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     for (std::size_t k = i + 1; k < rows.size(); ++k) {
@@ -155,7 +187,10 @@ DataSet makeDataSet(const ElbowNumbers& nominal, const DataSetPlan& plan) {
   for (const std::string& id : chosen) {
     if (const std::string& own = hiddenEffect(id).inPlaceOf; !own.empty()) replaced.push_back(own);
   }
-  const auto nuisances = drawNuisances(base, person, plan.nuisances, replaced);
+  const bool far = plan.suite == "far";
+  const Violation* broken = plan.suite == "violated" ? &chosenViolation(plan) : nullptr;
+  const Departures departures = far ? Departures{0.12, 0.03, 0.01, 0, 0} : Departures{};
+  const auto nuisances = drawNuisances(base, person, plan.nuisances, replaced, departures);
   Truth truth = base, bare;
   bare.numbers = nominal;
   DataSet set;
@@ -176,10 +211,14 @@ DataSet makeDataSet(const ElbowNumbers& nominal, const DataSetPlan& plan) {
   std::vector<std::string> names = {"train_1", "train_2", "train_3", "held_out"};
   if (plan.suite == "equivalents") names.emplace_back("follow_up");
   const bool timing = truth.chain.delay != 0 || truth.sensor.clock != 0;
+  double emgNoise = plan.emgNoise;
   Json strength = Json::array();
   for (std::size_t i = 0; i < names.size(); ++i) {
     TrialPlan trialPlan;
     trialPlan.emgNoise = plan.emgNoise;
+    trialPlan.openLoop = far;
+    if (broken) trialPlan = planFor(*broken, trialPlan);
+    emgNoise = trialPlan.emgNoise;
     NamedTrial named{names[i], {}, 0};
     Truth held = truth, known = bare;
     // what tells delay from clock is a push that no EMG announces; tilt from a force, a known mass;
@@ -198,9 +237,14 @@ DataSet makeDataSet(const ElbowNumbers& nominal, const DataSetPlan& plan) {
     const Json nominalDistance = drawTrial(named, held, known, trialPlan, plan.seed, 100 * (i + 1));
     if (named.name != "follow_up") {
       strength.push_back({{"trial", named.name},
-                          {"tracking_rms_deg", std::round(100 * named.trial.tracking_deg) / 100},
+                          {"tracking_rms_deg",
+                           far ? Json() : Json(std::round(100 * named.trial.tracking_deg) / 100)},
                           {"effect_rms_deg", distance_deg(truth, base, named, true)},
                           {"nominal_rms_deg", nominalDistance}});
+    }
+    if (broken) {
+      RandomNumbers random(plan.seed, 1000 + i);
+      violate(*broken, held, trialPlan, named.trial, random);
     }
     set.trials.push_back(std::move(named));
   }
@@ -208,10 +252,12 @@ DataSet makeDataSet(const ElbowNumbers& nominal, const DataSetPlan& plan) {
   Json drawn = Json::object();
   for (const Nuisance& n : nuisances) drawn[n.name] = n.factor;
   set.label = {{"seed", plan.seed},           {"suite", plan.suite},
-               {"size", plan.size},           {"emg_noise", plan.emgNoise},
+               {"size", plan.size},           {"emg_noise", emgNoise},
                {"nuisances", plan.nuisances}, {"angle_noise_deg", TrialPlan{}.angleNoise},
                {"effects", effects},          {"strength", strength},
                {"nuisance_factors", drawn}};
+  if (far || broken) set.label["hides"] = hides(plan);
+  if (broken) set.label["violation"] = {{"id", broken->id}, {"what", broken->what}};
   return set;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "subject.h"
+#include "violations.h"
 
 namespace hidden {
 
@@ -16,12 +17,15 @@ struct DataSetPlan {
   /// null: nuisances alone · single: one effect that is no parameter · parameter: one parameter
   /// far outside its tolerance · two: two effects · out: one that the catalogue lacks ·
   /// equivalents: one of delay, clock, tilt, handforce, and the trial that would tell it from its
-  /// twin
+  /// twin · far: trials in open loop of a person far from the nominal model (nothing, an effect, a
+  /// parameter, an effect, by seed) · violated: an assumption on the data that does not hold (ten
+  /// of them by seed, each with nothing, an effect, a parameter)
   std::string suite = "single";
   std::vector<std::string> effects;  ///< ids; empty: chosen by seed from those of the suite
   double size = 1;                   ///< share of the full size
   double emgNoise = 0;
-  double nuisances = 1;  ///< share of the person's usual departures
+  double nuisances = 1;   ///< share of the person's usual departures
+  std::string violation;  ///< of suite violated: its id; empty: by seed
 };
 
 /// A trial with the name of its file, without extension.
@@ -39,6 +43,15 @@ struct DataSet {
   std::string
       leftOut;  ///< muscle that the model to compare with lacks, and the files' EMG; or empty
 };
+
+/// What a plan hides: "null", "single", "parameter", "two", "out" or "equivalents". That of the
+/// suite, of far and violated by seed, or by the one effect named. @throws std::invalid_argument
+/// for an unknown suite
+std::string hides(const DataSetPlan& plan);
+
+/// The violation of a plan, which is of suite violated. @throws std::invalid_argument for an
+/// unknown one
+const Violation& chosenViolation(const DataSetPlan& plan);
 
 /// Effects that a plan hides: those it names, else by seed, in turn. @throws std::invalid_argument
 /// for an unknown suite or id, or effects that do not fit the suite

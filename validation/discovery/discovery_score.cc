@@ -12,19 +12,6 @@
 namespace hidden {
 namespace {
 
-std::string describe(const Outcome& o) {
-  const std::string truth =
-      o.truth.empty() ? "nothing" : fmt::format("{}", fmt::join(o.truth, "+"));
-  const std::string given =
-      !o.hasVerdict
-          ? "no verdict"
-          : fmt::format(
-                "{} [{}]{}", o.verdict, fmt::join(o.named, ", "),
-                o.inClass.empty() ? "" : fmt::format(", class [{}]", fmt::join(o.inClass, ", ")));
-  return fmt::format("{} ({}, size {:g}, EMG noise {:g}): {}; said: {}", o.name, o.suite, o.size,
-                     o.emgNoise, truth, given);
-}
-
 // A row whose k counts outcomes that `counts`; misses are those on the wrong side of the target.
 template <class In, class Counts>
 Row row(const std::vector<Outcome>& all, const std::string& metric, const std::string& target,
@@ -59,6 +46,19 @@ Spread spread(const std::vector<Outcome>& all, const std::string& metric, const 
 }
 
 }  // namespace
+
+std::string describe(const Outcome& o) {
+  const std::string truth =
+      o.truth.empty() ? "nothing" : fmt::format("{}", fmt::join(o.truth, "+"));
+  const std::string given =
+      !o.hasVerdict
+          ? "no verdict"
+          : fmt::format(
+                "{} [{}]{}", o.verdict, fmt::join(o.named, ", "),
+                o.inClass.empty() ? "" : fmt::format(", class [{}]", fmt::join(o.inClass, ", ")));
+  return fmt::format("{} ({}, size {:g}, EMG noise {:g}): {}; said: {}", o.name, o.suite, o.size,
+                     o.emgNoise, truth, given);
+}
 
 bool Row::within(double deviations) const {
   const double expected = n * bound, slack = deviations * std::sqrt(n * bound * (1 - bound));

@@ -25,6 +25,9 @@ struct Row {
   bool within(double deviations) const;
 };
 
+/// What was hidden in a set and what was said of it, in one line.
+std::string describe(const Outcome& outcome);
+
 /// Medians and worst values of a quantity.
 struct Spread {
   std::string metric, unit, target;
@@ -61,6 +64,7 @@ struct Score {
   std::string asMarkdown() const;
 };
 
+/// @param outcomes  of the suites that the targets are about
 Score score(const std::vector<Outcome>& outcomes);
 
 }  // namespace hidden

@@ -261,7 +261,8 @@ std::string effectsAsMarkdown() {
 }
 
 std::vector<Nuisance> drawNuisances(Truth& truth, RandomNumbers& random, double share,
-                                    const std::vector<std::string>& notDrawn) {
+                                    const std::vector<std::string>& notDrawn,
+                                    const Departures& departures) {
   std::vector<Nuisance> drawn;
   const auto draw = [&](const std::string& name, double deviation) {
     const double factor = std::exp(share * deviation * random.normalWithin(2.5));
@@ -271,12 +272,12 @@ std::vector<Nuisance> drawNuisances(Truth& truth, RandomNumbers& random, double 
     return drawn.back().factor;
   };
   for (HillMuscle& m : truth.numbers.muscles) {
-    m.maxForce *= draw(m.name + ".max_isometric_force", 0.15);
-    m.fibreLength *= draw(m.name + ".optimal_fiber_length", 0.04);
-    m.slackLength *= draw(m.name + ".tendon_slack_length", 0.01);
+    m.maxForce *= draw(m.name + ".max_isometric_force", departures.force);
+    m.fibreLength *= draw(m.name + ".optimal_fiber_length", departures.fibreLength);
+    m.slackLength *= draw(m.name + ".tendon_slack_length", departures.slackLength);
   }
-  scaleMass(truth, draw("forearm.mass", 0.05));
-  slowActivation(truth, draw("activation.time", 0.2));
+  scaleMass(truth, draw("forearm.mass", departures.mass));
+  slowActivation(truth, draw("activation.time", departures.activation));
   return drawn;
 }
 

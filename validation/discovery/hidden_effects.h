@@ -74,13 +74,19 @@ struct Nuisance {
   double factor;
 };
 
-/// Makes the nominal elbow a person: F0 15 % and ℓ0 4 %, ℓs 1 % per muscle, mass of everything
-/// beyond the elbow 5 %, activation time constants of all muscles together 20 % (standard
-/// deviations of the logarithm; draws beyond 2.5 deviations are repeated).
+/// Standard deviations of the logarithms of what differs between a person and the nominal model:
+/// F0, ℓ0 and ℓs of every muscle by itself, the mass of everything beyond the elbow, the activation
+/// time constants of all muscles together.
+struct Departures {
+  double force = 0.15, fibreLength = 0.04, slackLength = 0.01, mass = 0.05, activation = 0.2;
+};
+
+/// Makes the nominal elbow a person; draws beyond 2.5 deviations are repeated.
 /// @param share     of these deviations; 0: the nominal model, which no person is
 /// @param notDrawn  nuisances that stay nominal, `*` for any middle; the others are what they would
 ///                  be without this list
 std::vector<Nuisance> drawNuisances(Truth& truth, RandomNumbers& random, double share = 1,
-                                    const std::vector<std::string>& notDrawn = {});
+                                    const std::vector<std::string>& notDrawn = {},
+                                    const Departures& departures = {});
 
 }  // namespace hidden

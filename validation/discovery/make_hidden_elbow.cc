@@ -1,8 +1,8 @@
 // Makes a data set of the blind benchmark: trials of an elbow in which something may be hidden, and
 // a label that only the scorer opens.
 //
-//     make_hidden_elbow --seed N --suite null|single|parameter|two|out|equivalents
-//         [--effect ID[,ID]] [--size S] [--emg-noise C] [--nuisances SHARE]
+//     make_hidden_elbow --seed N --suite null|single|parameter|two|out|equivalents|far|violated
+//         [--effect ID[,ID]] [--violation ID] [--size S] [--emg-noise C] [--nuisances SHARE]
 //         --model MODEL.osim --out DIR --labels DIR
 //     make_hidden_elbow --list
 //
@@ -40,7 +40,12 @@ int make(const hidden::Arguments& arguments) {
     }
   }
   const std::filesystem::path folder = arguments.text("out");
+  plan.violation = arguments.text("violation");
   hidden::chosenEffects(plan);  // wrong use is found before work begins
+  if (!plan.violation.empty() && plan.suite != "violated") {
+    throw std::invalid_argument("--violation is for suite violated");
+  }
+  if (plan.suite == "violated") hidden::chosenViolation(plan);
   const auto nominal = hidden::readElbow(arguments.text("model"));
   const auto set = hidden::makeDataSet(nominal, plan);
   hidden::writeDataSet(set, arguments.text("model"),
@@ -53,10 +58,10 @@ int make(const hidden::Arguments& arguments) {
 
 int main(int argc, char** argv) {
   return hidden::statusOf("make_hidden_elbow", [&] {
-    const hidden::Arguments arguments(
-        argc, argv,
-        {"seed", "suite", "effect", "size", "emg-noise", "nuisances", "model", "out", "labels"},
-        {"list"});
+    const hidden::Arguments arguments(argc, argv,
+                                      {"seed", "suite", "effect", "violation", "size", "emg-noise",
+                                       "nuisances", "model", "out", "labels"},
+                                      {"list"});
     if (arguments.has("list")) {
       fmt::print("{}", hidden::effectsAsMarkdown());
       return 0;

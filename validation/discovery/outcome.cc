@@ -135,6 +135,8 @@ Outcome judge(const std::string& name, const Json& label, const Json& verdict) {
   Outcome o;
   o.name = name;
   o.suite = label.at("suite");
+  o.hides = label.value("hides", o.suite);
+  o.violation = label.value("violation", Json::object()).value("id", "");
   o.size = label.value("size", 1.0);
   o.emgNoise = label.value("emg_noise", 0.0);
   const Json& hiding = label.at("effects");

@@ -14,6 +14,9 @@ using Json = nlohmann::ordered_json;
 struct Outcome {
   std::string name;   ///< of the data set
   std::string suite;  ///< of its label
+  /// "null", "single", "parameter", …: what the suite hides, or of far and violated the label says
+  std::string hides;
+  std::string violation;  ///< its id; empty but in suite violated
   std::vector<std::string> truth;
   double size = 1, emgNoise = 0;
   bool hasVerdict = false;  ///< false: none was given, which counts as wrong everywhere

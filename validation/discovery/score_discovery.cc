@@ -13,6 +13,7 @@
 
 #include "arguments.h"
 #include "discovery_score.h"
+#include "hard_suites.h"
 #include "recovery.h"
 #include "repaired_table.h"
 
@@ -26,14 +27,20 @@ int main(int argc, char** argv) {
     auto outcomes = hidden::readOutcomes(arguments.text("labels"), arguments.text("verdicts"));
     if (arguments.has("as-suite"))
       for (auto& outcome : outcomes) outcome.suite = arguments.text("as-suite");
+    const std::string hard = hidden::hardTable(outcomes);
+    const auto hardJson = hidden::hardJson(outcomes);
+    // these have no part in the tables that the targets are about
+    std::erase_if(outcomes, hidden::isHard);
     const auto score = hidden::score(outcomes);
-    fmt::print("{}\n{}", score.asMarkdown(), hidden::recoveryTable(outcomes));
+    fmt::print("{}\n{}{}", score.asMarkdown(), hidden::recoveryTable(outcomes), hard);
     if (arguments.has("repaired"))
       fmt::print("\n{}", hidden::repairedTable(arguments.text("labels"), arguments.text("verdicts"),
                                                arguments.text("repaired")));
     if (arguments.has("json")) {
       std::ofstream stream(arguments.text("json"));
-      stream << score.asJson().dump(2) << '\n';
+      auto json = score.asJson();
+      json["hard_suites"] = hardJson;
+      stream << json.dump(2) << '\n';
       stream.close();
       if (!stream) throw std::runtime_error(arguments.text("json") + ": cannot be written");
     }

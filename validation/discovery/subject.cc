@@ -153,6 +153,23 @@ std::vector<double> throughSensor(const Sensor& sensor, const Recording& recordi
   return seen;
 }
 
+void loseRecords(const Truth& truth, Trial& trial) {
+  const auto& times = trial.truth.times;
+  for (std::size_t k = 0; truth.dropout.present && k < times.size(); ++k) {
+    if (times[k] < truth.dropout.from || times[k] > truth.dropout.to) continue;
+    for (const std::size_t i : {std::size_t{4}, std::size_t{5}}) {
+      trial.recorded[k][i] = rounded(truth.dropout.level * trial.recorded[k][i], 1e-5);
+    }
+  }
+}
+
+void measure(const Truth& truth, const TrialPlan& plan, Trial& trial, RandomNumbers& random) {
+  trial.measured_deg.clear();
+  for (const double y : throughSensor(truth.sensor, trial.truth, trial.angle)) {
+    trial.measured_deg.push_back(rounded(y / degree + plan.angleNoise * random.normal(), 0.01));
+  }
+}
+
 std::vector<double> replayed(const Truth& truth, const Recording& recording, double q0,
                              double tolerance) {
   const TrueElbow elbow(truth.numbers, truth.chain, truth.extras);
@@ -242,15 +259,8 @@ Trial makeTrial(const Truth& truth, const TrialPlan& plan, RandomNumbers& random
   trial.tracking_deg = std::sqrt(square / static_cast<double>(rows - 1));
 
   trial.recorded = made.emg;
-  for (std::size_t k = 0; truth.dropout.present && k < rows; ++k) {
-    if (made.times[k] < truth.dropout.from || made.times[k] > truth.dropout.to) continue;
-    for (const std::size_t i : {std::size_t{4}, std::size_t{5}}) {
-      trial.recorded[k][i] = rounded(truth.dropout.level * trial.recorded[k][i], 1e-5);
-    }
-  }
-  for (const double y : throughSensor(truth.sensor, made, trial.angle)) {
-    trial.measured_deg.push_back(rounded(y / degree + plan.angleNoise * random.normal(), 0.01));
-  }
+  loseRecords(truth, trial);
+  measure(truth, plan, trial, random);
   return trial;
 }
 

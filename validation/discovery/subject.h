@@ -13,6 +13,7 @@ struct TrialPlan {
   double angleNoise = 0.5;    ///< [deg]
   bool torquePulses = false;  ///< known pulses from outside
   bool passive = false;       ///< relaxed, moved by somebody else (passive_trial.h)
+  bool openLoop = false;      ///< random pulses that nobody steers (open_loop_trial.h)
 };
 
 struct Trial {
@@ -29,6 +30,12 @@ std::array<double, 8> recordedAs(const InputChain& chain, const std::array<doubl
 /// What an angle sensor shows without noise [rad]: q after clock, gain and bias.
 std::vector<double> throughSensor(const Sensor& sensor, const Recording& times,
                                   const std::vector<double>& angle);
+
+/// Takes the truth's dropout off the recorded EMG.
+void loseRecords(const Truth& truth, Trial& trial);
+
+/// Writes down what the sensor shows of the trial's angle, with white noise, in steps of 0.01°.
+void measure(const Truth& truth, const TrialPlan& plan, Trial& trial, RandomNumbers& random);
 
 /// q [rad] at the recording's times under its EMG, from rest at q0, open loop.
 std::vector<double> replayed(const Truth& truth, const Recording& recording, double q0,

@@ -41,6 +41,8 @@ SpanLength around(const Cylinder& c, int side, const Vec& P, const Vec& Q) {
   constexpr double turn = 2 * std::numbers::pi;
   double phi = side * (to - from);
   phi -= turn * std::floor(phi / turn);
+  // nothing is wound round that far: it has slipped off
+  if (phi > 0.75 * turn) return straight(P, Q);
   const double arc = phi - std::acos(r / pr) - std::acos(r / qr);
   if (!(arc > 0)) return straight(P, Q);
 

@@ -33,7 +33,8 @@ SpanLength straight(const Vec& P, const Vec& Q);
 int sideOf(const Cylinder& cylinder, const Vec& P, const Vec& Q);
 
 /// Shortest path from P to Q round the cylinder on the given side; straight where it does not
-/// touch, where an end lies inside, or where both contacts lie beyond the cylinder's ends.
+/// touch, where an end lies inside, where both contacts lie beyond the cylinder's ends, or where
+/// the ends are more than three quarters of a turn apart on that side: such a path has slipped off.
 ///
 /// Seen along the axis: tangents of lengths √(ρ² − r²) and an arc r·β,
 /// β = Φ − arccos(r/ρ_P) − arccos(r/ρ_Q); unrolled the path is a straight line, so its height along

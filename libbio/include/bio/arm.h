@@ -91,8 +91,16 @@ class ArmConfiguration {
   void moveTo(const Vector& q) {
     moveSkeletonTo(q);
     for (std::size_t i = 0; i < lengths_.size(); ++i) {
-      lengths_[i] = arm_->muscles()[i].path.template length<N>(q, motions_.data());
+      lengths_[i] =
+          arm_->muscles()[i].path.template length<N>(q, motions_.data(), holds_ ? &held_ : nullptr);
     }
+  }
+
+  /// From now on the paths' conditional points are those of this configuration, wherever the arm
+  /// moves: for a method whose trial steps may reach beyond one of the arm's switches.
+  void holdConditions(const Vector& at) {
+    held_ = at;
+    holds_ = true;
   }
 
   /// Leaves the lengths where they are.
@@ -138,6 +146,8 @@ class ArmConfiguration {
   std::vector<RigidMotion<double, N>> motions_;
   InertiaJet<N> inertia_;
   std::vector<LengthJet<N>> lengths_;
+  Vector held_;
+  bool holds_ = false;
 };
 
 }  // namespace bio

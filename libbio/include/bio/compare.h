@@ -36,14 +36,20 @@ struct CompareOptions {
   std::function<void(double)> progress;
 };
 
-/// The motion that all others are measured against: CVODE at two tolerances a factor ten apart.
+/// The motion that all others are measured against: CVODE at two tolerances a factor ten apart, and
+/// confirmed by the variational integrator, which shares no step with it, at a small step.
 struct ConvergedReference {
   Trajectory motion;              ///< at the tighter tolerance
   double relativeTolerance = 0;   ///< the tighter one; absolute: a hundredth of it
   double looserTolerance = 0;     ///< relative
   Deviation disagreement;         ///< of the looser run
   double interpolationError = 0;  ///< RMS, between rows [rad]; from leaving out every second row
+  double secondStep = 0;          ///< of the variational integrator, the last one tried [s]
+  Deviation second;               ///< of its motion; NaN if that does not reach the end
+  std::string whyDisputed;        ///< one line; empty if the two agree, or CVODE has no motion
   bool completed() const { return motion.outcome == Outcome::completed; }
+  /// Two integrators that come to one motion: to a twentieth of CompareOptions::usefulError (RMS).
+  bool confirmed() const { return completed() && whyDisputed.empty(); }
   /// Errors are not known better than this [rad].
   double floor() const { return disagreement.rms + interpolationError; }
 };
@@ -92,9 +98,7 @@ ObservedOrder fitOrder(const std::vector<double>& steps, const std::vector<doubl
 
 /// Steps over which an integrator's order is observed [s]: in its asymptotic range on an arm's
 /// motions of seconds, and whole parts of 5 ms (vi: or whole multiples), where recorded excitations
-/// have their corners. Empty for cvode. Where a path gains or loses conditional points its length
-/// jumps; rk4 does not look for these times, and on such an arm its error scatters instead of
-/// falling with the fourth power.
+/// have their corners. Empty for cvode.
 std::vector<double> orderSteps(Integrator integrator);
 
 struct Comparison {

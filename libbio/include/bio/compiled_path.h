@@ -55,6 +55,7 @@ struct SpanSurface {
   std::size_t surface = 0;
   Side side = Side::counterclockwise;  ///< cylinder
   Way way = Way::shorter;              ///< sphere
+  SlipAngle slip = {};                 ///< cylinder
 };
 
 /// From node a to node b.
@@ -126,10 +127,11 @@ const PathVariant& activeVariant(const CompiledPath& path, const Q& q) {
 }
 
 /// Whether a span with these ends, seen in the surface's frame, is left straight because an end
-/// lies within the radius, or because both contacts lie beyond a cylinder's ends.
+/// lies within the radius, because it has slipped off a cylinder, or because both contacts lie
+/// beyond a cylinder's ends.
 template <class T>
-bool surfaceIsOutOfPlay(const PathSurface& surface, const T& radius, Side side, const Vec3<T>& p_CP,
-                        const Vec3<T>& p_CQ) {
+bool surfaceIsOutOfPlay(const PathSurface& surface, const T& radius, const SpanSurface& way,
+                        const Vec3<T>& p_CP, const Vec3<T>& p_CQ) {
   const double r = plainValue(radius);
   const auto at = [](const Vec3<T>& p) {
     return Vec3<double>(plainValue(p.x()), plainValue(p.y()), plainValue(p.z()));
@@ -137,9 +139,10 @@ bool surfaceIsOutOfPlay(const PathSurface& surface, const T& radius, Side side, 
   const Vec3<double> P = at(p_CP), Q = at(p_CQ);
   if (surface.isSphere) return !(P.squaredNorm() > r * r && Q.squaredNorm() > r * r);
   if (!(P.head<2>().squaredNorm() > r * r && Q.head<2>().squaredNorm() > r * r)) return true;
+  if (hasSlippedOff(way.slip, way.side, P, Q)) return true;
   const bool within =
       std::abs(P.z()) <= surface.halfLength && std::abs(Q.z()) <= surface.halfLength;
-  return !within && !cylinderTouches(r, 2 * surface.halfLength, side, P, Q);
+  return !within && !cylinderTouches(r, 2 * surface.halfLength, way.side, P, Q);
 }
 
 }  // namespace bio

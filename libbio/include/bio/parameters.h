@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <variant>
 #include <vector>
@@ -81,6 +82,9 @@ struct ModelParameter {
   double deviation;     ///< default standard deviation of what is known beforehand [unit] > 0
   std::vector<ParameterTarget> targets;  ///< all are set to the same value
   bool isGroup = false;  ///< sets what other parameters set one by one; not part of "all"
+  /// The least value that the geometry does not permit [unit], and why, in words (radius_limit.h).
+  double limit = std::numeric_limits<double>::infinity();
+  std::string whyLimited = {};
 };
 
 /// Start of a simulation: coordinates and speeds; the fibres start in static equilibrium.
@@ -99,7 +103,8 @@ struct StartPoint {
 /// initial.elbow_flexion, initial.elbow_flexion.speed. Groups: activation.time_scale, emg.gain, …
 ///
 /// Bounds and deviations are defaults for someone who knows nothing better
-/// (docs/decisions/013-parameter-sensitivities.md); positive quantities stay positive.
+/// (docs/decisions/013-parameter-sensitivities.md); positive quantities stay positive, and a radius
+/// stays half a per cent below the least one that has a point of a path over it inside.
 class ParameterCatalogue {
  public:
   /// @param start where the simulation starts; sized as the arm's free coordinates
@@ -120,6 +125,10 @@ class ParameterCatalogue {
   /// Values in the model.
   Eigen::VectorXd values(const std::vector<std::size_t>& selection) const;
 
+  /// @param what  what the value is, for the message: "" or "upper bound of "
+  /// @throws std::invalid_argument for a value at the parameter's limit or beyond, saying why
+  void requireBelowLimit(std::size_t index, double value, const std::string& what = {}) const;
+
   /// As estimators see them; the default deviation becomes the prior if asked for.
   std::vector<info::Parameter> asEstimated(const std::vector<std::size_t>& selection,
                                            bool withPriors) const;
@@ -131,8 +140,8 @@ class ParameterCatalogue {
     StartPoint start;
     Eigen::VectorXd values;  ///< of every parameter of the catalogue
   };
-  /// @throws std::invalid_argument for a value that is not finite, or sizes that differ. Whether
-  ///   the values make sense is found out when an Arm is made of it.
+  /// @throws std::invalid_argument for a value that is not finite or at its limit or beyond, or
+  ///   sizes that differ. Whether the values make sense otherwise is found out when an Arm is made.
   Setting at(const std::vector<std::size_t>& selection, const Eigen::VectorXd& values) const;
   /// As the model has them.
   Setting nominal() const { return at({}, Eigen::VectorXd(0)); }

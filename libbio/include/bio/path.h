@@ -50,9 +50,10 @@ struct PathSwitch {
 /// goes is decided here, once (wrap_rule.h); the default posture and the coordinates' ranges tell.
 /// Between switches of conditional points and beyond lift-off, the length is C¹.
 ///
-/// Departures from OpenSim: paths over spheres and cylinders are exact geodesics, they never change
-/// sides, and an object that no span meets within the coordinates' ranges, nor lies within its
-/// radius of, is left out.
+/// Departures from OpenSim: paths over spheres and cylinders are exact geodesics; they never change
+/// sides, but slip off a cylinder where they would go the long way round (wrap_rule.h); and an
+/// object that no span meets within the coordinates' ranges, nor lies within its radius of, is left
+/// out.
 class MusclePath {
  public:
   /// @param wrapAsCylinder names of ellipsoids with two equal semi-axes to be taken as cylinders
@@ -87,9 +88,10 @@ class MusclePath {
   const PathTable* table() const { return table_.get(); }
 
   /// `moved` is what Skeleton::motions(q, ·) returned.
+  /// @param conditionsAt  the configuration whose conditional points are active; null: q
   template <int N>
-  LengthJet<N> length(const Eigen::Matrix<double, N, 1>& q,
-                      const RigidMotion<double, N>* moved) const;
+  LengthJet<N> length(const Eigen::Matrix<double, N, 1>& q, const RigidMotion<double, N>* moved,
+                      const Eigen::Matrix<double, N, 1>* conditionsAt = nullptr) const;
 
   /// The parameters as the model has them.
   const PathParameters<double>& parameters() const { return parameters_; }
@@ -118,19 +120,23 @@ class MusclePath {
 
 // Compiled once, in src/instances; other scalars need bio/path_length.h.
 extern template LengthJet<1> MusclePath::length<1>(const Eigen::Matrix<double, 1, 1>&,
-                                                   const RigidMotion<double, 1>*) const;
+                                                   const RigidMotion<double, 1>*,
+                                                   const Eigen::Matrix<double, 1, 1>*) const;
 extern template std::vector<Eigen::Vector3d> MusclePath::pathPoints<1>(
     const Eigen::Matrix<double, 1, 1>&, const RigidMotion<double, 1>*, double) const;
 extern template LengthJet<2> MusclePath::length<2>(const Eigen::Matrix<double, 2, 1>&,
-                                                   const RigidMotion<double, 2>*) const;
+                                                   const RigidMotion<double, 2>*,
+                                                   const Eigen::Matrix<double, 2, 1>*) const;
 extern template std::vector<Eigen::Vector3d> MusclePath::pathPoints<2>(
     const Eigen::Matrix<double, 2, 1>&, const RigidMotion<double, 2>*, double) const;
 extern template LengthJet<3> MusclePath::length<3>(const Eigen::Matrix<double, 3, 1>&,
-                                                   const RigidMotion<double, 3>*) const;
+                                                   const RigidMotion<double, 3>*,
+                                                   const Eigen::Matrix<double, 3, 1>*) const;
 extern template std::vector<Eigen::Vector3d> MusclePath::pathPoints<3>(
     const Eigen::Matrix<double, 3, 1>&, const RigidMotion<double, 3>*, double) const;
 extern template LengthJet<4> MusclePath::length<4>(const Eigen::Matrix<double, 4, 1>&,
-                                                   const RigidMotion<double, 4>*) const;
+                                                   const RigidMotion<double, 4>*,
+                                                   const Eigen::Matrix<double, 4, 1>*) const;
 extern template std::vector<Eigen::Vector3d> MusclePath::pathPoints<4>(
     const Eigen::Matrix<double, 4, 1>&, const RigidMotion<double, 4>*, double) const;
 

@@ -239,7 +239,7 @@ void addPathSpan(LengthJet<N, T>& jet, const CompiledPath& path, const PathSpan&
     const SpanEnd<T, N> p_CQ = seenFromSurface(surface, moved, Q);
     const Vec3<T>& from = p_CP.jet.value;
     const Vec3<T>& to = p_CQ.jet.value;
-    if (surfaceIsOutOfPlay(surface, radius, way.side, from, to)) continue;
+    if (surfaceIsOutOfPlay(surface, radius, way, from, to)) continue;
     if (surface.isSphere) {
       const SpanToSecondOrder<T> s = wrapSphereToSecondOrder(radius, way.way, from, to);
       if (!s.span.touches) continue;
@@ -268,10 +268,11 @@ LengthJet<N, T> noLength() {
 
 template <int N>
 LengthJet<N> MusclePath::length(const Eigen::Matrix<double, N, 1>& q,
-                                const RigidMotion<double, N>* moved) const {
+                                const RigidMotion<double, N>* moved,
+                                const Eigen::Matrix<double, N, 1>* conditionsAt) const {
   if constexpr (N == 1) {
     PathTable::Value found;
-    if (table_ && table_->find(q[0], found)) {
+    if (table_ && conditionsAt == nullptr && table_->find(q[0], found)) {
       LengthJet<1> jet;
       jet.length = found.length;
       jet.dL_dq[0] = found.slope;
@@ -280,7 +281,7 @@ LengthJet<N> MusclePath::length(const Eigen::Matrix<double, N, 1>& q,
       return jet;
     }
   }
-  const PathVariant& variant = activeVariant(compiled_, q);
+  const PathVariant& variant = activeVariant(compiled_, conditionsAt ? *conditionsAt : q);
   LengthJet<N> jet = detail::noLength<N, double>();
   jet.length = variant.fixedLength;
   unsigned used = 0;

@@ -9,7 +9,8 @@ template void Skeleton::motions<double, 3>(const Eigen::Matrix<double, 3, 1>&,
 template InertiaJet<3> Skeleton::inertia<3>(const Eigen::Matrix<double, 3, 1>&,
                                               const RigidMotion<double, 3>*) const;
 template LengthJet<3> MusclePath::length<3>(const Eigen::Matrix<double, 3, 1>&,
-                                              const RigidMotion<double, 3>*) const;
+                                              const RigidMotion<double, 3>*,
+                                              const Eigen::Matrix<double, 3, 1>*) const;
 template std::vector<Eigen::Vector3d> MusclePath::pathPoints<3>(
     const Eigen::Matrix<double, 3, 1>&, const RigidMotion<double, 3>*, double) const;
 

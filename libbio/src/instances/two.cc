@@ -9,7 +9,8 @@ template void Skeleton::motions<double, 2>(const Eigen::Matrix<double, 2, 1>&,
 template InertiaJet<2> Skeleton::inertia<2>(const Eigen::Matrix<double, 2, 1>&,
                                               const RigidMotion<double, 2>*) const;
 template LengthJet<2> MusclePath::length<2>(const Eigen::Matrix<double, 2, 1>&,
-                                              const RigidMotion<double, 2>*) const;
+                                              const RigidMotion<double, 2>*,
+                                              const Eigen::Matrix<double, 2, 1>*) const;
 template std::vector<Eigen::Vector3d> MusclePath::pathPoints<2>(
     const Eigen::Matrix<double, 2, 1>&, const RigidMotion<double, 2>*, double) const;
 

@@ -113,6 +113,8 @@ class HingeCompiler {
                                 way.side == Side::counterclockwise ? 1.0 : -1.0,
                                 surface.radius,
                                 surface.halfLength,
+                                way.slip.cosine,
+                                way.slip.sine,
                                 {turningPoint(p_CP), turningPoint(p_CQ)}});
     }
     return true;
@@ -165,6 +167,8 @@ void put(Cylinder<Lanes>& to, int lane, const Cylinder<Single>& from) {
   to.side[lane] = from.side;
   to.radius[lane] = from.radius;
   to.halfLength[lane] = from.halfLength;
+  to.slipCosine[lane] = from.slipCosine;
+  to.slipSine[lane] = from.slipSine;
   for (int end = 0; end < 2; ++end) {
     for (int i = 0; i < 3; ++i) {
       to.ends[end].middle[i][lane] = from.ends[end].middle[i];

@@ -37,6 +37,8 @@ struct Cylinder {
   T side;               ///< 1 or −1
   T radius;             ///< [m]
   T halfLength;         ///< [m]
+  T slipCosine;         ///< of the slip angle
+  T slipSine;
   Turning<Of> ends[2];  ///< in the cylinder's frame
 };
 

@@ -69,7 +69,10 @@ inline Mask addCylinder(PathJet& jet, const Cylinder<Lanes>& cylinder, const Sin
                       (r * Q.value[0] + b * Q.value[1]) * perQQ};
   const Real sine = (eP[0] * eQ[1] - eP[1] * eQ[0]) * cylinder.side;
   const Real across = cylinder.side * (P.value[0] * Q.value[1] - P.value[1] * Q.value[0]);
+  const Real along = P.value[0] * Q.value[0] + P.value[1] * Q.value[1];
   touches &= (across < 0) | (sine > 0);
+  // what has slipped off is straight
+  touches &= ~((across < 0) & (cylinder.slipCosine * across - cylinder.slipSine * along > 0));
   if (!any(touches)) return touches;
 
   // a cylinder of finite length, whose ends the way may pass beyond
