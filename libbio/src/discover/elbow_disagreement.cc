@@ -9,7 +9,6 @@
 
 #include "bio/coupled_sensitivity.h"
 #include "bio/discover/effects.h"
-#include "bio/nudge.h"
 #include "bio/discover/with_known_changes.h"
 #include "bio/replay.h"
 #include "bio/trial_review.h"
@@ -157,6 +156,27 @@ VectorXd ElbowDisagreement::withTimedForces(const OfTrial& one, const VectorXd& 
     }
   }
   return sum;
+}
+
+MatrixXd ElbowDisagreement::timedDirections(const OfTrial& one, const VectorXd& values,
+                                            const std::vector<std::size_t>& wanted) const {
+  MatrixXd nodes;
+  for (std::size_t j = 0; j < wanted.size(); ++j) {
+    for (const TimedForce& force : widest_.timedForces()) {
+      if (wanted[j] != force.amplitude && wanted[j] != force.time) continue;
+      const auto rows = static_cast<Index>(one.nodes.size());
+      if (nodes.size() == 0) nodes = MatrixXd::Zero(rows, static_cast<Index>(wanted.size()));
+      const double size = values[static_cast<Index>(force.amplitude)];
+      for (Index k = 0; k < rows; ++k) {
+        const TimedShare share = timedShare(one.nodes[static_cast<std::size_t>(k)],
+                                            values[static_cast<Index>(force.time)], force.ends);
+        const double weight = force.of == TimedForce::Of::mass ? one.heldMass[k] : 1.0;
+        nodes(k, static_cast<Index>(j)) =
+            weight * (wanted[j] == force.amplitude ? share.value : size * share.inTime);
+      }
+    }
+  }
+  return nodes;
 }
 
 double ElbowDisagreement::activationLag() const {
@@ -317,24 +337,8 @@ ElbowDisagreement::Prediction ElbowDisagreement::predictWith(const Nudge* nudge,
   };
 
   // forces that change in time follow those at the nodes
-  MatrixXd timedNodes =
-      MatrixXd::Zero(static_cast<Index>(one.nodes.size()), static_cast<Index>(wanted.size()));
-  bool timed = false;
-  for (std::size_t j = 0; j < wanted.size(); ++j) {
-    for (const TimedForce& force : widest_.timedForces()) {
-      if (wanted[j] != force.amplitude && wanted[j] != force.time) continue;
-      timed = true;
-      for (Index k = 0; k < timedNodes.rows(); ++k) {
-        const TimedShare share = timedShare(one.nodes[static_cast<std::size_t>(k)],
-                                            values[static_cast<Index>(force.time)], force.ends);
-        const double weight = force.of == TimedForce::Of::mass ? one.heldMass[k] : 1.0;
-        timedNodes(k, static_cast<Index>(j)) =
-            weight * (wanted[j] == force.amplitude
-                          ? share.value
-                          : values[static_cast<Index>(force.amplitude)] * share.inTime);
-      }
-    }
-  }
+  const MatrixXd timedNodes = timedDirections(one, values, wanted);
+  const bool timed = timedNodes.size() > 0;
 
   // columns of the simulation: the clock, and starts of other trials, have none
   std::vector<ParameterDirection> directions;
@@ -442,52 +446,6 @@ MatrixXd ElbowDisagreement::inputs(int trial) const {
 
 std::vector<std::string> ElbowDisagreement::inputNames() const {
   return muscleNames(widest_.arm());
-}
-
-/// What ElbowDisagreement is while its coordinate is held near what was measured. Must not outlive
-/// it.
-class ElbowDisagreement::Nudged final : public info::discover::Disagreement {
- public:
-  Nudged(const ElbowDisagreement& of, double frequency) : of_(of) {
-    for (const OfTrial& one : of.trials_) {
-      nudges_.push_back(
-          nudgeTo(of.widest_.arm(), of.widest_.freeIndex(), one.times, one.measured, frequency));
-    }
-  }
-  const std::vector<Quantity>& quantities() const override { return of_.quantities(); }
-  const std::vector<std::size_t>& nuisances() const override { return of_.nuisances(); }
-  const std::vector<Candidate>& candidates() const override { return of_.candidates(); }
-  int numTrials() const override { return of_.numTrials(); }
-  std::string trialName(int trial) const override { return of_.trialName(trial); }
-  const std::vector<double>& times(int trial) const override { return of_.times(trial); }
-  const VectorXd& measured(int trial) const override { return of_.measured(trial); }
-  const std::vector<double>& latentTimes(int trial) const override {
-    return of_.latentTimes(trial);
-  }
-  double latentLag() const override { return of_.latentLag(); }
-  Prediction predict(int trial, const VectorXd& values, const VectorXd& latent,
-                     const std::vector<std::size_t>& wanted, bool latentToo) const override {
-    return of_.predictWith(&of(trial), trial, values, latent, wanted, latentToo);
-  }
-  VectorXd outputs(int trial, const VectorXd& values, const VectorXd& latent) const override {
-    return of_.outputsOf(of_.of(trial), values, latent, 1, &of(trial));
-  }
-  MatrixXd inputs(int trial) const override { return of_.inputs(trial); }
-  std::vector<std::string> inputNames() const override { return of_.inputNames(); }
-
- private:
-  const Nudge& of(int trial) const { return nudges_.at(static_cast<std::size_t>(trial)); }
-
-  const ElbowDisagreement& of_;
-  std::vector<Nudge> nudges_;
-};
-
-std::unique_ptr<info::discover::Disagreement> ElbowDisagreement::nudged(double frequency) const {
-  if (std::any_of(trials_.begin(), trials_.end(),
-                  [](const OfTrial& one) { return one.times.size() < 4; })) {
-    return nullptr;
-  }
-  return std::make_unique<Nudged>(*this, frequency);
 }
 
 std::unique_ptr<info::discover::Disagreement> ElbowDisagreement::withFormula(

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <set>
 
-#include "info/nudge_stages.h"
 #include "search.h"
 
 // What the fits that there are say: of candidates that have not been fitted, of effects that have.
@@ -17,8 +16,6 @@ namespace {
 
 // with so large a latent force the base is too far from the data for linear steps
 constexpr double kPoor = 0.2;
-// of nudgeStages: so firmly held that nothing runs away, so little that what is missing shows
-constexpr std::size_t kHeldStage = 2;
 
 }  // namespace
 
@@ -123,80 +120,6 @@ std::vector<Screened> Search::probe(const Effects& effects) {
   std::sort(result.begin(), result.end(),
             [](const Screened& a, const Screened& b) { return a.gain > b.gain; });
   return result;
-}
-
-std::vector<Screened> Search::screenHeld(const Effects& effects) {
-  if (nudgedLikelihoods_.size() <= kHeldStage) return {};
-  const Likelihood& held = nudgedLikelihoods_[kHeldStage];
-  const Noise noise{nudgeStages[kHeldStage].spread * output_, 0, options_.latentTime};
-  const auto fitted = [&](const Effects& of, const VectorXd& from, int iterations) {
-    ++fits_;
-    return held.tryFit(makeHypothesis(data_, of, trials_), noise, from, {}, {iterations, 0.1});
-  };
-  VectorXd start = nominalValues(data_);
-  for (const std::size_t e : effects)
-    for (const std::size_t q : data_.candidates()[e].quantities)
-      start[static_cast<Index>(q)] = at(effects).fit.values[static_cast<Index>(q)];
-  const auto fit = fitted(effects, start, 12);
-  if (!fit) return {};
-  std::vector<Screened> result = screenAt(held, *fit, effects);
-  // what has a grid of starts has several minima: a linear step at 0 sees none of them
-  for (Screened& s : result) {
-    const Candidate& c = data_.candidates()[s.candidate];
-    if (!isGrid(c) || !effects.empty()) continue;
-    if (gridStarts_.count(s.candidate) == 0)
-      gridStarts_[s.candidate] = searchGrid(s.candidate, *fit);
-    s.gain = std::max(s.gain, gridStarts_[s.candidate].gain);
-  }
-  std::sort(result.begin(), result.end(),
-            [](const Screened& a, const Screened& b) { return a.gain > b.gain; });
-  return result;
-}
-
-// The amplitude along its grid, then by golden section beside the best, the nuisances fitted at
-// each: a fit of all together is led away by them.
-Search::GridStart Search::searchGrid(std::size_t candidate, const Fit& base) const {
-  const Likelihood& held = nudgedLikelihoods_[kHeldStage];
-  const auto amplitude = static_cast<Index>(data_.candidates()[candidate].quantities[0]);
-  GridStart best;
-  const auto at = [&](double x) {
-    VectorXd values = base.values;
-    values[amplitude] = x;
-    const auto fit = held.tryFit(base.hypothesis, base.noise, values, {}, {4, 0.3});
-    const double gain = fit ? fit->logEvidence - base.logEvidence : -HUGE_VAL;
-    if (gain > best.gain) best = {fit->values, gain};
-    return gain;
-  };
-  std::vector<double> grid = {data_.quantities()[static_cast<std::size_t>(amplitude)].nominal};
-  for (const VectorXd& start : data_.candidates()[candidate].starts) grid.push_back(start[0]);
-  std::sort(grid.begin(), grid.end());
-  std::size_t top = 0;
-  double most = -HUGE_VAL;
-  for (std::size_t k = 0; k < grid.size(); ++k)
-    if (const double gain = at(grid[k]); gain > most) {
-      most = gain;
-      top = k;
-    }
-  double low = grid[top > 0 ? top - 1 : 0], high = grid[std::min(top + 1, grid.size() - 1)];
-  constexpr double kGolden = 0.381966;
-  double left = low + kGolden * (high - low), right = high - kGolden * (high - low);
-  double ofLeft = at(left), ofRight = at(right);
-  for (int k = 0; k < 6; ++k) {
-    if (ofLeft > ofRight) {
-      high = right;
-      right = left;
-      ofRight = ofLeft;
-      left = low + kGolden * (high - low);
-      ofLeft = at(left);
-    } else {
-      low = left;
-      left = right;
-      ofLeft = ofRight;
-      right = high - kGolden * (high - low);
-      ofRight = at(right);
-    }
-  }
-  return best;
 }
 
 std::vector<std::size_t> Search::shortlist(const Effects& effects, int most) {

@@ -6,48 +6,13 @@
 
 #include "info/nudge_stages.h"
 #include "info/random_stream.h"
+#include "search_tuning.h"
 
 namespace info::discover {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-namespace {
-
-// the score of what could not be simulated at all
-constexpr double kFailed = -1e300;
-constexpr double kWidest = 0.8, kFirstSize = 0.3, kRaceSize = 0.1, kSmallSize = 0.005;
-constexpr double kSmallest = 1e-3;
-// A large latent force leads to a minimum, and lets go of the parameters in it; others may be much
-// lower (docs/decisions/046-several-minima.md). So many starts with a small one, and how far they
-// are drawn [prior deviations].
-constexpr std::uint64_t kStarts = 6, kStartsBesidesLed = 3;
-constexpr double kSpread = 0.7;
-// Fits that are led from a model held near the data: which stage tells the evidence of one from
-// that of another, by how many nats it may be behind the best there, and how many are fitted to
-// their end.
-constexpr std::size_t kHalfWay = 3;
-constexpr double kLedBehind = 10;
-constexpr std::size_t kLedFits = 3;
-// with so large a latent force none at all is out of the question, and its fit is not worth the
-// time
-constexpr double kHopeless = 0.03;
-
-// nats by which a search at longer steps may be wrong about which of two hypotheses is better
-constexpr double kDraftError = 3;
-
-// A fit that is not done after so many iterations is given up if it is so many nats behind. A truth
-// in a wrong minimum has stood 53 behind (visc, seed 20010 of validation/discovery).
-constexpr int kIterations = 25, kShort = 8;
-constexpr double kGivenUp = 60;
-
-// Likelihood::marginal gains a few nats, and more where a hypothesis damps the model; what is
-// further behind stays behind. The second: nats by which a fit must be better than the one before
-// for that to be worth doing again.
-constexpr double kMarginalGain = 10, kNews = 0.2;
-
-}  // namespace
 
 std::vector<VectorXd> forceKept(std::vector<VectorXd> eta, double from, double to) {
   for (VectorXd& one : eta) one *= from / to;
@@ -69,86 +34,6 @@ Search::Search(const Disagreement& data, std::vector<int> trials, const Options&
     nudgedLikelihoods_.emplace_back(*nudged_.back(), trials_, nominalValues(data_),
                                     options_.latentTime);
   }
-}
-
-std::optional<Search::Led> Search::ledFrom(const Effects& effects, VectorXd start) {
-  if (nudgedLikelihoods_.empty()) return {};
-  const Hypothesis hypothesis = makeHypothesis(data_, effects, trials_);
-  Led led;
-  for (std::size_t i = 0; i < nudgedLikelihoods_.size(); ++i) {
-    const Noise noise{nudgeStages[i].spread * output_, 0, options_.latentTime};
-    const auto fit = nudgedLikelihoods_[i].tryFit(hypothesis, noise, start, {}, {6, 0.1});
-    ++fits_;
-    if (!fit) return {};
-    start = fit->values;
-    if (i == kHalfWay) led.evidence = fit->logEvidence;
-  }
-  led.values = std::move(start);
-  return led;
-}
-
-void Search::raceLed(const Effects& base, const std::vector<std::size_t>& candidates) {
-  std::vector<std::pair<std::size_t, Led>> all;
-  const VectorXd nominal = nominalValues(data_);
-  for (const std::size_t c : candidates) {
-    const Effects effects = with(base, c);
-    if (!raced_.insert(effects).second) continue;
-    report_(describe(data_, effects));
-    VectorXd start = nominal;
-    for (const std::size_t e : base)
-      for (const std::size_t q : data_.candidates()[e].quantities)
-        start[static_cast<Index>(q)] = at(base).fit.values[static_cast<Index>(q)];
-    Fit near = at(base).fit;
-    near.values = std::move(start);
-    if (auto led = ledFrom(effects, bestStart(base, c, near, 0))) all.emplace_back(c, *led);
-  }
-  std::sort(all.begin(), all.end(),
-            [](const auto& a, const auto& b) { return a.second.evidence > b.second.evidence; });
-  const Noise still{output_, 0, options_.latentTime};
-  for (std::size_t i = 0; i < std::min(all.size(), kLedFits); ++i) {
-    const auto& [c, led] = all[i];
-    if (led.evidence < all.front().second.evidence - kLedBehind) break;
-    const Effects effects = with(base, c);
-    report_(describe(data_, effects));
-    const auto fit = likelihood_->tryFit(makeHypothesis(data_, effects, trials_), still, led.values,
-                                         {}, {kShort, 0.1});
-    ++fits_;
-    if (!fit) continue;
-    const Entry& entry = at(effects);
-    const bool known = entry.simulation && entry.simulation->logEvidence > fit->logEvidence - kNews;
-    if (!known) improve(effects, fit->values, kSmallSize, nullptr, bestScore() - kGivenUp);
-  }
-}
-
-VectorXd Search::bestStart(const Effects& base, std::size_t candidate, const Fit& near,
-                           double latent) {
-  const Hypothesis hypothesis = makeHypothesis(data_, with(base, candidate), trials_);
-  const std::size_t starts = data_.candidates()[candidate].starts.size();
-  if (const auto known = gridStarts_.find(candidate);
-      known != gridStarts_.end() && known->second.values.size() > 0) {
-    // alone, with the nuisances that go with it
-    VectorXd from = latent == 0 && base.empty() ? known->second.values : near.values;
-    const auto amplitude = static_cast<Index>(data_.candidates()[candidate].quantities[0]);
-    from[amplitude] = known->second.values[amplitude];
-    return from;
-  }
-  const bool held = !nudgedLikelihoods_.empty();
-  const Noise noise{(held ? nudgeStages[0].spread : 1) * output_, held ? 0 : latent,
-                    options_.latentTime};
-  const auto eta = held ? std::vector<VectorXd>() : forceKept(near.eta, near.noise.latent, latent);
-  VectorXd from = started(candidate, 0, near.values);
-  double evidence = -1e300;
-  for (std::size_t s = 0; starts > 1 && s < starts; ++s) {
-    const Likelihood& likelihood = held ? nudgedLikelihoods_.front() : *likelihood_;
-    const auto fit = likelihood.tryFit(hypothesis, noise, started(candidate, s, near.values), eta,
-                                       {held ? 3 : 5, 0.1});
-    if (fit && fit->logEvidence > evidence) {
-      evidence = fit->logEvidence;
-      from = fit->values;
-    }
-    ++fits_;
-  }
-  return from;
 }
 
 // Follows σ_d from `size` to where the evidence is largest: MacKay's fixed point

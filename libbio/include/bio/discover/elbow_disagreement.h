@@ -112,6 +112,9 @@ class ElbowDisagreement : public info::discover::Disagreement {
   };
   Eigen::VectorXd withTimedForces(const OfTrial& one, const Eigen::VectorXd& values,
                                   const Eigen::VectorXd& latent) const;
+  /// How the forces at the nodes follow the wanted quantities: nodes × wanted; empty if none does.
+  Eigen::MatrixXd timedDirections(const OfTrial& one, const Eigen::VectorXd& values,
+                                  const std::vector<std::size_t>& wanted) const;
   double activationLag() const;
   const OfTrial& of(int trial) const { return trials_.at(static_cast<std::size_t>(trial)); }
   ParameterCatalogue::Setting settingAt(const OfTrial& one, const Eigen::VectorXd& values,

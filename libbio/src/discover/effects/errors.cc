@@ -144,17 +144,20 @@ void addWrapErrors(WidestModel& model) {
     const auto* wrap = std::get_if<WrapTarget>(&parameter.targets.front());
     if (!wrap || wrap->component != 0) continue;
     const std::string& name = model.base().wrapObjects[wrap->wrap].name;
-    const std::size_t r = model.add(amplitude(fmt::format("wrap_{}.radius", name), "m",
-                                              -0.5 * parameter.value, parameter.value, 0.006),
-                                    {Meaning::Kind::shift, model.numbers(parameter.name)});
+    const double lower = std::max(-0.5 * parameter.value, parameter.lower - parameter.value);
+    const double upper = std::min(parameter.value, parameter.upper - parameter.value);
+    const std::size_t r =
+        model.add(amplitude(fmt::format("wrap_{}.radius", name), "m", lower, upper, 0.006),
+                  {Meaning::Kind::shift, model.numbers(parameter.name)});
     // near a path point the lengths turn so quickly that each start sees only what is next to it
     std::vector<std::vector<double>> starts;
-    for (const double share : {0.06, -0.06, -0.36, -0.26, -0.15, 0.13, 0.19}) {
-      starts.push_back({share * parameter.value});
-    }
-    for (double share = 0.25; share < 0.41; share += 0.0125) {
-      starts.push_back({share * parameter.value});
-    }
+    const auto startAt = [&](double share) {
+      const double shift = share * parameter.value;
+      if (shift > lower && shift < upper) starts.push_back({shift});
+    };
+    for (const double share : {0.06, -0.06, -0.36, -0.26, -0.15, 0.13, 0.19}) startAt(share);
+    for (double share = 0.25; share < 0.41; share += 0.0125) startAt(share);
+    if (starts.empty()) starts.push_back({std::clamp(0.001, lower, upper)});
     model.add(candidate(model, "wrap_" + name, "radius of wrap object " + name,
                         fmt::format("The muscles that pass over {} have other moment arms.", name),
                         EffectKind::geometry, {r}, starts));
