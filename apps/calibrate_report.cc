@@ -226,6 +226,15 @@ Table startTable(const CalibrateFindings& f) {
   return table;
 }
 
+/// What remains is more than noise; empty where it is not.
+std::string aboveNoise(const CalibrateFindings& f) {
+  if (!f.calibration.leavesMoreThanNoise()) return "";
+  return fmt::format(
+      " Neighbouring samples scatter by {:.3g} deg only: the model with these parameters does not "
+      "explain the rest, another parameter, or an effect that the model lacks, may.",
+      f.calibration.noiseFloor * radian);
+}
+
 std::string noiseText(const CalibrateFindings& f) {
   const bio::ResidualNoise& noise = f.calibration.noise;
   if (f.options.noise) {
@@ -238,7 +247,8 @@ std::string noiseText(const CalibrateFindings& f) {
   }
   if (noise.correlationTime <= 1) {
     return fmt::format("The residuals are white, {:.3g} deg; that was taken for the noise.",
-                       noise.deviation * radian);
+                       noise.deviation * radian) +
+           aboveNoise(f);
   }
   return fmt::format(
       "The residuals are {:.3g} deg and correlated: {:.3g} samples ({:.2g} s) count as one "
@@ -246,7 +256,8 @@ std::string noiseText(const CalibrateFindings& f) {
       "them. Part of it is what the model does not say; no interval tells how wrong that makes "
       "an estimate.",
       noise.deviation * radian, noise.correlationTime, noise.correlationTime * interval(f.training),
-      std::sqrt(noise.correlationTime));
+      std::sqrt(noise.correlationTime)) +
+         aboveNoise(f);
 }
 
 std::string verdictOf(const CalibrateFindings& f) {
@@ -345,6 +356,8 @@ void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
   summary.set("estimates", estimates);
   summary.set("noise_deg", c.noise.deviation * radian);
   summary.set("noise_is", f.options.noise ? "given" : "from the residuals");
+  summary.set("sample_scatter_deg", c.noiseFloor * radian);
+  summary.set("residual_above_noise", c.leavesMoreThanNoise());
   const double noises =
       f.options.noise ? rmse(f.training, c.after) / (radian * *f.options.noise) : 0;
   if (noises > 3) {

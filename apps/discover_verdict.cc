@@ -164,6 +164,13 @@ ordered_json verdictJson(const DiscoverFindings& f) {
                                {"parameters", parametersJson(f, effect.estimates)},
                                {"log_bayes_factor", number(effect.logBayesFactor)},
                                {"probability", number(effect.probability)}});
+    for (const Estimate& one : effect.estimates) {
+      if (f.data.quantities()[one.quantity].name == candidate.id + ".time") {
+        const char* change = candidate.id.ends_with("_until") ? "ends_at_s" : "starts_at_s";
+        if (candidate.kind == info::discover::EffectKind::structure)
+          json["effects"].back()[change] = number(one.value);
+      }
+    }
     for (const std::size_t c : effect.equals) json["class"].push_back(candidates[c].id);
   }
   addSizes(f, json["effects"]);
@@ -206,6 +213,10 @@ ordered_json verdictJson(const DiscoverFindings& f) {
         {{"what", one.sentence}, {"of", rivalName(f.data, verdict, 0)}, {"expected_nats", nats}});
   }
   json["noise_sd"] = number(verdict.outputDeviation);
+  json["samples"] = {{"recorded", verdict.noise.samples},
+                     {"outliers", verdict.noise.outliers},
+                     {"every", verdict.noise.spacing},
+                     {"rounded_to", number(f.wording.unit * verdict.noise.quantum)}};
   json["noise_estimated"] = verdict.deviationEstimated;
   json["wall_s"] = number(f.wallSeconds);
   json["processor_s"] = number(f.processorSeconds);

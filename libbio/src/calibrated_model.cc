@@ -72,7 +72,7 @@ CalibratedModel calibratedModel(const TrialSet& training, const TrialSet* heldOu
     if (!set) continue;
     const bool isHeldOut = set == heldOut;
     for (std::size_t i = 0; i < set->trials().size(); ++i) {
-      CalibratedTrial one{i, isHeldOut};
+      CalibratedTrial one{i, isHeldOut, {}, {}};
       Trial trial = set->trials()[i];
       const StartPoint start =
           set->startAt(i, isHeldOut ? theta.head(static_cast<Index>(training.numCommon())) : theta);

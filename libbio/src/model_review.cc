@@ -8,8 +8,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "moved_mass.h"
 #include "plausible.h"
+#include "principal_moments.h"
 
 namespace bio {
 namespace {
@@ -25,7 +25,6 @@ struct Reviewer {
 
   void reviewBody(const Body& body);
   void reviewEndOfChain();
-  void reviewMovement();
   void reviewCoordinate(const Coordinate& coordinate);
   void reviewAxes(const Joint& joint);
   void reviewWrap(const WrapObject& wrap);
@@ -81,32 +80,6 @@ void Reviewer::reviewEndOfChain() {
     if (!(findBody(model, joint.childBody).mass > 0)) {
       say(fmt::format("body '{}'", joint.childBody),
           "mass = 0 kg at the end of the chain: joint '{}' has nothing to move", joint.name);
-    }
-  }
-}
-
-/// Not locked in the model, and of its own.
-bool mayBeFree(const Model& model, const Coordinate& coordinate) {
-  return !coordinate.locked &&
-         std::none_of(model.couplers.begin(), model.couplers.end(),
-                      [&](const CoordinateCoupler& c) { return c.dependent == coordinate.name; });
-}
-
-/// Why the coordinate cannot be free by itself; empty if it can.
-std::string whyNotFree(const Model& model, const Coordinate& coordinate) {
-  try {
-    return whatMovesNoMass(Skeleton(model, {{coordinate.name}, {}}));
-  } catch (const std::invalid_argument& error) {
-    return fmt::format("coordinate '{}' cannot be free: {}", coordinate.name, error.what());
-  }
-}
-
-void Reviewer::reviewMovement() {
-  for (const Joint& joint : model.joints) {
-    for (const Coordinate& coordinate : joint.coordinates) {
-      if (!mayBeFree(model, coordinate)) continue;
-      const std::string why = whyNotFree(model, coordinate);
-      if (!why.empty()) remarks.push_back({"model", why, Weight::warning});
     }
   }
 }
@@ -241,7 +214,7 @@ void Reviewer::reviewForces() {
 
 }  // namespace
 
-std::vector<Remark> reviewModel(const Model& model) {
+std::vector<Remark> reviewNumbers(const Model& model) {
   Reviewer reviewer{model, {}};
   bool anyFree = false;
   for (const Body& body : model.bodies) reviewer.reviewBody(body);
@@ -253,7 +226,6 @@ std::vector<Remark> reviewModel(const Model& model) {
     }
   }
   reviewer.reviewEndOfChain();
-  reviewer.reviewMovement();
   for (const WrapObject& wrap : model.wrapObjects) reviewer.reviewWrap(wrap);
   for (const Muscle& muscle : model.muscles) reviewer.reviewMuscle(muscle);
   reviewer.reviewForces();
@@ -264,21 +236,6 @@ std::vector<Remark> reviewModel(const Model& model) {
     reviewer.say("model", "gravity = {} m/s², usually 9.81 or 0", g);
   }
   return std::move(reviewer.remarks);
-}
-
-std::string whyNotSimulated(const Model& model) {
-  if (model.muscles.empty()) return "it has no muscle";
-  const auto isSimulated = [](const Muscle& muscle) { return muscle.schutte.has_value(); };
-  if (std::none_of(model.muscles.begin(), model.muscles.end(), isSimulated)) {
-    return fmt::format("none of its {} muscles is of a class that is simulated",
-                       model.muscles.size());
-  }
-  for (const Joint& joint : model.joints) {
-    for (const Coordinate& coordinate : joint.coordinates) {
-      if (mayBeFree(model, coordinate) && whyNotFree(model, coordinate).empty()) return "";
-    }
-  }
-  return "no coordinate that is not locked moves a mass";
 }
 
 }  // namespace bio

@@ -24,18 +24,6 @@ Eigen::MatrixXd massMatrixOf(const Skeleton& skeleton) {
 
 }  // namespace
 
-Eigen::Vector3d principalMoments(const Body& body) {
-  const auto& i = body.inertia;
-  Eigen::Matrix3d tensor;
-  tensor << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2];
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor, Eigen::EigenvaluesOnly)
-      .eigenvalues();
-}
-
-bool hasNegativeMoment(const Eigen::Vector3d& principal) {
-  return principal.minCoeff() < -1e-12 * principal.cwiseAbs().maxCoeff();
-}
-
 std::string whatMovesNoMass(const Skeleton& skeleton) {
   const Eigen::MatrixXd M = massMatrixOf(skeleton);
   if (!M.allFinite()) return "mass matrix: a value is not finite";

@@ -6,14 +6,9 @@
 
 #include "bio/model.h"
 #include "bio/skeleton.h"
+#include "principal_moments.h"
 
 namespace bio {
-
-/// Principal moments of inertia about the mass centre, rising [kg m²].
-Eigen::Vector3d principalMoments(const Body& body);
-
-/// Whether the least of them is negative beyond rounding, which no distribution of mass has.
-bool hasNegativeMoment(const Eigen::Vector3d& principal);
 
 /// Which free coordinate, or which of them together, move no mass in the default posture; empty if
 /// all move some.

@@ -130,7 +130,7 @@ bool touches(const CompiledPath& path, const PathSpan& span, const SpanSurface& 
                     nodePosition(path, path.nodes[node], posture));
   };
   const Vec3<double> P = seen(span.a), Q = seen(span.b);
-  if (surfaceIsOutOfPlay(surface, surface.radius, way.side, P, Q)) return false;
+  if (surfaceIsOutOfPlay(surface, surface.radius, way, P, Q)) return false;
   return surface.isSphere ? wrapSphere(surface.radius, way.way, P, Q).touches
                           : wrapCylinder(surface.radius, way.side, P, Q).touches;
 }

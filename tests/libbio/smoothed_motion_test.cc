@@ -33,8 +33,9 @@ TEST(SmoothedMotion, LeavesAParabolaAsItIsAcrossAGap) {
   for (std::size_t k = 0; k < course.times.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     EXPECT_NEAR(course.values[i], parabola(course.times[k]), 1e-8);
-    if (k > 0 && k + 1 < course.times.size())
+    if (k > 0 && k + 1 < course.times.size()) {
       EXPECT_NEAR(course.speeds[i], -2 + 3 * course.times[k], 1e-6);
+    }
   }
 }
 

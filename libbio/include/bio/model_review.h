@@ -37,6 +37,9 @@ struct Remark {
 /// Warnings: coordinates that cannot be free since they move no mass.
 std::vector<Remark> reviewModel(const Model& model);
 
+/// The same but for the warnings, which need a skeleton: what the numbers by themselves say.
+std::vector<Remark> reviewNumbers(const Model& model);
+
 /// Why nothing of a model can be simulated: no muscle, none of a class that is simulated, or no
 /// coordinate that moves a mass; then it serves for paths and pictures alone. Empty: something can.
 std::string whyNotSimulated(const Model& model);

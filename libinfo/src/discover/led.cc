@@ -23,6 +23,8 @@ constexpr std::size_t kHeldStage = 2;
 constexpr std::size_t kHalfWay = 3;
 constexpr double kLedBehind = 10;
 constexpr std::size_t kLedFits = 3;
+// nats that one step of a held model promises
+constexpr double kExplainsMuch = 20;
 
 }  // namespace
 
@@ -78,7 +80,8 @@ void Search::raceLed(const Effects& base, const std::vector<std::size_t>& candid
 VectorXd Search::bestStart(const Effects& base, std::size_t candidate, const Fit& near,
                            double latent) {
   const Hypothesis hypothesis = makeHypothesis(data_, with(base, candidate), trials_);
-  const std::size_t starts = data_.candidates()[candidate].starts.size();
+  const Candidate& c = data_.candidates()[candidate];
+  const std::size_t starts = isGrid(c) ? 2 : c.starts.size();  // the whole grid is searchGrid's
   if (const auto known = gridStarts_.find(candidate);
       known != gridStarts_.end() && known->second.values.size() > 0) {
     // alone, with the nuisances that go with it
@@ -121,7 +124,9 @@ std::vector<Screened> Search::screenHeld(const Effects& effects) {
   const auto fit = fitted(effects, start, 12);
   if (!fit) return {};
   std::vector<Screened> result = screenAt(held, *fit, effects);
-  // what has a grid of starts has several minima: a linear step at 0 sees none of them
+  // what has a grid of starts has several minima: a linear step at 0 sees none of them; looked for
+  // where nothing else explains much
+  if (!result.empty() && result.front().gain > kExplainsMuch) return result;
   for (Screened& s : result) {
     const Candidate& c = data_.candidates()[s.candidate];
     if (!isGrid(c) || !effects.empty()) continue;
@@ -143,7 +148,7 @@ Search::GridStart Search::searchGrid(std::size_t candidate, const Fit& base) con
   const auto at = [&](double x) {
     VectorXd values = base.values;
     values[amplitude] = x;
-    const auto fit = held.tryFit(base.hypothesis, base.noise, values, {}, {4, 0.3});
+    const auto fit = held.tryFit(base.hypothesis, base.noise, values, {}, {2, 0.3});
     const double gain = fit ? fit->logEvidence - base.logEvidence : -HUGE_VAL;
     if (gain > best.gain) best = {fit->values, gain};
     return gain;
@@ -162,7 +167,7 @@ Search::GridStart Search::searchGrid(std::size_t candidate, const Fit& base) con
   constexpr double kGolden = 0.381966;
   double left = low + kGolden * (high - low), right = high - kGolden * (high - low);
   double ofLeft = at(left), ofRight = at(right);
-  for (int k = 0; k < 6; ++k) {
+  for (int k = 0; k < 5; ++k) {
     if (ofLeft > ofRight) {
       high = right;
       right = left;

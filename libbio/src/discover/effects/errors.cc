@@ -156,7 +156,7 @@ void addWrapErrors(WidestModel& model) {
       if (shift > lower && shift < upper) starts.push_back({shift});
     };
     for (const double share : {0.06, -0.06, -0.36, -0.26, -0.15, 0.13, 0.19}) startAt(share);
-    for (double share = 0.25; share < 0.41; share += 0.0125) startAt(share);
+    for (double share = 0.25; share < 0.4; share += 0.0125) startAt(share);
     if (starts.empty()) starts.push_back({std::clamp(0.001, lower, upper)});
     model.add(candidate(model, "wrap_" + name, "radius of wrap object " + name,
                         fmt::format("The muscles that pass over {} have other moment arms.", name),
