@@ -199,12 +199,6 @@ void refuseTomlHazards(std::string_view text, const std::string& file) {
       throw FileError(
           fmt::format("{}:{}: a binary number, must have at most 62 digits", file, number));
     }
-    values +=
-        std::count_if(code->begin(), code->end(), [](char c) { return c == '=' || c == ','; });
-    if (values > mostValues) {
-      throw FileError(fmt::format("{}:{}: more than {} values, must be at most so many", file,
-                                  number, mostValues));
-    }
     int dots = 0;
     for (const char c : *code) {
       if (c == '[' || c == '{') ++brackets;
@@ -214,6 +208,12 @@ void refuseTomlHazards(std::string_view text, const std::string& file) {
         throw FileError(fmt::format("{}:{}: tables or lists in each other, must be at most {} deep",
                                     file, number, deepest));
       }
+    }
+    values +=
+        std::count_if(code->begin(), code->end(), [](char c) { return c == '=' || c == ','; });
+    if (values > mostValues) {
+      throw FileError(fmt::format("{}:{}: more than {} values, must be at most so many", file,
+                                  number, mostValues));
     }
     text.remove_prefix(std::min(end + 1, text.size()));
   }

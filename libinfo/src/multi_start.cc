@@ -15,6 +15,12 @@ namespace info {
 using Eigen::Index;
 using Eigen::VectorXd;
 
+namespace {
+
+constexpr double agreement = 1e-3;  // nats
+
+}  // namespace
+
 MultiStart estimateFromStarts(const LeastSquares& problem, const VectorXd& scale,
                               const MultiStartOptions& options) {
   if (options.starts < 1) {
@@ -69,14 +75,15 @@ MultiStart estimateFromStarts(const LeastSquares& problem, const VectorXd& scale
   for (std::size_t i = 1; i < n; ++i) {
     const StartOutcome &a = result.outcomes[i], &b = result.outcomes[best];
     if (!estimates[best] ||
-        (estimates[i] && (a.converged != b.converged ? a.converged : a.cost < b.cost))) {
+        (estimates[i] &&
+         (a.converged != b.converged ? a.converged : a.cost < b.cost - agreement))) {
       if (estimates[i]) best = i;
     }
   }
   if (!estimates[best]) throw std::domain_error(result.outcomes.front().why);
   result.best = std::move(*estimates[best]);
   for (const StartOutcome& outcome : result.outcomes) {
-    result.agreeing += std::abs(outcome.cost - result.best.cost) <= 1e-3;
+    result.agreeing += std::abs(outcome.cost - result.best.cost) <= agreement;
   }
   return result;
 }

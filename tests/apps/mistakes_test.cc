@@ -200,7 +200,7 @@ INSTANTIATE_TEST_SUITE_P(
          "no parameter is called 'TRI.radios'; nearest: TRI.radius"},
         {"OutsideItsBounds",
          {"sensitivity", model, "$/good.csv", "--parameter", "TRI.radius", "--values", "0.2"},
-         "TRI.radius = 0.2 m, must be 0.0048 to 0.032 m"},
+         "TRI.radius = 0.2 m, must be 0.0048 to 0.0205 m"},
         {"NoValues",
          {"sensitivity", model, "$/good.csv", "--parameter", "TRI.radius"},
          "--parameter and --values belong together"},

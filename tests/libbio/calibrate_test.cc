@@ -143,6 +143,7 @@ TEST(Calibrate, SaysThatAParameterRestsOnItsBound) {
   CalibrationOptions asked = options({"hand.mass", "TRI.radius"});
   asked.noise = 0.5 * degree;
   asked.bounds["hand.mass"] = {0.5, 0.68};
+  asked.bounds["TRI.radius"] = {0.012, 0.019};  // as far as the mass that is held lets it go
   const Calibration found = run({elbow().trial("curl_slow", 1.5, kTruth)}, asked);
   const CalibratedParameter &mass = found.parameters[0], &radius = found.parameters[1];
   EXPECT_EQ(mass.value, 0.68);

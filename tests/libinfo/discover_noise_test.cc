@@ -129,13 +129,13 @@ TEST(RecordedNoise, LeavesOutliersOut) {
   data.add(white);
   std::size_t put = 0;
   for (std::size_t trial = 0; trial < 3; ++trial)
-    for (Eigen::Index k = static_cast<Eigen::Index>(trial); k < 450; k += 23, ++put)
+    for (Eigen::Index k = static_cast<Eigen::Index>(trial) + 10; k < 440; k += 23, ++put)
       data.of(trial)[k] += k % 2 == 0 ? 0.17 : -0.17;
   const RecordedNoise noise = recordedNoise(data, {0, 1});
   EXPECT_EQ(noise.outliers, put);
   EXPECT_EQ(noise.spacing, 1);
   EXPECT_NEAR(noise.deviation.value, kSize, 0.15 * kSize);
-  for (const std::size_t k : noise.kept[1]) EXPECT_NE(k % 23, 1u);
+  for (const std::size_t k : noise.kept[1]) EXPECT_TRUE(k % 23 != 11 || k >= 440) << k;
 }
 
 // Every fifth sample is no outlier: they say how large the noise is.

@@ -43,9 +43,10 @@ OnReducedElbow verdictOnReducedElbow(const reduced::Plan& plan, bool leaveOut) {
   wording.gapEnd = "_deg";
   wording.inputs = "muscles";
   const std::string name = plan.suite + " " + std::to_string(plan.seed);
+  const auto fitted = info::discover::fittedNumbers(elbow, verdict);
   OnReducedElbow result;
   result.verdict = app::verdictJson(
-      {name, {}, elbow, wording, options, verdict, name, {}, taken.count(), taken.count()});
+      {name, {}, elbow, wording, options, verdict, name, {}, taken.count(), taken.count(), fitted});
   result.outcome = hidden::judge(name, set.label, result.verdict);
   return result;
 }

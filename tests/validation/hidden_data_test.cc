@@ -78,9 +78,11 @@ TEST(HiddenData, ARelaxedArmIsMovedByWhatIsRecorded) {
   EXPECT_GT(torque, 1);
   // without the turn, the same torque would do something else
   truth.extras.turn = 0;
-  EXPECT_GT(
-      std::abs(replayed(truth, trial.truth, trial.angle.front(), 1e-6)[200] - trial.angle[200]),
-      0.2);
+  const auto upright = replayed(truth, trial.truth, trial.angle.front(), 1e-6);
+  double furthest = 0;
+  for (std::size_t k = 0; k < upright.size(); ++k)
+    furthest = std::max(furthest, std::abs(upright[k] - trial.angle[k]));
+  EXPECT_GT(furthest, 0.2);
 }
 
 TEST(HiddenData, TheSensorIsLateScaledAndShifted) {

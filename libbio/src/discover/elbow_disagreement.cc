@@ -81,7 +81,7 @@ ElbowDisagreement::ElbowDisagreement(const Model& model, const ArmOptions& arm,
     OfTrial one{withProxies(std::move(trial), widest_), {}, {}, {}, {}, {}, {}, {}, 0, 0};
     for (const MeasuredMotion& motion : one.trial.measured) {
       if (motion.coordinate != coordinate) continue;
-      requireUsable(one.trial.file, motion);
+      if (options_.usableSeries) requireUsable(one.trial.file, motion);
       one.times.assign(motion.times.begin(), motion.times.end());
       one.measured = motion.values;
     }

@@ -71,6 +71,12 @@ VectorXd valuesWith(const ElbowDisagreement& data, const PresentEffect& effect) 
   return values;
 }
 
+/// Nothing has been measured yet.
+ElbowOptions withoutMeasurements(ElbowOptions options) {
+  options.usableSeries = false;
+  return options;
+}
+
 }  // namespace
 
 SeparatingDesign::SeparatingDesign(const Model& model, const ArmOptions& arm,
@@ -81,7 +87,7 @@ SeparatingDesign::SeparatingDesign(const Model& model, const ArmOptions& arm,
     : model_(model),
       arm_(arm),
       coordinate_(coordinate),
-      options_(options),
+      options_(withoutMeasurements(options)),
       question_(std::move(question)),
       inputs_(Arm(model, arm), trial, coordinate, trial.times[0], trial.duration(), limits,
               std::move(groups), knotInterval, measuredTimes(trial, question_.period)) {

@@ -28,7 +28,8 @@ struct StartOutcome {
 };
 
 struct MultiStart {
-  Estimate best;                       ///< converged before not converged, then least cost
+  Estimate best;                       ///< converged before not converged, then least cost; of those
+                                       ///< that agree the first
   std::vector<StartOutcome> outcomes;  ///< in the order of the starts
   /// Starts that ended at the best cost to within 1e-3 nats; the best one included.
   int agreeing = 0;

@@ -17,6 +17,7 @@ struct ElbowOptions {
   double latentFloor = 0.5;          ///< τ_0 of its scale [N·m] > 0
   double startDeviation = 0.035;     ///< prior of each trial's first angle [rad] > 0
   double speedDeviation = 0.1;       ///< prior of each trial's first speed [rad/s] > 0
+  bool usableSeries = true;          ///< refuse trials whose series requireUsable refuses
   std::vector<std::string> without;  ///< ids of effects that are left out of the catalogue
   std::vector<info::discover::FormulaTerm> formula;  ///< of a candidate "formula"; empty: none
 };
