@@ -248,10 +248,12 @@ class Calibrator {
       const double before = result_.noise.effective;
       result_.after = predictor_.outputs(estimate_.parameters);
       result_.noise = noiseOf(result_.after, std::max<Index>(0, p - numPriors()));
-      if (std::abs(result_.noise.effective - before) <= noiseSettled * before) break;
+      const bool isSettled = std::abs(result_.noise.effective - before) <= noiseSettled * before;
+      // also where it is settled: the cost that profiles compare with is that of this noise
       estimate_ = info::estimate(problem(result_.noise.effective), estimate_.parameters, estimate);
       result_.iterations += estimate_.iterations;
       result_.evaluations += estimate_.evaluations;
+      if (isSettled) break;
     }
     result_.why = estimate_.why;
     result_.converged = estimate_.converged;
