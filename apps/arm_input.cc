@@ -9,6 +9,8 @@
 #include "arm_options.h"
 #include "bio/osim_file.h"
 #include "bio/replay.h"
+#include "bio/trial_review.h"
+#include "sha256.h"
 #include "text.h"
 
 namespace app {
@@ -42,7 +44,13 @@ bio::Model readModel(const std::string& file, Summary& summary) {
 
 bio::Arm movableArm(const bio::Model& model, const std::string& file,
                     const SimulationOptions& options, Summary& summary) {
-  bio::Arm arm(model, armOptions(options));
+  bio::Arm arm = [&] {
+    try {
+      return bio::Arm(model, armOptions(options));
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("{}: {}", file, error.what()));
+    }
+  }();
   for (const std::string& warning : arm.warnings()) summary.warn(warning);
   if (arm.numMuscles() == 0) {
     throw std::invalid_argument(
@@ -55,10 +63,19 @@ bio::Trial readTrialFile(const std::string& file, const bio::Model& model,
                          const SimulationOptions& options, bool knownChanges) {
   bio::Trial trial = bio::readTrial(
       file, model, {.ignoreExtra = options.ignoreExtra, .knownChanges = knownChanges});
+  trial.sha256 = sha256OfFile(file);
   const double duration = trial.duration();
   if (options.step && *options.step > duration) {
     throw std::invalid_argument(fmt::format("{}: lasts {} s, --step {} s must not be longer", file,
                                             numberText(duration), numberText(*options.step)));
+  }
+  for (const bio::Remark& remark : bio::reviewTrial(trial, model)) {
+    const std::string line = fmt::format("{}: {}: {}", file, remark.subject, remark.message);
+    if (remark.weight == bio::Weight::error) throw std::invalid_argument(line);
+    if (remark.weight == bio::Weight::warning) trial.warnings.push_back(line);
+  }
+  for (std::string& line : bio::heldRemarks(trial, model, armOptions(options).skeleton)) {
+    trial.warnings.push_back(std::move(line));
   }
   return trial;
 }
@@ -79,9 +96,11 @@ TrialInput readTrialInput(const std::string& file, const bio::Model& model, cons
   input.externalForce = bio::externalForceOf(input.trial, arm);
   input.startTime = input.trial.times[0];
   input.duration = input.trial.duration();
-  input.start =
-      bio::initialState(arm, bio::startCoordinates(input.trial, arm, byName(options.initial)),
-                        input.excitation, input.startTime);
+  const bio::TrialBeginning beginning =
+      bio::beginningOf(input.trial, model, arm, byName(options.initial));
+  input.from = beginning.from;
+  input.start = bio::initialState(arm, beginning.point.q, input.excitation, input.startTime);
+  input.start.qDot = beginning.point.qDot;
   return input;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bio/coupled.h"
+#include "bio/replay.h"
 #include "bio/trial.h"
 #include "simulation_options.h"
 #include "summary.h"
@@ -27,9 +28,11 @@ bio::Model readModel(const std::string& file, Summary& summary);
 bio::Arm movableArm(const bio::Model& model, const std::string& file,
                     const SimulationOptions& options, Summary& summary);
 
-/// A trial's file by the simulation options. The summary is not told.
+/// A trial's file by the simulation options. What reviewTrial warns of and heldRemarks are among
+/// its warnings; the summary is not told.
 /// @param knownChanges  the command takes into account what was changed on purpose
-/// @throws what readTrial throws; std::invalid_argument if --step is longer than the trial
+/// @throws what readTrial and heldRemarks throw; std::invalid_argument if --step is longer than the
+///   trial, or for an error of reviewTrial
 bio::Trial readTrialFile(const std::string& file, const bio::Model& model,
                          const SimulationOptions& options, bool knownChanges = false);
 
@@ -43,9 +46,11 @@ struct TrialInput {
   bio::ExternalForce externalForce;  ///< empty: none
   double startTime = 0;              ///< [s]
   double duration = 0;               ///< [s]
-  bio::ArmState start;  ///< at rest: --initial, else the first measured value, else the default
+  bio::TrialBeginning::From from;    ///< who says where it starts
+  bio::ArmState
+      start;  ///< as bio::beginningOf has it: --initial, else the model, else what was measured
 };
-/// @throws what readTrialFile, excitationOf, externalForceOf, startCoordinates and initialState
+/// @throws what readTrialFile, excitationOf, externalForceOf, beginningOf and initialState
 /// throw
 TrialInput readTrialInput(const std::string& file, const bio::Model& model, const bio::Arm& arm,
                           const SimulationOptions& options, Summary& summary);

@@ -9,8 +9,10 @@
 #include "arm_input.h"
 #include "arm_options.h"
 #include "bio/osim_file.h"
+#include "bio/replay.h"
+#include "bio/trial_review.h"
 #include "calibrate_report.h"
-#include "driven_trial.h"
+#include "fitted_table.h"
 #include "info/version.h"
 #include "input_rules.h"
 #include "named_covariance.h"
@@ -19,6 +21,7 @@
 #include "parameter_list.h"
 #include "progress_bar.h"
 #include "result.h"
+#include "sha256.h"
 
 namespace app {
 namespace {
@@ -94,10 +97,9 @@ class Calibrate : public Command {
   ExitStatus run(const CommandContext& context) override {
     if (list_) return listAll(context);
     const bio::CalibrationOptions typed = calibrationOptions(context);
-    std::vector<std::string> names = {"calibrated.osim", "covariance.csv"};
-    for (std::size_t i = 0; i < trials_.size() + heldOut_.size(); ++i) {
-      names.push_back(drivenName(i));
-    }
+    std::vector<std::string> names = {"calibrated.osim", "covariance.csv", "parameters.csv"};
+    for (std::size_t i = 0; i < trials_.size(); ++i) names.push_back(drivenName(i, false));
+    for (std::size_t i = 0; i < heldOut_.size(); ++i) names.push_back(drivenName(i, true));
     OutputFolder folder(context, names);
     Summary summary(context);
     summary.addInput(model_);
@@ -134,12 +136,21 @@ class Calibrate : public Command {
     summary.setSimulation(
         simulation_.integrator, simulation_.stepOrDefault(), longestDuration(training.trials()),
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-    const CalibrateFindings findings{model_, training, heldOut ? &*heldOut : nullptr, options,
-                                     calibration};
-    tellCalibrate(findings, summary);
+    std::optional<bio::CalibratedModel> calibrated;
     if (calibration.calibrated) {
-      writeModel(findings, summary, folder);
-      writeDriven(findings, folder);
+      calibrated =
+          bio::calibratedModel(training, heldOut ? &*heldOut : nullptr, armOptions(simulation_),
+                               options.trials.simulation, calibration);
+    }
+    const CalibrateFindings findings{model_,  training,    heldOut ? &*heldOut : nullptr,
+                                     options, calibration, calibrated ? &*calibrated : nullptr};
+    tellCalibrate(findings, summary);
+    warnOfSteps(model, training, typed.trials, calibration, summary);
+    if (calibrated) {
+      writeDriven(*calibrated, summary, folder);
+      writeModel(findings, calibrated->model, summary, folder);
+      folder.write("parameters.csv",
+                   [&](std::ostream& out) { writeFitted(fittedNumbers(calibration), out); });
       const NamedCovariance covariance = covarianceOf(calibration);
       if (!covariance.names.empty()) {
         folder.write("covariance.csv",
@@ -214,12 +225,39 @@ class Calibrate : public Command {
     for (const std::string& file : files) {
       trials.push_back(readTrialFile(file, model, simulation_));
       for (const std::string& warning : trials.back().warnings) summary.warn(warning);
+      for (const bio::MeasuredMotion& motion : trials.back().measured) {
+        const std::string why = bio::whyNotUsable(motion);
+        if (!why.empty()) summary.warn(fmt::format("{}: measured {} to be believed", file, why));
+      }
     }
     return trials;
   }
 
-  void writeModel(const CalibrateFindings& f, const Summary& summary, OutputFolder& folder) const {
-    bio::Model model = f.calibration.calibrated->model;
+  /// Steps that are too long look like an error of the model: the trials whose motion changes when
+  /// they are halved are named.
+  void warnOfSteps(const bio::Model& model, const bio::TrialSet& training,
+                   bio::TrialSetOptions halved, const bio::Calibration& c, Summary& summary) const {
+    if (!c.calibrated) return;
+    halved.simulation.step /= 2;
+    const bio::TrialSet finer(model, armOptions(simulation_), training.trials(), halved);
+    Eigen::VectorXd theta(static_cast<Eigen::Index>(c.parameters.size()));
+    for (std::size_t i = 0; i < c.parameters.size(); ++i) {
+      theta[static_cast<Eigen::Index>(i)] = c.parameters[i].value;
+    }
+    const auto changes = finer.largestDifferences(finer.predictor().outputs(theta), c.after);
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+      if (!(changes[i] > 0.2 * c.noise.deviation)) continue;
+      summary.warn(
+          fmt::format("{}: halving the step of {} s changes the simulated angles by up to "
+                      "{:.2g} deg, {:.2g} standard deviations of the noise: take shorter "
+                      "steps",
+                      training.trials()[i].file, numberText(2 * halved.simulation.step),
+                      changes[i] * radian, changes[i] / c.noise.deviation));
+    }
+  }
+
+  void writeModel(const CalibrateFindings& f, bio::Model model, const Summary& summary,
+                  OutputFolder& folder) const {
     std::string text =
         fmt::format("Calibrated by FisherHill {} ({})", info::version(), summary.commandLine());
     for (std::size_t i = 0; i < summary.inputs().size(); ++i) {
@@ -255,21 +293,39 @@ class Calibrate : public Command {
     return covariance;
   }
 
-  void writeDriven(const CalibrateFindings& f, OutputFolder& folder) const {
-    const bio::EmgMapping& mapping = f.calibration.calibrated->mapping;
-    const bool calibrated = std::any_of(
-        f.calibration.parameters.begin(), f.calibration.parameters.end(),
-        [](const bio::CalibratedParameter& one) { return one.asked.name.starts_with("emg."); });
-    if (!calibrated) return;
-    std::size_t number = 0;
-    for (const bio::TrialSet* set : {&f.training, f.heldOut}) {
-      if (!set) continue;
-      for (const bio::Trial& trial : set->trials()) {
-        folder.writeFile(drivenName(number++), [&](const std::filesystem::path& path) {
-          bio::writeTable(drivenTable(trial, set->arm(), mapping), path);
+  /// "driven_1.sto", or "driven_held_out_1.sto", of the i-th trial, from 0.
+  static std::string drivenName(std::size_t i, bool heldOut) {
+    return fmt::format("driven_{}{}.sto", heldOut ? "held_out_" : "", i + 1);
+  }
+
+  /// The trials that stand for those recorded, whose starts the model then has, too.
+  void writeDriven(bio::CalibratedModel& calibrated, Summary& summary, OutputFolder& folder) const {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const bio::CalibratedTrial& one : calibrated.trials) {
+      std::string file = (one.isHeldOut ? heldOut_ : trials_)[one.index];
+      nlohmann::ordered_json json{{"file", file}, {"role", one.isHeldOut ? "held_out" : "train"}};
+      if (one.driven) {
+        const std::string name = drivenName(one.index, one.isHeldOut);
+        folder.writeFile(name, [&](const std::filesystem::path& path) {
+          bio::writeTable(*one.driven, path);
+          for (bio::TrialStart start : one.starts) {
+            start.file = name;
+            start.sha256 = sha256OfFile(path);
+            calibrated.model.fitted.starts.push_back(std::move(start));
+          }
         });
+        file = folder.active() ? folder.path(name).string() : name;
       }
+      json["replay_file"] = file;
+      json["rmse_after_deg"] = one.after * radian;
+      json["start"] = nlohmann::ordered_json::array();
+      for (const bio::TrialStart& start : one.starts) {
+        json["start"].push_back(
+            {{"coordinate", start.coordinate}, {"value", start.value}, {"speed", start.speed}});
+      }
+      list.push_back(std::move(json));
     }
+    summary.set("trials", list);
   }
 
   std::string model_;

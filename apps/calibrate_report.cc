@@ -18,6 +18,11 @@ double rmse(const bio::TrialSet& set, const Eigen::MatrixXd& predicted) {
   return std::sqrt(set.meanSquare(predicted)) * radian;
 }
 
+/// What replays of the calibrated model give [deg].
+double rmseAfter(const CalibrateFindings& f, bool heldOut) {
+  return f.calibrated->rms(heldOut) * radian;
+}
+
 std::vector<double> degrees(const Eigen::VectorXd& values) {
   const Eigen::VectorXd result = values * radian;
   return {result.begin(), result.end()};
@@ -221,6 +226,15 @@ Table startTable(const CalibrateFindings& f) {
   return table;
 }
 
+/// What remains is more than noise; empty where it is not.
+std::string aboveNoise(const CalibrateFindings& f) {
+  if (!f.calibration.leavesMoreThanNoise()) return "";
+  return fmt::format(
+      " Neighbouring samples scatter by {:.3g} deg only: the model with these parameters does not "
+      "explain the rest, another parameter, or an effect that the model lacks, may.",
+      f.calibration.noiseFloor * radian);
+}
+
 std::string noiseText(const CalibrateFindings& f) {
   const bio::ResidualNoise& noise = f.calibration.noise;
   if (f.options.noise) {
@@ -233,7 +247,8 @@ std::string noiseText(const CalibrateFindings& f) {
   }
   if (noise.correlationTime <= 1) {
     return fmt::format("The residuals are white, {:.3g} deg; that was taken for the noise.",
-                       noise.deviation * radian);
+                       noise.deviation * radian) +
+           aboveNoise(f);
   }
   return fmt::format(
       "The residuals are {:.3g} deg and correlated: {:.3g} samples ({:.2g} s) count as one "
@@ -241,7 +256,8 @@ std::string noiseText(const CalibrateFindings& f) {
       "them. Part of it is what the model does not say; no interval tells how wrong that makes "
       "an estimate.",
       noise.deviation * radian, noise.correlationTime, noise.correlationTime * interval(f.training),
-      std::sqrt(noise.correlationTime));
+      std::sqrt(noise.correlationTime)) +
+         aboveNoise(f);
 }
 
 std::string verdictOf(const CalibrateFindings& f) {
@@ -254,10 +270,10 @@ std::string verdictOf(const CalibrateFindings& f) {
   }
   std::string text =
       fmt::format("The model is {:.3g} deg (RMS) from the measured angles, {:.3g} deg before",
-                  rmse(f.training, c.after), rmse(f.training, c.before));
+                  rmseAfter(f, false), rmse(f.training, c.before));
   if (f.heldOut) {
-    text += fmt::format("; on trials held out {:.3g} deg, {:.3g} deg before",
-                        rmse(*f.heldOut, c.heldOutAfter), rmse(*f.heldOut, c.heldOutBefore));
+    text += fmt::format("; on trials held out {:.3g} deg, {:.3g} deg before", rmseAfter(f, true),
+                        rmse(*f.heldOut, c.heldOutBefore));
   }
   text += fmt::format("; {} of {} parameter{} can be known from these trials", known, all,
                       all == 1 ? "" : "s");
@@ -306,6 +322,18 @@ std::string estimateWords(const bio::CalibratedParameter& one) {
                      withUnit(one.deviation, one.asked.unit, 3), was);
 }
 
+std::vector<info::discover::FittedNumber> fittedNumbers(const bio::Calibration& calibration) {
+  std::vector<info::discover::FittedNumber> numbers;
+  for (std::size_t i = 0; i < calibration.parameters.size(); ++i) {
+    const bio::CalibratedParameter& one = calibration.parameters[i];
+    const auto& prior = one.asked.prior;
+    numbers.push_back({i, one.asked.name, one.asked.unit, one.model, one.value, one.deviation,
+                       prior ? prior->deviation : std::nan(""),
+                       prior ? (one.value - prior->mean) / prior->deviation : std::nan("")});
+  }
+  return numbers;
+}
+
 void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
   const bio::Calibration& c = f.calibration;
   if (!c.failure.empty()) {
@@ -315,10 +343,9 @@ void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
   }
   summary.set("status", c.converged ? "ok" : "not converged");
   if (!c.converged) summary.set("why", info::describe(c.why));
-  summary.set("rmse_train_deg", rmse(f.training, c.after));
+  summary.set("rmse_train_deg", rmseAfter(f, false));
   summary.set("rmse_train_before_deg", rmse(f.training, c.before));
-  summary.set("rmse_held_out_deg",
-              f.heldOut ? number(rmse(*f.heldOut, c.heldOutAfter)) : Json(nullptr));
+  summary.set("rmse_held_out_deg", number(rmseAfter(f, true)));
   summary.set("rmse_held_out_before_deg",
               f.heldOut ? number(rmse(*f.heldOut, c.heldOutBefore)) : Json(nullptr));
   Json estimates = Json::object();
@@ -329,6 +356,8 @@ void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
   summary.set("estimates", estimates);
   summary.set("noise_deg", c.noise.deviation * radian);
   summary.set("noise_is", f.options.noise ? "given" : "from the residuals");
+  summary.set("sample_scatter_deg", c.noiseFloor * radian);
+  summary.set("residual_above_noise", c.leavesMoreThanNoise());
   const double noises =
       f.options.noise ? rmse(f.training, c.after) / (radian * *f.options.noise) : 0;
   if (noises > 3) {

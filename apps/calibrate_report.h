@@ -3,7 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "bio/calibrate.h"
+#include "bio/calibrated_model.h"
+#include "info/discover/fitted_numbers.h"
 #include "report.h"
 
 namespace app {
@@ -15,6 +16,7 @@ struct CalibrateFindings {
   const bio::TrialSet* heldOut;  ///< null: none
   const bio::CalibrationOptions& options;
   const bio::Calibration& calibration;
+  const bio::CalibratedModel* calibrated;  ///< null: there is no estimate
 };
 
 /// The figures that summary.json is to hold: estimates, rmse_train_deg, rmse_held_out_deg, …
@@ -23,6 +25,9 @@ void tellCalibrate(const CalibrateFindings& findings, Summary& summary);
 /// Motions before and after, estimates with intervals and priors, correlations, residuals and their
 /// autocorrelation.
 Report calibrateReport(const CalibrateFindings& findings);
+
+/// Rows of parameters.csv.
+std::vector<info::discover::FittedNumber> fittedNumbers(const bio::Calibration& calibration);
 
 /// "TRI.radius = 0.0158 ± 0.0002 m (was 0.016)", or why there is no interval: one parameter in
 /// words.

@@ -1,6 +1,7 @@
 #include "check.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,6 +33,12 @@ struct Findings {
   void add(const std::string& file, const std::string& level, const std::string& message) {
     const bool named = message.starts_with(file + ":");
     list.push_back({file, level, oneLine(named ? message : file + ": " + message)});
+  }
+  void add(const std::string& file, const bio::Remark& remark) {
+    const char* level = remark.weight == bio::Weight::error     ? "error"
+                        : remark.weight == bio::Weight::warning ? "warning"
+                                                                : "unusual";
+    add(file, level, fmt::format("{}: {}", remark.subject, remark.message));
   }
   auto count(std::string_view level) const {
     return std::count_if(list.begin(), list.end(), [&](const auto& f) { return f.level == level; });
@@ -81,9 +88,7 @@ using Contents = std::vector<ReportPart>;
 Contents checkModel(const std::string& file, const bio::Model& model, Findings& findings) {
   for (const std::string& warning : model.warnings) findings.add(file, "warning", warning);
   for (const std::string& remark : model.remarks) findings.add(file, "unusual", remark);
-  for (const bio::Remark& remark : bio::reviewModel(model)) {
-    findings.add(file, "unusual", fmt::format("{}: {}", remark.subject, remark.message));
-  }
+  for (const bio::Remark& remark : bio::reviewModel(model)) findings.add(file, remark);
   for (const bio::LengthJump& jump : bio::lengthJumps(model)) {
     findings.add(file, "unusual", fmt::format("muscle '{}': {}", jump.muscle, describe(jump)));
   }
@@ -103,9 +108,7 @@ Contents checkTrial(const std::string& file, const std::vector<bio::Model>& mode
   for (const bio::Model& model : models) {
     const bio::Trial trial = bio::readTrial(file, model, {.knownChanges = true});
     for (const std::string& warning : trial.warnings) findings.add(file, "warning", warning);
-    for (const bio::Remark& remark : bio::reviewTrial(trial, model)) {
-      findings.add(file, "unusual", fmt::format("{}: {}", remark.subject, remark.message));
-    }
+    for (const bio::Remark& remark : bio::reviewTrial(trial, model)) findings.add(file, remark);
   }
   const Eigen::VectorXd times = bio::timesOf(table);
   Table columns{"Columns", {"column", "smallest", "largest", "not measured"}, {}};
@@ -158,11 +161,15 @@ class Check : public Command {
 
     // Models first: a trial is checked against all of them.
     std::vector<bio::Model> models;
+    std::vector<std::string> modelFiles;
     const auto checkAll = [&](bool areModels) {
       for (const std::string& file : files_) {
         if (isModel(file) != areModels) continue;
         try {
-          if (areModels) models.push_back(bio::readOsim(file));
+          if (areModels) {
+            models.push_back(bio::readOsim(file));
+            modelFiles.push_back(file);
+          }
           const Contents contents = areModels ? checkModel(file, models.back(), findings)
                                               : checkTrial(file, models, findings);
           report.details.insert(report.details.end(), contents.begin(), contents.end());
@@ -173,21 +180,32 @@ class Check : public Command {
     };
     checkAll(true);
     checkAll(false);
-    tell(context, findings, summary, report);
+    std::vector<std::string> limited;
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      const std::string why = bio::whyNotSimulated(models[i]);
+      if (!why.empty()) limited.push_back(fmt::format("{} ({})", modelFiles[i], why));
+    }
+    summary.set("not_simulated", limited);
+    tell(context, findings, limited, summary, report);
     deliver(context, summary, report, folder);
     return findings.count("error") == 0 ? ExitStatus::done : ExitStatus::answerIsNo;
   }
 
  private:
-  void tell(const CommandContext& context, const Findings& findings, Summary& summary,
-            Report& report) const {
+  void tell(const CommandContext& context, const Findings& findings,
+            const std::vector<std::string>& limited, Summary& summary, Report& report) const {
     report.title = fmt::format("Check of {}", fmt::join(files_, ", "));
     const auto errors = findings.count("error");
-    report.verdict = errors > 0
-                         ? fmt::format("{} cannot be used as it stands.",
-                                       errors == 1 ? "One file" : fmt::format("{} files", errors))
-                     : findings.list.empty() ? "Nothing is wrong and nothing is unusual."
-                                             : "Every file can be used; what is unusual is listed.";
+    report.verdict =
+        errors > 0         ? fmt::format("{} cannot be used as it stands.",
+                                 errors == 1 ? "One file" : fmt::format("{} files", errors))
+                : !limited.empty() ? fmt::format(
+                                         "Every file can be read, but for simulations these models "
+                                                 "are of no use: {}; paths and pictures of them can be made "
+                                                 "(moment-arms, render).",
+                                         fmt::join(limited, ", "))
+        : findings.list.empty() ? "Nothing is wrong and nothing is unusual."
+                                : "Every file can be used; what is unusual is listed.";
     summary.set("errors", errors);
     summary.set("warnings_found", findings.count("warning"));
     summary.set("unusual", findings.count("unusual"));

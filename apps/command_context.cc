@@ -17,7 +17,7 @@ void addCommonOptions(CLI::App& subcommand, CommandContext& context) {
   subcommand.add_flag("--json", context.json, "print the summary alone, as JSON")->group(group);
   subcommand.add_option("--seed", context.seed, "start of every random sequence, ≥ 0")
       ->type_name("N")
-      ->check(notNegative())
+      ->check(wholeNumber())
       ->capture_default_str()
       ->group(group);
   subcommand.add_option("--threads", context.threads, "threads to use; default: one per core")

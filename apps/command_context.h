@@ -20,12 +20,13 @@ enum class ExitStatus {
 /// What every subcommand is given: how it was called and the options that all of them have.
 struct CommandContext {
   std::string subcommand;
-  std::vector<std::string> commandLine;      ///< as typed, program name first
-  std::optional<std::filesystem::path> out;  ///< folder for results; without it nothing is written
-  bool force = false;                        ///< overwrite an existing result
-  bool json = false;                         ///< the summary alone on standard output
-  std::uint64_t seed = 1;                    ///< same seed, same bits
-  int threads = 1;                           ///< ≥ 1
+  std::vector<std::string> commandLine;       ///< as typed, program name first
+  std::vector<std::filesystem::path> inputs;  ///< files that an option names: never written to
+  std::optional<std::filesystem::path> out;   ///< folder for results; without it nothing is written
+  bool force = false;                         ///< overwrite an existing result
+  bool json = false;                          ///< the summary alone on standard output
+  std::uint64_t seed = 1;                     ///< same seed, same bits
+  int threads = 1;                            ///< ≥ 1
   bool quiet = false;  ///< a part of another command: it says nothing but errors
 };
 

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <stdexcept>
+
 #include "info/version.h"
 
 namespace app {
@@ -24,13 +27,41 @@ CommandLine::CommandLine(std::vector<std::unique_ptr<Command>> commands)
   }
 }
 
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Every file that an option but --out names.
+std::vector<fs::path> inputsNamed(const CLI::App& subcommand) {
+  std::vector<fs::path> inputs;
+  for (const CLI::Option* option : subcommand.get_options()) {
+    if (option->check_lname("out")) continue;
+    for (const std::string& word : option->results()) {
+      std::error_code failed;
+      const fs::file_status status = fs::status(word, failed);
+      if (failed || !fs::exists(status) || fs::is_directory(status)) continue;
+      if (!fs::is_regular_file(status)) {
+        throw std::invalid_argument(
+            fmt::format("{}: is a {}, must be a file: it is read more than once", word,
+                        fs::is_fifo(status) || fs::is_socket(status) ? "pipe" : "device"));
+      }
+      inputs.emplace_back(word);
+    }
+  }
+  return inputs;
+}
+
+}  // namespace
+
 CommandLine::Chosen CommandLine::parse(const std::vector<std::string>& arguments) {
   for (CommandContext& context : contexts_) context.commandLine = arguments;
   std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
   if (!reversed.empty()) reversed.pop_back();
   program_.parse(reversed);
   for (std::size_t i = 0; i < commands_.size(); ++i) {
-    if (subcommands_[i]->parsed()) return {commands_[i].get(), &contexts_[i]};
+    if (!subcommands_[i]->parsed()) continue;
+    contexts_[i].inputs = inputsNamed(*subcommands_[i]);
+    return {commands_[i].get(), &contexts_[i]};
   }
   throw CLI::RequiredError("a subcommand");
 }

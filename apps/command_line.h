@@ -23,11 +23,11 @@ class CommandLine {
   /// What was parsed.
   struct Chosen {
     Command* command;
-    const CommandContext* context;
+    const CommandContext* context;  ///< `inputs` among it: what options name and is a file
   };
   /// Reads the words after the program's name; --help and --version are thrown as CLI::Success.
   /// @param arguments as given to main, program name first
-  /// @throws CLI::ParseError
+  /// @throws CLI::ParseError, std::invalid_argument for an input that is a pipe or a device
   Chosen parse(const std::vector<std::string>& arguments);
 
  private:

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "arm_input.h"
+#include "bio/replay.h"
 #include "bio/simulation_names.h"
 #include "compare_report.h"
 #include "figure_pictures.h"
@@ -71,6 +72,9 @@ class Compare : public Command {
       options.progress = [&](double done) { bar.update(done); };
       comparison = bio::compareIntegrators(arm, input.excitation, input.start, options);
     }
+    if (const auto left = bio::leftRange(arm, comparison.reference.motion)) {
+      summary.warn(left->what);
+    }
     if (comparison.reference.completed()) {
       for (AlsoCurve& one : also) {
         one.rms = bio::rmsDifference(arm, one.curve, comparison.reference.motion, rotation->name);
@@ -88,6 +92,7 @@ class Compare : public Command {
       summary.setSimulation(simulation_.integrator, simulation_.stepOrDefault(), options.duration,
                             comparison.reference.motion.wallSeconds);
     }
+    summary.set("start_from", bio::name(input.from));
     tellCompare(findings, summary);
     const Report report = compareReport(findings);
     if (png_ && folder.active()) {

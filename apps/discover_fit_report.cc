@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "gap_words.h"
 #include "info/discover/hypothesis.h"
 #include "text.h"
 
@@ -82,7 +83,7 @@ Table gapTable(const DiscoverFindings& f) {
   Table table{"Root mean square of measured − simulated",
               {"trials", "model as it came [" + unit + "]", "calibrated [" + unit + "]",
                "with the effect [" + unit + "]", "to be expected [" + unit + "]",
-               "noise [" + unit + "]", "of the range [%]", "gap closed [%]"},
+               "noise [" + unit + "]", "of the range [%]", "excess error explained"},
               {}};
   const auto row = [&](const char* name, const Gap& gap) {
     table.rows.push_back({name, numberText(scale * gap.nominal, 3),
@@ -90,8 +91,7 @@ Table gapTable(const DiscoverFindings& f) {
                           gap.expected ? numberText(scale * *gap.expected, 3) : "–",
                           numberText(scale * gap.floor, 3),
                           numberText(100 * gap.after / gap.range, 2),
-                          gap.closedFromCalibrated ? numberText(100 * *gap.closedFromCalibrated, 4)
-                                                   : "there was none"});
+                          gap.closedFromCalibrated ? gapCell(gap) : "there was none"});
   };
   row("fitted", f.verdict.gap);
   if (f.verdict.heldOut) row("held out", *f.verdict.heldOut);

@@ -8,9 +8,11 @@
 #include "discover_fit_report.h"
 #include "discover_unknown_report.h"
 #include "discover_where_report.h"
+#include "gap_words.h"
 #include "info/discover/separation.h"
 #include "interval_drawing.h"
 #include "text.h"
+#include "written_discovery.h"
 
 namespace app {
 namespace {
@@ -36,14 +38,14 @@ class Writer {
     const bool gapOfHeldOut = f_.verdict.heldOut.has_value();
     const Gap& gap = gapOfHeldOut ? *f_.verdict.heldOut : f_.verdict.gap;
     if (gap.closedFromCalibrated && !f_.verdict.effects.empty()) {
-      report_.verdict += fmt::format(" {} % of the gap is closed{}.",
-                                     numberText(100 * *gap.closedFromCalibrated, 3),
-                                     gapOfHeldOut ? " on trials that were held out" : "");
+      report_.verdict += " " + gapWords(gap, f_.wording.unit,
+                                        symbolOf(f_.wording.outputs.front().unit), gapOfHeldOut);
     }
+    const int first = f_.options.heldOut.empty() ? 0 : f_.options.heldOut.front();
     for (int t = 0; t < f_.data.numTrials(); ++t) {
       for (std::size_t output = 0; output < f_.wording.outputs.size(); ++output) {
         Figure figure = motionFigure(f_, t, output);
-        if (t == 0 && output == 0) {
+        if (t == first && output == 0) {
           report_.mainFigure = std::move(figure);
         } else {
           others_.push_back(std::move(figure));
@@ -65,6 +67,7 @@ class Writer {
     section("Next experiment");
     say(f_.nextExperiment);
     if (!f_.foreseen.empty()) report_.details.emplace_back(foreseenTable());
+    reproduce();
     if (!others_.empty()) {
       section("The other trials");
       for (Figure& figure : others_) report_.details.emplace_back(std::move(figure));
@@ -99,8 +102,10 @@ class Writer {
       }
     }
     report_.details.emplace_back(std::move(table));
-    for (const auto& effect : verdict.effects) {
+    for (std::size_t i = 0; i < verdict.effects.size(); ++i) {
+      const auto& effect = verdict.effects[i];
       say(candidate(effect.candidate).sentence);
+      if (const std::string size = sizeOf(i); !size.empty()) say(size);
       if (effect.equals.size() < 2) continue;
       std::string list;
       for (const std::size_t c : effect.equals) {
@@ -114,6 +119,63 @@ class Writer {
               ? "The trials that were held out are further off than these parameters and their "
                 "deviations explain, so that no probability is given."
               : "What is left over has the wrong size, so that no probability is given.");
+    }
+  }
+
+  /// What an effect does to the motion shown; "" where that is not known.
+  std::string sizeOf(std::size_t effect) const {
+    if (!f_.written || effect >= f_.written->sizes.size()) return "";
+    const bio::discover::EffectSize& size = f_.written->sizes[effect];
+    const std::string motion = f_.data.trialName(f_.written->shown);
+    const std::string& unit = f_.wording.outputs.front().unit;
+    const std::string moved = withUnit(f_.wording.unit * size.motionRms, unit, 2);
+    if (std::isnan(size.motionRms)) return "";
+    if (std::isnan(size.momentRms)) {
+      return candidate(f_.verdict.effects[effect].candidate).kind ==
+                     info::discover::EffectKind::sensor
+                 ? fmt::format("Along {} it shifts what the sensor shows by {} (root mean square).",
+                               motion, moved)
+                 : "";
+    }
+    return fmt::format(
+        "Along {} its {} is {} (root mean square), at most {}: {} % of the muscles' net one. "
+        "Without it the simulated motion is another by {} (root mean square).",
+        motion, f_.wording.forceUnit == "N·m" && unit == "deg" ? "moment" : "force",
+        withUnit(size.momentRms, f_.wording.forceUnit, 2),
+        withUnit(size.momentPeak, f_.wording.forceUnit, 2), numberText(100 * size.share, 2), moved);
+  }
+
+  /// Each trial's figures, and the commands that make them.
+  void reproduce() {
+    if (!f_.written || f_.written->trials.empty()) return;
+    section("Reproduce");
+    const std::string& unit = f_.wording.outputs.front().unit;
+    const auto figure = [&](double value) { return numberText(f_.wording.unit * value); };
+    Table errors{"Root mean square of measured − simulated, as replay gives it",
+                 {"trial", "role", "model as it came [" + unit + "]",
+                  "with all that was fitted [" + unit + "]", "noise [" + unit + "]", "replayed"},
+                 {}};
+    for (const bio::discover::RepairedTrial& one : f_.written->trials) {
+      const auto i = static_cast<std::size_t>(one.index);
+      errors.rows.push_back({f_.trialFiles[i], one.isHeldOut ? "held out" : "fitted",
+                             figure(one.nominal), figure(one.after), figure(one.floor),
+                             f_.written->model.empty() ? "–" : f_.written->replayFiles[i]});
+    }
+    report_.details.emplace_back(std::move(errors));
+    Table commands{"", {"figure", "command"}, {}};
+    for (const auto& [what, command] : f_.written->commands)
+      commands.rows.push_back({what, command});
+    report_.details.emplace_back(std::move(commands));
+    if (f_.written->model.empty()) return;
+    say(
+        fmt::format("{} holds every number of parameters.csv, where each of these trials starts, "
+                    "and the time step. The gap's other figures are of fits that this command "
+                    "alone makes.",
+                    f_.written->model));
+    if (f_.written->trials.front().driven) {
+      say("EMG, a muscle's excitation or the sensor is not as recorded: the driven trials hold "
+          "what "
+          "drove the muscles and the corrected recording, so that their degrees are the joint's.");
     }
   }
 

@@ -9,6 +9,7 @@
 #include "angle_unit.h"
 #include "discover_report.h"
 #include "discover_search.h"
+#include "fitted_table.h"
 #include "follow_up.h"
 #include "info/systems/robot_disagreement.h"
 #include "info/version.h"
@@ -132,7 +133,7 @@ class RobotSearch {
   ExitStatus run() {
     std::vector<std::string> files = request_.trials;
     files.insert(files.end(), request_.heldOut.begin(), request_.heldOut.end());
-    const std::vector<std::string> names = {"verdict.json", "with_effect.json"};
+    const std::vector<std::string> names = {"verdict.json", "parameters.csv", "with_effect.json"};
     OutputFolder folder(context_, names);
     Summary summary(context_);
     std::vector<info::robot::Trial> trials;
@@ -170,9 +171,11 @@ class RobotSearch {
     const std::string next = followUp(*data_, verdict, followUpsOfRobots());
     const std::vector<bio::discover::ForeseenExperiment> foreseen;  // of arms only
     const std::string name = "the " + request_.system;
+    const auto fitted = info::discover::fittedNumbers(*data_, verdict);
     const DiscoverFindings findings{
-        name,    files, *data_,   wording,           found.options,
-        verdict, next,  foreseen, found.wallSeconds, found.processorSeconds};
+        name,    files,   *data_,    wording,           found.options,
+        verdict, next,    foreseen,  found.wallSeconds, found.processorSeconds,
+        fitted,  nullptr, found.step};
     summary.set("system", request_.system);
     double longest = 0;
     for (const info::robot::Trial& trial : trials) {
@@ -187,6 +190,8 @@ class RobotSearch {
     tellFindings(findings, summary);
     folder.write("verdict.json",
                  [&](std::ostream& out) { out << jsonText(verdictJson(findings), 2) << '\n'; });
+    if (!fitted.empty())
+      folder.write("parameters.csv", [&](std::ostream& out) { writeFitted(fitted, out); });
     if (mayBeAdded(verdict))
       folder.write("with_effect.json", [&](std::ostream& out) {
         out << jsonText(repaired(findings, summary), 2) << '\n';

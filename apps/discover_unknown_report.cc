@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "gap_words.h"
 #include "text.h"
 
 namespace app {
@@ -20,18 +21,19 @@ Paragraph formulaOf(const info::discover::Unknown& u) {
                            : "; not stable, do not trust its form")};
 }
 
-Paragraph raced(const info::discover::RacedFormula& formula) {
+Paragraph raced(const DiscoverFindings& f, const info::discover::RacedFormula& formula) {
   std::string text = fmt::format(
       "Fitted and raced like a name: {}, {} nats better than the model "
       "without it",
       formula.text, numberText(formula.logBayesFactor, 3));
   const info::discover::Gap& gap = formula.heldOut ? *formula.heldOut : formula.gap;
+  text += ". ";
   if (gap.closedFromCalibrated)
-    text +=
-        fmt::format("; it closes {} % of the gap{}", numberText(100 * *gap.closedFromCalibrated, 3),
-                    formula.heldOut ? " on the trial that was held out" : "");
-  return {text + (formula.wins ? ". It leaves nothing else to be seen, and is in with_effect.osim."
-                               : ". It does not explain everything, or has rivals: do not take it "
+    text += gapWords(gap, f.wording.unit, symbolOf(f.wording.outputs.front().unit),
+                     formula.heldOut.has_value()) +
+            " ";
+  return {text + (formula.wins ? "It leaves nothing else to be seen, and is in with_effect.osim."
+                               : "It does not explain everything, or has rivals: do not take it "
                                  "for the effect.")};
 }
 
@@ -81,7 +83,7 @@ std::vector<ReportPart> withoutName(const DiscoverFindings& f) {
                   numberText(u.forceSize, 3), f.wording.forceUnit, numberText(100 * u.peakShare, 2),
                   numberText(u.peakFrequency, 2))});
   if (!u.formula.empty()) parts.emplace_back(formulaOf(u));
-  if (f.verdict.formula) parts.emplace_back(raced(*f.verdict.formula));
+  if (f.verdict.formula) parts.emplace_back(raced(f, *f.verdict.formula));
   if (f.verdict.nameless && f.verdict.nameless->wins) {
     parts.emplace_back(Paragraph{fmt::format(
         "A force that follows the {} alone, whatever its form, is {} nats ahead of {}.",

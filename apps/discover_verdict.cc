@@ -1,7 +1,9 @@
 #include "discover_verdict.h"
 
+#include "fitted_table.h"
 #include "info/discover/hypothesis.h"
 #include "info/discover/separation.h"
+#include "written_discovery.h"
 
 namespace app {
 namespace {
@@ -79,6 +81,41 @@ ordered_json adequacyJson(const info::discover::Adequacy& a, double latentSize) 
   return json;
 }
 
+/// What the effects do to the motion shown, into their objects.
+void addSizes(const DiscoverFindings& f, ordered_json& effects) {
+  if (!f.written) return;
+  const double unit = f.wording.unit;
+  for (std::size_t i = 0; i < f.written->sizes.size(); ++i) {
+    const bio::discover::EffectSize& size = f.written->sizes[i];
+    effects[i]["along"] = f.data.trialName(f.written->shown);
+    effects[i]["moment_rms_Nm"] = number(size.momentRms);
+    effects[i]["moment_peak_Nm"] = number(size.momentPeak);
+    effects[i]["share_of_muscle_moment"] = number(size.share);
+    effects[i]["motion_rms" + f.wording.gapEnd] = number(unit * size.motionRms);
+  }
+}
+
+ordered_json trialsJson(const DiscoverFindings& f) {
+  const double unit = f.wording.unit;
+  const std::string& end = f.wording.gapEnd;
+  ordered_json list = ordered_json::array();
+  for (const bio::discover::RepairedTrial& one : f.written->trials) {
+    const auto i = static_cast<std::size_t>(one.index);
+    ordered_json json{{"file", f.trialFiles[i]}, {"role", one.isHeldOut ? "held_out" : "train"}};
+    json["replay_file"] =
+        f.written->model.empty() ? ordered_json(nullptr) : ordered_json(f.written->replayFiles[i]);
+    json["rmse_nominal" + end] = number(unit * one.nominal);
+    json["rmse_after" + end] = number(unit * one.after);
+    json["noise_floor" + end] = number(unit * one.floor);
+    json["start"] = {{"coordinate", one.start.coordinate},
+                     {"value", number(one.start.value)},
+                     {"speed", number(one.start.speed)},
+                     {"unit", f.wording.gapEnd == "_deg" ? "rad" : "m"}};
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
 }  // namespace
 
 void tellFindings(const DiscoverFindings& f, Summary& summary) {
@@ -127,12 +164,31 @@ ordered_json verdictJson(const DiscoverFindings& f) {
                                {"parameters", parametersJson(f, effect.estimates)},
                                {"log_bayes_factor", number(effect.logBayesFactor)},
                                {"probability", number(effect.probability)}});
+    for (const Estimate& one : effect.estimates) {
+      if (f.data.quantities()[one.quantity].name == candidate.id + ".time") {
+        const char* change = candidate.id.ends_with("_until") ? "ends_at_s" : "starts_at_s";
+        if (candidate.kind == info::discover::EffectKind::structure)
+          json["effects"].back()[change] = number(one.value);
+      }
+    }
     for (const std::size_t c : effect.equals) json["class"].push_back(candidates[c].id);
   }
+  addSizes(f, json["effects"]);
   json["localisation"] = localisationJson(f);
   json["gap"] = {{"train", gapJson(f, verdict.gap)},
                  {"held_out", verdict.heldOut ? gapJson(f, *verdict.heldOut) : nullptr}};
   json["held_out_fitted"] = verdict.heldOutFitted;
+  if (f.written) {
+    const bool isCorrected = f.written->repaired && f.written->repaired->trials.front().driven;
+    json["rmse_after_is_of"] =
+        isCorrected ? "the driven trials: what drove the muscles, the sensor's errors taken off"
+                    : "the trials as they were recorded";
+    json["model"] =
+        f.written->model.empty() ? ordered_json(nullptr) : ordered_json(f.written->model);
+    json["trials"] = trialsJson(f);
+  }
+  json["step_s"] = number(f.step);
+  json["fitted_parameters"] = fittedJson(f.fitted);
   json["innovations"] = {{"before", nullptr}, {"after", nullptr}};
   if (verdict.base.size() > 0) {  // else stopped before there was a base model
     json["innovations"] = {{"before", adequacyJson(verdict.before, verdict.latentSizeBefore)},
@@ -157,6 +213,10 @@ ordered_json verdictJson(const DiscoverFindings& f) {
         {{"what", one.sentence}, {"of", rivalName(f.data, verdict, 0)}, {"expected_nats", nats}});
   }
   json["noise_sd"] = number(verdict.outputDeviation);
+  json["samples"] = {{"recorded", verdict.noise.samples},
+                     {"outliers", verdict.noise.outliers},
+                     {"every", verdict.noise.spacing},
+                     {"rounded_to", number(f.wording.unit * verdict.noise.quantum)}};
   json["noise_estimated"] = verdict.deviationEstimated;
   json["wall_s"] = number(f.wallSeconds);
   json["processor_s"] = number(f.processorSeconds);

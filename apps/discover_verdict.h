@@ -7,6 +7,7 @@
 
 #include "bio/discover/foresee.h"
 #include "info/discover/discover.h"
+#include "info/discover/fitted_numbers.h"
 #include "summary.h"
 
 namespace app {
@@ -33,6 +34,8 @@ struct DiscoverWording {
   std::map<std::string, std::string> present;  ///< effects that the model has already, and where
 };
 
+struct WrittenDiscovery;
+
 /// What was found, and all that it was made of.
 struct DiscoverFindings {
   const std::string& modelFile;
@@ -45,6 +48,9 @@ struct DiscoverFindings {
   const std::vector<bio::discover::ForeseenExperiment>& foreseen;
   double wallSeconds;       ///< of the search
   double processorSeconds;  ///< of the search, which has one thread
+  const std::vector<info::discover::FittedNumber>& fitted;
+  const WrittenDiscovery* written = nullptr;  ///< of an arm
+  double step = 0;                            ///< [s] that the search has ended with
 };
 
 /// The findings as figures of summary.json.

@@ -8,6 +8,7 @@
 
 #include "arm_input.h"
 #include "arm_options.h"
+#include "bio/replay.h"
 #include "discover_search.h"
 #include "drawn_laws.h"
 #include "ensemble_discovery.h"
@@ -155,6 +156,7 @@ class Ensemble : public Command {
     resultsMustNotBeInputs(summary, folder, files);
     RowFile file(folder.path(unfinishedRows), settings(study, summary, context.seed),
                  study.table->columns(), context.force);
+    if (const std::string damage = damageIn(file); !damage.empty()) summary.warn(damage);
     const auto begin = std::chrono::steady_clock::now();
     const std::size_t computed = computeMissing(
         *crew, threads, file, total(study), rowsOf(study, context.seed), context, "simulations");
@@ -162,6 +164,7 @@ class Ensemble : public Command {
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
     const EnsembleFindings findings = findingsOf(study, file, context.seed);
+    warnOfRange(study, findings, summary);
     folder.write("draws.csv", [&](std::ostream& out) { writeDraws(findings, out); });
     folder.write("band.csv", [&](std::ostream& out) { writeBand(findings, out); });
     if (findings.sobol) {
@@ -206,7 +209,7 @@ class Ensemble : public Command {
     const bio::Model model = readModel(model_, summary);
     const bio::Arm arm = movableArm(model, model_, simulation_, summary);
     TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
-    bio::ParameterCatalogue catalogue(model, arm, {input.start.q, {}});
+    bio::ParameterCatalogue catalogue(model, arm, {input.start.q, input.start.qDot});
     auto made = std::make_unique<EnsembleStudy>(
         EnsembleStudy{std::move(input), std::move(catalogue), {}, {}, {}, {}, {}});
     EnsembleStudy& study = *made;
@@ -236,9 +239,31 @@ class Ensemble : public Command {
     study.ensemble = std::make_unique<bio::ArmEnsemble>(
         study.catalogue, armOptions(simulation_), study.input.excitation, study.coordinate.name,
         study.measured, course, selection, options);
+    if (const auto left = bio::leftRange(
+            arm, bio::simulate(arm, study.input.excitation, study.input.start, options))) {
+      summary.warn("with the model's own parameters " + left->what);
+    }
     study.table = std::make_unique<DrawTable>(
         study.laws.parameters, course, shownFactor(study.coordinate), shownUnit(study.coordinate));
     return made;
+  }
+
+  /// Tells how many draws leave the coordinate's range by more than a tenth of it.
+  static void warnOfRange(const EnsembleStudy& study, const EnsembleFindings& f, Summary& summary) {
+    const bio::Coordinate& c = study.coordinate;
+    const double shown = study.table->shown();
+    const double margin = std::max(0.1 * (c.rangeMax - c.rangeMin) * shown, 1.0);
+    std::uint64_t left = 0;
+    for (std::uint64_t i = 0; i < f.count; ++i) {
+      // the smallest and the largest value; NaN where there is none
+      const bool isBelow = f.outputs[3][i] < c.rangeMin * shown - margin;
+      if (isBelow || f.outputs[4][i] > c.rangeMax * shown + margin) ++left;
+    }
+    if (left == 0) return;
+    summary.warn(fmt::format(
+        "in {} of {} simulations {} leaves its range, {:.4g} to {:.4g} {}, by "
+        "more than a tenth of it",
+        left, f.count, c.name, c.rangeMin * shown, c.rangeMax * shown, study.table->unit()));
   }
 
   /// How many rows there are to be.
@@ -304,24 +329,23 @@ class Ensemble : public Command {
 
   EnsembleFindings findingsOf(const EnsembleStudy& study, const RowFile& file,
                               std::uint64_t seed) const {
-    EnsembleFindings findings{model_,
-                              trial_,
-                              study.coordinate.name,
-                              *study.table,
-                              study.laws.parameters,
-                              study.ensemble->nominal(),
-                              {},
-                              study.measured};
-    for (std::uint64_t number = 0; number < total(study); ++number) {
-      findings.rows.push_back(study.table->parse(number, file.rows().at(number)));
-    }
+    EnsembleFindings findings{
+        model_,
+        trial_,
+        study.coordinate.name,
+        *study.table,
+        study.laws.parameters,
+        study.ensemble->nominal(),
+        total(study),
+        [&](std::uint64_t number) { return study.table->parse(number, file.row(number)); },
+        study.measured};
+    collect(findings);
     if (!sobol_) return findings;
     const auto names = DrawTable::outputNames();
     const auto output =
         static_cast<std::size_t>(std::find(names.begin(), names.end(), output_) - names.begin());
     std::vector<Eigen::VectorXd> values;
-    for (const DrawTable::Row& row : findings.rows) {
-      const double y = row.outputs[output];
+    for (const double y : findings.outputs[output]) {
       values.push_back(std::isfinite(y) ? Eigen::VectorXd::Constant(1, y) : Eigen::VectorXd());
     }
     const auto p = static_cast<int>(study.laws.parameters.size());

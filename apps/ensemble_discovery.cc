@@ -156,6 +156,7 @@ ExitStatus discoverInSets(const ArmDiscoveryRequest& each, const fs::path& folde
   checkSets(each, sets, summary);
   RowFile file(results.path(unfinishedRows), discoverySettings(each, summary), verdictColumns(),
                context.force);
+  if (const std::string damage = damageIn(file); !damage.empty()) summary.warn(damage);
   const auto begin = std::chrono::steady_clock::now();
   const std::size_t computed =
       computeMissing(crew, threads, file, sets.size(), work, context, "data sets");
@@ -167,10 +168,10 @@ ExitStatus discoverInSets(const ArmDiscoveryRequest& each, const fs::path& folde
   results.write("verdicts.csv", [&](std::ostream& out) {
     const auto& columns = verdictColumns();
     out << fmt::format("{}\n", fmt::join(columns.begin() + 1, columns.end(), ","));
-    for (const auto& [number, text] : file.rows()) out << text << '\n';
+    for (std::size_t i = 0; i < sets.size(); ++i) out << file.row(i) << '\n';
   });
-  for (const auto& [number, text] : file.rows()) {
-    rows.push_back(cellsOf(text));
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    rows.push_back(cellsOf(file.row(i)));
     ++counts[rows.back()[1]];
   }
   summary.setSimulation(each.simulation.integrator, each.simulation.stepOrDefault(), 0, wall);

@@ -24,28 +24,18 @@ std::vector<double> finiteOf(const std::vector<double>& values) {
   return kept;
 }
 
-std::vector<double> outputOf(const EnsembleFindings& f, std::size_t output) {
-  std::vector<double> values;
-  for (const DrawTable::Row& row : f.rows) values.push_back(row.outputs[output]);
-  return finiteOf(values);
-}
-
-std::map<std::string, int> outcomes(const EnsembleFindings& f) {
-  std::map<std::string, int> counts;
-  for (const DrawTable::Row& row : f.rows) ++counts[row.outcome];
-  return counts;
-}
+/// What a pass over the rows may keep of the motions' courses [bytes]; one column at least.
+constexpr std::uint64_t mostKept = std::uint64_t{64} << 20;
 
 std::string verdictOf(const EnsembleFindings& f) {
-  const auto counts = outcomes(f);
-  const auto ok = counts.find("ok");
-  const int finished = ok == counts.end() ? 0 : ok->second;
-  const Spread last = spreadOf(outputOf(f, 2));
+  const auto ok = f.outcomes.find("ok");
+  const std::uint64_t finished = ok == f.outcomes.end() ? 0 : ok->second;
+  const Spread last = spreadOf(finiteOf(f.outputs[2]));
   std::string text = fmt::format(
       "{} of {} simulations with {} drawn parameters came to their end; {} ends at {} {} (median), "
       "90 % of them within {} to {} {}.",
-      finished, f.rows.size(), f.parameters.size(), f.coordinate, numberText(last.p50),
-      f.table.unit(), numberText(last.p5), numberText(last.p95), f.table.unit());
+      finished, f.count, f.parameters.size(), f.coordinate, numberText(last.p50), f.table.unit(),
+      numberText(last.p5), numberText(last.p95), f.table.unit());
   if (f.sobol && f.sobol->indices.variance > 0) {
     Eigen::Index most = 0;
     f.sobol->indices.total.maxCoeff(&most);
@@ -57,7 +47,7 @@ std::string verdictOf(const EnsembleFindings& f) {
 }
 
 Figure bandFigure(const EnsembleFindings& f) {
-  const Band band = bandOf(f);
+  const Band& band = f.band;
   Figure figure{.title = fmt::format("{} over the ensemble", f.coordinate),
                 .xLabel = "Time [s]",
                 .yLabel = fmt::format("{} [{}]", f.coordinate, f.table.unit()),
@@ -83,7 +73,7 @@ Table outputTable(const EnsembleFindings& f) {
                           "5 %", "median", "95 %"}};
   for (std::size_t i = 0; i < DrawTable::outputs().size(); ++i) {
     const EnsembleOutput& output = DrawTable::outputs()[i];
-    const Spread s = spreadOf(outputOf(f, i));
+    const Spread s = spreadOf(finiteOf(f.outputs[i]));
     table.rows.push_back({output.words, numberText(f.table.shown() * output.of(f.nominal)),
                           numberText(s.mean), numberText(s.deviation), numberText(s.p5),
                           numberText(s.p50), numberText(s.p95)});
@@ -93,7 +83,7 @@ Table outputTable(const EnsembleFindings& f) {
 
 Table outcomeTable(const EnsembleFindings& f) {
   Table table{.title = "How the simulations ended", .columns = {"outcome", "simulations"}};
-  for (const auto& [outcome, count] : outcomes(f)) {
+  for (const auto& [outcome, count] : f.outcomes) {
     table.rows.push_back({outcome, std::to_string(count)});
   }
   return table;
@@ -140,31 +130,45 @@ Spread spreadOf(const std::vector<double>& values) {
           info::quantileOf(values, 0.95)};
 }
 
-Band bandOf(const EnsembleFindings& f) {
-  Band band;
+void collect(EnsembleFindings& f) {
+  Band& band = f.band;
   band.time = f.table.course();
-  for (std::size_t i = 0; i < band.time.size(); ++i) {
-    std::vector<double> values;
-    for (const DrawTable::Row& row : f.rows) values.push_back(row.course[i]);
-    const Spread s = spreadOf(finiteOf(values));
-    band.nominal.push_back(f.table.shown() * f.nominal.atCourse[static_cast<Eigen::Index>(i)]);
-    band.mean.push_back(s.mean);
-    band.p5.push_back(s.p5);
-    band.p50.push_back(s.p50);
-    band.p95.push_back(s.p95);
+  f.outputs.assign(DrawTable::outputs().size(), {});
+  const std::uint64_t each = std::max<std::uint64_t>(f.count, 1) * sizeof(double);
+  const std::size_t together = std::max<std::uint64_t>(1, mostKept / each);
+  for (std::size_t begin = 0; begin < band.time.size(); begin += together) {
+    const std::size_t end = std::min(begin + together, band.time.size());
+    std::vector<std::vector<double>> columns(end - begin);
+    for (std::uint64_t number = 0; number < f.count; ++number) {
+      const DrawTable::Row row = f.row(number);
+      if (begin == 0) {
+        ++f.outcomes[row.outcome];
+        for (std::size_t i = 0; i < f.outputs.size(); ++i) f.outputs[i].push_back(row.outputs[i]);
+      }
+      for (std::size_t i = begin; i < end; ++i) {
+        if (std::isfinite(row.course[i])) columns[i - begin].push_back(row.course[i]);
+      }
+    }
+    for (std::size_t i = begin; i < end; ++i) {
+      const Spread s = spreadOf(columns[i - begin]);
+      band.nominal.push_back(f.table.shown() * f.nominal.atCourse[static_cast<Eigen::Index>(i)]);
+      band.mean.push_back(s.mean);
+      band.p5.push_back(s.p5);
+      band.p50.push_back(s.p50);
+      band.p95.push_back(s.p95);
+    }
   }
-  return band;
 }
 
 void writeDraws(const EnsembleFindings& f, std::ostream& out) {
   std::vector<std::string> columns = f.table.columns();
   columns.resize(f.table.shortColumns());
   out << fmt::format("{}\n", fmt::join(columns, ","));
-  for (std::size_t i = 0; i < f.rows.size(); ++i) out << i << ',' << f.rows[i].head << '\n';
+  for (std::uint64_t i = 0; i < f.count; ++i) out << i << ',' << f.row(i).head << '\n';
 }
 
 void writeBand(const EnsembleFindings& f, std::ostream& out) {
-  const Band band = bandOf(f);
+  const Band& band = f.band;
   out << "time";
   for (const char* name : {"nominal", "mean", "p5", "p50", "p95"}) {
     out << fmt::format(",{}_{}", name, f.table.unit());
@@ -195,9 +199,9 @@ void writeSobol(const EnsembleFindings& f, std::ostream& out) {
 }
 
 void tellEnsemble(const EnsembleFindings& f, Summary& summary) {
-  summary.set("draws", f.rows.size());
+  summary.set("draws", f.count);
   nlohmann::ordered_json ended = nlohmann::ordered_json::object();
-  for (const auto& [outcome, count] : outcomes(f)) ended[outcome] = count;
+  for (const auto& [outcome, count] : f.outcomes) ended[outcome] = count;
   summary.set("outcomes", ended);
   nlohmann::ordered_json laws = nlohmann::ordered_json::array();
   for (const DrawnParameter& one : f.parameters) {
@@ -211,7 +215,7 @@ void tellEnsemble(const EnsembleFindings& f, Summary& summary) {
   summary.set("parameters", laws);
   for (std::size_t i = 0; i < DrawTable::outputs().size(); ++i) {
     const EnsembleOutput& output = DrawTable::outputs()[i];
-    const Spread s = spreadOf(outputOf(f, i));
+    const Spread s = spreadOf(finiteOf(f.outputs[i]));
     summary.set(f.table.columnOf(output), {{"nominal", f.table.shown() * output.of(f.nominal)},
                                            {"mean", s.mean},
                                            {"sd", s.deviation},
@@ -239,7 +243,7 @@ void tellEnsemble(const EnsembleFindings& f, Summary& summary) {
 
 Report ensembleReport(const EnsembleFindings& f) {
   Report report{
-      .title = fmt::format("{} simulations of {} on {}", f.rows.size(), f.trialFile, f.modelFile),
+      .title = fmt::format("{} simulations of {} on {}", f.count, f.trialFile, f.modelFile),
       .verdict = verdictOf(f),
       .mainFigure = bandFigure(f)};
   report.details = {outputTable(f), outcomeTable(f)};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <ostream>
@@ -25,15 +26,19 @@ struct Band {
   std::vector<double> time, nominal, mean, p5, p50, p95;
 };
 
-/// All that `ensemble` found, from rows in the order of their numbers.
+/// All that `ensemble` found. Rows are read one by one, as often as they are needed.
 struct EnsembleFindings {
   std::string modelFile, trialFile;
   std::string coordinate;
   const DrawTable& table;
   const std::vector<DrawnParameter>& parameters;
   const bio::EnsembleRun& nominal;
-  std::vector<DrawTable::Row> rows;
+  std::uint64_t count;                               ///< of rows
+  std::function<DrawTable::Row(std::uint64_t)> row;  ///< by number, below `count`
   std::optional<bio::MeasuredMotion> measured;
+  std::map<std::string, std::uint64_t> outcomes = {};  ///< how many simulations ended so
+  std::vector<std::vector<double>> outputs = {};       ///< by output, then by row; NaN: none
+  Band band = {};
   std::optional<SobolFinding> sobol = {};
 };
 
@@ -43,7 +48,8 @@ struct Spread {
 };
 Spread spreadOf(const std::vector<double>& values);
 
-Band bandOf(const EnsembleFindings& findings);
+/// Fills outcomes, outputs and the band from the rows.
+void collect(EnsembleFindings& findings);
 
 /// draws.csv, band.csv and sobol.csv
 void writeDraws(const EnsembleFindings& findings, std::ostream& out);

@@ -6,6 +6,7 @@
 
 #include "interruption.h"
 #include "progress_bar.h"
+#include "standard_streams.h"
 
 namespace app {
 
@@ -14,10 +15,16 @@ CommandContext mayGoOn(CommandContext context) {
   return context;
 }
 
+std::string damageIn(const RowFile& file) {
+  if (file.damaged() == 0) return "";
+  return fmt::format("{}: {} damaged row{}, computed again", unfinishedRows, file.damaged(),
+                     file.damaged() == 1 ? "" : "s");
+}
+
 std::size_t computeMissing(Crew& crew, int threads, RowFile& file, std::uint64_t total,
                            RowWork work, const CommandContext& context, const std::string& things) {
   for (std::uint64_t number = 0; number < total; ++number) {
-    if (!file.rows().contains(number)) work.numbers.push_back(number);
+    if (!file.contains(number)) work.numbers.push_back(number);
   }
   const std::size_t missing = work.numbers.size();
   std::uint64_t done = total - missing;
@@ -31,9 +38,8 @@ std::size_t computeMissing(Crew& crew, int threads, RowFile& file, std::uint64_t
     crew.work(work, threads);
   } catch (const Interrupted&) {
     if (context.out) {
-      fmt::print(stderr,
-                 "fisherhill {}: {} of {} {} are done; the same command goes on from there\n",
-                 context.subcommand, done, total, things);
+      tell(fmt::format("fisherhill {}: {} of {} {} are done; the same command goes on from there\n",
+                       context.subcommand, done, total, things));
     }
     throw;
   }

@@ -16,6 +16,9 @@ inline constexpr const char* unfinishedRows = "unfinished.csv";
 /// same settings is RowFile's to say, before anything is written.
 CommandContext mayGoOn(CommandContext context);
 
+/// The sentence that damaged rows are computed again; empty if none is.
+std::string damageIn(const RowFile& file);
+
 /// Has a crew compute the rows 0 … total − 1 that a file lacks, with a bar; every row is in the
 /// file as soon as it is finished. After Ctrl-C it says how to go on.
 /// @param things  what a row stands for, "simulations"

@@ -7,6 +7,7 @@
 #include "ensemble.h"
 #include "mpi_crew.h"
 #include "run_program.h"
+#include "standard_streams.h"
 
 namespace {
 
@@ -55,6 +56,7 @@ class SpeakingCrew : public app::Crew {
 
 // `mpirun … fisherhill ensemble …` becomes as many of these.
 int main(int argc, char** argv) {
+  app::openStandardStreams();
   int provided = 0, rank = 0;
   MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);

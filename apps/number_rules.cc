@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <stdexcept>
 
 #include "quantity.h"
@@ -35,6 +38,18 @@ CLI::Validator positive() {
 
 CLI::Validator notNegative() {
   return rule("≥ 0", "NONNEGATIVE", [](double value) { return value >= 0; });
+}
+
+CLI::Validator wholeNumber() {
+  return {[](std::string& text) -> std::string {
+            std::uint64_t value = 0;
+            const char* const end = text.data() + text.size();
+            const auto [stop, error] = std::from_chars(text.data(), end, value);
+            if (error == std::errc() && stop == end) return "";
+            return fmt::format("{} must be a whole number from 0 to {}", text,
+                               std::numeric_limits<std::uint64_t>::max());
+          },
+          "NONNEGATIVE"};
 }
 
 CLI::Validator between(double low, double high) {

@@ -9,6 +9,8 @@ namespace app {
 CLI::Validator finite();
 CLI::Validator positive();
 CLI::Validator notNegative();
+/// From 0 to 2⁶⁴ − 1.
+CLI::Validator wholeNumber();
 CLI::Validator between(double low, double high);
 
 }  // namespace app

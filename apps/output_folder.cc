@@ -15,7 +15,7 @@ namespace app {
 namespace fs = std::filesystem;
 
 OutputFolder::OutputFolder(const CommandContext& context, std::vector<std::string> resultNames)
-    : force_(context.force) {
+    : force_(context.force), inputs_(context.inputs) {
   if (!context.out) return;
   if (context.out->empty()) throw std::runtime_error("--out: the folder's name is empty");
   folder_ = *context.out;
@@ -23,7 +23,7 @@ OutputFolder::OutputFolder(const CommandContext& context, std::vector<std::strin
     throw std::runtime_error(fmt::format("--out {}: is not a folder", folder_.string()));
   }
   resultNames.insert(resultNames.end(), {"summary.json", "report.html"});
-  for (const std::string& name : resultNames) mustNotExist(name);
+  for (const std::string& name : resultNames) mayBeWritten(name);
 
   // Remember which folders are made here, to take them away again if there is no result.
   std::vector<fs::path> missing;
@@ -70,7 +70,13 @@ fs::path OutputFolder::path(std::string_view name) const {
   return active() ? folder_ / name : fs::path();
 }
 
-void OutputFolder::mustNotExist(const std::string& name) const {
+void OutputFolder::mayBeWritten(const std::string& name) const {
+  for (const fs::path& input : inputs_) {
+    std::error_code ignored;
+    if (!fs::equivalent(folder_ / name, input, ignored)) continue;
+    throw std::invalid_argument(fmt::format(
+        "{}: is an input and would be overwritten; choose another --out", input.string()));
+  }
   if (force_ || !fs::exists(fs::symlink_status(folder_ / name))) return;
   throw std::runtime_error(
       fmt::format("--out {}: {} exists already; --force overwrites it", folder_.string(), name));
@@ -93,7 +99,7 @@ void OutputFolder::write(const std::string& name,
 void OutputFolder::writeFile(const std::string& name,
                              const std::function<void(const fs::path&)>& writer) {
   if (!active()) return;
-  mustNotExist(name);
+  mayBeWritten(name);
   if (!mark_) mark_.emplace(folder_);
   unfinished_ = name;
   writer(mark_->temporaryPath(name));

@@ -24,7 +24,8 @@ class OutputFolder {
  public:
   /// @param resultNames files the subcommand is going to write, beside summary.json and report.html
   /// @throws std::runtime_error if the folder cannot be made or written to, or if it holds one of
-  ///   those files and --force was not given
+  ///   those files and --force was not given; std::invalid_argument if one of them is an input,
+  ///   under whatever name
   OutputFolder(const CommandContext& context, std::vector<std::string> resultNames);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
@@ -51,11 +52,12 @@ class OutputFolder {
   const std::vector<std::string>& files() const { return finished_; }
 
  private:
-  void mustNotExist(const std::string& name) const;
+  void mayBeWritten(const std::string& name) const;
 
   std::filesystem::path folder_;
   std::vector<std::filesystem::path> foldersMade_;  ///< outermost first
   bool force_ = false;
+  std::vector<std::filesystem::path> inputs_;
   std::vector<std::string> finished_;  ///< complete, maybe still under their temporary names
   std::string unfinished_;             ///< the file being written
   std::size_t committed_ = 0;          ///< how many of finished_ have their own name

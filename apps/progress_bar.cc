@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "interruption.h"
+#include "standard_streams.h"
 
 namespace app {
 namespace {
@@ -36,7 +36,7 @@ ProgressBar::ProgressBar(std::string label)
     : label_(std::move(label)), visible_(isatty(STDERR_FILENO) == 1) {}
 
 ProgressBar::~ProgressBar() {
-  if (visible_ && drawn_ != start_) fmt::print(stderr, "\r\033[K");
+  if (visible_ && drawn_ != start_) tell("\r\033[K");
 }
 
 void ProgressBar::update(double fraction) {
@@ -47,8 +47,7 @@ void ProgressBar::update(double fraction) {
   if (now - drawn_ < std::chrono::milliseconds(100)) return;
   drawn_ = now;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
-  fmt::print(stderr, "\r{}\033[K", progressLine(label_, fraction, elapsed));
-  std::fflush(stderr);
+  tell(fmt::format("\r{}\033[K", progressLine(label_, fraction, elapsed)));
 }
 
 }  // namespace app

@@ -6,10 +6,12 @@
 #include "render.h"
 #include "render_pictures.h"
 #include "run_program.h"
+#include "standard_streams.h"
 
 // `fisherhill-render render …` for people, by way of `fisherhill render`; `charts LIST FOLDER` for
 // figurePictures.
 int main(int argc, char** argv) {
+  app::openStandardStreams();
   if (argc == 4 && std::string_view(argv[1]) == "charts") {
     try {
       app::drawCharts(argv[2], argv[3]);

@@ -2,6 +2,7 @@
 
 #include "arm_input.h"
 #include "arm_options.h"
+#include "bio/discover/with_known_changes.h"
 #include "bio/replay.h"
 #include "progress_bar.h"
 #include "replay_report.h"
@@ -21,28 +22,42 @@ class Replay : public Command {
     addModelArgument(options, model_);
     addTrialArgument(options, trial_);
     addSimulationOptions(options, simulation_);
+    options.add_flag("--strict", strict_,
+                     "exit with status 1 where the motion leaves a coordinate's range by more than "
+                     "a tenth of it, or a fibre 0.2 to 2 optimal lengths");
   }
 
   ExitStatus run(const CommandContext& context) override {
     OutputFolder folder(context, {"states.sto", "forces.sto"});
     Summary summary(context);
-    const bio::Model model = readModel(model_, summary);
+    bio::Model model = readModel(model_, summary);
+    summary.addInput(trial_);
+    const bio::Trial trial = readTrialFile(trial_, model, simulation_, true);
+    for (const std::string& warning : trial.warnings) summary.warn(warning);
+    if (trial.known.any()) {
+      model = bio::discover::withKnownChanges(model, armOptions(simulation_),
+                                              simulation_.coordinates.front(), trial);
+    }
     const bio::Arm arm = movableArm(model, model_, simulation_, summary);
-    const TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
-    bio::SimulationOptions options =
-        simulationOptions(simulation_, input.startTime, input.duration);
-    options.externalForce = input.externalForce;
-
-    bio::Trajectory motion;
+    bio::TrialReplay replay;
     {
       ProgressBar bar("replay");
+      bio::SimulationOptions options = simulationOptions(simulation_, 0, 0);
+      options.step = bio::stepOf(model, options.integrator, simulation_.step);
       options.progress = [&](double t) {
-        bar.update((t - input.startTime) / input.duration);
+        bar.update((t - trial.times[0]) / trial.duration());
         return true;
       };
-      motion = bio::simulate(arm, input.excitation, input.start, options);
+      replay = bio::replayTrial(arm, trial, options,
+                                bio::beginningOf(trial, model, arm, byName(simulation_.initial)));
     }
-    for (const std::string& sentence : bio::rangeRemarks(arm, motion)) summary.warn(sentence);
+    const bio::Trajectory& motion = replay.motion;
+    const std::optional<bio::LeftRange> left = bio::leftRange(arm, motion);
+    if (left) summary.warn(left->what);
+    for (const std::string& sentence : bio::rangeRemarks(arm, motion)) {
+      const bool isSaid = left && sentence.starts_with(left->name + " leaves its range");
+      if (!isSaid) summary.warn(sentence);
+    }
     const bio::MuscleReport muscles = bio::reportMuscles(arm, motion);
     folder.writeFile("states.sto", [&](const std::filesystem::path& path) {
       bio::writeTable(bio::statesTable(model, arm, motion), path);
@@ -51,18 +66,20 @@ class Replay : public Command {
       bio::writeTable(bio::forcesTable(arm, motion, muscles), path);
     });
 
-    const ReplayFindings findings{model_, trial_, model,   input.trial,
-                                  arm,    motion, muscles, options};
-    summary.setSimulation(simulation_.integrator, options.step, input.duration, motion.wallSeconds);
+    const ReplayFindings findings{model_, trial_, model, trial, arm, replay, muscles, left};
+    summary.setSimulation(simulation_.integrator, replay.options.step, replay.options.duration,
+                          motion.wallSeconds);
     tellReplay(findings, summary);
     deliver(context, summary, replayReport(findings), folder);
-    return motion.outcome == bio::Outcome::completed ? ExitStatus::done : ExitStatus::answerIsNo;
+    const bool isFine = motion.outcome == bio::Outcome::completed && !(strict_ && left);
+    return isFine ? ExitStatus::done : ExitStatus::answerIsNo;
   }
 
  private:
   std::string model_;
   std::string trial_;
   SimulationOptions simulation_;
+  bool strict_ = false;
 };
 
 }  // namespace

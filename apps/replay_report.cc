@@ -39,8 +39,8 @@ Figure motionFigure(const ReplayFindings& f, std::size_t index) {
                 .yLabel = fmt::format("{} [{}]", coordinate.name, unit.name)};
   figure.series.push_back(
       {.name = "simulated",
-       .x = f.motion.time,
-       .y = inUnit(f.motion.q.row(static_cast<Eigen::Index>(index)), unit.factor)});
+       .x = f.replay.motion.time,
+       .y = inUnit(f.replay.motion.q.row(static_cast<Eigen::Index>(index)), unit.factor)});
   if (const auto* measured = measuredOf(f, coordinate.name)) {
     figure.title += " beside the measured one";
     figure.series.push_back({.name = "measured",
@@ -56,23 +56,24 @@ Figure perMuscle(const ReplayFindings& f, const std::string& title, const std::s
   Figure figure{.title = title, .xLabel = "Time [s]", .yLabel = yLabel, .caption = caption};
   for (std::size_t i = 0; i < f.arm.numMuscles(); ++i) {
     figure.series.push_back({.name = f.arm.muscles()[i].name,
-                             .x = f.motion.time,
+                             .x = f.replay.motion.time,
                              .y = inUnit(rows.row(static_cast<Eigen::Index>(i)), factor)});
   }
   return figure;
 }
 
 Figure energyFigure(const ReplayFindings& f) {
-  const auto K = static_cast<Eigen::Index>(f.motion.time.size());
+  const auto K = static_cast<Eigen::Index>(f.replay.motion.time.size());
   Eigen::VectorXd kinetic(K), potential(K), balance(K);
   for (Eigen::Index k = 0; k < K; ++k) {
-    const bio::Energy energy = bio::energyOf(f.arm, f.motion.q.col(k), f.motion.qDot.col(k));
+    const bio::Energy energy =
+        bio::energyOf(f.arm, f.replay.motion.q.col(k), f.replay.motion.qDot.col(k));
     kinetic[k] = energy.kinetic;
     potential[k] = energy.potential;
   }
   potential.array() -= potential[0];
-  balance =
-      kinetic + potential - f.motion.muscleWork - f.motion.passiveWork - f.motion.externalWork;
+  balance = kinetic + potential - f.replay.motion.muscleWork - f.replay.motion.passiveWork -
+            f.replay.motion.externalWork;
   balance.array() -= balance[0];
   Figure figure{.title = "Energy",
                 .xLabel = "Time [s]",
@@ -82,13 +83,13 @@ Figure energyFigure(const ReplayFindings& f) {
                     "work of muscles and passive forces."};
   const auto add = [&](const std::string& name, const Eigen::VectorXd& values, SeriesStyle style) {
     figure.series.push_back(
-        {.name = name, .x = f.motion.time, .y = inUnit(values, 1), .style = style});
+        {.name = name, .x = f.replay.motion.time, .y = inUnit(values, 1), .style = style});
   };
   add("kinetic", kinetic, SeriesStyle::line);
   add("potential (from the start)", potential, SeriesStyle::line);
-  add("work of muscles", f.motion.muscleWork, SeriesStyle::line);
+  add("work of muscles", f.replay.motion.muscleWork, SeriesStyle::line);
   if (!f.arm.coordinateForces().empty()) {
-    add("work of passive forces", f.motion.passiveWork, SeriesStyle::line);
+    add("work of passive forces", f.replay.motion.passiveWork, SeriesStyle::line);
   }
   add("balance", balance, SeriesStyle::dashed);
   return figure;
@@ -101,7 +102,7 @@ std::string comparison(const ReplayFindings& f) {
     const auto* measured = measuredOf(f, coordinate.name);
     if (measured == nullptr) continue;
     const ShownUnit unit = unitOf(coordinate);
-    const bio::MeasuredError error = bio::compareWithMeasured(f.arm, f.motion, *measured);
+    const bio::MeasuredError error = bio::compareWithMeasured(f.arm, f.replay.motion, *measured);
     text += fmt::format(
         "{}{} differs from the measured one by {:.3g} {} (root mean square of {} "
         "samples), at most by {:.3g} {} at {:.3g} s",
@@ -114,9 +115,14 @@ std::string comparison(const ReplayFindings& f) {
 }  // namespace
 
 void tellReplay(const ReplayFindings& f, Summary& summary) {
-  const bio::Trajectory& motion = f.motion;
-  summary.set("status", bio::name(motion.outcome));
+  const bio::Trajectory& motion = f.replay.motion;
+  const bool left = f.left && motion.outcome == bio::Outcome::completed;
+  summary.set("status", left ? "left_range" : bio::name(motion.outcome));
   if (!motion.why.empty()) summary.set("why", motion.why);
+  if (f.left) {
+    summary.set("left_range_at_s", f.left->time);
+    summary.set("left_range", f.left->what);
+  }
   for (const bio::Coordinate& coordinate : f.arm.skeleton().coordinates()) {
     const auto* measured = measuredOf(f, coordinate.name);
     if (measured == nullptr) continue;
@@ -128,6 +134,7 @@ void tellReplay(const ReplayFindings& f, Summary& summary) {
     summary.set(prefix + "max_error" + suffix, error.largest * unitOf(coordinate).factor);
     summary.set(prefix + "compared_samples", error.count);
   }
+  summary.set("start_from", bio::name(f.replay.beginning.from));
   summary.set("final_time_s", motion.time.back());
   summary.set("steps", motion.steps);
   summary.set("newton_iterations_per_step",
@@ -146,15 +153,23 @@ Report replayReport(const ReplayFindings& f) {
   Report report;
   report.title = fmt::format("Replay of {} on {}", f.trialFile, f.modelFile);
   report.verdict = comparison(f) + ".";
-  if (f.motion.outcome != bio::Outcome::completed) {
-    report.verdict = fmt::format("The simulation did not reach the end: {}.", f.motion.why);
+  if (f.replay.beginning.from == bio::TrialBeginning::From::model) {
+    report.verdict += " It starts where the model was fitted to start this trial.";
+  }
+  if (f.replay.motion.outcome != bio::Outcome::completed) {
+    report.verdict = fmt::format("The simulation did not reach the end: {}.", f.replay.motion.why);
+  }
+  if (f.left) {
+    report.verdict = fmt::format("The motion leaves what the model is made for: {}. {}",
+                                 f.left->what, report.verdict);
   }
   report.mainFigure = motionFigure(f, 0);
   for (std::size_t i = 1; i < f.arm.skeleton().coordinates().size(); ++i) {
     report.details.push_back(motionFigure(f, i));
   }
   report.details.push_back(Section{"Muscles"});
-  report.details.push_back(perMuscle(f, "Activations", "Activation [1]", f.motion.activation, 1));
+  report.details.push_back(
+      perMuscle(f, "Activations", "Activation [1]", f.replay.motion.activation, 1));
   report.details.push_back(perMuscle(f, "Tendon forces", "Force [N]", f.muscles.tendonForce, 1));
   const bio::Coordinate& first = f.arm.skeleton().coordinates().front();
   const Eigen::MatrixXd moments = f.muscles.tendonForce.cwiseProduct(f.muscles.momentArm);
@@ -164,16 +179,17 @@ Report replayReport(const ReplayFindings& f) {
   report.details.push_back(perMuscle(f, "Moment arms",
                                      first.isRotation ? "Moment arm [mm]" : "−∂ℓ/∂q [10⁻³]",
                                      f.muscles.momentArm, 1e3));
-  report.details.push_back(perMuscle(f, "Fibre lengths", "Length [mm]", f.motion.fibreLength, 1e3));
+  report.details.push_back(
+      perMuscle(f, "Fibre lengths", "Length [mm]", f.replay.motion.fibreLength, 1e3));
   report.details.push_back(Section{"Energy and numerics"});
   report.details.push_back(energyFigure(f));
   report.details.push_back(
       Paragraph{fmt::format("{} steps of {} s, {:.3g} Newton iterations a step, {} steps halved; "
                             "stepping took {:.3g} ms.",
-                            f.motion.steps, numberText(f.options.step),
-                            static_cast<double>(f.motion.newtonIterations) /
-                                std::max(1.0, static_cast<double>(f.motion.steps)),
-                            f.motion.halvedSteps, f.motion.wallSeconds * 1e3)});
+                            f.replay.motion.steps, numberText(f.replay.options.step),
+                            static_cast<double>(f.replay.motion.newtonIterations) /
+                                std::max(1.0, static_cast<double>(f.replay.motion.steps)),
+                            f.replay.motion.halvedSteps, f.replay.motion.wallSeconds * 1e3)});
   if (!f.arm.notes().empty()) {
     report.details.push_back(Section{"Notes"});
     for (const std::string& note : f.arm.notes()) report.details.push_back(Paragraph{note});

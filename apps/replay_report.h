@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "bio/coupled.h"
+#include "bio/replay.h"
 #include "bio/trial.h"
 #include "report.h"
 
@@ -15,9 +17,9 @@ struct ReplayFindings {
   const bio::Model& model;
   const bio::Trial& trial;
   const bio::Arm& arm;
-  const bio::Trajectory& motion;
+  const bio::TrialReplay& replay;
   const bio::MuscleReport& muscles;
-  const bio::SimulationOptions& options;
+  const std::optional<bio::LeftRange>& left;
 };
 
 /// The figures that summary.json is to hold: rms_error_deg, newton_iterations_per_step, …

@@ -4,14 +4,17 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <fstream>
+#include <optional>
 #include <stdexcept>
+#include <string_view>
 
 #include "json_text.h"
 
@@ -20,23 +23,36 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::uint64_t greatestNumber = std::uint64_t{1} << 32;
+constexpr const char* checksumColumn = ",checksum\n";
+
 std::runtime_error failure(const std::filesystem::path& path, const std::string& what) {
   return std::runtime_error(fmt::format("{}: {}", path.string(), what));
 }
 
-std::string allOf(int file, const std::filesystem::path& path) {
-  struct stat about {};
-  if (fstat(file, &about) != 0) throw failure(path, std::strerror(errno));
-  std::string content(static_cast<std::size_t>(about.st_size), '\0');
-  std::size_t have = 0;
-  while (have < content.size()) {
-    const ssize_t got =
-        pread(file, content.data() + have, content.size() - have, static_cast<off_t>(have));
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) throw failure(path, "cannot be read");
-    have += static_cast<std::size_t>(got);
+/// Changes with every byte that changes: FNV-1a, eight hexadecimal digits.
+std::string checksumOf(std::string_view text) {
+  std::uint32_t sum = 2166136261u;
+  for (const char c : text) sum = (sum ^ static_cast<unsigned char>(c)) * 16777619u;
+  return fmt::format("{:08x}", sum);
+}
+constexpr std::size_t checksumSize = 8;
+
+/// The number of a line that is a row as it was written.
+std::optional<std::uint64_t> numberOf(std::string_view line, std::size_t cells) {
+  std::uint64_t number = 0;
+  const auto [behind, error] = std::from_chars(line.data(), line.data() + line.size(), number);
+  const bool isRow =
+      error == std::errc() && behind != line.data() + line.size() && *behind == ',' &&
+      number <= greatestNumber &&
+      static_cast<std::size_t>(std::count(line.begin(), line.end(), ',')) == cells + 1 &&
+      line.size() > checksumSize;
+  if (!isRow) return std::nullopt;
+  const std::size_t end = line.size() - checksumSize - 1;
+  if (line[end] != ',' || checksumOf(line.substr(0, end)) != line.substr(end + 1)) {
+    return std::nullopt;
   }
-  return content;
+  return number;
 }
 
 /// "seed is 1 there, 2 here".
@@ -73,7 +89,7 @@ RowFile::RowFile(std::filesystem::path path, const Json& settings,
                  const std::vector<std::string>& columns, bool replace)
     : path_(std::move(path)),
       cells_(columns.size() - 1),
-      columns_(fmt::format("{}\n", fmt::join(columns, ","))) {
+      columns_(fmt::format("{}{}", fmt::join(columns, ","), checksumColumn)) {
   if (path_.empty()) return;
   try {
     open(settings, replace);
@@ -95,62 +111,93 @@ void RowFile::open(const Json& given, bool replace) {
     throw failure(path_, "another program is at work on it");
   }
   const std::string head = "# " + jsonText(settings) + "\n" + columns_;
-  const std::string content = allOf(file_, path_);
-  const std::size_t firstEnd = content.find('\n');
-  const std::size_t headEnd =
-      firstEnd == content.npos ? content.npos : content.find('\n', firstEnd + 1);
+  std::ifstream stream(path_, std::ios::binary);
+  std::string beginning(head.size(), '\0');
+  stream.read(beginning.data(), static_cast<std::streamsize>(head.size()));
+  beginning.resize(static_cast<std::size_t>(stream.gcount()));
+  if (beginning == head) return read(head.size());
   // killed before the first row: what there is of the head is the beginning of ours
-  if (content.size() < head.size() && head.starts_with(content)) return begin(head);
-  Json there;
-  if (content.starts_with("# {") && firstEnd != content.npos) {
-    there = Json::parse(content.substr(2, firstEnd - 2), nullptr, false);
-  }
+  if (head.starts_with(beginning)) return begin(head);
+  stream.clear();
+  stream.seekg(0);
+  std::string first, second;
+  std::getline(stream, first);
+  std::getline(stream, second);
+  const Json there =
+      first.starts_with("# {") ? Json::parse(first.substr(2), nullptr, false) : Json();
   if (!there.is_object()) {
     throw failure(path_, "is not the unfinished result of an ensemble; it is left as it is");
   }
-  if (there != settings || headEnd == content.npos ||
-      content.substr(firstEnd + 1, headEnd - firstEnd) != columns_) {
-    if (replace) return begin(head);
-    throw failure(path_, fmt::format("is the unfinished result of other settings ({}); --force "
-                                     "replaces it",
-                                     firstDifference(there, settings)));
+  if (replace) return begin(head);
+  if (there == settings && second + checksumColumn == columns_) {
+    throw failure(path_,
+                  "is the unfinished result of an earlier version, whose rows have no checksum; "
+                  "--force replaces it");
   }
-  read(content, headEnd + 1);
+  throw failure(path_, fmt::format("is the unfinished result of other settings ({}); --force "
+                                   "replaces it",
+                                   firstDifference(there, settings)));
 }
 
 void RowFile::begin(const std::string& head) {
-  if (ftruncate(file_, 0) != 0) throw failure(path_, std::strerror(errno));
+  if (ftruncate(file_, 0) != 0 || lseek(file_, 0, SEEK_SET) < 0) {
+    throw failure(path_, std::strerror(errno));
+  }
+  end_ = 0;
   write(head);
 }
 
-void RowFile::read(const std::string& content, std::size_t from) {
-  long line = 2;
-  while (from < content.size()) {
-    const std::size_t end = content.find('\n', from);
-    if (end == content.npos) break;  // cut off
-    ++line;
-    std::uint64_t number = 0;
-    const char* const begin = content.data() + from;
-    const char* const stop = content.data() + end;
-    const auto [behind, error] = std::from_chars(begin, stop, number);
-    if (error != std::errc() || behind == stop || *behind != ',' ||
-        static_cast<std::size_t>(std::count(begin, stop, ',')) != cells_) {
-      throw failure(path_, fmt::format("line {} is not a row of this table; --force does not mend "
-                                       "it, take the file away",
-                                       line));
+void RowFile::read(std::uint64_t from) {
+  std::ifstream stream(path_, std::ios::binary);
+  stream.seekg(static_cast<std::streamoff>(from));
+  for (std::string line; std::getline(stream, line) && !stream.eof();) {  // else it was cut off
+    const std::optional<std::uint64_t> number = numberOf(line, cells_);
+    if (!number) {
+      ++damaged_;
+    } else if (!contains(*number)) {
+      keep(*number, from);
     }
-    rows_.emplace(number, std::string(behind + 1, stop));
-    from = end + 1;
+    from += line.size() + 1;
   }
-  if (from < content.size() && ftruncate(file_, static_cast<off_t>(from)) != 0) {
+  if (ftruncate(file_, static_cast<off_t>(from)) != 0 || lseek(file_, 0, SEEK_END) < 0) {
     throw failure(path_, std::strerror(errno));
   }
-  if (lseek(file_, 0, SEEK_END) < 0) throw failure(path_, std::strerror(errno));
+  end_ = from;
+}
+
+void RowFile::keep(std::uint64_t number, std::uint64_t place) {
+  if (number >= places_.size()) places_.resize(number + 1);
+  places_[number] = place;
+  ++count_;
 }
 
 void RowFile::append(std::uint64_t number, const std::string& text) {
-  if (file_ >= 0) write(fmt::format("{},{}\n", number, text));
-  rows_.emplace(number, text);
+  if (contains(number)) return;
+  if (file_ < 0) {
+    kept_.push_back(text);
+    return keep(number, kept_.size());
+  }
+  const std::uint64_t place = end_;
+  const std::string row = fmt::format("{},{}", number, text);
+  write(fmt::format("{},{}\n", row, checksumOf(row)));
+  keep(number, place);
+}
+
+std::string RowFile::row(std::uint64_t number) const {
+  if (!contains(number)) throw std::out_of_range(fmt::format("there is no row {}", number));
+  const std::uint64_t place = places_[number];
+  if (file_ < 0) return kept_.at(place - 1);
+  std::string line;
+  std::array<char, 4096> block;
+  for (std::size_t end = line.npos; end == line.npos; end = line.find('\n')) {
+    const ssize_t got =
+        pread(file_, block.data(), block.size(), static_cast<off_t>(place + line.size()));
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) throw failure(path_, "cannot be read");
+    line.append(block.data(), static_cast<std::size_t>(got));
+  }
+  line.resize(line.find('\n') - checksumSize - 1);
+  return line.substr(line.find(',') + 1);
 }
 
 void RowFile::write(const std::string& text) {
@@ -163,6 +210,7 @@ void RowFile::write(const std::string& text) {
     }
     done += static_cast<std::size_t>(wrote);
   }
+  end_ += text.size();
 }
 
 void RowFile::remove() {

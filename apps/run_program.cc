@@ -13,6 +13,7 @@
 #include "bio/unknown_column.h"
 #include "command_line.h"
 #include "interruption.h"
+#include "standard_streams.h"
 #include "text.h"
 
 namespace app {
@@ -24,7 +25,7 @@ constexpr int status(ExitStatus status) {
 
 int fail(const std::string& subcommand, const std::string& message) {
   const std::string who = subcommand.empty() ? "fisherhill" : "fisherhill " + subcommand;
-  fmt::print(stderr, "{}: {}\n", who, oneLine(message));
+  tell(fmt::format("{}: {}\n", who, oneLine(message)));
   return status(ExitStatus::badInput);
 }
 
@@ -64,8 +65,9 @@ int runCommand(Command& command, const CommandContext& context, const CLI::App& 
     return status(command.run(context));
   } catch (const Interrupted&) {
     const bool kept = context.out && std::filesystem::exists(*context.out);
-    fmt::print(stderr, "fisherhill {}: interrupted; {}\n", context.subcommand,
-               kept ? "finished parts are in " + context.out->string() : "nothing was written");
+    tell(fmt::format(
+        "fisherhill {}: interrupted; {}\n", context.subcommand,
+        kept ? "finished parts are in " + context.out->string() : "nothing was written"));
     return status(ExitStatus::interrupted);
   } catch (const bio::UnknownColumn& error) {
     const bool canIgnore = options.get_option_no_throw("--ignore-extra") != nullptr;
@@ -100,6 +102,8 @@ int runProgram(const std::vector<std::string>& arguments,
     if (!meant.empty()) what += ": " + meant;
     return fail(name,
                 fmt::format("{} (see fisherhill {}--help)", what, name.empty() ? "" : name + " "));
+  } catch (const std::invalid_argument& error) {
+    return fail(parsedSubcommand(line.program())->get_name(), error.what());
   }
   catchInterruption();
   return printed(runCommand(*chosen.command, *chosen.context, *parsedSubcommand(line.program())),

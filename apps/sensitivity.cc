@@ -84,7 +84,7 @@ class Sensitivity : public Command {
     std::vector<Study> studies;
     for (const std::string& file : trials_) {
       TrialInput input = readTrialInput(file, model, arm, simulation_, summary);
-      bio::ParameterCatalogue catalogue(model, arm, {input.start.q, {}});
+      bio::ParameterCatalogue catalogue(model, arm, {input.start.q, input.start.qDot});
       std::vector<double> times = bio::observedTimes(
           input.trial, arm.skeleton().coordinates().front().name, simulation_.stepOrDefault());
       studies.push_back({std::move(input), std::move(catalogue), std::move(times)});
@@ -112,6 +112,10 @@ class Sensitivity : public Command {
     if (held) findings.profile = profile(studies, selection, *held);
     if (!global_.empty()) findings.global = ensembles(studies, selection, context, summary);
 
+    if (const auto left = bio::leftRange(
+            arm, findings.local ? findings.local->motion : findings.sweeps.front().nominal)) {
+      summary.warn(left->what);
+    }
     write(findings, folder);
     summary.setSimulation(simulation_.integrator, simulation_.stepOrDefault(), first.input.duration,
                           findings.local ? findings.local->motion.wallSeconds

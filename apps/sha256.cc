@@ -12,6 +12,12 @@
 namespace app {
 
 std::string sha256OfFile(const std::filesystem::path& file) {
+  std::error_code failed;
+  if (std::filesystem::exists(file, failed) && !std::filesystem::is_directory(file, failed) &&
+      !std::filesystem::is_regular_file(file, failed)) {  // opening one may take for ever
+    throw std::runtime_error(
+        fmt::format("{}: is a pipe or a device, must be a file", file.string()));
+  }
   std::ifstream stream(file, std::ios::binary);
   if (!stream || std::filesystem::is_directory(file)) {
     throw std::runtime_error(fmt::format("{}: cannot be read", file.string()));

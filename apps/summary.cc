@@ -4,21 +4,10 @@
 
 #include "info/version.h"
 #include "sha256.h"
+#include "standard_streams.h"
 #include "text.h"
 
 namespace app {
-namespace {
-
-std::string shellWord(const std::string& word) {
-  constexpr std::string_view plain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%";
-  if (!word.empty() && word.find_first_not_of(plain) == word.npos) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
-}  // namespace
 
 Summary::Summary(const CommandContext& context) : context_(context) {}
 
@@ -41,7 +30,7 @@ void Summary::setSimulation(const std::string& integrator, double step, double d
 void Summary::warn(const std::string& sentence) {
   warnings_.push_back(oneLine(sentence));
   if (context_.quiet) return;
-  fmt::print(stderr, "fisherhill {}: warning: {}\n", context_.subcommand, warnings_.back());
+  tell(fmt::format("fisherhill {}: warning: {}\n", context_.subcommand, warnings_.back()));
 }
 
 std::string Summary::commandLine() const {

@@ -15,6 +15,9 @@ std::string numberText(double value, int digits = 4);
 /// "0.016 m", or "0.016" for a pure number.
 std::string withUnit(double value, const std::string& unit, int digits = 4);
 
+/// The word as a shell has to be given it: in quotes where it needs them.
+std::string shellWord(const std::string& word);
+
 /// & < > " ' replaced by their HTML entities.
 std::string htmlText(std::string_view text);
 

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "bio/discover/with_known_changes.h"
 #include "bio/osim_file.h"
 #include "bio/replay.h"
 #include "bio/simulation_names.h"
@@ -29,7 +30,14 @@ bio::Trial trialOf(const bio::Model& model, const py::dict& columns, const std::
     }
     table.values.col(index) = column;
   }
-  return bio::trialFrom(table, name, model, {.ignoreExtra = ignoreExtra, .knownChanges = true});
+  bio::Trial trial =
+      bio::trialFrom(table, name, model, {.ignoreExtra = ignoreExtra, .knownChanges = true});
+  trial.sha256 = digestOf(
+      py::repr(py::make_tuple(
+                   name, py::bytes(reinterpret_cast<const char*>(table.values.data()),
+                                   sizeof(double) * static_cast<std::size_t>(table.values.size()))))
+          .attr("encode")());
+  return trial;
 }
 
 py::dict measuredOf(const bio::Trial& trial) {
@@ -71,23 +79,27 @@ py::dict errorsOf(const bio::Arm& arm, const bio::Trial& trial, const bio::Traje
   return errors;
 }
 
-py::object replay(const bio::Model& model, const bio::Trial& trial,
+py::object replay(const bio::Model& given, const bio::Trial& trial,
                   const std::map<std::string, double>& initial, const py::kwargs& keywords) {
   const ArmChoice choice = armChoice(keywords);
-  mustBeOfTheModelAsItIs(trial);
-  bio::Trajectory motion;
+  bio::TrialReplay replayed;
+  const bio::Trajectory& motion = replayed.motion;
   bio::MuscleReport muscles;
   double energyError = 0;
   std::unique_ptr<bio::Arm> arm;
   interruptible([&](const std::atomic<bool>& goOn) {
+    const bio::Model model =
+        trial.known.any() ? bio::discover::withKnownChanges(
+                                given, choice.armOptions(),
+                                choice.coordinates.empty() ? "" : choice.coordinates.front(), trial)
+                          : given;
     arm = std::make_unique<bio::Arm>(model, choice.armOptions());
-    const bio::ExcitationSignal excitation = bio::excitationOf(trial, *arm);
-    bio::SimulationOptions options = during(trial, choice.simulation());
-    options.externalForce = bio::externalForceOf(trial, *arm);
+    bio::SimulationOptions options = choice.simulation();
+    options.step = bio::stepOf(model, options.integrator, choice.step);
+    options = during(trial, options);
     options.progress = [&](double) { return goOn.load(); };
-    const bio::ArmState start = bio::initialState(*arm, bio::startCoordinates(trial, *arm, initial),
-                                                  excitation, options.startTime);
-    motion = bio::simulate(*arm, excitation, start, options);
+    replayed =
+        bio::replayTrial(*arm, trial, options, bio::beginningOf(trial, model, *arm, initial));
     muscles = bio::reportMuscles(*arm, motion);
     energyError = bio::energyError(*arm, motion);
   });
@@ -103,8 +115,9 @@ py::object replay(const bio::Model& model, const bio::Trial& trial,
                  "moment_arm"_a = muscles.momentArm.transpose().eval(),
                  "rms_error"_a = errorsOf(*arm, trial, motion), "energy_error"_a = energyError,
                  "outcome"_a = bio::name(motion.outcome), "why"_a = motion.why,
-                 "steps"_a = motion.steps, "newton_iterations"_a = motion.newtonIterations,
-                 "warnings"_a = arm->warnings());
+                 "start_from"_a = bio::name(replayed.beginning.from),
+                 "step"_a = replayed.options.step, "steps"_a = motion.steps,
+                 "newton_iterations"_a = motion.newtonIterations, "warnings"_a = arm->warnings());
 }
 
 }  // namespace
@@ -152,10 +165,18 @@ ArmChoice armChoice(const py::kwargs& keywords) {
   return choice;
 }
 
+std::string digestOf(const py::object& bytes) {
+  return py::module_::import("hashlib")
+      .attr("sha256")(bytes)
+      .attr("hexdigest")()
+      .cast<std::string>();
+}
+
 void mustBeOfTheModelAsItIs(const bio::Trial& trial) {
   if (!trial.known.any()) return;
-  throw std::invalid_argument(fmt::format("{}: recorded {}, which only discover takes into account",
-                                          trial.file, bio::inWords(trial.known)));
+  throw std::invalid_argument(
+      fmt::format("{}: recorded {}, which only discover and replay take into account", trial.file,
+                  bio::inWords(trial.known)));
 }
 
 bio::SimulationOptions during(const bio::Trial& trial, bio::SimulationOptions options) {
@@ -191,10 +212,11 @@ void defineArms(py::module_& module) {
                              "{coordinate: (times [s], values [rad] or [m])}")
       .def_property_readonly(
           "known_mass_in_hand", [](const bio::Trial& trial) { return trial.known.massInHand; },
-          "[kg] that the experimenter put there; only discover takes it into account")
+          "[kg] that the experimenter put there; only discover and replay take it into account")
       .def_property_readonly(
           "known_arm_turn", [](const bio::Trial& trial) { return trial.known.armTurn; },
-          "[rad] by which the experimenter turned the whole arm; only discover takes it into "
+          "[rad] by which the experimenter turned the whole arm; only discover and replay take it "
+          "into "
           "account")
       .def_readonly("warnings", &bio::Trial::warnings)
       .def("__repr__", [](const bio::Trial& trial) {
@@ -206,7 +228,11 @@ void defineArms(py::module_& module) {
   module.def(
       "load_trial",
       [](const std::string& file, const bio::Model& model, bool ignoreExtra) {
-        return bio::readTrial(file, model, {.ignoreExtra = ignoreExtra, .knownChanges = true});
+        bio::Trial trial =
+            bio::readTrial(file, model, {.ignoreExtra = ignoreExtra, .knownChanges = true});
+        trial.sha256 =
+            digestOf(py::module_::import("pathlib").attr("Path")(file).attr("read_bytes")());
+        return trial;
       },
       "file"_a, "model"_a, py::kw_only(), "ignore_extra"_a = false,
       "Reads a trial (.sto, .mot or .csv) of the model. Header lines known_mass_in_hand_kg=1 and "
@@ -224,9 +250,12 @@ void defineArms(py::module_& module) {
       "initial"_a = std::map<std::string, double>(),
       "The motion that a trial's excitations make: time, q, q_dot, activation, fibre_length, "
       "tendon_force, moment_arm (rows = times; SI units, radians), rms_error {coordinate: rad}, "
-      "energy_error [J], outcome ('ok', 'unstable', 'no solution').\n\n"
+      "energy_error [J], outcome ('ok', 'unstable', 'no solution'), start_from ('given', 'model': "
+      "where discover or calibrate has fitted it to start this trial, 'measured', 'default'), step "
+      "[s].\n\n"
       "Further keywords: coordinate='elbow_flexion' (or a list), lock={name: rad}, "
-      "integrator='vi' ('vi-left', 'rk4', 'cvode'), step=0.01.");
+      "integrator='vi' ('vi-left', 'rk4', 'cvode'), step=0.01 (or what the model was fitted "
+      "with).");
 }
 
 }  // namespace python

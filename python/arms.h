@@ -29,6 +29,9 @@ struct ArmChoice {
 /// @throws std::invalid_argument for any other keyword
 ArmChoice armChoice(const py::kwargs& keywords);
 
+/// SHA-256 of a bytes object, by which models know trials that they were fitted to.
+std::string digestOf(const py::object& bytes);
+
 /// For what simulates the model as it is.
 /// @throws std::invalid_argument for a trial that was recorded with something changed on purpose
 void mustBeOfTheModelAsItIs(const bio::Trial& trial);

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "arms.h"
-#include "bio/calibrate.h"
+#include "bio/calibrated_model.h"
 #include "interruptible.h"
 
 namespace python {
@@ -67,6 +67,11 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
     found = bio::calibrate(*training, heldOut ? &*heldOut : nullptr, options);
   });
   if (!found.failure.empty()) throw std::runtime_error(found.failure);
+  std::optional<bio::CalibratedModel> calibrated;
+  if (found.calibrated) {
+    calibrated = bio::calibratedModel(*training, heldOut ? &*heldOut : nullptr, choice.armOptions(),
+                                      options.trials.simulation, found);
+  }
   py::dict estimates;
   for (const auto& one : found.parameters) estimates[one.asked.name.c_str()] = estimateOf(one);
   return results("estimates"_a = estimates, "correlation"_a = found.correlation,
@@ -74,10 +79,10 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
                  "iterations"_a = found.iterations, "noise"_a = found.noise.deviation,
                  "effective_noise"_a = found.noise.effective,
                  "rmse_before"_a = rmse(training, found.before),
-                 "rmse_after"_a = rmse(training, found.after),
+                 "rmse_after"_a = calibrated ? calibrated->rms(false) : NAN,
                  "rmse_held_out_before"_a = rmse(heldOut, found.heldOutBefore),
-                 "rmse_held_out"_a = rmse(heldOut, found.heldOutAfter),
-                 "model"_a = found.calibrated ? py::cast(found.calibrated->model) : py::none());
+                 "rmse_held_out"_a = calibrated ? calibrated->rms(true) : NAN,
+                 "model"_a = calibrated ? py::cast(calibrated->model) : py::none());
 }
 
 }  // namespace

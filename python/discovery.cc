@@ -2,8 +2,11 @@
 #include <optional>
 
 #include "arms.h"
+#include "bio/discover/effect_size.h"
 #include "bio/discover/elbow_disagreement.h"
 #include "bio/discover/foresee.h"
+#include "bio/discover/repaired.h"
+#include "bio/trial_table.h"
 #include "info/discover/separation.h"
 #include "info/discover/shorter_steps.h"
 #include "interruptible.h"
@@ -26,7 +29,8 @@ py::dict estimatesOf(const ElbowDisagreement& data, const std::vector<Estimate>&
   return all;
 }
 
-py::object effectOf(const ElbowDisagreement& data, const info::discover::NamedEffect& effect) {
+py::object effectOf(const ElbowDisagreement& data, const info::discover::NamedEffect& effect,
+                    const bio::discover::EffectSize& size) {
   const auto& candidate = data.candidates()[effect.candidate];
   std::vector<std::string> rivals;
   for (const std::size_t c : effect.equals) rivals.push_back(data.candidates()[c].id);
@@ -34,7 +38,9 @@ py::object effectOf(const ElbowDisagreement& data, const info::discover::NamedEf
                  "kind"_a = info::discover::name(candidate.kind),
                  "parameters"_a = estimatesOf(data, effect.estimates),
                  "log_bayes_factor"_a = effect.logBayesFactor, "probability"_a = effect.probability,
-                 "cannot_be_told_from"_a = rivals);
+                 "cannot_be_told_from"_a = rivals, "moment_rms"_a = size.momentRms,
+                 "moment_peak"_a = size.momentPeak, "share_of_muscle_moment"_a = size.share,
+                 "motion_rms"_a = size.motionRms);
 }
 
 py::object gapOf(const Gap& gap) {
@@ -94,6 +100,58 @@ py::object namelessOf(const ElbowDisagreement& data, const Verdict& verdict) {
                  "force"_a = force.force, "sd"_a = force.deviation);
 }
 
+/// The model with all that was fitted, or None, and what replays of it give.
+struct Written {
+  py::object model = py::none();
+  py::list trials;
+};
+
+Written writtenOf(const ElbowDisagreement& data, Verdict& verdict, const std::vector<int>& heldOut,
+                  const std::optional<double>& step) {
+  Written written;
+  const bool isFound = !verdict.effects.empty() && !verdict.surrogate;
+  const bool isDone = verdict.reached == info::discover::Stage::finished;
+  std::vector<bio::discover::RepairedTrial> trials;
+  bio::discover::Repaired repaired;
+  if (verdict.base.size() == 0) return written;
+  if (isDone && (isFound || verdict.finding == info::discover::Finding::none)) {
+    repaired = bio::discover::repairedModel(data, verdict, heldOut, step, {"fisherhill", {}});
+    bio::discover::takeReplays(verdict, repaired);
+    trials = repaired.trials;
+  } else {
+    trials = bio::discover::recordedTrials(data, verdict, heldOut, step);
+  }
+  for (const auto& one : trials) {
+    bio::Trial trial = data.trial(one.index);
+    if (one.driven) {
+      const std::string recorded = trial.sha256;
+      trial = bio::trialFrom(*one.driven, trial.file + " (driven)", repaired.added.model,
+                             {.knownChanges = true});
+      trial.sha256 = digestOf(py::bytes(recorded + " driven"));
+      bio::TrialStart start = one.start;
+      start.file = trial.file;
+      start.sha256 = trial.sha256;
+      repaired.added.model.fitted.starts.push_back(std::move(start));
+    }
+    written.trials.append(results(
+        "name"_a = data.trialName(one.index), "role"_a = one.isHeldOut ? "held_out" : "train",
+        "nominal"_a = one.nominal, "after"_a = one.after, "noise_floor"_a = one.floor,
+        "start"_a = one.start.value, "start_speed"_a = one.start.speed, "trial"_a = trial));
+  }
+  if (!repaired.trials.empty()) written.model = py::cast(repaired.added.model);
+  return written;
+}
+
+py::list fittedOf(const ElbowDisagreement& data, const Verdict& verdict) {
+  py::list list;
+  for (const auto& one : bio::discover::fittedNumbers(data, verdict)) {
+    list.append(results("name"_a = one.name, "unit"_a = one.unit, "nominal"_a = one.nominal,
+                        "estimate"_a = one.estimate, "sd"_a = one.deviation,
+                        "prior_sd"_a = one.prior, "prior_z"_a = one.priorZ));
+  }
+  return list;
+}
+
 py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
                     const std::vector<bio::Trial>& holdOut, std::optional<double> noise,
                     const std::vector<std::string>& without, int maxEffects,
@@ -130,9 +188,14 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
       foreseen = bio::discover::foresee(model, choice.armOptions(), trials.front(), elbow, *data,
                                         found.verdict);
   });
-  const Verdict& verdict = found.verdict;
+  Verdict& verdict = found.verdict;
+  const std::vector<int>& heldOut = found.options.heldOut;
+  const Written written = writtenOf(*data, verdict, heldOut, choice.step);
   py::list effects;
-  for (const auto& effect : verdict.effects) effects.append(effectOf(*data, effect));
+  for (const auto& effect : verdict.effects)
+    effects.append(effectOf(*data, effect,
+                            bio::discover::effectSize(*data, effect.candidate, verdict.values,
+                                                      heldOut.empty() ? 0 : heldOut.front())));
   py::dict undetectable;
   for (const auto& one : verdict.detectability) {
     undetectable[data->candidates()[one.candidate].id.c_str()] = one.amplitude;
@@ -145,8 +208,9 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
                  "held_out_fitted"_a = verdict.heldOutFitted, "undetectable_below"_a = undetectable,
                  "planned_experiments"_a = plannedOf(*data, verdict, foreseen),
                  "unknown"_a = unknownOf(verdict),
-                 "force_without_a_name"_a = namelessOf(*data, verdict), "step"_a = found.step,
-                 "fits"_a = verdict.fits);
+                 "force_without_a_name"_a = namelessOf(*data, verdict), "model"_a = written.model,
+                 "trials"_a = written.trials, "fitted_parameters"_a = fittedOf(*data, verdict),
+                 "step"_a = found.step, "fits"_a = verdict.fits);
 }
 
 }  // namespace
@@ -171,7 +235,13 @@ void defineDiscovery(py::module_& module) {
       "the speed alone (follows, beside: names that stay, log_bayes_factor, nats_ahead_of_names, "
       "wins: "
       "the names are makeshifts; force and its sd [N m] at angles [rad] or speeds "
-      "[rad/s]). "
+      "[rad/s]); model: with all that was fitted, None where there is none to be had; trials "
+      "(name, "
+      "role, nominal and after: rms errors of replays of the model as it came and of this one "
+      "[rad], "
+      "noise_floor, start, start_speed, trial: what was replayed); fitted_parameters (name, unit, "
+      "nominal, estimate, sd, prior_sd, prior_z). Effects have moment_rms, moment_peak [N m], "
+      "share_of_muscle_moment and motion_rms [rad] along the first trial held out. "
       "Trials may have a known mass in the hand. noise [rad]: from the data unless given. Further "
       "keywords as replay has them.");
 }

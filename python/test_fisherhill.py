@@ -98,6 +98,17 @@ class Arms(unittest.TestCase):
         viscosity = found.effects[0].parameters["visc.viscosity"]
         self.assertLess(abs(viscosity.value - 0.3), 3 * viscosity.sd)  # emg_data/answers/hidden.json
         self.assertGreater(found.gap.closed, 0.9)
+        # the model that comes with it is the one that was scored
+        self.assertEqual([one.role for one in found.trials], ["train"])
+        for one in found.trials:
+            replay = fh.replay(found.model, one.trial)
+            self.assertEqual(replay.start_from, "model")
+            self.assertAlmostEqual(replay.rms_error["elbow_flexion"], one.after, 12)
+            self.assertEqual(found.gap.after, one.after)
+            self.assertAlmostEqual(fh.replay(self.model, one.trial).rms_error["elbow_flexion"], one.nominal, 12)
+        self.assertIn("TRIlong.max_isometric_force", [one.name for one in found.fitted_parameters])
+        self.assertGreater(found.effects[0].moment_peak, found.effects[0].moment_rms)
+        self.assertGreater(found.effects[0].moment_rms, 0.1)
 
     def test_discover_tells_what_could_be_expected_of_held_out_trials(self):
         trials = [fh.load_trial(HIDDEN.replace("train_1", one), self.model) for one in ("train_1", "train_2")]
@@ -139,7 +150,7 @@ class Arms(unittest.TestCase):
         self.assertLess(abs(raced.terms[0].value + 0.3), 3 * raced.terms[0].sd)
         self.assertGreater(raced.gap.closed, 0.9)
 
-    def test_only_discover_takes_a_known_mass_in_the_hand(self):
+    def test_only_discover_and_replay_take_a_known_mass_in_the_hand(self):
         with tempfile.TemporaryDirectory() as folder:
             file = os.path.join(folder, "loaded.sto")
             with open(SLOW, encoding="utf-8") as whole, open(file, "w", encoding="utf-8") as to:
@@ -151,8 +162,8 @@ class Arms(unittest.TestCase):
             truth = fh.replay(fh.load_model(heavy), self.trial)
         self.assertEqual(loaded.known_mass_in_hand, 0.8)
         self.assertEqual(self.trial.known_mass_in_hand, 0)
-        for one in (lambda: fh.replay(self.model, loaded),
-                    lambda: fh.sensitivity(self.model, [loaded], ["hand.mass"]),
+        np.testing.assert_allclose(fh.replay(self.model, loaded).q, truth.q, rtol=0, atol=1e-12)
+        for one in (lambda: fh.sensitivity(self.model, [loaded], ["hand.mass"]),
                     lambda: fh.calibrate(self.model, [loaded], ["hand.mass"]),
                     lambda: fh.calibrate(self.model, [self.trial], ["hand.mass"], hold_out=[loaded]),
                     lambda: fh.make_trial(self.model, self.columns(), known_mass_in_hand=-1)):
@@ -161,7 +172,7 @@ class Arms(unittest.TestCase):
         turned = fh.make_trial(self.model, self.columns(), known_arm_turn=-45 * DEGREE)
         self.assertAlmostEqual(turned.known_arm_turn, -45 * DEGREE)
         with self.assertRaisesRegex(ValueError, "the arm turned by -45 deg, which only discover"):
-            fh.replay(self.model, turned)
+            fh.sensitivity(self.model, [turned], ["hand.mass"])
         noise = 0.5 * DEGREE
         columns = {name: values[self.trial.times <= 2.5] for name, values in self.columns().items()}
         angle = np.interp(columns["time"], truth.time, truth.q[:, 0])

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "bio/arm.h"
@@ -20,10 +21,11 @@ class ActivationPlayer {
   /// activation(t0) becomes activation(t1); calls must follow each other in time, or restart().
   void advance(double t0, double t1, Eigen::VectorXd& activation) {
     const std::vector<double>& rows = excitation_->times();
+    const auto behind = [](double t) { return t + 1e-15 * (1 + std::abs(t)); };
     double t = t0;
     while (t < t1) {
       std::size_t next = hint_;
-      while (next < rows.size() && rows[next] <= t * (1 + 1e-15) + 1e-15) ++next;
+      while (next < rows.size() && rows[next] <= behind(t)) ++next;
       const double stop = next < rows.size() ? std::min(rows[next], t1) : t1;
       excitation_->at(stop, hint_, to_);
       for (Eigen::Index i = 0; i < activation.size(); ++i) {

@@ -6,7 +6,25 @@
 #include <optional>
 #include <stdexcept>
 
+#include "coupled_stepping.h"
+#include "moved_mass.h"
+#include "plausible.h"
+
 namespace bio {
+namespace {
+
+/// [m]
+double defaultLength(const Skeleton& skeleton, const MusclePath& path) {
+  return stepping::withCoordinates(skeleton.numCoordinates(), [&](auto N) {
+    constexpr int count = decltype(N)::value;
+    std::vector<RigidMotion<double, count>> moved(skeleton.numSegments());
+    const Eigen::Matrix<double, count, 1> q = skeleton.defaultValues();
+    skeleton.motions<double, count>(q, moved.data());
+    return path.length<count>(q, moved.data()).length;
+  });
+}
+
+}  // namespace
 
 Arm::Arm(const Model& model, const ArmOptions& options) : Arm(model, options, nullptr, {}) {}
 
@@ -24,7 +42,10 @@ const MusclePath* Arm::pathOf(const std::string& muscle) const {
 Arm::Arm(const Model& model, const ArmOptions& options, const Arm* like,
          const std::vector<std::string>& shaped)
     : skeleton_(model, options.skeleton), coordinateForces_(model, skeleton_) {
-  if (!like) warnings_ = lockRemarks(model, options.skeleton);
+  if (!like) {
+    requireMovedMass(model, skeleton_);
+    warnings_ = lockRemarks(model, options.skeleton);
+  }
   std::vector<Posture> postures;  // sampled for the first path that is compiled
   for (const Muscle& muscle : model.muscles) {
     if (!muscle.enabled) {
@@ -47,6 +68,15 @@ Arm::Arm(const Model& model, const ArmOptions& options, const Arm* like,
       continue;
     }
     MusclePath& path = *compiled;
+    if (!like) {
+      warnings_.insert(warnings_.end(), path.warnings().begin(), path.warnings().end());
+      if (const double length = defaultLength(skeleton_, path); length < shortestPath) {
+        warnings_.push_back(
+            fmt::format("muscle '{}': its path is {:.3g} m long in the default "
+                        "posture, usually more than 1 mm",
+                        muscle.name, length));
+      }
+    }
     if (!path.moves()) {
       notes_.push_back(
           fmt::format("muscle '{}' is left out: no free coordinate moves it", muscle.name));

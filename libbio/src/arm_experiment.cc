@@ -54,19 +54,22 @@ ArmExperiment::ArmExperiment(const ParameterCatalogue& catalogue, const ArmOptio
 Trajectory ArmExperiment::simulate(const Eigen::VectorXd& theta) const {
   return simulateAt(catalogue_->at(selection_, theta));
 }
-Trajectory ArmExperiment::simulateAt(const ParameterCatalogue::Setting& setting) const {
+Trajectory ArmExperiment::simulateAt(ParameterCatalogue::Setting setting) const {
+  SimulationOptions options = options_;
+  for (const Nudge& nudge : nudges_) apply(nudge, setting.model, options.externalForce);
   const Arm arm(setting.model, armOptions_);
-  return simulateSetting(arm, setting, trial_, options_);
+  return simulateSetting(arm, setting, trial_, options);
 }
 
 SensitivityTrajectory ArmExperiment::simulateWithSensitivities(const Eigen::VectorXd& theta) const {
   return sensitivitiesAt(catalogue_->at(selection_, theta));
 }
-SensitivityTrajectory ArmExperiment::sensitivitiesAt(
-    const ParameterCatalogue::Setting& setting) const {
+SensitivityTrajectory ArmExperiment::sensitivitiesAt(ParameterCatalogue::Setting setting) const {
+  SimulationOptions options = options_;
+  for (const Nudge& nudge : nudges_) apply(nudge, setting.model, options.externalForce);
   const Arm arm(setting.model, armOptions_);
   return bio::simulateWithSensitivities(arm, *catalogue_, setting, selection_, trial_,
-                                        {options_, false});
+                                        {options, false});
 }
 
 Eigen::VectorXd ArmExperiment::outputs(const Eigen::VectorXd& theta) const {

@@ -11,6 +11,7 @@
 #include "info/monte_carlo.h"
 #include "info/residuals.h"
 #include "info/symmetric_eigen.h"
+#include "led_starts.h"
 
 namespace bio {
 namespace {
@@ -101,6 +102,7 @@ class Calibrator {
       fit();
     } catch (const std::domain_error& error) {
       result_.failure = error.what();
+      if (!atStart_.allFinite()) result_.failure += fmt::format(" ({})", failureAt(start));
       return result_;
     }
     judge();
@@ -228,14 +230,14 @@ class Calibrator {
       return progress(fitShare * done);
     };
     const auto p = static_cast<Index>(asked_.size());
-    const MatrixXd guess =
-        atStart_.allFinite() ? atStart_ : MatrixXd::Constant(1, measured_.size(), measured_.mean());
+    const std::vector<VectorXd> led = ledFrom(valuesOf(asked_), estimate);
+    const MatrixXd guess = best(led);
     result_.noise = noiseOf(guess, 0);
     result_.noise.effective = result_.noise.deviation;  // white until there is a fit
     {
       const info::MultiStart found = info::estimateFromStarts(
           problem(result_.noise.effective), known_,
-          {options_.starts, options_.seed, options_.trials.threads, 2, estimate});
+          {options_.starts, options_.seed, options_.trials.threads, 2, estimate, led});
       estimate_ = found.best;
       result_.starts = found.outcomes;
       result_.agreeingStarts = found.agreeing;
@@ -260,6 +262,27 @@ class Calibrator {
     }
     result_.calibrated =
         training_.catalogue().at(training_.selection(), estimate_.parameters.head(common()));
+  }
+
+  /// Where further starts end that are led by held models; none where nothing is to be led.
+  std::vector<VectorXd> ledFrom(const VectorXd& start, const info::EstimateOptions& estimate) {
+    const double floor = measuredDeviation(training_);
+    result_.noiseFloor = floor;
+    const double deviation = std::max(options_.noise.value_or(floor), 1e-4);
+    const std::vector<info::Parameter> parameters = problem(deviation).parameters();
+    return ledStarts(training_, parameters, startsOnBothSides(training_, parameters, start),
+                     deviation, estimate);
+  }
+
+  /// The prediction nearest to the data, of the start and of those.
+  MatrixXd best(const std::vector<VectorXd>& starts) const {
+    MatrixXd nearest =
+        atStart_.allFinite() ? atStart_ : MatrixXd::Constant(1, measured_.size(), measured_.mean());
+    for (const VectorXd& start : starts) {
+      const MatrixXd there = predictor_.outputs(start);
+      if ((measured_ - there).norm() < (measured_ - nearest).norm()) nearest = there;
+    }
+    return nearest;
   }
 
   /// What the data determine, and the intervals of it.

@@ -160,6 +160,7 @@ class Compiler {
         leaveOut(wrap, variant, bits);
       }
     }
+    for (const PathSpan& span : variant.all) tellOfSeveral(span, bits);
     // the spans that stay: their length, once and for all
     const Posture& posture = postures_.front();
     for (const PathSpan& span : variant.all) {
@@ -170,6 +171,38 @@ class Compiler {
       }
     }
     path_.variants.push_back(std::move(variant));
+  }
+
+  std::string nameOf(const SpanSurface& way) const {
+    return muscle_.path.wraps[path_.surfaces[way.surface].wrap].wrapObject;
+  }
+
+  // A span is led round one object; where it touches two at once, that is said.
+  void tellOfSeveral(const PathSpan& span, std::size_t bits) {
+    if (span.surfaces.size() < 2) return;
+    for (const Posture& posture : postures_) {
+      if (!occurs(bits, posture)) continue;
+      std::vector<std::string> touched;
+      for (const SpanSurface& way : span.surfaces) {
+        if (touches(path_, span, way, posture)) touched.push_back(nameOf(way));
+      }
+      if (touched.size() < 2) continue;
+      warnOfSeveral(span, touched);
+      return;
+    }
+  }
+
+  void warnOfSeveral(const PathSpan& span, const std::vector<std::string>& objects) {
+    const auto point = [&](std::size_t node) {
+      return muscle_.path.points[path_.nodes[node].point].name;
+    };
+    const std::string line = fmt::format(
+        "muscle '{}' touches the wrap objects '{}' at once between its points '{}' and '{}': only "
+        "'{}' is heeded",
+        muscle_.name, fmt::join(objects, "' and '"), point(span.a), point(span.b), objects.front());
+    if (std::find(path_.warnings.begin(), path_.warnings.end(), line) == path_.warnings.end()) {
+      path_.warnings.push_back(line);
+    }
   }
 
   // Whether a posture has exactly the conditions of these bits.
@@ -295,9 +328,14 @@ class Compiler {
     encounter.way.slip = slipAngle(decided, std::move(angles));
   }
 
-  void give(const Encounter& encounter, PathVariant& variant) const {
+  void give(const Encounter& encounter, PathVariant& variant) {
     PathSpan& span = variant.all[encounter.span];
-    if (!encounter.moves && !span.surfaces.empty()) return;  // the first object has it
+    if (!encounter.moves && !span.surfaces.empty()) {  // the first object has it
+      if (encounter.penetrates) {
+        warnOfSeveral(span, {nameOf(span.surfaces.front()), nameOf(encounter.way)});
+      }
+      return;
+    }
     span.surfaces.push_back(encounter.way);
     span.moves = span.moves || encounter.moves;
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "coupled_stepping.h"
@@ -63,6 +64,12 @@ void stepping::checkSimulation(const Arm& arm, const ExcitationSignal& excitatio
   require(
       options.duration / options.step < 1e8,
       fmt::format("duration/step = {:.3g} steps, must be < 1e8", options.duration / options.step));
+  const double furthest =
+      std::max(std::abs(options.startTime), std::abs(options.startTime + options.duration));
+  require(options.step > 1e-9 * furthest,
+          fmt::format("time up to {} s, must be below 1e9 steps of {} s: else numbers cannot tell "
+                      "one time from the next",
+                      furthest, options.step));
   require(options.maxHalvings >= 0 && options.maxHalvings <= 40,
           fmt::format("maxHalvings = {}, must be 0 to 40", options.maxHalvings));
   require(options.newtonTolerance > 0, "newtonTolerance must be > 0");

@@ -49,9 +49,9 @@ void check(const std::vector<std::string>& muscles, const EmgMapping& mapping) {
     }
   }
   for (const EmgMapping::Crosstalk& c : mapping.crosstalk) {
-    if (!known(c.from) || !known(c.to) || c.from == c.to || !std::isfinite(c.share)) {
+    if (!known(c.from) || !known(c.to) || !std::isfinite(c.share)) {
       throw std::invalid_argument(
-          fmt::format("EMG crosstalk {} from '{}' to '{}': must be finite, between two muscles "
+          fmt::format("EMG crosstalk {} from '{}' to '{}': must be finite, between muscles "
                       "that move",
                       c.share, c.from, c.to));
     }

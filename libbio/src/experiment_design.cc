@@ -19,7 +19,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double sameTime = 1e-9;  ///< times nearer than this are one [s]
+constexpr double sameSample = 1e-9;  ///< times nearer than this are one [s]
 
 std::vector<double> equalTimes(double start, double duration, double interval) {
   const auto count = static_cast<std::size_t>(std::floor(duration / interval + 1e-6));
@@ -285,7 +285,7 @@ Table designTable(const Arm& arm, const DesignedExperiment& e, const std::string
   table.columns.push_back(coordinate);
   Index row = 0;
   for (Index i = 0; i < e.measuredTimes.size(); ++i) {
-    while (row + 1 < K && times[static_cast<std::size_t>(row)] < e.measuredTimes[i] - sameTime) {
+    while (row + 1 < K && times[static_cast<std::size_t>(row)] < e.measuredTimes[i] - sameSample) {
       ++row;
     }
     table.values(row, table.values.cols() - 1) = e.measured[i];

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 namespace bio {
@@ -39,6 +41,20 @@ ExternalForce::At ExternalForce::at(double t) const {
   const auto k = static_cast<Eigen::Index>(hint);
   result.slope = (values_.col(k + 1) - values_.col(k)) / (times_[hint + 1] - times_[hint]);
   return result;
+}
+
+ExternalForce sum(const ExternalForce& one, const ExternalForce& other) {
+  if (one.empty()) return other;
+  if (other.empty()) return one;
+  std::vector<double> times;
+  std::set_union(one.times().begin(), one.times().end(), other.times().begin(), other.times().end(),
+                 std::back_inserter(times));
+  Eigen::MatrixXd values(static_cast<Eigen::Index>(times.size()), one.numCoordinates());
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    values.row(static_cast<Eigen::Index>(k)) =
+        (one.at(times[k]).value + other.at(times[k]).value).transpose();
+  }
+  return {std::move(times), values};
 }
 
 }  // namespace bio

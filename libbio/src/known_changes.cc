@@ -52,6 +52,11 @@ std::map<std::string, std::string> headerOf(const KnownChanges& known) {
   return header;
 }
 
+const std::vector<std::string>& knownLines() {
+  static const std::vector<std::string> names = {massLine, turnLine};
+  return names;
+}
+
 KnownChanges knownChangesIn(const std::map<std::string, std::string>& header) {
   return {numberOf(header, massLine, 0, 100), numberOf(header, turnLine, -180, 180) * degree};
 }

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <stdexcept>
 
 #include "plausible.h"
+#include "principal_moments.h"
 
 namespace bio {
 namespace {
@@ -43,13 +45,11 @@ void Reviewer::reviewBody(const Body& body) {
         largest, sum - largest);
   }
   // Off-diagonal terms may make a matrix that no mass distribution has.
-  Eigen::Matrix3d tensor;
-  tensor << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2];
-  const Eigen::Vector3d principal =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor, Eigen::EigenvaluesOnly).eigenvalues();
-  if (principal.minCoeff() < -1e-12 * largest) {
-    say(subject, "least principal moment of inertia = {:.4g} kg m², usually ≥ 0",
+  const Eigen::Vector3d principal = principalMoments(body);
+  if (hasNegativeMoment(principal)) {
+    say(subject, "least principal moment of inertia = {:.4g} kg m², must be ≥ 0",
         principal.minCoeff());
+    remarks.back().weight = Weight::error;
   } else if (principal(2) > (principal(0) + principal(1)) * (1 + 1e-9) &&
              largest <= (sum - largest) * (1 + 1e-9)) {
     say(subject,
@@ -137,6 +137,12 @@ void Reviewer::reviewMuscle(const Muscle& muscle) {
           point.name, point.condition->lower, point.condition->upper);
     }
   }
+  const std::vector<PathPoint>& points = muscle.path.points;
+  const bool atOnePlace = std::all_of(points.begin(), points.end(), [&](const PathPoint& p) {
+    return !p.motion && p.body == points.front().body &&
+           (p.location - points.front().location).norm() < shortestPath;
+  });
+  if (atOnePlace) say(subject, "all its points are at one place: its path has no length");
   if (muscle.schutte) {
     reviewParameters(subject, *muscle.schutte);
     reviewCurves(subject, *muscle.schutte);
@@ -208,7 +214,7 @@ void Reviewer::reviewForces() {
 
 }  // namespace
 
-std::vector<Remark> reviewModel(const Model& model) {
+std::vector<Remark> reviewNumbers(const Model& model) {
   Reviewer reviewer{model, {}};
   bool anyFree = false;
   for (const Body& body : model.bodies) reviewer.reviewBody(body);

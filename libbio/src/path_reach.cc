@@ -122,4 +122,17 @@ double closestApproach(const Vec3<double>& semiAxes, const Vec3<double>& p_CP,
   return (P + t * d).norm();
 }
 
+bool touches(const CompiledPath& path, const PathSpan& span, const SpanSurface& way,
+             const Posture& posture) {
+  const PathSurface& surface = path.surfaces[way.surface];
+  const auto seen = [&](std::size_t node) {
+    return seenFrom(posture, surface.segment, surface.X_SC,
+                    nodePosition(path, path.nodes[node], posture));
+  };
+  const Vec3<double> P = seen(span.a), Q = seen(span.b);
+  if (surfaceIsOutOfPlay(surface, surface.radius, way, P, Q)) return false;
+  return surface.isSphere ? wrapSphere(surface.radius, way.way, P, Q).touches
+                          : wrapCylinder(surface.radius, way.side, P, Q).touches;
+}
+
 }  // namespace bio

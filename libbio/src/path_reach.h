@@ -11,6 +11,10 @@ Vec3<double> nodePosition(const CompiledPath& path, const PathNode& node, const 
 Vec3<double> seenFrom(const Posture& posture, std::size_t segment, const Placement<double>& X_SC,
                       const Vec3<double>& p_G);
 
+/// Whether a span that is led over one surface alone touches it in a posture.
+bool touches(const CompiledPath& path, const PathSpan& span, const SpanSurface& way,
+             const Posture& posture);
+
 /// The least distance of a segment's inner points from the origin (of a cylinder: from its axis),
 /// in units of the radius; infinite where it is that of an end, or beyond a cylinder's ends.
 double closestApproach(const PathSurface& surface, const Vec3<double>& p_CP,

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <numbers>
 #include <optional>
 
+#include "bio/simulation_names.h"
 #include "coupled_stepping.h"
 #include "motion_weights.h"
 
@@ -69,6 +71,45 @@ Eigen::VectorXd startCoordinates(const Trial& trial, const Arm& arm,
   return q;
 }
 
+const char* name(TrialBeginning::From from) {
+  static constexpr const char* names[] = {"given", "model", "measured", "default"};
+  return names[static_cast<int>(from)];
+}
+
+TrialBeginning beginningOf(const Trial& trial, const Model& model, const Arm& arm,
+                           const std::map<std::string, double>& given) {
+  using From = TrialBeginning::From;
+  TrialBeginning beginning;
+  beginning.point.q = startCoordinates(trial, arm, given);
+  beginning.point.qDot = Eigen::VectorXd::Zero(beginning.point.q.size());
+  bool isMeasured = false, isFitted = false;
+  for (Eigen::Index i = 0; i < beginning.point.q.size(); ++i) {
+    const std::string& free = arm.skeleton().coordinates()[static_cast<std::size_t>(i)].name;
+    if (given.contains(free)) continue;
+    for (const MeasuredMotion& measured : trial.measured)
+      isMeasured = isMeasured || (measured.coordinate == free && measured.values.size() > 0);
+    for (const TrialStart& start : model.fitted.starts) {
+      if (trial.sha256.empty() || start.sha256 != trial.sha256 || start.coordinate != free)
+        continue;
+      beginning.point.q[i] = start.value;
+      beginning.point.qDot[i] = start.speed;
+      isFitted = true;
+    }
+  }
+  beginning.from = isFitted         ? From::model
+                   : !given.empty() ? From::given
+                   : isMeasured     ? From::measured
+                                    : From::defaults;
+  return beginning;
+}
+
+double stepOf(const Model& model, Integrator integrator, const std::optional<double>& given) {
+  if (given) return *given;
+  const bool isVariational =
+      integrator == Integrator::variational || integrator == Integrator::variationalLeft;
+  return isVariational && model.fitted.step ? *model.fitted.step : defaultStep(integrator);
+}
+
 std::vector<double> observedTimes(const Trial& trial, const std::string& coordinate, double step) {
   for (const MeasuredMotion& measured : trial.measured) {
     if (measured.coordinate == coordinate && measured.times.size() > 0) {
@@ -114,6 +155,30 @@ MeasuredError compareWithMeasured(const Arm& arm, const Trajectory& trajectory,
   return error;
 }
 
+TrialReplay replayTrial(const Arm& arm, const Trial& trial, SimulationOptions options,
+                        TrialBeginning beginning) {
+  TrialReplay replay;
+  const ExcitationSignal excitation = excitationOf(trial, arm);
+  options.startTime = trial.times[0];
+  options.duration = trial.duration();
+  options.externalForce = externalForceOf(trial, arm);
+  replay.beginning = std::move(beginning);
+  ArmState start = initialState(arm, replay.beginning.point.q, excitation, options.startTime);
+  start.qDot = replay.beginning.point.qDot;
+  replay.motion = simulate(arm, excitation, start, options);
+  for (const MeasuredMotion& measured : trial.measured) {
+    const bool isReached =
+        measured.times.size() > 0 && measured.times[0] <= replay.motion.time.back();
+    if (isReached && arm.skeleton().indexOf(measured.coordinate) >= 0) {
+      replay.errors.emplace_back(measured.coordinate,
+                                 compareWithMeasured(arm, replay.motion, measured));
+    }
+  }
+  options.progress = {};
+  replay.options = std::move(options);
+  return replay;
+}
+
 std::vector<std::string> rangeRemarks(const Arm& arm, const Trajectory& trajectory) {
   std::vector<std::string> remarks;
   for (std::size_t i = 0; i < arm.skeleton().coordinates().size(); ++i) {
@@ -133,6 +198,44 @@ std::vector<std::string> rangeRemarks(const Arm& arm, const Trajectory& trajecto
     }
   }
   return remarks;
+}
+
+std::optional<LeftRange> leftRange(const Arm& arm, const Trajectory& trajectory) {
+  std::optional<LeftRange> first;
+  const auto look = [&](const std::string& name, const Eigen::VectorXd& values, double low,
+                        double high, const std::function<std::string(double)>& sentence) {
+    for (Eigen::Index k = 0; k < values.size(); ++k) {
+      if (values[k] >= low && values[k] <= high) continue;
+      const double time = trajectory.time[static_cast<std::size_t>(k)];
+      if (!first || time < first->time) first = LeftRange{time, name, sentence(time)};
+      return;
+    }
+  };
+  for (std::size_t i = 0; i < arm.skeleton().coordinates().size(); ++i) {
+    const Coordinate& c = arm.skeleton().coordinates()[i];
+    const double unit = c.isRotation ? 180 / std::numbers::pi : 1e3;
+    const double margin = std::max(0.1 * (c.rangeMax - c.rangeMin), 1 / unit);
+    const Eigen::VectorXd q = trajectory.q.row(static_cast<Eigen::Index>(i));
+    look(c.name, q, c.rangeMin - margin, c.rangeMax + margin, [&](double time) {
+      return fmt::format(
+          "{0} leaves its range, {1:.4g} to {2:.4g} {3}, by more than a tenth of it "
+          "at {4:.3g} s and reaches {5:.4g} to {6:.4g} {3}",
+          c.name, c.rangeMin * unit, c.rangeMax * unit, c.isRotation ? "deg" : "mm", time,
+          q.minCoeff() * unit, q.maxCoeff() * unit);
+    });
+  }
+  for (std::size_t i = 0; i < arm.numMuscles(); ++i) {
+    const ArmMuscle& muscle = arm.muscles()[i];
+    const Eigen::VectorXd l =
+        trajectory.fibreLength.row(static_cast<Eigen::Index>(i)) * muscle.muscle.perFibre();
+    look(muscle.name, l, 0.2, 2, [&](double time) {
+      return fmt::format(
+          "the fibres of {} leave 0.2 to 2 optimal lengths at {:.3g} s and reach "
+          "{:.3g} to {:.3g}",
+          muscle.name, time, l.minCoeff(), l.maxCoeff());
+    });
+  }
+  return first;
 }
 
 Table statesTable(const Model& model, const Arm& arm, const Trajectory& trajectory) {
@@ -205,6 +308,7 @@ PathSample samplePaths(const Model& model, const Skeleton& skeleton,
       continue;
     }
     MusclePath& path = *compiled;
+    sample.warnings.insert(sample.warnings.end(), path.warnings().begin(), path.warnings().end());
     if (!path.moves()) {
       sample.notes.push_back(
           fmt::format("muscle '{}' is left out: no free coordinate moves it", muscle.name));

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cctype>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -19,10 +20,17 @@ std::string readTextFile(const std::filesystem::path& file) {
   if (std::filesystem::is_directory(file, error)) {
     throw FileError(fmt::format("{}: is a directory, must be a file", file.string()));
   }
-  // Some devices never end.
-  if (std::filesystem::is_character_file(file, error) ||
-      std::filesystem::is_block_file(file, error)) {
-    throw FileError(fmt::format("{}: is a device, must be a file", file.string()));
+  // Some devices and pipes never end, others never begin.
+  const bool isPipe =
+      std::filesystem::is_fifo(file, error) || std::filesystem::is_socket(file, error);
+  if (isPipe || !std::filesystem::is_regular_file(file, error)) {
+    throw FileError(
+        fmt::format("{}: is a {}, must be a file", file.string(), isPipe ? "pipe" : "device"));
+  }
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  if (!error && size > mostTextBytes) {
+    throw FileError(fmt::format("{}: has {:.3g} GiB, must be at most 1 GiB", file.string(),
+                                std::ldexp(static_cast<double>(size), -30)));
   }
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;

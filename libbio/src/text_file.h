@@ -6,7 +6,8 @@
 namespace bio {
 
 /// All bytes of a file.
-/// @throws FileError if it is missing, a directory or a device, or cannot be read
+/// @throws FileError if it is missing, a directory, a device or a pipe, longer than mostTextBytes,
+///   or cannot be read
 std::string readTextFile(const std::filesystem::path& file);
 
 /// Writes the text under a temporary name beside `file` and renames it, so that no half-written

@@ -182,8 +182,9 @@ void refuseTomlHazards(std::string_view text, const std::string& file) {
     throw FileError(fmt::format("{}: '{}' is a list without an item, must have no keys of its own",
                                 file, *name));
   }
-  constexpr int deepest = 100;
+  constexpr int deepest = 100, mostValues = 10000;
   int brackets = 0;
+  std::ptrdiff_t values = 0;  // or rather signs that one follows
   for (int number = 1; !text.empty(); ++number) {
     const auto end = std::min(text.find('\n'), text.size());
     if (!isUtf8(text.substr(0, end))) {
@@ -197,6 +198,12 @@ void refuseTomlHazards(std::string_view text, const std::string& file) {
     if (hasLongBinary(*code)) {
       throw FileError(
           fmt::format("{}:{}: a binary number, must have at most 62 digits", file, number));
+    }
+    values +=
+        std::count_if(code->begin(), code->end(), [](char c) { return c == '=' || c == ','; });
+    if (values > mostValues) {
+      throw FileError(fmt::format("{}:{}: more than {} values, must be at most so many", file,
+                                  number, mostValues));
     }
     int dots = 0;
     for (const char c : *code) {

@@ -1,8 +1,10 @@
 #include "bio/trial.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -86,6 +88,7 @@ class TrialReader {
         fail(fmt::format("time = {} s in row {}, must be finite and rise", trial_.times[row], row));
       }
     }
+    readHeader();
     readKnownChanges();
     sortColumns();
     readExcitations();
@@ -109,6 +112,27 @@ class TrialReader {
     return names;
   }
 
+  // A line of the header that was meant to say something and does not.
+  void readHeader() {
+    std::vector<std::string> meant = knownLines();
+    for (const auto& [key, value] : table_.metadata) {
+      if (std::find(meant.begin(), meant.end(), key) != meant.end()) continue;
+      std::string low = key;
+      for (char& c : low) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      if (low.starts_with("known_")) {
+        fail(fmt::format("header: '{}' means nothing, must be {}{}", key,
+                         fmt::join(knownLines(), " or "), meantInstead(key, knownLines())));
+      }
+    }
+    meant.push_back("inDegrees");
+    for (const auto& [key, value] : table_.metadata) {
+      const std::string nearest = nearestName(key, meant);
+      if (nearest.empty() || nearest == key) continue;
+      trial_.warnings.push_back(
+          fmt::format("{}: header: '{}' means nothing, did you mean '{}'?", file_, key, nearest));
+    }
+  }
+
   void readKnownChanges() {
     try {
       trial_.known = knownChangesIn(table_.metadata);
@@ -116,7 +140,7 @@ class TrialReader {
       fail(error.what());
     }
     if (trial_.known.any() && !options_.knownChanges) {
-      fail(fmt::format("recorded {} (header), which only 'discover' takes into account",
+      fail(fmt::format("recorded {} (header), which only 'discover' and 'replay' take into account",
                        inWords(trial_.known)));
     }
   }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <stdexcept>
 
 #include "plausible.h"
 
@@ -26,7 +28,11 @@ void reviewSampling(const Trial& trial, std::vector<Remark>& remarks) {
                                            "(the median is {:.4g} s)",
                                            least, largest, median)});
   }
-  if (median > 0.1) {
+  if (median >= millisecondsBeyond && trial.duration() >= millisecondsFrom) {
+    remarks.push_back(
+        {"time", fmt::format("rows are {:.4g} s apart, usually below 0.1 s: milliseconds?", median),
+         Weight::warning});
+  } else if (median > 0.1) {
     remarks.push_back(
         {"time", fmt::format("rows are {:.4g} s apart, usually below 0.1 s", median)});
   }
@@ -69,11 +75,22 @@ void reviewMotion(const MeasuredMotion& motion, const Coordinate& coordinate, do
   const double least = motion.values.minCoeff(), largest = motion.values.maxCoeff();
   const double widest = std::max(std::abs(least), std::abs(largest));
   const char* unit = coordinate.isRotation ? "rad" : "m";
+  const bool isOutside = least < coordinate.rangeMin - 1e-3 || largest > coordinate.rangeMax + 1e-3;
+  if (coordinate.isRotation && isOutside && widest > certainlyDegreesBeyond) {
+    remarks.push_back(
+        {subject,
+         fmt::format("values = {:.4g} to {:.4g} rad, must be within ±2π or the model's range: "
+                     "degrees stand in a column '{}_deg', or under inDegrees=yes",
+                     least, largest, motion.coordinate),
+         Weight::error});
+    return;
+  }
   if (coordinate.isRotation && widest > degreesBeyond) {
     remarks.push_back(
-        {subject, fmt::format("values = {:.4g} to {:.4g} rad, usually within ±4π: degrees?", least,
-                              largest)});
-  } else if (least < coordinate.rangeMin - 1e-3 || largest > coordinate.rangeMax + 1e-3) {
+        {subject,
+         fmt::format("values = {:.4g} to {:.4g} rad, usually within ±4π: degrees?", least, largest),
+         Weight::warning});
+  } else if (isOutside) {
     remarks.push_back(
         {subject, fmt::format("values = {:.4g} to {:.4g} {}, outside the model's range {} to {}",
                               least, largest, unit, coordinate.rangeMin, coordinate.rangeMax)});
@@ -108,6 +125,32 @@ std::vector<Remark> reviewTrial(const Trial& trial, const Model& model) {
     reviewMotion(motion, findCoordinate(model, motion.coordinate), trial.times(0), remarks);
   }
   return remarks;
+}
+
+std::string whyNotUsable(const MeasuredMotion& motion, Eigen::Index fewest) {
+  const auto count = motion.values.size();
+  if (count < fewest) {
+    return fmt::format("'{}' has {} measured value{}, must have at least {}", motion.coordinate,
+                       count, count == 1 ? "" : "s", fewest);
+  }
+  const double low = motion.values.minCoeff(), high = motion.values.maxCoeff();
+  if (low == high) {
+    return fmt::format("'{}' has the same value in all {} samples, must change", motion.coordinate,
+                       count);
+  }
+  const bool areTwo = (motion.values.array() == low || motion.values.array() == high).all();
+  if (areTwo && count > 2) {
+    return fmt::format(
+        "'{}' has only two different values in {} samples, the steps of its sensor, "
+        "must have more",
+        motion.coordinate, count);
+  }
+  return "";
+}
+
+void requireUsable(const std::string& file, const MeasuredMotion& motion, Eigen::Index fewest) {
+  const std::string why = whyNotUsable(motion, fewest);
+  if (!why.empty()) throw std::invalid_argument(fmt::format("{}: measured {}", file, why));
 }
 
 }  // namespace bio

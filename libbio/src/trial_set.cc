@@ -7,6 +7,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "bio/nudge.h"
 #include "bio/replay.h"
 #include "info/monte_carlo.h"
 
@@ -46,8 +47,9 @@ TrialSet::TrialSet(const Model& model, const ArmOptions& arm, std::vector<Trial>
       throw std::invalid_argument(
           trial.file + ": has a torque from outside, which calibration does not take into account");
     }
-    const StartPoint start{startCoordinates(trial, *arm_, options.initial), {}};
-    catalogues_.push_back(std::make_unique<const ParameterCatalogue>(model, *arm_, start));
+    beginnings_.push_back(beginningOf(trial, model, *arm_, options.initial));
+    catalogues_.push_back(
+        std::make_unique<const ParameterCatalogue>(model, *arm_, beginnings_.back().point));
   }
   collectParameters(options);
   collectSeries(options);
@@ -126,6 +128,12 @@ Eigen::VectorXd TrialSet::thetaOf(std::size_t trial, const Eigen::VectorXd& thet
   return part;
 }
 
+StartPoint TrialSet::startAt(std::size_t trial, const Eigen::VectorXd& theta) const {
+  std::vector<std::size_t> all = selection_;
+  all.insert(all.end(), own_.begin(), own_.end());
+  return catalogues_.at(trial)->at(all, thetaOf(trial, theta)).start;
+}
+
 Eigen::MatrixXd TrialSet::measured() const {
   Index samples = 0;
   for (const MeasuredSeries& series : series_) samples += series.values.size();
@@ -138,21 +146,33 @@ Eigen::MatrixXd TrialSet::measured() const {
   return values;
 }
 
-info::Predictor TrialSet::predictor() const {
+std::vector<ArmExperiment> TrialSet::nudged(double frequency) const {
+  std::vector<ArmExperiment> held = experiments_;
+  for (std::size_t s = 0; s < series_.size(); ++s) {
+    for (const MeasuredSeries& other : series_) {
+      if (other.trial != series_[s].trial || other.times.size() < 4) continue;
+      held[s].hold(nudgeTo(*arm_, arm_->skeleton().indexOf(other.coordinate), other.times,
+                           other.values, frequency));
+    }
+  }
+  return held;
+}
+
+info::Predictor TrialSet::predictor(const std::vector<ArmExperiment>& experiments) const {
   // where the samples of each series begin
   std::vector<Index> begin = {0};
   for (const MeasuredSeries& series : series_) begin.push_back(begin.back() + series.values.size());
   info::Predictor predictor;
-  predictor.outputs = [this, begin](const Eigen::VectorXd& theta) {
+  predictor.outputs = [this, begin, &experiments](const Eigen::VectorXd& theta) {
     Eigen::MatrixXd y(1, begin.back());
     info::parallelFor(static_cast<int>(series_.size()), threads_, [&](int i) {
       const auto s = static_cast<std::size_t>(i);
       y.middleCols(begin[s], begin[s + 1] - begin[s]) =
-          experiments_[s].outputs(thetaOf(series_[s].trial, theta)).transpose();
+          experiments[s].outputs(thetaOf(series_[s].trial, theta)).transpose();
     });
     return y;
   };
-  predictor.withSensitivities = [this, begin](const Eigen::VectorXd& theta) {
+  predictor.withSensitivities = [this, begin, &experiments](const Eigen::VectorXd& theta) {
     info::Prediction all{Eigen::MatrixXd(1, begin.back()),
                          Eigen::MatrixXd::Zero(begin.back(), theta.size())};
     const auto common = static_cast<Index>(selection_.size());
@@ -162,7 +182,7 @@ info::Predictor TrialSet::predictor() const {
       const std::size_t trial = series_[s].trial;
       const Index first = begin[s], count = begin[s + 1] - begin[s];
       const ArmExperiment::Linearised part =
-          experiments_[s].withSensitivities(thetaOf(trial, theta));
+          experiments[s].withSensitivities(thetaOf(trial, theta));
       all.outputs.middleCols(first, count) = part.outputs.transpose();
       all.gamma.block(first, 0, count, common) = part.gamma.leftCols(common);
       all.gamma.block(first, common + static_cast<Index>(trial) * own, count, own) =
@@ -201,6 +221,19 @@ double TrialSet::meanSquare(const Eigen::MatrixXd& predicted, std::size_t trial)
     at += n;
   }
   return sum / static_cast<double>(count);
+}
+
+std::vector<double> TrialSet::largestDifferences(const Eigen::MatrixXd& a,
+                                                 const Eigen::MatrixXd& b) const {
+  std::vector<double> largest(trials_.size(), 0.0);
+  Index at = 0;
+  for (const MeasuredSeries& series : series_) {
+    const Index n = series.values.size();
+    const double difference = (a.middleCols(at, n) - b.middleCols(at, n)).cwiseAbs().maxCoeff();
+    largest[series.trial] = std::max(largest[series.trial], difference);
+    at += n;
+  }
+  return largest;
 }
 
 }  // namespace bio

@@ -110,6 +110,8 @@ ArmPoser::ArmPoser(const Model& model, const SkeletonOptions& options,
       warnings_.push_back(fmt::format("{}: the muscle is left out", error.what()));
       continue;
     }
+    const std::vector<std::string>& said = paths_.back().warnings();
+    warnings_.insert(warnings_.end(), said.begin(), said.end());
     names_.push_back(muscle.name);
     wraps_.emplace_back();
     for (const PathWrap& wrap : muscle.path.wraps) {

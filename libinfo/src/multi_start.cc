@@ -28,14 +28,22 @@ MultiStart estimateFromStarts(const LeastSquares& problem, const VectorXd& scale
     throw std::invalid_argument(
         fmt::format("scale of {} parameters must be {} finite values ≥ 0", own.size(), own.size()));
   }
-  const auto n = static_cast<std::size_t>(options.starts);
+  for (const VectorXd& one : options.further) {
+    if (one.size() != own.size()) {
+      throw std::invalid_argument(
+          fmt::format("start of {} parameters must be {}", one.size(), own.size()));
+    }
+  }
+  const std::size_t n = static_cast<std::size_t>(options.starts) + options.further.size();
   MultiStart result;
   result.outcomes.resize(n);
   std::vector<std::optional<Estimate>> estimates(n);
-  parallelFor(options.starts, options.threads, [&](int i) {
+  parallelFor(static_cast<int>(n), options.threads, [&](int i) {
     StartOutcome& outcome = result.outcomes[static_cast<std::size_t>(i)];
     outcome.start = own;
-    if (i > 0) {
+    if (i >= options.starts) {
+      outcome.start = options.further[static_cast<std::size_t>(i - options.starts)];
+    } else if (i > 0) {
       RandomStream random(options.seed, static_cast<std::uint64_t>(i));
       for (Index j = 0; j < own.size(); ++j) {
         const Parameter& parameter = problem.parameters()[static_cast<std::size_t>(j)];

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "support/replays.h"
 #include "support/run_program.h"
 #include "support/scratch_folder.h"
 #include "support/shipped_files.h"
@@ -27,9 +28,9 @@ TEST(CalibrateCommand, WritesTheModelTheSummaryAndTheReport) {
                                               "--parameters", "TRI.radius,hand.mass", "--profile",
                                               "hand.mass", "--starts", "3", "--out", out});
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_THAT(scratch.listing(),
-              testing::UnorderedElementsAre("out", "out/calibrated.osim", "out/covariance.csv",
-                                            "out/report.html", "out/summary.json"));
+  EXPECT_THAT(scratch.listing(), testing::UnorderedElementsAre(
+                                     "out", "out/calibrated.osim", "out/covariance.csv",
+                                     "out/parameters.csv", "out/report.html", "out/summary.json"));
   const auto json = nlohmann::json::parse(contentOf(out + "/summary.json"));
   EXPECT_EQ(json["inputs"].size(), 3u);
   EXPECT_LT(json["rmse_train_deg"].get<double>(),
@@ -67,6 +68,39 @@ TEST(CalibrateCommand, WritesTheModelTheSummaryAndTheReport) {
     EXPECT_THAT(osim, HasSubstr(input["sha256"].get<std::string>()));
   }
   EXPECT_THAT(osim, HasSubstr("kg (was 0.5819)"));
+}
+
+// Starts that were estimated, and a step of its own, are the calibrated model's.
+TEST(CalibrateCommand, ReplayOfTheCalibratedModelGivesItsFigures) {
+  const ScratchFolder scratch;
+  const auto calibrated = [&](const std::string& out, const std::string& parameters) {
+    const ProgramResult result =
+        runFisherHill({"calibrate", model, slow, "--hold-out", fast, "--parameters", parameters,
+                       "--own-start", "--step", "0.05", "--out", out});
+    EXPECT_EQ(result.status, 0) << result.err;
+    const auto json = nlohmann::json::parse(contentOf(out + "/summary.json"));
+    EXPECT_EQ(json["trials"].size(), 2u);
+    support::expectReplaysAgree(out + "/calibrated.osim", json["trials"], 0.05);
+    EXPECT_NEAR(json["trials"][0]["rmse_after_deg"].get<double>(),
+                json["rmse_train_deg"].get<double>(), 1e-9);
+    EXPECT_NEAR(json["trials"][1]["rmse_after_deg"].get<double>(),
+                json["rmse_held_out_deg"].get<double>(), 1e-9);
+    // as the fit itself has it
+    const auto speed = json["estimates"]["initial.elbow_flexion.speed"]["value"].get<double>();
+    EXPECT_NEAR(json["trials"][0]["start"][0]["speed"].get<double>(), speed, 1e-12);
+    EXPECT_EQ(json["trials"][1]["start"][0]["speed"], 0);
+    return json["trials"];
+  };
+  const std::string plain = (scratch / "plain").string(), driven = (scratch / "driven").string();
+  const auto recorded = calibrated(plain, "TRI.radius,hand.mass");
+  EXPECT_EQ(recorded[0]["replay_file"], slow);
+  const auto rows = linesOf(contentOf(plain + "/parameters.csv"));
+  ASSERT_EQ(rows.size(), 5u);
+  EXPECT_EQ(rows[0], "name,unit,nominal,estimate,sd,prior_sd,prior_z");
+  EXPECT_THAT(rows[1], testing::StartsWith("TRI.radius,m,0.016,"));
+  const auto made = calibrated(driven, "TRI.radius,emg.BRA.gain");
+  EXPECT_EQ(made[0]["replay_file"], driven + "/driven_1.sto");
+  EXPECT_EQ(made[1]["replay_file"], driven + "/driven_held_out_1.sto");
 }
 
 TEST(CalibrateCommand, RefusesAnIntervalInWords) {

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "support/replays.h"
 #include "support/run_program.h"
 #include "support/scratch_folder.h"
 
@@ -24,7 +25,8 @@ TEST(DiscoverCommand, NamesTheDampingThatIsHiddenAddsItAndFindsNothingMore) {
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(scratch.listing(),
               testing::UnorderedElementsAre("out", "out/report.html", "out/summary.json",
-                                            "out/verdict.json", "out/with_effect.osim"));
+                                            "out/verdict.json", "out/with_effect.osim",
+                                            "out/effect_only.osim", "out/parameters.csv"));
   const auto verdict = nlohmann::json::parse(contentOf(out + "/verdict.json"));
   EXPECT_EQ(verdict["verdict"], "named");
   const auto told = nlohmann::json::parse(contentOf(out + "/summary.json"));
@@ -44,6 +46,30 @@ TEST(DiscoverCommand, NamesTheDampingThatIsHiddenAddsItAndFindsNothingMore) {
   EXPECT_GT(effect["log_bayes_factor"].get<double>(), 5);
   EXPECT_GT(verdict["gap"]["train"]["gap_closed"].get<double>(), 0.9);
   EXPECT_TRUE(verdict["gap"]["held_out"].is_null());
+
+  // the model that was written is the one that was scored
+  EXPECT_EQ(verdict["model"], "with_effect.osim");
+  support::expectReplaysAgree(out + "/with_effect.osim", verdict["trials"], 0.01);
+  const auto& after = verdict["gap"]["train"]["rmse_after_deg"];
+  EXPECT_EQ(after, verdict["trials"][0]["rmse_after_deg"]);
+  EXPECT_LT(after.get<double>(), 0.55);
+  const ProgramResult nominal = runFisherHill({"replay", elbow, train, "--json"});
+  EXPECT_NEAR(nlohmann::json::parse(nominal.out)["rms_error_deg"].get<double>(),
+              verdict["trials"][0]["rmse_nominal_deg"].get<double>(), 1e-9);
+  EXPECT_EQ(verdict["trials"][0]["rmse_nominal_deg"], verdict["gap"]["train"]["rmse_nominal_deg"]);
+  EXPECT_EQ(runFisherHill({"check", out + "/with_effect.osim", out + "/effect_only.osim"}).status,
+            0);
+  const auto rows = support::linesOf(contentOf(out + "/parameters.csv"));
+  EXPECT_EQ(rows.at(0), "name,unit,nominal,estimate,sd,prior_sd,prior_z");
+  EXPECT_EQ(rows.size(), 1 + verdict["fitted_parameters"].size());
+  EXPECT_EQ(rows.size(), 1U + 1U + 24U + 2U + 2U);
+  EXPECT_THAT(rows.at(1), testing::StartsWith("visc.viscosity,N m s/rad,0,"));
+  EXPECT_THAT(contentOf(out + "/parameters.csv"), HasSubstr("\nTRIlong.max_isometric_force,N,"));
+  EXPECT_THAT(result.out, HasSubstr("The residual is at the noise floor (0.49°)."));
+  EXPECT_GT(effect["moment_rms_Nm"].get<double>(), 0.1);
+  EXPECT_GT(effect["moment_peak_Nm"].get<double>(), effect["moment_rms_Nm"].get<double>());
+  EXPECT_GT(effect["share_of_muscle_moment"].get<double>(), 0.01);
+  EXPECT_GT(effect["motion_rms_deg"].get<double>(), 3);
   EXPECT_GT(verdict["undetectable_below"]["coulomb"].get<double>(), 0);
   EXPECT_THAT(result.err, HasSubstr("remains untested"));
 
@@ -55,9 +81,10 @@ TEST(DiscoverCommand, NamesTheDampingThatIsHiddenAddsItAndFindsNothingMore) {
       osim, HasSubstr(nlohmann::json::parse(contentOf(out + "/summary.json"))["inputs"][1]["sha256"]
                           .get<std::string>()));
   const std::string report = contentOf(out + "/report.html");
-  for (const char* title : {"What is missing", "All that were raced", "Score over time",
-                            "The force that is missing", "Is what is left white noise?",
-                            "What these data could not have shown", "Next experiment"}) {
+  for (const char* title :
+       {"What is missing", "All that were raced", "Score over time", "The force that is missing",
+        "Is what is left white noise?", "What these data could not have shown", "Next experiment",
+        "Reproduce", "Along emg_data/hidden_a/train_1.sto its moment is", "fisherhill replay"}) {
     EXPECT_THAT(report, HasSubstr(title));
   }
 

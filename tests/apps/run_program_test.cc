@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <functional>
 #include <new>
 #include <numbers>
@@ -54,6 +56,16 @@ Outcome tryProgram(std::vector<std::string> arguments, Trying::Action action) {
 
 ExitStatus done(const CommandContext&, const SimulationOptions&) {
   return ExitStatus::done;
+}
+
+TEST(RunProgram, OneSignalEndsWorkThatNeverLooksWhetherThereWasOne) {
+  const auto busy = [] {
+    tryProgram({"try", "a"}, [](const CommandContext&, const SimulationOptions&) -> ExitStatus {
+      std::raise(SIGTERM);
+      for (;;) pause();
+    });
+  };
+  EXPECT_EXIT(busy(), testing::ExitedWithCode(130), "");
 }
 
 TEST(RunProgram, ReturnsTheSubcommandsStatus) {

@@ -30,6 +30,7 @@ TEST(Sha256, RefusesWhatIsNoFile) {
   const ScratchFolder scratch;
   EXPECT_THROW(sha256OfFile(scratch / "missing"), std::runtime_error);
   EXPECT_THROW(sha256OfFile(scratch.path()), std::runtime_error);
+  EXPECT_THROW(sha256OfFile("/dev/zero"), std::runtime_error);
 }
 
 TEST(Summary, ShowsBytesThatAreNotUtf8AsReplacementCharacters) {

@@ -8,7 +8,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   bio::Model model;
   const auto& path = file.holding(fuzz::textOf(data, size));
   if (!fuzz::readsOrRefuses<bio::FileError>([&] { model = bio::readOsim(path); })) return 0;
-  bio::reviewModel(model);
+  bio::reviewNumbers(model);
   // A model that OpenSim would take may hold what a fresh document cannot say.
   const bool written = fuzz::readsOrRefuses<std::invalid_argument>([&] {
     try {

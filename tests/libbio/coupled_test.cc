@@ -304,6 +304,32 @@ TEST(Coupled, TheProgressCallbackCanStopARun) {
   }
 }
 
+// When a trial begins is of no account, before zero or long after.
+TEST(Coupled, AMotionIsTheSameWheneverItBegins) {
+  const Case c = liftingCase({"elbow_flexion"}, 1.0);
+  for (const Integrator integrator : {Integrator::variational, Integrator::variationalLeft,
+                                      Integrator::rungeKutta4, Integrator::cvode}) {
+    SimulationOptions o =
+        options(integrator, integrator == Integrator::rungeKutta4 ? 2.5e-4 : 0.01, 1.0);
+    const Trajectory atZero = simulate(c.arm, c.excitation, c.start, o);
+    for (const double begin : {-7.0, -1.0, 1000.0}) {
+      std::vector<double> times = c.excitation.times();
+      Eigen::MatrixXd values(times.size(), c.excitation.numMuscles());
+      for (std::size_t k = 0; k < times.size(); ++k) {
+        std::size_t hint = 0;
+        Eigen::VectorXd u(values.cols());
+        c.excitation.at(times[k], hint, u);
+        values.row(static_cast<Eigen::Index>(k)) = u;
+      }
+      for (double& t : times) t += begin;
+      o.startTime = begin;
+      const Trajectory moved = simulate(c.arm, {times, values}, c.start, o);
+      ASSERT_EQ(moved.q.cols(), atZero.q.cols());
+      EXPECT_LT((moved.q - atZero.q).cwiseAbs().maxCoeff(), 1e-8) << begin;
+    }
+  }
+}
+
 TEST(Coupled, BrokenRulesAreNamed) {
   const Case c = liftingCase();
   const auto fails = [&](auto&& change) {
@@ -316,6 +342,7 @@ TEST(Coupled, BrokenRulesAreNamed) {
   fails([](auto& o, auto&) { o.step = std::nan(""); });
   fails([](auto& o, auto&) { o.duration = -1; });
   fails([](auto& o, auto&) { o.duration = 1e9; });
+  fails([](auto& o, auto&) { o.startTime = -1e8; });  // numbers there are too far apart
   fails([](auto& o, auto&) { o.newtonTolerance = std::nan(""); });
   fails([](auto&, auto& s) { s.q[0] = std::nan(""); });
   fails([](auto&, auto& s) { s.fibreLength.resize(2); });

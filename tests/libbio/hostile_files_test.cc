@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <ctime>
+#include <filesystem>
 
 #include "bio/emg_config.h"
 #include "bio/expression.h"
@@ -48,7 +50,7 @@ TEST_F(HostileFiles, LineBreaksInNamesStayOutOfMessages) {
       "<OpenSimDocument Version='40000'><Model><BodySet><objects>"
       "<Body name='two&#10;lines'/></objects></BodySet></Model></OpenSimDocument>";
   EXPECT_THAT(refusalOf([&] { readOsim(folder_.file("m.osim", model)); }),
-              HasSubstr("Body 'two lines': mass is missing"));
+              HasSubstr("Body 'two lines': its name must be without comma, quote, tab or line"));
   EXPECT_THAT(refusalOf<std::invalid_argument>([] { Expression("q +\n unknown", {"q"}); }),
               HasSubstr("unknown name 'unknown'"));
 }
@@ -61,6 +63,30 @@ TEST_F(HostileFiles, ConfigurationsAreUtf8) {
         HasSubstr("emg.toml:2: bytes that are no text, must be UTF-8"));
   }
   EXPECT_THAT(configRefusal("[input]\nsignal = 'µ€\xf0\x9d\x9c\x83'\n"), Not(HasSubstr("UTF-8")));
+}
+
+TEST_F(HostileFiles, PipesAreNoFiles) {
+  const std::string pipe = folder_.path() / "pipe.osim";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THAT(refusalOf([&] { readOsim(pipe); }),
+              HasSubstr("pipe.osim: is a pipe, must be a file"));
+}
+
+TEST_F(HostileFiles, AFileOfManyGigabytesIsNotRead) {
+  const std::string file = folder_.file("large.osim", "<OpenSimDocument>");
+  std::filesystem::resize_file(file, std::uintmax_t{5} << 30);  // a hole: takes no space
+  EXPECT_THAT(refusalOf([&] { readOsim(file); }), HasSubstr("has 5 GiB, must be at most 1 GiB"));
+}
+
+TEST_F(HostileFiles, AConfigurationOfManyValuesIsRefusedAtOnce) {
+  std::string keys, list = "a = [";
+  for (int i = 0; i < 300000; ++i) keys += "k" + std::to_string(i) + " = 1\n";
+  for (int i = 0; i < 300000; ++i) list += "1, ";
+  for (const std::string& text : {keys, list + "1]\n"}) {
+    const std::clock_t begin = std::clock();
+    EXPECT_THAT(configRefusal(text), HasSubstr("more than 10000 values, must be at most so many"));
+    EXPECT_LT(std::clock() - begin, 5 * CLOCKS_PER_SEC);
+  }
 }
 
 TEST_F(HostileFiles, DevicesAreNoFiles) {

@@ -82,7 +82,7 @@ TEST(ModelReview, NamesEachUnusualQuantityOnce) {
        "body 'hand': moment of inertia = 0.0003 kg m², no body has one above the sum of the other "
        "two (0.0002)"},
       {[](Model& m) { m.bodies[11].inertia = {1e-4, 1e-4, 1e-4, 2e-4, 0, 0}; },
-       "body 'hand': least principal moment of inertia = -0.0001 kg m², usually ≥ 0"},
+       "body 'hand': least principal moment of inertia = -0.0001 kg m², must be ≥ 0"},
       {[](Model& m) { m.bodies[11].inertia = {1e-4, 1e-4, 1.9e-4, 0, 9e-5, 0}; },
        "body 'hand': principal moment of inertia = 0.0002456 kg m², no body has one "
        "above the sum of the other two (0.0001444)"},
@@ -138,6 +138,10 @@ TEST(ModelReview, NamesEachUnusualQuantityOnce) {
          m.gravity = {0, -981, 0};
        },
        "model: gravity = 981 m/s², usually 9.81 or 0"},
+      {[](Model& m) {
+         for (PathPoint& p : m.muscles[0].path.points) p = m.muscles[0].path.points[0];
+       },
+       "muscle 'TRIlong': all its points are at one place: its path has no length"},
       {[](Model& m) { m.muscles.clear(); }, "model: has no muscle"},
   };
   for (const Case& c : cases) {
@@ -155,6 +159,20 @@ TEST(ModelReview, FindsAMasslessEndOfTheChain) {
       linesOf(model),
       ElementsAre("body 'hand': mass = 0 kg at the end of the chain: joint 'wrist_hand' has "
                   "nothing to move"));
+}
+
+TEST(ModelReview, SaysWhyNothingOfAModelCanBeSimulated) {
+  EXPECT_EQ(whyNotSimulated(reviewedElbow()), "");
+  Model model = reviewedElbow();
+  for (Muscle& muscle : model.muscles) muscle.schutte.reset();
+  EXPECT_EQ(whyNotSimulated(model), "none of its 8 muscles is of a class that is simulated");
+  model = reviewedElbow();
+  for (Body& body : model.bodies) body.mass = 0, body.inertia = {};
+  EXPECT_EQ(whyNotSimulated(model), "no coordinate that is not locked moves a mass");
+  EXPECT_THAT(linesOf(model), testing::Contains(StartsWith(
+                                  "model: coordinate 'elbow_flexion' moves no mass (inertia = 0")));
+  model.muscles.clear();
+  EXPECT_EQ(whyNotSimulated(model), "it has no muscle");
 }
 
 }  // namespace

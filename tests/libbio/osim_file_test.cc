@@ -255,6 +255,7 @@ TEST_F(SharedModel, EveryKindOfChangeIsWrittenToBothFormats) {
     model.limitForces.push_back({"stop", "elbow_flexion", 2, 100, 0.1, 50, 0.2, 0.3, true});
     model.springForces.push_back({"spring", "elbow_flexion", 1.5, 0.4, 0.2, true});
     model.expressionForces.push_back({"push", "elbow_flexion", "-0.1*q*q<2", false});
+    model.fitted = {0.005, {{"curl.sto", std::string(64, 'c'), "elbow_flexion", 0.6, 0.1}}};
     rewriteOsim(shared / name, model, folder / "copy.osim");
     Model again = readOsim(folder / "copy.osim");
 

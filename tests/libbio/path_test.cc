@@ -293,6 +293,24 @@ TEST(MusclePath, LooksAtSpansOnlyWhereTheirPointsAreActive) {
   EXPECT_NO_THROW(ArmPath<1>(model, m));
 }
 
+// Of two objects that a span touches at once the first is heeded, and that is said; where it
+// touches only one of them at a time, or each span has its own, there is nothing to say.
+TEST(MusclePath, SaysWhichOfSeveralObjectsOnASpanIsHeeded) {
+  Model model = arm();
+  WrapObject second = model.wrapObjects[0];
+  second.name = "second";
+  second.radius = 0.018;
+  model.wrapObjects.push_back(second);
+  Muscle m = extensor({"cylinder", "second"});
+  for (std::size_t i = 0; i < 3; ++i) m.path.points[i].name = "P" + std::to_string(i + 1);
+  const ArmPath<1> both(model, m);
+  ASSERT_EQ(both.path.warnings().size(), 1u);
+  EXPECT_EQ(both.path.warnings().front(),
+            "muscle 'test' touches the wrap objects 'cylinder' and 'second' at once between its "
+            "points 'P2' and 'P3': only 'cylinder' is heeded");
+  EXPECT_TRUE(ArmPath<1>(model, extensor({"cylinder"})).path.warnings().empty());
+}
+
 TEST(MusclePath, MovingPointsFollowTheirFunctions) {
   const Model model = arm();
   Muscle m = flexor();

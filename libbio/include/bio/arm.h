@@ -35,7 +35,8 @@ struct ArmMuscle {
 class Arm {
  public:
   /// @throws std::invalid_argument what Skeleton and MusclePath throw, non-physical muscle
-  ///   parameters, a moving muscle of a class other than Schutte's
+  ///   parameters, a moving muscle of a class other than Schutte's, free coordinates that move no
+  ///   mass, a moving body with a negative principal moment of inertia
   Arm(const Model& model, const ArmOptions& options);
 
   /// The same, quicker, for a model that differs from another arm's in numbers alone: paths are
@@ -54,7 +55,8 @@ class Arm {
   /// Where a path of this arm gains or loses conditional points, each once.
   const std::vector<PathSwitch>& switches() const { return switches_; }
 
-  /// One line each: muscles that move but cannot be simulated and are left out, odd locks.
+  /// One line each: muscles that move but cannot be simulated and are left out, odd locks, paths
+  /// without length and those that heed one wrap object of several.
   const std::vector<std::string>& warnings() const { return warnings_; }
   /// One line each: muscles left out because nothing moves them, spans taken as constant, wraps out
   /// of reach.

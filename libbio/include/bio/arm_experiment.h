@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bio/coupled_sensitivity.h"
+#include "bio/nudge.h"
 #include "bio/trial.h"
 #include "info/least_squares.h"
 
@@ -31,6 +32,9 @@ class ArmExperiment {
   const std::vector<std::size_t>& selection() const { return selection_; }
   const ParameterCatalogue& catalogue() const { return *catalogue_; }
 
+  /// From now on the model is held so; several hold it together.
+  void hold(Nudge nudge) { nudges_.push_back(std::move(nudge)); }
+
   /// The coordinate at the times [rad] or [m]; NaN behind the end of a simulation that failed, and
   /// everywhere if no arm can be made of θ.
   Eigen::VectorXd outputs(const Eigen::VectorXd& theta) const;
@@ -49,8 +53,8 @@ class ArmExperiment {
   SensitivityTrajectory simulateWithSensitivities(const Eigen::VectorXd& theta) const;
 
  private:
-  Trajectory simulateAt(const ParameterCatalogue::Setting& setting) const;
-  SensitivityTrajectory sensitivitiesAt(const ParameterCatalogue::Setting& setting) const;
+  Trajectory simulateAt(ParameterCatalogue::Setting setting) const;
+  SensitivityTrajectory sensitivitiesAt(ParameterCatalogue::Setting setting) const;
 
   const ParameterCatalogue* catalogue_;
   ArmOptions armOptions_;
@@ -59,6 +63,7 @@ class ArmExperiment {
   std::vector<double> times_;
   std::vector<std::size_t> selection_;
   SimulationOptions options_;
+  std::vector<Nudge> nudges_;
 };
 
 /// Several experiments on the same parameters, their samples one behind the other.

@@ -70,7 +70,13 @@ struct Calibration {
   int bootstrapConverged = 0;
   bool complete = true;  ///< false if the progress callback stopped it
   ResidualNoise noise;
-  double reducedChiSquare = 0;    ///< of single samples; near 1 where the noise is what was said
+  double noiseFloor = 0;        ///< what third differences of the measured angles have of it [rad]
+  /// The residuals are half as large again as the scatter of neighbouring samples: something else
+  /// than these parameters is wrong.
+  bool leavesMoreThanNoise() const {
+    return noiseFloor > 0 && noise.deviation > 1.5 * noiseFloor;
+  }
+  double reducedChiSquare = 0;  ///< of single samples; near 1 where the noise is what was said
   Eigen::MatrixXd before, after;  ///< of the trials estimated from, 1 × samples [rad]
   Eigen::MatrixXd heldOutBefore, heldOutAfter;  ///< of the others
   /// The model, the EMG mapping and the first trial's start at the estimate.

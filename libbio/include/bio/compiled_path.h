@@ -81,6 +81,7 @@ struct CompiledPath {
   std::vector<PathSurface> surfaces;
   std::vector<PathVariant> variants;  ///< by the bits of the active conditions
   std::vector<std::string> notes;
+  std::vector<std::string> warnings;  ///< spans that touch several objects and heed one
 };
 
 /// A path that moves over a surface for which there is no exact geodesic here: a torus, or an

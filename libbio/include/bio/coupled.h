@@ -95,7 +95,8 @@ ArmState initialState(const Arm& arm, const Eigen::VectorXd& q, const Excitation
 /// noSolution. A step within which a path gains or loses conditional points is taken in two parts
 /// that meet there, since the length jumps.
 ///
-/// @throws std::invalid_argument sizes (the external force's too), step ≤ 0, duration ≤ 0
+/// @throws std::invalid_argument sizes (the external force's too), step ≤ 0, duration ≤ 0, a
+///   step below 1e-9 of the time
 Trajectory simulate(const Arm& arm, const ExcitationSignal& excitation, const ArmState& start,
                     const SimulationOptions& options);
 

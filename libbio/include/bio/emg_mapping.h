@@ -16,7 +16,8 @@ namespace bio {
 /// (S: Lloyd & Besier 2003, eq. 3, as in emg_stages.h). All of it acts on the rows of the trial,
 /// between which u stays straight. As it stands, the identity.
 struct EmgMapping {
-  /// What an electrode shows of another muscle, c_ji of j in the signal of i.
+  /// What an electrode shows of another muscle, c_ji of j in the signal of i. Of its own muscle,
+  /// what it lacks: two channels are exchanged with c_ii = c_jj = 1 and c_ij = c_ji = −1.
   struct Crosstalk {
     std::string from, to;
     double share = 0;  ///< c [1]

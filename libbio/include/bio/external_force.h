@@ -51,4 +51,7 @@ class ExternalForce {
   Eigen::MatrixXd values_;  ///< one column per row of the table: contiguous in time
 };
 
+/// Both forces, straight between the rows of either; both on the same coordinates.
+ExternalForce sum(const ExternalForce& one, const ExternalForce& other);
+
 }  // namespace bio

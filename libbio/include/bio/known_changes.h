@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 namespace bio {
 
@@ -20,6 +21,9 @@ std::string inWords(const KnownChanges& known);
 
 /// The header's lines, none for what was not changed.
 std::map<std::string, std::string> headerOf(const KnownChanges& known);
+
+/// Names of all lines that say what is known.
+const std::vector<std::string>& knownLines();
 
 /// The header's lines read again; 0 for what is not there.
 /// @throws std::invalid_argument for a mass that is no number from 0 to 100, or a turn that is none

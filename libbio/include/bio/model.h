@@ -245,6 +245,27 @@ struct ExpressionBasedCoordinateForce {
                          const ExpressionBasedCoordinateForce&) = default;
 };
 
+// What was fitted with the model ------------------------------------------------------------------
+
+/// Where the simulation of one trial starts, as it was fitted together with the model's numbers.
+struct TrialStart {
+  std::string file;        ///< of the trial, for people: it is known again by its SHA-256
+  std::string sha256;      ///< of that file, 64 hexadecimal digits
+  std::string coordinate;  ///< of the model
+  double value = 0;        ///< [rad] or [m]
+  double speed = 0;        ///< [rad/s] or [m/s]
+  friend bool operator==(const TrialStart&, const TrialStart&) = default;
+};
+
+/// How to simulate the trials that a model was fitted to, so that they come out as they did then.
+/// In a file it is the element FisherHill of the model, which OpenSim passes over.
+struct FittedSimulation {
+  std::optional<double> step;      ///< of the variational integrators [s] > 0
+  std::vector<TrialStart> starts;  ///< at most one per trial and coordinate
+  bool empty() const { return !step && starts.empty(); }
+  friend bool operator==(const FittedSimulation&, const FittedSimulation&) = default;
+};
+
 struct Model {
   std::string name;
   std::string credits;  ///< who made it, and where its numbers come from
@@ -258,6 +279,7 @@ struct Model {
   std::vector<CoordinateLimitForce> limitForces;
   std::vector<SpringGeneralizedForce> springForces;
   std::vector<ExpressionBasedCoordinateForce> expressionForces;
+  FittedSimulation fitted;
   std::vector<std::string> warnings;  ///< one line each: what was read but is not simulated
   std::vector<std::string> remarks;   ///< one line each: what was read otherwise than written
   friend bool operator==(const Model&, const Model&) = default;

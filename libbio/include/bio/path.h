@@ -73,6 +73,8 @@ class MusclePath {
   bool moves() const;
   /// One line each: wraps of fixed spans taken as straight, wraps out of reach.
   const std::vector<std::string>& notes() const { return compiled_.notes; }
+  /// One line each: spans that touch several wrap objects at once, of which one is heeded.
+  const std::vector<std::string>& warnings() const { return compiled_.warnings; }
   /// Where conditional points come and go.
   std::vector<PathSwitch> switches() const;
   /// What evaluation works on.

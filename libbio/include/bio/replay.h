@@ -1,10 +1,13 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bio/coupled.h"
+#include "bio/parameters.h"
 #include "bio/table_file.h"
 #include "bio/trial.h"
 
@@ -25,6 +28,26 @@ ExternalForce externalForceOf(const Trial& trial, const Arm& arm);
 Eigen::VectorXd startCoordinates(const Trial& trial, const Arm& arm,
                                  const std::map<std::string, double>& given);
 
+/// Where a trial's simulation starts, and who says so.
+struct TrialBeginning {
+  enum class From { given, model, measured, defaults };
+  StartPoint point;
+  From from = From::defaults;  ///< of the coordinates' sources the first in this order: model,
+                               ///< given, measured
+};
+const char* name(TrialBeginning::From from);  ///< "given", "model", "measured", "default"
+
+/// Start values and speeds of the free coordinates: as given, at rest; else what the model was
+/// fitted with (Model::fitted), where it knows the trial by its SHA-256; else the first measured
+/// value, else the default, at rest.
+/// @throws std::invalid_argument as startCoordinates does
+TrialBeginning beginningOf(const Trial& trial, const Model& model, const Arm& arm,
+                           const std::map<std::string, double>& given);
+
+/// Time step [s]: the one given, else of the variational integrators the one that the model was
+/// fitted with, else the integrator's own.
+double stepOf(const Model& model, Integrator integrator, const std::optional<double>& given);
+
 /// When the coordinate was measured [s]; if it was not, the trial's times at equal steps.
 std::vector<double> observedTimes(const Trial& trial, const std::string& coordinate, double step);
 
@@ -39,9 +62,36 @@ struct MeasuredError {
 MeasuredError compareWithMeasured(const Arm& arm, const Trajectory& trajectory,
                                   const MeasuredMotion& measured);
 
+/// A trial played through an arm, and how far that is from what was measured.
+struct TrialReplay {
+  TrialBeginning beginning;
+  SimulationOptions options;  ///< as they were used
+  Trajectory motion;
+  /// Of every free coordinate that was measured at a time which the motion reaches.
+  std::vector<std::pair<std::string, MeasuredError>> errors;
+};
+
+/// The motion that `fisherhill replay MODEL TRIAL` makes over all rows of the trial.
+/// @param options    integrator, step and progress; times and the torque from outside are the
+///   trial's
+/// @param beginning  as beginningOf() has it
+/// @throws what excitationOf, externalForceOf, initialState and simulate throw
+TrialReplay replayTrial(const Arm& arm, const Trial& trial, SimulationOptions options,
+                        TrialBeginning beginning);
+
 /// One sentence for each free coordinate that leaves its range in the model, and when: nothing but
 /// the model's own passive forces holds it there.
 std::vector<std::string> rangeRemarks(const Arm& arm, const Trajectory& trajectory);
+
+/// Where a motion first leaves what its model is made for.
+struct LeftRange {
+  double time = 0;   ///< [s]
+  std::string name;  ///< of the coordinate or muscle
+  std::string what;  ///< one sentence without full stop: what, when, how far
+};
+/// The first time at which a free coordinate is outside its range by more than a tenth of it (and
+/// 1° or 1 mm), or a fibre outside 0.2 to 2 optimal lengths; nothing if there is none.
+std::optional<LeftRange> leftRange(const Arm& arm, const Trajectory& trajectory);
 
 /// States as OpenSim 4 names them: value and speed of every coordinate of the model (locked and
 /// coupled ones too), activation and fiber_length of every simulated muscle; radians and metres.

@@ -28,6 +28,7 @@ struct AppliedForce {
 /// What drives a simulation, and what was measured beside it.
 struct Trial {
   std::string file;
+  std::string sha256;                ///< of that file, where the caller gives it; else empty
   Eigen::VectorXd times;             ///< [s] strictly rising, at least 2
   std::vector<std::string> muscles;  ///< every enabled muscle of the model, in its order; then
                                      ///< those switched off that have a column
@@ -52,7 +53,9 @@ struct TrialOptions {
 /// driven muscle (0 to 1 in every row), and a column per measured coordinate – an angle is in
 /// degrees when the header says inDegrees=yes or the name ends in `_deg`, else in radians. A column
 /// `elbow_flexion.torque` [N·m] (of a translation: `.force` [N]) is what pushes from outside.
-/// Lines of a header give Trial::known (known_changes.h). OpenSim's paths count as names:
+/// Lines of a header give Trial::known (known_changes.h); another one that begins with known_ is an
+/// error, one that is nearly inDegrees or a known change gets a warning. OpenSim's paths count as
+/// names:
 /// `/forceset/BRA/activation` is not an excitation, `/forceset/BRA` and
 /// `/jointset/elbow/elbow_flexion/value` are understood. Empty cells and NaN: not measured.
 /// A muscle without a column gets the baseline, with a warning.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bio/arm_experiment.h"
+#include "bio/replay.h"
 #include "bio/trial.h"
 #include "info/least_squares.h"
 
@@ -33,7 +34,8 @@ struct MeasuredSeries {
 /// measured angles of all trials one behind the other.
 ///
 /// Angles count alike, whichever coordinate they belong to. Each trial is simulated over all its
-/// rows, from its first measured value at rest.
+/// rows, from where beginningOf() says, its first measured value at rest unless the model knows
+/// better.
 class TrialSet {
  public:
   /// @throws std::invalid_argument, naming the file where there is one, for no trial, a trial
@@ -45,11 +47,16 @@ class TrialSet {
 
   const Arm& arm() const { return *arm_; }
   const std::vector<Trial>& trials() const { return trials_; }
+  /// Where each trial starts, before anything is estimated.
+  const std::vector<TrialBeginning>& beginnings() const { return beginnings_; }
   const std::vector<MeasuredSeries>& series() const { return series_; }
   /// Of a trial; they differ in the start only.
   const ParameterCatalogue& catalogue(std::size_t trial = 0) const { return *catalogues_[trial]; }
   /// Indices of the common parameters in the catalogue.
   const std::vector<std::size_t>& selection() const { return selection_; }
+
+  /// Where a trial starts at θ.
+  StartPoint startAt(std::size_t trial, const Eigen::VectorXd& theta) const;
 
   std::size_t numParameters() const { return parameters_.size(); }
   /// Number of those that are common; the others are starts of trials.
@@ -63,12 +70,19 @@ class TrialSet {
   /// 1 × samples [rad]
   Eigen::MatrixXd measured() const;
   /// 1 × samples; NaN where a simulation did not come so far. The set must outlive it.
-  info::Predictor predictor() const;
+  info::Predictor predictor() const { return predictor(experiments_); }
+  /// The experiments with every measured coordinate held near its measured course (nudge.h). Where
+  /// a series has fewer than four samples it holds nothing.
+  std::vector<ArmExperiment> nudged(double frequency) const;
+  /// Of these in place of the set's own; both must outlive it.
+  info::Predictor predictor(const std::vector<ArmExperiment>& experiments) const;
   /// Why the trial's simulation does not reach its end; empty if it does.
   std::string failure(std::size_t trial, const Eigen::VectorXd& theta) const;
   /// Mean square difference [rad²] of predictions from measurements: of all, and of each trial.
   double meanSquare(const Eigen::MatrixXd& predicted) const;
   double meanSquare(const Eigen::MatrixXd& predicted, std::size_t trial) const;
+  /// Largest difference of two predictions [rad], by trial.
+  std::vector<double> largestDifferences(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) const;
 
  private:
   void collectSeries(const TrialSetOptions& options);
@@ -76,6 +90,7 @@ class TrialSet {
   Eigen::VectorXd thetaOf(std::size_t trial, const Eigen::VectorXd& theta) const;
 
   std::vector<Trial> trials_;
+  std::vector<TrialBeginning> beginnings_;
   int threads_;
   std::unique_ptr<const Arm> arm_;
   std::vector<std::unique_ptr<const ParameterCatalogue>> catalogues_;  ///< one per trial

@@ -77,15 +77,22 @@ Augmented augmentedModel(const WidestModel& widest, const Eigen::VectorXd& value
   return result;
 }
 
+std::string effectCredits(const WidestModel& widest, const std::vector<EffectToAdd>& effects,
+                          const EffectProvenance& provenance) {
+  std::string credits = "Effects added by " + provenance.tool;
+  for (std::size_t i = 0; i < provenance.data.size(); ++i) {
+    credits += (i ? ", " : " from ") + provenance.data[i];
+  }
+  for (const EffectToAdd& effect : effects)
+    credits += wordsOf(widest, findCandidate(widest, effect.id), effect);
+  return credits;
+}
+
 Augmented addEffects(const Model& model, const ArmOptions& arm, const std::string& coordinate,
                      const std::vector<EffectToAdd>& effects, const EffectProvenance& provenance,
                      const std::vector<info::discover::FormulaTerm>& formula) {
   const WidestModel widest = widestModel(model, arm, coordinate, {}, formula);
   Eigen::VectorXd values = widest.nominal();
-  std::string credits = "Effects added by " + provenance.tool;
-  for (std::size_t i = 0; i < provenance.data.size(); ++i) {
-    credits += (i ? ", " : " from ") + provenance.data[i];
-  }
   for (const EffectToAdd& effect : effects) {
     const auto& candidate = findCandidate(widest, effect.id);
     if (effect.values.size() != static_cast<Index>(candidate.quantities.size())) {
@@ -95,30 +102,12 @@ Augmented addEffects(const Model& model, const ArmOptions& arm, const std::strin
     for (std::size_t i = 0; i < candidate.quantities.size(); ++i) {
       values[static_cast<Index>(candidate.quantities[i])] = effect.values[static_cast<Index>(i)];
     }
-    credits += wordsOf(widest, candidate, effect);
   }
+  const std::string credits = effectCredits(widest, effects, provenance);
   Augmented result = augmentedModel(widest, values);
   std::string& text = result.model.credits;
   text += text.empty() ? credits : ". " + credits;
   return result;
-}
-
-Trial asTrueSensor(Trial trial, const std::string& coordinate, const SensorLaw& sensor) {
-  const double first = trial.times[0], last = trial.times[trial.times.size() - 1];
-  for (MeasuredMotion& motion : trial.measured) {
-    if (motion.coordinate != coordinate) continue;
-    std::vector<double> times, values;
-    for (Index i = 0; i < motion.times.size(); ++i) {
-      const double t = motion.times[i] - sensor.clock;
-      if (t < first || t > last) continue;
-      times.push_back(t);
-      values.push_back((motion.values[i] - sensor.bias) / (1 + sensor.gain));
-    }
-    const auto n = static_cast<Index>(times.size());
-    motion.times = Eigen::VectorXd::Map(times.data(), n);
-    motion.values = Eigen::VectorXd::Map(values.data(), n);
-  }
-  return trial;
 }
 
 }  // namespace bio::discover

@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <stdexcept>
 
 #include "bio/coupled_sensitivity.h"
 #include "bio/discover/effects.h"
+#include "bio/discover/with_known_changes.h"
 #include "bio/replay.h"
+#include "bio/trial_review.h"
 #include "motion_weights.h"
 
 namespace bio::discover {
@@ -31,22 +32,12 @@ std::optional<MotionWeights> lookAt(const std::vector<double>& time, double t) {
   return weightsAt(time, t);
 }
 
-/// The torque of the trial and the latent one, straight between the nodes of both.
-ExternalForce together(const ExternalForce& external, const std::vector<double>& nodes,
-                       const VectorXd& latent, int freeIndex, Index coordinates) {
-  MatrixXd values = MatrixXd::Zero(latent.size(), coordinates);
-  values.col(freeIndex) = latent;
-  ExternalForce force(nodes, values);
-  if (external.empty()) return force;
-  std::set<double> rows(nodes.begin(), nodes.end());
-  rows.insert(external.times().begin(), external.times().end());
-  const std::vector<double> times(rows.begin(), rows.end());
-  MatrixXd sum(static_cast<Index>(times.size()), coordinates);
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    sum.row(static_cast<Index>(k)) =
-        (external.at(times[k]).value + force.at(times[k]).value).transpose();
-  }
-  return {times, sum};
+/// A force on one coordinate, straight between nodes.
+ExternalForce onOne(const std::vector<double>& nodes, const VectorXd& values, int freeIndex,
+                    Index coordinates) {
+  MatrixXd all = MatrixXd::Zero(values.size(), coordinates);
+  all.col(freeIndex) = values;
+  return {nodes, all};
 }
 
 /// There will be thousands of simulations.
@@ -79,10 +70,18 @@ ElbowDisagreement::ElbowDisagreement(const Model& model, const ArmOptions& arm,
     throw std::invalid_argument("sensitivities: the integrator must be vi or vi-left");
   }
   const Coordinate& observed = widest_.coordinate();
+  double lastStart = -HUGE_VAL, firstEnd = HUGE_VAL;
+  for (const Trial& trial : trials) {
+    lastStart = std::max(lastStart, trial.times[0]);
+    firstEnd = std::min(firstEnd, trial.times[trial.times.size() - 1]);
+  }
+  widest_.trialsLast(lastStart, firstEnd);
+  quantities_ = widest_.quantities();
   for (Trial& trial : trials) {
-    OfTrial one{withProxies(std::move(trial), widest_), {}, {}, {}, {}, {}, {}, 0, 0};
+    OfTrial one{withProxies(std::move(trial), widest_), {}, {}, {}, {}, {}, {}, {}, 0, 0};
     for (const MeasuredMotion& motion : one.trial.measured) {
       if (motion.coordinate != coordinate) continue;
+      requireUsable(one.trial.file, motion);
       one.times.assign(motion.times.begin(), motion.times.end());
       one.measured = motion.values;
     }
@@ -92,13 +91,14 @@ ElbowDisagreement::ElbowDisagreement(const Model& model, const ArmOptions& arm,
     }
     one.excitation = excitationOf(one.trial, widest_.arm());
     one.external = externalForceOf(one.trial, widest_.arm());
-    one.known = knownChanges(one.trial);
+    one.known = knownChangesOf(one.trial, widest_);
     const double first = one.trial.times[0], last = one.times.back();
     const double intervals =
         std::max(1.0, std::ceil((last - first) / options_.latentSpacing - 1e-9));
     for (int k = 0; k <= static_cast<int>(intervals); ++k) {
       one.nodes.push_back(first + k * options_.latentSpacing);
     }
+    one.heldMass = weightOfHeldMass(widest_, one.times, one.measured, one.nodes);
     const int index = static_cast<int>(trials_.size());
     const double start = one.measured[0];
     const auto own = [&](const char* what, const char* unit, double nominal, double lower,
@@ -137,29 +137,46 @@ ElbowDisagreement::ElbowDisagreement(const Model& model, const ArmOptions& arm,
   if (isLoaded) widest_.separate("tilt", "handforce");
 }
 
-VectorXd ElbowDisagreement::knownChanges(const Trial& trial) const {
-  VectorXd changes = VectorXd::Zero(static_cast<Index>(widest_.quantities().size()));
-  if (!trial.known.any()) return changes;
-  const auto change = [&](const std::string& name, double value, const char* why) {
-    if (value == 0) return;
-    const auto& quantities = widest_.quantities();
-    const auto at = std::find_if(quantities.begin(), quantities.end(),
-                                 [&](const auto& one) { return one.name == name; });
-    if (at == quantities.end()) {
-      throw std::invalid_argument(
-          fmt::format("{}: recorded {}, but {}", trial.file, inWords(trial.known), why));
+VectorXd ElbowDisagreement::timedForce(int trial, const VectorXd& values) const {
+  return withTimedForces(of(trial), values, {});
+}
+
+VectorXd ElbowDisagreement::withTimedForces(const OfTrial& one, const VectorXd& values,
+                                            const VectorXd& latent) const {
+  VectorXd sum = latent;
+  for (const TimedForce& force : widest_.timedForces()) {
+    const double size = values[static_cast<Index>(force.amplitude)];
+    if (size == 0) continue;
+    if (sum.size() == 0) sum = VectorXd::Zero(static_cast<Index>(one.nodes.size()));
+    for (Index k = 0; k < sum.size(); ++k) {
+      const double share = timedShare(one.nodes[static_cast<std::size_t>(k)],
+                                      values[static_cast<Index>(force.time)], force.ends)
+                               .value;
+      sum[k] += size * share * (force.of == TimedForce::Of::mass ? one.heldMass[k] : 1.0);
     }
-    changes[at - quantities.begin()] = value;
-  };
-  change("known.mass", trial.known.massInHand, "the model moves no body that could hold it");
-  change("known.turn", trial.known.armTurn, "the coordinate does not turn bodies across gravity");
-  if (trial.known.armTurn != 0 && widest_.present().count("handforce") > 0) {
-    throw std::invalid_argument(
-        fmt::format("{}: recorded {}, but the model has a force on the hand ({}) that would turn "
-                    "with the arm",
-                    trial.file, inWords(trial.known), widest_.present().at("handforce")));
   }
-  return changes;
+  return sum;
+}
+
+MatrixXd ElbowDisagreement::timedDirections(const OfTrial& one, const VectorXd& values,
+                                            const std::vector<std::size_t>& wanted) const {
+  MatrixXd nodes;
+  for (std::size_t j = 0; j < wanted.size(); ++j) {
+    for (const TimedForce& force : widest_.timedForces()) {
+      if (wanted[j] != force.amplitude && wanted[j] != force.time) continue;
+      const auto rows = static_cast<Index>(one.nodes.size());
+      if (nodes.size() == 0) nodes = MatrixXd::Zero(rows, static_cast<Index>(wanted.size()));
+      const double size = values[static_cast<Index>(force.amplitude)];
+      for (Index k = 0; k < rows; ++k) {
+        const TimedShare share = timedShare(one.nodes[static_cast<std::size_t>(k)],
+                                            values[static_cast<Index>(force.time)], force.ends);
+        const double weight = force.of == TimedForce::Of::mass ? one.heldMass[k] : 1.0;
+        nodes(k, static_cast<Index>(j)) =
+            weight * (wanted[j] == force.amplitude ? share.value : size * share.inTime);
+      }
+    }
+  }
+  return nodes;
 }
 
 double ElbowDisagreement::activationLag() const {
@@ -196,11 +213,13 @@ ParameterCatalogue::Setting ElbowDisagreement::settingAt(
 }
 
 SimulationOptions ElbowDisagreement::simulationOf(const OfTrial& one, const VectorXd& latent,
-                                                  double clock) const {
+                                                  const SensorLaw& sensor) const {
   SimulationOptions simulation = options_.simulation;
   simulation.startTime = one.trial.times[0];
-  // a sensor that runs ahead looks behind the last sample
-  simulation.duration = one.times.back() - simulation.startTime + std::max(0.0, -clock);
+  // a sensor may look behind the last sample
+  simulation.duration =
+      std::max(one.times.back(), sensor.measuredAt(one.times.back(), simulation.startTime)) -
+      simulation.startTime;
   simulation.progress = {};
   simulation.externalForce = one.external;
   if (latent.size() == 0) return simulation;
@@ -208,8 +227,9 @@ SimulationOptions ElbowDisagreement::simulationOf(const OfTrial& one, const Vect
     throw std::invalid_argument(
         fmt::format("{} values of the latent force for {} nodes", latent.size(), one.nodes.size()));
   }
-  simulation.externalForce = together(one.external, one.nodes, latent, widest_.freeIndex(),
-                                      widest_.arm().skeleton().numCoordinates());
+  simulation.externalForce =
+      sum(simulation.externalForce,
+          onOne(one.nodes, latent, widest_.freeIndex(), widest_.arm().skeleton().numCoordinates()));
   return simulation;
 }
 
@@ -220,46 +240,69 @@ ExcitationSignal ElbowDisagreement::excitationFor(const OfTrial& one, const Arm&
 }
 
 Trajectory ElbowDisagreement::simulate(const OfTrial& one, const VectorXd& values,
-                                       const VectorXd& latent, double stepFactor) const {
-  const ParameterCatalogue::Setting setting = settingAt(one, values, {});
-  SimulationOptions simulation = simulationOf(one, latent, widest_.sensorAt(values).clock);
+                                       const VectorXd& latent, double stepFactor,
+                                       const Nudge* nudge) const {
+  ParameterCatalogue::Setting setting = settingAt(one, values, {});
+  SimulationOptions simulation =
+      simulationOf(one, withTimedForces(one, values, latent), widest_.sensorAt(values));
+  if (nudge) apply(*nudge, setting.model, simulation.externalForce);
   simulation.step *= stepFactor;
   const Arm arm = widest_.armOf(setting);
   return simulateSetting(arm, setting, excitationFor(one, arm), simulation);
 }
 
 VectorXd ElbowDisagreement::outputsOf(const OfTrial& one, const VectorXd& values,
-                                      const VectorXd& latent, double stepFactor) const {
+                                      const VectorXd& latent, double stepFactor,
+                                      const Nudge* nudge) const {
   VectorXd y = VectorXd::Constant(static_cast<Index>(one.times.size()), nan);
   Trajectory motion;
   try {
-    motion = simulate(one, values, latent, stepFactor);
+    motion = simulate(one, values, latent, stepFactor, nudge);
   } catch (const std::exception&) {
     return y;  // outside its domain
   }
   const SensorLaw sensor = widest_.sensorAt(values);
   const int c = widest_.freeIndex();
+  const double begin = one.trial.times[0];
+  const Lagged course = lagged(motion.time, motion.q.row(c), motion.qDot.row(c), sensor.lag);
   for (std::size_t i = 0; i < one.times.size(); ++i) {
-    const auto w = lookAt(motion.time, one.times[i] - sensor.clock);
+    const double t = one.times[i];
+    const auto w = lookAt(motion.time, sensor.measuredAt(t, begin));
     if (!w) continue;
     y[static_cast<Index>(i)] =
-        (1 + sensor.gain) * w->value(motion.q.row(c), motion.qDot.row(c)) + sensor.bias;
+        (1 + sensor.gain) * w->value(course.value.row(0), course.speed.row(0)) + sensor.bias +
+        sensor.drift * (t - begin);
   }
   return y;
 }
 
 VectorXd ElbowDisagreement::outputs(int trial, const VectorXd& values,
                                     const VectorXd& latent) const {
-  return outputsOf(of(trial), values, latent, 1);
+  return outputsOf(of(trial), values, latent, 1, nullptr);
 }
 
 VectorXd ElbowDisagreement::refinedOutputs(int trial, const VectorXd& values) const {
-  return outputsOf(of(trial), values, {}, 0.5);
+  return outputsOf(of(trial), values, {}, 0.5, nullptr);
+}
+
+Trajectory ElbowDisagreement::motion(int trial, const VectorXd& values) const {
+  return simulate(of(trial), values, {}, 1, nullptr);
+}
+
+Arm ElbowDisagreement::armAt(int trial, const VectorXd& values) const {
+  return widest_.armOf(settingAt(of(trial), values, {}));
+}
+
+TrialStart ElbowDisagreement::startAt(int trial, const VectorXd& values) const {
+  const OfTrial& one = of(trial);
+  const StartPoint start = settingAt(one, values, {}).start;
+  return {one.trial.file, one.trial.sha256, widest_.coordinate().name, start.q[widest_.freeIndex()],
+          start.qDot[widest_.freeIndex()]};
 }
 
 std::string ElbowDisagreement::failure(int trial, const VectorXd& values) const {
   try {
-    return simulate(of(trial), values, {}, 1).why;
+    return simulate(of(trial), values, {}, 1, nullptr).why;
   } catch (const std::exception& error) {
     return error.what();
   }
@@ -269,6 +312,14 @@ ElbowDisagreement::Prediction ElbowDisagreement::predict(int trial, const Vector
                                                          const VectorXd& latent,
                                                          const std::vector<std::size_t>& wanted,
                                                          bool latentToo) const {
+  return predictWith(nullptr, trial, values, latent, wanted, latentToo);
+}
+
+ElbowDisagreement::Prediction ElbowDisagreement::predictWith(const Nudge* nudge, int trial,
+                                                             const VectorXd& values,
+                                                             const VectorXd& latent,
+                                                             const std::vector<std::size_t>& wanted,
+                                                             bool latentToo) const {
   const OfTrial& one = of(trial);
   const auto K = static_cast<Index>(one.times.size());
   const auto numNodes = static_cast<Index>(latentToo ? one.nodes.size() : 0);
@@ -276,13 +327,18 @@ ElbowDisagreement::Prediction ElbowDisagreement::predict(int trial, const Vector
       VectorXd::Constant(K, nan), MatrixXd::Constant(K, static_cast<Index>(wanted.size()), nan),
       MatrixXd::Constant(latentToo ? K : 0, numNodes, nan),
       MatrixXd::Constant(numNodes, 1, options_.latentFloor), VectorXd::Constant(K, nan)};
-  const ParameterCatalogue::Setting setting = settingAt(one, values, wanted);
+  ParameterCatalogue::Setting setting = settingAt(one, values, wanted);
   const SensorLaw sensor = widest_.sensorAt(values);
   const auto own = widest_.quantities().size();
+  const double begin = one.trial.times[0];
   const VectorXd modelValues = values.head(static_cast<Index>(own)) + one.known;
   const auto kindOf = [&](std::size_t quantity) {
     return quantity < own ? std::optional(widest_.kindOf(quantity)) : std::nullopt;
   };
+
+  // forces that change in time follow those at the nodes
+  const MatrixXd timedNodes = timedDirections(one, values, wanted);
+  const bool timed = timedNodes.size() > 0;
 
   // columns of the simulation: the clock, and starts of other trials, have none
   std::vector<ParameterDirection> directions;
@@ -303,8 +359,9 @@ ElbowDisagreement::Prediction ElbowDisagreement::predict(int trial, const Vector
   SensitivityOptions options;
   SensitivityTrajectory s;
   try {
-    options.simulation = simulationOf(one, latent, sensor.clock);
-    if (latentToo) options.externalNodes = {widest_.freeIndex(), one.nodes};
+    options.simulation = simulationOf(one, withTimedForces(one, values, latent), sensor);
+    if (nudge) apply(*nudge, setting.model, options.simulation.externalForce);
+    if (latentToo || timed) options.externalNodes = {widest_.freeIndex(), one.nodes};
     const Arm arm = widest_.armOf(setting);
     s = simulateWithSensitivities(arm, setting, directions, excitationFor(one, arm), options);
     if (latentToo) {
@@ -329,15 +386,26 @@ ElbowDisagreement::Prediction ElbowDisagreement::predict(int trial, const Vector
   }
 
   const auto c = static_cast<std::size_t>(widest_.freeIndex());
-  const auto q = s.motion.q.row(widest_.freeIndex());
-  const auto qDot = s.motion.qDot.row(widest_.freeIndex());
+  const Lagged course = lagged(s.motion.time, s.motion.q.row(widest_.freeIndex()),
+                               s.motion.qDot.row(widest_.freeIndex()), sensor.lag);
+  const auto q = course.value.row(0), qDot = course.speed.row(0);
+  if (sensor.lag > 0) {
+    const auto behind = [&](SensitivityMatrix& of, SensitivityMatrix& rate) {
+      const Lagged late = lagged(s.motion.time, of.transpose(), rate.transpose(), sensor.lag);
+      of = late.value.transpose();
+      rate = late.speed.transpose();
+    };
+    behind(s.q[c], s.qDot[c]);
+    if (numNodes > 0 || timed) behind(s.qOfNodes[c], s.qDotOfNodes[c]);
+  }
   const double factor = 1 + sensor.gain;
   const double firstAngle = setting.start.q[widest_.freeIndex()];
   for (Index i = 0; i < K; ++i) {
-    const auto w = lookAt(s.motion.time, one.times[static_cast<std::size_t>(i)] - sensor.clock);
+    const double t = one.times[static_cast<std::size_t>(i)];
+    const auto w = lookAt(s.motion.time, sensor.measuredAt(t, begin));
     if (!w) continue;
     const double value = w->value(q, qDot), slope = w->slope(q, qDot);
-    result.outputs[i] = factor * value + sensor.bias;
+    result.outputs[i] = factor * value + sensor.bias + sensor.drift * (t - begin);
     result.speeds[i] = factor * slope;
     const Eigen::RowVectorXd along = factor * w->rows(s.q[c], s.qDot[c]);
     for (std::size_t j = 0; j < wanted.size(); ++j) {
@@ -349,6 +417,15 @@ ElbowDisagreement::Prediction ElbowDisagreement::predict(int trial, const Vector
       if (kind == Meaning::Kind::bias) entry = 1 - entry / factor;
       if (kind == Meaning::Kind::gain) entry = value - entry * firstAngle / factor;
       if (kind == Meaning::Kind::clock) entry = -factor * slope;
+      if (kind == Meaning::Kind::rate) entry = factor * slope * (t - begin);
+      if (kind == Meaning::Kind::lag) {
+        entry = factor * w->value(course.inLag.row(0), course.inLagSpeed.row(0));
+      }
+      if (kind == Meaning::Kind::drift) entry = t - begin;
+      if (kind == Meaning::Kind::timed) {
+        entry = factor *
+                w->rows(s.qOfNodes[c], s.qDotOfNodes[c]).dot(timedNodes.col(static_cast<Index>(j)));
+      }
     }
     if (numNodes > 0) {
       result.latentGamma.row(i) = factor * w->rows(s.qOfNodes[c], s.qDotOfNodes[c]);

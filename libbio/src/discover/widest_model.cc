@@ -177,6 +177,30 @@ void WidestModel::lawFollows(std::vector<std::size_t> quantities) {
   laws_.back().quantities = std::move(quantities);
 }
 
+void WidestModel::trialsLast(double first, double last) {
+  constexpr double edge = 0.2;     // [s] of a trial's ends where nothing that changes shows
+  constexpr double spacing = 0.6;  // [s] between starts of fits
+  if (!(last - first > 4 * edge)) return;
+  const double lower = first + edge, upper = last - edge;
+  for (const TimedForce& force : timedForces_) {
+    Quantity& time = quantities_[force.time];
+    time.lower = lower;
+    time.upper = upper;
+    time.nominal = (lower + upper) / 2;
+    time.deviation = (upper - lower) / std::sqrt(12.0);
+    for (Candidate& one : candidates_) {
+      if (one.quantities.front() != force.amplitude) continue;
+      one.deviations[1] = time.deviation;
+      const double size = one.starts.front()[0];
+      const auto count = static_cast<int>(std::ceil((upper - lower) / spacing));
+      one.starts.clear();
+      for (int k = 0; k < count; ++k) {
+        one.starts.push_back(Eigen::Vector2d(size, lower + (upper - lower) * (k + 0.5) / count));
+      }
+    }
+  }
+}
+
 void WidestModel::forget(const std::vector<std::string>& ids) {
   std::erase_if(candidates_, [&](const Candidate& candidate) {
     return std::find(ids.begin(), ids.end(), candidate.id) != ids.end();
@@ -310,6 +334,9 @@ SensorLaw WidestModel::sensorAt(const VectorXd& values) const {
     if (meanings_[i].kind == Meaning::Kind::bias) sensor.bias += value;
     if (meanings_[i].kind == Meaning::Kind::gain) sensor.gain += value;
     if (meanings_[i].kind == Meaning::Kind::clock) sensor.clock += value;
+    if (meanings_[i].kind == Meaning::Kind::rate) sensor.rate += value;
+    if (meanings_[i].kind == Meaning::Kind::lag) sensor.lag += value;
+    if (meanings_[i].kind == Meaning::Kind::drift) sensor.drift += value;
   }
   return sensor;
 }

@@ -62,6 +62,11 @@ Model readModel(const tinyxml2::XMLDocument& document, const std::string& file) 
   const auto g =
       readNumbers(reading.source, model, "gravity", "m/s²", 3, std::vector<double>{0, -9.80665, 0});
   reading.model.gravity = {g[0], g[1], g[2]};
+  if (constexpr double most = 1e4; !(reading.model.gravity.stableNorm() <= most)) {
+    fail(reading.source, model,
+         fmt::format("gravity = ({}, {}, {}) m/s², must be at most {} m/s²", g[0], g[1], g[2],
+                     most));
+  }
   checkUnits(reading, model);
   readBodies(reading, model);
   readFrames(reading, model);
@@ -69,6 +74,7 @@ Model readModel(const tinyxml2::XMLDocument& document, const std::string& file) 
   readConstraints(reading, model);
   readWrapObjects(reading, model);
   readForces(reading, model);
+  readFitted(reading, model);
   return std::move(reading.model);
 }
 

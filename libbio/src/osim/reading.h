@@ -64,6 +64,9 @@ Path readPath(Reading& reading, const Element& force);
 void readForces(Reading& reading, const Element& model);
 Muscle readMuscle(Reading& reading, const Element& element);
 
+/// The element FisherHill.
+void readFitted(Reading& reading, const Element& model);
+
 /// False when `isDisabled` is true or `appliesForce` is false.
 bool isEnabled(const Reading& reading, const Element& force);
 

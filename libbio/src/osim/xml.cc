@@ -66,6 +66,17 @@ void fail(const Source& source, const Element& element, const std::string& messa
 std::string nameOf(const Source& source, const Element& element) {
   const char* name = element.Attribute("name");
   if (!name || !*name) fail(source, element, "has no name, must have one");
+  // what a table of results could not hold
+  const std::string_view word = name;
+  const bool isPadded = std::isspace(static_cast<unsigned char>(word.front())) != 0 ||
+                        std::isspace(static_cast<unsigned char>(word.back())) != 0;
+  const bool isControlled =
+      std::any_of(word.begin(), word.end(), [](unsigned char c) { return std::iscntrl(c) != 0; });
+  if (isPadded || isControlled || word.find_first_of(",\"") != word.npos) {
+    fail(source, element,
+         "its name must be without comma, quote, tab or line break, and begin and end with no "
+         "space");
+  }
   return name;
 }
 

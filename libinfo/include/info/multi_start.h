@@ -16,6 +16,7 @@ struct MultiStartOptions {
   double spread = 2;  ///< further starts lie within ± spread·scale of the own one; > 0
   EstimateOptions estimate =
       {};  ///< of each start; its progress callback is called from all threads
+  std::vector<Eigen::VectorXd> further = {};  ///< starts besides those
 };
 
 struct StartOutcome {
@@ -34,8 +35,8 @@ struct MultiStart {
 };
 
 /// Estimates from several starts, drawn uniformly about the problem's own within the bounds from
-/// RandomStream(seed, start): the same numbers whatever the number of threads, and start i the same
-/// whatever the number of starts.
+/// RandomStream(seed, start), and from those that are given: the same numbers whatever the number
+/// of threads, and start i the same whatever the number of starts.
 ///
 /// @param scale what a parameter may well be off by, in its unit, ≥ 0
 /// @throws std::invalid_argument if an option is out of range or sizes differ, and what estimate()

@@ -12,6 +12,7 @@
 #include "nameless.h"
 #include "race_formula.h"
 #include "select.h"
+#include "selected_samples.h"
 
 namespace info::discover {
 
@@ -64,7 +65,9 @@ std::vector<Estimate> estimatesOf(const Fit& fit, const std::vector<std::size_t>
 // Everything that run() carries from stage to stage.
 class Work {
  public:
-  Work(const Disagreement& data, const Options& options) : data_(data), options_(options) {
+  Work(const Disagreement& data, const Options& options, RecordedNoise noise)
+      : data_(data), options_(options) {
+    verdict_.noise = std::move(noise);
     for (int t = 0; t < data.numTrials(); ++t)
       if (std::find(options.heldOut.begin(), options.heldOut.end(), t) == options.heldOut.end())
         trials_.push_back(t);
@@ -124,7 +127,7 @@ class Work {
     if (options_.outputDeviation) {
       verdict_.outputDeviation = *options_.outputDeviation;
     } else {
-      const OutputDeviation found = estimateOutputDeviation(data_, trials_);
+      const OutputDeviation& found = verdict_.noise.deviation;
       verdict_.outputDeviation = found.value;
       verdict_.deviationEstimated = true;
       test.deviationError = found.relativeError;
@@ -147,19 +150,22 @@ class Work {
   // in the end: a base that lacks something may run away, and then every step is too long.
   bool stepsTooLong() {
     const VectorXd& values = search_->simulation(chosen_).values;
+    int worst = 0;
     for (const int t : trials_) {
       const VectorXd refined = data_.refinedOutputs(t, values);
       if (refined.size() == 0) continue;
       const double change =
           (refined - data_.outputs(t, values, {})).cwiseAbs().maxCoeff() / verdict_.outputDeviation;
-      verdict_.numericalError = std::max(verdict_.numericalError, change);
+      if (!(change > verdict_.numericalError)) continue;
+      verdict_.numericalError = change;
+      worst = t;
     }
-    if (verdict_.numericalError <= 0.2) return false;
+    if (verdict_.numericalError <= options_.numericalTolerance) return false;
     verdict_.finding = Finding::numerical;
     verdict_.sentence = fmt::format(
-        "Halving the time step changes the simulation by {:.2g} deviations of the "
+        "Halving the time step changes the simulation of {} by {:.2g} deviations of the "
         "measurement: take shorter steps first.",
-        verdict_.numericalError);
+        data_.trialName(worst), verdict_.numericalError);
     return true;
   }
 
@@ -321,7 +327,7 @@ class Work {
       verdict_.unknown = describeUnknown(search_->likelihood(), smoothing);
       verdict_.formula = raceFormula(*search_, *verdict_.unknown, chosen_, optionsOfFormula());
     }
-    verdict_.sentence = sentence();
+    verdict_.sentence = sentence() + samples();
   }
 
   void collectRivals() {
@@ -385,6 +391,8 @@ class Work {
     const Likelihood held(data_, options_.heldOut, scale, options_.latentTime);
     const HeldOut without = heldOut(before, all, held);
     const HeldOut with = chosen_.empty() ? without : heldOut(after, all, held);
+    keepStarts(without, verdict_.base);
+    verdict_.heldOutStarts = keepStarts(with, verdict_.values);
     Gap other;
     other.floor = gap.floor;
     other.range = gap.range;
@@ -410,6 +418,18 @@ class Work {
         !chosen_.empty() && with.score < without.score - 3 && with.error > 0.95 * without.error;
   }
 
+  // Puts the starts of what was held out where those of the others are.
+  std::vector<Estimate> keepStarts(const HeldOut& held, VectorXd& values) const {
+    if (!held.starts) return {};
+    std::vector<std::size_t> starts;
+    for (const FreeQuantity& free : held.starts->hypothesis.free) {
+      starts.push_back(free.quantity);
+      const auto q = static_cast<Index>(free.quantity);
+      values[q] = held.starts->values[q];
+    }
+    return estimatesOf(*held.starts, starts, data_);
+  }
+
   HeldOutAdequacy heldOutAdequacy(double meanSquare, const Likelihood& held) const {
     const auto n = static_cast<double>(held.samples());
     return {meanSquare,
@@ -431,6 +451,20 @@ class Work {
         " But the trials that were held out are further off than chance would have it (p = "
         "{:.1g}).",
         *verdict_.heldOut->probability);
+  }
+
+  // Which samples were not used, and why.
+  std::string samples() const {
+    const RecordedNoise& noise = verdict_.noise;
+    std::string words;
+    if (noise.outliers > 0)
+      words += fmt::format(" {} of {} samples are outliers and were left out.", noise.outliers,
+                           noise.samples);
+    if (noise.spacing > 1)
+      words +=
+          fmt::format(" The measurement's noise is correlated: one sample in {:.2g} s was used.",
+                      noise.interval);
+    return words;
   }
 
   std::string sentence() const {
@@ -514,7 +548,18 @@ class Work {
 }  // namespace
 
 Verdict run(const Disagreement& data, const Options& options, Draft* draft) {
-  return Work(data, options).run(draft);
+  std::vector<int> trials;
+  for (int t = 0; t < data.numTrials(); ++t)
+    if (std::find(options.heldOut.begin(), options.heldOut.end(), t) == options.heldOut.end())
+      trials.push_back(t);
+  RecordedNoise noise;
+  if (options.judgeSamples)
+    noise = recordedNoise(data, trials);
+  else if (!options.outputDeviation)
+    noise.deviation = estimateOutputDeviation(data, trials);
+  if (noise.usesAll()) return Work(data, options, std::move(noise)).run(draft);
+  const SelectedSamples selected(data, noise.kept);
+  return Work(selected, options, std::move(noise)).run(draft);
 }
 
 VectorXd predictedDeviation(const Disagreement& data, const Verdict& verdict, int trial) {

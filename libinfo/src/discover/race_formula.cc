@@ -41,9 +41,11 @@ std::optional<RacedFormula> raceFormula(const Search& search, const Unknown& unk
   RacedFormula formula;
   formula.terms = termsOf(unknown);
   if (formula.terms.empty()) return {};
-  const auto widened = search.data().withFormula(formula.terms, kept);
+  const std::shared_ptr<const Disagreement> widened =
+      search.data().withFormula(formula.terms, kept);
   if (!widened) return {};
   options.symbolic = false;
+  options.judgeSamples = false;
   Draft draft;
   if (auto known = knownOf(search, kept, *widened))
     draft = std::make_shared<const Known>(std::move(*known));
@@ -66,6 +68,10 @@ std::optional<RacedFormula> raceFormula(const Search& search, const Unknown& unk
   formula.after = raced.after;
   formula.gap = raced.gap;
   formula.heldOut = raced.heldOut;
+  if (formula.wins) {
+    formula.verdict = std::make_shared<const Verdict>(raced);
+    formula.data = widened;
+  }
   return formula;
 }
 

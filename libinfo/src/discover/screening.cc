@@ -21,18 +21,25 @@ constexpr double kPoor = 0.2;
 
 std::vector<Screened> Search::screen(const Effects& effects, bool simulation) const {
   const Entry& entry = at(effects);
-  const Fit& fit = simulation ? entry.simulation.value() : entry.fit;
+  return screenAt(*likelihood_, simulation ? entry.simulation.value() : entry.fit, effects);
+}
+
+std::vector<Screened> Search::screenAt(const Likelihood& likelihood, const Fit& fit,
+                                       const Effects& effects) const {
   std::vector<Screened> result;
   const auto& candidates = data_.candidates();
   // candidates whose shape quantities have several starts are seen once for each
   std::size_t rounds = 1;
-  for (const Candidate& c : candidates) rounds = std::max(rounds, c.starts.size());
+  const auto roundsOf = [](const Candidate& c) {
+    return c.quantities.size() > 1 ? c.starts.size() : 1;
+  };
+  for (const Candidate& c : candidates) rounds = std::max(rounds, roundsOf(c));
   for (std::size_t round = 0; round < rounds; ++round) {
     std::vector<std::size_t> which, amplitudes;
     VectorXd values = fit.values;
     for (std::size_t c = 0; c < candidates.size(); ++c) {
       if (std::find(effects.begin(), effects.end(), c) != effects.end()) continue;
-      if (candidates[c].starts.size() <= round) continue;
+      if (roundsOf(candidates[c]) <= round) continue;
       which.push_back(c);
       amplitudes.push_back(candidates[c].quantities[0]);
       // shape quantities as this start has them, the amplitude absent
@@ -46,10 +53,10 @@ std::vector<Screened> Search::screen(const Effects& effects, bool simulation) co
     std::vector<Likelihood::Linear> linear;
     std::vector<MatrixXd> columns;
     for (std::size_t t = 0; t < trials_.size(); ++t) {
-      linear.push_back(likelihood_->linearise(t, fit, values, amplitudes, false));
+      linear.push_back(likelihood.linearise(t, fit, values, amplitudes, false));
       columns.push_back(linear.back().extra);
     }
-    const auto projected = likelihood_->project(fit, linear, columns);
+    const auto projected = likelihood.project(fit, linear, columns);
     for (std::size_t i = 0; i < which.size(); ++i) {
       const Candidate& c = candidates[which[i]];
       const Quantity& q = data_.quantities()[c.quantities[0]];
@@ -118,18 +125,18 @@ std::vector<Screened> Search::probe(const Effects& effects) {
 std::vector<std::size_t> Search::shortlist(const Effects& effects, int most) {
   this->simulation(effects);
   const bool poor = at(effects).fit.noise.latent > kPoor;
-  const auto filter = poor ? probe(effects) : screen(effects, false);
+  const auto held = screenHeld(effects);
+  const auto filter = !poor ? screen(effects, false) : held.empty() ? probe(effects) : held;
   const auto simulation = screen(effects, true);
   std::vector<std::size_t> list;
   const auto add = [&](const Screened& s) {
     if (s.information > 0 && std::find(list.begin(), list.end(), s.candidate) == list.end())
       list.push_back(s.candidate);
   };
-  // half of what there is room for comes from either mode in turn
-  for (std::size_t i = 0; i < filter.size() && static_cast<int>(list.size()) < most - 2; ++i) {
-    add(filter[i]);
-    if (static_cast<int>(list.size()) < most - 2) add(simulation[i]);
-  }
+  // what there is room for comes from all modes in turn
+  for (std::size_t i = 0; i < filter.size(); ++i)
+    for (const auto* mode : {&filter, &simulation, &held})
+      if (i < mode->size() && static_cast<int>(list.size()) < most - 2) add((*mode)[i]);
   if (most >= 6) {
     std::set<EffectKind> kinds;
     for (const std::size_t c : list) kinds.insert(data_.candidates()[c].kind);

@@ -4,43 +4,15 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "info/nudge_stages.h"
 #include "info/random_stream.h"
+#include "search_tuning.h"
 
 namespace info::discover {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-namespace {
-
-// the score of what could not be simulated at all
-constexpr double kFailed = -1e300;
-constexpr double kWidest = 0.8, kFirstSize = 0.3, kRaceSize = 0.1, kSmallSize = 0.005;
-constexpr double kSmallest = 1e-3;
-// A large latent force leads to a minimum, and lets go of the parameters in it; others may be much
-// lower (docs/decisions/046-several-minima.md). So many starts with a small one, and how far they
-// are drawn [prior deviations].
-constexpr std::uint64_t kStarts = 6;
-constexpr double kSpread = 0.7;
-// with so large a latent force none at all is out of the question, and its fit is not worth the
-// time
-constexpr double kHopeless = 0.03;
-
-// nats by which a search at longer steps may be wrong about which of two hypotheses is better
-constexpr double kDraftError = 3;
-
-// A fit that is not done after so many iterations is given up if it is so many nats behind. A truth
-// in a wrong minimum has stood 53 behind (visc, seed 20010 of validation/discovery).
-constexpr int kIterations = 25, kShort = 8;
-constexpr double kGivenUp = 60;
-
-// Likelihood::marginal gains a few nats, and more where a hypothesis damps the model; what is
-// further behind stays behind. The second: nats by which a fit must be better than the one before
-// for that to be worth doing again.
-constexpr double kMarginalGain = 10, kNews = 0.2;
-
-}  // namespace
 
 std::vector<VectorXd> forceKept(std::vector<VectorXd> eta, double from, double to) {
   for (VectorXd& one : eta) one *= from / to;
@@ -55,6 +27,13 @@ Search::Search(const Disagreement& data, std::vector<int> trials, const Options&
       output_(outputDeviation),
       report_(std::move(report)) {
   likelihood_.emplace(data_, trials_, nominalValues(data_), options_.latentTime);
+  for (const NudgeStage& stage : nudgeStages) {
+    auto held = data_.nudged(stage.frequency);
+    if (!held) break;
+    nudged_.push_back(std::move(held));
+    nudgedLikelihoods_.emplace_back(*nudged_.back(), trials_, nominalValues(data_),
+                                    options_.latentTime);
+  }
 }
 
 // Follows σ_d from `size` to where the evidence is largest: MacKay's fixed point
@@ -159,10 +138,14 @@ void Search::calibrate() {
   // where it went it may stand by its latent force only
   if (!at({}).works()) improve({}, first.values, first.noise.latent, &first);
   mustWork();
-  for (std::uint64_t start = 0; start < kStarts; ++start) {
+  const std::uint64_t starts = nudgedLikelihoods_.empty() ? kStarts : kStartsBesidesLed;
+  for (std::uint64_t start = 0; start < starts; ++start) {
     report_("base model");
     improve({}, drawn(start), kSmallSize, nullptr, bestScore() - kGivenUp);
   }
+  report_("base model");
+  if (const auto led = ledFrom({}, nominalValues(data_)))
+    improve({}, led->values, kSmallSize, nullptr, bestScore() - kGivenUp);
 }
 
 // The nominal values, and after those values from the prior.
@@ -277,22 +260,8 @@ void Search::raceOne(const Effects& base, std::size_t candidate) {
   const VectorXd& values = near.values;
   const double raceSize = std::clamp(2 * near.noise.latent, 0.01, kRaceSize);
   report_(describe(data_, effects));
-  // of several starts the one that a short fit likes best
-  const Hypothesis hypothesis = makeHypothesis(data_, effects, trials_);
-  const std::size_t starts = data_.candidates()[candidate].starts.size();
-  VectorXd from = started(candidate, 0, values);
-  double evidence = -1e300;
-  for (std::size_t s = 0; starts > 1 && s < starts; ++s) {
-    const auto fit = likelihood_->tryFit(
-        hypothesis, {output_, raceSize, options_.latentTime}, started(candidate, s, values),
-        forceKept(near.eta, near.noise.latent, raceSize), {5, 0.1});
-    if (fit && fit->logEvidence > evidence) {
-      evidence = fit->logEvidence;
-      from = fit->values;
-    }
-    ++fits_;
-  }
-  improve(effects, from, raceSize, &near, bestScore() - kGivenUp);
+  improve(effects, bestStart(base, candidate, near, raceSize), raceSize, &near,
+          bestScore() - kGivenUp);
   // what contains the base cannot be far worse: a wrong minimum, once more from the base itself
   if (at(effects).score < at(base).score - options_.evidence)
     improve(effects, absent(candidate, values), near.noise.latent, &near);
@@ -301,6 +270,7 @@ void Search::raceOne(const Effects& base, std::size_t candidate) {
 void Search::race(const Effects& base, const std::vector<std::size_t>& candidates) {
   const std::size_t known = entries_.size();
   for (const std::size_t c : candidates) raceOne(base, c);
+  raceLed(base, candidates);
   const bool news = entries_.size() > known;
   if (!news) return;
   // cross-starts: everything that is not far behind, and the next three in any case, once more from
@@ -338,6 +308,13 @@ void Search::race(const Effects& base, const std::vector<std::size_t>& candidate
 
 void Search::raceFromNominal(std::size_t most) {
   racedFromNominal_ = true;
+  if (const auto held = screenHeld({}); !held.empty()) {
+    std::vector<std::size_t> best;
+    for (const Screened& s : held)
+      if (best.size() < 2 * most && s.information > 0) best.push_back(s.candidate);
+    race({}, best);
+    return;
+  }
   struct Start {
     std::size_t candidate;
     Hypothesis hypothesis;

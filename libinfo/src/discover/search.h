@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "effect_sets.h"
@@ -36,6 +38,11 @@ struct Known {
 
 /// η of another σ_d with the same latent force.
 std::vector<Eigen::VectorXd> forceKept(std::vector<Eigen::VectorXd> eta, double from, double to);
+
+/// A candidate of one quantity with so many starts that they are a grid.
+inline bool isGrid(const Candidate& candidate) {
+  return candidate.quantities.size() == 1 && candidate.starts.size() >= 8;
+}
 
 /// What one linear step says of a candidate.
 struct Screened {
@@ -71,6 +78,9 @@ class Search {
   std::vector<Screened> screen(const Effects& effects, bool simulation) const;
   /// The same from short fits, for a base so poor that one linear step is no guide.
   std::vector<Screened> probe(const Effects& effects);
+  /// The same at the fit of a model that is held near the data, where one linear step is a good
+  /// guide however far the model by itself is off; empty where holding is not offered.
+  std::vector<Screened> screenHeld(const Effects& effects);
   /// Union of the best of both modes, the best of each kind, and declared equivalents.
   std::vector<std::size_t> shortlist(const Effects& effects, int most);
   /// The fit without latent force, made where it is not there yet; from the nominal values where
@@ -115,6 +125,22 @@ class Search {
   void improve(const Effects& effects, const Eigen::VectorXd& start, double size,
                const Fit* near = nullptr, double hopeless = -HUGE_VAL);
   Eigen::VectorXd drawn(std::uint64_t start) const;
+  /// A fit without latent force that is held near the data at first, and less and less.
+  struct Led {
+    Eigen::VectorXd values;  ///< where it ends
+    double evidence = 0;     ///< half way
+  };
+  /// Nothing where the model cannot be simulated so, or Disagreement::nudged is not offered.
+  std::optional<Led> ledFrom(const Effects& effects, Eigen::VectorXd start);
+  /// Fits from where those end that are led from the nominal values, of candidates beside `base`
+  /// that come near the best of them.
+  void raceLed(const Effects& base, const std::vector<std::size_t>& candidates);
+  /// One-step gains of all candidates that are not yet in `effects` at a fit of a likelihood.
+  std::vector<Screened> screenAt(const Likelihood& likelihood, const Fit& fit,
+                                 const Effects& effects) const;
+  /// The start of a candidate beside `base` that a short fit likes best.
+  Eigen::VectorXd bestStart(const Effects& base, std::size_t candidate, const Fit& near,
+                            double latent);
   /// Values with an effect's own quantities at one of its starts, or at nominal; those that are
   /// free anyway stay.
   Eigen::VectorXd started(std::size_t candidate, std::size_t start, Eigen::VectorXd values) const;
@@ -128,6 +154,15 @@ class Search {
   double output_;
   Report report_;
   std::optional<Likelihood> likelihood_;
+  std::vector<std::unique_ptr<Disagreement>> nudged_;  ///< the strongest first
+  std::vector<Likelihood> nudgedLikelihoods_;
+  std::set<Effects> raced_;  ///< by raceLed
+  struct GridStart {
+    Eigen::VectorXd values;   ///< of the fit, the amplitude held
+    double gain = -HUGE_VAL;  ///< nats beside the base, held
+  };
+  GridStart searchGrid(std::size_t candidate, const Fit& base) const;
+  std::map<std::size_t, GridStart> gridStarts_;  ///< the best of candidates with a grid of starts
   Eigen::VectorXd scaleValues_;
   std::map<Effects, Entry> entries_;
   int fits_ = 0;

@@ -12,8 +12,9 @@ using MakeAttempt = std::function<Attempt(double step)>;
 
 SteppedVerdict runOnce(const MakeAttempt& attempt, double step, double shortest) {
   Draft draft;
-  while (true) {
+  for (bool first = true;; first = false) {
     Attempt one = attempt(step);
+    if (!first) one.options.numericalTolerance *= 2;
     try {
       Verdict verdict = run(one.data, one.options, &draft);
       if (verdict.finding != Finding::numerical || step < shortest)

@@ -42,6 +42,11 @@ struct EffectProvenance {
   std::vector<std::string> data;  ///< e.g. "curl.sto SHA-256 …"
 };
 
+/// What was added, from what and how sure, in a sentence for the model's credits.
+/// @throws std::invalid_argument for an id that is not in the catalogue of this model
+std::string effectCredits(const WidestModel& widest, const std::vector<EffectToAdd>& effects,
+                          const EffectProvenance& provenance);
+
 /// The model with effects, its other numbers as they are; what was added, from what and how sure is
 /// written into the credits, e.g.
 ///   "Effects added by fisherhill 1.0 from curl.sto SHA-256 …; viscous joint damping (visc):
@@ -52,9 +57,5 @@ struct EffectProvenance {
 Augmented addEffects(const Model& model, const ArmOptions& arm, const std::string& coordinate,
                      const std::vector<EffectToAdd>& effects, const EffectProvenance& provenance,
                      const std::vector<info::discover::FormulaTerm>& formula = {});
-
-/// The trial as a sensor without fault would have measured it, q(t) = (y(t + clock) − bias)/(1 +
-/// gain); samples whose time falls out of the trial are lost.
-Trial asTrueSensor(Trial trial, const std::string& coordinate, const SensorLaw& sensor);
 
 }  // namespace bio::discover

@@ -31,11 +31,13 @@ struct EffectEntry {
 /// | const | +c | c N·m |
 /// | handforce | horizontal force at that mass centre, in the plane of the joint | F N |
 /// | spring | −k·max(0, L − L_r)·∂L/∂q, L from hand to shoulder (see band.cc) | k N/m |
+/// | torque_from, torque_until, mass_from, mass_until | TimedForce (timed_force.h) | N·m or kg |
 /// | fatigue | u_i·[1 − φ(1 − e^{−∫u_i dt/T})], every muscle | φ |
-/// | missing_i | a muscle that the model has but switched off, F0 = r·that of the model, its lengths within their tolerance | r |
-/// | delay, shape, crosstalk_A_B, gain_i, offset_i | EmgMapping | |
-/// | mass, tau, Fmax_i, lopt_i, lslack_i, tendon, wrap_i | factors and shifts of parameters | |
-/// | bias, gain, clock | SensorLaw | |
+/// | missing_i | a muscle that the model has but switched off, F0 = r·that of the model, its
+/// lengths within their tolerance | r | | delay, shape, crosstalk_A_B, gain_i, offset_i |
+/// EmgMapping | | | mass, tau, Fmax_i, lopt_i, lslack_i, tendon, wrap_i | factors and shifts of
+/// parameters | | | swap_A_B | channels of two muscles exchanged: EmgMapping | share, 1 where they
+/// are | | bias, gain, clock, clock_rate, lag, drift | SensorLaw | |
 const std::vector<EffectEntry>& effectEntries();
 
 /// Adds the base model's own uncertain numbers as nuisances: every muscle's F0 (15 % of the

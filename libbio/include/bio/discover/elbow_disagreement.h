@@ -6,6 +6,7 @@
 
 #include "bio/coupled.h"
 #include "bio/discover/widest_model.h"
+#include "bio/nudge.h"
 #include "bio/trial.h"
 
 namespace bio::discover {
@@ -29,11 +30,11 @@ inline constexpr double shortestSearchStep = 0.003;
 ///
 /// Each trial is simulated from its own first angle over its rows, driven by its excitations and by
 /// the torque it has from outside; what is known of that angle is the first measured value, as a
-/// sensor that may be off shows it. y(t_k) is the cubic of Hermite between rows. All derivatives are
-/// exact: parameters, laws and latent nodes by the implicit function theorem
+/// sensor that may be off shows it. y(t_k) is the cubic of Hermite between rows. All derivatives
+/// are exact: parameters, laws and latent nodes by the implicit function theorem
 /// (coupled_sensitivity.h), EMG and sensor by the chain rule; none is a difference of simulations.
-/// Before the start of a trial, where a clock offset may look, the coordinate goes on with its first
-/// speed.
+/// Before the start of a trial, where a clock offset may look, the coordinate goes on with its
+/// first speed.
 ///
 /// Where a torque from outside pushes the coordinate, delay and clock are no equivalents. A mass in
 /// the hand that a trial is known to have (Trial::known) is in its model besides what is missing;
@@ -72,6 +73,8 @@ class ElbowDisagreement : public info::discover::Disagreement {
   Eigen::VectorXd refinedOutputs(int trial, const Eigen::VectorXd& values) const override;
   Eigen::MatrixXd inputs(int trial) const override;
   std::vector<std::string> inputNames() const override;
+  /// The same with the coordinate held near its measured course (nudge.h).
+  std::unique_ptr<info::discover::Disagreement> nudged(double frequency) const override;
   /// Null if the model has a force of a formula already.
   std::unique_ptr<info::discover::Disagreement> withFormula(
       const std::vector<info::discover::FormulaTerm>& terms,
@@ -79,10 +82,23 @@ class ElbowDisagreement : public info::discover::Disagreement {
 
   /// Model and effects, without the trials' starts.
   const WidestModel& widest() const { return widest_; }
+  /// Forces that begin or end, together, at latentTimes(trial); empty if there is none.
+  Eigen::VectorXd timedForce(int trial, const Eigen::VectorXd& values) const;
+  const ElbowOptions& options() const { return options_; }
+  /// The trial as it was given, with an excitation for every muscle that was added (withProxies).
+  const Trial& trial(int trial) const { return of(trial).trial; }
+  /// The whole simulation at values, without a latent force.
+  /// @throws what Arm, initialState and simulate throw
+  Trajectory motion(int trial, const Eigen::VectorXd& values) const;
+  /// The arm that it is of.
+  Arm armAt(int trial, const Eigen::VectorXd& values) const;
+  /// Where it starts: the coordinate itself, not what the sensor shows of it.
+  TrialStart startAt(int trial, const Eigen::VectorXd& values) const;
   /// Why the trial's simulation does not reach its end; empty if it does.
   std::string failure(int trial, const Eigen::VectorXd& values) const;
 
  private:
+  class Nudged;
   struct OfTrial {
     Trial trial;
     ExcitationSignal excitation;
@@ -90,21 +106,30 @@ class ElbowDisagreement : public info::discover::Disagreement {
     std::vector<double> times;
     Eigen::VectorXd measured;
     std::vector<double> nodes;
+    Eigen::VectorXd heldMass;  ///< what one of 1 kg does at the nodes [N·m]
     Eigen::VectorXd known;     ///< what Trial::known adds to the model's quantities
     std::size_t angle, speed;  ///< quantities of its start, the angle as the sensor shows it
   };
+  Eigen::VectorXd withTimedForces(const OfTrial& one, const Eigen::VectorXd& values,
+                                  const Eigen::VectorXd& latent) const;
+  /// How the forces at the nodes follow the wanted quantities: nodes × wanted; empty if none does.
+  Eigen::MatrixXd timedDirections(const OfTrial& one, const Eigen::VectorXd& values,
+                                  const std::vector<std::size_t>& wanted) const;
   double activationLag() const;
-  Eigen::VectorXd knownChanges(const Trial& trial) const;
   const OfTrial& of(int trial) const { return trials_.at(static_cast<std::size_t>(trial)); }
   ParameterCatalogue::Setting settingAt(const OfTrial& one, const Eigen::VectorXd& values,
                                         const std::vector<std::size_t>& wanted) const;
   SimulationOptions simulationOf(const OfTrial& one, const Eigen::VectorXd& latent,
-                                 double clock) const;
+                                 const SensorLaw& sensor) const;
   ExcitationSignal excitationFor(const OfTrial& one, const Arm& arm) const;
   Trajectory simulate(const OfTrial& one, const Eigen::VectorXd& values,
-                      const Eigen::VectorXd& latent, double stepFactor) const;
+                      const Eigen::VectorXd& latent, double stepFactor, const Nudge* nudge) const;
   Eigen::VectorXd outputsOf(const OfTrial& one, const Eigen::VectorXd& values,
-                            const Eigen::VectorXd& latent, double stepFactor) const;
+                            const Eigen::VectorXd& latent, double stepFactor,
+                            const Nudge* nudge) const;
+  Prediction predictWith(const Nudge* nudge, int trial, const Eigen::VectorXd& values,
+                         const Eigen::VectorXd& latent, const std::vector<std::size_t>& wanted,
+                         bool latentToo) const;
 
   WidestModel widest_;
   ElbowOptions options_;

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "bio/arm.h"
+#include "bio/discover/sensor_law.h"
+#include "bio/discover/timed_force.h"
 #include "bio/parameters.h"
 #include "bio/trial.h"
 #include "info/discover/disagreement.h"
@@ -19,9 +21,13 @@ struct Meaning {
     scale,  ///< multiplies each number by value^weight
     shift,  ///< adds weight·value to each number
     tilt,  ///< turns gravity, so that its moment about the axis is that of q + value; adds as shift
-    bias,  ///< of the sensor, y = (1 + gain)·q(t − clock) + bias
+    bias,  ///< of the sensor (sensor_law.h), and the five below
     gain,
-    clock
+    clock,
+    rate,
+    lag,
+    drift,
+    timed  ///< of a TimedForce: no number of the model
   };
   struct Part {
     std::size_t number;
@@ -29,13 +35,6 @@ struct Meaning {
   };
   Kind kind = Kind::shift;
   std::vector<Part> parts;
-};
-
-/// What stands between the coordinate and what is measured: y(t) = (1 + gain)·q(t − clock) + bias.
-struct SensorLaw {
-  double bias = 0;   ///< [rad] or [m]
-  double gain = 0;   ///< [1]
-  double clock = 0;  ///< [s]
 };
 
 /// Muscles whose names begin with the same capitals: TRIlong, TRIlat and TRImed are TRI.
@@ -109,6 +108,9 @@ class WidestModel {
   /// F0 becomes as good as nothing, and is the number whose index is returned. Its EMG is that of
   /// the trial, or the mean of those of `proxies` (at least one).
   std::size_t addMuscle(std::size_t muscle, std::vector<std::string> proxies);
+  void addTimedForce(const TimedForce& force) { timedForces_.push_back(force); }
+  /// When trials begin at the latest and end at the earliest [s]: where timed forces may change.
+  void trialsLast(double first, double last);
   /// Takes candidates off the list; their quantities stay, at nominal.
   void forget(const std::vector<std::string>& ids);
   /// Two candidates are no equivalents: these data can tell them apart.
@@ -136,6 +138,7 @@ class WidestModel {
   /// How the numbers follow a quantity; empty for one of the sensor.
   ParameterDirection direction(const Eigen::VectorXd& values, std::size_t quantity) const;
   SensorLaw sensorAt(const Eigen::VectorXd& values) const;
+  const std::vector<TimedForce>& timedForces() const { return timedForces_; }
   Meaning::Kind kindOf(std::size_t quantity) const { return meanings_[quantity].kind; }
 
  private:
@@ -177,6 +180,7 @@ class WidestModel {
   std::vector<Candidate> candidates_;
   std::map<std::string, std::string> present_;
   std::vector<Law> laws_;
+  std::vector<TimedForce> timedForces_;
   std::map<std::string, std::vector<std::string>> proxies_;
 };
 

@@ -53,6 +53,28 @@ void addCrosstalk(WidestModel& model) {
   }
 }
 
+void addExchangedChannels(WidestModel& model) {
+  const auto& muscles = model.arm().muscles();
+  const auto share = [&](std::size_t to, std::size_t from) {
+    return model.number(EmgTarget{What::crosstalk, muscles[to].name, muscles[from].name}, 0);
+  };
+  for (std::size_t i = 0; i < muscles.size(); ++i) {
+    for (std::size_t k = i + 1; k < muscles.size(); ++k) {
+      const std::string id = fmt::format("swap_{}_{}", muscles[i].name, muscles[k].name);
+      const std::size_t s =
+          model.add(amplitude(id + ".share", "", 0, 1.2, 0.7),
+                    {Meaning::Kind::shift,
+                     {{share(i, i)}, {share(i, k), -1}, {share(k, k)}, {share(k, i), -1}}});
+      model.add(candidate(
+          model, id,
+          fmt::format("exchanged channels of {} and {}", muscles[i].name, muscles[k].name),
+          fmt::format("The record of {} is that of {}, and the other way round.", muscles[i].name,
+                      muscles[k].name),
+          EffectKind::input, {s}, {{0.9}}));
+    }
+  }
+}
+
 namespace {
 
 /// Calls use(name, muscles) for every muscle, and every group of several.

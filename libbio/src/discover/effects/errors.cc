@@ -144,12 +144,23 @@ void addWrapErrors(WidestModel& model) {
     const auto* wrap = std::get_if<WrapTarget>(&parameter.targets.front());
     if (!wrap || wrap->component != 0) continue;
     const std::string& name = model.base().wrapObjects[wrap->wrap].name;
-    const std::size_t r = model.add(amplitude(fmt::format("wrap_{}.radius", name), "m",
-                                              -0.5 * parameter.value, parameter.value, 0.006),
-                                    {Meaning::Kind::shift, model.numbers(parameter.name)});
+    const double lower = std::max(-0.5 * parameter.value, parameter.lower - parameter.value);
+    const double upper = std::min(parameter.value, parameter.upper - parameter.value);
+    const std::size_t r =
+        model.add(amplitude(fmt::format("wrap_{}.radius", name), "m", lower, upper, 0.006),
+                  {Meaning::Kind::shift, model.numbers(parameter.name)});
+    // near a path point the lengths turn so quickly that each start sees only what is next to it
+    std::vector<std::vector<double>> starts;
+    const auto startAt = [&](double share) {
+      const double shift = share * parameter.value;
+      if (shift > lower && shift < upper) starts.push_back({shift});
+    };
+    for (const double share : {0.06, -0.06, -0.36, -0.26, -0.15, 0.13, 0.19}) startAt(share);
+    for (double share = 0.25; share < 0.4; share += 0.0125) startAt(share);
+    if (starts.empty()) starts.push_back({std::clamp(0.001, lower, upper)});
     model.add(candidate(model, "wrap_" + name, "radius of wrap object " + name,
                         fmt::format("The muscles that pass over {} have other moment arms.", name),
-                        EffectKind::geometry, {r}, {{0.001}, {-0.001}}));
+                        EffectKind::geometry, {r}, starts));
   }
 }
 
@@ -157,8 +168,9 @@ void addSensorErrors(WidestModel& model) {
   const auto add = [&](const char* id, const char* name, const char* sentence, const char* unit,
                        double bound, double deviation, double start, Meaning::Kind kind,
                        std::vector<std::string> equivalents = {}) {
+    const double lowest = kind == Meaning::Kind::lag ? 0 : -bound;
     const std::size_t x = model.add(
-        amplitude(fmt::format("{}.value", id), unit, -bound, bound, deviation), {kind, {}});
+        amplitude(fmt::format("{}.value", id), unit, lowest, bound, deviation), {kind, {}});
     model.add(candidate(model, id, name, sentence, EffectKind::sensor, {x}, {{start}},
                         std::move(equivalents)));
   };
@@ -170,6 +182,15 @@ void addSensorErrors(WidestModel& model) {
       Meaning::Kind::gain);
   add("clock", "clock offset", "The sensor's clock runs behind the EMG's.", "s", 0.2, 0.05, 0.01,
       Meaning::Kind::clock, {"delay"});
+  add("clock_rate", "clock rate",
+      "The sensor's clock runs slow beside the EMG's, or fast where this is negative: what it "
+      "writes at t was measured at (1 + rate) t.",
+      "", 0.2, 0.03, 0.01, Meaning::Kind::rate);
+  add("lag", "sensor lag", "The sensor follows the coordinate late, as a first-order lag does.",
+      "s", 0.3, 0.05, 0.01, Meaning::Kind::lag);
+  add("drift", "sensor drift", "What the sensor shows drifts at a constant rate.",
+      turns ? "rad/s" : "m/s", turns ? 0.1 : 0.02, turns ? 0.02 : 0.004, turns ? 0.003 : 0.0006,
+      Meaning::Kind::drift);
 }
 
 }  // namespace bio::discover

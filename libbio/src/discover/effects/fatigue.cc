@@ -16,7 +16,8 @@ void addFatigue(WidestModel& model) {
       {Meaning::Kind::shift, {{model.number(EmgTarget{EmgTarget::What::fatigueTime, ""}, 0)}}});
   model.add(candidate(model, "fatigue", "muscle fatigue",
                       "The longer a muscle has worked, the less force it gives for the same EMG.",
-                      EffectKind::structure, {share, T}, {{0.1, 0.3}, {0.1, 3}, {0.1, 30}}));
+                      info::discover::EffectKind::structure, {share, T},
+                      {{0.1, 0.3}, {0.1, 3}, {0.1, 30}}));
 }
 
 }  // namespace bio::discover

@@ -114,6 +114,13 @@ class Disagreement {
     return {};
   }
 
+  /// The same data and model with a force that holds the simulation near what was measured, as a
+  /// spring and a damper of a natural frequency ω [rad/s] > 0 do (nudging). Far from the truth the
+  /// simulation of an unstable model depends on its parameters in many narrow valleys; held, it
+  /// depends on them smoothly, and as ω goes to 0 it becomes the model's own. Null: not offered.
+  /// Must not outlive this.
+  virtual std::unique_ptr<Disagreement> nudged(double /*frequency*/) const { return nullptr; }
+
   /// Inputs whose past the innovations must not follow, samples × inputs at times(trial), for the
   /// test of input independence; may have no columns.
   virtual Eigen::MatrixXd inputs(int trial) const = 0;

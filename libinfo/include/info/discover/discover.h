@@ -11,6 +11,7 @@
 #include "info/discover/disagreement.h"
 #include "info/discover/gap.h"
 #include "info/discover/localise.h"
+#include "info/discover/recorded_noise.h"
 #include "info/discover/unknown.h"
 
 namespace info::discover {
@@ -50,6 +51,9 @@ struct Options {
   int maxEffects = 3;
   int finalists = 9;         ///< most candidates that are raced at a time
   std::vector<int> heldOut;  ///< trials that are not fitted, only judged by
+  /// Largest change at half the time step [σ_y]; with a larger one the finding is `numerical`.
+  double numericalTolerance = 0.2;
+  bool judgeSamples = true;  ///< leave out outliers, and samples whose noise is correlated
   bool symbolic = true;      ///< look for a formula when no name fits
   /// runAtShorterSteps: where nothing was found and errors as large as those of the held-out trials
   /// are less probable than this, these are fitted, too, and all is asked once more; 0: never
@@ -99,6 +103,8 @@ struct Detectable {
   double amplitude = 0;  ///< [unit of the amplitude]; infinite: they can never show it
 };
 
+struct Verdict;
+
 /// How the formula of what has no name (Unknown) did in the race against the effects that imitate
 /// it best. It is no name: what it says is how the force looks.
 struct RacedFormula {
@@ -112,6 +118,9 @@ struct RacedFormula {
   Adequacy after;  ///< of the innovations, with the formula
   Gap gap;         ///< on the trials that were fitted
   std::optional<Gap> heldOut;
+  /// Where it wins: the data with the formula as a candidate, and what the race of it said.
+  std::shared_ptr<const Disagreement> data;
+  std::shared_ptr<const Verdict> verdict;
 };
 
 /// A force without a name, a smooth function of the angle or of the speed alone, as it did in the
@@ -148,12 +157,16 @@ struct Verdict {
 
   double outputDeviation = 0;  ///< σ_y
   bool deviationEstimated = false;
+  RecordedNoise noise;                   ///< which samples were used, and why not all
   double latentSizeBefore = 0;           ///< σ_d with the base model
   double latentSizeAfter = 0;            ///< σ_d with the effects
   Eigen::VectorXd base;                  ///< all quantities, base model calibrated
   Eigen::VectorXd values;                ///< all quantities with the effects
   std::vector<Estimate> calibration;     ///< nuisances of the base model
   std::vector<Estimate> nuisancesAfter;  ///< with the effects
+  /// Starts of the trials that were held out, fitted to each of them alone, with the effects; their
+  /// values are in `values`, and without the effects in `base`.
+  std::vector<Estimate> heldOutStarts;
   Adequacy before, after;
   Localisation localisation;
   std::vector<Finalist> finalists;  ///< best first

@@ -21,7 +21,9 @@ struct SteppedVerdict {
 
 /// Steps that are too long look like an effect: run() again at half the step, from where it has
 /// ended, while the finding is `numerical`, or the model cannot be simulated over the trials at all
-/// (std::domain_error), and the step is not below `shortest`.
+/// (std::domain_error), and the step is not below `shortest`. Where paths touch and lift off at
+/// different times errors do not vanish with the step: from the second on
+/// Options::numericalTolerance counts twice.
 ///
 /// Where nothing was found and errors as large as those of the held-out trials are improbable
 /// (Options::secondLook), all trials are fitted and all is asked once more: a name that is found

@@ -1,4 +1,4 @@
-#include "driven_trial.h"
+#include "bio/driven_trial.h"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ TEST(DrivenTrial, KeepsTheTorqueFromOutsideAndWhatIsKnown) {
   trial.known = {1.25, -0.5};
   bio::EmgMapping mapping;
   mapping.delay = 0.013;
-  const bio::Table table = app::drivenTable(trial, arm, mapping);
+  const bio::Table table = bio::drivenTable(trial, arm, mapping);
   const bio::Trial driven = bio::trialFrom(table, "driven", model, {.knownChanges = true});
   EXPECT_EQ(driven.known.massInHand, 1.25);
   EXPECT_NEAR(driven.known.armTurn, -0.5, 1e-12);

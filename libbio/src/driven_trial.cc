@@ -1,6 +1,4 @@
-#include "driven_trial.h"
-
-#include <fmt/format.h>
+#include "bio/driven_trial.h"
 
 #include <cmath>
 #include <set>
@@ -8,36 +6,30 @@
 #include "bio/coupled_sensitivity.h"
 #include "bio/replay.h"
 
-namespace app {
+namespace bio {
 
-std::string drivenName(std::size_t i) {
-  return fmt::format("driven_{}.sto", i + 1);
-}
-
-bio::Table drivenTable(const bio::Trial& trial, const bio::Arm& arm,
-                       const bio::EmgMapping& mapping) {
-  const std::vector<std::string> muscles = bio::muscleNames(arm);
-  const bio::ExcitationSignal driven =
-      bio::drivenExcitation(bio::excitationOf(trial, arm), muscles, mapping);
+Table drivenTable(const Trial& trial, const Arm& arm, const EmgMapping& mapping) {
+  const std::vector<std::string> muscles = muscleNames(arm);
+  const ExcitationSignal driven = drivenExcitation(excitationOf(trial, arm), muscles, mapping);
   const double first = trial.times[0], last = trial.times[trial.times.size() - 1];
   std::set<double> times(trial.times.begin(), trial.times.end());
-  for (const bio::MeasuredMotion& motion : trial.measured) {
+  for (const MeasuredMotion& motion : trial.measured) {
     times.insert(motion.times.begin(), motion.times.end());
   }
   for (const double t : driven.times()) {
     if (t > first && t < last) times.insert(t);
   }
-  bio::Table table;
+  Table table;
   table.name = "driven excitations";
   table.columns = {"time"};
   table.columns.insert(table.columns.end(), muscles.begin(), muscles.end());
-  table.metadata.merge(bio::headerOf(trial.known));
+  table.metadata.merge(headerOf(trial.known));
   const auto n = static_cast<Eigen::Index>(muscles.size());
   const auto measured = static_cast<Eigen::Index>(trial.measured.size());
   const auto applied = static_cast<Eigen::Index>(trial.applied.size());
   table.values = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(times.size()),
                                            1 + n + measured + applied, std::nan(""));
-  const bio::ExternalForce external = bio::externalForceOf(trial, arm);
+  const ExternalForce external = externalForceOf(trial, arm);
   Eigen::Index row = 0;
   std::size_t hint = 0;
   for (const double t : times) {
@@ -51,14 +43,14 @@ bio::Table drivenTable(const bio::Trial& trial, const bio::Arm& arm,
     ++row;
   }
   for (Eigen::Index k = 0; k < measured; ++k) {
-    const bio::MeasuredMotion& motion = trial.measured[static_cast<std::size_t>(k)];
+    const MeasuredMotion& motion = trial.measured[static_cast<std::size_t>(k)];
     table.columns.push_back(motion.coordinate);
     for (Eigen::Index i = 0; i < motion.times.size(); ++i) {
       const auto place = std::distance(times.begin(), times.find(motion.times[i]));
       table.values(place, 1 + n + k) = motion.values[i];
     }
   }
-  for (const bio::AppliedForce& push : trial.applied) {
+  for (const AppliedForce& push : trial.applied) {
     const int index = arm.skeleton().indexOf(push.coordinate);
     const bool turns = arm.skeleton().coordinates()[static_cast<std::size_t>(index)].isRotation;
     table.columns.push_back(push.coordinate + (turns ? ".torque" : ".force"));
@@ -66,4 +58,4 @@ bio::Table drivenTable(const bio::Trial& trial, const bio::Arm& arm,
   return table;
 }
 
-}  // namespace app
+}  // namespace bio

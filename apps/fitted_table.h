@@ -1,0 +1,18 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <vector>
+
+#include "info/discover/fitted_numbers.h"
+
+namespace app {
+
+/// parameters.csv: `name,unit,nominal,estimate,sd,prior_sd,prior_z`, a row per number; an empty
+/// cell is not known.
+void writeFitted(const std::vector<info::discover::FittedNumber>& numbers, std::ostream& out);
+
+/// The same as a list of objects, null where it is not known.
+nlohmann::ordered_json fittedJson(const std::vector<info::discover::FittedNumber>& numbers);
+
+}  // namespace app
