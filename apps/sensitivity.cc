@@ -167,9 +167,11 @@ class Sensitivity : public Command {
   void checkValues(const bio::ModelParameter& parameter) const {
     for (const double value : values_) {
       if (value >= parameter.lower && value <= parameter.upper) continue;
-      throw std::invalid_argument(fmt::format("--values: {} = {} {}, must be {:.4g} to {:.4g} {}",
-                                              parameter.name, value, parameter.unit,
-                                              parameter.lower, parameter.upper, parameter.unit));
+      throw std::invalid_argument(
+          fmt::format("--values: {} = {} {}, must be {:.4g} to {:.4g} {}{}{}", parameter.name,
+                      value, parameter.unit, parameter.lower, parameter.upper, parameter.unit,
+                      value >= parameter.limit ? ": " : "",
+                      value >= parameter.limit ? parameter.whyLimited : ""));
     }
   }
 

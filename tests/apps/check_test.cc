@@ -14,6 +14,7 @@ using support::ScratchFolder;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 constexpr const char* goodTrial = "time,BIClong\n0,0.1\n0.1,0.2\n0.2,0.1\n";
 
@@ -139,6 +140,25 @@ TEST(CheckCommand, DrawsWhatWasMeasuredInEveryOtherRow) {
   EXPECT_EQ(runFisherHill({"check", file, "--out", out}).status, 0);
   const std::string report = support::contentOf(out + "/report.html");
   EXPECT_THAT(report, HasSubstr(R"("x":[0.0,0.2],"y":[0.5,0.7])"));
+}
+
+TEST(CheckCommand, ListsWhereLengthsOfMusclesJump) {
+  const ProgramResult result = runFisherHill({"check", "models/elbow8.osim"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("the length of BRA jumps by 5.26 mm at elbow_flexion = 0 deg"));
+  EXPECT_THAT(result.out, Not(HasSubstr("the length of TRI")));
+}
+
+// moment-arms tells of those within what it is asked for.
+TEST(MomentArmsCommand, WarnsOfLengthsThatJump) {
+  const std::vector<std::string> range = {
+      "moment-arms", "models/elbow8.osim", "--from", "-20", "--to", "130", "--json"};
+  const ProgramResult result = runFisherHill(range);
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out + result.err, HasSubstr("the length of BRA jumps by 5.26 mm"));
+  const ProgramResult above =
+      runFisherHill({"moment-arms", "models/elbow8.osim", "--from", "1", "--to", "130", "--json"});
+  EXPECT_THAT(above.out + above.err, Not(HasSubstr("jumps")));
 }
 
 TEST(CheckCommand, TheShippedModelsHaveNoErrorAndNoWarning) {

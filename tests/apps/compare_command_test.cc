@@ -63,6 +63,8 @@ TEST(CompareCommand, WritesTheTableTheSummaryAndTheReport) {
   EXPECT_TRUE(json["observed_order"]["vi-left"].is_null());
   EXPECT_GT(json["also_OpenSim_rms_deg"].get<double>(), 0);
   EXPECT_EQ(json["inputs"].size(), 3u);
+  EXPECT_EQ(json["reference_status"], "confirmed");
+  EXPECT_LT(json["reference_second_rms_deg"].get<double>(), 0.05);
 
   const std::string report = support::contentOf(out + "/report.html");
   for (const char* title : {"Work and precision", "Error against step", "Where the runs ended",
