@@ -60,12 +60,15 @@ ExitStatus done(const CommandContext&, const SimulationOptions&) {
 
 TEST(RunProgram, OneSignalEndsWorkThatNeverLooksWhetherThereWasOne) {
   const auto busy = [] {
-    tryProgram({"try", "a"}, [](const CommandContext&, const SimulationOptions&) -> ExitStatus {
-      std::raise(SIGTERM);
-      for (;;) pause();
-    });
+    std::vector<std::unique_ptr<Command>> commands;
+    commands.push_back(
+        std::make_unique<Trying>([](const CommandContext&, const SimulationOptions&) -> ExitStatus {
+          std::raise(SIGTERM);
+          for (;;) pause();
+        }));
+    runProgram({"fisherhill", "try", "a"}, std::move(commands));
   };
-  EXPECT_EXIT(busy(), testing::ExitedWithCode(130), "");
+  EXPECT_EXIT(busy(), testing::ExitedWithCode(130), "work that cannot stop in between");
 }
 
 TEST(RunProgram, ReturnsTheSubcommandsStatus) {
