@@ -44,8 +44,9 @@ std::string gapWords(const Gap& gap, double unit, const std::string& symbol, boo
     case Outcome::noise:
       return fmt::format("The residual{} is at the noise floor ({}).", where, figure(gap.after));
     case Outcome::expected:
-      return fmt::format("The residual{} is no larger than was to be expected ({}, expected {}).",
-                         where, figure(gap.after), figure(*gap.expected));
+      return fmt::format("The residual{} is {} what was to be expected ({}, expected {}).", where,
+                         gap.after > *gap.expected ? "about" : "no larger than", figure(gap.after),
+                         figure(*gap.expected));
     case Outcome::share:
       return fmt::format("{} % of the excess error is explained{}.", percent(gap), where);
     case Outcome::none:
@@ -64,7 +65,7 @@ std::string gapCell(const Gap& gap) {
     case Outcome::noise:
       return "at the noise floor";
     case Outcome::expected:
-      return "no larger than expected";
+      return "as expected";
     case Outcome::share:
       return fmt::format("{} %", percent(gap));
     case Outcome::none:

@@ -47,9 +47,13 @@ TEST(GapWords, CompareHeldOutTrialsWithWhatWasToBeExpected) {
   one = gap(3, 0.95, 0.5);
   one.expected = 0.9;
   EXPECT_EQ(words(one, true),
-            "The residual on the held-out trial is no larger than was to be expected (0.95°, "
-            "expected 0.9°).");
-  EXPECT_EQ(gapCell(one), "no larger than expected");
+            "The residual on the held-out trial is about what was to be expected (0.95°, expected "
+            "0.9°).");
+  one.expected = 1.4;
+  EXPECT_EQ(words(one, true),
+            "The residual on the held-out trial is no larger than what was to be expected (0.95°, "
+            "expected 1.4°).");
+  EXPECT_EQ(gapCell(one), "as expected");
   // little is explained where much uncertainty was to be expected
   one = gap(3.7, 3.3, 0.5);
   one.expected = 4.7;
