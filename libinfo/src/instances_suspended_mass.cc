@@ -13,8 +13,4 @@ template Predictor makePredictor(Rk4<SuspendedMass>, Experiment<Rk4<SuspendedMas
 template ExtendedStepMap extend(Rk4<SuspendedMass>, const Vector<double, 2>&);
 template ExtendedFlow extendFlow(SuspendedMass, const Vector<double, 2>&);
 
-template class VariationalIntegrator<CartDoublePendulum<>>;
-template Predictor makePredictor(DoublePendulumSteps, Experiment<DoublePendulumSteps>);
-template ExtendedStepMap extend(DoublePendulumSteps, const Vector<double, 2>&);
-
 }  // namespace info
