@@ -9,7 +9,8 @@
 
 namespace app {
 
-/// What every result says about itself: summary.json.
+/// What every result says about itself: summary.json, as docs/schemas/summary.schema.json describes
+/// it.
 ///
 /// Figures have plain names that end in their unit (`rms_error_deg`); an infinite or undefined one
 /// becomes null, since JSON has no other word for it.

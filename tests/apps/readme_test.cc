@@ -175,6 +175,7 @@ TEST(Start, NamesAPackageForEveryLibraryThatIsLookedFor) {
       {"OpenSSL", "libssl-dev"},
       {"GTest", "libgtest-dev"},
       {"benchmark", "libbenchmark-dev"},
+      {"valijson", "libvalijson-dev"},
       {"toml11", "libtoml11-dev"},
       {"nlohmann_json", "nlohmann-json3-dev"},
       {"Threads", "g++"},
