@@ -56,7 +56,7 @@ struct DiscoverFindings {
 /// The findings as figures of summary.json.
 void tellFindings(const DiscoverFindings& findings, Summary& summary);
 
-/// verdict.json as design/cli.md has it.
+/// The contents of verdict.json.
 nlohmann::ordered_json verdictJson(const DiscoverFindings& findings);
 
 /// "named", or "ambiguous", "parameter", "none", "unknown", "numerical"; "stopped" if the work did
