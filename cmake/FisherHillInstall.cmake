@@ -32,7 +32,7 @@ function(fisherhill_install_package)
     DESTINATION ${FISHERHILL_CONFIG_DIR} COMPONENT Development)
 endfunction()
 
-# fisherhill_install_data(): models and trials, licence and changes.
+# fisherhill_install_data(): models with their notice, trials, licence and changes.
 function(fisherhill_install_data)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/models ${PROJECT_SOURCE_DIR}/emg_data
     DESTINATION ${CMAKE_INSTALL_DATADIR}/fisherhill COMPONENT Runtime)

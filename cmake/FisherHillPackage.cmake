@@ -1,6 +1,6 @@
 # Debian packages by `cpack -G DEB` in a built tree: fisherhill (program, models, trials, man page),
 # libfisherhill-dev, and python3-fisherhill where the module is built. Dependencies on libraries are what
-# dpkg-shlibdeps finds in the binaries (docs/decisions/023-packages.md).
+# dpkg-shlibdeps finds in the binaries (docs/decisions/023-debian-packages.md).
 set(FISHERHILL_PACKAGE_CONTACT "FisherHill authors <fisherhill@example.invalid>" CACHE STRING
   "Maintainer of the Debian packages")
 

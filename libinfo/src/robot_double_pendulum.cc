@@ -162,8 +162,8 @@ struct Pendulum {
 // damping's at 5 rad/s 0.0025 N·m; sensors and clocks as data sheets allow, a few degrees, 5 %, 50
 // ms. Link 2 weighs 0.1 N·m about its joint: at 3 N·m/rad it sags by 2°, no more than is seen, and
 // a wider prior than 1 N·m/rad makes nothing of such a joint but a larger deviation
-// (docs/decisions/034-robots-links.md). What is left hanging on a rig, a hook or a screw clamp,
-// weighs some grams.
+// (docs/decisions/034-nested-link-models.md). What is left hanging on a rig, a hook or a screw
+// clamp, weighs some grams.
 std::vector<discover::Quantity> quantitiesOfPendulum() {
   constexpr double mass1 = 0.085, damping = 5e-4;
   const CartDoublePendulum<> rig;

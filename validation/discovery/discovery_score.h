@@ -8,7 +8,7 @@
 
 namespace hidden {
 
-/// One line of the table: k of n, its interval, and the target of design/discovery.md.
+/// One line of the table: k of n, its interval, and its target.
 struct Row {
   std::string metric;
   int k = 0, n = 0;

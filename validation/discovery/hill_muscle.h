@@ -6,8 +6,8 @@
 
 namespace hidden {
 
-/// A muscle of the true elbow: Schutte's, as docs/decisions/002 and the design's section 1 state
-/// it, written anew (the velocity by Newton's iteration on the force balance, not in closed form).
+/// A muscle of the true elbow: Schutte's, as docs/theory/muscle.md states it, written anew (the
+/// velocity by Newton's iteration on the force balance, not in closed form).
 struct HillMuscle {
   std::string name;
   double maxForce = 0;       ///< F0 [N]

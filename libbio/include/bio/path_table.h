@@ -9,7 +9,7 @@
 namespace bio {
 
 /// A muscle–tendon length over the one free coordinate q: quintic polynomials between the nodes of
-/// an even grid, which meet ℓ, ∂ℓ/∂q and ∂²ℓ/∂q² there (docs/decisions/048-path-tables.md).
+/// an even grid, which meet ℓ, ∂ℓ/∂q and ∂²ℓ/∂q² there (docs/decisions/048-tabulated-paths.md).
 ///
 /// A piece stands only if it agrees with the path in its middle, where a quintic errs most in ℓ and
 /// ∂²ℓ, and where a kink shows wherever it lies within. Where it does not – the path touches a wrap

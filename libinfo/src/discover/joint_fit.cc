@@ -209,9 +209,10 @@ Likelihood::Point Likelihood::moved(const Hypothesis& hypothesis, const Point& f
   return to;
 }
 
-// Geodesic acceleration (docs/decisions/036-bent-steps.md). The outputs along a straight step v are
-// y + Jv + ½y_vv; one more simulation at h·v gives y_vv, and the step that meets their curve is
-// v + ½a with (JᵀJ/σ² + 1 + λ) a = −Jᵀy_vv/σ². Left straight where the bend is not small beside it.
+// Geodesic acceleration (docs/decisions/036-geodesic-acceleration.md). The outputs along a straight
+// step v are y + Jv + ½y_vv; one more simulation at h·v gives y_vv, and the step that meets their
+// curve is v + ½a with (JᵀJ/σ² + 1 + λ) a = −Jᵀy_vv/σ². Left straight where the bend is not small
+// beside it.
 void Likelihood::bend(Step& step, const Hypothesis& hypothesis, const Noise& noise,
                       const std::vector<Linear>& trials, const DampedSystem& system,
                       const Point& point) const {

@@ -9,7 +9,7 @@ namespace info::discover {
 
 /// Races forces without a name, each a smooth function of the angle or of the speed alone, against
 /// the names that a search has chosen, or against none
-/// (docs/decisions/047-forces-without-a-name.md). The better one of them; nothing if the data do
+/// (docs/decisions/047-nonparametric-forces.md). The better one of them; nothing if the data do
 /// not offer formulas, or if neither could be fitted.
 /// @param smoothing  the base model with latent force: where the arm really goes
 /// @param fits  grows by how many there were

@@ -129,7 +129,7 @@ MatrixXd pastInputs(const Likelihood& likelihood, const NodeStates& states) {
 // q̈ at the nodes as it would be without the latent force there: second differences of the simulated
 // motion, less what the forces at a node and beside it have turned at once. With that in, every
 // force would follow the acceleration that it makes
-// (docs/decisions/049-accelerations-of-their-own.md).
+// (docs/decisions/049-latent-force-acceleration.md).
 MatrixXd accelerations(const Likelihood& likelihood, const Fit& fit, const NodeStates& states) {
   std::vector<VectorXd> all;
   for (std::size_t t = 0; t < states.q.size(); ++t) {

@@ -11,7 +11,7 @@ inline constexpr double kFailed = -1e300;
 inline constexpr double kWidest = 0.8, kFirstSize = 0.3, kRaceSize = 0.1, kSmallSize = 0.005;
 inline constexpr double kSmallest = 1e-3;
 // A large latent force leads to a minimum, and lets go of the parameters in it; others may be much
-// lower (docs/decisions/046-several-minima.md). So many starts with a small one, and how far they
+// lower (docs/decisions/046-multiple-starts.md). So many starts with a small one, and how far they
 // are drawn [prior deviations].
 inline constexpr std::uint64_t kStarts = 6, kStartsBesidesLed = 3;
 inline constexpr double kSpread = 0.7;

@@ -124,7 +124,7 @@ struct RacedFormula {
 };
 
 /// A force without a name, a smooth function of the angle or of the speed alone, as it did in the
-/// race against the names (docs/decisions/047-forces-without-a-name.md).
+/// race against the names (docs/decisions/047-nonparametric-forces.md).
 struct NamelessForce {
   enum class Follows { angle, speed };
   Follows follows = Follows::angle;

@@ -51,7 +51,7 @@ struct FitOptions {
 ///     κ(Δ) = (ℓ e^{−Δ/ℓ} − τ e^{−Δ/τ})/(ℓ − τ),   e^{−Δ/ℓ} for τ = 0
 double latentCorrelation(double interval, double time, double lag);
 
-/// Gaussian likelihood of whole trials: docs/decisions/030-batch-likelihood.md.
+/// Gaussian likelihood of whole trials: docs/decisions/030-latent-force-likelihood.md.
 ///
 /// The latent force is d = σ_d·L·η at its nodes, LLᵀ = (GGᵀ)∘κ(|t_i−t_j|), η ~ N(0, 1). All
 /// that is uncertain is then N(0, 1) before the data, and with residuals e = ỹ − y(ξ, η)
