@@ -26,7 +26,7 @@ Eigen::VectorXd estimateOf(const Calibration& calibration) {
 }
 
 /// Root mean square error of all measured angles of a trial.
-void compare(const Arm& arm, const Trial& trial, const SimulationOptions& simulation,
+void compareWithReplay(const Arm& arm, const Trial& trial, const SimulationOptions& simulation,
              const StartPoint& start, CalibratedTrial& one) {
   try {
     const TrialReplay replay =
@@ -88,7 +88,7 @@ CalibratedModel calibratedModel(const TrialSet& training, const TrialSet* heldOu
         one.driven = drivenTable(trial, set->arm(), calibration.calibrated->mapping);
         trial = trialFrom(*one.driven, trial.file, result.model);
       }
-      compare(calibrated, trial, simulation, start, one);
+      compareWithReplay(calibrated, trial, simulation, start, one);
       result.trials.push_back(std::move(one));
     }
   }
