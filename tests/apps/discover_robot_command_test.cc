@@ -64,7 +64,7 @@ TEST(DiscoverRobotCommand, NamesTheDryFrictionOfADoublePendulumAndFindsNothingMo
   EXPECT_NEAR(heldOut["rmse_after_deg"].get<double>(), expected, 0.15 * floor);
   EXPECT_TRUE(verdict["localisation"].contains("inputs"));
   const std::string report = contentOf(scratch / "out" / "report.html");
-  for (const char* title : {"link1 [deg]", "link2 [deg]", "What is missing", "Score over time",
+  for (const char* title : {"link1 [deg]", "link2 [deg]", "Missing effects", "Score over time",
                             "Score over angle and speed", "Acceleration of the cart"})
     EXPECT_THAT(report, HasSubstr(title));
 
@@ -120,10 +120,10 @@ TEST(DiscoverRobotCommand, RefusesBadInputInOneLine) {
   refused({good, good}, "is the same trial as");
   refused({good, "--step", "0.2"}, "good.csv: lasts 0.11 s, --step 0.2 s must not be longer");
   refused({good, "--without", "visc_1"}, "not in the catalogue of suspended-mass");
-  refused({good, "--integrator", "rk4"}, "does not go with --system");
+  refused({good, "--integrator", "rk4"}, "cannot be combined with --system");
   refused({good, "--noise", "1,2"}, "2 values for 1 channels");
   refused({good, "--with", table("e.json", "{\"system\": \"double-pendulum\", \"effects\": []}")},
-          "is of system double-pendulum");
+          "system is double-pendulum, must be suspended-mass");
   const ProgramResult none = runFisherHill({"discover", "models/elbow8.osim"});
   EXPECT_EQ(none.status, 2);
   EXPECT_THAT(none.err, HasSubstr("TRIAL is required"));
