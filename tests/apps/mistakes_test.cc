@@ -209,7 +209,7 @@ INSTANTIATE_TEST_SUITE_P(
          "TRI.radius = 0.2 m, must be 0.0048 to 0.0205 m: TRIlong's path point"},
         {"NoValues",
          {"sensitivity", model, "$/good.csv", "--parameter", "TRI.radius"},
-         "--parameter and --values belong together"},
+         "--parameter and --values require each other"},
         {"NegativeNoise",
          {"sensitivity", model, "$/good.csv", "--all", "--noise", "-1"},
          "--noise: -1 deg, must be > 0"},
