@@ -150,7 +150,7 @@ ParameterInformation informationAbout(const ParameterCatalogue& catalogue,
   if (known.determinedCombinations < p) {
     known.sentences.push_back(
         fmt::format("the data at least halve the uncertainty of {} combinations of the {} "
-                    "parameters; the other combinations stay close to their priors",
+                    "parameters; the other combinations rest mainly on their priors",
                     known.determinedCombinations, p));
   }
   addPairs(known, known.sentences);
