@@ -70,9 +70,10 @@ void addModelOptions(CLI::App& subcommand, SimulationOptions& options) {
 void addSimulationOptions(CLI::App& subcommand, SimulationOptions& options) {
   addModelOptions(subcommand, options);
   subcommand
-      .add_option("--integrator", options.integrator,
-                  "vi (variational, midpoint rule, second order), vi-left (variational, "
-                  "left-endpoint rule, first order), rk4 or cvode (adaptive reference)")
+      .add_option(
+          "--integrator", options.integrator,
+          "vi (midpoint variational, forces at both ends of a step, second order), vi-left (the "
+          "same with forces at the left end only, first order), rk4 or cvode (adaptive reference)")
       ->check(CLI::IsMember({"vi", "vi-left", "rk4", "cvode"}))
       ->capture_default_str()
       ->group(simulationGroup);
