@@ -114,7 +114,7 @@ TEST(DiscoverRobotCommand, RefusesBadInputInOneLine) {
   }
   const std::string good = table("good.csv", rows);
   refused({table("a.csv", noInput)}, "has no column input");
-  refused({table("b.csv", extra)}, "column colour means nothing here");
+  refused({table("b.csv", extra)}, "column colour is unknown");
   refused({table("c.csv", "time,input\n0,0\n0.01,0\n")}, "has no column force_N");
   refused({table("d.csv", "time,input,force_N\n0,,1\n0.01,0,1\n")}, "row 1 is empty");
   refused({good, good}, "is the same trial as");

@@ -177,13 +177,13 @@ INSTANTIATE_TEST_SUITE_P(
         {"NoSets",
          {"ensemble", model, "--discover", "$", "--out", "$/out"},
          "no subfolder has files train_*.sto"},
-        {"SetsWithoutOut", {"ensemble", model, "--discover", "$"}, "--out is missing"},
+        {"SetsWithoutOut", {"ensemble", model, "--discover", "$"}, "--discover requires --out"},
         {"DrawsOfSets",
          {"ensemble", model, "--discover", "$", "--draws", "9", "--out", "$/out"},
          "--draws cannot be combined with --discover"},
         {"ScatterOfDraws", ensembleWith({"--input-scatter", "0.1"}),
-         "--input-scatter goes with --discover"},
-        {"NoiseOfDraws", ensembleWith({"--noise-deg", "1"}), "--noise-deg goes with --discover"},
+         "--input-scatter requires --discover"},
+        {"NoiseOfDraws", ensembleWith({"--noise-deg", "1"}), "--noise-deg requires --discover"},
         {"BadTrial", {"ensemble", model, "$/nan.csv", "--out", "$/out"}, "$/nan.csv"},
         {"NotAModel", {"ensemble", "$/text.osim", slow}, "$/text.osim"},
         {"OutIsAFile", {"ensemble", model, slow, "--out", "$/good.csv"}, "is not a folder"},
@@ -444,7 +444,7 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Render, EveryMistake,
     testing::ValuesIn(std::vector<Mistake>{
-        {"NoOut", {"render", model, "$/motion.csv"}, "--out is missing"},
+        {"NoOut", {"render", model, "$/motion.csv"}, "--out is required"},
         {"NoStates", {"render", model, "$/no.sto", "--out", "$/out"}, "$/no.sto"},
         {"TimeIsNoNumber",
          {"render", model, "$/motion.csv", "--time", "nan", "--out", "$/out"},
@@ -482,7 +482,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::ValuesIn(std::vector<Mistake>{
         {"IsNotBuilt",
          {"render", model, "$/motion.csv", "--out", "$/out"},
-         "built where VTK is installed, with FISHERHILL_VIEW=ON"},
+         "built if VTK is installed and FISHERHILL_VIEW=ON"},
         {"NoStates", {"render", model, "$/no.sto", "--out", "$/out"}, "$/no.sto"}}),
     nameOf);
 #endif
