@@ -26,8 +26,9 @@ using info::discover::Finding;
 
 std::string observedIn(const SimulationOptions& simulation) {
   if (simulation.coordinates.size() != 1) {
-    throw std::invalid_argument(fmt::format("--coordinate: {} are free; discover observes one",
-                                            simulation.coordinates.size()));
+    throw std::invalid_argument(
+        fmt::format("--coordinate: {} coordinates are free, must be one for discover",
+                    simulation.coordinates.size()));
   }
   return simulation.coordinates.front();
 }
@@ -41,7 +42,7 @@ DiscoverWording wordingOf(const bio::discover::ElbowDisagreement& data) {
   wording.gapEnd = isAngle ? "_deg" : "_m";
   wording.force = isAngle ? "Torque [N·m]" : "Force [N]";
   wording.forceUnit = "N·m";
-  wording.ofForce = "part of the muscles' moments";
+  wording.ofForce = "fraction of the muscles' moments";
   wording.push = "a push";
   wording.inputs = "muscles";
   wording.input = "muscle";
@@ -103,7 +104,10 @@ ArmDiscovery discoverInArm(const ArmDiscoveryRequest& request, const CommandCont
   const std::vector<bio::discover::ForeseenExperiment> foreseen =
       bio::discover::foresee(model, arm, trials.front(), options, data, verdict);
   std::string next = foreseenSentence(foreseen, data, verdict, found.options.evidence);
-  if (next.empty()) next = followUp(data, verdict, followUpsOfArms());
+  if (next.empty()) {
+    const bool isAngle = data.widest().coordinate().isRotation;
+    next = followUp(data, verdict, followUpsOfArms(coordinate + (isAngle ? ".torque" : ".force")));
+  }
   const DiscoverFindings findings{
       request.model, files,    data,      wording,           found.options,
       verdict,       next,     foreseen,  found.wallSeconds, found.processorSeconds,

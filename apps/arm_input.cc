@@ -32,7 +32,7 @@ void addModelArgument(CLI::App& subcommand, std::string& model) {
 
 void addTrialArgument(CLI::App& subcommand, std::string& trial) {
   addFileArgument(subcommand, "TRIAL", trial,
-                  "excitations, and the measured coordinate if there is one");
+                  "trial: excitations, and the measured coordinate if it was recorded");
 }
 
 bio::Model readModel(const std::string& file, Summary& summary) {

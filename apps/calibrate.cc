@@ -22,6 +22,7 @@
 #include "progress_bar.h"
 #include "result.h"
 #include "sha256.h"
+#include "text.h"
 
 namespace app {
 namespace {
@@ -29,7 +30,7 @@ namespace {
 class Calibrate : public Command {
  public:
   About about() const override {
-    return {"calibrate", "Estimate parameters of a model from measured motions",
+    return {"calibrate", "Estimate model parameters from measured motions",
             "fisherhill calibrate models/elbow8.osim emg_data/curl_slow.sto --hold-out "
             "emg_data/curl_fast.sto --parameters TRI.radius,hand.mass --out out/calibrate"};
   }
@@ -39,7 +40,10 @@ class Calibrate : public Command {
         ->required()
         ->check(CLI::ExistingFile)
         ->type_name("");
-    options.add_option("TRIAL", trials_, "trials to estimate from, with a measured angle")
+    options
+        .add_option(
+            "TRIAL", trials_,
+            "calibration trials with a measured angle; required unless --list-parameters is given")
         ->check(CLI::ExistingFile)
         ->type_name("");
     const std::string group = "Calibration";
@@ -49,45 +53,46 @@ class Calibrate : public Command {
           ->delimiter(',')
           ->group(group);
     };
-    list("--parameters", parameters_, "what to estimate, by name, e.g. TRI.radius,hand.mass")
+    list("--parameters", parameters_, "parameters to estimate, by name, e.g. TRI.radius,hand.mass")
         ->type_name("NAMES");
     addListParameters(options, list_);
-    list("--hold-out", heldOut_, "trial to test the estimate on; may be repeated")
+    list("--hold-out", heldOut_, "held-out trial, used only to test the estimates; may be repeated")
         ->check(CLI::ExistingFile)
         ->type_name("TRIAL");
     options
         .add_flag("--own-start", ownStart_,
-                  "estimate where each trial starts, and how fast, as well")
+                  "estimate the initial angle and speed of each trial as well")
         ->group(group);
-    options.add_flag("--no-priors", noPriors_, "let bounds alone hold the parameters")
+    options.add_flag("--no-priors", noPriors_, "estimate without priors; bounds still apply")
         ->group(group);
     list("--prior", priors_,
-         "what is known beforehand instead of the default, in the unit of "
-         "the parameter; may be repeated")
+         "prior of a parameter instead of the default, in its unit; may be repeated")
         ->type_name("NAME=MEAN:SD");
-    list("--bounds", bounds_, "bounds instead of the default; may be repeated")
+    list("--bounds", bounds_, "bounds of a parameter instead of the default; may be repeated")
         ->type_name("NAME=LOW:HIGH");
     options
         .add_option("--noise-deg", noise_,
-                    "standard deviation of the measured angle; default: from the residuals and "
-                    "their autocorrelation")
+                    "standard deviation of the measured angle [deg]; default: estimated from the "
+                    "residuals and their autocorrelation")
         ->check(positive())
         ->type_name("DEG")
         ->group(group);
-    options.add_option("--loss", loss_, "gaussian, or huber or student against outliers")
+    options
+        .add_option("--loss", loss_,
+                    "loss function: gaussian, or the outlier-robust huber or student")
         ->check(CLI::IsMember({"gaussian", "huber", "student"}))
         ->capture_default_str()
         ->group(group);
-    options.add_option("--starts", starts_, "starts to estimate from, the model's values first")
+    options
+        .add_option("--starts", starts_,
+                    "number of optimiser starts (the first is the model's own values)")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str()
         ->type_name("N")
         ->group(group);
     list("--profile", profile_, "parameters whose profile likelihood is computed")
         ->type_name("NAMES");
-    options
-        .add_option("--bootstrap", bootstrap_,
-                    "estimate again from so many resamples of the residuals")
+    options.add_option("--bootstrap", bootstrap_, "number of residual-bootstrap replicates")
         ->check(CLI::Range(20, 100000))
         ->type_name("N")
         ->group(group);
@@ -170,10 +175,9 @@ class Calibrate : public Command {
   }
 
   bio::CalibrationOptions calibrationOptions(const CommandContext& context) const {
-    if (trials_.empty()) throw std::invalid_argument("TRIAL is required");
+    if (trials_.empty()) throw std::invalid_argument("TRIAL is required (see --help)");
     if (parameters_.empty()) {
-      throw std::invalid_argument(
-          "--parameters is required; --list-parameters prints what there is");
+      throw std::invalid_argument("--parameters is required; --list-parameters lists the choices");
     }
     bio::CalibrationOptions options;
     for (const std::string& name : parameters_) {
@@ -214,7 +218,7 @@ class Calibrate : public Command {
       const bio::ModelParameter& one =
           training.catalogue().parameters()[training.catalogue().find(name)];
       if (bounds.first >= 0 || !cannotBeNegative(one)) continue;
-      throw std::invalid_argument(fmt::format("--bounds: {} from {} {}, must not be below 0",
+      throw std::invalid_argument(fmt::format("--bounds: lower bound of {} = {} {}, must be ≥ 0",
                                               one.name, bounds.first, one.unit));
     }
   }
@@ -227,7 +231,8 @@ class Calibrate : public Command {
       for (const std::string& warning : trials.back().warnings) summary.warn(warning);
       for (const bio::MeasuredMotion& motion : trials.back().measured) {
         const std::string why = bio::whyNotUsable(motion);
-        if (!why.empty()) summary.warn(fmt::format("{}: measured {} to be believed", file, why));
+        if (!why.empty())
+          summary.warn(fmt::format("{}: measured {} for a reliable estimate", file, why));
       }
     }
     return trials;
@@ -248,9 +253,8 @@ class Calibrate : public Command {
     for (std::size_t i = 0; i < changes.size(); ++i) {
       if (!(changes[i] > 0.2 * c.noise.deviation)) continue;
       summary.warn(
-          fmt::format("{}: halving the step of {} s changes the simulated angles by up to "
-                      "{:.2g} deg, {:.2g} standard deviations of the noise: take shorter "
-                      "steps",
+          fmt::format("{}: halving the step of {} s changes the simulated angles by up to {:.2g} "
+                      "deg, {:.2g} standard deviations of the noise: use a shorter --step",
                       training.trials()[i].file, numberText(2 * halved.simulation.step),
                       changes[i] * radian, changes[i] / c.noise.deviation));
     }

@@ -48,8 +48,7 @@ Figure overlay(const bio::TrialSet& set, std::size_t index, const Eigen::MatrixX
   Figure figure{.title = fmt::format("{} ({})", file, role),
                 .xLabel = "Time [s]",
                 .yLabel = fmt::format("{} [deg]", series.coordinate),
-                .caption = fmt::format("{:.3g} deg RMS with the model as it was, {:.3g} deg with "
-                                       "the calibrated one.",
+                .caption = fmt::format("RMS error {:.3g} deg before calibration, {:.3g} deg after.",
                                        rms(was), rms(is))};
   figure.series.push_back({.name = "measured",
                            .x = series.times,
@@ -66,8 +65,8 @@ Figure residualFigure(const CalibrateFindings& f) {
                 .xLabel = "Time [s]",
                 .yLabel = "Measured − calibrated [deg]",
                 .caption =
-                    "What the calibrated model leaves. Noise would scatter about 0; slow "
-                    "waves are what the model does not say."};
+                    "Residuals of the calibrated model. White noise scatters about 0; slow waves "
+                    "indicate an error of the model."};
   const auto add = [&](const bio::TrialSet& set, const Eigen::MatrixXd& after, bool held) {
     for (std::size_t i = 0; i < set.series().size() && figure.series.size() < 8; ++i) {
       const bio::MeasuredSeries& series = set.series()[i];
@@ -99,7 +98,7 @@ Figure autocorrelationFigure(const CalibrateFindings& f) {
   Figure figure{.title = "Autocorrelation of the residuals",
                 .xLabel = "Lag [s]",
                 .yLabel = "Correlation [1]",
-                .caption = "Within the band, white noise."};
+                .caption = "White noise stays within the band (two standard deviations)."};
   Series series{.name = "residuals"};
   Series band{.name = "white noise", .style = SeriesStyle::dashed};
   for (std::size_t k = 0; k < noise.autocorrelation.size(); ++k) {
@@ -126,8 +125,8 @@ std::string intervalText(double lower, double upper) {
 Table estimateTable(const CalibrateFindings& f) {
   const bool bootstrapped = f.options.bootstrap > 0;
   Table table{"",
-              {"parameter", "unit", "model", "estimate", "± sd", "95 % interval",
-               "known beforehand", "data alone", "identifiable"},
+              {"parameter", "unit", "model", "estimate", "± sd", "95 % interval", "prior or bounds",
+               "data alone", "identifiable"},
               {}};
   table.columns[5] = fmt::format("{:g} % interval", f.options.confidence * 100);
   if (!f.options.profile.empty()) table.columns.push_back("profile interval");
@@ -145,7 +144,7 @@ Table estimateTable(const CalibrateFindings& f) {
               : intervalText(one.asked.lower, one.asked.upper),
         std::isinf(one.determinacy.bound) ? "± ∞" : "± " + numberText(one.determinacy.bound, 3),
         one.identifiable ? "yes"
-        : one.atBound    ? "on its bound"
+        : one.atBound    ? "at its bound"
                          : "no"};
     if (!f.options.profile.empty()) {
       row.push_back(one.profile && one.identifiable
@@ -172,10 +171,10 @@ VectorDrawing intervals(const CalibrateFindings& f) {
     if (!std::isnan(one.lower)) row.interval = std::pair(scaled(one.lower), scaled(one.upper));
     rows.push_back(std::move(row));
   }
-  return {"Estimates beside what was known",
-          intervalDrawing(rows, "Departure from the model [known deviations]"),
-          fmt::format("Bars are intervals of {:g} % confidence. An estimate without a bar is not "
-                      "identifiable.",
+  return {"Estimates and priors",
+          intervalDrawing(rows, "Difference from the model's value [prior sd]"),
+          fmt::format("Bars are {:g} % confidence intervals. An estimate without a bar is not "
+                      "identifiable or is at its bound.",
                       f.options.confidence * 100)};
 }
 
@@ -203,8 +202,8 @@ Figure profileFigure(const bio::CalibratedParameter& one) {
                 .xLabel = info::label(one.asked),
                 .yLabel = "Negative log posterior [nats]",
                 .caption =
-                    "The least cost with the parameter held. Values below the dashed line "
-                    "are in the confidence region."};
+                    "The smallest cost with the parameter fixed and all others re-estimated. "
+                    "Values below the dashed line are in the confidence region."};
   Series curve{.name = "profile"}, threshold{.name = "threshold", .style = SeriesStyle::dashed};
   for (const info::ProfilePoint& point : profile.points) {
     curve.x.push_back(point.value);
@@ -230,55 +229,66 @@ Table startTable(const CalibrateFindings& f) {
 std::string aboveNoise(const CalibrateFindings& f) {
   if (!f.calibration.leavesMoreThanNoise()) return "";
   return fmt::format(
-      " Neighbouring samples scatter by {:.3g} deg only: the model with these parameters does not "
-      "explain the rest, another parameter, or an effect that the model lacks, may.",
+      " Neighbouring samples scatter by only {:.3g} deg: these parameters do not explain the rest "
+      "of the residual. Another parameter may, or an effect that the model lacks.",
       f.calibration.noiseFloor * radian);
 }
 
 std::string noiseText(const CalibrateFindings& f) {
   const bio::ResidualNoise& noise = f.calibration.noise;
   if (f.options.noise) {
-    return fmt::format("Noise of {:.3g} deg was given, white; reduced χ² is {:.3g}.{}",
+    return fmt::format("White noise of {:.3g} deg was given; the reduced χ² is {:.3g}.{}",
                        noise.deviation * radian, f.calibration.reducedChiSquare,
                        f.calibration.reducedChiSquare > 1.5
-                           ? " The residuals are larger than that noise: the model does not fit to "
-                             "within it, and the intervals are too narrow."
+                           ? " The residuals are larger than this noise: the model does not fit "
+                             "the data to within the noise, and the intervals are too narrow."
                            : "");
   }
   if (noise.correlationTime <= 1) {
-    return fmt::format("The residuals are white, {:.3g} deg; that was taken for the noise.",
-                       noise.deviation * radian) +
+    return fmt::format(
+               "The residuals are white with a standard deviation of {:.3g} deg, which was taken "
+               "as the noise.",
+               noise.deviation * radian) +
            aboveNoise(f);
   }
   return fmt::format(
-      "The residuals are {:.3g} deg and correlated: {:.3g} samples ({:.2g} s) count as one "
-      "independent value, and the intervals are {:.2g} times wider than white noise would make "
-      "them. Part of it is what the model does not say; no interval tells how wrong that makes "
-      "an estimate.",
-      noise.deviation * radian, noise.correlationTime, noise.correlationTime * interval(f.training),
-      std::sqrt(noise.correlationTime)) +
+             "The residuals have a standard deviation of {:.3g} deg and are correlated: {:.3g} "
+             "samples ({:.2g} s) count as one independent value, so the intervals are {:.2g} times "
+             "wider than for white noise. Part of the residual is error of the model; the bias "
+             "that it causes in the estimates is not covered by the intervals.",
+             noise.deviation * radian, noise.correlationTime,
+             noise.correlationTime * interval(f.training), std::sqrt(noise.correlationTime)) +
          aboveNoise(f);
+}
+
+/// "fell from 12° to 1.49° on the calibration trial"
+std::string changeWords(double before, double after, const char* role, std::size_t trials) {
+  const std::string was = fmt::format("{:.3g}°", before), is = fmt::format("{:.3g}°", after);
+  const std::string change =
+      !std::isfinite(before) ? "is " + is
+      : was == is            ? "stayed at " + is
+                  : fmt::format("{} from {} to {}", after < before ? "fell" : "rose", was, is);
+  return fmt::format("{} on the {} trial{}", change, role, trials == 1 ? "" : "s");
 }
 
 std::string verdictOf(const CalibrateFindings& f) {
   const bio::Calibration& c = f.calibration;
-  if (!c.failure.empty()) return fmt::format("There is no estimate: {}.", c.failure);
-  std::ptrdiff_t all = 0, known = 0;
+  if (!c.failure.empty()) return fmt::format("No estimate: {}.", c.failure);
+  std::ptrdiff_t all = 0, identifiable = 0;
   for (const auto& one : c.parameters) {
     all += !one.ofTrial;
-    known += !one.ofTrial && one.identifiable;
+    identifiable += !one.ofTrial && one.identifiable;
   }
-  std::string text =
-      fmt::format("The model is {:.3g} deg (RMS) from the measured angles, {:.3g} deg before",
-                  rmseAfter(f, false), rmse(f.training, c.before));
+  std::string text = "RMS error " + changeWords(rmse(f.training, c.before), rmseAfter(f, false),
+                                                "calibration", f.training.trials().size());
   if (f.heldOut) {
-    text += fmt::format("; on trials held out {:.3g} deg, {:.3g} deg before", rmseAfter(f, true),
-                        rmse(*f.heldOut, c.heldOutBefore));
+    text += " and " + changeWords(rmse(*f.heldOut, c.heldOutBefore), rmseAfter(f, true), "held-out",
+                                  f.heldOut->trials().size());
   }
-  text += fmt::format("; {} of {} parameter{} can be known from these trials", known, all,
-                      all == 1 ? "" : "s");
-  if (!c.converged) text += fmt::format(" (not a minimum: {})", info::describe(c.why));
-  return text + ".";
+  text += ". " + identifiableWords(identifiable, all) + ".";
+  if (!c.converged)
+    text += fmt::format(" The search found no minimum ({}).", info::describe(c.why));
+  return text;
 }
 
 Json number(double value) {
@@ -362,8 +372,8 @@ void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
       f.options.noise ? rmse(f.training, c.after) / (radian * *f.options.noise) : 0;
   if (noises > 3) {
     summary.warn(
-        fmt::format("what is left is {:.3g} times the noise given by --noise-deg: these "
-                    "parameters alone do not explain the trials",
+        fmt::format("the residual is {:.3g} times the noise given by --noise-deg: these parameters "
+                    "alone do not explain the trials",
                     noises));
   }
   summary.set("samples_per_independent_value", c.noise.correlationTime);
@@ -389,7 +399,7 @@ Report calibrateReport(const CalibrateFindings& f) {
   report.title = fmt::format("Calibration of {} on {}", f.modelFile, fmt::join(files, ", "));
   report.verdict = verdictOf(f);
   if (!c.failure.empty()) return report;
-  report.mainFigure = overlay(f.training, 0, c.before, c.after, "estimated from");
+  report.mainFigure = overlay(f.training, 0, c.before, c.after, "calibration");
   report.details.push_back(Section{"Estimates"});
   report.details.push_back(estimateTable(f));
   for (const bio::CalibratedParameter& one : c.parameters) {
@@ -401,27 +411,27 @@ Report calibrateReport(const CalibrateFindings& f) {
     if (one.profile) report.details.push_back(profileFigure(one));
   }
   if (f.heldOut) {
-    report.details.push_back(Section{"Trials held out"});
+    report.details.push_back(Section{"Held-out trials"});
     for (std::size_t i = 0; i < f.heldOut->series().size(); ++i) {
       report.details.push_back(overlay(*f.heldOut, i, c.heldOutBefore, c.heldOutAfter, "held out"));
     }
   }
   if (f.training.series().size() > 1) {
-    report.details.push_back(Section{"Other trials estimated from"});
+    report.details.push_back(Section{"Other calibration trials"});
     for (std::size_t i = 1; i < f.training.series().size(); ++i) {
-      report.details.push_back(overlay(f.training, i, c.before, c.after, "estimated from"));
+      report.details.push_back(overlay(f.training, i, c.before, c.after, "calibration"));
     }
   }
-  report.details.push_back(Section{"What is left"});
+  report.details.push_back(Section{"Residuals"});
   report.details.push_back(Paragraph{noiseText(f)});
   report.details.push_back(residualFigure(f));
   if (!c.noise.autocorrelation.empty()) report.details.push_back(autocorrelationFigure(f));
   if (c.starts.size() > 1) report.details.push_back(startTable(f));
-  report.details.push_back(Paragraph{fmt::format(
-      "{} iterations; {}. Data alone: the Cramér–Rao bound without priors, the other parameters "
-      "unknown. A parameter counts as identifiable where that, together with what was known "
-      "beforehand, at least halves what was uncertain about it.",
-      c.iterations, info::describe(c.why))});
+  report.details.push_back(Paragraph{
+      fmt::format("{} iterations; {}. “Data alone” is the Cramér–Rao bound without priors, all "
+                  "parameters being unknown. A parameter counts as identifiable if this bound, "
+                  "combined with the prior, is at most half the prior standard deviation.",
+                  c.iterations, info::describe(c.why))});
   return report;
 }
 

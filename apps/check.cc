@@ -71,7 +71,7 @@ std::vector<ReviewFinding> shortened(std::vector<ReviewFinding> findings) {
   for (ReviewFinding& finding : findings) {
     int& count = alike[patternOf(finding)];
     if (count == 0) continue;
-    if (count > 1) finding.message += fmt::format(" (and {} more like this)", count - 1);
+    if (count > 1) finding.message += fmt::format(" (and {} similar findings)", count - 1);
     count = 0;
     shown.push_back(std::move(finding));
   }
@@ -112,7 +112,7 @@ Contents checkTrial(const std::string& file, const std::vector<bio::Model>& mode
   }
   const Eigen::VectorXd times = bio::timesOf(table);
   Table columns{"Columns", {"column", "smallest", "largest", "not measured"}, {}};
-  Figure figure{.title = "All columns", .xLabel = "Time [s]", .yLabel = "Value, as in the file"};
+  Figure figure{.title = "All columns", .xLabel = "Time [s]", .yLabel = "Value as in the file"};
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const auto column = table.values.col(static_cast<Eigen::Index>(i));
     columns.rows.push_back({table.columns[i],
@@ -138,7 +138,7 @@ Contents checkTrial(const std::string& file, const std::vector<bio::Model>& mode
 class Check : public Command {
  public:
   About about() const override {
-    return {"check", "Read models and trials and list what is wrong or unusual",
+    return {"check", "Check models and trials, and list errors and unusual values",
             "fisherhill check models/elbow8.osim"};
   }
 
@@ -200,12 +200,11 @@ class Check : public Command {
         errors > 0         ? fmt::format("{} cannot be used as it stands.",
                                  errors == 1 ? "One file" : fmt::format("{} files", errors))
                 : !limited.empty() ? fmt::format(
-                                         "Every file can be read, but for simulations these models "
-                                                 "are of no use: {}; paths and pictures of them can be made "
-                                                 "(moment-arms, render).",
+                                         "Every file can be read, but these models cannot be simulated: "
+                                                 "{}; moment-arms and render work with them.",
                                          fmt::join(limited, ", "))
-        : findings.list.empty() ? "Nothing is wrong and nothing is unusual."
-                                : "Every file can be used; what is unusual is listed.";
+        : findings.list.empty() ? "No errors and nothing unusual."
+                                : "Every file can be used; unusual values are listed.";
     summary.set("errors", errors);
     summary.set("warnings_found", findings.count("warning"));
     summary.set("unusual", findings.count("unusual"));
@@ -216,7 +215,7 @@ class Check : public Command {
     }
     summary.set("findings", list);
 
-    Table table{"What was found", {"kind", "finding"}, {}};
+    Table table{"Findings", {"kind", "finding"}, {}};
     for (const ReviewFinding& finding : shortened(findings.list)) {
       table.rows.push_back({finding.level, finding.message});
       if (!context.json) fmt::print("{}: {}\n", finding.level, finding.message);

@@ -42,7 +42,7 @@ std::vector<fs::path> inputsNamed(const CLI::App& subcommand) {
       if (failed || !fs::exists(status) || fs::is_directory(status)) continue;
       if (!fs::is_regular_file(status)) {
         throw std::invalid_argument(
-            fmt::format("{}: is a {}, must be a file: it is read more than once", word,
+            fmt::format("{}: is a {}, must be a regular file: it is read more than once", word,
                         fs::is_fifo(status) || fs::is_socket(status) ? "pipe" : "device"));
       }
       inputs.emplace_back(word);

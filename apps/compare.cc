@@ -20,7 +20,7 @@ namespace {
 class Compare : public Command {
  public:
   About about() const override {
-    return {"compare", "Integrators at time steps: error, time, how each fails",
+    return {"compare", "Compare integrators over time steps: error, run time, and how each fails",
             "fisherhill compare models/elbow8.osim emg_data/curl_slow.sto --out out/compare"};
   }
 
@@ -28,25 +28,26 @@ class Compare : public Command {
     addModelArgument(options, model_);
     addTrialArgument(options, trial_);
     options
-        .add_option("--integrators", integrators_, "which to compare, of rk4, vi, vi-left, cvode")
+        .add_option("--integrators", integrators_,
+                    "integrators to compare, of rk4, vi, vi-left, cvode")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->type_name("NAMES")
         ->default_str("rk4,vi,vi-left,cvode");
     options
         .add_option("--steps", steps_,
-                    "time steps [s], rising; of cvode the intervals of the output")
+                    "time steps [s], in rising order; for cvode the interval of its output")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->type_name("SECONDS")
         ->default_str("0.0002,0.0003,0.0005,0.0008,0.001,0.002,0.005,0.01,0.02,0.05");
     options
         .add_option("--also", also_,
-                    "lay another program's result beside ours: a table of states with the "
+                    "another program's result to compare with: a table of states with the "
                     "coordinate; may be repeated")
         ->type_name("NAME=FILE")
         ->allow_extra_args(false);
-    options.add_flag("--png", png_, "the figures of the report as PNG files too");
+    options.add_flag("--png", png_, "write the figures of the report as PNG files as well");
     addSimulationOptions(options, simulation_);
   }
 
@@ -60,7 +61,8 @@ class Compare : public Command {
     const auto& free = arm.skeleton().coordinates();
     const auto rotation =
         std::find_if(free.begin(), free.end(), [](const auto& c) { return c.isRotation; });
-    if (rotation == free.end()) throw std::invalid_argument("no free coordinate is a rotation");
+    if (rotation == free.end())
+      throw std::invalid_argument("no free coordinate is a rotation, must have one");
     std::vector<AlsoCurve> also = readAlso(*rotation, summary);
 
     options.startTime = input.startTime;
@@ -111,14 +113,16 @@ class Compare : public Command {
     if (!integrators_.empty()) {
       options.integrators.clear();
       for (const std::string& name : integrators_) {
-        if (name.empty()) throw std::invalid_argument("--integrators: the list is empty");
+        if (name.empty())
+          throw std::invalid_argument("--integrators: the list is empty, must name at least one");
         options.integrators.push_back(integratorNamed(name));
       }
     }
     if (!steps_.empty()) {
       options.steps.clear();
       for (const std::string& text : steps_) {
-        if (text.empty()) throw std::invalid_argument("--steps: the list is empty");
+        if (text.empty())
+          throw std::invalid_argument("--steps: the list is empty, must have at least one");
         double step = 0;
         try {
           step = parseNumber(text);
@@ -148,7 +152,7 @@ class Compare : public Command {
   static bio::Integrator integratorNamed(const std::string& name) {
     if (const auto found = bio::integratorNamed(name)) return *found;
     throw std::invalid_argument(
-        fmt::format("--integrators: '{}' is none of rk4, vi, vi-left, cvode", name));
+        fmt::format("--integrators: '{}', must be rk4, vi, vi-left or cvode", name));
   }
 
   std::vector<AlsoCurve> readAlso(const bio::Coordinate& coordinate, Summary& summary) const {

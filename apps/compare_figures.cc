@@ -91,7 +91,7 @@ Figure rungeKuttaFigure(const CompareFindings& f) {
     addCell(f, **it, figure);
   }
   figure.caption = broken == cells.end()
-                       ? "None of the steps is too long for it."
+                       ? "It reaches the end at every step."
                        : fmt::format("At {} s: {}.", numberText((*broken)->step), (*broken)->why);
   return figure;
 }
@@ -110,11 +110,11 @@ Figure variationalFigure(const CompareFindings& f) {
   }
   if (usual != nullptr) {
     addCell(f, *usual, figure);
-    figure.caption = fmt::format("At {} s it is {:.2g} deg from the reference (RMS)",
-                                 numberText(usual->step), usual->error.rms * radian);
+    figure.caption = fmt::format("RMS error at {} s: {:.2g} deg", numberText(usual->step),
+                                 usual->error.rms * radian);
     if (longest != usual) {
       addCell(f, *longest, figure);
-      figure.caption += fmt::format(", at {} s {:.2g} deg", numberText(longest->step),
+      figure.caption += fmt::format("; at {} s: {:.2g} deg", numberText(longest->step),
                                     longest->error.rms * radian);
     }
     figure.caption += ".";
@@ -127,8 +127,8 @@ Figure workPrecisionFigure(const CompareFindings& f) {
                 .xLabel = "Time to simulate [ms]",
                 .yLabel = "RMS error [deg]",
                 .caption =
-                    "Each point is one step size. Lower and further left is better; runs "
-                    "that failed are not shown. Times of one core of this machine.",
+                    "Each point is one step size. Lower left is better; failed runs are not shown. "
+                    "Times are for one core of this machine.",
                 .xScale = AxisScale::logarithmic,
                 .yScale = AxisScale::logarithmic};
   for (const bio::Integrator integrator : f.options.integrators) {
@@ -144,7 +144,7 @@ Figure workPrecisionFigure(const CompareFindings& f) {
 }
 
 Figure errorFigure(const CompareFindings& f) {
-  Figure figure{.title = "Error against step",
+  Figure figure{.title = "Error against step size",
                 .xLabel = "Step [s]",
                 .yLabel = "RMS error [deg]",
                 .xScale = AxisScale::logarithmic,
@@ -195,7 +195,8 @@ ReportPart failureTimeline(const CompareFindings& f) {
     }
   }
   if (figure.series.empty()) return Paragraph{"Every run reached the end of the trial."};
-  figure.caption = others.empty() ? "" : fmt::format("At every step to the end: {}.", others);
+  figure.caption =
+      others.empty() ? "" : fmt::format("These reach the end at every step: {}.", others);
   return figure;
 }
 

@@ -41,7 +41,7 @@ Table failureTable(const CompareFindings& f) {
 }
 
 Table limitTable(const CompareFindings& f) {
-  Table table{"", {"integrator", "stable at [s]", "not stable at [s]", "how it fails there"}, {}};
+  Table table{"", {"integrator", "stable at [s]", "not stable at [s]", "failure"}, {}};
   for (const bio::StepLimit& limit : f.comparison.limits) {
     table.rows.push_back({bio::name(limit.integrator), numberText(limit.stable),
                           numberText(limit.failing), limit.why});
@@ -53,9 +53,8 @@ std::string referenceText(const CompareFindings& f) {
   const bio::ConvergedReference& reference = f.comparison.reference;
   const std::string text = fmt::format(
       "The reference is CVODE at a relative tolerance of {:g}. At {:g} it differs by {:.2g} deg "
-      "RMS, "
-      "at most by {:.2g} deg; reading it between its rows adds {:.2g} deg. Errors are not known "
-      "better than that.",
+      "RMS and at most {:.2g} deg; interpolating it adds {:.2g} deg. Smaller errors are not "
+      "resolved.",
       reference.relativeTolerance, reference.looserTolerance, reference.disagreement.rms * radian,
       reference.disagreement.largest * radian, reference.interpolationError * radian);
   if (!reference.confirmed()) {
@@ -69,11 +68,11 @@ std::string verdictOf(const CompareFindings& f) {
   std::string text;
   const bio::ConvergedReference& reference = f.comparison.reference;
   if (!reference.confirmed()) {
-    text = fmt::format("No reference can be trusted: {}. What follows is measured from cvode: ",
+    text = fmt::format("The reference is not reliable: {}. Errors are given against cvode: ",
                        reference.whyDisputed);
   }
   if (isOk(*f.chosen)) {
-    text += fmt::format("{} at {} s is {:.2g} deg (RMS) from the converged reference",
+    text += fmt::format("{} at {} s has an RMS error of {:.2g} deg against the converged reference",
                         bio::name(f.chosen->integrator), numberText(f.chosen->step),
                         f.chosen->error.rms * radian);
   } else {
@@ -96,7 +95,7 @@ std::string verdictOf(const CompareFindings& f) {
 void addMeasured(const CompareFindings& f, Report& report) {
   for (const bio::MeasuredMotion& measured : f.trial.measured) {
     if (measured.coordinate != f.coordinate.name) continue;
-    Figure figure = besideFigure(f, "Beside the measured motion");
+    Figure figure = besideFigure(f, "Comparison with the measured motion");
     const bio::MeasuredError error =
         bio::compareWithMeasured(f.arm, f.comparison.reference.motion, measured);
     Series series{.name = "measured", .style = SeriesStyle::points};
@@ -106,9 +105,9 @@ void addMeasured(const CompareFindings& f, Report& report) {
     }
     figure.series.push_back(std::move(series));
     figure.caption = fmt::format(
-        "The reference is {:.3g} deg (RMS) from the measured motion; that is not an integrator's "
-        "doing. "
-        "Each integrator is drawn at its longest step with an error below {:.2g} deg.",
+        "The reference has an RMS error of {:.3g} deg against the measured motion, which is an "
+        "error of the model and not of an integrator. Each integrator is drawn at its longest step "
+        "with an error below {:.2g} deg.",
         error.rms * radian, f.options.usefulError * radian);
     report.details.push_back(std::move(figure));
   }
@@ -116,12 +115,12 @@ void addMeasured(const CompareFindings& f, Report& report) {
 
 void addAlso(const CompareFindings& f, Report& report) {
   if (f.also.empty()) return;
-  Figure figure = besideFigure(f, "Beside other programs");
+  Figure figure = besideFigure(f, "Comparison with other programs");
   for (const AlsoCurve& one : f.also) {
     Series series{.name = one.name, .x = one.curve.time, .style = SeriesStyle::points};
     for (const double value : one.curve.value) series.y.push_back(value * radian);
     figure.series.push_back(std::move(series));
-    figure.caption += fmt::format("{}{} is {:.2g} deg (RMS) from the reference.",
+    figure.caption += fmt::format("{}{} differs from the reference by {:.2g} deg (RMS).",
                                   figure.caption.empty() ? "" : " ", one.name, one.rms * radian);
   }
   report.details.push_back(std::move(figure));
@@ -197,8 +196,7 @@ Report compareReport(const CompareFindings& f) {
   Report report;
   report.title = fmt::format("Integrators on {} with {}", f.trialFile, f.modelFile);
   if (!f.comparison.reference.completed()) {
-    report.verdict =
-        fmt::format("There is no converged reference: {}.", f.comparison.reference.motion.why);
+    report.verdict = fmt::format("No converged reference: {}.", f.comparison.reference.motion.why);
     return report;
   }
   report.verdict = verdictOf(f);
@@ -206,16 +204,16 @@ Report compareReport(const CompareFindings& f) {
   report.details.push_back(errorFigure(f));
   report.details.push_back(Paragraph{referenceText(f)});
   if (!f.arm.switches().empty()) {
-    report.details.push_back(Paragraph{
-        "A muscle path of this arm gains or loses points at certain angles, and its length jumps "
-        "there. Every integrator ends a step at such a place."});
+    report.details.push_back(
+        Paragraph{"A muscle path of this model gains or loses points at certain angles, where its "
+                  "length jumps. Every integrator ends a step at such an angle."});
   }
   report.details.push_back(Section{"Largest stable steps"});
   report.details.push_back(limitTable(f));
-  report.details.push_back(Paragraph{fmt::format(
-      "A step is stable if the run reaches the end and stays within {:.2g} deg (RMS) of the "
-      "reference; found by bisection to {:.2g} %.",
-      f.options.usefulError * radian, (f.options.stepResolution - 1) * 100)});
+  report.details.push_back(Paragraph{
+      fmt::format("A step is stable if the run reaches the end with an RMS error below {:.2g} deg "
+                  "against the reference. The limit is found by bisection to {:.2g} %.",
+                  f.options.usefulError * radian, (f.options.stepResolution - 1) * 100)});
   report.details.push_back(failureTimeline(f));
   if (Table failures = failureTable(f); !failures.rows.empty()) {
     report.details.push_back(std::move(failures));
@@ -231,14 +229,12 @@ Report compareReport(const CompareFindings& f) {
   addAlso(f, report);
   report.details.push_back(Section{"Runs"});
   report.details.push_back(cellTable(f));
-  report.details.push_back(Paragraph{
-      fmt::format("Times are medians of {} runs. The energy error is the largest difference "
-                  "between kinetic plus "
-                  "potential energy and the work of muscles and passive forces. A step of CVODE is "
-                  "the interval "
-                  "of its output; its own steps follow from a relative tolerance of 1e-10. Halved: "
-                  "steps that did not converge as a whole.",
-                  f.options.timings)});
+  report.details.push_back(Paragraph{fmt::format(
+      "Times are medians of {} runs. The energy error is the largest difference between kinetic "
+      "plus potential energy and the work of muscles and passive forces. For CVODE the step is the "
+      "interval of its output; its internal steps follow from a relative tolerance of 1e-10. "
+      "Halved steps are those that did not converge in one piece.",
+      f.options.timings)});
   if (!f.arm.notes().empty()) {
     report.details.push_back(Section{"Notes"});
     for (const std::string& note : f.arm.notes()) report.details.push_back(Paragraph{note});

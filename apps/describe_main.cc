@@ -17,20 +17,19 @@ int main(int count, char** arguments) {
     std::cout << app::manualPage(program, info::version());
   } else if (what == "man-mpi") {
     std::cout << app::helperPage(program, info::version(), "fisherhill-mpi", "ensemble",
-                                 "Started by mpirun, fisherhill ensemble becomes this program: the "
-                                 "ranks share the work, and "
-                                 "the result is the same whatever their number.",
+                                 "fisherhill ensemble starts this program under mpirun: the ranks "
+                                 "share the work, and the result does not depend on their number.",
                                  "mpirun -n N");
   } else if (what == "man-render") {
     std::cout << app::helperPage(
         program, info::version(), "fisherhill-render", "render",
-        "fisherhill render becomes this program, which alone needs the libraries that draw.", "");
+        "fisherhill render starts this program, which alone needs the graphics libraries.", "");
   } else if (what == "bash") {
     std::cout << app::bashCompletion(program);
   } else if (what == "zsh") {
     std::cout << app::zshCompletion(program);
   } else {
-    std::cerr << "describe_commands: one of man, man-mpi, man-render, bash and zsh is needed\n";
+    std::cerr << "describe_commands: argument must be man, man-mpi, man-render, bash or zsh\n";
     return 2;
   }
   std::cout.flush();

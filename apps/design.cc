@@ -34,14 +34,16 @@ std::vector<std::string> joinedByPlus(const std::string& text) {
 class Design : public Command {
  public:
   About about() const override {
-    return {"design", "The experiment that tells most about chosen parameters",
+    return {"design", "Find the experiment that is most informative about chosen parameters",
             "fisherhill design models/elbow8.osim emg_data/curl_slow.sto --parameters TRI.radius "
             "--out out/design"};
   }
 
   void addOptions(CLI::App& options) override {
     addModelArgument(options, model_);
-    options.add_option("TRIAL", trial_, "the experiment there is: excitations, duration, start")
+    options
+        .add_option("TRIAL", trial_,
+                    "baseline trial to improve on: excitations, duration, initial state")
         ->required()
         ->check(CLI::ExistingFile)
         ->type_name("");
@@ -52,67 +54,73 @@ class Design : public Command {
           ->allow_extra_args(false)
           ->type_name("NAMES");
     };
-    names("--parameters", parameters_, "to be known better; see sensitivity --list-parameters");
-    names("--separate", separate_,
-          "two effects that discover knows, by id: the experiment that tells one from the other "
-          "instead, every parameter being as uncertain as its tolerance says");
+    names("--parameters", parameters_,
+          "parameters of interest; sensitivity --list-parameters lists the choices");
+    names(
+        "--separate", separate_,
+        "instead of --parameters: two effects of discover's catalogue, by id; find the experiment "
+        "that best discriminates between them, given the default uncertainty of every parameter");
     options
-        .add_option(
-            "--size", sizes_,
-            "with --separate: how large an effect would be, in its unit; default: its prior "
-            "deviation")
+        .add_option("--size", sizes_,
+                    "with --separate: assumed size of an effect, in its unit; default: its prior "
+                    "standard deviation")
         ->type_name("ID=SIZE")
         ->allow_extra_args(false);
-    names("--nuisance", nuisance_,
-          "unknown as well, but for their default priors; the bounds allow for that");
-    options.add_flag("--priors", priors_, "the --parameters have their default priors too");
+    names(
+        "--nuisance", nuisance_,
+        "further unknown parameters, with their default priors; the bounds take them into account");
+    options.add_flag("--priors", priors_, "use the default priors for the --parameters as well");
     options
         .add_option("--prior", givenPriors_,
-                    "what is known beforehand of a parameter: its standard deviation, in its unit")
+                    "prior standard deviation of a parameter, in its unit; may be repeated")
         ->type_name("NAME=DEVIATION")
         ->allow_extra_args(false);
     options
         .add_option("--criterion", criterion_,
-                    "what is sought, each parameter in units of its default deviation: E, the best "
-                    "known of the worst combination; A, the least sum of variances; D, the "
-                    "smallest volume")
+                    "design criterion, parameters scaled by their default prior standard "
+                    "deviations; E: minimise the largest variance of any combination; A: the sum "
+                    "of variances; D: the volume of the confidence ellipsoid")
         ->check(CLI::IsMember({"E", "A", "D"}))
         ->capture_default_str();
     const auto number = [&](const std::string& name, double& target, const std::string& unit,
                             const std::string& description) {
       options.add_option(name, target, description)->type_name(unit)->capture_default_str();
     };
-    number("--noise", noise_deg_, "DEGREES", "standard deviation of a measured angle");
-    number("--rate", rate_Hz_, "HZ", "measurements per second");
-    number("--torque", limits_.torque, "NM", "largest torque from outside; 0: none");
+    number("--noise", noise_deg_, "DEGREES", "standard deviation of the measured angle");
+    number("--rate", rate_Hz_, "HZ", "measurement rate");
+    number("--torque", limits_.torque, "NM", "largest external torque; 0: none");
     number("--torque-rate", limits_.torqueRate, "NM/S", "how fast it may change");
     names("--excite", excite_,
-          "muscles to drive anew: flexors, extensors, or names; BRA+BRD are driven together")
+          "muscles whose excitations are designed: flexors, extensors, or names; BRA+BRD share one "
+          "excitation")
         ->type_name("GROUPS");
     number("--excitation-max", limits_.largestExcitation, "0-1", "largest excitation of a group");
     number("--excitation-rate", limits_.excitationRate, "1/S", "how fast it may change");
     options
         .add_option("--range", range_,
-                    "what the coordinate keeps to, as 10deg,120deg; default: its range in the "
-                    "model")
+                    "range to which the coordinate is limited, as 10deg,120deg; default: its range "
+                    "in the model")
         ->delimiter(',')
         ->expected(2)
         ->type_name("LOW,HIGH");
     number("--speed", speed_deg_, "DEG/S", "largest speed of the coordinate");
     number("--surprise", limits_.surprise, "K",
-           "keep to the range also when the parameters are off by K of their deviations");
-    number("--knots", knots_, "SECONDS", "inputs are straight lines between times so far apart");
+           "respect the range even if the parameters are K prior standard deviations off");
+    number("--knots", knots_, "SECONDS",
+           "interval between the knots of the piecewise linear inputs");
     const auto count = [&](const std::string& name, int& target, const std::string& description) {
       options.add_option(name, target, description)
           ->check(CLI::Range(0, 1000000))
           ->type_name("N")
           ->capture_default_str();
     };
-    count("--candidates", settings_.candidates, "random inputs tried first");
-    count("--generations", settings_.generations, "of the evolution from the best of them");
-    count("--iterations", settings_.iterations, "of the search along gradients at the end");
+    count("--candidates", settings_.candidates, "number of random initial designs");
+    count("--generations", settings_.generations,
+          "generations of the evolution strategy that starts from the best of them");
+    count("--iterations", settings_.iterations, "iterations of the final gradient search");
     count("--monte-carlo", monteCarlo_,
-          "simulate and estimate the designed experiment so many times, to confirm the bounds");
+          "number of simulated and estimated repetitions of the designed experiment, to confirm "
+          "the bounds");
     addSimulationOptions(options, simulation_);
   }
 
@@ -217,7 +225,7 @@ class Design : public Command {
     const bio::Coordinate& coordinate = arm.skeleton().coordinates().front();
     if (!coordinate.isRotation) {
       throw std::invalid_argument(
-          fmt::format("--coordinate: '{}' is no rotation", coordinate.name));
+          fmt::format("--coordinate: '{}' must be a rotation", coordinate.name));
     }
     return coordinate;
   }
@@ -232,12 +240,12 @@ class Design : public Command {
           fmt::format("--separate: {} effects, must be two", separate_.size()));
     }
     if (!sizes_.empty() && separate_.empty()) {
-      throw std::invalid_argument("--size goes with --separate");
+      throw std::invalid_argument("--size requires --separate");
     }
     if (!separate_.empty() &&
         (!nuisance_.empty() || priors_ || !givenPriors_.empty() || monteCarlo_ > 0)) {
       throw std::invalid_argument(
-          "--nuisance, --priors, --prior and --monte-carlo do not go with --separate");
+          "--nuisance, --priors, --prior and --monte-carlo cannot be combined with --separate");
     }
     const auto positive = [](const char* name, double value, const char* unit) {
       if (!(value > 0 && std::isfinite(value))) {
@@ -265,11 +273,12 @@ class Design : public Command {
       throw std::invalid_argument("--torque 0 without --excite leaves nothing to change");
     }
     if (!simulation_.integrator.starts_with("vi")) {
-      throw std::invalid_argument(fmt::format(
-          "--integrator {}: sensitivities are those of vi and vi-left", simulation_.integrator));
+      throw std::invalid_argument(
+          fmt::format("--integrator {}: must be vi or vi-left, which alone have sensitivities",
+                      simulation_.integrator));
     }
     if (monteCarlo_ > 0 && !nuisance_.empty()) {
-      throw std::invalid_argument("--monte-carlo: not together with --nuisance");
+      throw std::invalid_argument("--monte-carlo cannot be combined with --nuisance");
     }
   }
 
@@ -302,7 +311,7 @@ class Design : public Command {
       const auto at = std::find(all.begin(), all.end(), catalogue.find(prior.name));
       if (at == all.end()) {
         throw std::invalid_argument(
-            fmt::format("--prior: {} is neither of --parameters nor of --nuisance", prior.name));
+            fmt::format("--prior: {} is in neither --parameters nor --nuisance", prior.name));
       }
       if (!(prior.value > 0)) {
         throw std::invalid_argument(

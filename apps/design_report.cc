@@ -25,10 +25,10 @@ double torqueAt(const DesignFindings& f, const DesignedExperiment& e, double t) 
 }
 
 Figure torqueFigure(const DesignFindings& f) {
-  Figure figure{.title = "Torque from outside",
+  Figure figure{.title = "External torque",
                 .xLabel = "Time [s]",
                 .yLabel = fmt::format("Torque on {} [N·m]", f.coordinate.name),
-                .caption = fmt::format("It keeps to ±{} N·m and changes by at most {} N·m/s.",
+                .caption = fmt::format("Limited to ±{} N·m and {} N·m/s.",
                                        numberText(f.design.limits().torque),
                                        numberText(f.design.limits().torqueRate))};
   for (const auto& [name, e, style] :
@@ -42,11 +42,13 @@ Figure torqueFigure(const DesignFindings& f) {
 }
 
 Figure excitationFigure(const DesignFindings& f, const bio::MuscleGroup& group) {
-  Figure figure{.title = fmt::format("Excitation of {}", group.name),
-                .xLabel = "Time [s]",
-                .yLabel = "Excitation",
-                .caption = fmt::format("Driven together: {}. Before: {}.",
-                                       fmt::join(group.muscles, ", "), group.muscles.front())};
+  Figure figure{
+      .title = fmt::format("Excitation of {}", group.name),
+      .xLabel = "Time [s]",
+      .yLabel = "Excitation",
+      .caption = fmt::format(
+          "Muscles with this excitation: {}. The dashed line is the baseline excitation of {}.",
+          fmt::join(group.muscles, ", "), group.muscles.front())};
   const bio::Table before = bio::designTable(f.design.arm(), f.result.before, f.coordinate.name);
   const bio::Table after = bio::designTable(f.design.arm(), f.result.after, f.coordinate.name);
   for (const auto& [name, table, style] : {std::tuple{"designed", &after, SeriesStyle::line},
@@ -66,11 +68,10 @@ Figure angleFigure(const DesignFindings& f) {
       .title = fmt::format("Predicted {}", f.coordinate.name),
       .xLabel = "Time [s]",
       .yLabel = fmt::format("{} [deg]", f.coordinate.name),
-      .caption = fmt::format(
-          "The band is where the designed motion goes when the parameters are off by {} of their "
-          "deviations (to first order); it keeps to {} to {} deg.",
-          numberText(limits.surprise), numberText(limits.lower * radian),
-          numberText(limits.upper * radian))};
+      .caption = fmt::format("The band shows the designed motion if the parameters are {} prior "
+                             "standard deviations off (to first order). Limits: {} to {} deg.",
+                             numberText(limits.surprise), numberText(limits.lower * radian),
+                             numberText(limits.upper * radian))};
   const DesignedExperiment& after = f.result.after;
   Series designed{
       .name = "designed", .x = asList(after.measuredTimes), .y = asList(after.measured * radian)};
@@ -88,12 +89,12 @@ Figure angleFigure(const DesignFindings& f) {
 /// How well the first parameter is known after so much of the experiment.
 Figure knowledgeFigure(const DesignFindings& f) {
   const bio::ModelParameter& parameter = f.parameters.front();
-  Figure figure{.title = fmt::format("What is known of {} by and by", parameter.name),
+  Figure figure{.title = fmt::format("Bound on {} over time", parameter.name),
                 .xLabel = "Time [s]",
-                .yLabel = fmt::format("bound on {} [{}]", parameter.name, parameter.unit),
+                .yLabel = fmt::format("Bound on {} [{}]", parameter.name, parameter.unit),
                 .caption =
-                    "The smallest standard deviation that an unbiased estimate from the "
-                    "measurements so far can have.",
+                    "Smallest standard deviation of an unbiased estimate from the measurements up "
+                    "to that time.",
                 .yScale = AxisScale::logarithmic};
   for (const auto& [name, e, style] :
        {std::tuple{"designed", &f.result.after, SeriesStyle::line},
@@ -107,10 +108,10 @@ Figure knowledgeFigure(const DesignFindings& f) {
 }
 
 Figure searchFigure(const DesignFindings& f) {
-  Figure figure{.title = "The search",
+  Figure figure{.title = "Progress of the search",
                 .xLabel = "Simulations",
-                .yLabel = "Criterion (less is better)",
-                .caption = "The best experiment so far that keeps every limit."};
+                .yLabel = "Criterion (smaller is better)",
+                .caption = "Best experiment so far that respects every limit."};
   Series series{.name = "best", .x = {0}, .y = {f.result.costBefore}};
   for (std::size_t i = 0; i < f.result.costs.size(); ++i) {
     series.x.push_back(f.result.foundAt[i]);
@@ -121,10 +122,10 @@ Figure searchFigure(const DesignFindings& f) {
 }
 
 Table boundTable(const DesignFindings& f) {
-  Table table{"Bounds",
-              {"parameter", "value", "unit", "known before", "bound before", "bound after",
-               "times smaller", "role"},
-              {}};
+  Table table{
+      "Bounds",
+      {"parameter", "value", "unit", "prior", "bound before", "bound after", "ratio", "role"},
+      {}};
   const auto asked = f.design.question().parameters.size();
   for (std::size_t i = 0; i < f.parameters.size(); ++i) {
     const auto k = static_cast<Index>(i);
@@ -134,7 +135,7 @@ Table boundTable(const DesignFindings& f) {
                           f.parameters[i].unit,
                           std::isfinite(prior) ? numberText(prior, 3) : "nothing",
                           numberText(before, 3), numberText(after, 3),
-                          numberText(before / after, 3), i < asked ? "asked for" : "nuisance"});
+                          numberText(before / after, 3), i < asked ? "of interest" : "nuisance"});
   }
   return table;
 }
@@ -146,20 +147,20 @@ Table limitTable(const DesignFindings& f) {
   if (f.design.hasTorque()) {
     table.rows.push_back(
         {"largest torque", numberText(e.largestTorque), numberText(limits.torque), "N·m"});
-    table.rows.push_back({"largest change of it", numberText(e.largestTorqueRate),
+    table.rows.push_back({"largest torque rate", numberText(e.largestTorqueRate),
                           numberText(limits.torqueRate), "N·m/s"});
   }
   if (!f.design.groups().empty()) {
-    table.rows.push_back({"largest change of an excitation", numberText(e.largestExcitationRate),
+    table.rows.push_back({"largest excitation rate", numberText(e.largestExcitationRate),
                           numberText(limits.excitationRate), "1/s"});
   }
   table.rows.push_back(
       {"lowest angle", numberText(e.lowest * radian), numberText(limits.lower * radian), "deg"});
-  table.rows.push_back({"the same with parameters off", numberText(e.surprisedLowest * radian),
+  table.rows.push_back({"lowest angle, parameters off", numberText(e.surprisedLowest * radian),
                         numberText(limits.lower * radian), "deg"});
   table.rows.push_back(
       {"highest angle", numberText(e.highest * radian), numberText(limits.upper * radian), "deg"});
-  table.rows.push_back({"the same with parameters off", numberText(e.surprisedHighest * radian),
+  table.rows.push_back({"highest angle, parameters off", numberText(e.surprisedHighest * radian),
                         numberText(limits.upper * radian), "deg"});
   table.rows.push_back({"largest speed", numberText(e.fastest * radian),
                         numberText(limits.speed * radian), "deg/s"});
@@ -172,15 +173,17 @@ double deviationOf(const info::MonteCarloResult& monteCarlo, std::size_t i) {
 }
 
 std::string verdictOf(const DesignFindings& f) {
-  const char* stopped = f.result.stopped ? "Stopped early: the best experiment so far. " : "";
+  const char* stopped =
+      f.result.stopped ? "Stopped early; this is the best experiment so far. " : "";
   if (!f.result.improved) {
-    return fmt::format("{}No experiment was found that tells more than {} and keeps the limits.",
-                       stopped, f.trialFile);
+    return fmt::format(
+        "{}No experiment was found that is more informative than {} and respects the limits.",
+        stopped, f.trialFile);
   }
   const double before = f.result.before.bound[0], after = f.result.after.bound[0];
   return fmt::format(
-      "{}The designed experiment bounds {} to {} {} instead of {} {}: {} times "
-      "better at the same duration, rate and noise.",
+      "{}The designed experiment determines {} to ±{} {} instead of ±{} {} (Cramér–Rao bound), {} "
+      "times better with the same duration, rate and noise.",
       stopped, f.parameters[0].name, numberText(after, 3), f.parameters[0].unit,
       numberText(before, 3), f.parameters[0].unit, numberText(before / after, 3));
 }
@@ -238,11 +241,11 @@ Report designReport(const DesignFindings& f) {
   report.mainFigure = angleFigure(f);
   report.details.push_back(boundTable(f));
   report.details.push_back(Paragraph{fmt::format(
-      "A bound is the smallest standard deviation that an unbiased estimate can have "
-      "(Cramér–Rao), with a measured angle every {} s and noise of {} deg, and everything else in "
-      "the model as it is{}. It says nothing about a model that is wrong.",
+      "A bound is the smallest standard deviation that an unbiased estimate can have (Cramér–Rao), "
+      "with one measured angle every {} s, noise of {} deg, and all other parameters of the model "
+      "known{}. It holds only if the model is right.",
       numberText(f.design.question().period), numberText(f.design.question().noise * radian),
-      f.design.question().nuisance.empty() ? "" : ", but for the nuisance parameters")});
+      f.design.question().nuisance.empty() ? "" : " except the nuisance parameters")});
   if (f.monteCarlo) {
     Table table{"Simulated experiments",
                 {"parameter", "truth", "mean estimate", "standard deviation", "bound", "ratio"},
@@ -267,11 +270,10 @@ Report designReport(const DesignFindings& f) {
   report.details.push_back(knowledgeFigure(f));
   report.details.push_back(limitTable(f));
   report.details.push_back(searchFigure(f));
-  report.details.push_back(
-      Paragraph{fmt::format("{} simulations with exact sensitivities, {} of them did not reach the "
-                            "end. design.sto holds the inputs and the predicted motion; "
-                            "`fisherhill replay` plays it.",
-                            f.result.runs, f.result.impossible)});
+  report.details.push_back(Paragraph{fmt::format(
+      "{} simulations with exact sensitivities, {} of which did not reach the end. design.sto "
+      "holds the inputs and the predicted motion; `fisherhill replay` simulates it.",
+      f.result.runs, f.result.impossible)});
   return report;
 }
 

@@ -23,26 +23,30 @@ class Discover : public Command {
   void addOptions(CLI::App& options) override {
     addModelArgument(options, model_);
     options
-        .add_option("TRIAL", trials_,
-                    "trials with a measured angle; with --system there is no MODEL")
+        .add_option(
+            "TRIAL", trials_,
+            "trials with a measured angle, at least one; with --system every argument is a trial")
         ->check(CLI::ExistingFile)
         ->type_name("");
     addRobotOptions(options, robot_);
-    options.add_option("--hold-out", heldOut_, "trial to judge by only; may be repeated")
+    options
+        .add_option("--hold-out", heldOut_,
+                    "held-out trial, used to test the result; may be repeated")
         ->check(CLI::ExistingFile)
         ->allow_extra_args(false)
         ->delimiter(',')
         ->type_name("TRIAL");
     options
-        .add_option("--noise-deg", noise_,
-                    "standard deviation of the measured angle; default: from the data themselves")
+        .add_option(
+            "--noise-deg", noise_,
+            "standard deviation of the measured angle [deg]; default: estimated from the data")
         ->check(positive())
         ->type_name("DEG");
-    options.add_option("--without", without_, "effects to leave out of the catalogue, by id")
+    options.add_option("--without", without_, "effects to exclude from the catalogue, by id")
         ->allow_extra_args(false)
         ->delimiter(',')
         ->type_name("IDS");
-    options.add_option("--max-effects", maxEffects_, "effects that may act together")
+    options.add_option("--max-effects", maxEffects_, "largest number of effects in one hypothesis")
         ->check(CLI::Range(1, 3))
         ->capture_default_str()
         ->type_name("N");
@@ -70,8 +74,9 @@ class Discover : public Command {
       return discoverInRobot(robot_, context);
     }
     if (trials_.empty()) throw std::invalid_argument("TRIAL is required (see --help)");
-    if (!robot_.with.empty()) throw std::invalid_argument("--with goes with --system");
-    if (!robot_.noise.empty()) throw std::invalid_argument("--noise goes with --system");
+    if (!robot_.with.empty()) throw std::invalid_argument("--with requires --system");
+    if (!robot_.noise.empty())
+      throw std::invalid_argument("--noise requires --system; without it use --noise-deg");
     ArmDiscoveryRequest request{model_, trials_,     heldOut_,      without_,
                                 noise_, maxEffects_, inputScatter_, simulation_};
     return discoverInArm(request, context).status;
@@ -80,11 +85,11 @@ class Discover : public Command {
  private:
   /// Options of the elbow that say nothing of a robot.
   void mustSuitRobots() const {
-    if (noise_) throw std::invalid_argument("--noise-deg: with --system it is --noise");
+    if (noise_) throw std::invalid_argument("--noise-deg: with --system use --noise");
     for (const CLI::Option* option : armOptions_) {
       if (option->count() > 0) {
         throw std::invalid_argument(
-            fmt::format("{} does not go with --system", option->get_name()));
+            fmt::format("{} cannot be combined with --system", option->get_name()));
       }
     }
   }

@@ -57,7 +57,7 @@ Figure motionFigure(const DiscoverFindings& f, int t, std::size_t output) {
                            .style = SeriesStyle::points});
   if (verdict.base.size() > 0) {
     figure.series.push_back(
-        {.name = "calibrated, nothing added",
+        {.name = "calibrated, no effect added",
          .x = times,
          .y = shownValues(f, f.data.outputs(t, verdict.base, {}), samples, output),
          .style = SeriesStyle::dashed});
@@ -71,8 +71,9 @@ Figure motionFigure(const DiscoverFindings& f, int t, std::size_t output) {
     series.bandHigh = shownValues(f, after + wide, samples, output);
     figure.series.push_back(std::move(series));
     figure.caption =
-        "Simulations from the start to the end, without looking at what was measured. The band: "
-        "95 % of measurements, with the uncertainty of the effect's size.";
+        "Simulations from the initial state to the end, not corrected by the measurements. Band: "
+        "95 % of the measurements are expected here, given the noise and the uncertainty of the "
+        "effect's size.";
   }
   return figure;
 }
@@ -80,10 +81,10 @@ Figure motionFigure(const DiscoverFindings& f, int t, std::size_t output) {
 Table gapTable(const DiscoverFindings& f) {
   const std::string unit = f.wording.outputs.front().unit;
   const double scale = f.wording.unit;
-  Table table{"Root mean square of measured − simulated",
-              {"trials", "model as it came [" + unit + "]", "calibrated [" + unit + "]",
-               "with the effect [" + unit + "]", "to be expected [" + unit + "]",
-               "noise [" + unit + "]", "of the range [%]", "excess error explained"},
+  Table table{"RMS error (measured − simulated)",
+              {"trials", "original model [" + unit + "]", "calibrated [" + unit + "]",
+               "with the effect [" + unit + "]", "expected [" + unit + "]", "noise [" + unit + "]",
+               "relative to the range [%]", "excess error explained"},
               {}};
   const auto row = [&](const char* name, const Gap& gap) {
     table.rows.push_back({name, numberText(scale * gap.nominal, 3),
@@ -91,7 +92,7 @@ Table gapTable(const DiscoverFindings& f) {
                           gap.expected ? numberText(scale * *gap.expected, 3) : "–",
                           numberText(scale * gap.floor, 3),
                           numberText(100 * gap.after / gap.range, 2),
-                          gap.closedFromCalibrated ? gapCell(gap) : "there was none"});
+                          gap.closedFromCalibrated ? gapCell(gap) : "no excess error"});
   };
   row("fitted", f.verdict.gap);
   if (f.verdict.heldOut) row("held out", *f.verdict.heldOut);
@@ -99,41 +100,41 @@ Table gapTable(const DiscoverFindings& f) {
 }
 
 Table adequacyTable(const DiscoverFindings& f) {
-  Table table{"Is what is left white noise?", {"", "base", "with the effect", "rule"}, {}};
+  Table table{"Residual diagnostics", {"", "base", "with the effect", "rule"}, {}};
   const Adequacy &a = f.verdict.before, &b = f.verdict.after;
   const auto word = [](bool ok) { return ok ? "yes" : "no"; };
   table.rows.push_back({"mean square of the innovations [1]", numberText(a.meanSquare, 3),
                         numberText(b.meanSquare, 3),
                         fmt::format("{} … {}", numberText(b.lowest, 3), numberText(b.highest, 3))});
-  table.rows.push_back({"Ljung–Box over 20 lags, probability", numberText(a.ljungBoxProbability, 2),
-                        numberText(b.ljungBoxProbability, 2),
+  table.rows.push_back({"Ljung–Box test over 20 lags, p-value",
+                        numberText(a.ljungBoxProbability, 2), numberText(b.ljungBoxProbability, 2),
                         fmt::format("> {}", f.options.level)});
-  table.rows.push_back({fmt::format("follows past {}, probability", f.wording.commands),
+  table.rows.push_back({fmt::format("dependence on past {}, p-value", f.wording.commands),
                         numberText(a.inputProbability, 2), numberText(b.inputProbability, 2),
                         fmt::format("> {}", f.options.level)});
   const auto remainder = [&](Cause cause, const std::string& what) {
     if (a.remainder.of(cause) == 0 && b.remainder.of(cause) == 0) return;  // none of the kind
-    table.rows.push_back(
-        {"follows " + what + ", evidence [nats]", numberText(a.remainder.of(cause), 2),
-         numberText(b.remainder.of(cause), 2), fmt::format("< {}", f.options.remainder)});
+    table.rows.push_back({"dependence on " + what + ", log Bayes factor [nats]",
+                          numberText(a.remainder.of(cause), 2),
+                          numberText(b.remainder.of(cause), 2),
+                          fmt::format("< {}", f.options.remainder)});
   };
   remainder(Cause::state, "the state (q, q̇)");
   remainder(Cause::inputs, "all past " + f.wording.commands);
   remainder(Cause::acceleration, "the acceleration");
-  remainder(Cause::sensor, "what the sensor shows");
+  remainder(Cause::sensor, "the sensor's reading");
   remainder(Cause::moments, fmt::format("each {}'s moment and the angle", f.wording.input));
-  table.rows.push_back({"latent force that is still needed, " + f.wording.ofForce,
-                        numberText(f.verdict.latentSizeBefore, 2),
-                        numberText(f.verdict.latentSizeAfter, 2),
-                        fmt::format("≤ {}", f.options.latentTolerance)});
+  table.rows.push_back(
+      {"latent force still needed, " + f.wording.ofForce, numberText(f.verdict.latentSizeBefore, 2),
+       numberText(f.verdict.latentSizeAfter, 2), fmt::format("≤ {}", f.options.latentTolerance)});
   const auto &before = f.verdict.heldOutBefore, &after = f.verdict.heldOutAfter;
   if (before && after) {
-    table.rows.push_back({"mean square of the innovations of what was held out [1]",
+    table.rows.push_back({"mean square of the held-out innovations [1]",
                           numberText(before->meanSquare, 3), numberText(after->meanSquare, 3),
                           fmt::format("< {}", numberText(after->highest, 3))});
   }
   if (f.verdict.heldOut && f.verdict.heldOut->probability) {
-    table.rows.push_back({"held-out errors as large as these, probability", "",
+    table.rows.push_back({"held-out errors at least as large, p-value", "",
                           numberText(*f.verdict.heldOut->probability, 2),
                           fmt::format("> {}", f.options.farOff)});
   }

@@ -26,7 +26,7 @@ class Writer {
   explicit Writer(const DiscoverFindings& f) : f_(f) {}
 
   Report write() {
-    report_.title = fmt::format("What {} lacks", f_.modelFile);
+    report_.title = fmt::format("Missing effects of {}", f_.modelFile);
     report_.verdict = f_.verdict.sentence;
     for (const auto& effect : f_.verdict.effects) {
       const Estimate& amplitude = effect.estimates.front();
@@ -69,7 +69,7 @@ class Writer {
     if (!f_.foreseen.empty()) report_.details.emplace_back(foreseenTable());
     reproduce();
     if (!others_.empty()) {
-      section("The other trials");
+      section("Other trials");
       for (Figure& figure : others_) report_.details.emplace_back(std::move(figure));
     }
     return std::move(report_);
@@ -85,11 +85,11 @@ class Writer {
   void effects() {
     const auto& verdict = f_.verdict;
     if (verdict.effects.empty()) return;
-    section(verdict.surrogate ? "What imitates it best" : "What is missing");
-    Table table{
-        "",
-        {"effect", "parameter", "unit", "estimate", "± sd", "evidence [nats]", "probability"},
-        {}};
+    section(verdict.surrogate ? "Closest match in the catalogue" : "Missing effects");
+    Table table{"",
+                {"effect", "parameter", "unit", "estimate", "± sd", "log Bayes factor [nats]",
+                 "probability"},
+                {}};
     for (const auto& effect : verdict.effects) {
       bool first = true;
       for (const Estimate& one : effect.estimates) {
@@ -111,14 +111,16 @@ class Writer {
       for (const std::size_t c : effect.equals) {
         list += (list.empty() ? "" : ", ") + candidate(c).name;
       }
-      say(fmt::format("These data cannot tell apart: {}{}.", list,
-                      effect.exact ? " (what was measured never could, for some of them)" : ""));
+      say(fmt::format("These data cannot distinguish: {}{}.", list,
+                      effect.exact
+                          ? " (some of them have the same effect on everything that was measured)"
+                          : ""));
     }
     if (verdict.vetoed) {
       say(verdict.after.sized
-              ? "The trials that were held out are further off than these parameters and their "
-                "deviations explain, so that no probability is given."
-              : "What is left over has the wrong size, so that no probability is given.");
+              ? "The held-out errors are larger than the uncertainty of the parameters explains, "
+                "so no probability is given."
+              : "The size of the residual does not match the noise, so no probability is given.");
     }
   }
 
@@ -133,13 +135,12 @@ class Writer {
     if (std::isnan(size.momentRms)) {
       return candidate(f_.verdict.effects[effect].candidate).kind ==
                      info::discover::EffectKind::sensor
-                 ? fmt::format("Along {} it shifts what the sensor shows by {} (root mean square).",
-                               motion, moved)
+                 ? fmt::format("On {} it shifts the sensor's reading by {} (RMS).", motion, moved)
                  : "";
     }
     return fmt::format(
-        "Along {} its {} is {} (root mean square), at most {}: {} % of the muscles' net one. "
-        "Without it the simulated motion is another by {} (root mean square).",
+        "On {0} its {1} is {2} (RMS; largest {3}), which is {4} % of the muscles' net {1}. Leaving "
+        "it out changes the simulated motion by {5} (RMS).",
         motion, f_.wording.forceUnit == "N·m" && unit == "deg" ? "moment" : "force",
         withUnit(size.momentRms, f_.wording.forceUnit, 2),
         withUnit(size.momentPeak, f_.wording.forceUnit, 2), numberText(100 * size.share, 2), moved);
@@ -151,9 +152,9 @@ class Writer {
     section("Reproduce");
     const std::string& unit = f_.wording.outputs.front().unit;
     const auto figure = [&](double value) { return numberText(f_.wording.unit * value); };
-    Table errors{"Root mean square of measured − simulated, as replay gives it",
-                 {"trial", "role", "model as it came [" + unit + "]",
-                  "with all that was fitted [" + unit + "]", "noise [" + unit + "]", "replayed"},
+    Table errors{"RMS error (measured − simulated), as replay reports it",
+                 {"trial", "role", "original model [" + unit + "]",
+                  "with all fitted parameters [" + unit + "]", "noise [" + unit + "]", "replayed"},
                  {}};
     for (const bio::discover::RepairedTrial& one : f_.written->trials) {
       const auto i = static_cast<std::size_t>(one.index);
@@ -168,14 +169,14 @@ class Writer {
     report_.details.emplace_back(std::move(commands));
     if (f_.written->model.empty()) return;
     say(
-        fmt::format("{} holds every number of parameters.csv, where each of these trials starts, "
-                    "and the time step. The gap's other figures are of fits that this command "
-                    "alone makes.",
+        fmt::format("{} holds every value of parameters.csv, the initial state of each of these "
+                    "trials, and the time step. The other RMS errors of this report belong to fits "
+                    "that only this command makes.",
                     f_.written->model));
     if (f_.written->trials.front().driven) {
-      say("EMG, a muscle's excitation or the sensor is not as recorded: the driven trials hold "
-          "what "
-          "drove the muscles and the corrected recording, so that their degrees are the joint's.");
+      say("The excitations or the recording were corrected: the driven trials (driven_*.sto) hold "
+          "the excitations that the muscles received and the corrected recording, which shows the "
+          "joint's own angle.");
     }
   }
 
@@ -194,18 +195,20 @@ class Writer {
                       .interval = std::pair(0.0, one.logEvidence)});
     }
     report_.details.emplace_back(VectorDrawing{
-        "All that were raced", intervalDrawing(rows, "Evidence against the base model [nats]"),
-        fmt::format("Logarithm of the Bayes factor, every parameter of the model fitted anew for "
-                    "each; a name needs {} nats more than what goes without it, and rivals no more "
-                    "than {} behind stay in its class.",
-                    f_.options.evidence, f_.options.classWidth)});
+        "All hypotheses compared",
+        intervalDrawing(rows, "Log Bayes factor against the base model [nats]"),
+        fmt::format(
+            "Natural logarithm of the Bayes factor; 5 nats are odds of about 150:1. Every "
+            "parameter of the model is refitted for each hypothesis. An effect is named if it adds "
+            "{} nats or more; effects within {} nats of it cannot be distinguished from it.",
+            f_.options.evidence, f_.options.classWidth)});
     if (const std::string behind = namesAgainstForces(f_); !behind.empty()) say(behind);
   }
 
   Table foreseenTable() const {
-    Table table{"What experiments are expected to tell", {"experiment"}, {}};
+    Table table{"Expected log Bayes factors of further experiments", {"experiment"}, {}};
     for (std::size_t i = 1; i < f_.verdict.rivals.size(); ++i)
-      table.columns.push_back(fmt::format("{} from {} [nats]", rivalName(f_.data, f_.verdict, 0),
+      table.columns.push_back(fmt::format("{} against {} [nats]", rivalName(f_.data, f_.verdict, 0),
                                           rivalName(f_.data, f_.verdict, i)));
     for (const bio::discover::ForeseenExperiment& one : f_.foreseen) {
       std::vector<std::string> row{one.sentence};
@@ -231,26 +234,27 @@ class Writer {
                       .before = std::pair(-1.96, 1.96)});
     }
     report_.details.emplace_back(
-        VectorDrawing{"What calibration did to the parameters of the model",
-                      intervalDrawing(rows, "Departure from the model [tolerances]"),
-                      fmt::format("95 % intervals; beyond ±{} a parameter is called wrong.",
+        VectorDrawing{"Fitted parameters of the model",
+                      intervalDrawing(rows, "Difference from the model's value [prior sd]"),
+                      fmt::format("95 % intervals. A parameter beyond ±{} prior standard "
+                                  "deviations counts as a parameter error.",
                                   f_.options.surprise)});
   }
 
   void detectability() {
     if (f_.verdict.detectability.empty()) return;
-    section("What these data could not have shown");
-    Table table{"", {"effect", "kind", "smaller than", "unit"}, {}};
+    section("Smallest detectable effects");
+    Table table{"", {"effect", "kind", "detectable from", "unit"}, {}};
     for (const auto& one : f_.verdict.detectability) {
       const auto& c = candidate(one.candidate);
       table.rows.push_back({c.name, info::discover::name(c.kind), numberText(one.amplitude, 2),
                             f_.data.quantities()[c.quantities.front()].unit});
     }
     report_.details.emplace_back(std::move(table));
-    say("The smallest size of each effect that would have stood out by five standard deviations, "
-        "beside what was found, all parameters free.");
+    say("The size at which each effect would exceed five standard deviations, in addition to the "
+        "effects found and with all parameters free.");
     for (const auto& [id, present] : f_.wording.present) {
-      say(fmt::format("The model has {} already ({}); it was not a candidate.", id, present));
+      say(fmt::format("The model already has {} ({}), so it was not a candidate.", id, present));
     }
   }
 

@@ -19,6 +19,7 @@
 #include "number_rules.h"
 #include "result.h"
 #include "robot_trial.h"
+#include "text.h"
 
 namespace app {
 namespace {
@@ -38,7 +39,7 @@ info::robot::Model plainModel(const std::string& system,
       greatest = std::max(greatest, force);
     }
   if (!(greatest > least))
-    throw std::invalid_argument("the trials hold no measured force that changes");
+    throw std::invalid_argument("the measured force is constant in all trials, must change");
   return info::robot::suspendedMass(least, greatest);
 }
 
@@ -49,8 +50,8 @@ void buildIn(const std::string& file, info::robot::Model& model,
   try {
     const ordered_json json = ordered_json::parse(stream);
     if (json.at("system") != model.name)
-      throw std::invalid_argument(
-          fmt::format("is of system {}, not {}", json.at("system").get<std::string>(), model.name));
+      throw std::invalid_argument(fmt::format("system is {}, must be {}",
+                                              json.at("system").get<std::string>(), model.name));
     for (const auto& effect : json.at("effects")) {
       const std::string id = effect.at("id");
       const auto at = std::find_if(model.candidates.begin(), model.candidates.end(),
@@ -105,23 +106,24 @@ const FollowUps& followUpsOfRobots() {
   static const FollowUps known{
       {
           {{"gain", "mass", "bias"},
-           "Let the robot hang still, once as it is and once with a known mass or angle added: "
-           "the sensor then shows its gain and bias, and nothing moves."},
+           "Let the robot hang at rest, once unchanged and once with a known mass or angle added: "
+           "this shows the sensor's gain and bias without any motion."},
           {{"visc", "coulomb", "stribeck", "drag", "damping"},
-           "Let it swing freely from a large angle until it rests: dry friction makes the "
-           "amplitude fall in a straight line, viscosity by the same share each time, drag "
-           "fastest at the start."},
+           "Let it swing freely from a large angle until it rests: under dry friction the "
+           "amplitude falls linearly, under viscous friction exponentially, under drag fastest at "
+           "the start."},
           {{"lag", "clock"},
-           "Hold the cart and push the links by hand: a clock shifts what the sensors show, the "
-           "cart's lag does not."},
+           "Hold the cart and push the links by hand: a clock offset shifts the sensors' readings, "
+           "a lag of the cart does not."},
           {{"tilt", "bias"},
-           "Turn the robot about the vertical by half a turn: a tilt changes its sign, a bias "
-           "stays."},
+           "Turn the robot by 180° about the vertical: the effect of a tilt changes its sign, a "
+           "bias stays."},
       },
-      "Repeat a trial with another motion of the cart, faster and wider; `fisherhill robot` "
-      "finds one that tells the parameters apart.",
-      "Hold the cart still and let the robot swing: what is missing then shows without the drive.",
-      "Repeat one trial that was not used here, with --with with_effect.json."};
+      "Repeat a trial with a faster and wider motion of the cart; `fisherhill robot` finds one "
+      "that distinguishes the parameters.",
+      "Hold the cart still and let the robot swing: this shows the missing effect without the "
+      "drive.",
+      "Record one more trial and test it with --with with_effect.json."};
   return known;
 }
 
@@ -243,20 +245,20 @@ class RobotSearch {
 void addRobotOptions(CLI::App& options, RobotRequest& request) {
   options
       .add_option("--system", request.system,
-                  "a robot instead of MODEL: double-pendulum (columns time, input [m/s^2, the "
+                  "a robot in place of MODEL: double-pendulum (columns time, input [m/s^2, the "
                   "cart's commanded acceleration], link1_deg and link2_deg [absolute angles from "
                   "hanging down; or _rad]) or suspended-mass (time, input, force_N)")
       ->check(CLI::IsMember({"double-pendulum", "suspended-mass"}))
       ->type_name("NAME");
   options
       .add_option("--with", request.with,
-                  "with --system: a with_effect.json whose effects the model then has")
+                  "with --system: a with_effect.json whose effects are added to the model")
       ->check(CLI::ExistingFile)
       ->type_name("FILE");
   options
       .add_option("--noise", request.noise,
-                  "with --system: standard deviation of each measured column [deg or N]; "
-                  "default: from the data themselves")
+                  "with --system: standard deviation of each measured column [deg or N]; default: "
+                  "estimated from the data")
       ->check(positive())
       ->delimiter(',')
       ->allow_extra_args(false)

@@ -30,9 +30,10 @@ void addInputScatter(CLI::App& options, std::optional<double>& inputScatter,
   options
       .add_option(
           "--input-scatter", inputScatter,
-          when + fmt::format("share of each input's effect that may be noise of it; what is "
-                             "left beyond that is something missing; default: {}",
-                             info::discover::Options().latentTolerance))
+          when + fmt::format(
+                     "input noise tolerated, as a fraction of each input's effect (EMG: of each "
+                     "muscle's moment); a larger residual counts as a missing effect; default: {}",
+                     info::discover::Options().latentTolerance))
       ->type_name("S")
       ->group(group);
 }
@@ -80,8 +81,8 @@ DiscoverSearch searchForEffects(const std::function<info::discover::Attempt(doub
 void warnOfOneTrial(Summary& summary, std::size_t training, std::size_t heldOut) {
   if (training != 1 || heldOut != 0) return;
   summary.warn(
-      "one trial and none held out: whether a name holds for other motions remains untested; "
-      "add trials, or one with --hold-out");
+      "one trial and none held out: whether the result holds for other motions is untested; add "
+      "trials, or hold one out with --hold-out");
 }
 
 bool mayBeAdded(const info::discover::Verdict& verdict) {

@@ -18,7 +18,7 @@ namespace app {
 info::discover::Options engineOptions(int maxEffects, const std::optional<double>& inputScatter,
                                       std::size_t training, std::size_t heldOut);
 void addInputScatter(CLI::App& options, std::optional<double>& inputScatter,
-                     const std::string& when = {}, const std::string& group = "OPTIONS");
+                     const std::string& when = {}, const std::string& group = "Options");
 
 struct DiscoverSearch : info::discover::SteppedVerdict {
   double wallSeconds = 0;       ///< of all attempts

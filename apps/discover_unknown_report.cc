@@ -14,16 +14,16 @@ using info::discover::NamelessForce;
 
 Paragraph formulaOf(const info::discover::Unknown& u) {
   return {
-      fmt::format("As a formula, a surrogate: {} ({} nats more than the latent force alone, {} % "
-                  "of its power{}).",
+      fmt::format("Formula that approximates the latent force: {} (log Bayes factor of {} nats "
+                  "against the latent force alone; {} % of its power{}).",
                   u.formula, numberText(u.evidence, 3), numberText(100 * u.explained, 2),
-                  u.stable ? "; chosen in at least 90 % of the bootstraps"
-                           : "; not stable, do not trust its form")};
+                  u.stable ? "; chosen in at least 90 % of the bootstrap samples"
+                           : "; not stable: do not rely on its form")};
 }
 
 Paragraph raced(const DiscoverFindings& f, const info::discover::RacedFormula& formula) {
   std::string text = fmt::format(
-      "Fitted and raced like a name: {}, {} nats better than the model "
+      "Fitted as a candidate effect: {}, with a log Bayes factor of {} nats against the model "
       "without it",
       formula.text, numberText(formula.logBayesFactor, 3));
   const info::discover::Gap& gap = formula.heldOut ? *formula.heldOut : formula.gap;
@@ -32,9 +32,9 @@ Paragraph raced(const DiscoverFindings& f, const info::discover::RacedFormula& f
     text += gapWords(gap, f.wording.unit, symbolOf(f.wording.outputs.front().unit),
                      formula.heldOut.has_value()) +
             " ";
-  return {text + (formula.wins ? "It leaves nothing else to be seen, and is in with_effect.osim."
-                               : "It does not explain everything, or has rivals: do not take it "
-                                 "for the effect.")};
+  return {text + (formula.wins ? "With it the residual is adequate; with_effect.osim contains it."
+                               : "It does not explain the whole residual, or other effects explain "
+                                 "it as well: do not take it for the missing effect.")};
 }
 
 // "viscous damping, dry friction"; "" for none
@@ -50,14 +50,14 @@ Figure curve(const DiscoverFindings& f, const NamelessForce& force) {
   const ShownOutput& output = f.wording.outputs.front();
   const std::string names = besides(f, force);
   Figure figure{
-      .title = "A force without a name",
+      .title = "Free-form force",
       .xLabel = angle ? fmt::format("{} [{}]", output.name, output.unit)
                       : fmt::format("Speed [{}/s]", output.unit),
       .yLabel = f.wording.force,
       .caption = fmt::format(
-          "Fitted together with all parameters, ±2 standard deviations: any smooth function "
-          "of the {} alone{}. Its form tells what to look for.",
-          info::discover::name(force.follows), names.empty() ? "" : ", beside " + names)};
+          "Fitted together with all parameters, ±2 standard deviations: any smooth function of the "
+          "{} alone{}. Its form suggests what to look for.",
+          info::discover::name(force.follows), names.empty() ? "" : ", in addition to " + names)};
   Series series{.name = "force"};
   for (std::size_t i = 0; i < force.at.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
@@ -76,20 +76,22 @@ std::vector<ReportPart> withoutName(const DiscoverFindings& f) {
   if (!f.verdict.unknown) return {};
   const info::discover::Unknown& u = *f.verdict.unknown;
   std::vector<ReportPart> parts;
-  parts.emplace_back(Section{"Something without a name"});
-  parts.emplace_back(Paragraph{
-      fmt::format("The missing force has a root mean square of {} {}; {} % of its power lies "
-                  "within 0.5 Hz of {} Hz.",
-                  numberText(u.forceSize, 3), f.wording.forceUnit, numberText(100 * u.peakShare, 2),
-                  numberText(u.peakFrequency, 2))});
+  parts.emplace_back(Section{"Effect outside the catalogue"});
+  parts.emplace_back(Paragraph{fmt::format(
+      "The missing force has an RMS of {} {}; {} % of its power lies within 0.5 Hz of {} Hz.",
+      numberText(u.forceSize, 3), f.wording.forceUnit, numberText(100 * u.peakShare, 2),
+      numberText(u.peakFrequency, 2))});
   if (!u.formula.empty()) parts.emplace_back(formulaOf(u));
   if (f.verdict.formula) parts.emplace_back(raced(f, *f.verdict.formula));
   if (f.verdict.nameless && f.verdict.nameless->wins) {
-    parts.emplace_back(Paragraph{fmt::format(
-        "A force that follows the {} alone, whatever its form, is {} nats ahead of {}.",
-        info::discover::name(f.verdict.nameless->follows), numberText(f.verdict.nameless->ahead, 3),
-        f.verdict.effects.empty() ? "the model without it"
-                                  : "the names above: they are makeshifts")});
+    const std::string better = fmt::format(
+        "A free-form force of the {} alone explains the data better than {} (log Bayes factor {} "
+        "nats)",
+        info::discover::name(f.verdict.nameless->follows),
+        f.verdict.effects.empty() ? "the model without it" : "the effects above",
+        numberText(f.verdict.nameless->ahead, 3));
+    parts.emplace_back(Paragraph{
+        better + (f.verdict.effects.empty() ? "." : ", which are probably only proxies.")});
     parts.emplace_back(curve(f, *f.verdict.nameless));
   }
   return parts;
@@ -99,10 +101,10 @@ std::string namesAgainstForces(const DiscoverFindings& f) {
   const auto& force = f.verdict.nameless;
   if (!force || force->wins || f.verdict.effects.empty()) return "";
   return fmt::format(
-      "A force without a name, any smooth function of the angle or of the speed alone, is {} nats "
-      "{}.",
+      "A free-form force (any smooth function of the angle or of the speed alone) is {} nats {}.",
       numberText(std::abs(force->ahead), 3),
-      force->ahead > 0 ? "ahead of the names, too little to doubt them" : "behind the names");
+      force->ahead > 0 ? "better than the named effects, too little to doubt them"
+                       : "worse than the named effects");
 }
 
 }  // namespace app

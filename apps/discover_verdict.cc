@@ -181,8 +181,9 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   if (f.written) {
     const bool isCorrected = f.written->repaired && f.written->repaired->trials.front().driven;
     json["rmse_after_is_of"] =
-        isCorrected ? "the driven trials: what drove the muscles, the sensor's errors taken off"
-                    : "the trials as they were recorded";
+        isCorrected
+            ? "the driven trials: excitations as the muscles received them, sensor errors removed"
+            : "the recorded trials";
     json["model"] =
         f.written->model.empty() ? ordered_json(nullptr) : ordered_json(f.written->model);
     json["trials"] = trialsJson(f);

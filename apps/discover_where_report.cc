@@ -15,14 +15,14 @@ using info::discover::Score;
 
 Figure scoreOverTime(const DiscoverFindings& f) {
   const auto& map = f.verdict.localisation;
-  Figure figure{.title = "Score over time",
-                .xLabel = "Time [s]",
-                .yLabel = "Score [deviations]",
-                .caption = fmt::format(
-                    "How far {} of 0.25 s would help at each time, after every parameter and "
-                    "start has done its best; within ±2 is noise. Dots: significant (false "
-                    "discoveries at most 5 %).",
-                    f.wording.push)};
+  Figure figure{
+      .title = "Score over time",
+      .xLabel = "Time [s]",
+      .yLabel = "Score [standard deviations]",
+      .caption = fmt::format("How strongly the data ask for {} of 0.25 s at each time, beyond what "
+                             "the parameters and initial states can explain; values within ±2 are "
+                             "noise. Dots: significant (false discovery rate at most 5 %).",
+                             f.wording.push)};
   Series marks{.name = "significant", .style = SeriesStyle::points};
   for (const int trial : map.trials) {
     Series series{.name = f.data.trialName(trial)};
@@ -89,12 +89,12 @@ std::string scoreMap(const DiscoverFindings& f) {
 
 Figure missingForce(const DiscoverFindings& f) {
   const auto& map = f.verdict.localisation;
-  Figure figure{.title = "The force that is missing",
+  Figure figure{.title = "Missing force",
                 .xLabel = "Time [s]",
                 .yLabel = f.wording.force,
                 .caption =
-                    "Posterior mean of the latent force with ±2 standard deviations; from "
-                    "the base model, by smoothing, nothing is differentiated twice."};
+                    "Posterior mean of the latent force of the base model, ±2 standard deviations. "
+                    "It is found by smoothing; the measurements are not differentiated."};
   for (std::size_t k = 0; k < map.trials.size(); ++k) {
     Series series{.name = f.data.trialName(map.trials[k]), .x = f.data.latentTimes(map.trials[k])};
     const VectorXd& r = map.force[k];
@@ -113,21 +113,22 @@ std::vector<ReportPart> whereTheyDisagree(const DiscoverFindings& f) {
   const auto& map = f.verdict.localisation;
   if (map.times.empty()) return {};
   std::vector<ReportPart> parts;
-  parts.emplace_back(Section{"Where they disagree"});
+  parts.emplace_back(Section{"Where model and data disagree"});
   parts.emplace_back(scoreOverTime(f));
   if (f.wording.hasMap) {
-    parts.emplace_back(VectorDrawing{
-        "Score over angle and speed", scoreMap(f),
-        fmt::format("Orange: {} is pushed up more than the model knows, blue: down; framed: "
-                    "significant. {}",
-                    f.wording.outputs.front().name,
-                    map.cells.empty() ? "" : "White: it was never there.")});
+    parts.emplace_back(
+        VectorDrawing{"Score over angle and speed", scoreMap(f),
+                      fmt::format("Orange: the data ask for an additional force that raises {}; "
+                                  "blue: one that lowers it; framed: significant. {}",
+                                  f.wording.outputs.front().name,
+                                  map.cells.empty() ? "" : "White: not visited.")});
   } else {
     parts.emplace_back(Paragraph{"There is no map over angle and speed: no angle was measured."});
   }
   parts.emplace_back(missingForce(f));
-  Table muscles{
-      "Score by " + f.wording.input, {f.wording.input, "score [deviations]", "significant"}, {}};
+  Table muscles{"Score by " + f.wording.input,
+                {f.wording.input, "score [standard deviations]", "significant"},
+                {}};
   for (const Score& one : map.inputs) {
     muscles.rows.push_back({one.input, numberText(one.z, 3), one.significant ? "yes" : "no"});
   }

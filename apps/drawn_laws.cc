@@ -28,7 +28,7 @@ Places placesIn(const bio::ParameterCatalogue& catalogue, const NamedCovariance&
       throw wrongIn(request, error.what());
     }
     if (std::find(places.begin(), places.end() - 1, places.back()) != places.end() - 1) {
-      throw wrongIn(request, fmt::format("{} is there under another name too", name));
+      throw wrongIn(request, fmt::format("{} is listed under another name as well", name));
     }
   }
   return places;
@@ -98,7 +98,7 @@ DrawnLaws drawnLaws(const bio::ParameterCatalogue& catalogue, const LawRequest& 
     const std::size_t place = catalogue.find(prior.name);
     if (std::find(correlated.begin(), correlated.end(), place) != correlated.end()) {
       throw std::invalid_argument(
-          fmt::format("--prior: {} has its law from --covariance", prior.name));
+          fmt::format("--prior: {} already has its distribution from --covariance", prior.name));
     }
     one.law.mean = prior.first;
     one.law.deviation = prior.second;

@@ -47,9 +47,9 @@ Figure electrodeFigure(const bio::ElectrodeTrace& trace) {
       .xLabel = "Time [s]",
       .yLabel = fmt::format("EMG [{}]", trace.unit.empty() ? "unit not stated" : trace.unit),
       .series = {},
-      .caption = fmt::format("Filtered signal and its envelope; {:.4g} {} counts as "
-                             "excitation 1.",
-                             trace.full, trace.unit)};
+      .caption =
+          fmt::format("Filtered signal and its envelope; {:.4g} {} corresponds to excitation 1.",
+                      trace.full, trace.unit)};
   if (trace.filtered.size() > 0) {
     figure.series.push_back(drawn("filtered", trace.filtered, trace.rate, trace.startTime));
   }
@@ -63,8 +63,8 @@ Figure excitationFigure(const bio::EmgResult& result) {
                 .yLabel = "Excitation [1]",
                 .series = {},
                 .caption =
-                    "As written to excitations.sto; muscles of one electrode with the same "
-                    "weight lie on one curve."};
+                    "As written to excitations.sto; muscles with the same electrode and weight "
+                    "share one curve."};
   for (std::size_t k = 0; k < result.muscles.size(); ++k) {
     figure.series.push_back({.name = result.muscles[k],
                              .x = listOf(result.time),
@@ -78,7 +78,7 @@ Figure measuredFigure(const bio::MeasuredCoordinate& measured) {
                 .xLabel = "Time [s]",
                 .yLabel = "Angle [deg]",
                 .series = {},
-                .caption = "Gaps were not measured, or stood at the instrument's limits."};
+                .caption = "Gaps: not measured, or at the instrument's limits."};
   Series series{.name = measured.coordinate};
   for (Eigen::Index i = 0; i < measured.angle_deg.size(); ++i) {
     series.x.push_back(measured.startTime + static_cast<double>(i) / measured.rate);
@@ -107,16 +107,20 @@ bio::Table trialOf(const bio::EmgResult& result) {
 class Emg : public Command {
  public:
   About about() const override {
-    return {"emg", "Turn a recording of raw EMG into a trial of excitations",
+    return {"emg", "Convert a raw EMG recording into a trial of excitations",
             "fisherhill emg emg_data/curl_slow_raw.csv --config emg_data/configs/shipped_raw.toml"};
   }
 
   void addOptions(CLI::App& options) override {
-    options.add_option("RAW", recording_, "recording: columns, Trigno export, .sto, .mot or .csv")
+    options
+        .add_option("RAW", recording_,
+                    "raw recording: text columns, Trigno export, .sto, .mot or .csv")
         ->required()
         ->check(CLI::ExistingFile)
         ->type_name("");
-    options.add_option("--config", config_, "how to read and filter it (docs/emg.md)")
+    options
+        .add_option("--config", config_,
+                    "configuration: channels, filters, electrodes (docs/emg.md)")
         ->required()
         ->check(CLI::ExistingFile)
         ->type_name("C.toml");
@@ -175,7 +179,7 @@ class Emg : public Command {
                     result.electrodes.size() == 1 ? "" : "s",
                     result.electrodes.size() == 1 ? "s" : "", fmt::join(result.muscles, ", "));
     report.mainFigure = excitationFigure(result);
-    report.details.emplace_back(Section{"What was done, and what it cannot tell"});
+    report.details.emplace_back(Section{"Processing steps and limitations"});
     for (const std::string& remark : result.remarks) report.details.emplace_back(Paragraph{remark});
     if (result.measured) report.details.emplace_back(measuredFigure(*result.measured));
     report.details.emplace_back(Section{"Electrodes"});

@@ -43,7 +43,7 @@ class Ensemble : public Command {
   explicit Ensemble(std::function<std::unique_ptr<Crew>()> gather) : gather_(std::move(gather)) {}
 
   About about() const override {
-    return {"ensemble", "Simulate a trial with many draws of the parameters",
+    return {"ensemble", "Simulate a trial with many random draws of the parameters",
             "fisherhill ensemble models/elbow8.osim emg_data/curl_slow.sto --draws 1000 "
             "--parameters TRI.radius,hand.mass --out out/ensemble"};
   }
@@ -51,7 +51,10 @@ class Ensemble : public Command {
   void addOptions(CLI::App& options) override {
     app_ = &options;
     addModelArgument(options, model_);
-    options.add_option("TRIAL", trial_, "excitations, and the measured coordinate if there is one")
+    options
+        .add_option("TRIAL", trial_,
+                    "trial: excitations, and the measured coordinate if it was recorded; required "
+                    "unless --discover is given")
         ->check(CLI::ExistingFile)
         ->type_name("");
     const std::string group = "Ensemble";
@@ -62,65 +65,71 @@ class Ensemble : public Command {
           ->group(group);
     };
     options
-        .add_option("--draws", draws_, "how many simulations; with --sobol: how many base points")
+        .add_option("--draws", draws_, "number of simulations; with --sobol: number of base points")
         ->check(CLI::Range(1, 10000000))
         ->capture_default_str()
         ->type_name("N")
         ->group(group);
     list("--parameters", laws_.names,
-         "what is drawn, by name; a name may hold *. Default: every parameter")
+         "parameters to draw, by name; a name may contain *; default: all")
         ->type_name("NAMES");
     options
         .add_option("--distribution", laws_.distribution,
-                    "normal, or uniform over √3 standard deviations; both within the bounds")
+                    "normal, or uniform over ±√3 standard deviations; both within the bounds")
         ->check(CLI::IsMember({"normal", "uniform"}))
         ->capture_default_str()
         ->group(group);
-    options.add_option("--spread", laws_.spread, "factor on every standard deviation")
+    options
+        .add_option("--spread", laws_.spread,
+                    "factor by which every standard deviation is multiplied")
         ->check(positive())
         ->capture_default_str()
         ->type_name("FACTOR")
         ->group(group);
     list("--prior", laws_.priors,
-         "law of a parameter instead of the default, in its unit; may be repeated")
+         "mean and standard deviation of a parameter instead of the default, in its unit; may be "
+         "repeated")
         ->type_name("NAME=MEAN:SD");
-    list("--bounds", laws_.bounds, "bounds instead of the default; may be repeated")
+    list("--bounds", laws_.bounds, "bounds of a parameter instead of the default; may be repeated")
         ->type_name("NAME=LOW:HIGH");
     options
         .add_option("--covariance", laws_.covarianceFile,
-                    "covariance of normal laws, as calibrate writes it: names, then a row each; "
-                    "without --parameters these are drawn")
+                    "covariance of normally distributed parameters, as calibrate writes it: a line "
+                    "of names, then one row each; without --parameters these are drawn")
         ->check(CLI::ExistingFile)
         ->type_name("FILE.csv")
         ->group(group);
-    options.add_option("--band-points", bandPoints_, "times at which the band of motions is told")
+    options
+        .add_option("--band-points", bandPoints_, "number of time points in the percentile band")
         ->check(CLI::Range(2, 1000))
         ->capture_default_str()
         ->type_name("N")
         ->group(group);
-    options.add_flag("--sobol", sobol_, "which part of the output's variance each parameter makes")
+    options
+        .add_flag("--sobol", sobol_, "variance-based sensitivity: Sobol's indices of the output")
         ->group(group);
-    options.add_option("--output", output_, "whose variance --sobol takes apart")
+    options.add_option("--output", output_, "output whose variance --sobol decomposes")
         ->check(CLI::IsMember(DrawTable::outputNames()))
         ->capture_default_str()
         ->group(group);
     const std::string sets = "Discovery over many data sets";
     options
         .add_option("--discover", discover_,
-                    "in place of TRIAL: what does the model lack? Asked of every subfolder with "
-                    "train_*.sto and held_out.sto; needs --out")
+                    "instead of TRIAL: run discover on every subfolder that has train_*.sto and "
+                    "held_out*.sto; requires --out")
         ->check(CLI::ExistingDirectory)
         ->type_name("DIR")
         ->group(sets);
     options
         .add_option("--noise-deg", noise_,
-                    "with --discover: standard deviation of the measured angle; default: from the "
-                    "data themselves")
+                    "with --discover: standard deviation of the measured angle [deg]; default: "
+                    "estimated from the data")
         ->check(positive())
         ->type_name("DEG")
         ->group(sets);
     options
-        .add_option("--max-effects", maxEffects_, "with --discover: effects that may act together")
+        .add_option("--max-effects", maxEffects_,
+                    "with --discover: largest number of effects in one hypothesis")
         ->check(CLI::Range(1, 3))
         ->capture_default_str()
         ->type_name("N")
@@ -185,27 +194,28 @@ class Ensemble : public Command {
     if (discover_.empty()) {
       if (trial_.empty()) throw std::invalid_argument("TRIAL is required (see --help)");
       if (!laws_.covarianceFile.empty() && (sobol_ || laws_.distribution != "normal")) {
-        throw std::invalid_argument(fmt::format("--covariance does not go with --{}",
+        throw std::invalid_argument(fmt::format("--covariance cannot be combined with --{}",
                                                 sobol_ ? "sobol" : "distribution uniform"));
       }
       for (const char* option : {"--noise-deg", "--max-effects", "--input-scatter"}) {
         if (app_->get_option(option)->count() == 0) continue;
-        throw std::invalid_argument(fmt::format("{} goes with --discover", option));
+        throw std::invalid_argument(fmt::format("{} requires --discover", option));
       }
       return;
     }
-    if (!trial_.empty()) throw std::invalid_argument("with --discover there is no TRIAL");
+    if (!trial_.empty()) throw std::invalid_argument("TRIAL cannot be combined with --discover");
     for (const CLI::Option* option : app_->get_options()) {
       if (option->get_group() != "Ensemble" || option->count() == 0) continue;
       throw std::invalid_argument(
-          fmt::format("{} does not go with --discover", option->get_name()));
+          fmt::format("{} cannot be combined with --discover", option->get_name()));
     }
-    if (!context.out) throw std::invalid_argument("--discover: --out is missing");
+    if (!context.out) throw std::invalid_argument("--discover requires --out");
   }
 
   /// By pointer, since the ensemble points into it.
   std::unique_ptr<const EnsembleStudy> prepare(Summary& summary) const {
-    if (simulation_.coordinates.empty()) throw std::invalid_argument("--coordinate: none given");
+    if (simulation_.coordinates.empty())
+      throw std::invalid_argument("--coordinate: must name at least one");
     const bio::Model model = readModel(model_, summary);
     const bio::Arm arm = movableArm(model, model_, simulation_, summary);
     TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
@@ -241,7 +251,7 @@ class Ensemble : public Command {
         study.measured, course, selection, options);
     if (const auto left = bio::leftRange(
             arm, bio::simulate(arm, study.input.excitation, study.input.start, options))) {
-      summary.warn("with the model's own parameters " + left->what);
+      summary.warn("with the model's own parameters, " + left->what);
     }
     study.table = std::make_unique<DrawTable>(
         study.laws.parameters, course, shownFactor(study.coordinate), shownUnit(study.coordinate));

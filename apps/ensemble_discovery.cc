@@ -50,7 +50,7 @@ std::vector<DataSet> dataSetsIn(const fs::path& folder) {
     if (set.training.empty()) continue;
     if (set.name.find_first_of(",\n\"") != set.name.npos) {
       throw std::invalid_argument(fmt::format(
-          "--discover {}: the name of folder '{}' must have no comma, quote or line break",
+          "--discover {}: the name of folder '{}' must be without comma, quote or line break",
           folder.string(), set.name));
     }
     std::sort(set.training.begin(), set.training.end());
@@ -59,7 +59,8 @@ std::vector<DataSet> dataSetsIn(const fs::path& folder) {
   }
   if (sets.empty()) {
     throw std::invalid_argument(
-        fmt::format("--discover {}: no subfolder has files called train_*.sto", folder.string()));
+        fmt::format("--discover {}: no subfolder has files train_*.sto, must have at least one",
+                    folder.string()));
   }
   std::sort(sets.begin(), sets.end(),
             [](const DataSet& a, const DataSet& b) { return a.name < b.name; });
@@ -120,13 +121,13 @@ Report discoveryReport(const std::vector<std::vector<std::string>>& rows, const 
   std::vector<std::string> parts;
   for (const auto& [verdict, count] : counts) parts.push_back(fmt::format("{} {}", count, verdict));
   Report report{
-      .title = fmt::format("What {} lacks, by {} data sets", model, rows.size()),
+      .title = fmt::format("Missing effects of {} in {} data sets", model, rows.size()),
       .verdict = fmt::format("Of {} data sets: {}.", rows.size(), fmt::join(parts, ", "))};
-  Table table{
-      .title = "Verdicts",
-      .columns = {"set", "verdict", "effects", "probability", "gap closed", "gap closed, held out"},
-      .rows = rows};
-  report.details = {table, Paragraph{"verdicts/NAME/report.html has the reasons."}};
+  Table table{.title = "Verdicts",
+              .columns = {"set", "verdict", "effects", "probability", "excess error explained",
+                          "excess error explained, held out"},
+              .rows = rows};
+  report.details = {table, Paragraph{"verdicts/NAME/report.html explains each verdict."}};
   return report;
 }
 

@@ -23,7 +23,7 @@ void addNumber(std::string& row, double value, const char* format = "{:.9g}") {
 const std::vector<EnsembleOutput>& DrawTable::outputs() {
   static const std::vector<EnsembleOutput> list = {
       {"rms_error", "RMS error", [](const bio::EnsembleRun& r) { return r.rmsError; }},
-      {"rms_from_nominal", "RMS from nominal",
+      {"rms_from_nominal", "RMS difference from nominal",
        [](const bio::EnsembleRun& r) { return r.rmsFromNominal; }},
       {"final", "final value", [](const bio::EnsembleRun& r) { return r.last; }},
       {"min", "smallest value", [](const bio::EnsembleRun& r) { return r.lowest; }},

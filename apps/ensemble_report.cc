@@ -32,14 +32,14 @@ std::string verdictOf(const EnsembleFindings& f) {
   const std::uint64_t finished = ok == f.outcomes.end() ? 0 : ok->second;
   const Spread last = spreadOf(finiteOf(f.outputs[2]));
   std::string text = fmt::format(
-      "{} of {} simulations with {} drawn parameters came to their end; {} ends at {} {} (median), "
-      "90 % of them within {} to {} {}.",
+      "{} of {} simulations with {} drawn parameters reached the end. Median of the final {}: {} "
+      "{}; 90 % lie between {} and {} {}.",
       finished, f.count, f.parameters.size(), f.coordinate, numberText(last.p50), f.table.unit(),
       numberText(last.p5), numberText(last.p95), f.table.unit());
   if (f.sobol && f.sobol->indices.variance > 0) {
     Eigen::Index most = 0;
     f.sobol->indices.total.maxCoeff(&most);
-    text += fmt::format(" {} has the largest part in the variance of {}: total index {}.",
+    text += fmt::format(" {} contributes most to the variance of {} (total Sobol index {}).",
                         f.parameters[static_cast<std::size_t>(most)].name, f.sobol->output,
                         numberText(f.sobol->indices.total[most], 2));
   }
@@ -48,10 +48,11 @@ std::string verdictOf(const EnsembleFindings& f) {
 
 Figure bandFigure(const EnsembleFindings& f) {
   const Band& band = f.band;
-  Figure figure{.title = fmt::format("{} over the ensemble", f.coordinate),
-                .xLabel = "Time [s]",
-                .yLabel = fmt::format("{} [{}]", f.coordinate, f.table.unit()),
-                .caption = "Median, and the band that holds 90 % of the simulations at each time."};
+  Figure figure{
+      .title = fmt::format("{} over the ensemble", f.coordinate),
+      .xLabel = "Time [s]",
+      .yLabel = fmt::format("{} [{}]", f.coordinate, f.table.unit()),
+      .caption = "Median, and the band from the 5th to the 95th percentile at each time."};
   figure.series.push_back(
       {.name = "median", .x = band.time, .y = band.p50, .bandLow = band.p5, .bandHigh = band.p95});
   figure.series.push_back(
@@ -82,7 +83,7 @@ Table outputTable(const EnsembleFindings& f) {
 }
 
 Table outcomeTable(const EnsembleFindings& f) {
-  Table table{.title = "How the simulations ended", .columns = {"outcome", "simulations"}};
+  Table table{.title = "Outcomes of the simulations", .columns = {"outcome", "simulations"}};
   for (const auto& [outcome, count] : f.outcomes) {
     table.rows.push_back({outcome, std::to_string(count)});
   }
@@ -90,9 +91,9 @@ Table outcomeTable(const EnsembleFindings& f) {
 }
 
 Table parameterTable(const EnsembleFindings& f) {
-  Table table{.title = "What was drawn",
-              .columns = {"parameter", "unit", "in the model", "mean of the law",
-                          "standard deviation", "from", "to"}};
+  Table table{
+      .title = "Distributions of the parameters",
+      .columns = {"parameter", "unit", "model value", "mean", "standard deviation", "from", "to"}};
   for (const DrawnParameter& one : f.parameters) {
     table.rows.push_back({one.name, one.unit.empty() ? "1" : one.unit, numberText(one.value),
                           numberText(one.law.mean), numberText(one.law.deviation),

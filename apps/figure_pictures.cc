@@ -26,7 +26,7 @@ struct TemporaryFolder {
   TemporaryFolder() {
     std::string name = (fs::temp_directory_path() / "fisherhill-XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr)
-      throw std::runtime_error("no temporary folder can be made");
+      throw std::runtime_error("a temporary folder cannot be created");
     path = name;
   }
   ~TemporaryFolder() {
@@ -57,7 +57,7 @@ void runAndWait(std::vector<std::string> words) {
   pid_t child = 0;
   if (posix_spawn(&child, words[0].c_str(), nullptr, nullptr, pointers.data(), environ) != 0) {
     throw std::runtime_error(fmt::format(
-        "--png: {} cannot be started; it is built where VTK is installed, with FISHERHILL_VIEW=ON",
+        "--png: {} cannot be started; it is built if VTK is installed and FISHERHILL_VIEW=ON",
         words[0]));
   }
   int state = 0;

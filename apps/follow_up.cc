@@ -6,39 +6,38 @@ namespace app {
 
 using info::discover::Finding;
 
-const FollowUps& followUpsOfArms() {
-  static const FollowUps known{
+FollowUps followUpsOfArms(const std::string& loadColumn) {
+  return {
       {
           {{"delay", "clock"},
-           "Repeat a trial with a torque from outside in pulses that are recorded with it "
-           "(column elbow_flexion.torque): the arm answers a push at once, but muscles late; a "
-           "shifted clock shifts both."},
+           "Repeat a trial with recorded pulses of external load (column " + loadColumn +
+               "): the limb responds to a pulse at once and to its muscles with a delay, whereas "
+               "a clock offset shifts both."},
           {{"tilt", "handforce", "const"},
-           "Repeat a trial with a known mass, e.g. 1 kg, in the hand: gravity's moment grows "
-           "with it, a force on the hand does not."},
+           "Repeat a trial with a known mass, e.g. 1 kg, in the hand: the effect of gravity "
+           "grows with it, a force on the hand does not."},
           {{"payload", "mass", "const", "handforce"},
-           "Let the forearm hang and swing passively, muscles at rest: weight and inertia act "
-           "together, a force without inertia does not."},
+           "Let the limb hang and swing passively with relaxed muscles: a mass adds weight and "
+           "inertia, a force adds no inertia."},
           {{"gain_", "Fmax_", "lopt_", "lslack_", "crosstalk", "offset_"},
            "Record one isolated contraction of each muscle, and one against a load cell at a "
            "fixed angle."},
           {{"stiffness", "tilt", "limit", "wrap_", "gain", "bias", "Fmax_"},
-           "Move the relaxed arm slowly through its whole range with a dynamometer (column "
-           "elbow_flexion.torque): what is passive shows, muscles do not."},
+           "Move the relaxed limb slowly through its whole range with a dynamometer (column " +
+               loadColumn + "): this shows the passive effects without the muscles."},
           {{"missing_", "Fmax_", "gain_"},
            "Record the EMG of the muscle that is switched off in the model (a column with its "
-           "name): it tells the muscle from its synergists."},
+           "name): this distinguishes it from its synergists."},
           {{"visc", "coulomb", "stribeck", "drag", "powerdamp"},
-           "Repeat the trial at half and at twice the speed: dry friction does not care, viscous "
-           "damping doubles, drag grows fourfold."},
+           "Repeat the trial at half and at twice the speed: at twice the speed Coulomb friction "
+           "is unchanged, viscous torque doubles, quadratic drag quadruples."},
       },
-      "Repeat the trials at another speed and with a known mass in the hand; these data cannot "
-      "tell the effects of the class apart.",
-      "Record passive motion (muscles at rest, moved by hand or a dynamometer) over the region "
-      "that the score map marks: it tells whether what is missing belongs to the joint or to the "
-      "muscles.",
-      "Repeat one trial that was not used here, and compare it with with_effect.osim."};
-  return known;
+      "Repeat the trials at another speed and with a known mass in the hand: these data cannot "
+      "distinguish the effects listed together.",
+      "Record passive motion (relaxed muscles, limb moved by hand or by a dynamometer) over the "
+      "region that the score map marks: this shows whether the missing effect belongs to the "
+      "joint or to the muscles.",
+      "Record one more trial and compare it with the motion that with_effect.osim predicts."};
 }
 
 std::string followUp(const info::discover::Disagreement& data,
@@ -63,16 +62,16 @@ std::string followUp(const info::discover::Disagreement& data,
     return best ? best->sentence : known.otherwise;
   }
   if (verdict.reached != info::discover::Stage::finished && verdict.finding != Finding::numerical) {
-    return "None yet: run this to its end.";
+    return "None yet: the search was stopped; run it to its end.";
   }
   switch (verdict.finding) {
     case Finding::unknown:
       return known.ifUnknown;
     case Finding::none:
-      return "To see less than the table of detectable sizes says, record longer, faster and over "
-             "more of the range.";
+      return "To detect smaller effects than the table lists, record longer and faster motions "
+             "over more of the range.";
     case Finding::numerical:
-      return "None yet: repeat this with a shorter --step.";
+      return "None yet: repeat the search with a shorter --step.";
     default:
       return known.ifNamed;
   }

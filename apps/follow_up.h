@@ -8,23 +8,25 @@
 
 namespace app {
 
-/// What one intervention does to a class of effects that cannot be told apart.
+/// An experiment that distinguishes effects which the data at hand cannot.
 struct Intervention {
-  std::set<std::string> separates;  ///< ids or their beginnings; two of them in a class: useful
+  /// Prefixes of the ids that it distinguishes; it helps if a class has at least two of them.
+  std::set<std::string> separates;
   std::string sentence;
 };
 
-/// What can be done with one kind of system.
+/// The experiments that are possible with one kind of system.
 struct FollowUps {
   std::vector<Intervention> interventions;
   std::string otherwise;  ///< for a class that none of them separates
   std::string ifUnknown, ifNamed;
 };
-const FollowUps& followUpsOfArms();
+/// @param loadColumn  the trial's column of the load from outside, e.g. elbow_flexion.torque
+FollowUps followUpsOfArms(const std::string& loadColumn);
 
-/// The experiment that would tell most after this verdict, in words: what separates most members of
-/// a class, or what to record where nothing could be said. Chosen by what the effects are, not
-/// simulated.
+/// The experiment to do after this verdict, in words: the one that distinguishes most members of a
+/// class of effects, or what to record if no effect was named. It is chosen by the ids of the
+/// effects, not by simulation.
 std::string followUp(const info::discover::Disagreement& data,
                      const info::discover::Verdict& verdict, const FollowUps& known);
 

@@ -22,8 +22,8 @@ std::string foreseenSentence(const std::vector<bio::discover::ForeseenExperiment
   std::string what = best.sentence;
   what.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(what.front())));
   return fmt::format(
-      "{}. Simulated with all that cannot be told apart, it is expected to tell {} "
-      "from {}; {} nats are enough.",
+      "{}. Simulated with each of the effects in question, it is expected to distinguish {} from "
+      "{}; {} nats are enough.",
       what, rivalName(data, verdict, 0), rivals, enough);
 }
 

@@ -44,9 +44,9 @@ std::string gapWords(const Gap& gap, double unit, const std::string& symbol, boo
     case Outcome::noise:
       return fmt::format("The residual{} is at the noise floor ({}).", where, figure(gap.after));
     case Outcome::expected:
-      return fmt::format("The residual{} is {} what was to be expected ({}, expected {}).", where,
-                         gap.after > *gap.expected ? "about" : "no larger than", figure(gap.after),
-                         figure(*gap.expected));
+      return fmt::format("The residual{} is {} expected ({}, expected {}).", where,
+                         gap.after > *gap.expected ? "about as large as" : "no larger than",
+                         figure(gap.after), figure(*gap.expected));
     case Outcome::share:
       return fmt::format("{} % of the excess error is explained{}.", percent(gap), where);
     case Outcome::none:

@@ -14,8 +14,8 @@ void inputsMustDiffer(const Summary& summary, std::size_t training, std::size_t 
       if (inputs[i].sha256 != inputs[j].sha256) continue;
       const bool between = i < first + training && j >= first + training;
       throw std::invalid_argument(
-          between ? fmt::format("{}: is held out, and estimated from as {}", inputs[j].path,
-                                inputs[i].path)
+          between ? fmt::format("{}: is held out and also used for estimation, as {}",
+                                inputs[j].path, inputs[i].path)
                   : fmt::format("{}: is the same trial as {}", inputs[j].path, inputs[i].path));
     }
   }

@@ -22,7 +22,7 @@ extern "C" void onInterruption(int signal) {
 
 extern "C" void onImpatience(int) {
   constexpr std::string_view words =
-      "fisherhill: interrupted at work that cannot stop in between\n";
+      "fisherhill: interrupted during work that cannot be stopped halfway\n";
   [[maybe_unused]] const ssize_t told = write(STDERR_FILENO, words.data(), words.size());
   _exit(130);
 }

@@ -85,10 +85,10 @@ std::string intervalDrawing(const std::vector<IntervalRow>& rows, const std::str
                                 [](const IntervalRow& row) { return row.before.has_value(); });
   if (both) {
     svg += fmt::format(
-        "<line x1=\"{0}\" x2=\"{1}\" y1=\"14\" y2=\"14\" stroke=\"#bbbbbb\" stroke-width=\"10\"/>"
-        "<text x=\"{2}\" y=\"19\">known beforehand</text>"
-        "<line x1=\"{3}\" x2=\"{4}\" y1=\"14\" y2=\"14\" stroke=\"#0072B2\" stroke-width=\"4\"/>"
-        "<text x=\"{5}\" y=\"19\">estimate and interval</text>\n",
+        "<line x1=\"{0}\" x2=\"{1}\" y1=\"14\" y2=\"14\" stroke=\"#bbbbbb\" "
+        "stroke-width=\"10\"/><text x=\"{2}\" y=\"19\">prior</text><line x1=\"{3}\" x2=\"{4}\" "
+        "y1=\"14\" y2=\"14\" stroke=\"#0072B2\" stroke-width=\"4\"/><text x=\"{5}\" "
+        "y=\"19\">estimate and interval</text>\n",
         left, left + 30, left + 38, left + 200, left + 230, left + 238);
   }
   // axis

@@ -39,7 +39,7 @@ Series isolines(const std::string& name, const std::vector<double>& x, const std
   if (x.size() < 2 || y.size() < 2 || heights.rows() != Eigen::Index(x.size()) ||
       heights.cols() != Eigen::Index(y.size()))
     throw std::invalid_argument(
-        fmt::format("isolines: {} × {} heights for {} x and {} y, rule: as many, and ≥ 2",
+        fmt::format("isolines: {} × {} heights for {} x and {} y, must be as many and ≥ 2",
                     heights.rows(), heights.cols(), x.size(), y.size()));
   Series series{.name = name, .style = SeriesStyle::path};
   for (std::size_t i = 0; i + 1 < x.size(); ++i)

@@ -127,10 +127,9 @@ std::string beginning(const std::string& name, const std::string& version,
 }
 
 const char* const exitStatus =
-    ".SH EXIT STATUS\n.TP\n0\ndone\n.TP\n1\nit ran, but the answer is \\(lqno\\(rq: a check "
-    "found "
-    "an error, a simulation has no solution\n.TP\n2\nwrong use or bad input, told in one line on "
-    "standard error\n.TP\n130\nstopped by Ctrl\\-C; finished parts are kept\n";
+    ".SH EXIT STATUS\n.TP\n0\ndone\n.TP\n1\nthe program ran, but the answer is \\(lqno\\(rq: a "
+    "check found an error, a simulation has no solution\n.TP\n2\nwrong use or bad input, explained "
+    "in one line on standard error\n.TP\n130\nstopped by Ctrl\\-C; finished parts are kept\n";
 
 }  // namespace
 
@@ -145,7 +144,7 @@ std::string helperPage(const DescribedCommand& program, const std::string& versi
   std::string text = beginning(name, version, withoutPeriod(at->purpose));
   if (!before.empty()) text += bold(before) + " ";
   text += synopsis(*at, name) + "\n.SH DESCRIPTION\n" + roff(when) +
-          " It takes the same words and is seldom started by hand.\n.SH OPTIONS\n";
+          " It takes the same arguments and is seldom started by hand.\n.SH OPTIONS\n";
   for (const DescribedOption& argument : at->arguments) text += entry(argument);
   for (const DescribedOption& option : at->options) text += entry(option);
   return text + exitStatus + ".SH SEE ALSO\n.BR fisherhill (1)\n";
@@ -161,20 +160,19 @@ std::string manualPage(const DescribedCommand& program, const std::string& versi
   }
   text +=
       ".SH DESCRIPTION\nReads a musculoskeletal model (OpenSim's .osim) and recorded muscle "
-      "excitations, predicts how the limb moves, and says what the measured motion tells about the "
-      "model. Everything is in SI units and radians; angles on the command line are degrees when "
-      "they end in \\(lqdeg\\(rq.\n"
-      ".SH SUBCOMMANDS\n";
+      "excitations, predicts how the limb moves, and determines what the measured motion says "
+      "about the model. Everything is in SI units and radians; angles on the command line are "
+      "degrees when they end in \\(lqdeg\\(rq.\n.SH SUBCOMMANDS\n";
   for (const DescribedCommand& command : program.subcommands) {
     text += subcommandSection(program, command);
   }
-  text += ".SH COMMON OPTIONS\nEvery subcommand has these.\n";
+  text += ".SH COMMON OPTIONS\nAll subcommands have these options.\n";
   if (!program.subcommands.empty()) {
     for (const DescribedOption& option : program.subcommands.front().options) {
       if (isShared(program, option)) text += entry(option);
     }
   }
-  text += ".SH OPTIONS\nOf the program itself.\n";
+  text += ".SH OPTIONS\nOptions of the program itself.\n";
   for (const DescribedOption& option : program.options) text += entry(option);
   text += exitStatus;
   text +=

@@ -17,7 +17,7 @@ CommandContext mayGoOn(CommandContext context) {
 
 std::string damageIn(const RowFile& file) {
   if (file.damaged() == 0) return "";
-  return fmt::format("{}: {} damaged row{}, computed again", unfinishedRows, file.damaged(),
+  return fmt::format("{}: {} damaged row{} recomputed", unfinishedRows, file.damaged(),
                      file.damaged() == 1 ? "" : "s");
 }
 
@@ -38,8 +38,9 @@ std::size_t computeMissing(Crew& crew, int threads, RowFile& file, std::uint64_t
     crew.work(work, threads);
   } catch (const Interrupted&) {
     if (context.out) {
-      tell(fmt::format("fisherhill {}: {} of {} {} are done; the same command goes on from there\n",
-                       context.subcommand, done, total, things));
+      tell(fmt::format(
+          "fisherhill {}: {} of {} {} are done; run the same command again to continue\n",
+          context.subcommand, done, total, things));
     }
     throw;
   }

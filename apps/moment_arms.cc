@@ -18,18 +18,20 @@ class MomentArms : public Command {
  public:
   About about() const override {
     return {
-        "moment-arms", "Muscle–tendon lengths and moment arms over a coordinate's range",
+        "moment-arms", "Compute muscle–tendon lengths and moment arms over a coordinate's range",
         "fisherhill moment-arms models/elbow8.osim --from 0 --to 130 --points 131 --out out/arms"};
   }
 
   void addOptions(CLI::App& options) override {
     addModelArgument(options, model_);
     options
-        .add_option("--from", from_, "first angle [deg], or position [mm] of a sliding coordinate")
+        .add_option("--from", from_,
+                    "first angle [deg] or, for a sliding coordinate, position [mm]; default: start "
+                    "of the coordinate's range")
         ->check(finite());
     options
         .add_option("--to", to_,
-                    "last angle [deg] or position [mm]; without: the coordinate's range")
+                    "last angle [deg] or position [mm]; default: end of the coordinate's range")
         ->check(finite());
     options.add_option("--points", points_, "number of values, at least 2")->capture_default_str();
     addModelOptions(options, model_options_);
@@ -59,7 +61,8 @@ class MomentArms : public Command {
       summary.warn(describe(jump));
     }
     require(!sample.muscles.empty(),
-            fmt::format("{}: coordinate '{}' moves no muscle", model_, coordinate.name));
+            fmt::format("{}: coordinate '{}' changes the length of no muscle", model_,
+                        coordinate.name));
 
     const std::string unitName = coordinate.isRotation ? "deg" : "mm";
     folder.writeFile("moment_arms.csv", [&](const std::filesystem::path& path) {
@@ -112,7 +115,8 @@ class MomentArms : public Command {
     Figure arms{.title = "Moment arms", .yLabel = "Moment arm [mm]"};
     Figure lengths{.title = "Muscle–tendon lengths", .yLabel = "Length [mm]"};
     arms.xLabel = lengths.xLabel = fmt::format("{} [{}]", coordinate.name, unitName);
-    arms.caption = fmt::format("Positive: the muscle's force increases {}.", coordinate.name);
+    arms.caption =
+        fmt::format("Positive: the muscle's force tends to increase {}.", coordinate.name);
     const std::vector<double> x(shown.begin(), shown.end());
     for (std::size_t i = 0; i < sample.muscles.size(); ++i) {
       const auto c = static_cast<Eigen::Index>(i);

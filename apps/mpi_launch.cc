@@ -29,11 +29,10 @@ void becomeRankUnderMpi(int argc, char** argv) {
       std::filesystem::read_symlink("/proc/self/exe").parent_path() / "fisherhill-mpi";
   execv(program.c_str(), argv);
   if (std::string_view(rank) == "0") {
-    fmt::print(
-        stderr,
-        "fisherhill ensemble: {} cannot be started ({}); it is built where MPI is installed, "
-        "with FISHERHILL_MPI=ON\n",
-        program.string(), std::strerror(errno));
+    fmt::print(stderr,
+               "fisherhill ensemble: {} cannot be started ({}); it is built if MPI is installed "
+               "and FISHERHILL_MPI=ON\n",
+               program.string(), std::strerror(errno));
   }
   std::_Exit(2);
 }

@@ -74,7 +74,8 @@ void check(const NamedCovariance& c, const std::filesystem::path& file) {
       if (apart <= 1e-6 * std::sqrt(variances[i] * variances[j])) continue;
       const std::string& other = c.names[static_cast<std::size_t>(j)];
       throw std::invalid_argument(
-          fmt::format("{}: the covariance of {} and {} is {} in one place and {} in the other",
+          fmt::format("{}: the covariance of {} and {} is {} in one place and {} in the other, "
+                      "must be symmetric",
                       file.string(), name, other, c.values(i, j), c.values(j, i)));
     }
   }
@@ -92,33 +93,34 @@ Eigen::MatrixXd NamedCovariance::correlation() const {
 NamedCovariance readCovariance(const std::filesystem::path& file) {
   CellReader reader(file);
   std::vector<std::string> cells;
-  if (!reader.next(cells)) throw reader.failure("is empty");
+  if (!reader.next(cells)) throw reader.failure("is empty, must be a covariance");
   const bool rowsHaveNames = cells.front().empty() || cells.front() == "parameter";
   NamedCovariance covariance;
   covariance.names.assign(cells.begin() + (rowsHaveNames ? 1 : 0), cells.end());
   const std::vector<std::string>& names = covariance.names;
   if (names.empty() || names.size() > mostNames) {
-    throw reader.failure(fmt::format("{} names; 1 to {} are wanted", names.size(), mostNames));
+    throw reader.failure(fmt::format("{} names, must be 1 to {}", names.size(), mostNames));
   }
   for (auto name = names.begin(); name != names.end(); ++name) {
-    if (name->empty()) throw reader.failure("a name is empty");
+    if (name->empty()) throw reader.failure("a name is empty, must be a covariance");
     if (std::find(names.begin(), name, *name) != name) {
-      throw reader.failure(fmt::format("{} is there twice", *name));
+      throw reader.failure(fmt::format("{} is listed twice, must be listed once", *name));
     }
   }
   const auto n = static_cast<Eigen::Index>(names.size());
   covariance.values.resize(n, n);
   Eigen::Index row = 0;
   for (; reader.next(cells); ++row) {
-    if (row == n) throw reader.failure(fmt::format("more rows than the {} names", n));
+    if (row == n)
+      throw reader.failure(fmt::format("more rows than the {} names, must be as many", n));
     if (cells.size() != names.size() + (rowsHaveNames ? 1 : 0)) {
-      throw reader.failure(fmt::format("{} cells; the first line has {}", cells.size(),
+      throw reader.failure(fmt::format("{} cells, must be {} as in the first line", cells.size(),
                                        names.size() + (rowsHaveNames ? 1 : 0)));
     }
     if (rowsHaveNames) {
       if (cells.front() != names[static_cast<std::size_t>(row)]) {
-        throw reader.failure(fmt::format("row of '{}'; {} is next in the first line", cells.front(),
-                                         names[static_cast<std::size_t>(row)]));
+        throw reader.failure(fmt::format("row of '{}', must be '{}' as in the first line",
+                                         cells.front(), names[static_cast<std::size_t>(row)]));
       }
       cells.erase(cells.begin());
     }
@@ -127,7 +129,7 @@ NamedCovariance readCovariance(const std::filesystem::path& file) {
       covariance.values(row, j) = numberIn(cells[at], names[at], reader);
     }
   }
-  if (row != n) throw reader.failure(fmt::format("{} rows for {} names", row, n));
+  if (row != n) throw reader.failure(fmt::format("{} rows for {} names, must be as many", row, n));
   check(covariance, file);
   return covariance;
 }

@@ -10,7 +10,7 @@
 namespace app {
 
 void addListParameters(CLI::App& options, bool& list) {
-  options.add_flag("--list-parameters", list, "print every parameter of the model and stop");
+  options.add_flag("--list-parameters", list, "list every parameter of the model and exit");
 }
 
 ExitStatus listParameters(const CommandContext& context, const bio::Model& model,

@@ -42,7 +42,7 @@ class Render : public Command {
   explicit Render(Drawing draw) : draw_(std::move(draw)) {}
 
   About about() const override {
-    return {"render", "Pictures or a film of the arm, muscles coloured by activation",
+    return {"render", "Draw pictures or a film of the motion, muscles coloured by activation",
             "fisherhill render models/elbow8.osim out/replay/states.sto --film --out out/film"};
   }
 
@@ -50,16 +50,16 @@ class Render : public Command {
     addModelArgument(options, options_.model);
     options
         .add_option("STATES", options_.states,
-                    "the motion: states.sto of a simulation, or a table with the coordinates")
+                    "motion: states.sto of a simulation, or a table of the coordinates")
         ->required()
         ->check(CLI::ExistingFile)
         ->type_name("");
     auto* time = options.add_option("--time", options_.time,
-                                    "moment of the picture [s]; default: the middle of the motion");
+                                    "time of the picture [s]; default: the middle of the motion");
     time->check(finite())->type_name("SECONDS");
-    options.add_flag("--film", options_.film, "the whole motion as arm.mp4 (needs ffmpeg)")
+    options.add_flag("--film", options_.film, "film of the whole motion, arm.mp4 (needs ffmpeg)")
         ->excludes(time);
-    options.add_option("--fps", options_.framesPerSecond, "pictures per second of the film")
+    options.add_option("--fps", options_.framesPerSecond, "frames per second of the film")
         ->check(between(1, 240))
         ->type_name("N")
         ->capture_default_str();
@@ -69,40 +69,41 @@ class Render : public Command {
             "width and height [pixel]")
         ->type_name("WxH")
         ->default_str("1280x960");
-    options.add_option("--camera", options_.camera, "where to look from; all of them see all")
+    options.add_option("--camera", options_.camera, "viewpoint; each shows the whole model")
         ->check(CLI::IsMember({"fit", "side", "front", "top", "isometric"}))
         ->capture_default_str();
-    options.add_option("--geometry", options_.geometry, "folder of the .vtp files the model names")
+    options
+        .add_option("--geometry", options_.geometry,
+                    "folder of the .vtp files that the model names")
         ->check(CLI::ExistingDirectory)
         ->type_name("DIR");
-    options.add_flag("--show-wraps", options_.showWraps, "wrap surfaces, translucent");
+    options.add_flag("--show-wraps", options_.showWraps, "draw the wrap surfaces, translucent");
     options
         .add_option_function<std::string>(
             "--thickness",
             [this](const std::string& text) { options_.thicknessByForce = text == "force"; },
-            "of the muscles: force (the tendon's) or fixed")
+            "thickness of the muscles: by tendon force, or fixed")
         ->check(CLI::IsMember({"force", "fixed"}))
         ->default_str("force");
-    auto* ghost = options.add_option("--ghost", options_.ghost,
-                                     "a second motion, drawn translucent beside it");
+    auto* ghost = options.add_option("--ghost", options_.ghost, "second motion, drawn translucent");
     ghost->check(CLI::ExistingFile)->type_name("STATES");
     options
         .add_option("--ghost-model", options_.ghostModel,
-                    "the model of the second motion, if it is another one")
+                    "model of the second motion, if different")
         ->check(CLI::ExistingFile)
         ->needs(ghost)
         ->type_name("MODEL");
     options.add_flag("--ignore-extra", options_.ignoreExtra,
-                     "pass over columns that the model does not know");
+                     "ignore columns that match nothing in the model");
     addModelOptions(options, options_.simulation);
   }
 
   ExitStatus run(const CommandContext& context) override {
     if (!context.out) {
-      throw std::invalid_argument("--out is missing: a picture needs a folder to be written to");
+      throw std::invalid_argument("--out is required: pictures are written into this folder");
     }
     if (options_.film && (options_.width % 2 != 0 || options_.height % 2 != 0)) {
-      throw std::invalid_argument(fmt::format("--size {}x{}: a film needs even numbers of pixels",
+      throw std::invalid_argument(fmt::format("--size {}x{}: must be even numbers for a film",
                                               options_.width, options_.height));
     }
     return draw_(options_, context);
@@ -132,7 +133,7 @@ ExitStatus drawInOtherProgram(const RenderOptions&, const CommandContext& contex
   words.push_back(nullptr);
   execv(program.c_str(), words.data());
   throw std::runtime_error(fmt::format(
-      "{} cannot be started ({}); it is built where VTK is installed, with FISHERHILL_VIEW=ON",
+      "{} cannot be started ({}); it is built if VTK is installed and FISHERHILL_VIEW=ON",
       program.string(), std::strerror(errno)));
 }
 

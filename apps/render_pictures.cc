@@ -47,7 +47,7 @@ Eigen::VectorXd shownTimes(const RenderOptions& options, const view::ArmMotion& 
   constexpr double most = 1e5;
   const double count = std::floor((last - first) * options.framesPerSecond + 1e-6) + 1;
   if (!(count >= 2 && count <= most)) {
-    throw std::invalid_argument(fmt::format("{}: {} s are {} pictures, a film has 2 to {}",
+    throw std::invalid_argument(fmt::format("{}: {} s are {} frames, must be 2 to {}",
                                             options.states, numberText(last - first),
                                             numberText(count, 8), numberText(most, 8)));
   }
@@ -75,8 +75,9 @@ Report reportOn(const RenderOptions& options, const MovingArm& arm, const std::s
   Report report;
   report.title = fmt::format("{} on {}", options.states, options.model);
   report.verdict = verdict;
-  Figure shown{
-      .title = "Activation, the muscles' colour", .xLabel = "Time [s]", .yLabel = "Activation [1]"};
+  Figure shown{.title = "Activations (colour of the muscles)",
+               .xLabel = "Time [s]",
+               .yLabel = "Activation [1]"};
   const std::vector<double> times(motion.time.begin(), motion.time.end());
   for (const auto& [muscle, values] : motion.activations) {
     shown.series.push_back({.name = muscle, .x = times, .y = {values.begin(), values.end()}});
@@ -208,7 +209,7 @@ view::SceneOptions sceneOptions(const RenderOptions& options, const Shown& shown
       fmt::format("{} – {}", shown.arm->modelName(),
                   std::filesystem::path(options.states).filename().string()),
       fmt::format("Muscles: {}{}",
-                  shown.thicknessIsForce ? "1 mm² more of cross-section per 5 N of tendon force"
+                  shown.thicknessIsForce ? "cross-section grows by 1 mm² per 5 N of tendon force"
                                          : "equal thickness",
                   shown.arm->motion().activations.empty() ? "; grey: activation not given" : "")};
   if (shown.ghost) scene.captions.push_back(shown.ghostCaption);
@@ -227,7 +228,7 @@ ExitStatus drawPictures(const RenderOptions& options, const CommandContext& cont
   bool ghostIsSeen = false;
   const std::vector<Eigen::Vector3d> outline = outlineOf(shown, ghostIsSeen);
   if (shown.ghost && !ghostIsSeen) {
-    summary.warn(fmt::format("{} has no moment in common with what is shown", options.ghost));
+    summary.warn(fmt::format("{} has no time in common with the motion shown", options.ghost));
   }
 
   const view::VirtualDisplay display;
@@ -253,7 +254,7 @@ ExitStatus drawPictures(const RenderOptions& options, const CommandContext& cont
     }
     return scene.draw(moment);
   };
-  Picture embedded{.title = toFilm || options.film ? "The middle of the film" : "The arm"};
+  Picture embedded{.title = toFilm || options.film ? "Middle of the film" : "Model"};
   const auto drawAll = [&](const std::function<void(Eigen::Index, const view::Image&)>& take) {
     ProgressBar bar("render");
     for (Eigen::Index k = 0; k < times.size(); ++k) {
@@ -274,21 +275,21 @@ ExitStatus drawPictures(const RenderOptions& options, const CommandContext& cont
       drawAll([&](Eigen::Index, const view::Image& image) { film.add(image); });
       film.finish();
     });
-    verdict = fmt::format("A film of {} pictures, {} per second.", times.size(),
+    verdict = fmt::format("A film of {} frames, {} per second.", times.size(),
                           numberText(options.framesPerSecond));
   } else {
     drawAll([&](Eigen::Index k, const view::Image& image) {
       folder.write(options.film ? frameName(k) : "arm.png",
                    [&](std::ostream& out) { out << view::pngOf(image); });
     });
-    verdict = options.film ? fmt::format("{} pictures of a film.", times.size())
+    verdict = options.film ? fmt::format("{} frames of a film.", times.size())
                            : fmt::format("A picture at {} s.", numberText(times[0]));
   }
   if (options.film && !toFilm) {
-    summary.warn(fmt::format(
-        "ffmpeg is not installed; this makes the film of the pictures: ffmpeg -framerate {} -i "
-        "{}/frame_%04d.png -pix_fmt yuv420p arm.mp4",
-        numberText(options.framesPerSecond), context.out->string()));
+    summary.warn(
+        fmt::format("ffmpeg is not installed; this command makes the film from the frames: ffmpeg "
+                    "-framerate {} -i {}/frame_%04d.png -pix_fmt yuv420p arm.mp4",
+                    numberText(options.framesPerSecond), context.out->string()));
   }
 
   summary.set("pictures", times.size());

@@ -14,7 +14,7 @@ namespace {
 class Replay : public Command {
  public:
   About about() const override {
-    return {"replay", "Simulate the motion that a trial's excitations make",
+    return {"replay", "Simulate the motion produced by a trial's excitations",
             "fisherhill replay models/elbow8.osim emg_data/curl_slow.sto --out out/replay"};
   }
 
@@ -23,8 +23,8 @@ class Replay : public Command {
     addTrialArgument(options, trial_);
     addSimulationOptions(options, simulation_);
     options.add_flag("--strict", strict_,
-                     "exit with status 1 where the motion leaves a coordinate's range by more than "
-                     "a tenth of it, or a fibre 0.2 to 2 optimal lengths");
+                     "exit with status 1 if a coordinate leaves its range by more than a tenth of "
+                     "it, or a fibre leaves 0.2 to 2 optimal lengths");
   }
 
   ExitStatus run(const CommandContext& context) override {

@@ -42,7 +42,7 @@ Figure motionFigure(const ReplayFindings& f, std::size_t index) {
        .x = f.replay.motion.time,
        .y = inUnit(f.replay.motion.q.row(static_cast<Eigen::Index>(index)), unit.factor)});
   if (const auto* measured = measuredOf(f, coordinate.name)) {
-    figure.title += " beside the measured one";
+    figure.title += " and measured motion";
     figure.series.push_back({.name = "measured",
                              .x = {measured->times.begin(), measured->times.end()},
                              .y = inUnit(measured->values, unit.factor),
@@ -79,8 +79,8 @@ Figure energyFigure(const ReplayFindings& f) {
                 .xLabel = "Time [s]",
                 .yLabel = "Energy [J]",
                 .caption =
-                    "The balance is what the integrator gains or loses: kinetic + potential − "
-                    "work of muscles and passive forces."};
+                    "The balance is the integrator's energy error: kinetic + potential − work of "
+                    "muscles, passive and external forces."};
   const auto add = [&](const std::string& name, const Eigen::VectorXd& values, SeriesStyle style) {
     figure.series.push_back(
         {.name = name, .x = f.replay.motion.time, .y = inUnit(values, 1), .style = style});
@@ -104,12 +104,12 @@ std::string comparison(const ReplayFindings& f) {
     const ShownUnit unit = unitOf(coordinate);
     const bio::MeasuredError error = bio::compareWithMeasured(f.arm, f.replay.motion, *measured);
     text += fmt::format(
-        "{}{} differs from the measured one by {:.3g} {} (root mean square of {} "
-        "samples), at most by {:.3g} {} at {:.3g} s",
+        "{}{} differs from the measurement by {:.3g} {} (RMS over {} samples), at most {:.3g} {} "
+        "at {:.3g} s",
         text.empty() ? "Simulated " : "; ", coordinate.name, error.rms * unit.factor, unit.name,
         error.count, error.largest * unit.factor, unit.name, error.largestAt);
   }
-  return text.empty() ? "Simulated; no measured coordinate to compare with" : text;
+  return text.empty() ? "Simulated; the trial has no measured coordinate to compare with" : text;
 }
 
 }  // namespace
@@ -154,13 +154,13 @@ Report replayReport(const ReplayFindings& f) {
   report.title = fmt::format("Replay of {} on {}", f.trialFile, f.modelFile);
   report.verdict = comparison(f) + ".";
   if (f.replay.beginning.from == bio::TrialBeginning::From::model) {
-    report.verdict += " It starts where the model was fitted to start this trial.";
+    report.verdict += " The initial state is the one that was fitted for this trial.";
   }
   if (f.replay.motion.outcome != bio::Outcome::completed) {
     report.verdict = fmt::format("The simulation did not reach the end: {}.", f.replay.motion.why);
   }
   if (f.left) {
-    report.verdict = fmt::format("The motion leaves what the model is made for: {}. {}",
+    report.verdict = fmt::format("The motion leaves the valid range of the model: {}. {}",
                                  f.left->what, report.verdict);
   }
   report.mainFigure = motionFigure(f, 0);
@@ -175,7 +175,7 @@ Report replayReport(const ReplayFindings& f) {
   const Eigen::MatrixXd moments = f.muscles.tendonForce.cwiseProduct(f.muscles.momentArm);
   report.details.push_back(perMuscle(f, "Moments", first.isRotation ? "Moment [N m]" : "Force [N]",
                                      moments, 1,
-                                     fmt::format("Positive: increases {}.", first.name)));
+                                     fmt::format("Positive: tends to increase {}.", first.name)));
   report.details.push_back(perMuscle(f, "Moment arms",
                                      first.isRotation ? "Moment arm [mm]" : "−∂ℓ/∂q [10⁻³]",
                                      f.muscles.momentArm, 1e3));
@@ -184,8 +184,8 @@ Report replayReport(const ReplayFindings& f) {
   report.details.push_back(Section{"Energy and numerics"});
   report.details.push_back(energyFigure(f));
   report.details.push_back(
-      Paragraph{fmt::format("{} steps of {} s, {:.3g} Newton iterations a step, {} steps halved; "
-                            "stepping took {:.3g} ms.",
+      Paragraph{fmt::format("{} steps of {} s with {:.3g} Newton iterations per step, {} of them "
+                            "halved; the integration took {:.3g} ms.",
                             f.replay.motion.steps, numberText(f.replay.options.step),
                             static_cast<double>(f.replay.motion.newtonIterations) /
                                 std::max(1.0, static_cast<double>(f.replay.motion.steps)),

@@ -48,7 +48,7 @@ void mustBeAsLong(const Figure& figure, const Series& series, const std::vector<
                   const char* what) {
   if (values.size() == series.x.size()) return;
   throw std::invalid_argument(
-      fmt::format("figure '{}', series '{}': {} has {} values, x has {}; they must be as many",
+      fmt::format("figure '{}', series '{}': {} has {} values and x has {}, must be as many",
                   figure.title, series.name, what, values.size(), series.x.size()));
 }
 
@@ -74,7 +74,7 @@ std::string captionOf(const Figure& figure, const Json& drawn) {
     isThinned = isThinned || drawn["series"][i]["x"].size() < figure.series[i].x.size();
   }
   if (!isThinned) return figure.caption;
-  return fmt::format("{}{}Of long curves only the lowest and highest values of {} parts are drawn.",
+  return fmt::format("{}{}Long curves are drawn by the lowest and highest values of {} intervals.",
                      figure.caption, figure.caption.empty() ? "" : " ", thinnedParts);
 }
 
@@ -99,7 +99,7 @@ std::string base64(const std::string& bytes) {
 
 std::string html(const Picture& picture) {
   if (!picture.png.starts_with("\x89PNG")) {
-    throw std::invalid_argument(fmt::format("picture '{}': is no PNG", picture.title));
+    throw std::invalid_argument(fmt::format("picture '{}': must be a PNG", picture.title));
   }
   std::string text = "<figure class=\"picture\">\n";
   if (!picture.title.empty()) text += fmt::format("<h3>{}</h3>\n", htmlText(picture.title));
@@ -113,7 +113,7 @@ std::string html(const Picture& picture) {
 
 std::string html(const VectorDrawing& drawing) {
   if (!drawing.svg.starts_with("<svg")) {
-    throw std::invalid_argument(fmt::format("drawing '{}': is no SVG", drawing.title));
+    throw std::invalid_argument(fmt::format("drawing '{}': must be an SVG", drawing.title));
   }
   return fmt::format(
       "<figure class=\"picture\">\n<h3>{}</h3>\n{}<figcaption>{}</figcaption>\n</figure>\n",
@@ -130,8 +130,9 @@ std::string html(const Table& table) {
   text += "</tr></thead>\n<tbody>\n";
   for (const auto& row : table.rows) {
     if (row.size() != table.columns.size()) {
-      throw std::invalid_argument(fmt::format("table '{}': a row has {} cells, the head has {}",
-                                              table.title, row.size(), table.columns.size()));
+      throw std::invalid_argument(
+          fmt::format("table '{}': a row has {} cells, must be {} as in the head", table.title,
+                      row.size(), table.columns.size()));
     }
     text += "<tr>";
     for (const std::string& cell : row) text += fmt::format("<td>{}</td>", htmlText(cell));
@@ -154,13 +155,13 @@ void addFigureRows(Table& table, const std::string& name, const Json& value) {
 }
 
 std::string provenance(const Summary& summary) {
-  std::string text = html(Section{"Figures of this result"});
+  std::string text = html(Section{"Numbers of this result"});
   Table figures{"", {"name (unit at its end)", "value"}, {}};
   addFigureRows(figures, "", summary.figures());
   for (auto& row : figures.rows) row.front().erase(0, 1);  // the dot before a top-level name
   text += html(figures);
 
-  text += html(Section{"Where this came from"});
+  text += html(Section{"Provenance"});
   text += fmt::format("<p>Command line</p>\n<pre>{}</pre>\n", htmlText(summary.commandLine()));
   Table inputs{"", {"input file", "SHA-256"}, {}};
   for (const auto& input : summary.inputs()) inputs.rows.push_back({input.path, input.sha256});

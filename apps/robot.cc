@@ -21,17 +21,16 @@ using info::LaboratoryEffects;
 class Robot : public Command {
  public:
   About about() const override {
-    return {"robot", "The motion of a robot that tells most about its parameters",
+    return {"robot", "Find the motion of a robot that is most informative about its parameters",
             "fisherhill robot double-pendulum --discrete"};
   }
 
   void addOptions(CLI::App& options) override {
     options
-        .add_option(
-            "ROBOT", robot_,
-            "double-pendulum (cart, two links, angles measured), suspended-mass (cart, mass "
-            "on a string, its force measured) or baxter (the same on a robot's arm, learnt "
-            "while it moves)")
+        .add_option("ROBOT", robot_,
+                    "double-pendulum (two links on a cart, angles measured), suspended-mass (mass "
+                    "on a string below a cart, its force measured) or baxter (the same on a robot "
+                    "arm that estimates the string's length while it moves)")
         ->required()
         ->check(CLI::IsMember({"double-pendulum", "suspended-mass", "baxter"}))
         ->type_name("");
@@ -51,13 +50,13 @@ class Robot : public Command {
     for (const CLI::Option* option : isBaxter ? cartOptions_ : baxterOptions_)
       if (option->count() > 0)
         throw std::invalid_argument(
-            fmt::format("{} does not go with {}", option->get_name(), robot_));
+            fmt::format("{} cannot be combined with {}", option->get_name(), robot_));
     if (isBaxter) return learn(context);
     const bool optimise = checkUse();
     OutputFolder folder(context, optimise ? optimiseFiles() : std::vector<std::string>{});
     Summary summary(context);
     Report report;
-    report.title = fmt::format("What the {} tells", robot_);
+    report.title = fmt::format("Information about the {}", robot_);
     ExitStatus status;
     if (convergence_) {
       status = tellConvergence(experiment(), context, summary, report);
@@ -76,7 +75,7 @@ class Robot : public Command {
     OutputFolder folder(context, baxterFiles());
     Summary summary(context);
     Report report;
-    report.title = "An arm learns the length of a string while it moves";
+    report.title = "A robot arm estimates the length of a string while it moves";
     const ExitStatus status = runBaxter(baxter_, context, summary, report, folder);
     deliver(context, summary, report, folder);
     return status;
@@ -84,48 +83,54 @@ class Robot : public Command {
 
   void addStart(CLI::App& options) {
     options.add_flag("--discrete", discrete_,
-                     "double-pendulum: optimise the variational integrator's motion in steps");
+                     "double-pendulum: optimise the discrete motion of the variational integrator");
     options
         .add_option("--measure-every", stepsPerSample_,
-                    "with --discrete: measure after every so many steps of 0.02 s (1)")
+                    "with --discrete: number of steps of 0.02 s between measurements (1)")
         ->check(positive())
         ->type_name("N");
     options
         .add_option("--amplitude", amplitude_, "cart motion amplitude*(1 - cos(2 pi t/period)) [m]")
         ->check(notNegative())
         ->type_name("A");
-    options.add_option("--period", period_, "its period [s]")->check(positive())->type_name("T");
+    options.add_option("--period", period_, "period of the cart motion [s]")
+        ->check(positive())
+        ->type_name("T");
     options
         .add_option("--perturb", perturb_,
-                    "add a small random smooth motion to the start, of about this input "
+                    "add a small smooth random motion to the initial one; size of its input "
                     "[m/s^2; with --discrete m]")
         ->check(positive())
         ->type_name("SIZE");
     options
-        .add_option("--warm-start", warmStart_, "start from the input of a motion_optimised.csv")
+        .add_option("--warm-start", warmStart_, "start from the input of this motion_optimised.csv")
         ->check(CLI::ExistingFile)
         ->type_name("FILE");
   }
 
   void addObjective(CLI::App& options) {
     options
-        .add_option("--objective", objective_,
-                    "weight of a criterion of the information, instead of the robot's own: e "
-                    "(1/least eigenvalue), a (trace of the bound), d (-ln det), condition")
+        .add_option(
+            "--objective", objective_,
+            "weight of an information criterion, instead of the robot's default: e (1/smallest "
+            "eigenvalue), a (trace of the bound), d (-ln det), condition (condition number)")
         ->type_name("NAME=W");
     options
         .add_option("--input-weight", inputWeight_,
-                    "weight R of the input's departure from the start's")
+                    "weight R of the input's deviation from the initial input")
         ->type_name("R");
-    options.add_option("--limits", limits_, "of the input [m/s^2; with --discrete m]: LOWER UPPER")
+    options
+        .add_option("--limits", limits_,
+                    "limits of the input [m/s^2; with --discrete m]: LOWER UPPER")
         ->expected(2)
         ->type_name("U");
     options
         .add_option("--tolerance", tolerance_,
-                    "end where no direction promises to lower the cost by more than this")
+                    "stop when the expected decrease of the cost is below this")
         ->check(notNegative())
         ->type_name("J");
-    options.add_option("--iterations", iterations_, "of the search, at most (100)")
+    options
+        .add_option("--iterations", iterations_, "largest number of iterations of the search (100)")
         ->check(notNegative())
         ->type_name("N");
     options
@@ -135,47 +140,54 @@ class Robot : public Command {
         ->type_name("RULE");
     options
         .add_option("--candidate", candidates_,
-                    "with --robust: a value of both parameters, as P1 P2, in the units of the "
-                    "report; repeat it (default: the model's, and each alone +-30 %)")
+                    "with --robust: values of both parameters, as P1 P2, in the units of the "
+                    "report; may be repeated (default: the model's values, and each alone +-30 %)")
         ->allow_extra_args(false)
         ->type_name("P");
   }
 
   void addLaboratory(CLI::App& options) {
     options.add_flag("--lab", lab_,
-                     "estimate from recordings of a plant with what the model has not, of usual "
-                     "sizes; the options below set one size each");
+                     "estimate from data simulated with unmodelled effects (friction, lag, sensor "
+                     "error) of typical size; the options below set one size each");
     options
         .add_option("--out-of-plane", outOfPlane_,
-                    "swing out of the plane: angle at the start, 3deg")
+                    "initial angle out of the plane of motion (3deg)")
         ->type_name("ANGLE");
     const auto size = [&](const char* name, std::optional<double>& value, const char* text,
                           const char* type) {
       options.add_option(name, value, text)->type_name(type);
     };
-    size("--dry-friction", dryFriction_, "moment of each joint [N m], 1e-5; suspended mass 1e-4",
-         "M");
-    size("--control-lag", controlLag_, "of the cart's speed [s], 0.002", "T");
-    size("--control-noise", controlNoise_, "of the cart's acceleration [m/s^2], 0.05", "SD");
+    size("--dry-friction", dryFriction_,
+         "dry friction moment of each joint [N m] (1e-5; suspended-mass 1e-4)", "M");
+    size("--control-lag", controlLag_, "lag of the cart's speed [s] (0.002)", "T");
+    size("--control-noise", controlNoise_, "disturbance of the cart's acceleration [m/s^2] (0.05)",
+         "SD");
     size("--sensor-curvature", sensorCurvature_,
-         "departure from a straight line at full range (pi/2 rad or 3 N) [1], 0.01", "B");
-    size("--sensor-step", sensorStep_, "resolution [rad or N], 0.001; suspended mass 3/1024", "S");
+         "relative nonlinearity of the sensor at full range (pi/2 rad or 3 N) (0.01)", "B");
+    size("--sensor-step", sensorStep_,
+         "resolution of the sensor [rad or N] (0.001; suspended-mass 3/1024)", "S");
   }
 
   void addJudging(CLI::App& options) {
-    options.add_flag("--as-is", asIs_, "judge the start, with simulated trials; do not optimise");
-    options.add_flag("--bound-only", boundOnly_, "the Cramér-Rao bound, without simulated trials");
+    options.add_flag("--as-is", asIs_,
+                     "evaluate the initial motion with simulated experiments; do not optimise");
+    options.add_flag("--bound-only", boundOnly_,
+                     "compute the Cramér-Rao bound only, without simulated experiments");
     options
-        .add_option("--unknown", unknown_,
-                    "double-pendulum: m1,c (mass and damping) or m1,m2 (both masses)")
+        .add_option(
+            "--unknown", unknown_,
+            "double-pendulum: unknown parameters, m1,c (mass and damping) or m1,m2 (both masses)")
         ->check(CLI::IsMember({"m1,c", "m1,m2"}))
         ->type_name("NAMES");
     options.add_flag("--undamped", undamped_, "double-pendulum with --unknown m1,m2: no damping");
-    options.add_option("--trials", trials_, "simulated experiments, each estimated (300)")
+    options
+        .add_option("--trials", trials_,
+                    "number of simulated experiments, each with an estimate (300)")
         ->check(positive())
         ->type_name("N");
     options.add_flag("--convergence", convergence_,
-                     "suspended-mass: how fast three estimators converge");
+                     "suspended-mass: compare the convergence of three estimators");
   }
 
   // True where a motion is to be optimised.
@@ -183,22 +195,22 @@ class Robot : public Command {
     const auto must = [](bool holds, const char* rule) {
       if (!holds) throw std::invalid_argument(rule);
     };
-    must(!convergence_ || !pendulum(), "--convergence goes with suspended-mass");
+    must(!convergence_ || !pendulum(), "--convergence requires suspended-mass");
     must(pendulum() || (!undamped_ && unknown_ == "m1,c"),
-         "--unknown and --undamped go with double-pendulum");
-    must(!undamped_ || unknown_ == "m1,m2", "--undamped goes with --unknown m1,m2");
+         "--unknown and --undamped require double-pendulum");
+    must(!undamped_ || unknown_ == "m1,m2", "--undamped requires --unknown m1,m2");
     const bool optimise = !convergence_ && !boundOnly_ && !asIs_ && unknown_ == "m1,c";
     const bool searching = discrete_ || perturb_ || !warmStart_.empty() || !objective_.empty() ||
                            inputWeight_ || !limits_.empty() || tolerance_ || iterations_ ||
                            !robust_.empty() || effects();
     must(optimise || !searching,
-         "--discrete, --perturb, --warm-start, --objective, --input-weight, --limits, "
-         "--tolerance, --iterations, --robust and --lab go with optimising, without --as-is, "
-         "--bound-only, --convergence and --unknown m1,m2");
-    must(!discrete_ || pendulum(), "--discrete goes with double-pendulum");
-    must(discrete_ || stepsPerSample_ == 1, "--measure-every goes with --discrete");
-    must(!discrete_ || !effects(), "--lab and its sizes go without --discrete");
-    must(candidates_.empty() || !robust_.empty(), "--candidate goes with --robust");
+         "--discrete, --perturb, --warm-start, --objective, --input-weight, --limits, --tolerance, "
+         "--iterations, --robust and --lab concern the optimisation and cannot be combined with "
+         "--as-is, --bound-only, --convergence or --unknown m1,m2");
+    must(!discrete_ || pendulum(), "--discrete requires double-pendulum");
+    must(discrete_ || stepsPerSample_ == 1, "--measure-every requires --discrete");
+    must(!discrete_ || !effects(), "--lab and its sizes cannot be combined with --discrete");
+    must(candidates_.empty() || !robust_.empty(), "--candidate requires --robust");
     return optimise;
   }
 
@@ -235,7 +247,7 @@ class Robot : public Command {
         weights.condition = one.value;
       else
         throw std::invalid_argument(
-            fmt::format("--objective {}: no such criterion, rule: e, a, d or condition", text));
+            fmt::format("--objective {}: criterion must be e, a, d or condition", text));
     }
     return weights;
   }

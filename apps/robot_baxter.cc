@@ -68,7 +68,7 @@ void swing(BaxterTrial& trial, const BaxterRequest& request) {
     } catch (const std::domain_error& e) {
       info::SwingRun none{};
       none.crossingHeight = std::nan("");
-      none.why = fmt::format("no plan: {}", e.what());
+      none.why = fmt::format("planning failed: {}", e.what());
       return none;
     }
   };
@@ -184,7 +184,7 @@ void summarise(const std::vector<BaxterTrial>& trials, const BaxterRequest& requ
     summary.set("worst_wake_up_ms", 1e3 * worstLate);
     summary.set("real_time_priority", priority);
   }
-  if (slack) summary.warn("the string was slack for a moment: the model does not hold there");
+  if (slack) summary.warn("the string was slack for a moment, where the model is not valid");
 }
 
 }  // namespace
@@ -200,34 +200,40 @@ std::vector<CLI::Option*> addBaxterOptions(CLI::App& options, BaxterRequest& r) 
             ->capture_default_str());
   };
   add(options.add_flag("--real-time", r.realTime,
-                       "four threads at their own rates, in real time, with their deadlines"));
-  positive("--duration", r.duration, "of a trial", "S");
+                       "run four threads in real time, each at its own rate and with deadlines"));
+  positive("--duration", r.duration, "duration of a trial", "S");
   add(options
-          .add_option("--initial-length", r.initial,
-                      "where the estimate starts, repeatable (nine, 0.308 to 0.468)")
+          .add_option(
+              "--initial-length", r.initial,
+              "initial estimate of the length; may be repeated (nine values, 0.308 to 0.468)")
           ->check(between(0.05, 1.5))
           ->type_name("M"));
-  positive("--payload", r.payload, "mass on the string, known unless --estimate-mass", "KG");
-  positive("--true-length", r.trueLength, "of the string", "M");
-  positive("--noise", r.noise, "standard deviation of the load cell", "N");
+  positive("--payload", r.payload, "mass on the string, known unless --estimate-mass is given",
+           "KG");
+  positive("--true-length", r.trueLength, "true length of the string", "M");
+  positive("--noise", r.noise, "standard deviation of the load cell's noise", "N");
   add(options
-          .add_option("--disturbance", r.disturbance, "unmeasured acceleration of the string's top")
+          .add_option("--disturbance", r.disturbance,
+                      "unmeasured acceleration true length of the string's top")
           ->check(notNegative())
           ->type_name("M/S2")
           ->capture_default_str());
   add(options
           .add_option("--tracking-weight", r.trackingWeight,
-                      "bias towards the middle, without which nothing would move")
+                      "weight of tracking the middle position; without it nothing would move")
           ->check(notNegative())
           ->capture_default_str()
           ->type_name("Q"));
-  add(options.add_option("--window", r.window, "look back so long; 0: to the start")
+  add(options
+          .add_option("--window", r.window,
+                      "length of the estimation window; 0: all data since the start")
           ->check(notNegative())
           ->type_name("S"));
-  add(options.add_flag("--estimate-mass", r.estimateMass, "learn the mass as well"));
+  add(options.add_flag("--estimate-mass", r.estimateMass, "estimate the mass as well"));
   add(options.add_flag("--ignore-clipping", r.ignoreClipping,
-                       "take clipped samples for measurements"));
-  add(options.add_flag("--search-time", r.searchTime, "let the controller wait for a better time"));
+                       "treat clipped samples as measurements"));
+  add(options.add_flag("--search-time", r.searchTime,
+                       "let the controller postpone its action to a better time"));
   return all;
 }
 
@@ -244,8 +250,8 @@ ExitStatus runBaxter(const BaxterRequest& request, const CommandContext& context
     summary.set("first_decision", info::describe(why));
     report.verdict = fmt::format(
         "Nothing would move: {}. The load hangs at rest, where the force does not depend on the "
-        "string's length (Γ = 0), and no small motion changes that to first order, so that only a "
-        "tracking bias starts it: --tracking-weight is {}, rule: > 0.",
+        "string's length (Γ = 0), and no small motion changes this to first order. Only a tracking "
+        "weight starts a motion: --tracking-weight is {}, must be > 0.",
         info::describe(why), numberText(request.trackingWeight));
     return ExitStatus::answerIsNo;
   }

@@ -27,10 +27,12 @@ Series ofSamples(const std::string& name, const BaxterTrial& trial, const F& val
 }
 
 Figure estimatesFigure(const std::vector<BaxterTrial>& trials, double trueLength) {
-  Figure figure{.title = "Estimates over time",
-                .xLabel = "Time [s]",
-                .yLabel = "Length [m]",
-                .caption = "Each trial starts from another length. Compare figure 6.3."};
+  Figure figure{
+      .title = "Estimates over time",
+      .xLabel = "Time [s]",
+      .yLabel = "Length [m]",
+      .caption =
+          "Each trial starts from a different length. Compare figure 6.3 of Wilson's thesis."};
   for (const BaxterTrial& trial : trials) {
     Series series{.name = fmt::format("{:.3f} m", trial.initialLength)};
     for (const auto& e : trial.learnt.estimates) {
@@ -142,7 +144,7 @@ void reportBaxter(const std::vector<BaxterTrial>& trials, const BaxterRequest& r
   std::size_t without = 0, with = 0;
   double worst = 0;
   Table task{
-      .title = "The task: swing the ball into the box (Table 6.1)",
+      .title = "Task: swing the ball into the box (table 6.1 of Wilson's thesis)",
       .columns = {"Initial length [m]", "Estimate [m]", "Without estimation", "With estimation"},
       .rows = {}};
   for (const BaxterTrial& t : trials) {
@@ -166,7 +168,8 @@ void reportBaxter(const std::vector<BaxterTrial>& trials, const BaxterRequest& r
   report.details.emplace_back(VectorDrawing{
       .title = fmt::format("Path of the ball, initial length {:.3f} m", high.initialLength),
       .svg = pathFigure(high, box),
-      .caption = "Both plans on the true string. Compare figure 6.8."});
+      .caption =
+          "Both plans carried out with the true string. Compare figure 6.8 of Wilson's thesis."});
   if (!high.withoutEstimation.time.empty())
     report.details.emplace_back(
         VectorDrawing{.title = fmt::format("Planned with {:.3f} m", high.initialLength),
@@ -186,22 +189,24 @@ void reportBaxter(const std::vector<BaxterTrial>& trials, const BaxterRequest& r
                      "measured", low, [](const auto& s) { return s.reading.force; },
                      SeriesStyle::points),
                  ofSamples("predicted", low, [](const auto& s) { return s.predictedForce; })},
-      .caption = "Predicted at the estimate of that time. Compare figure 6.4."});
-  report.details.emplace_back(
-      Figure{.title = fmt::format("Information, initial length {:.3f} m", low.initialLength),
-             .xLabel = "Time [s]",
-             .yLabel = "Information about the length [1/m²]",
-             .series = {ofSamples("accrued", low, [](const auto& s) { return s.information; })},
-             .caption = "Samples that the sensor clips are not counted. Compare figure 6.5."});
+      .caption =
+          "Predicted with the estimate at that time. Compare figure 6.4 of Wilson's thesis."});
   report.details.emplace_back(Figure{
-      .title = fmt::format("The gripper, initial length {:.3f} m", high.initialLength),
+      .title = fmt::format("Information, initial length {:.3f} m", low.initialLength),
+      .xLabel = "Time [s]",
+      .yLabel = "Information about the length [1/m²]",
+      .series = {ofSamples("accrued", low, [](const auto& s) { return s.information; })},
+      .caption =
+          "Samples that the sensor clips are not counted. Compare figure 6.5 of Wilson's thesis."});
+  report.details.emplace_back(Figure{
+      .title = fmt::format("Gripper, initial length {:.3f} m", high.initialLength),
       .xLabel = "Time [s]",
       .yLabel = "Position [m]",
       .series = {ofSamples(
                      "reference", high, [](const auto& s) { return s.reading.reference; },
                      SeriesStyle::dashed),
                  ofSamples("actual", high, [](const auto& s) { return s.reading.position; })},
-      .caption = "Compare figure 6.7."});
+      .caption = "Compare figure 6.7 of Wilson's thesis."});
 }
 
 }  // namespace app

@@ -89,7 +89,7 @@ void printTable(const Table& table) {
 }
 
 Figure errorFigure(const std::vector<Approach>& all) {
-  Figure figure{.title = "Approach to the minimum",
+  Figure figure{.title = "Convergence to the minimum",
                 .xLabel = "Iteration",
                 .yLabel = "Relative error [1]",
                 .series = {},
@@ -117,7 +117,7 @@ ExitStatus tellConvergence(const info::PlannedExperiment& quiet, const CommandCo
   const info::PlannedExperiment lively = info::suspendedMassExperiment(info::suspendedMassLively());
   const auto fast = approaches(lively, info::simulateMeasurement(lively, context.seed), {});
   const std::vector<Table> tables = {
-      convergenceTableOf("Quiet start, exact data", slow),
+      convergenceTableOf("Quiet initial motion, exact data", slow),
       convergenceTableOf("Lively motion 0.1 m, 1.2 s, one recording with noise", fast)};
   for (const Table& table : tables) {
     if (!context.json) printTable(table);
@@ -145,8 +145,8 @@ ExitStatus tellConvergence(const info::PlannedExperiment& quiet, const CommandCo
   report.mainFigure = errorFigure(fast);
   const info::Estimate& descent = slow[0].estimate;
   report.verdict = fmt::format(
-      "On the quiet start gradient descent {} {} iterations; iterated least squares needs {}, "
-      "Newton-Raphson {}.",
+      "For the quiet initial motion gradient descent {} {} iterations; iterated least squares "
+      "needs {}, Newton-Raphson {}.",
       descent.converged ? "needs" : "has not converged after", descent.iterations,
       slow[1].estimate.iterations, slow[2].estimate.iterations);
   return ExitStatus::done;

@@ -69,12 +69,13 @@ Figure costFigure(const info::SearchResult& search) {
 }
 
 Figure informationFigure(const Found& found) {
-  Figure figure{.title = "Information over time",
-                .xLabel = "Time [s]",
-                .yLabel = "Eigenvalue of the information so far",
-                .series = {},
-                .caption = "λ of the Fisher information of everything measured up to a time.",
-                .yScale = AxisScale::logarithmic};
+  Figure figure{
+      .title = "Information over time",
+      .xLabel = "Time [s]",
+      .yLabel = "Eigenvalue of the information so far",
+      .series = {},
+      .caption = "Eigenvalues λ of the Fisher information of all measurements up to that time.",
+      .yScale = AxisScale::logarithmic};
   const auto add = [&](const char* name, const TimedMotion& motion, SeriesStyle style) {
     for (Index i : {0, 1})
       figure.series.push_back(curve(
@@ -131,8 +132,8 @@ Figure basinFigure(const Basin& basin, const info::LeastSquares& problem,
   const auto point = [](const std::string& name, const VectorXd& at) {
     return Series{.name = name, .x = {at[0]}, .y = {at[1]}, .style = SeriesStyle::points};
   };
-  Series path{.name = "way of the estimator", .style = SeriesStyle::path},
-      stops{.name = "its iterations", .style = SeriesStyle::points};
+  Series path{.name = "path of the estimator", .style = SeriesStyle::path},
+      stops{.name = "iterations", .style = SeriesStyle::points};
   std::size_t outside = 0;
   for (const VectorXd& theta : way) {
     const bool in = inside(theta);
@@ -146,16 +147,17 @@ Figure basinFigure(const Basin& basin, const info::LeastSquares& problem,
     }
   }
   const auto& parameters = problem.parameters();
-  std::string caption =
-      fmt::format("Isolines of β from {} to {}, closer where β is steeper than a parabola.",
-                  numberText(levels.front(), 3), numberText(levels.back(), 3));
+  std::string caption = fmt::format(
+      "Contour lines of the cost β from {} to {}; they are closer where β is steeper than a "
+      "parabola.",
+      numberText(levels.front(), 3), numberText(levels.back(), 3));
   if (outside > 0)
     caption += fmt::format(" {} of the estimator's iterations lie outside.", outside);
   return {.title = basin.title,
           .xLabel = label(parameters[0]),
           .yLabel = label(parameters[1]),
-          .series = {isolines("isolines of β", x, y, heights, levels), path, stops,
-                     point("actual value", basin.truth)},
+          .series = {isolines("contour lines of β", x, y, heights, levels), path, stops,
+                     point("true value", basin.truth)},
           .caption = caption};
 }
 

@@ -60,8 +60,8 @@ void simulate(const CommandContext& context, const info::PlannedExperiment& plan
   summary.set("trials_converged", result.converged);
   summary.set("trials_covariance", upperTriangle(result.covariance, namesOf(plan)));
   report.details.emplace_back(Paragraph{
-      fmt::format("{} simulated experiments with fresh noise, each estimated from a start "
-                  "drawn within 0 to 2 times the truth; {} estimates converged.",
+      fmt::format("{} simulated experiments with independent noise, each estimated from an initial "
+                  "guess drawn between 0 and 2 times the true values; {} estimates converged.",
                   trials, result.converged)});
   report.details.emplace_back(matrixTable("Covariance of the estimates", result.covariance, plan));
 }
@@ -103,8 +103,8 @@ ExitStatus tellInformation(const info::PlannedExperiment& plan, std::optional<in
     deviations.push_back(fmt::format("{} to ±{} {}", names[i],
                                      numberText(verdict.deviation[static_cast<Eigen::Index>(i)], 3),
                                      plan.parameters[i].unit));
-  report.verdict =
-      fmt::format("One run could determine {} (standard deviations).", fmt::join(deviations, ", "));
+  report.verdict = fmt::format("One experiment determines {} (Cramér–Rao standard deviations).",
+                               fmt::join(deviations, ", "));
   report.details.emplace_back(matrixTable("Cramér–Rao bound", bound, plan));
   if (trials) simulate(context, plan, *trials, summary, report);
   return ExitStatus::done;

@@ -82,22 +82,24 @@ void tellLaboratory(const LaboratoryRobot& robot, const info::LaboratoryEffects&
                              {"median_error_initial", pairOf(slow.medianError)},
                              {"median_error_optimised", pairOf(fast.medianError)}});
 
-  report.details.emplace_back(Section{"In the laboratory"});
+  report.details.emplace_back(Section{"Simulated laboratory"});
   report.details.emplace_back(Paragraph{fmt::format(
-      "A plant with what the model has not: it starts {}° out of the plane, dry friction {} N m, "
-      "the cart's speed lags by {} s, its acceleration is disturbed by {} m/s², the sensor's curve "
-      "departs by {} at full range and it reads in steps of {}.",
+      "The data are simulated with effects that the model lacks: initial angle {}° out of the "
+      "plane, dry friction of {} N m, lag of the cart's speed of {} s, disturbance of its "
+      "acceleration of {} m/s², sensor nonlinearity of {} at full range, and sensor resolution of "
+      "{}.",
       numberText(effects.outOfPlane * 180 / std::numbers::pi, 3), numberText(effects.dryFriction),
       numberText(effects.controlLag), numberText(effects.controlNoise),
       percent(effects.sensorCurvature), numberText(effects.sensorStep, 3))});
   const std::string first = label(plan.parameters[0]), second = label(plan.parameters[1]);
-  Table table{.title = fmt::format("Estimates, as in table {}", robot.thesisTable),
-              .columns = {"", first, second, first + ", thesis", second + ", thesis"},
-              .rows = {}};
+  Table table{
+      .title = fmt::format("Estimates, as in table {} of Wilson's thesis", robot.thesisTable),
+      .columns = {"", first, second, first + ", Wilson's thesis", second + ", Wilson's thesis"},
+      .rows = {}};
   const auto row = [&](const char* what, const VectorXd& value, std::size_t printed,
                        const std::vector<bool>& atBound = {false, false}) {
     const auto text = [&](Index i) {
-      return numberText(value[i], 3) + (atBound[std::size_t(i)] ? " (its bound)" : "");
+      return numberText(value[i], 3) + (atBound[std::size_t(i)] ? " (at its bound)" : "");
     };
     table.rows.push_back(
         {what, text(0), text(1), robot.thesis[printed][0], robot.thesis[printed][1]});
@@ -106,8 +108,8 @@ void tellLaboratory(const LaboratoryRobot& robot, const info::LaboratoryEffects&
                           const std::array<std::string, 2>& printed = {}) {
     table.rows.push_back({what, percent(error[0]), percent(error[1]), printed[0], printed[1]});
   };
-  row("initial estimate", start, 0);
-  row("actual value", robot.truth, 1);
+  row("initial guess", start, 0);
+  row("true value", robot.truth, 1);
   row("from the initial motion", slow.shown.parameters, 2, slow.shown.atBound);
   errors("error", slow.error, robot.thesis[3]);
   errors(fmt::format("median error of {} recordings", recordings), slow.medianError);

@@ -75,9 +75,9 @@ ExitStatus optimiseSuspendedMass(const OptimiseRequest& request, const CommandCo
               {{"initial", squaresSlow.iterations}, {"optimised", squaresFast.iterations}});
   const auto count = [](int n) { return n > 1000 ? std::string("> 1000") : std::to_string(n); };
 
-  report.mainFigure = stateFigure("The motion", "Angle [rad]", found, {{"string", 1}});
+  report.mainFigure = stateFigure("Motion", "Angle [rad]", found, {{"string", 1}});
   report.details.emplace_back(
-      Table{.title = "Start and optimised motion",
+      Table{.title = "Initial and optimised motion",
             .columns = {"", "start", "optimised", "thesis"},
             .rows = {{"κ", numberText(before[1] / before[0]), numberText(after[1] / after[0]),
                       "1.73e8 to 19.3"},
@@ -86,7 +86,7 @@ ExitStatus optimiseSuspendedMass(const OptimiseRequest& request, const CommandCo
                      {"iterations of gradient descent", count(slow), count(fast), "> 1000 to 27"},
                      {"iterations of iterated least squares", count(squaresSlow.iterations),
                       count(squaresFast.iterations), "5 to 3"}}});
-  report.details.emplace_back(stateFigure("The cart", "Position [m]", found, {{"cart", 0}}));
+  report.details.emplace_back(stateFigure("Cart", "Position [m]", found, {{"cart", 0}}));
   report.details.emplace_back(inputFigure("Cart acceleration [m/s²]", found));
   report.details.emplace_back(informationFigure(found));
   const auto map = [&](const char* title, const info::LeastSquares& problem,

@@ -72,10 +72,9 @@ ExitStatus optimisePendulum(const OptimiseRequest& request, const CommandContext
   summary.set("trials", request.trials);
   summary.set("trials_converged", {{"initial", slow.converged}, {"optimised", fast.converged}});
 
-  report.mainFigure =
-      stateFigure("The motion", "Angle [rad]", found, {{"link 1", 1}, {"link 2", 2}});
+  report.mainFigure = stateFigure("Motion", "Angle [rad]", found, {{"link 1", 1}, {"link 2", 2}});
   Table table{
-      .title = "What one run tells, variances and covariance",
+      .title = "Variances and covariance of the estimates from one experiment",
       .columns = {"", "m1 m1 [kg²]", "m1 c [kg·1e-3 kg m²/s]", "c c [(1e-3 kg m²/s)²]", "thesis"},
       .rows = {}};
   addRow(table, "Cramér–Rao bound, start", boundBefore, "2.71e-4, 1.46e-3, 1.05");
@@ -84,11 +83,11 @@ ExitStatus optimisePendulum(const OptimiseRequest& request, const CommandContext
   addRow(table, "Monte Carlo, optimised", fast.covariance, "2.37e-7, 1.63e-6, 1.19e-3");
   report.details.emplace_back(table);
   report.details.emplace_back(
-      Table{.title = "Information about the worst direction",
+      Table{.title = "Information about the least determined direction",
             .columns = {"", "here", "thesis"},
             .rows = {{"factor of λ_min", numberText(factor), "1040"},
                      {"iterations", std::to_string(found.search.iterations), "36"}}});
-  report.details.emplace_back(stateFigure("The cart", "Position [m]", found, {{"cart", 0}}));
+  report.details.emplace_back(stateFigure("Cart", "Position [m]", found, {{"cart", 0}}));
   report.details.emplace_back(inputFigure("Cart acceleration [m/s²]", found));
   report.details.emplace_back(informationFigure(found));
   report.details.emplace_back(histogram("m1 [kg], start", slow, 0, before.truth[0]));
@@ -103,8 +102,9 @@ ExitStatus optimisePendulum(const OptimiseRequest& request, const CommandContext
       {"cart_m", "angle1_rad", "angle2_rad", "cart_m_per_s", "rate1_rad_per_s", "rate2_rad_per_s"},
       summary, report, folder);
   report.verdict = fmt::format(
-      "The optimised motion tells {} times as much about the worst direction; the deviation of m1 "
-      "falls from {} to {} kg, that of c from {} to {} 1e-3 kg m²/s.",
+      "The optimised motion gives {} times as much information about the least determined "
+      "direction; the standard deviation of m1 falls from {} to {} kg, that of c from {} to {} "
+      "1e-3 kg m²/s.",
       numberText(factor), numberText(std::sqrt(boundBefore(0, 0)), 3),
       numberText(std::sqrt(boundAfter(0, 0)), 3), numberText(std::sqrt(boundBefore(1, 1)), 3),
       numberText(std::sqrt(boundAfter(1, 1)), 3));

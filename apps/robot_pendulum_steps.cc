@@ -70,13 +70,12 @@ ExitStatus optimisePendulumInSteps(const OptimiseRequest& request, const Command
   const double continuous = continuousMsPerIteration(step);
   summary.set("ms_per_iteration_continuous", continuous);
 
-  report.mainFigure =
-      stateFigure("The motion", "Angle [rad]", found, {{"link 1", 0}, {"link 2", 1}});
+  report.mainFigure = stateFigure("Motion", "Angle [rad]", found, {{"link 1", 0}, {"link 2", 1}});
   report.details.emplace_back(Table{
-      .title = fmt::format("Exact information of 250 steps of 0.02 s, {} samples a second, c in "
-                           "10e-3 kg m²/s",
-                           numberText(1 / (step * static_cast<double>(every)))),
-      .columns = {"", "here", "thesis, 50 samples a second"},
+      .title = fmt::format(
+          "Exact information of 250 steps of 0.02 s, {} samples per second, c in 10e-3 kg m²/s",
+          numberText(1 / (step * static_cast<double>(every)))),
+      .columns = {"", "here", "Wilson's thesis, 50 samples per second"},
       .rows = {{"λ_min, start", numberText(before[0]), "543"},
                {"λ_max, start", numberText(before[1]), "5950"},
                {"λ_min, optimised", numberText(after[0]), "7.34e4"},
@@ -85,7 +84,7 @@ ExitStatus optimisePendulumInSteps(const OptimiseRequest& request, const Command
                {"iterations", std::to_string(s.iterations), "2"},
                {"ms per iteration, in steps", numberText(found.msPerIteration, 3), "39900"},
                {"ms per iteration, continuous", numberText(continuous, 3), "762500"}}});
-  Table trials{.title = fmt::format("{} simulated experiments beside the bound", request.trials),
+  Table trials{.title = fmt::format("{} simulated experiments and the bound", request.trials),
                .columns = {"", "m1 m1 [kg²]", "m1 c [kg·10e-3 kg m²/s]", "c c [(10e-3 kg m²/s)²]"},
                .rows = {}};
   const auto row = [&](const char* what, const MatrixXd& of) {
@@ -106,8 +105,8 @@ ExitStatus optimisePendulumInSteps(const OptimiseRequest& request, const Command
   tellSearch(found, {"angle1_rad", "angle2_rad", "momentum1_kg_m2_per_s", "momentum2_kg_m2_per_s"},
              summary, report, folder);
   report.verdict = fmt::format(
-      "The optimised motion tells {} times as much about the worst direction, found in {} "
-      "iterations of {} ms (continuous time: {} ms).",
+      "The optimised motion gives {} times as much information about the least determined "
+      "direction; it was found in {} iterations of {} ms (continuous time: {} ms).",
       numberText(after[0] / before[0]), s.iterations, numberText(found.msPerIteration, 3),
       numberText(continuous, 3));
   return statusOf(found, report);

@@ -26,17 +26,18 @@ using Eigen::VectorXd;
 Inputs readStart(const std::string& file, std::size_t count) {
   const bio::Table table = bio::readTable(file, bio::TableKind::any);
   if (!bio::hasColumn(table, "input"))
-    throw bio::FileError(fmt::format("{}: no column named input", file));
+    throw bio::FileError(fmt::format("{}: has no column 'input', must have one", file));
   const VectorXd values = table.values.col(bio::columnIndex(table, "input"));
   Inputs inputs;
   for (Index k = 0; k < values.size(); ++k) {
     if (!std::isfinite(values[k]))
-      throw bio::FileError(fmt::format("{}: row {}: input is empty, rule: a number", file, k + 1));
+      throw bio::FileError(
+          fmt::format("{}: row {}: input is empty, must be a number", file, k + 1));
     inputs.push_back(VectorXd::Constant(1, values[k]));
   }
   if (inputs.size() != count)
     throw bio::FileError(
-        fmt::format("{}: {} rows, rule: {} for this time step", file, inputs.size(), count));
+        fmt::format("{}: {} rows, must be {} for this time step", file, inputs.size(), count));
   return inputs;
 }
 
@@ -194,8 +195,8 @@ Found find(const OptimiseRequest& request, const Projector& project, const Vecto
 namespace {
 
 void tellRobust(const RobustOutcome& outcome, Summary& summary, Report& report) {
-  Table table{.title = "Least eigenvalue of the information at each candidate",
-              .columns = {"θ", "start", "optimised at the first alone", "optimised over all"},
+  Table table{.title = "Smallest eigenvalue of the information for each set of parameter values",
+              .columns = {"θ", "start", "optimised for the first only", "optimised for all"},
               .rows = {}};
   nlohmann::ordered_json candidates = nlohmann::ordered_json::array();
   for (std::size_t s = 0; s < outcome.candidates.size(); ++s) {
@@ -232,7 +233,7 @@ void tellSearch(const Found& found, const std::vector<std::string>& columns, Sum
   summary.set("cost_initial", found.search.costs.front());
   summary.set("cost_optimised", found.search.costs.back());
   summary.set("why_it_stopped", info::describe(found.search.why));
-  report.details.emplace_back(Section{"The search"});
+  report.details.emplace_back(Section{"Progress of the search"});
   if (found.robust) tellRobust(*found.robust, summary, report);
   report.details.emplace_back(costFigure(found.search));
   folder.write("search.json",
@@ -244,7 +245,7 @@ void tellSearch(const Found& found, const std::vector<std::string>& columns, Sum
 ExitStatus statusOf(const Found& found, Report& report) {
   if (found.search.iterations > 0 || found.search.converged) return ExitStatus::done;
   report.verdict =
-      fmt::format("No progress: {}; the cost stays at {}, its slope is {} after {} motions tried.",
+      fmt::format("No progress: {}; the cost stays at {} with slope {} after {} trial motions.",
                   info::describe(found.search.why), numberText(found.search.costs.back()),
                   numberText(found.search.slopes.back()), found.search.trials);
   return ExitStatus::answerIsNo;

@@ -40,7 +40,7 @@ info::robot::Trial readRobotTrial(const std::string& file,
   info::robot::Trial trial;
   trial.name = file;
   const Eigen::VectorXd times = bio::timesOf(table);
-  if (times.size() < 2) refuseTrial(file, "holds 1 row, a trial must hold at least 2");
+  if (times.size() < 2) refuseTrial(file, "holds 1 row, must hold at least 2");
   trial.times.assign(times.begin(), times.end());
   trial.measured.setConstant(times.size(), static_cast<Index>(channels.size()), std::nan(""));
   std::vector<std::string> found(channels.size());
@@ -51,9 +51,10 @@ info::robot::Trial readRobotTrial(const std::string& file,
     if (name == "input") {
       for (Index k = 0; k < values.size(); ++k)
         if (!std::isfinite(values[k]))
-          refuseTrial(file, fmt::format("column input: row {} is empty, every row needs the cart's "
-                                        "acceleration [m/s²]",
-                                        k + 1));
+          refuseTrial(
+              file,
+              fmt::format("column input: row {} is empty, must be the cart's acceleration [m/s²]",
+                          k + 1));
       trial.acceleration.assign(values.begin(), values.end());
       continue;
     }
@@ -64,7 +65,8 @@ info::robot::Trial readRobotTrial(const std::string& file,
           !(isAngle && inDegrees))
         continue;
       if (!found[c].empty())
-        refuseTrial(file, fmt::format("columns {} and {} mean the same", found[c], name));
+        refuseTrial(file, fmt::format("columns {} and {} have the same meaning, must be one",
+                                      found[c], name));
       known = true;
       found[c] = name;
       const bool turn = isAngle && (inDegrees || (name == channels[c].name && table.inDegrees));
@@ -81,17 +83,18 @@ info::robot::Trial readRobotTrial(const std::string& file,
                                 name, largest, channels[c].name));
     }
     if (known) continue;
-    const std::string what = fmt::format("column {} means nothing here", name);
-    if (!ignoreExtra) refuseTrial(file, what + "; --ignore-extra passes over it");
-    warnings.push_back(fmt::format("{}: {}, passed over", file, what));
+    const std::string what = fmt::format("column {} is unknown", name);
+    if (!ignoreExtra) refuseTrial(file, what + "; --ignore-extra ignores it");
+    warnings.push_back(fmt::format("{}: {} and ignored", file, what));
   }
   if (trial.acceleration.empty())
-    refuseTrial(file, "has no column input, the cart's commanded acceleration [m/s²]");
+    refuseTrial(file, "has no column input, must have the cart's commanded acceleration [m/s²]");
   for (std::size_t c = 0; c < channels.size(); ++c)
     if (found[c].empty())
       refuseTrial(file, fmt::format("has no column {}_{}", channels[c].name,
-                                    channels[c].unit == "rad" ? "deg (or _rad), the measured angle"
-                                                              : "N, the measured force"));
+                                    channels[c].unit == "rad"
+                                        ? "deg (or _rad), must have the measured angle"
+                                        : "N, must have the measured force"));
   return trial;
 }
 

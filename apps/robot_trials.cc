@@ -60,7 +60,7 @@ Figure histogram(const std::string& name, const info::MonteCarloResult& result, 
     inside += 1;
   }
   Series bars{.name = "estimates", .style = SeriesStyle::path},
-      bound{.name = "the bound's normal distribution", .style = SeriesStyle::dashed};
+      bound{.name = "normal distribution of the bound", .style = SeriesStyle::dashed};
   for (int i = 0; i < bins; ++i) {
     const double low = -4 + 8.0 * i / bins, high = -4 + 8.0 * (i + 1) / bins,
                  mid = (low + high) / 2;

@@ -108,7 +108,7 @@ void RowFile::open(const Json& given, bool replace) {
   file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (file_ < 0) throw failure(path_, fmt::format("cannot be written ({})", std::strerror(errno)));
   if (flock(file_, LOCK_EX | LOCK_NB) != 0) {
-    throw failure(path_, "another program is at work on it");
+    throw failure(path_, "is in use by another program");
   }
   const std::string head = "# " + jsonText(settings) + "\n" + columns_;
   std::ifstream stream(path_, std::ios::binary);
@@ -126,7 +126,7 @@ void RowFile::open(const Json& given, bool replace) {
   const Json there =
       first.starts_with("# {") ? Json::parse(first.substr(2), nullptr, false) : Json();
   if (!there.is_object()) {
-    throw failure(path_, "is not the unfinished result of an ensemble; it is left as it is");
+    throw failure(path_, "is not the unfinished result of an ensemble and is left unchanged");
   }
   if (replace) return begin(head);
   if (there == settings && second + checksumColumn == columns_) {
@@ -184,7 +184,7 @@ void RowFile::append(std::uint64_t number, const std::string& text) {
 }
 
 std::string RowFile::row(std::uint64_t number) const {
-  if (!contains(number)) throw std::out_of_range(fmt::format("there is no row {}", number));
+  if (!contains(number)) throw std::out_of_range(fmt::format("no row {}", number));
   const std::uint64_t place = places_[number];
   if (file_ < 0) return kept_.at(place - 1);
   std::string line;

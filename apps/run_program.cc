@@ -78,7 +78,7 @@ int runCommand(Command& command, const CommandContext& context, const CLI::App& 
   } catch (const std::exception& error) {
     return fail(context.subcommand, error.what());
   } catch (...) {
-    return fail(context.subcommand, "stopped by an error of unknown kind");
+    return fail(context.subcommand, "stopped by an unknown error");
   }
 }
 

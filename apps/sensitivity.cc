@@ -29,45 +29,54 @@ struct Study {
 class Sensitivity : public Command {
  public:
   About about() const override {
-    return {"sensitivity", "Which parameters move the motion, and which the data can tell",
+    return {"sensitivity",
+            "Rank parameters by influence and report which are identifiable from the data",
             "fisherhill sensitivity models/elbow8.osim emg_data/curl_slow.sto --parameter "
             "TRI.radius --values 0.012,0.014,0.018,0.02 --all --out out/sensitivity"};
   }
 
   void addOptions(CLI::App& options) override {
     addModelArgument(options, model_);
-    options.add_option("TRIAL", trials_, "excitations, and when the coordinate was measured")
+    options
+        .add_option("TRIAL", trials_,
+                    "trial: excitations and the sample times of the measured coordinate; required "
+                    "unless --list-parameters is given")
         ->check(CLI::ExistingFile)
         ->type_name("");
     addListParameters(options, list_);
-    options.add_option("--parameter", swept_, "parameter to sweep over --values")
+    options.add_option("--parameter", swept_, "parameter to vary over --values")
         ->type_name("NAME")
         ->allow_extra_args(false);
-    options.add_option("--values", values_, "its values, in the parameter's unit")
+    options.add_option("--values", values_, "values of --parameter, in its unit")
         ->delimiter(',')
         ->type_name("NUMBERS")
         ->allow_extra_args(false);
-    options.add_flag("--all", all_, "sensitivities to, and information about, every parameter");
+    options.add_flag("--all", all_,
+                     "sensitivities to every parameter and Fisher information about them");
     options
         .add_option("--parameters", names_,
-                    "the same for these; a name may hold *, as in *.max_isometric_force")
+                    "as --all, for these parameters only; a name may contain *, as in "
+                    "*.max_isometric_force")
         ->delimiter(',')
         ->type_name("NAMES")
         ->allow_extra_args(false);
     options
         .add_option("--noise", noise_,
-                    "standard deviation of a measured angle [deg] (of a shift: [mm])")
+                    "standard deviation of the measured angle [deg] or translation [mm]")
         ->type_name("DEGREES")
         ->capture_default_str();
-    options.add_option("--profile", profile_, "profile likelihood of this one of the --parameters")
+    options
+        .add_option("--profile", profile_,
+                    "one of the --parameters, whose profile likelihood is computed")
         ->type_name("NAME");
     options
-        .add_option("--global", global_,
-                    "sensitivity over the whole range of the --parameters: morris, sobol or both")
+        .add_option(
+            "--global", global_,
+            "global sensitivity over the prior range of the --parameters: morris, sobol or both")
         ->check(CLI::IsMember({"morris", "sobol", "both"}));
     options
         .add_option("--samples", samples_,
-                    "Morris trajectories, or base points of Sobol's ensemble")
+                    "number of Morris trajectories, or of base points of Sobol's method")
         ->check(CLI::Range(2, 1000000))
         ->capture_default_str();
     addSimulationOptions(options, simulation_);
@@ -134,25 +143,26 @@ class Sensitivity : public Command {
  private:
   void checkChoice() const {
     if (list_) return;
-    if (trials_.empty()) throw std::invalid_argument("TRIAL is required");
+    if (trials_.empty()) throw std::invalid_argument("TRIAL is required (see --help)");
     if (swept_.empty() && !all_ && names_.empty()) {
       throw std::invalid_argument(
           "nothing to do: give --all, --parameters NAMES, --parameter NAME with --values, or "
           "--list-parameters");
     }
     if (swept_.empty() != values_.empty()) {
-      throw std::invalid_argument("--parameter and --values belong together");
+      throw std::invalid_argument("--parameter and --values require each other");
     }
     if (!(noise_ > 0 && std::isfinite(noise_))) {
       throw std::invalid_argument(fmt::format("--noise: {} deg, must be > 0", noise_));
     }
     if ((!profile_.empty() || !global_.empty()) && names_.empty()) {
-      throw std::invalid_argument("--profile and --global need --parameters NAMES");
+      throw std::invalid_argument("--profile and --global require --parameters NAMES");
     }
     const bool isVariational = simulation_.integrator.starts_with("vi");
     if ((all_ || !names_.empty()) && !isVariational) {
-      throw std::invalid_argument(fmt::format(
-          "--integrator {}: sensitivities are those of vi and vi-left", simulation_.integrator));
+      throw std::invalid_argument(
+          fmt::format("--integrator {}: must be vi or vi-left, which alone have sensitivities",
+                      simulation_.integrator));
     }
   }
 
@@ -346,8 +356,9 @@ class Sensitivity : public Command {
     const int undefined = (finding.morris ? finding.morris->undefined : 0) +
                           (finding.sobol ? finding.sobol->undefined : 0);
     if (undefined > 0) {
-      summary.warn(
-          fmt::format("{} runs of the ensemble did not reach the end and are left out", undefined));
+      summary.warn(fmt::format(
+          "{} runs of the global sensitivity analysis did not reach the end and were left out",
+          undefined));
     }
     return finding;
   }

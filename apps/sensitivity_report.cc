@@ -47,7 +47,8 @@ Figure sweepFigure(const SensitivityFindings& f, const Sweep& sweep) {
                                      sweep.parameter.name),
                 .xLabel = "Time [s]",
                 .yLabel = fmt::format("{} [{}]", f.coordinate.name, shownUnit(f.coordinate)),
-                .caption = fmt::format("The model has {}.", withUnit(sweep.parameter.value, unit))};
+                .caption = fmt::format("The model's own value is {}.",
+                                       withUnit(sweep.parameter.value, unit))};
   const auto add = [&](const std::string& name, const bio::Trajectory& motion, SeriesStyle style) {
     figure.series.push_back({.name = name,
                              .x = motion.time,
@@ -70,7 +71,7 @@ Figure sweepFigure(const SensitivityFindings& f, const Sweep& sweep) {
 
 Table sweepTable(const SensitivityFindings& f, const Sweep& sweep) {
   const char* unit = shownUnit(f.coordinate);
-  Table table{.title = "Change of the motion",
+  Table table{.title = "Change in the motion",
               .columns = {fmt::format("{} [{}]", sweep.parameter.name,
                                       sweep.parameter.unit.empty() ? "1" : sweep.parameter.unit),
                           fmt::format("rms [{}]", unit), fmt::format("largest [{}]", unit)}};
@@ -88,12 +89,12 @@ Figure courseFigure(const SensitivityFindings& f) {
   const bio::ParameterInformation& known = *f.information;
   const double factor = shownFactor(f.coordinate);
   Figure figure{
-      .title = "What moves the motion most",
+      .title = "Parameters with the most influence on the motion",
       .xLabel = "Time [s]",
-      .yLabel = fmt::format("Change of {} [{}]", f.coordinate.name, shownUnit(f.coordinate)),
+      .yLabel = fmt::format("Change in {} [{}]", f.coordinate.name, shownUnit(f.coordinate)),
       .caption =
-          "Each curve: how far one standard deviation of what is known of the parameter "
-          "beforehand moves the motion, to first order."};
+          "Each curve: change in the motion, to first order, per prior standard deviation of the "
+          "parameter."};
   for (const std::size_t i : ranking(known.normalisedSensitivity)) {
     if (figure.series.size() == 8) break;
     const auto column = static_cast<Eigen::Index>(i);
@@ -109,10 +110,9 @@ Table rankingTable(const SensitivityFindings& f, const std::string& title,
                    const Eigen::VectorXd& score, std::size_t most) {
   const bio::ParameterInformation& known = *f.information;
   const char* unit = shownUnit(f.coordinate);
-  Table table{
-      .title = title,
-      .columns = {"parameter", "value", fmt::format("moves the motion by [{}]", unit),
-                  "known beforehand ±", "bound alone ±", "bound jointly ±", "identifiable"}};
+  Table table{.title = title,
+              .columns = {"parameter", "value", fmt::format("influence on the motion [{}]", unit),
+                          "prior ±", "bound alone ±", "bound jointly ±", "identifiable"}};
   for (const std::size_t i : ranking(score)) {
     if (table.rows.size() == most) break;
     const auto k = static_cast<Eigen::Index>(i);
@@ -129,10 +129,10 @@ Table rankingTable(const SensitivityFindings& f, const std::string& title,
 Figure profileFigure(const ProfileFinding& finding) {
   Figure figure{.title = fmt::format("Profile likelihood of {}", finding.parameter.name),
                 .xLabel = info::label(finding.parameter),
-                .yLabel = "Misfit of the best fit [nats]",
+                .yLabel = "Smallest cost [nats]",
                 .caption =
-                    "Of the model's own motion with the given noise and priors; the "
-                    "parameter is bounded where the curve rises above the 95 % line."};
+                    "For data equal to the model's own motion, with the given noise and priors. "
+                    "The 95 % confidence interval is where the curve is below the dashed line."};
   Series curve{.name = "profile"}, line{.name = "95 %", .style = SeriesStyle::dashed};
   for (const info::ProfilePoint& point : finding.profile.points) {
     curve.x.push_back(point.value);
@@ -146,8 +146,7 @@ Figure profileFigure(const ProfileFinding& finding) {
 
 Table globalTable(const SensitivityFindings& f) {
   const char* unit = shownUnit(f.coordinate);
-  Table table{.title = "Over the whole range of what is known beforehand",
-              .columns = {"parameter"}};
+  Table table{.title = "Global sensitivity over the prior range", .columns = {"parameter"}};
   if (f.global.morris) {
     table.columns.push_back(fmt::format("Morris μ* [{}]", unit));
     table.columns.push_back(fmt::format("Morris σ [{}]", unit));
@@ -196,16 +195,18 @@ std::string verdictOf(const SensitivityFindings& f) {
   const auto& known = *f.information;
   const auto count = std::count(known.identifiable.begin(), known.identifiable.end(), true);
   if (known.parameters.size() == 1) {
-    return text + fmt::format("{} samples of {} with {} {} of noise bound it to ±{}.", f.samples,
-                              f.coordinate.name, numberText(f.noise * shownFactor(f.coordinate)),
-                              shownUnit(f.coordinate),
-                              withUnit(known.boundAlone[0], known.parameters[0].unit));
+    return text +
+           fmt::format(
+               "{} samples of {} with {} {} of noise determine {} to ±{} (Cramér–Rao bound).",
+               f.samples, f.coordinate.name, numberText(f.noise * shownFactor(f.coordinate)),
+               shownUnit(f.coordinate), known.parameters[0].name,
+               withUnit(known.boundAlone[0], known.parameters[0].unit));
   }
   text += fmt::format(
-      "Of {} parameters, {} samples of {} with {} {} of noise more than halve the uncertainty of "
-      "{}; {} moves the motion most.",
-      known.parameters.size(), f.samples, f.coordinate.name,
-      numberText(f.noise * shownFactor(f.coordinate)), shownUnit(f.coordinate), count,
+      "{} from {} samples of {} with {} {} of noise (prior standard deviation at least halved). "
+      "The motion is most sensitive to {}.",
+      identifiableWords(count, static_cast<std::ptrdiff_t>(known.parameters.size())), f.samples,
+      f.coordinate.name, numberText(f.noise * shownFactor(f.coordinate)), shownUnit(f.coordinate),
       known.parameters[ranking(known.normalisedSensitivity).front()].name);
   return text;
 }
@@ -362,26 +363,27 @@ Report sensitivityReport(const SensitivityFindings& f) {
     report.mainFigure = courseFigure(f);
   }
   const bio::ParameterInformation& known = *f.information;
-  report.details.push_back(Section{"Which parameters matter"});
+  report.details.push_back(Section{"Influence on the motion"});
+  report.details.push_back(rankingTable(f, "Sorted by influence", known.normalisedSensitivity, 25));
+  report.details.push_back(Section{"Identifiability"});
   report.details.push_back(
-      rankingTable(f, "By influence on the motion", known.normalisedSensitivity, 25));
-  report.details.push_back(Section{"Which parameters can be known"});
-  report.details.push_back(Paragraph{
-      "Bounds are Cramér–Rao standard deviations. Alone: every other parameter is known. Jointly: "
-      "all are estimated together, each with what is known of it beforehand. A parameter is "
-      "identifiable if the data at least halve what was uncertain about it."});
-  report.details.push_back(rankingTable(f, "By information", informationGain(known), 25));
+      Paragraph{"Bounds are Cramér–Rao standard deviations. Alone: every other parameter is known. "
+                "Jointly: all are estimated together, each with its prior. A parameter is "
+                "identifiable if its joint bound is at most half its prior standard deviation."});
+  report.details.push_back(
+      rankingTable(f, "Sorted by information gained", informationGain(known), 25));
   if (!known.sentences.empty()) {
-    report.details.push_back(Section{"What cannot be told apart"});
+    report.details.push_back(Section{"Parameters that are not separately identifiable"});
     for (const std::string& sentence : known.sentences) {
       report.details.push_back(Paragraph{sentence + "."});
     }
   }
   if (f.profile) report.details.push_back(profileFigure(*f.profile));
   if (f.global.morris || f.global.sobol) report.details.push_back(globalTable(f));
-  report.details.push_back(Paragraph{fmt::format(
-      "All {} sensitivities and the motion took {:.3g} times as long as the motion alone.",
-      known.parameters.size(), f.costRatio)});
+  report.details.push_back(
+      Paragraph{fmt::format("Computing the motion with all {} sensitivities took {:.3g} times as "
+                            "long as the motion alone.",
+                            known.parameters.size(), f.costRatio)});
   return report;
 }
 

@@ -39,21 +39,23 @@ class Writing {
   std::string verdict() const {
     const std::string& one = f_.design.first().name;
     const std::string& other = f_.design.second().name;
-    const char* stopped = f_.result.stopped ? "Stopped early: the best experiment so far. " : "";
+    const char* stopped =
+        f_.result.stopped ? "Stopped early; this is the best experiment so far. " : "";
     if (!f_.result.improved) {
       return fmt::format(
-          "{}No experiment was found that tells {} from {} better than {} and keeps the limits.",
+          "{}No experiment was found that discriminates {} from {} better than {} and respects the "
+          "limits.",
           stopped, one, other, f_.trialFile);
     }
     const double before = f_.result.before.tells.least(), after = f_.result.after.tells.least();
     return fmt::format(
-        "{}The designed experiment is expected to tell {} from {} by {} nats at least, where {} "
-        "tells {}{}.",
+        "{}The designed experiment is expected to discriminate {} from {} with a log Bayes factor "
+        "of at least {} nats; {} gives {}{}.",
         stopped, one, other, numberText(after, 4), f_.trialFile, numberText(before, 4),
-        after < enoughNats
-            ? fmt::format("; {} are wanted for a name, so that it has to be repeated",
-                          numberText(enoughNats))
-            : "");
+        after < enoughNats ? fmt::format("; discover requires {} nats to name an effect, so the "
+                                         "experiment has to be repeated",
+                                         numberText(enoughNats))
+                           : "");
   }
 
   Figure angles() const {
@@ -63,8 +65,8 @@ class Writing {
                   .xLabel = "Time [s]",
                   .yLabel = fmt::format("{} [deg]", f_.coordinate.name),
                   .caption = fmt::format(
-                      "The designed experiment with {} and with {}. All motions keep to {} to {} "
-                      "deg; parameters as the model has them.",
+                      "The designed experiment with {} and with {}, at the model's own parameters. "
+                      "Limits: {} to {} deg.",
                       sized(f_.design.first().name, q.firstSize, f_.design.unitOfFirst()),
                       sized(f_.design.second().name, q.secondSize, f_.design.unitOfSecond()),
                       numberText(limits.lower * radian), numberText(limits.upper * radian))};
@@ -78,9 +80,9 @@ class Writing {
   }
 
   Table telling() const {
-    Table table{"What the experiments tell",
-                {"if there is", "of the size", "unit", "nats before", "nats after",
-                 "sd of the size before", "sd after"},
+    Table table{"Expected log Bayes factors",
+                {"if the effect is", "with size", "unit", "nats before", "nats after",
+                 "sd of size before", "sd of size after"},
                 {}};
     const auto& before = f_.result.before.tells;
     const auto& after = f_.result.after.tells;
@@ -104,11 +106,11 @@ class Writing {
     if (inputs.hasTorque()) {
       table.rows.push_back(
           {"largest torque", numberText(largestTorque()), numberText(limits.torque), "N·m"});
-      table.rows.push_back({"largest change of it", numberText(inputs.largestTorqueRate(e.trial)),
+      table.rows.push_back({"largest torque rate", numberText(inputs.largestTorqueRate(e.trial)),
                             numberText(limits.torqueRate), "N·m/s"});
     }
     if (!inputs.groups().empty()) {
-      table.rows.push_back({"largest change of an excitation",
+      table.rows.push_back({"largest excitation rate",
                             numberText(inputs.largestExcitationRate(e.trial)),
                             numberText(limits.excitationRate), "1/s"});
     }
@@ -122,7 +124,7 @@ class Writing {
   }
 
   Figure torque() const {
-    Figure figure{.title = "Torque from outside",
+    Figure figure{.title = "External torque",
                   .xLabel = "Time [s]",
                   .yLabel = fmt::format("Torque on {} [N·m]", f_.coordinate.name),
                   .caption = ""};
@@ -131,11 +133,13 @@ class Writing {
   }
 
   Figure excitation(const bio::MuscleGroup& group) const {
-    Figure figure{.title = fmt::format("Excitation of {}", group.name),
-                  .xLabel = "Time [s]",
-                  .yLabel = "Excitation",
-                  .caption = fmt::format("Driven together: {}. Before: {}.",
-                                         fmt::join(group.muscles, ", "), group.muscles.front())};
+    Figure figure{
+        .title = fmt::format("Excitation of {}", group.name),
+        .xLabel = "Time [s]",
+        .yLabel = "Excitation",
+        .caption = fmt::format(
+            "Muscles with this excitation: {}. The dashed line is the baseline excitation of {}.",
+            fmt::join(group.muscles, ", "), group.muscles.front())};
     addBoth(figure, [&](const bio::Trial& trial) {
       const auto at = std::find(trial.muscles.begin(), trial.muscles.end(), group.muscles.front());
       return VectorXd(trial.excitations.col(at - trial.muscles.begin()));
@@ -144,10 +148,10 @@ class Writing {
   }
 
   Figure search() const {
-    Figure figure{.title = "The search",
+    Figure figure{.title = "Progress of the search",
                   .xLabel = "Experiments simulated",
-                  .yLabel = "Smaller Bayes factor [nats]",
-                  .caption = "The best experiment so far that keeps every limit."};
+                  .yLabel = "Smaller log Bayes factor [nats]",
+                  .caption = "Best experiment so far that respects every limit."};
     Series series{.name = "best", .x = {0}, .y = {f_.result.before.tells.least()}};
     for (std::size_t i = 0; i < f_.result.nats.size(); ++i) {
       series.x.push_back(f_.result.foundAt[i]);
@@ -212,18 +216,17 @@ void tellSeparation(const SeparatingFindings& f, Summary& summary) {
 Report separatingReport(const SeparatingFindings& f) {
   const Writing writing(f);
   Report report;
-  report.title = fmt::format("Experiment that tells {} from {} on {}", f.design.first().name,
-                             f.design.second().name, f.modelFile);
+  report.title = fmt::format("Experiment that discriminates {} from {} on {}",
+                             f.design.first().name, f.design.second().name, f.modelFile);
   report.verdict = writing.verdict();
   report.mainFigure = writing.angles();
   report.details.push_back(writing.telling());
   report.details.push_back(Paragraph{fmt::format(
-      "Nats are the expected logarithm of the Bayes factor of the effect that is there against the "
-      "other one, with a measured angle every {} s and noise of {} deg, when every parameter of "
-      "the "
-      "model may be off by its tolerance and the other effect may take any size. Expected to "
-      "first order about the model as it is; an effect this model has no name for is not "
-      "foreseen.",
+      "The nats are the expected natural logarithm of the Bayes factor of the effect that is "
+      "present against the other one (5 nats are odds of about 150:1), with one measured angle "
+      "every {} s and noise of {} deg, every parameter of the model being uncertain by its default "
+      "prior and the size of the other effect being free. They are computed to first order about "
+      "the model's own parameters and do not consider effects outside the catalogue.",
       numberText(f.design.question().period), numberText(f.design.question().noise * radian))});
   if (f.design.inputs().hasTorque()) report.details.push_back(writing.torque());
   for (const bio::MuscleGroup& group : f.design.inputs().groups()) {
@@ -231,11 +234,11 @@ Report separatingReport(const SeparatingFindings& f) {
   }
   report.details.push_back(writing.limits());
   report.details.push_back(writing.search());
-  report.details.push_back(Paragraph{fmt::format(
-      "{} experiments simulated, {} of them did not reach the end. design.sto holds the "
-      "inputs and the motion of the model as it is; measure, and ask `fisherhill "
-      "discover`.",
-      f.result.runs, f.result.impossible)});
+  report.details.push_back(
+      Paragraph{fmt::format("{} experiments were simulated, {} of which did not reach the end. "
+                            "design.sto holds the inputs and the motion of the unchanged model. "
+                            "After recording the experiment, run `fisherhill discover` on it.",
+                            f.result.runs, f.result.impossible)});
   return report;
 }
 

@@ -48,20 +48,19 @@ nlohmann::ordered_json settingsOf(const SimulationOptions& options) {
 }
 
 void addModelOptions(CLI::App& subcommand, SimulationOptions& options) {
-  subcommand
-      .add_option("--coordinate", options.coordinates,
-                  "coordinate that is free to move; may be repeated")
+  subcommand.add_option("--coordinate", options.coordinates, "free coordinate; may be repeated")
       ->type_name("NAME")
       ->allow_extra_args(false)
       ->delimiter(',')
       ->capture_default_str()
       ->group(modelGroup);
   addAssignments(subcommand, "--lock", options.locks,
-                 "where to lock another coordinate instead of at its default; 30deg or 0.52")
+                 "value at which another coordinate is locked, as 30deg or 0.52 (rad; m if it "
+                 "slides); default: the model's default value")
       ->group(modelGroup);
   subcommand
       .add_option("--wrap-as-cylinder", options.wrapAsCylinder,
-                  "take this wrap ellipsoid, two of whose semi-axes are equal, as a cylinder")
+                  "treat this wrap ellipsoid as a cylinder; two of its semi-axes must be equal")
       ->type_name("NAME")
       ->allow_extra_args(false)
       ->delimiter(',')
@@ -71,9 +70,10 @@ void addModelOptions(CLI::App& subcommand, SimulationOptions& options) {
 void addSimulationOptions(CLI::App& subcommand, SimulationOptions& options) {
   addModelOptions(subcommand, options);
   subcommand
-      .add_option("--integrator", options.integrator,
-                  "vi (variational, second order), vi-left (the thesis's, first order), rk4 or "
-                  "cvode (adaptive reference)")
+      .add_option(
+          "--integrator", options.integrator,
+          "vi (midpoint variational, forces at both ends of a step, second order), vi-left (the "
+          "same with forces at the left end only, first order), rk4 or cvode (adaptive reference)")
       ->check(CLI::IsMember({"vi", "vi-left", "rk4", "cvode"}))
       ->capture_default_str()
       ->group(simulationGroup);
@@ -95,13 +95,14 @@ void addSimulationOptions(CLI::App& subcommand, SimulationOptions& options) {
           "time step; default 0.01 (rk4: 0.0002)")
       ->type_name("SECONDS")
       ->group(simulationGroup);
-  addAssignments(subcommand, "--initial", options.initial,
-                 "start value of a free coordinate, at rest; 34deg or 0.59. Default: the first "
-                 "measured value, else the model's default")
+  addAssignments(
+      subcommand, "--initial", options.initial,
+      "initial value of a free coordinate, at rest, as 34deg or 0.59 (rad; m if it slides); "
+      "default: the fitted or first measured value, else the model's default value")
       ->group(simulationGroup);
   subcommand
       .add_flag("--ignore-extra", options.ignoreExtra,
-                "pass over columns of the trial that the model does not know")
+                "ignore columns of the trial that match nothing in the model")
       ->group(simulationGroup);
 }
 

@@ -31,6 +31,17 @@ std::string withUnit(double value, const std::string& unit, int digits) {
   return numberText(value, digits) + (unit.empty() ? "" : " " + unit);
 }
 
+std::string identifiableWords(std::ptrdiff_t identifiable, std::ptrdiff_t all) {
+  if (all == 1) return fmt::format("The parameter is {}identifiable", identifiable ? "" : "not ");
+  if (identifiable == all) {
+    return all == 2 ? "Both parameters are identifiable"
+                    : fmt::format("All {} parameters are identifiable", all);
+  }
+  if (identifiable == 0) return fmt::format("None of the {} parameters is identifiable", all);
+  return fmt::format("{} of {} parameters {} identifiable", identifiable, all,
+                     identifiable == 1 ? "is" : "are");
+}
+
 std::string htmlText(std::string_view text) {
   std::string html;
   for (const char c : text) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -14,6 +15,9 @@ std::string numberText(double value, int digits = 4);
 
 /// "0.016 m", or "0.016" for a pure number.
 std::string withUnit(double value, const std::string& unit, int digits = 4);
+
+/// "Both parameters are identifiable": how many of all are, without a full stop.
+std::string identifiableWords(std::ptrdiff_t identifiable, std::ptrdiff_t all);
 
 /// The word as a shell has to be given it: in quotes where it needs them.
 std::string shellWord(const std::string& word);

@@ -86,7 +86,7 @@ WriterMark::WriterMark(fs::path folder)
     std::this_thread::sleep_for(5ms);
   }
   throw std::runtime_error(
-      fmt::format("{}: another program is at work under this name", path_.string()));
+      fmt::format("{}: another program is writing under this name", path_.string()));
 }
 
 WriterMark::~WriterMark() {

@@ -126,11 +126,11 @@ class DiscoveryWriter {
     besidesBias.bias = 0;
     if (!besidesBias.isTrue() || std::isnan(one.after)) return;
     if (unit * std::abs(one.after - one.fitted) <= 0.01) return;
-    summary_.warn(fmt::format(
-        "{}: replay of the written model is {} {} (RMS) from what was measured, the search itself "
-        "had {}; the report has the replay's",
-        one.start.file, numberText(unit * one.after), turns ? "deg" : "mm",
-        numberText(unit * one.fitted)));
+    summary_.warn(
+        fmt::format("{}: the written model replays with an RMS error of {} {}, the search itself "
+                    "had {}; the report gives the value of the replay",
+                    one.start.file, numberText(unit * one.after), turns ? "deg" : "mm",
+                    numberText(unit * one.fitted)));
   }
 
   void measureEffects() {
@@ -142,18 +142,18 @@ class DiscoveryWriter {
 
   void tellCommands() {
     const SimulationOptions& typed = found_.request.simulation;
-    written_.commands.emplace_back("all of this report", summary_.commandLine());
+    written_.commands.emplace_back("this report", summary_.commandLine());
     for (const RepairedTrial& one : written_.trials) {
       const std::string& file = found_.files[static_cast<std::size_t>(one.index)];
       const std::string& replayed = written_.replayFiles[static_cast<std::size_t>(one.index)];
       written_.commands.emplace_back(
-          file + ", model as it came",
+          file + ", original model",
           fmt::format("fisherhill replay {} {}{}", shellWord(found_.request.model), shellWord(file),
                       optionsOf(typed, true)));
       if (written_.model.empty()) continue;
       const std::string model =
           folder_.active() ? folder_.path(written_.model).string() : written_.model;
-      written_.commands.emplace_back(file + ", with all that was fitted",
+      written_.commands.emplace_back(file + ", with all fitted parameters",
                                      fmt::format("fisherhill replay {} {}{}", shellWord(model),
                                                  shellWord(replayed), optionsOf(typed, false)));
     }

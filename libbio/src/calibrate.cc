@@ -52,13 +52,14 @@ class Calibrator {
         measured_(training.measured()) {
     check(options);
     if (heldOut_ && heldOut_->parameters().size() != training.numCommon()) {
-      throw std::invalid_argument("trials held out must have the same common parameters");
+      throw std::invalid_argument("held-out trials must have the same common parameters");
     }
     for (const std::size_t index : training.selection()) {
       const ModelParameter& one = training.catalogue().parameters()[index];
       if (heldOut_ && std::holds_alternative<InitialTarget>(one.targets.front())) {
         throw std::invalid_argument(fmt::format(
-            "parameter '{}' is the trial's own: it says nothing about trials held out", one.name));
+            "parameter '{}' belongs to one trial and cannot be transferred to held-out trials",
+            one.name));
       }
     }
     for (std::size_t i = 0; i < training_.numCommon() && options_.priors; ++i) {
@@ -129,15 +130,15 @@ class Calibrator {
       if (asked_[i].name == full) return i;
     }
     throw std::invalid_argument(
-        fmt::format("{} of '{}': it is not among the parameters to estimate", what, name));
+        fmt::format("{} of '{}': is not among the parameters to estimate", what, name));
   }
 
   std::string failureAt(const VectorXd& theta) const {
     for (std::size_t i = 0; i < training_.trials().size(); ++i) {
       const std::string why = training_.failure(i, theta);
       if (!why.empty()) {
-        return fmt::format("{}: no simulation at the start values: {}", training_.trials()[i].file,
-                           why);
+        return fmt::format("{}: the simulation fails at the start values: {}",
+                           training_.trials()[i].file, why);
       }
     }
     return "the simulation at the start values has no finite angle";
@@ -373,8 +374,8 @@ class Calibrator {
     const bool low = one.value <= one.asked.lower;
     const std::string unit = one.asked.unit.empty() ? "" : " " + one.asked.unit;
     one.why = fmt::format(
-        "{} rests on its {} bound, {:.4g}{}: the data would have it {} still, so that there is no "
-        "interval about the estimate",
+        "{} is at its {} bound ({:.4g}{}): the data favour {} values, so no confidence interval is "
+        "reported",
         one.asked.name, low ? "lower" : "upper", one.value, unit, low ? "smaller" : "larger");
     return one;
   }

@@ -21,7 +21,8 @@ std::vector<Eigen::Index> rotationsOf(const Arm& arm) {
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     if (coordinates[i].isRotation) rotations.push_back(static_cast<Eigen::Index>(i));
   }
-  if (rotations.empty()) throw std::invalid_argument("no free coordinate is a rotation");
+  if (rotations.empty())
+    throw std::invalid_argument("no free coordinate is a rotation, must have one");
   return rotations;
 }
 
@@ -67,12 +68,12 @@ void mustBeUsable(const CompareOptions& options) {
   const auto require = [](bool holds, const std::string& message) {
     if (!holds) throw std::invalid_argument(message);
   };
-  require(!options.integrators.empty(), "integrators: the list is empty");
+  require(!options.integrators.empty(), "integrators: the list is empty, must have at least one");
   for (auto it = options.integrators.begin(); it != options.integrators.end(); ++it) {
     require(std::find(options.integrators.begin(), it, *it) == it,
-            "integrators: one is listed twice");
+            "integrators: one is listed twice, must be listed once");
   }
-  require(!options.steps.empty(), "steps: the list is empty");
+  require(!options.steps.empty(), "steps: the list is empty, must have at least one");
   double before = 0;
   for (const double step : options.steps) {
     require(step > 0 && std::isfinite(step), fmt::format("steps: {} s, must be > 0", step));
@@ -165,7 +166,8 @@ void Runs::confirm(ConvergedReference& reference) const {
     reference.second = deviation(*arm_, motion, reference.motion);
     if (reference.second.rms < limit) return;
     reference.whyDisputed = fmt::format(
-        "cvode and vi at {:g} s differ by {:.3g} deg RMS, by more than {:.2g} deg from {:.4g} s on",
+        "cvode and vi at {:g} s differ by {:.3g} deg RMS, and by more than {:.2g} deg from {:.4g} "
+        "s on",
         step, reference.second.rms / degree, limit / degree,
         firstBeyond(*arm_, motion, reference.motion, limit));
   }
@@ -209,9 +211,8 @@ CompareCell Runs::cell(Integrator integrator, double step) const {
       cell.failedAt = firstBeyond(*arm_, motion, reference_->motion, options_->usefulError);
       constexpr double degree = std::numbers::pi / 180;
       cell.why = fmt::format(
-          "unstable at t = {:.6g} s: bounded, but off by more than {:.3g} deg for the first time; "
-          "{:.3g} "
-          "deg RMS",
+          "unstable at t = {:.6g} s: bounded, but the error exceeds {:.3g} deg for the first time; "
+          "{:.3g} deg RMS",
           cell.failedAt, options_->usefulError / degree, cell.error.rms / degree);
     }
     // short runs are repeated more often: a single interruption would outweigh them

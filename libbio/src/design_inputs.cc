@@ -104,17 +104,18 @@ DesignInputs::DesignInputs(const Arm& arm, Trial trial, std::string coordinate, 
       groups_(std::move(groups)),
       measuredTimes_(std::move(measuredTimes)),
       profiles_(knotsOf(startTime, duration, knotInterval), profileLimits(limits, groups_.size())) {
-  require(profiles_.size() > 0, "nothing may be changed: no torque and no muscle");
+  require(profiles_.size() > 0, "no input to design, must have a torque or a muscle");
   std::vector<std::string> seen;
   for (const MuscleGroup& group : groups_) {
-    require(!group.muscles.empty(), fmt::format("group '{}' has no muscle", group.name));
+    require(!group.muscles.empty(),
+            fmt::format("group '{}' has no muscle, must have one", group.name));
     columns_.emplace_back();
     for (const std::string& name : group.muscles) {
       const bool known = std::any_of(arm.muscles().begin(), arm.muscles().end(),
                                      [&](const ArmMuscle& m) { return m.name == name; });
-      require(known, fmt::format("'{}' is no muscle of the arm", name));
+      require(known, fmt::format("'{}' must be a muscle that moves in the model", name));
       require(std::count(seen.begin(), seen.end(), name) == 0,
-              fmt::format("muscle '{}' is in two groups", name));
+              fmt::format("muscle '{}' is in two groups, must be in one", name));
       seen.push_back(name);
       const auto column = std::find(trial.muscles.begin(), trial.muscles.end(), name);
       require(column != trial.muscles.end(), fmt::format("the trial has no muscle '{}'", name));

@@ -14,7 +14,8 @@ namespace bio {
 namespace {
 
 void check(const EmgConfig& config) {
-  require(!config.electrodes.empty(), "EMG: no electrode is mapped to a muscle");
+  require(!config.electrodes.empty(),
+          "EMG: no electrode is mapped to a muscle, must have at least one");
   require(config.shape >= -3 && config.shape <= 0,
           fmt::format("EMG shape factor A = {}: must lie within -3 and 0", config.shape));
   require(config.delay >= 0 && config.delay <= 0.5,
@@ -25,11 +26,13 @@ void check(const EmgConfig& config) {
   for (std::size_t i = 0; i < config.electrodes.size(); ++i) {
     const Electrode& electrode = config.electrodes[i];
     for (std::size_t k = 0; k < i; ++k) {
-      require(electrode.channel != config.electrodes[k].channel,
-              fmt::format("EMG channel '{}': is mapped twice", electrode.channel));
+      require(
+          electrode.channel != config.electrodes[k].channel,
+          fmt::format("EMG channel '{}': is mapped twice, must be mapped once", electrode.channel));
     }
     require(!electrode.muscles.empty(),
-            fmt::format("EMG channel '{}': drives no muscle", electrode.channel));
+            fmt::format("EMG channel '{}': drives no muscle, must drive at least one",
+                        electrode.channel));
     for (const auto& [muscle, weight] : electrode.muscles) {
       require(weight > 0 && weight <= 1,
               fmt::format("EMG channel '{}', muscle '{}': weight {}, must be > 0 and ≤ 1",
@@ -52,7 +55,7 @@ void setFull(const Electrode& electrode, ElectrodeTrace& trace) {
     trace.fullSource = fmt::format("percentile {:g} of its own envelope", percent);
   }
   require(trace.full > 0 && std::isfinite(trace.full),
-          fmt::format("EMG channel '{}': {} {} ({}) counts as excitation 1, must be > 0",
+          fmt::format("EMG channel '{}': {} {} ({}) for excitation 1, must be > 0",
                       electrode.channel, trace.full, trace.unit, trace.fullSource));
 }
 
@@ -69,16 +72,19 @@ Eigen::VectorXd rowTimes(const std::vector<ElectrodeTrace>& traces, const EmgCon
   }
   const double begin = config.start.value_or(first);
   const double end = config.end.value_or(last);
-  require(begin >= first && end <= last + 1e-9,
-          fmt::format("output from {} s to {} s: the electrodes were recorded from {} s to {} s",
-                      begin, end, first, last));
+  require(
+      begin >= first && end <= last + 1e-9,
+      fmt::format(
+          "output from {} s to {} s: must lie within the recording of the electrodes, {} s to {} s",
+          begin, end, first, last));
   const double count = std::floor((end - begin) * config.outputRate + 1e-6);
-  require(count >= 1, fmt::format("output from {} s to {} s: holds fewer than two rows at {} Hz",
-                                  begin, end, config.outputRate));
+  require(count >= 1,
+          fmt::format(
+              "output from {} s to {} s: has fewer than two rows at {} Hz, must have at least two",
+              begin, end, config.outputRate));
   require(count < mostRows,
-          fmt::format("output from {} s to {} s at {} Hz: would hold more than {} "
-                      "rows",
-                      begin, end, config.outputRate, mostRows));
+          fmt::format("output from {} s to {} s at {} Hz: must have at most {} rows", begin, end,
+                      config.outputRate, mostRows));
   const auto rows = static_cast<Eigen::Index>(count) + 1;
   return Eigen::VectorXd::NullaryExpr(
       rows, [&](Eigen::Index i) { return begin + static_cast<double>(i) / config.outputRate; });

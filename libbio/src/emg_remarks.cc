@@ -37,8 +37,8 @@ std::string stages(const EmgConfig& config) {
 
 std::string electrodeSentence(const ElectrodeTrace& trace) {
   std::string out =
-      fmt::format("'{}': {:g} Hz, {:.4g} {} counts as excitation 1 ({})", trace.channel, trace.rate,
-                  trace.full, trace.unit, trace.fullSource);
+      fmt::format("'{}': {:g} Hz, {:.4g} {} corresponds to excitation 1 ({})", trace.channel,
+                  trace.rate, trace.full, trace.unit, trace.fullSource);
   out += fmt::format("; {} of the samples were above and were clipped to 1",
                      percent(trace.fractionAbove));
   if (trace.fractionBelow > 0) {
@@ -54,21 +54,21 @@ void addLimits(const EmgConfig& config, const EmgResult& result, std::vector<std
     if (electrode.muscles.size() < 2) continue;
     std::vector<std::string> names;
     for (const auto& [muscle, weight] : electrode.muscles) names.push_back(muscle);
-    out.push_back(fmt::format(
-        "One electrode ('{}') drives {}: they share one time course, so this recording cannot tell "
-        "how they divide the load or which of them was active when.",
-        electrode.channel, listed(names)));
+    out.push_back(
+        fmt::format("One electrode ('{}') drives {}: they share one time course, so this recording "
+                    "does not show how they share the load or which of them was active when.",
+                    electrode.channel, listed(names)));
   }
-  out.push_back(fmt::format(
-      "Only {} {} an excitation. Any other muscle is invisible here, antagonists included: "
-      "co-contraction cannot be seen, and torque that held against an unrecorded antagonist will "
-      "be "
-      "simulated as movement.",
-      listed(result.muscles), result.muscles.size() == 1 ? "has" : "have"));
+  out.push_back(
+      fmt::format("Only {} {} an excitation. All other muscles, antagonists included, have none: "
+                  "co-contraction is not represented, and torque that balanced an unrecorded "
+                  "antagonist is simulated as movement.",
+                  listed(result.muscles), result.muscles.size() == 1 ? "has" : "have"));
   if (anyPercentile) {
     out.push_back(
-        "Without a maximum voluntary contraction, 1 means a large effort of this recording and not "
-        "the muscle's maximum: excitations, and the forces that follow, are known up to a factor.");
+        "Without a maximum voluntary contraction, excitation 1 is a large effort of this recording "
+        "and not the muscle's maximum: excitations, and the resulting forces, are determined only "
+        "up to a factor.");
   }
 }
 
@@ -82,18 +82,19 @@ std::vector<std::string> remarksOn(const Recording& recording, const EmgConfig& 
   if (config.shape < 0) {
     out.push_back(fmt::format("Excitation = (e^(A·u) − 1)/(e^A − 1) with A = {:g}.", config.shape));
   }
-  out.push_back(fmt::format("Excitations come {:g} ms after the EMG and stand at {:g} Hz.",
-                            1000 * config.delay, config.outputRate));
+  out.push_back(
+      fmt::format("Excitations are delayed by {:g} ms against the EMG and sampled at {:g} Hz.",
+                  1000 * config.delay, config.outputRate));
   if (result.fractionSumAbove > 0) {
     out.push_back(fmt::format("{} of the weighted sums were above 1 and were clipped.",
                               percent(result.fractionSumAbove)));
   }
   if (result.measured) {
-    out.push_back(fmt::format(
-        "Measured {}: channel '{}' at {:g} Hz, {} of its samples at the instrument's limits or "
-        "missing and not used.",
-        result.measured->coordinate, config.measured->channel, result.measured->rate,
-        percent(result.measured->notMeasured)));
+    out.push_back(
+        fmt::format("Measured {}: channel '{}' at {:g} Hz; {} of its samples were at the "
+                    "instrument's limits or missing and are not used.",
+                    result.measured->coordinate, config.measured->channel, result.measured->rate,
+                    percent(result.measured->notMeasured)));
   }
   addLimits(config, result, out);
   out.insert(out.end(), recording.remarks.begin(), recording.remarks.end());

@@ -66,7 +66,7 @@ ExperimentDesign::ExperimentDesign(const Arm& arm, const ParameterCatalogue& cat
           fmt::format("measured coordinate '{}' is not free", question_.coordinate));
   require(question_.noise > 0 && std::isfinite(question_.noise),
           fmt::format("noise = {}, must be > 0", question_.noise));
-  require(!question_.parameters.empty(), "no parameter is asked for");
+  require(!question_.parameters.empty(), "no parameter is given");
   require(question_.criterion != info::Optimality::conditionNumber,
           "the criterion must be E, A or D");
 
@@ -77,7 +77,7 @@ ExperimentDesign::ExperimentDesign(const Arm& arm, const ParameterCatalogue& cat
     question_.priorDeviation = VectorXd::Constant(p, infinite);
   }
   require(question_.priorDeviation.size() == p && (question_.priorDeviation.array() > 0).all(),
-          "one prior deviation > 0 is needed for each parameter");
+          "prior standard deviations: must be > 0, one for each parameter");
   scale_.resize(p);
   for (Index i = 0; i < p; ++i) {
     const std::size_t index = wanted_[static_cast<std::size_t>(i)];
@@ -120,7 +120,8 @@ info::InformationCost ExperimentDesign::cost(const MatrixXd& information,
   MatrixXd Z = MatrixXd::Identity(c + n, c);
   if (n > 0) {
     const Eigen::LDLT<MatrixXd> factor(information.bottomRightCorner(n, n));
-    if (!factor.isPositive()) throw std::domain_error("nothing tells the nuisance parameters");
+    if (!factor.isPositive())
+      throw std::domain_error("the experiment has no information about the nuisance parameters");
     Z.bottomRows(n) = -factor.solve(information.bottomLeftCorner(n, c));
   }
   MatrixXd own = Z.transpose() * information * Z;
@@ -135,7 +136,8 @@ info::InformationCost ExperimentDesign::cost(const MatrixXd& information,
       result = {-of.value, -of.dvalue_dI};
       break;
     default:
-      if (!(of.value > 0)) throw std::domain_error("nothing tells the parameters");
+      if (!(of.value > 0))
+        throw std::domain_error("the experiment has no information about the parameters");
       result = {-std::log(of.value), -of.dvalue_dI / of.value};
   }
   result.dvalue_dI = (Z * result.dvalue_dI * Z.transpose()).eval();

@@ -45,7 +45,7 @@ std::string whyNotSimulated(const Model& model) {
   if (model.muscles.empty()) return "it has no muscle";
   const auto isSimulated = [](const Muscle& muscle) { return muscle.schutte.has_value(); };
   if (std::none_of(model.muscles.begin(), model.muscles.end(), isSimulated)) {
-    return fmt::format("none of its {} muscles is of a class that is simulated",
+    return fmt::format("none of its {} muscles is of a class that can be simulated",
                        model.muscles.size());
   }
   for (const Joint& joint : model.joints) {

@@ -41,7 +41,8 @@ void Reviewer::reviewBody(const Body& body) {
   const double largest = std::max({i[0], i[1], i[2]});
   if (largest > (sum - largest) * (1 + 1e-9)) {
     say(subject,
-        "moment of inertia = {:.4g} kg m², no body has one above the sum of the other two ({:.4g})",
+        "moment of inertia = {:.4g} kg m², violates the triangle inequality: above the sum of the "
+        "other two ({:.4g})",
         largest, sum - largest);
   }
   // Off-diagonal terms may make a matrix that no mass distribution has.
@@ -53,9 +54,8 @@ void Reviewer::reviewBody(const Body& body) {
   } else if (principal(2) > (principal(0) + principal(1)) * (1 + 1e-9) &&
              largest <= (sum - largest) * (1 + 1e-9)) {
     say(subject,
-        "principal moment of inertia = {:.4g} kg m², no body has one above the sum of the other "
-        "two "
-        "({:.4g})",
+        "principal moment of inertia = {:.4g} kg m², violates the triangle inequality: above the "
+        "sum of the other two ({:.4g})",
         principal(2), principal(0) + principal(1));
   }
   if (body.mass > 0 && std::sqrt(largest / body.mass) > 1) {
@@ -101,7 +101,7 @@ void Reviewer::reviewCoordinate(const Coordinate& coordinate) {
         coordinate.rangeMin, coordinate.rangeMax);
   }
   if (coordinate.clamped && !coordinate.locked) {
-    say(subject, "is clamped: the simulation does not stop it at the ends of its range");
+    say(subject, "is clamped, but the simulation does not stop it at the ends of its range");
   }
 }
 
@@ -142,7 +142,7 @@ void Reviewer::reviewMuscle(const Muscle& muscle) {
     return !p.motion && p.body == points.front().body &&
            (p.location - points.front().location).norm() < shortestPath;
   });
-  if (atOnePlace) say(subject, "all its points are at one place: its path has no length");
+  if (atOnePlace) say(subject, "all its points coincide: its path has no length");
   if (muscle.schutte) {
     reviewParameters(subject, *muscle.schutte);
     reviewCurves(subject, *muscle.schutte);
@@ -183,7 +183,7 @@ void Reviewer::reviewCurves(const std::string& subject, const SchutteParameters&
   }
   if (least(p.tendonForceLength) < 0 || least(p.activeForceLength) < 0 ||
       (p.passiveForceLength && least(*p.passiveForceLength) < 0)) {
-    say(subject, "a curve has a value below 0, usually forces pull");
+    say(subject, "a curve has a value below 0, usually muscle forces pull");
   }
   const auto& active = p.activeForceLength;
   const auto peak = std::max_element(active.y.begin(), active.y.end());

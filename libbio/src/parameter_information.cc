@@ -53,8 +53,8 @@ void addPairs(const ParameterInformation& known, std::vector<std::string>& sente
                    [&](const AlikePair& a, const AlikePair& b) { return weight(a) > weight(b); });
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (i == most) {
-      sentences.push_back(
-          fmt::format("{} more pairs of parameters look alike", pairs.size() - most));
+      sentences.push_back(fmt::format("{} more pairs of parameters are nearly indistinguishable",
+                                      pairs.size() - most));
       break;
     }
     const info::Parameter& a = known.parameters[static_cast<std::size_t>(pairs[i].first)];
@@ -62,9 +62,9 @@ void addPairs(const ParameterInformation& known, std::vector<std::string>& sente
     const double seenA = std::sqrt(known.fisher(pairs[i].first, pairs[i].first));
     const double seenB = std::copysign(std::sqrt(known.fisher(pairs[i].second, pairs[i].second)),
                                        -pairs[i].correlation);
-    sentences.push_back(
-        fmt::format("{} and {} are hardly told apart: only {} is determined (correlation {:.5f})",
-                    a.name, b.name, combination(a, b, seenA, seenB), pairs[i].correlation));
+    sentences.push_back(fmt::format(
+        "{} and {} are nearly indistinguishable: only {} is determined (correlation {:.5f})",
+        a.name, b.name, combination(a, b, seenA, seenB), pairs[i].correlation));
   }
 }
 
@@ -79,7 +79,7 @@ void addStill(const ParameterInformation& known, std::vector<std::string>& sente
   if (count > 8) names += fmt::format(" and {} more", count - 8);
   if (count > 0) {
     sentences.push_back(
-        fmt::format("{} {} nothing that is measured", names, count == 1 ? "moves" : "move"));
+        fmt::format("{} {} no effect on what is measured", names, count == 1 ? "has" : "have"));
   }
 }
 
@@ -110,7 +110,8 @@ ParameterInformation informationAbout(const ParameterCatalogue& catalogue,
     throw std::invalid_argument(fmt::format("noise = {}, must be > 0 and finite", noise));
   }
   const auto p = static_cast<Index>(selection.size());
-  if (p == 0 || gammas.empty()) throw std::invalid_argument("no parameter, or no trial");
+  if (p == 0 || gammas.empty())
+    throw std::invalid_argument("must have at least one parameter and one trial");
   ParameterInformation known;
   known.parameters = catalogue.asEstimated(selection, true);
   known.fisher.setZero(p, p);
@@ -147,10 +148,10 @@ ParameterInformation informationAbout(const ParameterCatalogue& catalogue,
   const Eigen::VectorXd eigenvalues = info::symmetricEigenvalues(scaled);
   known.determinedCombinations = (eigenvalues.array() >= 3).count();
   if (known.determinedCombinations < p) {
-    known.sentences.push_back(fmt::format(
-        "the data halve the uncertainty of {} combinations of the {} parameters, the others stay "
-        "as they were known beforehand",
-        known.determinedCombinations, p));
+    known.sentences.push_back(
+        fmt::format("the data at least halve the uncertainty of {} combinations of the {} "
+                    "parameters; the other combinations rest mainly on their priors",
+                    known.determinedCombinations, p));
   }
   addPairs(known, known.sentences);
   addStill(known, known.sentences);

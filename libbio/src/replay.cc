@@ -52,7 +52,7 @@ Eigen::VectorXd startCoordinates(const Trial& trial, const Arm& arm,
       std::string known;
       for (const Coordinate& c : free) known += (known.empty() ? "" : ", ") + c.name;
       throw std::invalid_argument(
-          fmt::format("start of '{}': it is not a free coordinate (free: {})", name, known));
+          fmt::format("start of '{}': must be a free coordinate (free: {})", name, known));
     }
     if (!std::isfinite(value)) {
       throw std::invalid_argument(fmt::format("start of '{}' = {}, must be finite", name, value));
@@ -190,8 +190,7 @@ std::vector<std::string> rangeRemarks(const Arm& arm, const Trajectory& trajecto
       if (q[k] >= c.rangeMin - margin && q[k] <= c.rangeMax + margin) continue;
       remarks.push_back(fmt::format(
           "{0} leaves its range, {1:.4g} to {2:.4g} {3}, at {4:.3g} s and reaches {5:.4g} to "
-          "{6:.4g} "
-          "{3}: no passive force of the model holds it",
+          "{6:.4g} {3}: the model has no passive force that prevents this",
           c.name, c.rangeMin * unit, c.rangeMax * unit, c.isRotation ? "deg" : "mm",
           trajectory.time[static_cast<std::size_t>(k)], q.minCoeff() * unit, q.maxCoeff() * unit));
       break;

@@ -24,7 +24,7 @@ bool isStart(const ModelParameter& parameter) {
 
 std::vector<std::size_t> selectDistinct(const ParameterCatalogue& catalogue,
                                         const std::vector<std::string>& names) {
-  if (names.empty()) throw std::invalid_argument("no parameter is named");
+  if (names.empty()) throw std::invalid_argument("no parameter is given");
   std::set<std::size_t> named;
   for (const std::string& name : names) {
     if (name == "all" || name.find('*') != std::string::npos) continue;
@@ -45,7 +45,7 @@ TrialSet::TrialSet(const Model& model, const ArmOptions& arm, std::vector<Trial>
   for (const Trial& trial : trials_) {
     if (!trial.applied.empty()) {
       throw std::invalid_argument(
-          trial.file + ": has a torque from outside, which calibration does not take into account");
+          trial.file + ": has an external torque, which calibration does not take into account");
     }
     beginnings_.push_back(beginningOf(trial, model, *arm_, options.initial));
     catalogues_.push_back(
@@ -96,7 +96,7 @@ void TrialSet::collectParameters(const TrialSetOptions& options) {
     const ModelParameter& parameter = catalogue.parameters()[index];
     if (isStart(parameter) && (trials_.size() > 1 || options.ownStart)) {
       throw std::invalid_argument(fmt::format(
-          "parameter '{}' is each trial's own and cannot be common to all", parameter.name));
+          "parameter '{}' differs between trials and cannot be common to all", parameter.name));
     }
   }
   if (options.ownStart) {

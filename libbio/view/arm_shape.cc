@@ -123,7 +123,7 @@ ArmPoser::ArmPoser(const Model& model, const SkeletonOptions& options,
 
 ArmPoser::Posture ArmPoser::pose(const Eigen::VectorXd& q, const std::vector<double>& radii) const {
   if (q.size() != skeleton_.numCoordinates() || radii.size() != paths_.size()) {
-    throw std::invalid_argument(fmt::format("{} coordinates and {} radii for an arm of {} and {}",
+    throw std::invalid_argument(fmt::format("{} coordinates and {} radii, must be {} and {}",
                                             q.size(), radii.size(), skeleton_.numCoordinates(),
                                             paths_.size()));
   }

@@ -30,7 +30,8 @@ CameraPlace fitCamera(const std::vector<Eigen::Vector3d>& points, const Eigen::V
   const Eigen::Vector3d z = toCamera.normalized();
   const Eigen::Vector3d across = up.cross(z);
   if (points.empty() || !(across.norm() > 1e-9 * up.norm())) {
-    throw std::invalid_argument("a camera needs points to see and a direction that is not upwards");
+    throw std::invalid_argument(
+        "camera: must have points to show and a direction that is not vertical");
   }
   const Eigen::Vector3d x = across.normalized(), y = z.cross(x);
   const double h = std::tan(viewAngle / 2), w = h * aspect;

@@ -45,7 +45,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command,
   words.push_back(nullptr);
   const pid_t parent = getpid();
   id_ = fork();
-  if (id_ < 0) throw std::runtime_error(command.front() + ": no new process can be made");
+  if (id_ < 0) throw std::runtime_error(command.front() + ": a new process cannot be created");
   if (id_ == 0) becomeChild(words.data(), descriptors, parent);
 }
 
@@ -63,7 +63,7 @@ ChildProcess::~ChildProcess() {
 }
 
 int ChildProcess::wait() {
-  if (id_ < 0) throw std::logic_error("this process has been waited for");
+  if (id_ < 0) throw std::logic_error("this process has already ended");
   int state = 0;
   while (waitpid(id_, &state, 0) < 0 && errno == EINTR) {
   }

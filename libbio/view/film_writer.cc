@@ -16,7 +16,7 @@ FilmWriter::FilmWriter(const std::filesystem::path& file, int width, int height,
   int pictures[2], words[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pictures) != 0 ||
       pipe2(words, O_CLOEXEC | O_NONBLOCK) != 0) {
-    throw std::runtime_error("no connection to ffmpeg can be made");
+    throw std::runtime_error("a connection to ffmpeg cannot be created");
   }
   socket_ = pictures[0];
   messages_ = words[0];

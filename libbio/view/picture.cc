@@ -15,7 +15,7 @@ Image imageOf(vtkRenderWindow* window, int width, int height) {
   Image image{width, height, {}};
   if (size[0] != width || size[1] != height) {
     throw std::runtime_error(
-        fmt::format("a picture of {}x{} pixels cannot be drawn here", width, height));
+        fmt::format("a picture of {}x{} pixels cannot be drawn on this display", width, height));
   }
   vtkNew<vtkUnsignedCharArray> pixels;
   window->GetPixelData(0, 0, width - 1, height - 1, 0, pixels);

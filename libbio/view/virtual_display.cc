@@ -44,11 +44,11 @@ VirtualDisplay::VirtualDisplay() {
   if (displayAnswers()) return;
   if (!findProgram("Xvfb")) {
     throw std::runtime_error(
-        "there is no display to draw on: DISPLAY names none, and Xvfb (Debian package xvfb) is not "
-        "installed");
+        "no display to draw on: DISPLAY names none that works, and Xvfb (Debian package xvfb) is "
+        "not installed");
   }
   int pipe[2];
-  if (pipe2(pipe, O_CLOEXEC) != 0) throw std::runtime_error("no pipe can be made");
+  if (pipe2(pipe, O_CLOEXEC) != 0) throw std::runtime_error("a pipe cannot be created");
   constexpr int theirs = 3;
   server_ = std::make_unique<ChildProcess>(
       std::vector<std::string>{"Xvfb", "-displayfd", std::to_string(theirs), "-screen", "0",

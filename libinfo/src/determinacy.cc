@@ -64,14 +64,14 @@ std::vector<Determinacy> determinacy(const MatrixXd& information,
   const auto p = static_cast<Index>(parameters.size());
   if (p == 0 || information.rows() != p || information.cols() != p || known.size() != p) {
     throw std::invalid_argument(fmt::format(
-        "determinacy: information is {} × {}, {} deviations are known, for {} parameters",
+        "determinacy: information is {} × {} with {} prior standard deviations, for {} parameters",
         information.rows(), information.cols(), known.size(), p));
   }
   for (Index i = 0; i < p; ++i) {
     if (!(known[i] > 0 && std::isfinite(known[i]))) {
-      throw std::invalid_argument(fmt::format("parameter {}: known deviation {} must be > 0",
-                                              label(parameters[static_cast<std::size_t>(i)]),
-                                              known[i]));
+      throw std::invalid_argument(
+          fmt::format("parameter {}: prior standard deviation {} must be > 0 and finite",
+                      label(parameters[static_cast<std::size_t>(i)]), known[i]));
     }
   }
   if (!information.allFinite()) {
@@ -108,15 +108,15 @@ std::vector<Determinacy> determinacy(const MatrixXd& information,
       one.why = fmt::format("{} has no effect on {}", parameter.name, outcome);
     } else if (one.boundAlone > enough || others.empty()) {
       one.why = fmt::format(
-          "{} hardly moves {}: with everything else known the data alone would leave ±{}, and ±{} "
-          "is known beforehand",
+          "{} has too little effect on {}: even with all other parameters known, the data alone "
+          "would determine it to ±{} only, and its prior is ±{}",
           parameter.name, outcome, quantity(one.boundAlone, parameter),
           quantity(known[i], parameter));
     } else {
       const double lambda = std::max(0.0, eigen.values[loosest]);
       one.why = fmt::format(
-          "{} cannot be told apart from {}: {} together change {} by {:.2g} standard deviations in "
-          "all; alone it would be known to ±{}",
+          "{} is confounded with {}: {} together change {} by {:.2g} standard deviations in all; "
+          "with the others known it would be determined to ±{}",
           parameter.name, others, moves(v.col(loosest), i, parameters, known), outcome,
           std::sqrt(lambda) / std::abs(v(i, loosest)), quantity(one.boundAlone, parameter));
     }

@@ -85,8 +85,8 @@ MatrixXd cramerRaoBound(const MatrixXd& information, const std::vector<std::stri
     for (Index i = 0; i < p; ++i)
       if (std::abs(eigen.vectors(i, 0)) > 1e-3) list += (list.empty() ? "" : ", ") + name(i);
     throw std::domain_error(
-        fmt::format("zero information about one combination of parameters {}: the data "
-                    "cannot tell them apart",
+        fmt::format("zero information about one combination of the parameters {}: they are not "
+                    "separately identifiable",
                     list));
   }
   const MatrixXd half =

@@ -168,7 +168,7 @@ IdentifiabilityReport identifiability(const MatrixXd& information,
       report.correlation(i, j) =
           i == j ? 1.0 : covariance(i, j) / (report.deviation[i] * report.deviation[j]);
   if (nullity == 0) {
-    report.sentences.push_back("all parameters are determined");
+    report.sentences.push_back("all parameters are identifiable");
     return report;
   }
 
@@ -235,7 +235,7 @@ IdentifiabilityReport identifiability(const MatrixXd& information,
     }
     report.determined.insert(report.determined.end(), determined.begin(), determined.end());
     report.sentences.push_back(fmt::format(
-        "{} cannot be told apart: only {} {} determined ({} together change no output)",
+        "{} are not separately identifiable: only {} {} determined ({} together change no output)",
         join(names), join(determined), determined.size() == 1 ? "is" : "are", changes.front()));
     for (std::size_t n = 1; n < changes.size(); ++n)
       report.sentences.back() += fmt::format("; nor do {}", changes[n]);

@@ -31,9 +31,9 @@ InformationCost informationCost(const InformationWeights& weights, const MatrixX
   const VectorXd& lambda = eigen.values;
   if (!(lambda[0] > 1e-14 * lambda[lambda.size() - 1]))
     throw NoInformation(fmt::format(
-        "the motion tells nothing about a combination of the parameters: least eigenvalue of the "
-        "information is {}, greatest {}, rule: > 0; start from a motion in which every parameter "
-        "shows in the output, if need be by a small perturbation of this one",
+        "the motion has no information about a combination of the parameters: the smallest "
+        "eigenvalue of the information is {}, the largest {}, must be > 0; start from a motion in "
+        "which every parameter affects the output, if need be by a small perturbation of this one",
         lambda[0], lambda[lambda.size() - 1]));
   const auto of = [&](Optimality which) {
     return criterion(which, information, repeatedTolerance);

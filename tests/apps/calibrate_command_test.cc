@@ -52,8 +52,8 @@ TEST(CalibrateCommand, WritesTheModelTheSummaryAndTheReport) {
 
   const std::string report = contentOf(out + "/report.html");
   for (const char* title :
-       {"Estimates beside what was known", "Correlations of the estimates", "Residuals",
-        "Autocorrelation of the residuals", "Trials held out", "Profile likelihood of hand.mass"}) {
+       {"Estimates and priors", "Correlations of the estimates", "Residuals",
+        "Autocorrelation of the residuals", "Held-out trials", "Profile likelihood of hand.mass"}) {
     EXPECT_THAT(report, HasSubstr(title));
   }
 
@@ -107,7 +107,7 @@ TEST(CalibrateCommand, RefusesAnIntervalInWords) {
   const ProgramResult result =
       runFisherHill({"calibrate", model, slow, "--parameters", "hand.mass,emg.BRA.gain", "--json"});
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("cannot be told apart from"));
+  EXPECT_THAT(result.err, HasSubstr("is confounded with"));
   const auto json = nlohmann::json::parse(result.out);
   const auto& gain = json["estimates"]["emg.BRA.gain"];
   EXPECT_EQ(gain["identifiable"], false);

@@ -67,9 +67,10 @@ TEST(CompareCommand, WritesTheTableTheSummaryAndTheReport) {
   EXPECT_LT(json["reference_second_rms_deg"].get<double>(), 0.05);
 
   const std::string report = support::contentOf(out + "/report.html");
-  for (const char* title : {"Work and precision", "Error against step", "Where the runs ended",
-                            "Runge–Kutta at three steps", "The variational integrator at two steps",
-                            "Beside the measured motion", "Beside other programs"}) {
+  for (const char* title :
+       {"Work and precision", "Error against step size", "Where the runs ended",
+        "Runge–Kutta at three steps", "The variational integrator at two steps",
+        "Comparison with the measured motion", "Comparison with other programs"}) {
     EXPECT_THAT(report, HasSubstr(title));
   }
 }
@@ -110,7 +111,8 @@ TEST(CompareCommand, LaysOpenSimsStatesBesideOurs) {
   const auto json = nlohmann::json::parse(support::contentOf(out + "/summary.json"));
   EXPECT_LT(json["also_OpenSim_rms_deg"].get<double>(), 1e-3);
   EXPECT_EQ(json["also_OpenSim_rms_deg"], json["also_table_rms_deg"]);
-  EXPECT_THAT(support::contentOf(out + "/report.html"), HasSubstr("Beside other programs"));
+  EXPECT_THAT(support::contentOf(out + "/report.html"),
+              HasSubstr("Comparison with other programs"));
 }
 
 #ifdef FISHERHILL_HAS_VIEW
@@ -149,8 +151,8 @@ TEST(CompareCommand, LeavesOutFiguresThatHaveNothingToShow) {
   ASSERT_EQ(result.status, 0) << result.err;
   const std::string report = support::contentOf(out + "/report.html");
   EXPECT_THAT(report, HasSubstr("Every run reached the end of the trial."));
-  for (const char* title :
-       {"Runge–Kutta at three steps", "Beside the measured motion", "Beside other programs"}) {
+  for (const char* title : {"Runge–Kutta at three steps", "Comparison with the measured motion",
+                            "Comparison with other programs"}) {
     EXPECT_THAT(report, testing::Not(HasSubstr(title)));
   }
   const auto json = nlohmann::json::parse(support::contentOf(out + "/summary.json"));
@@ -175,7 +177,7 @@ TEST(CompareCommand, TellsWrongUseInOneLine) {
     EXPECT_EQ(scratch.listing(), before);
   };
   fails({"--integrators", ""}, "--integrators");
-  fails({"--integrators", "rk4,euler"}, "'euler' is none of rk4, vi, vi-left, cvode");
+  fails({"--integrators", "rk4,euler"}, "'euler', must be rk4, vi, vi-left or cvode");
   fails({"--integrators", "vi,vi"}, "twice");
   fails({"--steps", ""}, "--steps");
   fails({"--steps=-0.01"}, "--steps: -0.01 s, must be > 0");

@@ -71,7 +71,7 @@ TEST(DiscoverCommand, NamesTheDampingThatIsHiddenAddsItAndFindsNothingMore) {
   EXPECT_GT(effect["share_of_muscle_moment"].get<double>(), 0.01);
   EXPECT_GT(effect["motion_rms_deg"].get<double>(), 3);
   EXPECT_GT(verdict["undetectable_below"]["coulomb"].get<double>(), 0);
-  EXPECT_THAT(result.err, HasSubstr("remains untested"));
+  EXPECT_THAT(result.err, HasSubstr("is untested"));
 
   // what is added is OpenSim's own, says where it came from, and the input is untouched
   const std::string osim = contentOf(out + "/with_effect.osim");
@@ -82,9 +82,9 @@ TEST(DiscoverCommand, NamesTheDampingThatIsHiddenAddsItAndFindsNothingMore) {
                           .get<std::string>()));
   const std::string report = contentOf(out + "/report.html");
   for (const char* title :
-       {"What is missing", "All that were raced", "Score over time", "The force that is missing",
-        "Is what is left white noise?", "What these data could not have shown", "Next experiment",
-        "Reproduce", "Along emg_data/hidden_a/train_1.sto its moment is", "fisherhill replay"}) {
+       {"Missing effects", "All hypotheses compared", "Score over time", "Missing force",
+        "Residual diagnostics", "Smallest detectable effects", "Next experiment", "Reproduce",
+        "On emg_data/hidden_a/train_1.sto its moment is", "fisherhill replay"}) {
     EXPECT_THAT(report, HasSubstr(title));
   }
 

@@ -64,7 +64,7 @@ TEST(DiscoverRobotCommand, NamesTheDryFrictionOfADoublePendulumAndFindsNothingMo
   EXPECT_NEAR(heldOut["rmse_after_deg"].get<double>(), expected, 0.15 * floor);
   EXPECT_TRUE(verdict["localisation"].contains("inputs"));
   const std::string report = contentOf(scratch / "out" / "report.html");
-  for (const char* title : {"link1 [deg]", "link2 [deg]", "What is missing", "Score over time",
+  for (const char* title : {"link1 [deg]", "link2 [deg]", "Missing effects", "Score over time",
                             "Score over angle and speed", "Acceleration of the cart"})
     EXPECT_THAT(report, HasSubstr(title));
 
@@ -114,16 +114,16 @@ TEST(DiscoverRobotCommand, RefusesBadInputInOneLine) {
   }
   const std::string good = table("good.csv", rows);
   refused({table("a.csv", noInput)}, "has no column input");
-  refused({table("b.csv", extra)}, "column colour means nothing here");
+  refused({table("b.csv", extra)}, "column colour is unknown");
   refused({table("c.csv", "time,input\n0,0\n0.01,0\n")}, "has no column force_N");
   refused({table("d.csv", "time,input,force_N\n0,,1\n0.01,0,1\n")}, "row 1 is empty");
   refused({good, good}, "is the same trial as");
   refused({good, "--step", "0.2"}, "good.csv: lasts 0.11 s, --step 0.2 s must not be longer");
   refused({good, "--without", "visc_1"}, "not in the catalogue of suspended-mass");
-  refused({good, "--integrator", "rk4"}, "does not go with --system");
+  refused({good, "--integrator", "rk4"}, "cannot be combined with --system");
   refused({good, "--noise", "1,2"}, "2 values for 1 channels");
   refused({good, "--with", table("e.json", "{\"system\": \"double-pendulum\", \"effects\": []}")},
-          "is of system double-pendulum");
+          "system is double-pendulum, must be suspended-mass");
   const ProgramResult none = runFisherHill({"discover", "models/elbow8.osim"});
   EXPECT_EQ(none.status, 2);
   EXPECT_THAT(none.err, HasSubstr("TRIAL is required"));

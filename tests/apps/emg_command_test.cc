@@ -84,7 +84,7 @@ TEST(EmgCommand, RunsOnTheGoniometerRecordingWithTheShippedConfiguration) {
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = nlohmann::json::parse(result.out);
   EXPECT_THAT(json["muscles"], testing::ElementsAre("BIClong", "BICshort", "BRA", "BRD"));
-  EXPECT_THAT(json["remarks"], Contains(HasSubstr("cannot tell how they divide the load")));
+  EXPECT_THAT(json["remarks"], Contains(HasSubstr("does not show how they share the load")));
   EXPECT_NEAR(json["measured_fraction_missing"], 0.013, 0.0005);
 }
 

@@ -86,7 +86,7 @@ TEST(EnsembleCommand, GivesARowForEveryDrawWithItsParametersAndOutputs) {
   const ProgramResult result = runEnsemble(out, four);
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(result.out,
-              HasSubstr("40 of 40 simulations with 4 drawn parameters came to their end"));
+              HasSubstr("40 of 40 simulations with 4 drawn parameters reached the end"));
   const auto lines = linesOf(contentOf(out + "/draws.csv"));
   ASSERT_EQ(lines.size(), 41u);
   EXPECT_EQ(
@@ -225,7 +225,7 @@ TEST(EnsembleCommand, CtrlCKeepsWhatIsDoneAndSaysHowToGoOn) {
   const std::string out = (scratch / "out").string();
   const Words many = {"--draws", "100000", "--parameters", "hand.mass"};
   const ProgramResult result = endedAtWork(out, many, "INT");
-  EXPECT_THAT(result.err, HasSubstr("the same command goes on from there"));
+  EXPECT_THAT(result.err, HasSubstr("run the same command again to continue"));
   EXPECT_THAT(result.err, HasSubstr("interrupted; finished parts are in " + out));
   EXPECT_GT(linesOf(contentOf(out + "/unfinished.csv")).size(), 2u);
 }
@@ -293,14 +293,14 @@ TEST(EnsembleCommand, RefusesACovarianceThatIsNoneInOneLine) {
   for (const auto& [more, words] : std::vector<std::pair<Words, std::string>>{
            {{"--covariance", tied}, "tied.csv: not positive definite: the smallest eigenvalue"},
            {{"--covariance", other}, "other.csv: "},
-           {{"--covariance", spelt}, "spelt.csv: BRA.pennation_angle is there under another name"},
+           {{"--covariance", spelt}, "spelt.csv: BRA.pennation_angle is listed under another name"},
            {{"--covariance", good, "--parameters", "hand.mass"},
             "good.csv: TRI.radius is not one of the --parameters"},
            {{"--covariance", good, "--prior", "hand.mass=0.5:0.1"},
-            "--prior: hand.mass has its law from --covariance"},
-           {{"--covariance", good, "--sobol"}, "--covariance does not go with --sobol"},
+            "--prior: hand.mass already has its distribution from --covariance"},
+           {{"--covariance", good, "--sobol"}, "--covariance cannot be combined with --sobol"},
            {{"--covariance", good, "--distribution", "uniform"},
-            "--covariance does not go with --distribution uniform"}}) {
+            "--covariance cannot be combined with --distribution uniform"}}) {
     const ProgramResult result = runEnsemble(out, more);
     EXPECT_EQ(result.status, 2);
     EXPECT_EQ(linesOf(result.err).size(), 1u) << result.err;
@@ -467,7 +467,7 @@ TEST(EnsembleCommand, CtrlCStopsEveryRankKeepsTheRowsAndTheSameCommandGoesOn) {
   const ProgramResult result =
       runEnsemble(out, many, with({"bash", "-c", untilRows, growing}, ranks(3)));
   EXPECT_NE(result.status, 0);
-  EXPECT_THAT(result.err, HasSubstr("the same command goes on from there"));
+  EXPECT_THAT(result.err, HasSubstr("run the same command again to continue"));
   EXPECT_FALSE(isAlive(out));
   std::set<std::string> numbers;
   for (const std::string& line : linesOf(contentOf(growing))) numbers.insert(cells(line)[0]);

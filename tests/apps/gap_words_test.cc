@@ -46,13 +46,13 @@ TEST(GapWords, CompareHeldOutTrialsWithWhatWasToBeExpected) {
             "The fit does not carry over to the held-out trial (3.2°, expected 0.6°).");
   one = gap(3, 0.95, 0.5);
   one.expected = 0.9;
-  EXPECT_EQ(words(one, true),
-            "The residual on the held-out trial is about what was to be expected (0.95°, expected "
-            "0.9°).");
+  EXPECT_EQ(
+      words(one, true),
+      "The residual on the held-out trial is about as large as expected (0.95°, expected 0.9°).");
   one.expected = 1.4;
-  EXPECT_EQ(words(one, true),
-            "The residual on the held-out trial is no larger than what was to be expected (0.95°, "
-            "expected 1.4°).");
+  EXPECT_EQ(
+      words(one, true),
+      "The residual on the held-out trial is no larger than expected (0.95°, expected 1.4°).");
   EXPECT_EQ(gapCell(one), "as expected");
   // little is explained where much uncertainty was to be expected
   one = gap(3.7, 3.3, 0.5);

@@ -34,12 +34,12 @@ TEST(NamedCovariance, SaysWhereAFileIsWrong) {
   };
   wrong("", "c.csv: is empty");
   wrong("parameter\n", "line 1: 0 names");
-  wrong("a,a\n1,0\n0,1\n", "line 1: a is there twice");
+  wrong("a,a\n1,0\n0,1\n", "line 1: a is listed twice");
   wrong("a,\n1,0\n0,1\n", "line 1: a name is empty");
   wrong("a,b\n1,x\n0,1\n", "line 2: column b: 'x' must be a finite number");
   wrong("a,b\n1,inf\n0,1\n", "line 2: column b: 'inf' must be a finite number");
-  wrong("a,b\n1,0,0\n0,1\n", "line 2: 3 cells; the first line has 2");
-  wrong("parameter,a,b\na,1,0\nc,0,1\n", "line 3: row of 'c'; b is next");
+  wrong("a,b\n1,0,0\n0,1\n", "line 2: 3 cells, must be 2 as in the first line");
+  wrong("parameter,a,b\na,1,0\nc,0,1\n", "line 3: row of 'c', must be 'b' as in the first line");
   wrong("a,b\n1,0\n", "1 rows for 2 names");
   wrong("a,b\n1,0\n0,1\n0,0\n", "line 4: more rows than the 2 names");
   wrong("a,b\n1,0\n0,0\n", "the variance of b is 0, must be > 0");

@@ -40,7 +40,7 @@ TEST(Report, BeginsWithWhatWasRunTheVerdictAndTheFigure) {
   EXPECT_LT(at("It moves."), at("<figure>"));
   EXPECT_LT(at("<figure>"), at("<h2>Muscles</h2>"));
   EXPECT_LT(at("<h2>Muscles</h2>"), at("<p>Eight of them.</p>"));
-  EXPECT_LT(at("<p>Eight of them.</p>"), at("<h2>Where this came from</h2>"));
+  EXPECT_LT(at("<p>Eight of them.</p>"), at("<h2>Provenance</h2>"));
 }
 
 TEST(Report, KeepsWhatWasNotMeasuredAsAGap) {
@@ -57,7 +57,7 @@ TEST(Report, OfHalfAMillionRowsIsSmall) {
 }
 
 TEST(Report, SaysWhereNotEveryPointIsDrawn) {
-  const std::string words = "only the lowest and highest values of 2000 parts are drawn";
+  const std::string words = "drawn by the lowest and highest values of 2000 intervals";
   Report report = smallReport();
   report.mainFigure->caption = "An angle.";
   EXPECT_THAT(renderReport(report, Summary({})),
@@ -67,7 +67,7 @@ TEST(Report, SaysWhereNotEveryPointIsDrawn) {
   std::iota(x.begin(), x.end(), 0.0);
   report.mainFigure->series[0].y = x;
   EXPECT_THAT(renderReport(report, Summary({})),
-              HasSubstr("<figcaption>An angle. Of long curves " + words + ".</figcaption>"));
+              HasSubstr("<figcaption>An angle. Long curves are " + words + ".</figcaption>"));
 }
 
 TEST(Report, NeedsNothingFromElsewhere) {

@@ -39,7 +39,7 @@ TEST(RobotBaxter, LearnsTheLengthInNineTrialsAndThenDoesTheTask) {
   EXPECT_THAT(support::contentOf(out + "/report.html"),
               AllOf(HasSubstr("Compare figure 6.3"), HasSubstr("Compare figure 6.4"),
                     HasSubstr("Compare figure 6.5"), HasSubstr("Compare figure 6.7"),
-                    HasSubstr("Compare figure 6.8"), HasSubstr("Table 6.1")));
+                    HasSubstr("Compare figure 6.8"), HasSubstr("table 6.1")));
 }
 
 TEST(RobotBaxter, GivesTheSameEstimatesFromTheSameSeed) {
@@ -93,8 +93,9 @@ TEST(RobotBaxter, TellsWrongUseInOneLine) {
   fails({"robot", "baxter", "--duration", "nan"}, "duration");
   fails({"robot", "baxter", "--initial-length", "3"}, "--initial-length");
   fails({"robot", "baxter", "--window", "0.01"}, "window: 0.01 s, rule");
-  fails({"robot", "baxter", "--discrete"}, "--discrete does not go with baxter");
-  fails({"robot", "suspended-mass", "--real-time"}, "--real-time does not go with suspended-mass");
+  fails({"robot", "baxter", "--discrete"}, "--discrete cannot be combined with baxter");
+  fails({"robot", "suspended-mass", "--real-time"},
+        "--real-time cannot be combined with suspended-mass");
 }
 
 }  // namespace

@@ -29,9 +29,10 @@ TEST(RobotCommand, SaysThatTheMassesCannotBeToldApartWithoutDamping) {
   const ProgramResult result = runFisherHill(
       {"robot", "double-pendulum", "--bound-only", "--unknown", "m1,m2", "--undamped"});
   EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.out,
-              AllOf(HasSubstr("m1 and m2 cannot be told apart: only m1/m2 is determined"),
-                    HasSubstr("m1 +1 %, m2 +1 %")));
+  EXPECT_THAT(
+      result.out,
+      AllOf(HasSubstr("m1 and m2 are not separately identifiable: only m1/m2 is determined"),
+            HasSubstr("m1 +1 %, m2 +1 %")));
   EXPECT_EQ(
       runFisherHill({"robot", "double-pendulum", "--bound-only", "--unknown", "m1,m2"}).status, 0);
 }
@@ -187,7 +188,7 @@ TEST(RobotCommand, SaysWithFiguresThatASearchMadeNoProgress) {
                                              "--warm-start", out + "/motion_optimised.csv"});
   EXPECT_EQ(again.status, 1);
   EXPECT_THAT(again.out, AllOf(HasSubstr("No progress: no step along the direction"),
-                               HasSubstr("the cost stays at 10"), HasSubstr("motions tried")));
+                               HasSubstr("the cost stays at 10"), HasSubstr("trial motions")));
 }
 
 TEST(RobotCommand, MakesGradientDescentOnTheSuspendedMassConverge) {
@@ -204,7 +205,7 @@ TEST(RobotCommand, AdvisesWhereTheStartTellsNothingAndPerturbsIt) {
   const ProgramResult still =
       runFisherHill({"robot", "double-pendulum", "--discrete", "--amplitude", "0"});
   EXPECT_EQ(still.status, 2);
-  EXPECT_THAT(still.err, AllOf(HasSubstr("tells nothing"), HasSubstr("--perturb")));
+  EXPECT_THAT(still.err, AllOf(HasSubstr("has no information"), HasSubstr("--perturb")));
   const ProgramResult perturbed =
       runFisherHill({"robot", "double-pendulum", "--discrete", "--amplitude", "0", "--perturb",
                      "0.01", "--json"});
@@ -220,13 +221,13 @@ TEST(RobotCommand, TellsWrongUseInOneLine) {
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
   };
   fails({"robot", "crane"}, "crane");
-  fails({"robot", "double-pendulum", "--convergence"}, "--convergence goes with suspended-mass");
-  fails({"robot", "suspended-mass", "--undamped"}, "go with double-pendulum");
-  fails({"robot", "double-pendulum", "--undamped"}, "--undamped goes with --unknown m1,m2");
+  fails({"robot", "double-pendulum", "--convergence"}, "--convergence requires suspended-mass");
+  fails({"robot", "suspended-mass", "--undamped"}, "require double-pendulum");
+  fails({"robot", "double-pendulum", "--undamped"}, "--undamped requires --unknown m1,m2");
   fails({"robot", "double-pendulum", "--amplitude", "-1"}, "--amplitude");
   fails({"robot", "double-pendulum", "--trials", "0"}, "--trials");
-  fails({"robot", "suspended-mass", "--discrete"}, "--discrete goes with double-pendulum");
-  fails({"robot", "double-pendulum", "--discrete", "--as-is"}, "go with optimising");
+  fails({"robot", "suspended-mass", "--discrete"}, "--discrete requires double-pendulum");
+  fails({"robot", "double-pendulum", "--discrete", "--as-is"}, "concern the optimisation");
   fails({"robot", "double-pendulum", "--warm-start", FISHERHILL_SOURCE_DIR "/README.md"},
         "README.md:");
   const support::ScratchFolder scratch;
@@ -241,12 +242,12 @@ TEST(RobotCommand, TellsWrongUseInOneLine) {
   inSteps({"--limits", "0.1", "0.2"}, "limits of input 0: 0 at time 0, rule: 0.1");
   inSteps({"--input-weight", "-1"}, "input weight R: least eigenvalue is -1");
   inSteps({"--objective", "e=-1"}, "weight of E in the objective: -1");
-  inSteps({"--objective", "f=1"}, "no such criterion");
+  inSteps({"--objective", "f=1"}, "criterion must be e, a, d or condition");
   inSteps({"--measure-every", "1000"}, "steps per sample: 1000, rule: 1");
-  inSteps({"--lab"}, "go without --discrete");
-  inSteps({"--candidate", "1", "1"}, "--candidate goes with --robust");
+  inSteps({"--lab"}, "cannot be combined with --discrete");
+  inSteps({"--candidate", "1", "1"}, "--candidate requires --robust");
   inSteps({"--robust", "worst", "--objective", "d=1"}, "worst case: weight of D");
-  fails({"robot", "double-pendulum", "--measure-every", "2"}, "goes with --discrete");
+  fails({"robot", "double-pendulum", "--measure-every", "2"}, "requires --discrete");
   fails({"robot", "suspended-mass", "--out-of-plane", "120deg"}, "angle out of the plane");
   fails({"robot", "suspended-mass", "--dry-friction", "-1"}, "dry friction: -1 N m");
 }

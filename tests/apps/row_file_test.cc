@@ -138,7 +138,7 @@ TEST_F(RowFiles, ALongRowIsReadWhole) {
 
 TEST_F(RowFiles, ASecondWriterIsKeptAway) {
   const RowFile first = open();
-  support::throwsSaying([&] { open(); }, "another program is at work on it");
+  support::throwsSaying([&] { open(); }, "is in use by another program");
 }
 
 TEST_F(RowFiles, WithoutAPathRowsAreKeptInMemoryAlone) {

@@ -68,7 +68,7 @@ TEST(RunProgram, OneSignalEndsWorkThatNeverLooksWhetherThereWasOne) {
         }));
     runProgram({"fisherhill", "try", "a"}, std::move(commands));
   };
-  EXPECT_EXIT(busy(), testing::ExitedWithCode(130), "work that cannot stop in between");
+  EXPECT_EXIT(busy(), testing::ExitedWithCode(130), "work that cannot be stopped halfway");
 }
 
 TEST(RunProgram, ReturnsTheSubcommandsStatus) {

@@ -64,8 +64,8 @@ TEST(SensitivityCommand, TellsAllParametersTheirBoundsAndWhatCannotBeToldApart) 
             json["parameters"][0]["bound_joint"].get<double>());
   EXPECT_GE(json["not_told_apart"].size(), 3u);
   EXPECT_EQ(json["inputs"].size(), 3u);
-  for (const char* title :
-       {"Which parameters matter", "Which parameters can be known", "What cannot be told apart"}) {
+  for (const char* title : {"Influence on the motion", "Identifiability",
+                            "Parameters that are not separately identifiable"}) {
     EXPECT_THAT(support::contentOf(out + "/report.html"), HasSubstr(title));
   }
 }

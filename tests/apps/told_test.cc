@@ -100,7 +100,7 @@ TEST_F(Told, AMotionThatLeavesItsRangeHasAStatusOfItsOwn) {
   EXPECT_EQ(replay(model, trial, {"--initial", "elbow_flexion=90deg", "--strict"}).status, 1);
   const ProgramResult words =
       runFisherHill({"replay", model, trial, "--initial", "elbow_flexion=90deg"});
-  EXPECT_THAT(words.out, testing::StartsWith("The motion leaves what the model is made for: "));
+  EXPECT_THAT(words.out, testing::StartsWith("The motion leaves the valid range of the model: "));
   // one that stays within is "ok", strict or not
   const ProgramResult usual = replay(model, slow, {"--strict"});
   EXPECT_EQ(usual.status, 0);
@@ -113,7 +113,7 @@ TEST_F(Told, AMotionThatLeavesItsRangeHasAStatusOfItsOwn) {
   const ProgramResult ensemble =
       runFisherHill({"ensemble", model, trial, "--parameters", "hand.mass", "--initial",
                      "elbow_flexion=90deg", "--draws", "4"});
-  EXPECT_THAT(ensemble.err, HasSubstr("with the model's own parameters elbow_flexion leaves"));
+  EXPECT_THAT(ensemble.err, HasSubstr("with the model's own parameters, elbow_flexion leaves"));
   EXPECT_THAT(ensemble.err, HasSubstr("in 4 of 4 simulations elbow_flexion leaves its range"));
 }
 
@@ -269,9 +269,11 @@ TEST_F(Told, CheckSaysThatAModelWithoutSimulatedMusclesIsOfNoUseForSimulations) 
       "other.osim", with(sourceText(model), "Schutte1993Muscle_Deprecated", "Thelen2003Muscle"));
   const ProgramResult result = runFisherHill({"check", file});
   EXPECT_THAT(result.out, Not(HasSubstr("Every file can be used")));
-  EXPECT_THAT(result.out, HasSubstr("for simulations these models are of no use: " + file +
-                                    " (none of its 8 muscles is of a class that is simulated)"));
-  EXPECT_THAT(runFisherHill({"check", model, slow}).out, Not(HasSubstr("of no use")));
+  EXPECT_THAT(result.out,
+              HasSubstr("these models cannot be simulated: " + file +
+                        " (none of its 8 muscles is of a class that can be simulated)"));
+  EXPECT_THAT(runFisherHill({"check", model, slow}).out,
+              Not(HasSubstr("these models cannot be simulated")));
 }
 
 }  // namespace

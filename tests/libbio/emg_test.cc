@@ -133,7 +133,7 @@ TEST(Emg, SaysFranklyWhatOneElectrodeCannotTell) {
   const bio::EmgResult r = bio::excitationsFromEmg(recording({smooth("e")}), config);
   EXPECT_THAT(r.remarks,
               Contains(HasSubstr("BIClong, BICshort and BRA: they share one time course")));
-  EXPECT_THAT(r.remarks, Contains(HasSubstr("co-contraction cannot be seen")));
+  EXPECT_THAT(r.remarks, Contains(HasSubstr("co-contraction is not represented")));
 }
 
 TEST(Emg, PutsTheMeasuredCoordinateOnTheRows) {
@@ -179,7 +179,7 @@ TEST(Emg, NamesChannelQuantityAndRuleOfWhatItCannotUse) {
   c.outputRate = 10;
   fails(good, c, "output rate 10 Hz");
   c.outputRate = 1e300;
-  fails(good, c, "would hold more than 100000000 rows");
+  fails(good, c, "must have at most 100000000 rows");
   c = envelopeConfig();
   c.end = 9;
   fails(good, c, "to 9 s");

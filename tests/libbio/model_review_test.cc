@@ -74,18 +74,18 @@ TEST(ModelReview, NamesEachUnusualQuantityOnce) {
       {[](Model& m) { elbowFlexion(m).defaultValue = -0.5; },
        "coordinate 'elbow_flexion': default = -0.5, outside its range 0 to 2.26892803"},
       {[](Model& m) { elbowFlexion(m).clamped = true; },
-       "coordinate 'elbow_flexion': is clamped: the simulation does not stop it at the ends of its "
-       "range"},
+       "coordinate 'elbow_flexion': is clamped, but the simulation does not stop it at the ends of "
+       "its range"},
       {[](Model& m) { elbowFlexion(m).locked = true; },
        "model: has no free coordinate: nothing can move"},
       {[](Model& m) { m.bodies[11].inertia = {1e-4, 1e-4, 3e-4, 0, 0, 0}; },
-       "body 'hand': moment of inertia = 0.0003 kg m², no body has one above the sum of the other "
-       "two (0.0002)"},
+       "body 'hand': moment of inertia = 0.0003 kg m², violates the triangle inequality: above the "
+       "sum of the other two (0.0002)"},
       {[](Model& m) { m.bodies[11].inertia = {1e-4, 1e-4, 1e-4, 2e-4, 0, 0}; },
        "body 'hand': least principal moment of inertia = -0.0001 kg m², must be ≥ 0"},
       {[](Model& m) { m.bodies[11].inertia = {1e-4, 1e-4, 1.9e-4, 0, 9e-5, 0}; },
-       "body 'hand': principal moment of inertia = 0.0002456 kg m², no body has one "
-       "above the sum of the other two (0.0001444)"},
+       "body 'hand': principal moment of inertia = 0.0002456 kg m², violates the triangle "
+       "inequality: above the sum of the other two (0.0001444)"},
       {[](Model& m) {
          m.bodies[11].massCenter = {0, -42, 0};
        },
@@ -120,7 +120,7 @@ TEST(ModelReview, NamesEachUnusualQuantityOnce) {
       {[](Model& m) { m.muscles[0].schutte->passiveForceLength->y[10] = 0.6; },
        "muscle 'TRIlong': the passive curve falls somewhere, usually it rises"},
       {[](Model& m) { m.muscles[0].schutte->activeForceLength.y[0] = -0.1; },
-       "muscle 'TRIlong': a curve has a value below 0, usually forces pull"},
+       "muscle 'TRIlong': a curve has a value below 0, usually muscle forces pull"},
       {[](Model& m) { m.muscles[0].schutte->activeForceLength.y[9] = 1.5; },
        "muscle 'TRIlong': the active curve peaks with 1.5 at 1.045, usually with 1 at 1"},
       {[](Model& m) { m.limitForces[0].upperLimit = 0.02, m.limitForces[0].lowerLimit = 0.01; },
@@ -141,7 +141,7 @@ TEST(ModelReview, NamesEachUnusualQuantityOnce) {
       {[](Model& m) {
          for (PathPoint& p : m.muscles[0].path.points) p = m.muscles[0].path.points[0];
        },
-       "muscle 'TRIlong': all its points are at one place: its path has no length"},
+       "muscle 'TRIlong': all its points coincide: its path has no length"},
       {[](Model& m) { m.muscles.clear(); }, "model: has no muscle"},
   };
   for (const Case& c : cases) {
@@ -165,7 +165,7 @@ TEST(ModelReview, SaysWhyNothingOfAModelCanBeSimulated) {
   EXPECT_EQ(whyNotSimulated(reviewedElbow()), "");
   Model model = reviewedElbow();
   for (Muscle& muscle : model.muscles) muscle.schutte.reset();
-  EXPECT_EQ(whyNotSimulated(model), "none of its 8 muscles is of a class that is simulated");
+  EXPECT_EQ(whyNotSimulated(model), "none of its 8 muscles is of a class that can be simulated");
   model = reviewedElbow();
   for (Body& body : model.bodies) body.mass = 0, body.inertia = {};
   EXPECT_EQ(whyNotSimulated(model), "no coordinate that is not locked moves a mass");

@@ -58,7 +58,7 @@ TEST(ParameterInformation, WhatLooksAlikeIsSaidInWords) {
   const auto pairs = alikePairs(known.fisher, 0.99);
   ASSERT_FALSE(pairs.empty());
   EXPECT_LT(pairs[0].correlation, -0.99);
-  EXPECT_THAT(known.sentences, Contains(HasSubstr("are hardly told apart: only ")));
+  EXPECT_THAT(known.sentences, Contains(HasSubstr("are nearly indistinguishable: only ")));
   EXPECT_LT(known.determinedCombinations, 3);
 }
 
@@ -68,7 +68,7 @@ TEST(ParameterInformation, WhatMovesNothingIsSaidInWords) {
   const ParameterInformation known =
       informationAbout(elbow.catalogue, selection, {gammaOf(elbow, selection)}, 0.02);
   EXPECT_THAT(known.sentences,
-              Contains("TRI.rotation.z, BIC_BRD.radius move nothing that is measured"));
+              Contains("TRI.rotation.z, BIC_BRD.radius have no effect on what is measured"));
   EXPECT_FALSE(known.identifiable[0]);
   EXPECT_TRUE(std::isinf(known.boundAlone[1]));
   EXPECT_NEAR(known.boundJoint[1], elbow.catalogue.parameters()[selection[1]].deviation, 1e-15);

@@ -102,7 +102,7 @@ TEST(SeparatingDesign, SaysWhatIsWrongWithAQuestion) {
     support::throwsSaying([&] { asked.design(); }, words);
   };
   asked.question.second = "visc";
-  saying("cannot be told from itself");
+  saying("the two effects must differ");
   asked.question.second = "ghost";
   saying("no effect is called 'ghost'");
   asked.question.second = "coulomb";
@@ -110,7 +110,7 @@ TEST(SeparatingDesign, SaysWhatIsWrongWithAQuestion) {
   saying("size of coulomb");
   asked.question.secondSize = 0;
   asked.limits.torque = 0;
-  saying("nothing may be changed");
+  saying("no input to design");
 }
 
 }  // namespace

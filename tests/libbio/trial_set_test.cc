@@ -108,7 +108,7 @@ TEST(TrialSet, RefusesWhatCannotBeEstimatedFrom) {
     EXPECT_THAT(make, ThrowsMessage<std::invalid_argument>(HasSubstr(message)));
   };
   fails([&] { set({"hand.mass"}, {}); }, "no trial");
-  fails([&] { set({}, {good}); }, "no parameter is named");
+  fails([&] { set({}, {good}); }, "no parameter is given");
   fails(
       [&] {
         set({"hand.mass"}, {good, unmeasured});
@@ -116,11 +116,11 @@ TEST(TrialSet, RefusesWhatCannotBeEstimatedFrom) {
       "curl_slow.sto: no measured column of a free angle (elbow_flexion)");
   Trial pushed = good;
   pushed.applied.push_back({"elbow_flexion", Eigen::VectorXd::Zero(good.times.size())});
-  fails([&] { set({"hand.mass"}, {pushed}); }, "curl_slow.sto: has a torque from outside");
+  fails([&] { set({"hand.mass"}, {pushed}); }, "curl_slow.sto: has an external torque");
   fails([&] { set({"hand.mas"}, {good}); }, "no parameter is called 'hand.mas'");
   fails([&] { set({"hand.mass", "hand.mass"}, {good}); }, "'hand.mass' is given twice");
   fails([&] { set({"emg.gain", "emg.BRA.gain"}, {good}); }, "set the same number");
-  fails([&] { set({"initial.elbow_flexion"}, {good, good}); }, "each trial's own");
+  fails([&] { set({"initial.elbow_flexion"}, {good, good}); }, "differs between trials");
 }
 
 }  // namespace

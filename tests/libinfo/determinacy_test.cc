@@ -33,9 +33,8 @@ TEST(Determinacy, NamesThePairThatOnlyMovesTogether) {
   EXPECT_FALSE(told[0].identifiable);
   EXPECT_TRUE(std::isinf(told[0].bound));
   EXPECT_NEAR(told[0].boundAlone, 0.01, 1e-12);
-  EXPECT_THAT(told[0].why,
-              HasSubstr("a cannot be told apart from b: a by +1 kg, b by −1 together"));
-  EXPECT_THAT(told[1].why, HasSubstr("b cannot be told apart from a: b by +1, a by −1 kg"));
+  EXPECT_THAT(told[0].why, HasSubstr("a is confounded with b: a by +1 kg, b by −1 together"));
+  EXPECT_THAT(told[1].why, HasSubstr("b is confounded with a: b by +1, a by −1 kg"));
 }
 
 TEST(Determinacy, SaysThatAParameterHardlyMattersOrNotAtAll) {
@@ -43,8 +42,8 @@ TEST(Determinacy, SaysThatAParameterHardlyMattersOrNotAtAll) {
   const auto told = determinacy(information, kPair, Eigen::Vector2d(0.1, 1), "the angle");
   EXPECT_FALSE(told[0].identifiable);
   EXPECT_EQ(told[0].why,
-            "a hardly moves the angle: with everything else known the data alone would leave "
-            "±0.5 kg, and ±0.1 kg is known beforehand");
+            "a has too little effect on the angle: even with all other parameters known, the data "
+            "alone would determine it to ±0.5 kg only, and its prior is ±0.1 kg");
   EXPECT_FALSE(told[1].identifiable);
   EXPECT_EQ(told[1].why, "b has no effect on the angle");
   EXPECT_TRUE(std::isinf(told[1].boundAlone));

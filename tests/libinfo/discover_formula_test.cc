@@ -126,7 +126,7 @@ TEST(Formula, IsRacedWhereTheDataOfferIt) {
   ASSERT_EQ(raced.formula->values.size(), 1U);
   EXPECT_NEAR(raced.formula->values[0], -2, 4 * raced.formula->deviations[0]);
   EXPECT_TRUE(raced.formula->after.adequate());
-  EXPECT_NE(raced.sentence.find(raced.formula->text + " explains it"), std::string::npos)
+  EXPECT_NE(raced.sentence.find(raced.formula->text + " explains the residual."), std::string::npos)
       << raced.sentence;
 }
 

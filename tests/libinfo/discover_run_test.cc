@@ -124,12 +124,13 @@ TEST(Discover, GivesANameNoProbabilityWhereWhatWasHeldOutIsFarOff) {
   EXPECT_EQ(same.finding, Finding::ambiguous);  // push or shove
   EXPECT_FALSE(same.vetoed);
   EXPECT_GT(same.probability, 0);
-  EXPECT_EQ(same.sentence.find("held out"), std::string::npos);
+  EXPECT_EQ(same.sentence.find("held-out"), std::string::npos);
   const Verdict off = asked(1.2);
   EXPECT_EQ(off.finding, Finding::ambiguous);
   EXPECT_TRUE(off.vetoed);
   EXPECT_EQ(off.probability, 0);
-  EXPECT_NE(off.sentence.find("held out are further off than chance"), std::string::npos)
+  EXPECT_NE(off.sentence.find("the held-out errors are larger than expected by chance"),
+            std::string::npos)
       << off.sentence;
 }
 
@@ -166,7 +167,7 @@ TEST(Discover, LooksOnceMoreWhereWhatWasHeldOutIsOff) {
   EXPECT_EQ(always.finding, Finding::ambiguous);  // push, shove and bias are all one force
   EXPECT_TRUE(always.heldOutFitted);
   EXPECT_FALSE(always.heldOut.has_value());
-  EXPECT_THAT(always.sentence, testing::HasSubstr("which were fitted, too"));
+  EXPECT_THAT(always.sentence, testing::HasSubstr("when the held-out trials were fitted as well"));
   EXPECT_GT(always.fits, never.fits);
 
   const Verdict nothing = asked(0.01, 1.01);
@@ -295,7 +296,7 @@ TEST(Discover, TellsWhatItHasRacedWhenItIsStopped) {
   ASSERT_EQ(v.finalists.size(), whole.finalists.size());
   for (std::size_t i = 0; i < v.finalists.size(); ++i)
     EXPECT_EQ(v.finalists[i].logEvidence, whole.finalists[i].logEvidence);
-  EXPECT_THAT(v.sentence, testing::HasSubstr("stopped before the end"));
+  EXPECT_THAT(v.sentence, testing::HasSubstr("Stopped before the end"));
   EXPECT_THAT(v.sentence,
               testing::HasSubstr(data.candidates()[whole.effects[0].candidate].id + " leads"));
 }
@@ -339,7 +340,7 @@ TEST(RunAtShorterSteps, HalvesTheStepUntilItNoLongerMattersOrIsTooShort) {
   EXPECT_EQ(tooShort.verdict.finding, Finding::numerical);
   EXPECT_THAT(tooShort.verdict.sentence,
               testing::StartsWith("Halving the time step changes the simulation of trial 1 by 0.4 "
-                                  "deviations of the measurement"));
+                                  "standard deviations of the measurement noise"));
 
   steps.clear();
   EXPECT_EQ(runAtShorterSteps(attempt, 0.04, HUGE_VAL).verdict.finding, Finding::numerical);

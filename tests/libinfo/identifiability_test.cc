@@ -32,7 +32,8 @@ TEST(Identifiability, SaysThatOnlyAProductIsDetermined) {
   ASSERT_EQ(report.undetermined.size(), 1u);
   EXPECT_THAT(report.undetermined[0].parameters, ElementsAre("m1", "L1"));
   EXPECT_THAT(report.sentences,
-              ElementsAre(HasSubstr("m1 and L1 cannot be told apart: only m1·L1 is determined")));
+              ElementsAre(HasSubstr(
+                  "m1 and L1 are not separately identifiable: only m1·L1 is determined")));
   EXPECT_TRUE(std::isinf(report.deviation[0]));
   EXPECT_TRUE(std::isinf(report.deviation[1]));
   EXPECT_TRUE(std::isnan(report.correlation(0, 1)));
@@ -95,7 +96,7 @@ TEST(Identifiability, GivesTheBoundAndCorrelationsWhereAllIsDetermined) {
       identifiability(information, {{.name = "a", .start = 2}, {.name = "b", .start = 1e-3}});
   const MatrixXd bound = information.inverse();
   EXPECT_EQ(report.rank, 2);
-  EXPECT_THAT(report.sentences, ElementsAre("all parameters are determined"));
+  EXPECT_THAT(report.sentences, ElementsAre("all parameters are identifiable"));
   EXPECT_NEAR(report.deviation[1], std::sqrt(bound(1, 1)), 1e-12);
   EXPECT_NEAR(report.correlation(0, 1), -1.0 / 6, 1e-12);
 }

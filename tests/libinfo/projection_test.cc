@@ -90,7 +90,7 @@ TEST(FlowProjection, NamesTheRuleThatIsBroken) {
   throwsSaying(with([](auto& d) {
                  for (VectorXd& u : d.desiredInput) u.setZero();
                }),
-               "tells nothing");
+               "has no information");
 }
 
 }  // namespace

@@ -52,8 +52,9 @@ TEST(DoublePendulumExperiment, TellsTheMassesApartOnlyThroughDamping) {
   const auto undamped = report(0);
   EXPECT_EQ(undamped.rank, 1);
   EXPECT_THAT(undamped.determined, testing::ElementsAre("m1/m2"));
-  EXPECT_THAT(undamped.sentences,
-              testing::ElementsAre(testing::HasSubstr("m1 and m2 cannot be told apart")));
+  EXPECT_THAT(
+      undamped.sentences,
+      testing::ElementsAre(testing::HasSubstr("m1 and m2 are not separately identifiable")));
   EXPECT_EQ(report(5e-4).rank, 2);
 }
 

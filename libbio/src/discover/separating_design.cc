@@ -94,7 +94,7 @@ SeparatingDesign::SeparatingDesign(const Model& model, const ArmOptions& arm,
   require(question_.noise > 0 && std::isfinite(question_.noise),
           fmt::format("noise = {}, must be > 0", question_.noise));
   require(question_.first != question_.second,
-          fmt::format("'{}' cannot be told from itself", question_.first));
+          fmt::format("'{}' is given twice, the two effects must differ", question_.first));
   const ElbowDisagreement data = planned(inputs_.at({}));
   effects_[0] = presentIn(data, question_.first, question_.firstSize);
   effects_[1] = presentIn(data, question_.second, question_.secondSize);

@@ -88,7 +88,7 @@ class Work {
       verdict_.reached = Stage::finished;
       report(Stage::finished, 1, "");
     } catch (const Stopped&) {
-      verdict_.sentence = "stopped before the end" + keepWhatIsThere();
+      verdict_.sentence = "Stopped before the end" + keepWhatIsThere() + ".";
     }
     if (search_) verdict_.fits = search_->fits() + namelessFits_;
     return verdict_;
@@ -113,9 +113,10 @@ class Work {
         verdict_.finalists.begin(), verdict_.finalists.end(),
         [](const Finalist& a, const Finalist& b) { return a.logEvidence < b.logEvidence; });
     if (best->effects.empty()) return "";
-    return fmt::format("; of {} fitted so far {} leads, {:.1f} nats from the base model",
-                       verdict_.finalists.size() - 1, describe(data_, best->effects),
-                       best->logEvidence);
+    return fmt::format(
+        "; of {} hypotheses fitted so far {} leads, with a log Bayes factor of {:.1f} nats against "
+        "the base model",
+        verdict_.finalists.size() - 1, describe(data_, best->effects), best->logEvidence);
   }
 
   LocaliseOptions mapOptions() const { return {0.25, 8, 6, options_.falseDiscoveries}; }
@@ -163,8 +164,8 @@ class Work {
     if (verdict_.numericalError <= options_.numericalTolerance) return false;
     verdict_.finding = Finding::numerical;
     verdict_.sentence = fmt::format(
-        "Halving the time step changes the simulation of {} by {:.2g} deviations of the "
-        "measurement: take shorter steps first.",
+        "Halving the time step changes the simulation of {} by {:.2g} standard deviations of the "
+        "measurement noise: use shorter steps.",
         data_.trialName(worst), verdict_.numericalError);
     return true;
   }
@@ -439,7 +440,7 @@ class Work {
   // How much of what is left is taken for noise of the inputs: a name rests on it.
   std::string scatter() const {
     if (verdict_.latentSizeAfter < kWorthSaying) return "";
-    return fmt::format(" {:.2g} % of the inputs' effect is taken for their noise.",
+    return fmt::format(" {:.2g} % of the inputs' effect is attributed to input noise.",
                        100 * verdict_.latentSizeAfter);
   }
 
@@ -448,8 +449,7 @@ class Work {
         !(*verdict_.heldOut->probability < options_.farOff))
       return "";
     return fmt::format(
-        " But the trials that were held out are further off than chance would have it (p = "
-        "{:.1g}).",
+        " However, the held-out errors are larger than expected by chance (p = {:.1g}).",
         *verdict_.heldOut->probability);
   }
 
@@ -461,9 +461,9 @@ class Work {
       words += fmt::format(" {} of {} samples are outliers and were left out.", noise.outliers,
                            noise.samples);
     if (noise.spacing > 1)
-      words +=
-          fmt::format(" The measurement's noise is correlated: one sample in {:.2g} s was used.",
-                      noise.interval);
+      words += fmt::format(
+          " The measurement noise is correlated, so only one sample in {:.2g} s was used.",
+          noise.interval);
     return words;
   }
 
@@ -484,16 +484,18 @@ class Work {
       case Finding::named:
       case Finding::ambiguous:
         return "Missing: " + names +
-               (verdict_.vetoed && !verdict_.after.sized ? "; what is left has the wrong size."
-                                                         : ".") +
+               (verdict_.vetoed && !verdict_.after.sized
+                    ? "; the size of the residual does not match the noise."
+                    : ".") +
                scatter() + farOff();
       case Finding::unknown:
-        return "Something is missing that has no name here" +
-               (names.empty() ? std::string() : "; imitated best by: " + names) + edges() +
+        return "The model lacks an effect that is not in the catalogue." +
+               (names.empty() ? std::string()
+                              : " The closest match is " + names + atBounds() + ".") +
                cause() + nameless() +
                (verdict_.formula && verdict_.formula->wins
-                    ? "; a force of " + verdict_.formula->text + " explains it."
-                    : ".");
+                    ? " The force " + verdict_.formula->text + " explains the residual."
+                    : "");
       case Finding::numerical:
         break;
     }
@@ -505,32 +507,35 @@ class Work {
     if (left.causeless) return "";
     switch (left.remainder.strongest()) {
       case Cause::state:
-        return "; what is left follows angle and speed";
+        return " The residual depends on the angle and the speed.";
       case Cause::inputs:
-        return "; what is left follows the inputs";
+        return " The residual depends on the inputs.";
       case Cause::acceleration:
-        return "; what is left follows the acceleration, as an inertia does";
+        return " The residual depends on the acceleration, which suggests a wrong inertia.";
       case Cause::sensor:
-        return "; what is left follows what the sensor shows, as its own errors do";
+        return " The residual depends on the sensor's reading, which suggests an error of the "
+               "sensor.";
       case Cause::moments:
-        return "; what is left follows the inputs' moments and the angle, as their levers do";
+        return " The residual depends on the inputs' moments and the angle, which suggests wrong "
+               "moment arms.";
     }
     return "";
   }
 
   std::string nameless() const {
     if (!verdict_.nameless || !verdict_.nameless->wins) return "";
-    return fmt::format("; a force that follows the {} alone explains {}",
-                       name(verdict_.nameless->follows), chosen_.empty() ? "some of it" : "more");
+    return fmt::format(" A free-form force of the {} alone explains {}.",
+                       name(verdict_.nameless->follows),
+                       chosen_.empty() ? "part of the residual" : "the data better");
   }
 
-  std::string edges() const {
+  std::string atBounds() const {
     std::string quantities;
     for (const NamedEffect& e : verdict_.effects)
       for (const Estimate& one : e.estimates)
         if (one.atBound)
           quantities += (quantities.empty() ? "" : ", ") + data_.quantities()[one.quantity].name;
-    return quantities.empty() ? "" : ", with " + quantities + " at the edge of what it may be";
+    return quantities.empty() ? "" : " (at its bound: " + quantities + ")";
   }
 
   const Disagreement& data_;

@@ -18,14 +18,15 @@ namespace {
 
 void check(const Disagreement& planned, const PresentEffect& effect) {
   if (effect.candidate >= planned.candidates().size())
-    throw std::invalid_argument("distinction: there is no such candidate");
+    throw std::invalid_argument("distinction: no such candidate");
   const Candidate& c = planned.candidates()[effect.candidate];
   if (effect.values.size() != static_cast<Index>(c.quantities.size()))
     throw std::invalid_argument(
-        fmt::format("distinction: {} has {} numbers", c.id, c.quantities.size()));
+        fmt::format("distinction: {} must have {} values", c.id, c.quantities.size()));
   if (!effect.values.allFinite() ||
       effect.values[0] == planned.quantities()[c.quantities[0]].nominal)
-    throw std::invalid_argument(fmt::format("distinction: with this amplitude {} is absent", c.id));
+    throw std::invalid_argument(fmt::format(
+        "distinction: amplitude of {} must be finite and differ from its nominal value", c.id));
 }
 
 // One effect in one trial.
@@ -43,7 +44,7 @@ Seen seenOf(const Disagreement& planned, int trial, const PresentEffect& effect,
   const std::vector<std::size_t> shapes(c.quantities.begin() + 1, c.quantities.end());
   const auto there = planned.predict(trial, values, {}, shapes, false);
   if (!there.outputs.allFinite() || !there.gamma.allFinite())
-    throw std::domain_error(fmt::format("the arm with {} cannot be simulated", c.id));
+    throw std::domain_error(fmt::format("the system with {} cannot be simulated", c.id));
   const Hypothesis own = makeHypothesis(planned, {effect.candidate}, {trial});
   const auto slopeOf = [&](std::size_t quantity) {
     const int at = own.indexOf(quantity);
@@ -81,7 +82,7 @@ Distinction distinction(const Disagreement& planned, const PresentEffect& first,
   check(planned, first);
   check(planned, second);
   if (first.candidate == second.candidate)
-    throw std::invalid_argument("distinction: two effects are needed, not one twice");
+    throw std::invalid_argument("distinction: the two effects must differ");
   if (!(outputDeviation > 0) || !std::isfinite(outputDeviation))
     throw std::invalid_argument(
         fmt::format("distinction: noise = {}, must be > 0", outputDeviation));

@@ -26,10 +26,10 @@ FreeQuantity freeQuantity(const Quantity& q, std::size_t index, double deviation
                                             q.nominal, q.lower, q.upper));
   if (!(deviation > 0) || !std::isfinite(deviation))
     throw std::invalid_argument(
-        fmt::format("{}: prior deviation is {}, must be above 0", q.name, deviation));
+        fmt::format("{}: prior standard deviation is {}, must be > 0", q.name, deviation));
   if (q.logarithmic && !(q.nominal > 0 && q.lower > 0))
     throw std::invalid_argument(
-        fmt::format("{}: nominal {} and lower bound {} of a logarithmic quantity must be above 0",
+        fmt::format("{}: nominal value {} and lower bound {} of a logarithmic quantity must be > 0",
                     q.name, q.nominal, q.lower));
   FreeQuantity free{index, q.nominal, deviation, q.logarithmic, 0, 0};
   free.lowest = free.coordinate(q.lower);
@@ -61,8 +61,8 @@ Hypothesis makeHypothesis(const Disagreement& data, const std::vector<std::size_
   for (const std::size_t effect : effects) {
     const Candidate& candidate = data.candidates().at(effect);
     if (candidate.quantities.empty() || candidate.deviations.size() != candidate.quantities.size())
-      throw std::invalid_argument(
-          fmt::format("{}: must have quantities, and a prior deviation for each", candidate.id));
+      throw std::invalid_argument(fmt::format(
+          "{}: must have quantities, and a prior standard deviation for each", candidate.id));
     for (std::size_t i = 0; i < candidate.quantities.size(); ++i) {
       const std::size_t index = candidate.quantities[i];
       const FreeQuantity free = freeQuantity(quantities.at(index), index, candidate.deviations[i]);

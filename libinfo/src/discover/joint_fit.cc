@@ -75,15 +75,16 @@ struct Likelihood::Step {
 Likelihood::Likelihood(const Disagreement& data, std::vector<int> trials, const VectorXd& values,
                        double latentTime)
     : data_(data), trials_(std::move(trials)) {
-  if (trials_.empty()) throw std::invalid_argument("likelihood: there must be a trial");
+  if (trials_.empty()) throw std::invalid_argument("likelihood: no trial, must have at least one");
   for (const int trial : trials_) {
     const auto& nodes = data.latentTimes(trial);
     const VectorXd& measured = data.measured(trial);
     const auto n = static_cast<Index>(nodes.size());
     if (measured.size() == 0 || !measured.allFinite() ||
         measured.size() != static_cast<Index>(data.times(trial).size()))
-      throw std::invalid_argument(fmt::format(
-          "{}: there must be samples, finite, one for each time", data.trialName(trial)));
+      throw std::invalid_argument(
+          fmt::format("{}: samples must be finite, at least one, and one for each time",
+                      data.trialName(trial)));
     MatrixXd K(n, n);
     for (Index i = 0; i < n; ++i)
       for (Index j = 0; j < n; ++j)
@@ -93,7 +94,7 @@ Likelihood::Likelihood(const Disagreement& data, std::vector<int> trials, const 
     const MatrixXd G = data.predict(trial, values, {}, {}, true).latentScale;
     if (G.rows() != n || G.cols() < 1 || !G.allFinite())
       throw std::invalid_argument(
-          fmt::format("{}: the scale of the latent force must be finite at its {} nodes",
+          fmt::format("{}: scale of the latent force must be finite at its {} nodes",
                       data.trialName(trial), n));
     roots_.push_back(K.cwiseProduct(G * G.transpose()).llt().matrixL());
   }
@@ -242,7 +243,9 @@ void Likelihood::bend(Step& step, const Hypothesis& hypothesis, const Noise& noi
 Fit Likelihood::fit(const Hypothesis& hypothesis, const Noise& noise, const VectorXd& start,
                     const std::vector<VectorXd>& eta, const FitOptions& options) const {
   std::optional<Fit> fit = tryFit(hypothesis, noise, start, eta, options);
-  if (!fit) throw std::domain_error("discover: the model cannot be simulated where the fit starts");
+  if (!fit)
+    throw std::domain_error(
+        "discover: the model cannot be simulated at the start values of the fit");
   return std::move(*fit);
 }
 
@@ -250,7 +253,7 @@ std::optional<Fit> Likelihood::tryFit(const Hypothesis& hypothesis, const Noise&
                                       const VectorXd& start, const std::vector<VectorXd>& eta,
                                       const FitOptions& options) const {
   if (!(noise.output > 0) || !(noise.latent >= 0))
-    throw std::invalid_argument(fmt::format("noise: σ_y {} must be above 0 and σ_d {} not below",
+    throw std::invalid_argument(fmt::format("noise: σ_y = {} must be > 0 and σ_d = {} must be ≥ 0",
                                             noise.output, noise.latent));
   const auto p = static_cast<Index>(hypothesis.free.size());
 

@@ -45,7 +45,8 @@ OutputDeviation estimateOutputDeviation(const Disagreement& data, const std::vec
   }
   if (!(differences.squares > 0))
     throw std::invalid_argument(
-        "output deviation: there must be four equally spaced samples that are not on a parabola");
+        "standard deviation of the outputs: must have four equally spaced samples that do not lie "
+        "on a parabola");
   // their autocorrelations are −15, 6, −1 of 20
   return {differences.deviation(), std::sqrt(2 * (1 + 2 * 262.0 / 400.0) / differences.count)};
 }

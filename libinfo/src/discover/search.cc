@@ -202,7 +202,7 @@ void Search::take(const Known& known) {
 void Search::mustWork() const {
   if (!at({}).works())
     throw std::domain_error(
-        "the model cannot be simulated over these trials, not even with a force that helps it");
+        "the model cannot be simulated over these trials, not even with an added latent force");
 }
 
 std::vector<std::size_t> Search::ownQuantities(std::size_t candidate) const {

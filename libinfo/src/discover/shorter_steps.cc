@@ -58,8 +58,7 @@ SteppedVerdict runAtShorterSteps(const MakeAttempt& attempt, double step, double
   const int fits = first.verdict.fits + second.verdict.fits;
   if (hasAName(second.verdict)) {
     second.verdict.heldOutFitted = true;
-    second.verdict.sentence +=
-        " It shows only with the trials that were held out, which were fitted, too.";
+    second.verdict.sentence += " It was found only when the held-out trials were fitted as well.";
     second.verdict.fits = fits;
     return second;
   }
