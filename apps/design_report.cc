@@ -15,10 +15,6 @@ using Json = nlohmann::ordered_json;
 using bio::DesignedExperiment;
 using Eigen::Index;
 
-std::vector<double> asList(const Eigen::VectorXd& values) {
-  return {values.begin(), values.end()};
-}
-
 double torqueAt(const DesignFindings& f, const DesignedExperiment& e, double t) {
   if (e.torque.empty()) return 0;
   return e.torque.at(t).value[f.design.arm().skeleton().indexOf(f.coordinate.name)];

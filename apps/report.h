@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <string>
 #include <variant>
@@ -16,6 +17,11 @@ enum class SeriesStyle {
   points,
   path  ///< drawn in the order given, so that it may turn back; a NaN in y lifts the pen
 };
+
+/// The numbers of a vector, as the series of a report take them.
+inline std::vector<double> asList(const Eigen::VectorXd& values) {
+  return {values.begin(), values.end()};
+}
 
 /// One curve. A NaN in y means "not measured": the line has a gap there, a point is left out.
 struct Series {

@@ -19,10 +19,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double enoughNats = 5;  ///< discovery's own rule for a name
 
-std::vector<double> asList(const VectorXd& values) {
-  return {values.begin(), values.end()};
-}
-
 Json finite(double value) {
   return std::isfinite(value) ? Json(value) : Json();
 }
