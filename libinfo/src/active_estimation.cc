@@ -22,7 +22,7 @@ void check(const ActiveEstimationTask& task) {
   positive("initial mass", task.initialMass, "kg");
   positive("duration", task.duration, "s");
   positive("largest input", task.largestInput, "m/s²");
-  positive("deviation in the cost of information", task.informationDeviation, "N");
+  positive("standard deviation in the cost of information", task.informationDeviation, "N");
   positive("longest application of an action", task.longestApplied, "s");
   if (!(task.initialLength >= 0.05 && task.initialLength <= 1.5))
     throw std::domain_error(

@@ -11,7 +11,7 @@ namespace info {
 void checkSensor(const ClippedSensor& sensor) {
   if (!(sensor.deviation > 0 && std::isfinite(sensor.deviation)))
     throw std::domain_error(
-        fmt::format("sensor, deviation: {}, must be > 0 and finite", sensor.deviation));
+        fmt::format("sensor, standard deviation: {}, must be > 0 and finite", sensor.deviation));
   if (!(sensor.lower < sensor.upper))
     throw std::domain_error(fmt::format("sensor, limits: {} to {}, must satisfy lower < upper",
                                         sensor.lower, sensor.upper));

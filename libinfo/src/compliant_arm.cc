@@ -35,7 +35,7 @@ CompliantArm::CompliantArm(const ArmOptions& arm, const LoadCell& cell,
   positive("arm, largest speed", arm.maxSpeed, "m/s");
   positive("load, mass", load[0], "kg");
   positive("load, length", load[1], "m");
-  positive("load cell, deviation", cell.deviation, "N");
+  positive("load cell, standard deviation", cell.deviation, "N");
   positive("disturbance, hold", disturbance.hold, "s");
   if (!(cell.capacity > 0))
     throw std::domain_error(fmt::format("load cell, capacity: {} N, must be > 0", cell.capacity));

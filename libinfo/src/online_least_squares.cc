@@ -17,12 +17,12 @@ void checkOnlineOptions(const OnlineOptions& options, Eigen::Index states) {
   if (options.window < 2)
     throw std::domain_error(
         fmt::format("on-line estimate, window: {} samples, must be 0 or ≥ 2", options.window));
-  requireLength("deviations of a window's start", options.startDeviation.size(), states);
+  requireLength("standard deviations of a window's start", options.startDeviation.size(), states);
   for (double deviation : options.startDeviation)
     if (!(deviation >= 0 && std::isfinite(deviation)))
-      throw std::domain_error(
-          fmt::format("on-line estimate, deviation of a window's start: {}, must be ≥ 0 and finite",
-                      deviation));
+      throw std::domain_error(fmt::format(
+          "on-line estimate, standard deviation of a window's start: {}, must be ≥ 0 and finite",
+          deviation));
 }
 
 }  // namespace info

@@ -64,7 +64,7 @@ ElbowDisagreement::ElbowDisagreement(const Model& model, const ArmOptions& arm,
   positive(options_.latentSpacing, "spacing of the latent force");
   positive(options_.latentFloor, "floor of the latent force's scale");
   positive(options_.startDeviation, "standard deviation of the start");
-  positive(options_.speedDeviation, "standard standard deviation of the start's speed");
+  positive(options_.speedDeviation, "standard deviation of the start's speed");
   const Integrator integrator = options_.simulation.integrator;
   if (integrator != Integrator::variational && integrator != Integrator::variationalLeft) {
     throw std::invalid_argument("sensitivities: integrator must be vi or vi-left");
