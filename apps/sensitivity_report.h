@@ -18,7 +18,7 @@ struct SweepRun {
   double value;
   bio::Trajectory motion;
   double rms = 0;      ///< RMS difference from the model's own motion [rad] or [m]
-  double largest = 0;  ///< of the same
+  double largest = 0;  ///< largest difference [rad] or [m]
 };
 struct Sweep {
   bio::ModelParameter parameter;
