@@ -10,14 +10,14 @@
 
 namespace app {
 
-/// What is asked about an arm: which effect does its model lack?
+/// A request to find the effect that a model lacks.
 struct ArmDiscoveryRequest {
   std::string model;                   ///< file
   std::vector<std::string> trials;     ///< files, with a measured coordinate
-  std::vector<std::string> heldOut;    ///< files of trials to judge by only
+  std::vector<std::string> heldOut;    ///< files of held-out trials
   std::vector<std::string> without;    ///< ids of effects to leave out of the catalogue
   std::optional<double> noise;         ///< standard deviation of what was measured [deg] or [m]
-  int maxEffects = 3;                  ///< that may act together
+  int maxEffects = 3;                  ///< largest number of effects in one hypothesis
   std::optional<double> inputScatter;  ///< of --input-scatter
   SimulationOptions simulation;
 };

@@ -6,10 +6,11 @@
 
 namespace app {
 
-/// The typed model options as the library wants them.
+/// The model options of the command line as options of the library.
 bio::ArmOptions armOptions(const SimulationOptions& options);
 
-/// The typed simulation options for a duration [s] from a start time [s].
+/// The simulation options of the command line, with start time [s] and duration [s], as options of
+/// the library.
 bio::SimulationOptions simulationOptions(const SimulationOptions& options, double startTime,
                                          double duration);
 

@@ -7,8 +7,8 @@
 namespace app {
 
 /// `fisherhill calibrate MODEL TRIAL… --parameters …`: estimates parameters from measured motions;
-/// writes calibrated.osim and, where the way from EMG to excitation was calibrated, the trials as
-/// that model wants them.
+/// writes calibrated.osim and, if the relation between EMG and excitation was calibrated, the
+/// trials with the corrected excitations.
 std::unique_ptr<Command> calibrateCommand();
 
 }  // namespace app

@@ -9,17 +9,17 @@
 
 namespace app {
 
-/// A calibration and all that it was made of.
+/// A calibration with its inputs.
 struct CalibrateFindings {
   const std::string& modelFile;
   const bio::TrialSet& training;
   const bio::TrialSet* heldOut;  ///< null: none
   const bio::CalibrationOptions& options;
   const bio::Calibration& calibration;
-  const bio::CalibratedModel* calibrated;  ///< null: there is no estimate
+  const bio::CalibratedModel* calibrated;  ///< null: no estimate
 };
 
-/// The figures that summary.json is to hold: estimates, rmse_train_deg, rmse_held_out_deg, …
+/// Sets the values of summary.json: estimates, rmse_train_deg, rmse_held_out_deg, …
 void tellCalibrate(const CalibrateFindings& findings, Summary& summary);
 
 /// Motions before and after, estimates with intervals and priors, correlations, residuals and their

@@ -22,8 +22,8 @@ class Command {
   virtual About about() const = 0;
   virtual void addOptions(CLI::App& options) = 0;
 
-  /// Does the work. A broken rule is thrown as an exception whose text is one line; an answer of
-  /// "no" is returned.
+  /// Runs the subcommand. Bad input is thrown as an exception with a one-line message; a negative
+  /// answer is returned as ExitStatus::answerIsNo.
   virtual ExitStatus run(const CommandContext& context) = 0;
 };
 

@@ -9,25 +9,25 @@
 
 namespace app {
 
-/// How the program ends; its exit status.
+/// The program's exit status.
 enum class ExitStatus {
   done = 0,
   answerIsNo = 1,     ///< it ran, but a check failed or there is no solution
-  badInput = 2,       ///< wrong use or bad input, told in one line
+  badInput = 2,       ///< wrong use or bad input, explained in one line
   interrupted = 130,  ///< Ctrl-C; finished parts are kept
 };
 
-/// What every subcommand is given: how it was called and the options that all of them have.
+/// How a subcommand was called, and the options that all subcommands share.
 struct CommandContext {
   std::string subcommand;
   std::vector<std::string> commandLine;       ///< as typed, program name first
-  std::vector<std::filesystem::path> inputs;  ///< files that an option names: never written to
+  std::vector<std::filesystem::path> inputs;  ///< files named by options; never overwritten
   std::optional<std::filesystem::path> out;   ///< folder for results; without it nothing is written
   bool force = false;                         ///< overwrite an existing result
-  bool json = false;                          ///< the summary alone on standard output
+  bool json = false;                          ///< print only the summary on standard output
   std::uint64_t seed = 1;                     ///< same seed, same bits
   int threads = 1;                            ///< ≥ 1
-  bool quiet = false;  ///< a part of another command: it says nothing but errors
+  bool quiet = false;                         ///< part of another command: prints errors only
 };
 
 /// Adds --out, --force, --json, --seed and --threads to a subcommand.

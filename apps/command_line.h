@@ -10,7 +10,7 @@
 namespace app {
 
 /// The program's command line: every subcommand with its own options and the common ones, in
-/// CLI11's tree. What --help, the man page and the completions say is read off it.
+/// CLI11's tree. --help, the man page and the completions are generated from it.
 class CommandLine {
  public:
   explicit CommandLine(std::vector<std::unique_ptr<Command>> commands);
@@ -23,7 +23,7 @@ class CommandLine {
   /// What was parsed.
   struct Chosen {
     Command* command;
-    const CommandContext* context;  ///< `inputs` among it: what options name and is a file
+    const CommandContext* context;  ///< its `inputs` are the files that options name
   };
   /// Reads the words after the program's name; --help and --version are thrown as CLI::Success.
   /// @param arguments as given to main, program name first

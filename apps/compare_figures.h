@@ -10,7 +10,7 @@ namespace app {
 
 bool isOk(const bio::CompareCell& cell);
 
-/// The cells of one integrator, steps rising.
+/// The cells of one integrator, in rising order of step.
 std::vector<const bio::CompareCell*> cellsOf(const CompareFindings& findings,
                                              bio::Integrator integrator);
 
@@ -20,13 +20,13 @@ Figure workPrecisionFigure(const CompareFindings& findings);
 /// RMS error over step: its slope is the order.
 Figure errorFigure(const CompareFindings& findings);
 
-/// Where the runs ended, of the integrators that failed at any step; a sentence if none did.
+/// Time that the runs reached, for integrators that failed at some step; a sentence if none did.
 ReportPart failureTimeline(const CompareFindings& findings);
 
-/// Runge–Kutta at three steps: the last two that hold and the first that does not.
+/// Runge–Kutta at three steps: the two longest steps that succeed and the first that fails.
 Figure rungeKuttaFigure(const CompareFindings& findings);
 
-/// The variational integrator at two steps: near 10 ms and the longest that holds.
+/// The variational integrator at two steps: the one nearest to 10 ms and the longest that succeeds.
 Figure variationalFigure(const CompareFindings& findings);
 
 /// The reference, and each fixed-step integrator at its longest step with a useful error.

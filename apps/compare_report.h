@@ -12,14 +12,14 @@
 
 namespace app {
 
-/// A result of another program that is laid beside ours.
+/// A result of another program, to compare with.
 struct AlsoCurve {
   std::string name;
   bio::CoordinateCurve curve;
-  double rms = 0;  ///< from the reference [rad]
+  double rms = 0;  ///< RMS difference from the reference [rad]
 };
 
-/// Compared integrators and all that goes with them.
+/// A comparison of integrators with its inputs.
 struct CompareFindings {
   const std::string& modelFile;
   const std::string& trialFile;
@@ -32,10 +32,10 @@ struct CompareFindings {
   const bio::CompareCell* chosen;  ///< the run of --integrator and --step; null without a reference
 };
 
-/// compare.csv: one row per integrator and step; an empty cell is not known.
+/// compare.csv: one row per integrator and step; an empty cell means unknown.
 void writeCells(const bio::Comparison& comparison, std::ostream& out);
 
-/// The figures that summary.json is to hold: largest_stable_step_s, observed_order, …
+/// Sets the values of summary.json: largest_stable_step_s, observed_order, …
 void tellCompare(const CompareFindings& findings, Summary& summary);
 
 /// Work against precision, error against step, motions, where runs ended.

@@ -11,44 +11,48 @@
 
 namespace app {
 
-/// Numbered rows to be computed.
+/// Numbered rows to compute.
 struct RowWork {
-  std::vector<std::uint64_t> numbers;  ///< which; looked at by the leader alone
-  /// The texts of some rows, each a pure function of its number alone; called from several threads.
+  std::vector<std::uint64_t> numbers;  ///< numbers of the rows; used by the root rank only
+  /// Computes the texts of some rows, each a pure function of its number; called from several
+  /// threads.
   std::function<std::vector<std::string>(std::span<const std::uint64_t> numbers)> rows;
-  /// As many rows as are best computed at once, if so many are left.
+  /// Number of rows that are best computed at once.
   std::size_t together = 1;
-  /// Takes a finished row; called in the leader alone, one call at a time, in any order. Throwing
-  /// ends the work.
+  /// Receives a finished row; called in the root rank only, one call at a time, in any order. An
+  /// exception ends the work.
   std::function<void(std::uint64_t number, const std::string& row)> take;
 };
 
-/// Computes these rows on some threads and gives each to `take`, which is called from all of them.
+/// Computes the rows on several threads and passes each to `take`, which is called from all
+/// threads.
 /// @throws what `rows` and `take` throw
 void inBatches(const RowWork& work, std::span<const std::uint64_t> numbers, int threads,
                const std::function<void(std::uint64_t number, const std::string& row)>& take);
 
-/// Those who compute rows: the threads of one program, or of many (ranks) that send their rows to
-/// the leader. Every program of a crew runs the same command; only the leader speaks and writes.
+/// A pool of workers that compute rows: the threads of one process, or of several MPI ranks that
+/// send their rows to the root rank. Every rank runs the same command; only the root rank prints
+/// and writes files.
 class Crew {
  public:
   virtual ~Crew() = default;
 
   virtual bool leads() const = 0;
   virtual int ranks() const = 0;
-  /// Threads of each rank where the user does not say.
+  /// Default number of threads of each rank.
   virtual int defaultThreads(const CommandContext& context) const = 0;
 
-  /// The leader calls this when everything is in order, before work(); the others wait for it.
-  /// @return false if the leader gave up: there will be no work
+  /// The root rank calls this before work(), once all input has been checked; the other ranks wait
+  /// for it.
+  /// @return false if the root rank gave up, so that there is no work
   virtual bool start() = 0;
 
-  /// Has every row computed. In those who do not lead it returns when nothing is left to do.
-  /// @throws what `rows` and, in the leader, `take` throw
+  /// Computes every row. In the other ranks it returns when no rows are left.
+  /// @throws what `rows` and, in the root rank, `take` throw
   virtual void work(const RowWork& work, int threads) = 0;
 };
 
-/// This program alone.
+/// A pool of this process only.
 std::unique_ptr<Crew> threadCrew();
 
 }  // namespace app

@@ -6,20 +6,20 @@
 
 namespace app {
 
-/// An option or argument as a reader of the command line needs to know it.
+/// An option or argument, described for man page and completions.
 struct DescribedOption {
-  /// What the value after the option is, for a shell that completes it.
+  /// Kind of the option's value, for completion by a shell.
   enum class Value { none, anything, choice, file, folder };
 
-  std::vector<std::string> names;  ///< "--out", "-h"; of an argument its place, "MODEL"
+  std::vector<std::string> names;  ///< "--out", "-h"; for an argument its placeholder, "MODEL"
   std::string placeholder;         ///< of the value: "DIR"; empty for a flag
   std::string description;
-  std::string group;         ///< heading under which --help has it
-  std::string defaultValue;  ///< empty: none, or told by the description
+  std::string group;         ///< heading in --help
+  std::string defaultValue;  ///< empty: none, or given in the description
   Value value = Value::none;
-  std::vector<std::string> choices;  ///< the only values there are, where there are few
+  std::vector<std::string> choices;  ///< the permitted values, if they are few
   bool required = false;
-  bool repeats = false;  ///< may stand, or take values, more than once
+  bool repeats = false;  ///< may be repeated
 };
 
 /// The program, or one of its subcommands.
@@ -29,8 +29,9 @@ struct DescribedCommand {
   std::vector<DescribedCommand> subcommands;
 };
 
-/// Reads a program's tree, so that man page and completions cannot forget anything. It is not
-/// changed; CLI11 shows rules of values only to those who might.
+/// Describes all commands of a program, so that man page and completions are complete. The program
+/// is not changed; it is passed by non-const reference only because CLI11 requires this to read the
+/// rules of values.
 DescribedCommand describe(CLI::App& app);
 
 }  // namespace app

@@ -6,7 +6,8 @@
 
 namespace app {
 
-/// fisherhill design: the experiment that tells most about chosen parameters.
+/// `fisherhill design MODEL TRIAL`: finds the experiment that is most informative about chosen
+/// parameters.
 std::unique_ptr<Command> designCommand();
 
 }  // namespace app

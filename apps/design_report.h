@@ -11,15 +11,15 @@
 
 namespace app {
 
-/// What `design` found.
+/// Result of `design`.
 struct DesignFindings {
   const std::string& modelFile;
   const std::string& trialFile;
   const bio::ExperimentDesign& design;
   const bio::DesignResult& result;
   const bio::Coordinate& coordinate;
-  std::vector<bio::ModelParameter> parameters;       ///< asked for, then nuisance
-  std::optional<info::MonteCarloResult> monteCarlo;  ///< of the parameters asked for
+  std::vector<bio::ModelParameter> parameters;       ///< of interest, then nuisance
+  std::optional<info::MonteCarloResult> monteCarlo;  ///< for the parameters of interest
 };
 
 void tellDesign(const DesignFindings& findings, Summary& summary);

@@ -5,14 +5,14 @@
 
 namespace app {
 
-/// Measured, base after calibration, and with the effects; the band is the measurement's noise
-/// together with what the amplitudes leave open, 95 %.
+/// Measured motion, calibrated base model, and the model with the effects. The band holds 95 % of
+/// the measurements, given the noise and the uncertainty of the amplitudes.
 Figure motionFigure(const DiscoverFindings& findings, int trial, std::size_t output);
 
-/// How far simulations are from what was measured: before, after, and noise alone.
+/// RMS errors of the simulations before and after, and the noise.
 Table gapTable(const DiscoverFindings& findings);
 
-/// The tests of what is left, each with its rule.
+/// The tests of the residuals, each with its rule.
 Table adequacyTable(const DiscoverFindings& findings);
 
 }  // namespace app

@@ -5,8 +5,8 @@
 
 namespace app {
 
-/// Verdict, motions before and after, where they disagreed, evidence, parameters, gap, tests of
-/// what is left, what these data could not have shown, next experiment.
+/// Verdict, motions before and after, where model and data disagree, evidence, parameters, excess
+/// error, tests of the residuals, smallest detectable effects, next experiment.
 Report discoverReport(const DiscoverFindings& findings);
 
 }  // namespace app

@@ -9,12 +9,12 @@
 
 namespace app {
 
-/// What `fisherhill discover --system SYSTEM TRIAL…` was asked for.
+/// Request of `fisherhill discover --system SYSTEM TRIAL…`.
 struct RobotRequest {
-  std::string system;  ///< double-pendulum or suspended-mass; empty: not asked for a robot
+  std::string system;  ///< double-pendulum or suspended-mass; empty: no robot
   std::string with;    ///< a with_effect.json; empty: the plain model
-  std::vector<double>
-      noise;  ///< of each measured column, in its unit as read; empty: from the data
+  std::vector<double> noise;  ///< standard deviation of each measured column, in the unit of the
+                              ///< file; empty: estimated
   std::vector<std::string> trials, heldOut, without;
   std::optional<double> step;  ///< [s]
   int maxEffects = 3;
@@ -25,8 +25,8 @@ struct RobotRequest {
 /// Adds --system, --with and --noise.
 void addRobotOptions(CLI::App& options, RobotRequest& request);
 
-/// Finds, names and adds what a robot's model lacks; writes verdict.json and, where something was
-/// named, with_effect.json.
+/// Finds, names and adds the effect that a robot's model lacks; writes verdict.json and, if an
+/// effect was named, with_effect.json.
 /// @throws std::invalid_argument, bio::FileError for bad input
 ExitStatus discoverInRobot(const RobotRequest& request, const CommandContext& context);
 

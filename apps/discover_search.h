@@ -9,11 +9,11 @@
 #include "info/discover/shorter_steps.h"
 #include "summary.h"
 
-/// What discovery in the elbow and in the robots have in common.
+/// Search options and search, shared by discovery in musculoskeletal models and in robots.
 namespace app {
 
-/// Options of the engine; trials that are held out come last.
-/// @param inputScatter  of --input-scatter; empty: the engine's own
+/// Options of the search; held-out trials come last.
+/// @param inputScatter of --input-scatter; empty: the default
 /// @throws std::invalid_argument if that is negative or no number
 info::discover::Options engineOptions(int maxEffects, const std::optional<double>& inputScatter,
                                       std::size_t training, std::size_t heldOut);
@@ -22,18 +22,20 @@ void addInputScatter(CLI::App& options, std::optional<double>& inputScatter,
 
 struct DiscoverSearch : info::discover::SteppedVerdict {
   double wallSeconds = 0;       ///< of all attempts
-  double processorSeconds = 0;  ///< the same, of the processor
+  double processorSeconds = 0;  ///< processor time of all attempts
   bool interrupted = false;
 };
 
-/// info::discover::runAtShorterSteps with a bar (not if quiet); Ctrl-C ends it with what is there.
+/// info::discover::runAtShorterSteps with a progress bar (unless quiet); Ctrl-C ends it with the
+/// result so far.
 DiscoverSearch searchForEffects(const std::function<info::discover::Attempt(double step)>& attempt,
                                 double step, double shortest, bool quiet = false);
 
-/// Says what is lost where nothing judges the one trial.
+/// Warns if there is one trial only and none is held out.
 void warnOfOneTrial(Summary& summary, std::size_t training, std::size_t heldOut);
 
-/// Surrogates are not added: they would hide what is unknown.
+/// Whether the effects may be built into the model. Proxies may not: they would hide the unknown
+/// effect.
 bool mayBeAdded(const info::discover::Verdict& verdict);
 
 }  // namespace app

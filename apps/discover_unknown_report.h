@@ -8,12 +8,12 @@
 
 namespace app {
 
-/// What has no name: its size and rhythm, a formula, a force that follows the angle or the speed
-/// alone; nothing where everything has a name.
+/// Report on an effect outside the catalogue: size and frequency of the missing force, a formula, a
+/// free-form force of the angle or of the speed; empty if there is none.
 std::vector<ReportPart> withoutName(const DiscoverFindings& findings);
 
-/// How far the best force without a name is behind the names, in a sentence; "" where it was not
-/// raced, where it wins, or where there are no names.
+/// Compares the best free-form force with the named effects, in a sentence; "" if it was not
+/// fitted, if it wins, or if no effect was named.
 std::string namesAgainstForces(const DiscoverFindings& findings);
 
 }  // namespace app

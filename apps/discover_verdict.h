@@ -12,31 +12,31 @@
 
 namespace app {
 
-/// One thing that was measured, as people read it.
+/// A measured output and its unit in the report.
 struct ShownOutput {
   std::string name;   ///< e.g. "elbow_flexion"
   std::string unit;   ///< e.g. "deg"
-  double weight = 1;  ///< of it in Disagreement::measured
+  double weight = 1;  ///< its weight in Disagreement::measured
 };
 
-/// What a model's own numbers are called.
+/// Words and units of the report, for one kind of system.
 struct DiscoverWording {
   std::vector<ShownOutput> outputs;  ///< by Disagreement::outputOfSample
-  double unit = 1;                   ///< outputs are shown as so many times their values
-  std::string gapEnd;                ///< of names in verdict.json: "_deg", "_m" or "_N"
+  double unit = 1;                   ///< factor from internal values to shown ones
+  std::string gapEnd;                ///< suffix of names in verdict.json: "_deg", "_m" or "_N"
   std::string force;                 ///< the latent force: "Torque [N·m]"
   std::string forceUnit;             ///< "N·m"
-  std::string ofForce;               ///< what its size counts: "part of the muscles' moments"
-  std::string push;                  ///< what a score means: "a push"
+  std::string ofForce;               ///< unit of its size: "fraction of the muscles' moments"
+  std::string push;                  ///< disturbance that a score tests: "a push"
   std::string inputs, input;         ///< "muscles", "muscle"
-  std::string commands;              ///< what drives: "excitations"
-  bool hasMap = true;                ///< false: the first output has no map over it and its rate
-  std::map<std::string, std::string> present;  ///< effects that the model has already, and where
+  std::string commands;              ///< the inputs: "excitations"
+  bool hasMap = true;                ///< false: no score map over the first output and its rate
+  std::map<std::string, std::string> present;  ///< effects that the model already has, and where
 };
 
 struct WrittenDiscovery;
 
-/// What was found, and all that it was made of.
+/// The findings with their inputs.
 struct DiscoverFindings {
   const std::string& modelFile;
   const std::vector<std::string>& trialFiles;  ///< those held out last
@@ -49,18 +49,18 @@ struct DiscoverFindings {
   double wallSeconds;       ///< of the search
   double processorSeconds;  ///< of the search, which has one thread
   const std::vector<info::discover::FittedNumber>& fitted;
-  const WrittenDiscovery* written = nullptr;  ///< of an arm
-  double step = 0;                            ///< [s] that the search has ended with
+  const WrittenDiscovery* written = nullptr;  ///< for musculoskeletal models
+  double step = 0;                            ///< time step of the final search [s]
 };
 
-/// The findings as figures of summary.json.
+/// Sets the values of summary.json.
 void tellFindings(const DiscoverFindings& findings, Summary& summary);
 
 /// verdict.json as docs/schemas/verdict.schema.json describes it.
 nlohmann::ordered_json verdictJson(const DiscoverFindings& findings);
 
-/// "named", or "ambiguous", "parameter", "none", "unknown", "numerical"; "stopped" if the work did
-/// not reach its end.
+/// "named", or "ambiguous", "parameter", "none", "unknown", "numerical"; "stopped" if the search
+/// did not reach its end.
 std::string verdictWord(const info::discover::Verdict& verdict);
 
 }  // namespace app

@@ -7,8 +7,8 @@
 
 namespace app {
 
-/// Where simulation and data disagree: over time, over angle and speed, the force that is missing,
-/// by what drives; nothing if that was not looked for.
+/// Where simulation and data disagree: score over time and over angle and speed, missing force,
+/// score by input; empty if this was not computed.
 std::vector<ReportPart> whereTheyDisagree(const DiscoverFindings& findings);
 
 }  // namespace app

@@ -11,25 +11,26 @@
 
 namespace app {
 
-/// What is said on the command line of the laws that parameters are drawn from.
+/// The distributions of the parameters, as given on the command line.
 struct LawRequest {
-  std::vector<std::string> names;  ///< --parameters; none: those of the covariance, else all
+  std::vector<std::string> names;  ///< --parameters; empty: those of the covariance, else all
   std::vector<std::string> priors, bounds;
   std::string distribution = "normal";
   double spread = 1;
-  std::string covarianceFile;  ///< none: every parameter by itself
+  std::string covarianceFile;  ///< empty: independent parameters
 };
 
-/// What is drawn, and how it hangs together.
+/// The drawn parameters, their distributions and their correlation.
 struct DrawnLaws {
   std::vector<std::size_t> selection;  ///< places in the catalogue
   std::vector<DrawnParameter> parameters;
   std::optional<info::GaussianCopula> together;
 };
 
-/// Laws of the selected parameters: the catalogue's, unless the request says otherwise. A
-/// covariance gives deviations and correlations of those it names; means and bounds stay.
-/// @throws std::invalid_argument for a name that is not drawn, a law that is none, and what
+/// Distributions of the selected parameters: those of the catalogue unless the request gives
+/// others. A covariance gives the standard deviations and correlations of the parameters that it
+/// names; means and bounds stay.
+/// @throws std::invalid_argument for a name that is not drawn or an invalid distribution, and what
 ///   readCovariance and GaussianCopula throw, with the file's name
 DrawnLaws drawnLaws(const bio::ParameterCatalogue& catalogue, const LawRequest& request);
 

@@ -9,7 +9,7 @@
 namespace app {
 
 /// `fisherhill ensemble MODEL TRIAL`: many simulations with drawn parameters.
-/// @param gather  makes the crew that does the work
+/// @param gather makes the worker pool
 std::unique_ptr<Command> ensembleCommand(std::function<std::unique_ptr<Crew>()> gather);
 
 }  // namespace app

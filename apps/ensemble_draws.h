@@ -8,26 +8,26 @@
 
 namespace app {
 
-/// A parameter that is drawn, and its law.
+/// A drawn parameter and its distribution.
 struct DrawnParameter {
   std::string name, unit;
   double value;  ///< in the model [unit]
   info::Marginal law;
 };
 
-/// One number that every run of an ensemble gives, as people read it.
+/// A scalar output of every run of an ensemble, in shown units.
 struct EnsembleOutput {
   std::string name;   ///< "rms_error", as --output has it
   std::string words;  ///< "RMS error"
   double (*of)(const bio::EnsembleRun&);
 };
 
-/// The rows of draws.csv and band.csv as text and back. A row of the growing file has a run's
-/// outcome, its outputs, its parameters and its course; every number is as people read it, degrees
-/// or millimetres. A number that there is not is an empty cell.
+/// Writes and reads the rows from which draws.csv and band.csv are made. A row has the outcome of a
+/// run, its outputs, its parameters and the course of the coordinate, in degrees or millimetres. A
+/// missing number is an empty cell.
 class DrawTable {
  public:
-  /// @param shown      degrees or millimetres of a unit of the coordinate
+  /// @param shown factor from the coordinate's unit to degrees or millimetres
   /// @param shownUnit  "deg" or "mm"
   DrawTable(const std::vector<DrawnParameter>& parameters, const std::vector<double>& course,
             double shown, const std::string& shownUnit);
@@ -36,9 +36,9 @@ class DrawTable {
   /// Names of the outputs, for --output.
   static std::vector<std::string> outputNames();
 
-  /// Columns of the growing file, the number's first.
+  /// Columns of the unfinished file; the first is the row's number.
   std::vector<std::string> columns() const;
-  /// How many of them draws.csv has: all but the course.
+  /// Number of them that draws.csv has: all but the course.
   std::size_t shortColumns() const { return columns().size() - course_.size(); }
   std::string columnOf(const EnsembleOutput& output) const { return output.name + "_" + unit_; }
 
@@ -52,9 +52,9 @@ class DrawTable {
     std::vector<double> outputs = {};  ///< in the order of outputs()
     std::vector<double> parameters = {};
     std::vector<double> course = {};
-    std::string head = {};  ///< the cells that draws.csv has
+    std::string head = {};  ///< the cells for draws.csv
   };
-  /// @throws std::runtime_error if a cell is no number
+  /// @throws std::runtime_error if a cell is not a number
   Row parse(std::uint64_t number, const std::string& text) const;
 
   double shown() const { return shown_; }

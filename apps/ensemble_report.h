@@ -21,12 +21,12 @@ struct SobolFinding {
   int basePoints;
 };
 
-/// The course over time of the runs that came to their end; people's units.
+/// Percentiles over time of the runs that reached the end, in shown units.
 struct Band {
   std::vector<double> time, nominal, mean, p5, p50, p95;
 };
 
-/// All that `ensemble` found. Rows are read one by one, as often as they are needed.
+/// The findings of `ensemble`. Rows are read one by one when they are needed.
 struct EnsembleFindings {
   std::string modelFile, trialFile;
   std::string coordinate;
@@ -36,13 +36,13 @@ struct EnsembleFindings {
   std::uint64_t count;                               ///< of rows
   std::function<DrawTable::Row(std::uint64_t)> row;  ///< by number, below `count`
   std::optional<bio::MeasuredMotion> measured;
-  std::map<std::string, std::uint64_t> outcomes = {};  ///< how many simulations ended so
+  std::map<std::string, std::uint64_t> outcomes = {};  ///< number of simulations by outcome
   std::vector<std::vector<double>> outputs = {};       ///< by output, then by row; NaN: none
   Band band = {};
   std::optional<SobolFinding> sobol = {};
 };
 
-/// What is known of one output over the runs that came to their end.
+/// Statistics of one output over the runs that reached the end.
 struct Spread {
   double mean, deviation, p5, p50, p95;
 };

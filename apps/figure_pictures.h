@@ -13,8 +13,9 @@ struct FigurePicture {
   std::string png;   ///< its bytes
 };
 
-/// Every figure of a report, drawn as a VTK chart by the program beside this one that links VTK.
-/// @throws std::runtime_error if that program is not there or fails
+/// Every figure of a report, drawn as a VTK chart by fisherhill-render, the only program that links
+/// VTK.
+/// @throws std::runtime_error if that program is missing or fails
 std::vector<FigurePicture> figurePictures(const Report& report);
 
 }  // namespace app

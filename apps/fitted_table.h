@@ -8,11 +8,11 @@
 
 namespace app {
 
-/// parameters.csv: `name,unit,nominal,estimate,sd,prior_sd,prior_z`, a row per number; an empty
-/// cell is not known.
+/// parameters.csv: `name,unit,nominal,estimate,sd,prior_sd,prior_z`, one row per parameter; an
+/// empty cell means unknown.
 void writeFitted(const std::vector<info::discover::FittedNumber>& numbers, std::ostream& out);
 
-/// The same as a list of objects, null where it is not known.
+/// The same as a list of JSON objects, null where unknown.
 nlohmann::ordered_json fittedJson(const std::vector<info::discover::FittedNumber>& numbers);
 
 }  // namespace app

@@ -7,8 +7,8 @@
 
 namespace app {
 
-/// The first of the foreseen experiments in a sentence, if it would tell: at least `enough` nats
-/// against every rival; else empty.
+/// The first of the predicted experiments in a sentence, if its expected log Bayes factor is at
+/// least `enough` nats against every rival; else empty.
 std::string foreseenSentence(const std::vector<bio::discover::ForeseenExperiment>& foreseen,
                              const info::discover::Disagreement& data,
                              const info::discover::Verdict& verdict, double enough);

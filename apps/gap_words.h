@@ -6,18 +6,18 @@
 
 namespace app {
 
-/// What became of the excess error, the mean square above that of noise, in a sentence: "The
-/// residual is at the noise floor (0.49°).", "87 % of the excess error is explained.", "The fit
-/// does not carry over to the held-out trial (3.2°, expected 0.6°)."
-/// @param unit      the figures are shown as so many times their values
-/// @param symbol    behind a figure, "°" or " N"
+/// How much of the excess error (mean square above that of the noise) is explained, in a sentence:
+/// "The residual is at the noise floor (0.49°).", "87 % of the excess error is explained.", "The
+/// fit does not carry over to the held-out trial (3.2°, expected 0.6°)."
+/// @param unit factor from internal to shown values
+/// @param symbol symbol after a value, "°" or " N"
 std::string gapWords(const info::discover::Gap& gap, double unit, const std::string& symbol,
                      bool heldOut);
 
 /// The same as a cell of a table: "at the noise floor", "87 %", "none".
 std::string gapCell(const info::discover::Gap& gap);
 
-/// "°" for deg, else the unit behind a space.
+/// "°" for deg, else the unit after a space.
 std::string symbolOf(const std::string& unit);
 
 }  // namespace app

@@ -11,12 +11,12 @@ namespace app {
 struct IntervalRow {
   std::string name;
   std::optional<double> estimate = {};
-  std::optional<std::pair<double, double>> interval = {};  ///< about the estimate
-  std::optional<std::pair<double, double>> before = {};    ///< what was known beforehand
+  std::optional<std::pair<double, double>> interval = {};  ///< interval of the estimate
+  std::optional<std::pair<double, double>> before = {};    ///< interval of the prior
 };
 
-/// Intervals one below the other, each with its name: grey what was known before, blue what was
-/// found, a dot at the estimate. Infinite ends reach the edge.
+/// Draws intervals below each other, each with its name: the prior in grey, the estimate's interval
+/// in blue, a dot at the estimate. Infinite ends reach the edge.
 /// @param xLabel  of the shared scale
 std::string intervalDrawing(const std::vector<IntervalRow>& rows, const std::string& xLabel);
 

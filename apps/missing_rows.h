@@ -8,22 +8,23 @@
 
 namespace app {
 
-/// Where rows are kept in the folder of results until all are there.
+/// Name of the file that keeps rows in the folder of results until all are finished.
 inline constexpr const char* unfinishedRows = "unfinished.csv";
 
-/// How the folder of results is to be opened: results beside unfinished rows are of a run that was
-/// killed while it gave them their names, so they may be overwritten. Whether those rows are of the
-/// same settings is RowFile's to say, before anything is written.
+/// The context with which to open the folder of results. Results beside unfinished rows come from a
+/// run that was killed while renaming its files, so they may be overwritten. RowFile checks whether
+/// the rows have the same settings before anything is written.
 CommandContext mayGoOn(CommandContext context);
 
-/// The sentence that damaged rows are computed again; empty if none is.
+/// The warning that damaged rows are recomputed; empty if there are none.
 std::string damageIn(const RowFile& file);
 
-/// Has a crew compute the rows 0 … total − 1 that a file lacks, with a bar; every row is in the
-/// file as soon as it is finished. After Ctrl-C it says how to go on.
-/// @param things  what a row stands for, "simulations"
-/// @param work    its rows, and how many are best computed at once; the rest of it is set here
-/// @return how many were computed
+/// Computes the rows 0 … total − 1 that a file lacks, with a progress bar; every row is in the file
+/// as soon as it is finished. After Ctrl-C it prints how to continue.
+/// @param things name of the rows, e.g. "simulations"
+/// @param work the function that computes rows, and how many are best computed at once; the rest is
+///   set here
+/// @return number of rows computed
 /// @throws Interrupted, and what `work.rows` and RowFile::append throw
 std::size_t computeMissing(Crew& crew, int threads, RowFile& file, std::uint64_t total,
                            RowWork work, const CommandContext& context, const std::string& things);

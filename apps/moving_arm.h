@@ -8,7 +8,7 @@
 
 namespace app {
 
-/// A motion with the arm that can follow it.
+/// A motion and the model that carries it out.
 class MovingArm {
  public:
   /// @throws std::invalid_argument what ArmPoser throws
@@ -23,11 +23,11 @@ class MovingArm {
   bool covers(double time) const;
   bio::view::ArmPoser::Posture at(double time, const std::vector<double>& radii) const;
 
-  /// One per muscle of the poser; NaN: the motion does not say.
+  /// One per muscle of the poser; NaN: unknown.
   std::vector<double> activationsAt(double time) const;
 
-  /// Appends what a camera has to see of a posture: balls round the ends of bones and round the
-  /// points of muscles, six points each [m].
+  /// Appends points that a camera has to show of a posture: six points each on balls around the
+  /// ends of bones and around the points of muscles [m].
   void addOutline(const bio::view::ArmPoser::Posture& posture,
                   std::vector<Eigen::Vector3d>& points) const;
 

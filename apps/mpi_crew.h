@@ -6,18 +6,18 @@
 
 namespace app {
 
-/// The ranks of MPI_COMM_WORLD; rank 0 leads. Made and destroyed between MPI_Init and MPI_Finalize,
-/// once.
+/// The ranks of MPI_COMM_WORLD; rank 0 is the root. Must be constructed and destroyed once, between
+/// MPI_Init and MPI_Finalize.
 ///
-/// Rank 0 hands out the rows' numbers in chunks that shrink as less is left (a quarter of an even
-/// share), computes with its own threads as the others do, and takes all rows; its main thread does
-/// nothing but this. The others send rows as they are finished, those that take milliseconds
-/// together for at most a twentieth of a second, and ask for more when nothing is left of a chunk.
-/// So when a rank dies what is lost is what it was working on, and a twentieth of a second.
+/// Rank 0 hands out row numbers in chunks that shrink as fewer are left (a quarter of an even
+/// share), computes rows with its own threads like the other ranks, and collects all rows in its
+/// main thread. The other ranks send rows as they are finished, short ones collected over at most
+/// 0.05 s, and ask for more when their chunk is finished. If a rank dies, only the rows it was
+/// computing and those of the last 0.05 s are lost.
 ///
-/// After Ctrl-C, which mpirun hands to the ranks as SIGTERM, every rank finishes the row it is at
-/// and sends what it has; in rank 0 work() then throws Interrupted, in the others it returns.
-/// mpirun kills whoever needs more than a second for that.
+/// After Ctrl-C, which mpirun passes on as SIGTERM, every rank finishes its current row and sends
+/// its rows. In rank 0 work() then throws Interrupted, in the others it returns. mpirun kills a
+/// rank that needs more than a second for this.
 std::unique_ptr<Crew> mpiCrew();
 
 }  // namespace app

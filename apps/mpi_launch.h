@@ -2,12 +2,11 @@
 
 namespace app {
 
-/// Where mpirun started `fisherhill ensemble`, this program becomes `fisherhill-mpi` beside it,
-/// with the same words, and does not return; everything else goes on as it is. If that program was
-/// not built, rank 0 says so in one line and all ranks end with status 2: each would do all the
-/// work.
+/// If mpirun started `fisherhill ensemble`, replaces this process by `fisherhill-mpi` with the same
+/// arguments and does not return; otherwise does nothing. If that program was not built, rank 0
+/// reports this in one line and all ranks end with status 2, since each would do all the work.
 ///
-/// A program of its own, so that no other command has to load MPI.
+/// It is a separate program so that other commands do not load MPI.
 void becomeRankUnderMpi(int argc, char** argv);
 
 }  // namespace app

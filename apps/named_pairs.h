@@ -7,7 +7,7 @@ namespace app {
 
 /// NAME=A:B, as --prior and --bounds take it.
 struct NamedPair {
-  std::string name;  ///< as typed; the library knows what it means
+  std::string name;  ///< as typed
   double first, second;
 };
 

@@ -2,8 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
-/// What numbers on the command line must be, said in the same words everywhere; NaN and infinity
-/// break each of these rules.
+/// Validators for numbers on the command line, with uniform messages; NaN and infinity fail each of
+/// them.
 namespace app {
 
 CLI::Validator finite();

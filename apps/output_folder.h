@@ -13,19 +13,18 @@
 
 namespace app {
 
-/// The folder that --out names, filled all at once.
+/// The folder of --out. Its files appear all at once.
 ///
-/// A file is first written under a temporary name in that folder; commit() renames them all.
-/// Without commit() nothing stays behind, not even the folder if it was made here; only after
-/// Ctrl-C the files finished so far are kept. Without --out nothing is written and nothing is an
-/// error. What a program that was killed has left under such names goes when the next one opens
-/// the folder.
+/// A file is first written under a temporary name in the folder; commit() renames all of them.
+/// Without commit() everything is removed, including the folder if it was created here; only after
+/// Ctrl-C the finished files are kept. Without --out nothing is written and no call fails.
+/// Temporary files of a program that was killed are removed when the folder is opened again.
 class OutputFolder {
  public:
   /// @param resultNames files the subcommand is going to write, beside summary.json and report.html
   /// @throws std::runtime_error if the folder cannot be made or written to, or if it holds one of
   ///   those files and --force was not given; std::invalid_argument if one of them is an input,
-  ///   under whatever name
+  ///   also under another name
   OutputFolder(const CommandContext& context, std::vector<std::string> resultNames);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
@@ -34,18 +33,18 @@ class OutputFolder {
   /// False without --out.
   bool active() const { return !folder_.empty(); }
 
-  /// Where the file of this name is going to be; empty without --out.
+  /// Final path of the file of this name; empty without --out.
   std::filesystem::path path(std::string_view name) const;
 
   /// Writes one file; each name once.
   void write(const std::string& name, const std::function<void(std::ostream&)>& content);
 
-  /// For libraries that write files themselves: they are handed the temporary path, which keeps
-  /// the extension of `name`.
+  /// For libraries that write files themselves: they receive the temporary path, which keeps the
+  /// extension of `name`.
   void writeFile(const std::string& name,
                  const std::function<void(const std::filesystem::path&)>& writer);
 
-  /// Gives every file written so far its own name.
+  /// Gives every file written so far its final name.
   void commit();
 
   /// Names of the files written so far.
@@ -58,9 +57,9 @@ class OutputFolder {
   std::vector<std::filesystem::path> foldersMade_;  ///< outermost first
   bool force_ = false;
   std::vector<std::filesystem::path> inputs_;
-  std::vector<std::string> finished_;  ///< complete, maybe still under their temporary names
+  std::vector<std::string> finished_;  ///< complete, possibly still under temporary names
   std::string unfinished_;             ///< the file being written
-  std::size_t committed_ = 0;          ///< how many of finished_ have their own name
+  std::size_t committed_ = 0;          ///< number of finished_ that have their final names
   std::optional<WriterMark> mark_;     ///< while there are temporary names
 };
 

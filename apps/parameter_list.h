@@ -5,13 +5,13 @@
 #include "bio/arm.h"
 #include "command.h"
 
-/// --list-parameters, for commands that take names of parameters; it needs no trial.
+/// --list-parameters, for commands that take parameter names; it requires no trial.
 namespace app {
 
 void addListParameters(CLI::App& options, bool& list);
 
-/// Prints every parameter of the model, its name, value, unit and meaning; with --json its limits,
-/// too.
+/// Prints every parameter of the model, its name, value, unit and meaning; with --json also its
+/// bounds.
 ExitStatus listParameters(const CommandContext& context, const bio::Model& model,
                           const bio::Arm& arm);
 

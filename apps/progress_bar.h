@@ -6,7 +6,7 @@
 
 namespace app {
 
-/// A bar with the time left, on standard error if that is a terminal; nothing otherwise.
+/// A progress bar with the remaining time, on standard error if that is a terminal.
 ///
 ///     replay [##########..........]  50 %  12 s left
 class ProgressBar {
@@ -18,7 +18,7 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   /// Draws the bar, at most ten times a second. Safe to call from several threads.
-  /// @param fraction of the work that is done, 0 to 1
+  /// @param fraction of the work done, 0 to 1
   /// @throws Interrupted after Ctrl-C, so that long work stops where it reports its progress
   void update(double fraction);
 
@@ -32,7 +32,7 @@ class ProgressBar {
   std::mutex mutex_;
 };
 
-/// One line of the bar, without the line's end.
+/// One line of the bar, without line break.
 std::string progressLine(const std::string& label, double fraction, double elapsedSeconds);
 
 }  // namespace app

@@ -3,10 +3,10 @@
 #include <string>
 #include <string_view>
 
-/// Quantities as they are typed on the command line.
+/// Quantities on the command line.
 namespace app {
 
-/// A finite number, nothing before or behind it. @throws std::invalid_argument
+/// A finite number without any other text. @throws std::invalid_argument
 double parseNumber(std::string_view text);
 
 /// An angle: degrees when it ends in `deg`, else radians (`rad` may be written). "34deg" → 0.593…

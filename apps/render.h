@@ -11,7 +11,7 @@
 
 namespace app {
 
-/// What `render` was asked for, as it was typed.
+/// Options of `render`, as typed.
 struct RenderOptions {
   std::string model;
   std::string states;
@@ -25,9 +25,9 @@ struct RenderOptions {
   bool showWraps = false;
   bool thicknessByForce = true;
   std::string ghost;       ///< a second motion
-  std::string ghostModel;  ///< the model that makes it; empty: the same
+  std::string ghostModel;  ///< model of the second motion; empty: the same
   bool ignoreExtra = false;
-  SimulationOptions simulation;  ///< the model options alone
+  SimulationOptions simulation;  ///< only the model options
 };
 
 using Drawing = std::function<ExitStatus(const RenderOptions&, const CommandContext&)>;
@@ -35,11 +35,11 @@ using Drawing = std::function<ExitStatus(const RenderOptions&, const CommandCont
 /// `render`: a picture or a film of the arm.
 std::unique_ptr<Command> renderCommand(Drawing draw);
 
-/// Where the program that links VTK is, built or not.
+/// Path of the program that links VTK, whether or not it was built.
 std::filesystem::path pictureProgram();
 
-/// Hands the same command line to the program `fisherhill-render` beside this one, which links
-/// VTK; does not return. @throws std::runtime_error if it is not there
+/// Replaces this process by `fisherhill-render`, which links VTK, with the same command line; does
+/// not return. @throws std::runtime_error if it is missing
 ExitStatus drawInOtherProgram(const RenderOptions& options, const CommandContext& context);
 
 }  // namespace app

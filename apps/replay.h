@@ -6,7 +6,8 @@
 
 namespace app {
 
-/// `replay`: simulates the motion that a trial's excitations make, beside what was measured.
+/// `replay`: simulates the motion produced by a trial's excitations and compares it with the
+/// measurement.
 std::unique_ptr<Command> replayCommand();
 
 }  // namespace app

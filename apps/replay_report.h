@@ -10,7 +10,7 @@
 
 namespace app {
 
-/// A simulated trial and all that it was made of.
+/// A simulated trial with its inputs.
 struct ReplayFindings {
   const std::string& modelFile;
   const std::string& trialFile;
@@ -22,10 +22,10 @@ struct ReplayFindings {
   const std::optional<bio::LeftRange>& left;
 };
 
-/// The figures that summary.json is to hold: rms_error_deg, newton_iterations_per_step, …
+/// Sets the values of summary.json: rms_error_deg, newton_iterations_per_step, …
 void tellReplay(const ReplayFindings& findings, Summary& summary);
 
-/// Angle beside what was measured, activations, forces, moment arms, energy.
+/// Simulated and measured angle, activations, forces, moment arms, energy.
 Report replayReport(const ReplayFindings& findings);
 
 }  // namespace app

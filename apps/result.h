@@ -8,8 +8,8 @@
 namespace app {
 
 /// The last step of every subcommand: writes summary.json and report.html, gives all files their
-/// names, and tells the user the verdict, the figures and where the report is – or, with --json,
-/// prints the summary alone.
+/// final names, and prints the verdict, the summary's values and the path of the report or, with
+/// --json, only the summary.
 void deliver(const CommandContext& context, const Summary& summary, const Report& report,
              OutputFolder& folder);
 

@@ -6,9 +6,10 @@
 
 namespace app {
 
-/// `fisherhill robot double-pendulum|suspended-mass`: the motion that tells most about the robot's
-/// parameters (robot_optimise.h); or what a given motion would tell, and how estimators fare on it.
-/// Status 1 if the data could not tell the parameters apart, or if no better motion was found.
+/// `fisherhill robot double-pendulum|suspended-mass`: finds the motion that is most informative
+/// about the robot's parameters (robot_optimise.h), or computes the information of a given motion
+/// and the performance of estimators on it. Status 1 if the parameters are not separately
+/// identifiable, or if no better motion was found.
 std::unique_ptr<Command> robotCommand();
 
 }  // namespace app

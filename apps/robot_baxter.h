@@ -13,7 +13,7 @@
 
 namespace app {
 
-/// What `fisherhill robot baxter` is asked for.
+/// Options of `fisherhill robot baxter`.
 struct BaxterRequest {
   bool realTime = false;        ///< four threads at their own rates instead of simulated time
   double duration = 6;          ///< of a trial [s]
@@ -27,29 +27,29 @@ struct BaxterRequest {
   bool estimateMass = false, ignoreClipping = false, searchTime = false;
 };
 
-/// One trial with its task, done twice.
+/// One trial, and the task carried out without and with the estimate.
 struct BaxterTrial {
   double initialLength;
   info::ActiveEstimationResult learnt;
   info::SwingRun withoutEstimation, withEstimation;
 };
 
-/// Options of this robot alone; they are the ones whose names are returned.
+/// Adds the options of this robot and returns them.
 std::vector<CLI::Option*> addBaxterOptions(CLI::App& options, BaxterRequest& request);
 
 /// Runs the trials and the task: estimates.csv, samples.csv, task.csv, swing.csv and two drawings.
-/// Status 1 if nothing would move, with the reason.
+/// Status 1 if nothing would move; the report gives the reason.
 ExitStatus runBaxter(const BaxterRequest& request, const CommandContext& context, Summary& summary,
                      Report& report, OutputFolder& folder);
 
 /// The files it writes.
 std::vector<std::string> baxterFiles();
 
-/// Figures 6.3, 6.4, 6.5, 6.7 and 6.8 and Table 6.1.
+/// Figures 6.3, 6.4, 6.5, 6.7 and 6.8 and table 6.1 of Wilson's thesis.
 void reportBaxter(const std::vector<BaxterTrial>& trials, const BaxterRequest& request,
                   Report& report);
 
-/// A swing as a drawing that moves, by itself and for ever.
+/// A swing as an animated drawing that repeats.
 std::string swingDrawing(const info::SwingRun& run, const info::Box& box);
 
 }  // namespace app

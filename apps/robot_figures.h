@@ -7,10 +7,10 @@
 #include "info/least_squares.h"
 #include "robot_search.h"
 
-/// The pictures of a motion and of what it tells.
+/// Figures of a motion and of its information.
 namespace app {
 
-/// States by name and place, before (dashed) and after.
+/// States by name and index, before (dashed) and after.
 Figure stateFigure(const std::string& title, const std::string& label, const Found& found,
                    const std::vector<std::pair<std::string, Eigen::Index>>& states);
 
@@ -23,10 +23,10 @@ Figure costFigure(const info::SearchResult& search);
 /// Eigenvalues of the information gathered up to each time, before and after.
 Figure informationFigure(const Found& found);
 
-/// β over two parameters as a map of isolines, with the way of an estimator on it.
+/// Contour map of the cost β over two parameters, with the path of an estimator.
 struct Basin {
   std::string title;
-  std::vector<std::pair<double, double>> range;  ///< shown, of each parameter
+  std::vector<std::pair<double, double>> range;  ///< shown range of each parameter
   Eigen::Vector2d truth;
 };
 Figure basinFigure(const Basin& basin, const info::LeastSquares& problem,

@@ -9,13 +9,13 @@
 
 namespace app {
 
-/// What the data of an experiment would tell: Fisher information, Cramér–Rao bound, and with
-/// `trials` simulated experiments. Status 1 if the parameters could not be told apart; then the map
-/// of β shows why.
+/// Information of an experiment: Fisher information, Cramér–Rao bound and, with `trials`, simulated
+/// experiments. Status 1 if the parameters are not separately identifiable; the map of β then shows
+/// why.
 ExitStatus tellInformation(const info::PlannedExperiment& plan, std::optional<int> trials,
                            const CommandContext& context, Summary& summary, Report& report);
 
-/// How fast three estimators converge on the suspended mass: on `quiet` with exact data, then on a
+/// Convergence of three estimators on the suspended mass: on `quiet` with exact data, then on a
 /// livelier motion with one noisy recording.
 ExitStatus tellConvergence(const info::PlannedExperiment& quiet, const CommandContext& context,
                            Summary& summary, Report& report);

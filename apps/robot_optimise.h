@@ -4,16 +4,17 @@
 
 namespace app {
 
-/// Finds the motion that tells most about the robot's parameters, and simulates the experiment with
-/// both motions: motion_initial.csv, motion_optimised.csv, search.json. Status 1 if the search made
-/// no progress.
+/// Finds the motion that is most informative about the robot's parameters, and simulates the
+/// experiment with the initial and the optimised motion: motion_initial.csv, motion_optimised.csv,
+/// search.json. Status 1 if the search made no progress.
 ExitStatus optimiseRobot(const OptimiseRequest& request, const CommandContext& context,
                          Summary& summary, Report& report, OutputFolder& folder);
 
 /// The files it writes.
 std::vector<std::string> optimiseFiles();
 
-/// One robot each, as optimiseRobot. Chapter 4's double pendulum, chapter 5's, and section 4.5.
+/// One function per robot, as optimiseRobot. The double pendulum of chapter 4 of Wilson's thesis,
+/// that of chapter 5, and the suspended mass of section 4.5.
 ExitStatus optimisePendulum(const OptimiseRequest& request, const CommandContext& context,
                             Summary& summary, Report& report, OutputFolder& folder);
 ExitStatus optimisePendulumInSteps(const OptimiseRequest& request, const CommandContext& context,
@@ -21,10 +22,10 @@ ExitStatus optimisePendulumInSteps(const OptimiseRequest& request, const Command
 ExitStatus optimiseSuspendedMass(const OptimiseRequest& request, const CommandContext& context,
                                  Summary& summary, Report& report, OutputFolder& folder);
 
-/// The cart's accelerations of a motion.
+/// The cart's acceleration in a motion.
 info::CartMotion cartMotion(const TimedMotion& motion, std::size_t stepsPerSample);
 
-/// One system, or a stack of them.
+/// One system, or several with different parameter values.
 template <class System, class Make>
 System systemAt(const std::vector<Eigen::Vector2d>& theta, const Make& make) {
   if (theta.size() == 1) return make(theta.front());

@@ -14,15 +14,15 @@
 #include "robot_trials.h"
 #include "summary.h"
 
-/// The search for a robot's motion: from the command line's wishes to a motion found, written down.
+/// The search for a robot's motion, from the options of the command line to the written result.
 namespace app {
 
-/// What `fisherhill robot` optimises, and from where.
+/// What `fisherhill robot` optimises, and the initial motion.
 struct OptimiseRequest {
   bool pendulum = true;                     ///< else the suspended mass
   bool discrete = false;                    ///< the variational integrator's motion (chapter 5)
-  std::optional<double> amplitude, period;  ///< of the start, [m] and [s]
-  std::optional<double> perturb;            ///< added to the start's input [unit of the input]
+  std::optional<double> amplitude, period;  ///< of the initial motion, [m] and [s]
+  std::optional<double> perturb;            ///< added to the initial input [unit of the input]
   std::string warmStart;                    ///< a motion_optimised.csv; empty: none
   int trials = 300;
 
@@ -35,12 +35,12 @@ struct OptimiseRequest {
 
   std::optional<info::CandidateRule> robust;   ///< over these values of θ
   std::vector<Eigen::Vector2d> candidates;     ///< empty: θ, and each parameter ±30 %
-  std::optional<info::LaboratoryEffects> lab;  ///< run both motions in the laboratory
+  std::optional<info::LaboratoryEffects> lab;  ///< simulate both motions in the laboratory
 };
 
 using Inputs = std::vector<Eigen::VectorXd>;
 
-/// A motion in columns, whichever way of time it came from.
+/// A motion in columns, from continuous or discrete time.
 struct TimedMotion {
   double step;  ///< [s]
   std::vector<Eigen::VectorXd> x;
@@ -48,13 +48,13 @@ struct TimedMotion {
   std::vector<Eigen::MatrixXd> grown;  ///< information up to each time
 };
 
-/// λ_min at every candidate, of three motions.
+/// λ_min for every set of parameter values, for three motions.
 struct RobustOutcome {
   std::vector<Eigen::Vector2d> candidates;
   Eigen::VectorXd initial, nominal, robust;
 };
 
-/// A search with all that is told about it.
+/// A search and its results.
 struct Found {
   TimedMotion before, after;
   info::SearchResult search;
@@ -63,29 +63,29 @@ struct Found {
   std::optional<RobustOutcome> robust;
 };
 
-/// Begins a search for these values of θ, from these inputs.
+/// Starts a search for these values of θ, from these inputs.
 using Projector = std::function<std::unique_ptr<info::ProjectedMotion>(
     const std::vector<Eigen::Vector2d>& theta, const Inputs& start)>;
 
-/// The start: the task's own, another amplitude or period, another motion, a little perturbed; and
-/// the wishes about objective, input and limits put into the design.
+/// Sets the initial motion (the task's own, another amplitude or period, another motion, or a
+/// perturbed one), and the objective, input weight and limits of the design.
 /// @param amplitude the task's own [m]
 Inputs prepare(const OptimiseRequest& request, const CommandContext& context,
                info::MotionDesign& design, double step, double amplitude);
 
-/// Searches; with `robust` also for θ alone, to compare.
-/// @throws std::invalid_argument with advice where the start tells nothing
+/// Runs the search; with `robust` also for θ alone, for comparison.
+/// @throws std::invalid_argument with advice, if the initial motion has no information
 Found find(const OptimiseRequest& request, const Projector& project, const Eigen::Vector2d& theta,
            const info::MotionDesign& design, double step, const Inputs& start,
            const info::SearchOptions& base);
 
-/// motion_initial.csv, motion_optimised.csv and search.json; how the search went, in the summary
-/// and the report.
+/// Writes motion_initial.csv, motion_optimised.csv and search.json, and adds the course of the
+/// search to the summary and the report.
 /// @param columns names of the states
 void tellSearch(const Found& found, const std::vector<std::string>& columns, Summary& summary,
                 Report& report, OutputFolder& folder);
 
-/// Done, or "no" with the figures if nothing was gained.
+/// `done`, or `answerIsNo` with the reason in the report if there was no progress.
 ExitStatus statusOf(const Found& found, Report& report);
 
 }  // namespace app

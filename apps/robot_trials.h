@@ -7,7 +7,7 @@
 #include "info/systems/robot_experiments.h"
 #include "report.h"
 
-/// What the robot subcommand shows of information, bounds and simulated trials.
+/// Information, bounds and simulated trials in the report of the robot subcommand.
 namespace app {
 
 /// A matrix as a list of its rows.
@@ -15,16 +15,16 @@ nlohmann::ordered_json rowsOf(const Eigen::MatrixXd& matrix);
 /// In increasing order.
 Eigen::VectorXd eigenvaluesOf(const Eigen::MatrixXd& information);
 
-/// Cramér–Rao bound of an experiment at its truth.
+/// Cramér–Rao bound of an experiment at the true parameters.
 Eigen::MatrixXd boundOf(const info::PlannedExperiment& plan);
 
-/// Simulated experiments with fresh noise, each estimated from a start drawn within 0 to 2 times
-/// the truth, with a bar on the terminal.
+/// Simulated experiments with independent noise, each estimated from an initial guess drawn between
+/// 0 and 2 times the true values, with a progress bar.
 info::MonteCarloResult simulateTrials(const CommandContext& context,
                                       const info::PlannedExperiment& plan, int trials,
                                       const std::string& label);
 
-/// Estimates of one parameter, counted in bins about the truth, in standard deviations of the
+/// Histogram of the estimates of one parameter about the true value, in standard deviations of the
 /// bound.
 Figure histogram(const std::string& name, const info::MonteCarloResult& result,
                  Eigen::Index parameter, double truth);

@@ -8,22 +8,22 @@
 
 namespace app {
 
-/// A table whose rows are numbered, computed in any order and kept as they come: what is there
-/// survives the death of the program, and a later run with the same settings goes on from it.
+/// A table of numbered rows that are computed in any order and stored as they arrive: finished rows
+/// survive the death of the program, and a later run with the same settings continues from them.
 ///
-/// The file holds the settings as JSON behind "# ", a line of column names, and complete rows
-/// "number,…,checksum" in the order of their arrival. Every row is handed to the system at once; a
-/// row that was cut off at the end is dropped when the file is opened again, one that is not what
-/// its checksum says counts as not computed. A lock keeps a second program away. Rows stay in the
-/// file, and only with no path in memory.
+/// The file holds the settings as JSON after "# ", a line of column names, and complete rows
+/// "number,…,checksum" in order of arrival. Every row is written at once; a truncated row at the
+/// end is dropped when the file is opened again, and a row whose checksum does not match counts as
+/// not computed. A lock excludes a second program. Rows are kept in the file; without a path they
+/// are kept in memory.
 class RowFile {
  public:
-  /// Opens the file and reads what it has; makes it if there is none.
+  /// Opens and reads the file, or creates it.
   /// @param settings  an object: all that the rows depend on
   /// @param columns   names, the row's number first
-  /// @param replace   start anew if the file is of other settings
-  /// @throws std::runtime_error if it cannot be written, is in use, is not such a file, or is of
-  ///   other settings (naming the first that differs) or of a version that knew no checksums
+  /// @param replace start anew if the file has other settings
+  /// @throws std::runtime_error if it cannot be written, is in use, is another kind of file, or has
+  ///   other settings (naming the first that differs) or no checksums (an earlier version)
   RowFile(std::filesystem::path path, const nlohmann::ordered_json& settings,
           const std::vector<std::string>& columns, bool replace);
   ~RowFile();
@@ -33,20 +33,21 @@ class RowFile {
   bool contains(std::uint64_t number) const {
     return number < places_.size() && places_[number] != 0;
   }
-  /// How many rows there are.
+  /// Number of rows.
   std::size_t count() const { return count_; }
-  /// How many lines of the file, when it was opened, were no row or not the one that was written.
+  /// Number of lines that were damaged when the file was opened.
   std::size_t damaged() const { return damaged_; }
 
-  /// The row's text behind the number's comma, without its checksum.
+  /// Text of the row after the number and comma, without its checksum.
   /// @throws std::out_of_range if it is not contained, std::runtime_error if it cannot be read
   std::string row(std::uint64_t number) const;
 
-  /// Adds a row. @param text what stands behind "number,": as many cells as there are columns, one
-  ///   less @throws std::runtime_error if it cannot be written
+  /// Adds a row.
+  /// @param text the cells after "number,", one fewer than there are columns
+  /// @throws std::runtime_error if it cannot be written
   void append(std::uint64_t number, const std::string& text);
 
-  /// Takes the file away, and with it the rows.
+  /// Removes the file with its rows.
   void remove();
 
  private:
@@ -57,12 +58,12 @@ class RowFile {
   void write(const std::string& text);
 
   std::filesystem::path path_;
-  std::size_t cells_;  ///< behind the number
+  std::size_t cells_;  ///< cells after the number
   std::string columns_;
   int file_ = -1;
   std::uint64_t end_ = 0;              ///< bytes of the file
-  std::vector<std::uint64_t> places_;  ///< by number: where its row begins, 0: nowhere
-  std::vector<std::string> kept_;      ///< without a path: the texts; places are indices + 1
+  std::vector<std::uint64_t> places_;  ///< by number: offset of its row, 0: none
+  std::vector<std::string> kept_;      ///< without a path: the texts; places_ are then indices + 1
   std::size_t count_ = 0, damaged_ = 0;
 };
 

@@ -17,8 +17,8 @@ namespace app {
 struct SweepRun {
   double value;
   bio::Trajectory motion;
-  double rms = 0;      ///< of the difference from the model's own motion [rad] or [m]
-  double largest = 0;  ///< of the same
+  double rms = 0;      ///< RMS difference from the model's own motion [rad] or [m]
+  double largest = 0;  ///< largest difference [rad] or [m]
 };
 struct Sweep {
   bio::ModelParameter parameter;
@@ -26,7 +26,7 @@ struct Sweep {
   std::vector<SweepRun> runs;
 };
 
-/// What a parameter's profile says.
+/// Profile likelihood of a parameter.
 struct ProfileFinding {
   info::Parameter parameter;
   info::Profile profile;
@@ -38,7 +38,7 @@ struct GlobalFinding {
   std::optional<info::SobolResult> sobol;
 };
 
-/// All that `sensitivity` found.
+/// The findings of `sensitivity`.
 struct SensitivityFindings {
   std::string modelFile;
   std::vector<std::string> trialFiles;
@@ -55,11 +55,11 @@ struct SensitivityFindings {
   GlobalFinding global = {};
 };
 
-/// Degrees or millimetres, as the coordinate turns or shifts.
+/// Degrees for a rotation, millimetres for a translation.
 double shownFactor(const bio::Coordinate& coordinate);
 const char* shownUnit(const bio::Coordinate& coordinate);
 
-/// sensitivity.csv, most influential first; an empty cell: no information.
+/// sensitivity.csv, most influential first; an empty cell means no information.
 void writeSensitivities(const SensitivityFindings& findings, std::ostream& out);
 /// fisher.csv: the matrix with its names.
 void writeFisher(const SensitivityFindings& findings, std::ostream& out);
@@ -69,7 +69,7 @@ void writeSweep(const Sweep& sweep, const bio::Coordinate& coordinate, std::ostr
 void writeProfile(const ProfileFinding& finding, std::ostream& out);
 void writeGlobal(const SensitivityFindings& findings, std::ostream& out);
 
-/// The figures that summary.json is to hold: parameters, cost_ratio, …
+/// Sets the values of summary.json: parameters, cost_ratio, …
 void tellSensitivity(const SensitivityFindings& findings, Summary& summary);
 Report sensitivityReport(const SensitivityFindings& findings);
 

@@ -8,7 +8,7 @@
 
 namespace app {
 
-/// What `design --separate` found.
+/// Result of `design --separate`.
 struct SeparatingFindings {
   const std::string& modelFile;
   const std::string& trialFile;
@@ -21,8 +21,8 @@ void tellSeparation(const SeparatingFindings& findings, Summary& summary);
 
 Report separatingReport(const SeparatingFindings& findings);
 
-/// The designed experiment as a trial that can be replayed, with the base model's motion where the
-/// coordinate is to be measured.
+/// The designed experiment as a trial for replay, with the base model's motion at the sample times
+/// of the coordinate.
 bio::Table separatingTable(const SeparatingFindings& findings);
 
 }  // namespace app

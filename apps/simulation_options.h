@@ -16,10 +16,10 @@ struct SimulationOptions {
   std::string integrator = "vi";                             ///< vi, vi-left, rk4 or cvode
   std::optional<double> step;                                ///< Δt [s] > 0; see stepOrDefault
   std::vector<std::string> coordinates = {"elbow_flexion"};  ///< the free ones
-  std::vector<Assignment> locks;            ///< locked coordinates that are not at their defaults
+  std::vector<Assignment> locks;  ///< values of locked coordinates that differ from the defaults
   std::vector<Assignment> initial;          ///< start values of free coordinates
-  std::vector<std::string> wrapAsCylinder;  ///< ellipsoids to take as cylinders
-  bool ignoreExtra = false;                 ///< pass over a trial's unknown columns
+  std::vector<std::string> wrapAsCylinder;  ///< ellipsoids to treat as cylinders
+  bool ignoreExtra = false;                 ///< ignore unknown columns of a trial
 
   /// Δt [s]: as given, else the integrator's own.
   double stepOrDefault() const;
@@ -27,11 +27,10 @@ struct SimulationOptions {
 
 void addSimulationOptions(CLI::App& subcommand, SimulationOptions& options);
 
-/// All of them as one object, to compare with another run's.
+/// All of them as one JSON object, to compare with another run.
 nlohmann::ordered_json settingsOf(const SimulationOptions& options);
 
-/// Only the options that choose a model's free coordinates: --coordinate, --lock and
-/// --wrap-as-cylinder.
+/// Adds only the options of the model: --coordinate, --lock and --wrap-as-cylinder.
 void addModelOptions(CLI::App& subcommand, SimulationOptions& options);
 
 }  // namespace app

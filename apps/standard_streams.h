@@ -4,11 +4,11 @@
 
 namespace app {
 
-/// Opens /dev/null in place of standard input, output and error where the program was started with
-/// them closed, so that no file it opens can be taken for one of them. To be called first.
+/// Opens /dev/null for those of standard input, output and error that were closed when the program
+/// started, so that no file gets their descriptors. Must be called first.
 void openStandardStreams();
 
-/// Writes to standard error; a text that cannot be written there is lost, and no error.
+/// Writes to standard error; failures are ignored.
 void tell(std::string_view text);
 
 }  // namespace app

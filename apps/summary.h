@@ -12,8 +12,8 @@ namespace app {
 /// What every result says about itself: summary.json, as docs/schemas/summary.schema.json describes
 /// it.
 ///
-/// Figures have plain names that end in their unit (`rms_error_deg`); an infinite or undefined one
-/// becomes null, since JSON has no other word for it.
+/// Values have plain names that end in their unit (`rms_error_deg`); an infinite or undefined value
+/// becomes null, since JSON cannot express it.
 class Summary {
  public:
   struct InputFile {
@@ -23,19 +23,19 @@ class Summary {
 
   explicit Summary(const CommandContext& context);
 
-  /// Names a file the result depends on. @throws std::runtime_error if it cannot be read
+  /// Adds a file that the result depends on. @throws std::runtime_error if it cannot be read
   void addInput(const std::filesystem::path& file);
 
-  /// Adds one figure: a number, text, list or object.
+  /// Adds one value: a number, text, list or object.
   void set(const std::string& name, nlohmann::ordered_json value);
 
   /// The simulation's own entries: integrator, step_s, duration_s, wall_s.
   void setSimulation(const std::string& integrator, double step, double duration, double wallTime);
 
-  /// Tells the user at once, on standard error, and keeps the sentence in the result.
+  /// Prints a warning on standard error and keeps it in the summary.
   void warn(const std::string& sentence);
 
-  /// The command line as it could be typed again.
+  /// The command line, quoted for a shell.
   std::string commandLine() const;
 
   const std::vector<InputFile>& inputs() const { return inputs_; }

@@ -19,7 +19,7 @@ std::string withUnit(double value, const std::string& unit, int digits = 4);
 /// "Both parameters are identifiable": how many of all are, without a full stop.
 std::string identifiableWords(std::ptrdiff_t identifiable, std::ptrdiff_t all);
 
-/// The word as a shell has to be given it: in quotes where it needs them.
+/// The word quoted for a shell, if it needs quotes.
 std::string shellWord(const std::string& word);
 
 /// & < > " ' replaced by their HTML entities.

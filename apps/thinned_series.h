@@ -4,12 +4,12 @@
 
 namespace app {
 
-/// Parts of a long curve, of each of which the extremes are drawn.
+/// Number of intervals of a long curve whose extremes are drawn.
 inline constexpr std::size_t thinnedParts = 2000;
 
-/// What a screen can show of a long curve: of each of thinnedParts equal parts of its points the
-/// lowest, the highest and the first gap; the curve as it is where it is short, a path, or its x
-/// turn back.
+/// Reduces a long curve for display: from each of thinnedParts equal parts the lowest and highest
+/// points and the first gap. A short curve, a path, or a curve whose x decreases somewhere is
+/// returned unchanged.
 Series thinned(const Series& series);
 
 }  // namespace app

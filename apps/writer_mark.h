@@ -5,14 +5,14 @@
 
 namespace app {
 
-/// What says that a program is at work in a folder: the file `.unfinished-HOST-PID`, locked (flock)
-/// as long as the mark lives. Its program writes under names that begin like it,
+/// Marks that a program is writing into a folder: the file `.unfinished-HOST-PID`, locked (flock)
+/// for the lifetime of the mark. The program's temporary files are called
 /// `.unfinished-HOST-PID-NAME`.
 ///
-/// The kernel lets go of the lock when the program dies, however it dies. So a mark that can be
-/// locked is nobody's, and with it all that is called after it. A process's number alone would not
-/// do: it is given again, and means another process in another container. Where the file system
-/// has no locks there is no mark, and nothing is ever taken for a leftover.
+/// The kernel releases the lock when the program ends for any reason. So a mark that can be locked
+/// belongs to no running program, nor do the files named after it. The process number alone would
+/// not suffice: it is reused, and means another process in another container. On a file system
+/// without locks there is no mark, and no file counts as left over.
 class WriterMark {
  public:
   explicit WriterMark(std::filesystem::path folder);
@@ -20,16 +20,16 @@ class WriterMark {
   WriterMark(const WriterMark&) = delete;
   WriterMark& operator=(const WriterMark&) = delete;
 
-  /// The name under which a file is to be written.
+  /// The temporary name of a file.
   std::filesystem::path temporaryPath(const std::string& name) const;
 
  private:
   std::filesystem::path path_;
-  int lock_ = -1;  ///< open and locked; −1: no locks here
+  int lock_ = -1;  ///< open and locked; −1: no locks on this file system
 };
 
-/// Takes away what programs of this host that live no longer have left in a folder: marks and what
-/// is called after them, regular files alone.
+/// Removes from a folder the marks, and the regular files named after them, of programs of this
+/// host that have ended.
 void removeLeftovers(const std::filesystem::path& folder);
 
 }  // namespace app

@@ -13,33 +13,35 @@
 
 namespace app {
 
-/// What a search in an arm leaves beside verdict and report, and what replays of it give.
+/// The model, trials and commands that a search writes beside verdict and report, and their
+/// replays.
 struct WrittenDiscovery {
-  std::string model;  ///< of the folder: the model with all that was fitted; empty: none
+  std::string model;  ///< file name of the model with all fitted parameters; empty: none
   std::vector<bio::discover::RepairedTrial> trials;
-  std::vector<std::string> replayFiles;  ///< what to replay in the place of each trial; as typed
+  std::vector<std::string> replayFiles;  ///< file to replay instead of each trial, as typed
   std::optional<bio::discover::Repaired> repaired;
-  int shown = 0;  ///< the trial along whose motion `sizes` are: held out if one is
+  int shown = 0;  ///< index of the trial that `sizes` refer to, a held-out one if there is one
   std::vector<bio::discover::EffectSize> sizes;               ///< of Verdict::effects
-  std::vector<std::pair<std::string, std::string>> commands;  ///< figure, and what remakes it
+  std::vector<std::pair<std::string, std::string>>
+      commands;  ///< quantity, and the command that reproduces it
 };
 
 /// The files that writeDiscovery may write.
 std::vector<std::string> namesOfDiscovery(std::size_t training, std::size_t heldOut);
 
-/// What a search has found, and where.
+/// The findings of a search with their inputs.
 struct DiscoveryInArm {
   const ArmDiscoveryRequest& request;
-  const std::vector<std::string>& files;  ///< of all trials, those held out last
+  const std::vector<std::string>& files;  ///< of all trials, held-out ones last
   const bio::discover::ElbowDisagreement& data;
   const info::discover::Verdict& verdict;
   const std::vector<int>& heldOut;
 };
 
-/// Writes with_effect.osim (or refitted.osim, where nothing is missing), effect_only.osim and,
-/// where EMG or sensor are at fault or a muscle was switched on, the trials as they should have
-/// been: driven_N.sto and driven_held_out_N.sto. Without a folder the figures are the same.
-/// @param summary  its inputs are where all this comes from
+/// Writes with_effect.osim (or refitted.osim if no effect is missing), effect_only.osim and, if the
+/// effect concerns the EMG, the sensor or a switched-off muscle, the corrected trials driven_N.sto
+/// and driven_held_out_N.sto. The results are the same without a folder.
+/// @param summary its inputs are the provenance written into the model
 WrittenDiscovery writeDiscovery(const DiscoveryInArm& found, Summary& summary,
                                 OutputFolder& folder);
 

@@ -194,7 +194,7 @@ void defineArms(py::module_& module) {
       .def_readonly("name", &bio::Model::name)
       .def_readonly("warnings", &bio::Model::warnings, "what was read but is not simulated")
       .def_property_readonly("coordinates", &coordinatesOf)
-      .def_property_readonly("muscles", &musclesOf, "those that are enabled")
+      .def_property_readonly("muscles", &musclesOf, "enabled muscles")
       .def(
           "write",
           [](const bio::Model& model, const std::string& file) { bio::writeOsim(model, file); },
@@ -203,7 +203,8 @@ void defineArms(py::module_& module) {
         return fmt::format("<fisherhill.Model '{}', {} muscles>", model.name,
                            musclesOf(model).size());
       });
-  py::class_<bio::Trial>(module, "Trial", "Excitations, and what was measured beside them.")
+  py::class_<bio::Trial>(module, "Trial",
+                         "Excitations, measured coordinates and loads of one recording.")
       .def_readonly("name", &bio::Trial::file)
       .def_readonly("times", &bio::Trial::times, "[s]")
       .def_readonly("muscles", &bio::Trial::muscles)
@@ -212,11 +213,10 @@ void defineArms(py::module_& module) {
                              "{coordinate: (times [s], values [rad] or [m])}")
       .def_property_readonly(
           "known_mass_in_hand", [](const bio::Trial& trial) { return trial.known.massInHand; },
-          "[kg] that the experimenter put there; only discover and replay take it into account")
+          "mass held by design [kg]; only discover and replay take it into account")
       .def_property_readonly(
           "known_arm_turn", [](const bio::Trial& trial) { return trial.known.armTurn; },
-          "[rad] by which the experimenter turned the whole arm; only discover and replay take it "
-          "into "
+          "angle by which the whole limb was turned [rad]; only discover and replay take it into "
           "account")
       .def_readonly("warnings", &bio::Trial::warnings)
       .def("__repr__", [](const bio::Trial& trial) {
@@ -235,27 +235,61 @@ void defineArms(py::module_& module) {
         return trial;
       },
       "file"_a, "model"_a, py::kw_only(), "ignore_extra"_a = false,
-      "Reads a trial (.sto, .mot or .csv) of the model. Header lines known_mass_in_hand_kg=1 and "
-      "known_arm_turn_deg=-45 say that it was recorded so.");
-  module.def(
-      "make_trial", &trialOf, "model"_a, "columns"_a, py::kw_only(), "name"_a = "trial",
-      "ignore_extra"_a = false, "known_mass_in_hand"_a = 0.0, "known_arm_turn"_a = 0.0,
-      "A trial from arrays, {column: values}; columns are called as in a file: 'time' [s], "
-      "muscles (excitation, 0 to 1), 'elbow_flexion' [rad] or 'elbow_flexion_deg'; NaN where "
-      "the coordinate was not measured; 'elbow_flexion.torque' [N m] pushes from outside. "
-      "known_mass_in_hand [kg]: what was held on purpose; known_arm_turn [rad]: by how much the "
-      "whole arm was turned against the ground, positive as the coordinate rises.");
-  module.def(
-      "replay", &replay, "model"_a, "trial"_a, py::kw_only(),
-      "initial"_a = std::map<std::string, double>(),
-      "The motion that a trial's excitations make: time, q, q_dot, activation, fibre_length, "
-      "tendon_force, moment_arm (rows = times; SI units, radians), rms_error {coordinate: rad}, "
-      "energy_error [J], outcome ('ok', 'unstable', 'no solution'), start_from ('given', 'model': "
-      "where discover or calibrate has fitted it to start this trial, 'measured', 'default'), step "
-      "[s].\n\n"
-      "Further keywords: coordinate='elbow_flexion' (or a list), lock={name: rad}, "
-      "integrator='vi' ('vi-left', 'rk4', 'cvode'), step=0.01 (or what the model was fitted "
-      "with).");
+      R"doc(Reads a trial of the model (.sto, .mot or .csv).
+
+Header lines known_mass_in_hand_kg=1 and known_arm_turn_deg=-45 state the experimental conditions.)doc");
+  module.def("make_trial", &trialOf, "model"_a, "columns"_a, py::kw_only(), "name"_a = "trial",
+             "ignore_extra"_a = false, "known_mass_in_hand"_a = 0.0, "known_arm_turn"_a = 0.0,
+             R"doc(Makes a trial from arrays.
+
+Parameters
+----------
+model : Model
+columns : dict
+    {column: values}, named as in a file: 'time' [s]; muscles (excitation, 0 to 1); 'elbow_flexion'
+    [rad] or 'elbow_flexion_deg', NaN where it was not measured; 'elbow_flexion.torque' [N m], an
+    external load.
+known_mass_in_hand : float
+    Mass that the subject held by design [kg].
+known_arm_turn : float
+    Angle by which the whole limb was turned against the ground [rad], positive as the coordinate
+    rises.)doc");
+  module.def("replay", &replay, "model"_a, "trial"_a, py::kw_only(),
+             "initial"_a = std::map<std::string, double>(),
+             R"doc(Simulates the motion produced by a trial's excitations.
+
+Parameters
+----------
+model : Model
+trial : Trial
+initial : dict
+    {coordinate: initial value in rad or m}; default: the fitted or first measured value, else the
+    model's default value.
+
+Other keywords: coordinate='elbow_flexion' (the free coordinate, or a list of them),
+lock={name: value} in rad or m, integrator='vi' ('vi-left', 'rk4' or 'cvode'), step [s].
+The default step is the one that the model was fitted with, else 0.01 s (rk4: 0.0002 s).
+
+Returns
+-------
+time : array
+    [s]
+q, q_dot : array, times x coordinates
+    [rad] and [rad/s], or [m] and [m/s].
+activation, fibre_length, tendon_force, moment_arm : array, times x muscles
+    [1], [m], [N], [m].
+coordinates, muscles : list of str
+    Names of the columns.
+rms_error : dict
+    {coordinate: RMS error in rad or m}, where it was measured.
+energy_error : float
+    [J]
+outcome : str
+    'ok', 'unstable' or 'no solution'; `why` gives the reason.
+start_from : str
+    'given', 'model' (fitted by discover or calibrate for this trial), 'measured' or 'default'.
+step : float
+    Time step [s].)doc");
 }
 
 }  // namespace python

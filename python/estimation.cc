@@ -20,7 +20,7 @@ info::OutputCovariance covarianceOf(const py::object& noise, Eigen::Index output
                                            : array.cast<VectorXd>();
   const VectorXd deviation = given.size() == 1 ? VectorXd::Constant(outputs, given[0]) : given;
   if (!(deviation.array() > 0).all()) {
-    throw std::invalid_argument("noise: a standard deviation is not > 0");
+    throw std::invalid_argument("noise: standard deviations must be > 0");
   }
   return info::OutputCovariance(MatrixXd(deviation.array().square().matrix().asDiagonal()));
 }
@@ -52,7 +52,7 @@ std::vector<info::Parameter> parametersOf(const VectorXd& start,
   for (const auto* named : {&bounds, &prior}) {
     for (const auto& [name, values] : *named) {
       if (std::find(names.begin(), names.end(), name) == names.end()) {
-        throw std::invalid_argument(fmt::format("'{}' is not a parameter", name));
+        throw std::invalid_argument(fmt::format("'{}' must be a parameter", name));
       }
     }
   }
@@ -134,31 +134,68 @@ py::object identifiability(const MatrixXd& information, const VectorXd& values,
 }  // namespace
 
 void defineEstimation(py::module_& module) {
+  module.def("fisher_information", &fisherInformation, "gamma"_a, "noise"_a, py::kw_only(),
+             "outputs"_a = 1,
+             R"doc(Fisher information, the sum over samples of gamma^T Sigma^-1 gamma.
+
+Parameters
+----------
+gamma : array
+    samples x outputs x parameters, or (samples * outputs) x parameters with `outputs` given.
+noise : float or array
+    Standard deviation of the outputs, one for each output, or their covariance.)doc");
   module.def(
-      "fisher_information", &fisherInformation, "gamma"_a, "noise"_a, py::kw_only(),
-      "outputs"_a = 1,
-      "Sum over samples of gamma^T Sigma^-1 gamma. gamma: samples x outputs x parameters, or "
-      "(samples * outputs) x parameters with `outputs`; noise: a standard deviation, one for "
-      "each output, or the covariance of the outputs.");
-  module.def("cramer_rao_bound", &info::cramerRaoBound, "information"_a,
-             "names"_a = std::vector<std::string>(),
-             "The inverse: no unbiased estimator has a smaller covariance. ValueError names what "
-             "has no information.");
-  module.def(
-      "identifiability", &identifiability, "information"_a, "values"_a,
+      "cramer_rao_bound", &info::cramerRaoBound, "information"_a,
       "names"_a = std::vector<std::string>(),
-      "Which parameters, or combinations of them, are determined, in words: sentences, rank, "
-      "sd, correlation.");
-  module.def(
-      "estimate", &estimate, "predict"_a, "measured"_a, "noise"_a, "start"_a, py::kw_only(),
-      "names"_a = std::vector<std::string>(), "sensitivities"_a = py::none(), "bounds"_a = Pairs(),
-      "prior"_a = Pairs(), "method"_a = "levenberg-marquardt", "iterations"_a = 100,
-      "confidence"_a = 0.95,
-      "Weighted least squares within bounds={name: (low, high)}, with prior={name: (mean, sd)}. "
-      "predict(theta) gives samples x outputs, as `measured` (NaN: not measured); a System does. "
-      "sensitivities(theta) gives gamma; without it (and without predict.sensitivities) central "
-      "differences do. Back come parameters, sd, covariance (the Cramer-Rao bound there), "
-      "intervals, converged, why, reduced_chi_square.");
+      R"doc(Cramer-Rao bound, the inverse of the information: no unbiased estimator has a smaller covariance.
+
+Raises ValueError with the names of parameters about which there is no information.)doc");
+  module.def("identifiability", &identifiability, "information"_a, "values"_a,
+             "names"_a = std::vector<std::string>(),
+             R"doc(Which parameters, or combinations of them, are identifiable.
+
+Returns
+-------
+rank : int
+sentences : list of str
+sd : array
+correlation : array
+determined : list of str
+    Combinations that are determined.)doc");
+  module.def("estimate", &estimate, "predict"_a, "measured"_a, "noise"_a, "start"_a, py::kw_only(),
+             "names"_a = std::vector<std::string>(), "sensitivities"_a = py::none(),
+             "bounds"_a = Pairs(), "prior"_a = Pairs(), "method"_a = "levenberg-marquardt",
+             "iterations"_a = 100, "confidence"_a = 0.95,
+             R"doc(Weighted least squares with bounds and priors.
+
+Parameters
+----------
+predict : callable or System
+    predict(theta) returns samples x outputs, as `measured`.
+measured : array, samples x outputs
+    NaN: not measured.
+noise : float or array
+    As in fisher_information.
+start : array
+    Start values of the parameters.
+names : list of str
+sensitivities : callable, optional
+    sensitivities(theta) returns gamma. Default: predict.sensitivities, else central differences.
+bounds : dict
+    {name: (low, high)}.
+prior : dict
+    {name: (mean, sd)}.
+method : str
+    'levenberg-marquardt', 'gauss-newton' or 'gradient-descent'.
+iterations : int
+    Largest number of iterations.
+confidence : float
+    Of the intervals.
+
+Returns
+-------
+parameters, names, sd, covariance (the Cramer-Rao bound at the estimate), information, intervals,
+at_bound, converged, why, cost, iterations, evaluations, reduced_chi_square.)doc");
 }
 
 }  // namespace python

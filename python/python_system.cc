@@ -73,11 +73,11 @@ PythonSystem::PythonSystem(py::object f, VectorXd x0, VectorXd times, MatrixXd i
       times_(std::move(times)),
       inputs_(std::move(inputs)),
       substeps_(substeps) {
-  if (times_.size() == 0) throw std::invalid_argument("times: there is none, must be at least one");
+  if (times_.size() == 0) throw std::invalid_argument("times: empty, must have at least one");
   for (Eigen::Index k = 1; k < times_.size(); ++k) {
     if (times_[k] > times_[k - 1]) continue;
     throw std::invalid_argument(
-        fmt::format("times: {} s behind {} s, must rise", times_[k], times_[k - 1]));
+        fmt::format("times: {} s after {} s, must rise", times_[k], times_[k - 1]));
   }
   if (inputs_.size() == 0) inputs_.resize(times_.size(), 0);
   if (inputs_.rows() != times_.size()) {
@@ -89,10 +89,10 @@ PythonSystem::PythonSystem(py::object f, VectorXd x0, VectorXd times, MatrixXd i
   }
   const Derivatives& d = derivatives_;
   if (d.f_x.is_none() != d.f_theta.is_none()) {
-    throw std::invalid_argument("f_x and f_theta belong together");
+    throw std::invalid_argument("f_x and f_theta require each other");
   }
   if (!g_.is_none() && !d.f_x.is_none() && (d.g_x.is_none() || d.g_theta.is_none())) {
-    throw std::invalid_argument("f_x and f_theta with an output g need g_x and g_theta as well");
+    throw std::invalid_argument("f_x and f_theta with an output g require g_x and g_theta as well");
   }
 }
 
@@ -141,7 +141,7 @@ MatrixXd PythonSystem::outputs(const VectorXd& theta) const {
     if (k == 0) y.resize(times_.size(), output.size());
     if (output.size() != y.cols()) {
       throw std::invalid_argument(
-          fmt::format("g: {} outputs, must be {} as at first", output.size(), y.cols()));
+          fmt::format("g: {} outputs, must be {} as in the first call", output.size(), y.cols()));
     }
     y.row(k) = output;
     for (int s = 0; k + 1 < times_.size() && s < substeps_; ++s) {
@@ -205,10 +205,24 @@ info::Predictor predictorOf(const py::object& outputs, const py::object& sensiti
 void defineSystem(py::module_& module) {
   py::class_<PythonSystem>(
       module, "System",
-      "A system that Python functions define: x' = f(x, u, theta, t), y = g(x, u, theta), from x0 "
-      "through the times [s], inputs (times x inputs) linear between. Runge-Kutta of fourth order, "
-      "`substeps` of it from one time to the next. With f_x and f_theta (and g_x, g_theta where "
-      "there is a g; same arguments, matrices) sensitivities are exact, else central differences.")
+      R"doc(A system defined by Python functions: x' = f(x, u, theta, t), y = g(x, u, theta).
+
+Parameters
+----------
+f : callable
+x0 : array
+    Initial state.
+times : array
+    Sample times [s].
+inputs : array, times x inputs, optional
+    Linear between the times.
+g : callable, optional
+    Outputs; default: the state.
+f_x, f_theta, g_x, g_theta : callable, optional
+    Jacobians with the arguments of f and g. If they are given, sensitivities are exact, else they
+    are central differences.
+substeps : int
+    Runge-Kutta steps (fourth order) from one time to the next.)doc")
       .def(py::init([](py::object f, const VectorXd& x0, const VectorXd& times,
                        const py::object& inputs, py::object g, py::object f_x, py::object f_theta,
                        py::object g_x, py::object g_theta, int substeps) {
@@ -227,7 +241,7 @@ void defineSystem(py::module_& module) {
           [](const PythonSystem& s, const VectorXd& theta) {
             return s.withSensitivities(theta).second;
           },
-          "theta"_a, "dy/dtheta, (samples * outputs) x parameters, sample by sample")
+          "theta"_a, "dy/dtheta, (samples * outputs) x parameters, ordered by sample")
       .def_property_readonly("times", &PythonSystem::times);
 }
 

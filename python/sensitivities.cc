@@ -13,7 +13,7 @@ py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& t
                        const std::vector<std::string>& parameters, double noise,
                        const py::kwargs& keywords) {
   const ArmChoice choice = armChoice(keywords);
-  if (trials.empty()) throw std::invalid_argument("trials: there is none, must be at least one");
+  if (trials.empty()) throw std::invalid_argument("trials: empty, must have at least one");
   std::vector<Eigen::MatrixXd> gammas;
   std::vector<Eigen::VectorXd> outputs;
   std::vector<std::vector<double>> times;
@@ -79,15 +79,46 @@ py::list listParameters(const bio::Model& model, const py::kwargs& keywords) {
 
 void defineSensitivity(py::module_& module) {
   module.def("list_parameters", &listParameters, "model"_a,
-             "Every parameter of the model that moves the arm: name, value, unit, meaning, …");
+             R"doc(Lists the parameters of the model that affect the motion.
+
+Each has name, value, unit, meaning, lower, upper, deviation (prior standard deviation) and is_group.)doc");
   module.def(
       "sensitivity", &sensitivity, "model"_a, "trials"_a, "parameters"_a, py::kw_only(),
       "noise"_a = std::numbers::pi / 180,
-      "Exact sensitivities of the coordinate to parameters (names, may hold *, or ['all']) at the "
-      "measured times, and what measuring it with the given noise [rad] tells: gamma (one array "
-      "per "
-      "trial, times × parameters), fisher, bound_alone, bound_joint, identifiable, sentences. "
-      "Further keywords as replay has them.");
+      R"doc(Exact sensitivities of the coordinate to parameters, and the information of a measurement.
+
+Parameters
+----------
+model : Model
+trials : list of Trial
+parameters : list of str
+    Names, which may contain *, or ['all'].
+noise : float
+    Standard deviation of the measured coordinate [rad].
+
+Other keywords: coordinate='elbow_flexion' (the free coordinate, or a list of them),
+lock={name: value} in rad or m, integrator='vi' ('vi-left', 'rk4' or 'cvode'), step [s].
+
+Returns
+-------
+names, units, values
+    Of the parameters.
+times, outputs : list of arrays
+    Sample times [s] and simulated coordinate [rad], for each trial.
+gamma : list of arrays, times x parameters
+    Sensitivities, for each trial.
+fisher : array
+    Fisher information.
+normalised_sensitivity : array
+    RMS change of the motion per prior standard deviation.
+bound_alone, bound_joint : array
+    Cramer-Rao standard deviations with the other parameters known, and with all estimated together
+    with their priors.
+identifiable : list of bool
+    True: the data at least halve the prior standard deviation.
+correlation : array
+sentences : list of str
+    Which parameters are not separately identifiable.)doc");
 }
 
 }  // namespace python

@@ -36,7 +36,7 @@ ArmExperiment::ArmExperiment(const ParameterCatalogue& catalogue, const ArmOptio
   }
   if (options.integrator != Integrator::variational &&
       options.integrator != Integrator::variationalLeft) {
-    throw std::invalid_argument("sensitivities: the integrator must be vi or vi-left");
+    throw std::invalid_argument("sensitivities: integrator must be vi or vi-left");
   }
   double last = -std::numeric_limits<double>::infinity();
   for (const double t : times_) {
@@ -123,7 +123,7 @@ info::Predictor ArmExperiment::predictor() const {
 }
 
 info::Predictor joined(const std::vector<ArmExperiment>& experiments) {
-  if (experiments.empty()) throw std::invalid_argument("no experiment to join");
+  if (experiments.empty()) throw std::invalid_argument("must have at least one experiment to join");
   Index samples = 0;
   for (const ArmExperiment& experiment : experiments) {
     if (experiment.selection() != experiments.front().selection()) {

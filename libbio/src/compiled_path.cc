@@ -198,7 +198,7 @@ class Compiler {
     };
     const std::string line = fmt::format(
         "muscle '{}' touches the wrap objects '{}' at once between its points '{}' and '{}': only "
-        "'{}' is heeded",
+        "'{}' is used",
         muscle_.name, fmt::join(objects, "' and '"), point(span.a), point(span.b), objects.front());
     if (std::find(path_.warnings.begin(), path_.warnings.end(), line) == path_.warnings.end()) {
       path_.warnings.push_back(line);
@@ -358,10 +358,10 @@ class Compiler {
     }
     const char* shape = wrap.isTorus ? "torus" : "ellipsoid";
     if (fixedInRange) {
-      note(fmt::format("the {} '{}' is left out: spans that do not move are taken as straight",
+      note(fmt::format("the {} '{}' is ignored: spans that do not move are taken as straight",
                        shape, wrap.name));
     } else if (movingInRange) {
-      note(fmt::format("the {} '{}' is left out: no moving span reaches it", shape, wrap.name));
+      note(fmt::format("the {} '{}' is ignored: no moving span reaches it", shape, wrap.name));
     }
   }
 
@@ -378,7 +378,7 @@ class Compiler {
       throw UnsupportedWrap(message);
     }
     throw std::invalid_argument(
-        fmt::format("{}; --wrap-as-cylinder {} takes it as a cylinder", message, wrap.name));
+        fmt::format("{}; --wrap-as-cylinder {} treats it as a cylinder", message, wrap.name));
   }
 
   double fixedLength(const PathSpan& span, const Posture& posture) const {

@@ -13,7 +13,7 @@ ArmState initialState(const Arm& arm, const Eigen::VectorXd& q, const Excitation
                       double time) {
   const auto n = static_cast<Eigen::Index>(arm.numMuscles());
   if (q.size() != arm.skeleton().numCoordinates() || !q.allFinite()) {
-    throw std::invalid_argument(fmt::format("start: {} coordinates given, must be {} finite values",
+    throw std::invalid_argument(fmt::format("start: {} coordinates, must be {} finite values",
                                             q.size(), arm.skeleton().numCoordinates()));
   }
   if (excitation.numMuscles() != n) {
@@ -67,8 +67,8 @@ void stepping::checkSimulation(const Arm& arm, const ExcitationSignal& excitatio
   const double furthest =
       std::max(std::abs(options.startTime), std::abs(options.startTime + options.duration));
   require(options.step > 1e-9 * furthest,
-          fmt::format("time up to {} s, must be below 1e9 steps of {} s: else numbers cannot tell "
-                      "one time from the next",
+          fmt::format("time up to {} s, must be below 1e9 steps of {} s: otherwise successive "
+                      "times cannot be distinguished",
                       furthest, options.step));
   require(options.maxHalvings >= 0 && options.maxHalvings <= 40,
           fmt::format("maxHalvings = {}, must be 0 to 40", options.maxHalvings));

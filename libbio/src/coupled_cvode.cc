@@ -187,10 +187,11 @@ class AdaptiveRun {
       if (flag != CV_ROOT_RETURN) continue;
       beginAnew();
       if (++switches > 100 * mostSwitchesInAStep) {
-        return end(Outcome::noSolution, reached_,
-                   fmt::format("no solution at t = {:.6g} s: conditional path points come and go "
-                               "without end",
-                               reached_));
+        return end(
+            Outcome::noSolution, reached_,
+            fmt::format(
+                "no solution at t = {:.6g} s: conditional path points switch on and off endlessly",
+                reached_));
       }
     }
     return true;

@@ -45,9 +45,8 @@ void cutWhereEnergyIsMadeUp(const Arm& arm, Trajectory& motion, double step) {
     motion.outcome = Outcome::unstable;
     motion.failedAt = motion.time[static_cast<std::size_t>(k)];
     motion.why = fmt::format(
-        "unstable at t = {:.6g} s: with a step of {:.3g} s the energy balance is off by {:.3g} J, "
-        "the "
-        "work done being {:.3g} J",
+        "unstable at t = {:.6g} s: with a step of {:.3g} s the energy balance is violated by "
+        "{:.3g} J for {:.3g} J of work",
         motion.failedAt, step, imbalance[k], work);
     motion.time.resize(static_cast<std::size_t>(k));
     for (Eigen::MatrixXd* rows :
@@ -193,8 +192,9 @@ class ExplicitRun {
     return fail(
         t,
         fmt::format("{} with a step of {:.3g} s",
-                    y_.allFinite() ? fmt::format("the speed exceeds {:.0f} rad/s", largestSpeed)
-                                   : std::string("a muscle fibre left its domain (not a number)"),
+                    y_.allFinite()
+                        ? fmt::format("the speed exceeds {:.0f} rad/s", largestSpeed)
+                        : std::string("a muscle fibre left its valid domain (not a number)"),
                     options_.step),
         t + h);
   }

@@ -17,7 +17,7 @@ void checkNodes(const ExternalNodes& nodes, const Arm& arm) {
     throw std::invalid_argument("nodes of the external force: must be at least 2 and rise in time");
   }
   if (nodes.coordinate < 0 || nodes.coordinate >= arm.skeleton().numCoordinates()) {
-    throw std::invalid_argument("nodes of the external force: no such free coordinate");
+    throw std::invalid_argument("nodes of the external force: coordinate must be a free one");
   }
 }
 
@@ -64,7 +64,7 @@ SensitivityTrajectory simulateWithSensitivities(const Arm& arm,
                                                 const SensitivityOptions& options) {
   const Integrator integrator = options.simulation.integrator;
   if (integrator != Integrator::variational && integrator != Integrator::variationalLeft) {
-    throw std::invalid_argument("sensitivities: the integrator must be vi or vi-left");
+    throw std::invalid_argument("sensitivities: integrator must be vi or vi-left");
   }
   checkNodes(options.externalNodes, arm);
   const ExcitationSignal driven = drivenExcitation(trial, muscleNames(arm), setting.mapping);

@@ -22,7 +22,7 @@ std::vector<std::string> heldRemarks(const Trial& trial, const Model& model,
                     [&](const CoordinateCoupler& coupler) { return coupler.dependent == c.name; });
     if (isCoupled) {
       remarks.push_back(fmt::format(
-          "{}: '{}' is measured and not compared: in the model it follows another coordinate",
+          "{}: '{}' is measured but not compared, since in the model it follows another coordinate",
           trial.file, c.name));
       continue;
     }
@@ -35,7 +35,7 @@ std::vector<std::string> heldRemarks(const Trial& trial, const Model& model,
                     c.isRotation ? "deg" : "mm");
     if (options.lockedValues.contains(c.name)) {
       remarks.push_back(
-          fmt::format("{}, and held at {:.4g} as told", measured, source.value * unit));
+          fmt::format("{}, and held at {:.4g} as requested", measured, source.value * unit));
       continue;
     }
     const double mean = motion.values.mean();

@@ -228,8 +228,8 @@ class Collector {
       const double spread = std::max(std::abs(value), 1e-6);
       const Habit habit =
           rule.isAngle ? Habit{value - 1.5, value + 1.5, 0.1} : Habit{0, 10 * spread, 0.5 * spread};
-      add(name + "." + rule.name, rule.unit, "passive force of the coordinate", value, habit,
-          {target});
+      add(name + "." + rule.name, rule.unit, "constant of the coordinate's passive force", value,
+          habit, {target});
     };
     for (std::size_t i = 0; i < model_.limitForces.size(); ++i) {
       CoordinateLimitForce force = model_.limitForces[i];
@@ -257,7 +257,7 @@ class Collector {
     }
     add("emg.delay", "s", "electromechanical delay", mapping_.delay, {0, 0.2, 0.02},
         {EmgTarget{EmgTarget::What::delay, ""}});
-    add("emg.nonlinearity", "", "shape A of the EMG–excitation relation; 0: straight",
+    add("emg.nonlinearity", "", "shape A of the EMG–excitation relation; 0: linear",
         mapping_.nonlinearity, {-3, 0, 1}, {EmgTarget{EmgTarget::What::nonlinearity, ""}});
   }
 

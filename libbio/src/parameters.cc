@@ -227,7 +227,7 @@ std::vector<std::size_t> ParameterCatalogue::select(const std::vector<std::strin
       for (const ParameterTarget& target : parameters_[b].targets) {
         const auto& all = parameters_[a].targets;
         if (std::find(all.begin(), all.end(), target) == all.end()) continue;
-        throw std::invalid_argument(fmt::format("{} and {} set the same number, take one of them",
+        throw std::invalid_argument(fmt::format("{} and {} set the same value, use one of them",
                                                 parameters_[a].name, parameters_[b].name));
       }
     }

@@ -136,7 +136,7 @@ RecordingFormat detectFormat(const std::string& file) {
     }
     if (any) return onlyNumbers ? RecordingFormat::columns : RecordingFormat::table;
   }
-  throw FileError(fmt::format("{}: holds nothing but empty lines", file));
+  throw FileError(fmt::format("{}: has only empty lines", file));
 }
 
 Recording readRecording(const std::string& file, const RecordingLayout& layout) {
@@ -182,8 +182,8 @@ const Channel& findChannel(const Recording& recording, const std::string& name) 
     if (channel.name == name) return channel;
     names.push_back(fmt::format("'{}'", channel.name));
   }
-  throw std::invalid_argument(fmt::format("{}: no channel '{}'; there are {}", recording.file, name,
-                                          fmt::join(names, ", ")));
+  throw std::invalid_argument(fmt::format("{}: no channel '{}'; the file has {}", recording.file,
+                                          name, fmt::join(names, ", ")));
 }
 
 }  // namespace bio

@@ -91,8 +91,8 @@ std::vector<RawColumn> numberColumns(const std::string& file, const std::vector<
       // Where cells are not separated, nobody can tell which row a value belongs to.
       if (k >= width) {
         throw FileError(
-            fmt::format("{}:{}: column {}: '{}' after a line that ends before this "
-                        "column, a column must go on to its end",
+            fmt::format("{}:{}: column {}: '{}' after a line that ends before this column, a "
+                        "column must have no gaps",
                         file, i + 1, k + 1, cells[k]));
       }
       double value = 0;

@@ -27,7 +27,7 @@ void check(const std::vector<double>& times, const VectorXd& values, double cuto
   for (std::size_t k = 1; k < times.size(); ++k) {
     if (!(times[k] > times[k - 1])) {
       throw std::invalid_argument(
-          fmt::format("smoothing: time {} s does not rise above {} s", times[k], times[k - 1]));
+          fmt::format("smoothing: time {} s after {} s, must rise", times[k], times[k - 1]));
     }
   }
   if (!(cutoff > 0 && spacing > 0 && 2 * cutoff * spacing < 1)) {

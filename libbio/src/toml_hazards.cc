@@ -179,8 +179,8 @@ bool hasLongBinary(std::string_view code) {
 
 void refuseTomlHazards(std::string_view text, const std::string& file) {
   if (const auto name = EmptyLists(text).entered()) {
-    throw FileError(fmt::format("{}: '{}' is a list without an item, must have no keys of its own",
-                                file, *name));
+    throw FileError(
+        fmt::format("{}: '{}' is an empty list, must have no keys of its own", file, *name));
   }
   constexpr int deepest = 100, mostValues = 10000;
   int brackets = 0;
@@ -188,7 +188,7 @@ void refuseTomlHazards(std::string_view text, const std::string& file) {
   for (int number = 1; !text.empty(); ++number) {
     const auto end = std::min(text.find('\n'), text.size());
     if (!isUtf8(text.substr(0, end))) {
-      throw FileError(fmt::format("{}:{}: bytes that are no text, must be UTF-8", file, number));
+      throw FileError(fmt::format("{}:{}: not text, must be UTF-8", file, number));
     }
     const std::optional<std::string> code = codeOf(text.substr(0, end));
     if (!code) {
@@ -205,8 +205,8 @@ void refuseTomlHazards(std::string_view text, const std::string& file) {
       if (c == ']' || c == '}') brackets = std::max(0, brackets - 1);
       dots = c == '.' ? dots + 1 : c == ',' || c == '=' ? 0 : dots;
       if (brackets > deepest || dots > deepest) {
-        throw FileError(fmt::format("{}:{}: tables or lists in each other, must be at most {} deep",
-                                    file, number, deepest));
+        throw FileError(fmt::format("{}:{}: nested tables or lists, must be at most {} deep", file,
+                                    number, deepest));
       }
     }
     values +=

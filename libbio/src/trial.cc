@@ -80,7 +80,7 @@ class TrialReader {
     trial_.file = file_;
     trial_.times = timesOf(table_);
     if (const Eigen::Index rows = trial_.times.size(); rows < 2) {
-      fail(fmt::format("holds {} row{}, a trial must hold at least 2", rows, rows == 1 ? "" : "s"));
+      fail(fmt::format("holds {} row{}, must hold at least 2", rows, rows == 1 ? "" : "s"));
     }
     for (Eigen::Index row = 0; row < trial_.times.size(); ++row) {
       const double before = row == 0 ? -HUGE_VAL : trial_.times[row - 1];
@@ -120,7 +120,7 @@ class TrialReader {
       std::string low = key;
       for (char& c : low) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
       if (low.starts_with("known_")) {
-        fail(fmt::format("header: '{}' means nothing, must be {}{}", key,
+        fail(fmt::format("header: '{}' is unknown, must be {}{}", key,
                          fmt::join(knownLines(), " or "), meantInstead(key, knownLines())));
       }
     }
@@ -129,7 +129,7 @@ class TrialReader {
       const std::string nearest = nearestName(key, meant);
       if (nearest.empty() || nearest == key) continue;
       trial_.warnings.push_back(
-          fmt::format("{}: header: '{}' means nothing, did you mean '{}'?", file_, key, nearest));
+          fmt::format("{}: header: '{}' is unknown, did you mean '{}'?", file_, key, nearest));
     }
   }
 

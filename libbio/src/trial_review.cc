@@ -141,8 +141,8 @@ std::string whyNotUsable(const MeasuredMotion& motion, Eigen::Index fewest) {
   const bool areTwo = (motion.values.array() == low || motion.values.array() == high).all();
   if (areTwo && count > 2) {
     return fmt::format(
-        "'{}' has only two different values in {} samples, the steps of its sensor, "
-        "must have more",
+        "'{}' has only two different values in {} samples (resolution of its sensor), must have "
+        "more",
         motion.coordinate, count);
   }
   return "";

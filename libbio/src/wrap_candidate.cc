@@ -28,10 +28,10 @@ bool ellipsoidAsSurface(const WrapObject& object, const std::vector<std::string>
     if (equal((k + 1) % 3, (k + 2) % 3)) axis = k;
   }
   if (axis < 0) {
-    throw std::invalid_argument(fmt::format(
-        "wrap object '{}' cannot be taken as a cylinder: its semi-axes are {}, {} and {} m, two "
-        "must be equal",
-        object.name, s[0], s[1], s[2]));
+    throw std::invalid_argument(
+        fmt::format("wrap object '{}' cannot be treated as a cylinder: its semi-axes are {}, {} "
+                    "and {} m, two must be equal",
+                    object.name, s[0], s[1], s[2]));
   }
   Mat3<double> turn = Mat3<double>::Zero();  // columns: new x, y, z in the old frame
   for (int k = 0; k < 3; ++k) turn((axis + 1 + k) % 3, k) = 1;
@@ -76,8 +76,8 @@ CandidateWrap candidateWrap(const WrapObject& object, const BodyPlacement& place
       break;
   }
   if (!(surface.radius > 0)) {
-    throw std::invalid_argument(fmt::format("wrap object '{}': radius is {} m, must be positive",
-                                            object.name, surface.radius));
+    throw std::invalid_argument(
+        fmt::format("wrap object '{}': radius = {} m, must be > 0", object.name, surface.radius));
   }
   const bool alongAxis =
       surface.quadrant == WrapQuadrant::plusZ || surface.quadrant == WrapQuadrant::minusZ;

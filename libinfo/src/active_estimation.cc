@@ -16,19 +16,19 @@ namespace {
 void check(const ActiveEstimationTask& task) {
   const auto positive = [](const char* what, double value, const char* unit) {
     if (!(value > 0 && std::isfinite(value)))
-      throw std::domain_error(fmt::format("{}: {} {}, rule: > 0 and finite", what, value, unit));
+      throw std::domain_error(fmt::format("{}: {} {}, must be > 0 and finite", what, value, unit));
   };
   positive("initial length", task.initialLength, "m");
   positive("initial mass", task.initialMass, "kg");
   positive("duration", task.duration, "s");
   positive("largest input", task.largestInput, "m/s²");
-  positive("deviation in the cost of information", task.informationDeviation, "N");
+  positive("standard deviation in the cost of information", task.informationDeviation, "N");
   positive("longest application of an action", task.longestApplied, "s");
   if (!(task.initialLength >= 0.05 && task.initialLength <= 1.5))
     throw std::domain_error(
-        fmt::format("initial length: {} m, rule: 0.05 to 1.5", task.initialLength));
+        fmt::format("initial length: {} m, must be 0.05 to 1.5", task.initialLength));
   if (!(task.window >= 0) || (task.window > 0 && task.window < 0.1))
-    throw std::domain_error(fmt::format("window: {} s, rule: 0 or ≥ 0.1", task.window));
+    throw std::domain_error(fmt::format("window: {} s, must be 0 or ≥ 0.1", task.window));
 }
 
 /// All modules of one trial.

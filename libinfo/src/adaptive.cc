@@ -90,18 +90,18 @@ void require(int flag, const char* function) {
 std::string inWords(int flag) {
   switch (flag) {
     case CV_TOO_MUCH_WORK:
-      return "the allowed number of steps was used up";
+      return "the limit on the number of steps was reached";
     case CV_TOO_MUCH_ACC:
-      return "the tolerances are below what rounding allows";
+      return "the tolerances are below the rounding error";
     case CV_ERR_FAILURE:
       return "the error test failed at the smallest step";
     case CV_CONV_FAILURE:
       return "Newton's method found no solution at the smallest step";
     case CV_FIRST_RHSFUNC_ERR:
-      return "the field is not finite at the start";
+      return "the right-hand side is not finite at the start";
     case CV_REPTD_RHSFUNC_ERR:
     case CV_UNREC_RHSFUNC_ERR:
-      return "the field is not finite whatever the step";
+      return "the right-hand side is not finite at any step";
     default:
       return fmt::format("CVODES flag {}", flag);
   }
@@ -110,7 +110,7 @@ std::string inWords(int flag) {
 void requirePositive(const char* quantity, double value, const char* unit) {
   if (!(value > 0.0) || !std::isfinite(value))
     throw std::domain_error(
-        fmt::format("{}: value is {} {}, rule: > 0 and finite", quantity, value, unit));
+        fmt::format("{}: value is {} {}, must be > 0 and finite", quantity, value, unit));
 }
 
 void check(const OdeProblem& problem, const Eigen::VectorXd& x0, const Eigen::MatrixXd& psi0,
@@ -118,22 +118,22 @@ void check(const OdeProblem& problem, const Eigen::VectorXd& x0, const Eigen::Ma
   requirePositive("relative tolerance", options.relativeTolerance, "");
   requirePositive("absolute tolerance", options.absoluteTolerance, "");
   if (!(options.largestTimeStep >= 0.0) || !std::isfinite(options.largestTimeStep))
-    throw std::domain_error(fmt::format("largest time step: value is {} s, rule: >= 0 and finite",
+    throw std::domain_error(fmt::format("largest time step: value is {} s, must be >= 0 and finite",
                                         options.largestTimeStep));
   if (options.maxSteps <= 0)
     throw std::domain_error(
-        fmt::format("largest number of steps: value is {}, rule: > 0", options.maxSteps));
+        fmt::format("largest number of steps: value is {}, must be > 0", options.maxSteps));
   requireLength("start x_0", x0.size(), problem.size);
   requireLength("psi_0 columns", psi0.cols(), problem.sensitivityCount);
-  if (!x0.allFinite()) throw std::domain_error("start x_0: not finite, rule: finite");
-  if (!psi0.allFinite()) throw std::domain_error("start psi_0: not finite, rule: finite");
-  if (times.empty()) throw std::domain_error("times: number is 0, rule: >= 1");
+  if (!x0.allFinite()) throw std::domain_error("start x_0: must be finite");
+  if (!psi0.allFinite()) throw std::domain_error("start psi_0: must be finite");
+  if (times.empty()) throw std::domain_error("times: number is 0, must be >= 1");
   if (!std::isfinite(times.front()))
-    throw std::domain_error(fmt::format("times: time 0 is {} s, rule: finite", times.front()));
+    throw std::domain_error(fmt::format("times: time 0 is {} s, must be finite", times.front()));
   for (std::size_t k = 1; k < times.size(); ++k)
     if (!(times[k] > times[k - 1]) || !std::isfinite(times[k]))
-      throw std::domain_error(fmt::format("times: time {} is {} s after {} s, rule: increasing", k,
-                                          times[k], times[k - 1]));
+      throw std::domain_error(fmt::format("times: time {} is {} s after {} s, must be increasing",
+                                          k, times[k], times[k - 1]));
 }
 
 }  // namespace

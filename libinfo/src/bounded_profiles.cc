@@ -20,7 +20,7 @@ BoundedProfiles::BoundedProfiles(std::vector<double> knots, std::vector<ProfileL
   for (std::size_t k = 1; k < knots_.size(); ++k) {
     if (!(knots_[k] > knots_[k - 1]) || !std::isfinite(knots_[k])) {
       throw std::invalid_argument(
-          fmt::format("knot at {} s behind {} s, must rise", knots_[k], knots_[k - 1]));
+          fmt::format("knot at {} s after {} s, must rise", knots_[k], knots_[k - 1]));
     }
   }
   for (const ProfileLimits& input : inputs_) {

@@ -20,7 +20,7 @@ void check(double length, const Box& box, const SwingOptions& o) {
                        const std::string& text) {
     if (!good || !std::isfinite(value))
       throw std::domain_error(
-          fmt::format("swing, {}: {} {}, rule: {} and finite", what, value, unit, text));
+          fmt::format("swing, {}: {} {}, must be {} and finite", what, value, unit, text));
   };
   rule("edge of the box", box.edge, "m", box.edge < 0, "< 0");
   rule("wall of the box", box.wall, "m", true, "any");

@@ -13,12 +13,12 @@ using Eigen::VectorXd;
 
 CandidatesCost candidatesCost(CandidateRule rule, const InformationWeights& weights,
                               const std::vector<MatrixXd>& information, double repeatedTolerance) {
-  if (information.empty()) throw std::invalid_argument("candidates: 0 of them, rule: ≥ 1");
+  if (information.empty()) throw std::invalid_argument("candidates: 0 of them, must be ≥ 1");
   const bool worst = rule == CandidateRule::worst && information.size() > 1;
   if (worst && weights.d > 0)
     throw std::domain_error(
-        fmt::format("worst case: weight of D in the objective is {}, rule: 0, because −ln det I "
-                    "may be negative; take the average",
+        fmt::format("worst case: weight of D in the objective is {}, must be 0, because −ln det I "
+                    "may be negative; use the average",
                     weights.d));
   CandidatesCost out{0, {}};
   std::vector<double> costs;
@@ -79,14 +79,14 @@ struct Layout {
 
 template <class Extended>
 Layout layoutOf(const std::vector<Extended>& candidates) {
-  if (candidates.empty()) throw std::invalid_argument("candidates: 0 of them, rule: ≥ 1");
+  if (candidates.empty()) throw std::invalid_argument("candidates: 0 of them, must be ≥ 1");
   const Dimensions d = candidates.front().dimensions;
   for (const Extended& one : candidates)
     if (one.dimensions.state != d.state || one.dimensions.input != d.input ||
         one.dimensions.parameter != d.parameter || one.dimensions.output != d.output ||
         one.candidates != 1)
       throw std::invalid_argument(
-          "candidates: sizes differ or one is a stack itself, rule: the same system at several "
+          "candidates: sizes differ or one is a stack itself, must be the same system at several "
           "values of its parameters");
   return {d.state, d.input, d.parameter, d.output, static_cast<Index>(candidates.size())};
 }

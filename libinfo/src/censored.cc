@@ -11,10 +11,10 @@ namespace info {
 void checkSensor(const ClippedSensor& sensor) {
   if (!(sensor.deviation > 0 && std::isfinite(sensor.deviation)))
     throw std::domain_error(
-        fmt::format("sensor, deviation: {}, rule: > 0 and finite", sensor.deviation));
+        fmt::format("sensor, standard deviation: {}, must be > 0 and finite", sensor.deviation));
   if (!(sensor.lower < sensor.upper))
-    throw std::domain_error(
-        fmt::format("sensor, limits: {} to {}, rule: lower < upper", sensor.lower, sensor.upper));
+    throw std::domain_error(fmt::format("sensor, limits: {} to {}, must satisfy lower < upper",
+                                        sensor.lower, sensor.upper));
 }
 
 SampleCost minusLogNormal(double t) {
@@ -44,7 +44,7 @@ SampleCost minusLogNormal(double t) {
 SampleCost sampleCost(const ClippedSensor& sensor, double reading, double predicted) {
   checkSensor(sensor);
   if (!std::isfinite(reading))
-    throw std::domain_error(fmt::format("sensor, reading: {}, rule: finite", reading));
+    throw std::domain_error(fmt::format("sensor, reading: {}, must be finite", reading));
   const double s = sensor.deviation;
   const auto atLimit = [&](double t, double sign) {
     const SampleCost c = minusLogNormal(t);

@@ -13,7 +13,7 @@ namespace {
 
 void positive(const char* what, double value, const char* unit) {
   if (!(value > 0 && std::isfinite(value)))
-    throw std::domain_error(fmt::format("{}: {} {}, rule: > 0 and finite", what, value, unit));
+    throw std::domain_error(fmt::format("{}: {} {}, must be > 0 and finite", what, value, unit));
 }
 
 }  // namespace
@@ -35,15 +35,15 @@ CompliantArm::CompliantArm(const ArmOptions& arm, const LoadCell& cell,
   positive("arm, largest speed", arm.maxSpeed, "m/s");
   positive("load, mass", load[0], "kg");
   positive("load, length", load[1], "m");
-  positive("load cell, deviation", cell.deviation, "N");
+  positive("load cell, standard deviation", cell.deviation, "N");
   positive("disturbance, hold", disturbance.hold, "s");
   if (!(cell.capacity > 0))
-    throw std::domain_error(fmt::format("load cell, capacity: {} N, rule: > 0", cell.capacity));
+    throw std::domain_error(fmt::format("load cell, capacity: {} N, must be > 0", cell.capacity));
   if (!(disturbance.acceleration >= 0 && std::isfinite(disturbance.acceleration)))
     throw std::domain_error(
-        fmt::format("disturbance: {} m/s², rule: ≥ 0 and finite", disturbance.acceleration));
+        fmt::format("disturbance: {} m/s², must be ≥ 0 and finite", disturbance.acceleration));
   if (!std::isfinite(arm.start))
-    throw std::domain_error(fmt::format("arm, start: {} m, rule: finite", arm.start));
+    throw std::domain_error(fmt::format("arm, start: {} m, must be finite", arm.start));
   holdTicks_ = std::max(1L, std::lround(disturbance.hold / tick));
 }
 

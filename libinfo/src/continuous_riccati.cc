@@ -26,7 +26,8 @@ class ContinuousSweep {
                   const CheckedLq& c, const LinearCost* cost, RiccatiIntegration integration)
       : system_(system), step_(step), weights_(weights), c_(c), cost_(cost) {
     if (!(step > 0 && std::isfinite(step)))
-      throw std::domain_error(fmt::format("step between nodes: {} s, rule: > 0 and finite", step));
+      throw std::domain_error(
+          fmt::format("step between nodes: {} s, must be > 0 and finite", step));
     inverseR_ = weights.R.llt().solve(MatrixXd::Identity(c.m, c.m));
     K.resize(c.steps + 1);
     if (cost) feedforward.resize(c.steps + 1);

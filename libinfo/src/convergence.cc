@@ -13,7 +13,8 @@ std::vector<ConvergenceRow> convergenceTable(const Estimate& estimate,
   std::vector<ConvergenceRow> rows;
   for (std::size_t k = 0; k < estimate.parameterHistory.size(); ++k) {
     if (estimate.parameterHistory[k].size() != minimum.size())
-      throw std::invalid_argument("convergence table: estimate and minimum differ in size");
+      throw std::invalid_argument(
+          "convergence table: estimate and minimum must have the same size");
     const double error = (estimate.parameterHistory[k] - minimum).cwiseQuotient(unit).norm();
     rows.push_back({static_cast<int>(k), estimate.costHistory[k], error, undefined, undefined});
     if (k > 0 && rows[k - 1].error > 0) rows[k].ratio = error / rows[k - 1].error;

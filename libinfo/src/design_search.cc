@@ -20,7 +20,8 @@ DesignSearch::DesignSearch(DesignProblem problem, const VectorXd& start,
                            DesignSearchOptions options)
     : problem_(std::move(problem)), options_(std::move(options)), x_(problem_.project(start)) {
   at_ = problem_.run(x_);
-  if (!at_.possible) throw std::domain_error("the search must start from a possible experiment");
+  if (!at_.possible)
+    throw std::domain_error("the search must start from an experiment that respects its limits");
   cost_ = problem_.cost(at_.information, unitTolerance).value + at_.penalty;
 }
 

@@ -19,17 +19,17 @@ namespace {
 // Checked and filled; in place, so that the base class may have it.
 StepDesign& prepared(StepDesign& c, const ExtendedStepMap& system) {
   if (!(c.timeStep > 0 && std::isfinite(c.timeStep)))
-    throw std::domain_error(fmt::format("time step: {} s, rule: > 0 and finite", c.timeStep));
+    throw std::domain_error(fmt::format("time step: {} s, must be > 0 and finite", c.timeStep));
   const Index m = system.dimensions.input;
   detail::prepareDesign(c, detail::sizesOf(system), m);
   const std::size_t steps = c.desiredInput.size() - 1;
   if (c.stepsPerSample < 1 || c.stepsPerSample > steps)
     throw std::domain_error(
-        fmt::format("steps per sample: {}, rule: 1 … {}", c.stepsPerSample, steps));
+        fmt::format("steps per sample: {}, must be 1 … {}", c.stepsPerSample, steps));
   for (StepWaypoint& waypoint : c.waypoints) {
     if (waypoint.step < 1 || waypoint.step > steps)
       throw std::invalid_argument(
-          fmt::format("waypoint at step {}, rule: 1 … {}", waypoint.step, steps));
+          fmt::format("waypoint at step {}, must be 1 … {}", waypoint.step, steps));
     requireLength("waypoint's state", waypoint.state.size(), system.dimensions.state);
     detail::fillWeight("waypoint's weight", waypoint.weight, system.dimensions.state, false);
     if (!waypoint.state.allFinite())
@@ -41,7 +41,7 @@ StepDesign& prepared(StepDesign& c, const ExtendedStepMap& system) {
   // u_0 is given: no search can bring it within
   for (Index i = 0; i < c.limits.lower.size(); ++i)
     if (!(c.desiredInput[0][i] >= c.limits.lower[i] && c.desiredInput[0][i] <= c.limits.upper[i]))
-      throw std::domain_error(fmt::format("limits of input {}: {} at time 0, rule: {} … {}", i,
+      throw std::domain_error(fmt::format("limits of input {}: {} at time 0, must be {} … {}", i,
                                           c.desiredInput[0][i], c.limits.lower[i],
                                           c.limits.upper[i]));
   return c;

@@ -34,7 +34,7 @@ void check(const EstimateOptions& options, const LeastSquares& problem) {
   rule(within(options.armijoShrink), "armijoShrink", options.armijoShrink, "between 0 and 1");
   rule(within(options.confidence), "confidence", options.confidence, "between 0 and 1");
   if (options.method == Method::newtonRaphson && !problem.hasCurvature())
-    throw std::invalid_argument("Newton–Raphson needs a predictor with second derivatives");
+    throw std::invalid_argument("Newton–Raphson requires a predictor with second derivatives");
 }
 
 class Estimator {
@@ -62,10 +62,10 @@ class Estimator {
       throw std::domain_error("estimate: the prediction at the start is not finite");
     for (Index i = 0; i < start.size(); ++i)
       if (lower_[i] < upper_[i] && !(at_.information(i, i) > 0))
-        throw std::domain_error(fmt::format(
-            "zero information about parameter {}: at {} it changes no predicted sample; give "
-            "it a prior, fix it, or measure something else",
-            label(parameters[static_cast<std::size_t>(i)]), start[i]));
+        throw std::domain_error(
+            fmt::format("zero information about parameter {}: at {} it affects no predicted "
+                        "sample; give it a prior, fix it, or measure another output",
+                        label(parameters[static_cast<std::size_t>(i)]), start[i]));
     record();
   }
 
@@ -274,11 +274,11 @@ std::string describe(Termination why) {
     case Termination::costSmall:
       return "converged: the cost is as small as asked for";
     case Termination::roundingReached:
-      return "converged: to the rounding of the cost";
+      return "converged: the cost changes by rounding only";
     case Termination::kinkReached:
       return "converged: at a kink of the cost, from which every step leads up";
     case Termination::stepSmall:
-      return "stopped: the parameters no longer move";
+      return "stopped: the parameters no longer change";
     case Termination::noDescent:
       return "stopped: no step lowers the cost";
     case Termination::singular:

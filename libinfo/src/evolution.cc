@@ -20,7 +20,7 @@ EvolutionResult evolve(const std::function<double(const VectorXd&)>& cost,
                        const std::function<VectorXd(const VectorXd&)>& project,
                        const VectorXd& start, const EvolutionOptions& options) {
   const Index n = start.size();
-  if (n == 0) throw std::invalid_argument("evolution: nothing to change");
+  if (n == 0) throw std::invalid_argument("evolution: must have at least one variable");
   if (!(options.spread > 0)) throw std::invalid_argument("evolution: spread must be > 0");
   if (options.generations < 0 || options.population < 0) {
     throw std::invalid_argument("evolution: generations and population must be ≥ 0");

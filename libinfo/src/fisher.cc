@@ -19,9 +19,9 @@ MatrixXd stack(const std::vector<MatrixXd>& gamma_k) {
   MatrixXd gamma(h * static_cast<Index>(gamma_k.size()), gamma_k.front().cols());
   for (std::size_t k = 0; k < gamma_k.size(); ++k) {
     if (gamma_k[k].rows() != h || gamma_k[k].cols() != gamma.cols())
-      throw std::invalid_argument(fmt::format("Γ of sample {} is {} × {}, of sample 0 {} × {}", k,
-                                              gamma_k[k].rows(), gamma_k[k].cols(), h,
-                                              gamma.cols()));
+      throw std::invalid_argument(
+          fmt::format("Γ of sample {} is {} × {}, must be as in sample 0, {} × {}", k,
+                      gamma_k[k].rows(), gamma_k[k].cols(), h, gamma.cols()));
     gamma.middleRows(static_cast<Index>(k) * h, h) = gamma_k[k];
   }
   return gamma;
@@ -48,7 +48,7 @@ MatrixXd continuousFisherInformation(const std::vector<double>& times, const Mat
   const Index n = static_cast<Index>(times.size());
   if (n < 2 || gamma.rows() != n * h)
     throw std::invalid_argument(fmt::format(
-        "Fisher information: {} rows of Γ for {} times of {} outputs", gamma.rows(), n, h));
+        "Fisher information: {} rows of Γ, must be {} times × {} outputs", gamma.rows(), n, h));
   const MatrixXd white = density.whiten(gamma);
   MatrixXd information = MatrixXd::Zero(gamma.cols(), gamma.cols());
   for (Index k = 0; k + 1 < n; ++k) {

@@ -13,13 +13,13 @@ namespace info {
 GaussianCopula::GaussianCopula(const Eigen::MatrixXd& correlation) {
   const Eigen::ArrayXXd apart = (correlation - correlation.transpose()).cwiseAbs();
   if (!(apart <= 1e-8).all()) {
-    throw std::invalid_argument(
-        fmt::format("correlations differ by {:.3g} from their mirror image", apart.maxCoeff()));
+    throw std::invalid_argument(fmt::format(
+        "correlation matrix is asymmetric by {:.3g}, must be symmetric", apart.maxCoeff()));
   }
   const Eigen::ArrayXd off = (correlation.diagonal().array() - 1).abs();
   if (!(off <= 1e-8).all()) {
-    throw std::invalid_argument(
-        fmt::format("a number's correlation with itself is {:.3g} from 1", off.maxCoeff()));
+    throw std::invalid_argument(fmt::format(
+        "diagonal of the correlation matrix differs by {:.3g} from 1, must be 1", off.maxCoeff()));
   }
   const double least =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(correlation, Eigen::EigenvaluesOnly)

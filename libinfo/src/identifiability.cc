@@ -139,8 +139,8 @@ IdentifiabilityReport identifiability(const MatrixXd& information,
   const Index p = static_cast<Index>(parameters.size());
   if (p == 0 || information.rows() != p || information.cols() != p)
     throw std::invalid_argument(
-        fmt::format("identifiability: information is {} × {} for {} parameters", information.rows(),
-                    information.cols(), p));
+        fmt::format("identifiability: information is {} × {}, must be square with {} parameters",
+                    information.rows(), information.cols(), p));
   if (!information.allFinite())
     throw std::domain_error("identifiability: every entry of the information must be finite");
 

@@ -26,7 +26,7 @@ void check(const LaboratoryEffects& e) {
   const auto rule = [](bool holds, const char* what, double value, const char* unit,
                        const char* text) {
     if (!holds)
-      throw std::domain_error(fmt::format("{}: {} {}, rule: {}", what, value, unit, text));
+      throw std::domain_error(fmt::format("{}: {} {}, must be {}", what, value, unit, text));
   };
   rule(std::abs(e.outOfPlane) < std::numbers::pi / 2, "angle out of the plane", e.outOfPlane, "rad",
        "between −π/2 and π/2");
@@ -92,7 +92,7 @@ std::vector<double> laboratoryAcceleration(const CartMotion& motion,
                                            int fine) {
   check(effects);
   if (fine < 1)
-    throw std::invalid_argument(fmt::format("values per time step: {}, rule: ≥ 1", fine));
+    throw std::invalid_argument(fmt::format("values per time step: {}, must be ≥ 1", fine));
   const double h = motion.timeStep / fine, lag = effects.controlLag;
   const double kept = lag > 0 ? std::exp(-h / lag) : 0;
   RandomStream random(seed, 1);

@@ -19,7 +19,8 @@ LeastSquares::LeastSquares(Predictor predictor, Measurements measurements,
       measurements_(std::move(measurements)),
       parameters_(std::move(parameters)) {
   checkParameters(parameters_);
-  if (parameters_.empty()) throw std::invalid_argument("least squares: no parameter to estimate");
+  if (parameters_.empty())
+    throw std::invalid_argument("least squares: must have at least one parameter to estimate");
   if (!predictor_.outputs || !predictor_.withSensitivities)
     throw std::invalid_argument("least squares: the predictor must give outputs and sensitivities");
   const MatrixXd& data = measurements_.outputs;
@@ -27,12 +28,13 @@ LeastSquares::LeastSquares(Predictor predictor, Measurements measurements,
   const ObservationMask& observed = measurements_.observed;
   if (data.cols() == 0 || data.rows() != covariance.outputs())
     throw std::invalid_argument(
-        fmt::format("measurements: {} outputs × {} samples, the covariance has {} "
-                    "outputs and there must be a sample",
+        fmt::format("measurements: {} outputs × {} samples, must have {} outputs as the covariance "
+                    "and at least one sample",
                     data.rows(), data.cols(), covariance.outputs()));
   if (!covariance.isConstant() && covariance.samples() != data.cols())
-    throw std::invalid_argument(fmt::format("measurements: {} samples, but covariances for {}",
-                                            data.cols(), covariance.samples()));
+    throw std::invalid_argument(
+        fmt::format("measurements: {} samples, must be as many as the covariances, {}", data.cols(),
+                    covariance.samples()));
   if (observed.size() != 0 && (observed.rows() != data.rows() || observed.cols() != data.cols()))
     throw std::invalid_argument(fmt::format("measurements: observed is {} × {}, must be {} × {}",
                                             observed.rows(), observed.cols(), data.rows(),
@@ -41,8 +43,8 @@ LeastSquares::LeastSquares(Predictor predictor, Measurements measurements,
     for (Index i = 0; i < data.rows(); ++i)
       if ((observed.size() == 0 || observed(i, k)) && !std::isfinite(data(i, k)))
         throw std::domain_error(
-            fmt::format("measurements: output {} of sample {} is {}, must be finite "
-                        "(mark it as not observed if it is missing)",
+            fmt::format("measurements: output {} of sample {} is {}, must be finite (mark a "
+                        "missing one as not observed)",
                         i, k, data(i, k)));
 }
 
@@ -62,7 +64,7 @@ MatrixXd LeastSquares::residuals(const MatrixXd& outputs) const {
   if (outputs.rows() != measurements_.outputs.rows() ||
       outputs.cols() != measurements_.outputs.cols())
     throw std::invalid_argument(
-        fmt::format("prediction is {} × {}, the measurements are {} × {}", outputs.rows(),
+        fmt::format("prediction is {} × {}, must be {} × {} as the measurements", outputs.rows(),
                     outputs.cols(), measurements_.outputs.rows(), measurements_.outputs.cols()));
   if (measurements_.observed.size() == 0) return measurements_.outputs - outputs;
   return measurements_.observed.select(measurements_.outputs - outputs,
@@ -130,7 +132,7 @@ LeastSquares::Linearised LeastSquares::linearise(const VectorXd& theta) const {
 MatrixXd LeastSquares::hessian(const VectorXd& theta, const Linearised& at) const {
   if (!hasCurvature())
     throw std::logic_error(
-        "least squares: second derivatives need a predictor that has them, and no robust loss");
+        "least squares: second derivatives require a predictor that has them and no robust loss");
   // w_k = Σ_k⁻¹ r_k, by whitening the identity: Σ⁻¹ = L⁻ᵀL⁻¹ of what was observed
   const Index h = at.residuals.rows();
   MatrixXd w(h, at.residuals.cols());

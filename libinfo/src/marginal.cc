@@ -43,7 +43,7 @@ double standardNormalQuantile(double p) {
 
 double Marginal::quantile(double u) const {
   if (!(deviation > 0 && std::isfinite(deviation))) {
-    throw std::invalid_argument(fmt::format("deviation = {} must be > 0", deviation));
+    throw std::invalid_argument(fmt::format("standard deviation = {} must be > 0", deviation));
   }
   if (!(lower <= mean && mean <= upper)) {
     throw std::invalid_argument(

@@ -33,8 +33,8 @@ void parallelFor(int n, int threads, const std::function<void(int)>& body) {
 
 MatrixXd drawNoise(const OutputCovariance& covariance, Index n, RandomStream& random) {
   if (!covariance.isConstant() && covariance.samples() != n)
-    throw std::invalid_argument(
-        fmt::format("noise: {} samples, but covariances for {}", n, covariance.samples()));
+    throw std::invalid_argument(fmt::format(
+        "noise: {} samples, must be as many as the covariances, {}", n, covariance.samples()));
   MatrixXd noise(covariance.outputs(), n), root;
   for (Index k = 0; k < n; ++k) {
     for (double& entry : noise.col(k)) entry = random.normal();
@@ -58,8 +58,9 @@ MonteCarloResult monteCarlo(const Predictor& predictor, const VectorXd& truth,
     throw std::invalid_argument(
         fmt::format("Monte Carlo: startSpread = {} must be ≥ 0", options.startSpread));
   if (truth.size() != static_cast<Index>(parameters.size()))
-    throw std::invalid_argument(fmt::format("Monte Carlo: {} true values for {} parameters",
-                                            truth.size(), parameters.size()));
+    throw std::invalid_argument(
+        fmt::format("Monte Carlo: {} true values for {} parameters, must be as many", truth.size(),
+                    parameters.size()));
   std::vector<Parameter> atTruth = parameters;
   for (std::size_t i = 0; i < parameters.size(); ++i)
     atTruth[i].start = truth[static_cast<Index>(i)];

@@ -9,19 +9,20 @@ namespace info {
 void checkOnlineOptions(const OnlineOptions& options, Eigen::Index states) {
   if (options.maxIterations < 1)
     throw std::domain_error(
-        fmt::format("on-line estimate, iterations: {}, rule: ≥ 1", options.maxIterations));
+        fmt::format("on-line estimate, iterations: {}, must be ≥ 1", options.maxIterations));
   if (!(options.decrementTolerance > 0 && std::isfinite(options.decrementTolerance)))
-    throw std::domain_error(fmt::format("on-line estimate, decrement tolerance: {}, rule: > 0",
+    throw std::domain_error(fmt::format("on-line estimate, decrement tolerance: {}, must be > 0",
                                         options.decrementTolerance));
   if (options.window == 0) return;
   if (options.window < 2)
     throw std::domain_error(
-        fmt::format("on-line estimate, window: {} samples, rule: 0 or ≥ 2", options.window));
-  requireLength("deviations of a window's start", options.startDeviation.size(), states);
+        fmt::format("on-line estimate, window: {} samples, must be 0 or ≥ 2", options.window));
+  requireLength("standard deviations of a window's start", options.startDeviation.size(), states);
   for (double deviation : options.startDeviation)
     if (!(deviation >= 0 && std::isfinite(deviation)))
       throw std::domain_error(fmt::format(
-          "on-line estimate, deviation of a window's start: {}, rule: ≥ 0 and finite", deviation));
+          "on-line estimate, standard deviation of a window's start: {}, must be ≥ 0 and finite",
+          deviation));
 }
 
 }  // namespace info

@@ -21,8 +21,9 @@ MatrixXd inverseLower(const MatrixXd& sigma) {
 
 void check(const MatrixXd& sigma, std::size_t sample) {
   if (sigma.rows() == 0 || sigma.rows() != sigma.cols())
-    throw std::invalid_argument(fmt::format("output covariance of sample {}: {} × {} is not square",
-                                            sample, sigma.rows(), sigma.cols()));
+    throw std::invalid_argument(
+        fmt::format("output covariance of sample {}: {} × {}, must be square", sample, sigma.rows(),
+                    sigma.cols()));
   if (!sigma.allFinite())
     throw std::domain_error(
         fmt::format("output covariance of sample {}: every entry must be finite", sample));
@@ -63,12 +64,12 @@ OutputCovariance OutputCovariance::perSample(std::vector<MatrixXd> sigma_k) {
 
 OutputCovariance::OutputCovariance(PerSample, std::vector<MatrixXd> sigma_k)
     : sigma_(std::move(sigma_k)) {
-  if (sigma_.empty()) throw std::invalid_argument("output covariance: none given");
+  if (sigma_.empty()) throw std::invalid_argument("output covariance: must have at least one");
   for (std::size_t k = 0; k < sigma_.size(); ++k) {
     check(sigma_[k], k);
     if (sigma_[k].rows() != sigma_[0].rows())
       throw std::invalid_argument(
-          fmt::format("output covariance of sample {} has {} outputs, sample 0 {}", k,
+          fmt::format("output covariance of sample {} has {} outputs, must be {} as in sample 0", k,
                       sigma_[k].rows(), sigma_[0].rows()));
     inverseRoot_.push_back(inverseLower(sigma_[k]));
   }
@@ -87,10 +88,10 @@ MatrixXd OutputCovariance::whiten(const MatrixXd& stacked, const ObservationMask
   const Index n = stacked.rows() / h;
   if (n * h != stacked.rows())
     throw std::invalid_argument(
-        fmt::format("{} stacked rows are no multiple of {} outputs", stacked.rows(), h));
+        fmt::format("{} stacked rows, must be a multiple of {} outputs", stacked.rows(), h));
   if (!isConstant() && samples() != n)
     throw std::invalid_argument(
-        fmt::format("output covariance is given for {} samples, there are {}", samples(), n));
+        fmt::format("output covariance is given for {} samples, must be {}", samples(), n));
   if (observed.size() != 0 && (observed.rows() != h || observed.cols() != n))
     throw std::invalid_argument(fmt::format("observed is {} × {}, must be {} outputs × {} samples",
                                             observed.rows(), observed.cols(), h, n));

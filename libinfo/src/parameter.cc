@@ -16,9 +16,11 @@ std::string label(const Parameter& parameter) {
 void checkParameters(const std::vector<Parameter>& parameters) {
   std::set<std::string> names;
   for (const Parameter& parameter : parameters) {
-    if (parameter.name.empty()) throw std::invalid_argument("a parameter has no name");
+    if (parameter.name.empty())
+      throw std::invalid_argument("a parameter has no name, must have one");
     if (!names.insert(parameter.name).second)
-      throw std::invalid_argument(fmt::format("parameter {} is listed twice", parameter.name));
+      throw std::invalid_argument(
+          fmt::format("parameter {} is listed twice, must be listed once", parameter.name));
     if (!std::isfinite(parameter.start))
       throw std::invalid_argument(
           fmt::format("parameter {}: start {} must be finite", label(parameter), parameter.start));
@@ -33,8 +35,8 @@ void checkParameters(const std::vector<Parameter>& parameters) {
     if (!parameter.prior) continue;
     if (!(parameter.prior->deviation > 0 && std::isfinite(parameter.prior->deviation)))
       throw std::invalid_argument(
-          fmt::format("parameter {}: prior deviation {} must be > 0 and finite", label(parameter),
-                      parameter.prior->deviation));
+          fmt::format("parameter {}: prior standard deviation {} must be > 0 and finite",
+                      label(parameter), parameter.prior->deviation));
     if (!std::isfinite(parameter.prior->mean))
       throw std::invalid_argument(fmt::format("parameter {}: prior mean {} must be finite",
                                               label(parameter), parameter.prior->mean));

@@ -16,8 +16,7 @@ Profile profileLikelihood(const LeastSquares& problem, const Estimate& estimated
   std::vector<Parameter> parameters = problem.parameters();
   if (parameter < 0 || parameter >= static_cast<Eigen::Index>(parameters.size()) ||
       estimated.parameters.size() != static_cast<Eigen::Index>(parameters.size()))
-    throw std::invalid_argument(
-        fmt::format("profile likelihood: there is no parameter {}", parameter));
+    throw std::invalid_argument(fmt::format("profile likelihood: no parameter {}", parameter));
   Parameter& held = parameters[static_cast<std::size_t>(parameter)];
   const Parameter free = held;
   for (double value : values)
@@ -55,7 +54,7 @@ ProfileInterval profileInterval(const LeastSquares& problem, const Estimate& est
                                 const EstimateOptions& options) {
   if (!(deviation > 0 && std::isfinite(deviation)))
     throw std::invalid_argument(
-        fmt::format("profile interval: deviation {} must be finite and > 0", deviation));
+        fmt::format("profile interval: standard deviation {} must be finite and > 0", deviation));
   ProfileInterval result;
   result.profile = profileLikelihood(problem, estimated, parameter, {}, options);
   const double z = normalQuantile(options.confidence);

@@ -19,7 +19,7 @@ namespace {
 // Checked and filled; in place, so that the base class may have it.
 FlowDesign& prepared(FlowDesign& c, const ExtendedFlow& system) {
   if (!(c.step > 0 && std::isfinite(c.step)))
-    throw std::domain_error(fmt::format("time step: {} s, rule: > 0 and finite", c.step));
+    throw std::domain_error(fmt::format("time step: {} s, must be > 0 and finite", c.step));
   detail::prepareDesign(c, detail::sizesOf(system), 0);
   return c;
 }

@@ -16,14 +16,14 @@ void fillWeight(const char* name, MatrixXd& W, Index size, bool definite) {
   if (W.size() == 0 && !definite) W = MatrixXd::Zero(size, size);
   if (W.rows() != size || W.cols() != size)
     throw std::invalid_argument(
-        fmt::format("{}: is {} × {}, rule: {} × {}", name, W.rows(), W.cols(), size, size));
+        fmt::format("{}: is {} × {}, must be {} × {}", name, W.rows(), W.cols(), size, size));
   const double scale = W.cwiseAbs().maxCoeff();
   if (!W.allFinite() || !((W - W.transpose()).cwiseAbs().maxCoeff() <= 1e-12 * scale))
-    throw std::domain_error(fmt::format("{}: rule finite and symmetric is broken", name));
+    throw std::domain_error(fmt::format("{}: must be finite and symmetric", name));
   const double least = symmetricEigenvalues(W)[0];
   if (definite ? !(least > 0) : !(least >= -1e-12 * scale))
     throw std::domain_error(
-        fmt::format("{}: least eigenvalue is {}, rule: {} 0", name, least, definite ? ">" : "≥"));
+        fmt::format("{}: least eigenvalue is {}, must be {} 0", name, least, definite ? ">" : "≥"));
 }
 
 MatrixXd inverseCovariance(const MatrixXd& covariance, Index outputs) {
@@ -37,11 +37,11 @@ void checkInputs(const char* name, const std::vector<VectorXd>& inputs, std::siz
                  Index size) {
   if (inputs.size() != count)
     throw std::invalid_argument(
-        fmt::format("{}: {} of them, rule: {}", name, inputs.size(), count));
+        fmt::format("{}: {} of them, must be {}", name, inputs.size(), count));
   for (std::size_t k = 0; k < count; ++k)
     if (inputs[k].size() != size || !inputs[k].allFinite())
-      throw std::invalid_argument(fmt::format("{}: number {} has {} entries, rule: {}, all finite",
-                                              name, k, inputs[k].size(), size));
+      throw std::invalid_argument(fmt::format(
+          "{}: number {} has {} entries, must be {}, all finite", name, k, inputs[k].size(), size));
 }
 
 namespace {
@@ -50,17 +50,17 @@ namespace {
 void checkLimits(const InputLimits& limits, Index inputs) {
   if (limits.lower.size() == 0 && limits.upper.size() == 0) return;
   if (limits.lower.size() != inputs || limits.upper.size() != inputs)
-    throw std::invalid_argument(fmt::format("input limits: {} lower and {} upper, rule: {} each",
+    throw std::invalid_argument(fmt::format("input limits: {} lower and {} upper, must be {} each",
                                             limits.lower.size(), limits.upper.size(), inputs));
   for (Index i = 0; i < inputs; ++i)
     if (!(limits.lower[i] < limits.upper[i]) || !std::isfinite(limits.lower[i]) ||
         !std::isfinite(limits.upper[i]))
       throw std::domain_error(
-          fmt::format("limits of input {}: lower {}, upper {}, rule: lower < upper and finite", i,
-                      limits.lower[i], limits.upper[i]));
+          fmt::format("limits of input {}: lower {}, upper {}, must be finite with lower < upper",
+                      i, limits.lower[i], limits.upper[i]));
   if (!(limits.weight > 0 && std::isfinite(limits.weight)))
     throw std::domain_error(
-        fmt::format("weight of the input limits: {}, rule: > 0 and finite", limits.weight));
+        fmt::format("weight of the input limits: {}, must be > 0 and finite", limits.weight));
 }
 
 }  // namespace
@@ -87,7 +87,7 @@ void prepareDesign(MotionDesign& c, const CandidateSizes& sizes, Index more) {
   const Index n = sizes.n, m = sizes.m;
   if (c.desiredInput.size() < 2)
     throw std::invalid_argument(
-        fmt::format("desired inputs: {} of them, rule: ≥ 2", c.desiredInput.size()));
+        fmt::format("desired inputs: {} of them, must be ≥ 2", c.desiredInput.size()));
   requireLength("x0", c.x0.size(), n);
   checkInputs("desired inputs", c.desiredInput, c.desiredInput.size(), m);
   checkLimits(c.limits, m);

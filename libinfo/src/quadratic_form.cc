@@ -12,7 +12,8 @@ using Eigen::ArrayXd;
 double tailOfSquares(const Eigen::VectorXd& variances, double q) {
   if (variances.size() == 0 || !variances.allFinite() || variances.minCoeff() < 0 ||
       !(variances.maxCoeff() > 0) || std::isnan(q))
-    throw std::invalid_argument("tail of squares: variances must be finite, ≥ 0, one of them > 0");
+    throw std::invalid_argument(
+        "tail of squares: variances must be finite and ≥ 0, at least one of them > 0");
   if (!(q > 0)) return 1;
   if (std::isinf(q)) return 0;
   // in units of the largest, so that s lies below ½

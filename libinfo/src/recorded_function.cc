@@ -201,7 +201,7 @@ RecordedFunction::RecordedFunction(Recording& recording, std::span<const Symbol>
     for (std::size_t i = 0; i < outputs.size(); ++i) targets_.push_back(int(i));
   if (targets_.size() != outputs.size())
     throw std::invalid_argument("targets: number is " + std::to_string(targets_.size()) +
-                                ", rule: one per output, " + std::to_string(outputs.size()));
+                                ", must be one per output, " + std::to_string(outputs.size()));
   std::vector<int> results;
   for (const Symbol& s : outputs) results.push_back(recording.nodeOf(s));
   const auto& nodes = recording.nodes_;

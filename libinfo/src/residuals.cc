@@ -17,7 +17,7 @@ std::vector<double> autocorrelation(const std::vector<VectorXd>& series, Index m
     power += r.squaredNorm();
   }
   if (n == 0 || !(power > 0)) {
-    throw std::invalid_argument("autocorrelation: there must be a residual that is not 0");
+    throw std::invalid_argument("autocorrelation: at least one residual must differ from 0");
   }
   std::vector<double> rho;
   for (Index lag = 0; lag <= maxLag; ++lag) {
@@ -43,7 +43,8 @@ double autocorrelationTime(const std::vector<double>& rho, Index samples) {
 }
 
 double robustDeviation(const VectorXd& residuals) {
-  if (residuals.size() == 0) throw std::invalid_argument("robust deviation: no residual");
+  if (residuals.size() == 0)
+    throw std::invalid_argument("robust standard deviation: must have at least one residual");
   std::vector<double> sizes(static_cast<std::size_t>(residuals.size()));
   VectorXd::Map(sizes.data(), residuals.size()) = residuals.cwiseAbs();
   const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);

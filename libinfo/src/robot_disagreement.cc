@@ -22,7 +22,7 @@ void mustBeSound(const Trial& trial, std::size_t channels) {
     throw std::invalid_argument(fmt::format("{}: {}", trial.name, what));
   };
   const std::size_t n = trial.times.size();
-  if (n < 2) fail(fmt::format("holds {} rows, a trial must hold at least 2", n));
+  if (n < 2) fail(fmt::format("holds {} rows, must hold at least 2", n));
   if (trial.acceleration.size() != n || trial.measured.rows() != static_cast<Index>(n) ||
       trial.measured.cols() != static_cast<Index>(channels))
     fail("commands and measured values must have one row for each time");
@@ -40,7 +40,7 @@ double noiseOf(const std::vector<Trial>& trials, Index channel, const std::strin
   for (const Trial& trial : trials) differences.add(trial.times, trial.measured.col(channel));
   if (!(differences.squares > 0) || differences.count < 5)
     throw std::invalid_argument(fmt::format(
-        "{}: the trials must hold at least eight equally spaced values that scatter", name));
+        "{}: the trials must hold at least eight equally spaced values with scatter", name));
   return differences.deviation();
 }
 
@@ -50,8 +50,8 @@ RobotDisagreement::RobotDisagreement(Model model, std::vector<Trial> trials,
                                      DisagreementOptions options)
     : model_(std::move(model)), options_(std::move(options)) {
   if (!(options_.step > 0) || !(options_.latentSpacing > 0))
-    throw std::invalid_argument("robot: step and spacing of the latent force must be above 0");
-  if (trials.empty()) throw std::invalid_argument("robot: there must be a trial");
+    throw std::invalid_argument("robot: step and spacing of the latent force must be > 0");
+  if (trials.empty()) throw std::invalid_argument("robot: must have at least one trial");
   for (const Trial& trial : trials) mustBeSound(trial, model_.channels.size());
   for (const std::string& id : options_.without) {
     const auto before = model_.candidates.size();
@@ -71,7 +71,7 @@ RobotDisagreement::RobotDisagreement(Model model, std::vector<Trial> trials,
                               ? noiseOf(trials, static_cast<Index>(c), model_.channels[c].name)
                               : options_.deviations[c]);
     if (!(deviations_[c] > 0) || !std::isfinite(deviations_[c]))
-      throw std::invalid_argument(fmt::format("noise of {}: {} {}, must be above 0",
+      throw std::invalid_argument(fmt::format("noise of {}: {} {}, must be > 0",
                                               model_.channels[c].name, deviations_[c],
                                               model_.channels[c].unit));
     weights_.push_back(deviations_[0] / deviations_[c]);
@@ -99,7 +99,8 @@ RobotDisagreement::RobotDisagreement(Model model, std::vector<Trial> trials,
         weights.push_back(weights_[c]);
       }
     if (measured.empty())
-      throw std::invalid_argument(fmt::format("{}: holds no measured value", trial.name));
+      throw std::invalid_argument(
+          fmt::format("{}: holds no measured value, must hold at least one", trial.name));
     one.measured = VectorXd::Map(measured.data(), static_cast<Index>(measured.size()));
     one.weights = VectorXd::Map(weights.data(), static_cast<Index>(weights.size()));
     const double begin = trial.times.front(), length = trial.times.back() - begin;

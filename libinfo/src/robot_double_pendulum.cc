@@ -209,49 +209,48 @@ void addEffectsOfPendulum(Model& model) {
   for (std::size_t joint = 0; joint < 2; ++joint) {
     const std::string n = std::to_string(joint + 1);
     const std::string where = joint == 0 ? "between cart and link 1" : "between the links";
-    list.push_back(effectOf(model, "visc_" + n, "viscous friction in joint " + n,
-                            "The joint " + where +
-                                " brakes in proportion to its rate, beyond the "
-                                "damping that the model has.",
-                            EffectKind::structure, kViscous1 + joint, 2e-4));
-    list.push_back(effectOf(model, "coulomb_" + n, "dry friction in joint " + n,
-                            "The joint " + where +
-                                " brakes with a moment that does not depend on "
-                                "its rate.",
-                            EffectKind::structure, kCoulomb1 + joint, 5e-4));
-    discover::Candidate sticking =
-        effectOf(model, "stribeck_" + n, "dry friction that sticks in joint " + n,
+    list.push_back(effectOf(
+        model, "visc_" + n, "viscous friction in joint " + n,
+        "The joint " + where +
+            " resists its motion in proportion to the rate, in addition to the model's damping.",
+        EffectKind::structure, kViscous1 + joint, 2e-4));
+    list.push_back(
+        effectOf(model, "coulomb_" + n, "dry friction in joint " + n,
                  "The joint " + where +
-                     " brakes with a dry moment that is up to twice as large "
-                     "where it moves slowly.",
-                 EffectKind::structure, kStribeck1 + 2 * joint, 5e-4);
+                     " resists its motion with a moment that does not depend on the rate.",
+                 EffectKind::structure, kCoulomb1 + joint, 5e-4));
+    discover::Candidate sticking = effectOf(
+        model, "stribeck_" + n, "dry friction that sticks in joint " + n,
+        "The joint " + where +
+            " resists its motion with a dry moment that is up to twice as large at low rates.",
+        EffectKind::structure, kStribeck1 + 2 * joint, 5e-4);
     sticking.quantities.push_back(kStribeckRate1 + 2 * joint);
     sticking.deviations.push_back(0.5);
     sticking.starts = {startsAt({5e-4, 0.5})};
     list.push_back(std::move(sticking));
   }
   discover::Candidate locked =
-      effectOf(model, "locked_2", "joint 2 is locked: one link fewer",
-               "The joint between the links holds them in line, up to a little give.",
+      effectOf(model, "locked_2", "joint 2 is locked",
+               "The joint between the links is locked, up to a small compliance.",
                EffectKind::structure, kLock2, 0.02);
   // what is locked behaves unlike what springs: fits do not always cross the resonance between
   locked.starts.push_back(startsAt({2}));
   list.push_back(std::move(locked));
-  discover::Candidate third =
-      effectOf(model, "link_3", "a third link", "Something swings from the lower end of link 2.",
-               EffectKind::structure, kMass3, 5e-4);
+  discover::Candidate third = effectOf(model, "link_3", "a third link",
+                                       "A further link swings from the lower end of link 2.",
+                                       EffectKind::structure, kMass3, 5e-4);
   third.quantities.push_back(kLength3);
   third.deviations.push_back(model.quantities[kLength3].deviation);
   third.starts = {startsAt({5e-4, 0.05}), startsAt({5e-4, 0.1}), startsAt({5e-4, 0.2})};
   list.push_back(std::move(third));
   list.push_back(effectOf(model, "drag", "air drag",
-                          "Air holds both links back in proportion to the square of their speed.",
+                          "Air resists both links in proportion to the square of their speed.",
                           EffectKind::structure, kDrag, 2e-3));
   list.push_back(effectOf(model, "tilt", "tilt of the pivots",
-                          "The rig is not level: what it calls down is off by an angle.",
+                          "The rig is not level: its vertical is off by an angle.",
                           EffectKind::structure, kTilt, 0));
   list.push_back(effectOf(model, "lag", "lag of the cart",
-                          "The cart's speed follows its command late, as a filter of first order.",
+                          "The cart's speed follows its command with a first-order lag.",
                           EffectKind::input, kLag, 2e-3));
   for (std::size_t sensor = 0; sensor < 2; ++sensor) {
     const std::string n = std::to_string(sensor + 1);
@@ -259,12 +258,11 @@ void addEffectsOfPendulum(Model& model) {
                             "The sensor of link " + n + " is off by a constant angle.",
                             EffectKind::sensor, kBias1 + sensor, 0));
     list.push_back(effectOf(model, "gain_" + n, "gain of angle sensor " + n,
-                            "The sensor of link " + n + " shows a multiple of the angle.",
+                            "The sensor of link " + n + " reads a multiple of the angle.",
                             EffectKind::sensor, kGain1 + sensor, 0));
   }
   list.push_back(effectOf(model, "clock", "clock offset of the sensors",
-                          "The sensors show what was a while before.", EffectKind::sensor, kClock,
-                          2e-3));
+                          "The sensors' readings are delayed.", EffectKind::sensor, kClock, 2e-3));
   const char* ids[] = {"m_1", "m_2", "com_1", "com_2", "I_1", "I_2", "pivots", "damping"};
   for (std::size_t q = kMass1; q <= kDamping; ++q) list.push_back(errorOf(model, ids[q], q));
 }

@@ -153,30 +153,30 @@ std::vector<discover::Quantity> quantitiesOfBob(double leastForce, double greate
 void addEffectsOfBob(Model& model, double leastForce, double greatestForce) {
   auto& list = model.candidates;
   list.push_back(effectOf(model, "drag", "air drag",
-                          "Air holds the mass back in proportion to the square of its speed.",
+                          "Air resists the mass in proportion to the square of its speed.",
                           EffectKind::structure, kMassDrag, 2e-3));
   list.push_back(effectOf(model, "visc", "viscous friction of the pivot",
-                          "The string's pivot brakes in proportion to its rate.",
+                          "The string's pivot resists its motion in proportion to the rate.",
                           EffectKind::structure, kMassViscous, 2e-3));
-  list.push_back(effectOf(model, "coulomb", "dry friction of the pivot",
-                          "The string's pivot brakes with a moment that does not depend on its "
-                          "rate.",
-                          EffectKind::structure, kMassCoulomb, 2e-3));
+  list.push_back(effectOf(
+      model, "coulomb", "dry friction of the pivot",
+      "The string's pivot resists its motion with a moment that does not depend on the rate.",
+      EffectKind::structure, kMassCoulomb, 2e-3));
   list.push_back(effectOf(model, "tilt", "tilt of the rig",
                           "The rig is not level: the cart climbs as it travels.",
                           EffectKind::structure, kMassTilt, 0.01));
   discover::Candidate elastic = effectOf(model, "elastic", "elastic string",
-                                         "The string gives way in proportion to its force.",
+                                         "The string stretches in proportion to its force.",
                                          EffectKind::structure, kElastic, 2e-3);
   // it resonates, at 10, 5 and 2 Hz for these and 0.12 kg: fits do not cross what drives it
   for (const double compliance : {8e-3, 0.05}) elastic.starts.push_back(startsAt({compliance}));
   list.push_back(std::move(elastic));
   list.push_back(effectOf(model, "lag", "lag of the cart",
-                          "The cart's speed follows its command late, as a filter of first order.",
+                          "The cart's speed follows its command with a first-order lag.",
                           EffectKind::input, kMassLag, 2e-3));
   discover::Candidate saturation =
       effectOf(model, "saturation", "saturation of the load cell",
-               "The load cell loses a share of all force beyond some limit.", EffectKind::sensor,
+               "The load cell loses a share of the force beyond a limit.", EffectKind::sensor,
                kSaturation, 0.05);
   saturation.quantities.push_back(kSaturationAt);
   saturation.deviations.push_back(model.quantities[kSaturationAt].deviation);
@@ -189,12 +189,12 @@ void addEffectsOfBob(Model& model, double leastForce, double greatestForce) {
                           "The load cell is off by a constant force.", EffectKind::sensor, kBias,
                           0));
   list.push_back(effectOf(model, "gain", "gain of the load cell",
-                          "The load cell shows a multiple of the force.", EffectKind::sensor, kGain,
+                          "The load cell reads a multiple of the force.", EffectKind::sensor, kGain,
                           0));
   list.back().equivalents = {"mass"};
   list.push_back(effectOf(model, "clock", "clock offset of the load cell",
-                          "The load cell shows what was a while before.", EffectKind::sensor,
-                          kMassClock, 2e-3));
+                          "The load cell's readings are delayed.", EffectKind::sensor, kMassClock,
+                          2e-3));
   list.push_back(errorOf(model, "mass", kMass));
   list.back().equivalents = {"gain"};
   list.push_back(errorOf(model, "length", kLength));

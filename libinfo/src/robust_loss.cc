@@ -32,7 +32,8 @@ LossValue evaluate(const RobustLoss& loss, double squared, Eigen::Index outputs)
 }
 
 double varianceFactor(const RobustLoss& loss, const Eigen::VectorXd& whitened) {
-  if (whitened.size() == 0) throw std::invalid_argument("variance factor: no residual");
+  if (whitened.size() == 0)
+    throw std::invalid_argument("variance factor: must have at least one residual");
   double square = 0, slope = 0;
   for (const double z : whitened) {
     const LossValue at = evaluate(loss, z * z);

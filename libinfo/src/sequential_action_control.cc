@@ -26,7 +26,7 @@ void checkActionOptions(const ActionOptions& options) {
   const auto rule = [](const char* name, double value, bool good, const char* text) {
     if (!good || !std::isfinite(value))
       throw std::domain_error(
-          fmt::format("action control, {}: {}, rule: {} and finite", name, value, text));
+          fmt::format("action control, {}: {}, must be {} and finite", name, value, text));
   };
   const ActionOptions& o = options;
   rule("horizon [s]", o.horizon, o.horizon > 0, "> 0");
@@ -45,9 +45,9 @@ void checkActionLimits(const Eigen::Ref<const Eigen::VectorXd>& lower,
                        const Eigen::Ref<const Eigen::VectorXd>& upper) {
   for (Eigen::Index i = 0; i < lower.size(); ++i)
     if (!(lower[i] < 0 && 0 < upper[i]))
-      throw std::domain_error(
-          fmt::format("action control, limits of input {}: {} to {}, rule: lower < 0 < upper", i,
-                      lower[i], upper[i]));
+      throw std::domain_error(fmt::format(
+          "action control, limits of input {}: {} to {}, must satisfy lower < 0 < upper", i,
+          lower[i], upper[i]));
 }
 
 void checkActionWeights(const Eigen::MatrixXd& inverseCovariance, const Eigen::VectorXd& scale,
@@ -62,11 +62,12 @@ void checkActionWeights(const Eigen::MatrixXd& inverseCovariance, const Eigen::V
   for (double s : scale)
     if (!(s > 0 && std::isfinite(s)))
       throw std::domain_error(
-          fmt::format("action control, scale of a parameter: {}, rule: > 0 and finite", s));
+          fmt::format("action control, scale of a parameter: {}, must be > 0 and finite", s));
   if (!(epsilon > 0 && std::isfinite(epsilon)))
-    throw std::domain_error(fmt::format(
-        "action control, epsilon: {}, rule: > 0 and finite (the cost is infinite at rest without)",
-        epsilon));
+    throw std::domain_error(
+        fmt::format("action control, epsilon: {}, must be > 0 and finite (without it the cost is "
+                    "infinite at rest)",
+                    epsilon));
 }
 
 }  // namespace detail

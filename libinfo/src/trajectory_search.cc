@@ -22,7 +22,7 @@ InformationCost informationCost(const InformationWeights& weights, const MatrixX
                                      {"condition number", weights.condition}}) {
     if (!(weight >= 0 && std::isfinite(weight)))
       throw std::domain_error(
-          fmt::format("weight of {} in the objective: {}, rule: ≥ 0 and finite", name, weight));
+          fmt::format("weight of {} in the objective: {}, must be ≥ 0 and finite", name, weight));
     any = any || weight > 0;
   }
   InformationCost out{0, MatrixXd::Zero(information.rows(), information.cols())};
@@ -87,13 +87,13 @@ VectorXd limitSlope(const InputLimits& limits, const VectorXd& u) {
 std::string describe(SearchEnd why) {
   switch (why) {
     case SearchEnd::slopeSmall:
-      return "a minimum: no direction promises more than the tolerance";
+      return "converged: the expected decrease of the cost is below the tolerance";
     case SearchEnd::noProgress:
-      return "no step along the direction of descent lowers the cost";
+      return "no step along the descent direction lowers the cost";
     case SearchEnd::iterationLimit:
       return "the iteration limit was reached while the cost was falling";
     case SearchEnd::stopped:
-      return "stopped from outside";
+      return "stopped by the caller";
   }
   return "unknown";
 }

@@ -98,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(
          slow + ": lasts 4.5 s, --step 10 s must not be longer"},
         {"UnknownParameter", calibrateWith({}, "hand.mas"), "no parameter is called 'hand.mas'"},
         {"ParameterTwice", calibrateWith({}, "hand.mass,hand.mass"), "'hand.mass' is given twice"},
-        {"GroupAndMember", calibrateWith({}, "emg.gain,emg.BRA.gain"), "set the same number"},
+        {"GroupAndMember", calibrateWith({}, "emg.gain,emg.BRA.gain"), "set the same value"},
         {"NothingMeasured",
          {"calibrate", model, "$/good.csv", "--parameters", "hand.mass", "--out", "$/out"},
          "$/good.csv: no measured column of a free angle"},

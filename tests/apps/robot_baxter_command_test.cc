@@ -79,7 +79,7 @@ TEST(RobotBaxter, SaysWhyNothingWouldMoveWithoutATrackingBias) {
   const ProgramResult result = runFisherHill({"robot", "baxter", "--tracking-weight", "0"});
   EXPECT_EQ(result.status, 1);
   EXPECT_THAT(result.out, AllOf(HasSubstr("Nothing would move"),
-                                HasSubstr("--tracking-weight is 0, rule: > 0")));
+                                HasSubstr("--tracking-weight is 0, must be > 0")));
 }
 
 TEST(RobotBaxter, TellsWrongUseInOneLine) {
@@ -92,7 +92,7 @@ TEST(RobotBaxter, TellsWrongUseInOneLine) {
   fails({"robot", "baxter", "--payload", "-1"}, "--payload");
   fails({"robot", "baxter", "--duration", "nan"}, "duration");
   fails({"robot", "baxter", "--initial-length", "3"}, "--initial-length");
-  fails({"robot", "baxter", "--window", "0.01"}, "window: 0.01 s, rule");
+  fails({"robot", "baxter", "--window", "0.01"}, "window: 0.01 s, must be");
   fails({"robot", "baxter", "--discrete"}, "--discrete cannot be combined with baxter");
   fails({"robot", "suspended-mass", "--real-time"},
         "--real-time cannot be combined with suspended-mass");

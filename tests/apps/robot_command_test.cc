@@ -239,11 +239,11 @@ TEST(RobotCommand, TellsWrongUseInOneLine) {
     fails(std::move(more), message);
   };
   inSteps({"--limits", "0.2", "-0.2"}, "limits of input 0: lower 0.2, upper -0.2");
-  inSteps({"--limits", "0.1", "0.2"}, "limits of input 0: 0 at time 0, rule: 0.1");
+  inSteps({"--limits", "0.1", "0.2"}, "limits of input 0: 0 at time 0, must be 0.1");
   inSteps({"--input-weight", "-1"}, "input weight R: least eigenvalue is -1");
   inSteps({"--objective", "e=-1"}, "weight of E in the objective: -1");
   inSteps({"--objective", "f=1"}, "criterion must be e, a, d or condition");
-  inSteps({"--measure-every", "1000"}, "steps per sample: 1000, rule: 1");
+  inSteps({"--measure-every", "1000"}, "steps per sample: 1000, must be 1");
   inSteps({"--lab"}, "cannot be combined with --discrete");
   inSteps({"--candidate", "1", "1"}, "--candidate requires --robust");
   inSteps({"--robust", "worst", "--objective", "d=1"}, "worst case: weight of D");

@@ -78,7 +78,7 @@ TEST_F(Told, AMeasuredCoordinateThatIsHeldElsewhereIsRefusedWithAdvice) {
   }
   const ProgramResult locked = replay(model, trial, {"--lock", "shoulder_elv=87.25deg"});
   EXPECT_EQ(locked.status, 0) << locked.err;
-  EXPECT_THAT(locked.err, HasSubstr("is measured, 80 to 94.5 deg, and held at 87.25 as told"));
+  EXPECT_THAT(locked.err, HasSubstr("is measured, 80 to 94.5 deg, and held at 87.25 as requested"));
   const ProgramResult resting =
       replay(model, scratch.file("rest.csv", trialWith("shoulder_elv_deg", 0.05, 0)));
   EXPECT_EQ(resting.status, 0) << resting.err;
@@ -180,14 +180,15 @@ TEST_F(Told, HeaderLinesThatMeanNothingAreTold) {
   };
   const ProgramResult known = run("known_mass_in_hand_kgs=1");
   EXPECT_EQ(known.status, 2);
-  EXPECT_THAT(known.err, HasSubstr("header: 'known_mass_in_hand_kgs' means nothing, must be "
-                                   "known_mass_in_hand_kg or known_arm_turn_deg, did you mean "
-                                   "'known_mass_in_hand_kg'?"));
+  EXPECT_THAT(
+      known.err,
+      HasSubstr("header: 'known_mass_in_hand_kgs' is unknown, must be known_mass_in_hand_kg or "
+                "known_arm_turn_deg, did you mean 'known_mass_in_hand_kg'?"));
   for (const std::string key : {"in_degrees", "inDegree", "degrees"}) {
     const ProgramResult result = run(key + "=yes");
     EXPECT_EQ(result.status, 0);
     EXPECT_THAT(result.err,
-                HasSubstr("header: '" + key + "' means nothing, did you mean 'inDegrees'?"));
+                HasSubstr("header: '" + key + "' is unknown, did you mean 'inDegrees'?"));
   }
   EXPECT_EQ(run("author=somebody").err.find("header"), std::string::npos);
 }

@@ -60,7 +60,7 @@ TEST_F(HostileFiles, ConfigurationsAreUtf8) {
                             "\xe0\x80\xaf", "\xf5\x80\x80\x80", "\xc3"}) {
     EXPECT_THAT(
         configRefusal(std::string("[input]\nsignal = '\"m") + bytes + "V\"'\nscale = 0.75\n"),
-        HasSubstr("emg.toml:2: bytes that are no text, must be UTF-8"));
+        HasSubstr("emg.toml:2: not text, must be UTF-8"));
   }
   EXPECT_THAT(configRefusal("[input]\nsignal = 'µ€\xf0\x9d\x9c\x83'\n"), Not(HasSubstr("UTF-8")));
 }
@@ -96,7 +96,7 @@ TEST_F(HostileFiles, DevicesAreNoFiles) {
 }
 
 TEST_F(HostileFiles, AConfigurationCannotNestUntilTheStackIsFull) {
-  const std::string tooDeep = "emg.toml:2: tables or lists in each other, must be at most 100 deep";
+  const std::string tooDeep = "emg.toml:2: nested tables or lists, must be at most 100 deep";
   EXPECT_THAT(configRefusal("\na = " + times(100000, "[")), HasSubstr(tooDeep));
   EXPECT_THAT(configRefusal("\na = " + times(100000, "{b = ")), HasSubstr(tooDeep));
   EXPECT_THAT(configRefusal("\na" + times(100000, ".b") + " = 1"), HasSubstr(tooDeep));
@@ -117,7 +117,7 @@ TEST_F(HostileFiles, AConfigurationHasNoTextOfSeveralLines) {
 
 TEST_F(HostileFiles, AListWithoutAnItemHasNoKeys) {
   const auto refused = [](const std::string& name) {
-    return "emg.toml: '" + name + "' is a list without an item, must have no keys of its own";
+    return "emg.toml: '" + name + "' is an empty list, must have no keys of its own";
   };
   EXPECT_THAT(configRefusal("i=[]\n[i.k]\n"), HasSubstr(refused("i")));
   EXPECT_THAT(configRefusal("a.i = [ # none\n\n ]\n[ a . \"i\" . k ]\n"), HasSubstr(refused("i")));
@@ -127,7 +127,7 @@ TEST_F(HostileFiles, AListWithoutAnItemHasNoKeys) {
   // elsewhere such lists are what they were
   for (const char* text : {"i = []\n[j.k]\n", "i = [\n1]\n[j]\ni = []\n", "a = '[i]'\ni = []\n",
                            "i = []  # [i.k]\n", "a = [\n[1],\n[]]\n[b.c]\n"}) {
-    EXPECT_THAT(configRefusal(text), Not(HasSubstr("without an item"))) << text;
+    EXPECT_THAT(configRefusal(text), Not(HasSubstr("is an empty list"))) << text;
   }
 }
 

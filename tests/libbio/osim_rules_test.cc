@@ -467,7 +467,7 @@ TEST_F(OsimRules, ForcesThatAreNotSimulatedAreNamedUnlessDisabled) {
 TEST_F(OsimRules, OtherUnitsPrescribedMotionAndNaturalSplinesAreNamed) {
   EXPECT_THAT(
       read(replaced(valid, "<gravity>", "<length_units>mm</length_units><gravity>")).warnings,
-      ElementsAre("length_units = 'mm' is not heeded: lengths are read as metres"));
+      ElementsAre("length_units = 'mm' is ignored: lengths are read as metres"));
   EXPECT_THAT(
       read(replaced(valid, "<range>0 2", "<prescribed>true</prescribed><range>0 2")).warnings,
       ElementsAre("Coordinate 'q' of CustomJoint 'elbow': its prescribed motion is not "

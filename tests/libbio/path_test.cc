@@ -307,7 +307,7 @@ TEST(MusclePath, SaysWhichOfSeveralObjectsOnASpanIsHeeded) {
   ASSERT_EQ(both.path.warnings().size(), 1u);
   EXPECT_EQ(both.path.warnings().front(),
             "muscle 'test' touches the wrap objects 'cylinder' and 'second' at once between its "
-            "points 'P2' and 'P3': only 'cylinder' is heeded");
+            "points 'P2' and 'P3': only 'cylinder' is used");
   EXPECT_TRUE(ArmPath<1>(model, extensor({"cylinder"})).path.warnings().empty());
 }
 
@@ -466,10 +466,10 @@ TEST(MusclePath, SaysWhatItLeavesOut) {
                                       {"far"}));
   ASSERT_EQ(outOfReach.path.notes().size(), 1u);
   EXPECT_EQ(outOfReach.path.notes()[0],
-            "test: the ellipsoid 'far' is left out: no moving span reaches it");
+            "test: the ellipsoid 'far' is ignored: no moving span reaches it");
   ArmPath<1> fixed(model, extensor({"far"}));
   EXPECT_EQ(fixed.path.notes()[0],
-            "test: the ellipsoid 'far' is left out: spans that do not move are taken as straight");
+            "test: the ellipsoid 'far' is ignored: spans that do not move are taken as straight");
 }
 
 TEST(MusclePath, RefusesWhatItCannotSimulate) {

@@ -160,7 +160,7 @@ TEST_F(Recordings, NamesFileLineAndColumnOfWhatItCannotRead) {
   layout.columns = {column(1, "x", 10, "mV")};
   fails("/no/such/file.txt", layout, "/no/such/file.txt: there is no such file");
   fails(file("empty.txt", ""), layout, "empty.txt: is empty");
-  fails(file("blank.txt", "\n \n"), layout, "nothing but empty lines");
+  fails(file("blank.txt", "\n \n"), layout, "only empty lines");
   fails(file("word.txt", "1\t2\n3\tx\n"), layout, "word.txt:2: column 2: 'x' is not a number");
   fails(file("nan.txt", "1\t2\nnan\t2\n"), layout, "nan.txt:2: column 1: 'nan'");
   fails(file("comma.txt", "1\t2\n1,5\t2\n"), layout, "comma.txt:2: column 1: '1,5'");

@@ -119,7 +119,7 @@ TEST(TrialSet, RefusesWhatCannotBeEstimatedFrom) {
   fails([&] { set({"hand.mass"}, {pushed}); }, "curl_slow.sto: has an external torque");
   fails([&] { set({"hand.mas"}, {good}); }, "no parameter is called 'hand.mas'");
   fails([&] { set({"hand.mass", "hand.mass"}, {good}); }, "'hand.mass' is given twice");
-  fails([&] { set({"emg.gain", "emg.BRA.gain"}, {good}); }, "set the same number");
+  fails([&] { set({"emg.gain", "emg.BRA.gain"}, {good}); }, "set the same value");
   fails([&] { set({"initial.elbow_flexion"}, {good, good}); }, "differs between trials");
 }
 

@@ -176,8 +176,7 @@ TEST_F(TrialFile, SaysInOneLineWhatIsWrong) {
             "trial.csv: column 'BRA' at time = 0 s: excitation = -0.1, must be 0 to 1");
   EXPECT_EQ(messageOf("time,BRA,TRIlong\n0,,0\n1,1,0\n"),
             "trial.csv: column 'BRA' at time = 0 s: excitation is missing, must be given");
-  EXPECT_EQ(messageOf("time,BRA,TRIlong\n0,0,0\n"),
-            "trial.csv: holds 1 row, a trial must hold at least 2");
+  EXPECT_EQ(messageOf("time,BRA,TRIlong\n0,0,0\n"), "trial.csv: holds 1 row, must hold at least 2");
   EXPECT_EQ(messageOf("time,elbow_flexion\n0,0\n1,0\n"),
             "trial.csv: drives no muscle of the model, must have a column for one");
   EXPECT_EQ(messageOf("time,BRA,elbow_flexion\n0,0,\n1,0,\n"),

@@ -62,12 +62,12 @@ TEST(BoxTask, NamesTheRuleThatIsBroken) {
       return std::string(e.what());
     }
   };
-  EXPECT_THAT(message(0.28, {}, {}), HasSubstr("string: 0.28 m, rule: > 0.29"));
+  EXPECT_THAT(message(0.28, {}, {}), HasSubstr("string: 0.28 m, must be > 0.29"));
   EXPECT_THAT(message(NAN, {}, {}), HasSubstr("string: nan m"));
   EXPECT_THAT(message(0.368, {.opening = 0}, {}), HasSubstr("opening of the box: 0 m"));
   EXPECT_THAT(message(0.368, {.edge = 0.1}, {}), HasSubstr("edge of the box: 0.1 m"));
   EXPECT_THAT(message(0.368, {}, {.timeStep = 0}), HasSubstr("time step: 0 s"));
-  EXPECT_THAT(message(0.368, {}, {.crossing = 5}), HasSubstr("duration: 4 s, rule: > crossing"));
+  EXPECT_THAT(message(0.368, {}, {.crossing = 5}), HasSubstr("duration: 4 s, must be > crossing"));
   EXPECT_THAT(message(0.368, {}, {.clearance = -1}), HasSubstr("clearance: -1 m"));
   EXPECT_THAT(message(0.368, {}, {.inputWeight = 0}), HasSubstr("input weight: 0"));
 }

@@ -185,7 +185,7 @@ TEST(Candidates, NameTheRuleThatIsBroken) {
         candidatesCost(CandidateRule::worst, {.d = 1}, {I, I}, 1e-9);
       },
       "weight of D in the objective is 1");
-  throwsSaying([&] { candidatesCost(CandidateRule::worst, {.e = 1}, {}, 1e-9); }, "rule: ≥ 1");
+  throwsSaying([&] { candidatesCost(CandidateRule::worst, {.e = 1}, {}, 1e-9); }, "must be ≥ 1");
   throwsSaying([] { stack(std::vector<ExtendedStepMap>{}); }, "candidates: 0");
   throwsSaying([] { stack(std::vector{stepsAtAll()}); }, "a stack itself");
   ExtendedStepMap other = stepsAt(lengths[0]);

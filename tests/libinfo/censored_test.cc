@@ -74,11 +74,11 @@ TEST(Censored, NamesTheRuleThatIsBroken) {
       return std::string(e.what());
     }
   };
-  EXPECT_THAT(message({.deviation = 0}, 1), HasSubstr("deviation: 0, rule: > 0"));
-  EXPECT_THAT(message({.deviation = std::nan("")}, 1), HasSubstr("rule: > 0"));
+  EXPECT_THAT(message({.deviation = 0}, 1), HasSubstr("deviation: 0, must be > 0"));
+  EXPECT_THAT(message({.deviation = std::nan("")}, 1), HasSubstr("must be > 0"));
   EXPECT_THAT(message({.deviation = 1, .lower = 2, .upper = 2}, 1),
-              HasSubstr("2 to 2, rule: lower < upper"));
-  EXPECT_THAT(message({.deviation = 1}, std::nan("")), HasSubstr("rule: finite"));
+              HasSubstr("2 to 2, must satisfy lower < upper"));
+  EXPECT_THAT(message({.deviation = 1}, std::nan("")), HasSubstr("must be finite"));
 }
 
 }  // namespace

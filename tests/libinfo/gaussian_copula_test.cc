@@ -89,11 +89,11 @@ TEST(GaussianCopula, RefusesWhatIsNoCorrelation) {
   // a and b nearly the same, a and c too, but b and c the opposite
   support::throwsSaying(made(0.9, 0.9, -0.9, 1), "not positive definite");
   support::throwsSaying(made(1, 0, 0, 1), "not positive definite");
-  support::throwsSaying(made(0, 0, 0, 0.9), "with itself");
-  support::throwsSaying(made(0, 0, std::nan(""), 1), "mirror");
+  support::throwsSaying(made(0, 0, 0, 0.9), "diagonal");
+  support::throwsSaying(made(0, 0, std::nan(""), 1), "asymmetric");
   Eigen::MatrixXd skew = threeCorrelations();
   skew(0, 1) = 0.7;
-  support::throwsSaying([&] { GaussianCopula one(skew); }, "mirror");
+  support::throwsSaying([&] { GaussianCopula one(skew); }, "asymmetric");
 }
 
 }  // namespace

@@ -219,7 +219,7 @@ TEST(OnlineLeastSquares, NamesTheRuleThatIsBroken) {
               HasSubstr("deviations of a window's start"));
   EXPECT_THAT(with(lengthFrom(0.4), {{.deviation = 1}},
                    {.window = 10, .startDeviation = Eigen::Vector4d(0, -1, 0, 0)}),
-              HasSubstr("start: -1, rule: ≥ 0"));
+              HasSubstr("start: -1, must be ≥ 0"));
   EXPECT_THAT(with(lengthFrom(0.4), {{.deviation = 1}}, {.maxIterations = 0}),
               HasSubstr("iterations: 0"));
   OnlineLeastSquares<LengthMap> squares(kLengthMap, Vector<double, 4>::Zero(), lengthFrom(0.4),

@@ -41,8 +41,10 @@ TEST(Parameter, BreaksEachRuleOnce) {
   refused({.name = "a", .start = nan}, "finite");
   refused({.name = "a", .start = 1, .lower = 2, .upper = 1}, "lower bound 2");
   refused({.name = "a", .start = 1, .lower = nan}, "lower bound");
-  refused({.name = "a", .start = 1, .prior = info::GaussianPrior{0, 0}}, "prior deviation");
-  refused({.name = "a", .start = 1, .prior = info::GaussianPrior{0, nan}}, "prior deviation");
+  refused({.name = "a", .start = 1, .prior = info::GaussianPrior{0, 0}},
+          "prior standard deviation");
+  refused({.name = "a", .start = 1, .prior = info::GaussianPrior{0, nan}},
+          "prior standard deviation");
   refused({.name = "a", .start = 1, .prior = info::GaussianPrior{nan, 1}}, "prior mean");
   EXPECT_THAT(
       [] {

@@ -176,8 +176,8 @@ TEST(Riccati, NamesTheWeightThatBreaksItsRule) {
   };
   throwsSaying(with([](auto& w) { w.R = -w.R; }), "weight R: least eigenvalue");
   throwsSaying(with([](auto& w) { w.Q(0, 0) = -1; }), "weight Q: least eigenvalue is -1");
-  throwsSaying(with([](auto& w) { w.Q(0, 1) = 1; }), "weight Q: rule finite and symmetric");
-  throwsSaying(with([](auto& w) { w.R(0, 0) = std::nan(""); }), "weight R: rule finite");
+  throwsSaying(with([](auto& w) { w.Q(0, 1) = 1; }), "weight Q: must be finite and symmetric");
+  throwsSaying(with([](auto& w) { w.R(0, 0) = std::nan(""); }), "weight R: must be finite");
   throwsSaying(with([](auto& w) { w.Qf.resize(2, 2); }), "weight Qf");
   throwsSaying(with([](auto& w) { w.S.resize(1, 3); }), "weight S");
   throwsSaying([&] { affineLq(p.system, {p.cost.a, {}}, p.weights); }, "linear cost");

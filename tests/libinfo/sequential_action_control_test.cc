@@ -233,10 +233,10 @@ TEST(SequentialActionControl, NamesTheRuleThatIsBroken) {
       return std::string(e.what());
     }
   };
-  EXPECT_THAT(message({.horizon = 0}), HasSubstr("horizon [s]: 0, rule: > 0"));
+  EXPECT_THAT(message({.horizon = 0}), HasSubstr("horizon [s]: 0, must be > 0"));
   EXPECT_THAT(message({.horizon = std::nan("")}), HasSubstr("horizon"));
-  EXPECT_THAT(message({.step = 2}), HasSubstr("step [s]: 2, rule: > 0, ≤ horizon"));
-  EXPECT_THAT(message({.descentRate = 1}), HasSubstr("descent rate [1/s]: 1, rule: < 0"));
+  EXPECT_THAT(message({.step = 2}), HasSubstr("step [s]: 2, must be > 0, ≤ horizon"));
+  EXPECT_THAT(message({.descentRate = 1}), HasSubstr("descent rate [1/s]: 1, must be < 0"));
   EXPECT_THAT(message({.firstDuration = 3}), HasSubstr("first duration [s]: 3"));
   EXPECT_THAT(message({.maxHalvings = -1}), HasSubstr("halvings: -1"));
   EXPECT_THAT(message({.improvement = 1}), HasSubstr("improvement: 1"));
@@ -256,12 +256,12 @@ TEST(SequentialActionControl, NamesTheRuleThatIsBroken) {
                                       Vector<double, 1>(upper), Matrix<double, 1, 1>(R));
     });
   };
-  EXPECT_THAT(with(0, 6, 1, lengthCost()), HasSubstr("0 to 6, rule: lower < 0 < upper"));
-  EXPECT_THAT(with(-6, std::nan(""), 1, lengthCost()), HasSubstr("rule: lower < 0 < upper"));
+  EXPECT_THAT(with(0, 6, 1, lengthCost()), HasSubstr("0 to 6, must satisfy lower < 0 < upper"));
+  EXPECT_THAT(with(-6, std::nan(""), 1, lengthCost()), HasSubstr("must satisfy lower < 0 < upper"));
   EXPECT_THAT(with(-6, 6, 0, lengthCost()), HasSubstr("input weight R"));
   auto cost = lengthCost();
   cost.epsilon = 0;
-  EXPECT_THAT(with(-6, 6, 1, cost), HasSubstr("epsilon: 0, rule: > 0"));
+  EXPECT_THAT(with(-6, 6, 1, cost), HasSubstr("epsilon: 0, must be > 0"));
   cost = lengthCost();
   cost.stateWeight(1, 1) = -1;
   EXPECT_THAT(with(-6, 6, 1, cost), HasSubstr("state weight Q"));

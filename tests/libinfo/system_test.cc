@@ -141,7 +141,7 @@ TEST(System, NamesTheArgumentOfWrongLength) {
   };
   EXPECT_THAT(message(one, one, two), testing::StartsWith("state x"));
   EXPECT_THAT(message(two, two, two), testing::StartsWith("input u"));
-  EXPECT_EQ(message(two, one, one), "parameters theta: length is 1, rule: 2");
+  EXPECT_EQ(message(two, one, one), "parameters theta: length is 1, must be 2");
 }
 
 TEST(LagrangianSystem, NamesTheArgumentOfWrongLength) {

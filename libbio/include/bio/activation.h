@@ -118,13 +118,13 @@ struct ActivationStep {
   double value;                   ///< a₁
   Eigen::Matrix<double, 7, 1> d;  ///< in u₀, u₁, a₀, h, t_s, c₁ and c₂, in this order
 };
-/// By hand where the excitation stays above or stays below the activation, else through the scalar
-/// type.
+/// Written out if the excitation stays above or below the activation, else computed by automatic
+/// differentiation.
 ActivationStep stepActivationWithDerivatives(const SchutteActivation<double>& dynamics, double u0,
                                              double u1, double a0, double h);
 
-/// stepActivation for many muscles with the same step: a[i] moves from excitation u0[i] to u1[i].
-/// All spans have the same length.
+/// stepActivation for many muscles with the same step: updates a[i] while the excitation changes
+/// from u0[i] to u1[i]. All spans have the same length.
 template <class Dynamics>
 void stepActivations(std::span<const Dynamics> dynamics, std::span<const double> u0,
                      std::span<const double> u1, double h, std::span<double> a) {

@@ -14,11 +14,11 @@
 namespace bio {
 
 struct ArmOptions {
-  SkeletonOptions skeleton;  ///< which coordinates are free, where the others are held
+  SkeletonOptions skeleton;  ///< free coordinates, and values of the locked ones
   std::vector<std::string>
-      wrapAsCylinder;          ///< ellipsoids with two equal semi-axes to take as cylinders
+      wrapAsCylinder;          ///< ellipsoids with two equal semi-axes to treat as cylinders
   SchutteOptions muscle;       ///< activation floor, treatment of negative forces
-  bool tabulatePaths = false;  ///< MusclePath::tabulate; pays after a few simulations
+  bool tabulatePaths = false;  ///< MusclePath::tabulate; worthwhile after a few simulations
 };
 
 /// One muscle ready to be simulated.
@@ -29,9 +29,10 @@ struct ArmMuscle {
   MusclePath path;
 };
 
-/// A model compiled for simulation: the skeleton that the free coordinates leave, the muscles that
-/// they move, and the passive coordinate forces. A muscle whose path moves over a surface without
-/// an exact geodesic (UnsupportedWrap) is left out with a warning. Constant; state is passed to it.
+/// A model compiled for simulation: the skeleton with its free coordinates, the muscles that these
+/// move, and the passive coordinate forces. A muscle whose path moves over a surface without an
+/// exact geodesic (UnsupportedWrap) is left out with a warning. Constant: functions take the state
+/// as an argument.
 class Arm {
  public:
   /// @throws std::invalid_argument what Skeleton and MusclePath throw, non-physical muscle
@@ -39,11 +40,11 @@ class Arm {
   ///   mass, a moving body with a negative principal moment of inertia
   Arm(const Model& model, const ArmOptions& options);
 
-  /// The same, quicker, for a model that differs from another arm's in numbers alone: paths are
-  /// taken from that arm, tables and all, but for those of the muscles named, which get no tables.
-  /// Its remarks are not repeated.
+  /// The same, but faster, for a model that differs from that of another arm in numerical values
+  /// only: paths and their tables are taken from that arm, except those of the muscles named, which
+  /// get no tables. Its warnings are not repeated.
   /// @param like    made with the same options
-  /// @param shaped  muscles one of whose path points or wrap objects differs
+  /// @param shaped muscles whose path points or wrap objects differ
   Arm(const Model& model, const ArmOptions& options, const Arm& like,
       const std::vector<std::string>& shaped);
 
@@ -52,20 +53,20 @@ class Arm {
   const std::vector<ArmMuscle>& muscles() const { return muscles_; }
   std::size_t numMuscles() const { return muscles_.size(); }
 
-  /// Where a path of this arm gains or loses conditional points, each once.
+  /// Coordinate values at which a path gains or loses conditional points, each listed once.
   const std::vector<PathSwitch>& switches() const { return switches_; }
 
-  /// One line each: muscles that move but cannot be simulated and are left out, odd locks, paths
-  /// without length and those that heed one wrap object of several.
+  /// One line each: muscles left out because they cannot be simulated, unusual locked values, paths
+  /// without length, paths that use one of several wrap objects touched at once.
   const std::vector<std::string>& warnings() const { return warnings_; }
-  /// One line each: muscles left out because nothing moves them, spans taken as constant, wraps out
-  /// of reach.
+  /// One line each: muscles left out because no free coordinate moves them, spans treated as
+  /// constant, wrap objects that no path reaches.
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   Arm(const Model& model, const ArmOptions& options, const Arm* like,
       const std::vector<std::string>& shaped);
-  /// The path that may be taken as it is; null: compile it.
+  /// The path that can be reused; null: it must be compiled.
   const MusclePath* pathOf(const std::string& muscle) const;
 
   Skeleton skeleton_;
@@ -77,9 +78,9 @@ class Arm {
   std::vector<std::string> warnings_;
 };
 
-/// Everything about an arm that depends on the configuration alone, for N free coordinates: segment
+/// All quantities that depend only on the configuration, for N free coordinates: segment
 /// placements, inertia and gravity, muscle–tendon lengths, each with first and second derivatives.
-/// A workspace: allocates when made, never when moved.
+/// A workspace: allocates when constructed, never when moved.
 template <int N>
 class ArmConfiguration {
  public:
@@ -96,22 +97,22 @@ class ArmConfiguration {
     }
   }
 
-  /// From now on the paths' conditional points are those of this configuration, wherever the arm
-  /// moves: for a method whose trial steps may reach beyond one of the arm's switches.
+  /// Fixes the active conditional points to those of this configuration, for methods whose trial
+  /// steps may cross a switch.
   void holdConditions(const Vector& at) {
     held_ = at;
     holds_ = true;
   }
 
-  /// Leaves the lengths where they are.
+  /// Does not update the lengths.
   void moveSkeletonTo(const Vector& q) {
     arm_->skeleton().template motions<double, N>(q, motions_.data());
     inertia_ = arm_->skeleton().template inertia<N>(q, motions_.data());
   }
 
-  /// Lengths and inertia at q + d by their Taylor polynomials at q, as far as their derivatives are
-  /// known: lengths, M and V lack what is of third order in d, ∂ℓ, ∂M and ∂V what is of second.
-  /// The placements stay where they are.
+  /// Lengths and inertia at q + d by their Taylor polynomials at q, up to the derivatives
+  /// available: lengths, M and V lack terms of third order in d, and ∂ℓ, ∂M and ∂V terms of second
+  /// order. The placements are not updated.
   void shift(const Vector& d) {
     for (LengthJet<N>& path : lengths_) {
       const Vector change = path.d2L_dq2 * d;

@@ -11,16 +11,16 @@
 
 namespace bio {
 
-/// A trial as estimators see it: parameters in, a coordinate at the measured times out.
+/// A trial as a function for estimators: from parameters to a coordinate at the measured times.
 ///
-/// For every θ the model is changed, compiled and simulated anew; sensitivities are those of the
-/// discrete motion, interpolated to the measured times as the motion is. Immutable: may be used
-/// from several threads.
+/// For every θ the model is changed, compiled and simulated; sensitivities are those of the
+/// discrete motion, interpolated to the measured times in the same way as the motion. Immutable:
+/// may be used from several threads.
 class ArmExperiment {
  public:
-  /// @param trial       excitations; its measured values are not looked at
-  /// @param coordinate  what is observed, free
-  /// @param times       when, within the trial [s], rising
+  /// @param trial excitations; its measured values are not used
+  /// @param coordinate observed coordinate, must be free
+  /// @param times sample times within the trial [s], rising
   /// @param selection   indices of the catalogue's parameters: θ
   /// @throws std::invalid_argument if the coordinate is not free, a time is outside the
   ///   simulation, or the integrator has no sensitivities
@@ -32,11 +32,11 @@ class ArmExperiment {
   const std::vector<std::size_t>& selection() const { return selection_; }
   const ParameterCatalogue& catalogue() const { return *catalogue_; }
 
-  /// From now on the model is held so; several hold it together.
+  /// Adds a nudge that holds the model near a measured course; several may act together.
   void hold(Nudge nudge) { nudges_.push_back(std::move(nudge)); }
 
-  /// The coordinate at the times [rad] or [m]; NaN behind the end of a simulation that failed, and
-  /// everywhere if no arm can be made of θ.
+  /// The coordinate at the times [rad] or [m]; NaN after the end of a failed simulation, and
+  /// everywhere if no model can be built with θ.
   Eigen::VectorXd outputs(const Eigen::VectorXd& theta) const;
 
   struct Linearised {
@@ -48,7 +48,7 @@ class ArmExperiment {
   /// For info::LeastSquares; one output. This experiment must outlive it.
   info::Predictor predictor() const;
 
-  /// The whole simulations behind them. @throws what Arm, initialState and simulate throw
+  /// The complete simulations. @throws what Arm, initialState and simulate throw
   Trajectory simulate(const Eigen::VectorXd& theta) const;
   SensitivityTrajectory simulateWithSensitivities(const Eigen::VectorXd& theta) const;
 
@@ -66,7 +66,7 @@ class ArmExperiment {
   std::vector<Nudge> nudges_;
 };
 
-/// Several experiments on the same parameters, their samples one behind the other.
+/// Several experiments with the same parameters; their samples are concatenated.
 /// @throws std::invalid_argument for none, or different selections
 info::Predictor joined(const std::vector<ArmExperiment>& experiments);
 

@@ -9,29 +9,29 @@
 
 namespace bio {
 
-/// One trial of a calibration as a replay of the calibrated model has it.
+/// One trial of a calibration, replayed with the calibrated model.
 struct CalibratedTrial {
   std::size_t index = 0;  ///< in its set
   bool isHeldOut = false;
   std::vector<TrialStart> starts;  ///< of every free coordinate
-  std::optional<Table> driven;     ///< what is to be replayed in its place, where the way from EMG
-                                   ///< to excitation was estimated
+  std::optional<Table> driven;     ///< trial to replay instead, if the relation between EMG and
+                                   ///< excitation was estimated
   double after = std::numeric_limits<double>::quiet_NaN();  ///< root mean square error of the
                                                             ///< measured angles [rad]; NaN: none
-  Eigen::Index samples = 0;                                 ///< that it is of
+  Eigen::Index samples = 0;                                 ///< samples of `after`
 };
 
-/// The model at a calibration's estimate, with starts and time step (Model::fitted), and what
-/// replays of it give.
+/// The model at the estimate, with initial states and time step (Model::fitted), and the RMS errors
+/// of its replays.
 struct CalibratedModel {
   Model model;
   std::vector<CalibratedTrial> trials;
 
-  /// Root mean square error over those held out, or the others [rad]; NaN if one has none.
+  /// RMS error over the held-out or the calibration trials [rad]; NaN if one of them has none.
   double rms(bool heldOut) const;
 };
 
-/// @param arm         options that both sets were made with
+/// @param arm options with which both sets were constructed
 /// @param heldOut     null: none
 /// @param simulation  integrator and step of the calibration
 /// @param calibration with an estimate

@@ -6,17 +6,17 @@
 
 #include "bio/coupled.h"
 
-/// Integrators at time steps, measured against one converged motion.
+/// Integrators at several time steps, compared with one converged motion.
 namespace bio {
 
-/// How far a motion is from another one, over all free rotations.
+/// Difference between two motions, over all free rotations.
 struct Deviation {
   double rms = 0;        ///< root mean square over rows and rotations [rad]
   double largest = 0;    ///< [rad]
   double largestAt = 0;  ///< [s]
 };
-/// The deviation at the rows of `motion`; the reference is read between its rows by cubics through
-/// values and speeds. Rows outside the reference's time are left out.
+/// Difference at the rows of `motion`; the reference is interpolated by cubics through values and
+/// speeds. Rows outside the time range of the reference are left out.
 /// @throws std::invalid_argument if no coordinate is a rotation, or no row is covered
 Deviation deviation(const Arm& arm, const Trajectory& motion, const Trajectory& reference);
 
@@ -28,35 +28,35 @@ struct CompareOptions {
                                0.002,  0.005,  0.01,   0.02,   0.05};
   double startTime = 0;              ///< [s]
   double duration = 0;               ///< [s] > 0
-  ExternalForce externalForce = {};  ///< empty: nothing pushes from outside
-  int timings = 5;  ///< runs of each cell at least, of which the median counts; ≥ 1
+  ExternalForce externalForce = {};  ///< empty: no external force
+  int timings = 5;  ///< least number of runs of each cell, whose median is reported; ≥ 1
   double usefulError = 0.017453293;  ///< RMS below which a step counts as stable [rad] > 0
   double stepResolution = 1.02;      ///< ratio at which the bisection for a step ends, > 1
-  /// Called between runs with the part of the work that is done, 0 to 1.
+  /// Called between runs with the fraction of the work done, 0 to 1.
   std::function<void(double)> progress;
 };
 
-/// The motion that all others are measured against: CVODE at two tolerances a factor ten apart, and
-/// confirmed by the variational integrator, which shares no step with it, at a small step.
+/// The reference motion: CVODE at two tolerances a factor of ten apart, confirmed by the
+/// variational integrator at a small step.
 struct ConvergedReference {
   Trajectory motion;              ///< at the tighter tolerance
   double relativeTolerance = 0;   ///< the tighter one; absolute: a hundredth of it
   double looserTolerance = 0;     ///< relative
-  Deviation disagreement;         ///< of the looser run
+  Deviation disagreement;         ///< difference of the looser run
   double interpolationError = 0;  ///< RMS, between rows [rad]; from leaving out every second row
   double secondStep = 0;          ///< of the variational integrator, the last one tried [s]
-  Deviation second;               ///< of its motion; NaN if that does not reach the end
+  Deviation second;               ///< difference of its motion; NaN if it does not reach the end
   std::string whyDisputed;        ///< one line; empty if the two agree, or CVODE has no motion
   bool completed() const { return motion.outcome == Outcome::completed; }
-  /// Two integrators that come to one motion: to a twentieth of CompareOptions::usefulError (RMS).
+  /// Whether both integrators agree to a twentieth of CompareOptions::usefulError (RMS).
   bool confirmed() const { return completed() && whyDisputed.empty(); }
-  /// Errors are not known better than this [rad].
+  /// Accuracy to which errors are known [rad].
   double floor() const { return disagreement.rms + interpolationError; }
 };
 
-/// One integrator at one step. What is not known of a run that did not reach the end is NaN.
-/// A run of rk4 that reaches the end with an RMS error of usefulError or more counts as unstable:
-/// as long as it is stable its error is smaller by orders of magnitude.
+/// One integrator at one step. Values that are undefined because the run did not reach the end are
+/// NaN. A run of rk4 that reaches the end with an RMS error of usefulError or more counts as
+/// unstable: while it is stable its error is smaller by orders of magnitude.
 struct CompareCell {
   Integrator integrator = Integrator::variational;
   double step = 0;  ///< [s]
@@ -73,45 +73,46 @@ struct CompareCell {
 };
 
 /// The largest step that is stable: the run reaches the end and its RMS error is below
-/// CompareOptions::usefulError. Doubled or halved from 1 ms until the answer changes, then bisected
-/// in the logarithm; that no step in between fails is taken for granted. Stability alone would
-/// flatter: a bounded motion can be wrong by tens of degrees.
+/// CompareOptions::usefulError. The step is doubled or halved from 1 ms until the answer changes,
+/// then bisected on a logarithmic scale; it is assumed that no shorter step fails. The criterion
+/// includes the error because a stable motion can be wrong by tens of degrees.
 struct StepLimit {
   Integrator integrator = Integrator::variational;
   double stable = 0;   ///< [s] the largest found; NaN if none
   double failing = 0;  ///< [s] the smallest found; NaN if a quarter of the duration is still stable
-  std::string why;     ///< how the failing one failed, one line
+  std::string why;     ///< why the smallest failing step failed, one line
 };
 
 /// Order p of an error ∝ stepᵖ.
 struct ObservedOrder {
   Integrator integrator = Integrator::variational;
-  double order = 0;            ///< NaN if fewer than three steps are left
+  double order = 0;            ///< NaN if fewer than three steps remain
   std::vector<double> steps;   ///< [s] that the fit used
   std::vector<double> errors;  ///< RMS [rad] at these
 };
 
-/// Slope of log error over log step, least squares, over the errors above ten times `floor`: finer
-/// ones measure the reference. @throws std::invalid_argument sizes, a step ≤ 0
+/// Slope of log error over log step, least squares, over the errors above ten times `floor`:
+/// smaller ones are dominated by the error of the reference. @throws std::invalid_argument sizes, a
+/// step ≤ 0
 ObservedOrder fitOrder(const std::vector<double>& steps, const std::vector<double>& errors,
                        double floor);
 
-/// Steps over which an integrator's order is observed [s]: in its asymptotic range on an arm's
-/// motions of seconds, and whole parts of 5 ms (vi: or whole multiples), where recorded excitations
-/// have their corners. Empty for cvode.
+/// Steps over which an integrator's order is observed [s]: within its asymptotic range for motions
+/// of seconds, and integer fractions of 5 ms (vi: or integer multiples), so that the corners of
+/// recorded excitations lie on steps. Empty for cvode.
 std::vector<double> orderSteps(Integrator integrator);
 
 struct Comparison {
   ConvergedReference reference;
-  std::vector<CompareCell> cells;     ///< integrator by integrator, steps rising
+  std::vector<CompareCell> cells;     ///< by integrator, then by rising step
   std::vector<StepLimit> limits;      ///< of rk4 and the variational integrators compared
   std::vector<ObservedOrder> orders;  ///< of the same
 };
 
 /// Runs every integrator at every step. A run that fails is a result; if the reference fails,
 /// everything else is empty.
-/// @throws std::invalid_argument an empty or doubled list, steps that are not > 0 and rising, and
-///   what simulate() throws
+/// @throws std::invalid_argument an empty list or one with duplicates, steps that are not > 0 and
+///   rising, and what simulate() throws
 Comparison compareIntegrators(const Arm& arm, const ExcitationSignal& excitation,
                               const ArmState& start, const CompareOptions& options);
 

@@ -18,15 +18,15 @@ namespace bio {
 
 /// A point of a path, in the frame of the segment that carries it.
 struct PathNode {
-  std::size_t point = 0;    ///< its place in Path::points
+  std::size_t point = 0;    ///< its index in Path::points
   std::size_t segment = 0;  ///< of the skeleton; 0 is the ground
   Placement<double> X_SB;   ///< its body in the segment
-  Vec3<double> p_S;         ///< in the segment frame [m]; not used where it moves
+  Vec3<double> p_S;         ///< in the segment frame [m]; unused if it moves
   int motion = -1;          ///< index into CompiledPath::motions, −1: fixed in its body
   int condition = -1;       ///< index into CompiledPath::conditions, −1: always active
 };
 
-/// A location in a body that follows free coordinates.
+/// A location in a body as a function of free coordinates.
 struct CompiledPointMotion {
   std::array<Skeleton::CoordinateSource, 3> source;
   std::vector<FunctionEvaluator> location;  ///< x, y, z over the coordinate
@@ -42,7 +42,7 @@ struct CompiledCondition {
 /// A cylinder about z or a sphere, in the frame of its segment.
 struct PathSurface {
   bool isSphere = false;
-  std::size_t wrap = 0;     ///< its place in Path::wraps
+  std::size_t wrap = 0;     ///< its index in Path::wraps
   std::size_t segment = 0;  ///< of the skeleton
   Placement<double> X_SC;   ///< surface in the segment
   double radius = 0;        ///< [m]
@@ -50,7 +50,7 @@ struct PathSurface {
   WrapQuadrant quadrant = WrapQuadrant::all;
 };
 
-/// A surface that a span may touch, and the way it then goes.
+/// A surface that a span may touch, and the side on which it then passes.
 struct SpanSurface {
   std::size_t surface = 0;
   Side side = Side::counterclockwise;  ///< cylinder
@@ -73,7 +73,7 @@ struct PathVariant {
   std::vector<PathSpan> all;     ///< moving and fixed, in path order
 };
 
-/// A muscle's path as evaluation needs it. Plain data; what MusclePath is made of.
+/// A muscle's path prepared for evaluation; the data of MusclePath.
 struct CompiledPath {
   std::vector<PathNode> nodes;
   std::vector<CompiledPointMotion> motions;
@@ -81,11 +81,11 @@ struct CompiledPath {
   std::vector<PathSurface> surfaces;
   std::vector<PathVariant> variants;  ///< by the bits of the active conditions
   std::vector<std::string> notes;
-  std::vector<std::string> warnings;  ///< spans that touch several objects and heed one
+  std::vector<std::string> warnings;  ///< spans that touch several objects, of which one is used
 };
 
-/// A path that moves over a surface for which there is no exact geodesic here: a torus, or an
-/// ellipsoid with three different semi-axes. Nothing the user could say makes it one.
+/// Thrown for a path that moves over a surface without an exact geodesic here: a torus, or an
+/// ellipsoid with three different semi-axes. No option can change this.
 class UnsupportedWrap : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
@@ -96,8 +96,9 @@ struct Posture {
   std::vector<Placement<double>> placements;  ///< of all segments
 };
 
-/// The default posture, then a grid over the coordinates' ranges, nearest to the default first:
-/// where compilePath looks which surfaces a span can touch. One list serves all muscles.
+/// The postures in which compilePath checks which surfaces a span can touch: the default posture,
+/// then a grid over the coordinates' ranges, nearest to the default first. One list serves all
+/// muscles.
 std::vector<Posture> samplePostures(const Skeleton& skeleton);
 
 /// See MusclePath.
@@ -109,7 +110,7 @@ CompiledPath compilePath(const Model& model, const Skeleton& skeleton, const Mus
 /// Conditional points stay active this far beyond their range, as in OpenSim [rad] or [m].
 constexpr double conditionMargin = 1e-5;
 
-/// The variant for a configuration.
+/// The path variant that is active in a configuration.
 template <class Q>
 const PathVariant& activeVariant(const CompiledPath& path, const Q& q) {
   std::size_t bits = 0;
@@ -126,9 +127,8 @@ const PathVariant& activeVariant(const CompiledPath& path, const Q& q) {
   return path.variants[bits];
 }
 
-/// Whether a span with these ends, seen in the surface's frame, is left straight because an end
-/// lies within the radius, because it has slipped off a cylinder, or because both contacts lie
-/// beyond a cylinder's ends.
+/// Whether a span with these ends in the surface's frame is straight because an end lies within the
+/// radius, the path has slipped off a cylinder, or both contacts lie beyond a cylinder's ends.
 template <class T>
 bool surfaceIsOutOfPlay(const PathSurface& surface, const T& radius, const SpanSurface& way,
                         const Vec3<T>& p_CP, const Vec3<T>& p_CQ) {

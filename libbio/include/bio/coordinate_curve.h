@@ -11,7 +11,7 @@ namespace bio {
 /// The course of one coordinate in a result of any program.
 struct CoordinateCurve {
   std::vector<double> time;   ///< [s] rising
-  std::vector<double> value;  ///< [rad] or [m]; NaN where the table has none
+  std::vector<double> value;  ///< [rad] or [m]; NaN where the table has no value
 };
 
 /// Reads a table of states or kinematics: the column `/jointset/JOINT/NAME/value` of OpenSim 4,
@@ -21,7 +21,7 @@ struct CoordinateCurve {
 CoordinateCurve readCoordinate(const std::filesystem::path& statesFile,
                                const Coordinate& coordinate);
 
-/// Root mean square of curve − motion at the curve's times that the motion covers [rad] or [m].
+/// RMS of curve − motion at those times of the curve that the motion covers [rad] or [m].
 /// @throws std::invalid_argument if it covers none of them, or the coordinate is not free
 double rmsDifference(const Arm& arm, const CoordinateCurve& curve, const Trajectory& motion,
                      const std::string& coordinate);

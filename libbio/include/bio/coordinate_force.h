@@ -25,13 +25,13 @@ CoordinateForceValue evaluate(const CoordinateLimitForce& law, double q, double 
 /// τ = −k (q − q_0) − b q̇
 CoordinateForceValue evaluate(const SpringGeneralizedForce& law, double q, double qDot);
 
-/// ∂τ/∂θ of a law's own numbers, in the order in which the law lists them: upper limit and
-/// stiffness, lower limit and stiffness, damping, transition; stiffness, rest length, viscosity.
+/// ∂τ/∂θ with respect to the force's parameters, in this order: upper limit and stiffness, lower
+/// limit and stiffness, damping, transition; stiffness, rest length, viscosity.
 std::array<double, 6> parameterDerivatives(const CoordinateLimitForce& law, double q, double qDot);
 std::array<double, 3> parameterDerivatives(const SpringGeneralizedForce& law, double q,
                                            double qDot);
 
-/// A formula with its constants, compiled: τ(q, q̇; c).
+/// A compiled formula with constants: τ(q, q̇; c).
 class CoordinateExpression {
  public:
   /// @throws std::invalid_argument syntax error, unknown name, more than maxConstants constants
@@ -40,7 +40,7 @@ class CoordinateExpression {
   static constexpr std::size_t maxConstants = 6;
 
   CoordinateForceValue evaluate(double q, double qDot) const;
-  /// Whether τ is 0 everywhere, as with an amplitude of 0.
+  /// Whether τ is 0 everywhere, e.g. because its amplitude is 0.
   bool vanishes() const;
   /// ∂τ/∂c of one of the constants.
   double parameterDerivative(std::size_t constant, double q, double qDot) const;
@@ -50,7 +50,7 @@ class CoordinateExpression {
   std::vector<double> constants_;
 };
 
-/// The formula with the numbers in the places of its constants, to 17 digits: what a file says.
+/// The formula with its constants replaced by their values, to 17 digits, as written to a file.
 /// @throws std::invalid_argument a constant that is not finite
 std::string plainExpression(const ExpressionBasedCoordinateForce& law);
 
@@ -60,7 +60,7 @@ class CoordinateForces {
   /// @throws std::invalid_argument unknown coordinate, or an expression that cannot be read
   CoordinateForces(const Model& model, const Skeleton& skeleton);
 
-  /// Adds force and derivatives of all laws: tau += τ, tau_q += ∂τ/∂q, tau_qDot += ∂τ/∂q̇.
+  /// Adds forces and derivatives: tau += τ, tau_q += ∂τ/∂q, tau_qDot += ∂τ/∂q̇.
   template <int N>
   void add(const Eigen::Matrix<double, N, 1>& q, const Eigen::Matrix<double, N, 1>& qDot,
            Eigen::Matrix<double, N, 1>& tau, Eigen::Matrix<double, N, N>& tau_q,

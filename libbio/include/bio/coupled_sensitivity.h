@@ -11,7 +11,8 @@ namespace bio {
 /// Derivatives of one quantity along a motion; rows = times, columns = parameters.
 using SensitivityMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// A simulated motion and how it follows parameters, [unit of the quantity per unit of θ].
+/// A simulated motion and its derivatives with respect to parameters [unit of the quantity per unit
+/// of θ].
 struct SensitivityTrajectory {
   Trajectory motion;
   std::vector<SensitivityMatrix> q;            ///< dq/dθ of each free coordinate
@@ -21,15 +22,15 @@ struct SensitivityTrajectory {
   std::vector<SensitivityMatrix> tendonForce;  ///< of each muscle; empty unless asked for
   std::vector<SensitivityMatrix> qOfNodes;     ///< dq/dd of each free coordinate: times × nodes
   std::vector<SensitivityMatrix> qDotOfNodes;  ///< dq̇/dd of each free coordinate
-  double wallSeconds = 0;  ///< of the sensitivities alone; motion.wallSeconds is the motion's
+  double wallSeconds = 0;  ///< of the sensitivities; motion.wallSeconds is that of the motion
 };
 
-/// Nodes of an external force on one coordinate, straight lines between, 0 before the first and
-/// behind the last, as SimulationOptions::externalForce has it: how the motion follows its values
-/// there, [unit of q per N·m or N].
+/// Nodes of an external force on one coordinate, linear between them and 0 outside, as for
+/// SimulationOptions::externalForce; derivatives of the motion with respect to the values at the
+/// nodes [unit of q per N·m or N].
 struct ExternalNodes {
   int coordinate = 0;         ///< free index
-  std::vector<double> times;  ///< [s] strictly rising, none or at least two
+  std::vector<double> times;  ///< [s] strictly rising; empty, or at least two
 };
 
 struct SensitivityOptions {
@@ -38,20 +39,20 @@ struct SensitivityOptions {
   ExternalNodes externalNodes = {};
 };
 
-/// Simulates the trial and differentiates the discrete motion in parameters, exactly.
+/// Simulates the trial and differentiates the discrete motion exactly with respect to parameters.
 ///
 /// A step solves r(z', z, θ) = 0 for z' = (q', ℓ'_i), so by the implicit function theorem
 ///     dz'/dθ = −J⁻¹(∂r/∂z·dz/dθ + ∂r/∂θ)
 /// with the arrow-shaped J of simulate(); all parameters are the columns of one matrix. Activations
-/// follow their exact recursion, row by row of the trial. The start depends on θ too: fibres rest
-/// in static equilibrium at the excitation of the first row. Where a step was cut at a switch of a
-/// path, the time of the cut is one more unknown with the equation D(q(t)) = 0, and moves what lies
-/// on both sides of it. Decisions are held: which steps are halved, which way a path takes.
+/// follow their exact recursion, row by row of the trial. The initial state depends on θ as well:
+/// fibres are in static equilibrium at the excitation of the first row. If a step is split at a
+/// switch of a path, the time of the switch is one more unknown with the equation D(q(t)) = 0.
+/// Discrete decisions are held fixed: which steps are halved, on which side a path passes. See
 /// docs/theory/sensitivity.md.
 ///
-/// What is differentiated is what the program computes: central differences of whole simulations
-/// agree to their own accuracy. At kinks (a fibre exactly between shortening and lengthening, a
-/// path at lift-off) the derivative is one of the two sides.
+/// The derivatives are those of the computed motion: central differences of complete simulations
+/// agree to within their own accuracy. At kinks (a fibre exactly between shortening and
+/// lengthening, a path at lift-off) the derivative is that of one side.
 ///
 /// @param arm      compiled from setting.model
 /// @param setting  catalogue.at(…) or catalogue.nominal()
@@ -65,18 +66,18 @@ SensitivityTrajectory simulateWithSensitivities(const Arm& arm, const ParameterC
                                                 const ExcitationSignal& trial,
                                                 const SensitivityOptions& options);
 
-/// The same along directions in any numbers that the setting has, one column each.
+/// The same along directions in any elementary numbers of the setting, one column each.
 SensitivityTrajectory simulateWithSensitivities(const Arm& arm,
                                                 const ParameterCatalogue::Setting& setting,
                                                 const std::vector<ParameterDirection>& wanted,
                                                 const ExcitationSignal& trial,
                                                 const SensitivityOptions& options);
 
-/// The motion alone, from the same inputs.
+/// Only the motion, from the same inputs.
 Trajectory simulateSetting(const Arm& arm, const ParameterCatalogue::Setting& setting,
                            const ExcitationSignal& trial, const SimulationOptions& options);
 
-/// Where the simulation of a setting starts: at its coordinates and speeds, the fibres in static
+/// The initial state of a setting: its coordinates and speeds, with the fibres in static
 /// equilibrium. @throws NoStaticEquilibrium
 ArmState startOf(const Arm& arm, const ParameterCatalogue::Setting& setting,
                  const ExcitationSignal& driven, double time);

@@ -24,8 +24,8 @@ struct CurveValue {
 ///
 ///     y(x) = value + t·(slope + t·(quadratic + t·cubic)),   t = x − start
 ///
-/// with the coefficients of the segment that holds x. NaN in gives NaN out. No allocation, no
-/// state: safe to share between threads.
+/// with the coefficients of the segment that contains x. NaN gives NaN. No allocation and no state,
+/// so it can be shared between threads.
 class PiecewiseCubic {
  public:
   struct Segment {
@@ -39,7 +39,7 @@ class PiecewiseCubic {
   /// segments.size() = knots.size() + 1: before the first knot, between, after the last.
   PiecewiseCubic(std::vector<double> knots, std::vector<Segment> segments);
 
-  /// y(x) for any scalar; derivatives flow through the scalar type.
+  /// y(x) for any scalar type, including those of automatic differentiation.
   template <class T>
   T value(const T& x) const {
     const Segment& s = segmentAt(plainValue(x));
@@ -49,7 +49,7 @@ class PiecewiseCubic {
     return T(s.value) + t * inner;
   }
 
-  /// A segment of a curve with its borders; none to begin with, which holds no x.
+  /// A segment of a curve with its borders; initially empty, containing no x.
   struct Piece {
     double lower = std::numeric_limits<double>::infinity();
     double upper = -std::numeric_limits<double>::infinity();
@@ -60,19 +60,19 @@ class PiecewiseCubic {
   /// y, dy/dx, d²y/dx² and d³y/dx³.
   CurveValue evaluate(double x) const { return evaluate(segmentAt(x), x); }
 
-  /// The same without a search where x has stayed in the piece of this curve that held it last.
+  /// The same, without a search if x is still in the segment that contained it last.
   CurveValue evaluate(double x, Piece& last) const {
     if (!last.holds(x)) last = pieceAt(x);
     return evaluate(*last.segment, x);
   }
 
-  /// The segment that holds x; a knot belongs to the segment on its right.
+  /// The segment that contains x; a knot belongs to the segment on its right.
   const Segment& segmentAt(double x) const { return segments_[indexAt(x)]; }
   Piece pieceAt(double x) const;
 
-  /// The place of that segment in segments(); it holds knots()[place − 1] ≤ x < knots()[place].
+  /// The index of that segment in segments(): knots()[index − 1] ≤ x < knots()[index].
   std::size_t indexAt(double x) const {
-    // Halving the knots that may be the last one below x, without a branch to mispredict.
+    // Branch-free bisection for the last knot below x.
     const double* first = knots_.data();
     std::size_t left = knots_.size();
     while (left > 1) {
@@ -103,10 +103,9 @@ class PiecewiseCubic {
 ///
 /// End conditions of Forsythe, Malcolm and Moler (1977): the third derivative on the first and last
 /// interval is that of the cubic through the four points at that end. Three points give their
-/// parabola, two their line. Outside the points it goes on straight with the slope of the end.
-/// A point given twice (same x and y) makes the spline flat there, with a jump in curvature: the
-/// limit of two points close together, as OpenSim's SimmSpline takes it (docs/decisions/006). At
-/// the ends it counts once.
+/// parabola, two their line. Outside the points the spline continues linearly. A point given twice
+/// (same x and y) makes the spline flat there, with a jump in curvature: the limit of two points
+/// close together, as in OpenSim's SimmSpline. At the ends it counts once.
 ///
 /// @throws std::invalid_argument for fewer than two different points, values that are not finite,
 ///         knots that fall, or two values at one knot
@@ -115,7 +114,7 @@ class CubicSpline : public PiecewiseCubic {
   explicit CubicSpline(const SplineFunction& points);
 };
 
-/// Straight lines through the points, C⁰, extended outside.
+/// Piecewise linear interpolation, C⁰, extrapolated linearly.
 /// @throws std::invalid_argument as CubicSpline does
 class PiecewiseLinear : public PiecewiseCubic {
  public:
@@ -130,7 +129,7 @@ class FunctionEvaluator {
 
   CurveValue evaluate(double x) const;
 
-  /// Whether it is made as f(x) = x.
+  /// Whether it was constructed as f(x) = x.
   bool isIdentity() const;
 
   template <class T>

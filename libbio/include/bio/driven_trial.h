@@ -7,8 +7,8 @@
 
 namespace bio {
 
-/// The trial as a model without EMG parameters needs it: the excitations that drove the muscles,
-/// with rows wherever they bend, and what was measured.
+/// The trial for a model without EMG parameters: the excitations that drove the muscles, with rows
+/// at all their corners, and the measurements.
 Table drivenTable(const Trial& trial, const Arm& arm, const EmgMapping& mapping);
 
 }  // namespace bio

@@ -13,38 +13,38 @@
 
 namespace bio {
 
-/// What the channel holds.
+/// Kind of signal in the channel.
 enum class EmgSignal {
   raw,      ///< offset removed, band-pass, notch, rectified, low-pass
-  envelope  ///< rectified and smoothed already: only normalised, delayed and shaped
+  envelope  ///< already rectified and smoothed; only normalised, delayed and shaped
 };
 
-/// What counts as excitation 1: the value of a maximum voluntary contraction, in the channel's unit
-/// and measured on the envelope …
+/// Normalisation: the envelope of a maximum voluntary contraction, in the channel's unit,
+/// corresponds to excitation 1 …
 struct MvcValue {
   double value = 0;              ///< > 0
-  std::string source = "given";  ///< where the number comes from, for the report
+  std::string source = "given";  ///< source of the number, for the report
 };
-/// … or, where none was recorded, a percentile of this recording's own envelope.
+/// … or, if none was recorded, a percentile of this recording's own envelope.
 struct OwnPercentile {
   double percent = 99;  ///< 0 < percent ≤ 100
 };
 
-/// One electrode and the muscles it stands for.
+/// One electrode and the muscles that it represents.
 struct Electrode {
   std::string channel;
-  std::variant<OwnPercentile, MvcValue> full;           ///< what counts as 1
+  std::variant<OwnPercentile, MvcValue> full;           ///< value that corresponds to excitation 1
   std::vector<std::pair<std::string, double>> muscles;  ///< name and weight, 0 < weight ≤ 1
 };
 
-/// Raw EMG → excitation. The order of the stages is that of the members.
+/// Processing of raw EMG to excitation; the stages are applied in the order of the members.
 struct EmgConfig {
   EmgSignal signal = EmgSignal::raw;
   std::optional<BandPassOptions> bandPass = BandPassOptions{};
   NotchOptions notch;
   EnvelopeOptions envelope;
   double shape = 0;  ///< A of shapedExcitation, −3 to 0
-  double delay = 0;  ///< electromechanical delay: excitation comes this much later [s], 0 to 0.5
+  double delay = 0;  ///< electromechanical delay of the excitation [s], 0 to 0.5
   double outputRate = 200;  ///< rows per second [Hz], > 2·envelope.cutoff
   std::optional<double>
       start;                  ///< first row [s]; absent: the first sample common to all electrodes
@@ -53,7 +53,7 @@ struct EmgConfig {
   std::optional<MeasuredOptions> measured;
 };
 
-/// One electrode on its way, at its own rate.
+/// Intermediate results of one electrode, at its own sampling rate.
 struct ElectrodeTrace {
   std::string channel;
   std::string unit;
@@ -62,7 +62,7 @@ struct ElectrodeTrace {
   double offset = 0;         ///< mean of the raw signal, removed [unit]
   Eigen::VectorXd filtered;  ///< before rectification [unit]; empty for envelopes
   Eigen::VectorXd envelope;  ///< [unit]
-  double full = 0;           ///< the envelope that counts as 1 [unit]
+  double full = 0;           ///< envelope that corresponds to excitation 1 [unit]
   std::string fullSource;
   double fractionBelow = 0;    ///< of samples < 0, clipped
   double fractionAbove = 0;    ///< of samples > 1, clipped
@@ -77,8 +77,7 @@ struct EmgResult {
   std::vector<ElectrodeTrace> electrodes;
   std::optional<MeasuredCoordinate> measured;
   Eigen::VectorXd measured_deg;  ///< at the rows, NaN: not measured; empty without `measured`
-  std::vector<std::string>
-      remarks;  ///< sentences for the report: what was done, what it cannot tell
+  std::vector<std::string> remarks;  ///< sentences for the report: processing steps and limitations
 };
 
 /// Envelope of one channel through the first stages (up to the low-pass), in the channel's unit.
@@ -86,8 +85,8 @@ struct EmgResult {
 /// above fs/2
 ElectrodeTrace emgEnvelope(const Channel& channel, const EmgConfig& config);
 
-/// The whole way. The excitation of a muscle is the sum over its electrodes of weight times their
-/// excitation, clipped to 1.
+/// The complete processing. The excitation of a muscle is the weighted sum of the excitations of
+/// its electrodes, clipped to 1.
 /// @throws std::invalid_argument naming channel or setting, value, unit and rule
 EmgResult excitationsFromEmg(const Recording& recording, const EmgConfig& config);
 

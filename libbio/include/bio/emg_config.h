@@ -9,7 +9,7 @@
 
 namespace bio {
 
-/// What counts as excitation 1, as the file says it.
+/// Normalisation as given in the file.
 struct FullDeclaration {
   std::optional<double> mvc;  ///< of the envelope, in `unit`
   std::string unit;           ///< of mvc
@@ -21,7 +21,7 @@ struct FullDeclaration {
 struct EmgConfigFile {
   std::string file;
   RecordingLayout layout;
-  EmgConfig emg;                         ///< with what the recording decides still open
+  EmgConfig emg;                         ///< without the settings that depend on the recording
   std::vector<FullDeclaration> full;     ///< one per electrode
   std::vector<int> electrodeLines;       ///< line of each electrode in the file
   std::optional<double> degreesPerUnit;  ///< of the measured channel, if stated
@@ -34,7 +34,7 @@ EmgConfigFile readEmgConfig(const std::string& file);
 
 /// The configuration for one recording: channels found, units compared, maximum contractions read
 /// from their own files (the maximum of their envelope through the same filters).
-/// @throws FileError "file:line: …" for a channel that is not there or a unit that does not fit
+/// @throws FileError "file:line: …" for a missing channel or a unit that does not match
 EmgConfig emgConfigFor(const EmgConfigFile& config, const Recording& recording);
 
 }  // namespace bio

@@ -8,16 +8,16 @@
 
 namespace bio {
 
-/// From the excitations of a trial to those that drive the muscles:
+/// Maps the excitations of a trial to those that drive the muscles:
 ///     u_i(t) = min(1, g_i·S(z_i(t − d))),   S(x) = (e^{Ax} − 1)/(e^A − 1), S = x for A = 0
 ///     z_i = max(0, x_i − o_i − Σ_j c_ji·x_j)
-/// and a muscle that tires loses a share of that, the longer it has worked:
+/// and fatigue reduces this the longer a muscle has been active:
 ///     u_i ← u_i·[1 − φ(1 − e^{−I_i/T})],   I_i = ∫u_i dt from the first row, u_i as above
-/// (S: Lloyd & Besier 2003, eq. 3, as in emg_stages.h). All of it acts on the rows of the trial,
-/// between which u stays straight. As it stands, the identity.
+/// (S: Lloyd & Besier 2003, eq. 3, as in emg_stages.h). It is applied to the rows of the trial; u
+/// is linear between them. The default is the identity.
 struct EmgMapping {
-  /// What an electrode shows of another muscle, c_ji of j in the signal of i. Of its own muscle,
-  /// what it lacks: two channels are exchanged with c_ii = c_jj = 1 and c_ij = c_ji = −1.
+  /// Crosstalk: share c_ji of muscle j in the signal of muscle i. For j = i, the share of its own
+  /// signal that is lost: two channels are exchanged with c_ii = c_jj = 1 and c_ij = c_ji = −1.
   struct Crosstalk {
     std::string from, to;
     double share = 0;  ///< c [1]
@@ -28,19 +28,19 @@ struct EmgMapping {
   double nonlinearity = 0;                    ///< A [1], −6 to 6
   std::map<std::string, double> offset = {};  ///< o [1] by muscle; 0 where it has none
   std::vector<Crosstalk> crosstalk = {};
-  double fatigue = 0;      ///< φ [1], −1 to 1; below 0 it gains
+  double fatigue = 0;      ///< φ [1], −1 to 1; below 0 the excitation increases
   double fatigueTime = 1;  ///< T [s] > 0 of full excitation
 };
 
 /// @param muscles  the signal's, in order
 /// @throws std::invalid_argument for a gain < 0, a delay that is not finite, A outside −6 … 6, φ
-///   outside −1 … 1, T not above 0, or a gain, offset or crosstalk of a muscle that is not there
+///   outside −1 … 1, T not above 0, or a gain, offset or crosstalk of an unknown muscle
 ExcitationSignal drivenExcitation(const ExcitationSignal& trial,
                                   const std::vector<std::string>& muscles,
                                   const EmgMapping& mapping);
 
 /// ∂u_i/∂g_i, ∂u_i/∂A and ∂u_i/∂z_i at the rows of the signal, before fatigue; rows = muscles,
-/// columns = rows. 0 where u is held at 1, ∂u/∂z also where z is held at 0. ∂u/∂d is −du/dt.
+/// columns = rows. 0 where u is clipped to 1, ∂u/∂z also where z is clipped to 0. ∂u/∂d is −du/dt.
 struct EmgDerivatives {
   Eigen::MatrixXd gain;
   Eigen::MatrixXd nonlinearity;
@@ -49,12 +49,12 @@ struct EmgDerivatives {
   Eigen::MatrixXd fatigue;  ///< ∂u/∂φ
   Eigen::MatrixXd fatigueTime;  ///< ∂u/∂T [1/s]
 
-  /// From the change of u_i before fatigue at the rows to that of u_i:
+  /// Maps a change of u_i before fatigue, at the rows, to the change of u_i:
   ///     δ[u w] = w δu − u (φ/T) e^{−I/T} ∫δu dt
   Eigen::RowVectorXd tired(Eigen::Index muscle, const Eigen::RowVectorXd& change) const;
 
   Eigen::VectorXd times;   ///< of the rows [s]
-  Eigen::MatrixXd share;   ///< w = 1 − φ(1 − e^{−I/T}); empty: nothing tires
+  Eigen::MatrixXd share;   ///< w = 1 − φ(1 − e^{−I/T}); empty: no fatigue
   Eigen::MatrixXd tiring;  ///< u (φ/T) e^{−I/T} [1/s]
 };
 EmgDerivatives emgDerivatives(const ExcitationSignal& trial,

@@ -5,7 +5,7 @@
 
 #include "bio/recording.h"
 
-/// The single steps from raw EMG to excitation, each a pure function.
+/// The stages from raw EMG to excitation, as pure functions.
 namespace bio {
 
 /// Band of a surface EMG.
@@ -15,7 +15,7 @@ struct BandPassOptions {
   int order = 2;  ///< of the prototype and one pass; both passes together act like twice the order
 };
 
-/// Lines to cut out, e.g. the mains.
+/// Frequencies to remove, e.g. mains hum.
 struct NotchOptions {
   std::vector<double> lines;  ///< [Hz]
   int harmonics =
@@ -49,16 +49,15 @@ struct Clipped {
 };
 Clipped clippedToUnit(const Eigen::VectorXd& values);
 
-/// Exponential EMG–excitation relation, (e^{A·u} − 1)/(e^A − 1); A = 0 is its limit, u itself.
-/// Fixes 0 and 1; the more negative A, the more a weak EMG counts. Smooth. Source: Lloyd & Besier
-/// 2003, eq. 3, range of A from there.
+/// Exponential EMG–excitation relation, (e^{A·u} − 1)/(e^A − 1); A = 0 is its limit, u itself. Maps
+/// 0 to 0 and 1 to 1; a more negative A increases the excitation of weak EMG. Smooth. Source: Lloyd
+/// & Besier 2003, eq. 3, range of A from there.
 /// @param u 0 to 1
 /// @param shape A, −3 to 0
 /// @throws std::domain_error outside
 double shapedExcitation(double u, double shape);
 
-/// Values at other times, straight lines between the samples; before the first and after the last
-/// sample these hold.
+/// Values at other times: linear between samples, constant before the first and after the last.
 Eigen::VectorXd sampledAt(const Eigen::VectorXd& values, double rate, double startTime,
                           const Eigen::VectorXd& times);
 

@@ -11,31 +11,31 @@
 
 namespace bio {
 
-/// What one simulation of an ensemble came to; [rad] or [m] of the observed coordinate, NaN unless
-/// it came to its end.
+/// Result of one simulation of an ensemble; [rad] or [m] of the observed coordinate, NaN unless it
+/// reached the end.
 struct EnsembleRun {
-  /// name(Outcome), or "impossible": no arm can be made of these parameters, or it has no start.
+  /// name(Outcome), or "impossible": no model or no initial state exists for these parameters.
   std::string outcome;
-  double failedAt;           ///< [s]; NaN if it came to its end, or never began
-  double rmsError;           ///< from what was measured; NaN where nothing was
-  double rmsFromNominal;     ///< from the motion with the model's own parameters, row by row
+  double failedAt;           ///< [s]; NaN if it reached the end or never began
+  double rmsError;           ///< against the measurement; NaN without one
+  double rmsFromNominal;     ///< RMS difference from the nominal motion, over all rows
   double last;               ///< at the end of the trial
   double lowest, highest;    ///< at any row
-  Eigen::VectorXd atCourse;  ///< at the times asked for
+  Eigen::VectorXd atCourse;  ///< at the times of the course
 };
 
 /// One trial, simulated with many values of some parameters. Immutable: may be used from several
 /// threads; a run is a pure function of its parameters.
 ///
-/// Runs go through simulateTogether. An arm is compiled for every run. Paths that no parameter of
-/// the selection shapes are taken from the nominal arm, since finding out where a path can touch
-/// what takes longer than all the rest.
+/// Runs go through simulateTogether. A model is compiled for every run. Paths that no selected
+/// parameter changes are reused from the nominal model, since finding the surfaces that a path can
+/// touch takes most of the time.
 class ArmEnsemble {
  public:
   /// @param catalogue   made of `arm`; must outlive the ensemble
   /// @param trial       excitations as recorded
-  /// @param coordinate  what is observed, free
-  /// @param measured    of that coordinate, if it was
+  /// @param coordinate observed coordinate, must be free
+  /// @param measured measured values of that coordinate, if any
   /// @param course      times within the trial [s], rising
   /// @throws std::invalid_argument what simulate() throws, if the coordinate is not free, or if the
   ///   model's own motion does not reach the end of the trial
@@ -51,8 +51,8 @@ class ArmEnsemble {
   /// @param theta of the selection
   /// @throws std::invalid_argument for another number of values, or one that is not finite
   EnsembleRun run(const Eigen::VectorXd& theta) const;
-  /// The same for several at once, quicker if it is several times LaneJob's four; each is what it
-  /// would be alone, to the last bit.
+  /// The same for several at once, faster in multiples of four (LaneJob); each result is bitwise
+  /// that of a single run.
   std::vector<EnsembleRun> run(std::span<const Eigen::VectorXd> thetas) const;
 
  private:
@@ -70,7 +70,7 @@ class ArmEnsemble {
   Arm arm_;                          ///< nominal
   ExcitationSignal driven_;          ///< nominal
   bool drawsEmg_;                    ///< a parameter of the selection changes the excitations
-  std::vector<std::string> shaped_;  ///< muscles whose paths the selection shapes
+  std::vector<std::string> shaped_;  ///< muscles whose paths depend on the selection
   int coordinate_;
   Eigen::RowVectorXd nominalMotion_;  ///< [rad] or [m], one column per row of time
   EnsembleRun nominal_;

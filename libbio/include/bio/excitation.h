@@ -6,7 +6,7 @@
 
 namespace bio {
 
-/// Excitations of several muscles over time, straight lines between rows, held constant outside.
+/// Excitations of several muscles over time, linear between rows and constant outside.
 class ExcitationSignal {
  public:
   ExcitationSignal() = default;
@@ -19,8 +19,8 @@ class ExcitationSignal {
   int numMuscles() const { return static_cast<int>(values_.rows()); }
   const std::vector<double>& times() const { return times_; }
 
-  /// All excitations at t; `out` has numMuscles() entries. `hint` speeds up forward playing: any
-  /// value is allowed, it is set to the row used.
+  /// All excitations at t; `out` has numMuscles() entries. `hint` speeds up evaluation at rising
+  /// times: any value is allowed, it is set to the row used.
   template <class Out>
   void at(double t, std::size_t& hint, Out&& out) const {
     const std::size_t last = times_.size() - 1;

@@ -15,20 +15,20 @@
 
 namespace bio {
 
-/// What is measured, and what is asked.
+/// The measurement and the parameters of interest.
 struct DesignQuestion {
-  std::string coordinate = "elbow_flexion";           ///< measured, and pushed by the torque
+  std::string coordinate = "elbow_flexion";           ///< measured; the external torque acts on it
   double noise = 0.5 * 3.14159265358979323846 / 180;  ///< standard deviation [rad] or [m] > 0
   double period = 0.01;                               ///< between measurements [s] > 0
-  std::vector<std::size_t> parameters;                ///< of the catalogue: to be known better
-  std::vector<std::size_t> nuisance = {};             ///< of the catalogue: unknown as well
-  /// What is known beforehand: standard deviation of each parameter, then each nuisance
-  /// parameter; infinite: nothing.
+  std::vector<std::size_t> parameters;     ///< parameters of interest, indices of the catalogue
+  std::vector<std::size_t> nuisance = {};  ///< nuisance parameters, indices of the catalogue
+  /// Prior standard deviation of each parameter of interest, then of each nuisance parameter;
+  /// infinite: no prior.
   Eigen::VectorXd priorDeviation;
   info::Optimality criterion = info::Optimality::e;  ///< a, d or e, of scaled parameters
 };
 
-/// One experiment and what it tells.
+/// One experiment and its information.
 struct DesignedExperiment {
   Eigen::VectorXd inputs;  ///< coefficients of ExperimentDesign::profiles(); empty: the trial's
   ExcitationSignal excitation;
@@ -37,57 +37,59 @@ struct DesignedExperiment {
   Eigen::VectorXd measuredTimes;  ///< [s]
   Eigen::VectorXd measured;       ///< the coordinate at them, as predicted [rad] or [m]
   Eigen::MatrixXd gamma;          ///< Γ at them: times × (parameters, nuisance)
-  Eigen::MatrixXd information;    ///< of the data and what was known before, [1/(unit·unit)]
-  Eigen::VectorXd
-      bound;  ///< standard deviations [unit], the others being unknown too; ∞: unbounded
+  Eigen::MatrixXd information;    ///< of the data and the priors [1/(unit·unit)]
+  Eigen::VectorXd bound;  ///< standard deviations [unit] with all others unknown, too; ∞: unbounded
   double lowest = 0, highest = 0;                    ///< of the coordinate [rad] or [m]
-  double surprisedLowest = 0, surprisedHighest = 0;  ///< with parameters off by their deviations
+  double surprisedLowest = 0,
+         surprisedHighest = 0;  ///< with parameters off by DesignLimits::surprise
   double fastest = 0;                                ///< |speed| [rad/s] or [m/s]
   double largestTorque = 0, largestTorqueRate = 0, largestExcitationRate = 0;  ///< of the tables
 };
 
 struct DesignSearchSettings {
-  int candidates = 100;   ///< random inputs tried first ≥ 0
-  int generations = 100;  ///< of the evolution from the best of them ≥ 0
-  int iterations = 10;    ///< of the search along gradients at the end ≥ 0
+  int candidates = 100;   ///< random initial designs ≥ 0
+  int generations = 100;  ///< of the evolution strategy from the best of them ≥ 0
+  int iterations = 10;    ///< of the final gradient search ≥ 0
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0: all cores
-  /// Called with the share done, from any thread, one call at a time; false: stop, keep the best.
+  /// Called with the fraction done, from any thread, one call at a time; returning false stops the
+  /// search and keeps the best.
   std::function<bool(double)> progress = {};
 };
 
-/// What a search did.
+/// Result of a search.
 struct DesignResult {
   DesignedExperiment before, after;
-  bool improved = false;      ///< after is another experiment than before, and keeps the limits
-  bool stopped = false;       ///< the callback said so
+  bool improved = false;      ///< `after` differs from `before` and respects the limits
+  bool stopped = false;       ///< stopped by the callback
   int runs = 0;               ///< simulations with sensitivities
-  int impossible = 0;         ///< of them that did not reach the end
-  double costBefore = 0;      ///< φ of the trial as it is
-  std::vector<double> costs;  ///< φ of the best experiment that keeps the limits, as it was found
-  std::vector<int> foundAt;   ///< run at which it was
+  int impossible = 0;         ///< runs that did not reach the end
+  double costBefore = 0;      ///< φ of the baseline trial
+  std::vector<double> costs;  ///< φ of each new best experiment that respects the limits
+  std::vector<int> foundAt;   ///< run at which it was found
 };
 
-/// Seeks the excitations and the torque from outside that tell most about parameters.
+/// Finds the excitations and the external torque that are most informative about parameters.
 ///
-/// Inputs are straight lines between knots within their limits and rates (info::BoundedProfiles);
-/// the cost is a criterion of the information about the parameters, the nuisance ones being unknown
-/// too (Schur complement), each in units of its default deviation,
+/// Inputs are piecewise linear between knots within limits of size and rate
+/// (info::BoundedProfiles). The cost is a criterion of the information about the parameters of
+/// interest, with the nuisance parameters unknown (Schur complement), each in units of its default
+/// prior standard deviation,
 ///     E: −ln λ_min    A: ln tr I⁻¹    D: −ln det I
-/// plus a price on leaving the coordinate's range and on too high speeds; a motion that does not
-/// reach the end counts as impossible. Random inputs first, then info::evolve() from the best, then
-/// info::DesignSearch along gradients. Of all experiments that were tried, the best one that keeps
-/// every limit is the result. Why not by projections: docs/decisions/014.
+/// plus a penalty for leaving the coordinate's range and for too high speeds; a motion that does
+/// not reach the end counts as impossible. The search starts with random inputs, continues with
+/// info::evolve() from the best, and ends with info::DesignSearch along gradients. The result is
+/// the best experiment tried that respects every limit.
 class ExperimentDesign {
  public:
-  /// @param trial      the experiment that there is: its excitations, duration and start. Muscles
-  ///   in no group keep them.
+  /// @param trial the baseline trial: excitations, duration and initial state. Muscles in no group
+  ///   keep their excitations.
   /// @param setting    the model's values, catalogue.nominal() or another; made of the same model
   ///   as `arm`
-  /// @param groups     muscles to be driven anew; may be empty
+  /// @param groups muscle groups whose excitations are designed; may be empty
   /// @param simulation integrator vi or vi-left; start time, duration, step
   /// @throws std::invalid_argument for a coordinate that is not free, a limit or a number out of
-  ///   range, an unknown muscle, a muscle in two groups, no input at all, no parameter
+  ///   range, an unknown muscle, a muscle in two groups, no input, no parameter
   ExperimentDesign(const Arm& arm, const ParameterCatalogue& catalogue,
                    ParameterCatalogue::Setting setting, const Trial& trial,
                    const SimulationOptions& simulation, DesignQuestion question,
@@ -101,16 +103,17 @@ class ExperimentDesign {
   const DesignQuestion& question() const { return question_; }
   const DesignLimits& limits() const { return inputs_.limits(); }
 
-  /// The trial as it is. @throws NoStaticEquilibrium; std::runtime_error if it does not reach the
+  /// The baseline trial. @throws NoStaticEquilibrium; std::runtime_error if it does not reach the
   /// end
   DesignedExperiment before() const;
-  /// With inputs of these coefficients. @throws as before()
+  /// The experiment with the inputs of these coefficients. @throws as before()
   DesignedExperiment at(const Eigen::VectorXd& x) const;
-  /// Whether a motion keeps to range and speed, and the inputs to their limits.
+  /// Whether a motion respects range and speed, and the inputs their limits.
   bool keepsLimits(const DesignedExperiment& experiment) const;
 
-  /// How far the coordinate may be from what is expected at the measured times when the parameters
-  /// asked for are off by DesignLimits::surprise of their deviations, to first order [rad] or [m].
+  /// Deviation of the coordinate from the predicted motion at the measured times, to first order,
+  /// if the parameters of interest are off by DesignLimits::surprise prior standard deviations
+  /// [rad] or [m].
   Eigen::VectorXd surpriseAt(const DesignedExperiment& experiment) const;
   /// Bound on the first parameter from the measurements up to each measured time; NaN: unbounded.
   Eigen::VectorXd boundOverTime(const DesignedExperiment& experiment) const;
@@ -118,11 +121,12 @@ class ExperimentDesign {
   /// @throws std::runtime_error if the trial itself does not reach the end
   DesignResult search(const DesignSearchSettings& settings) const;
 
-  /// φ(I) of the information about (parameters, nuisance) in units of their default deviations,
-  /// and its gradient. @throws std::domain_error where I has no inverse
+  /// φ(I) of the information about (parameters of interest, nuisance parameters) in units of their
+  /// default prior standard deviations, and its gradient. @throws std::domain_error where I has no
+  /// inverse
   info::InformationCost cost(const Eigen::MatrixXd& scaledInformation,
                              double repeatedTolerance) const;
-  /// Default deviations: the units of cost().
+  /// Default prior standard deviations: the units of cost().
   const Eigen::VectorXd& scale() const { return scale_; }
 
  private:
@@ -145,14 +149,14 @@ class ExperimentDesign {
   DesignInputs inputs_;
 };
 
-/// Muscles that bend the coordinate and muscles that stretch it, at its start value and the
-/// model's other defaults: by the sign of the moment arm.
+/// The flexors and the extensors of the coordinate, by the sign of the moment arm at its initial
+/// value, with the other coordinates at their defaults.
 std::vector<MuscleGroup> flexorsAndExtensors(const Arm& arm, const Eigen::VectorXd& q,
                                              int coordinate = 0);
 
 /// The experiment as a trial that can be replayed: excitations of every muscle, the torque
-/// (`<coordinate>.torque`) if there is one, and the predicted coordinate in radians where it is to
-/// be measured.
+/// (`<coordinate>.torque`) if there is one, and the predicted coordinate in radians at the measured
+/// times.
 Table designTable(const Arm& arm, const DesignedExperiment& experiment,
                   const std::string& coordinate);
 

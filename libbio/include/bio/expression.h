@@ -12,8 +12,8 @@ namespace bio {
 /// parentheses, and sqrt exp log sin cos tan asin acos atan sinh cosh tanh abs min max step
 /// pow2-style powers (x^2). `step(x)` is 1 for x ≥ 0, else 0, as in OpenSim.
 ///
-/// Compiled once into a postfix program; evaluated for any scalar, so that derivatives come from
-/// the scalar type.
+/// Compiled once into a postfix program and evaluated for any scalar type, including those of
+/// automatic differentiation.
 class Expression {
  public:
   /// @param text       the formula, e.g. "-10*q-5*qdot"
@@ -30,9 +30,9 @@ class Expression {
     return stack[0];
   }
 
-  /// Whether the value is 0 wherever the variables that are not known may be, as long as every part
-  /// of the formula is finite there.
-  /// @param known one per variable; empty: it may be anything
+  /// Whether the value is 0 for any values of the unknown variables, as long as every part of the
+  /// formula is finite.
+  /// @param known one per variable; empty: unknown
   bool vanishes(const std::vector<std::optional<double>>& known) const;
 
   const std::string& text() const { return text_; }
@@ -167,7 +167,7 @@ class Expression {
     return whole < 0 ? T(1.0 / product) : product;
   }
 
-  /// 1 − 2/(e^{2x} + 1): no overflow that turns into NaN.
+  /// 1 − 2/(e^{2x} + 1), which does not overflow to NaN.
   template <class T>
   static T hyperbolicTangent(const T& x) {
     using std::exp;

@@ -6,11 +6,11 @@
 
 namespace bio {
 
-/// Generalised forces that something outside puts on the free coordinates – a dynamometer, an
-/// exoskeleton: straight lines between rows, 0 before the first row and behind the last.
+/// External generalised forces on the free coordinates, e.g. of a dynamometer or an exoskeleton:
+/// linear between rows, 0 before the first and after the last row.
 class ExternalForce {
  public:
-  /// None: no rows, no coordinates.
+  /// No force: no rows, no coordinates.
   ExternalForce() = default;
   /// @param times   [s], strictly rising, at least one
   /// @param values  rows = times, columns = free coordinates [N·m] or [N], finite; positive pushes
@@ -22,15 +22,15 @@ class ExternalForce {
   int numCoordinates() const { return static_cast<int>(values_.rows()); }
   const std::vector<double>& times() const { return times_; }
 
-  /// What it is at t, and how it changes there.
+  /// Value and slope at time t.
   struct At {
     Eigen::VectorXd value;  ///< [N·m] or [N]
-    Eigen::VectorXd slope;  ///< [1/s of that]; at a row, of the line that begins there
+    Eigen::VectorXd slope;  ///< [unit of the force per s]; at a row, of the line that begins there
   };
   At at(double t) const;
 
   /// Adds the forces at t to `force` (numCoordinates() entries); nothing if empty. `hint` speeds up
-  /// forward playing: any value is allowed, it is set to the row used.
+  /// evaluation at rising times: any value is allowed, it is set to the row used.
   template <class Force>
   void add(double t, std::size_t& hint, Force& force) const {
     if (empty() || t < times_.front() || t > times_.back()) return;
@@ -51,7 +51,7 @@ class ExternalForce {
   Eigen::MatrixXd values_;  ///< one column per row of the table: contiguous in time
 };
 
-/// Both forces, straight between the rows of either; both on the same coordinates.
+/// The sum of both forces, with rows at the times of either; both act on the same coordinates.
 ExternalForce sum(const ExternalForce& one, const ExternalForce& other);
 
 }  // namespace bio

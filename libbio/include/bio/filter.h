@@ -16,16 +16,16 @@ struct SecondOrderSection {
   double a2 = 0;
 };
 
-/// A linear filter for signals of one rate: its sections one after the other.
+/// A linear filter for signals of one sampling rate, as a cascade of sections.
 struct Filter {
   std::vector<SecondOrderSection> sections;
   double sampleRate = 0;  ///< [Hz] > 0
 };
 
-/// How often the filter will pass over the signal. Forward and backward squares the gain, so that a
-/// filter designed for one pass would have −6 dB at its cut-off; for `forwardAndBackward` the
-/// prototype's corner is moved by (√2 − 1)^(−1/2n), so that the gain of both passes together is −3
-/// dB at the cut-off that was asked for.
+/// Number of passes over the signal. Filtering forward and backward squares the gain, so a filter
+/// designed for one pass would have −6 dB at its cut-off; for `forwardAndBackward` the prototype's
+/// corner is moved by (√2 − 1)^(−1/2n), so that the gain of both passes together is −3 dB at the
+/// requested cut-off.
 enum class Passes { once, forwardAndBackward };
 
 /// Butterworth filters by the bilinear transform with prewarped edges. With w = tan(πf/fs) the gain
@@ -55,18 +55,18 @@ std::complex<double> frequencyResponse(const Filter& filter, double frequency);
 /// Samples until the slowest pole has decayed to `remainder` (0 < remainder < 1).
 Eigen::Index settlingSamples(const Filter& filter, double remainder = 1e-6);
 
-/// One pass forward in time. Starts in the steady state of the first sample: a constant signal goes
-/// through without a transient.
+/// One pass forward in time, starting in the steady state of the first sample, so that a constant
+/// signal passes without a transient.
 /// @throws std::invalid_argument if the signal is empty or holds a value that is not finite
 Eigen::VectorXd filterForward(const Filter& filter, const Eigen::VectorXd& signal);
 
-/// How a signal goes on beyond its ends. `odd`, 2·x₀ − x, continues a value and a slope and keeps
-/// the end value itself; `even`, x, continues a level and is for what fluctuates about one, such as
-/// a rectified EMG, whose single end value says nothing.
+/// Extrapolation of a signal beyond its ends. `odd`, 2·x₀ − x, continues value and slope and keeps
+/// the end value; `even`, x, continues a level, for signals that fluctuate about one, such as a
+/// rectified EMG, whose single end value is not representative.
 enum class Reflection { odd, even };
 
-/// A pass forward and a pass backward: zero phase, gain |H|². Both ends are continued by their
-/// reflection, as far as the filter remembers or the signal reaches.
+/// A forward and a backward pass: zero phase, gain |H|². Both ends are extended by reflection over
+/// the memory of the filter or the length of the signal.
 /// @throws std::invalid_argument if the signal has fewer than 6·sections + 1 samples or holds a
 /// value that is not finite
 Eigen::VectorXd filterZeroPhase(const Filter& filter, const Eigen::VectorXd& signal,

@@ -9,9 +9,9 @@
 
 namespace bio {
 
-/// How a channel becomes the measured angle of a coordinate,
+/// Conversion of a channel to the measured angle of a coordinate,
 ///     angle = sign · degreesPerUnit · (value − zero)
-/// Values at or beyond a limit of the instrument are clipped, and count as not measured.
+/// Values at or beyond a limit of the instrument are clipped and count as not measured.
 struct MeasuredOptions {
   std::string channel;
   std::string coordinate = "elbow_flexion";
@@ -31,15 +31,14 @@ struct MeasuredCoordinate {
   double notMeasured = 0;     ///< share of samples
 };
 
-/// The low-pass bridges what was not measured by straight lines; the bridges are not measured
-/// afterwards.
+/// The low-pass filter interpolates gaps linearly; they still count as not measured afterwards.
 /// @throws std::invalid_argument for a factor ≤ 0, a sign other than ±1, limits in the wrong order,
 /// or nothing measured
 MeasuredCoordinate measuredCoordinate(const Channel& channel, const MeasuredOptions& options);
 
 /// The angle [deg] at the rows of a table, NaN where not measured. A coordinate sampled more slowly
 /// than the rows has a value only in the row nearest to each sample, so that no measurement counts
-/// twice; values are linear between neighbouring samples, and never cross a gap.
+/// twice; values are interpolated linearly between neighbouring samples, never across a gap.
 /// @param times rising, equally spaced [s]
 Eigen::VectorXd angleAtRows(const MeasuredCoordinate& measured, const Eigen::VectorXd& times);
 

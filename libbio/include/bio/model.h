@@ -7,8 +7,8 @@
 #include <variant>
 #include <vector>
 
-/// A musculoskeletal model as plain data: what an .osim file says, nothing computed. SI units and
-/// radians throughout. Names are unique within their list and refer to each other by name.
+/// A musculoskeletal model as plain data: the content of an .osim file. SI units and radians
+/// throughout. Names are unique within their list and refer to each other by name.
 namespace bio {
 
 /// Placement of a frame in its parent: p_parent = R(orientation) p_frame + translation.
@@ -154,7 +154,7 @@ struct PathPoint {
   std::string body;
   Eigen::Vector3d location = Eigen::Vector3d::Zero();  ///< in the body frame [m]
   std::optional<PointCondition> condition;
-  std::optional<PointMotion> motion;  ///< stands for location, which is then zero
+  std::optional<PointMotion> motion;  ///< replaces location, which is then zero
   friend bool operator==(const PathPoint&, const PathPoint&) = default;
 };
 
@@ -167,7 +167,7 @@ struct PathWrap {
 
 struct Path {
   std::vector<PathPoint> points;  ///< at least 2
-  std::vector<PathWrap> wraps;    ///< the first one that a span penetrates wins
+  std::vector<PathWrap> wraps;    ///< a span uses the first one that it penetrates
   friend bool operator==(const Path&, const Path&) = default;
 };
 
@@ -226,7 +226,7 @@ struct SpringGeneralizedForce {
   friend bool operator==(const SpringGeneralizedForce&, const SpringGeneralizedForce&) = default;
 };
 
-/// A number in an expression that goes by a name.
+/// A named constant of an expression.
 struct NamedConstant {
   std::string name;
   double value = 0;
@@ -239,7 +239,7 @@ struct ExpressionBasedCoordinateForce {
   std::string coordinate;
   std::string expression;  ///< e.g. "-10*q-5*qdot" [N m]
   bool enabled = true;
-  /// Names that stand for numbers in the expression; a file has the numbers in their places.
+  /// Named constants in the expression; in a file they are replaced by their values.
   std::vector<NamedConstant> constants = {};
   friend bool operator==(const ExpressionBasedCoordinateForce&,
                          const ExpressionBasedCoordinateForce&) = default;
@@ -247,9 +247,9 @@ struct ExpressionBasedCoordinateForce {
 
 // What was fitted with the model ------------------------------------------------------------------
 
-/// Where the simulation of one trial starts, as it was fitted together with the model's numbers.
+/// Initial state of the simulation of one trial, fitted together with the model's parameters.
 struct TrialStart {
-  std::string file;        ///< of the trial, for people: it is known again by its SHA-256
+  std::string file;        ///< name of the trial, for information: it is recognised by its SHA-256
   std::string sha256;      ///< of that file, 64 hexadecimal digits
   std::string coordinate;  ///< of the model
   double value = 0;        ///< [rad] or [m]
@@ -257,8 +257,8 @@ struct TrialStart {
   friend bool operator==(const TrialStart&, const TrialStart&) = default;
 };
 
-/// How to simulate the trials that a model was fitted to, so that they come out as they did then.
-/// In a file it is the element FisherHill of the model, which OpenSim passes over.
+/// Settings that reproduce the simulations of the trials to which a model was fitted. In a file
+/// they are the element FisherHill of the model, which OpenSim ignores.
 struct FittedSimulation {
   std::optional<double> step;      ///< of the variational integrators [s] > 0
   std::vector<TrialStart> starts;  ///< at most one per trial and coordinate
@@ -281,11 +281,11 @@ struct Model {
   std::vector<ExpressionBasedCoordinateForce> expressionForces;
   FittedSimulation fitted;
   std::vector<std::string> warnings;  ///< one line each: what was read but is not simulated
-  std::vector<std::string> remarks;   ///< one line each: what was read otherwise than written
+  std::vector<std::string> remarks;   ///< one line each: content that was interpreted differently
   friend bool operator==(const Model&, const Model&) = default;
 };
 
-/// The named item, or throws std::invalid_argument that lists the names there are.
+/// The named item, or throws std::invalid_argument with a list of the existing names.
 const Body& findBody(const Model& model, const std::string& name);
 const Coordinate& findCoordinate(const Model& model, const std::string& name);
 const WrapObject& findWrapObject(const Model& model, const std::string& name);

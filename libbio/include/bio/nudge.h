@@ -13,9 +13,9 @@ namespace bio {
 ///     τ = −Mω²(q − ỹ(t)) − 1.4 Mω(q̇ − ỹ′(t))
 /// with ỹ the smoothed course (smoothed_motion.h) and M the mass matrix's entry at mid-range.
 ///
-/// The simulation of an unstable system depends on its parameters in many narrow valleys. Held
-/// firmly it depends on them smoothly; estimates that follow ω down to 0 end in the valley of the
-/// truth more often than those that begin there.
+/// The cost of simulating an unstable system has many narrow valleys as a function of the
+/// parameters. With strong nudging it is smooth; estimates that follow ω down to 0 reach the valley
+/// of the true values more often than estimates that start without nudging.
 struct Nudge {
   std::string coordinate;
   double stiffness = 0;  ///< Mω² [N·m/rad] or [N/m]
@@ -23,7 +23,7 @@ struct Nudge {
   ExternalForce pull;    ///< stiffness·ỹ + damping·ỹ′
 };
 
-/// @param freeIndex  of the coordinate in the arm's skeleton
+/// @param freeIndex index of the coordinate in the skeleton
 /// @param times      of the samples [s], at least four
 /// @param values     measured [rad] or [m]
 /// @param frequency  ω [rad/s] > 0
@@ -31,7 +31,7 @@ struct Nudge {
 Nudge nudgeTo(const Arm& arm, int freeIndex, const std::vector<double>& times,
               const Eigen::VectorXd& values, double frequency);
 
-/// Adds spring and damper to a model, and the pull to the forces from outside.
+/// Adds spring and damper to a model, and the pull towards the course to the external forces.
 void apply(const Nudge& nudge, Model& model, ExternalForce& external);
 
 }  // namespace bio

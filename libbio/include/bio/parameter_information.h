@@ -9,22 +9,22 @@
 
 namespace bio {
 
-/// What measuring one coordinate tells about each parameter, near the model's values.
+/// Information of a measured coordinate about each parameter, near the model's values.
 struct ParameterInformation {
   std::vector<info::Parameter> parameters;  ///< with their default priors
   Eigen::MatrixXd fisher;  ///< Σ ΓᵀΓ/σ² over the samples of all trials, without priors
-  /// Root mean square over the samples of dq/dθ·(prior deviation) [rad] or [m]: how far one
-  /// standard deviation of what is known of it moves the motion.
+  /// RMS over the samples of dq/dθ·(prior sd) [rad] or [m]: change of the motion per prior standard
+  /// deviation.
   Eigen::VectorXd normalisedSensitivity;
   Eigen::VectorXd boundAlone;  ///< 1/√I_ii: all others known; +∞ without information
   Eigen::VectorXd boundJoint;  ///< √[(I + Λ)⁻¹]_ii, Λ the priors of all
-  /// The data at least halve what was uncertain: boundJoint ≤ deviation/2.
+  /// True if the data at least halve the prior standard deviation: boundJoint ≤ deviation/2.
   std::vector<bool> identifiable;
-  Eigen::MatrixXd correlation;  ///< of estimates at the joint bound
-  /// Independent combinations about which the data at least halve what was uncertain.
+  Eigen::MatrixXd correlation;  ///< of the estimates at the joint bound
+  /// Number of independent combinations whose uncertainty the data at least halve.
   Eigen::Index determinedCombinations = 0;
-  /// What cannot be told apart, in words: how much is determined, pairs of which only a product or
-  /// a sum is, most influential first, and what moves nothing.
+  /// Identifiability in words: number of determined combinations, pairs of which only a product or
+  /// a sum is determined (most influential first), and parameters without effect.
   std::vector<std::string> sentences;
 };
 
@@ -36,10 +36,10 @@ ParameterInformation informationAbout(const ParameterCatalogue& catalogue,
                                       const std::vector<std::size_t>& selection,
                                       const std::vector<Eigen::MatrixXd>& gammas, double noise);
 
-/// Two parameters whose effects look alike.
+/// Two parameters with similar effects.
 struct AlikePair {
   Eigen::Index first, second;
-  double correlation;  ///< of their estimates if all others were known, −1 … 1
+  double correlation;  ///< correlation of their estimates if all others were known, −1 … 1
 };
 /// Pairs with |correlation| ≥ limit, the strongest first; parameters without information are left
 /// out.

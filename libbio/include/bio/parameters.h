@@ -71,43 +71,43 @@ using ParameterTarget =
     std::variant<MuscleTarget, PointTarget, WrapTarget, BodyTarget, LimitForceTarget,
                  SpringForceTarget, ExpressionTarget, GravityTarget, EmgTarget, InitialTarget>;
 
-/// A number of the model, of the way from EMG to excitation, or of the start, under the path by
-/// which people call it.
+/// A parameter of the model, of the relation between EMG and excitation, or of the initial state,
+/// with its name.
 struct ModelParameter {
   std::string name;     ///< e.g. "TRI.radius", "BRA.tendon_slack_length", "hand.mass"
   std::string unit;     ///< "" for a pure number
   std::string meaning;  ///< one line
   double value;         ///< in the model [unit]
-  double lower, upper;  ///< what estimation and sweeps keep to [unit]
-  double deviation;     ///< default standard deviation of what is known beforehand [unit] > 0
+  double lower, upper;  ///< bounds for estimation and sweeps [unit]
+  double deviation;     ///< default prior standard deviation [unit] > 0
   std::vector<ParameterTarget> targets;  ///< all are set to the same value
-  bool isGroup = false;  ///< sets what other parameters set one by one; not part of "all"
-  /// The least value that the geometry does not permit [unit], and why, in words (radius_limit.h).
+  bool isGroup = false;                  ///< sets several parameters together; not part of "all"
+  /// The smallest value that the geometry does not permit [unit], and the reason (radius_limit.h).
   double limit = std::numeric_limits<double>::infinity();
   std::string whyLimited = {};
 };
 
-/// Start of a simulation: coordinates and speeds; the fibres start in static equilibrium.
+/// Initial state of a simulation: coordinates and speeds; the fibres start in static equilibrium.
 struct StartPoint {
   Eigen::VectorXd q;     ///< [rad] or [m]
   Eigen::VectorXd qDot;  ///< [rad/s] or [m/s]; empty: 0
 };
 
-/// All parameters that move the arm, by name.
+/// All parameters that affect the motion, by name.
 ///
-/// Muscles are called by OpenSim's words (max_isometric_force, optimal_fiber_length,
+/// Parameters of muscles have OpenSim's names (max_isometric_force, optimal_fiber_length,
 /// tendon_slack_length, pennation_angle, damping, time_scale, activation1, activation2), points by
-/// their place (TRIlong.point2.x), wrap objects by name (TRI.radius, TRI.translation.x,
+/// their index (TRIlong.point2.x), wrap objects by name (TRI.radius, TRI.translation.x,
 /// TRI.rotation.x), bodies by name (hand.mass, hand.mass_center.x, hand.inertia.xx), passive forces
 /// by name (elbow_flexion_ligaments.upper_stiffness). emg.BRA.gain, emg.delay, emg.nonlinearity;
 /// initial.elbow_flexion, initial.elbow_flexion.speed. Groups: activation.time_scale, emg.gain, …
 ///
-/// Bounds and deviations are defaults for someone who knows nothing better
-/// (docs/decisions/013-parameter-sensitivities.md); positive quantities stay positive, and a radius
-/// stays half a per cent below the least one that has a point of a path over it inside.
+/// Bounds and prior standard deviations are generic defaults; positive quantities stay positive,
+/// and a radius stays half a per cent below the smallest one for which a point of a path over the
+/// surface lies inside.
 class ParameterCatalogue {
  public:
-  /// @param start where the simulation starts; sized as the arm's free coordinates
+  /// @param start initial state; one entry per free coordinate
   ParameterCatalogue(const Model& model, const Arm& arm, const StartPoint& start,
                      const EmgMapping& mapping = {});
 
@@ -117,7 +117,7 @@ class ParameterCatalogue {
   /// translation.x of a wrap object). @throws std::invalid_argument with the nearest names
   std::size_t find(const std::string& name) const;
 
-  /// Indices of names, in order, each once. A name may hold `*`; "all" is every one but groups.
+  /// Indices of names, in order, each once. A name may contain `*`; "all" means all except groups.
   /// @throws std::invalid_argument as find does, if a pattern matches nothing, or if a group is
   ///   named beside one of its members
   std::vector<std::size_t> select(const std::vector<std::string>& names) const;
@@ -125,11 +125,11 @@ class ParameterCatalogue {
   /// Values in the model.
   Eigen::VectorXd values(const std::vector<std::size_t>& selection) const;
 
-  /// @param what  what the value is, for the message: "" or "upper bound of "
+  /// @param what prefix of the message: "" or "upper bound of "
   /// @throws std::invalid_argument for a value at the parameter's limit or beyond, saying why
   void requireBelowLimit(std::size_t index, double value, const std::string& what = {}) const;
 
-  /// As estimators see them; the default deviation becomes the prior if asked for.
+  /// As parameters for estimators; if requested, the default standard deviation becomes the prior.
   std::vector<info::Parameter> asEstimated(const std::vector<std::size_t>& selection,
                                            bool withPriors) const;
 
@@ -141,9 +141,9 @@ class ParameterCatalogue {
     Eigen::VectorXd values;  ///< of every parameter of the catalogue
   };
   /// @throws std::invalid_argument for a value that is not finite or at its limit or beyond, or
-  ///   sizes that differ. Whether the values make sense otherwise is found out when an Arm is made.
+  ///   sizes that differ. Other rules are checked when an Arm is constructed.
   Setting at(const std::vector<std::size_t>& selection, const Eigen::VectorXd& values) const;
-  /// As the model has them.
+  /// The values of the model.
   Setting nominal() const { return at({}, Eigen::VectorXd(0)); }
 
   const Model& model() const { return model_; }
@@ -156,15 +156,15 @@ class ParameterCatalogue {
   std::vector<ModelParameter> parameters_;
 };
 
-/// A step in several elementary numbers at once, whose derivative is one column: dθ = Σ weight·dx.
+/// A direction in several elementary numbers, whose derivative is one column: dθ = Σ weight·dx.
 struct TargetStep {
   ParameterTarget target;
   double weight = 1;
-  double value = 1;  ///< of the target; looked at only for a scale of a curve
+  double value = 1;  ///< of the target; used only for a scale of a curve
 };
 using ParameterDirection = std::vector<TargetStep>;
 
-/// Sets what a target names. Scales of curves multiply what `setting` has; a moving path point is
+/// Sets the value of a target. Scales of curves multiply those of `setting`; a moving path point is
 /// shifted by value − nominal; the radius of an ellipsoid is that of the semi-axes equal to
 /// nominal.
 /// @throws std::invalid_argument for a value that is not finite

@@ -14,7 +14,7 @@
 
 namespace bio {
 
-/// A muscle–tendon length and how it follows N free coordinates.
+/// A muscle–tendon length and its derivatives with respect to N free coordinates.
 template <int N, class T = double>
 struct LengthJet {
   T length = T(0.0);               ///< ℓ_MT [m]
@@ -23,7 +23,7 @@ struct LengthJet {
   bool wrapped = false;            ///< a moving span touches a wrap object
 };
 
-/// The numbers of a path that identification may differentiate in.
+/// The parameters of a path with respect to which derivatives are available.
 template <class T>
 struct PathParameters {
   std::vector<Vec3<T>>
@@ -32,7 +32,7 @@ struct PathParameters {
 };
 
 /// A value of a free coordinate at which a path gains or loses conditional points: its length jumps
-/// there, by little if the model is well made.
+/// there, slightly if the model is well constructed.
 struct PathSwitch {
   int freeIndex = 0;
   FunctionEvaluator coupling{identityFunction()};  ///< of the condition's coordinate from q_k
@@ -42,22 +42,22 @@ struct PathSwitch {
   double distance(double q_k) const { return coupling.evaluate(q_k).value - value; }
 };
 
-/// The path of one muscle, compiled for a skeleton: the constant length of the spans that cannot
-/// move, and the spans that do. Evaluation is pure and allocates nothing.
+/// The path of one muscle, compiled for a skeleton: the constant length of the fixed spans, and the
+/// moving spans. Evaluation is pure and does not allocate.
 ///
-/// A span goes straight from point to point, or over one wrap object. The first span that touches
-/// an object gets it, the first object that a span touches wins. Which way round an object a span
-/// goes is decided here, once (wrap_rule.h); the default posture and the coordinates' ranges tell.
-/// Between switches of conditional points and beyond lift-off, the length is C¹.
+/// A span is straight, or passes over one wrap object. An object is used by the first span that
+/// touches it, and a span uses the first object that it touches. The side of an object on which a
+/// span passes is decided once, at construction (wrap_rule.h), from the default posture and the
+/// coordinates' ranges. Between switches of conditional points the length is C¹.
 ///
 /// Departures from OpenSim: paths over spheres and cylinders are exact geodesics; they never change
-/// sides, but slip off a cylinder where they would go the long way round (wrap_rule.h); and an
-/// object that no span meets within the coordinates' ranges, nor lies within its radius of, is left
-/// out.
+/// sides, but slip off a cylinder where they would wrap the long way round (wrap_rule.h); and an
+/// object that no span touches within the coordinates' ranges, and in whose radius no span end
+/// lies, is ignored.
 class MusclePath {
  public:
-  /// @param wrapAsCylinder names of ellipsoids with two equal semi-axes to be taken as cylinders
-  /// about the third
+  /// @param wrapAsCylinder names of ellipsoids with two equal semi-axes to be treated as cylinders
+  ///   about the third axis
   /// @throws UnsupportedWrap for a torus or a three-axial ellipsoid that a moving span can touch
   /// @throws std::invalid_argument for another ellipsoid that a moving span can touch, one in
   /// wrapAsCylinder
@@ -71,18 +71,18 @@ class MusclePath {
 
   /// False if no free coordinate changes the length.
   bool moves() const;
-  /// One line each: wraps of fixed spans taken as straight, wraps out of reach.
+  /// One line each: wraps of fixed spans that are treated as straight, wraps out of reach.
   const std::vector<std::string>& notes() const { return compiled_.notes; }
-  /// One line each: spans that touch several wrap objects at once, of which one is heeded.
+  /// One line each: spans that touch several wrap objects at once, of which one is used.
   const std::vector<std::string>& warnings() const { return compiled_.warnings; }
-  /// Where conditional points come and go.
+  /// Coordinate values at which conditional points switch.
   std::vector<PathSwitch> switches() const;
-  /// What evaluation works on.
+  /// The data used for evaluation.
   const CompiledPath& compiled() const { return compiled_; }
 
-  /// From now on length<1> looks into a table (path_table.h) over the range of the one free
-  /// coordinate and a tenth of it on either side; copies share it. Nothing is done where the
-  /// skeleton has more coordinates, or that one no range.
+  /// Lets length<1> use a table (path_table.h) over the range of the one free coordinate and a
+  /// tenth of it on either side; copies share it. Does nothing if the skeleton has more
+  /// coordinates, or the coordinate has no range.
   void tabulate(const Skeleton& skeleton);
   /// Null unless tabulated.
   const PathTable* table() const { return table_.get(); }
@@ -93,10 +93,10 @@ class MusclePath {
   LengthJet<N> length(const Eigen::Matrix<double, N, 1>& q, const RigidMotion<double, N>* moved,
                       const Eigen::Matrix<double, N, 1>* conditionsAt = nullptr) const;
 
-  /// The parameters as the model has them.
+  /// The parameter values of the model.
   const PathParameters<double>& parameters() const { return parameters_; }
 
-  /// length for other parameters, all spans computed anew; T is double or an AD scalar.
+  /// length for other parameters, with all spans recomputed; T is double or an AD scalar.
   template <class T, int N>
   LengthJet<N, T> length(const PathParameters<T>& parameters, const Eigen::Matrix<T, N, 1>& q,
                          const RigidMotion<T, N>* moved) const;

@@ -8,8 +8,8 @@
 
 namespace bio {
 
-/// How a muscle–tendon length and its slope follow the numbers of the path: column 0 is ∂ℓ/∂θ,
-/// column 1 + k is ∂²ℓ/∂q_k∂θ, one row per θ.
+/// Derivatives of a muscle–tendon length and its slope with respect to the parameters of the path:
+/// column 0 is ∂ℓ/∂θ, column 1 + k is ∂²ℓ/∂q_k∂θ, one row per θ.
 template <int N>
 struct PathGradient {
   using OfPoint = Eigen::Matrix<double, 3, 1 + N>;
@@ -28,8 +28,8 @@ struct PathGradient {
 /// both ends, a turn ω of it moves them by −ω×p, which leaves the moment Σ p×c. The radius is
 /// carried through the span by the scalar type. Spans that do not move contribute a constant.
 ///
-/// A moving point's location is that of its functions plus a constant shift. Which side a path
-/// takes, and which objects a span may touch, is held.
+/// A moving point's location is that of its functions plus a constant shift. The side of a path and
+/// the objects that a span may touch are held fixed.
 class PathGradients {
  public:
   /// @throws std::invalid_argument names that the model lacks
@@ -45,14 +45,14 @@ class PathGradients {
   void evaluate(const Eigen::Matrix<double, N, 1>& q, const RigidMotion<double, N>* moved,
                 PathGradient<N>& out) const;
 
-  /// Whether a span in some posture may touch the wrap object at this place of Path::wraps.
+  /// Whether a span may touch, in some posture, the wrap object with this index in Path::wraps.
   bool mayTouch(std::size_t wrap) const { return mayTouch_[wrap]; }
-  /// Whether the point at this place of Path::points is on the path in some posture.
+  /// Whether the point with this index in Path::points is active in some posture.
   bool isUsed(std::size_t point) const { return used_[point]; }
 
  private:
-  /// How a wrap object's frame in its body enters: the segment's frame from the body's, and the
-  /// axes of turning, seen from the surface.
+  /// Derivatives with respect to a wrap object's frame in its body: the rotation from body to
+  /// segment, and the axes of rotation in the surface's frame.
   struct SurfaceFrame {
     Eigen::Matrix3d R_SB;
     Eigen::Matrix3d turnAxes;  ///< columns: for the three angles of the frame

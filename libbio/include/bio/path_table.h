@@ -9,29 +9,29 @@
 namespace bio {
 
 /// A muscle–tendon length over the one free coordinate q: quintic polynomials between the nodes of
-/// an even grid, which meet ℓ, ∂ℓ/∂q and ∂²ℓ/∂q² there (docs/decisions/048-tabulated-paths.md).
+/// a uniform grid, which match ℓ, ∂ℓ/∂q and ∂²ℓ/∂q² there (docs/decisions/048-tabulated-paths.md).
 ///
-/// A piece stands only if it agrees with the path in its middle, where a quintic errs most in ℓ and
-/// ∂²ℓ, and where a kink shows wherever it lies within. Where it does not – the path touches a wrap
-/// object or leaves it, a conditional point comes or goes – there is no piece, and the path itself
-/// has to be asked. Constant.
+/// A piece is used only if it agrees with the path at its centre, where the error of a quintic in ℓ
+/// and ∂²ℓ is largest and where a kink anywhere within it shows. If it does not agree (lift-off
+/// from a wrap object, switch of a conditional point), there is no piece and the path itself has to
+/// be evaluated. Constant.
 class PathTable {
  public:
   struct Value {
     double length = 0;     ///< ℓ [m]
-    double slope = 0;      ///< ∂ℓ/∂q [m/rad]; per m where q is a translation
+    double slope = 0;      ///< ∂ℓ/∂q [m/rad]; per m if q is a translation
     double curvature = 0;  ///< ∂²ℓ/∂q² [m/rad²]
     bool wrapped = false;  ///< a moving span touches a wrap object
   };
-  /// How far a piece may be from the path where they are compared [m, m/rad, m/rad²].
+  /// Largest difference between piece and path where they are compared [m, m/rad, m/rad²].
   static constexpr double lengthError = 1e-13, slopeError = 1e-11, curvatureError = 1e-9;
 
-  /// @param pieces  as many of the same width between lowest and highest
+  /// @param pieces number of pieces of equal width between lowest and highest
   /// @throws std::invalid_argument unless lowest < highest, finite, and pieces > 0
   PathTable(double lowest, double highest, std::size_t pieces,
             const std::function<Value(double q)>& exact);
 
-  /// False, and nothing in `value`, where there is no piece.
+  /// False, with `value` unchanged, if there is no piece.
   bool find(double q, Value& value) const {
     const double at = (q - lowest_) * perWidth_;
     if (!(at >= 0 && at < static_cast<double>(pieces_.size()))) return false;
@@ -50,7 +50,7 @@ class PathTable {
   }
 
   std::size_t pieces() const { return pieces_.size(); }
-  /// How many of them agree with the path.
+  /// Number of pieces that agree with the path.
   std::size_t standing() const;
 
  private:

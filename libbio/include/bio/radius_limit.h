@@ -9,19 +9,19 @@
 
 namespace bio {
 
-/// Where the radius of a wrap object must end. At a radius at which an end of a span lies inside,
-/// the span is straight, as in OpenSim: the muscle's length and moment arm jump as the arm moves,
-/// and the wrap is gone without a word.
+/// Upper limit of the radius of a wrap object. If an end of a span lies inside the radius, the span
+/// is straight, as in OpenSim: the muscle's length and moment arm would jump as the model moves,
+/// and the wrap would silently vanish.
 struct RadiusLimit {
   double radius = std::numeric_limits<double>::infinity();  ///< [m]
-  std::size_t point = 0;  ///< the path point that meets the object first, its place in Path::points
-  std::vector<double> q;  ///< the posture in which it does, free coordinates [rad] or [m]
+  std::size_t point = 0;  ///< index in Path::points of the point that the object reaches first
+  std::vector<double> q;  ///< posture in which this happens, free coordinates [rad] or [m]
 };
 
-/// The least distance, in all postures, of the ends of the spans that may touch a wrap object from
-/// the cylinder's axis or the sphere's centre. A point that lies inside already, in any of them,
-/// sets no limit.
-/// @param wrap  its place in Path::wraps
+/// The smallest distance, over all postures, between the cylinder's axis or sphere's centre and the
+/// ends of the spans that may touch the wrap object. A point that already lies inside in some
+/// posture sets no limit.
+/// @param wrap its index in Path::wraps
 RadiusLimit radiusLimit(const CompiledPath& path, std::size_t wrap,
                         const std::vector<Posture>& postures);
 

@@ -11,7 +11,7 @@ namespace bio {
 /// One recorded signal at its own rate: value k belongs to startTime + k/rate.
 struct Channel {
   std::string name;
-  std::string unit;        ///< of `values`; empty: the file does not say
+  std::string unit;        ///< of `values`; empty: not stated in the file
   double rate = 0;         ///< [Hz] > 0
   double startTime = 0;    ///< [s]
   Eigen::VectorXd values;  ///< NaN: not measured; first and last are measured
@@ -20,7 +20,7 @@ struct Channel {
 /// Time of the last sample [s].
 double endTime(const Channel& channel);
 
-/// How a recording is laid out in its file.
+/// File format of a recording.
 ///   columns  no header; numbers in columns of any length and rate, all starting in the first line;
 ///            names, rates and units come from the declaration
 ///   trigno   Delsys Trigno export: sensors in line 4, quantities with units in line 6, one rate
@@ -32,7 +32,7 @@ enum class RecordingFormat { automatic, columns, trigno, table };
 /// "automatic", "columns", "trigno" or "table".
 std::string_view nameOf(RecordingFormat format);
 
-/// What the user says about one column; what the file says itself need not be repeated.
+/// Declaration of one column by the user; properties stated in the file need not be repeated.
 struct ColumnDeclaration {
   int number = 0;               ///< counted from 1; 0: found by `header`
   std::string header;           ///< name as read from the file, used when number is 0
@@ -52,25 +52,25 @@ struct Recording {
   std::string file;
   RecordingFormat format = RecordingFormat::automatic;  ///< as found, not automatic
   std::vector<Channel> channels;
-  std::vector<std::string> remarks;  ///< what was left out
+  std::vector<std::string> remarks;  ///< data that was left out
 };
 
-/// `trigno` if line 7 is a row of rates in Hz, `columns` if the first line that is not empty holds
-/// nothing but numbers, else `table`.
+/// `trigno` if line 7 is a row of rates in Hz, `columns` if the first line that is not empty
+/// contains only numbers, else `table`.
 /// @throws FileError if the file cannot be read or is empty
 RecordingFormat detectFormat(const std::string& file);
 
 /// Reads the channels of a recording. Trigno channels are named by sensor and quantity ("bicep EMG
-/// 1"), table channels by column; a table's unit is what follows the last underscore if that is V,
-/// mV, uV, deg, rad or g. A table column that is filled only in every k-th row has the rate of the
-/// table / k.
-/// @throws FileError "file:line: column …" for anything that is not a number, a rate or unit that
-/// is missing or contradicts the declaration, a value in a column that ended earlier (a gap must
-/// have its separators), a declared column that is not there, a table whose
-/// times are not equally spaced (any sample further than a quarter of an interval from its place)
+/// 1"), table channels by column; the unit of a table column is the text after the last underscore
+/// if that is V, mV, uV, deg, rad or g. A table column with values only in every k-th row has the
+/// rate of the table divided by k.
+/// @throws FileError "file:line: column …" for a cell that is not a number, a rate or unit that is
+///   missing or contradicts the declaration, a value in a column that ended earlier (a gap must
+///   have its separators), a missing declared column, a table whose times are not equally spaced (a
+///   sample more than a quarter of an interval off)
 Recording readRecording(const std::string& file, const RecordingLayout& layout = {});
 
-/// The named channel, or throws std::invalid_argument that lists the names there are.
+/// The named channel, or throws std::invalid_argument with a list of the existing names.
 const Channel& findChannel(const Recording& recording, const std::string& name);
 
 }  // namespace bio

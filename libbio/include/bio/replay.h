@@ -11,47 +11,48 @@
 #include "bio/table_file.h"
 #include "bio/trial.h"
 
-/// What joins a recorded trial to a simulated arm.
+/// Inputs, initial state and errors of simulating a recorded trial.
 namespace bio {
 
 /// The trial's excitations in the order of the arm's muscles.
 /// @throws std::invalid_argument if the trial lacks one of them
 ExcitationSignal excitationOf(const Trial& trial, const Arm& arm);
 
-/// What pushes the arm from outside in a trial; none if the trial has no such column.
-/// @throws std::invalid_argument if it pushes a coordinate that is not free
+/// The external force of a trial; none if the trial has no such column.
+/// @throws std::invalid_argument if it acts on a coordinate that is not free
 ExternalForce externalForceOf(const Trial& trial, const Arm& arm);
 
-/// Start values of the free coordinates [rad] or [m]: as given, else the first measured value, else
-/// the default.
+/// Initial values of the free coordinates [rad] or [m]: as given, else the first measured value,
+/// else the default.
 /// @throws std::invalid_argument for a name that is not free, or a value that is not finite
 Eigen::VectorXd startCoordinates(const Trial& trial, const Arm& arm,
                                  const std::map<std::string, double>& given);
 
-/// Where a trial's simulation starts, and who says so.
+/// Initial state of a trial's simulation, and its source.
 struct TrialBeginning {
   enum class From { given, model, measured, defaults };
   StartPoint point;
-  From from = From::defaults;  ///< of the coordinates' sources the first in this order: model,
+  From from = From::defaults;  ///< the first in this order of the coordinates' sources: model,
                                ///< given, measured
 };
 const char* name(TrialBeginning::From from);  ///< "given", "model", "measured", "default"
 
-/// Start values and speeds of the free coordinates: as given, at rest; else what the model was
-/// fitted with (Model::fitted), where it knows the trial by its SHA-256; else the first measured
-/// value, else the default, at rest.
+/// Initial values and speeds of the free coordinates: as given, at rest; else as fitted with the
+/// model (Model::fitted), if it contains the trial's SHA-256; else the first measured value, else
+/// the default, at rest.
 /// @throws std::invalid_argument as startCoordinates does
 TrialBeginning beginningOf(const Trial& trial, const Model& model, const Arm& arm,
                            const std::map<std::string, double>& given);
 
-/// Time step [s]: the one given, else of the variational integrators the one that the model was
-/// fitted with, else the integrator's own.
+/// Time step [s]: the one given, else, for the variational integrators, the one with which the
+/// model was fitted, else the integrator's default.
 double stepOf(const Model& model, Integrator integrator, const std::optional<double>& given);
 
-/// When the coordinate was measured [s]; if it was not, the trial's times at equal steps.
+/// Times at which the coordinate was measured [s]; if it was not, the trial's duration at equal
+/// steps.
 std::vector<double> observedTimes(const Trial& trial, const std::string& coordinate, double step);
 
-/// How far a simulation is from a measured coordinate, at the measured times that it covers.
+/// Error of a simulation against a measured coordinate, at the measured times that it covers.
 struct MeasuredError {
   double rms = 0;          ///< [rad] or [m]
   double largest = 0;      ///< [rad] or [m]
@@ -62,32 +63,32 @@ struct MeasuredError {
 MeasuredError compareWithMeasured(const Arm& arm, const Trajectory& trajectory,
                                   const MeasuredMotion& measured);
 
-/// A trial played through an arm, and how far that is from what was measured.
+/// A simulated trial, with its errors against the measurement.
 struct TrialReplay {
   TrialBeginning beginning;
   SimulationOptions options;  ///< as they were used
   Trajectory motion;
-  /// Of every free coordinate that was measured at a time which the motion reaches.
+  /// For every free coordinate with a measured value that the motion reaches.
   std::vector<std::pair<std::string, MeasuredError>> errors;
 };
 
 /// The motion that `fisherhill replay MODEL TRIAL` makes over all rows of the trial.
-/// @param options    integrator, step and progress; times and the torque from outside are the
-///   trial's
-/// @param beginning  as beginningOf() has it
+/// @param options integrator, step and progress; times and the external torque are those of the
+///   trial
+/// @param beginning from beginningOf()
 /// @throws what excitationOf, externalForceOf, initialState and simulate throw
 TrialReplay replayTrial(const Arm& arm, const Trial& trial, SimulationOptions options,
                         TrialBeginning beginning);
 
-/// One sentence for each free coordinate that leaves its range in the model, and when: nothing but
-/// the model's own passive forces holds it there.
+/// One sentence for each free coordinate that leaves its range in the model, with the time; only
+/// the model's passive forces limit it.
 std::vector<std::string> rangeRemarks(const Arm& arm, const Trajectory& trajectory);
 
-/// Where a motion first leaves what its model is made for.
+/// First time at which a motion leaves the valid range of its model.
 struct LeftRange {
   double time = 0;   ///< [s]
   std::string name;  ///< of the coordinate or muscle
-  std::string what;  ///< one sentence without full stop: what, when, how far
+  std::string what;  ///< one sentence without full stop
 };
 /// The first time at which a free coordinate is outside its range by more than a tenth of it (and
 /// 1° or 1 mm), or a fibre outside 0.2 to 2 optimal lengths; nothing if there is none.
@@ -109,7 +110,7 @@ struct PathSample {
   Eigen::MatrixXd momentArmSlope;  ///< −∂²ℓ/∂q² [m/rad]
   Eigen::MatrixXi wrapped;         ///< 1: a wrap object is touched
   std::vector<std::string> notes;
-  std::vector<std::string> warnings;  ///< muscles left out that cannot be computed
+  std::vector<std::string> warnings;  ///< muscles that cannot be computed and are left out
 };
 /// Paths of every enabled muscle that the skeleton's first coordinate moves, whatever its class;
 /// the other free coordinates stay at their defaults.

@@ -5,7 +5,7 @@
 
 namespace bio {
 
-/// Number of distinct second derivatives of a function of n variables, and the place of (i, j).
+/// Number of distinct second derivatives of a function of n variables, and the index of (i, j).
 constexpr int numPairs(int n) {
   return n * (n + 1) / 2;
 }
@@ -68,7 +68,7 @@ RigidMotion<T, N> identityMotion() {
 template <class T, int N, class Point>
 PointMotionJet<T, N> movePoint(const RigidMotion<T, N>& X, const Point& point) {
   PointMotionJet<T, N> jet;
-  // lazily: three numbers are no work for Eigen's kernels
+  // lazily evaluated: faster for three numbers
   jet.value.noalias() = X.value.R.lazyProduct(point) + X.value.p;
   for (std::size_t i = 0; i < N; ++i) {
     jet.first[i].noalias() = X.first[i].R.lazyProduct(point) + X.first[i].p;

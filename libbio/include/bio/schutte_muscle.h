@@ -15,13 +15,13 @@ namespace bio {
 /// The three curves of a Schutte muscle, compiled; all ordinates are normalised by F0.
 struct SchutteCurves {
   CubicSpline tendonForce;                  ///< over tendon strain
-  CubicSpline activeForce;                  ///< f_l over ℓ/ℓ0, counts as 0 where negative
+  CubicSpline activeForce;                  ///< f_l over ℓ/ℓ0, negative values count as 0
   std::optional<CubicSpline> passiveForce;  ///< f_PE over ℓ/ℓ0; absent: exp(8(l−1))/e⁴
 
   explicit SchutteCurves(const SchutteParameters& parameters);
 };
 
-/// The parameters that identification may differentiate in; meaning and rules as in
+/// The parameters with respect to which derivatives are available; meaning and rules as in
 /// SchutteParameters.
 template <class T>
 struct SchutteQuantities {
@@ -33,19 +33,19 @@ struct SchutteQuantities {
   T damping;             ///< B [1] > 0
 };
 
-/// The quantities a file gives, checked.
+/// The parameters of a file, checked.
 /// @throws std::invalid_argument naming the quantity, its value, unit and rule
 SchutteQuantities<double> schutteQuantities(const SchutteParameters& parameters);
 
 struct SchutteOptions {
-  /// Activations below it act as this value: the equation stays regular. [1] > 0
+  /// Lower limit of the activation, which keeps the equation regular [1] > 0.
   double activationFloor = 1e-3;
-  /// The velocity-dependent force P is not let below 0, as in OpenSim's class: a slack tendon then
-  /// never drives the fibre.
+  /// Whether the velocity-dependent force P is limited to ≥ 0, as in OpenSim's class, so that a
+  /// slack tendon never drives the fibre.
   bool clampForce = true;
 };
 
-/// What the muscle does at a state: how fast its fibre changes length, and the force in its tendon.
+/// Fibre velocity and tendon force of a muscle at a state.
 template <class T>
 struct FibreRate {
   T fibreVelocity;  ///< ℓ̇ = V(act, ℓ, ℓ_MT) [m/s], lengthening > 0
@@ -67,10 +67,10 @@ struct FibreRate {
 /// P = −B and, when clamped, at P = 0.
 ///
 /// Equation (3.1) of Wilson's thesis with the damping term and with cos α on the whole fibre force
-/// (the print has it on f_PE only). F̂_T = 0 for ε < 0.
+/// (as printed it is on f_PE only). F̂_T = 0 for ε < 0.
 ///
 /// Domain: ℓ > ℓ0 sin α0 (and > 0). Outside it there is no pennation angle and every result is NaN,
-/// so that an iteration which steps there sees a failed step and can shorten it.
+/// so that an iteration that steps there detects a failed step and can shorten it.
 template <class T>
 class SchutteMuscle {
  public:
@@ -144,8 +144,8 @@ class SchutteMuscle {
   FibreRate<T> fibreVelocity(const T& activation, const T& fibreLength,
                              const T& muscleTendonLength) const;
 
-  /// F_T − F0·[act·f_l·f_v + f_PE + B·v]·cos α [N] for a fibre velocity in m/s: zero where the
-  /// muscle balances. Knows no clamping; the activation floor applies.
+  /// F_T − F0·[act·f_l·f_v + f_PE + B·v]·cos α [N] for a fibre velocity in m/s: zero in
+  /// equilibrium. P is not clamped; the activation floor applies.
   T equilibriumResidual(const T& activation, const T& fibreLength, const T& muscleTendonLength,
                         const T& fibreVelocity) const;
 
@@ -213,7 +213,7 @@ FibreRate<T> SchutteMuscle<T>::fibreVelocity(const T& activation, const T& fibre
   const T projected = projectedFibreLength(fibreLength);
   const T strain = (muscleTendonLength - projected) * perTendon_ - T(1.0);
   const T tendon = normalisedTendonForce(strain);
-  // What is left for the contractile element and the damper.
+  // The force of the contractile element and the damper.
   const T l = fibreLength * perFibre_;
   T P = tendon * fibreLength / projected - passiveForceLength(l);
   if (options_.clampForce && plainValue(P) < 0) P = T(0.0);
@@ -252,17 +252,18 @@ struct FibreRateDerivatives {
   double dF_dMuscleTendonLength;  ///< [N/m]
 };
 
-/// The pieces of a muscle's curves that held its last state: while it moves it rarely leaves them.
+/// The curve segments that contained a muscle's last state, which it rarely leaves from one step to
+/// the next.
 struct SchuttePieces {
   PiecewiseCubic::Piece tendonForce, activeForce, passiveForce;
 };
 
 /// fibreVelocity with hand-written first derivatives; at a kink those of the right-hand side in P
-/// (lengthening at P = A). The kernel of every simulation: no allocation, no branch but the
-/// regimes.
+/// (lengthening at P = A). The kernel of every simulation: no allocation, no branches except
+/// between regimes.
 FibreRateDerivatives fibreRateDerivatives(const SchutteMuscle<double>& muscle, double activation,
                                           double fibreLength, double muscleTendonLength);
-/// The same, quicker where the state lies in the pieces that held the muscle's last one.
+/// The same, faster if the state lies in the curve segments of the last one.
 FibreRateDerivatives fibreRateDerivatives(const SchutteMuscle<double>& muscle, double activation,
                                           double fibreLength, double muscleTendonLength,
                                           SchuttePieces& last);
@@ -284,20 +285,20 @@ struct MuscleForces {
   double dampingForce;       ///< F0·B·v, along the fibre [N]
   double pennation;          ///< α [rad]
   double tendonStrain;       ///< ε [1]
-  double muscleTendonPower;  ///< F_T·ℓ̇_MT [W]: what the skeleton puts into the muscle, < 0 when it
-                             ///< drives
-  double activePower;   ///< activeForce·ℓ̇ [W], < 0: the contractile element gives work
+  double muscleTendonPower;  ///< F_T·ℓ̇_MT [W]: power that the skeleton puts into the muscle, < 0
+                             ///< when it drives
+  double activePower;   ///< activeForce·ℓ̇ [W], < 0: the contractile element does work
   double passivePower;  ///< passiveForce·ℓ̇ [W], stored in the parallel spring
   double dampingPower;  ///< dampingForce·ℓ̇ [W] ≥ 0, lost
   double tendonPower;   ///< F_T·ℓ̇_T [W], stored in the tendon
 };
-/// Velocities in m/s. Where the muscle balances (equilibriumResidual = 0), muscleTendonPower is the
-/// sum of the four other powers.
+/// Velocities in m/s. In equilibrium (equilibriumResidual = 0) muscleTendonPower is the sum of the
+/// four other powers.
 MuscleForces muscleForces(const SchutteMuscle<double>& muscle, double activation,
                           double fibreLength, double muscleTendonLength, double fibreVelocity,
                           double muscleTendonVelocity);
 
-/// Where a fibre comes to rest.
+/// Result of the search for static equilibrium.
 struct StaticEquilibrium {
   enum class Why {
     found,  ///< the fibre force balances the tendon force
@@ -321,7 +322,7 @@ struct StaticEquilibrium {
 StaticEquilibrium staticEquilibrium(const SchutteMuscle<double>& muscle, double activation,
                                     double muscleTendonLength);
 
-/// One line for people, e.g. "the tendon is slack at every fibre length".
+/// One-line description, e.g. "the tendon is slack at every fibre length".
 const char* describe(StaticEquilibrium::Why why);
 
 }  // namespace bio

@@ -12,7 +12,7 @@ namespace bio {
 
 /// The whole skeleton of a model as Simbody simulates it: every body and every joint with all its
 /// coordinates, couplers imposed by evaluating them. The independent second algorithm for
-/// skeleton.h: used by `check` and in tests, never in a time step. Simbody is seen nowhere else.
+/// skeleton.h: used by `check` and in tests, never in a time step. Simbody is used nowhere else.
 class SimbodyTree {
  public:
   /// @throws std::invalid_argument a tree Simbody cannot build
@@ -20,8 +20,8 @@ class SimbodyTree {
   ~SimbodyTree();
   SimbodyTree(SimbodyTree&&) noexcept;
 
-  /// What Simbody computes at a posture: coordinates named in `values`, the others at their
-  /// defaults, dependent coordinates from their couplers.
+  /// Simbody's results in a posture: coordinates named in `values`, the others at their defaults,
+  /// dependent coordinates from their couplers.
   struct Dynamics {
     Eigen::MatrixXd massMatrix;    ///< all mobilities, order of mobilityNames()
     Eigen::VectorXd gravityForce;  ///< generalised force of gravity, +τ [N m]

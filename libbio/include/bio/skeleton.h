@@ -19,18 +19,19 @@ struct CurveJet;
 /// frames.
 Placement<double> placementOf(const FramePlacement& frame);
 
-/// What a skeleton leaves free. Every coordinate not named in `freeCoordinates`, and not coupled to
-/// one that is, is removed: its joint axis becomes part of a rigid segment.
+/// Free and locked coordinates of a skeleton. Every coordinate that is neither named in
+/// `freeCoordinates` nor coupled to one of them is removed: its joint axis becomes part of a rigid
+/// segment.
 struct SkeletonOptions {
   std::vector<std::string> freeCoordinates;    ///< order = order of q; at least one
   std::map<std::string, double> lockedValues;  ///< overrides defaults [rad] or [m]
 };
 
-/// A line for each coordinate that is locked outside its range by more than 1° or 1 mm: an angle that
-/// was meant in degrees, as a rule.
+/// A line for each coordinate that is locked outside its range by more than 1° or 1 mm, usually
+/// because an angle was given in degrees.
 std::vector<std::string> lockRemarks(const Model& model, const SkeletonOptions& options);
 
-/// Bodies that no free coordinate moves against each other, as one rigid body.
+/// Bodies that do not move relative to each other, as one rigid body.
 struct Segment {
   std::string name;  ///< of its first body; "ground" for segment 0
   double mass = 0;   ///< [kg]
@@ -48,7 +49,7 @@ inline Function identityFunction() {
 constexpr std::size_t maxSegments = 24;
 constexpr int maxFreeCoordinates = 4;
 
-/// Where a body sits: its segment and its fixed placement there.
+/// The segment of a body and its fixed placement there.
 struct BodyPlacement {
   std::size_t segment = 0;
   Placement<double> X_SB;  ///< body in the segment frame
@@ -69,17 +70,16 @@ struct InertiaJet {
   Matrix d2V;                           ///< ∂²V/∂q²
 };
 
-/// The moving part of an arm: rigid segments, and the joint motions that the free coordinates
-/// leave.
+/// The moving part of a model: rigid segments, and their joint motions by the free coordinates.
 ///
 /// A joint motion is a product of elementary turns and shifts, R(axis, f(q_k)) or axis·f(q_k); the
 /// placement of each segment and its derivatives follow from the product rule, exactly. With
 /// P = [Σ m r rᵀ, Σ m r; ·, Σ m] the second moments of a segment and X its 4×4 placement,
 ///     M_kl = Σ tr(∂_kX P ∂_lXᵀ),   V = −Σ g·(R Σ m r + p Σ m)
 /// (equivalent to the usual ½ m|ċ|² + ½ ωᵀJω; no angular velocity is needed). Independent check:
-/// simbody_tree.h, which gives the whole model, locked coordinates included, to Simbody.
+/// simbody_tree.h, which computes the complete model, including locked coordinates, with Simbody.
 ///
-/// Constant after construction; all evaluation functions are pure and allocate nothing.
+/// Constant after construction; all evaluation functions are pure and do not allocate.
 class Skeleton {
  public:
   /// @throws std::invalid_argument unknown or repeated coordinate names, a free coordinate that is
@@ -145,7 +145,7 @@ class Skeleton {
   /// X ← X·factor
   template <class T, int N>
   static void applyFactor(RigidMotion<T, N>& X, const Factor& factor, const T& q_k);
-  /// The same for X = 1, the ground, in whose derivatives there are only zeros to multiply.
+  /// The same for X = 1, the ground, whose derivatives are zero.
   template <class T, int N>
   static void applyFirstFactor(RigidMotion<T, N>& X, const Factor& factor, const T& q_k);
 

@@ -10,8 +10,8 @@ using Vec3 = Eigen::Matrix<T, 3, 1>;
 template <class T>
 using Mat3 = Eigen::Matrix<T, 3, 3>;
 
-/// Length of the part of a path between two points P and Q, and how it follows them; all vectors in
-/// one frame C. For an unsupported span L = |Q − P|; for a wrapped one L is the geodesic length,
+/// Length of the part of a path between two points P and Q, with its gradient; all vectors in one
+/// frame C. For an unsupported span L = |Q − P|; for a wrapped one L is the geodesic length,
 /// stationary in the contact points, so that the gradient consists of the unit end tangents.
 template <class T>
 struct Span {
@@ -36,7 +36,7 @@ struct SpanToSecondOrder {
   SpanHessian<T> hessian;
 };
 
-/// Where a wrapped path meets and leaves its surface; for a straight span the values mean nothing.
+/// Contact points of a wrapped path; undefined for a straight span.
 template <class T>
 struct WrapContact {
   Vec3<T> p_CA;  ///< first contact, seen from P [m]
@@ -44,7 +44,8 @@ struct WrapContact {
   T angle;       ///< wrapped angle β [rad] > 0
 };
 
-/// @throws std::domain_error: an end of a wrapped path is not outside its surface. Distances in m.
+/// @throws std::domain_error: Thrown if an end of a wrapped path is not outside its surface.
+///   Distances in m.
 [[noreturn]] void throwEndInside(const char* center, double distanceP, double distanceQ,
                                  double radius);
 

@@ -23,26 +23,26 @@ enum class TableKind {
 };
 
 /// Reads .sto or .mot (header up to `endheader`, then a row of names; cells between tabs or
-/// spaces), .csv (a row of names; commas) or, under any other extension, the one of them that the
-/// first line looks like. Empty cells and NaN become NaN. nRows, nColumns, datarows, datacolumns in
-/// a header are checked.
+/// spaces), .csv (a row of names; commas) or, with any other extension, the format suggested by the
+/// first line. Empty cells and NaN become NaN. nRows, nColumns, datarows, datacolumns in a header
+/// are checked.
 /// @throws FileError naming file, line and column
 Table readTable(const std::filesystem::path& file, TableKind kind = TableKind::timeSeries);
 
-/// Writes .csv if the file is so called, else .sto as OpenSim 4 writes it; every number reads back
-/// as the same double. The file appears whole or not at all.
-/// @throws FileError if it cannot be written, or if a cell is infinite or names and values do not
-/// fit
+/// Writes .csv if the file has this extension, else .sto as OpenSim 4 does; every number reads back
+/// as the same double. The file appears complete or not at all.
+/// @throws FileError if it cannot be written, or if a cell is infinite, or names and values do not
+///   match
 void writeTable(const Table& table, const std::filesystem::path& file);
 
 bool hasColumn(const Table& table, const std::string& column);
 
 /// The index of the column in Table::columns.
-/// @throws std::invalid_argument that lists the columns there are
+/// @throws std::invalid_argument with a list of the existing columns
 Eigen::Index columnIndex(const Table& table, const std::string& column);
 
-/// The column `time`, else `time_s` [s].
-/// @throws std::invalid_argument if there is neither
+/// The column `time` or `time_s` [s].
+/// @throws std::invalid_argument if there is none
 Eigen::VectorXd timesOf(const Table& table);
 
 }  // namespace bio

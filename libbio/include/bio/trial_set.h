@@ -15,9 +15,9 @@ namespace bio {
 struct TrialSetOptions {
   /// Names or patterns as ParameterCatalogue::select takes them: the same value in every trial.
   std::vector<std::string> parameters;
-  bool ownStart = false;  ///< estimate where each trial starts, and how fast, as well
+  bool ownStart = false;  ///< estimate the initial values and speeds of each trial as well
   std::map<std::string, double> initial;  ///< start values [rad] or [m], as startCoordinates takes
-  SimulationOptions simulation;           ///< start and duration are each trial's own
+  SimulationOptions simulation;           ///< start and duration are those of each trial
   int threads = 1;                        ///< trials simulated at once
 };
 
@@ -31,50 +31,48 @@ struct MeasuredSeries {
 
 /// Several trials of one model as one experiment: θ = (parameters of the model, common to all;
 /// then, if asked for, start and start speed of each trial's free coordinates), outputs = the
-/// measured angles of all trials one behind the other.
+/// measured angles of all trials, concatenated.
 ///
-/// Angles count alike, whichever coordinate they belong to. Each trial is simulated over all its
-/// rows, from where beginningOf() says, its first measured value at rest unless the model knows
-/// better.
+/// All angles have the same weight. Each trial is simulated over all its rows from the initial
+/// state of beginningOf().
 class TrialSet {
  public:
-  /// @throws std::invalid_argument, naming the file where there is one, for no trial, a trial
-  ///   with a torque from outside or without a measured free angle, an unknown name, one given
-  ///   twice or two that set the same number, a start as common parameter of several trials,
-  ///   another integrator
+  /// @throws std::invalid_argument, naming the file where there is one, for no trial, a trial with
+  ///   an external torque or without a measured free angle, an unknown name, one given twice or two
+  ///   that set the same value, an initial state as common parameter of several trials, another
+  ///   integrator
   TrialSet(const Model& model, const ArmOptions& arm, std::vector<Trial> trials,
            const TrialSetOptions& options);
 
   const Arm& arm() const { return *arm_; }
   const std::vector<Trial>& trials() const { return trials_; }
-  /// Where each trial starts, before anything is estimated.
+  /// Initial state of each trial before the estimation.
   const std::vector<TrialBeginning>& beginnings() const { return beginnings_; }
   const std::vector<MeasuredSeries>& series() const { return series_; }
-  /// Of a trial; they differ in the start only.
+  /// The catalogue of a trial; catalogues differ only in the initial state.
   const ParameterCatalogue& catalogue(std::size_t trial = 0) const { return *catalogues_[trial]; }
   /// Indices of the common parameters in the catalogue.
   const std::vector<std::size_t>& selection() const { return selection_; }
 
-  /// Where a trial starts at θ.
+  /// Initial state of a trial at θ.
   StartPoint startAt(std::size_t trial, const Eigen::VectorXd& theta) const;
 
   std::size_t numParameters() const { return parameters_.size(); }
-  /// Number of those that are common; the others are starts of trials.
+  /// Number of common parameters; the others are initial states of trials.
   std::size_t numCommon() const { return selection_.size(); }
-  /// θ as the models and trials have it, with the catalogue's bounds; starts of trials have a
-  /// prior.
+  /// θ of the model and the trials, with the catalogue's bounds; initial states have a prior.
   const std::vector<info::Parameter>& parameters() const { return parameters_; }
-  /// How well each is known beforehand, in its unit.
+  /// Prior standard deviation of each, in its unit.
   const Eigen::VectorXd& known() const { return known_; }
 
   /// 1 × samples [rad]
   Eigen::MatrixXd measured() const;
-  /// 1 × samples; NaN where a simulation did not come so far. The set must outlive it.
+  /// 1 × samples; NaN after the end of a failed simulation. The set must outlive it.
   info::Predictor predictor() const { return predictor(experiments_); }
-  /// The experiments with every measured coordinate held near its measured course (nudge.h). Where
-  /// a series has fewer than four samples it holds nothing.
+  /// The experiments with every measured coordinate held near its measured course (nudge.h). A
+  /// series with fewer than four samples is not held.
   std::vector<ArmExperiment> nudged(double frequency) const;
-  /// Of these in place of the set's own; both must outlive it.
+  /// The same with these experiments; set and experiments must outlive it.
   info::Predictor predictor(const std::vector<ArmExperiment>& experiments) const;
   /// Why the trial's simulation does not reach its end; empty if it does.
   std::string failure(std::size_t trial, const Eigen::VectorXd& theta) const;
@@ -95,7 +93,7 @@ class TrialSet {
   std::unique_ptr<const Arm> arm_;
   std::vector<std::unique_ptr<const ParameterCatalogue>> catalogues_;  ///< one per trial
   std::vector<std::size_t> selection_;
-  std::vector<std::size_t> own_;  ///< indices of the start's parameters; empty unless estimated
+  std::vector<std::size_t> own_;  ///< indices of the initial states; empty unless estimated
   std::vector<info::Parameter> parameters_;
   Eigen::VectorXd known_;
   std::vector<MeasuredSeries> series_;

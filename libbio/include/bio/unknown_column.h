@@ -7,8 +7,8 @@
 
 namespace bio {
 
-/// A table's column that means nothing in the model it is read for. Readers that can pass over such
-/// columns throw it where they are not told to; how they are told is the caller's to say.
+/// Thrown for a column of a table that matches nothing in the model. Readers can ignore such
+/// columns if they are asked to; the caller adds to the message how this is done.
 class UnknownColumn : public FileError {
  public:
   UnknownColumn(const std::string& message, std::string column)

@@ -10,17 +10,17 @@ namespace bio {
 
 using info::plainValue;
 
-/// Which way a path goes round an axis from its first point to its last, seen against the axis (the
-/// axis points at the eye).
+/// Sense of rotation of a path about an axis, from its first point to its last, seen with the axis
+/// pointing at the viewer.
 enum class Side { counterclockwise = 1, clockwise = -1 };
 
-/// The path from P to Q round a cylinder, seen along its axis: what length, gradient and Hessian
-/// are made of.
+/// The path from P to Q round a cylinder, projected along its axis: the terms of length, gradient
+/// and Hessian.
 template <class T>
 struct CylinderGeometry {
   T tangentP, tangentQ;  ///< √(ρ² − r²), from the ends to their contacts [m]
   T eP[2], eQ[2];        ///< unit tangents at P (towards the contact) and Q (away from it)
-  T angle;               ///< wrapped angle β ∈ (0, 2π) [rad]; meaningless if !touches
+  T angle;               ///< wrapped angle β ∈ (0, 2π) [rad]; undefined if !touches
   bool touches;          ///< β > 0
 };
 
@@ -54,7 +54,7 @@ CylinderGeometry<T> cylinderGeometry(const T& radius, Side side, const Vec3<T>& 
   g.eQ[0] = (b * p_CQ.x() - r * p_CQ.y()) * perQQ;
   g.eQ[1] = (r * p_CQ.x() + b * p_CQ.y()) * perQQ;
 
-  // Walking along the path turns the tangent by β, from eP to eQ. The ends' own angle tells apart
+  // Along the path the tangent turns by β, from eP to eQ. The angle between the ends distinguishes
   // β < 0 (no contact) from β > π.
   const T turn = (g.eP[0] * g.eQ[1] - g.eP[1] * g.eQ[0]) * T(sigma);
   const T along = g.eP[0] * g.eQ[0] + g.eP[1] * g.eQ[1];
@@ -71,7 +71,7 @@ CylinderGeometry<T> cylinderGeometry(const T& radius, Side side, const Vec3<T>& 
   return g;
 }
 
-/// Shortest path from P to Q on a given side of an endless cylinder about the z-axis of frame C.
+/// Shortest path from P to Q on a given side of an infinite cylinder about the z-axis of frame C.
 ///
 /// Unrolled, the path is a straight line: with s its length seen along z and P, Q the distances of
 /// the ends from the axis,
@@ -81,8 +81,8 @@ CylinderGeometry<T> cylinderGeometry(const T& radius, Side side, const Vec3<T>& 
 /// straight where β ≤ 0. L is C¹ at lift-off (β = 0), C∞ elsewhere, and jumps where P and Q lie on
 /// one ray from the axis (Φ = 0). β may exceed π. ∂L/∂r = β·s/L.
 ///
-/// Appendix A of Wilson's thesis, which decides contact by (A.1) alone; that also fires when the
-/// axis lies beyond the segment, hence β > 0 here.
+/// Appendix A of Wilson's thesis, which decides contact by (A.1) only; that also holds if the axis
+/// lies beyond the segment, hence the condition β > 0 here.
 ///
 /// @param radius r [m] > 0
 /// @throws std::domain_error if an end point is not outside the cylinder
@@ -101,11 +101,11 @@ Span<T> wrapCylinder(const T& radius, Side side, const Vec3<T>& p_CP, const Vec3
   return {length, dL_dP, dL_dQ, true};
 }
 
-/// wrapCylinder with what its second derivatives are made of: the Hessian over both ends is the sum
-/// of three dyads,
+/// wrapCylinder with the terms of its second derivatives: the Hessian with respect to both ends is
+/// the sum of three dyads,
 ///     bendP nP nPᵀ + bendQ nQ nQᵀ + perLength m mᵀ,   m = (mP, mQ)
-/// because s falls apart into a part of P and one of Q, whose Hessians are (1/a) n nᵀ with a the
-/// tangent length and n across the tangent, and L = √(s² + Δz²) has one curvature. Meaningless if
+/// because s is the sum of a term of P and one of Q, whose Hessians are (1/a) n nᵀ with a the
+/// tangent length and n across the tangent, and L = √(s² + Δz²) has one curvature. Undefined if
 /// !span.touches.
 template <class T>
 struct CylinderDyads {

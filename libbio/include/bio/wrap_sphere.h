@@ -10,7 +10,7 @@ namespace bio {
 
 using info::plainValue;
 
-/// Which of the two arcs of the great circle a path takes.
+/// Selects one of the two arcs of the great circle.
 enum class Way { shorter, longer };
 
 /// The path from P to Q round a sphere, in the plane of P, Q and the centre.
@@ -20,8 +20,8 @@ struct SphereGeometry {
   T tangentP, tangentQ;    ///< √(ρ² − r²), from the ends to their contacts [m]
   Vec3<T> eP, eQ;          ///< unit tangents at P (towards the contact) and Q (away from it)
   Vec3<T> normal;          ///< unit normal of the plane, right-handed from P to Q
-  T sinPhi, cosPhi;        ///< of the angle Φ from P to Q on the chosen way
-  T angle;                 ///< wrapped angle β ∈ (0, 2π) [rad]; meaningless if !touches
+  T sinPhi, cosPhi;        ///< of the angle Φ from P to Q along the chosen arc
+  T angle;                 ///< wrapped angle β ∈ (0, 2π) [rad]; undefined if !touches
   bool touches;            ///< β > 0
 };
 
@@ -76,7 +76,8 @@ SphereGeometry<T> sphereGeometry(const T& radius, Way way, const Vec3<T>& p_CP,
 /// with P, Q the distances of the ends from the centre and Φ the angle between them (2π minus it on
 /// the longer way). Straight where β ≤ 0. C¹ at lift-off, C∞ elsewhere; ∂L/∂r = β.
 ///
-/// Domain: P, Q and the centre not on one line (NaN there: every great circle is as short).
+/// Domain: P, Q and the centre not on one line (NaN there, since all great circles are equally
+/// short).
 /// @param radius r [m] > 0
 /// @throws std::domain_error if an end point is not outside the sphere
 template <class T>

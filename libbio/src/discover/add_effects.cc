@@ -28,9 +28,10 @@ const info::discover::Candidate& findCandidate(const WidestModel& widest, const 
   const auto present = widest.present().find(id);
   if (present != widest.present().end()) {
     throw std::invalid_argument(
-        fmt::format("effect '{}': the model has it already, as '{}'", id, present->second));
+        fmt::format("effect '{}': the model already has it, as '{}'", id, present->second));
   }
-  throw std::invalid_argument(fmt::format("effect '{}': not in the catalogue of this model", id));
+  throw std::invalid_argument(
+      fmt::format("effect '{}': must be in the catalogue of this model", id));
 }
 
 std::string wordsOf(const WidestModel& widest, const info::discover::Candidate& candidate,
@@ -44,7 +45,7 @@ std::string wordsOf(const WidestModel& widest, const info::discover::Candidate& 
     if (!quantity.unit.empty()) words += " " + quantity.unit;
   }
   if (effect.logBayesFactor != 0)
-    words += fmt::format(", evidence {:.4g} nats", effect.logBayesFactor);
+    words += fmt::format(", log Bayes factor {:.4g} nats", effect.logBayesFactor);
   if (effect.probability != 0) words += fmt::format(", probability {:.4g}", effect.probability);
   return words;
 }
@@ -96,8 +97,9 @@ Augmented addEffects(const Model& model, const ArmOptions& arm, const std::strin
   for (const EffectToAdd& effect : effects) {
     const auto& candidate = findCandidate(widest, effect.id);
     if (effect.values.size() != static_cast<Index>(candidate.quantities.size())) {
-      throw std::invalid_argument(fmt::format("effect '{}': {} values for {} quantities", effect.id,
-                                              effect.values.size(), candidate.quantities.size()));
+      throw std::invalid_argument(
+          fmt::format("effect '{}': {} values for {} quantities, must be as many", effect.id,
+                      effect.values.size(), candidate.quantities.size()));
     }
     for (std::size_t i = 0; i < candidate.quantities.size(); ++i) {
       values[static_cast<Index>(candidate.quantities[i])] = effect.values[static_cast<Index>(i)];

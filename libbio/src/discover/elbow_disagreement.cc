@@ -55,7 +55,7 @@ ElbowDisagreement::ElbowDisagreement(const Model& model, const ArmOptions& arm,
       options_(std::move(options)),
       quantities_(widest_.quantities()),
       nuisances_(widest_.nuisances()) {
-  if (trials.empty()) throw std::invalid_argument("no trial is given");
+  if (trials.empty()) throw std::invalid_argument("no trial is given, must have at least one");
   const auto positive = [](double value, const char* what) {
     if (!(value > 0 && std::isfinite(value))) {
       throw std::invalid_argument(fmt::format("{} = {}, must be > 0", what, value));
@@ -63,11 +63,11 @@ ElbowDisagreement::ElbowDisagreement(const Model& model, const ArmOptions& arm,
   };
   positive(options_.latentSpacing, "spacing of the latent force");
   positive(options_.latentFloor, "floor of the latent force's scale");
-  positive(options_.startDeviation, "deviation of the start");
-  positive(options_.speedDeviation, "deviation of the start's speed");
+  positive(options_.startDeviation, "standard deviation of the start");
+  positive(options_.speedDeviation, "standard deviation of the start's speed");
   const Integrator integrator = options_.simulation.integrator;
   if (integrator != Integrator::variational && integrator != Integrator::variationalLeft) {
-    throw std::invalid_argument("sensitivities: the integrator must be vi or vi-left");
+    throw std::invalid_argument("sensitivities: integrator must be vi or vi-left");
   }
   const Coordinate& observed = widest_.coordinate();
   double lastStart = -HUGE_VAL, firstEnd = HUGE_VAL;
@@ -200,8 +200,8 @@ double ElbowDisagreement::activationLag() const {
 ParameterCatalogue::Setting ElbowDisagreement::settingAt(
     const OfTrial& one, const VectorXd& values, const std::vector<std::size_t>& wanted) const {
   if (values.size() != static_cast<Index>(quantities_.size())) {
-    throw std::invalid_argument(
-        fmt::format("{} values for {} quantities", values.size(), quantities_.size()));
+    throw std::invalid_argument(fmt::format("{} values for {} quantities, must be as many",
+                                            values.size(), quantities_.size()));
   }
   const auto own = static_cast<Index>(widest_.quantities().size());
   ParameterCatalogue::Setting setting = widest_.settingAt(values.head(own) + one.known, wanted);
@@ -225,7 +225,8 @@ SimulationOptions ElbowDisagreement::simulationOf(const OfTrial& one, const Vect
   if (latent.size() == 0) return simulation;
   if (latent.size() != static_cast<Index>(one.nodes.size())) {
     throw std::invalid_argument(
-        fmt::format("{} values of the latent force for {} nodes", latent.size(), one.nodes.size()));
+        fmt::format("{} values of the latent force for {} nodes, must be as many", latent.size(),
+                    one.nodes.size()));
   }
   simulation.externalForce =
       sum(simulation.externalForce,

@@ -123,8 +123,8 @@ std::string sentenceOf(const Trial& moved, const Coordinate& coordinate, double 
   for (const auto& [line, value] : headerOf(moved.known))
     header += fmt::format("{}{}={}", header.empty() ? ", header " : " and ", line, value);
   return fmt::format(
-      "relax, let somebody else move the arm slowly from {:.4g} to {:.4g} {} and back within "
-      "{:.3g} s{}, and record what moves it (column {}.{}{})",
+      "relax the muscles, have the limb moved slowly from {:.4g} to {:.4g} {} and back within "
+      "{:.3g} s{}, and record the load that moves it (column {}.{}{})",
       low / unit, high / unit, turns ? "deg" : "m", moved.duration(), changed, coordinate.name,
       turns ? "torque" : "force", header);
 }

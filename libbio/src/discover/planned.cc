@@ -42,7 +42,7 @@ std::vector<PlannedExperiment> plannedExperiments(const Trial& trial,
                                                   const Coordinate& coordinate) {
   const std::string file = std::filesystem::path(trial.file).filename().string();
   std::vector<PlannedExperiment> planned;
-  planned.push_back({fmt::format("repeat {} as it was", file), trial});
+  planned.push_back({fmt::format("repeat {} unchanged", file), trial});
   for (const double mass : {0.1, 0.3, 1.0}) {
     Trial loaded = trial;
     loaded.known.massInHand += mass;
@@ -54,8 +54,8 @@ std::vector<PlannedExperiment> plannedExperiments(const Trial& trial,
   const bool turns = coordinate.isRotation;
   for (const double size : {0.25, 0.5, 1.0}) {
     planned.push_back(
-        {fmt::format("repeat {} with recorded pushes of {} {} and 0.2 s from outside, up and down "
-                     "in turn, one a second (column {}.{})",
+        {fmt::format("repeat {} with recorded external pushes of {} {} lasting 0.2 s, alternately "
+                     "up and down, one per second (column {}.{})",
                      file, size, turns ? "N·m" : "N", coordinate.name, turns ? "torque" : "force"),
          pushed(trial, coordinate.name, size)});
   }

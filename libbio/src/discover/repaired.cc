@@ -98,8 +98,8 @@ std::string creditsOf(const ElbowDisagreement& data, const Verdict& verdict,
       credits += (i ? ", " : " to ") + provenance.data[i];
   }
   const auto numbers = fittedNumbers(data, verdict);
-  return credits + "; with them " + std::to_string(numbers.size()) +
-         " numbers in all were fitted, parameters.csv lists them";
+  return credits + "; together with them " + std::to_string(numbers.size()) +
+         " values in total were fitted, listed in parameters.csv";
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ PresentEffect presentIn(const ElbowDisagreement& data, const std::string& id, do
   const auto at = std::find_if(candidates.begin(), candidates.end(),
                                [&](const Candidate& c) { return c.id == id; });
   const auto present = data.widest().present().find(id);
-  require(present == data.widest().present().end(), fmt::format("the model has '{}' already", id));
+  require(present == data.widest().present().end(), fmt::format("the model already has '{}'", id));
   require(at != candidates.end(), fmt::format("no effect is called '{}'", id));
   PresentEffect effect{static_cast<std::size_t>(at - candidates.begin()), at->starts.front()};
   const auto& amplitude = data.quantities()[at->quantities.front()];
@@ -127,7 +127,7 @@ SeparatingExperiment SeparatingDesign::at(const VectorXd& x) const {
   e.lowest = worthless;
   e.highest = -worthless;
   for (const VectorXd* motion : {&e.base, &e.first, &e.second}) {
-    if (!motion->allFinite()) throw std::domain_error("a motion does not reach the end");
+    if (!motion->allFinite()) throw std::domain_error("a simulation does not reach the end");
     e.lowest = std::min(e.lowest, motion->minCoeff());
     e.highest = std::max(e.highest, motion->maxCoeff());
     const Index n = motion->size();

@@ -24,12 +24,12 @@ Eigen::VectorXd knownChangesOf(const Trial& trial, const WidestModel& widest) {
     }
     changes[at - quantities.begin()] = value;
   };
-  change("known.mass", trial.known.massInHand, "the model moves no body that could hold it");
+  change("known.mass", trial.known.massInHand, "the model moves no body that could carry it");
   change("known.turn", trial.known.armTurn, "the coordinate does not turn bodies across gravity");
   if (trial.known.armTurn != 0 && widest.present().count("handforce") > 0) {
     throw std::invalid_argument(
-        fmt::format("{}: recorded {}, but the model has a force on the hand ({}) that would turn "
-                    "with the arm",
+        fmt::format("{}: recorded {}, but the model has a force on the hand ({}), which would turn "
+                    "with the limb",
                     trial.file, inWords(trial.known), widest.present().at("handforce")));
   }
   return changes;

@@ -39,11 +39,11 @@ void checkUnits(Reading& reading, const Element& model) {
   const std::string forces = readText(reading.source, model, "force_units", "N");
   if (lengths != "meters" && lengths != "m") {
     reading.model.warnings.push_back(
-        fmt::format("length_units = '{}' is not heeded: lengths are read as metres", lengths));
+        fmt::format("length_units = '{}' is ignored: lengths are read as metres", lengths));
   }
   if (forces != "N" && forces != "newtons") {
     reading.model.warnings.push_back(
-        fmt::format("force_units = '{}' is not heeded: forces are read as newtons", forces));
+        fmt::format("force_units = '{}' is ignored: forces are read as newtons", forces));
   }
 }
 

@@ -203,7 +203,7 @@ void OnlineLeastSquares<M>::addPriors(const Unknowns& z, Linearised& at) const {
 template <StepMap M>
 OnlineEstimate<M> OnlineLeastSquares<M>::update() {
   if (inputs_.empty())
-    throw std::domain_error("on-line estimate: number of samples is 0, rule: ≥ 1");
+    throw std::domain_error("on-line estimate: number of samples is 0, must be ≥ 1");
   slideWindow();
   OnlineEstimate<M> out;
   Linearised at = linearise(z_);

@@ -84,11 +84,11 @@ auto outputOfStateAndParameters(const M& map, const InputOf<M>& u) {
 template <StepMap M>
 Predictor makePredictor(M map, Experiment<M> experiment) {
   if (experiment.measured.empty())
-    throw DimensionError("measured: number of samples is 0, rule: >= 1");
+    throw DimensionError("measured: number of samples is 0, must be >= 1");
   for (std::size_t k : experiment.measured)
     if (k >= experiment.inputs.size())
       throw DimensionError("measured: step " + std::to_string(k) +
-                           " lies beyond the inputs, rule: < " +
+                           " lies beyond the inputs, must be < " +
                            std::to_string(experiment.inputs.size()));
   const Dimensions d = dimensionsOf(map);
   requireLength("x0", experiment.x0.size(), d.state);

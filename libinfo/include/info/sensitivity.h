@@ -26,7 +26,7 @@ using StateSensitivityOf = Matrix<double, M::stateSize, M::parameterSize>;
 template <StepMap M>
 TrajectoryOf<M> simulate(const M& map, const StateOf<M>& x0, const std::vector<InputOf<M>>& inputs,
                          const ParametersOf<M>& theta) {
-  if (inputs.empty()) throw DimensionError("inputs: number is 0, rule: >= 1 (u_0 ... u_K)");
+  if (inputs.empty()) throw DimensionError("inputs: number is 0, must be >= 1 (u_0 ... u_K)");
   requireSizes(map, x0, inputs.front(), theta);
   TrajectoryOf<M> out;
   out.x.reserve(inputs.size());
@@ -50,7 +50,7 @@ TrajectoryOf<M> simulateWithSensitivity(const M& map, const StateOf<M>& x0,
                                         const StateSensitivityOf<M>& psi0,
                                         const std::vector<InputOf<M>>& inputs,
                                         const ParametersOf<M>& theta) {
-  if (inputs.empty()) throw DimensionError("inputs: number is 0, rule: >= 1 (u_0 ... u_K)");
+  if (inputs.empty()) throw DimensionError("inputs: number is 0, must be >= 1 (u_0 ... u_K)");
   requireSizes(map, x0, inputs.front(), theta);
   requireLength("psi_0 rows", psi0.rows(), x0.size());
   requireLength("psi_0 columns", psi0.cols(), theta.size());
@@ -110,10 +110,11 @@ template <StepMap M>
 void requireSensitivities(const M&, const TrajectoryOf<M>& t, std::size_t inputs) {
   if (t.psi.size() != t.x.size() || t.x.empty())
     throw DimensionError("trajectory: number of psi_k is " + std::to_string(t.psi.size()) +
-                         ", rule: as many as states, " + std::to_string(t.x.size()) + " and >= 1");
+                         ", must be as many as states, " + std::to_string(t.x.size()) +
+                         " and >= 1");
   if (inputs < t.x.size())
     throw DimensionError("inputs: number is " + std::to_string(inputs) +
-                         ", rule: >= " + std::to_string(t.x.size()) + " (one per state)");
+                         ", must be >= " + std::to_string(t.x.size()) + " (one per state)");
 }
 
 }  // namespace detail
@@ -150,8 +151,8 @@ Matrix<double, M::parameterSize, M::parameterSize> contractSecondSensitivity(
     const ParametersOf<M>& theta, const std::vector<StateOf<M>>& weights) {
   detail::requireSensitivities(map, trajectory, inputs.size());
   if (weights.size() != trajectory.x.size())
-    throw DimensionError("weights: number is " + std::to_string(weights.size()) +
-                         ", rule: " + std::to_string(trajectory.x.size()) + " (one per state)");
+    throw DimensionError("weights: number is " + std::to_string(weights.size()) + ", must be " +
+                         std::to_string(trajectory.x.size()) + " (one per state)");
   using Square = Matrix<double, M::parameterSize, M::parameterSize>;
   Square sum = Square::Zero(theta.size(), theta.size());
   StateOf<M> lambda = weights.back();

@@ -139,9 +139,9 @@ Dimensions dimensionsOf(const S& s) {
     const Dimensions given = s.dimensions();
     const auto settle = [](int& fixed, int run, const char* name) {
       if (run < 0 || (fixed != dynamic && fixed != run))
-        throw DimensionError(
-            std::string("dimensions(): ") + name + " size is " + std::to_string(run) +
-            ", rule: " + (fixed == dynamic ? ">= 0" : "equal to " + std::to_string(fixed)));
+        throw DimensionError(std::string("dimensions(): ") + name + " size is " +
+                             std::to_string(run) + ", must be " +
+                             (fixed == dynamic ? ">= 0" : "equal to " + std::to_string(fixed)));
       fixed = run;
     };
     settle(d.state, given.state, "state");
@@ -160,7 +160,7 @@ Dimensions dimensionsOf(const S& s) {
 inline void requireLength(const char* quantity, Eigen::Index length, Eigen::Index expected) {
   if (length != expected)
     throw DimensionError(std::string(quantity) + ": length is " + std::to_string(length) +
-                         ", rule: " + std::to_string(expected));
+                         ", must be " + std::to_string(expected));
 }
 
 /// @throws DimensionError naming x, u or θ where a length is not that of the system

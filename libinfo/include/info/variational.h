@@ -130,7 +130,7 @@ class VariationalIntegrator {
 
   static double checkedTimeStep(double timeStep) {
     if (!(timeStep > 0.0) || !std::isfinite(timeStep))
-      throw std::domain_error("time step: rule > 0 s and finite is broken, value is " +
+      throw std::domain_error("time step: must be > 0 s and finite, value is " +
                               std::to_string(timeStep) + " s");
     return timeStep;
   }

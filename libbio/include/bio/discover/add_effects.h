@@ -8,15 +8,16 @@
 
 namespace bio::discover {
 
-/// A model with effects added: an ordinary model, and what no model file says.
+/// A model with effects added: an ordinary model, and the effects that a model file cannot express.
 ///
 /// In the model, visc and stiffness are OpenSim's SpringGeneralizedForce, limit its
 /// CoordinateLimitForce, payload the mass of a body, coulomb, stribeck, drag, powerdamp, const and
 /// handforce its ExpressionBasedCoordinateForce, tilt the direction of gravity; errors of
-/// parameters change the parameter; a missing muscle is the model's own, switched on. A law is
-/// called <coordinate>_<id>, by which it is known again. EMG and sensor have no place in a model:
-/// who simulates passes excitations through `mapping` (drivenExcitation), and compares the sensor's
-/// reading. A muscle that was switched on needs an excitation (withProxies).
+/// parameters change the parameter; a missing muscle is the model's own, switched on. A force is
+/// called <coordinate>_<id>, by which it is recognised again. Effects of EMG and sensor cannot be
+/// written into a model: a simulation has to pass the excitations through `mapping`
+/// (drivenExcitation) and to compare the sensor's reading. A muscle that was switched on needs an
+/// excitation (withProxies).
 struct Augmented {
   Model model;
   EmgMapping mapping;
@@ -24,36 +25,35 @@ struct Augmented {
   std::vector<std::string> muscles;  ///< switched on
 };
 
-/// The model at values of all quantities of `widest`; laws that are absent are not in it.
+/// The model at the given values of all quantities of `widest`, without the forces that are absent.
 Augmented augmentedModel(const WidestModel& widest, const Eigen::VectorXd& values);
 
-/// One effect to add, and what is known of it.
+/// One effect to add, with its estimates.
 struct EffectToAdd {
   std::string id;              ///< of a candidate, or "formula"
   Eigen::VectorXd values;      ///< of its quantities, the amplitude first
-  Eigen::VectorXd deviations;  ///< of the estimates; empty: not known
+  Eigen::VectorXd deviations;  ///< standard deviations of the estimates; empty: unknown
   double logBayesFactor = 0;   ///< nats
   double probability = 0;      ///< 0: not known
 };
 
-/// Where effects come from, for the model's credits.
+/// Provenance of effects, for the model's credits.
 struct EffectProvenance {
   std::string tool;               ///< name and version
   std::vector<std::string> data;  ///< e.g. "curl.sto SHA-256 …"
 };
 
-/// What was added, from what and how sure, in a sentence for the model's credits.
+/// The added effects, their data and their uncertainty, in a sentence for the model's credits.
 /// @throws std::invalid_argument for an id that is not in the catalogue of this model
 std::string effectCredits(const WidestModel& widest, const std::vector<EffectToAdd>& effects,
                           const EffectProvenance& provenance);
 
-/// The model with effects, its other numbers as they are; what was added, from what and how sure is
-/// written into the credits, e.g.
+/// The model with effects and otherwise unchanged values; the effects, their data and their
+/// uncertainty are written into the credits, e.g.
 ///   "Effects added by fisherhill 1.0 from curl.sto SHA-256 …; viscous joint damping (visc):
 ///    visc.viscosity 0.301 ± 0.004 N m s/rad, evidence 412 nats, probability 0.999"
 /// @throws std::invalid_argument what WidestModel throws; an id that is not in the catalogue of
-/// this
-///   model, or present in it already; values that are too many or too few
+///   this model, or present in it already; a wrong number of values
 Augmented addEffects(const Model& model, const ArmOptions& arm, const std::string& coordinate,
                      const std::vector<EffectToAdd>& effects, const EffectProvenance& provenance,
                      const std::vector<info::discover::FormulaTerm>& formula = {});

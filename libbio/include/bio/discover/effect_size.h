@@ -6,26 +6,26 @@
 
 namespace bio::discover {
 
-/// What an effect does to one motion, in physical terms. NaN: not known, or there is no such thing.
+/// The physical size of an effect along one motion. NaN: unknown or undefined.
 struct EffectSize {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  double momentRms = unknown;   ///< root mean square of its moment [N·m] or force [N]
-  double momentPeak = unknown;  ///< largest size of that
-  double share = unknown;       ///< momentRms over the root mean square of the muscles' net moment
-  double motionRms = unknown;   ///< root mean square of what it changes in the motion [rad] or [m]
+  double momentRms = unknown;   ///< RMS of its moment [N·m] or force [N]
+  double momentPeak = unknown;  ///< its largest absolute value
+  double share = unknown;       ///< momentRms over the RMS of the muscles' net moment
+  double motionRms = unknown;   ///< RMS change of the motion [rad] or [m]
 };
 
 /// The size of one of the candidates along the motion of a trial, simulated at `values`.
 ///
-/// The moment of an effect is what would have to push the coordinate from outside to make the same
-/// motion q(t) without it. With τ(θ) = M q̈ + ½ M' q̇² + V' − τ_passive − Σ r_i F_i, what the arm
-/// with the numbers θ needs,
+/// The moment of an effect is the external moment that would produce the same motion q(t) without
+/// it. With τ(θ) = M q̈ + ½ M' q̇² + V' − τ_passive − Σ r_i F_i, the moment that the model needs
+/// with the parameters θ,
 ///     moment = τ(without) − τ(with)
-/// the fibres of both moving along q(t). Of a law it is the law's own force, of a mass its weight
-/// and inertia, of an error of EMG or muscle what the muscles' moments differ by. motionRms
-/// compares the simulation at `values` with the one where this effect alone is absent, from the
-/// same start. An effect of the sensor has no moment; its motionRms is how far the sensor is from
-/// the motion.
+/// where the fibres of both follow q(t). For a force it is the force itself, for a mass its weight
+/// and inertia, for an error of EMG or muscle the difference of the muscles' moments. motionRms
+/// compares the simulation at `values` with the one without this effect, from the same initial
+/// state. An effect of the sensor has no moment; its motionRms is the RMS difference between sensor
+/// and motion.
 ///
 /// @param candidate  index into ElbowDisagreement::candidates()
 /// @param values     of all quantities

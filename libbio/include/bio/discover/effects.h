@@ -8,8 +8,8 @@
 namespace bio::discover {
 
 /// One line of the catalogue: adds an effect, or a small family of them, to a model. An effect that
-/// the base model has already becomes WidestModel::present(); one that its skeleton does not know
-/// (tilt, where gravity does not turn the joint) is left out.
+/// the base model already has becomes WidestModel::present(); one that the skeleton cannot have
+/// (tilt, if gravity does not turn the joint) is left out.
 struct EffectEntry {
   const char* id;
   void (*add)(WidestModel& model);
@@ -40,19 +40,19 @@ struct EffectEntry {
 /// are | | bias, gain, clock, clock_rate, lag, drift | SensorLaw | |
 const std::vector<EffectEntry>& effectEntries();
 
-/// Adds the base model's own uncertain numbers as nuisances: every muscle's F0 (15 % of the
-/// logarithm), optimal fibre length (4 %) and tendon slack length (2 %), the mass of the moved
-/// bodies (5 %), the time scale of activation (20 %).
+/// Adds the base model's own uncertain parameters as nuisance parameters: every muscle's F0 (15 %
+/// of the logarithm), optimal fibre length (4 %) and tendon slack length (2 %), the mass of the
+/// moved bodies (5 %), the time scale of activation (20 %).
 void addNuisances(WidestModel& model);
 
-/// Adds a candidate "formula", a force that the catalogue has no name for, c·(e_1 + r_2·e_2 + …);
-/// in a model an ExpressionBasedCoordinateForce. Its quantities are c, r_2, ….
+/// Adds a candidate "formula", a force outside the catalogue, c·(e_1 + r_2·e_2 + …); in a model an
+/// ExpressionBasedCoordinateForce. Its quantities are c, r_2, ….
 void addFormula(WidestModel& model, const std::vector<info::discover::FormulaTerm>& terms);
 
 /// addNuisances, and every entry but those whose ids are in `without`.
 /// @param without  ids of entries or of candidates
 /// @param formula  if not empty, also addFormula of it
-/// @throws std::invalid_argument for an id that is neither, with those there are
+/// @throws std::invalid_argument for an unknown id, with a list of the known ones
 WidestModel widestModel(const Model& model, const ArmOptions& arm, const std::string& coordinate,
                         const std::vector<std::string>& without = {},
                         const std::vector<info::discover::FormulaTerm>& formula = {});

@@ -15,46 +15,46 @@ struct ElbowOptions {
   SimulationOptions simulation;      ///< integrator: variational or variationalLeft; step
   double latentSpacing = 0.05;       ///< between nodes of the latent force [s] > 0
   double latentFloor = 0.5;          ///< τ_0 of its scale [N·m] > 0
-  double startDeviation = 0.035;     ///< prior of each trial's first angle [rad] > 0
-  double speedDeviation = 0.1;       ///< prior of each trial's first speed [rad/s] > 0
-  bool usableSeries = true;          ///< refuse trials whose series requireUsable refuses
-  std::vector<std::string> without;  ///< ids of effects that are left out of the catalogue
+  double startDeviation = 0.035;     ///< prior sd of each trial's initial angle [rad] > 0
+  double speedDeviation = 0.1;       ///< prior sd of each trial's initial speed [rad/s] > 0
+  bool usableSeries = true;          ///< refuse measured series that requireUsable refuses
+  std::vector<std::string> without;  ///< ids of effects to exclude from the catalogue
   std::vector<info::discover::FormulaTerm> formula;  ///< of a candidate "formula"; empty: none
 };
 
-/// A search whose steps were too long is repeated with half of them, unless they were shorter than
+/// A search with too long a step is repeated with half the step, unless the step was shorter than
 /// this [s] (info::discover::runAtShorterSteps).
 inline constexpr double shortestSearchStep = 0.003;
 
-/// A model and recorded trials with one observed coordinate, every effect of the catalogue built
-/// in: what info::discover asks.
+/// The discovery problem of a musculoskeletal model for info::discover: recorded trials with one
+/// observed coordinate, and the model with every effect of the catalogue built in.
 ///
-/// Each trial is simulated from its own first angle over its rows, driven by its excitations and by
-/// the torque it has from outside; what is known of that angle is the first measured value, as a
-/// sensor that may be off shows it. y(t_k) is the cubic of Hermite between rows. All derivatives
-/// are exact: parameters, laws and latent nodes by the implicit function theorem
-/// (coupled_sensitivity.h), EMG and sensor by the chain rule; none is a difference of simulations.
-/// Before the start of a trial, where a clock offset may look, the coordinate goes on with its
-/// first speed.
+/// Each trial is simulated over its rows from its own initial angle, driven by its excitations and
+/// its external torque. The prior mean of the initial angle is the first measured value as the
+/// sensor, which may be in error, shows it. y(t_k) is the cubic Hermite interpolant between rows.
+/// All derivatives are exact: those of parameters, forces and latent nodes by the implicit function
+/// theorem (coupled_sensitivity.h), those of EMG and sensor by the chain rule. Before the start of
+/// a trial, which a clock offset may require, the coordinate is extrapolated with its initial
+/// speed.
 ///
-/// Where a torque from outside pushes the coordinate, delay and clock are no equivalents. A mass in
-/// the hand that a trial is known to have (Trial::known) is in its model besides what is missing;
-/// where it differs between trials, tilt and handforce are no equivalents. In one whose arm is
-/// known to be turned, gravity and a force on the hand come from where they then come from.
+/// If an external torque acts on the coordinate, delay and clock are not equivalent. A known mass
+/// in the hand (Trial::known) is part of the model of its trial; if it differs between trials, tilt
+/// and handforce are not equivalent. In a trial with a known turn of the limb, gravity and a force
+/// on the hand are turned accordingly.
 ///
-/// The latent force is a torque on the coordinate with a channel for each muscle, the size of its
-/// moment r_i F_i, and one of the constant size τ_0 [N·m]: independent errors of so many per cent
-/// of each muscle's force, and of something else. Its lag is that of the activations, 1/k at the
+/// The latent force is a torque on the coordinate with one channel per muscle, scaled by the
+/// muscle's moment r_i F_i, and one of the constant scale τ_0 [N·m]: independent relative errors of
+/// each muscle's force, and other errors. Its time constant is that of the activations, 1/k at the
 /// mean excitation, k midway between rising and falling.
 class ElbowDisagreement : public info::discover::Disagreement {
  public:
   using Quantity = info::discover::Quantity;
   using Candidate = info::discover::Candidate;
 
-  /// @param coordinate  observed; measured in every trial; samples that are missing have no time
+  /// @param coordinate the observed one, measured in every trial; missing samples have no time
   /// @throws std::invalid_argument what WidestModel throws, no trial, a trial without a measured
   ///   value of the coordinate, an integrator without sensitivities, an option out of range, a
-  ///   known mass in the hand of an arm that has none
+  ///   known mass in the hand of a model without a body to carry it
   ElbowDisagreement(const Model& model, const ArmOptions& arm, const std::string& coordinate,
                     std::vector<Trial> trials, ElbowOptions options = {});
 
@@ -76,24 +76,24 @@ class ElbowDisagreement : public info::discover::Disagreement {
   std::vector<std::string> inputNames() const override;
   /// The same with the coordinate held near its measured course (nudge.h).
   std::unique_ptr<info::discover::Disagreement> nudged(double frequency) const override;
-  /// Null if the model has a force of a formula already.
+  /// Null if the model already has the force of a formula.
   std::unique_ptr<info::discover::Disagreement> withFormula(
       const std::vector<info::discover::FormulaTerm>& terms,
       const std::vector<std::size_t>& kept) const override;
 
-  /// Model and effects, without the trials' starts.
+  /// Model and effects, without the initial states of the trials.
   const WidestModel& widest() const { return widest_; }
-  /// Forces that begin or end, together, at latentTimes(trial); empty if there is none.
+  /// Sum of the timed forces at latentTimes(trial); empty if there is none.
   Eigen::VectorXd timedForce(int trial, const Eigen::VectorXd& values) const;
   const ElbowOptions& options() const { return options_; }
-  /// The trial as it was given, with an excitation for every muscle that was added (withProxies).
+  /// The trial as given, with an excitation for every muscle that was added (withProxies).
   const Trial& trial(int trial) const { return of(trial).trial; }
-  /// The whole simulation at values, without a latent force.
+  /// The complete simulation at `values`, without a latent force.
   /// @throws what Arm, initialState and simulate throw
   Trajectory motion(int trial, const Eigen::VectorXd& values) const;
-  /// The arm that it is of.
+  /// The model that it belongs to.
   Arm armAt(int trial, const Eigen::VectorXd& values) const;
-  /// Where it starts: the coordinate itself, not what the sensor shows of it.
+  /// Its initial state: the coordinate itself, not the sensor's reading.
   TrialStart startAt(int trial, const Eigen::VectorXd& values) const;
   /// Why the trial's simulation does not reach its end; empty if it does.
   std::string failure(int trial, const Eigen::VectorXd& values) const;
@@ -107,13 +107,15 @@ class ElbowDisagreement : public info::discover::Disagreement {
     std::vector<double> times;
     Eigen::VectorXd measured;
     std::vector<double> nodes;
-    Eigen::VectorXd heldMass;  ///< what one of 1 kg does at the nodes [N·m]
-    Eigen::VectorXd known;     ///< what Trial::known adds to the model's quantities
-    std::size_t angle, speed;  ///< quantities of its start, the angle as the sensor shows it
+    Eigen::VectorXd heldMass;  ///< moment of a mass of 1 kg at the nodes [N·m]
+    Eigen::VectorXd known;     ///< change of the model's quantities by Trial::known
+    std::size_t angle,
+        speed;  ///< quantities of its initial state, the angle as the sensor shows it
   };
   Eigen::VectorXd withTimedForces(const OfTrial& one, const Eigen::VectorXd& values,
                                   const Eigen::VectorXd& latent) const;
-  /// How the forces at the nodes follow the wanted quantities: nodes × wanted; empty if none does.
+  /// Derivatives of the forces at the nodes with respect to the wanted quantities: nodes × wanted;
+  /// empty if they depend on none.
   Eigen::MatrixXd timedDirections(const OfTrial& one, const Eigen::VectorXd& values,
                                   const std::vector<std::size_t>& wanted) const;
   double activationLag() const;
@@ -134,7 +136,7 @@ class ElbowDisagreement : public info::discover::Disagreement {
 
   WidestModel widest_;
   ElbowOptions options_;
-  std::vector<Quantity> quantities_;  ///< the model's, then the trials' starts
+  std::vector<Quantity> quantities_;  ///< those of the model, then the initial states of the trials
   std::vector<std::size_t> nuisances_;
   std::vector<OfTrial> trials_;
   double latentLag_ = 0;

@@ -8,17 +8,19 @@
 
 namespace bio::discover {
 
-/// What an experiment that has not been done yet would tell.
+/// A planned experiment and its expected log Bayes factors.
 struct ForeseenExperiment {
   std::string sentence;      ///< what to do
-  std::vector<double> nats;  ///< the first of Verdict::rivals against each of the others
+  std::vector<double> nats;  ///< expected log Bayes factors of the first of Verdict::rivals against
+                             ///< each of the others
   double least() const;      ///< the smallest of them
 };
 
-/// Simulates the planned experiments (planned.h, passive_motion.h) with all that cannot be told
-/// apart (info/discover/separation.h); the best first. What leaves the range of the coordinate, or
-/// cannot be simulated, is left out. Empty where nothing is ambiguous.
-/// @param trial    what is repeated
+/// Simulates the planned experiments (planned.h, passive_motion.h) with each of the effects that
+/// these data cannot distinguish (info/discover/separation.h); the best experiment first.
+/// Experiments that leave the range of the coordinate or cannot be simulated are left out. Empty if
+/// no effects are in question.
+/// @param trial trial to repeat
 /// @param options  those of `data`
 std::vector<ForeseenExperiment> foresee(const Model& model, const ArmOptions& arm,
                                         const Trial& trial, const ElbowOptions& options,

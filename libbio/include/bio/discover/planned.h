@@ -7,18 +7,17 @@
 
 namespace bio::discover {
 
-/// An experiment that has not been done yet: a trial that was recorded, with the same EMG, repeated
-/// with something changed that the experimenter knows.
+/// A planned experiment: a recorded trial, repeated with the same EMG and a known change.
 struct PlannedExperiment {
   std::string sentence;  ///< what to do
   Trial trial;
 };
 
-/// What is easily done with an arm: a known mass in the hand (0.1 to 1 kg, besides one that is
-/// there already), and recorded pushes of 0.2 s from outside on the coordinate, ±0.25 to ±1 N·m (N
-/// for a translation), one a second. The first is no change.
-/// @param trial       recorded; its torque from outside stays
-/// @param coordinate  what is pushed and observed
+/// Experiments that are easy to do: a known mass in the hand (0.1 to 1 kg, in addition to one that
+/// is already there), and recorded external pushes of 0.2 s on the coordinate, ±0.25 to ±1 N·m (N
+/// for a translation), one per second. The first one is an unchanged repetition.
+/// @param trial the recorded trial; its external torque is kept
+/// @param coordinate the coordinate that is pushed and observed
 std::vector<PlannedExperiment> plannedExperiments(const Trial& trial, const Coordinate& coordinate);
 
 }  // namespace bio::discover

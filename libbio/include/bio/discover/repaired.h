@@ -13,59 +13,58 @@
 
 namespace bio::discover {
 
-/// One trial of a search, and how far simulations are from what was measured in it: root mean
-/// squares in [rad] or [m], NaN where there is none.
+/// One trial of a search and the RMS errors of its simulations [rad] or [m]; NaN if unavailable.
 struct RepairedTrial {
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
   int index = 0;                ///< of ElbowDisagreement
   bool isHeldOut = false;       ///< judged by only
-  TrialStart start;             ///< of the coordinate, with the repaired model
-  std::optional<Table> driven;  ///< what is to be replayed in the trial's place: excitations that
-                                ///< drove the muscles, the sensor's errors taken off
-  double nominal = none;        ///< replay of the model as it came, of the trial as it was recorded
-  double after = none;          ///< replay of the repaired model, of `driven` where there is one
-  double fitted = none;         ///< the fit's own simulation, at the same numbers
-  double floor = none;          ///< noise of what is replayed
-  Eigen::Index samples = 0;     ///< that `after` compares, else `nominal`
+  TrialStart start;             ///< initial state of the coordinate, for the repaired model
+  std::optional<Table> driven;  ///< trial to replay instead: the excitations that
+                                ///< drove the muscles, sensor errors removed
+  double nominal = none;        ///< replay of the original model on the recorded trial
+  double after = none;          ///< replay of the repaired model, on `driven` if there is one
+  double fitted = none;         ///< the fit's own simulation at the same values
+  double floor = none;          ///< noise of the replayed trial
+  Eigen::Index samples = 0;     ///< number of samples compared by `after`, else by `nominal`
 };
 
-/// A model with all that a search has fitted, and what replays of it give.
+/// A model with all values fitted by a search, and its replays.
 struct Repaired {
   Augmented added;
   std::vector<RepairedTrial> trials;
 
-  /// Root mean square of one figure over the samples of those trials that are held out, or of the
-  /// others; NaN if one of them has none.
+  /// RMS of one of these errors over the samples of the held-out or of the other trials; NaN if one
+  /// of them has none.
   double pooled(double RepairedTrial::*figure, bool heldOut) const;
 };
 
-/// The effects of a verdict, with their probabilities unless those were vetoed.
+/// The effects of a verdict, with their probabilities unless none are given (Verdict::vetoed).
 std::vector<EffectToAdd> effectsToAdd(const ElbowDisagreement& data,
                                       const info::discover::Verdict& verdict);
 
-/// The model at Verdict::values: effects and every nuisance, with the trials' starts and the time
-/// step of the search (Model::fitted). Each trial is then replayed as `fisherhill replay` would.
+/// The model at Verdict::values: effects and all nuisance parameters, with the initial states of
+/// the trials and the time step of the search (Model::fitted). Each trial is then replayed as by
+/// `fisherhill replay`.
 ///
-/// With a sensor's errors the recording is corrected, q(t) = (y(t + clock) − bias)/(1 + gain), and
-/// the figures are in units of the coordinate itself; `floor` is the noise divided by 1 + gain.
+/// If the sensor is in error, the recording is corrected, q(t) = (y(t + clock) − bias)/(1 + gain),
+/// and the errors are those of the coordinate itself; `floor` is the noise divided by 1 + gain.
 /// @param heldOut  indices of the trials that were not fitted
-/// @param step     [s] that replays of the model as it came are to take; nothing: as stepOf() has
-/// it
+/// @param step [s] for replays of the original model; empty: that of stepOf()
 /// @throws what augmentedModel and drivenTable throw
 Repaired repairedModel(const ElbowDisagreement& data, const info::discover::Verdict& verdict,
                        const std::vector<int>& heldOut, const std::optional<double>& step,
                        const EffectProvenance& provenance);
 
-/// The trials alone, of a verdict with which no model goes: without `after`.
+/// Only the trials, for a verdict without a model: without `after`.
 std::vector<RepairedTrial> recordedTrials(const ElbowDisagreement& data,
                                           const info::discover::Verdict& verdict,
                                           const std::vector<int>& heldOut,
                                           const std::optional<double>& step);
 
-/// The gap of a verdict with the figures of the replays in the places of the fit's.
+/// Replaces the errors of the fit in a verdict's gap by those of the replays.
 void takeReplays(info::discover::Verdict& verdict, const Repaired& repaired);
 
-/// info::discover::fittedNumbers, with factors of single parameters told as these parameters, by
+/// info::discover::fittedNumbers, with factors of single parameters given as these parameters, with
 /// the names of ParameterCatalogue and in their units.
 std::vector<info::discover::FittedNumber> fittedNumbers(const ElbowDisagreement& data,
                                                         const info::discover::Verdict& verdict);

@@ -10,7 +10,7 @@ namespace bio::discover {
 ///     τ(t) = A·w(t)·s(t),   s = S((t − t_c)/0.15 s + ½) where it begins, 1 − S where it ends,
 /// S the cubic step from 0 to 1 over 0 to 1. w = 1 for a force; for a mass A in the hand
 ///     w = g·v(ỹ) − |v(ỹ)|²ỹ″ − v·∂v/∂q ỹ′²,   v = ∂(mass centre of the hand)/∂q,
-/// what it does to a coordinate that moves as the measured one does.
+/// its moment on a coordinate that moves as measured.
 struct TimedForce {
   enum class Of { force, mass } of = Of::force;
   bool ends = false;
@@ -26,8 +26,8 @@ TimedShare timedShare(double t, double change, bool ends);
 
 class WidestModel;
 
-/// w of a mass at the nodes [N m/kg] along a measured course, smoothed (smoothed_motion.h); 0 where
-/// the model moves no body or there are fewer than four samples.
+/// w of a mass at the nodes [N m/kg] along the smoothed measured course (smoothed_motion.h); 0 if
+/// the coordinate moves no body or there are fewer than four samples.
 Eigen::VectorXd weightOfHeldMass(const WidestModel& model, const std::vector<double>& times,
                                  const Eigen::VectorXd& measured, const std::vector<double>& nodes);
 

@@ -15,19 +15,20 @@
 
 namespace bio::discover {
 
-/// What a quantity does: how elementary numbers of model and EMG follow it, or the sensor.
+/// The effect of a quantity on elementary numbers of model and EMG, or on the sensor.
 struct Meaning {
   enum class Kind {
     scale,  ///< multiplies each number by value^weight
     shift,  ///< adds weight·value to each number
-    tilt,  ///< turns gravity, so that its moment about the axis is that of q + value; adds as shift
+    tilt,  ///< turns gravity, so that its moment about the axis is that at q + value; additive like
+           ///< shift
     bias,  ///< of the sensor (sensor_law.h), and the five below
     gain,
     clock,
     rate,
     lag,
     drift,
-    timed  ///< of a TimedForce: no number of the model
+    timed  ///< of a TimedForce: not a number of the model
   };
   struct Part {
     std::size_t number;
@@ -44,20 +45,20 @@ struct MuscleGroup {
   double momentArm = 0;              ///< mean at mid-range [m], > 0: pulls the coordinate up
 };
 
-/// A model with every effect of a catalogue built in and absent.
+/// The encompassing model: a model with every effect of the catalogue built in, initially absent.
 ///
-/// Elementary numbers θ_n (a muscle's F0, a body's mass, a constant of a law, …) follow quantities
-/// x:
+/// Elementary numbers θ_n (a muscle's F0, a body's mass, a constant of a force, …) are functions of
+/// quantities x:
 ///     θ_n = θ_n0 · Π_scales x^weight + Σ_shifts weight·x
-/// so that quantities overlap as they like (the F0 of one head, and of all three). A law whose
-/// amplitude is nominal is switched off unless a derivative asks for it; switched on, it adds ±0.
-/// Building is done by effects (effects.h); afterwards constant.
+/// so that quantities may overlap (the F0 of one head, and of all three). A force whose amplitude
+/// has its nominal value is switched off unless a derivative requires it; switched on, it adds ±0.
+/// The effects (effects.h) build the model; afterwards it is constant.
 class WidestModel {
  public:
   using Quantity = info::discover::Quantity;
   using Candidate = info::discover::Candidate;
 
-  /// @param coordinate  the one that is observed; free in `arm`
+  /// @param coordinate the observed one; free in `arm`
   /// @throws std::invalid_argument what Arm throws; a coordinate that is not free
   WidestModel(const Model& model, const ArmOptions& arm, const std::string& coordinate);
 
@@ -71,51 +72,51 @@ class WidestModel {
   double middle() const { return (coordinate().rangeMin + coordinate().rangeMax) / 2; }
   const std::vector<MuscleGroup>& groups() const { return groups_; }
   const ParameterCatalogue& parameters() const { return *parameters_; }
-  /// Bodies with a mass that the coordinate moves, the farthest from ground last.
+  /// Bodies with mass that the coordinate moves, in order of distance from ground.
   const std::vector<std::string>& movedBodies() const { return movedBodies_; }
-  /// Axis in ground about which the coordinate turns all of them, unit; zero if it does not.
+  /// Unit axis in ground about which the coordinate turns all of them; zero if it does not.
   const Eigen::Vector3d& axis() const { return axis_; }
-  /// A point of a body, in ground, at q and the other coordinates' defaults.
+  /// A point of a body, in ground, at q and the defaults of the other coordinates.
   Eigen::Vector3d positionOf(const std::string& body, const Eigen::Vector3d& point, double q) const;
   /// Of an arm's muscles on the coordinate, at mid-range [m].
   Eigen::VectorXd momentArms(const Arm& arm) const;
   /// ∂(mass centre of a body in ground)/∂q.
   Eigen::Vector3d velocityOf(const std::string& body, double q) const;
-  bool knows(const std::string& id) const;              ///< a candidate of this id
+  bool knows(const std::string& id) const;  ///< whether there is a candidate with this id
   std::size_t find(const std::string& quantity) const;  ///< @throws std::invalid_argument
 
   // What effects build ----------------------------------------------------------------------------
 
-  /// Index of an elementary number; each target is there once.
+  /// Index of an elementary number; each target occurs once.
   std::size_t number(const ParameterTarget& target, double nominal);
-  /// Those of a parameter of the model, by its path name.
+  /// Those of a parameter of the model, by name.
   std::vector<Meaning::Part> numbers(const std::string& parameter);
   std::size_t add(Quantity quantity, Meaning meaning);
-  /// A quantity moves one number more.
+  /// Lets a quantity change one more number.
   void extend(std::size_t quantity, Meaning::Part part) {
     meanings_.at(quantity).parts.push_back(part);
   }
   void addNuisance(std::size_t quantity) { nuisances_.push_back(quantity); }
   void add(Candidate candidate) { candidates_.push_back(std::move(candidate)); }
-  /// An effect that the base model has already, so that it is no candidate.
+  /// Records an effect that the base model already has, so that it is not a candidate.
   void addPresent(const std::string& id, const std::string& what) { present_[id] = what; }
-  /// A law with the numbers at 0, on while one of the quantities (its amplitude first) asks for it.
-  /// Returns its index in its list of Model.
+  /// Adds a force with its numbers at 0; it is switched on while one of its quantities (the
+  /// amplitude first) requires it. Returns its index in the list of Model.
   std::size_t addLaw(SpringGeneralizedForce law);
   std::size_t addLaw(CoordinateLimitForce law);
   std::size_t addLaw(ExpressionBasedCoordinateForce law);
-  /// A muscle that the base model has but switched off. It works while a quantity asks for it; its
-  /// F0 becomes as good as nothing, and is the number whose index is returned. Its EMG is that of
-  /// the trial, or the mean of those of `proxies` (at least one).
+  /// Switches on a muscle that is switched off in the base model, while a quantity requires it. Its
+  /// F0 becomes negligible and is the number whose index is returned. Its EMG is that of the trial,
+  /// or the mean of those of `proxies` (at least one).
   std::size_t addMuscle(std::size_t muscle, std::vector<std::string> proxies);
   void addTimedForce(const TimedForce& force) { timedForces_.push_back(force); }
-  /// When trials begin at the latest and end at the earliest [s]: where timed forces may change.
+  /// Latest start and earliest end of the trials [s]: between them timed forces may change.
   void trialsLast(double first, double last);
-  /// Takes candidates off the list; their quantities stay, at nominal.
+  /// Removes candidates from the list; their quantities stay at nominal.
   void forget(const std::vector<std::string>& ids);
-  /// Two candidates are no equivalents: these data can tell them apart.
+  /// Declares that two candidates are not equivalent: these data can distinguish them.
   void separate(const std::string& one, const std::string& other);
-  /// Says which quantities the law added last belongs to, the amplitude first.
+  /// Declares the quantities of the force added last, the amplitude first.
   void lawFollows(std::vector<std::size_t> quantities);
 
   // What it is then -------------------------------------------------------------------------------
@@ -123,19 +124,19 @@ class WidestModel {
   const std::vector<Quantity>& quantities() const { return quantities_; }
   const std::vector<std::size_t>& nuisances() const { return nuisances_; }
   const std::vector<Candidate>& candidates() const { return candidates_; }
-  /// Ids of effects that the base model has already, and by which of its elements.
+  /// Ids of effects that the base model already has, with the elements concerned.
   const std::map<std::string, std::string>& present() const { return present_; }
   Eigen::VectorXd nominal() const;
-  /// Whose EMG stands for that of a muscle which was added.
+  /// Muscles whose EMG represents that of a muscle which was added.
   const std::map<std::string, std::vector<std::string>>& proxies() const { return proxies_; }
 
   /// Model and EMG mapping at values; the start is the default position at rest.
-  /// @param wanted  quantities whose derivatives will be asked for: their laws are on
+  /// @param wanted quantities whose derivatives are required: their forces are switched on
   ParameterCatalogue::Setting settingAt(const Eigen::VectorXd& values,
                                         const std::vector<std::size_t>& wanted) const;
-  /// The arm of a setting; paths are those of arm() where their numbers are.
+  /// The compiled model of a setting; paths with unchanged numbers are those of arm().
   Arm armOf(const ParameterCatalogue::Setting& setting) const;
-  /// How the numbers follow a quantity; empty for one of the sensor.
+  /// Derivatives of the numbers with respect to a quantity; empty for one of the sensor.
   ParameterDirection direction(const Eigen::VectorXd& values, std::size_t quantity) const;
   SensorLaw sensorAt(const Eigen::VectorXd& values) const;
   const std::vector<TimedForce>& timedForces() const { return timedForces_; }
@@ -185,7 +186,7 @@ class WidestModel {
 };
 
 /// The trial with an excitation for every muscle that was added: its own, or the mean of its
-/// proxies'. @throws std::invalid_argument if the trial lacks a proxy
+/// proxies. @throws std::invalid_argument if the trial lacks a proxy
 Trial withProxies(Trial trial, const WidestModel& widest);
 
 }  // namespace bio::discover

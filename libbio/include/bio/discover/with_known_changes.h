@@ -6,16 +6,16 @@
 
 namespace bio::discover {
 
-/// What the known changes of a trial (Trial::known) add to the quantities of a model that has
-/// `known.mass` and `known.turn`; zero where nothing was changed.
-/// @throws std::invalid_argument naming the file for a mass in the hand of an arm that has none, a
-///   turn of an arm that gravity does not turn, or one beside a force on the hand that the model
-///   has
+/// The changes that the experimental conditions of a trial (Trial::known) make to the quantities of
+/// a model with `known.mass` and `known.turn`; zero if nothing was changed.
+/// @throws std::invalid_argument naming the file, for a mass in the hand of a model without a body
+///   to carry it, a turn if the coordinate does not turn bodies against gravity, or a turn if the
+///   model has a force on the hand
 Eigen::VectorXd knownChangesOf(const Trial& trial, const WidestModel& widest);
 
-/// The model as it was while the trial was recorded: with the known mass in the hand, and gravity
-/// as the turned arm feels it. The model itself where nothing was changed.
-/// @param coordinate  the one that is free
+/// The model under the experimental conditions of the trial: with the known mass in the hand, and
+/// with gravity turned accordingly. The unchanged model if nothing was changed.
+/// @param coordinate the free coordinate
 /// @throws what WidestModel and knownChangesOf throw
 Model withKnownChanges(const Model& model, const ArmOptions& arm, const std::string& coordinate,
                        const Trial& trial);

@@ -56,7 +56,7 @@ void mustBeKnown(const WidestModel& widest, const std::vector<std::string>& ids)
     std::vector<std::string> known;
     for (const Candidate& one : widest.candidates()) known.push_back(one.id);
     throw std::invalid_argument(
-        fmt::format("no effect is called '{}'; there are {}", id, fmt::join(known, ", ")));
+        fmt::format("no effect is called '{}'; the catalogue has {}", id, fmt::join(known, ", ")));
   }
 }
 
@@ -105,8 +105,8 @@ std::string lawName(const WidestModel& model, const std::string& id) {
 
 void addFormula(WidestModel& model, const std::vector<info::discover::FormulaTerm>& terms) {
   ExpressionEffect effect{"formula",
-                          "force without a name",
-                          "A force that no effect of the catalogue is, as a formula of the state.",
+                          "free-form force",
+                          "A force outside the catalogue, as a formula of the state.",
                           "",
                           {},
                           {},

@@ -41,7 +41,7 @@ void addViscousDamping(WidestModel& model) {
 void addCoulombFriction(WidestModel& model) {
   addExpression(model, {"coulomb",
                         "Coulomb friction",
-                        "The joint resists its motion with a constant torque, whatever the speed.",
+                        "The joint resists its motion with a constant torque at any speed.",
                         "-c*tanh(qdot/0.05)",
                         {"c"},
                         {amplitude("coulomb.torque", "N m", 0, 3, 0.6)},
@@ -73,8 +73,8 @@ void addQuadraticDrag(WidestModel& model) {
 void addPowerDamping(WidestModel& model) {
   addExpression(model, {"powerdamp",
                         "sub-linear damping",
-                        "The joint resists its motion with a power of the speed between constant "
-                        "and proportional.",
+                        "The joint resists its motion with a power of the speed between 0 "
+                        "(constant) and 1 (proportional).",
                         "-b*qdot*exp((n-1)/2*log(qdot^2+0.0001))",
                         {"b", "n"},
                         {amplitude("powerdamp.torque", "N m at 1 rad/s", 0, 3, 0.3),

@@ -37,7 +37,7 @@ void addStiffness(WidestModel& model) {
                 {Meaning::Kind::shift, {{model.number(SpringForceTarget{law, 1}, 0)}}});
   model.lawFollows({k, rest});
   model.add(candidate(
-      model, "stiffness", "joint stiffness", "A spring draws the joint towards a position of rest.",
+      model, "stiffness", "joint stiffness", "A spring pulls the joint towards a rest position.",
       info::discover::EffectKind::structure, {k, rest},
       {{0.5, model.middle()}, {0.5, q.rangeMin + 0.2 * span}, {0.5, q.rangeMax - 0.2 * span}}));
 }
@@ -72,10 +72,10 @@ void addLimits(WidestModel& model) {
   for (const double inward : {0.2, 0.3, 0.1}) {
     starts.push_back({3, q.rangeMax - inward * span, q.rangeMin + inward * span, 0.2 * span});
   }
-  model.add(candidate(model, "limit", "passive joint limits",
-                      "Tissue stops the joint softly towards both ends of its range.",
-                      info::discover::EffectKind::structure, {K, upper, lower, transition},
-                      starts));
+  model.add(candidate(
+      model, "limit", "passive joint limits",
+      "Passive tissue increasingly resists motion towards both ends of the joint's range.",
+      info::discover::EffectKind::structure, {K, upper, lower, transition}, starts));
 }
 
 }  // namespace bio::discover

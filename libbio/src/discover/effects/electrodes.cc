@@ -16,7 +16,7 @@ void addDelay(WidestModel& model) {
       model.add(amplitude("delay.time", "s", 0, 0.25, 0.05),
                 {Meaning::Kind::shift, {{model.number(EmgTarget{What::delay, ""}, 0)}}});
   model.add(candidate(model, "delay", "electromechanical delay",
-                      "The muscles act later than their EMG says.", EffectKind::input, {d},
+                      "The muscles act later than their EMG indicates.", EffectKind::input, {d},
                       {{0.02}}, {"clock"}));
 }
 
@@ -45,10 +45,11 @@ void addCrosstalk(WidestModel& model) {
       const std::string id = fmt::format("crosstalk_{}_{}", from.name, to.name);
       const std::size_t c =
           model.add(amplitude(id + ".share", "", 0, 0.5, 0.2), {Meaning::Kind::shift, parts});
-      model.add(candidate(
-          model, id, fmt::format("EMG crosstalk from {} to {}", from.name, to.name),
-          fmt::format("The electrodes of {} show a share of the EMG of {}.", to.name, from.name),
-          EffectKind::input, {c}, {{0.05}}, {fmt::format("crosstalk_{}_{}", to.name, from.name)}));
+      model.add(candidate(model, id, fmt::format("EMG crosstalk from {} to {}", from.name, to.name),
+                          fmt::format("The electrodes of {} also pick up a share of the EMG of {}.",
+                                      to.name, from.name),
+                          EffectKind::input, {c}, {{0.05}},
+                          {fmt::format("crosstalk_{}_{}", to.name, from.name)}));
     }
   }
 }
@@ -68,7 +69,7 @@ void addExchangedChannels(WidestModel& model) {
       model.add(candidate(
           model, id,
           fmt::format("exchanged channels of {} and {}", muscles[i].name, muscles[k].name),
-          fmt::format("The record of {} is that of {}, and the other way round.", muscles[i].name,
+          fmt::format("The recordings of {} and {} are exchanged.", muscles[i].name,
                       muscles[k].name),
           EffectKind::input, {s}, {{0.9}}));
     }
@@ -100,8 +101,8 @@ void addElectrodeGains(WidestModel& model) {
     const std::size_t g =
         model.add(factor(id + ".factor", 0.2, 5, 0.3), {Meaning::Kind::scale, parts});
     model.add(candidate(model, id, fmt::format("electrode gain of {}", name),
-                        fmt::format("The EMG of {} is amplified wrongly.", name), EffectKind::input,
-                        {g}, {{1.1}}, {"Fmax_" + name}));
+                        fmt::format("The EMG of {} is scaled by a wrong gain.", name),
+                        EffectKind::input, {g}, {{1.1}}, {"Fmax_" + name}));
   });
 }
 
@@ -115,7 +116,7 @@ void addBaselines(WidestModel& model) {
     const std::size_t o =
         model.add(amplitude(id + ".level", "", -0.1, 0.1, 0.02), {Meaning::Kind::shift, parts});
     model.add(candidate(model, id, "EMG baseline of " + of,
-                        fmt::format("The EMG of {} does not go down to zero at rest.", of),
+                        fmt::format("The EMG of {} does not return to zero at rest.", of),
                         EffectKind::input, {o}, {{0.005}}));
   };
   std::vector<std::string> all;

@@ -83,13 +83,13 @@ void addNuisances(WidestModel& model) {
 void addMassError(WidestModel& model) {
   if (model.movedBodies().empty()) return;
   addBeyond(model, model.find(massName), 0.3, "mass", "mass of the forearm",
-            "The moved bodies are heavier or lighter than the model says.", {"payload"});
+            "The moving bodies are heavier or lighter than in the model.", {"payload"});
 }
 
 void addActivationError(WidestModel& model) {
   if (model.arm().numMuscles() == 0) return;
   addBeyond(model, model.find(timeName), 0.8, "tau", "time scale of activation",
-            "The muscles' activation is slower or faster than the model says.");
+            "The muscles' activation is slower or faster than in the model.");
 }
 
 void addMuscleErrors(WidestModel& model) {
@@ -158,9 +158,10 @@ void addWrapErrors(WidestModel& model) {
     for (const double share : {0.06, -0.06, -0.36, -0.26, -0.15, 0.13, 0.19}) startAt(share);
     for (double share = 0.25; share < 0.4; share += 0.0125) startAt(share);
     if (starts.empty()) starts.push_back({std::clamp(0.001, lower, upper)});
-    model.add(candidate(model, "wrap_" + name, "radius of wrap object " + name,
-                        fmt::format("The muscles that pass over {} have other moment arms.", name),
-                        EffectKind::geometry, {r}, starts));
+    model.add(
+        candidate(model, "wrap_" + name, "radius of wrap object " + name,
+                  fmt::format("The muscles that wrap over {} have different moment arms.", name),
+                  EffectKind::geometry, {r}, starts));
   }
 }
 
@@ -175,20 +176,19 @@ void addSensorErrors(WidestModel& model) {
                         std::move(equivalents)));
   };
   const bool turns = model.coordinate().isRotation;
-  add("bias", "sensor bias", "The sensor shows a constant too much or too little.",
-      turns ? "rad" : "m", turns ? 0.5 : 0.2, turns ? 0.1 : 0.02, turns ? 0.02 : 0.005,
-      Meaning::Kind::bias);
-  add("gain", "sensor gain", "The sensor shows a multiple of the coordinate.", "", 0.5, 0.1, 0.02,
-      Meaning::Kind::gain);
-  add("clock", "clock offset", "The sensor's clock runs behind the EMG's.", "s", 0.2, 0.05, 0.01,
-      Meaning::Kind::clock, {"delay"});
+  add("bias", "sensor bias", "The sensor's reading is off by a constant.", turns ? "rad" : "m",
+      turns ? 0.5 : 0.2, turns ? 0.1 : 0.02, turns ? 0.02 : 0.005, Meaning::Kind::bias);
+  add("gain", "sensor gain", "The sensor's reading is a multiple of the coordinate.", "", 0.5, 0.1,
+      0.02, Meaning::Kind::gain);
+  add("clock", "clock offset", "The sensor's clock is behind that of the EMG.", "s", 0.2, 0.05,
+      0.01, Meaning::Kind::clock, {"delay"});
   add("clock_rate", "clock rate",
-      "The sensor's clock runs slow beside the EMG's, or fast where this is negative: what it "
-      "writes at t was measured at (1 + rate) t.",
+      "The sensor's clock is slow relative to that of the EMG (fast if negative): a sample with "
+      "time stamp t was measured at (1 + rate) t.",
       "", 0.2, 0.03, 0.01, Meaning::Kind::rate);
-  add("lag", "sensor lag", "The sensor follows the coordinate late, as a first-order lag does.",
-      "s", 0.3, 0.05, 0.01, Meaning::Kind::lag);
-  add("drift", "sensor drift", "What the sensor shows drifts at a constant rate.",
+  add("lag", "sensor lag", "The sensor follows the coordinate with a first-order lag.", "s", 0.3,
+      0.05, 0.01, Meaning::Kind::lag);
+  add("drift", "sensor drift", "The sensor's reading drifts at a constant rate.",
       turns ? "rad/s" : "m/s", turns ? 0.1 : 0.02, turns ? 0.02 : 0.004, turns ? 0.003 : 0.0006,
       Meaning::Kind::drift);
 }

@@ -14,10 +14,10 @@ void addFatigue(WidestModel& model) {
   const std::size_t T = model.add(
       time,
       {Meaning::Kind::shift, {{model.number(EmgTarget{EmgTarget::What::fatigueTime, ""}, 0)}}});
-  model.add(candidate(model, "fatigue", "muscle fatigue",
-                      "The longer a muscle has worked, the less force it gives for the same EMG.",
-                      info::discover::EffectKind::structure, {share, T},
-                      {{0.1, 0.3}, {0.1, 3}, {0.1, 30}}));
+  model.add(candidate(
+      model, "fatigue", "muscle fatigue",
+      "The longer a muscle has been active, the less force it produces for the same EMG.",
+      info::discover::EffectKind::structure, {share, T}, {{0.1, 0.3}, {0.1, 3}, {0.1, 30}}));
 }
 
 }  // namespace bio::discover

@@ -50,15 +50,15 @@ void addTilt(WidestModel& model) {
   const std::size_t angle =
       model.add(amplitude("tilt.angle", "rad", -0.5, 0.5, 0.3), {Meaning::Kind::tilt, {}});
   model.add(candidate(model, "tilt", "arm tilt",
-                      "Gravity comes from another direction than the model assumes: the upper arm "
-                      "is tilted in the plane of the joint.",
+                      "Gravity acts in a different direction than the model assumes: the limb is "
+                      "tilted in the plane of the joint.",
                       info::discover::EffectKind::structure, {angle}, {{0.05}}, {"handforce"}));
 }
 
 void addConstantTorque(WidestModel& model) {
   addExpression(model, {"const",
                         "constant joint torque",
-                        "Something turns the joint with a constant torque.",
+                        "A constant torque acts on the joint.",
                         "c",
                         {"c"},
                         {amplitude("const.torque", "N m", -10, 10, 1)},

@@ -63,10 +63,10 @@ void addMissingMuscles(WidestModel& model) {
     const std::size_t tendon = length(MuscleQuantity::tendonSlackLength, "tendon_slack_length",
                                       known.tendonSlackLength, 0.02);
     model.lawFollows({share, fibre, tendon});
-    model.add(candidate(model, "missing_" + muscle.name, "muscle " + muscle.name,
-                        fmt::format("{}, which is switched off in the model, works.", muscle.name),
-                        info::discover::EffectKind::structure, {share, fibre, tendon},
-                        {{0.3, 1, 1}, {1, 1, 1}}));
+    model.add(candidate(
+        model, "missing_" + muscle.name, "muscle " + muscle.name,
+        fmt::format("{}, which is switched off in the model, is active.", muscle.name),
+        info::discover::EffectKind::structure, {share, fibre, tendon}, {{0.3, 1, 1}, {1, 1, 1}}));
   }
 }
 

@@ -24,16 +24,19 @@ void addTimedForces(WidestModel& model) {
   };
   using Of = TimedForce::Of;
   const auto torque = amplitude("", "N m", -10, 10, 1);
-  add("torque_from", "torque that begins", "A constant torque begins to turn the joint.",
-      {Of::force, false, 0, 0}, torque, {0.3});
-  add("torque_until", "torque that ends", "A constant torque turns the joint until it ends.",
-      {Of::force, true, 0, 0}, torque, {0.3});
+  add("torque_from", "torque that starts during the trial",
+      "A constant torque starts to act on the joint during the trial.", {Of::force, false, 0, 0},
+      torque, {0.3});
+  add("torque_until", "torque that ends during the trial",
+      "A constant torque acts on the joint and ends during the trial.", {Of::force, true, 0, 0},
+      torque, {0.3});
   if (model.movedBodies().empty()) return;
   const auto mass = amplitude("", "kg", 0, 5, 0.7);
-  add("mass_from", "mass taken into the hand", "The hand takes a mass up.", {Of::mass, false, 0, 0},
-      mass, {0.3});
-  add("mass_until", "mass put down", "The hand carries a mass until it puts it down.",
-      {Of::mass, true, 0, 0}, mass, {0.3});
+  add("mass_from", "mass picked up by the hand", "The hand picks up a mass during the trial.",
+      {Of::mass, false, 0, 0}, mass, {0.3});
+  add("mass_until", "mass put down by the hand",
+      "The hand carries a mass and puts it down during the trial.", {Of::mass, true, 0, 0}, mass,
+      {0.3});
 }
 
 }  // namespace bio::discover

@@ -35,7 +35,7 @@ struct DampedOscillator {
     const T gamma = theta[0] / (2.0 * mass);
     const T square = theta[1] / mass - gamma * gamma;
     if (!(plainValue(square) > 0.0))
-      throw std::domain_error("damping: rule c^2 < 4 k m is broken, c = " +
+      throw std::domain_error("damping: must satisfy c^2 < 4 k m, c = " +
                               std::to_string(plainValue(theta[0])) + " N s/m");
     const T omega = sqrt(square);
     const T rest = (v0 + gamma * q0) / omega;
