@@ -5,10 +5,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "bio/ensemble.h"
-#include "bio/simulation_names.h"
-#include "info/monte_carlo.h"
-#include "info/random_stream.h"
+#include "bio/analysis/ensemble.h"
+#include "bio/model/integrator_names.h"
+#include "info/estimation/monte_carlo.h"
+#include "info/probability/random_stream.h"
 
 namespace bio::bench {
 
@@ -69,7 +69,7 @@ void HotJobs::rungeKutta() {
 }
 
 void HotJobs::configurations() {
-  ArmConfiguration<1> configuration(elbow_.arm);
+  SystemConfiguration<1> configuration(elbow_.arm);
   Eigen::Matrix<double, 1, 1> q(0.9);
   for (int i = 0; i < 1000; ++i) {
     configuration.moveTo(q);
@@ -97,14 +97,14 @@ void HotJobs::prediction() {
 }
 
 void HotJobs::compilation() {
-  keep(Arm(elbow_.model, fixtures::ShippedElbow::options()));
+  keep(MusculoskeletalSystem(elbow_.model, fixtures::ShippedElbow::options()));
 }
 
 int HotJobs::ensemble(int count, int threads) const {
   const auto drawn = elbow_.catalogue.select(
       {"*.max_isometric_force", "*.optimal_fiber_length", "*.tendon_slack_length"});
   const Eigen::VectorXd nominal = elbow_.catalogue.values(drawn);
-  const ArmEnsemble ensemble(elbow_.catalogue, fixtures::ShippedElbow::options(), elbow_.excitation,
+  const SystemBatch ensemble(elbow_.catalogue, fixtures::ShippedElbow::options(), elbow_.excitation,
                              "elbow_flexion", std::nullopt, {}, drawn, options());
   constexpr int together = 16;
   std::atomic<int> completed = 0;

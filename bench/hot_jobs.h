@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bio/discover/elbow_disagreement.h"
+#include "bio/discovery/musculoskeletal_problem.h"
 #include "support/shipped_elbow.h"
 
 namespace bio::bench {
@@ -54,7 +54,7 @@ class HotJobs {
   void sensitivities(const std::vector<std::size_t>& wanted);
 
   fixtures::ShippedElbow elbow_;
-  discover::ElbowDisagreement data_;
+  discover::MusculoskeletalProblem data_;
   ParameterCatalogue::Setting setting_;
   std::vector<std::size_t> every_, sixty_;
   std::vector<std::size_t> wanted_;  ///< quantities of data_

@@ -4,11 +4,11 @@
 #include <random>
 #include <vector>
 
-#include "bio/activation.h"
-#include "bio/path.h"
-#include "bio/schutte_muscle.h"
-#include "bio/wrap_cylinder.h"
-#include "bio/wrap_sphere.h"
+#include "bio/muscle/activation/activation.h"
+#include "bio/muscle/schutte_muscle.h"
+#include "bio/path/path.h"
+#include "bio/path/surface/wrap_cylinder.h"
+#include "bio/path/surface/wrap_sphere.h"
 #include "support/elbow_curves.h"
 
 namespace {

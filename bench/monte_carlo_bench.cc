@@ -1,7 +1,7 @@
 #include <benchmark/benchmark.h>
 
-#include "info/monte_carlo.h"
-#include "info/systems/robot_experiments.h"
+#include "info/estimation/monte_carlo.h"
+#include "robots/robot_experiments.h"
 
 namespace {
 

@@ -2,9 +2,9 @@
 // two parameters, exact information; and the whole optimisation to λ_min × 100 and beyond.
 #include <benchmark/benchmark.h>
 
-#include "info/discrete_projection.h"
-#include "info/projection.h"
-#include "info/systems/robot_designs.h"
+#include "info/design/discrete_projection.h"
+#include "info/design/projection.h"
+#include "robots/robot_designs.h"
 
 namespace {
 

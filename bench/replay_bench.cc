@@ -1,8 +1,8 @@
 // The main job: 4.5 s of a shipped trial on the eight-muscle elbow.
 #include <benchmark/benchmark.h>
 
-#include "bio/osim_file.h"
-#include "bio/replay.h"
+#include "bio/analysis/replay.h"
+#include "bio/opensim/osim_file.h"
 
 namespace {
 
@@ -10,10 +10,10 @@ const std::string root = FISHERHILL_SOURCE_DIR;
 
 struct Job {
   bio::Model model = bio::readOsim(root + "/models/elbow8.osim");
-  bio::Arm arm{model, {{{"elbow_flexion"}, {}}, {}, {}}};
+  bio::MusculoskeletalSystem arm{model, {{{"elbow_flexion"}, {}}, {}, {}}};
   bio::Trial trial = bio::readTrial(root + "/emg_data/curl_slow.sto", model);
   bio::ExcitationSignal excitation = bio::excitationOf(trial, arm);
-  bio::ArmState start =
+  bio::SystemState start =
       bio::initialState(arm, bio::startCoordinates(trial, arm, {}), excitation, 0);
 };
 
@@ -43,7 +43,7 @@ BENCHMARK_CAPTURE(replay, cvode, bio::Integrator::cvode, 0.01)->Unit(benchmark::
 /// All that a configuration needs: placements, inertia, eight path lengths with Hessians.
 void configuration(benchmark::State& state) {
   const Job job;
-  bio::ArmConfiguration<1> configuration(job.arm);
+  bio::SystemConfiguration<1> configuration(job.arm);
   Eigen::Matrix<double, 1, 1> q(0.9);
   for (auto _ : state) {
     configuration.moveTo(q);

@@ -1,7 +1,7 @@
 // What all sensitivities of the main job cost, beside the job itself.
 #include <benchmark/benchmark.h>
 
-#include "bio/coupled_sensitivity.h"
+#include "bio/sensitivity/coupled_sensitivity.h"
 #include "support/shipped_elbow.h"
 
 namespace {
@@ -54,7 +54,7 @@ BENCHMARK_CAPTURE(sensitivities, of_the_motion_to_one, {"TRI.radius"}, false)
 void compileArm(benchmark::State& state) {
   const ShippedElbow elbow;
   for (auto _ : state) {
-    const bio::Arm arm(elbow.model, ShippedElbow::options());
+    const bio::MusculoskeletalSystem arm(elbow.model, ShippedElbow::options());
     benchmark::DoNotOptimize(arm.numMuscles());
   }
 }

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "info/sensitivity.h"
-#include "info/systems/cart_double_pendulum.h"
-#include "info/variational.h"
+#include "info/dynamics/sensitivity.h"
+#include "info/dynamics/variational.h"
+#include "robots/cart_double_pendulum.h"
 #include "support/dual_variational_map.h"
 
 namespace {

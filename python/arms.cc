@@ -4,11 +4,11 @@
 
 #include <stdexcept>
 
-#include "bio/discover/with_known_changes.h"
-#include "bio/osim_file.h"
-#include "bio/replay.h"
-#include "bio/simulation_names.h"
-#include "bio/trial_table.h"
+#include "bio/analysis/replay.h"
+#include "bio/discovery/with_experimental_conditions.h"
+#include "bio/model/integrator_names.h"
+#include "bio/opensim/osim_file.h"
+#include "bio/tables/trial_table.h"
 #include "interruptible.h"
 
 namespace python {
@@ -30,8 +30,8 @@ bio::Trial trialOf(const bio::Model& model, const py::dict& columns, const std::
     }
     table.values.col(index) = column;
   }
-  bio::Trial trial =
-      bio::trialFrom(table, name, model, {.ignoreExtra = ignoreExtra, .knownChanges = true});
+  bio::Trial trial = bio::trialFrom(table, name, model,
+                                    {.ignoreExtra = ignoreExtra, .experimentalConditions = true});
   trial.sha256 = digestOf(
       py::repr(py::make_tuple(
                    name, py::bytes(reinterpret_cast<const char*>(table.values.data()),
@@ -65,7 +65,8 @@ std::vector<std::string> musclesOf(const bio::Model& model) {
 }
 
 /// Root mean square error against what was measured, by coordinate.
-py::dict errorsOf(const bio::Arm& arm, const bio::Trial& trial, const bio::Trajectory& motion) {
+py::dict errorsOf(const bio::MusculoskeletalSystem& arm, const bio::Trial& trial,
+                  const bio::Trajectory& motion) {
   py::dict errors;
   for (const bio::MeasuredMotion& measured : trial.measured) {
     const auto& free = arm.skeleton().coordinates();
@@ -81,19 +82,19 @@ py::dict errorsOf(const bio::Arm& arm, const bio::Trial& trial, const bio::Traje
 
 py::object replay(const bio::Model& given, const bio::Trial& trial,
                   const std::map<std::string, double>& initial, const py::kwargs& keywords) {
-  const ArmChoice choice = armChoice(keywords);
+  const SystemChoice choice = armChoice(keywords);
   bio::TrialReplay replayed;
   const bio::Trajectory& motion = replayed.motion;
   bio::MuscleReport muscles;
   double energyError = 0;
-  std::unique_ptr<bio::Arm> arm;
+  std::unique_ptr<bio::MusculoskeletalSystem> arm;
   interruptible([&](const std::atomic<bool>& goOn) {
     const bio::Model model =
-        trial.known.any() ? bio::discover::withKnownChanges(
+        trial.known.any() ? bio::discover::withExperimentalConditions(
                                 given, choice.armOptions(),
                                 choice.coordinates.empty() ? "" : choice.coordinates.front(), trial)
                           : given;
-    arm = std::make_unique<bio::Arm>(model, choice.armOptions());
+    arm = std::make_unique<bio::MusculoskeletalSystem>(model, choice.armOptions());
     bio::SimulationOptions options = choice.simulation();
     options.step = bio::stepOf(model, options.integrator, choice.step);
     options = during(trial, options);
@@ -122,14 +123,14 @@ py::object replay(const bio::Model& given, const bio::Trial& trial,
 
 }  // namespace
 
-bio::ArmOptions ArmChoice::armOptions() const {
-  bio::ArmOptions options;
+bio::SystemOptions SystemChoice::armOptions() const {
+  bio::SystemOptions options;
   options.skeleton.freeCoordinates = coordinates;
   options.skeleton.lockedValues = locks;
   return options;
 }
 
-bio::SimulationOptions ArmChoice::simulation() const {
+bio::SimulationOptions SystemChoice::simulation() const {
   const auto found = bio::integratorNamed(integrator);
   if (!found) {
     throw std::invalid_argument(
@@ -141,8 +142,8 @@ bio::SimulationOptions ArmChoice::simulation() const {
   return options;
 }
 
-ArmChoice armChoice(const py::kwargs& keywords) {
-  ArmChoice choice;
+SystemChoice armChoice(const py::kwargs& keywords) {
+  SystemChoice choice;
   for (const auto& [key, value] : keywords) {
     const auto name = key.cast<std::string>();
     if (name == "coordinate") {
@@ -189,7 +190,7 @@ bio::SimulationOptions during(const bio::Trial& trial, bio::SimulationOptions op
   return options;
 }
 
-void defineArms(py::module_& module) {
+void defineSystems(py::module_& module) {
   py::class_<bio::Model>(module, "Model", "A musculoskeletal model.")
       .def_readonly("name", &bio::Model::name)
       .def_readonly("warnings", &bio::Model::warnings, "what was read but is not simulated")
@@ -228,8 +229,8 @@ void defineArms(py::module_& module) {
   module.def(
       "load_trial",
       [](const std::string& file, const bio::Model& model, bool ignoreExtra) {
-        bio::Trial trial =
-            bio::readTrial(file, model, {.ignoreExtra = ignoreExtra, .knownChanges = true});
+        bio::Trial trial = bio::readTrial(
+            file, model, {.ignoreExtra = ignoreExtra, .experimentalConditions = true});
         trial.sha256 =
             digestOf(py::module_::import("pathlib").attr("Path")(file).attr("read_bytes")());
         return trial;

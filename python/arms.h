@@ -5,29 +5,29 @@
 #include <string>
 #include <vector>
 
-#include "bio/arm.h"
-#include "bio/coupled.h"
-#include "bio/model.h"
-#include "bio/trial.h"
+#include "bio/model/model.h"
+#include "bio/simulation/musculoskeletal_system.h"
+#include "bio/simulation/simulate.h"
+#include "bio/tables/trial.h"
 #include "namespace.h"
 
 namespace python {
 
 /// What most functions of arms are given, as keyword arguments.
-struct ArmChoice {
+struct SystemChoice {
   std::vector<std::string> coordinates = {"elbow_flexion"};  ///< free
   std::map<std::string, double> locks;                       ///< [rad] or [m]
   std::string integrator = "vi";
   std::optional<double> step;  ///< [s]; none: the integrator's default
 
-  bio::ArmOptions armOptions() const;
+  bio::SystemOptions armOptions() const;
   /// @throws std::invalid_argument for an integrator that there is not
   bio::SimulationOptions simulation() const;
 };
 
 /// Reads `coordinate` (a name or a list of them), `lock`, `integrator` and `step`.
 /// @throws std::invalid_argument for any other keyword
-ArmChoice armChoice(const py::kwargs& keywords);
+SystemChoice armChoice(const py::kwargs& keywords);
 
 /// SHA-256 of a bytes object, by which models know trials that they were fitted to.
 std::string digestOf(const py::object& bytes);
@@ -39,7 +39,7 @@ void mustBeOfTheModelAsItIs(const bio::Trial& trial);
 /// A trial's place in time.
 bio::SimulationOptions during(const bio::Trial& trial, bio::SimulationOptions options);
 
-void defineArms(py::module_& module);
+void defineSystems(py::module_& module);
 void defineSensitivity(py::module_& module);
 void defineCalibration(py::module_& module);
 void defineDiscovery(py::module_& module);

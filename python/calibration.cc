@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "arms.h"
-#include "bio/calibrated_model.h"
+#include "bio/calibration/calibrated_model.h"
 #include "interruptible.h"
 
 namespace python {
@@ -21,7 +21,7 @@ info::RobustLoss lossOf(const std::string& name) {
 }
 
 py::object estimateOf(const bio::CalibratedParameter& one) {
-  return results("value"_a = one.value, "sd"_a = one.deviation, "lower"_a = one.lower,
+  return results("value"_a = one.value, "sd"_a = one.sd, "lower"_a = one.lower,
                  "upper"_a = one.upper, "unit"_a = one.asked.unit, "model"_a = one.model,
                  "identifiable"_a = one.identifiable, "at_bound"_a = one.atBound,
                  "why"_a = one.why);
@@ -38,7 +38,7 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
                      bool priors, const Pairs& prior, const Pairs& bounds, const std::string& loss,
                      bool ownStart, int starts, std::uint64_t seed, int threads,
                      const py::kwargs& keywords) {
-  const ArmChoice choice = armChoice(keywords);
+  const SystemChoice choice = armChoice(keywords);
   for (const auto* set : {&trials, &holdOut})
     for (const bio::Trial& trial : *set) mustBeOfTheModelAsItIs(trial);
   bio::CalibrationOptions options;
@@ -76,7 +76,7 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
   for (const auto& one : found.parameters) estimates[one.asked.name.c_str()] = estimateOf(one);
   return results("estimates"_a = estimates, "correlation"_a = found.correlation,
                  "converged"_a = found.converged, "why"_a = info::describe(found.why),
-                 "iterations"_a = found.iterations, "noise"_a = found.noise.deviation,
+                 "iterations"_a = found.iterations, "noise"_a = found.noise.sd,
                  "effective_noise"_a = found.noise.effective,
                  "rmse_before"_a = rmse(training, found.before),
                  "rmse_after"_a = calibrated ? calibrated->rms(false) : NAN,

@@ -2,34 +2,34 @@
 #include <optional>
 
 #include "arms.h"
-#include "bio/discover/effect_size.h"
-#include "bio/discover/elbow_disagreement.h"
-#include "bio/discover/foresee.h"
-#include "bio/discover/repaired.h"
-#include "bio/trial_table.h"
-#include "info/discover/separation.h"
-#include "info/discover/shorter_steps.h"
+#include "bio/discovery/effect_size.h"
+#include "bio/discovery/musculoskeletal_problem.h"
+#include "bio/discovery/predicted_experiments.h"
+#include "bio/discovery/repaired.h"
+#include "bio/tables/trial_table.h"
+#include "info/discovery/judgement/separation.h"
+#include "info/discovery/search/shorter_steps.h"
 #include "interruptible.h"
 
 namespace python {
 namespace {
 
-using bio::discover::ElbowDisagreement;
+using bio::discover::MusculoskeletalProblem;
 using info::discover::Estimate;
-using info::discover::Gap;
+using info::discover::ExcessError;
 using info::discover::Verdict;
 
-py::dict estimatesOf(const ElbowDisagreement& data, const std::vector<Estimate>& estimates) {
+py::dict estimatesOf(const MusculoskeletalProblem& data, const std::vector<Estimate>& estimates) {
   py::dict all;
   for (const Estimate& one : estimates) {
     const auto& quantity = data.quantities()[one.quantity];
     all[quantity.name.c_str()] =
-        results("value"_a = one.value, "sd"_a = one.deviation, "unit"_a = quantity.unit);
+        results("value"_a = one.value, "sd"_a = one.sd, "unit"_a = quantity.unit);
   }
   return all;
 }
 
-py::object effectOf(const ElbowDisagreement& data, const info::discover::NamedEffect& effect,
+py::object effectOf(const MusculoskeletalProblem& data, const info::discover::NamedEffect& effect,
                     const bio::discover::EffectSize& size) {
   const auto& candidate = data.candidates()[effect.candidate];
   std::vector<std::string> rivals;
@@ -43,17 +43,17 @@ py::object effectOf(const ElbowDisagreement& data, const info::discover::NamedEf
                  "motion_rms"_a = size.motionRms);
 }
 
-py::object gapOf(const Gap& gap) {
+py::object excessErrorOf(const ExcessError& gap) {
   return results("nominal"_a = gap.nominal, "calibrated"_a = gap.calibrated, "after"_a = gap.after,
                  "expected"_a = gap.expected, "probability"_a = gap.probability,
                  "noise_floor"_a = gap.floor, "closed"_a = gap.closedFromCalibrated);
 }
 
 /// What could be done to tell apart what these data cannot, the best first.
-py::list plannedOf(const ElbowDisagreement& data, const Verdict& verdict,
-                   const std::vector<bio::discover::ForeseenExperiment>& foreseen) {
+py::list plannedOf(const MusculoskeletalProblem& data, const Verdict& verdict,
+                   const std::vector<bio::discover::PredictedExperiment>& predictedExperiments) {
   py::list planned;
-  for (const auto& one : foreseen) {
+  for (const auto& one : predictedExperiments) {
     py::dict nats;
     for (std::size_t i = 0; i < one.nats.size(); ++i)
       nats[rivalName(data, verdict, i + 1).c_str()] = one.nats[i];
@@ -72,12 +72,12 @@ py::object unknownOf(const Verdict& verdict) {
     py::list terms;
     for (std::size_t k = 0; k < race.values.size(); ++k)
       terms.append(results("expression"_a = race.terms[k].expression, "value"_a = race.values[k],
-                           "sd"_a = race.deviations[k]));
+                           "sd"_a = race.sds[k]));
     raced = results("formula"_a = race.text, "wins"_a = race.wins, "terms"_a = terms,
                     "log_bayes_factor"_a = race.logBayesFactor,
                     "amplitude_over_sd"_a = race.significance, "adequate"_a = race.after.adequate(),
-                    "gap"_a = gapOf(race.gap),
-                    "gap_held_out"_a = race.heldOut ? gapOf(*race.heldOut) : py::none());
+                    "gap"_a = excessErrorOf(race.gap),
+                    "gap_held_out"_a = race.heldOut ? excessErrorOf(*race.heldOut) : py::none());
   }
   const info::discover::Unknown& unknown = *verdict.unknown;
   return results("formula"_a = unknown.formula, "stable"_a = unknown.stable,
@@ -87,9 +87,9 @@ py::object unknownOf(const Verdict& verdict) {
 }
 
 /// The best smooth force of the angle or the speed alone, beside the names.
-py::object namelessOf(const ElbowDisagreement& data, const Verdict& verdict) {
-  if (!verdict.nameless) return py::none();
-  const info::discover::NamelessForce& force = *verdict.nameless;
+py::object nonparametricForceOf(const MusculoskeletalProblem& data, const Verdict& verdict) {
+  if (!verdict.nonparametric) return py::none();
+  const info::discover::NonparametricForce& force = *verdict.nonparametric;
   std::vector<std::string> besides;
   for (const std::size_t c : force.besides) besides.push_back(data.candidates()[c].id);
   return results("follows"_a = info::discover::name(force.follows), "beside"_a = besides,
@@ -97,7 +97,7 @@ py::object namelessOf(const ElbowDisagreement& data, const Verdict& verdict) {
                  "wins"_a = force.wins,
                  "at"_a = Eigen::VectorXd(Eigen::VectorXd::Map(
                      force.at.data(), static_cast<Eigen::Index>(force.at.size()))),
-                 "force"_a = force.force, "sd"_a = force.deviation);
+                 "force"_a = force.force, "sd"_a = force.sd);
 }
 
 /// The model with all that was fitted, or None, and what replays of it give.
@@ -106,10 +106,10 @@ struct Written {
   py::list trials;
 };
 
-Written writtenOf(const ElbowDisagreement& data, Verdict& verdict, const std::vector<int>& heldOut,
-                  const std::optional<double>& step) {
+Written writtenOf(const MusculoskeletalProblem& data, Verdict& verdict,
+                  const std::vector<int>& heldOut, const std::optional<double>& step) {
   Written written;
-  const bool isFound = !verdict.effects.empty() && !verdict.surrogate;
+  const bool isFound = !verdict.effects.empty() && !verdict.proxy;
   const bool isDone = verdict.reached == info::discover::Stage::finished;
   std::vector<bio::discover::RepairedTrial> trials;
   bio::discover::Repaired repaired;
@@ -126,7 +126,7 @@ Written writtenOf(const ElbowDisagreement& data, Verdict& verdict, const std::ve
     if (one.driven) {
       const std::string recorded = trial.sha256;
       trial = bio::trialFrom(*one.driven, trial.file + " (driven)", repaired.added.model,
-                             {.knownChanges = true});
+                             {.experimentalConditions = true});
       trial.sha256 = digestOf(py::bytes(recorded + " driven"));
       bio::TrialStart start = one.start;
       start.file = trial.file;
@@ -142,12 +142,12 @@ Written writtenOf(const ElbowDisagreement& data, Verdict& verdict, const std::ve
   return written;
 }
 
-py::list fittedOf(const ElbowDisagreement& data, const Verdict& verdict) {
+py::list fittedOf(const MusculoskeletalProblem& data, const Verdict& verdict) {
   py::list list;
   for (const auto& one : bio::discover::fittedNumbers(data, verdict)) {
     list.append(results("name"_a = one.name, "unit"_a = one.unit, "nominal"_a = one.nominal,
-                        "estimate"_a = one.estimate, "sd"_a = one.deviation,
-                        "prior_sd"_a = one.prior, "prior_z"_a = one.priorZ));
+                        "estimate"_a = one.estimate, "sd"_a = one.sd, "prior_sd"_a = one.prior,
+                        "prior_z"_a = one.priorZ));
   }
   return list;
 }
@@ -156,37 +156,37 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
                     const std::vector<bio::Trial>& holdOut, std::optional<double> noise,
                     const std::vector<std::string>& without, int maxEffects,
                     const py::kwargs& keywords) {
-  const ArmChoice choice = armChoice(keywords);
+  const SystemChoice choice = armChoice(keywords);
   if (choice.coordinates.size() != 1) {
     throw std::invalid_argument("coordinate: several are free, must be one for discover");
   }
   info::discover::Options options;
   options.maxEffects = maxEffects;
-  options.outputDeviation = noise;
+  options.outputSd = noise;
   for (std::size_t i = 0; i < holdOut.size(); ++i) {
     options.heldOut.push_back(static_cast<int>(trials.size() + i));
   }
   trials.insert(trials.end(), holdOut.begin(), holdOut.end());
-  bio::discover::ElbowOptions elbow;
+  bio::discover::MusculoskeletalProblemOptions elbow;
   elbow.simulation = choice.simulation();
   elbow.simulation.duration = 1;
   elbow.without = without;
-  std::unique_ptr<ElbowDisagreement> data;
+  std::unique_ptr<MusculoskeletalProblem> data;
   info::discover::SteppedVerdict found;
-  std::vector<bio::discover::ForeseenExperiment> foreseen;
+  std::vector<bio::discover::PredictedExperiment> predictedExperiments;
   interruptible([&](const std::atomic<bool>& goOn) {
     options.progress = [&](const info::discover::Progress&) { return goOn.load(); };
     const auto attempt = [&](double step) {
       elbow.simulation.step = step;
-      data = std::make_unique<ElbowDisagreement>(model, choice.armOptions(),
-                                                 choice.coordinates.front(), trials, elbow);
+      data = std::make_unique<MusculoskeletalProblem>(model, choice.armOptions(),
+                                                      choice.coordinates.front(), trials, elbow);
       return info::discover::Attempt{*data, options};
     };
     found = info::discover::runAtShorterSteps(
         attempt, elbow.simulation.step, choice.step ? HUGE_VAL : bio::discover::shortestSearchStep);
     if (goOn)
-      foreseen = bio::discover::foresee(model, choice.armOptions(), trials.front(), elbow, *data,
-                                        found.verdict);
+      predictedExperiments = bio::discover::predictExperiments(
+          model, choice.armOptions(), trials.front(), elbow, *data, found.verdict);
   });
   Verdict& verdict = found.verdict;
   const std::vector<int>& heldOut = found.options.heldOut;
@@ -200,17 +200,17 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
   for (const auto& one : verdict.detectability) {
     undetectable[data->candidates()[one.candidate].id.c_str()] = one.amplitude;
   }
-  return results("verdict"_a = info::discover::name(verdict.finding),
-                 "sentence"_a = verdict.sentence, "effects"_a = effects,
-                 "surrogate"_a = verdict.surrogate, "probability_vetoed"_a = verdict.vetoed,
-                 "noise"_a = verdict.outputDeviation, "gap"_a = gapOf(verdict.gap),
-                 "gap_held_out"_a = verdict.heldOut ? gapOf(*verdict.heldOut) : py::none(),
-                 "held_out_fitted"_a = verdict.heldOutFitted, "undetectable_below"_a = undetectable,
-                 "planned_experiments"_a = plannedOf(*data, verdict, foreseen),
-                 "unknown"_a = unknownOf(verdict),
-                 "force_without_a_name"_a = namelessOf(*data, verdict), "model"_a = written.model,
-                 "trials"_a = written.trials, "fitted_parameters"_a = fittedOf(*data, verdict),
-                 "step"_a = found.step, "fits"_a = verdict.fits);
+  return results(
+      "verdict"_a = info::discover::name(verdict.finding), "sentence"_a = verdict.sentence,
+      "effects"_a = effects, "surrogate"_a = verdict.proxy, "probability_vetoed"_a = verdict.vetoed,
+      "noise"_a = verdict.outputSd, "gap"_a = excessErrorOf(verdict.gap),
+      "gap_held_out"_a = verdict.heldOut ? excessErrorOf(*verdict.heldOut) : py::none(),
+      "held_out_fitted"_a = verdict.heldOutFitted, "undetectable_below"_a = undetectable,
+      "planned_experiments"_a = plannedOf(*data, verdict, predictedExperiments),
+      "unknown"_a = unknownOf(verdict),
+      "force_without_a_name"_a = nonparametricForceOf(*data, verdict), "model"_a = written.model,
+      "trials"_a = written.trials, "fitted_parameters"_a = fittedOf(*data, verdict),
+      "step"_a = found.step, "fits"_a = verdict.fits);
 }
 
 }  // namespace

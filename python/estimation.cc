@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include "info/estimate.h"
-#include "info/fisher.h"
-#include "info/identifiability.h"
+#include "info/estimation/estimate.h"
+#include "info/information/fisher.h"
+#include "info/information/identifiability.h"
 #include "python_system.h"
 
 namespace python {
@@ -18,11 +18,11 @@ info::OutputCovariance covarianceOf(const py::object& noise, Eigen::Index output
   if (array.ndim() == 2) return info::OutputCovariance(array.cast<MatrixXd>());
   const VectorXd given = array.ndim() == 0 ? VectorXd::Constant(outputs, noise.cast<double>())
                                            : array.cast<VectorXd>();
-  const VectorXd deviation = given.size() == 1 ? VectorXd::Constant(outputs, given[0]) : given;
-  if (!(deviation.array() > 0).all()) {
+  const VectorXd sd = given.size() == 1 ? VectorXd::Constant(outputs, given[0]) : given;
+  if (!(sd.array() > 0).all()) {
     throw std::invalid_argument("noise: standard deviations must be > 0");
   }
-  return info::OutputCovariance(MatrixXd(deviation.array().square().matrix().asDiagonal()));
+  return info::OutputCovariance(MatrixXd(sd.array().square().matrix().asDiagonal()));
 }
 
 std::vector<std::string> namesFor(const std::vector<std::string>& given, Eigen::Index count) {
@@ -126,9 +126,8 @@ py::object identifiability(const MatrixXd& information, const VectorXd& values,
       information, parametersOf(values, namesFor(names, values.size()), {}, {}),
       (values.array() == 0).any() ? info::ParameterScale::linear
                                   : info::ParameterScale::logarithmic);
-  return results("rank"_a = report.rank, "sentences"_a = report.sentences,
-                 "sd"_a = report.deviation, "correlation"_a = report.correlation,
-                 "determined"_a = report.determined);
+  return results("rank"_a = report.rank, "sentences"_a = report.sentences, "sd"_a = report.sd,
+                 "correlation"_a = report.correlation, "determined"_a = report.determined);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "arms.h"
-#include "bio/file_error.h"
+#include "bio/tables/file_error.h"
 #include "info/version.h"
 #include "python_system.h"
 
@@ -51,7 +51,7 @@ PYBIND11_MODULE(fisherhill, module) {
       "Hill muscles and Fisher information: simulate, identify and explain how muscles move limbs.";
   module.attr("__version__") = info::version();
   pybind11::register_exception_translator(&python::translate);
-  python::defineArms(module);
+  python::defineSystems(module);
   python::defineSensitivity(module);
   python::defineCalibration(module);
   python::defineDiscovery(module);

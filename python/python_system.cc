@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "info/derivatives.h"
+#include "info/autodiff/derivatives.h"
 
 namespace python {
 namespace {

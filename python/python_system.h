@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "info/least_squares.h"
+#include "info/estimation/least_squares.h"
 #include "namespace.h"
 
 namespace python {

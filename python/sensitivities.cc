@@ -1,9 +1,9 @@
 #include <numbers>
 
 #include "arms.h"
-#include "bio/arm_experiment.h"
-#include "bio/parameter_information.h"
-#include "bio/replay.h"
+#include "bio/analysis/replay.h"
+#include "bio/calibration/trial_predictor.h"
+#include "bio/parameters/parameter_information.h"
 #include "interruptible.h"
 
 namespace python {
@@ -12,7 +12,7 @@ namespace {
 py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& trials,
                        const std::vector<std::string>& parameters, double noise,
                        const py::kwargs& keywords) {
-  const ArmChoice choice = armChoice(keywords);
+  const SystemChoice choice = armChoice(keywords);
   if (trials.empty()) throw std::invalid_argument("trials: empty, must have at least one");
   std::vector<Eigen::MatrixXd> gammas;
   std::vector<Eigen::VectorXd> outputs;
@@ -20,7 +20,7 @@ py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& t
   bio::ParameterInformation information;
   Eigen::VectorXd values;
   interruptible([&](const std::atomic<bool>& goOn) {
-    const bio::Arm arm(model, choice.armOptions());
+    const bio::MusculoskeletalSystem arm(model, choice.armOptions());
     const std::string coordinate = choice.coordinates.front();
     std::vector<std::size_t> selection;
     for (const bio::Trial& trial : trials) {
@@ -33,9 +33,9 @@ py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& t
       selection = catalogue.select(parameters);
       values = catalogue.values(selection);
       times.push_back(bio::observedTimes(trial, coordinate, options.step));
-      const bio::ArmExperiment experiment(catalogue, choice.armOptions(),
-                                          bio::excitationOf(trial, arm), coordinate, times.back(),
-                                          selection, options);
+      const bio::TrialPredictor experiment(catalogue, choice.armOptions(),
+                                           bio::excitationOf(trial, arm), coordinate, times.back(),
+                                           selection, options);
       auto at = experiment.withSensitivities(values);
       if (!goOn) return;
       if (!at.outputs.allFinite()) {
@@ -63,14 +63,14 @@ py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& t
 }
 
 py::list listParameters(const bio::Model& model, const py::kwargs& keywords) {
-  const ArmChoice choice = armChoice(keywords);
-  const bio::Arm arm(model, choice.armOptions());
+  const SystemChoice choice = armChoice(keywords);
+  const bio::MusculoskeletalSystem arm(model, choice.armOptions());
   const bio::ParameterCatalogue catalogue(model, arm, {arm.skeleton().defaultValues(), {}});
   py::list list;
   for (const bio::ModelParameter& p : catalogue.parameters()) {
     list.append(results("name"_a = p.name, "value"_a = p.value, "unit"_a = p.unit,
                         "meaning"_a = p.meaning, "lower"_a = p.lower, "upper"_a = p.upper,
-                        "deviation"_a = p.deviation, "is_group"_a = p.isGroup));
+                        "deviation"_a = p.sd, "is_group"_a = p.isGroup));
   }
   return list;
 }

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <functional>
 
-#include "info/systems/active_estimation.h"
-#include "info/systems/box_task.h"
+#include "robots/active_estimation.h"
+#include "robots/box_task.h"
 
 namespace {
 
@@ -55,7 +55,7 @@ int main() {
   const Study usual = study(seeds, [](info::ActiveEstimationTask&) {});
   print("0.1 N and 0.5 m/s²", usual);
   print("0.05 N alone", study(seeds, [](info::ActiveEstimationTask& task) {
-          task.cell.deviation = 0.05;
+          task.cell.sd = 0.05;
           task.disturbance.acceleration = 0;
         }));
   print("0.24 kg, clipping modelled",

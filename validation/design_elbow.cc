@@ -6,11 +6,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "bio/arm_experiment.h"
-#include "bio/experiment_design.h"
-#include "bio/osim_file.h"
-#include "bio/replay.h"
-#include "info/monte_carlo.h"
+#include "bio/analysis/replay.h"
+#include "bio/calibration/trial_predictor.h"
+#include "bio/design/experiment_design.h"
+#include "bio/opensim/osim_file.h"
+#include "info/estimation/monte_carlo.h"
 
 int main(int argc, char** argv) {
   if (argc != 3) {
@@ -19,8 +19,8 @@ int main(int argc, char** argv) {
   }
   constexpr double degree = std::numbers::pi / 180;
   const bio::Model model = bio::readOsim(argv[1]);
-  const bio::ArmOptions armOptions{{{"elbow_flexion"}, {}}, {}, {}};
-  const bio::Arm arm(model, armOptions);
+  const bio::SystemOptions armOptions{{{"elbow_flexion"}, {}}, {}, {}};
+  const bio::MusculoskeletalSystem arm(model, armOptions);
   const bio::Trial trial = bio::readTrial(argv[2], model);
   const bio::ParameterCatalogue catalogue(model, arm, {bio::startCoordinates(trial, arm, {}), {}});
   bio::SimulationOptions simulation;
@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
 
   // The estimator's experiment is built anew from what the design says.
   simulation.externalForce = result.after.torque;
-  const bio::ArmExperiment experiment(
+  const bio::TrialPredictor experiment(
       catalogue, armOptions, result.after.excitation, "elbow_flexion",
       {result.after.measuredTimes.begin(), result.after.measuredTimes.end()}, question.parameters,
       simulation);
@@ -59,12 +59,12 @@ int main(int argc, char** argv) {
       experiment.predictor(), catalogue.values(question.parameters),
       info::OutputCovariance(Eigen::MatrixXd::Constant(1, 1, question.noise * question.noise)),
       catalogue.asEstimated(question.parameters, false), options);
-  const double deviation = std::sqrt(simulated.covariance(0, 0));
+  const double sd = std::sqrt(simulated.covariance(0, 0));
   fmt::print("{} simulated experiments, {} converged: deviation {:.4g} mm, {:.3g} of the bound\n",
-             options.trials, simulated.converged, deviation * 1e3, deviation / after);
+             options.trials, simulated.converged, sd * 1e3, sd / after);
 
   const bool lowers = result.improved && design.keepsLimits(result.after) && before / after >= 10;
-  const bool confirmed = simulated.converged >= 195 && std::abs(deviation / after - 1) < 0.3;
+  const bool confirmed = simulated.converged >= 195 && std::abs(sd / after - 1) < 0.3;
   fmt::print("{}\n", lowers && confirmed ? "passed" : "FAILED");
   return lowers && confirmed ? 0 : 1;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bio/model.h"
+#include "bio/model/model.h"
 
 namespace validation {
 

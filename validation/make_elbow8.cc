@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "bio/osim_file.h"
+#include "bio/opensim/osim_file.h"
 
 namespace {
 
@@ -136,8 +136,7 @@ std::vector<bio::Joint> joints() {
   const Vector3d ac2(0.15709493, 0.94726859, -0.27929088);
   const Vector3d ac3(-0.75408404, 0.29759402, 0.58548703);
   const Vector3d humeral(0.0048, 0.99908918, 0.04240001);
-  const Function deviation = {
-      1, bio::SplineFunction{{-0.174533, 0, 0.436332}, {-0.174533, 0, 0.436332}}};
+  const Function sd = {1, bio::SplineFunction{{-0.174533, 0, 0.436332}, {-0.174533, 0, 0.436332}}};
   const Function halved = {1, bio::SplineFunction{{-1.5708, 1.5708}, {-0.785398, 0.785398}}};
   return {
       joint("groundthorax", "ground", "thorax", zero,
@@ -168,7 +167,7 @@ std::vector<bio::Joint> joints() {
             {{1, "pro_sup", {-0.01716099, 0.99266564, -0.11966796}, -1.57079633, 1.57079633}}),
       joint(
           "radiocarpal", "radius", "proximal_row", {0.018, -0.242, 0.025},
-          {{1, "deviation", {-0.819064, -0.135611, -0.557444}, -0.17453293, 0.43633231, deviation},
+          {{1, "deviation", {-0.819064, -0.135611, -0.557444}, -0.17453293, 0.43633231, sd},
            {3, "flexion", {0.95642673, -0.25220693, 0.14710396}, -1.22173048, 1.22173048, halved}}),
       joint("wrist_hand", "proximal_row", "hand", {0.003992, -0.015054, 0.002327},
             {{1, "wrist_hand_r1", {0.8991357, -0.34905288, -0.26403991}, -free, free},

@@ -13,11 +13,11 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "bio/arm.h"
-#include "bio/coupled.h"
-#include "bio/excitation.h"
-#include "bio/osim_file.h"
-#include "bio/table_file.h"
+#include "bio/muscle/activation/excitation.h"
+#include "bio/opensim/osim_file.h"
+#include "bio/simulation/musculoskeletal_system.h"
+#include "bio/simulation/simulate.h"
+#include "bio/tables/table_file.h"
 #include "emg_subject.h"
 #include "synthetic_emg.h"
 
@@ -61,13 +61,13 @@ bio::Table excitationTable(const validation::TrialPlan& plan) {
   return table;
 }
 
-bio::Arm elbowOf(const bio::Model& model) {
-  bio::ArmOptions options;
+bio::MusculoskeletalSystem elbowOf(const bio::Model& model) {
+  bio::SystemOptions options;
   options.skeleton.freeCoordinates = {"elbow_flexion"};
-  return bio::Arm(model, options);
+  return bio::MusculoskeletalSystem(model, options);
 }
 
-bio::ExcitationSignal signalFor(const bio::Arm& arm, const bio::Table& table) {
+bio::ExcitationSignal signalFor(const bio::MusculoskeletalSystem& arm, const bio::Table& table) {
   Eigen::MatrixXd values(table.values.rows(), static_cast<Eigen::Index>(arm.numMuscles()));
   for (std::size_t i = 0; i < arm.numMuscles(); ++i) {
     values.col(static_cast<Eigen::Index>(i)) =
@@ -79,13 +79,13 @@ bio::ExcitationSignal signalFor(const bio::Arm& arm, const bio::Table& table) {
 
 // Elbow flexion [deg] at goniometerRate, without noise.
 Eigen::VectorXd motionOf(const bio::Model& model, const bio::Table& excitations, double start_deg) {
-  const bio::Arm arm = elbowOf(model);
+  const bio::MusculoskeletalSystem arm = elbowOf(model);
   const bio::ExcitationSignal signal = signalFor(arm, excitations);
   bio::SimulationOptions options;
   options.integrator = bio::Integrator::cvode;
   options.duration = duration;
   options.step = 1 / goniometerRate;
-  const bio::ArmState start =
+  const bio::SystemState start =
       bio::initialState(arm, Eigen::VectorXd::Constant(1, start_deg * degree), signal, 0);
   const bio::Trajectory motion = bio::simulate(arm, signal, start, options);
   if (motion.outcome != bio::Outcome::completed) throw std::runtime_error(motion.why);

@@ -9,11 +9,11 @@
 #include <exception>
 #include <numbers>
 
-#include "bio/calibrate.h"
-#include "bio/emg.h"
-#include "bio/emg_config.h"
-#include "bio/osim_file.h"
-#include "bio/recording.h"
+#include "bio/calibration/calibrate.h"
+#include "bio/emg/emg.h"
+#include "bio/emg/emg_config.h"
+#include "bio/opensim/osim_file.h"
+#include "bio/tables/recording.h"
 
 namespace {
 
@@ -89,7 +89,7 @@ void answer(const Question& question, bio::Model model, const std::vector<bio::T
   options.prior = question.prior;
   options.bounds = question.bounds;
   options.starts = 6;
-  const bio::ArmOptions arm{{{"elbow_flexion"}, {}}, {}, {}};
+  const bio::SystemOptions arm{{{"elbow_flexion"}, {}}, {}, {}};
   const bio::TrialSet odd(model, arm, training, options.trials);
   const bio::TrialSet even(model, arm, heldOut, options.trials);
   const bio::Calibration found = bio::calibrate(odd, &even, options);
@@ -111,8 +111,7 @@ void answer(const Question& question, bio::Model model, const std::vector<bio::T
              found.noise.correlationTime);
   for (const bio::CalibratedParameter& one : found.parameters) {
     if (one.identifiable) {
-      fmt::print("  {} = {:.4g} ± {:.2g} {}\n", one.asked.name, one.value, one.deviation,
-                 one.asked.unit);
+      fmt::print("  {} = {:.4g} ± {:.2g} {}\n", one.asked.name, one.value, one.sd, one.asked.unit);
     } else {
       fmt::print("  {} = {:.4g} {}, no interval: {}\n", one.asked.name, one.value, one.asked.unit,
                  one.why);

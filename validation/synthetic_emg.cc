@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "bio/emg_stages.h"
+#include "bio/emg/emg_stages.h"
 
 namespace validation {
 namespace {

@@ -9,9 +9,9 @@
 
 #include <cmath>
 
-#include "info/discrete_projection.h"
-#include "info/integrate.h"
-#include "info/symmetric_eigen.h"
+#include "info/design/discrete_projection.h"
+#include "info/dynamics/integrate.h"
+#include "info/information/symmetric_eigen.h"
 
 namespace {
 

@@ -1,11 +1,11 @@
 #include <fstream>
 #include <iostream>
 
-#include "info/estimate.h"
-#include "info/fisher.h"
-#include "info/identifiability.h"
-#include "info/integrate.h"
-#include "info/predictor.h"
+#include "info/dynamics/integrate.h"
+#include "info/dynamics/predictor.h"
+#include "info/estimation/estimate.h"
+#include "info/information/fisher.h"
+#include "info/information/identifiability.h"
 
 // A mass of 1 kg on a spring that hardens, ẍ = −k x − h x³ − c ẋ; x is measured.
 struct Spring {
@@ -55,8 +55,7 @@ int main(int, char** arguments) {
   const auto report = info::identifiability(information, parameters);
   std::cout.precision(3);
   std::cout << "information\n" << information << '\n';
-  std::cout << report.sentences[0] << ", standard deviations " << report.deviation.transpose()
-            << '\n';
+  std::cout << report.sentences[0] << ", standard deviations " << report.sd.transpose() << '\n';
 
   // What this recording says they are.
   const Eigen::MatrixXd measured =

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "view/arm_shape.h"
+#include "view/system_shape.h"
 
 /// Shapes as VTK meshes.
 namespace bio::view {

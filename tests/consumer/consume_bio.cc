@@ -1,8 +1,8 @@
 #include <cstdio>
 #include <exception>
 
-#include "bio/osim_file.h"
-#include "bio/replay.h"
+#include "bio/analysis/replay.h"
+#include "bio/opensim/osim_file.h"
 #include "info/version.h"
 
 // consume_bio MODEL TRIAL: replays the trial and prints how far the motion is from the measured
@@ -10,9 +10,9 @@
 int main(int count, char** arguments) try {
   if (count != 3) return 2;
   const bio::Model model = bio::readOsim(arguments[1]);
-  bio::ArmOptions options;
+  bio::SystemOptions options;
   options.skeleton.freeCoordinates = {"elbow_flexion"};
-  const bio::Arm arm(model, options);
+  const bio::MusculoskeletalSystem arm(model, options);
   const bio::Trial trial = bio::readTrial(arguments[2], model);
   const auto excitation = bio::excitationOf(trial, arm);
   const auto start =

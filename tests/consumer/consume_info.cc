@@ -1,9 +1,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "info/fisher.h"
-#include "info/integrate.h"
-#include "info/predictor.h"
+#include "info/dynamics/integrate.h"
+#include "info/dynamics/predictor.h"
+#include "info/information/fisher.h"
 
 // ẋ = −θ x, y = x
 struct Decay {

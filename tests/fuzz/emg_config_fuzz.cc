@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "bio/emg_config.h"
+#include "bio/emg/emg_config.h"
 #include "reading.h"
 
 namespace {

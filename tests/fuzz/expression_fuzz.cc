@@ -1,4 +1,4 @@
-#include "bio/expression.h"
+#include "bio/forces/expression.h"
 #include "reading.h"
 
 // A formula is compiled and evaluated, or refused.

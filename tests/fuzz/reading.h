@@ -12,7 +12,7 @@
 #include <string_view>
 #include <typeinfo>
 
-#include "bio/file_error.h"
+#include "bio/tables/file_error.h"
 
 /// What the fuzz targets share: bytes become a file, and a reader has two ways to end.
 namespace fuzz {

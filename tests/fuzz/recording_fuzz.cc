@@ -1,6 +1,6 @@
 #include <array>
 
-#include "bio/recording.h"
+#include "bio/tables/recording.h"
 #include "reading.h"
 
 namespace {

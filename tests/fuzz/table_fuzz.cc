@@ -2,10 +2,10 @@
 #include <cmath>
 #include <memory>
 
-#include "bio/osim_file.h"
-#include "bio/table_file.h"
-#include "bio/trial.h"
-#include "bio/trial_review.h"
+#include "bio/opensim/osim_file.h"
+#include "bio/tables/table_file.h"
+#include "bio/tables/trial.h"
+#include "bio/tables/trial_review.h"
 #include "reading.h"
 
 namespace {

@@ -1,22 +1,22 @@
 #include <memory>
 
-#include "bio/arm.h"
-#include "bio/osim_file.h"
-#include "bio/parameters.h"
-#include "quantity.h"
+#include "bio/opensim/osim_file.h"
+#include "bio/parameters/parameters.h"
+#include "bio/simulation/musculoskeletal_system.h"
+#include "options/quantity.h"
 #include "reading.h"
 
 namespace {
 
-using bio::Arm;
 using bio::Model;
+using bio::MusculoskeletalSystem;
 using bio::ParameterCatalogue;
 
 const ParameterCatalogue& elbowCatalogue() {
   static const Model model = bio::readOsim(FISHERHILL_SOURCE_DIR "/models/elbow8.osim");
-  bio::ArmOptions options;
+  bio::SystemOptions options;
   options.skeleton.freeCoordinates = {"elbow_flexion"};
-  static const Arm arm(model, options);
+  static const MusculoskeletalSystem arm(model, options);
   static const ParameterCatalogue catalogue(model, arm, {Eigen::VectorXd::Constant(1, 0.5), {}});
   return catalogue;
 }

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "bio/calibrate.h"
-#include "info/monte_carlo.h"
+#include "bio/calibration/calibrate.h"
+#include "info/estimation/monte_carlo.h"
 #include "support/synthetic_elbow.h"
 
 // Calibrations repeated on synthetic trials whose truth is known. Noise of 0.5° is drawn anew each
@@ -51,7 +51,7 @@ inline CalibrationStatistics repeatCalibration(int repetitions) {
         options.trials);
     const Calibration found = calibrate(trials, nullptr, options);
     converged[i] = found.converged;
-    noise[i] = found.noise.deviation / sigma * 0.5;
+    noise[i] = found.noise.sd / sigma * 0.5;
     for (Eigen::Index k = 0; k < 3; ++k) {
       const CalibratedParameter& one = found.parameters[static_cast<std::size_t>(k)];
       estimates(k, i) = one.value;

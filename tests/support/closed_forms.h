@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "info/least_squares.h"
+#include "info/estimation/least_squares.h"
 
 /// Models whose outputs, sensitivities and curvatures are written out by hand.
 namespace support {

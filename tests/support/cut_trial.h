@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bio/trial.h"
+#include "bio/tables/trial.h"
 
 namespace bio::fixtures {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "info/discover/hypothesis.h"
-#include "support/linear_disagreement.h"
+#include "info/discovery/likelihood/hypothesis.h"
+#include "support/linear_problem.h"
 
 namespace support {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "info/discrete_lagrangian.h"
+#include "info/dynamics/discrete_lagrangian.h"
 
 namespace info {
 

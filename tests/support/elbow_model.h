@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bio/osim_file.h"
+#include "bio/opensim/osim_file.h"
 
 namespace bio::fixtures {
 

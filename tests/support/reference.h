@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "bio/osim_file.h"
-#include "bio/replay.h"
+#include "bio/analysis/replay.h"
+#include "bio/opensim/osim_file.h"
 
 /// The outside world: models and motions computed by OpenSim, kept beside the project.
 namespace bio::fixtures {
@@ -23,8 +23,9 @@ inline std::filesystem::path reference(const std::string& file) {
   static_assert(true)
 
 /// The reference elbow with one free coordinate.
-inline Arm referenceArm() {
-  return Arm(readOsim(reference("elbow8_reference.osim")), {{{"elbow_flexion"}, {}}, {}, {}});
+inline MusculoskeletalSystem referenceArm() {
+  return MusculoskeletalSystem(readOsim(reference("elbow8_reference.osim")),
+                               {{{"elbow_flexion"}, {}}, {}, {}});
 }
 
 }  // namespace bio::fixtures

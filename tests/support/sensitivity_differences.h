@@ -5,14 +5,14 @@
 
 #include <array>
 
-#include "bio/coupled_sensitivity.h"
-#include "info/monte_carlo.h"
+#include "bio/sensitivity/coupled_sensitivity.h"
+#include "info/estimation/monte_carlo.h"
 
 namespace bio::fixtures {
 
 /// How far sensitivities are from differences of whole simulations, of the models changed, compiled
 /// and simulated anew.
-struct Disagreement {
+struct DiscoveryProblem {
   double worst = 0;  ///< relative to the quantity's largest sensitivity over time
   std::string of;
   double worstMotion = 0;  ///< the same among q and q̇ alone
@@ -24,7 +24,7 @@ struct Disagreement {
 };
 
 /// All that a simulation gives, one below the other.
-inline Eigen::VectorXd everything(const Arm& arm, const Trajectory& motion) {
+inline Eigen::VectorXd everything(const MusculoskeletalSystem& arm, const Trajectory& motion) {
   const MuscleReport report = reportMuscles(arm, motion);
   Eigen::VectorXd all(motion.q.size() + motion.qDot.size() + motion.fibreLength.size() +
                       motion.activation.size() + report.tendonForce.size());
@@ -63,11 +63,12 @@ Eigen::VectorXd fourthOrderDifference(const F& f, const ModelParameter& paramete
 
 /// Compares with differences at five steps; for each quantity the finer one of the two neighbours
 /// that agree best with each other counts, whatever the sensitivities say.
-inline Disagreement compareWithDifferences(const Arm& arm, const ArmOptions& armOptions,
-                                           const ExcitationSignal& excitation,
-                                           const ParameterCatalogue& catalogue,
-                                           const std::vector<std::size_t>& wanted,
-                                           SimulationOptions options) {
+inline DiscoveryProblem compareWithDifferences(const MusculoskeletalSystem& arm,
+                                               const SystemOptions& armOptions,
+                                               const ExcitationSignal& excitation,
+                                               const ParameterCatalogue& catalogue,
+                                               const std::vector<std::size_t>& wanted,
+                                               SimulationOptions options) {
   options.newtonTolerance = 1e-12;
   const SensitivityTrajectory s = simulateWithSensitivities(arm, catalogue, catalogue.nominal(),
                                                             wanted, excitation, {options, true});
@@ -81,18 +82,18 @@ inline Disagreement compareWithDifferences(const Arm& arm, const ArmOptions& arm
     const ModelParameter& parameter = catalogue.parameters()[wanted[j]];
     const auto simulated = [&](double value) {
       const auto setting = catalogue.at({wanted[j]}, Eigen::VectorXd::Constant(1, value));
-      const Arm changed(setting.model, armOptions);
+      const MusculoskeletalSystem changed(setting.model, armOptions);
       return everything(changed, simulateSetting(changed, setting, excitation, options));
     };
     // the largest step moves the arm by about 1e-4 rad
     const double effect = everything(s, index).head(s.motion.q.size()).cwiseAbs().maxCoeff();
-    const double largest = std::min(0.3 * parameter.deviation, 1e-4 / (effect + 1e-30));
+    const double largest = std::min(0.3 * parameter.sd, 1e-4 / (effect + 1e-30));
     for (std::size_t k = 0; k < steps; ++k) {
       differences[j][k] = fourthOrderDifference(simulated, parameter,
                                                 largest * std::pow(0.1, static_cast<double>(k)));
     }
   });
-  Disagreement result;
+  DiscoveryProblem result;
   for (std::size_t j = 0; j < wanted.size(); ++j) {
     const ModelParameter& parameter = catalogue.parameters()[wanted[j]];
     const Eigen::VectorXd exact = everything(s, static_cast<Eigen::Index>(j));
@@ -111,7 +112,7 @@ inline Disagreement compareWithDifferences(const Arm& arm, const ArmOptions& arm
         }
       }
       const double off = (ofBlock(exact) - ofBlock(differences[j][best])).cwiseAbs().maxCoeff();
-      const double negligible = 1e-6 * ofBlock(values).cwiseAbs().maxCoeff() / parameter.deviation;
+      const double negligible = 1e-6 * ofBlock(values).cwiseAbs().maxCoeff() / parameter.sd;
       if (scale <= negligible) {
         ++result.negligible;
         EXPECT_LE(off, std::max(negligible, 10 * settled))
@@ -134,7 +135,7 @@ inline Disagreement compareWithDifferences(const Arm& arm, const ArmOptions& arm
 }
 
 /// For the log of a test.
-inline void tell(const Disagreement& d) {
+inline void tell(const DiscoveryProblem& d) {
   fmt::print(
       "  {} parameters: {} quantities agree, worst {:.2g} ({}), of q and q̇ {:.2g}; {} negligible, "
       "{} undecided\n",

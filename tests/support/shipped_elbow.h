@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "bio/coupled_sensitivity.h"
-#include "bio/osim_file.h"
-#include "bio/replay.h"
+#include "bio/analysis/replay.h"
+#include "bio/opensim/osim_file.h"
+#include "bio/sensitivity/coupled_sensitivity.h"
 
 namespace bio::fixtures {
 
@@ -19,10 +19,10 @@ struct ShippedElbow {
         catalogue(model, arm, {startCoordinates(trial, arm, {}), {}}, mapping) {}
 
   static std::string root() { return FISHERHILL_SOURCE_DIR; }
-  static ArmOptions options() { return {{{"elbow_flexion"}, {}}, {}, {}}; }
+  static SystemOptions options() { return {{{"elbow_flexion"}, {}}, {}, {}}; }
 
   Model model;
-  Arm arm;
+  MusculoskeletalSystem arm;
   Trial trial;
   ExcitationSignal excitation;
   ParameterCatalogue catalogue;

@@ -3,10 +3,10 @@
 #include <map>
 #include <string>
 
-#include "bio/arm_experiment.h"
-#include "bio/osim_file.h"
-#include "bio/replay.h"
-#include "info/random_stream.h"
+#include "bio/analysis/replay.h"
+#include "bio/calibration/trial_predictor.h"
+#include "bio/opensim/osim_file.h"
+#include "info/probability/random_stream.h"
 
 namespace bio::fixtures {
 
@@ -17,7 +17,7 @@ struct SyntheticElbow {
       : model(readOsim(std::string(FISHERHILL_SOURCE_DIR) + "/models/elbow8.osim")),
         arm(model, options()) {}
 
-  static ArmOptions options() { return {{{"elbow_flexion"}, {}}, {}, {}}; }
+  static SystemOptions options() { return {{{"elbow_flexion"}, {}}, {}, {}}; }
 
   /// @param duration [s] from the start of the shipped trial
   /// @param every    rows between measured values
@@ -48,8 +48,8 @@ struct SyntheticElbow {
     for (Eigen::Index k = 0; k < rows; k += every) times.push_back(result.times[k]);
     const auto n = static_cast<Eigen::Index>(times.size());
     measured.times = Eigen::VectorXd::Map(times.data(), n);
-    const ArmExperiment experiment(catalogue, options(), signal, "elbow_flexion", times, selection,
-                                   simulation);
+    const TrialPredictor experiment(catalogue, options(), signal, "elbow_flexion", times, selection,
+                                    simulation);
     measured.values = experiment.outputs(
         Eigen::VectorXd::Map(values.data(), static_cast<Eigen::Index>(values.size())));
     result.measured = {measured};
@@ -68,7 +68,7 @@ struct SyntheticElbow {
   }
 
   Model model;
-  Arm arm;
+  MusculoskeletalSystem arm;
 };
 
 }  // namespace bio::fixtures

@@ -1,4 +1,4 @@
-#include "discovery_score.h"
+#include "score/discovery_score.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <fstream>
 #include <numbers>
 
-#include "recovery.h"
-#include "repaired_table.h"
+#include "score/recovery.h"
+#include "score/repaired_table.h"
 #include "support/scratch_folder.h"
 
 namespace hidden {
@@ -232,9 +232,9 @@ TEST(Score, SaysWhatChanceAloneMakesOfTheCalibrationError) {
   }
   const Calibration c = score(outcomes).calibration;
   EXPECT_NEAR(c.error, 0, 1e-12);
-  const double deviation = std::sqrt(0.75 * 0.25 / 100);
-  EXPECT_NEAR(c.chance, std::sqrt(2 / std::numbers::pi) * deviation, 0.1 * deviation);
-  EXPECT_NEAR(c.chanceHighest, 1.96 * deviation, 0.15 * deviation);
+  const double sd = std::sqrt(0.75 * 0.25 / 100);
+  EXPECT_NEAR(c.chance, std::sqrt(2 / std::numbers::pi) * sd, 0.1 * sd);
+  EXPECT_NEAR(c.chanceHighest, 1.96 * sd, 0.15 * sd);
 }
 
 TEST(Judge, AWrongNameWithTheTruthInItsClassIsNotConfidentlyWrong) {

@@ -8,12 +8,12 @@
 
 #include <chrono>
 
-#include "angle_unit.h"
-#include "data_set.h"
-#include "discover_verdict.h"
-#include "discovery/reduced_plan.h"
-#include "discovery_score.h"
-#include "hidden_robots.h"
+#include "discover/discover_verdict.h"
+#include "generator/data_set.h"
+#include "output/angle_unit.h"
+#include "reduced/reduced_plan.h"
+#include "robots/hidden_robots.h"
+#include "score/discovery_score.h"
 #include "support/run_program.h"
 #include "support/scratch_folder.h"
 
@@ -32,7 +32,7 @@ OnReducedElbow verdictOnReducedElbow(const reduced::Plan& plan, bool leaveOut) {
   const std::vector<std::string> lacking = leaveOut ? set.explaining() : std::vector<std::string>{};
   const reduced::Elbow elbow(std::move(set.trials), lacking);
   info::discover::Options options;
-  options.outputDeviation = set.recipe.outputNoise;
+  options.outputSd = set.recipe.outputNoise;
   options.latentTolerance = 0.02;
   options.heldOut = {plan.trials - 1};
   const auto begin = std::chrono::steady_clock::now();

@@ -1,4 +1,4 @@
-#include "hard_suites.h"
+#include "score/hard_suites.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <set>
 
-#include "data_set.h"
-#include "open_loop_trial.h"
+#include "generator/data_set.h"
+#include "generator/open_loop_trial.h"
 
 namespace hidden {
 namespace {
@@ -170,7 +170,7 @@ class Violated : public testing::Test {
     for (const double v : x) sum += v;
     return sum / static_cast<double>(x.size());
   }
-  static double deviation(const std::vector<double>& x, std::size_t lag = 0) {
+  static double sd(const std::vector<double>& x, std::size_t lag = 0) {
     double sum = 0;
     for (std::size_t k = lag; k < x.size(); ++k) sum += x[k] * x[k - lag];
     return std::sqrt(std::abs(sum) / static_cast<double>(x.size() - lag));
@@ -179,8 +179,8 @@ class Violated : public testing::Test {
 
 TEST_F(Violated, NoiseIsCorrelatedHeavyOrHasOutliers) {
   const auto correlated = errorsOf("correlated_noise");
-  EXPECT_NEAR(deviation(correlated), 0.5, 0.12);  // some 50 independent values
-  EXPECT_GT(deviation(correlated, 1), 0.45 * deviation(correlated) / 0.5);
+  EXPECT_NEAR(sd(correlated), 0.5, 0.12);  // some 50 independent values
+  EXPECT_GT(sd(correlated, 1), 0.45 * sd(correlated) / 0.5);
   const auto heavy = errorsOf("heavy_tails");
   const auto beyond = [&](const std::vector<double>& x, double bound) {
     return std::count_if(x.begin(), x.end(), [&](double e) { return std::abs(e) > bound; });
@@ -239,7 +239,7 @@ TEST_F(Violated, TheTrialStartsInMotion) {
   EXPECT_EQ(trial.recorded.size(), 451u);
   // 0.8·cos(2·0.3) rad/s at its fastest, at 0.3 s
   EXPECT_NEAR((trial.angle[1] - trial.angle[0]) * 100, 0.66, 0.02);
-  EXPECT_NEAR(deviation(errors), 0.5, 0.1);
+  EXPECT_NEAR(sd(errors), 0.5, 0.1);
 }
 
 TEST_F(Violated, TheEmgIsNoisyOrSlow) {

@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "data_set.h"
-#include "passive_trial.h"
-#include "stiff_solver.h"
+#include "generator/data_set.h"
+#include "generator/passive_trial.h"
+#include "generator/stiff_solver.h"
 #include "support/scratch_folder.h"
 
 namespace hidden {

@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "data_set.h"
+#include "generator/data_set.h"
 #include "support/scratch_folder.h"
 
 namespace hidden {

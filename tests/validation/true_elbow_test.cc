@@ -1,12 +1,12 @@
-#include "true_elbow.h"
+#include "generator/true_elbow.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <numbers>
 
-#include "hidden_effects.h"
-#include "stiff_solver.h"
+#include "generator/hidden_effects.h"
+#include "generator/stiff_solver.h"
 
 namespace hidden {
 namespace {

@@ -2,15 +2,15 @@
 
 #include <numbers>
 
-#include "bio/discover/add_effects.h"
-#include "bio/discover/elbow_disagreement.h"
-#include "data_set.h"
-#include "info/discover/joint_fit.h"
-#include "passive_trial.h"
-#include "stiff_solver.h"
+#include "bio/discovery/add_effects.h"
+#include "bio/discovery/musculoskeletal_problem.h"
+#include "generator/data_set.h"
+#include "generator/passive_trial.h"
+#include "generator/stiff_solver.h"
+#include "generator/true_elbow.h"
+#include "info/discovery/likelihood/joint_fit.h"
 #include "support/scratch_folder.h"
 #include "support/shipped_elbow.h"
-#include "true_elbow.h"
 
 // The benchmark's elbow beside libbio's: two programs for the same equations, each written without
 // the other.
@@ -36,7 +36,7 @@ struct Apart {
   double fibre = 0;  ///< [m]
 };
 Apart apart(const bio::Model& model, const bio::Trial& trial, const TrueElbow& elbow) {
-  const bio::Arm arm(model, bio::fixtures::ShippedElbow::options());
+  const bio::MusculoskeletalSystem arm(model, bio::fixtures::ShippedElbow::options());
   const bio::ExcitationSignal excitation = bio::excitationOf(trial, arm);
   bio::SimulationOptions options;
   options.integrator = bio::Integrator::cvode;
@@ -96,11 +96,11 @@ TEST(TwoElbows, MoveAlikeWhereTheArmIsTurned) {
   RandomNumbers random(8, 0);
   const NamedTrial made{"moved", makePassiveTrial(truth, plan, random), 1, -45};
   const auto file = scratch.file("moved.sto", asTable(made, "moved"));
-  bio::discover::ElbowOptions options;
+  bio::discover::MusculoskeletalProblemOptions options;
   options.simulation.step = 0.002;
-  const bio::discover::ElbowDisagreement data(
+  const bio::discover::MusculoskeletalProblem data(
       theirs.model, theirs.options(), "elbow_flexion",
-      {bio::readTrial(file, theirs.model, {.knownChanges = true})}, options);
+      {bio::readTrial(file, theirs.model, {.experimentalConditions = true})}, options);
   Eigen::VectorXd values = info::discover::nominalValues(data);
   const auto at = [&](const char* name) -> double& {
     std::size_t i = 0;
@@ -134,7 +134,7 @@ TEST(TwoElbows, HaveTheSameLengthsAndMomentArms) {
     EXPECT_EQ(sample.muscles[static_cast<std::size_t>(i)],
               elbow.numbers().muscles[static_cast<std::size_t>(i)].name);
     for (Eigen::Index k = 0; k < angles.size(); ++k) {
-      const TrueElbow::Arm arm = elbow.arm(i, angles[k]);
+      const TrueElbow::MusculoskeletalSystem arm = elbow.arm(i, angles[k]);
       EXPECT_NEAR(arm.length, sample.length(k, i), 1e-13);
       EXPECT_NEAR(-arm.slope, sample.momentArm(k, i), 1e-12);
       EXPECT_EQ(arm.wraps, sample.wrapped(k, i) == 1) << i << " at " << angles[k] / degree;

@@ -5,15 +5,15 @@
 #include <cmath>
 #include <set>
 
-#include "hidden_robots.h"
-#include "info/discover/hypothesis.h"
-#include "info/systems/robot_disagreement.h"
+#include "info/discovery/likelihood/hypothesis.h"
+#include "robots/hidden_robots.h"
+#include "robots/robot_problem.h"
 
 namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-using info::robot::RobotDisagreement;
+using info::robot::RobotProblem;
 
 const char* const systems[] = {"double-pendulum", "suspended-mass"};
 
@@ -23,8 +23,8 @@ info::robot::Model modelOf(const std::string& system) {
 }
 
 // What the benchmark's robot shows, without noise, as trials.
-RobotDisagreement recorded(const std::string& system, const hidden::Numbers& plant,
-                           double step = 0.005) {
+RobotProblem recorded(const std::string& system, const hidden::Numbers& plant,
+                      double step = 0.005) {
   const hidden::RobotKind& kind = hidden::robotKind(system);
   hidden::RobotPlan plan;
   plan.system = system;
@@ -42,11 +42,11 @@ RobotDisagreement recorded(const std::string& system, const hidden::Numbers& pla
         VectorXd::Map(record.seen[c].data(), trial.measured.rows());
   info::robot::DisagreementOptions options;
   options.step = step;
-  options.deviations = kind.noise;
+  options.sds = kind.noise;
   return {modelOf(system), {trial}, options};
 }
 
-std::size_t candidateOf(const RobotDisagreement& data, const std::string& id) {
+std::size_t candidateOf(const RobotProblem& data, const std::string& id) {
   const auto& list = data.candidates();
   return static_cast<std::size_t>(
       std::find_if(list.begin(), list.end(), [&](const auto& c) { return c.id == id; }) -
@@ -54,14 +54,14 @@ std::size_t candidateOf(const RobotDisagreement& data, const std::string& id) {
 }
 
 // At rest, hanging; all else nominal.
-VectorXd resting(const RobotDisagreement& data) {
+VectorXd resting(const RobotProblem& data) {
   VectorXd v = info::discover::nominalValues(data);
   v.tail(static_cast<Index>(data.model().starts.size())).setZero();
   return v;
 }
 
 // Every effect present at a size that shows.
-VectorXd busy(const RobotDisagreement& data, const std::string& system) {
+VectorXd busy(const RobotProblem& data, const std::string& system) {
   VectorXd v = resting(data);
   for (const auto& c : data.candidates())
     if (c.kind != info::discover::EffectKind::parameter)
@@ -77,9 +77,8 @@ VectorXd busy(const RobotDisagreement& data, const std::string& system) {
 }
 
 // Largest distance of the two in deviations of the noise.
-double distance(const RobotDisagreement& data, const VectorXd& values) {
-  return (data.outputs(0, values, {}) - data.measured(0)).cwiseAbs().maxCoeff() /
-         data.deviations()[0];
+double distance(const RobotProblem& data, const VectorXd& values) {
+  return (data.outputs(0, values, {}) - data.measured(0)).cwiseAbs().maxCoeff() / data.sds()[0];
 }
 
 TEST(TwoRobots, AgreeWithEveryEffectThatTheCatalogueHas) {
@@ -98,7 +97,7 @@ TEST(TwoRobots, AgreeWithEveryEffectThatTheCatalogueHas) {
         plant[e.id] = e.fullSize;
       plant["saturation_at"] = 1.4;
       plant["link_3_length"] = 0.1;
-      const RobotDisagreement data = recorded(system, plant);
+      const RobotProblem data = recorded(system, plant);
       const std::size_t c = candidateOf(data, e.id);
       ASSERT_LT(c, data.candidates().size()) << e.id;
       seen.insert(e.id);
@@ -113,7 +112,7 @@ TEST(TwoRobots, AgreeWithEveryEffectThatTheCatalogueHas) {
       EXPECT_LT(with, 0.15) << e.id;
       EXPECT_GT(without, 0.5) << e.id;
     }
-    const RobotDisagreement plain = recorded(system, kind.nominal);
+    const RobotProblem plain = recorded(system, kind.nominal);
     EXPECT_LT(distance(plain, resting(plain)), 0.002);
     for (const auto& c : plain.candidates()) {
       const bool parameter = c.kind == info::discover::EffectKind::parameter;
@@ -126,7 +125,7 @@ TEST(TwoRobots, AnEverStifferJointComesEverNearerToOneLinkFewer) {
   // the twin is welded, which is no limit of anything there: an unknown moment
   hidden::Numbers plant = hidden::robotKind("double-pendulum").nominal;
   plant["welded_2"] = 1;
-  const RobotDisagreement data = recorded("double-pendulum", plant);
+  const RobotProblem data = recorded("double-pendulum", plant);
   const std::size_t c = candidateOf(data, "locked_2");
   VectorXd v = resting(data);
   EXPECT_GT(distance(data, v), 10);
@@ -144,7 +143,7 @@ TEST(TwoRobots, AnEverStifferJointComesEverNearerToOneLinkFewer) {
 
 TEST(TwoRobots, DerivativesMatchDifferences) {
   for (const std::string system : systems) {
-    const RobotDisagreement data = recorded(system, hidden::robotKind(system).nominal);
+    const RobotProblem data = recorded(system, hidden::robotKind(system).nominal);
     const VectorXd v = busy(data, system);
     VectorXd d = VectorXd::Zero(static_cast<Index>(data.latentTimes(0).size()));
     d[7] = 0.2, d[8] = -0.1;
@@ -156,7 +155,7 @@ TEST(TwoRobots, DerivativesMatchDifferences) {
     EXPECT_EQ(p.gamma.col(0), p.gamma.rightCols(1));
     for (std::size_t i = 0; i + 1 < all.size(); ++i) {
       const auto& q = data.quantities()[i];
-      const double h = 1e-4 * q.deviation * (q.logarithmic ? q.nominal : 1);
+      const double h = 1e-4 * q.sd * (q.logarithmic ? q.nominal : 1);
       VectorXd up = v, down = v;
       up[static_cast<Index>(i)] += h;
       down[static_cast<Index>(i)] -= h;
@@ -178,7 +177,7 @@ TEST(TwoRobots, DerivativesMatchDifferences) {
 
 TEST(TwoRobots, EffectsOfZeroAmplitudeChangeNothingAndEveryDerivativeThereSaysSomething) {
   for (const std::string system : systems) {
-    const RobotDisagreement data = recorded(system, hidden::robotKind(system).nominal);
+    const RobotProblem data = recorded(system, hidden::robotKind(system).nominal);
     const VectorXd base = resting(data), y = data.outputs(0, base, {});
     for (const auto& c : data.candidates()) {
       VectorXd v = base;
@@ -190,7 +189,7 @@ TEST(TwoRobots, EffectsOfZeroAmplitudeChangeNothingAndEveryDerivativeThereSaysSo
       EXPECT_GT(slope.norm(), 0) << c.id;
       // from absence into presence (a string that gives a little rings, so little is little)
       const auto& q = data.quantities()[c.quantities[0]];
-      const double move = 1e-7 * q.deviation * (q.logarithmic ? q.nominal : 1);
+      const double move = 1e-7 * q.sd * (q.logarithmic ? q.nominal : 1);
       v[static_cast<Index>(c.quantities[0])] += move;
       const VectorXd change = (data.outputs(0, v, {}) - y) / move;
       EXPECT_LT((change - slope).norm(), 2e-3 * slope.norm()) << system << ": " << c.id;
@@ -201,15 +200,15 @@ TEST(TwoRobots, EffectsOfZeroAmplitudeChangeNothingAndEveryDerivativeThereSaysSo
 TEST(TwoRobots, BrakesTakeEnergyOutOfAFreeSwing) {
   for (const std::string system : systems) {
     const bool pendulum = system == "double-pendulum";
-    RobotDisagreement recording = recorded(system, hidden::robotKind(system).nominal);
+    RobotProblem recording = recorded(system, hidden::robotKind(system).nominal);
     info::robot::Trial trial{"swing", {}, {}, {}};
     for (int k = 0; k <= 300; ++k) trial.times.push_back(0.01 * k);
     trial.acceleration.assign(301, 0.0);
     trial.measured.setZero(301, pendulum ? 2 : 1);
     info::robot::DisagreementOptions options;
     options.step = 0.001;
-    options.deviations.assign(pendulum ? 2 : 1, 0.01);
-    const RobotDisagreement data(modelOf(system), {trial}, options);
+    options.sds.assign(pendulum ? 2 : 1, 0.01);
+    const RobotProblem data(modelOf(system), {trial}, options);
     VectorXd v = resting(data);
     v[v.size() - (pendulum ? 4 : 2)] = 1;  // of the first link, or the string
     if (pendulum) v[7] = 0;                // the damping that the model has
@@ -266,11 +265,10 @@ TEST(TwoRobots, BrakesTakeEnergyOutOfAFreeSwing) {
 
 TEST(TwoRobots, HalfTheStepChangesLittle) {
   for (const std::string system : systems) {
-    const RobotDisagreement data = recorded(system, hidden::robotKind(system).nominal);
+    const RobotProblem data = recorded(system, hidden::robotKind(system).nominal);
     const VectorXd v = busy(data, system);
     const double change =
-        (data.refinedOutputs(0, v) - data.outputs(0, v, {})).cwiseAbs().maxCoeff() /
-        data.deviations()[0];
+        (data.refinedOutputs(0, v) - data.outputs(0, v, {})).cwiseAbs().maxCoeff() / data.sds()[0];
     EXPECT_GT(change, 0);
     EXPECT_LT(change, 0.05) << system;  // 0.007 and 0.009
   }
@@ -284,7 +282,7 @@ TEST(TwoRobots, RefuseTrialsThatBreakARule) {
   const auto make = [](const info::robot::Trial& trial, const std::string& without = "") {
     info::robot::DisagreementOptions options;
     if (!without.empty()) options.without = {without};
-    return RobotDisagreement(info::robot::suspendedMass(0.3, 2.5), {trial}, options);
+    return RobotProblem(info::robot::suspendedMass(0.3, 2.5), {trial}, options);
   };
   EXPECT_EQ(make(good, "drag").candidates().size(), make(good).candidates().size() - 1);
   EXPECT_THROW(make(good, "visc_1"), std::invalid_argument);

@@ -8,11 +8,11 @@
 #include <set>
 #include <sstream>
 
-#include "bio/file_error.h"
-#include "bio/model_review.h"
-#include "bio/osim_file.h"
-#include "bio/replay.h"
-#include "bio/table_file.h"
+#include "bio/analysis/replay.h"
+#include "bio/model/model_review.h"
+#include "bio/opensim/osim_file.h"
+#include "bio/tables/file_error.h"
+#include "bio/tables/table_file.h"
 #include "mutations.h"
 #include "support/scratch_folder.h"
 #include "watched_child.h"
@@ -44,7 +44,7 @@ std::string refusal(const char* stage, const std::string& what) {
 }
 
 std::string simulated(const bio::Model& model, const std::string& trialFile) {
-  bio::ArmOptions options;
+  bio::SystemOptions options;
   const auto& joints = model.joints;
   for (const bio::Joint& joint : joints) {
     for (const bio::Coordinate& coordinate : joint.coordinates) {
@@ -54,11 +54,11 @@ std::string simulated(const bio::Model& model, const std::string& trialFile) {
   }
   if (options.skeleton.freeCoordinates.empty())
     options.skeleton.freeCoordinates = {"elbow_flexion"};
-  const bio::Arm arm(model, options);
+  const bio::MusculoskeletalSystem arm(model, options);
   const bio::Trial trial =
       bio::readTrial(trialFile, model, {.ignoreExtra = true, .baseline = 0.01});
   const bio::ExcitationSignal excitation = excitationOf(trial, arm);
-  const bio::ArmState start =
+  const bio::SystemState start =
       initialState(arm, startCoordinates(trial, arm, {}), excitation, trial.times[0]);
   bio::SimulationOptions simulation;
   simulation.startTime = trial.times[0];

@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
-#include "bio/coupled.h"
-#include "bio/osim_file.h"
+#include "bio/opensim/osim_file.h"
+#include "bio/simulation/simulate.h"
 
 // Random models and excitations: the variational step converges, is halved, or the simulation says
 // that there is no solution; and the energy that nobody put in or took out vanishes as the step
@@ -67,9 +67,10 @@ struct Tally {
   std::vector<double> made, ratios;  ///< energy from nowhere at h, of the work done; at h/2 over h
 };
 
-void simulated(const bio::Arm& arm, const bio::ExcitationSignal& excitation, double start,
-               Tally& tally, std::uint64_t seed) {
-  const bio::ArmState state = initialState(arm, Eigen::VectorXd::Constant(1, start), excitation, 0);
+void simulated(const bio::MusculoskeletalSystem& arm, const bio::ExcitationSignal& excitation,
+               double start, Tally& tally, std::uint64_t seed) {
+  const bio::SystemState state =
+      initialState(arm, Eigen::VectorXd::Constant(1, start), excitation, 0);
   bio::SimulationOptions options;
   options.duration = 0.5;
   const bio::Trajectory t = simulate(arm, excitation, state, options);
@@ -131,7 +132,7 @@ int main(int argc, char** argv) {
   const bio::Model model = bio::readOsim(argv[1]);
   const long count = argc > 2 ? std::atol(argv[2]) : 10'000;
   const auto first = argc > 3 ? static_cast<std::uint64_t>(std::atoll(argv[3])) : 1;
-  bio::ArmOptions options;
+  bio::SystemOptions options;
   options.skeleton.freeCoordinates = {"elbow_flexion"};
   Tally tally;
   for (long i = 0; i < count; ++i) {
@@ -139,7 +140,7 @@ int main(int argc, char** argv) {
     std::mt19937_64 random(seed);
     Draw draw{random};
     try {
-      const bio::Arm arm(randomModel(model, draw), options);
+      const bio::MusculoskeletalSystem arm(randomModel(model, draw), options);
       const bio::ExcitationSignal excitation = randomExcitation(arm.numMuscles(), draw);
       simulated(arm, excitation, 0.2 + 1.8 * draw.unit(), tally, seed);
     } catch (const bio::NoStaticEquilibrium&) {

@@ -6,7 +6,7 @@
 #include <map>
 #include <random>
 
-#include "bio/schutte_muscle.h"
+#include "bio/muscle/schutte_muscle.h"
 #include "support/elbow_curves.h"
 
 // Random muscles at random lengths and activations: static equilibrium is found and balances, or is

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <random>
 
-#include "bio/wrap_cylinder.h"
-#include "bio/wrap_sphere.h"
+#include "bio/path/surface/wrap_cylinder.h"
+#include "bio/path/surface/wrap_sphere.h"
 
 // Random wraps against a geodesic that is integrated: from P along the tangent that the wrap
 // claims, straight until the surface is touched, over the surface by the geodesic equation

@@ -1,0 +1,350 @@
+#include "calibrate/calibrate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "bio/analysis/replay.h"
+#include "bio/opensim/osim_file.h"
+#include "bio/tables/trial_review.h"
+#include "calibrate/calibrate_report.h"
+#include "calibrate/fitted_table.h"
+#include "info/version.h"
+#include "options/input_rules.h"
+#include "options/named_pairs.h"
+#include "options/number_rules.h"
+#include "options/parameter_list.h"
+#include "options/system_options.h"
+#include "options/trial_input.h"
+#include "output/angle_unit.h"
+#include "output/progress_bar.h"
+#include "output/result.h"
+#include "output/sha256.h"
+#include "output/text.h"
+#include "sensitivity/named_covariance.h"
+
+namespace app {
+namespace {
+
+class Calibrate : public Command {
+ public:
+  About about() const override {
+    return {"calibrate", "Estimate model parameters from measured motions",
+            "fisherhill calibrate models/elbow8.osim emg_data/curl_slow.sto --hold-out "
+            "emg_data/curl_fast.sto --parameters TRI.radius,hand.mass --out out/calibrate"};
+  }
+
+  void addOptions(CLI::App& options) override {
+    options.add_option("MODEL", model_, "model (.osim)")
+        ->required()
+        ->check(CLI::ExistingFile)
+        ->type_name("");
+    options
+        .add_option(
+            "TRIAL", trials_,
+            "calibration trials with a measured angle; required unless --list-parameters is given")
+        ->check(CLI::ExistingFile)
+        ->type_name("");
+    const std::string group = "Calibration";
+    const auto list = [&](const char* name, std::vector<std::string>& target, const char* text) {
+      return options.add_option(name, target, text)
+          ->allow_extra_args(false)
+          ->delimiter(',')
+          ->group(group);
+    };
+    list("--parameters", parameters_, "parameters to estimate, by name, e.g. TRI.radius,hand.mass")
+        ->type_name("NAMES");
+    addListParameters(options, list_);
+    list("--hold-out", heldOut_, "held-out trial, used only to test the estimates; may be repeated")
+        ->check(CLI::ExistingFile)
+        ->type_name("TRIAL");
+    options
+        .add_flag("--own-start", ownStart_,
+                  "estimate the initial angle and speed of each trial as well")
+        ->group(group);
+    options.add_flag("--no-priors", noPriors_, "estimate without priors; bounds still apply")
+        ->group(group);
+    list("--prior", priors_,
+         "prior of a parameter instead of the default, in its unit; may be repeated")
+        ->type_name("NAME=MEAN:SD");
+    list("--bounds", bounds_, "bounds of a parameter instead of the default; may be repeated")
+        ->type_name("NAME=LOW:HIGH");
+    options
+        .add_option("--noise-deg", noise_,
+                    "standard deviation of the measured angle [deg]; default: estimated from the "
+                    "residuals and their autocorrelation")
+        ->check(positive())
+        ->type_name("DEG")
+        ->group(group);
+    options
+        .add_option("--loss", loss_,
+                    "loss function: gaussian, or the outlier-robust huber or student")
+        ->check(CLI::IsMember({"gaussian", "huber", "student"}))
+        ->capture_default_str()
+        ->group(group);
+    options
+        .add_option("--starts", starts_,
+                    "number of optimiser starts (the first is the model's own values)")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str()
+        ->type_name("N")
+        ->group(group);
+    list("--profile", profile_, "parameters whose profile likelihood is computed")
+        ->type_name("NAMES");
+    options.add_option("--bootstrap", bootstrap_, "number of residual-bootstrap replicates")
+        ->check(CLI::Range(20, 100000))
+        ->type_name("N")
+        ->group(group);
+    addSimulationOptions(options, simulation_);
+  }
+
+  ExitStatus run(const CommandContext& context) override {
+    if (list_) return listAll(context);
+    const bio::CalibrationOptions typed = calibrationOptions(context);
+    std::vector<std::string> names = {"calibrated.osim", "covariance.csv", "parameters.csv"};
+    for (std::size_t i = 0; i < trials_.size(); ++i) names.push_back(drivenName(i, false));
+    for (std::size_t i = 0; i < heldOut_.size(); ++i) names.push_back(drivenName(i, true));
+    OutputFolder folder(context, names);
+    Summary summary(context);
+    summary.addInput(model_);
+    for (const auto* files : {&trials_, &heldOut_}) {
+      for (const std::string& file : *files) summary.addInput(file);
+    }
+    inputsMustDiffer(summary, trials_.size());
+    resultsMustNotBeInputs(summary, folder, names);
+
+    const bio::Model model = bio::readOsim(model_);
+    for (const std::string& warning : model.warnings) summary.warn(warning);
+    const bio::TrialSet training(model, armOptions(simulation_), read(trials_, model, summary),
+                                 typed.trials);
+    for (const std::string& warning : training.arm().warnings()) summary.warn(warning);
+    boundsMustBePossible(training, typed);
+    std::optional<bio::TrialSet> heldOut;
+    if (!heldOut_.empty()) {
+      bio::TrialSetOptions others = typed.trials;
+      others.ownStart = false;
+      heldOut.emplace(model, armOptions(simulation_), read(heldOut_, model, summary), others);
+    }
+
+    bio::CalibrationOptions options = typed;
+    bio::Calibration calibration;
+    const auto begin = std::chrono::steady_clock::now();
+    {
+      ProgressBar bar("calibrate");
+      options.progress = [&](double share) {
+        bar.update(share);
+        return true;
+      };
+      calibration = bio::calibrate(training, heldOut ? &*heldOut : nullptr, options);
+    }
+    summary.setSimulation(
+        simulation_.integrator, simulation_.stepOrDefault(), longestDuration(training.trials()),
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    std::optional<bio::CalibratedModel> calibrated;
+    if (calibration.calibrated) {
+      calibrated =
+          bio::calibratedModel(training, heldOut ? &*heldOut : nullptr, armOptions(simulation_),
+                               options.trials.simulation, calibration);
+    }
+    const CalibrateFindings findings{model_,  training,    heldOut ? &*heldOut : nullptr,
+                                     options, calibration, calibrated ? &*calibrated : nullptr};
+    tellCalibrate(findings, summary);
+    warnOfSteps(model, training, typed.trials, calibration, summary);
+    if (calibrated) {
+      writeDriven(*calibrated, summary, folder);
+      writeModel(findings, calibrated->model, summary, folder);
+      folder.write("parameters.csv",
+                   [&](std::ostream& out) { writeFitted(fittedNumbers(calibration), out); });
+      const NamedCovariance covariance = covarianceOf(calibration);
+      if (!covariance.names.empty()) {
+        folder.write("covariance.csv",
+                     [&](std::ostream& out) { writeCovariance(covariance, out); });
+      }
+    }
+    deliver(context, summary, calibrateReport(findings), folder);
+    return calibration.failure.empty() && calibration.converged ? ExitStatus::done
+                                                                : ExitStatus::answerIsNo;
+  }
+
+ private:
+  ExitStatus listAll(const CommandContext& context) const {
+    Summary summary(context);
+    const bio::Model model = readModel(model_, summary);
+    return listParameters(context, model, movableSystem(model, model_, simulation_, summary));
+  }
+
+  bio::CalibrationOptions calibrationOptions(const CommandContext& context) const {
+    if (trials_.empty()) throw std::invalid_argument("TRIAL is required (see --help)");
+    if (parameters_.empty()) {
+      throw std::invalid_argument("--parameters is required; --list-parameters lists the choices");
+    }
+    bio::CalibrationOptions options;
+    for (const std::string& name : parameters_) {
+      if (name.empty()) throw std::invalid_argument("--parameters: a name is empty");
+    }
+    options.trials.parameters = parameters_;
+    options.trials.ownStart = ownStart_;
+    options.trials.initial = byName(simulation_.initial);
+    options.trials.simulation = simulationOptions(simulation_, 0, 1);
+    options.trials.threads = context.threads;
+    options.priors = !noPriors_;
+    for (const NamedPair& prior : parsePairs(priors_, "--prior")) {
+      options.prior[prior.name] = {prior.first, prior.second};
+    }
+    for (const NamedPair& bounds : parsePairs(bounds_, "--bounds")) {
+      options.bounds[bounds.name] = {bounds.first, bounds.second};
+    }
+    if (noise_) options.noise = *noise_ / radian;
+    options.loss.kind = loss_ == "huber"     ? info::RobustLoss::Kind::huber
+                        : loss_ == "student" ? info::RobustLoss::Kind::student
+                                             : info::RobustLoss::Kind::gaussian;
+    options.starts = starts_;
+    options.seed = context.seed;
+    options.profile = profile_;
+    options.bootstrap = bootstrap_.value_or(0);
+    return options;
+  }
+
+  /// What is positive by its nature: numbers of a muscle, masses, radii. A position is not.
+  static bool cannotBeNegative(const bio::ModelParameter& one) {
+    return one.lower >= 0 && (std::holds_alternative<bio::MuscleTarget>(one.targets.front()) ||
+                              one.unit == "kg" || one.name.ends_with(".radius"));
+  }
+
+  static void boundsMustBePossible(const bio::TrialSet& training,
+                                   const bio::CalibrationOptions& options) {
+    for (const auto& [name, bounds] : options.bounds) {
+      const bio::ModelParameter& one =
+          training.catalogue().parameters()[training.catalogue().find(name)];
+      if (bounds.first >= 0 || !cannotBeNegative(one)) continue;
+      throw std::invalid_argument(fmt::format("--bounds: lower bound of {} = {} {}, must be ≥ 0",
+                                              one.name, bounds.first, one.unit));
+    }
+  }
+
+  std::vector<bio::Trial> read(const std::vector<std::string>& files, const bio::Model& model,
+                               Summary& summary) const {
+    std::vector<bio::Trial> trials;
+    for (const std::string& file : files) {
+      trials.push_back(readTrialFile(file, model, simulation_));
+      for (const std::string& warning : trials.back().warnings) summary.warn(warning);
+      for (const bio::MeasuredMotion& motion : trials.back().measured) {
+        const std::string why = bio::whyNotUsable(motion);
+        if (!why.empty())
+          summary.warn(fmt::format("{}: measured {} for a reliable estimate", file, why));
+      }
+    }
+    return trials;
+  }
+
+  /// Steps that are too long look like an error of the model: the trials whose motion changes when
+  /// they are halved are named.
+  void warnOfSteps(const bio::Model& model, const bio::TrialSet& training,
+                   bio::TrialSetOptions halved, const bio::Calibration& c, Summary& summary) const {
+    if (!c.calibrated) return;
+    halved.simulation.step /= 2;
+    const bio::TrialSet finer(model, armOptions(simulation_), training.trials(), halved);
+    Eigen::VectorXd theta(static_cast<Eigen::Index>(c.parameters.size()));
+    for (std::size_t i = 0; i < c.parameters.size(); ++i) {
+      theta[static_cast<Eigen::Index>(i)] = c.parameters[i].value;
+    }
+    const auto changes = finer.largestDifferences(finer.predictor().outputs(theta), c.after);
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+      if (!(changes[i] > 0.2 * c.noise.sd)) continue;
+      summary.warn(
+          fmt::format("{}: halving the step of {} s changes the simulated angles by up to {:.2g} "
+                      "deg, {:.2g} standard deviations of the noise: use a shorter --step",
+                      training.trials()[i].file, numberText(2 * halved.simulation.step),
+                      changes[i] * radian, changes[i] / c.noise.sd));
+    }
+  }
+
+  void writeModel(const CalibrateFindings& f, bio::Model model, const Summary& summary,
+                  OutputFolder& folder) const {
+    std::string text =
+        fmt::format("Calibrated by FisherHill {} ({})", info::version(), summary.commandLine());
+    for (std::size_t i = 0; i < summary.inputs().size(); ++i) {
+      const char* what = i == 0 ? "from" : i <= trials_.size() ? "to" : "tested on";
+      text += fmt::format("; {} {} SHA-256 {}", what, summary.inputs()[i].path,
+                          summary.inputs()[i].sha256);
+    }
+    for (const bio::CalibratedParameter& one : f.calibration.parameters) {
+      if (!one.ofTrial) text += "; " + estimateWords(one);
+    }
+    model.credits += model.credits.empty() ? text : ". " + text;
+    folder.writeFile("calibrated.osim", [&](const std::filesystem::path& path) {
+      bio::rewriteOsim(model_, model, path);
+    });
+  }
+
+  /// Of the model's parameters that have an interval, for `ensemble`.
+  static NamedCovariance covarianceOf(const bio::Calibration& calibration) {
+    NamedCovariance covariance;
+    std::vector<Eigen::Index> kept;
+    std::vector<double> sds;
+    for (std::size_t i = 0; i < calibration.parameters.size(); ++i) {
+      const bio::CalibratedParameter& one = calibration.parameters[i];
+      if (one.ofTrial || one.asked.name.starts_with("emg.") || !(one.sd > 0)) continue;
+      covariance.names.push_back(one.asked.name);
+      kept.push_back(static_cast<Eigen::Index>(i));
+      sds.push_back(one.sd);
+    }
+    const Eigen::Map<const Eigen::VectorXd> d(sds.data(), static_cast<Eigen::Index>(sds.size()));
+    const Eigen::MatrixXd correlation = calibration.correlation(kept, kept);
+    covariance.values = d.asDiagonal() * correlation * d.asDiagonal();
+    return covariance;
+  }
+
+  /// "driven_1.sto", or "driven_held_out_1.sto", of the i-th trial, from 0.
+  static std::string drivenName(std::size_t i, bool heldOut) {
+    return fmt::format("driven_{}{}.sto", heldOut ? "held_out_" : "", i + 1);
+  }
+
+  /// The trials that stand for those recorded, whose starts the model then has, too.
+  void writeDriven(bio::CalibratedModel& calibrated, Summary& summary, OutputFolder& folder) const {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const bio::CalibratedTrial& one : calibrated.trials) {
+      std::string file = (one.isHeldOut ? heldOut_ : trials_)[one.index];
+      nlohmann::ordered_json json{{"file", file}, {"role", one.isHeldOut ? "held_out" : "train"}};
+      if (one.driven) {
+        const std::string name = drivenName(one.index, one.isHeldOut);
+        folder.writeFile(name, [&](const std::filesystem::path& path) {
+          bio::writeTable(*one.driven, path);
+          for (bio::TrialStart start : one.starts) {
+            start.file = name;
+            start.sha256 = sha256OfFile(path);
+            calibrated.model.fitted.starts.push_back(std::move(start));
+          }
+        });
+        file = folder.active() ? folder.path(name).string() : name;
+      }
+      json["replay_file"] = file;
+      json["rmse_after_deg"] = one.after * radian;
+      json["start"] = nlohmann::ordered_json::array();
+      for (const bio::TrialStart& start : one.starts) {
+        json["start"].push_back(
+            {{"coordinate", start.coordinate}, {"value", start.value}, {"speed", start.speed}});
+      }
+      list.push_back(std::move(json));
+    }
+    summary.set("trials", list);
+  }
+
+  std::string model_;
+  std::vector<std::string> trials_, heldOut_, parameters_, priors_, bounds_, profile_;
+  bool ownStart_ = false, noPriors_ = false, list_ = false;
+  std::optional<double> noise_;
+  std::string loss_ = "gaussian";
+  int starts_ = 1;
+  std::optional<int> bootstrap_;
+  SimulationOptions simulation_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> calibrateCommand() {
+  return std::make_unique<Calibrate>();
+}
+
+}  // namespace app

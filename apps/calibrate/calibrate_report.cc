@@ -1,0 +1,438 @@
+#include "calibrate/calibrate_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "output/angle_unit.h"
+#include "output/text.h"
+#include "report/interval_drawing.h"
+
+namespace app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+double rmse(const bio::TrialSet& set, const Eigen::MatrixXd& predicted) {
+  return std::sqrt(set.meanSquare(predicted)) * radian;
+}
+
+/// What replays of the calibrated model give [deg].
+double rmseAfter(const CalibrateFindings& f, bool heldOut) {
+  return f.calibrated->rms(heldOut) * radian;
+}
+
+std::vector<double> degrees(const Eigen::VectorXd& values) {
+  const Eigen::VectorXd result = values * radian;
+  return {result.begin(), result.end()};
+}
+
+/// Where the samples of a series begin.
+Eigen::Index beginOf(const bio::TrialSet& set, std::size_t series) {
+  Eigen::Index begin = 0;
+  for (std::size_t i = 0; i < series; ++i) begin += set.series()[i].values.size();
+  return begin;
+}
+
+Figure overlay(const bio::TrialSet& set, std::size_t index, const Eigen::MatrixXd& before,
+               const Eigen::MatrixXd& after, const char* role) {
+  const bio::MeasuredSeries& series = set.series()[index];
+  const Eigen::Index begin = beginOf(set, index), n = series.values.size();
+  const std::string& file = set.trials()[series.trial].file;
+  const Eigen::VectorXd was = before.middleCols(begin, n).transpose();
+  const Eigen::VectorXd is = after.middleCols(begin, n).transpose();
+  const auto rms = [&](const Eigen::VectorXd& y) {
+    return std::sqrt((y - series.values).squaredNorm() / static_cast<double>(n)) * radian;
+  };
+  Figure figure{.title = fmt::format("{} ({})", file, role),
+                .xLabel = "Time [s]",
+                .yLabel = fmt::format("{} [deg]", series.coordinate),
+                .caption = fmt::format("RMS error {:.3g} deg before calibration, {:.3g} deg after.",
+                                       rms(was), rms(is))};
+  figure.series.push_back({.name = "measured",
+                           .x = series.times,
+                           .y = degrees(series.values),
+                           .style = SeriesStyle::points});
+  figure.series.push_back(
+      {.name = "before", .x = series.times, .y = degrees(was), .style = SeriesStyle::dashed});
+  figure.series.push_back({.name = "calibrated", .x = series.times, .y = degrees(is)});
+  return figure;
+}
+
+Figure residualFigure(const CalibrateFindings& f) {
+  Figure figure{.title = "Residuals",
+                .xLabel = "Time [s]",
+                .yLabel = "Measured − calibrated [deg]",
+                .caption =
+                    "Residuals of the calibrated model. White noise scatters about 0; slow waves "
+                    "indicate an error of the model."};
+  const auto add = [&](const bio::TrialSet& set, const Eigen::MatrixXd& after, bool held) {
+    for (std::size_t i = 0; i < set.series().size() && figure.series.size() < 8; ++i) {
+      const bio::MeasuredSeries& series = set.series()[i];
+      const Eigen::VectorXd r =
+          series.values - after.middleCols(beginOf(set, i), series.values.size()).transpose();
+      figure.series.push_back(
+          {.name = set.trials()[series.trial].file + (held ? " (held out)" : ""),
+           .x = series.times,
+           .y = degrees(r),
+           .style = held ? SeriesStyle::dashed : SeriesStyle::line});
+    }
+  };
+  add(f.training, f.calibration.after, false);
+  if (f.heldOut) add(*f.heldOut, f.calibration.heldOutAfter, true);
+  return figure;
+}
+
+/// Mean interval between measured values of the first series [s].
+double interval(const bio::TrialSet& set) {
+  const std::vector<double>& times = set.series().front().times;
+  return times.size() < 2 ? 0.0
+                          : (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+}
+
+Figure autocorrelationFigure(const CalibrateFindings& f) {
+  const bio::ResidualNoise& noise = f.calibration.noise;
+  const double step = interval(f.training);
+  const double bound = 2 / std::sqrt(static_cast<double>(f.calibration.after.size()));
+  Figure figure{.title = "Autocorrelation of the residuals",
+                .xLabel = "Lag [s]",
+                .yLabel = "Correlation [1]",
+                .caption = "White noise stays within the band (two standard deviations)."};
+  Series series{.name = "residuals"};
+  Series band{.name = "white noise", .style = SeriesStyle::dashed};
+  for (std::size_t k = 0; k < noise.autocorrelation.size(); ++k) {
+    const double lag = static_cast<double>(k) * step;
+    series.x.push_back(lag);
+    series.y.push_back(noise.autocorrelation[k]);
+    band.x.push_back(lag);
+    band.y.push_back(0);
+    band.bandLow.push_back(-bound);
+    band.bandHigh.push_back(bound);
+  }
+  figure.series = {std::move(series), std::move(band)};
+  return figure;
+}
+
+std::string intervalText(double lower, double upper) {
+  if (std::isnan(lower) || std::isnan(upper)) return "–";
+  const auto end = [](double x) {
+    return std::isinf(x) ? std::string(x < 0 ? "−∞" : "∞") : numberText(x);
+  };
+  return fmt::format("{} … {}", end(lower), end(upper));
+}
+
+Table estimateTable(const CalibrateFindings& f) {
+  const bool bootstrapped = f.options.bootstrap > 0;
+  Table table{"",
+              {"parameter", "unit", "model", "estimate", "± sd", "95 % interval", "prior or bounds",
+               "data alone", "identifiable"},
+              {}};
+  table.columns[5] = fmt::format("{:g} % interval", f.options.confidence * 100);
+  if (!f.options.profile.empty()) table.columns.push_back("profile interval");
+  if (bootstrapped) table.columns.push_back("bootstrap interval");
+  for (const bio::CalibratedParameter& one : f.calibration.parameters) {
+    const auto& prior = one.asked.prior;
+    std::vector<std::string> row = {
+        one.asked.name,
+        one.asked.unit,
+        numberText(one.model),
+        numberText(one.value),
+        numberText(one.sd, 3),
+        intervalText(one.lower, one.upper),
+        prior ? fmt::format("{} ± {}", numberText(prior->mean), numberText(prior->sd, 3))
+              : intervalText(one.asked.lower, one.asked.upper),
+        std::isinf(one.determinacy.bound) ? "± ∞" : "± " + numberText(one.determinacy.bound, 3),
+        one.identifiable ? "yes"
+        : one.atBound    ? "at its bound"
+                         : "no"};
+    if (!f.options.profile.empty()) {
+      row.push_back(one.profile && one.identifiable
+                        ? intervalText(one.profile->lower, one.profile->upper)
+                        : "–");
+    }
+    if (bootstrapped) row.push_back(intervalText(one.bootstrapLower, one.bootstrapUpper));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+/// Estimates and what was known before, in deviations of the latter.
+VectorDrawing intervals(const CalibrateFindings& f) {
+  const double z = info::normalQuantile(f.options.confidence);
+  std::vector<IntervalRow> rows;
+  for (const bio::CalibratedParameter& one : f.calibration.parameters) {
+    const auto scaled = [&](double value) { return (value - one.model) / one.known; };
+    IntervalRow row{.name = one.asked.name, .estimate = scaled(one.value)};
+    if (const auto& prior = one.asked.prior) {
+      row.before =
+          std::pair(scaled(prior->mean - z * prior->sd), scaled(prior->mean + z * prior->sd));
+    }
+    if (!std::isnan(one.lower)) row.interval = std::pair(scaled(one.lower), scaled(one.upper));
+    rows.push_back(std::move(row));
+  }
+  return {"Estimates and priors",
+          intervalDrawing(rows, "Difference from the model's value [prior sd]"),
+          fmt::format("Bars are {:g} % confidence intervals. An estimate without a bar is not "
+                      "identifiable or is at its bound.",
+                      f.options.confidence * 100)};
+}
+
+Table correlationTable(const CalibrateFindings& f) {
+  Table table{"Correlations of the estimates", {""}, {}};
+  const auto& parameters = f.calibration.parameters;
+  for (const auto& one : parameters) table.columns.push_back(one.asked.name);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    std::vector<std::string> row = {parameters[i].asked.name};
+    for (std::size_t j = 0; j < parameters.size(); ++j) {
+      row.push_back(
+          parameters[i].atBound || parameters[j].atBound
+              ? "–"
+              : fmt::format("{:.3f}", f.calibration.correlation(static_cast<Eigen::Index>(i),
+                                                                static_cast<Eigen::Index>(j))));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+Figure profileFigure(const bio::CalibratedParameter& one) {
+  const info::Profile& profile = one.profile->profile;
+  Figure figure{.title = fmt::format("Profile likelihood of {}", one.asked.name),
+                .xLabel = info::label(one.asked),
+                .yLabel = "Negative log posterior [nats]",
+                .caption =
+                    "The smallest cost with the parameter fixed and all others re-estimated. "
+                    "Values below the dashed line are in the confidence region."};
+  Series curve{.name = "profile"}, threshold{.name = "threshold", .style = SeriesStyle::dashed};
+  for (const info::ProfilePoint& point : profile.points) {
+    curve.x.push_back(point.value);
+    curve.y.push_back(point.cost);
+    threshold.x.push_back(point.value);
+    threshold.y.push_back(profile.threshold);
+  }
+  figure.series = {std::move(curve), std::move(threshold)};
+  return figure;
+}
+
+Table startTable(const CalibrateFindings& f) {
+  Table table{"Starts", {"start", "cost [nats]", "ended"}, {}};
+  for (std::size_t i = 0; i < f.calibration.starts.size(); ++i) {
+    const info::StartOutcome& one = f.calibration.starts[i];
+    table.rows.push_back(
+        {i == 0 ? "model" : fmt::format("{}", i + 1), numberText(one.cost, 7), one.why});
+  }
+  return table;
+}
+
+/// What remains is more than noise; empty where it is not.
+std::string aboveNoise(const CalibrateFindings& f) {
+  if (!f.calibration.leavesMoreThanNoise()) return "";
+  return fmt::format(
+      " Neighbouring samples scatter by only {:.3g} deg: these parameters do not explain the rest "
+      "of the residual. Another parameter may, or an effect that the model lacks.",
+      f.calibration.noiseFloor * radian);
+}
+
+std::string noiseText(const CalibrateFindings& f) {
+  const bio::ResidualNoise& noise = f.calibration.noise;
+  if (f.options.noise) {
+    return fmt::format("White noise of {:.3g} deg was given; the reduced χ² is {:.3g}.{}",
+                       noise.sd * radian, f.calibration.reducedChiSquare,
+                       f.calibration.reducedChiSquare > 1.5
+                           ? " The residuals are larger than this noise: the model does not fit "
+                             "the data to within the noise, and the intervals are too narrow."
+                           : "");
+  }
+  if (noise.correlationTime <= 1) {
+    return fmt::format(
+               "The residuals are white with a standard deviation of {:.3g} deg, which was taken "
+               "as the noise.",
+               noise.sd * radian) +
+           aboveNoise(f);
+  }
+  return fmt::format(
+             "The residuals have a standard deviation of {:.3g} deg and are correlated: {:.3g} "
+             "samples ({:.2g} s) count as one independent value, so the intervals are {:.2g} times "
+             "wider than for white noise. Part of the residual is error of the model; the bias "
+             "that it causes in the estimates is not covered by the intervals.",
+             noise.sd * radian, noise.correlationTime, noise.correlationTime * interval(f.training),
+             std::sqrt(noise.correlationTime)) +
+         aboveNoise(f);
+}
+
+/// "fell from 12° to 1.49° on the calibration trial"
+std::string changeWords(double before, double after, const char* role, std::size_t trials) {
+  const std::string was = fmt::format("{:.3g}°", before), is = fmt::format("{:.3g}°", after);
+  const std::string change =
+      !std::isfinite(before) ? "is " + is
+      : was == is            ? "stayed at " + is
+                  : fmt::format("{} from {} to {}", after < before ? "fell" : "rose", was, is);
+  return fmt::format("{} on the {} trial{}", change, role, trials == 1 ? "" : "s");
+}
+
+std::string verdictOf(const CalibrateFindings& f) {
+  const bio::Calibration& c = f.calibration;
+  if (!c.failure.empty()) return fmt::format("No estimate: {}.", c.failure);
+  std::ptrdiff_t all = 0, identifiable = 0;
+  for (const auto& one : c.parameters) {
+    all += !one.ofTrial;
+    identifiable += !one.ofTrial && one.identifiable;
+  }
+  std::string text = "RMS error " + changeWords(rmse(f.training, c.before), rmseAfter(f, false),
+                                                "calibration", f.training.trials().size());
+  if (f.heldOut) {
+    text += " and " + changeWords(rmse(*f.heldOut, c.heldOutBefore), rmseAfter(f, true), "held-out",
+                                  f.heldOut->trials().size());
+  }
+  text += ". " + identifiableWords(identifiable, all) + ".";
+  if (!c.converged)
+    text += fmt::format(" The search found no minimum ({}).", info::describe(c.why));
+  return text;
+}
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json estimateJson(const CalibrateFindings& f, const bio::CalibratedParameter& one) {
+  Json json = {{"value", one.value},
+               {"sd", number(one.sd)},
+               {"unit", one.asked.unit},
+               {"identifiable", one.identifiable},
+               {"model", one.model},
+               {"interval", Json::array({number(one.lower), number(one.upper)})},
+               {"sd_data_alone", number(one.determinacy.bound)},
+               {"at_bound", one.atBound}};
+  if (one.asked.prior) {
+    json["prior"] = {{"mean", one.asked.prior->mean}, {"sd", one.asked.prior->sd}};
+  }
+  if (!one.why.empty()) json["why"] = one.why;
+  if (one.profile && one.identifiable) {
+    json["profile_interval"] =
+        Json::array({number(one.profile->lower), number(one.profile->upper)});
+  }
+  if (f.options.bootstrap > 0) {
+    json["bootstrap_sd"] = number(one.bootstrapSd);
+    json["bootstrap_interval"] =
+        Json::array({number(one.bootstrapLower), number(one.bootstrapUpper)});
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string estimateWords(const bio::CalibratedParameter& one) {
+  const std::string was = fmt::format("was {}", numberText(one.model, 6));
+  if (std::isnan(one.sd)) {
+    return fmt::format("{} = {} ({}; no interval: {})", one.asked.name,
+                       withUnit(one.value, one.asked.unit, 6), was, one.why);
+  }
+  return fmt::format("{} = {} ± {} ({})", one.asked.name, numberText(one.value, 6),
+                     withUnit(one.sd, one.asked.unit, 3), was);
+}
+
+std::vector<info::discover::FittedNumber> fittedNumbers(const bio::Calibration& calibration) {
+  std::vector<info::discover::FittedNumber> numbers;
+  for (std::size_t i = 0; i < calibration.parameters.size(); ++i) {
+    const bio::CalibratedParameter& one = calibration.parameters[i];
+    const auto& prior = one.asked.prior;
+    numbers.push_back({i, one.asked.name, one.asked.unit, one.model, one.value, one.sd,
+                       prior ? prior->sd : std::nan(""),
+                       prior ? (one.value - prior->mean) / prior->sd : std::nan("")});
+  }
+  return numbers;
+}
+
+void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
+  const bio::Calibration& c = f.calibration;
+  if (!c.failure.empty()) {
+    summary.set("status", "no solution");
+    summary.set("why", c.failure);
+    return;
+  }
+  summary.set("status", c.converged ? "ok" : "not converged");
+  if (!c.converged) summary.set("why", info::describe(c.why));
+  summary.set("rmse_train_deg", rmseAfter(f, false));
+  summary.set("rmse_train_before_deg", rmse(f.training, c.before));
+  summary.set("rmse_held_out_deg", number(rmseAfter(f, true)));
+  summary.set("rmse_held_out_before_deg",
+              f.heldOut ? number(rmse(*f.heldOut, c.heldOutBefore)) : Json(nullptr));
+  Json estimates = Json::object();
+  for (const bio::CalibratedParameter& one : c.parameters) {
+    estimates[one.asked.name] = estimateJson(f, one);
+    if (!one.why.empty() && !one.ofTrial) summary.warn(one.why);
+  }
+  summary.set("estimates", estimates);
+  summary.set("noise_deg", c.noise.sd * radian);
+  summary.set("noise_is", f.options.noise ? "given" : "from the residuals");
+  summary.set("sample_scatter_deg", c.noiseFloor * radian);
+  summary.set("residual_above_noise", c.leavesMoreThanNoise());
+  const double noises =
+      f.options.noise ? rmse(f.training, c.after) / (radian * *f.options.noise) : 0;
+  if (noises > 3) {
+    summary.warn(
+        fmt::format("the residual is {:.3g} times the noise given by --noise-deg: these parameters "
+                    "alone do not explain the trials",
+                    noises));
+  }
+  summary.set("samples_per_independent_value", c.noise.correlationTime);
+  summary.set("reduced_chi_square", number(c.reducedChiSquare));
+  summary.set("iterations", c.iterations);
+  if (c.starts.size() > 1) {
+    summary.set("starts", c.starts.size());
+    summary.set("starts_that_agree", c.agreeingStarts);
+  }
+  if (f.options.bootstrap > 0) summary.set("bootstrap_converged", c.bootstrapConverged);
+  Json correlation = Json::array();
+  for (const auto& row : c.correlation.rowwise()) {
+    correlation.push_back(std::vector<double>(row.begin(), row.end()));
+  }
+  summary.set("correlation", correlation);
+}
+
+Report calibrateReport(const CalibrateFindings& f) {
+  const bio::Calibration& c = f.calibration;
+  Report report;
+  std::vector<std::string> files;
+  for (const bio::Trial& trial : f.training.trials()) files.push_back(trial.file);
+  report.title = fmt::format("Calibration of {} on {}", f.modelFile, fmt::join(files, ", "));
+  report.verdict = verdictOf(f);
+  if (!c.failure.empty()) return report;
+  report.mainFigure = overlay(f.training, 0, c.before, c.after, "calibration");
+  report.details.push_back(Section{"Estimates"});
+  report.details.push_back(estimateTable(f));
+  for (const bio::CalibratedParameter& one : c.parameters) {
+    if (!one.why.empty()) report.details.push_back(Paragraph{one.why + "."});
+  }
+  report.details.emplace_back(intervals(f));
+  if (c.parameters.size() > 1) report.details.push_back(correlationTable(f));
+  for (const bio::CalibratedParameter& one : c.parameters) {
+    if (one.profile) report.details.push_back(profileFigure(one));
+  }
+  if (f.heldOut) {
+    report.details.push_back(Section{"Held-out trials"});
+    for (std::size_t i = 0; i < f.heldOut->series().size(); ++i) {
+      report.details.push_back(overlay(*f.heldOut, i, c.heldOutBefore, c.heldOutAfter, "held out"));
+    }
+  }
+  if (f.training.series().size() > 1) {
+    report.details.push_back(Section{"Other calibration trials"});
+    for (std::size_t i = 1; i < f.training.series().size(); ++i) {
+      report.details.push_back(overlay(f.training, i, c.before, c.after, "calibration"));
+    }
+  }
+  report.details.push_back(Section{"Residuals"});
+  report.details.push_back(Paragraph{noiseText(f)});
+  report.details.push_back(residualFigure(f));
+  if (!c.noise.autocorrelation.empty()) report.details.push_back(autocorrelationFigure(f));
+  if (c.starts.size() > 1) report.details.push_back(startTable(f));
+  report.details.push_back(Paragraph{
+      fmt::format("{} iterations; {}. “Data alone” is the Cramér–Rao bound without priors, all "
+                  "parameters being unknown. A parameter counts as identifiable if this bound, "
+                  "combined with the prior, is at most half the prior standard deviation.",
+                  c.iterations, info::describe(c.why))});
+  return report;
+}
+
+}  // namespace app

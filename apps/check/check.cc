@@ -1,0 +1,235 @@
+#include "check/check.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "bio/model/model_review.h"
+#include "bio/opensim/osim_file.h"
+#include "bio/path/length_jumps.h"
+#include "bio/tables/file_error.h"
+#include "bio/tables/table_file.h"
+#include "bio/tables/trial.h"
+#include "bio/tables/trial_review.h"
+#include "output/result.h"
+#include "output/text.h"
+
+namespace app {
+namespace {
+
+struct ReviewFinding {
+  std::string file;
+  std::string level;  ///< "error", "warning" or "unusual"
+  std::string message;
+};
+
+struct Findings {
+  std::vector<ReviewFinding> list;
+
+  void add(const std::string& file, const std::string& level, const std::string& message) {
+    const bool named = message.starts_with(file + ":");
+    list.push_back({file, level, oneLine(named ? message : file + ": " + message)});
+  }
+  void add(const std::string& file, const bio::Remark& remark) {
+    const char* level = remark.weight == bio::Weight::error     ? "error"
+                        : remark.weight == bio::Weight::warning ? "warning"
+                                                                : "unusual";
+    add(file, level, fmt::format("{}: {}", remark.subject, remark.message));
+  }
+  auto count(std::string_view level) const {
+    return std::count_if(list.begin(), list.end(), [&](const auto& f) { return f.level == level; });
+  }
+};
+
+/// The message without the names in quotes, to see which findings are alike.
+std::string patternOf(const ReviewFinding& finding) {
+  std::string pattern = finding.level + finding.file;
+  bool quoted = false;
+  for (const char c : finding.message) {
+    if (c == '\'') quoted = !quoted;
+    if (!quoted) pattern += c;
+  }
+  return pattern;
+}
+
+/// For people: errors first, then warnings; of many findings that differ in names only, the first.
+std::vector<ReviewFinding> shortened(std::vector<ReviewFinding> findings) {
+  std::stable_sort(findings.begin(), findings.end(),
+                   [](const ReviewFinding& a, const ReviewFinding& b) {
+                     const auto rank = [](const ReviewFinding& f) {
+                       return f.level == "error" ? 0 : f.level == "warning" ? 1 : 2;
+                     };
+                     return rank(a) < rank(b);
+                   });
+  std::map<std::string, int> alike;
+  for (const ReviewFinding& finding : findings) ++alike[patternOf(finding)];
+  std::vector<ReviewFinding> shown;
+  for (ReviewFinding& finding : findings) {
+    int& count = alike[patternOf(finding)];
+    if (count == 0) continue;
+    if (count > 1) finding.message += fmt::format(" (and {} similar findings)", count - 1);
+    count = 0;
+    shown.push_back(std::move(finding));
+  }
+  return shown;
+}
+
+bool isModel(const std::string& file) {
+  return std::filesystem::path(file).extension() == ".osim";
+}
+
+/// What a file holds, for the report.
+using Contents = std::vector<ReportPart>;
+
+Contents checkModel(const std::string& file, const bio::Model& model, Findings& findings) {
+  for (const std::string& warning : model.warnings) findings.add(file, "warning", warning);
+  for (const std::string& remark : model.remarks) findings.add(file, "unusual", remark);
+  for (const bio::Remark& remark : bio::reviewModel(model)) findings.add(file, remark);
+  for (const bio::LengthJump& jump : bio::lengthJumps(model)) {
+    findings.add(file, "unusual", fmt::format("muscle '{}': {}", jump.muscle, describe(jump)));
+  }
+  std::size_t coordinates = 0;
+  for (const bio::Joint& joint : model.joints) coordinates += joint.coordinates.size();
+  return {Section{file},
+          Paragraph{fmt::format("Model “{}”: {} bodies, {} joints with {} coordinates, {} muscles, "
+                                "{} wrap objects.",
+                                model.name, model.bodies.size(), model.joints.size(), coordinates,
+                                model.muscles.size(), model.wrapObjects.size())}};
+}
+
+/// Reads the trial as one of each model, so that columns are matched with muscles and coordinates.
+Contents checkTrial(const std::string& file, const std::vector<bio::Model>& models,
+                    Findings& findings) {
+  const bio::Table table = bio::readTable(file);
+  for (const bio::Model& model : models) {
+    const bio::Trial trial = bio::readTrial(file, model, {.experimentalConditions = true});
+    for (const std::string& warning : trial.warnings) findings.add(file, "warning", warning);
+    for (const bio::Remark& remark : bio::reviewTrial(trial, model)) findings.add(file, remark);
+  }
+  const Eigen::VectorXd times = bio::timesOf(table);
+  Table columns{"Columns", {"column", "smallest", "largest", "not measured"}, {}};
+  Figure figure{.title = "All columns", .xLabel = "Time [s]", .yLabel = "Value as in the file"};
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    const auto column = table.values.col(static_cast<Eigen::Index>(i));
+    columns.rows.push_back({table.columns[i],
+                            numberText(column.minCoeff<Eigen::PropagateNumbers>()),
+                            numberText(column.maxCoeff<Eigen::PropagateNumbers>()),
+                            std::to_string(column.array().isNaN().count())});
+    if (table.columns[i].starts_with("time")) continue;
+    // what is measured in every other row only would be a line of gaps
+    Series series{.name = table.columns[i]};
+    for (Eigen::Index row = 0; row < times.size(); ++row) {
+      if (!std::isfinite(column[row])) continue;
+      series.x.push_back(times[row]);
+      series.y.push_back(column[row]);
+    }
+    figure.series.push_back(std::move(series));
+  }
+  const Eigen::Index rows = times.size();
+  const double duration = times(rows - 1) - times(0);
+  return {Section{file}, Paragraph{fmt::format("{} rows over {} s.", rows, numberText(duration))},
+          figure, columns};
+}
+
+class Check : public Command {
+ public:
+  About about() const override {
+    return {"check", "Check models and trials, and list errors and unusual values",
+            "fisherhill check models/elbow8.osim"};
+  }
+
+  void addOptions(CLI::App& options) override {
+    options
+        .add_option(
+            "FILE", files_,
+            "models (.osim) and trials (.sto, .mot, .csv); trials are checked against the models")
+        ->required()
+        ->check(CLI::ExistingFile)
+        ->type_name("");
+  }
+
+  ExitStatus run(const CommandContext& context) override {
+    OutputFolder folder(context, {});
+    Summary summary(context);
+    Report report;
+    Findings findings;
+    for (const std::string& file : files_) summary.addInput(file);
+
+    // Models first: a trial is checked against all of them.
+    std::vector<bio::Model> models;
+    std::vector<std::string> modelFiles;
+    const auto checkAll = [&](bool areModels) {
+      for (const std::string& file : files_) {
+        if (isModel(file) != areModels) continue;
+        try {
+          if (areModels) {
+            models.push_back(bio::readOsim(file));
+            modelFiles.push_back(file);
+          }
+          const Contents contents = areModels ? checkModel(file, models.back(), findings)
+                                              : checkTrial(file, models, findings);
+          report.details.insert(report.details.end(), contents.begin(), contents.end());
+        } catch (const bio::FileError& error) {
+          findings.add(file, "error", error.what());
+        }
+      }
+    };
+    checkAll(true);
+    checkAll(false);
+    std::vector<std::string> limited;
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      const std::string why = bio::whyNotSimulated(models[i]);
+      if (!why.empty()) limited.push_back(fmt::format("{} ({})", modelFiles[i], why));
+    }
+    summary.set("not_simulated", limited);
+    tell(context, findings, limited, summary, report);
+    deliver(context, summary, report, folder);
+    return findings.count("error") == 0 ? ExitStatus::done : ExitStatus::answerIsNo;
+  }
+
+ private:
+  void tell(const CommandContext& context, const Findings& findings,
+            const std::vector<std::string>& limited, Summary& summary, Report& report) const {
+    report.title = fmt::format("Check of {}", fmt::join(files_, ", "));
+    const auto errors = findings.count("error");
+    report.verdict =
+        errors > 0         ? fmt::format("{} cannot be used as it stands.",
+                                 errors == 1 ? "One file" : fmt::format("{} files", errors))
+                : !limited.empty() ? fmt::format(
+                                         "Every file can be read, but these models cannot be simulated: "
+                                                 "{}; moment-arms and render work with them.",
+                                         fmt::join(limited, ", "))
+        : findings.list.empty() ? "No errors and nothing unusual."
+                                : "Every file can be used; unusual values are listed.";
+    summary.set("errors", errors);
+    summary.set("warnings_found", findings.count("warning"));
+    summary.set("unusual", findings.count("unusual"));
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const ReviewFinding& finding : findings.list) {
+      list.push_back(
+          {{"file", finding.file}, {"level", finding.level}, {"message", finding.message}});
+    }
+    summary.set("findings", list);
+
+    Table table{"Findings", {"kind", "finding"}, {}};
+    for (const ReviewFinding& finding : shortened(findings.list)) {
+      table.rows.push_back({finding.level, finding.message});
+      if (!context.json) fmt::print("{}: {}\n", finding.level, finding.message);
+    }
+    if (!table.rows.empty()) report.details.insert(report.details.begin(), table);
+  }
+
+  std::vector<std::string> files_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> checkCommand() {
+  return std::make_unique<Check>();
+}
+
+}  // namespace app

@@ -1,0 +1,205 @@
+#include "compare/compare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bio/analysis/replay.h"
+#include "bio/model/integrator_names.h"
+#include "compare/compare_report.h"
+#include "options/trial_input.h"
+#include "output/progress_bar.h"
+#include "output/result.h"
+#include "output/text.h"
+#include "report/figure_pictures.h"
+
+namespace app {
+namespace {
+
+class Compare : public Command {
+ public:
+  About about() const override {
+    return {"compare", "Compare integrators over time steps: error, run time, and how each fails",
+            "fisherhill compare models/elbow8.osim emg_data/curl_slow.sto --out out/compare"};
+  }
+
+  void addOptions(CLI::App& options) override {
+    addModelArgument(options, model_);
+    addTrialArgument(options, trial_);
+    options
+        .add_option("--integrators", integrators_,
+                    "integrators to compare, of rk4, vi, vi-left, cvode")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->type_name("NAMES")
+        ->default_str("rk4,vi,vi-left,cvode");
+    options
+        .add_option("--steps", steps_,
+                    "time steps [s], in rising order; for cvode the interval of its output")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->type_name("SECONDS")
+        ->default_str("0.0002,0.0003,0.0005,0.0008,0.001,0.002,0.005,0.01,0.02,0.05");
+    options
+        .add_option("--also", also_,
+                    "another program's result to compare with: a table of states with the "
+                    "coordinate; may be repeated")
+        ->type_name("NAME=FILE")
+        ->allow_extra_args(false);
+    options.add_flag("--png", png_, "write the figures of the report as PNG files as well");
+    addSimulationOptions(options, simulation_);
+  }
+
+  ExitStatus run(const CommandContext& context) override {
+    bio::CompareOptions options = compareOptions();
+    OutputFolder folder(context, {"compare.csv"});
+    Summary summary(context);
+    const bio::Model model = readModel(model_, summary);
+    const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
+    const TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
+    const auto& free = arm.skeleton().coordinates();
+    const auto rotation =
+        std::find_if(free.begin(), free.end(), [](const auto& c) { return c.isRotation; });
+    if (rotation == free.end())
+      throw std::invalid_argument("no free coordinate is a rotation, must have one");
+    std::vector<AlsoCurve> also = readAlso(*rotation, summary);
+
+    options.startTime = input.startTime;
+    options.duration = input.duration;
+    options.externalForce = input.externalForce;
+    bio::Comparison comparison;
+    {
+      ProgressBar bar("compare");
+      options.progress = [&](double done) { bar.update(done); };
+      comparison = bio::compareIntegrators(arm, input.excitation, input.start, options);
+    }
+    if (const auto left = bio::leftRange(arm, comparison.reference.motion)) {
+      summary.warn(left->what);
+    }
+    if (comparison.reference.completed()) {
+      for (AlsoCurve& one : also) {
+        one.rms = bio::rmsDifference(arm, one.curve, comparison.reference.motion, rotation->name);
+      }
+    }
+    folder.write("compare.csv", [&](std::ostream& out) { writeCells(comparison, out); });
+
+    const bio::CompareCell* chosen = chosenCell(comparison);
+    const CompareFindings findings{model_,  trial_,     input.trial, arm,   *rotation,
+                                   options, comparison, also,        chosen};
+    if (chosen != nullptr) {
+      summary.setSimulation(bio::name(chosen->integrator), chosen->step, options.duration,
+                            chosen->wallSeconds);
+    } else {
+      summary.setSimulation(simulation_.integrator, simulation_.stepOrDefault(), options.duration,
+                            comparison.reference.motion.wallSeconds);
+    }
+    summary.set("start_from", bio::name(input.from));
+    tellCompare(findings, summary);
+    const Report report = compareReport(findings);
+    if (png_ && folder.active()) {
+      for (const FigurePicture& picture : figurePictures(report)) {
+        folder.write(picture.file, [&](std::ostream& out) { out << picture.png; });
+      }
+    }
+    deliver(context, summary, report, folder);
+    return comparison.reference.confirmed() ? ExitStatus::done : ExitStatus::answerIsNo;
+  }
+
+ private:
+  /// The typed lists; --step joins the steps.
+  bio::CompareOptions compareOptions() const {
+    bio::CompareOptions options;
+    if (!integrators_.empty()) {
+      options.integrators.clear();
+      for (const std::string& name : integrators_) {
+        if (name.empty())
+          throw std::invalid_argument("--integrators: the list is empty, must name at least one");
+        options.integrators.push_back(integratorNamed(name));
+      }
+    }
+    if (!steps_.empty()) {
+      options.steps.clear();
+      for (const std::string& text : steps_) {
+        if (text.empty())
+          throw std::invalid_argument("--steps: the list is empty, must have at least one");
+        double step = 0;
+        try {
+          step = parseNumber(text);
+        } catch (const std::invalid_argument& error) {
+          throw std::invalid_argument(fmt::format("--steps: {}", error.what()));
+        }
+        if (!(step > 0)) {
+          throw std::invalid_argument(fmt::format("--steps: {} s, must be > 0", text));
+        }
+        if (!options.steps.empty() && !(step > options.steps.back())) {
+          throw std::invalid_argument(fmt::format("--steps: {} s after {} s, must rise", text,
+                                                  numberText(options.steps.back())));
+        }
+        options.steps.push_back(step);
+      }
+    }
+    if (simulation_.step) {
+      const auto at =
+          std::lower_bound(options.steps.begin(), options.steps.end(), *simulation_.step);
+      if (at == options.steps.end() || *at != *simulation_.step) {
+        options.steps.insert(at, *simulation_.step);
+      }
+    }
+    return options;
+  }
+
+  static bio::Integrator integratorNamed(const std::string& name) {
+    if (const auto found = bio::integratorNamed(name)) return *found;
+    throw std::invalid_argument(
+        fmt::format("--integrators: '{}', must be rk4, vi, vi-left or cvode", name));
+  }
+
+  std::vector<AlsoCurve> readAlso(const bio::Coordinate& coordinate, Summary& summary) const {
+    std::vector<AlsoCurve> also;
+    for (const std::string& text : also_) {
+      const std::size_t sign = text.find('=');
+      if (sign == 0 || sign == text.npos || sign + 1 == text.size()) {
+        throw std::invalid_argument(fmt::format("--also: '{}' must be NAME=FILE", text));
+      }
+      const std::string file = text.substr(sign + 1);
+      also.push_back({text.substr(0, sign), bio::readCoordinate(file, coordinate)});
+      summary.addInput(file);
+    }
+    return also;
+  }
+
+  /// The run of --integrator, else of the first integrator, at the step nearest to --step.
+  const bio::CompareCell* chosenCell(const bio::Comparison& comparison) const {
+    const bio::CompareCell* best = nullptr;
+    const auto distance = [&](const bio::CompareCell& cell) {
+      return std::abs(std::log(cell.step / simulation_.stepOrDefault()));
+    };
+    const auto isAsked = [&](const bio::CompareCell& cell) {
+      return bio::name(cell.integrator) == simulation_.integrator;
+    };
+    for (const bio::CompareCell& cell : comparison.cells) {
+      if (best == nullptr || (isAsked(cell) && !isAsked(*best)) ||
+          (cell.integrator == best->integrator && distance(cell) < distance(*best))) {
+        best = &cell;
+      }
+    }
+    return best;
+  }
+
+  std::string model_;
+  std::string trial_;
+  std::vector<std::string> integrators_;
+  std::vector<std::string> steps_;
+  std::vector<std::string> also_;
+  bool png_ = false;
+  SimulationOptions simulation_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> compareCommand() {
+  return std::make_unique<Compare>();
+}
+
+}  // namespace app

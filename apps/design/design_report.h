@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bio/design/experiment_design.h"
+#include "info/estimation/monte_carlo.h"
+#include "output/summary.h"
+#include "report/report.h"
+
+namespace app {
+
+/// Result of `design`.
+struct DesignFindings {
+  const std::string& modelFile;
+  const std::string& trialFile;
+  const bio::ExperimentDesign& design;
+  const bio::DesignResult& result;
+  const bio::Coordinate& coordinate;
+  std::vector<bio::ModelParameter> parameters;       ///< of interest, then nuisance
+  std::optional<info::MonteCarloResult> monteCarlo;  ///< for the parameters of interest
+};
+
+void tellDesign(const DesignFindings& findings, Summary& summary);
+
+Report designReport(const DesignFindings& findings);
+
+}  // namespace app

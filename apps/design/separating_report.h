@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include "bio/design/separating_design.h"
+#include "output/summary.h"
+#include "report/report.h"
+
+namespace app {
+
+/// Result of `design --separate`.
+struct SeparatingFindings {
+  const std::string& modelFile;
+  const std::string& trialFile;
+  const bio::discover::SeparatingDesign& design;
+  const bio::discover::SeparatingResult& result;
+  const bio::Coordinate& coordinate;
+};
+
+void tellSeparation(const SeparatingFindings& findings, Summary& summary);
+
+Report separatingReport(const SeparatingFindings& findings);
+
+/// The designed experiment as a trial for replay, with the base model's motion at the sample times
+/// of the coordinate.
+bio::Table separatingTable(const SeparatingFindings& findings);
+
+}  // namespace app

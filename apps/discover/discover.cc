@@ -1,0 +1,113 @@
+#include "discover/discover.h"
+
+#include <fmt/format.h>
+
+#include "discover/discover_search.h"
+#include "discover/model_discovery.h"
+#include "options/number_rules.h"
+#include "options/trial_input.h"
+#include "robot/discover_robot.h"
+
+namespace app {
+namespace {
+
+class Discover : public Command {
+ public:
+  About about() const override {
+    return {"discover", "Find, name and add the effect that a model lacks",
+            "fisherhill discover models/elbow8.osim emg_data/hidden_a/train_1.sto "
+            "emg_data/hidden_a/train_2.sto --hold-out emg_data/hidden_a/held_out.sto --out "
+            "out/discover"};
+  }
+
+  void addOptions(CLI::App& options) override {
+    addModelArgument(options, model_);
+    options
+        .add_option(
+            "TRIAL", trials_,
+            "trials with a measured angle, at least one; with --system every argument is a trial")
+        ->check(CLI::ExistingFile)
+        ->type_name("");
+    addRobotOptions(options, robot_);
+    options
+        .add_option("--hold-out", heldOut_,
+                    "held-out trial, used to test the result; may be repeated")
+        ->check(CLI::ExistingFile)
+        ->allow_extra_args(false)
+        ->delimiter(',')
+        ->type_name("TRIAL");
+    options
+        .add_option(
+            "--noise-deg", noise_,
+            "standard deviation of the measured angle [deg]; default: estimated from the data")
+        ->check(positive())
+        ->type_name("DEG");
+    options.add_option("--without", without_, "effects to exclude from the catalogue, by id")
+        ->allow_extra_args(false)
+        ->delimiter(',')
+        ->type_name("IDS");
+    options.add_option("--max-effects", maxEffects_, "largest number of effects in one hypothesis")
+        ->check(CLI::Range(1, 3))
+        ->capture_default_str()
+        ->type_name("N");
+    addInputScatter(options, inputScatter_);
+    const std::size_t common = options.get_options().size();
+    addSimulationOptions(options, simulation_);
+    const auto all = options.get_options();
+    for (std::size_t i = common; i < all.size(); ++i) {
+      const std::string name = all[i]->get_name();
+      if (name != "--step" && name != "--ignore-extra") armOptions_.push_back(all[i]);
+    }
+  }
+
+  ExitStatus run(const CommandContext& context) override {
+    if (!robot_.system.empty()) {
+      robot_.trials = trials_;
+      robot_.trials.insert(robot_.trials.begin(), model_);
+      robot_.heldOut = heldOut_;
+      robot_.without = without_;
+      robot_.maxEffects = maxEffects_;
+      robot_.inputScatter = inputScatter_;
+      robot_.ignoreExtra = simulation_.ignoreExtra;
+      robot_.step = simulation_.step;
+      mustSuitRobots();
+      return discoverInRobot(robot_, context);
+    }
+    if (trials_.empty()) throw std::invalid_argument("TRIAL is required (see --help)");
+    if (!robot_.with.empty()) throw std::invalid_argument("--with requires --system");
+    if (!robot_.noise.empty())
+      throw std::invalid_argument("--noise requires --system; without it use --noise-deg");
+    ModelDiscoveryRequest request{model_, trials_,     heldOut_,      without_,
+                                  noise_, maxEffects_, inputScatter_, simulation_};
+    return discoverInModel(request, context).status;
+  }
+
+ private:
+  /// Options of the elbow that say nothing of a robot.
+  void mustSuitRobots() const {
+    if (noise_) throw std::invalid_argument("--noise-deg: with --system use --noise");
+    for (const CLI::Option* option : armOptions_) {
+      if (option->count() > 0) {
+        throw std::invalid_argument(
+            fmt::format("{} cannot be combined with --system", option->get_name()));
+      }
+    }
+  }
+
+  std::string model_;
+  std::vector<std::string> trials_, heldOut_, without_;
+  std::optional<double> noise_;
+  int maxEffects_ = 3;
+  std::optional<double> inputScatter_;
+  SimulationOptions simulation_;
+  RobotRequest robot_;
+  std::vector<const CLI::Option*> armOptions_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> discoverCommand() {
+  return std::make_unique<Discover>();
+}
+
+}  // namespace app

@@ -1,0 +1,145 @@
+#include "discover/discover_fit_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "discover/excess_error_text.h"
+#include "info/discovery/likelihood/hypothesis.h"
+#include "output/text.h"
+
+namespace app {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using info::discover::Adequacy;
+using info::discover::Cause;
+using info::discover::ExcessError;
+
+/// Samples of one output among those of a trial.
+std::vector<Index> samplesOf(const DiscoverFindings& f, int t, std::size_t output) {
+  const auto& which = f.data.outputOfSample(t);
+  std::vector<Index> samples;
+  for (std::size_t k = 0; k < f.data.times(t).size(); ++k) {
+    if (which.empty() || static_cast<std::size_t>(which[k]) == output)
+      samples.push_back(static_cast<Index>(k));
+  }
+  return samples;
+}
+
+/// In the unit in which the output is shown, without its weight.
+std::vector<double> shownValues(const DiscoverFindings& f, const VectorXd& values,
+                                const std::vector<Index>& samples, std::size_t output) {
+  const VectorXd result = f.wording.unit / f.wording.outputs[output].weight * values(samples);
+  return {result.begin(), result.end()};
+}
+
+bool isHeldOut(const DiscoverFindings& f, int t) {
+  const auto& held = f.options.heldOut;
+  return std::find(held.begin(), held.end(), t) != held.end();
+}
+
+}  // namespace
+
+Figure motionFigure(const DiscoverFindings& f, int t, std::size_t output) {
+  const auto& verdict = f.verdict;
+  const std::vector<Index> samples = samplesOf(f, t, output);
+  std::vector<double> times;
+  for (const Index k : samples) times.push_back(f.data.times(t)[static_cast<std::size_t>(k)]);
+  const ShownOutput& shownOutput = f.wording.outputs[output];
+  Figure figure{.title = f.data.trialName(t) + (isHeldOut(f, t) ? " (held out)" : ""),
+                .xLabel = "Time [s]",
+                .yLabel = fmt::format("{} [{}]", shownOutput.name, shownOutput.unit)};
+  figure.series.push_back({.name = "measured",
+                           .x = times,
+                           .y = shownValues(f, f.data.measured(t), samples, output),
+                           .style = SeriesStyle::points});
+  if (verdict.base.size() > 0) {
+    figure.series.push_back(
+        {.name = "calibrated, no effect added",
+         .x = times,
+         .y = shownValues(f, f.data.outputs(t, verdict.base, {}), samples, output),
+         .style = SeriesStyle::dashed});
+  }
+  if (!verdict.effects.empty()) {
+    const VectorXd after = f.data.outputs(t, verdict.values, {});
+    Series series{
+        .name = "with the effect", .x = times, .y = shownValues(f, after, samples, output)};
+    const VectorXd wide = 1.96 * info::discover::predictedSd(f.data, verdict, t);
+    series.bandLow = shownValues(f, after - wide, samples, output);
+    series.bandHigh = shownValues(f, after + wide, samples, output);
+    figure.series.push_back(std::move(series));
+    figure.caption =
+        "Simulations from the initial state to the end, not corrected by the measurements. Band: "
+        "95 % of the measurements are expected here, given the noise and the uncertainty of the "
+        "effect's size.";
+  }
+  return figure;
+}
+
+Table excessErrorTable(const DiscoverFindings& f) {
+  const std::string unit = f.wording.outputs.front().unit;
+  const double scale = f.wording.unit;
+  Table table{"RMS error (measured − simulated)",
+              {"trials", "original model [" + unit + "]", "calibrated [" + unit + "]",
+               "with the effect [" + unit + "]", "expected [" + unit + "]", "noise [" + unit + "]",
+               "relative to the range [%]", "excess error explained"},
+              {}};
+  const auto row = [&](const char* name, const ExcessError& gap) {
+    table.rows.push_back({name, numberText(scale * gap.nominal, 3),
+                          numberText(scale * gap.calibrated, 3), numberText(scale * gap.after, 3),
+                          gap.expected ? numberText(scale * *gap.expected, 3) : "–",
+                          numberText(scale * gap.floor, 3),
+                          numberText(100 * gap.after / gap.range, 2),
+                          gap.closedFromCalibrated ? excessErrorCell(gap) : "no excess error"});
+  };
+  row("fitted", f.verdict.gap);
+  if (f.verdict.heldOut) row("held out", *f.verdict.heldOut);
+  return table;
+}
+
+Table adequacyTable(const DiscoverFindings& f) {
+  Table table{"Residual diagnostics", {"", "base", "with the effect", "rule"}, {}};
+  const Adequacy &a = f.verdict.before, &b = f.verdict.after;
+  const auto word = [](bool ok) { return ok ? "yes" : "no"; };
+  table.rows.push_back({"mean square of the innovations [1]", numberText(a.meanSquare, 3),
+                        numberText(b.meanSquare, 3),
+                        fmt::format("{} … {}", numberText(b.lowest, 3), numberText(b.highest, 3))});
+  table.rows.push_back({"Ljung–Box test over 20 lags, p-value",
+                        numberText(a.ljungBoxProbability, 2), numberText(b.ljungBoxProbability, 2),
+                        fmt::format("> {}", f.options.level)});
+  table.rows.push_back({fmt::format("dependence on past {}, p-value", f.wording.commands),
+                        numberText(a.inputProbability, 2), numberText(b.inputProbability, 2),
+                        fmt::format("> {}", f.options.level)});
+  const auto remainder = [&](Cause cause, const std::string& what) {
+    if (a.remainder.of(cause) == 0 && b.remainder.of(cause) == 0) return;  // none of the kind
+    table.rows.push_back({"dependence on " + what + ", log Bayes factor [nats]",
+                          numberText(a.remainder.of(cause), 2),
+                          numberText(b.remainder.of(cause), 2),
+                          fmt::format("< {}", f.options.remainder)});
+  };
+  remainder(Cause::state, "the state (q, q̇)");
+  remainder(Cause::inputs, "all past " + f.wording.commands);
+  remainder(Cause::acceleration, "the acceleration");
+  remainder(Cause::sensor, "the sensor's reading");
+  remainder(Cause::moments, fmt::format("each {}'s moment and the angle", f.wording.input));
+  table.rows.push_back(
+      {"latent force still needed, " + f.wording.ofForce, numberText(f.verdict.latentSizeBefore, 2),
+       numberText(f.verdict.latentSizeAfter, 2), fmt::format("≤ {}", f.options.latentTolerance)});
+  const auto &before = f.verdict.heldOutBefore, &after = f.verdict.heldOutAfter;
+  if (before && after) {
+    table.rows.push_back({"mean square of the held-out innovations [1]",
+                          numberText(before->meanSquare, 3), numberText(after->meanSquare, 3),
+                          fmt::format("< {}", numberText(after->highest, 3))});
+  }
+  if (f.verdict.heldOut && f.verdict.heldOut->probability) {
+    table.rows.push_back({"held-out errors at least as large, p-value", "",
+                          numberText(*f.verdict.heldOut->probability, 2),
+                          fmt::format("> {}", f.options.farOff)});
+  }
+  table.rows.push_back({"adequate", word(a.adequate()), word(b.adequate()), ""});
+  return table;
+}
+
+}  // namespace app

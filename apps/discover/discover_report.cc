@@ -1,0 +1,273 @@
+#include "discover/discover_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "discover/discover_fit_report.h"
+#include "discover/discover_unknown_report.h"
+#include "discover/discover_where_report.h"
+#include "discover/excess_error_text.h"
+#include "discover/written_discovery.h"
+#include "info/discovery/judgement/separation.h"
+#include "output/text.h"
+#include "report/interval_drawing.h"
+
+namespace app {
+namespace {
+
+using info::discover::Estimate;
+using info::discover::ExcessError;
+
+/// Writes the parts of one report.
+class Writer {
+ public:
+  explicit Writer(const DiscoverFindings& f) : f_(f) {}
+
+  Report write() {
+    report_.title = fmt::format("Missing effects of {}", f_.modelFile);
+    report_.verdict = f_.verdict.sentence;
+    for (const auto& effect : f_.verdict.effects) {
+      const Estimate& amplitude = effect.estimates.front();
+      const auto& quantity = f_.data.quantities()[amplitude.quantity];
+      report_.verdict +=
+          fmt::format(" {} = {} ± {}.", quantity.name, numberText(amplitude.value, 3),
+                      withUnit(amplitude.sd, quantity.unit, 2));
+    }
+    const bool excessOfHeldOut = f_.verdict.heldOut.has_value();
+    const ExcessError& gap = excessOfHeldOut ? *f_.verdict.heldOut : f_.verdict.gap;
+    if (gap.closedFromCalibrated && !f_.verdict.effects.empty()) {
+      report_.verdict +=
+          " " + excessErrorWords(gap, f_.wording.unit, symbolOf(f_.wording.outputs.front().unit),
+                                 excessOfHeldOut);
+    }
+    const int first = f_.options.heldOut.empty() ? 0 : f_.options.heldOut.front();
+    for (int t = 0; t < f_.data.numTrials(); ++t) {
+      for (std::size_t output = 0; output < f_.wording.outputs.size(); ++output) {
+        Figure figure = motionFigure(f_, t, output);
+        if (t == first && output == 0) {
+          report_.mainFigure = std::move(figure);
+        } else {
+          others_.push_back(std::move(figure));
+        }
+      }
+    }
+    effects();
+    if (!f_.verdict.finalists.empty()) evidence();
+    for (ReportPart& part : whereTheyDisagree(f_)) report_.details.push_back(std::move(part));
+    // stopped before there was a base model?
+    if (f_.verdict.base.size() > 0) {
+      section("How well it fits");
+      if (!std::isnan(f_.verdict.gap.floor)) report_.details.emplace_back(excessErrorTable(f_));
+      report_.details.emplace_back(adequacyTable(f_));
+      for (ReportPart& part : withoutName(f_)) report_.details.push_back(std::move(part));
+      parameters();
+    }
+    detectability();
+    section("Next experiment");
+    say(f_.nextExperiment);
+    if (!f_.predictedExperiments.empty()) report_.details.emplace_back(predictedExperimentTable());
+    reproduce();
+    if (!others_.empty()) {
+      section("Other trials");
+      for (Figure& figure : others_) report_.details.emplace_back(std::move(figure));
+    }
+    return std::move(report_);
+  }
+
+ private:
+  const info::discover::Candidate& candidate(std::size_t c) const {
+    return f_.data.candidates()[c];
+  }
+  void section(const std::string& title) { report_.details.emplace_back(Section{title}); }
+  void say(const std::string& text) { report_.details.emplace_back(Paragraph{text}); }
+
+  void effects() {
+    const auto& verdict = f_.verdict;
+    if (verdict.effects.empty()) return;
+    section(verdict.proxy ? "Closest match in the catalogue" : "Missing effects");
+    Table table{"",
+                {"effect", "parameter", "unit", "estimate", "± sd", "log Bayes factor [nats]",
+                 "probability"},
+                {}};
+    for (const auto& effect : verdict.effects) {
+      bool first = true;
+      for (const Estimate& one : effect.estimates) {
+        const auto& quantity = f_.data.quantities()[one.quantity];
+        table.rows.push_back({first ? candidate(effect.candidate).name : "", quantity.name,
+                              quantity.unit, numberText(one.value), numberText(one.sd, 2),
+                              first ? numberText(effect.logBayesFactor) : "",
+                              first && !verdict.vetoed ? numberText(effect.probability, 3) : "–"});
+        first = false;
+      }
+    }
+    report_.details.emplace_back(std::move(table));
+    for (std::size_t i = 0; i < verdict.effects.size(); ++i) {
+      const auto& effect = verdict.effects[i];
+      say(candidate(effect.candidate).sentence);
+      if (const std::string size = sizeOf(i); !size.empty()) say(size);
+      if (effect.equals.size() < 2) continue;
+      std::string list;
+      for (const std::size_t c : effect.equals) {
+        list += (list.empty() ? "" : ", ") + candidate(c).name;
+      }
+      say(fmt::format("These data cannot distinguish: {}{}.", list,
+                      effect.exact
+                          ? " (some of them have the same effect on everything that was measured)"
+                          : ""));
+    }
+    if (verdict.vetoed) {
+      say(verdict.after.sized
+              ? "The held-out errors are larger than the uncertainty of the parameters explains, "
+                "so no probability is given."
+              : "The size of the residual does not match the noise, so no probability is given.");
+    }
+  }
+
+  /// What an effect does to the motion shown; "" where that is not known.
+  std::string sizeOf(std::size_t effect) const {
+    if (!f_.written || effect >= f_.written->sizes.size()) return "";
+    const bio::discover::EffectSize& size = f_.written->sizes[effect];
+    const std::string motion = f_.data.trialName(f_.written->shown);
+    const std::string& unit = f_.wording.outputs.front().unit;
+    const std::string moved = withUnit(f_.wording.unit * size.motionRms, unit, 2);
+    if (std::isnan(size.motionRms)) return "";
+    if (std::isnan(size.momentRms)) {
+      return candidate(f_.verdict.effects[effect].candidate).kind ==
+                     info::discover::EffectKind::sensor
+                 ? fmt::format("On {} it shifts the sensor's reading by {} (RMS).", motion, moved)
+                 : "";
+    }
+    return fmt::format(
+        "On {0} its {1} is {2} (RMS; largest {3}), which is {4} % of the muscles' net {1}. Leaving "
+        "it out changes the simulated motion by {5} (RMS).",
+        motion, f_.wording.forceUnit == "N·m" && unit == "deg" ? "moment" : "force",
+        withUnit(size.momentRms, f_.wording.forceUnit, 2),
+        withUnit(size.momentPeak, f_.wording.forceUnit, 2), numberText(100 * size.share, 2), moved);
+  }
+
+  /// Each trial's figures, and the commands that make them.
+  void reproduce() {
+    if (!f_.written || f_.written->trials.empty()) return;
+    section("Reproduce");
+    const std::string& unit = f_.wording.outputs.front().unit;
+    const auto figure = [&](double value) { return numberText(f_.wording.unit * value); };
+    Table errors{"RMS error (measured − simulated), as replay reports it",
+                 {"trial", "role", "original model [" + unit + "]",
+                  "with all fitted parameters [" + unit + "]", "noise [" + unit + "]", "replayed"},
+                 {}};
+    for (const bio::discover::RepairedTrial& one : f_.written->trials) {
+      const auto i = static_cast<std::size_t>(one.index);
+      errors.rows.push_back({f_.trialFiles[i], one.isHeldOut ? "held out" : "fitted",
+                             figure(one.nominal), figure(one.after), figure(one.floor),
+                             f_.written->model.empty() ? "–" : f_.written->replayFiles[i]});
+    }
+    report_.details.emplace_back(std::move(errors));
+    Table commands{"", {"figure", "command"}, {}};
+    for (const auto& [what, command] : f_.written->commands)
+      commands.rows.push_back({what, command});
+    report_.details.emplace_back(std::move(commands));
+    if (f_.written->model.empty()) return;
+    say(
+        fmt::format("{} holds every value of parameters.csv, the initial state of each of these "
+                    "trials, and the time step. The other RMS errors of this report belong to fits "
+                    "that only this command makes.",
+                    f_.written->model));
+    if (f_.written->trials.front().driven) {
+      say("The excitations or the recording were corrected: the driven trials (driven_*.sto) hold "
+          "the excitations that the muscles received and the corrected recording, which shows the "
+          "joint's own angle.");
+    }
+  }
+
+  /// All that were raced, as bars.
+  void evidence() {
+    section("Evidence");
+    std::vector<IntervalRow> rows;
+    std::vector<std::vector<std::string>> cells;
+    for (const auto& one : f_.verdict.finalists) {
+      if (rows.size() >= 20) break;
+      std::string kind =
+          one.effects.empty() ? "–" : info::discover::name(candidate(one.effects.front()).kind);
+      const std::string name = info::discover::describe(f_.data, one.effects);
+      rows.push_back({.name = fmt::format("{} ({})", name, kind),
+                      .estimate = one.logEvidence,
+                      .interval = std::pair(0.0, one.logEvidence)});
+    }
+    report_.details.emplace_back(VectorDrawing{
+        "All hypotheses compared",
+        intervalDrawing(rows, "Log Bayes factor against the base model [nats]"),
+        fmt::format(
+            "Natural logarithm of the Bayes factor; 5 nats are odds of about 150:1. Every "
+            "parameter of the model is refitted for each hypothesis. An effect is named if it adds "
+            "{} nats or more; effects within {} nats of it cannot be distinguished from it.",
+            f_.options.evidence, f_.options.classWidth)});
+    if (const std::string behind = namesAgainstForces(f_); !behind.empty()) say(behind);
+  }
+
+  Table predictedExperimentTable() const {
+    Table table{"Expected log Bayes factors of further experiments", {"experiment"}, {}};
+    for (std::size_t i = 1; i < f_.verdict.rivals.size(); ++i)
+      table.columns.push_back(fmt::format("{} against {} [nats]", rivalName(f_.data, f_.verdict, 0),
+                                          rivalName(f_.data, f_.verdict, i)));
+    for (const bio::discover::PredictedExperiment& one : f_.predictedExperiments) {
+      std::vector<std::string> row{one.sentence};
+      for (const double nats : one.nats) row.push_back(numberText(nats, 2));
+      table.rows.push_back(std::move(row));
+    }
+    return table;
+  }
+
+  void parameters() {
+    const auto& list = f_.verdict.nuisancesAfter;
+    if (list.empty()) return;
+    section("Parameters");
+    std::vector<IntervalRow> rows;
+    for (const Estimate& one : list) {
+      const auto& quantity = f_.data.quantities()[one.quantity];
+      const double scale =
+          quantity.logarithmic ? quantity.sd * std::max(one.value, 1e-300) : quantity.sd;
+      const double half = 1.96 * one.sd / scale;
+      rows.push_back({.name = quantity.name,
+                      .estimate = one.surprise,
+                      .interval = std::pair(one.surprise - half, one.surprise + half),
+                      .before = std::pair(-1.96, 1.96)});
+    }
+    report_.details.emplace_back(
+        VectorDrawing{"Fitted parameters of the model",
+                      intervalDrawing(rows, "Difference from the model's value [prior sd]"),
+                      fmt::format("95 % intervals. A parameter beyond ±{} prior standard "
+                                  "deviations counts as a parameter error.",
+                                  f_.options.surprise)});
+  }
+
+  void detectability() {
+    if (f_.verdict.detectability.empty()) return;
+    section("Smallest detectable effects");
+    Table table{"", {"effect", "kind", "detectable from", "unit"}, {}};
+    for (const auto& one : f_.verdict.detectability) {
+      const auto& c = candidate(one.candidate);
+      table.rows.push_back({c.name, info::discover::name(c.kind), numberText(one.amplitude, 2),
+                            f_.data.quantities()[c.quantities.front()].unit});
+    }
+    report_.details.emplace_back(std::move(table));
+    say("The size at which each effect would exceed five standard deviations, in addition to the "
+        "effects found and with all parameters free.");
+    for (const auto& [id, present] : f_.wording.present) {
+      say(fmt::format("The model already has {} ({}), so it was not a candidate.", id, present));
+    }
+  }
+
+  const DiscoverFindings& f_;
+  Report report_;
+  std::vector<Figure> others_;
+};
+
+}  // namespace
+
+Report discoverReport(const DiscoverFindings& findings) {
+  return Writer(findings).write();
+}
+
+}  // namespace app

@@ -1,0 +1,282 @@
+#include "discover/discover_verdict.h"
+
+#include "calibrate/fitted_table.h"
+#include "discover/written_discovery.h"
+#include "info/discovery/judgement/separation.h"
+#include "info/discovery/likelihood/hypothesis.h"
+
+namespace app {
+namespace {
+
+using info::discover::Estimate;
+using info::discover::ExcessError;
+using info::discover::Score;
+using nlohmann::ordered_json;
+
+ordered_json number(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
+
+ordered_json parametersJson(const DiscoverFindings& f, const std::vector<Estimate>& estimates) {
+  ordered_json parameters = ordered_json::object();
+  for (const Estimate& one : estimates) {
+    const auto& quantity = f.data.quantities()[one.quantity];
+    parameters[quantity.name] = {
+        {"value", number(one.value)}, {"sd", number(one.sd)}, {"unit", quantity.unit}};
+  }
+  return parameters;
+}
+
+ordered_json excessErrorJson(const DiscoverFindings& f, const ExcessError& gap) {
+  const double unit = f.wording.unit;
+  const std::string& end = f.wording.gapEnd;
+  ordered_json json;
+  json["rmse_nominal" + end] = number(unit * gap.nominal);
+  json["rmse_calibrated" + end] = number(unit * gap.calibrated);
+  json["rmse_after" + end] = number(unit * gap.after);
+  if (gap.expected) json["rmse_expected" + end] = number(unit * *gap.expected);
+  if (gap.probability) json["rmse_probability"] = number(*gap.probability);
+  json["noise_floor" + end] = number(unit * gap.floor);
+  json["gap_closed"] =
+      gap.closedFromCalibrated ? number(*gap.closedFromCalibrated) : ordered_json(nullptr);
+  json["gap_closed_from_nominal"] =
+      gap.closedFromNominal ? number(*gap.closedFromNominal) : ordered_json(nullptr);
+  return json;
+}
+
+ordered_json localisationJson(const DiscoverFindings& f) {
+  const double unit = f.wording.unit;
+  ordered_json json{{"time_spans", ordered_json::array()},
+                    {"state_regions", ordered_json::array()},
+                    {f.wording.inputs, ordered_json::array()}};
+  const auto& map = f.verdict.localisation;
+  for (const Score& one : map.times) {
+    if (!one.significant) continue;
+    json["time_spans"].push_back({{"trial", f.data.trialName(one.trial)},
+                                  {"from_s", one.from},
+                                  {"to_s", one.to},
+                                  {"score", number(one.z)}});
+  }
+  for (const Score& one : map.cells) {
+    if (!one.significant || !f.wording.hasMap) continue;
+    json["state_regions"].push_back({{"from", {unit * one.lowerQ, unit * one.lowerQDot}},
+                                     {"to", {unit * one.upperQ, unit * one.upperQDot}},
+                                     {"score", number(one.z)}});
+  }
+  for (const Score& one : map.inputs) {
+    json[f.wording.inputs].push_back(
+        {{"name", one.input}, {"score", number(one.z)}, {"significant", one.significant}});
+  }
+  return json;
+}
+
+ordered_json adequacyJson(const info::discover::Adequacy& a, double latentSize) {
+  ordered_json json = {{"mean_square", number(a.meanSquare)},
+                       {"ljung_box_probability", number(a.ljungBoxProbability)},
+                       {"input_probability", number(a.inputProbability)}};
+  for (const info::discover::Cause cause : info::discover::kCauses)
+    json[fmt::format("follows_{}_nats", name(cause))] = number(a.remainder.of(cause));
+  json["latent_size"] = number(latentSize);
+  json["adequate"] = a.adequate();
+  return json;
+}
+
+/// What the effects do to the motion shown, into their objects.
+void addSizes(const DiscoverFindings& f, ordered_json& effects) {
+  if (!f.written) return;
+  const double unit = f.wording.unit;
+  for (std::size_t i = 0; i < f.written->sizes.size(); ++i) {
+    const bio::discover::EffectSize& size = f.written->sizes[i];
+    effects[i]["along"] = f.data.trialName(f.written->shown);
+    effects[i]["moment_rms_Nm"] = number(size.momentRms);
+    effects[i]["moment_peak_Nm"] = number(size.momentPeak);
+    effects[i]["share_of_muscle_moment"] = number(size.share);
+    effects[i]["motion_rms" + f.wording.gapEnd] = number(unit * size.motionRms);
+  }
+}
+
+ordered_json trialsJson(const DiscoverFindings& f) {
+  const double unit = f.wording.unit;
+  const std::string& end = f.wording.gapEnd;
+  ordered_json list = ordered_json::array();
+  for (const bio::discover::RepairedTrial& one : f.written->trials) {
+    const auto i = static_cast<std::size_t>(one.index);
+    ordered_json json{{"file", f.trialFiles[i]}, {"role", one.isHeldOut ? "held_out" : "train"}};
+    json["replay_file"] =
+        f.written->model.empty() ? ordered_json(nullptr) : ordered_json(f.written->replayFiles[i]);
+    json["rmse_nominal" + end] = number(unit * one.nominal);
+    json["rmse_after" + end] = number(unit * one.after);
+    json["noise_floor" + end] = number(unit * one.floor);
+    json["start"] = {{"coordinate", one.start.coordinate},
+                     {"value", number(one.start.value)},
+                     {"speed", number(one.start.speed)},
+                     {"unit", f.wording.gapEnd == "_deg" ? "rad" : "m"}};
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+}  // namespace
+
+void tellFindings(const DiscoverFindings& f, Summary& summary) {
+  const auto& verdict = f.verdict;
+  summary.set("verdict", verdictWord(verdict));
+  summary.set("noise", f.wording.unit * verdict.outputSd);
+  summary.set("noise" + f.wording.gapEnd, f.wording.unit * verdict.outputSd);
+  summary.set("noise_is", verdict.sdEstimated ? "from the data" : "given");
+  for (const auto& effect : verdict.effects) {
+    const std::string id = f.data.candidates()[effect.candidate].id;
+    summary.set("effect." + id, parametersJson(f, effect.estimates));
+  }
+  if (verdict.gap.closedFromCalibrated) {
+    summary.set("gap_closed_train", *verdict.gap.closedFromCalibrated);
+  }
+  if (verdict.heldOut && verdict.heldOut->closedFromCalibrated) {
+    summary.set("gap_closed_held_out", *verdict.heldOut->closedFromCalibrated);
+  }
+  summary.set("fits", verdict.fits);
+  summary.set("search_wall_s", f.wallSeconds);
+  summary.set("next_experiment", f.nextExperiment);
+}
+
+std::string verdictWord(const info::discover::Verdict& verdict) {
+  return verdict.reached == info::discover::Stage::finished ||
+                 verdict.finding == info::discover::Finding::numerical
+             ? info::discover::name(verdict.finding)
+             : "stopped";
+}
+
+ordered_json verdictJson(const DiscoverFindings& f) {
+  const auto& candidates = f.data.candidates();
+  const auto& verdict = f.verdict;
+  ordered_json json;
+  json["verdict"] = verdictWord(verdict);
+  json["sentence"] = verdict.sentence;
+  json["stage_reached"] = info::discover::name(verdict.reached);
+  json["effects"] = ordered_json::array();
+  json["class"] = ordered_json::array();
+  for (const auto& effect : verdict.effects) {
+    const auto& candidate = candidates[effect.candidate];
+    json["effects"].push_back({{"id", candidate.id},
+                               {"name", candidate.name},
+                               {"kind", info::discover::name(candidate.kind)},
+                               {"surrogate", verdict.proxy},
+                               {"parameters", parametersJson(f, effect.estimates)},
+                               {"log_bayes_factor", number(effect.logBayesFactor)},
+                               {"probability", number(effect.probability)}});
+    for (const Estimate& one : effect.estimates) {
+      if (f.data.quantities()[one.quantity].name == candidate.id + ".time") {
+        const char* change = candidate.id.ends_with("_until") ? "ends_at_s" : "starts_at_s";
+        if (candidate.kind == info::discover::EffectKind::structure)
+          json["effects"].back()[change] = number(one.value);
+      }
+    }
+    for (const std::size_t c : effect.equals) json["class"].push_back(candidates[c].id);
+  }
+  addSizes(f, json["effects"]);
+  json["localisation"] = localisationJson(f);
+  json["gap"] = {{"train", excessErrorJson(f, verdict.gap)},
+                 {"held_out", verdict.heldOut ? excessErrorJson(f, *verdict.heldOut) : nullptr}};
+  json["held_out_fitted"] = verdict.heldOutFitted;
+  if (f.written) {
+    const bool isCorrected = f.written->repaired && f.written->repaired->trials.front().driven;
+    json["rmse_after_is_of"] =
+        isCorrected
+            ? "the driven trials: excitations as the muscles received them, sensor errors removed"
+            : "the recorded trials";
+    json["model"] =
+        f.written->model.empty() ? ordered_json(nullptr) : ordered_json(f.written->model);
+    json["trials"] = trialsJson(f);
+  }
+  json["step_s"] = number(f.step);
+  json["fitted_parameters"] = fittedJson(f.fitted);
+  json["innovations"] = {{"before", nullptr}, {"after", nullptr}};
+  if (verdict.base.size() > 0) {  // else stopped before there was a base model
+    json["innovations"] = {{"before", adequacyJson(verdict.before, verdict.latentSizeBefore)},
+                           {"after", adequacyJson(verdict.after, verdict.latentSizeAfter)}};
+  }
+  if (verdict.heldOutBefore && verdict.heldOutAfter) {
+    json["innovations"]["held_out_mean_square"] = {
+        {"before", number(verdict.heldOutBefore->meanSquare)},
+        {"after", number(verdict.heldOutAfter->meanSquare)},
+        {"highest", number(verdict.heldOutAfter->highest)}};
+  }
+  json["undetectable_below"] = ordered_json::object();
+  for (const auto& one : verdict.detectability) {
+    json["undetectable_below"][candidates[one.candidate].id] = number(one.amplitude);
+  }
+  json["next_experiment"] = f.nextExperiment;
+  for (const bio::discover::PredictedExperiment& one : f.predictedExperiments) {
+    ordered_json nats = ordered_json::object();
+    for (std::size_t i = 0; i < one.nats.size(); ++i)
+      nats[rivalName(f.data, verdict, i + 1)] = number(one.nats[i]);
+    json["planned_experiments"].push_back(
+        {{"what", one.sentence}, {"of", rivalName(f.data, verdict, 0)}, {"expected_nats", nats}});
+  }
+  json["noise_sd"] = number(verdict.outputSd);
+  json["samples"] = {{"recorded", verdict.noise.samples},
+                     {"outliers", verdict.noise.outliers},
+                     {"every", verdict.noise.spacing},
+                     {"rounded_to", number(f.wording.unit * verdict.noise.quantum)}};
+  json["noise_estimated"] = verdict.sdEstimated;
+  json["wall_s"] = number(f.wallSeconds);
+  json["processor_s"] = number(f.processorSeconds);
+  json["probability_vetoed"] = verdict.vetoed;
+  json["numerical_error_in_noise_sd"] = number(verdict.numericalError);
+  json["already_in_the_model"] = ordered_json::object();
+  for (const auto& [id, where] : f.wording.present) {
+    json["already_in_the_model"][id] = where;
+  }
+  json["evidence"] = ordered_json::array();
+  for (const auto& one : verdict.finalists) {
+    ordered_json ids = ordered_json::array();
+    for (const std::size_t e : one.effects) ids.push_back(candidates[e].id);
+    json["evidence"].push_back({{"effects", ids},
+                                {"log_bayes_factor", number(one.logEvidence)},
+                                {"probability", number(one.probability)},
+                                {"amplitude_over_sd", number(one.significance)}});
+  }
+  if (verdict.nonparametric) {
+    const info::discover::NonparametricForce& force = *verdict.nonparametric;
+    ordered_json besides = ordered_json::array();
+    for (const std::size_t c : force.besides) besides.push_back(candidates[c].id);
+    json["force_without_a_name"] = {{"follows", info::discover::name(force.follows)},
+                                    {"beside", besides},
+                                    {"log_bayes_factor", number(force.logBayesFactor)},
+                                    {"nats_ahead_of_names", number(force.ahead)},
+                                    {"wins", force.wins}};
+  }
+  if (verdict.unknown) {
+    json["unknown"] = {{"formula", verdict.unknown->formula},
+                       {"stable", verdict.unknown->stable},
+                       {"evidence_nats", number(verdict.unknown->evidence)},
+                       {"explained", number(verdict.unknown->explained)},
+                       {"peak_Hz", number(verdict.unknown->peakFrequency)}};
+    if (f.wording.forceUnit == "N·m") {
+      json["unknown"]["rms_Nm"] = number(verdict.unknown->forceSize);
+    } else {
+      json["unknown"]["rms"] = number(verdict.unknown->forceSize);
+      json["unknown"]["rms_unit"] = f.wording.forceUnit;
+    }
+  }
+  if (verdict.formula) {
+    const info::discover::RacedFormula& raced = *verdict.formula;
+    ordered_json& race = json["unknown"]["raced"];
+    race = {{"formula", raced.text},
+            {"wins", raced.wins},
+            {"log_bayes_factor", number(raced.logBayesFactor)},
+            {"amplitude_over_sd", number(raced.significance)},
+            {"adequate", raced.after.adequate()},
+            {"terms", ordered_json::array()},
+            {"gap",
+             {{"train", excessErrorJson(f, raced.gap)},
+              {"held_out", raced.heldOut ? excessErrorJson(f, *raced.heldOut) : nullptr}}}};
+    for (std::size_t k = 0; k < raced.values.size(); ++k)
+      race["terms"].push_back({{"expression", raced.terms[k].expression},
+                               {"value", number(raced.values[k])},
+                               {"sd", number(raced.sds[k])}});
+  }
+  return json;
+}
+
+}  // namespace app

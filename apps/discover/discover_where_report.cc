@@ -1,0 +1,139 @@
+#include "discover/discover_where_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "output/text.h"
+
+namespace app {
+namespace {
+
+using Eigen::VectorXd;
+using info::discover::Score;
+
+Figure scoreOverTime(const DiscoverFindings& f) {
+  const auto& map = f.verdict.localisation;
+  Figure figure{
+      .title = "Score over time",
+      .xLabel = "Time [s]",
+      .yLabel = "Score [standard deviations]",
+      .caption = fmt::format("How strongly the data ask for {} of 0.25 s at each time, beyond what "
+                             "the parameters and initial states can explain; values within ±2 are "
+                             "noise. Dots: significant (false discovery rate at most 5 %).",
+                             f.wording.push)};
+  Series marks{.name = "significant", .style = SeriesStyle::points};
+  for (const int trial : map.trials) {
+    Series series{.name = f.data.trialName(trial)};
+    for (const Score& one : map.times) {
+      if (one.trial != trial) continue;
+      series.x.push_back((one.from + one.to) / 2);
+      series.y.push_back(one.z);
+      if (one.significant) {
+        marks.x.push_back(series.x.back());
+        marks.y.push_back(one.z);
+      }
+    }
+    figure.series.push_back(std::move(series));
+  }
+  if (!marks.x.empty()) figure.series.push_back(std::move(marks));
+  return figure;
+}
+
+/// A heat map over output and rate.
+std::string scoreMap(const DiscoverFindings& f) {
+  const std::vector<Score>& scores = f.verdict.localisation.cells;
+  if (scores.empty()) return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 1 1\"/>";
+  double lowQ = HUGE_VAL, highQ = -HUGE_VAL, lowV = HUGE_VAL, highV = -HUGE_VAL;
+  for (const Score& one : scores) {
+    lowQ = std::min(lowQ, one.lowerQ);
+    highQ = std::max(highQ, one.upperQ);
+    lowV = std::min(lowV, one.lowerQDot);
+    highV = std::max(highV, one.upperQDot);
+  }
+  const ShownOutput& output = f.wording.outputs.front();
+  const double scale = f.wording.unit;
+  constexpr double left = 110, right = 900, top = 10, bottom = 300;
+  const auto x = [&](double q) { return left + (q - lowQ) / (highQ - lowQ) * (right - left); };
+  const auto y = [&](double v) { return bottom - (v - lowV) / (highV - lowV) * (bottom - top); };
+  std::string svg =
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 920 360\" width=\"100%\" "
+      "font-family=\"sans-serif\" font-size=\"14\">\n";
+  for (const Score& one : scores) {
+    const double strength = std::min(1.0, std::abs(one.z) / 6);
+    svg += fmt::format(
+        "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\" "
+        "fill-opacity=\"{:.2f}\" stroke=\"{}\" stroke-width=\"{}\"/>"
+        "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{:.1f}</text>\n",
+        x(one.lowerQ) + 1, y(one.upperQDot) + 1, x(one.upperQ) - x(one.lowerQ) - 2,
+        y(one.lowerQDot) - y(one.upperQDot) - 2, one.z > 0 ? "#E69F00" : "#56B4E9", strength,
+        one.significant ? "#000" : "#ddd", one.significant ? 2.5 : 1,
+        (x(one.lowerQ) + x(one.upperQ)) / 2, (y(one.lowerQDot) + y(one.upperQDot)) / 2 + 5, one.z);
+  }
+  for (int k = 0; k <= 4; ++k) {
+    const double q = lowQ + k * (highQ - lowQ) / 4, v = lowV + k * (highV - lowV) / 4;
+    svg += fmt::format(
+        "<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text><text x=\"{}\" y=\"{:.1f}\" "
+        "text-anchor=\"end\">{}</text>\n",
+        x(q), bottom + 20, numberText(scale * q, 3), left - 8, y(v) + 5, numberText(scale * v, 3));
+  }
+  svg += fmt::format(
+      "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" font-weight=\"bold\">{} [{}]</text>"
+      "<text transform=\"translate(22 {}) rotate(-90)\" text-anchor=\"middle\" "
+      "font-weight=\"bold\">Speed [{}/s]</text>\n",
+      (left + right) / 2, bottom + 46, htmlText(output.name), output.unit, (top + bottom) / 2,
+      output.unit);
+  return svg + "</svg>\n";
+}
+
+Figure missingForce(const DiscoverFindings& f) {
+  const auto& map = f.verdict.localisation;
+  Figure figure{.title = "Missing force",
+                .xLabel = "Time [s]",
+                .yLabel = f.wording.force,
+                .caption =
+                    "Posterior mean of the latent force of the base model, ±2 standard deviations. "
+                    "It is found by smoothing; the measurements are not differentiated."};
+  for (std::size_t k = 0; k < map.trials.size(); ++k) {
+    Series series{.name = f.data.trialName(map.trials[k]), .x = f.data.latentTimes(map.trials[k])};
+    const VectorXd& r = map.force[k];
+    const VectorXd low = r - 2 * map.forceSd[k], high = r + 2 * map.forceSd[k];
+    series.y.assign(r.begin(), r.end());
+    series.bandLow.assign(low.begin(), low.end());
+    series.bandHigh.assign(high.begin(), high.end());
+    figure.series.push_back(std::move(series));
+  }
+  return figure;
+}
+
+}  // namespace
+
+std::vector<ReportPart> whereTheyDisagree(const DiscoverFindings& f) {
+  const auto& map = f.verdict.localisation;
+  if (map.times.empty()) return {};
+  std::vector<ReportPart> parts;
+  parts.emplace_back(Section{"Where model and data disagree"});
+  parts.emplace_back(scoreOverTime(f));
+  if (f.wording.hasMap) {
+    parts.emplace_back(
+        VectorDrawing{"Score over angle and speed", scoreMap(f),
+                      fmt::format("Orange: the data ask for an additional force that raises {}; "
+                                  "blue: one that lowers it; framed: significant. {}",
+                                  f.wording.outputs.front().name,
+                                  map.cells.empty() ? "" : "White: not visited.")});
+  } else {
+    parts.emplace_back(Paragraph{"There is no map over angle and speed: no angle was measured."});
+  }
+  parts.emplace_back(missingForce(f));
+  Table muscles{"Score by " + f.wording.input,
+                {f.wording.input, "score [standard deviations]", "significant"},
+                {}};
+  for (const Score& one : map.inputs) {
+    muscles.rows.push_back({one.input, numberText(one.z, 3), one.significant ? "yes" : "no"});
+  }
+  parts.emplace_back(std::move(muscles));
+  return parts;
+}
+
+}  // namespace app

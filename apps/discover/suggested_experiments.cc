@@ -1,0 +1,80 @@
+#include "discover/suggested_experiments.h"
+
+#include <algorithm>
+
+namespace app {
+
+using info::discover::Finding;
+
+FollowUps followUpsOfModels(const std::string& loadColumn) {
+  return {
+      {
+          {{"delay", "clock"},
+           "Repeat a trial with recorded pulses of external load (column " + loadColumn +
+               "): the limb responds to a pulse at once and to its muscles with a delay, whereas "
+               "a clock offset shifts both."},
+          {{"tilt", "handforce", "const"},
+           "Repeat a trial with a known mass, e.g. 1 kg, in the hand: the effect of gravity "
+           "grows with it, a force on the hand does not."},
+          {{"payload", "mass", "const", "handforce"},
+           "Let the limb hang and swing passively with relaxed muscles: a mass adds weight and "
+           "inertia, a force adds no inertia."},
+          {{"gain_", "Fmax_", "lopt_", "lslack_", "crosstalk", "offset_"},
+           "Record one isolated contraction of each muscle, and one against a load cell at a "
+           "fixed angle."},
+          {{"stiffness", "tilt", "limit", "wrap_", "gain", "bias", "Fmax_"},
+           "Move the relaxed limb slowly through its whole range with a dynamometer (column " +
+               loadColumn + "): this shows the passive effects without the muscles."},
+          {{"missing_", "Fmax_", "gain_"},
+           "Record the EMG of the muscle that is switched off in the model (a column with its "
+           "name): this distinguishes it from its synergists."},
+          {{"visc", "coulomb", "stribeck", "drag", "powerdamp"},
+           "Repeat the trial at half and at twice the speed: at twice the speed Coulomb friction "
+           "is unchanged, viscous torque doubles, quadratic drag quadruples."},
+      },
+      "Repeat the trials at another speed and with a known mass in the hand: these data cannot "
+      "distinguish the effects listed together.",
+      "Record passive motion (relaxed muscles, limb moved by hand or by a dynamometer) over the "
+      "region that the score map marks: this shows whether the missing effect belongs to the "
+      "joint or to the muscles.",
+      "Record one more trial and compare it with the motion that with_effect.osim predicts."};
+}
+
+std::string followUp(const info::discover::DiscoveryProblem& data,
+                     const info::discover::Verdict& verdict, const FollowUps& known) {
+  const auto& candidates = data.candidates();
+  for (const auto& effect : verdict.effects) {
+    if (effect.equals.size() < 2) continue;
+    const Intervention* best = nullptr;
+    long most = 1;
+    for (const Intervention& one : known.interventions) {
+      const long touched =
+          std::count_if(effect.equals.begin(), effect.equals.end(), [&](std::size_t c) {
+            return std::any_of(
+                one.separates.begin(), one.separates.end(),
+                [&](const std::string& id) { return candidates[c].id.starts_with(id); });
+          });
+      if (touched > most) {
+        most = touched;
+        best = &one;
+      }
+    }
+    return best ? best->sentence : known.otherwise;
+  }
+  if (verdict.reached != info::discover::Stage::finished && verdict.finding != Finding::numerical) {
+    return "None yet: the search was stopped; run it to its end.";
+  }
+  switch (verdict.finding) {
+    case Finding::unknown:
+      return known.ifUnknown;
+    case Finding::none:
+      return "To detect smaller effects than the table lists, record longer and faster motions "
+             "over more of the range.";
+    case Finding::numerical:
+      return "None yet: repeat the search with a shorter --step.";
+    default:
+      return known.ifNamed;
+  }
+}
+
+}  // namespace app

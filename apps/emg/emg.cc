@@ -1,0 +1,202 @@
+#include "emg/emg.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "bio/emg/emg.h"
+#include "bio/emg/emg_config.h"
+#include "bio/tables/recording.h"
+#include "bio/tables/table_file.h"
+#include "output/result.h"
+
+namespace app {
+namespace {
+
+std::vector<double> listOf(const Eigen::VectorXd& values) {
+  return {values.begin(), values.end()};
+}
+
+// A signal drawn with few points: the smallest and the largest value of every stretch, so that no
+// peak is lost.
+Series drawn(const std::string& name, const Eigen::VectorXd& values, double rate, double startTime,
+             SeriesStyle style = SeriesStyle::line) {
+  constexpr Eigen::Index stretches = 1500;
+  Series out{.name = name, .x = {}, .y = {}, .style = style, .bandLow = {}, .bandHigh = {}};
+  const auto add = [&](Eigen::Index i) {
+    out.x.push_back(startTime + static_cast<double>(i) / rate);
+    out.y.push_back(values[i]);
+  };
+  const Eigen::Index length = std::max<Eigen::Index>(values.size() / stretches, 1);
+  for (Eigen::Index begin = 0; begin < values.size(); begin += length) {
+    const auto part = values.segment(begin, std::min(length, values.size() - begin));
+    Eigen::Index low = 0;
+    Eigen::Index high = 0;
+    part.minCoeff(&low);
+    part.maxCoeff(&high);
+    add(begin + std::min(low, high));
+    if (low != high) add(begin + std::max(low, high));
+  }
+  return out;
+}
+
+Figure electrodeFigure(const bio::ElectrodeTrace& trace) {
+  Figure figure{
+      .title = fmt::format("Electrode {}", trace.channel),
+      .xLabel = "Time [s]",
+      .yLabel = fmt::format("EMG [{}]", trace.unit.empty() ? "unit not stated" : trace.unit),
+      .series = {},
+      .caption =
+          fmt::format("Filtered signal and its envelope; {:.4g} {} corresponds to excitation 1.",
+                      trace.full, trace.unit)};
+  if (trace.filtered.size() > 0) {
+    figure.series.push_back(drawn("filtered", trace.filtered, trace.rate, trace.startTime));
+  }
+  figure.series.push_back(drawn("envelope", trace.envelope, trace.rate, trace.startTime));
+  return figure;
+}
+
+Figure excitationFigure(const bio::EmgResult& result) {
+  Figure figure{.title = "Excitations",
+                .xLabel = "Time [s]",
+                .yLabel = "Excitation [1]",
+                .series = {},
+                .caption =
+                    "As written to excitations.sto; muscles with the same electrode and weight "
+                    "share one curve."};
+  for (std::size_t k = 0; k < result.muscles.size(); ++k) {
+    figure.series.push_back({.name = result.muscles[k],
+                             .x = listOf(result.time),
+                             .y = listOf(result.excitations.col(static_cast<Eigen::Index>(k)))});
+  }
+  return figure;
+}
+
+Figure measuredFigure(const bio::MeasuredCoordinate& measured) {
+  Figure figure{.title = fmt::format("Measured {}", measured.coordinate),
+                .xLabel = "Time [s]",
+                .yLabel = "Angle [deg]",
+                .series = {},
+                .caption = "Gaps: not measured, or at the instrument's limits."};
+  Series series{.name = measured.coordinate};
+  for (Eigen::Index i = 0; i < measured.angle_deg.size(); ++i) {
+    series.x.push_back(measured.startTime + static_cast<double>(i) / measured.rate);
+    series.y.push_back(measured.angle_deg[i]);
+  }
+  figure.series.push_back(std::move(series));
+  return figure;
+}
+
+bio::Table trialOf(const bio::EmgResult& result) {
+  bio::Table table;
+  table.name = "excitations";
+  table.columns = {"time"};
+  table.columns.insert(table.columns.end(), result.muscles.begin(), result.muscles.end());
+  const Eigen::Index muscles = result.excitations.cols();
+  table.values.resize(result.time.size(), 1 + muscles + (result.measured ? 1 : 0));
+  table.values.col(0) = result.time;
+  table.values.middleCols(1, muscles) = result.excitations;
+  if (result.measured) {
+    table.columns.push_back(result.measured->coordinate + "_deg");
+    table.values.col(1 + muscles) = result.measured_deg;
+  }
+  return table;
+}
+
+class Emg : public Command {
+ public:
+  About about() const override {
+    return {"emg", "Convert a raw EMG recording into a trial of excitations",
+            "fisherhill emg emg_data/curl_slow_raw.csv --config emg_data/configs/shipped_raw.toml"};
+  }
+
+  void addOptions(CLI::App& options) override {
+    options
+        .add_option("RAW", recording_,
+                    "raw recording: text columns, Trigno export, .sto, .mot or .csv")
+        ->required()
+        ->check(CLI::ExistingFile)
+        ->type_name("");
+    options
+        .add_option("--config", config_,
+                    "configuration: channels, filters, electrodes (docs/emg.md)")
+        ->required()
+        ->check(CLI::ExistingFile)
+        ->type_name("C.toml");
+  }
+
+  ExitStatus run(const CommandContext& context) override {
+    OutputFolder folder(context, {"excitations.sto"});
+    Summary summary(context);
+    summary.addInput(recording_);
+    summary.addInput(config_);
+    const bio::EmgConfigFile file = bio::readEmgConfig(config_);
+    for (const bio::FullDeclaration& full : file.full) {
+      if (!full.mvcFile.empty()) summary.addInput(full.mvcFile);
+    }
+    const bio::Recording recording = bio::readRecording(recording_, file.layout);
+    const bio::EmgResult result =
+        bio::excitationsFromEmg(recording, bio::emgConfigFor(file, recording));
+    folder.writeFile("excitations.sto", [&](const std::filesystem::path& path) {
+      bio::writeTable(trialOf(result), path);
+    });
+    tell(recording, result, summary);
+    deliver(context, summary, reportOn(result), folder);
+    return ExitStatus::done;
+  }
+
+ private:
+  void tell(const bio::Recording& recording, const bio::EmgResult& result, Summary& summary) const {
+    summary.set("format", std::string(bio::nameOf(recording.format)));
+    summary.set("rows", result.time.size());
+    summary.set("duration_s", result.time[result.time.size() - 1] - result.time[0]);
+    summary.set("muscles", result.muscles);
+    nlohmann::ordered_json electrodes = nlohmann::ordered_json::array();
+    for (const bio::ElectrodeTrace& trace : result.electrodes) {
+      electrodes.push_back({{"channel", trace.channel},
+                            {"rate_Hz", trace.rate},
+                            {"unit", trace.unit},
+                            {"excitation_1_at", trace.full},
+                            {"normalised_by", trace.fullSource},
+                            {"fraction_clipped_above_1", trace.fractionAbove},
+                            {"fraction_set_to_0", trace.fractionBelow}});
+    }
+    summary.set("electrodes", electrodes);
+    summary.set("fraction_of_sums_clipped", result.fractionSumAbove);
+    if (result.measured) {
+      summary.set("measured_values", (!result.measured_deg.array().isNaN()).count());
+      summary.set("measured_fraction_missing", result.measured->notMeasured);
+    }
+    summary.set("remarks", result.remarks);
+  }
+
+  Report reportOn(const bio::EmgResult& result) const {
+    Report report;
+    report.title = fmt::format("Excitations from {}", recording_);
+    report.verdict =
+        fmt::format("{} electrode{} drive{} {}.", result.electrodes.size(),
+                    result.electrodes.size() == 1 ? "" : "s",
+                    result.electrodes.size() == 1 ? "s" : "", fmt::join(result.muscles, ", "));
+    report.mainFigure = excitationFigure(result);
+    report.details.emplace_back(Section{"Processing steps and limitations"});
+    for (const std::string& remark : result.remarks) report.details.emplace_back(Paragraph{remark});
+    if (result.measured) report.details.emplace_back(measuredFigure(*result.measured));
+    report.details.emplace_back(Section{"Electrodes"});
+    for (const bio::ElectrodeTrace& trace : result.electrodes) {
+      report.details.emplace_back(electrodeFigure(trace));
+    }
+    return report;
+  }
+
+  std::string recording_;
+  std::string config_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> emgCommand() {
+  return std::make_unique<Emg>();
+}
+
+}  // namespace app

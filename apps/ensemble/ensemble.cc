@@ -1,0 +1,390 @@
+#include "ensemble/ensemble.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "bio/analysis/replay.h"
+#include "discover/discover_search.h"
+#include "ensemble/ensemble_discovery.h"
+#include "ensemble/ensemble_draws.h"
+#include "ensemble/ensemble_report.h"
+#include "ensemble/missing_rows.h"
+#include "ensemble/parameter_laws.h"
+#include "info/probability/random_stream.h"
+#include "info/version.h"
+#include "options/input_rules.h"
+#include "options/number_rules.h"
+#include "options/system_options.h"
+#include "options/trial_input.h"
+#include "output/result.h"
+#include "sensitivity/sensitivity_report.h"
+
+namespace app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Everything that the rows are a function of, beside their numbers.
+struct EnsembleStudy {
+  TrialInput input;
+  bio::ParameterCatalogue catalogue;
+  DrawnLaws laws;
+  std::unique_ptr<bio::SystemBatch> ensemble;
+  std::unique_ptr<DrawTable> table;
+  bio::Coordinate coordinate;
+  std::optional<bio::MeasuredMotion> measured;
+};
+
+class Ensemble : public Command {
+ public:
+  explicit Ensemble(std::function<std::unique_ptr<WorkerPool>()> gather)
+      : gather_(std::move(gather)) {}
+
+  About about() const override {
+    return {"ensemble", "Simulate a trial with many random draws of the parameters",
+            "fisherhill ensemble models/elbow8.osim emg_data/curl_slow.sto --draws 1000 "
+            "--parameters TRI.radius,hand.mass --out out/ensemble"};
+  }
+
+  void addOptions(CLI::App& options) override {
+    app_ = &options;
+    addModelArgument(options, model_);
+    options
+        .add_option("TRIAL", trial_,
+                    "trial: excitations, and the measured coordinate if it was recorded; required "
+                    "unless --discover is given")
+        ->check(CLI::ExistingFile)
+        ->type_name("");
+    const std::string group = "Ensemble";
+    const auto list = [&](const char* name, std::vector<std::string>& target, const char* text) {
+      return options.add_option(name, target, text)
+          ->allow_extra_args(false)
+          ->delimiter(',')
+          ->group(group);
+    };
+    options
+        .add_option("--draws", draws_, "number of simulations; with --sobol: number of base points")
+        ->check(CLI::Range(1, 10000000))
+        ->capture_default_str()
+        ->type_name("N")
+        ->group(group);
+    list("--parameters", laws_.names,
+         "parameters to draw, by name; a name may contain *; default: all")
+        ->type_name("NAMES");
+    options
+        .add_option("--distribution", laws_.distribution,
+                    "normal, or uniform over ±√3 standard deviations; both within the bounds")
+        ->check(CLI::IsMember({"normal", "uniform"}))
+        ->capture_default_str()
+        ->group(group);
+    options
+        .add_option("--spread", laws_.spread,
+                    "factor by which every standard deviation is multiplied")
+        ->check(positive())
+        ->capture_default_str()
+        ->type_name("FACTOR")
+        ->group(group);
+    list("--prior", laws_.priors,
+         "mean and standard deviation of a parameter instead of the default, in its unit; may be "
+         "repeated")
+        ->type_name("NAME=MEAN:SD");
+    list("--bounds", laws_.bounds, "bounds of a parameter instead of the default; may be repeated")
+        ->type_name("NAME=LOW:HIGH");
+    options
+        .add_option("--covariance", laws_.covarianceFile,
+                    "covariance of normally distributed parameters, as calibrate writes it: a line "
+                    "of names, then one row each; without --parameters these are drawn")
+        ->check(CLI::ExistingFile)
+        ->type_name("FILE.csv")
+        ->group(group);
+    options
+        .add_option("--band-points", bandPoints_, "number of time points in the percentile band")
+        ->check(CLI::Range(2, 1000))
+        ->capture_default_str()
+        ->type_name("N")
+        ->group(group);
+    options
+        .add_flag("--sobol", sobol_, "variance-based sensitivity: Sobol's indices of the output")
+        ->group(group);
+    options.add_option("--output", output_, "output whose variance --sobol decomposes")
+        ->check(CLI::IsMember(DrawTable::outputNames()))
+        ->capture_default_str()
+        ->group(group);
+    const std::string sets = "Discovery over many data sets";
+    options
+        .add_option("--discover", discover_,
+                    "instead of TRIAL: run discover on every subfolder that has train_*.sto and "
+                    "held_out*.sto; requires --out")
+        ->check(CLI::ExistingDirectory)
+        ->type_name("DIR")
+        ->group(sets);
+    options
+        .add_option("--noise-deg", noise_,
+                    "with --discover: standard deviation of the measured angle [deg]; default: "
+                    "estimated from the data")
+        ->check(positive())
+        ->type_name("DEG")
+        ->group(sets);
+    options
+        .add_option("--max-effects", maxEffects_,
+                    "with --discover: largest number of effects in one hypothesis")
+        ->check(CLI::Range(1, 3))
+        ->capture_default_str()
+        ->type_name("N")
+        ->group(sets);
+    addInputScatter(options, inputScatter_, "with --discover: ", sets);
+    addSimulationOptions(options, simulation_);
+  }
+
+  ExitStatus run(const CommandContext& given) override {
+    const std::unique_ptr<WorkerPool> pool = gather_();
+    CommandContext context = given;
+    context.quiet = !pool->leads();
+    const int threads = app_->get_option("--threads")->count() > 0 ? context.threads
+                                                                   : pool->defaultThreads(context);
+    if (pool->leads()) checkChoice(context);
+    if (!pool->leads() && !pool->start()) return ExitStatus::done;
+    if (!discover_.empty()) {
+      return discoverInSets({model_, {}, {}, {}, noise_, maxEffects_, inputScatter_, simulation_},
+                            discover_, context, *pool, threads);
+    }
+    if (!pool->leads()) {
+      Summary summary(context);
+      const auto study = prepare(summary);
+      pool->work(rowsOf(*study, context.seed), threads);
+      return ExitStatus::done;
+    }
+    std::vector<std::string> files = {"draws.csv", "band.csv"};
+    if (sobol_) files.push_back("sobol.csv");
+    OutputFolder folder(mayGoOn(context), files);
+    Summary summary(context);
+    const auto made = prepare(summary);
+    const EnsembleStudy& study = *made;
+    resultsMustNotBeInputs(summary, folder, files);
+    RowFile file(folder.path(unfinishedRows), settings(study, summary, context.seed),
+                 study.table->columns(), context.force);
+    if (const std::string damage = damageIn(file); !damage.empty()) summary.warn(damage);
+    const auto begin = std::chrono::steady_clock::now();
+    const std::size_t computed = computeMissing(
+        *pool, threads, file, total(study), rowsOf(study, context.seed), context, "simulations");
+    const double wall =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+
+    const EnsembleFindings findings = findingsOf(study, file, context.seed);
+    warnOfRange(study, findings, summary);
+    folder.write("draws.csv", [&](std::ostream& out) { writeDraws(findings, out); });
+    folder.write("band.csv", [&](std::ostream& out) { writeBand(findings, out); });
+    if (findings.sobol) {
+      folder.write("sobol.csv", [&](std::ostream& out) { writeSobol(findings, out); });
+    }
+    summary.setSimulation(simulation_.integrator, simulation_.stepOrDefault(), study.input.duration,
+                          wall);
+    summary.set("computed", computed);
+    summary.set("ranks", pool->ranks());
+    tellEnsemble(findings, summary);
+    deliver(context, summary, ensembleReport(findings), folder);
+    file.remove();
+    return ExitStatus::done;
+  }
+
+ private:
+  void checkChoice(const CommandContext& context) const {
+    if (discover_.empty()) {
+      if (trial_.empty()) throw std::invalid_argument("TRIAL is required (see --help)");
+      if (!laws_.covarianceFile.empty() && (sobol_ || laws_.distribution != "normal")) {
+        throw std::invalid_argument(fmt::format("--covariance cannot be combined with --{}",
+                                                sobol_ ? "sobol" : "distribution uniform"));
+      }
+      for (const char* option : {"--noise-deg", "--max-effects", "--input-scatter"}) {
+        if (app_->get_option(option)->count() == 0) continue;
+        throw std::invalid_argument(fmt::format("{} requires --discover", option));
+      }
+      return;
+    }
+    if (!trial_.empty()) throw std::invalid_argument("TRIAL cannot be combined with --discover");
+    for (const CLI::Option* option : app_->get_options()) {
+      if (option->get_group() != "Ensemble" || option->count() == 0) continue;
+      throw std::invalid_argument(
+          fmt::format("{} cannot be combined with --discover", option->get_name()));
+    }
+    if (!context.out) throw std::invalid_argument("--discover requires --out");
+  }
+
+  /// By pointer, since the ensemble points into it.
+  std::unique_ptr<const EnsembleStudy> prepare(Summary& summary) const {
+    if (simulation_.coordinates.empty())
+      throw std::invalid_argument("--coordinate: must name at least one");
+    const bio::Model model = readModel(model_, summary);
+    const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
+    TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
+    bio::ParameterCatalogue catalogue(model, arm, {input.start.q, input.start.qDot});
+    auto made = std::make_unique<EnsembleStudy>(
+        EnsembleStudy{std::move(input), std::move(catalogue), {}, {}, {}, {}, {}});
+    EnsembleStudy& study = *made;
+    study.coordinate = arm.skeleton().coordinates().front();
+    for (const bio::MeasuredMotion& motion : study.input.trial.measured) {
+      if (motion.coordinate == study.coordinate.name) study.measured = motion;
+    }
+    study.laws = drawnLaws(study.catalogue, laws_);
+    if (study.laws.together) summary.addInput(laws_.covarianceFile);
+    const std::vector<std::size_t>& selection = study.laws.selection;
+    if (sobol_ && selection.size() > 32) {
+      throw std::invalid_argument(fmt::format(
+          "--sobol: {} parameters, at most 32; choose them with --parameters", selection.size()));
+    }
+    if (sobol_ && draws_ < 2) throw std::invalid_argument("--sobol: --draws must be at least 2");
+    if (sobol_ && output_ == "rms_error" && !study.measured) {
+      throw std::invalid_argument(
+          fmt::format("--output rms_error: {} has no measured {}", trial_, study.coordinate.name));
+    }
+    std::vector<double> course;
+    for (int i = 0; i < bandPoints_; ++i) {
+      course.push_back(study.input.startTime + study.input.duration * i / (bandPoints_ - 1));
+    }
+    bio::SimulationOptions options =
+        simulationOptions(simulation_, study.input.startTime, study.input.duration);
+    options.externalForce = study.input.externalForce;
+    study.ensemble = std::make_unique<bio::SystemBatch>(
+        study.catalogue, armOptions(simulation_), study.input.excitation, study.coordinate.name,
+        study.measured, course, selection, options);
+    if (const auto left = bio::leftRange(
+            arm, bio::simulate(arm, study.input.excitation, study.input.start, options))) {
+      summary.warn("with the model's own parameters, " + left->what);
+    }
+    study.table = std::make_unique<DrawTable>(
+        study.laws.parameters, course, shownFactor(study.coordinate), shownUnit(study.coordinate));
+    return made;
+  }
+
+  /// Tells how many draws leave the coordinate's range by more than a tenth of it.
+  static void warnOfRange(const EnsembleStudy& study, const EnsembleFindings& f, Summary& summary) {
+    const bio::Coordinate& c = study.coordinate;
+    const double shown = study.table->shown();
+    const double margin = std::max(0.1 * (c.rangeMax - c.rangeMin) * shown, 1.0);
+    std::uint64_t left = 0;
+    for (std::uint64_t i = 0; i < f.count; ++i) {
+      // the smallest and the largest value; NaN where there is none
+      const bool isBelow = f.outputs[3][i] < c.rangeMin * shown - margin;
+      if (isBelow || f.outputs[4][i] > c.rangeMax * shown + margin) ++left;
+    }
+    if (left == 0) return;
+    summary.warn(fmt::format(
+        "in {} of {} simulations {} leaves its range, {:.4g} to {:.4g} {}, by "
+        "more than a tenth of it",
+        left, f.count, c.name, c.rangeMin * shown, c.rangeMax * shown, study.table->unit()));
+  }
+
+  /// How many rows there are to be.
+  std::uint64_t total(const EnsembleStudy& study) const {
+    const auto n = static_cast<std::uint64_t>(draws_);
+    return sobol_ ? n * (study.laws.parameters.size() + 2) : n;
+  }
+
+  /// A row is a function of seed and number alone: its parameters are quantiles of a point of the
+  /// unit cube, which comes from the number's own random stream, or from Saltelli's scheme.
+  RowWork rowsOf(const EnsembleStudy& study, std::uint64_t seed) const {
+    RowWork work;
+    work.together = 16;  // four times four lanes
+    work.rows = [this, &study, seed](std::span<const std::uint64_t> numbers) {
+      std::vector<Eigen::VectorXd> thetas;
+      for (const std::uint64_t number : numbers) thetas.push_back(draw(study, number, seed));
+      const std::vector<bio::EnsembleRun> runs = study.ensemble->run(thetas);
+      std::vector<std::string> rows;
+      for (std::size_t i = 0; i < runs.size(); ++i) {
+        rows.push_back(study.table->row(runs[i], thetas[i]));
+      }
+      return rows;
+    };
+    return work;
+  }
+
+  Eigen::VectorXd draw(const EnsembleStudy& study, std::uint64_t number, std::uint64_t seed) const {
+    const auto p = static_cast<int>(study.laws.parameters.size());
+    Eigen::VectorXd theta(p);
+    if (sobol_) {
+      theta = info::sobolPoint(number, p, seed);
+    } else {
+      info::RandomStream random(seed, number);
+      for (double& u : theta) u = random.uniform();
+      if (study.laws.together) theta = study.laws.together->shares(theta);
+    }
+    for (Eigen::Index i = 0; i < p; ++i) {
+      theta[i] = study.laws.parameters[static_cast<std::size_t>(i)].law.quantile(theta[i]);
+    }
+    return theta;
+  }
+
+  /// All that the rows depend on; how many there are is not among it.
+  Json settings(const EnsembleStudy& study, const Summary& summary, std::uint64_t seed) const {
+    Json json;
+    json["program"] = "fisherhill ensemble";
+    json["version"] = info::version();
+    json["model_sha256"] = summary.inputs()[0].sha256;
+    json["trial_sha256"] = summary.inputs()[1].sha256;
+    json["seed"] = seed;
+    json["scheme"] = sobol_ ? "sobol" : "draws";
+    json["distribution"] = laws_.distribution;
+    json["band_points"] = bandPoints_;
+    json["simulation"] = settingsOf(simulation_);
+    if (study.laws.together) json["covariance_sha256"] = summary.inputs()[2].sha256;
+    json["parameters"] = Json::array();
+    for (const DrawnParameter& one : study.laws.parameters) {
+      json["parameters"].push_back(
+          {one.name, one.law.mean, one.law.sd, one.law.lower, one.law.upper});
+    }
+    return json;
+  }
+
+  EnsembleFindings findingsOf(const EnsembleStudy& study, const RowFile& file,
+                              std::uint64_t seed) const {
+    EnsembleFindings findings{
+        model_,
+        trial_,
+        study.coordinate.name,
+        *study.table,
+        study.laws.parameters,
+        study.ensemble->nominal(),
+        total(study),
+        [&](std::uint64_t number) { return study.table->parse(number, file.row(number)); },
+        study.measured};
+    collect(findings);
+    if (!sobol_) return findings;
+    const auto names = DrawTable::outputNames();
+    const auto output =
+        static_cast<std::size_t>(std::find(names.begin(), names.end(), output_) - names.begin());
+    std::vector<Eigen::VectorXd> values;
+    for (const double y : findings.outputs[output]) {
+      values.push_back(std::isfinite(y) ? Eigen::VectorXd::Constant(1, y) : Eigen::VectorXd());
+    }
+    const auto p = static_cast<int>(study.laws.parameters.size());
+    constexpr int replicates = 500;
+    findings.sobol = SobolFinding{output_, info::sobolIndices(values, p),
+                                  info::bootstrapSobol(values, p, replicates, seed), draws_};
+    return findings;
+  }
+
+  std::function<std::unique_ptr<WorkerPool>()> gather_;
+  CLI::App* app_ = nullptr;
+  std::string model_, trial_;
+  int draws_ = 1000;
+  LawRequest laws_;
+  int bandPoints_ = 46;
+  bool sobol_ = false;
+  std::string output_ = "final";
+  std::string discover_;
+  std::optional<double> noise_;
+  int maxEffects_ = 3;
+  std::optional<double> inputScatter_;
+  SimulationOptions simulation_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> ensembleCommand(std::function<std::unique_ptr<WorkerPool>()> gather) {
+  return std::make_unique<Ensemble>(std::move(gather));
+}
+
+}  // namespace app

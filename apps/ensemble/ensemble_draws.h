@@ -1,0 +1,71 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bio/analysis/ensemble.h"
+#include "info/probability/marginal.h"
+
+namespace app {
+
+/// A drawn parameter and its distribution.
+struct DrawnParameter {
+  std::string name, unit;
+  double value;  ///< in the model [unit]
+  info::Marginal law;
+};
+
+/// A scalar output of every run of an ensemble, in shown units.
+struct EnsembleOutput {
+  std::string name;   ///< "rms_error", as --output has it
+  std::string words;  ///< "RMS error"
+  double (*of)(const bio::EnsembleRun&);
+};
+
+/// Writes and reads the rows from which draws.csv and band.csv are made. A row has the outcome of a
+/// run, its outputs, its parameters and the course of the coordinate, in degrees or millimetres. A
+/// missing number is an empty cell.
+class DrawTable {
+ public:
+  /// @param shown factor from the coordinate's unit to degrees or millimetres
+  /// @param shownUnit  "deg" or "mm"
+  DrawTable(const std::vector<DrawnParameter>& parameters, const std::vector<double>& course,
+            double shown, const std::string& shownUnit);
+
+  static const std::vector<EnsembleOutput>& outputs();
+  /// Names of the outputs, for --output.
+  static std::vector<std::string> outputNames();
+
+  /// Columns of the unfinished file; the first is the row's number.
+  std::vector<std::string> columns() const;
+  /// Number of them that draws.csv has: all but the course.
+  std::size_t shortColumns() const { return columns().size() - course_.size(); }
+  std::string columnOf(const EnsembleOutput& output) const { return output.name + "_" + unit_; }
+
+  /// All cells but the number.
+  std::string row(const bio::EnsembleRun& run, const Eigen::VectorXd& theta) const;
+
+  /// A row as numbers; NaN for an empty cell.
+  struct Row {
+    std::string outcome;
+    double failedAt = 0;
+    std::vector<double> outputs = {};  ///< in the order of outputs()
+    std::vector<double> parameters = {};
+    std::vector<double> course = {};
+    std::string head = {};  ///< the cells for draws.csv
+  };
+  /// @throws std::runtime_error if a cell is not a number
+  Row parse(std::uint64_t number, const std::string& text) const;
+
+  double shown() const { return shown_; }
+  const std::string& unit() const { return unit_; }
+  const std::vector<double>& course() const { return course_; }
+
+ private:
+  std::vector<std::string> parameters_;  ///< "TRI.radius [m]"
+  std::vector<double> course_;
+  double shown_;
+  std::string unit_;
+};
+
+}  // namespace app

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "ensemble/ensemble_draws.h"
+#include "info/probability/global_sensitivity.h"
+#include "report/report.h"
+
+namespace app {
+
+/// Sobol's indices of one output.
+struct SobolFinding {
+  std::string output;  ///< "final"
+  info::SobolResult indices;
+  info::SobolIntervals intervals;
+  int basePoints;
+};
+
+/// Percentiles over time of the runs that reached the end, in shown units.
+struct Band {
+  std::vector<double> time, nominal, mean, p5, p50, p95;
+};
+
+/// The findings of `ensemble`. Rows are read one by one when they are needed.
+struct EnsembleFindings {
+  std::string modelFile, trialFile;
+  std::string coordinate;
+  const DrawTable& table;
+  const std::vector<DrawnParameter>& parameters;
+  const bio::EnsembleRun& nominal;
+  std::uint64_t count;                               ///< of rows
+  std::function<DrawTable::Row(std::uint64_t)> row;  ///< by number, below `count`
+  std::optional<bio::MeasuredMotion> measured;
+  std::map<std::string, std::uint64_t> outcomes = {};  ///< number of simulations by outcome
+  std::vector<std::vector<double>> outputs = {};       ///< by output, then by row; NaN: none
+  Band band = {};
+  std::optional<SobolFinding> sobol = {};
+};
+
+/// Statistics of one output over the runs that reached the end.
+struct Spread {
+  double mean, sd, p5, p50, p95;
+};
+Spread spreadOf(const std::vector<double>& values);
+
+/// Fills outcomes, outputs and the band from the rows.
+void collect(EnsembleFindings& findings);
+
+/// draws.csv, band.csv and sobol.csv
+void writeDraws(const EnsembleFindings& findings, std::ostream& out);
+void writeBand(const EnsembleFindings& findings, std::ostream& out);
+void writeSobol(const EnsembleFindings& findings, std::ostream& out);
+
+void tellEnsemble(const EnsembleFindings& findings, Summary& summary);
+Report ensembleReport(const EnsembleFindings& findings);
+
+}  // namespace app

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "output/output_folder.h"
+#include "output/summary.h"
+
+/// Rules for commands with calibration and held-out trials.
+namespace app {
+
+/// No trial may be given twice, since it would count twice, and no held-out trial may be used for
+/// estimation.
+/// @param summary its inputs are the model, the calibration trials, the held-out trials
+/// @param training number of calibration trials
+/// @param first index of the first trial among the inputs
+/// @throws std::invalid_argument naming both files
+void inputsMustDiffer(const Summary& summary, std::size_t training, std::size_t first = 1);
+
+/// No result may overwrite an input, even with --force.
+/// @param results  names of the files to be written
+/// @throws std::invalid_argument naming the input
+void resultsMustNotBeInputs(const Summary& summary, const OutputFolder& folder,
+                            const std::vector<std::string>& results);
+
+}  // namespace app

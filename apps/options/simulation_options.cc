@@ -1,0 +1,109 @@
+#include "options/simulation_options.h"
+
+#include <fmt/format.h>
+
+#include "bio/model/integrator_names.h"
+
+namespace app {
+namespace {
+
+const std::string modelGroup = "Model";
+const std::string simulationGroup = "Simulation";
+
+CLI::Option* addAssignments(CLI::App& subcommand, const std::string& name,
+                            std::vector<Assignment>& target, const std::string& description) {
+  return subcommand
+      .add_option_function<std::vector<std::string>>(
+          name,
+          [&target, name](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) {
+              try {
+                target.push_back(parseAssignment(text));
+              } catch (const std::invalid_argument& error) {
+                throw CLI::ValidationError(name, error.what());
+              }
+            }
+          },
+          description)
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+}
+
+}  // namespace
+
+double SimulationOptions::stepOrDefault() const {
+  return step.value_or(bio::defaultStep(bio::integratorNamed(integrator).value()));
+}
+
+nlohmann::ordered_json settingsOf(const SimulationOptions& options) {
+  const auto listed = [](const std::vector<Assignment>& assignments) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::object();
+    for (const Assignment& one : assignments) list[one.name] = one.value;
+    return list;
+  };
+  return {{"integrator", options.integrator},   {"step_s", options.stepOrDefault()},
+          {"coordinates", options.coordinates}, {"locked", listed(options.locks)},
+          {"initial", listed(options.initial)}, {"wrap_as_cylinder", options.wrapAsCylinder},
+          {"ignore_extra", options.ignoreExtra}};
+}
+
+void addModelOptions(CLI::App& subcommand, SimulationOptions& options) {
+  subcommand.add_option("--coordinate", options.coordinates, "free coordinate; may be repeated")
+      ->type_name("NAME")
+      ->allow_extra_args(false)
+      ->delimiter(',')
+      ->capture_default_str()
+      ->group(modelGroup);
+  addAssignments(subcommand, "--lock", options.locks,
+                 "value at which another coordinate is locked, as 30deg or 0.52 (rad; m if it "
+                 "slides); default: the model's default value")
+      ->group(modelGroup);
+  subcommand
+      .add_option("--wrap-as-cylinder", options.wrapAsCylinder,
+                  "treat this wrap ellipsoid as a cylinder; two of its semi-axes must be equal")
+      ->type_name("NAME")
+      ->allow_extra_args(false)
+      ->delimiter(',')
+      ->group(modelGroup);
+}
+
+void addSimulationOptions(CLI::App& subcommand, SimulationOptions& options) {
+  addModelOptions(subcommand, options);
+  subcommand
+      .add_option(
+          "--integrator", options.integrator,
+          "vi (midpoint variational, forces at both ends of a step, second order), vi-left (the "
+          "same with forces at the left end only, first order), rk4 or cvode (adaptive reference)")
+      ->check(CLI::IsMember({"vi", "vi-left", "rk4", "cvode"}))
+      ->capture_default_str()
+      ->group(simulationGroup);
+  subcommand
+      .add_option_function<std::string>(
+          "--step",
+          [&options](const std::string& text) {
+            double step = 0;
+            try {
+              step = parseNumber(text);
+            } catch (const std::invalid_argument& error) {
+              throw CLI::ValidationError("--step", error.what());
+            }
+            if (!(step > 0)) {
+              throw CLI::ValidationError("--step", fmt::format("{} s must be > 0", text));
+            }
+            options.step = step;
+          },
+          "time step; default 0.01 (rk4: 0.0002)")
+      ->type_name("SECONDS")
+      ->group(simulationGroup);
+  addAssignments(
+      subcommand, "--initial", options.initial,
+      "initial value of a free coordinate, at rest, as 34deg or 0.59 (rad; m if it slides); "
+      "default: the fitted or first measured value, else the model's default value")
+      ->group(simulationGroup);
+  subcommand
+      .add_flag("--ignore-extra", options.ignoreExtra,
+                "ignore columns of the trial that match nothing in the model")
+      ->group(simulationGroup);
+}
+
+}  // namespace app

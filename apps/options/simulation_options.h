@@ -1,0 +1,36 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "options/quantity.h"
+
+namespace app {
+
+/// The options that every subcommand with a simulation has, as they were typed; names are checked
+/// against the model later.
+struct SimulationOptions {
+  std::string integrator = "vi";                             ///< vi, vi-left, rk4 or cvode
+  std::optional<double> step;                                ///< Δt [s] > 0; see stepOrDefault
+  std::vector<std::string> coordinates = {"elbow_flexion"};  ///< the free ones
+  std::vector<Assignment> locks;    ///< values of locked coordinates that differ from the defaults
+  std::vector<Assignment> initial;  ///< start values of free coordinates
+  std::vector<std::string> wrapAsCylinder;  ///< ellipsoids to treat as cylinders
+  bool ignoreExtra = false;                 ///< ignore unknown columns of a trial
+
+  /// Δt [s]: as given, else the integrator's own.
+  double stepOrDefault() const;
+};
+
+void addSimulationOptions(CLI::App& subcommand, SimulationOptions& options);
+
+/// All of them as one JSON object, to compare with another run.
+nlohmann::ordered_json settingsOf(const SimulationOptions& options);
+
+/// Adds only the options of the model: --coordinate, --lock and --wrap-as-cylinder.
+void addModelOptions(CLI::App& subcommand, SimulationOptions& options);
+
+}  // namespace app

@@ -1,0 +1,39 @@
+#include "options/system_options.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "bio/model/integrator_names.h"
+
+namespace app {
+
+std::map<std::string, double> byName(const std::vector<Assignment>& assignments) {
+  std::map<std::string, double> values;
+  for (const Assignment& assignment : assignments) {
+    if (!values.emplace(assignment.name, assignment.value).second) {
+      throw std::invalid_argument(fmt::format("'{}' is given twice", assignment.name));
+    }
+  }
+  return values;
+}
+
+bio::SystemOptions armOptions(const SimulationOptions& options) {
+  bio::SystemOptions arm;
+  arm.skeleton.freeCoordinates = options.coordinates;
+  arm.skeleton.lockedValues = byName(options.locks);
+  arm.wrapAsCylinder = options.wrapAsCylinder;
+  return arm;
+}
+
+bio::SimulationOptions simulationOptions(const SimulationOptions& options, double startTime,
+                                         double duration) {
+  bio::SimulationOptions simulation;
+  simulation.integrator = bio::integratorNamed(options.integrator).value();
+  simulation.startTime = startTime;
+  simulation.duration = duration;
+  simulation.step = options.stepOrDefault();
+  return simulation;
+}
+
+}  // namespace app

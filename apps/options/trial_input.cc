@@ -1,0 +1,109 @@
+#include "options/trial_input.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "bio/analysis/replay.h"
+#include "bio/opensim/osim_file.h"
+#include "bio/tables/trial_review.h"
+#include "options/system_options.h"
+#include "output/sha256.h"
+#include "output/text.h"
+
+namespace app {
+namespace {
+
+void addFileArgument(CLI::App& subcommand, const std::string& name, std::string& file,
+                     const std::string& description) {
+  subcommand.add_option(name, file, description)
+      ->required()
+      ->check(CLI::ExistingFile)
+      ->type_name("");
+}
+
+}  // namespace
+
+void addModelArgument(CLI::App& subcommand, std::string& model) {
+  addFileArgument(subcommand, "MODEL", model, "model (.osim)");
+}
+
+void addTrialArgument(CLI::App& subcommand, std::string& trial) {
+  addFileArgument(subcommand, "TRIAL", trial,
+                  "trial: excitations, and the measured coordinate if it was recorded");
+}
+
+bio::Model readModel(const std::string& file, Summary& summary) {
+  summary.addInput(file);
+  bio::Model model = bio::readOsim(file);
+  for (const std::string& warning : model.warnings) summary.warn(warning);
+  return model;
+}
+
+bio::MusculoskeletalSystem movableSystem(const bio::Model& model, const std::string& file,
+                                         const SimulationOptions& options, Summary& summary) {
+  bio::MusculoskeletalSystem arm = [&] {
+    try {
+      return bio::MusculoskeletalSystem(model, armOptions(options));
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("{}: {}", file, error.what()));
+    }
+  }();
+  for (const std::string& warning : arm.warnings()) summary.warn(warning);
+  if (arm.numMuscles() == 0) {
+    throw std::invalid_argument(
+        fmt::format("{}: no muscle moves {}", file, fmt::join(options.coordinates, ", ")));
+  }
+  return arm;
+}
+
+bio::Trial readTrialFile(const std::string& file, const bio::Model& model,
+                         const SimulationOptions& options, bool experimentalConditions) {
+  bio::Trial trial = bio::readTrial(
+      file, model,
+      {.ignoreExtra = options.ignoreExtra, .experimentalConditions = experimentalConditions});
+  trial.sha256 = sha256OfFile(file);
+  const double duration = trial.duration();
+  if (options.step && *options.step > duration) {
+    throw std::invalid_argument(fmt::format("{}: lasts {} s, --step {} s must not be longer", file,
+                                            numberText(duration), numberText(*options.step)));
+  }
+  for (const bio::Remark& remark : bio::reviewTrial(trial, model)) {
+    const std::string line = fmt::format("{}: {}: {}", file, remark.subject, remark.message);
+    if (remark.weight == bio::Weight::error) throw std::invalid_argument(line);
+    if (remark.weight == bio::Weight::warning) trial.warnings.push_back(line);
+  }
+  for (std::string& line : bio::heldRemarks(trial, model, armOptions(options).skeleton)) {
+    trial.warnings.push_back(std::move(line));
+  }
+  return trial;
+}
+
+double longestDuration(const std::vector<bio::Trial>& trials) {
+  double longest = 0;
+  for (const bio::Trial& trial : trials) longest = std::max(longest, trial.duration());
+  return longest;
+}
+
+TrialInput readTrialInput(const std::string& file, const bio::Model& model,
+                          const bio::MusculoskeletalSystem& arm, const SimulationOptions& options,
+                          Summary& summary) {
+  summary.addInput(file);
+  TrialInput input;
+  input.trial = readTrialFile(file, model, options);
+  for (const std::string& warning : input.trial.warnings) summary.warn(warning);
+  input.excitation = bio::excitationOf(input.trial, arm);
+  input.externalForce = bio::externalForceOf(input.trial, arm);
+  input.startTime = input.trial.times[0];
+  input.duration = input.trial.duration();
+  const bio::TrialBeginning beginning =
+      bio::beginningOf(input.trial, model, arm, byName(options.initial));
+  input.from = beginning.from;
+  input.start = bio::initialState(arm, beginning.point.q, input.excitation, input.startTime);
+  input.start.qDot = beginning.point.qDot;
+  return input;
+}
+
+}  // namespace app

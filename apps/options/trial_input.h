@@ -1,0 +1,61 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "bio/analysis/replay.h"
+#include "bio/simulation/simulate.h"
+#include "bio/tables/trial.h"
+#include "options/simulation_options.h"
+#include "output/summary.h"
+
+/// Reads the model and trials of a subcommand. Every file becomes an input of the summary, every
+/// remark a warning.
+namespace app {
+
+/// The required argument MODEL.
+void addModelArgument(CLI::App& subcommand, std::string& model);
+
+/// The required argument TRIAL.
+void addTrialArgument(CLI::App& subcommand, std::string& trial);
+
+/// @throws what readOsim throws
+bio::Model readModel(const std::string& file, Summary& summary);
+
+/// The system with the free coordinates that the model options choose.
+/// @param file  the model's, for the message
+/// @throws std::invalid_argument what Arm throws, or if no muscle moves the free coordinates
+bio::MusculoskeletalSystem movableSystem(const bio::Model& model, const std::string& file,
+                                         const SimulationOptions& options, Summary& summary);
+
+/// Reads a trial according to the simulation options. The trial's warnings include those of
+/// reviewTrial and heldRemarks; they are not passed to the summary.
+/// @param experimentalConditions the command takes the experimental conditions (known mass, turn)
+/// into
+///   account
+/// @throws what readTrial and heldRemarks throw; std::invalid_argument if --step is longer than the
+///   trial, or for an error of reviewTrial
+bio::Trial readTrialFile(const std::string& file, const bio::Model& model,
+                         const SimulationOptions& options, bool experimentalConditions = false);
+
+/// Duration of the longest trial [s]; 0 without trials.
+double longestDuration(const std::vector<bio::Trial>& trials);
+
+/// A trial with the initial state and inputs of its simulation.
+struct TrialInput {
+  bio::Trial trial;
+  bio::ExcitationSignal excitation;  ///< of the arm's muscles
+  bio::ExternalForce externalForce;  ///< empty: none
+  double startTime = 0;              ///< [s]
+  double duration = 0;               ///< [s]
+  bio::TrialBeginning::From from;    ///< where the initial state comes from
+  bio::SystemState start;  ///< from bio::beginningOf: --initial, else the model's fitted start,
+                           ///< else the measurement
+};
+/// @throws what readTrialFile, excitationOf, externalForceOf, beginningOf and initialState
+/// throw
+TrialInput readTrialInput(const std::string& file, const bio::Model& model,
+                          const bio::MusculoskeletalSystem& arm, const SimulationOptions& options,
+                          Summary& summary);
+
+}  // namespace app

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "command/command_context.h"
+
+namespace app {
+
+/// What every result says about itself: summary.json, as docs/schemas/summary.schema.json describes
+/// it.
+///
+/// Values have plain names that end in their unit (`rms_error_deg`); an infinite or undefined value
+/// becomes null, since JSON cannot express it.
+class Summary {
+ public:
+  struct InputFile {
+    std::string path;
+    std::string sha256;
+  };
+
+  explicit Summary(const CommandContext& context);
+
+  /// Adds a file that the result depends on. @throws std::runtime_error if it cannot be read
+  void addInput(const std::filesystem::path& file);
+
+  /// Adds one value: a number, text, list or object.
+  void set(const std::string& name, nlohmann::ordered_json value);
+
+  /// The simulation's own entries: integrator, step_s, duration_s, wall_s.
+  void setSimulation(const std::string& integrator, double step, double duration, double wallTime);
+
+  /// Prints a warning on standard error and keeps it in the summary.
+  void warn(const std::string& sentence);
+
+  /// The command line, quoted for a shell.
+  std::string commandLine() const;
+
+  const std::vector<InputFile>& inputs() const { return inputs_; }
+  const nlohmann::ordered_json& figures() const { return figures_; }
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+  nlohmann::ordered_json toJson() const;
+
+ private:
+  CommandContext context_;
+  std::vector<InputFile> inputs_;
+  nlohmann::ordered_json figures_ = nlohmann::ordered_json::object();
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace app

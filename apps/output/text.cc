@@ -1,0 +1,80 @@
+#include "output/text.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace app {
+
+std::string oneLine(std::string_view text) {
+  constexpr std::string_view space = " \t\r\n";
+  std::string line;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view part = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    const std::size_t first = part.find_first_not_of(space);
+    if (first == part.npos) continue;
+    part = part.substr(first, part.find_last_not_of(space) - first + 1);
+    if (!line.empty()) line += "; ";
+    line += part;
+  }
+  return line;
+}
+
+std::string numberText(double value, int digits) {
+  if (!std::isfinite(value)) return "–";
+  return fmt::format("{:.{}g}", value, digits);
+}
+
+std::string withUnit(double value, const std::string& unit, int digits) {
+  return numberText(value, digits) + (unit.empty() ? "" : " " + unit);
+}
+
+std::string identifiableWords(std::ptrdiff_t identifiable, std::ptrdiff_t all) {
+  if (all == 1) return fmt::format("The parameter is {}identifiable", identifiable ? "" : "not ");
+  if (identifiable == all) {
+    return all == 2 ? "Both parameters are identifiable"
+                    : fmt::format("All {} parameters are identifiable", all);
+  }
+  if (identifiable == 0) return fmt::format("None of the {} parameters is identifiable", all);
+  return fmt::format("{} of {} parameters {} identifiable", identifiable, all,
+                     identifiable == 1 ? "is" : "are");
+}
+
+std::string htmlText(std::string_view text) {
+  std::string html;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        html += "&amp;";
+        break;
+      case '<':
+        html += "&lt;";
+        break;
+      case '>':
+        html += "&gt;";
+        break;
+      case '"':
+        html += "&quot;";
+        break;
+      case '\'':
+        html += "&#39;";
+        break;
+      default:
+        html += c;
+    }
+  }
+  return html;
+}
+
+std::string shellWord(const std::string& word) {
+  constexpr std::string_view plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%";
+  if (!word.empty() && word.find_first_not_of(plain) == word.npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+}  // namespace app

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "render/render.h"
+
+namespace app {
+
+/// Draws arm.png, or arm.mp4, or without ffmpeg the film's pictures frame_0001.png, …
+ExitStatus drawPictures(const RenderOptions& options, const CommandContext& context);
+
+}  // namespace app

@@ -1,0 +1,91 @@
+#include "replay/replay.h"
+
+#include "bio/analysis/replay.h"
+#include "bio/discovery/with_experimental_conditions.h"
+#include "options/system_options.h"
+#include "options/trial_input.h"
+#include "output/progress_bar.h"
+#include "output/result.h"
+#include "replay/replay_report.h"
+
+namespace app {
+namespace {
+
+class Replay : public Command {
+ public:
+  About about() const override {
+    return {"replay", "Simulate the motion produced by a trial's excitations",
+            "fisherhill replay models/elbow8.osim emg_data/curl_slow.sto --out out/replay"};
+  }
+
+  void addOptions(CLI::App& options) override {
+    addModelArgument(options, model_);
+    addTrialArgument(options, trial_);
+    addSimulationOptions(options, simulation_);
+    options.add_flag("--strict", strict_,
+                     "exit with status 1 if a coordinate leaves its range by more than a tenth of "
+                     "it, or a fibre leaves 0.2 to 2 optimal lengths");
+  }
+
+  ExitStatus run(const CommandContext& context) override {
+    OutputFolder folder(context, {"states.sto", "forces.sto"});
+    Summary summary(context);
+    bio::Model model = readModel(model_, summary);
+    summary.addInput(trial_);
+    const bio::Trial trial = readTrialFile(trial_, model, simulation_, true);
+    for (const std::string& warning : trial.warnings) summary.warn(warning);
+    if (trial.known.any()) {
+      model = bio::discover::withExperimentalConditions(model, armOptions(simulation_),
+                                                        simulation_.coordinates.front(), trial);
+    }
+    const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
+    bio::TrialReplay replay;
+    {
+      ProgressBar bar("replay");
+      bio::SimulationOptions options = simulationOptions(simulation_, 0, 0);
+      options.step = bio::stepOf(model, options.integrator, simulation_.step);
+      options.progress = [&](double t) {
+        bar.update((t - trial.times[0]) / trial.duration());
+        return true;
+      };
+      replay = bio::replayTrial(arm, trial, options,
+                                bio::beginningOf(trial, model, arm, byName(simulation_.initial)));
+    }
+    const bio::Trajectory& motion = replay.motion;
+    const std::optional<bio::LeftRange> left = bio::leftRange(arm, motion);
+    if (left) summary.warn(left->what);
+    for (const std::string& sentence : bio::rangeRemarks(arm, motion)) {
+      const bool isSaid = left && sentence.starts_with(left->name + " leaves its range");
+      if (!isSaid) summary.warn(sentence);
+    }
+    const bio::MuscleReport muscles = bio::reportMuscles(arm, motion);
+    folder.writeFile("states.sto", [&](const std::filesystem::path& path) {
+      bio::writeTable(bio::statesTable(model, arm, motion), path);
+    });
+    folder.writeFile("forces.sto", [&](const std::filesystem::path& path) {
+      bio::writeTable(bio::forcesTable(arm, motion, muscles), path);
+    });
+
+    const ReplayFindings findings{model_, trial_, model, trial, arm, replay, muscles, left};
+    summary.setSimulation(simulation_.integrator, replay.options.step, replay.options.duration,
+                          motion.wallSeconds);
+    tellReplay(findings, summary);
+    deliver(context, summary, replayReport(findings), folder);
+    const bool isFine = motion.outcome == bio::Outcome::completed && !(strict_ && left);
+    return isFine ? ExitStatus::done : ExitStatus::answerIsNo;
+  }
+
+ private:
+  std::string model_;
+  std::string trial_;
+  SimulationOptions simulation_;
+  bool strict_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> replayCommand() {
+  return std::make_unique<Replay>();
+}
+
+}  // namespace app

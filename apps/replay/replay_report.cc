@@ -1,0 +1,200 @@
+#include "replay/replay_report.h"
+
+#include <fmt/format.h>
+
+#include "bio/analysis/replay.h"
+#include "bio/model/integrator_names.h"
+#include "output/angle_unit.h"
+#include "output/text.h"
+
+namespace app {
+namespace {
+
+/// Angles are shown in degrees, positions in mm.
+struct ShownUnit {
+  double factor;
+  std::string name;
+};
+ShownUnit unitOf(const bio::Coordinate& coordinate) {
+  return coordinate.isRotation ? ShownUnit{radian, "deg"} : ShownUnit{1e3, "mm"};
+}
+
+std::vector<double> inUnit(const Eigen::VectorXd& values, double factor) {
+  const Eigen::VectorXd result = values * factor;
+  return {result.begin(), result.end()};
+}
+
+const bio::MeasuredMotion* measuredOf(const ReplayFindings& f, const std::string& coordinate) {
+  for (const bio::MeasuredMotion& measured : f.trial.measured) {
+    if (measured.coordinate == coordinate) return &measured;
+  }
+  return nullptr;
+}
+
+Figure motionFigure(const ReplayFindings& f, std::size_t index) {
+  const bio::Coordinate& coordinate = f.arm.skeleton().coordinates()[index];
+  const ShownUnit unit = unitOf(coordinate);
+  Figure figure{.title = fmt::format("Simulated {}", coordinate.name),
+                .xLabel = "Time [s]",
+                .yLabel = fmt::format("{} [{}]", coordinate.name, unit.name)};
+  figure.series.push_back(
+      {.name = "simulated",
+       .x = f.replay.motion.time,
+       .y = inUnit(f.replay.motion.q.row(static_cast<Eigen::Index>(index)), unit.factor)});
+  if (const auto* measured = measuredOf(f, coordinate.name)) {
+    figure.title += " and measured motion";
+    figure.series.push_back({.name = "measured",
+                             .x = {measured->times.begin(), measured->times.end()},
+                             .y = inUnit(measured->values, unit.factor),
+                             .style = SeriesStyle::points});
+  }
+  return figure;
+}
+
+Figure perMuscle(const ReplayFindings& f, const std::string& title, const std::string& yLabel,
+                 const Eigen::MatrixXd& rows, double factor, const std::string& caption = {}) {
+  Figure figure{.title = title, .xLabel = "Time [s]", .yLabel = yLabel, .caption = caption};
+  for (std::size_t i = 0; i < f.arm.numMuscles(); ++i) {
+    figure.series.push_back({.name = f.arm.muscles()[i].name,
+                             .x = f.replay.motion.time,
+                             .y = inUnit(rows.row(static_cast<Eigen::Index>(i)), factor)});
+  }
+  return figure;
+}
+
+Figure energyFigure(const ReplayFindings& f) {
+  const auto K = static_cast<Eigen::Index>(f.replay.motion.time.size());
+  Eigen::VectorXd kinetic(K), potential(K), balance(K);
+  for (Eigen::Index k = 0; k < K; ++k) {
+    const bio::Energy energy =
+        bio::energyOf(f.arm, f.replay.motion.q.col(k), f.replay.motion.qDot.col(k));
+    kinetic[k] = energy.kinetic;
+    potential[k] = energy.potential;
+  }
+  potential.array() -= potential[0];
+  balance = kinetic + potential - f.replay.motion.muscleWork - f.replay.motion.passiveWork -
+            f.replay.motion.externalWork;
+  balance.array() -= balance[0];
+  Figure figure{.title = "Energy",
+                .xLabel = "Time [s]",
+                .yLabel = "Energy [J]",
+                .caption =
+                    "The balance is the integrator's energy error: kinetic + potential − work of "
+                    "muscles, passive and external forces."};
+  const auto add = [&](const std::string& name, const Eigen::VectorXd& values, SeriesStyle style) {
+    figure.series.push_back(
+        {.name = name, .x = f.replay.motion.time, .y = inUnit(values, 1), .style = style});
+  };
+  add("kinetic", kinetic, SeriesStyle::line);
+  add("potential (from the start)", potential, SeriesStyle::line);
+  add("work of muscles", f.replay.motion.muscleWork, SeriesStyle::line);
+  if (!f.arm.coordinateForces().empty()) {
+    add("work of passive forces", f.replay.motion.passiveWork, SeriesStyle::line);
+  }
+  add("balance", balance, SeriesStyle::dashed);
+  return figure;
+}
+
+/// "rms 3.2 deg from the measured elbow_flexion over 451 samples", or nothing measured.
+std::string comparison(const ReplayFindings& f) {
+  std::string text;
+  for (const bio::Coordinate& coordinate : f.arm.skeleton().coordinates()) {
+    const auto* measured = measuredOf(f, coordinate.name);
+    if (measured == nullptr) continue;
+    const ShownUnit unit = unitOf(coordinate);
+    const bio::MeasuredError error = bio::compareWithMeasured(f.arm, f.replay.motion, *measured);
+    text += fmt::format(
+        "{}{} differs from the measurement by {:.3g} {} (RMS over {} samples), at most {:.3g} {} "
+        "at {:.3g} s",
+        text.empty() ? "Simulated " : "; ", coordinate.name, error.rms * unit.factor, unit.name,
+        error.count, error.largest * unit.factor, unit.name, error.largestAt);
+  }
+  return text.empty() ? "Simulated; the trial has no measured coordinate to compare with" : text;
+}
+
+}  // namespace
+
+void tellReplay(const ReplayFindings& f, Summary& summary) {
+  const bio::Trajectory& motion = f.replay.motion;
+  const bool left = f.left && motion.outcome == bio::Outcome::completed;
+  summary.set("status", left ? "left_range" : bio::name(motion.outcome));
+  if (!motion.why.empty()) summary.set("why", motion.why);
+  if (f.left) {
+    summary.set("left_range_at_s", f.left->time);
+    summary.set("left_range", f.left->what);
+  }
+  for (const bio::Coordinate& coordinate : f.arm.skeleton().coordinates()) {
+    const auto* measured = measuredOf(f, coordinate.name);
+    if (measured == nullptr) continue;
+    const bio::MeasuredError error = bio::compareWithMeasured(f.arm, motion, *measured);
+    const bool first = &coordinate == &f.arm.skeleton().coordinates().front();
+    const std::string suffix = (coordinate.isRotation ? "_deg" : "_mm");
+    const std::string prefix = first ? "" : coordinate.name + "_";
+    summary.set(prefix + "rms_error" + suffix, error.rms * unitOf(coordinate).factor);
+    summary.set(prefix + "max_error" + suffix, error.largest * unitOf(coordinate).factor);
+    summary.set(prefix + "compared_samples", error.count);
+  }
+  summary.set("start_from", bio::name(f.replay.beginning.from));
+  summary.set("final_time_s", motion.time.back());
+  summary.set("steps", motion.steps);
+  summary.set("newton_iterations_per_step",
+              motion.steps > 0
+                  ? static_cast<double>(motion.newtonIterations) / static_cast<double>(motion.steps)
+                  : 0.0);
+  summary.set("halved_steps", motion.halvedSteps);
+  summary.set("energy_error_J", bio::energyError(f.arm, motion));
+  std::vector<std::string> muscles;
+  for (const bio::SystemMuscle& muscle : f.arm.muscles()) muscles.push_back(muscle.name);
+  summary.set("muscles", muscles);
+  summary.set("notes", f.arm.notes());
+}
+
+Report replayReport(const ReplayFindings& f) {
+  Report report;
+  report.title = fmt::format("Replay of {} on {}", f.trialFile, f.modelFile);
+  report.verdict = comparison(f) + ".";
+  if (f.replay.beginning.from == bio::TrialBeginning::From::model) {
+    report.verdict += " The initial state is the one that was fitted for this trial.";
+  }
+  if (f.replay.motion.outcome != bio::Outcome::completed) {
+    report.verdict = fmt::format("The simulation did not reach the end: {}.", f.replay.motion.why);
+  }
+  if (f.left) {
+    report.verdict = fmt::format("The motion leaves the valid range of the model: {}. {}",
+                                 f.left->what, report.verdict);
+  }
+  report.mainFigure = motionFigure(f, 0);
+  for (std::size_t i = 1; i < f.arm.skeleton().coordinates().size(); ++i) {
+    report.details.push_back(motionFigure(f, i));
+  }
+  report.details.push_back(Section{"Muscles"});
+  report.details.push_back(
+      perMuscle(f, "Activations", "Activation [1]", f.replay.motion.activation, 1));
+  report.details.push_back(perMuscle(f, "Tendon forces", "Force [N]", f.muscles.tendonForce, 1));
+  const bio::Coordinate& first = f.arm.skeleton().coordinates().front();
+  const Eigen::MatrixXd moments = f.muscles.tendonForce.cwiseProduct(f.muscles.momentArm);
+  report.details.push_back(perMuscle(f, "Moments", first.isRotation ? "Moment [N m]" : "Force [N]",
+                                     moments, 1,
+                                     fmt::format("Positive: tends to increase {}.", first.name)));
+  report.details.push_back(perMuscle(f, "Moment arms",
+                                     first.isRotation ? "Moment arm [mm]" : "−∂ℓ/∂q [10⁻³]",
+                                     f.muscles.momentArm, 1e3));
+  report.details.push_back(
+      perMuscle(f, "Fibre lengths", "Length [mm]", f.replay.motion.fibreLength, 1e3));
+  report.details.push_back(Section{"Energy and numerics"});
+  report.details.push_back(energyFigure(f));
+  report.details.push_back(
+      Paragraph{fmt::format("{} steps of {} s with {:.3g} Newton iterations per step, {} of them "
+                            "halved; the integration took {:.3g} ms.",
+                            f.replay.motion.steps, numberText(f.replay.options.step),
+                            static_cast<double>(f.replay.motion.newtonIterations) /
+                                std::max(1.0, static_cast<double>(f.replay.motion.steps)),
+                            f.replay.motion.halvedSteps, f.replay.motion.wallSeconds * 1e3)});
+  if (!f.arm.notes().empty()) {
+    report.details.push_back(Section{"Notes"});
+    for (const std::string& note : f.arm.notes()) report.details.push_back(Paragraph{note});
+  }
+  return report;
+}
+
+}  // namespace app

@@ -1,0 +1,281 @@
+#include "robot/discover_robot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "calibrate/fitted_table.h"
+#include "discover/discover_report.h"
+#include "discover/discover_search.h"
+#include "discover/suggested_experiments.h"
+#include "info/version.h"
+#include "options/input_rules.h"
+#include "options/number_rules.h"
+#include "output/angle_unit.h"
+#include "output/interruption.h"
+#include "output/json_text.h"
+#include "output/result.h"
+#include "output/text.h"
+#include "robot/robot_trial.h"
+#include "robots/robot_problem.h"
+
+namespace app {
+namespace {
+
+using info::discover::Finding;
+using info::robot::RobotProblem;
+using nlohmann::ordered_json;
+
+info::robot::Model plainModel(const std::string& system,
+                              const std::vector<info::robot::Trial>& trials) {
+  if (system == "double-pendulum") return info::robot::doublePendulum();
+  double least = HUGE_VAL, greatest = -HUGE_VAL;
+  for (const auto& trial : trials)
+    for (const double force : trial.measured.reshaped()) {
+      if (std::isnan(force)) continue;
+      least = std::min(least, force);
+      greatest = std::max(greatest, force);
+    }
+  if (!(greatest > least))
+    throw std::invalid_argument("the measured force is constant in all trials, must change");
+  return info::robot::suspendedMass(least, greatest);
+}
+
+/// Builds the effects of a with_effect.json into the model; they are no candidates any more.
+void buildIn(const std::string& file, info::robot::Model& model,
+             std::map<std::string, std::string>& present) {
+  std::ifstream stream(file);
+  try {
+    const ordered_json json = ordered_json::parse(stream);
+    if (json.at("system") != model.name)
+      throw std::invalid_argument(fmt::format("system is {}, must be {}",
+                                              json.at("system").get<std::string>(), model.name));
+    for (const auto& effect : json.at("effects")) {
+      const std::string id = effect.at("id");
+      const auto at = std::find_if(model.candidates.begin(), model.candidates.end(),
+                                   [&](const auto& c) { return c.id == id; });
+      if (at == model.candidates.end())
+        throw std::invalid_argument(fmt::format("effect {} is not in the catalogue", id));
+      for (const std::size_t q : at->quantities) {
+        info::discover::Quantity& quantity = model.quantities[q];
+        const double value = effect.at("parameters").at(quantity.name).at("value");
+        if (!(value >= quantity.lower && value <= quantity.upper))
+          throw std::invalid_argument(fmt::format("{}: {} {}, must be {} to {}", quantity.name,
+                                                  value, quantity.unit, quantity.lower,
+                                                  quantity.upper));
+        quantity.nominal = value;
+      }
+      if (at->kind == info::discover::EffectKind::parameter) {
+        at->starts = {Eigen::VectorXd::Constant(1, model.quantities[at->quantities[0]].nominal)};
+      } else {
+        model.candidates.erase(at);
+        present[id] = file;
+      }
+    }
+  } catch (const std::exception& error) {
+    throw std::invalid_argument(fmt::format("{}: {}", file, error.what()));
+  }
+}
+
+DiscoverWording wordingOf(const RobotProblem& data) {
+  DiscoverWording wording;
+  bool angles = true;
+  for (std::size_t c = 0; c < data.model().channels.size(); ++c) {
+    const auto& channel = data.model().channels[c];
+    const bool isAngle = channel.unit == "rad";
+    angles = angles && isAngle;
+    wording.outputs.push_back(
+        {channel.name, isAngle ? "deg" : channel.unit, data.weight(static_cast<int>(c))});
+  }
+  wording.unit = angles ? radian : 1;
+  wording.gapEnd = angles ? "_deg" : "_N";
+  wording.force = "Acceleration of the cart [m/s²]";
+  wording.forceUnit = "m/s²";
+  wording.ofForce = "an acceleration of the cart [m/s²]";
+  wording.push = "an extra acceleration of the cart";
+  wording.inputs = "inputs";
+  wording.input = "input";
+  wording.commands = "commands";
+  wording.hasMap = angles;
+  return wording;
+}
+
+const FollowUps& followUpsOfRobots() {
+  static const FollowUps known{
+      {
+          {{"gain", "mass", "bias"},
+           "Let the robot hang at rest, once unchanged and once with a known mass or angle added: "
+           "this shows the sensor's gain and bias without any motion."},
+          {{"visc", "coulomb", "stribeck", "drag", "damping"},
+           "Let it swing freely from a large angle until it rests: under dry friction the "
+           "amplitude falls linearly, under viscous friction exponentially, under drag fastest at "
+           "the start."},
+          {{"lag", "clock"},
+           "Hold the cart and push the links by hand: a clock offset shifts the sensors' readings, "
+           "a lag of the cart does not."},
+          {{"tilt", "bias"},
+           "Turn the robot by 180° about the vertical: the effect of a tilt changes its sign, a "
+           "bias stays."},
+      },
+      "Repeat a trial with a faster and wider motion of the cart; `fisherhill robot` finds one "
+      "that distinguishes the parameters.",
+      "Hold the cart still and let the robot swing: this shows the missing effect without the "
+      "drive.",
+      "Record one more trial and test it with --with with_effect.json."};
+  return known;
+}
+
+class RobotSearch {
+ public:
+  RobotSearch(const RobotRequest& request, const CommandContext& context)
+      : request_(request), context_(context) {}
+
+  ExitStatus run() {
+    std::vector<std::string> files = request_.trials;
+    files.insert(files.end(), request_.heldOut.begin(), request_.heldOut.end());
+    const std::vector<std::string> names = {"verdict.json", "parameters.csv", "with_effect.json"};
+    OutputFolder folder(context_, names);
+    Summary summary(context_);
+    std::vector<info::robot::Trial> trials;
+    const std::vector<info::robot::Channel> channels =
+        request_.system == "double-pendulum" ? info::robot::doublePendulum().channels
+                                             : info::robot::suspendedMass(0, 1).channels;
+    for (const std::string& file : files) {
+      summary.addInput(file);
+      std::vector<std::string> warnings;
+      trials.push_back(readRobotTrial(file, channels, request_.ignoreExtra, warnings));
+      for (const std::string& warning : warnings) summary.warn(warning);
+      const double duration = trials.back().times.back() - trials.back().times.front();
+      if (request_.step && *request_.step > duration) {
+        throw std::invalid_argument(fmt::format("{}: lasts {} s, --step {} s must not be longer",
+                                                file, numberText(duration),
+                                                numberText(*request_.step)));
+      }
+    }
+    inputsMustDiffer(summary, request_.trials.size(), 0);
+    info::robot::Model model = plainModel(request_.system, trials);
+    std::map<std::string, std::string> present;
+    if (!request_.with.empty()) {
+      buildIn(request_.with, model, present);
+      summary.addInput(request_.with);
+    }
+    resultsMustNotBeInputs(summary, folder, names);
+    const DiscoverSearch found =
+        searchForEffects([&](double step) { return attempt(model, trials, step); },
+                         request_.step.value_or(info::robot::DisagreementOptions{}.step),
+                         request_.step ? HUGE_VAL : 1e-3);
+    const info::discover::Verdict& verdict = found.verdict;
+    warnOfOneTrial(summary, request_.trials.size(), request_.heldOut.size());
+    DiscoverWording wording = wordingOf(*data_);
+    wording.present = present;
+    const std::string next = followUp(*data_, verdict, followUpsOfRobots());
+    const std::vector<bio::discover::PredictedExperiment> predictedExperiments;  // of arms only
+    const std::string name = "the " + request_.system;
+    const auto fitted = info::discover::fittedNumbers(*data_, verdict);
+    const DiscoverFindings findings{name,
+                                    files,
+                                    *data_,
+                                    wording,
+                                    found.options,
+                                    verdict,
+                                    next,
+                                    predictedExperiments,
+                                    found.wallSeconds,
+                                    found.processorSeconds,
+                                    fitted,
+                                    nullptr,
+                                    found.step};
+    summary.set("system", request_.system);
+    double longest = 0;
+    for (const info::robot::Trial& trial : trials) {
+      longest = std::max(longest, trial.times.back() - trial.times.front());
+    }
+    summary.set("step_s", found.step);
+    summary.set("duration_s", longest);
+    summary.set("wall_s", found.wallSeconds);
+    for (std::size_t c = 0; c < channels.size(); ++c)
+      summary.set(fmt::format("noise_{}_{}", channels[c].name, wording.outputs[c].unit),
+                  wording.unit * data_->sds()[c]);
+    tellFindings(findings, summary);
+    folder.write("verdict.json",
+                 [&](std::ostream& out) { out << jsonText(verdictJson(findings), 2) << '\n'; });
+    if (!fitted.empty())
+      folder.write("parameters.csv", [&](std::ostream& out) { writeFitted(fitted, out); });
+    if (mayBeAdded(verdict))
+      folder.write("with_effect.json", [&](std::ostream& out) {
+        out << jsonText(repaired(findings, summary), 2) << '\n';
+      });
+    deliver(context_, summary, discoverReport(findings), folder);
+    if (found.interrupted) throw Interrupted{};
+    return verdict.finding == Finding::numerical ? ExitStatus::answerIsNo : ExitStatus::done;
+  }
+
+ private:
+  /// The robot at a time step, and what the engine is told.
+  info::discover::Attempt attempt(const info::robot::Model& model,
+                                  const std::vector<info::robot::Trial>& trials, double step) {
+    info::robot::DisagreementOptions asked;
+    asked.step = step;
+    asked.without = request_.without;
+    for (std::size_t c = 0; c < request_.noise.size(); ++c) {
+      const bool isAngle = c < model.channels.size() && model.channels[c].unit == "rad";
+      asked.sds.push_back(isAngle ? request_.noise[c] * degree : request_.noise[c]);
+    }
+    data_ = std::make_unique<RobotProblem>(model, trials, asked);
+    info::discover::Attempt one{
+        *data_, engineOptions(request_.maxEffects, request_.inputScatter, request_.trials.size(),
+                              request_.heldOut.size())};
+    if (!request_.noise.empty()) one.options.outputSd = data_->sds().front();
+    return one;
+  }
+
+  /// The effects, and where they come from.
+  static ordered_json repaired(const DiscoverFindings& f, const Summary& summary) {
+    const auto& data = dynamic_cast<const RobotProblem&>(f.data);
+    ordered_json json;
+    json["system"] = data.model().name;
+    json["effects"] = verdictJson(f)["effects"];
+    json["tool"] = "fisherhill " + std::string(info::version());
+    json["data"] = ordered_json::array();
+    for (const Summary::InputFile& input : summary.inputs())
+      json["data"].push_back({{"file", input.path}, {"sha256", input.sha256}});
+    return json;
+  }
+
+  const RobotRequest& request_;
+  const CommandContext& context_;
+  std::unique_ptr<RobotProblem> data_;
+};
+
+}  // namespace
+
+void addRobotOptions(CLI::App& options, RobotRequest& request) {
+  options
+      .add_option("--system", request.system,
+                  "a robot in place of MODEL: double-pendulum (columns time, input [m/s^2, the "
+                  "cart's commanded acceleration], link1_deg and link2_deg [absolute angles from "
+                  "hanging down; or _rad]) or suspended-mass (time, input, force_N)")
+      ->check(CLI::IsMember({"double-pendulum", "suspended-mass"}))
+      ->type_name("NAME");
+  options
+      .add_option("--with", request.with,
+                  "with --system: a with_effect.json whose effects are added to the model")
+      ->check(CLI::ExistingFile)
+      ->type_name("FILE");
+  options
+      .add_option("--noise", request.noise,
+                  "with --system: standard deviation of each measured column [deg or N]; default: "
+                  "estimated from the data")
+      ->check(positive())
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("SD");
+}
+
+ExitStatus discoverInRobot(const RobotRequest& request, const CommandContext& context) {
+  return RobotSearch(request, context).run();
+}
+
+}  // namespace app

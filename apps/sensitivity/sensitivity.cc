@@ -1,0 +1,404 @@
+#include "sensitivity/sensitivity.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "bio/analysis/replay.h"
+#include "bio/calibration/trial_predictor.h"
+#include "options/input_rules.h"
+#include "options/parameter_list.h"
+#include "options/system_options.h"
+#include "options/trial_input.h"
+#include "output/progress_bar.h"
+#include "output/result.h"
+#include "sensitivity/sensitivity_report.h"
+
+namespace app {
+namespace {
+
+/// A trial with the parameters' catalogue for its start, and when its coordinate was measured.
+struct Study {
+  TrialInput input;
+  bio::ParameterCatalogue catalogue;
+  std::vector<double> times;  ///< [s]
+};
+
+class Sensitivity : public Command {
+ public:
+  About about() const override {
+    return {"sensitivity",
+            "Rank parameters by influence and report which are identifiable from the data",
+            "fisherhill sensitivity models/elbow8.osim emg_data/curl_slow.sto --parameter "
+            "TRI.radius --values 0.012,0.014,0.018,0.02 --all --out out/sensitivity"};
+  }
+
+  void addOptions(CLI::App& options) override {
+    addModelArgument(options, model_);
+    options
+        .add_option("TRIAL", trials_,
+                    "trial: excitations and the sample times of the measured coordinate; required "
+                    "unless --list-parameters is given")
+        ->check(CLI::ExistingFile)
+        ->type_name("");
+    addListParameters(options, list_);
+    options.add_option("--parameter", swept_, "parameter to vary over --values")
+        ->type_name("NAME")
+        ->allow_extra_args(false);
+    options.add_option("--values", values_, "values of --parameter, in its unit")
+        ->delimiter(',')
+        ->type_name("NUMBERS")
+        ->allow_extra_args(false);
+    options.add_flag("--all", all_,
+                     "sensitivities to every parameter and Fisher information about them");
+    options
+        .add_option("--parameters", names_,
+                    "as --all, for these parameters only; a name may contain *, as in "
+                    "*.max_isometric_force")
+        ->delimiter(',')
+        ->type_name("NAMES")
+        ->allow_extra_args(false);
+    options
+        .add_option("--noise", noise_,
+                    "standard deviation of the measured angle [deg] or translation [mm]")
+        ->type_name("DEGREES")
+        ->capture_default_str();
+    options
+        .add_option("--profile", profile_,
+                    "one of the --parameters, whose profile likelihood is computed")
+        ->type_name("NAME");
+    options
+        .add_option(
+            "--global", global_,
+            "global sensitivity over the prior range of the --parameters: morris, sobol or both")
+        ->check(CLI::IsMember({"morris", "sobol", "both"}));
+    options
+        .add_option("--samples", samples_,
+                    "number of Morris trajectories, or of base points of Sobol's method")
+        ->check(CLI::Range(2, 1000000))
+        ->capture_default_str();
+    addSimulationOptions(options, simulation_);
+  }
+
+  ExitStatus run(const CommandContext& context) override {
+    checkChoice();
+    OutputFolder folder(context, fileNames());
+    Summary summary(context);
+    const bio::Model model = readModel(model_, summary);
+    const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
+    if (list_) return listParameters(context, model, arm);
+
+    std::vector<Study> studies;
+    for (const std::string& file : trials_) {
+      TrialInput input = readTrialInput(file, model, arm, simulation_, summary);
+      bio::ParameterCatalogue catalogue(model, arm, {input.start.q, input.start.qDot});
+      std::vector<double> times = bio::observedTimes(
+          input.trial, arm.skeleton().coordinates().front().name, simulation_.stepOrDefault());
+      studies.push_back({std::move(input), std::move(catalogue), std::move(times)});
+    }
+    inputsMustDiffer(summary, trials_.size());
+    const Study& first = studies.front();
+    const bio::Coordinate& coordinate = arm.skeleton().coordinates().front();
+    SensitivityFindings findings{
+        model_, trials_, coordinate, first.input.trial, noise_ / shownFactor(coordinate), 0};
+    for (const Study& study : studies) {
+      findings.samples += static_cast<Eigen::Index>(study.times.size());
+    }
+    // every name is looked up before anything long begins
+    const auto swept = swept_.empty() ? std::optional<std::size_t>() : first.catalogue.find(swept_);
+    if (swept) checkValues(first.catalogue.parameters()[*swept]);
+    const auto selection = selected(first.catalogue, swept);
+    const auto held = profiledIndex(first.catalogue, selection);
+    if (!global_.empty() && selection.size() > 32) {
+      throw std::invalid_argument(fmt::format(
+          "--global: {} parameters, at most 32; choose them with --parameters", selection.size()));
+    }
+
+    if (swept) findings.sweeps.push_back(sweep(first, *swept));
+    if (!selection.empty()) analyse(studies, arm, selection, findings);
+    if (held) findings.profile = profile(studies, selection, *held);
+    if (!global_.empty()) findings.global = ensembles(studies, selection, context, summary);
+
+    if (const auto left = bio::leftRange(
+            arm, findings.local ? findings.local->motion : findings.sweeps.front().nominal)) {
+      summary.warn(left->what);
+    }
+    write(findings, folder);
+    summary.setSimulation(simulation_.integrator, simulation_.stepOrDefault(), first.input.duration,
+                          findings.local ? findings.local->motion.wallSeconds
+                                         : findings.sweeps.front().nominal.wallSeconds);
+    tellSensitivity(findings, summary);
+    deliver(context, summary, sensitivityReport(findings), folder);
+    bool complete = true;
+    for (const Sweep& one : findings.sweeps) {
+      for (const SweepRun& sweepRun : one.runs) {
+        complete = complete && sweepRun.motion.outcome == bio::Outcome::completed;
+      }
+    }
+    return complete ? ExitStatus::done : ExitStatus::answerIsNo;
+  }
+
+ private:
+  void checkChoice() const {
+    if (list_) return;
+    if (trials_.empty()) throw std::invalid_argument("TRIAL is required (see --help)");
+    if (swept_.empty() && !all_ && names_.empty()) {
+      throw std::invalid_argument(
+          "nothing to do: give --all, --parameters NAMES, --parameter NAME with --values, or "
+          "--list-parameters");
+    }
+    if (swept_.empty() != values_.empty()) {
+      throw std::invalid_argument("--parameter and --values require each other");
+    }
+    if (!(noise_ > 0 && std::isfinite(noise_))) {
+      throw std::invalid_argument(fmt::format("--noise: {} deg, must be > 0", noise_));
+    }
+    if ((!profile_.empty() || !global_.empty()) && names_.empty()) {
+      throw std::invalid_argument("--profile and --global require --parameters NAMES");
+    }
+    const bool isVariational = simulation_.integrator.starts_with("vi");
+    if ((all_ || !names_.empty()) && !isVariational) {
+      throw std::invalid_argument(
+          fmt::format("--integrator {}: must be vi or vi-left, which alone have sensitivities",
+                      simulation_.integrator));
+    }
+  }
+
+  std::vector<std::string> fileNames() const {
+    std::vector<std::string> names = {"sensitivity.csv", "fisher.csv"};
+    if (!swept_.empty()) names.push_back("sweep.csv");
+    if (!profile_.empty()) names.push_back("profile.csv");
+    if (!global_.empty()) names.push_back("global.csv");
+    return names;
+  }
+
+  void checkValues(const bio::ModelParameter& parameter) const {
+    for (const double value : values_) {
+      if (value >= parameter.lower && value <= parameter.upper) continue;
+      throw std::invalid_argument(
+          fmt::format("--values: {} = {} {}, must be {:.4g} to {:.4g} {}{}{}", parameter.name,
+                      value, parameter.unit, parameter.lower, parameter.upper, parameter.unit,
+                      value >= parameter.limit ? ": " : "",
+                      value >= parameter.limit ? parameter.whyLimited : ""));
+    }
+  }
+
+  std::vector<std::size_t> selected(const bio::ParameterCatalogue& catalogue,
+                                    std::optional<std::size_t> swept) const {
+    std::vector<std::string> names = names_;
+    if (all_) names.insert(names.begin(), "all");
+    if (names.empty() && swept && simulation_.integrator.starts_with("vi")) {
+      return {*swept};
+    }
+    return catalogue.select(names);
+  }
+
+  std::optional<Eigen::Index> profiledIndex(const bio::ParameterCatalogue& catalogue,
+                                            const std::vector<std::size_t>& selection) const {
+    if (profile_.empty()) return {};
+    const std::size_t index = catalogue.find(profile_);
+    const auto at = std::find(selection.begin(), selection.end(), index);
+    if (at == selection.end()) {
+      throw std::invalid_argument(
+          fmt::format("--profile: {} is not one of the --parameters", profile_));
+    }
+    return at - selection.begin();
+  }
+
+  bio::SimulationOptions options(const Study& study) const {
+    bio::SimulationOptions chosen =
+        simulationOptions(simulation_, study.input.startTime, study.input.duration);
+    chosen.externalForce = study.input.externalForce;
+    return chosen;
+  }
+
+  bio::TrialPredictor experiment(const Study& study,
+                                 const std::vector<std::size_t>& selection) const {
+    return {study.catalogue,
+            armOptions(simulation_),
+            study.input.excitation,
+            simulation_.coordinates.front(),
+            study.times,
+            selection,
+            options(study)};
+  }
+
+  Sweep sweep(const Study& study, std::size_t index) const {
+    ProgressBar bar("sweep");
+    const auto simulated = [&](double value) {
+      const auto setting = study.catalogue.at({index}, Eigen::VectorXd::Constant(1, value));
+      const bio::MusculoskeletalSystem arm(setting.model, armOptions(simulation_));
+      return bio::simulateSetting(arm, setting, study.input.excitation, options(study));
+    };
+    const bio::ModelParameter& parameter = study.catalogue.parameters()[index];
+    Sweep result{parameter, simulated(parameter.value), {}};
+    for (const double value : values_) {
+      bar.update(static_cast<double>(result.runs.size()) / static_cast<double>(values_.size()));
+      SweepRun one{value, simulated(value), 0, 0};
+      const Eigen::Index rows = std::min(one.motion.q.cols(), result.nominal.q.cols());
+      const Eigen::RowVectorXd change =
+          one.motion.q.row(0).head(rows) - result.nominal.q.row(0).head(rows);
+      one.rms = std::sqrt(change.squaredNorm() / static_cast<double>(rows));
+      one.largest = change.cwiseAbs().maxCoeff();
+      result.runs.push_back(std::move(one));
+    }
+    return result;
+  }
+
+  void analyse(const std::vector<Study>& studies, const bio::MusculoskeletalSystem& arm,
+               const std::vector<std::size_t>& selection, SensitivityFindings& findings) const {
+    ProgressBar bar("sensitivity");
+    const bio::ParameterCatalogue& catalogue = studies.front().catalogue;
+    for (const std::size_t index : selection) {
+      findings.parameters.push_back(catalogue.parameters()[index].name);
+    }
+    std::vector<Eigen::MatrixXd> gammas;
+    for (const Study& study : studies) {
+      const auto linearised =
+          experiment(study, selection).withSensitivities(study.catalogue.values(selection));
+      if (!linearised.outputs.allFinite()) {
+        throw std::invalid_argument(fmt::format(
+            "{}: the simulation does not reach the end of the trial", study.input.trial.file));
+      }
+      gammas.push_back(linearised.gamma);
+      bar.update(static_cast<double>(gammas.size()) / static_cast<double>(studies.size() + 1));
+    }
+    findings.information = bio::informationAbout(catalogue, selection, gammas, findings.noise);
+    // what all sensitivities cost beside the motion: the best of five, since others use the machine
+    const Study& first = studies.front();
+    double alone = 0, with = 0;
+    for (int repeat = 0; repeat < 5; ++repeat) {
+      auto local = bio::simulateWithSensitivities(arm, catalogue, catalogue.nominal(), selection,
+                                                  first.input.excitation, {options(first), false});
+      const double motion = local.motion.wallSeconds;
+      alone = repeat == 0 ? motion : std::min(alone, motion);
+      const double sum = motion + local.wallSeconds;
+      with = repeat == 0 ? sum : std::min(with, sum);
+      findings.local = std::move(local);
+    }
+    findings.costRatio = with / alone;
+  }
+
+  /// How much worse the best fit to the model's own motion becomes as the parameter is held
+  /// elsewhere, within three joint bounds.
+  ProfileFinding profile(const std::vector<Study>& studies,
+                         const std::vector<std::size_t>& selection, Eigen::Index held) const {
+    const double noise = noise_ / shownFactor(firstCoordinate(studies));
+    std::vector<bio::TrialPredictor> experiments;
+    Eigen::Index samples = 0;
+    for (const Study& study : studies) {
+      experiments.push_back(experiment(study, selection));
+      samples += static_cast<Eigen::Index>(study.times.size());
+    }
+    const info::Predictor predictor = bio::joined(experiments);
+    const bio::ParameterCatalogue& catalogue = studies.front().catalogue;
+    const auto parameters = catalogue.asEstimated(selection, true);
+    const Eigen::VectorXd theta = catalogue.values(selection);
+    const info::LeastSquares problem(
+        predictor,
+        {predictor.outputs(theta),
+         info::OutputCovariance(Eigen::MatrixXd::Constant(1, 1, noise * noise))},
+        parameters);
+    info::EstimateOptions estimateOptions;
+    estimateOptions.maxIterations = 30;
+    estimateOptions.decrementTolerance = 1e-6;
+    const info::Estimate estimated = info::estimate(problem, estimateOptions);
+    const info::Parameter& parameter = parameters[static_cast<std::size_t>(held)];
+    const double wide = 3 * std::sqrt(std::max(estimated.covariance(held, held), 0.0));
+    std::vector<double> values;
+    for (int k = -6; k <= 6; ++k) {
+      const double value = theta[held] + wide * k / 6;
+      if (value >= parameter.lower && value <= parameter.upper) values.push_back(value);
+    }
+    ProgressBar bar("profile");
+    return {parameter, info::profileLikelihood(problem, estimated, held, values, estimateOptions)};
+  }
+
+  const bio::Coordinate& firstCoordinate(const std::vector<Study>& studies) const {
+    return bio::findCoordinate(studies.front().catalogue.model(), simulation_.coordinates.front());
+  }
+
+  /// Each parameter even over its value ± √3 prior deviations, within its bounds.
+  GlobalFinding ensembles(const std::vector<Study>& studies,
+                          const std::vector<std::size_t>& selection, const CommandContext& context,
+                          Summary& summary) const {
+    std::vector<bio::TrialPredictor> experiments;
+    for (const Study& study : studies) experiments.push_back(experiment(study, selection));
+    const info::Predictor predictor = bio::joined(experiments);
+    const auto parameters = studies.front().catalogue.asEstimated(selection, true);
+    const double shown = shownFactor(firstCoordinate(studies));
+    const info::CubeModel model = [&](const Eigen::VectorXd& unit) -> Eigen::VectorXd {
+      Eigen::VectorXd theta(unit.size());
+      for (Eigen::Index i = 0; i < unit.size(); ++i) {
+        const info::Parameter& p = parameters[static_cast<std::size_t>(i)];
+        const double wide = std::sqrt(3.0) * p.prior->sd;
+        const double low = std::max(p.lower, p.start - wide);
+        const double high = std::min(p.upper, p.start + wide);
+        theta[i] = low + unit[i] * (high - low);
+      }
+      return shown * predictor.outputs(theta).row(0).transpose();
+    };
+    info::EnsembleOptions ensemble;
+    ensemble.samples = samples_;
+    ensemble.seed = context.seed;
+    ensemble.threads = context.threads;
+    GlobalFinding finding;
+    const auto count = static_cast<int>(selection.size());
+    ProgressBar bar("global");
+    ensemble.progress = [&](int done, int runs) {
+      bar.update(static_cast<double>(done) / runs);
+      return true;
+    };
+    if (global_ != "sobol") finding.morris = info::morris(model, count, ensemble);
+    if (global_ != "morris") finding.sobol = info::sobol(model, count, ensemble);
+    const int undefined = (finding.morris ? finding.morris->undefined : 0) +
+                          (finding.sobol ? finding.sobol->undefined : 0);
+    if (undefined > 0) {
+      summary.warn(fmt::format(
+          "{} runs of the global sensitivity analysis did not reach the end and were left out",
+          undefined));
+    }
+    return finding;
+  }
+
+  void write(const SensitivityFindings& findings, OutputFolder& folder) const {
+    if (findings.information) {
+      folder.write("sensitivity.csv",
+                   [&](std::ostream& out) { writeSensitivities(findings, out); });
+      folder.write("fisher.csv", [&](std::ostream& out) { writeFisher(findings, out); });
+    }
+    for (const Sweep& one : findings.sweeps) {
+      folder.write("sweep.csv",
+                   [&](std::ostream& out) { writeSweep(one, findings.coordinate, out); });
+    }
+    if (findings.profile) {
+      folder.write("profile.csv", [&](std::ostream& out) { writeProfile(*findings.profile, out); });
+    }
+    if (!global_.empty()) {
+      folder.write("global.csv", [&](std::ostream& out) { writeGlobal(findings, out); });
+    }
+  }
+
+  std::string model_;
+  std::vector<std::string> trials_;
+  bool list_ = false;
+  std::string swept_;
+  std::vector<double> values_;
+  bool all_ = false;
+  std::vector<std::string> names_;
+  double noise_ = 1;
+  std::string profile_;
+  std::string global_;
+  int samples_ = 64;
+  SimulationOptions simulation_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> sensitivityCommand() {
+  return std::make_unique<Sensitivity>();
+}
+
+}  // namespace app

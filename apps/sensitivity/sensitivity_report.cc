@@ -1,0 +1,390 @@
+#include "sensitivity/sensitivity_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "output/text.h"
+
+namespace app {
+namespace {
+
+/// Columns by falling influence on the motion.
+std::vector<std::size_t> ranking(const Eigen::VectorXd& score) {
+  std::vector<std::size_t> order(static_cast<std::size_t>(score.size()));
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return score[static_cast<Eigen::Index>(a)] > score[static_cast<Eigen::Index>(b)];
+  });
+  return order;
+}
+
+/// Prior deviation over the joint bound: how much narrower the data make what is known.
+Eigen::VectorXd informationGain(const bio::ParameterInformation& known) {
+  Eigen::VectorXd gain(known.boundAlone.size());
+  for (Eigen::Index i = 0; i < gain.size(); ++i) {
+    gain[i] = known.parameters[static_cast<std::size_t>(i)].prior->sd / known.boundJoint[i];
+  }
+  return gain;
+}
+
+std::string cell(double value) {
+  return std::isfinite(value) ? fmt::format("{:.9g}", value) : std::string();
+}
+
+std::vector<double> scaled(const Eigen::VectorXd& values, double factor) {
+  const Eigen::VectorXd result = values * factor;
+  return {result.begin(), result.end()};
+}
+
+Figure sweepFigure(const SensitivityFindings& f, const Sweep& sweep) {
+  const double factor = shownFactor(f.coordinate);
+  const std::string& unit = sweep.parameter.unit;
+  Figure figure{.title = fmt::format("{} for {} values of {}", f.coordinate.name, sweep.runs.size(),
+                                     sweep.parameter.name),
+                .xLabel = "Time [s]",
+                .yLabel = fmt::format("{} [{}]", f.coordinate.name, shownUnit(f.coordinate)),
+                .caption = fmt::format("The model's own value is {}.",
+                                       withUnit(sweep.parameter.value, unit))};
+  const auto add = [&](const std::string& name, const bio::Trajectory& motion, SeriesStyle style) {
+    figure.series.push_back({.name = name,
+                             .x = motion.time,
+                             .y = scaled(motion.q.row(0).transpose(), factor),
+                             .style = style});
+  };
+  add("model", sweep.nominal, SeriesStyle::dashed);
+  for (const SweepRun& run : sweep.runs) {
+    if (figure.series.size() < 7) add(withUnit(run.value, unit), run.motion, SeriesStyle::line);
+  }
+  for (const bio::MeasuredMotion& measured : f.trial.measured) {
+    if (measured.coordinate != f.coordinate.name) continue;
+    figure.series.push_back({.name = "measured",
+                             .x = {measured.times.begin(), measured.times.end()},
+                             .y = scaled(measured.values, factor),
+                             .style = SeriesStyle::points});
+  }
+  return figure;
+}
+
+Table sweepTable(const SensitivityFindings& f, const Sweep& sweep) {
+  const char* unit = shownUnit(f.coordinate);
+  Table table{.title = "Change in the motion",
+              .columns = {fmt::format("{} [{}]", sweep.parameter.name,
+                                      sweep.parameter.unit.empty() ? "1" : sweep.parameter.unit),
+                          fmt::format("rms [{}]", unit), fmt::format("largest [{}]", unit)}};
+  for (const SweepRun& run : sweep.runs) {
+    const bool done = run.motion.outcome == bio::Outcome::completed;
+    table.rows.push_back(
+        {numberText(run.value), numberText(run.rms * shownFactor(f.coordinate)),
+         done ? numberText(run.largest * shownFactor(f.coordinate)) : run.motion.why});
+  }
+  return table;
+}
+
+/// The most influential parameters, how far each moves the motion over time.
+Figure courseFigure(const SensitivityFindings& f) {
+  const bio::ParameterInformation& known = *f.information;
+  const double factor = shownFactor(f.coordinate);
+  Figure figure{
+      .title = "Parameters with the most influence on the motion",
+      .xLabel = "Time [s]",
+      .yLabel = fmt::format("Change in {} [{}]", f.coordinate.name, shownUnit(f.coordinate)),
+      .caption =
+          "Each curve: change in the motion, to first order, per prior standard deviation of the "
+          "parameter."};
+  for (const std::size_t i : ranking(known.normalisedSensitivity)) {
+    if (figure.series.size() == 8) break;
+    const auto column = static_cast<Eigen::Index>(i);
+    const double sd = known.parameters[i].prior->sd;
+    figure.series.push_back({.name = known.parameters[i].name,
+                             .x = f.local->motion.time,
+                             .y = scaled(f.local->q[0].col(column), factor * sd)});
+  }
+  return figure;
+}
+
+Table rankingTable(const SensitivityFindings& f, const std::string& title,
+                   const Eigen::VectorXd& score, std::size_t most) {
+  const bio::ParameterInformation& known = *f.information;
+  const char* unit = shownUnit(f.coordinate);
+  Table table{.title = title,
+              .columns = {"parameter", "value", fmt::format("influence on the motion [{}]", unit),
+                          "prior ±", "bound alone ±", "bound jointly ±", "identifiable"}};
+  for (const std::size_t i : ranking(score)) {
+    if (table.rows.size() == most) break;
+    const auto k = static_cast<Eigen::Index>(i);
+    const info::Parameter& p = known.parameters[i];
+    table.rows.push_back({p.name, withUnit(p.start, p.unit),
+                          numberText(known.normalisedSensitivity[k] * shownFactor(f.coordinate), 3),
+                          numberText(p.prior->sd, 3), numberText(known.boundAlone[k], 3),
+                          numberText(known.boundJoint[k], 3),
+                          known.identifiable[i] ? "yes" : "no"});
+  }
+  return table;
+}
+
+Figure profileFigure(const ProfileFinding& finding) {
+  Figure figure{.title = fmt::format("Profile likelihood of {}", finding.parameter.name),
+                .xLabel = info::label(finding.parameter),
+                .yLabel = "Smallest cost [nats]",
+                .caption =
+                    "For data equal to the model's own motion, with the given noise and priors. "
+                    "The 95 % confidence interval is where the curve is below the dashed line."};
+  Series curve{.name = "profile"}, line{.name = "95 %", .style = SeriesStyle::dashed};
+  for (const info::ProfilePoint& point : finding.profile.points) {
+    curve.x.push_back(point.value);
+    curve.y.push_back(point.cost);
+    line.x.push_back(point.value);
+    line.y.push_back(finding.profile.threshold);
+  }
+  figure.series = {curve, line};
+  return figure;
+}
+
+Table globalTable(const SensitivityFindings& f) {
+  const char* unit = shownUnit(f.coordinate);
+  Table table{.title = "Global sensitivity over the prior range", .columns = {"parameter"}};
+  if (f.global.morris) {
+    table.columns.push_back(fmt::format("Morris μ* [{}]", unit));
+    table.columns.push_back(fmt::format("Morris σ [{}]", unit));
+  }
+  if (f.global.sobol) {
+    table.columns.push_back("Sobol first order");
+    table.columns.push_back("Sobol total");
+  }
+  table.columns.push_back(fmt::format("local [{}]", unit));
+  const Eigen::VectorXd& score =
+      f.global.sobol ? f.global.sobol->total : f.global.morris->meanAbsolute;
+  for (const std::size_t i : ranking(score)) {
+    const auto k = static_cast<Eigen::Index>(i);
+    std::vector<std::string> row = {f.parameters[i]};
+    if (f.global.morris) {
+      row.push_back(numberText(f.global.morris->meanAbsolute[k], 3));
+      row.push_back(numberText(f.global.morris->sd[k], 3));
+    }
+    if (f.global.sobol) {
+      row.push_back(fmt::format("{} ± {}", numberText(f.global.sobol->first[k], 2),
+                                numberText(f.global.sobol->firstDeviation[k], 1)));
+      row.push_back(fmt::format("{} ± {}", numberText(f.global.sobol->total[k], 2),
+                                numberText(f.global.sobol->totalSd[k], 1)));
+    }
+    row.push_back(
+        numberText(f.information->normalisedSensitivity[k] * shownFactor(f.coordinate), 3));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+std::string verdictOf(const SensitivityFindings& f) {
+  std::string text;
+  for (const Sweep& sweep : f.sweeps) {
+    if (sweep.runs.empty()) continue;
+    const auto most = std::max_element(
+        sweep.runs.begin(), sweep.runs.end(),
+        [](const SweepRun& a, const SweepRun& b) { return a.largest < b.largest; });
+    text +=
+        fmt::format("{} = {} instead of {} changes {} by up to {} {}. ", sweep.parameter.name,
+                    withUnit(most->value, sweep.parameter.unit), numberText(sweep.parameter.value),
+                    f.coordinate.name, numberText(most->largest * shownFactor(f.coordinate), 3),
+                    shownUnit(f.coordinate));
+  }
+  if (!f.information) return text;
+  const auto& known = *f.information;
+  const auto count = std::count(known.identifiable.begin(), known.identifiable.end(), true);
+  if (known.parameters.size() == 1) {
+    return text +
+           fmt::format(
+               "{} samples of {} with {} {} of noise determine {} to ±{} (Cramér–Rao bound).",
+               f.samples, f.coordinate.name, numberText(f.noise * shownFactor(f.coordinate)),
+               shownUnit(f.coordinate), known.parameters[0].name,
+               withUnit(known.boundAlone[0], known.parameters[0].unit));
+  }
+  text += fmt::format(
+      "{} from {} samples of {} with {} {} of noise (prior standard deviation at least halved). "
+      "The motion is most sensitive to {}.",
+      identifiableWords(count, static_cast<std::ptrdiff_t>(known.parameters.size())), f.samples,
+      f.coordinate.name, numberText(f.noise * shownFactor(f.coordinate)), shownUnit(f.coordinate),
+      known.parameters[ranking(known.normalisedSensitivity).front()].name);
+  return text;
+}
+
+}  // namespace
+
+double shownFactor(const bio::Coordinate& coordinate) {
+  return coordinate.isRotation ? 180 / std::numbers::pi : 1e3;
+}
+const char* shownUnit(const bio::Coordinate& coordinate) {
+  return coordinate.isRotation ? "deg" : "mm";
+}
+
+void writeSensitivities(const SensitivityFindings& f, std::ostream& out) {
+  const bio::ParameterInformation& known = *f.information;
+  out << "parameter,unit,value,normalised_sensitivity,bound_alone,bound_joint,identifiable\n";
+  for (const std::size_t i : ranking(known.normalisedSensitivity)) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const info::Parameter& p = known.parameters[i];
+    out << fmt::format("{},{},{},{},{},{},{}\n", p.name, p.unit, cell(p.start),
+                       cell(known.normalisedSensitivity[k] * shownFactor(f.coordinate)),
+                       cell(known.boundAlone[k]), cell(known.boundJoint[k]),
+                       known.identifiable[i] ? "true" : "false");
+  }
+}
+
+void writeFisher(const SensitivityFindings& f, std::ostream& out) {
+  out << "parameter";
+  for (const std::string& name : f.parameters) out << ',' << name;
+  out << '\n';
+  const Eigen::MatrixXd& fisher = f.information->fisher;
+  for (Eigen::Index i = 0; i < fisher.rows(); ++i) {
+    out << f.parameters[static_cast<std::size_t>(i)];
+    for (Eigen::Index j = 0; j < fisher.cols(); ++j) out << ',' << cell(fisher(i, j));
+    out << '\n';
+  }
+}
+
+void writeSweep(const Sweep& sweep, const bio::Coordinate& coordinate, std::ostream& out) {
+  const double factor = shownFactor(coordinate);
+  out << fmt::format("time,{}_{}", coordinate.name, shownUnit(coordinate));
+  for (const SweepRun& run : sweep.runs) {
+    out << fmt::format(",{}={:.9g}", sweep.parameter.name, run.value);
+  }
+  out << '\n';
+  for (std::size_t k = 0; k < sweep.nominal.time.size(); ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    out << cell(sweep.nominal.time[k]) << ',' << cell(sweep.nominal.q(0, row) * factor);
+    for (const SweepRun& run : sweep.runs) {
+      out << ',' << (row < run.motion.q.cols() ? cell(run.motion.q(0, row) * factor) : "");
+    }
+    out << '\n';
+  }
+}
+
+void writeProfile(const ProfileFinding& finding, std::ostream& out) {
+  out << "value,cost,threshold,converged\n";
+  for (const info::ProfilePoint& point : finding.profile.points) {
+    out << fmt::format("{},{},{},{}\n", cell(point.value), cell(point.cost),
+                       cell(finding.profile.threshold), point.converged ? "true" : "false");
+  }
+}
+
+void writeGlobal(const SensitivityFindings& f, std::ostream& out) {
+  out << "parameter,morris_mean_absolute,morris_deviation,sobol_first,sobol_first_sd,sobol_total,"
+         "sobol_total_sd\n";
+  for (std::size_t i = 0; i < f.parameters.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    out << f.parameters[i];
+    const auto& morris = f.global.morris;
+    const auto& sobol = f.global.sobol;
+    out << ',' << (morris ? cell(morris->meanAbsolute[k]) : "") << ','
+        << (morris ? cell(morris->sd[k]) : "");
+    out << ',' << (sobol ? cell(sobol->first[k]) : "") << ','
+        << (sobol ? cell(sobol->firstDeviation[k]) : "") << ','
+        << (sobol ? cell(sobol->total[k]) : "") << ',' << (sobol ? cell(sobol->totalSd[k]) : "")
+        << '\n';
+  }
+}
+
+void tellSensitivity(const SensitivityFindings& f, Summary& summary) {
+  const std::string unit = shownUnit(f.coordinate);
+  const double factor = shownFactor(f.coordinate);
+  summary.set("status", "ok");
+  summary.set("samples", f.samples);
+  summary.set("noise_" + unit, f.noise * factor);
+  for (const Sweep& sweep : f.sweeps) {
+    auto runs = nlohmann::ordered_json::array();
+    for (const SweepRun& run : sweep.runs) {
+      runs.push_back({{"value", run.value},
+                      {"rms_change_" + unit, run.rms * factor},
+                      {"max_change_" + unit, run.largest * factor},
+                      {"completed", run.motion.outcome == bio::Outcome::completed}});
+    }
+    summary.set("sweep", {{"parameter", sweep.parameter.name},
+                          {"unit", sweep.parameter.unit},
+                          {"model_value", sweep.parameter.value},
+                          {"runs", runs}});
+  }
+  if (!f.information) return;
+  const bio::ParameterInformation& known = *f.information;
+  auto parameters = nlohmann::ordered_json::array();
+  for (const std::size_t i : ranking(known.normalisedSensitivity)) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const info::Parameter& p = known.parameters[i];
+    const auto number = [](double x) {
+      return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json();
+    };
+    parameters.push_back({{"name", p.name},
+                          {"unit", p.unit},
+                          {"value", p.start},
+                          {"prior_sd", p.prior->sd},
+                          {"normalised_sensitivity", known.normalisedSensitivity[k] * factor},
+                          {"bound_alone", number(known.boundAlone[k])},
+                          {"bound_joint", number(known.boundJoint[k])},
+                          {"identifiable", static_cast<bool>(known.identifiable[i])}});
+  }
+  summary.set("parameters", parameters);
+  std::vector<std::string> names;
+  for (const std::size_t i : ranking(informationGain(known))) {
+    if (names.size() < 20) names.push_back(known.parameters[i].name);
+  }
+  summary.set("most_information", names);
+  summary.set("determined_combinations", known.determinedCombinations);
+  summary.set("not_told_apart", known.sentences);
+  summary.set("cost_ratio", f.costRatio);
+  if (f.profile) {
+    const auto& points = f.profile->profile.points;
+    const bool above = !points.empty() && points.back().cost > f.profile->profile.threshold;
+    const bool below = !points.empty() && points.front().cost > f.profile->profile.threshold;
+    summary.set("profile", {{"parameter", f.profile->parameter.name},
+                            {"bounded_below", below},
+                            {"bounded_above", above}});
+  }
+  if (f.global.morris) summary.set("morris_runs", f.global.morris->runs);
+  if (f.global.sobol) summary.set("sobol_runs", f.global.sobol->runs);
+}
+
+Report sensitivityReport(const SensitivityFindings& f) {
+  Report report;
+  report.title = fmt::format("Sensitivity of {} on {}", f.trialFiles.front(), f.modelFile);
+  if (f.trialFiles.size() > 1) {
+    report.title = fmt::format("Sensitivity of {} trials on {}", f.trialFiles.size(), f.modelFile);
+  }
+  report.verdict = verdictOf(f);
+  if (!f.sweeps.empty()) {
+    report.mainFigure = sweepFigure(f, f.sweeps.front());
+    report.details.push_back(sweepTable(f, f.sweeps.front()));
+  }
+  if (!f.information) return report;
+  if (report.mainFigure) {
+    report.details.push_back(courseFigure(f));
+  } else {
+    report.mainFigure = courseFigure(f);
+  }
+  const bio::ParameterInformation& known = *f.information;
+  report.details.push_back(Section{"Influence on the motion"});
+  report.details.push_back(rankingTable(f, "Sorted by influence", known.normalisedSensitivity, 25));
+  report.details.push_back(Section{"Identifiability"});
+  report.details.push_back(
+      Paragraph{"Bounds are Cramér–Rao standard deviations. Alone: every other parameter is known. "
+                "Jointly: all are estimated together, each with its prior. A parameter is "
+                "identifiable if its joint bound is at most half its prior standard deviation."});
+  report.details.push_back(
+      rankingTable(f, "Sorted by information gained", informationGain(known), 25));
+  if (!known.sentences.empty()) {
+    report.details.push_back(Section{"Parameters that are not separately identifiable"});
+    for (const std::string& sentence : known.sentences) {
+      report.details.push_back(Paragraph{sentence + "."});
+    }
+  }
+  if (f.profile) report.details.push_back(profileFigure(*f.profile));
+  if (f.global.morris || f.global.sobol) report.details.push_back(globalTable(f));
+  report.details.push_back(
+      Paragraph{fmt::format("Computing the motion with all {} sensitivities took {:.3g} times as "
+                            "long as the motion alone.",
+                            known.parameters.size(), f.costRatio)});
+  return report;
+}
+
+}  // namespace app

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "bio/parameters/parameter_information.h"
+#include "bio/tables/trial.h"
+#include "info/estimation/profile_likelihood.h"
+#include "info/probability/global_sensitivity.h"
+#include "report/report.h"
+
+namespace app {
+
+/// One value of a swept parameter.
+struct SweepRun {
+  double value;
+  bio::Trajectory motion;
+  double rms = 0;      ///< RMS difference from the model's own motion [rad] or [m]
+  double largest = 0;  ///< largest difference [rad] or [m]
+};
+struct Sweep {
+  bio::ModelParameter parameter;
+  bio::Trajectory nominal;
+  std::vector<SweepRun> runs;
+};
+
+/// Profile likelihood of a parameter.
+struct ProfileFinding {
+  info::Parameter parameter;
+  info::Profile profile;
+};
+
+/// Global sensitivity of the same parameters.
+struct GlobalFinding {
+  std::optional<info::MorrisResult> morris;
+  std::optional<info::SobolResult> sobol;
+};
+
+/// The findings of `sensitivity`.
+struct SensitivityFindings {
+  std::string modelFile;
+  std::vector<std::string> trialFiles;
+  const bio::Coordinate& coordinate;  ///< the one observed
+  const bio::Trial& trial;            ///< the first
+  double noise;                       ///< [rad] or [m]
+  Eigen::Index samples;               ///< of all trials
+  std::vector<Sweep> sweeps = {};
+  std::vector<std::string> parameters = {};  ///< of the local analysis, in the order of its columns
+  std::optional<bio::ParameterInformation> information = {};
+  std::optional<bio::SensitivityTrajectory> local = {};  ///< of the first trial
+  double costRatio = 0;
+  std::optional<ProfileFinding> profile = {};
+  GlobalFinding global = {};
+};
+
+/// Degrees for a rotation, millimetres for a translation.
+double shownFactor(const bio::Coordinate& coordinate);
+const char* shownUnit(const bio::Coordinate& coordinate);
+
+/// sensitivity.csv, most influential first; an empty cell means no information.
+void writeSensitivities(const SensitivityFindings& findings, std::ostream& out);
+/// fisher.csv: the matrix with its names.
+void writeFisher(const SensitivityFindings& findings, std::ostream& out);
+/// sweep.csv: time, the model's motion, and that of each value.
+void writeSweep(const Sweep& sweep, const bio::Coordinate& coordinate, std::ostream& out);
+/// profile.csv and global.csv
+void writeProfile(const ProfileFinding& finding, std::ostream& out);
+void writeGlobal(const SensitivityFindings& findings, std::ostream& out);
+
+/// Sets the values of summary.json: parameters, cost_ratio, …
+void tellSensitivity(const SensitivityFindings& findings, Summary& summary);
+Report sensitivityReport(const SensitivityFindings& findings);
+
+}  // namespace app

@@ -1,0 +1,125 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bio/parameters/parameters.h"
+#include "bio/simulation/simulate.h"
+#include "bio/tables/table_file.h"
+#include "bio/tables/trial.h"
+
+/// Inputs, initial state and errors of simulating a recorded trial.
+namespace bio {
+
+/// The trial's excitations in the order of the arm's muscles.
+/// @throws std::invalid_argument if the trial lacks one of them
+ExcitationSignal excitationOf(const Trial& trial, const MusculoskeletalSystem& arm);
+
+/// The external force of a trial; none if the trial has no such column.
+/// @throws std::invalid_argument if it acts on a coordinate that is not free
+ExternalForce externalForceOf(const Trial& trial, const MusculoskeletalSystem& arm);
+
+/// Initial values of the free coordinates [rad] or [m]: as given, else the first measured value,
+/// else the default.
+/// @throws std::invalid_argument for a name that is not free, or a value that is not finite
+Eigen::VectorXd startCoordinates(const Trial& trial, const MusculoskeletalSystem& arm,
+                                 const std::map<std::string, double>& given);
+
+/// Initial state of a trial's simulation, and its source.
+struct TrialBeginning {
+  enum class From { given, model, measured, defaults };
+  StartPoint point;
+  From from = From::defaults;  ///< the first in this order of the coordinates' sources: model,
+                               ///< given, measured
+};
+const char* name(TrialBeginning::From from);  ///< "given", "model", "measured", "default"
+
+/// Initial values and speeds of the free coordinates: as given, at rest; else as fitted with the
+/// model (Model::fitted), if it contains the trial's SHA-256; else the first measured value, else
+/// the default, at rest.
+/// @throws std::invalid_argument as startCoordinates does
+TrialBeginning beginningOf(const Trial& trial, const Model& model, const MusculoskeletalSystem& arm,
+                           const std::map<std::string, double>& given);
+
+/// Time step [s]: the one given, else, for the variational integrators, the one with which the
+/// model was fitted, else the integrator's default.
+double stepOf(const Model& model, Integrator integrator, const std::optional<double>& given);
+
+/// Times at which the coordinate was measured [s]; if it was not, the trial's duration at equal
+/// steps.
+std::vector<double> observedTimes(const Trial& trial, const std::string& coordinate, double step);
+
+/// Error of a simulation against a measured coordinate, at the measured times that it covers.
+struct MeasuredError {
+  double rms = 0;          ///< [rad] or [m]
+  double largest = 0;      ///< [rad] or [m]
+  double largestAt = 0;    ///< [s]
+  Eigen::Index count = 0;  ///< measured values compared
+};
+/// @throws std::invalid_argument if the coordinate is not free, or no measured time is covered
+MeasuredError compareWithMeasured(const MusculoskeletalSystem& arm, const Trajectory& trajectory,
+                                  const MeasuredMotion& measured);
+
+/// A simulated trial, with its errors against the measurement.
+struct TrialReplay {
+  TrialBeginning beginning;
+  SimulationOptions options;  ///< as they were used
+  Trajectory motion;
+  /// For every free coordinate with a measured value that the motion reaches.
+  std::vector<std::pair<std::string, MeasuredError>> errors;
+};
+
+/// The motion that `fisherhill replay MODEL TRIAL` makes over all rows of the trial.
+/// @param options integrator, step and progress; times and the external torque are those of the
+///   trial
+/// @param beginning from beginningOf()
+/// @throws what excitationOf, externalForceOf, initialState and simulate throw
+TrialReplay replayTrial(const MusculoskeletalSystem& arm, const Trial& trial,
+                        SimulationOptions options, TrialBeginning beginning);
+
+/// One sentence for each free coordinate that leaves its range in the model, with the time; only
+/// the model's passive forces limit it.
+std::vector<std::string> rangeRemarks(const MusculoskeletalSystem& arm,
+                                      const Trajectory& trajectory);
+
+/// First time at which a motion leaves the valid range of its model.
+struct LeftRange {
+  double time = 0;   ///< [s]
+  std::string name;  ///< of the coordinate or muscle
+  std::string what;  ///< one sentence without full stop
+};
+/// The first time at which a free coordinate is outside its range by more than a tenth of it (and
+/// 1° or 1 mm), or a fibre outside 0.2 to 2 optimal lengths; nothing if there is none.
+std::optional<LeftRange> leftRange(const MusculoskeletalSystem& arm, const Trajectory& trajectory);
+
+/// States as OpenSim 4 names them: value and speed of every coordinate of the model (locked and
+/// coupled ones too), activation and fiber_length of every simulated muscle; radians and metres.
+Table statesTable(const Model& model, const MusculoskeletalSystem& arm,
+                  const Trajectory& trajectory);
+
+/// Tendon forces [N], one column per muscle.
+Table forcesTable(const MusculoskeletalSystem& arm, const Trajectory& trajectory,
+                  const MuscleReport& report);
+
+/// Lengths and moment arms of muscles over the range of one coordinate.
+struct PathSample {
+  Eigen::VectorXd value;  ///< of the coordinate [rad] or [m]
+  std::vector<std::string> muscles;
+  Eigen::MatrixXd length;          ///< rows = values, columns = muscles [m]
+  Eigen::MatrixXd momentArm;       ///< −∂ℓ/∂q [m]
+  Eigen::MatrixXd momentArmSlope;  ///< −∂²ℓ/∂q² [m/rad]
+  Eigen::MatrixXi wrapped;         ///< 1: a wrap object is touched
+  std::vector<std::string> notes;
+  std::vector<std::string> warnings;  ///< muscles that cannot be computed and are left out
+};
+/// Paths of every enabled muscle that the skeleton's first coordinate moves, whatever its class;
+/// the other free coordinates stay at their defaults.
+/// @throws std::invalid_argument what MusclePath throws
+PathSample samplePaths(const Model& model, const Skeleton& skeleton,
+                       const std::vector<std::string>& wrapAsCylinder,
+                       const Eigen::VectorXd& values);
+
+}  // namespace bio

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bio/calibration/trial_set.h"
+#include "info/estimation/bootstrap.h"
+#include "info/estimation/multi_start.h"
+#include "info/estimation/profile_likelihood.h"
+#include "info/information/determinacy.h"
+
+namespace bio {
+
+struct CalibrationOptions {
+  TrialSetOptions trials;
+  bool priors = true;  ///< true: default priors about the model's values; false: bounds only
+  std::map<std::string, info::GaussianPrior> prior;  ///< instead of the default priors, by name
+  std::map<std::string, std::pair<double, double>> bounds;  ///< likewise
+  /// Standard deviation of the white noise of the measured angles [rad] > 0; empty: estimated from
+  /// the residuals.
+  std::optional<double> noise;
+  info::RobustLoss loss;
+  int starts = 1;
+  std::uint64_t seed = 1;
+  double confidence = 0.95;          ///< of all intervals, in (0, 1)
+  std::vector<std::string> profile;  ///< parameters whose profile likelihood is computed
+  int bootstrap = 0;                 ///< replicates; 0: none
+  /// Called from any thread with the fraction of the work done, 0 to 1; returning false stops.
+  std::function<bool(double)> progress = {};
+};
+
+struct CalibratedParameter {
+  info::Parameter asked;  ///< start, bounds, prior
+  double model = 0;       ///< value in the model
+  double known = 0;       ///< prior standard deviation
+  bool ofTrial = false;   ///< initial state of one trial, not a parameter of the model
+  double value = 0;
+  bool identifiable = false;
+  bool atBound = false;
+  /// Standard deviation and interval from the Fisher matrix at the estimate, priors included; NaN
+  /// if not identifiable or at a bound.
+  double sd, lower, upper;
+  info::Determinacy determinacy;  ///< identifiability from the data alone
+  std::string why;                ///< reason why there is no interval; else empty
+  std::optional<info::ProfileInterval> profile;
+  /// From the bootstrap; NaN without bootstrap or interval.
+  double bootstrapSd, bootstrapLower, bootstrapUpper;
+};
+
+/// Noise of the measured angles.
+struct ResidualNoise {
+  double sd = 0;  ///< standard deviation of one sample [rad]: given, or that of the residuals
+  double correlationTime = 1;  ///< samples per independent value; 1 if the noise was given
+  double effective = 0;        ///< deviation·√correlationTime, the sd used by the fit [rad]
+  std::vector<double> autocorrelation;  ///< of the residuals, at lags 0, 1, … samples
+};
+
+struct Calibration {
+  std::string failure;  ///< why no estimate is possible; all other members are then empty
+  std::vector<CalibratedParameter> parameters;
+  Eigen::MatrixXd correlation;  ///< of all estimates; 0 for a parameter at a bound
+  info::Termination why;
+  bool converged = false;
+  int iterations = 0, evaluations = 0;
+  std::vector<info::StartOutcome> starts;
+  int agreeingStarts = 0;
+  int bootstrapConverged = 0;
+  bool complete = true;  ///< false if the progress callback stopped it
+  ResidualNoise noise;
+  double noiseFloor = 0;  ///< noise from third differences of the measured angles [rad]
+  /// Whether the residuals exceed the scatter of neighbouring samples by half: then other
+  /// parameters or effects are wrong, too.
+  bool leavesMoreThanNoise() const { return noiseFloor > 0 && noise.sd > 1.5 * noiseFloor; }
+  double reducedChiSquare = 0;    ///< of single samples; near 1 if the noise was given correctly
+  Eigen::MatrixXd before, after;  ///< of the calibration trials, 1 × samples [rad]
+  Eigen::MatrixXd heldOutBefore, heldOutAfter;  ///< of the others
+  /// The model, the EMG mapping and the first trial's initial state at the estimate.
+  std::optional<ParameterCatalogue::Setting> calibrated;
+};
+
+/// Estimates parameters of a model from measured motions.
+///
+/// Minimises ½Σρ(r²/σ²) + ½Σ(θ − μ)²/d² within bounds by Levenberg–Marquardt with exact
+/// sensitivities (estimate.h). A step to parameters at which a trial cannot be simulated is
+/// rejected.
+///
+/// If no noise is given, σ is estimated together with θ: σ² = Σr²/(n − p) (with a robust loss σ =
+/// 1.4826·median|r|), multiplied by the number τ of samples per independent value, from the
+/// autocorrelation of the residuals. A model that does not fit has slowly varying residuals;
+/// without τ a thousand of them would count as a thousand measurements.
+///
+/// Intervals, with priors included, are given for parameters that the data determine
+/// (determinacy.h); for the others the reason is given in words. A parameter at a bound is held
+/// there for the intervals of the others; one without effect on any angle and without prior keeps
+/// the model's value. Held-out trials are simulated from their own first measured value, at rest.
+///
+/// @throws std::invalid_argument what TrialSet throws, and for an option out of range, a prior or
+///   bound of a parameter that is not estimated, bounds that do not enclose the start
+Calibration calibrate(const TrialSet& training, const TrialSet* heldOut,
+                      const CalibrationOptions& options);
+
+}  // namespace bio

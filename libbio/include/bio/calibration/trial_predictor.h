@@ -1,0 +1,73 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bio/calibration/nudge.h"
+#include "bio/sensitivity/coupled_sensitivity.h"
+#include "bio/tables/trial.h"
+#include "info/estimation/least_squares.h"
+
+namespace bio {
+
+/// A trial as a function for estimators: from parameters to a coordinate at the measured times.
+///
+/// For every θ the model is changed, compiled and simulated; sensitivities are those of the
+/// discrete motion, interpolated to the measured times in the same way as the motion. Immutable:
+/// may be used from several threads.
+class TrialPredictor {
+ public:
+  /// @param trial excitations; its measured values are not used
+  /// @param coordinate observed coordinate, must be free
+  /// @param times sample times within the trial [s], rising
+  /// @param selection   indices of the catalogue's parameters: θ
+  /// @throws std::invalid_argument if the coordinate is not free, a time is outside the
+  ///   simulation, or the integrator has no sensitivities
+  TrialPredictor(const ParameterCatalogue& catalogue, const SystemOptions& arm,
+                 ExcitationSignal trial, const std::string& coordinate, std::vector<double> times,
+                 std::vector<std::size_t> selection, const SimulationOptions& options);
+
+  const std::vector<double>& times() const { return times_; }
+  const std::vector<std::size_t>& selection() const { return selection_; }
+  const ParameterCatalogue& catalogue() const { return *catalogue_; }
+
+  /// Adds a nudge that holds the model near a measured course; several may act together.
+  void hold(Nudge nudge) { nudges_.push_back(std::move(nudge)); }
+
+  /// The coordinate at the times [rad] or [m]; NaN after the end of a failed simulation, and
+  /// everywhere if no model can be built with θ.
+  Eigen::VectorXd outputs(const Eigen::VectorXd& theta) const;
+
+  struct Linearised {
+    Eigen::VectorXd outputs;  ///< at the times
+    Eigen::MatrixXd gamma;    ///< Γ = dy/dθ: times × parameters
+  };
+  Linearised withSensitivities(const Eigen::VectorXd& theta) const;
+
+  /// For info::LeastSquares; one output. This experiment must outlive it.
+  info::Predictor predictor() const;
+
+  /// The complete simulations. @throws what Arm, initialState and simulate throw
+  Trajectory simulate(const Eigen::VectorXd& theta) const;
+  SensitivityTrajectory simulateWithSensitivities(const Eigen::VectorXd& theta) const;
+
+ private:
+  Trajectory simulateAt(ParameterCatalogue::Setting setting) const;
+  SensitivityTrajectory sensitivitiesAt(ParameterCatalogue::Setting setting) const;
+
+  const ParameterCatalogue* catalogue_;
+  SystemOptions armOptions_;
+  ExcitationSignal trial_;
+  int coordinate_;
+  std::vector<double> times_;
+  std::vector<std::size_t> selection_;
+  SimulationOptions options_;
+  std::vector<Nudge> nudges_;
+};
+
+/// Several experiments with the same parameters; their samples are concatenated.
+/// @throws std::invalid_argument for none, or different selections
+info::Predictor joined(const std::vector<TrialPredictor>& experiments);
+
+}  // namespace bio

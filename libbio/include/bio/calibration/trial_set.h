@@ -1,0 +1,108 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bio/analysis/replay.h"
+#include "bio/calibration/trial_predictor.h"
+#include "bio/tables/trial.h"
+#include "info/estimation/least_squares.h"
+
+namespace bio {
+
+struct TrialSetOptions {
+  /// Names or patterns as ParameterCatalogue::select takes them: the same value in every trial.
+  std::vector<std::string> parameters;
+  bool ownStart = false;  ///< estimate the initial values and speeds of each trial as well
+  std::map<std::string, double> initial;  ///< start values [rad] or [m], as startCoordinates takes
+  SimulationOptions simulation;           ///< start and duration are those of each trial
+  int threads = 1;                        ///< trials simulated at once
+};
+
+/// Measured samples of one coordinate in one trial.
+struct MeasuredSeries {
+  std::size_t trial;  ///< index in the set
+  std::string coordinate;
+  std::vector<double> times;  ///< [s]
+  Eigen::VectorXd values;     ///< [rad]
+};
+
+/// Several trials of one model as one experiment: θ = (parameters of the model, common to all;
+/// then, if asked for, start and start speed of each trial's free coordinates), outputs = the
+/// measured angles of all trials, concatenated.
+///
+/// All angles have the same weight. Each trial is simulated over all its rows from the initial
+/// state of beginningOf().
+class TrialSet {
+ public:
+  /// @throws std::invalid_argument, naming the file where there is one, for no trial, a trial with
+  ///   an external torque or without a measured free angle, an unknown name, one given twice or two
+  ///   that set the same value, an initial state as common parameter of several trials, another
+  ///   integrator
+  TrialSet(const Model& model, const SystemOptions& arm, std::vector<Trial> trials,
+           const TrialSetOptions& options);
+
+  const MusculoskeletalSystem& arm() const { return *arm_; }
+  const std::vector<Trial>& trials() const { return trials_; }
+  /// Initial state of each trial before the estimation.
+  const std::vector<TrialBeginning>& beginnings() const { return beginnings_; }
+  const std::vector<MeasuredSeries>& series() const { return series_; }
+  /// The catalogue of a trial; catalogues differ only in the initial state.
+  const ParameterCatalogue& catalogue(std::size_t trial = 0) const { return *catalogues_[trial]; }
+  /// Indices of the common parameters in the catalogue.
+  const std::vector<std::size_t>& selection() const { return selection_; }
+
+  /// Initial state of a trial at θ.
+  StartPoint startAt(std::size_t trial, const Eigen::VectorXd& theta) const;
+
+  std::size_t numParameters() const { return parameters_.size(); }
+  /// Number of common parameters; the others are initial states of trials.
+  std::size_t numCommon() const { return selection_.size(); }
+  /// θ of the model and the trials, with the catalogue's bounds; initial states have a prior.
+  const std::vector<info::Parameter>& parameters() const { return parameters_; }
+  /// Prior standard deviation of each, in its unit.
+  const Eigen::VectorXd& known() const { return known_; }
+
+  /// 1 × samples [rad]
+  Eigen::MatrixXd measured() const;
+  /// 1 × samples; NaN after the end of a failed simulation. The set must outlive it.
+  info::Predictor predictor() const { return predictor(experiments_); }
+  /// The experiments with every measured coordinate held near its measured course (nudge.h). A
+  /// series with fewer than four samples is not held.
+  std::vector<TrialPredictor> nudged(double frequency) const;
+  /// The same with these experiments; set and experiments must outlive it.
+  info::Predictor predictor(const std::vector<TrialPredictor>& experiments) const;
+  /// Why the trial's simulation does not reach its end; empty if it does.
+  std::string failure(std::size_t trial, const Eigen::VectorXd& theta) const;
+  /// Mean square difference [rad²] of predictions from measurements: of all, and of each trial.
+  double meanSquare(const Eigen::MatrixXd& predicted) const;
+  double meanSquare(const Eigen::MatrixXd& predicted, std::size_t trial) const;
+  /// Largest difference of two predictions [rad], by trial.
+  std::vector<double> largestDifferences(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) const;
+
+ private:
+  void collectSeries(const TrialSetOptions& options);
+  void collectParameters(const TrialSetOptions& options);
+  Eigen::VectorXd thetaOf(std::size_t trial, const Eigen::VectorXd& theta) const;
+
+  std::vector<Trial> trials_;
+  std::vector<TrialBeginning> beginnings_;
+  int threads_;
+  std::unique_ptr<const MusculoskeletalSystem> arm_;
+  std::vector<std::unique_ptr<const ParameterCatalogue>> catalogues_;  ///< one per trial
+  std::vector<std::size_t> selection_;
+  std::vector<std::size_t> own_;  ///< indices of the initial states; empty unless estimated
+  std::vector<info::Parameter> parameters_;
+  Eigen::VectorXd known_;
+  std::vector<MeasuredSeries> series_;
+  std::vector<TrialPredictor> experiments_;  ///< one per series
+};
+
+/// Indices of the parameters that the names select, each once.
+/// @throws std::invalid_argument as ParameterCatalogue::select does, and for a name given twice
+std::vector<std::size_t> selectDistinct(const ParameterCatalogue& catalogue,
+                                        const std::vector<std::string>& names);
+
+}  // namespace bio

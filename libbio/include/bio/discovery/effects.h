@@ -1,0 +1,61 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bio/discovery/encompassing_model.h"
+
+namespace bio::discover {
+
+/// One line of the catalogue: adds an effect, or a small family of them, to a model. An effect that
+/// the base model already has becomes EncompassingModel::present(); one that the skeleton cannot
+/// have (tilt, if gravity does not turn the joint) is left out.
+struct EffectEntry {
+  const char* id;
+  void (*add)(EncompassingModel& model);
+};
+
+/// The catalogue. τ is the generalised force on the observed coordinate, + up; w = q̇.
+///
+/// | id | effect | amplitude |
+/// |---|---|---|
+/// | visc | −b·w | b N·m·s/rad |
+/// | coulomb | −c·tanh(w/0.05) | c N·m |
+/// | stribeck | −c·[1 + e^{−(w/v)²}]·tanh(w/0.05) | c N·m |
+/// | drag | −c·w·|w| | c N·m·s² |
+/// | powerdamp | −b·w·(w² + 0.01²)^{(n−1)/2} | b |
+/// | stiffness | −k(q − q_r) | k N·m/rad |
+/// | limit | OpenSim's CoordinateLimitForce, one stiffness for both ends | K N·m/rad |
+/// | payload | a point at the mass centre of the farthest body | m kg |
+/// | tilt | gravity's moment is that of q + δ | δ rad |
+/// | const | +c | c N·m |
+/// | handforce | horizontal force at that mass centre, in the plane of the joint | F N |
+/// | spring | −k·max(0, L − L_r)·∂L/∂q, L from hand to shoulder (see band.cc) | k N/m |
+/// | torque_from, torque_until, mass_from, mass_until | TimedForce (timed_force.h) | N·m or kg |
+/// | fatigue | u_i·[1 − φ(1 − e^{−∫u_i dt/T})], every muscle | φ |
+/// | missing_i | a muscle that the model has but switched off, F0 = r·that of the model, its
+/// lengths within their tolerance | r | | delay, shape, crosstalk_A_B, gain_i, offset_i |
+/// EmgMapping | | | mass, tau, Fmax_i, lopt_i, lslack_i, tendon, wrap_i | factors and shifts of
+/// parameters | | | swap_A_B | channels of two muscles exchanged: EmgMapping | share, 1 where they
+/// are | | bias, gain, clock, clock_rate, lag, drift | SensorLaw | |
+const std::vector<EffectEntry>& effectEntries();
+
+/// Adds the base model's own uncertain parameters as nuisance parameters: every muscle's F0 (15 %
+/// of the logarithm), optimal fibre length (4 %) and tendon slack length (2 %), the mass of the
+/// moved bodies (5 %), the time scale of activation (20 %).
+void addNuisances(EncompassingModel& model);
+
+/// Adds a candidate "formula", a force outside the catalogue, c·(e_1 + r_2·e_2 + …); in a model an
+/// ExpressionBasedCoordinateForce. Its quantities are c, r_2, ….
+void addFormula(EncompassingModel& model, const std::vector<info::discover::FormulaTerm>& terms);
+
+/// addNuisances, and every entry but those whose ids are in `without`.
+/// @param without  ids of entries or of candidates
+/// @param formula  if not empty, also addFormula of it
+/// @throws std::invalid_argument for an unknown id, with a list of the known ones
+EncompassingModel encompassingModel(const Model& model, const SystemOptions& arm,
+                                    const std::string& coordinate,
+                                    const std::vector<std::string>& without = {},
+                                    const std::vector<info::discover::FormulaTerm>& formula = {});
+
+}  // namespace bio::discover

@@ -1,0 +1,147 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bio/calibration/nudge.h"
+#include "bio/discovery/encompassing_model.h"
+#include "bio/simulation/simulate.h"
+#include "bio/tables/trial.h"
+
+namespace bio::discover {
+
+struct MusculoskeletalProblemOptions {
+  SimulationOptions simulation;      ///< integrator: variational or variationalLeft; step
+  double latentSpacing = 0.05;       ///< between nodes of the latent force [s] > 0
+  double latentFloor = 0.5;          ///< τ_0 of its scale [N·m] > 0
+  double startSd = 0.035;            ///< prior sd of each trial's initial angle [rad] > 0
+  double speedSd = 0.1;              ///< prior sd of each trial's initial speed [rad/s] > 0
+  bool usableSeries = true;          ///< refuse measured series that requireUsable refuses
+  std::vector<std::string> without;  ///< ids of effects to exclude from the catalogue
+  std::vector<info::discover::FormulaTerm> formula;  ///< of a candidate "formula"; empty: none
+};
+
+/// A search with too long a step is repeated with half the step, unless the step was shorter than
+/// this [s] (info::discover::runAtShorterSteps).
+inline constexpr double shortestSearchStep = 0.003;
+
+/// The discovery problem of a musculoskeletal model for info::discover: recorded trials with one
+/// observed coordinate, and the model with every effect of the catalogue built in.
+///
+/// Each trial is simulated over its rows from its own initial angle, driven by its excitations and
+/// its external torque. The prior mean of the initial angle is the first measured value as the
+/// sensor, which may be in error, shows it. y(t_k) is the cubic Hermite interpolant between rows.
+/// All derivatives are exact: those of parameters, forces and latent nodes by the implicit function
+/// theorem (coupled_sensitivity.h), those of EMG and sensor by the chain rule. Before the start of
+/// a trial, which a clock offset may require, the coordinate is extrapolated with its initial
+/// speed.
+///
+/// If an external torque acts on the coordinate, delay and clock are not equivalent. A known mass
+/// in the hand (Trial::known) is part of the model of its trial; if it differs between trials, tilt
+/// and handforce are not equivalent. In a trial with a known turn of the limb, gravity and a force
+/// on the hand are turned accordingly.
+///
+/// The latent force is a torque on the coordinate with one channel per muscle, scaled by the
+/// muscle's moment r_i F_i, and one of the constant scale τ_0 [N·m]: independent relative errors of
+/// each muscle's force, and other errors. Its time constant is that of the activations, 1/k at the
+/// mean excitation, k midway between rising and falling.
+class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
+ public:
+  using Quantity = info::discover::Quantity;
+  using Candidate = info::discover::Candidate;
+
+  /// @param coordinate the observed one, measured in every trial; missing samples have no time
+  /// @throws std::invalid_argument what EncompassingModel throws, no trial, a trial without a
+  /// measured
+  ///   value of the coordinate, an integrator without sensitivities, an option out of range, a
+  ///   known mass in the hand of a model without a body to carry it
+  MusculoskeletalProblem(const Model& model, const SystemOptions& arm,
+                         const std::string& coordinate, std::vector<Trial> trials,
+                         MusculoskeletalProblemOptions options = {});
+
+  const std::vector<Quantity>& quantities() const override { return quantities_; }
+  const std::vector<std::size_t>& nuisances() const override { return nuisances_; }
+  const std::vector<Candidate>& candidates() const override { return encompassing_.candidates(); }
+  int numTrials() const override { return static_cast<int>(trials_.size()); }
+  std::string trialName(int trial) const override { return of(trial).trial.file; }
+  const std::vector<double>& times(int trial) const override { return of(trial).times; }
+  const Eigen::VectorXd& measured(int trial) const override { return of(trial).measured; }
+  const std::vector<double>& latentTimes(int trial) const override { return of(trial).nodes; }
+  double latentLag() const override { return latentLag_; }
+  Prediction predict(int trial, const Eigen::VectorXd& values, const Eigen::VectorXd& latent,
+                     const std::vector<std::size_t>& wanted, bool latentToo) const override;
+  Eigen::VectorXd outputs(int trial, const Eigen::VectorXd& values,
+                          const Eigen::VectorXd& latent) const override;
+  Eigen::VectorXd refinedOutputs(int trial, const Eigen::VectorXd& values) const override;
+  Eigen::MatrixXd inputs(int trial) const override;
+  std::vector<std::string> inputNames() const override;
+  /// The same with the coordinate held near its measured course (nudge.h).
+  std::unique_ptr<info::discover::DiscoveryProblem> nudged(double frequency) const override;
+  /// Null if the model already has the force of a formula.
+  std::unique_ptr<info::discover::DiscoveryProblem> withFormula(
+      const std::vector<info::discover::FormulaTerm>& terms,
+      const std::vector<std::size_t>& kept) const override;
+
+  /// Model and effects, without the initial states of the trials.
+  const EncompassingModel& encompassing() const { return encompassing_; }
+  /// Sum of the timed forces at latentTimes(trial); empty if there is none.
+  Eigen::VectorXd timedForce(int trial, const Eigen::VectorXd& values) const;
+  const MusculoskeletalProblemOptions& options() const { return options_; }
+  /// The trial as given, with an excitation for every muscle that was added (withProxies).
+  const Trial& trial(int trial) const { return of(trial).trial; }
+  /// The complete simulation at `values`, without a latent force.
+  /// @throws what Arm, initialState and simulate throw
+  Trajectory motion(int trial, const Eigen::VectorXd& values) const;
+  /// The model that it belongs to.
+  MusculoskeletalSystem armAt(int trial, const Eigen::VectorXd& values) const;
+  /// Its initial state: the coordinate itself, not the sensor's reading.
+  TrialStart startAt(int trial, const Eigen::VectorXd& values) const;
+  /// Why the trial's simulation does not reach its end; empty if it does.
+  std::string failure(int trial, const Eigen::VectorXd& values) const;
+
+ private:
+  class Nudged;
+  struct OfTrial {
+    Trial trial;
+    ExcitationSignal excitation;
+    ExternalForce external;
+    std::vector<double> times;
+    Eigen::VectorXd measured;
+    std::vector<double> nodes;
+    Eigen::VectorXd heldMass;  ///< moment of a mass of 1 kg at the nodes [N·m]
+    Eigen::VectorXd known;     ///< change of the model's quantities by Trial::known
+    std::size_t angle,
+        speed;  ///< quantities of its initial state, the angle as the sensor shows it
+  };
+  Eigen::VectorXd withTimedForces(const OfTrial& one, const Eigen::VectorXd& values,
+                                  const Eigen::VectorXd& latent) const;
+  /// Derivatives of the forces at the nodes with respect to the wanted quantities: nodes × wanted;
+  /// empty if they depend on none.
+  Eigen::MatrixXd timedDirections(const OfTrial& one, const Eigen::VectorXd& values,
+                                  const std::vector<std::size_t>& wanted) const;
+  double activationLag() const;
+  const OfTrial& of(int trial) const { return trials_.at(static_cast<std::size_t>(trial)); }
+  ParameterCatalogue::Setting settingAt(const OfTrial& one, const Eigen::VectorXd& values,
+                                        const std::vector<std::size_t>& wanted) const;
+  SimulationOptions simulationOf(const OfTrial& one, const Eigen::VectorXd& latent,
+                                 const SensorLaw& sensor) const;
+  ExcitationSignal excitationFor(const OfTrial& one, const MusculoskeletalSystem& arm) const;
+  Trajectory simulate(const OfTrial& one, const Eigen::VectorXd& values,
+                      const Eigen::VectorXd& latent, double stepFactor, const Nudge* nudge) const;
+  Eigen::VectorXd outputsOf(const OfTrial& one, const Eigen::VectorXd& values,
+                            const Eigen::VectorXd& latent, double stepFactor,
+                            const Nudge* nudge) const;
+  Prediction predictWith(const Nudge* nudge, int trial, const Eigen::VectorXd& values,
+                         const Eigen::VectorXd& latent, const std::vector<std::size_t>& wanted,
+                         bool latentToo) const;
+
+  EncompassingModel encompassing_;
+  MusculoskeletalProblemOptions options_;
+  std::vector<Quantity> quantities_;  ///< those of the model, then the initial states of the trials
+  std::vector<std::size_t> nuisances_;
+  std::vector<OfTrial> trials_;
+  double latentLag_ = 0;
+};
+
+}  // namespace bio::discover

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bio/tables/trial.h"
+
+namespace bio::discover {
+
+/// A planned experiment: a recorded trial, repeated with the same EMG and a known change.
+struct PlannedExperiment {
+  std::string sentence;  ///< what to do
+  Trial trial;
+};
+
+/// Experiments that are easy to do: a known mass in the hand (0.1 to 1 kg, in addition to one that
+/// is already there), and recorded external pushes of 0.2 s on the coordinate, ±0.25 to ±1 N·m (N
+/// for a translation), one per second. The first one is an unchanged repetition.
+/// @param trial the recorded trial; its external torque is kept
+/// @param coordinate the coordinate that is pushed and observed
+std::vector<PlannedExperiment> plannedExperiments(const Trial& trial, const Coordinate& coordinate);
+
+}  // namespace bio::discover

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bio/emg/emg.h"
+#include "bio/tables/recording.h"
+
+namespace bio {
+
+/// Normalisation as given in the file.
+struct FullDeclaration {
+  std::optional<double> mvc;  ///< of the envelope, in `unit`
+  std::string unit;           ///< of mvc
+  std::string mvcFile;        ///< recording of a maximum contraction, path as it can be opened
+  std::optional<double> percentile;  ///< of this recording's own envelope
+};
+
+/// A configuration of `fisherhill emg` as read from its TOML file; docs/emg.md lists every key.
+struct EmgConfigFile {
+  std::string file;
+  RecordingLayout layout;
+  EmgConfig emg;                         ///< without the settings that depend on the recording
+  std::vector<FullDeclaration> full;     ///< one per electrode
+  std::vector<int> electrodeLines;       ///< line of each electrode in the file
+  std::optional<double> degreesPerUnit;  ///< of the measured channel, if stated
+  int measuredLine = 0;                  ///< of [measured], 0: none
+};
+
+/// @throws FileError "file:line: key = value, rule" for TOML that cannot be parsed, an unknown key,
+/// a value of the wrong type or out of its range, a missing key
+EmgConfigFile readEmgConfig(const std::string& file);
+
+/// The configuration for one recording: channels found, units compared, maximum contractions read
+/// from their own files (the maximum of their envelope through the same filters).
+/// @throws FileError "file:line: …" for a missing channel or a unit that does not match
+EmgConfig emgConfigFor(const EmgConfigFile& config, const Recording& recording);
+
+}  // namespace bio

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+
+#include "bio/model/model.h"
+
+namespace bio {
+
+/// Reads an OpenSim 3 (joints nested in bodies) or OpenSim 4 (sockets and offset frames) model.
+///
+/// Read are: bodies, joints (Weld, Pin, Slider, Universal, Planar, Gimbal, Free, Custom),
+/// coordinates, CoordinateCouplerConstraint, wrap objects, paths of all muscles, parameters of
+/// Schutte1993Muscle_Deprecated, CoordinateLimitForce, SpringGeneralizedForce,
+/// ExpressionBasedCoordinateForce. Offset frames are folded into their bodies. For missing elements
+/// the model's <defaults> apply, then OpenSim's own defaults: mass_center 0, inertia 0, coordinate
+/// 0 in ±10, quadrant all, F0 1000 N, ℓ0 0.1 m, ℓs 0.2 m, pennation 0, damping 0.1, and the curves
+/// of the Schutte class. Masses and sizes of wrap objects must be given. Elements that would act in
+/// OpenSim but are not simulated are listed in Model::warnings.
+///
+/// @throws FileError if the file cannot be read, is not a model, or breaks a rule of model.h
+Model readOsim(const std::filesystem::path& file);
+
+/// Writes the model as a fresh OpenSim 4 document. The file appears complete or not at all.
+/// @throws FileError if it cannot be written, or the model breaks a rule of model.h
+/// @throws std::invalid_argument if a muscle is not a Schutte muscle, whose parameters Model lacks
+void writeOsim(const Model& model, const std::filesystem::path& file);
+
+/// Writes to `file` a copy of the document `original` that is changed to describe `model`: numbers
+/// that differ are replaced, forces and wrap objects added or removed; all other content (comments,
+/// pictures, controllers, unknown classes) is kept. `file` may be `original`.
+/// @throws FileError as the two above
+/// @throws std::invalid_argument if the document cannot express a change
+void rewriteOsim(const std::filesystem::path& original, const Model& model,
+                 const std::filesystem::path& file);
+
+}  // namespace bio

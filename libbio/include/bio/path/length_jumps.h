@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bio/model/model.h"
+#include "bio/skeleton/skeleton.h"
+
+namespace bio {
+
+/// A value of a coordinate at which a muscle–tendon length jumps, and with it force and moment arm.
+struct LengthJump {
+  std::string muscle, coordinate;
+  bool turns = true;         ///< the coordinate is an angle
+  double value = 0;          ///< of the coordinate [rad] or [m]
+  double size = 0;           ///< length just above it less length just below it [m]
+  bool conditional = false;  ///< a conditional point switches there, and every integrator ends
+                             ///< a step at it; else the side of a wrap object changes, where
+                             ///< motions of different integrators may diverge
+};
+
+/// Jumps of 1e-5 m or more of the enabled muscles that a skeleton's first coordinate moves, the
+/// other free coordinates at their defaults, by muscle and value. The range is searched in 720
+/// steps. Muscles without a computable path (UnsupportedWrap, ellipsoids that are not in
+/// wrapAsCylinder) are skipped.
+/// @param from, to  of the coordinate, rising [rad] or [m]
+std::vector<LengthJump> lengthJumps(const Model& model, const Skeleton& skeleton,
+                                    const std::vector<std::string>& wrapAsCylinder, double from,
+                                    double to);
+
+/// The same for every coordinate that is neither locked nor coupled, one at a time, over its range
+/// and a margin on either side. A range of more than 2π rad or 2 m is reduced to that width about
+/// the default, without margin.
+std::vector<LengthJump> lengthJumps(const Model& model, double beyond = 0.3);
+
+/// "the length of BRA jumps by 5.31 mm at elbow_flexion = 0 deg (a conditional point)"
+std::string describe(const LengthJump& jump);
+
+}  // namespace bio

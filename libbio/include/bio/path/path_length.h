@@ -1,0 +1,331 @@
+#pragma once
+
+// Template bodies of path.h.
+#include "bio/path/path.h"
+#include "bio/skeleton/skeleton_motion.h"
+
+namespace bio {
+namespace detail {
+
+/// A path point in ground with its derivatives.
+template <class T, int N>
+PointMotionJet<T, N> nodeJet(const CompiledPath& path, const PathNode& node, const Vec3<T>& p_S,
+                             const Eigen::Matrix<T, N, 1>& q, const RigidMotion<T, N>* moved) {
+  if (node.motion < 0) return movePoint(moved[node.segment], p_S);
+
+  // location in the body: three functions of coordinates
+  const CompiledPointMotion& motion = path.motions[static_cast<std::size_t>(node.motion)];
+  PointMotionJet<T, N> local;
+  for (auto& d : local.first) d.setZero();
+  for (auto& d : local.second) d.setZero();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Skeleton::CoordinateSource& source = motion.source[i];
+    const auto row = static_cast<Eigen::Index>(i);
+    if (source.freeIndex < 0) {
+      local.value[row] = T(motion.location[i].evaluate(source.value).value);
+      continue;
+    }
+    const auto k = static_cast<std::size_t>(source.freeIndex);
+    const auto inner = curveJet(source.coupling, q[source.freeIndex]);
+    const auto outer = curveJet(motion.location[i], inner.value);
+    local.value[row] = outer.value;
+    local.first[k][row] = outer.slope * inner.slope;
+    local.second[static_cast<std::size_t>(pairIndex(source.freeIndex, source.freeIndex))][row] =
+        outer.curvature * inner.slope * inner.slope + outer.slope * inner.curvature;
+  }
+  // into the segment
+  const Mat3<T> R_SB = node.X_SB.R.template cast<T>();
+  const auto turn = [&](Vec3<T>& v) { v = (R_SB * v).eval(); };
+  turn(local.value);
+  local.value += node.X_SB.p.template cast<T>();
+  for (auto& d : local.first) turn(d);
+  for (auto& d : local.second) turn(d);
+  // into the ground, by the product rule
+  const RigidMotion<T, N>& X = moved[node.segment];
+  PointMotionJet<T, N> jet = movePoint(X, local.value);
+  for (int i = 0; i < N; ++i) {
+    const auto si = static_cast<std::size_t>(i);
+    jet.first[si] += X.value.R * local.first[si];
+    for (int j = 0; j <= i; ++j) {
+      const auto sj = static_cast<std::size_t>(j);
+      const auto ij = static_cast<std::size_t>(pairIndex(i, j));
+      jet.second[ij] += X.first[si].R * local.first[sj] + X.first[sj].R * local.first[si] +
+                        X.value.R * local.second[ij];
+    }
+  }
+  return jet;
+}
+
+/// A moving point seen from a moving frame: y = Rᵀ(x − p).
+template <class T, int N>
+PointMotionJet<T, N> seenFrom(const RigidMotion<T, N>& X, const PointMotionJet<T, N>& x) {
+  const Vec3<T> d = x.value - X.value.p;
+  std::array<Vec3<T>, N> d1;
+  for (std::size_t i = 0; i < N; ++i) d1[i] = x.first[i] - X.first[i].p;
+  PointMotionJet<T, N> y;
+  y.value.noalias() = X.value.R.transpose() * d;
+  for (int i = 0; i < N; ++i) {
+    const auto si = static_cast<std::size_t>(i);
+    y.first[si] = X.first[si].R.transpose() * d + X.value.R.transpose() * d1[si];
+    for (int j = 0; j <= i; ++j) {
+      const auto sj = static_cast<std::size_t>(j);
+      const auto ij = static_cast<std::size_t>(pairIndex(i, j));
+      y.second[ij] = X.second[ij].R.transpose() * d + X.first[si].R.transpose() * d1[sj] +
+                     X.first[sj].R.transpose() * d1[si] +
+                     X.value.R.transpose() * (x.second[ij] - X.second[ij].p);
+    }
+  }
+  return y;
+}
+
+/// An end of a span; where it is fixed only its value is set.
+template <class T, int N>
+struct SpanEnd {
+  PointMotionJet<T, N> jet;
+  bool fixed = false;
+};
+
+template <class T, int N>
+SpanEnd<T, N> spanEnd(const CompiledPath& path, const PathNode& node, const Vec3<T>& p_S,
+                      const Eigen::Matrix<T, N, 1>& q, const RigidMotion<T, N>* moved) {
+  SpanEnd<T, N> end;
+  end.fixed = node.segment == 0 && node.motion < 0;
+  if (end.fixed) {
+    end.jet.value = p_S;
+  } else {
+    end.jet = nodeJet<T, N>(path, node, p_S, q, moved);
+  }
+  return end;
+}
+
+/// An end seen from the fixed frame X.
+template <class T, int N>
+SpanEnd<T, N> intoFrame(const Placement<double>& X, const SpanEnd<T, N>& x) {
+  const Mat3<T> R = X.R.transpose().template cast<T>();
+  SpanEnd<T, N> y;
+  y.fixed = x.fixed;
+  const Vec3<T> d = x.jet.value - X.p.template cast<T>();
+  y.jet.value.noalias() = R.lazyProduct(d);
+  if (x.fixed) return y;
+  for (std::size_t i = 0; i < N; ++i) y.jet.first[i].noalias() = R.lazyProduct(x.jet.first[i]);
+  for (std::size_t ij = 0; ij < numPairs(N); ++ij) {
+    y.jet.second[ij].noalias() = R.lazyProduct(x.jet.second[ij]);
+  }
+  return y;
+}
+
+/// An end seen from a surface; where the surface moves, no end is fixed.
+template <class T, int N>
+SpanEnd<T, N> seenFromSurface(const PathSurface& surface, const RigidMotion<T, N>* moved,
+                              const SpanEnd<T, N>& end) {
+  if (surface.segment == 0) return intoFrame(surface.X_SC, end);
+  SpanEnd<T, N> x = end;
+  if (end.fixed) {
+    for (auto& d : x.jet.first) d.setZero();
+    for (auto& d : x.jet.second) d.setZero();
+  }
+  x.fixed = false;
+  x.jet = seenFrom(moved[surface.segment], x.jet);
+  return intoFrame(surface.X_SC, x);
+}
+
+/// first[i] and second[ij] times a vector, 0 for a fixed end.
+template <class T, int N>
+T alongFirst(const SpanEnd<T, N>& end, int i, const Vec3<T>& v) {
+  if (end.fixed) return T(0.0);
+  return v.dot(end.jet.first[static_cast<std::size_t>(i)]);
+}
+template <class T, int N>
+T alongSecond(const SpanEnd<T, N>& end, int i, int j, const Vec3<T>& v) {
+  if (end.fixed) return T(0.0);
+  return v.dot(end.jet.second[static_cast<std::size_t>(pairIndex(i, j))]);
+}
+
+template <class T, int N>
+void addSecond(LengthJet<N, T>& jet, int i, int j, const T& second) {
+  jet.d2L_dq2(i, j) += second;
+  if (i != j) jet.d2L_dq2(j, i) += second;
+}
+
+/// L = |Q − P|:  ∂_ijL = (∂_iD·∂_jD − ∂_iL ∂_jL)/L + t·∂_ijD,  D = Q − P, t = D/L
+template <class T, int N>
+void addStraight(LengthJet<N, T>& jet, const SpanEnd<T, N>& P, const SpanEnd<T, N>& Q) {
+  const Span<T> span = straightSpan(P.jet.value, Q.jet.value);
+  const Vec3<T>& t = span.dL_dQ;
+  const T perLength = T(1.0) / span.length;
+  jet.length += span.length;
+  if (P.fixed && Q.fixed) return;
+  std::array<Vec3<T>, N> D;
+  std::array<T, N> dL;
+  for (int i = 0; i < N; ++i) {
+    const auto si = static_cast<std::size_t>(i);
+    if (P.fixed) {
+      D[si] = Q.jet.first[si];
+    } else if (Q.fixed) {
+      D[si] = -P.jet.first[si];
+    } else {
+      D[si] = Q.jet.first[si] - P.jet.first[si];
+    }
+    dL[si] = t.dot(D[si]);
+    jet.dL_dq[i] += dL[si];
+    for (int j = 0; j <= i; ++j) {
+      const auto sj = static_cast<std::size_t>(j);
+      const T across = D[si].dot(D[sj]) - dL[si] * dL[sj];
+      const T bent = alongSecond(Q, i, j, t) - alongSecond(P, i, j, t);
+      addSecond<T, N>(jet, i, j, T(across * perLength + bent));
+    }
+  }
+}
+
+/// A wrapped cylinder, whose Hessian is three dyads.
+template <class T, int N>
+void addCylinder(LengthJet<N, T>& jet, const CylinderDyads<T>& s, const SpanEnd<T, N>& P,
+                 const SpanEnd<T, N>& Q) {
+  jet.length += s.span.length;
+  std::array<T, N> nP, nQ, m;
+  for (int i = 0; i < N; ++i) {
+    const auto si = static_cast<std::size_t>(i);
+    jet.dL_dq[i] += alongFirst(P, i, s.span.dL_dP) + alongFirst(Q, i, s.span.dL_dQ);
+    nP[si] = alongFirst(P, i, s.nP);
+    nQ[si] = alongFirst(Q, i, s.nQ);
+    m[si] = alongFirst(P, i, s.mP) + alongFirst(Q, i, s.mQ);
+    for (int j = 0; j <= i; ++j) {
+      const auto sj = static_cast<std::size_t>(j);
+      const T bent = alongSecond(P, i, j, s.span.dL_dP) + alongSecond(Q, i, j, s.span.dL_dQ);
+      const T curved =
+          s.bendP * nP[si] * nP[sj] + s.bendQ * nQ[si] * nQ[sj] + s.perLength * m[si] * m[sj];
+      addSecond<T, N>(jet, i, j, T(curved + bent));
+    }
+  }
+}
+
+/// Any span by its full Hessian: the chain rule to second order.
+template <class T, int N>
+void addSpan(LengthJet<N, T>& jet, const SpanToSecondOrder<T>& s, const SpanEnd<T, N>& P,
+             const SpanEnd<T, N>& Q) {
+  jet.length += s.span.length;
+  for (int i = 0; i < N; ++i) {
+    const auto si = static_cast<std::size_t>(i);
+    jet.dL_dq[i] += alongFirst(P, i, s.span.dL_dP) + alongFirst(Q, i, s.span.dL_dQ);
+    // change of the gradient as q_i moves both ends
+    Vec3<T> gP = Vec3<T>::Zero(), gQ = Vec3<T>::Zero();
+    if (!P.fixed) {
+      gP += s.hessian.d2L_dPdP * P.jet.first[si];
+      gQ += s.hessian.d2L_dPdQ.transpose() * P.jet.first[si];
+    }
+    if (!Q.fixed) {
+      gP += s.hessian.d2L_dPdQ * Q.jet.first[si];
+      gQ += s.hessian.d2L_dQdQ * Q.jet.first[si];
+    }
+    for (int j = 0; j <= i; ++j) {
+      const T curved = alongFirst(P, j, gP) + alongFirst(Q, j, gQ);
+      const T bent = alongSecond(P, i, j, s.span.dL_dP) + alongSecond(Q, i, j, s.span.dL_dQ);
+      addSecond<T, N>(jet, i, j, T(curved + bent));
+    }
+  }
+}
+
+/// Adds the span over the first surface that it touches and that is not in use, else straight.
+template <class T, int N>
+void addPathSpan(LengthJet<N, T>& jet, const CompiledPath& path, const PathSpan& span,
+                 const SpanEnd<T, N>& P, const SpanEnd<T, N>& Q, const RigidMotion<T, N>* moved,
+                 const T* radii, unsigned& used) {
+  for (const SpanSurface& way : span.surfaces) {
+    const unsigned bit = 1u << way.surface;
+    if ((used & bit) != 0) continue;
+    const PathSurface& surface = path.surfaces[way.surface];
+    const T radius = radii ? radii[surface.wrap] : T(surface.radius);
+    const SpanEnd<T, N> p_CP = seenFromSurface(surface, moved, P);
+    const SpanEnd<T, N> p_CQ = seenFromSurface(surface, moved, Q);
+    const Vec3<T>& from = p_CP.jet.value;
+    const Vec3<T>& to = p_CQ.jet.value;
+    if (surfaceIsOutOfPlay(surface, radius, way, from, to)) continue;
+    if (surface.isSphere) {
+      const SpanToSecondOrder<T> s = wrapSphereToSecondOrder(radius, way.way, from, to);
+      if (!s.span.touches) continue;
+      addSpan(jet, s, p_CP, p_CQ);
+    } else {
+      const CylinderDyads<T> s = wrapCylinderDyads(radius, way.side, from, to);
+      if (!s.span.touches) continue;
+      addCylinder(jet, s, p_CP, p_CQ);
+    }
+    used |= bit;
+    jet.wrapped = jet.wrapped || span.moves;
+    return;
+  }
+  addStraight(jet, P, Q);
+}
+
+template <int N, class T>
+LengthJet<N, T> noLength() {
+  LengthJet<N, T> jet;
+  jet.dL_dq.setZero();
+  jet.d2L_dq2.setZero();
+  return jet;
+}
+
+}  // namespace detail
+
+template <int N>
+LengthJet<N> MusclePath::length(const Eigen::Matrix<double, N, 1>& q,
+                                const RigidMotion<double, N>* moved,
+                                const Eigen::Matrix<double, N, 1>* conditionsAt) const {
+  if constexpr (N == 1) {
+    PathTable::Value found;
+    if (table_ && conditionsAt == nullptr && table_->find(q[0], found)) {
+      LengthJet<1> jet;
+      jet.length = found.length;
+      jet.dL_dq[0] = found.slope;
+      jet.d2L_dq2(0, 0) = found.curvature;
+      jet.wrapped = found.wrapped;
+      return jet;
+    }
+  }
+  const PathVariant& variant = activeVariant(compiled_, conditionsAt ? *conditionsAt : q);
+  LengthJet<N> jet = detail::noLength<N, double>();
+  jet.length = variant.fixedLength;
+  unsigned used = 0;
+  for (const PathSpan& span : variant.moving) {
+    const PathNode& a = compiled_.nodes[span.a];
+    const PathNode& b = compiled_.nodes[span.b];
+    const auto P = detail::spanEnd<double, N>(compiled_, a, a.p_S, q, moved);
+    const auto Q = detail::spanEnd<double, N>(compiled_, b, b.p_S, q, moved);
+    detail::addPathSpan<double, N>(jet, compiled_, span, P, Q, moved, nullptr, used);
+  }
+  return jet;
+}
+
+template <class T, int N>
+LengthJet<N, T> MusclePath::length(const PathParameters<T>& parameters,
+                                   const Eigen::Matrix<T, N, 1>& q,
+                                   const RigidMotion<T, N>* moved) const {
+  const PathVariant& variant = activeVariant(compiled_, q);
+  LengthJet<N, T> jet = detail::noLength<N, T>();
+  const auto endOf = [&](const PathNode& node) {
+    const Mat3<T> R = node.X_SB.R.template cast<T>();
+    const Vec3<T> p_S = R * parameters.points[node.point] + node.X_SB.p.template cast<T>();
+    return detail::spanEnd<T, N>(compiled_, node, p_S, q, moved);
+  };
+  unsigned used = 0;
+  for (const PathSpan& span : variant.all) {
+    detail::addPathSpan<T, N>(jet, compiled_, span, endOf(compiled_.nodes[span.a]),
+                              endOf(compiled_.nodes[span.b]), moved, parameters.radii.data(), used);
+  }
+  return jet;
+}
+
+template <int N>
+std::vector<Eigen::Vector3d> MusclePath::pathPoints(const Eigen::Matrix<double, N, 1>& q,
+                                                    const RigidMotion<double, N>* moved,
+                                                    double step) const {
+  std::size_t segments = 1;
+  for (const PathNode& node : compiled_.nodes) segments = std::max(segments, node.segment + 1);
+  for (const PathSurface& surface : compiled_.surfaces) {
+    segments = std::max(segments, surface.segment + 1);
+  }
+  std::vector<Placement<double>> placements(segments);
+  for (std::size_t s = 0; s < segments; ++s) placements[s] = moved[s].value;
+  return polyline(std::vector<double>(q.data(), q.data() + q.size()), placements, step);
+}
+
+}  // namespace bio

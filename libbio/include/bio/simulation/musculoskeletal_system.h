@@ -1,0 +1,154 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bio/forces/coordinate_force.h"
+#include "bio/model/model.h"
+#include "bio/muscle/activation/activation.h"
+#include "bio/muscle/schutte_muscle.h"
+#include "bio/path/path.h"
+#include "bio/skeleton/skeleton.h"
+
+namespace bio {
+
+struct SystemOptions {
+  SkeletonOptions skeleton;  ///< free coordinates, and values of the locked ones
+  std::vector<std::string>
+      wrapAsCylinder;          ///< ellipsoids with two equal semi-axes to treat as cylinders
+  SchutteOptions muscle;       ///< activation floor, treatment of negative forces
+  bool tabulatePaths = false;  ///< MusclePath::tabulate; worthwhile after a few simulations
+};
+
+/// One muscle ready to be simulated.
+struct SystemMuscle {
+  std::string name;
+  SchutteMuscle<double> muscle;
+  SchutteActivation<double> activation;
+  MusclePath path;
+};
+
+/// A model compiled for simulation: the skeleton with its free coordinates, the muscles that these
+/// move, and the passive coordinate forces. A muscle whose path moves over a surface without an
+/// exact geodesic (UnsupportedWrap) is left out with a warning. Constant: functions take the state
+/// as an argument.
+class MusculoskeletalSystem {
+ public:
+  /// @throws std::invalid_argument what Skeleton and MusclePath throw, non-physical muscle
+  ///   parameters, a moving muscle of a class other than Schutte's, free coordinates that move no
+  ///   mass, a moving body with a negative principal moment of inertia
+  MusculoskeletalSystem(const Model& model, const SystemOptions& options);
+
+  /// The same, but faster, for a model that differs from that of another arm in numerical values
+  /// only: paths and their tables are taken from that arm, except those of the muscles named, which
+  /// get no tables. Its warnings are not repeated.
+  /// @param like    made with the same options
+  /// @param shaped muscles whose path points or wrap objects differ
+  MusculoskeletalSystem(const Model& model, const SystemOptions& options,
+                        const MusculoskeletalSystem& like, const std::vector<std::string>& shaped);
+
+  const Skeleton& skeleton() const { return skeleton_; }
+  const CoordinateForces& coordinateForces() const { return coordinateForces_; }
+  const std::vector<SystemMuscle>& muscles() const { return muscles_; }
+  std::size_t numMuscles() const { return muscles_.size(); }
+
+  /// Coordinate values at which a path gains or loses conditional points, each listed once.
+  const std::vector<PathSwitch>& switches() const { return switches_; }
+
+  /// One line each: muscles left out because they cannot be simulated, unusual locked values, paths
+  /// without length, paths that use one of several wrap objects touched at once.
+  const std::vector<std::string>& warnings() const { return warnings_; }
+  /// One line each: muscles left out because no free coordinate moves them, spans treated as
+  /// constant, wrap objects that no path reaches.
+  const std::vector<std::string>& notes() const { return notes_; }
+
+ private:
+  MusculoskeletalSystem(const Model& model, const SystemOptions& options,
+                        const MusculoskeletalSystem* like, const std::vector<std::string>& shaped);
+  /// The path that can be reused; null: it must be compiled.
+  const MusclePath* pathOf(const std::string& muscle) const;
+
+  Skeleton skeleton_;
+  CoordinateForces coordinateForces_;
+  std::vector<std::unique_ptr<const SchutteCurves>> curves_;
+  std::vector<SystemMuscle> muscles_;
+  std::vector<PathSwitch> switches_;
+  std::vector<std::string> notes_;
+  std::vector<std::string> warnings_;
+};
+
+/// All quantities that depend only on the configuration, for N free coordinates: segment
+/// placements, inertia and gravity, muscle–tendon lengths, each with first and second derivatives.
+/// A workspace: allocates when constructed, never when moved.
+template <int N>
+class SystemConfiguration {
+ public:
+  using Vector = Eigen::Matrix<double, N, 1>;
+
+  explicit SystemConfiguration(const MusculoskeletalSystem& arm)
+      : arm_(&arm), motions_(arm.skeleton().numSegments()), lengths_(arm.numMuscles()) {}
+
+  void moveTo(const Vector& q) {
+    moveSkeletonTo(q);
+    for (std::size_t i = 0; i < lengths_.size(); ++i) {
+      lengths_[i] =
+          arm_->muscles()[i].path.template length<N>(q, motions_.data(), holds_ ? &held_ : nullptr);
+    }
+  }
+
+  /// Fixes the active conditional points to those of this configuration, for methods whose trial
+  /// steps may cross a switch.
+  void holdConditions(const Vector& at) {
+    held_ = at;
+    holds_ = true;
+  }
+
+  /// Does not update the lengths.
+  void moveSkeletonTo(const Vector& q) {
+    arm_->skeleton().template motions<double, N>(q, motions_.data());
+    inertia_ = arm_->skeleton().template inertia<N>(q, motions_.data());
+  }
+
+  /// Lengths and inertia at q + d by their Taylor polynomials at q, up to the derivatives
+  /// available: lengths, M and V lack terms of third order in d, and ∂ℓ, ∂M and ∂V terms of second
+  /// order. The placements are not updated.
+  void shift(const Vector& d) {
+    for (LengthJet<N>& path : lengths_) {
+      const Vector change = path.d2L_dq2 * d;
+      path.length += d.dot(path.dL_dq + change / 2);
+      path.dL_dq += change;
+    }
+    const Vector change = inertia_.d2V * d;
+    inertia_.potential += d.dot(inertia_.dV + change / 2);
+    inertia_.dV += change;
+    if (arm_->skeleton().hasConstantInertia()) return;
+    for (int i = 0; i < N; ++i) {
+      for (int j = 0; j < N; ++j) {
+        const auto& bend = inertia_.d2M[static_cast<std::size_t>(pairIndex(i, j))];
+        inertia_.massMatrix +=
+            d[i] * (inertia_.dM[static_cast<std::size_t>(i)] / N + d[j] / 2 * bend);
+      }
+    }
+    for (int i = 0; i < N; ++i) {
+      for (int j = 0; j < N; ++j) {
+        inertia_.dM[static_cast<std::size_t>(i)] +=
+            d[j] * inertia_.d2M[static_cast<std::size_t>(pairIndex(i, j))];
+      }
+    }
+  }
+
+  const std::vector<RigidMotion<double, N>>& motions() const { return motions_; }
+  const InertiaJet<N>& inertia() const { return inertia_; }
+  const LengthJet<N>& length(std::size_t muscle) const { return lengths_[muscle]; }
+
+ private:
+  const MusculoskeletalSystem* arm_;
+  std::vector<RigidMotion<double, N>> motions_;
+  InertiaJet<N> inertia_;
+  std::vector<LengthJet<N>> lengths_;
+  Vector held_;
+  bool holds_ = false;
+};
+
+}  // namespace bio

@@ -1,0 +1,127 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "bio/forces/external_force.h"
+#include "bio/muscle/activation/excitation.h"
+#include "bio/simulation/musculoskeletal_system.h"
+
+namespace bio {
+
+/// How the coupled equations of skeleton and muscles are stepped.
+enum class Integrator {
+  variational,      ///< midpoint variational, forces on both ends, implicit muscles; second order
+  variationalLeft,  ///< the same with forces on the left end only (Wilson's thesis); first order
+  rungeKutta4,      ///< classical, explicit; fourth order, stable for tiny steps only
+  cvode             ///< SUNDIALS BDF, adaptive, analytic Jacobian: the converged reference
+};
+
+/// State of an arm; column vectors over free coordinates and over muscles.
+struct SystemState {
+  Eigen::VectorXd q;            ///< [rad] or [m]
+  Eigen::VectorXd qDot;         ///< [rad/s] or [m/s]
+  Eigen::VectorXd activation;   ///< 0 … 1
+  Eigen::VectorXd fibreLength;  ///< [m]
+};
+
+struct SimulationOptions {
+  Integrator integrator = Integrator::variational;
+  double startTime = 0;  ///< [s]
+  double duration = 0;   ///< [s] > 0
+  double step = 0.01;    ///< [s] > 0; cvode: interval of the output
+  double newtonTolerance =
+      1e-9;  ///< largest correction at convergence: q [rad], fibre lengths relative to ℓ0
+  int maxIterations = 25;            ///< Newton iterations before a step is halved
+  int maxHalvings = 8;               ///< a step may shrink to step/2^maxHalvings
+  double relativeTolerance = 1e-10;  ///< cvode
+  double absoluteTolerance = 1e-12;  ///< cvode
+  /// Called after every output row with the time reached [s]; return false to stop.
+  std::function<bool(double)> progress;
+  /// External force; empty: none.
+  ExternalForce externalForce = {};
+};
+
+/// How a simulation ended. If not `completed`, the rows up to that time are kept.
+enum class Outcome { completed, noSolution, unstable, stopped };
+
+/// A simulated motion; matrices have one column per row of time.
+struct Trajectory {
+  std::vector<double> time;  ///< [s]
+  Eigen::MatrixXd q;         ///< [rad] or [m]
+  Eigen::MatrixXd qDot;      ///< [rad/s] or [m/s]
+  Eigen::MatrixXd activation;
+  Eigen::MatrixXd fibreLength;   ///< [m]
+  Eigen::VectorXd muscleWork;    ///< done by the muscles on the skeleton since the start [J]
+  Eigen::VectorXd passiveWork;   ///< done by the coordinate forces since the start [J]
+  Eigen::VectorXd externalWork;  ///< done by the external force since the start [J]
+
+  Outcome outcome = Outcome::completed;
+  double failedAt = 0;  ///< [s]; the last time reached if not completed
+  std::string why;      ///< one line; empty if completed
+  long steps = 0;
+  long newtonIterations = 0;
+  long halvedSteps = 0;    ///< number of steps that were halved
+  double wallSeconds = 0;  ///< time of the integration, without set-up and analysis
+};
+
+/// Thrown when a muscle has no static equilibrium at the start, or no finite length; names muscle,
+/// length and activation.
+class NoStaticEquilibrium : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Initial state of a simulation: q with speed 0, activation = excitation at `time` (at least the
+/// activation floor), every fibre in static equilibrium.
+/// @param excitation  one column per muscle of the arm
+/// @throws NoStaticEquilibrium, std::invalid_argument (sizes)
+SystemState initialState(const MusculoskeletalSystem& arm, const Eigen::VectorXd& q,
+                         const ExcitationSignal& excitation, double time);
+
+/// Simulates the motion that the excitations produce.
+///
+/// Variational: with v = (q' − q)/h, midpoint quantities m and
+/// f = −Σ F_T,i ∂ℓ_i/∂q + passive + external (at the middle time),
+///     p  = M(q_m) v − (h/2)(½ vᵀ∂M v − ∂V) − F⁻,    F⁻ = (h/2) f (symmetric) or h f (left)
+///     p' = M(q_m) v + (h/2)(½ vᵀ∂M v − ∂V) + F⁺,    F⁺ = (h/2) f or 0
+///     (ℓ'_i − ℓ_i)/h = V(act_i, ℓ_m,i, ℓ_MT,i(q_m))
+/// (section 3.2 of Wilson's thesis; (2.23) with the factor h). The muscle equation (3.4) is solved
+/// for the fibre velocity in closed form, which has the same root and is better conditioned.
+/// Newton's method uses the arrow structure: fibre lengths are eliminated one by one, and the Schur
+/// complement in q is solved. If Newton's method fails, the step is halved; if the smallest step
+/// fails, the outcome is noSolution. A step within which a path gains or loses conditional points
+/// is split there, since the length jumps.
+///
+/// @throws std::invalid_argument sizes (the external force's too), step ≤ 0, duration ≤ 0, a
+///   step below 1e-9 of the time
+Trajectory simulate(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+                    const SystemState& start, const SimulationOptions& options);
+
+/// Kinetic and potential energy at a state [J].
+struct Energy {
+  double kinetic = 0;
+  double potential = 0;  ///< of gravity
+};
+Energy energyOf(const MusculoskeletalSystem& arm, const Eigen::VectorXd& q,
+                const Eigen::VectorXd& qDot);
+
+/// E(t) − E(0) − work of muscles, passive and external forces at every row [J]: the energy error of
+/// the integrator.
+Eigen::VectorXd energyImbalance(const MusculoskeletalSystem& arm, const Trajectory& trajectory);
+
+/// max over time of |energyImbalance| [J].
+double energyError(const MusculoskeletalSystem& arm, const Trajectory& trajectory);
+
+/// Muscle quantities along a motion; rows = muscles, columns = times.
+struct MuscleReport {
+  Eigen::MatrixXd tendonForce;         ///< [N]
+  Eigen::MatrixXd muscleTendonLength;  ///< [m]
+  Eigen::MatrixXd momentArm;           ///< −∂ℓ/∂q of coordinate `coordinate` [m]
+};
+MuscleReport reportMuscles(const MusculoskeletalSystem& arm, const Trajectory& trajectory,
+                           int coordinate = 0);
+
+}  // namespace bio

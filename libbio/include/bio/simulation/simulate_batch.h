@@ -1,0 +1,41 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "bio/simulation/simulate.h"
+
+namespace bio {
+
+/// One of many simulations; the objects it points to must outlive the call.
+struct LaneJob {
+  const MusculoskeletalSystem* arm;
+  const ExcitationSignal* excitation;
+  const SystemState* start;
+};
+
+/// The vector instructions that simulateTogether uses. All give bitwise the same results.
+enum class LaneInstructions {
+  best,   ///< the best that the processor supports
+  plain,  ///< those of every processor of the architecture
+};
+
+/// simulate(arm, excitation, start, options) for each job, four at a time in SIMD registers, for
+/// models with one hinge that differ in numerical values only.
+///
+/// The scheme is that of simulate() and its tolerances are the same; paths and gravity are taken at
+/// every iterate in closed form in sin q and cos q, where simulate() uses Taylor's polynomials for
+/// the last small changes. Motions agree to 1e-9 rad. A trajectory depends bitwise on its own job
+/// only, not on the other jobs or their order.
+///
+/// Jobs that the SIMD kernel does not support are simulated one by one with simulate(): integrators
+/// other than the two variational ones, progress calls, several free coordinates, sliders, paths
+/// over spheres, points that move in their bodies; also, from its beginning, a job with a step that
+/// does not converge. Trajectory::wallSeconds is 0 for jobs of the SIMD kernel.
+///
+/// @throws what simulate() throws
+std::vector<Trajectory> simulateTogether(std::span<const LaneJob> jobs,
+                                         const SimulationOptions& options,
+                                         LaneInstructions instructions = LaneInstructions::best);
+
+}  // namespace bio

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bio/model/model.h"
+#include "bio/tables/experimental_conditions.h"
+
+namespace bio {
+
+/// The measured course of one coordinate; possibly sampled less often than the excitations.
+struct MeasuredMotion {
+  std::string coordinate;
+  Eigen::VectorXd times;   ///< [s] strictly rising, a subset of the trial's
+  Eigen::VectorXd values;  ///< [rad] or [m], finite
+};
+
+/// External load on one coordinate, in every row.
+struct AppliedForce {
+  std::string coordinate;
+  Eigen::VectorXd values;  ///< [N·m] or [N], finite; positive pushes the coordinate up
+};
+
+/// The inputs of a simulation and the measurements of a recording.
+struct Trial {
+  std::string file;
+  std::string sha256;                ///< of that file, if the caller sets it; else empty
+  Eigen::VectorXd times;             ///< [s] strictly rising, at least 2
+  std::vector<std::string> muscles;  ///< every enabled muscle of the model, in its order; then
+                                     ///< those switched off that have a column
+  Eigen::MatrixXd excitations;       ///< 0 to 1; one row per time, one column per muscle
+  std::vector<AppliedForce> applied;
+  std::vector<MeasuredMotion> measured;
+  ExperimentalConditions known;
+  std::vector<std::string> warnings;  ///< one line each
+
+  /// [s]
+  double duration() const { return times[times.size() - 1] - times[0]; }
+};
+
+struct TrialOptions {
+  bool ignoreExtra = false;  ///< ignore unknown columns, with a warning
+  double baseline = 0.01;    ///< excitation of a muscle without a column, 0 to 1
+  /// Whether the caller takes Trial::known into account; if not, a trial with such conditions is
+  /// refused.
+  bool experimentalConditions = false;
+};
+
+/// Reads a .sto, .mot or .csv table as a trial of the model: column `time` [s], one column per
+/// driven muscle (0 to 1 in every row), and a column per measured coordinate – an angle is in
+/// degrees when the header says inDegrees=yes or the name ends in `_deg`, else in radians. A column
+/// `elbow_flexion.torque` [N·m] (for a translation: `.force` [N]) is an external load. Header lines
+/// give Trial::known (known_changes.h); another line that begins with known_ is an error, and one
+/// that nearly matches inDegrees or such a line gets a warning. OpenSim's paths count as names:
+/// `/forceset/BRA/activation` is not an excitation, `/forceset/BRA` and
+/// `/jointset/elbow/elbow_flexion/value` are understood. Empty cells and NaN: not measured. A
+/// muscle without a column gets the baseline, with a warning.
+/// @throws FileError naming file, column and row for a value outside its range, a muscle or a
+///   torque with gaps, an unknown column, two columns with the same meaning, experimental
+///   conditions that are out of range or that the caller cannot take into account, or a table that
+///   table_file.h refuses
+Trial readTrial(const std::filesystem::path& file, const Model& model,
+                const TrialOptions& options = {});
+
+/// Excitation of muscle `muscle` (an index of Trial::muscles) at time t [s], linear between rows,
+/// constant outside.
+double excitationAt(const Trial& trial, Eigen::Index muscle, double t);
+
+}  // namespace bio

@@ -1,0 +1,347 @@
+#include "bio/analysis/replay.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <numbers>
+#include <optional>
+
+#include "bio/model/integrator_names.h"
+#include "simulation/integrators.h"
+#include "simulation/motion_weights.h"
+
+namespace bio {
+
+ExcitationSignal excitationOf(const Trial& trial, const MusculoskeletalSystem& arm) {
+  const auto n = static_cast<Eigen::Index>(arm.numMuscles());
+  Eigen::MatrixXd values(trial.times.size(), n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const std::string& name = arm.muscles()[static_cast<std::size_t>(i)].name;
+    const auto at = std::find(trial.muscles.begin(), trial.muscles.end(), name);
+    if (at == trial.muscles.end()) {
+      throw std::invalid_argument(
+          fmt::format("{}: no excitation of muscle '{}'", trial.file, name));
+    }
+    values.col(i) = trial.excitations.col(at - trial.muscles.begin());
+  }
+  return {std::vector<double>(trial.times.begin(), trial.times.end()), values};
+}
+
+ExternalForce externalForceOf(const Trial& trial, const MusculoskeletalSystem& arm) {
+  if (trial.applied.empty()) return {};
+  Eigen::MatrixXd values =
+      Eigen::MatrixXd::Zero(trial.times.size(), arm.skeleton().numCoordinates());
+  for (const AppliedForce& applied : trial.applied) {
+    const int index = arm.skeleton().indexOf(applied.coordinate);
+    if (index < 0) {
+      throw std::invalid_argument(
+          fmt::format("{}: a torque or force acts on '{}', which is not free to move", trial.file,
+                      applied.coordinate));
+    }
+    values.col(index) = applied.values;
+  }
+  return {std::vector<double>(trial.times.begin(), trial.times.end()), std::move(values)};
+}
+
+Eigen::VectorXd startCoordinates(const Trial& trial, const MusculoskeletalSystem& arm,
+                                 const std::map<std::string, double>& given) {
+  const auto& free = arm.skeleton().coordinates();
+  for (const auto& [name, value] : given) {
+    if (arm.skeleton().indexOf(name) < 0) {
+      std::string known;
+      for (const Coordinate& c : free) known += (known.empty() ? "" : ", ") + c.name;
+      throw std::invalid_argument(
+          fmt::format("start of '{}': must be a free coordinate (free: {})", name, known));
+    }
+    if (!std::isfinite(value)) {
+      throw std::invalid_argument(fmt::format("start of '{}' = {}, must be finite", name, value));
+    }
+  }
+  Eigen::VectorXd q(static_cast<Eigen::Index>(free.size()));
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    double value = free[i].defaultValue;
+    for (const MeasuredMotion& measured : trial.measured) {
+      if (measured.coordinate == free[i].name && measured.values.size() > 0)
+        value = measured.values[0];
+    }
+    const auto at = given.find(free[i].name);
+    q[static_cast<Eigen::Index>(i)] = at != given.end() ? at->second : value;
+  }
+  return q;
+}
+
+const char* name(TrialBeginning::From from) {
+  static constexpr const char* names[] = {"given", "model", "measured", "default"};
+  return names[static_cast<int>(from)];
+}
+
+TrialBeginning beginningOf(const Trial& trial, const Model& model, const MusculoskeletalSystem& arm,
+                           const std::map<std::string, double>& given) {
+  using From = TrialBeginning::From;
+  TrialBeginning beginning;
+  beginning.point.q = startCoordinates(trial, arm, given);
+  beginning.point.qDot = Eigen::VectorXd::Zero(beginning.point.q.size());
+  bool isMeasured = false, isFitted = false;
+  for (Eigen::Index i = 0; i < beginning.point.q.size(); ++i) {
+    const std::string& free = arm.skeleton().coordinates()[static_cast<std::size_t>(i)].name;
+    if (given.contains(free)) continue;
+    for (const MeasuredMotion& measured : trial.measured)
+      isMeasured = isMeasured || (measured.coordinate == free && measured.values.size() > 0);
+    for (const TrialStart& start : model.fitted.starts) {
+      if (trial.sha256.empty() || start.sha256 != trial.sha256 || start.coordinate != free)
+        continue;
+      beginning.point.q[i] = start.value;
+      beginning.point.qDot[i] = start.speed;
+      isFitted = true;
+    }
+  }
+  beginning.from = isFitted         ? From::model
+                   : !given.empty() ? From::given
+                   : isMeasured     ? From::measured
+                                    : From::defaults;
+  return beginning;
+}
+
+double stepOf(const Model& model, Integrator integrator, const std::optional<double>& given) {
+  if (given) return *given;
+  const bool isVariational =
+      integrator == Integrator::variational || integrator == Integrator::variationalLeft;
+  return isVariational && model.fitted.step ? *model.fitted.step : defaultStep(integrator);
+}
+
+std::vector<double> observedTimes(const Trial& trial, const std::string& coordinate, double step) {
+  for (const MeasuredMotion& measured : trial.measured) {
+    if (measured.coordinate == coordinate && measured.times.size() > 0) {
+      return {measured.times.begin(), measured.times.end()};
+    }
+  }
+  const double begin = trial.times[0], end = trial.times[trial.times.size() - 1];
+  std::vector<double> times;
+  for (int k = 0; begin + k * step <= end + 1e-9; ++k) times.push_back(begin + k * step);
+  return times;
+}
+
+MeasuredError compareWithMeasured(const MusculoskeletalSystem& arm, const Trajectory& trajectory,
+                                  const MeasuredMotion& measured) {
+  const int index = arm.skeleton().indexOf(measured.coordinate);
+  if (index < 0) {
+    throw std::invalid_argument(
+        fmt::format("measured coordinate '{}' is not free", measured.coordinate));
+  }
+  const std::vector<double>& time = trajectory.time;
+  MeasuredError error;
+  double sum = 0;
+  for (Eigen::Index i = 0; i < measured.times.size(); ++i) {
+    const double t = measured.times[i];
+    if (t < time.front() - 1e-9 || t > time.back() + 1e-9) continue;
+    const auto w = weightsAt(time, t);
+    const double simulated =
+        w ? w->value(trajectory.q.row(index), trajectory.qDot.row(index)) : trajectory.q(index, 0);
+    const double difference = simulated - measured.values[i];
+    sum += difference * difference;
+    ++error.count;
+    if (std::abs(difference) > error.largest) {
+      error.largest = std::abs(difference);
+      error.largestAt = t;
+    }
+  }
+  if (error.count == 0) {
+    throw std::invalid_argument(
+        fmt::format("measured coordinate '{}': no value between {} s and {} s", measured.coordinate,
+                    time.front(), time.back()));
+  }
+  error.rms = std::sqrt(sum / static_cast<double>(error.count));
+  return error;
+}
+
+TrialReplay replayTrial(const MusculoskeletalSystem& arm, const Trial& trial,
+                        SimulationOptions options, TrialBeginning beginning) {
+  TrialReplay replay;
+  const ExcitationSignal excitation = excitationOf(trial, arm);
+  options.startTime = trial.times[0];
+  options.duration = trial.duration();
+  options.externalForce = externalForceOf(trial, arm);
+  replay.beginning = std::move(beginning);
+  SystemState start = initialState(arm, replay.beginning.point.q, excitation, options.startTime);
+  start.qDot = replay.beginning.point.qDot;
+  replay.motion = simulate(arm, excitation, start, options);
+  for (const MeasuredMotion& measured : trial.measured) {
+    const bool isReached =
+        measured.times.size() > 0 && measured.times[0] <= replay.motion.time.back();
+    if (isReached && arm.skeleton().indexOf(measured.coordinate) >= 0) {
+      replay.errors.emplace_back(measured.coordinate,
+                                 compareWithMeasured(arm, replay.motion, measured));
+    }
+  }
+  options.progress = {};
+  replay.options = std::move(options);
+  return replay;
+}
+
+std::vector<std::string> rangeRemarks(const MusculoskeletalSystem& arm,
+                                      const Trajectory& trajectory) {
+  std::vector<std::string> remarks;
+  for (std::size_t i = 0; i < arm.skeleton().coordinates().size(); ++i) {
+    const Coordinate& c = arm.skeleton().coordinates()[i];
+    const double unit = c.isRotation ? 180 / std::numbers::pi : 1e3;
+    const double margin = c.isRotation ? std::numbers::pi / 180 : 1e-3;
+    const Eigen::VectorXd q = trajectory.q.row(static_cast<Eigen::Index>(i));
+    for (Eigen::Index k = 0; k < q.size(); ++k) {
+      if (q[k] >= c.rangeMin - margin && q[k] <= c.rangeMax + margin) continue;
+      remarks.push_back(fmt::format(
+          "{0} leaves its range, {1:.4g} to {2:.4g} {3}, at {4:.3g} s and reaches {5:.4g} to "
+          "{6:.4g} {3}: the model has no passive force that prevents this",
+          c.name, c.rangeMin * unit, c.rangeMax * unit, c.isRotation ? "deg" : "mm",
+          trajectory.time[static_cast<std::size_t>(k)], q.minCoeff() * unit, q.maxCoeff() * unit));
+      break;
+    }
+  }
+  return remarks;
+}
+
+std::optional<LeftRange> leftRange(const MusculoskeletalSystem& arm, const Trajectory& trajectory) {
+  std::optional<LeftRange> first;
+  const auto look = [&](const std::string& name, const Eigen::VectorXd& values, double low,
+                        double high, const std::function<std::string(double)>& sentence) {
+    for (Eigen::Index k = 0; k < values.size(); ++k) {
+      if (values[k] >= low && values[k] <= high) continue;
+      const double time = trajectory.time[static_cast<std::size_t>(k)];
+      if (!first || time < first->time) first = LeftRange{time, name, sentence(time)};
+      return;
+    }
+  };
+  for (std::size_t i = 0; i < arm.skeleton().coordinates().size(); ++i) {
+    const Coordinate& c = arm.skeleton().coordinates()[i];
+    const double unit = c.isRotation ? 180 / std::numbers::pi : 1e3;
+    const double margin = std::max(0.1 * (c.rangeMax - c.rangeMin), 1 / unit);
+    const Eigen::VectorXd q = trajectory.q.row(static_cast<Eigen::Index>(i));
+    look(c.name, q, c.rangeMin - margin, c.rangeMax + margin, [&](double time) {
+      return fmt::format(
+          "{0} leaves its range, {1:.4g} to {2:.4g} {3}, by more than a tenth of it "
+          "at {4:.3g} s and reaches {5:.4g} to {6:.4g} {3}",
+          c.name, c.rangeMin * unit, c.rangeMax * unit, c.isRotation ? "deg" : "mm", time,
+          q.minCoeff() * unit, q.maxCoeff() * unit);
+    });
+  }
+  for (std::size_t i = 0; i < arm.numMuscles(); ++i) {
+    const SystemMuscle& muscle = arm.muscles()[i];
+    const Eigen::VectorXd l =
+        trajectory.fibreLength.row(static_cast<Eigen::Index>(i)) * muscle.muscle.perFibre();
+    look(muscle.name, l, 0.2, 2, [&](double time) {
+      return fmt::format(
+          "the fibres of {} leave 0.2 to 2 optimal lengths at {:.3g} s and reach "
+          "{:.3g} to {:.3g}",
+          muscle.name, time, l.minCoeff(), l.maxCoeff());
+    });
+  }
+  return first;
+}
+
+Table statesTable(const Model& model, const MusculoskeletalSystem& arm,
+                  const Trajectory& trajectory) {
+  const Skeleton& skeleton = arm.skeleton();
+  const auto K = static_cast<Eigen::Index>(trajectory.time.size());
+  Table table;
+  table.name = "states";
+  table.columns = {"time"};
+  std::vector<Eigen::VectorXd> columns = {
+      Eigen::Map<const Eigen::VectorXd>(trajectory.time.data(), K)};
+  const auto add = [&](const std::string& name, Eigen::VectorXd values) {
+    table.columns.push_back(name);
+    columns.push_back(std::move(values));
+  };
+  for (const Joint& joint : model.joints) {
+    for (const Coordinate& coordinate : joint.coordinates) {
+      const std::string path = fmt::format("/jointset/{}/{}", joint.name, coordinate.name);
+      const Skeleton::CoordinateSource& source = skeleton.sourceOf(coordinate.name);
+      Eigen::VectorXd value = Eigen::VectorXd::Constant(K, source.value);
+      Eigen::VectorXd speed = Eigen::VectorXd::Zero(K);
+      if (source.freeIndex >= 0) {
+        for (Eigen::Index k = 0; k < K; ++k) {
+          const CurveValue y = source.coupling.evaluate(trajectory.q(source.freeIndex, k));
+          value[k] = y.value;
+          speed[k] = y.slope * trajectory.qDot(source.freeIndex, k);
+        }
+      }
+      add(path + "/value", value);
+      add(path + "/speed", speed);
+    }
+  }
+  for (std::size_t i = 0; i < arm.numMuscles(); ++i) {
+    const std::string path = "/forceset/" + arm.muscles()[i].name;
+    const auto row = static_cast<Eigen::Index>(i);
+    add(path + "/activation", trajectory.activation.row(row).transpose());
+    add(path + "/fiber_length", trajectory.fibreLength.row(row).transpose());
+  }
+  table.values.resize(K, static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    table.values.col(static_cast<Eigen::Index>(c)) = columns[c];
+  }
+  return table;
+}
+
+Table forcesTable(const MusculoskeletalSystem& arm, const Trajectory& trajectory,
+                  const MuscleReport& report) {
+  const auto K = static_cast<Eigen::Index>(trajectory.time.size());
+  Table table;
+  table.name = "tendon forces [N]";
+  table.columns = {"time"};
+  for (const SystemMuscle& muscle : arm.muscles()) table.columns.push_back(muscle.name);
+  table.values.resize(K, report.tendonForce.rows() + 1);
+  table.values.col(0) = Eigen::Map<const Eigen::VectorXd>(trajectory.time.data(), K);
+  table.values.rightCols(report.tendonForce.rows()) = report.tendonForce.transpose();
+  return table;
+}
+
+PathSample samplePaths(const Model& model, const Skeleton& skeleton,
+                       const std::vector<std::string>& wrapAsCylinder,
+                       const Eigen::VectorXd& values) {
+  std::vector<MusclePath> paths;
+  PathSample sample;
+  sample.value = values;
+  for (const Muscle& muscle : model.muscles) {
+    if (!muscle.enabled) continue;
+    std::optional<MusclePath> compiled;
+    try {
+      compiled.emplace(model, skeleton, muscle, wrapAsCylinder);
+    } catch (const UnsupportedWrap& e) {
+      sample.warnings.push_back(fmt::format("{}: the muscle is left out", e.what()));
+      continue;
+    }
+    MusclePath& path = *compiled;
+    sample.warnings.insert(sample.warnings.end(), path.warnings().begin(), path.warnings().end());
+    if (!path.moves()) {
+      sample.notes.push_back(
+          fmt::format("muscle '{}' is left out: no free coordinate moves it", muscle.name));
+      continue;
+    }
+    sample.notes.insert(sample.notes.end(), path.notes().begin(), path.notes().end());
+    sample.muscles.push_back(muscle.name);
+    paths.push_back(std::move(path));
+  }
+  const auto n = static_cast<Eigen::Index>(paths.size());
+  sample.length.resize(values.size(), n);
+  sample.momentArm.resize(values.size(), n);
+  sample.momentArmSlope.resize(values.size(), n);
+  sample.wrapped.resize(values.size(), n);
+  stepping::withCoordinates(skeleton.numCoordinates(), [&](auto N) {
+    constexpr int count = decltype(N)::value;
+    std::vector<RigidMotion<double, count>> moved(skeleton.numSegments());
+    Eigen::Matrix<double, count, 1> q = skeleton.defaultValues();
+    for (Eigen::Index k = 0; k < values.size(); ++k) {
+      q[0] = values[k];
+      skeleton.motions<double, count>(q, moved.data());
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const auto jet = paths[static_cast<std::size_t>(i)].length<count>(q, moved.data());
+        sample.length(k, i) = jet.length;
+        sample.momentArm(k, i) = -jet.dL_dq[0];
+        sample.momentArmSlope(k, i) = -jet.d2L_dq2(0, 0);
+        sample.wrapped(k, i) = jet.wrapped ? 1 : 0;
+      }
+    }
+  });
+  return sample;
+}
+
+}  // namespace bio

@@ -1,0 +1,455 @@
+#include "bio/calibration/calibrate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "calibration/nudged_starts.h"
+#include "info/estimation/monte_carlo.h"
+#include "info/estimation/residuals.h"
+#include "info/information/fisher.h"
+#include "info/information/symmetric_eigen.h"
+
+namespace bio {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+/// Noise and estimate follow each other until σ changes by less than this share.
+constexpr double noiseSettled = 0.01;
+constexpr int noiseRounds = 12;
+
+void check(const CalibrationOptions& options) {
+  if (options.noise && !(*options.noise > 0 && std::isfinite(*options.noise))) {
+    throw std::invalid_argument(fmt::format("noise {} rad must be > 0", *options.noise));
+  }
+  if (options.starts < 1) {
+    throw std::invalid_argument(fmt::format("starts = {} must be ≥ 1", options.starts));
+  }
+  if (options.bootstrap != 0 && options.bootstrap < 20) {
+    throw std::invalid_argument(
+        fmt::format("bootstrap = {} replicates must be 0 or ≥ 20", options.bootstrap));
+  }
+  info::normalQuantile(options.confidence);
+  info::evaluate(options.loss, 0);
+}
+
+class Calibrator {
+ public:
+  Calibrator(const TrialSet& training, const TrialSet* heldOut, const CalibrationOptions& options)
+      : training_(training),
+        heldOut_(heldOut),
+        options_(options),
+        asked_(training.parameters()),
+        known_(training.known()),
+        predictor_(training.predictor()),
+        measured_(training.measured()) {
+    check(options);
+    if (heldOut_ && heldOut_->parameters().size() != training.numCommon()) {
+      throw std::invalid_argument("held-out trials must have the same common parameters");
+    }
+    for (const std::size_t index : training.selection()) {
+      const ModelParameter& one = training.catalogue().parameters()[index];
+      if (heldOut_ && std::holds_alternative<InitialTarget>(one.targets.front())) {
+        throw std::invalid_argument(fmt::format(
+            "parameter '{}' belongs to one trial and cannot be transferred to held-out trials",
+            one.name));
+      }
+    }
+    for (std::size_t i = 0; i < training_.numCommon() && options_.priors; ++i) {
+      asked_[i].prior = info::GaussianPrior{asked_[i].start, known_[static_cast<Index>(i)]};
+    }
+    for (const auto& [name, bounds] : options_.bounds) {
+      info::Parameter& parameter = asked_[indexOf(name, "bounds")];
+      std::tie(parameter.lower, parameter.upper) = bounds;
+      const std::size_t common = indexOf(name, "bounds");
+      if (common >= training.numCommon()) continue;  // a trial's own
+      training.catalogue().requireBelowLimit(training.selection()[common], parameter.upper,
+                                             "upper bound of ");
+    }
+    for (const auto& [name, prior] : options_.prior) {
+      const std::size_t i = indexOf(name, "prior");
+      asked_[i].prior = prior;
+      known_[static_cast<Index>(i)] = prior.sd;
+      // who says what is known is better believed than the model
+      if (asked_[i].lower <= asked_[i].upper && std::isfinite(prior.mean)) {
+        asked_[i].start = std::clamp(prior.mean, asked_[i].lower, asked_[i].upper);
+      }
+    }
+    info::checkParameters(asked_);
+    for (const std::string& name : options_.profile) profiled_.push_back(indexOf(name, "profile"));
+    result_.why = info::Termination::stopped;
+  }
+
+  Calibration run() {
+    const VectorXd asIs = valuesOf(training_.parameters()), start = valuesOf(asked_);
+    result_.before = predictor_.outputs(asIs);
+    if (heldOut_) {
+      result_.heldOutBefore = heldOut_->predictor().outputs(asIs.head(common()));
+    }
+    atStart_ = start == asIs ? result_.before : predictor_.outputs(start);
+    if (!atStart_.allFinite() && options_.starts == 1) {
+      result_.failure = failureAt(start);
+      return result_;
+    }
+    if (atStart_.allFinite()) holdWhatHasNoEffect(start);
+    try {
+      fit();
+    } catch (const std::domain_error& error) {
+      result_.failure = error.what();
+      if (!atStart_.allFinite()) result_.failure += fmt::format(" ({})", failureAt(start));
+      return result_;
+    }
+    judge();
+    if (result_.complete) profiles();
+    if (result_.complete && options_.bootstrap > 0) resample();
+    return std::move(result_);
+  }
+
+ private:
+  Index common() const { return static_cast<Index>(training_.numCommon()); }
+
+  static VectorXd valuesOf(const std::vector<info::Parameter>& parameters) {
+    VectorXd values(static_cast<Index>(parameters.size()));
+    for (Index i = 0; i < values.size(); ++i) {
+      values[i] = parameters[static_cast<std::size_t>(i)].start;
+    }
+    return values;
+  }
+
+  std::size_t indexOf(const std::string& name, const char* what) const {
+    const std::string full =
+        training_.catalogue().parameters()[training_.catalogue().find(name)].name;
+    for (std::size_t i = 0; i < training_.numCommon(); ++i) {
+      if (asked_[i].name == full) return i;
+    }
+    throw std::invalid_argument(
+        fmt::format("{} of '{}': is not among the parameters to estimate", what, name));
+  }
+
+  std::string failureAt(const VectorXd& theta) const {
+    for (std::size_t i = 0; i < training_.trials().size(); ++i) {
+      const std::string why = training_.failure(i, theta);
+      if (!why.empty()) {
+        return fmt::format("{}: the simulation fails at the start values: {}",
+                           training_.trials()[i].file, why);
+      }
+    }
+    return "the simulation at the start values has no finite angle";
+  }
+
+  /// false: stop
+  bool progress(double share) {
+    if (!options_.progress || options_.progress(share)) return true;
+    result_.complete = false;
+    return false;
+  }
+
+  /// A parameter that changes no measured angle, and has no prior, stays where it is.
+  void holdWhatHasNoEffect(const VectorXd& start) {
+    const MatrixXd gamma = predictor_.withSensitivities(start).gamma;
+    for (Index i = 0; i < gamma.cols(); ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      if (!asked_[k].prior && (gamma.col(i).array() == 0).all()) held_.push_back(k);
+    }
+  }
+
+  info::LeastSquares problem(double sigma) const {
+    const info::OutputCovariance covariance(MatrixXd::Constant(1, 1, sigma * sigma));
+    std::vector<info::Parameter> parameters = asked_;
+    for (const std::size_t i : held_) parameters[i].lower = parameters[i].upper = asked_[i].start;
+    return {predictor_, {measured_, covariance, {}, options_.loss}, parameters};
+  }
+
+  info::EstimateOptions estimateOptions() {
+    info::EstimateOptions estimate;
+    // statistically nothing: a ten-thousandth of a deviation, a millionth of a nat
+    estimate.gradientTolerance = 1e-4;
+    estimate.decrementTolerance = 1e-6;
+    // paths that lift off and fibres that turn put kinks into the motion's dependence on θ
+    estimate.kinkTolerance = 0.01;
+    estimate.confidence = options_.confidence;
+    return estimate;
+  }
+
+  std::vector<VectorXd> residualSeries(const MatrixXd& predicted) const {
+    std::vector<VectorXd> series;
+    Index at = 0;
+    for (const MeasuredSeries& one : training_.series()) {
+      const Index n = one.values.size();
+      series.push_back(one.values - predicted.middleCols(at, n).transpose());
+      at += n;
+    }
+    return series;
+  }
+
+  /// Of the residuals that a prediction leaves after so many parameters were fitted.
+  ResidualNoise noiseOf(const MatrixXd& predicted, Index fitted) const {
+    const VectorXd r = (measured_ - predicted).transpose();
+    ResidualNoise noise;
+    const bool gaussian = options_.loss.kind == info::RobustLoss::Kind::gaussian;
+    const auto freedom = static_cast<double>(std::max<Index>(1, r.size() - fitted));
+    noise.sd = gaussian ? std::sqrt(r.squaredNorm() / freedom) : info::robustSd(r);
+    if (r.squaredNorm() > 0) {
+      noise.autocorrelation = info::autocorrelation(residualSeries(predicted), r.size() / 4);
+    }
+    if (options_.noise) {
+      noise.sd = *options_.noise;
+    } else {
+      noise.correlationTime = info::autocorrelationTime(noise.autocorrelation, r.size());
+    }
+    // angles that repeat exactly still were not measured better than this [rad]
+    noise.sd = std::max(noise.sd, 1e-9);
+    noise.effective = noise.sd * std::sqrt(noise.correlationTime);
+    return noise;
+  }
+
+  Index numPriors() const {
+    return std::count_if(asked_.begin(), asked_.end(), [](const auto& p) { return !!p.prior; });
+  }
+
+  /// Squares of residuals in deviations of one sample, per degree of freedom.
+  double chiSquare() const {
+    const Index fitted = std::max<Index>(0, static_cast<Index>(asked_.size()) - numPriors());
+    const double freedom = static_cast<double>(std::max<Index>(1, measured_.size() - fitted));
+    return (measured_ - result_.after).squaredNorm() /
+           (result_.noise.sd * result_.noise.sd * freedom);
+  }
+
+  void fit() {
+    const double fitShare = options_.profile.empty() && options_.bootstrap == 0 ? 1.0 : 0.3;
+    double done = 0;
+    info::EstimateOptions estimate = estimateOptions();
+    estimate.progress = [&](const info::EstimateProgress&) {
+      done += 0.15 * (1 - done);
+      return progress(fitShare * done);
+    };
+    const auto p = static_cast<Index>(asked_.size());
+    const std::vector<VectorXd> led = ledFrom(valuesOf(asked_), estimate);
+    const MatrixXd guess = best(led);
+    result_.noise = noiseOf(guess, 0);
+    result_.noise.effective = result_.noise.sd;  // white until there is a fit
+    {
+      const info::MultiStart found = info::estimateFromStarts(
+          problem(result_.noise.effective), known_,
+          {options_.starts, options_.seed, options_.trials.threads, 2, estimate, led});
+      estimate_ = found.best;
+      result_.starts = found.outcomes;
+      result_.agreeingStarts = found.agreeing;
+    }
+    result_.iterations = estimate_.iterations;
+    result_.evaluations = estimate_.evaluations;
+    for (int round = 0; round < noiseRounds && result_.complete; ++round) {
+      const double before = result_.noise.effective;
+      result_.after = predictor_.outputs(estimate_.parameters);
+      result_.noise = noiseOf(result_.after, std::max<Index>(0, p - numPriors()));
+      const bool isSettled = std::abs(result_.noise.effective - before) <= noiseSettled * before;
+      // also where it is settled: the cost that profiles compare with is that of this noise
+      estimate_ = info::estimate(problem(result_.noise.effective), estimate_.parameters, estimate);
+      result_.iterations += estimate_.iterations;
+      result_.evaluations += estimate_.evaluations;
+      if (isSettled) break;
+    }
+    result_.why = estimate_.why;
+    result_.converged = estimate_.converged;
+    result_.after = predictor_.outputs(estimate_.parameters);
+    result_.reducedChiSquare = chiSquare();
+    if (heldOut_) {
+      result_.heldOutAfter = heldOut_->predictor().outputs(estimate_.parameters.head(common()));
+    }
+    result_.calibrated =
+        training_.catalogue().at(training_.selection(), estimate_.parameters.head(common()));
+  }
+
+  /// Where further starts end that are led by held models; none where nothing is to be led.
+  std::vector<VectorXd> ledFrom(const VectorXd& start, const info::EstimateOptions& estimate) {
+    const double floor = measuredSd(training_);
+    result_.noiseFloor = floor;
+    const double sd = std::max(options_.noise.value_or(floor), 1e-4);
+    const std::vector<info::Parameter> parameters = problem(sd).parameters();
+    return ledStarts(training_, parameters, startsOnBothSides(training_, parameters, start), sd,
+                     estimate);
+  }
+
+  /// The prediction nearest to the data, of the start and of those.
+  MatrixXd best(const std::vector<VectorXd>& starts) const {
+    MatrixXd nearest =
+        atStart_.allFinite() ? atStart_ : MatrixXd::Constant(1, measured_.size(), measured_.mean());
+    for (const VectorXd& start : starts) {
+      const MatrixXd there = predictor_.outputs(start);
+      if ((measured_ - there).norm() < (measured_ - nearest).norm()) nearest = there;
+    }
+    return nearest;
+  }
+
+  /// What the data determine, and the intervals of it.
+  void judge() {
+    const info::Prediction at = predictor_.withSensitivities(estimate_.parameters);
+    const double sigma = result_.noise.effective;
+    const VectorXd white = (measured_ - at.outputs).transpose() / sigma;
+    // a robust loss makes less of normal noise; scale by what it makes of these residuals
+    const double widening =
+        options_.loss.kind == info::RobustLoss::Kind::gaussian
+            ? 1.0
+            : info::varianceFactor(options_.loss, white * std::sqrt(result_.noise.correlationTime));
+    const MatrixXd data = at.gamma.transpose() * at.gamma / (sigma * sigma * widening);
+    std::vector<Index> free;
+    std::vector<info::Parameter> freeParameters;
+    const auto p = static_cast<Index>(asked_.size());
+    for (Index i = 0; i < p; ++i) {
+      if (!isAtBound(i)) {
+        free.push_back(i);
+        freeParameters.push_back(asked_[static_cast<std::size_t>(i)]);
+      }
+    }
+    result_.correlation = MatrixXd::Identity(p, p);
+    std::vector<info::Determinacy> told;
+    VectorXd sd(static_cast<Index>(free.size()));
+    if (!free.empty()) {
+      MatrixXd own = data(free, free);
+      MatrixXd all = own;
+      for (std::size_t k = 0; k < free.size(); ++k) {
+        const auto& prior = freeParameters[k].prior;
+        if (!prior) continue;
+        const double weight = 1 / (prior->sd * prior->sd);
+        const auto i = static_cast<Index>(k);
+        all(i, i) += weight;
+        if (free[k] >= common()) own(i, i) += weight;  // what is known of a start was measured
+      }
+      const VectorXd known = known_(free);
+      told = info::determinacy(own, freeParameters, known, "the measured angles");
+      const MatrixXd covariance = scaledInverse(all, known);
+      sd = covariance.diagonal().cwiseSqrt();
+      result_.correlation(free, free) = covariance.array() / (sd * sd.transpose()).array();
+    }
+    for (Index i = 0; i < p; ++i) {
+      const auto place = std::find(free.begin(), free.end(), i);
+      const auto k = static_cast<std::size_t>(place - free.begin());
+      result_.parameters.push_back(
+          place == free.end() ? atBound(i) : described(i, told[k], sd[static_cast<Index>(k)]));
+    }
+  }
+
+  bool isAtBound(Index i) const {
+    const info::Parameter& parameter = asked_[static_cast<std::size_t>(i)];
+    const double value = estimate_.parameters[i];
+    return value <= parameter.lower || value >= parameter.upper;
+  }
+
+  /// The inverse of a matrix of information; where it is singular, as large as rounding allows.
+  static MatrixXd scaledInverse(const MatrixXd& information, const VectorXd& scale) {
+    const auto eigen = info::symmetricEigen(scale.asDiagonal() * information * scale.asDiagonal());
+    const double floor =
+        std::max(1e-14 * eigen.values.maxCoeff(), std::numeric_limits<double>::min());
+    const MatrixXd inverse = eigen.vectors *
+                             eigen.values.cwiseMax(floor).cwiseInverse().asDiagonal() *
+                             eigen.vectors.transpose();
+    return scale.asDiagonal() * inverse * scale.asDiagonal();
+  }
+
+  CalibratedParameter blank(Index i) const {
+    CalibratedParameter one{};
+    one.asked = asked_[static_cast<std::size_t>(i)];
+    one.model = training_.parameters()[static_cast<std::size_t>(i)].start;
+    one.known = known_[i];
+    one.ofTrial = i >= common();
+    one.value = estimate_.parameters[i];
+    one.sd = one.lower = one.upper = unknown;
+    one.bootstrapSd = one.bootstrapLower = one.bootstrapUpper = unknown;
+    return one;
+  }
+
+  CalibratedParameter atBound(Index i) const {
+    CalibratedParameter one = blank(i);
+    one.atBound = true;
+    one.determinacy = {unknown, unknown, false, ""};
+    const bool low = one.value <= one.asked.lower;
+    const std::string unit = one.asked.unit.empty() ? "" : " " + one.asked.unit;
+    one.why = fmt::format(
+        "{} is at its {} bound ({:.4g}{}): the data favour {} values, so no confidence interval is "
+        "reported",
+        one.asked.name, low ? "lower" : "upper", one.value, unit, low ? "smaller" : "larger");
+    return one;
+  }
+
+  CalibratedParameter described(Index i, const info::Determinacy& told, double sd) const {
+    CalibratedParameter one = blank(i);
+    one.determinacy = told;
+    one.identifiable = told.identifiable;
+    one.why = told.why;
+    if (!one.identifiable) return one;
+    const double z = info::normalQuantile(options_.confidence);
+    one.sd = sd;
+    one.lower = std::max(one.asked.lower, one.value - z * sd);
+    one.upper = std::min(one.asked.upper, one.value + z * sd);
+    return one;
+  }
+
+  void profiles() {
+    const info::LeastSquares least = problem(result_.noise.effective);
+    const double share = options_.bootstrap > 0 ? 0.3 : 0.7;
+    for (std::size_t k = 0; k < profiled_.size() && result_.complete; ++k) {
+      if (!progress(0.3 + share * static_cast<double>(k) / static_cast<double>(profiled_.size()))) {
+        return;
+      }
+      if (std::count(held_.begin(), held_.end(), profiled_[k]) > 0) continue;
+      CalibratedParameter& one = result_.parameters[profiled_[k]];
+      const double width = std::isfinite(one.sd) ? one.sd : one.known;
+      one.profile = info::profileInterval(least, estimate_, static_cast<Index>(profiled_[k]), width,
+                                          estimateOptions());
+    }
+  }
+
+  void resample() {
+    std::vector<Index> lengths;
+    for (const MeasuredSeries& series : training_.series()) lengths.push_back(series.values.size());
+    info::BootstrapOptions bootstrap;
+    bootstrap.replicates = options_.bootstrap;
+    bootstrap.seed = options_.seed;
+    bootstrap.threads = options_.trials.threads;
+    bootstrap.blockLength =
+        std::max<Index>(1, std::lround(std::ceil(2 * result_.noise.correlationTime - 1)));
+    bootstrap.estimate = estimateOptions();
+    bootstrap.progress = [&](int done, int replicates) {
+      return progress(0.6 + 0.4 * static_cast<double>(done) / static_cast<double>(replicates));
+    };
+    const info::BootstrapResult spread =
+        info::bootstrap(problem(result_.noise.effective), estimate_, lengths, bootstrap);
+    result_.bootstrapConverged = spread.converged;
+    for (Index i = 0; i < spread.sd.size(); ++i) {
+      CalibratedParameter& one = result_.parameters[static_cast<std::size_t>(i)];
+      if (!one.identifiable) continue;
+      one.bootstrapSd = spread.sd[i];
+      one.bootstrapLower = spread.intervals(i, 0);
+      one.bootstrapUpper = spread.intervals(i, 1);
+    }
+  }
+
+  const TrialSet& training_;
+  const TrialSet* heldOut_;
+  const CalibrationOptions& options_;
+  std::vector<info::Parameter> asked_;
+  VectorXd known_;
+  info::Predictor predictor_;
+  MatrixXd measured_;
+  MatrixXd atStart_;
+  std::vector<std::size_t> profiled_;
+  std::vector<std::size_t> held_;
+  info::Estimate estimate_;
+  Calibration result_;
+};
+
+}  // namespace
+
+Calibration calibrate(const TrialSet& training, const TrialSet* heldOut,
+                      const CalibrationOptions& options) {
+  return Calibrator(training, heldOut, options).run();
+}
+
+}  // namespace bio

@@ -1,0 +1,79 @@
+#include "calibration/nudged_starts.h"
+
+#include <algorithm>
+
+#include "info/discovery/judgement/output_sd.h"
+#include "info/estimation/least_squares.h"
+#include "info/estimation/nudge_stages.h"
+#include "info/information/output_covariance.h"
+
+namespace bio {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr int stageIterations = 8;
+/// Of the deviation that is known beforehand, and how many parameters have such starts.
+constexpr double aside = 1.5;
+constexpr int mostSides = 6;
+
+}  // namespace
+
+std::vector<VectorXd> ledStarts(const TrialSet& trials,
+                                const std::vector<info::Parameter>& parameters,
+                                const std::vector<VectorXd>& starts, double sd,
+                                const info::EstimateOptions& estimate) {
+  std::vector<VectorXd> led = starts;
+  info::EstimateOptions options = estimate;
+  options.maxIterations = stageIterations;
+  const MatrixXd measured = trials.measured();
+  for (const info::NudgeStage& stage : info::nudgeStages) {
+    const std::vector<TrialPredictor> held = trials.nudged(stage.frequency);
+    const info::Predictor predictor = trials.predictor(held);
+    const double sigma = stage.spread * sd;
+    const info::OutputCovariance covariance(MatrixXd::Constant(1, 1, sigma * sigma));
+    const info::LeastSquares problem(predictor, {measured, covariance, {}, {}}, parameters);
+    std::erase_if(led, [&](VectorXd& theta) {
+      try {
+        theta = info::estimate(problem, theta, options).parameters;
+        return false;
+      } catch (const std::domain_error&) {
+        return true;
+      }
+    });
+  }
+  return led;
+}
+
+std::vector<VectorXd> startsOnBothSides(const TrialSet& trials,
+                                        const std::vector<info::Parameter>& parameters,
+                                        const VectorXd& start) {
+  std::vector<VectorXd> starts = {start};
+  int sides = 0;
+  for (std::size_t i = 0; i < trials.numCommon() && sides < mostSides; ++i) {
+    const ParameterTarget& target =
+        trials.catalogue().parameters()[trials.selection()[i]].targets.front();
+    if (!std::holds_alternative<WrapTarget>(target) && !std::holds_alternative<PointTarget>(target))
+      continue;
+    ++sides;
+    for (const double side : {-aside, aside}) {
+      VectorXd other = start;
+      const auto k = static_cast<Index>(i);
+      other[k] =
+          std::clamp(start[k] + side * trials.known()[k], parameters[i].lower, parameters[i].upper);
+      starts.push_back(std::move(other));
+    }
+  }
+  return starts;
+}
+
+double measuredSd(const TrialSet& trials) {
+  info::discover::ThirdDifferences differences;
+  for (const MeasuredSeries& series : trials.series()) differences.add(series.times, series.values);
+  return differences.count > 0 ? differences.sd() : 0;
+}
+
+}  // namespace bio

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "bio/calibration/trial_set.h"
+#include "info/estimation/estimate.h"
+
+namespace bio {
+
+/// Where estimates end that are led from each start by models held near the data, less and less
+/// firmly (nudge.h): starts for the estimate itself. Those that cannot be simulated are left out.
+/// @param parameters  with bounds and priors
+/// @param starts      θ each
+/// @param deviation   of the measured angles [rad] > 0
+std::vector<Eigen::VectorXd> ledStarts(const TrialSet& trials,
+                                       const std::vector<info::Parameter>& parameters,
+                                       const std::vector<Eigen::VectorXd>& starts, double sd,
+                                       const info::EstimateOptions& estimate);
+
+/// The start, and for every parameter that shapes a path – a radius of a wrap object, a path point
+/// – one on either side of it: lengths depend on these in ways that have more than one valley.
+std::vector<Eigen::VectorXd> startsOnBothSides(const TrialSet& trials,
+                                               const std::vector<info::Parameter>& parameters,
+                                               const Eigen::VectorXd& start);
+
+/// Of the noise on the measured angles [rad], from third differences; 0 where no four samples of a
+/// series are equally spaced.
+double measuredSd(const TrialSet& trials);
+
+}  // namespace bio

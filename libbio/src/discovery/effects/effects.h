@@ -1,0 +1,80 @@
+#pragma once
+
+// The effects, one function each; not public.
+
+#include <optional>
+
+#include "bio/discovery/effects.h"
+
+namespace bio::discover {
+
+/// `known.mass` [kg] and `known.turn` [rad], which trials are known to have, where the model can
+/// have them; no candidates. Before all others.
+void addExperimentalConditions(EncompassingModel& model);
+void addViscousDamping(EncompassingModel& model);
+void addCoulombFriction(EncompassingModel& model);
+void addStribeckFriction(EncompassingModel& model);
+void addQuadraticDrag(EncompassingModel& model);
+void addPowerDamping(EncompassingModel& model);
+void addStiffness(EncompassingModel& model);
+void addLimits(EncompassingModel& model);
+void addPayload(EncompassingModel& model);
+void addTilt(EncompassingModel& model);
+void addConstantTorque(EncompassingModel& model);
+void addHandForce(EncompassingModel& model);
+void addElasticBand(EncompassingModel& model);
+void addTimedForces(EncompassingModel& model);
+void addMissingMuscles(EncompassingModel& model);
+void addDelay(EncompassingModel& model);
+void addShape(EncompassingModel& model);
+void addFatigue(EncompassingModel& model);
+void addCrosstalk(EncompassingModel& model);
+void addExchangedChannels(EncompassingModel& model);
+void addElectrodeGains(EncompassingModel& model);
+void addBaselines(EncompassingModel& model);
+void addMassError(EncompassingModel& model);
+void addActivationError(EncompassingModel& model);
+void addMuscleErrors(EncompassingModel& model);
+void addTendonCompliance(EncompassingModel& model);
+void addWrapErrors(EncompassingModel& model);
+void addSensorErrors(EncompassingModel& model);
+
+/// A quantity that is 0 while its effect is absent.
+inline info::discover::Quantity amplitude(std::string name, std::string unit, double lower,
+                                          double upper, double sd) {
+  return {std::move(name), std::move(unit), 0, lower, upper, sd, false};
+}
+/// A quantity that shapes an effect.
+inline info::discover::Quantity shape(std::string name, std::string unit, double nominal,
+                                      double lower, double upper, double sd) {
+  return {std::move(name), std::move(unit), nominal, lower, upper, sd, false};
+}
+/// A factor, known to a share of itself.
+inline info::discover::Quantity factor(std::string name, double lower, double upper, double sd) {
+  return {std::move(name), "", 1, lower, upper, sd, true};
+}
+
+/// A candidate of one quantity or of several, each with its own deviation as prior.
+info::discover::Candidate candidate(const EncompassingModel& model, std::string id,
+                                    std::string name, std::string sentence,
+                                    info::discover::EffectKind kind,
+                                    std::vector<std::size_t> quantities,
+                                    const std::vector<std::vector<double>>& starts,
+                                    std::vector<std::string> equivalents = {});
+
+/// Name of the law that an effect adds to a model: "elbow_flexion_visc".
+std::string lawName(const EncompassingModel& model, const std::string& id);
+
+/// Adds an effect given as an expression in q, qdot and its quantities (by the names of
+/// `constants`). Present if the model has a law of that name.
+struct ExpressionEffect {
+  std::string id, name, sentence, expression;
+  std::vector<std::string> constants;
+  std::vector<info::discover::Quantity> quantities;
+  std::vector<std::vector<double>> starts;
+  std::vector<std::string> equivalents = {};
+};
+/// @return the law's index in the model's list; nothing if it is present
+std::optional<std::size_t> addExpression(EncompassingModel& model, const ExpressionEffect& effect);
+
+}  // namespace bio::discover

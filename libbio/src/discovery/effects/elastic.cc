@@ -1,0 +1,81 @@
+#include <algorithm>
+
+#include "discovery/effects/effects.h"
+
+// Forces that depend on the position alone. Priors: passive elbows (AIST database after Engin &
+// Chen 1987; MacKay et al. 1986), 0.5 to 3 N·m/rad in the middle, stiffer towards the ends.
+
+namespace bio::discover {
+namespace {
+
+/// What stops the coordinate at its ends in the model already; empty: nothing.
+std::string limitOf(const EncompassingModel& model) {
+  for (const CoordinateLimitForce& limit : model.base().limitForces) {
+    if (!limit.enabled || limit.coordinate != model.coordinate().name) continue;
+    const bool dampsOnly = std::max(limit.upperStiffness, limit.lowerStiffness) < 1e-3;
+    if (!dampsOnly) return limit.name;
+  }
+  return {};
+}
+
+}  // namespace
+
+void addStiffness(EncompassingModel& model) {
+  for (const SpringGeneralizedForce& spring : model.base().springForces) {
+    const bool here = spring.enabled && spring.coordinate == model.coordinate().name;
+    if (here && spring.stiffness != 0) return model.addPresent("stiffness", spring.name);
+  }
+  const Coordinate& q = model.coordinate();
+  const double span = q.rangeMax - q.rangeMin;
+  const std::size_t law =
+      model.addLaw(SpringGeneralizedForce{lawName(model, "stiffness"), model.coordinate().name});
+  const std::size_t k =
+      model.add(amplitude("stiffness.stiffness", "N m/rad", 0, 10, 2),
+                {Meaning::Kind::shift, {{model.number(SpringForceTarget{law, 0}, 0)}}});
+  const std::size_t rest =
+      model.add(shape("stiffness.rest", "rad", model.middle(), q.rangeMin, q.rangeMax, 0.3 * span),
+                {Meaning::Kind::shift, {{model.number(SpringForceTarget{law, 1}, 0)}}});
+  model.lawFollows({k, rest});
+  model.add(candidate(
+      model, "stiffness", "joint stiffness", "A spring pulls the joint towards a rest position.",
+      info::discover::EffectKind::structure, {k, rest},
+      {{0.5, model.middle()}, {0.5, q.rangeMin + 0.2 * span}, {0.5, q.rangeMax - 0.2 * span}}));
+}
+
+void addLimits(EncompassingModel& model) {
+  if (const std::string limit = limitOf(model); !limit.empty()) {
+    return model.addPresent("limit", limit);
+  }
+  const Coordinate& q = model.coordinate();
+  const double span = q.rangeMax - q.rangeMin;
+  const std::size_t law =
+      model.addLaw(CoordinateLimitForce{lawName(model, "limit"), model.coordinate().name});
+  const auto number = [&](int component) {
+    return model.number(LimitForceTarget{law, component}, 0);
+  };
+  const std::size_t K = model.add(amplitude("limit.stiffness", "N m/rad", 0, 100, 10),
+                                  {Meaning::Kind::shift, {{number(1)}, {number(3)}}});
+  // tissue leaves the middle fifth of the range free: else this is a stiffness that grows
+  const double upperAt = q.rangeMax - 0.2 * span, lowerAt = q.rangeMin + 0.2 * span,
+               free = 0.1 * span;
+  const std::size_t upper = model.add(
+      shape("limit.upper", "rad", upperAt, model.middle() + free, q.rangeMax, 0.15 * span),
+      {Meaning::Kind::shift, {{number(0)}}});
+  const std::size_t lower = model.add(
+      shape("limit.lower", "rad", lowerAt, q.rangeMin, model.middle() - free, 0.15 * span),
+      {Meaning::Kind::shift, {{number(2)}}});
+  const std::size_t transition =
+      model.add(shape("limit.transition", "rad", 0.2 * span, 0.05 * span, span, 0.1 * span),
+                {Meaning::Kind::shift, {{number(5)}}});
+  model.lawFollows({K, upper, lower, transition});
+  std::vector<std::vector<double>> starts;
+  for (const double inward : {0.2, 0.3, 0.1}) {
+    starts.push_back({3, q.rangeMax - inward * span, q.rangeMin + inward * span, 0.2 * span});
+  }
+  model.add(candidate(
+      model, "limit", "passive joint limits",
+      "Passive tissue increasingly resists motion towards both ends of the joint's range.",
+      info::discover::EffectKind::structure, {K, upper, lower, transition}, starts));
+}
+
+}  // namespace bio::discover

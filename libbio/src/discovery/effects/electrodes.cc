@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+
+#include "discovery/effects/effects.h"
+
+// What stands between the recorded EMG and the excitation. Priors: electromechanical delays of
+// 10 to 100 ms (Cavanagh & Komi 1979), A of −3 to 0 in Lloyd & Besier 2003, crosstalk of
+// neighbouring surface electrodes up to some 20 %.
+
+namespace bio::discover {
+
+using info::discover::EffectKind;
+using What = EmgTarget::What;
+
+void addDelay(EncompassingModel& model) {
+  const std::size_t d =
+      model.add(amplitude("delay.time", "s", 0, 0.25, 0.05),
+                {Meaning::Kind::shift, {{model.number(EmgTarget{What::delay, ""}, 0)}}});
+  model.add(candidate(model, "delay", "electromechanical delay",
+                      "The muscles act later than their EMG indicates.", EffectKind::input, {d},
+                      {{0.02}}, {"clock"}));
+}
+
+void addShape(EncompassingModel& model) {
+  const std::size_t A =
+      model.add(amplitude("shape.A", "", -6, 4, 1.5),
+                {Meaning::Kind::shift, {{model.number(EmgTarget{What::nonlinearity, ""}, 0)}}});
+  model.add(candidate(model, "shape", "EMG nonlinearity",
+                      "Excitation is not proportional to EMG: (e^{Au} - 1)/(e^A - 1).",
+                      EffectKind::input, {A}, {{-1.5}, {-0.5}, {0.5}, {1.5}}));
+}
+
+/// What each muscle of one group shows of the mean of another's.
+void addCrosstalk(EncompassingModel& model) {
+  for (const MuscleGroup& from : model.groups()) {
+    for (const MuscleGroup& to : model.groups()) {
+      if (from.momentArm * to.momentArm >= 0) continue;
+      std::vector<Meaning::Part> parts;
+      for (const std::size_t i : to.muscles) {
+        for (const std::size_t j : from.muscles) {
+          const EmgTarget target{What::crosstalk, model.arm().muscles()[i].name,
+                                 model.arm().muscles()[j].name};
+          parts.push_back({model.number(target, 0), 1 / static_cast<double>(from.muscles.size())});
+        }
+      }
+      const std::string id = fmt::format("crosstalk_{}_{}", from.name, to.name);
+      const std::size_t c =
+          model.add(amplitude(id + ".share", "", 0, 0.5, 0.2), {Meaning::Kind::shift, parts});
+      model.add(candidate(model, id, fmt::format("EMG crosstalk from {} to {}", from.name, to.name),
+                          fmt::format("The electrodes of {} also pick up a share of the EMG of {}.",
+                                      to.name, from.name),
+                          EffectKind::input, {c}, {{0.05}},
+                          {fmt::format("crosstalk_{}_{}", to.name, from.name)}));
+    }
+  }
+}
+
+void addExchangedChannels(EncompassingModel& model) {
+  const auto& muscles = model.arm().muscles();
+  const auto share = [&](std::size_t to, std::size_t from) {
+    return model.number(EmgTarget{What::crosstalk, muscles[to].name, muscles[from].name}, 0);
+  };
+  for (std::size_t i = 0; i < muscles.size(); ++i) {
+    for (std::size_t k = i + 1; k < muscles.size(); ++k) {
+      const std::string id = fmt::format("swap_{}_{}", muscles[i].name, muscles[k].name);
+      const std::size_t s =
+          model.add(amplitude(id + ".share", "", 0, 1.2, 0.7),
+                    {Meaning::Kind::shift,
+                     {{share(i, i)}, {share(i, k), -1}, {share(k, k)}, {share(k, i), -1}}});
+      model.add(candidate(
+          model, id,
+          fmt::format("exchanged channels of {} and {}", muscles[i].name, muscles[k].name),
+          fmt::format("The recordings of {} and {} are exchanged.", muscles[i].name,
+                      muscles[k].name),
+          EffectKind::input, {s}, {{0.9}}));
+    }
+  }
+}
+
+namespace {
+
+/// Calls use(name, muscles) for every muscle, and every group of several.
+template <class Use>
+void forMusclesAndGroups(const EncompassingModel& model, const Use& use) {
+  for (const MuscleGroup& group : model.groups()) {
+    std::vector<std::string> all;
+    for (const std::size_t i : group.muscles) all.push_back(model.arm().muscles()[i].name);
+    if (all.size() > 1) use(group.name, all);
+    for (const std::string& one : all) use(one, std::vector<std::string>{one});
+  }
+}
+
+}  // namespace
+
+void addElectrodeGains(EncompassingModel& model) {
+  forMusclesAndGroups(model, [&](const std::string& name, const std::vector<std::string>& muscles) {
+    std::vector<Meaning::Part> parts;
+    for (const std::string& muscle : muscles) {
+      parts.push_back({model.number(EmgTarget{What::gain, muscle}, 1)});
+    }
+    const std::string id = "gain_" + name;
+    const std::size_t g =
+        model.add(factor(id + ".factor", 0.2, 5, 0.3), {Meaning::Kind::scale, parts});
+    model.add(candidate(model, id, fmt::format("electrode gain of {}", name),
+                        fmt::format("The EMG of {} is scaled by a wrong gain.", name),
+                        EffectKind::input, {g}, {{1.1}}, {"Fmax_" + name}));
+  });
+}
+
+void addBaselines(EncompassingModel& model) {
+  const auto add = [&](const std::string& id, const std::string& of,
+                       const std::vector<std::string>& muscles) {
+    std::vector<Meaning::Part> parts;
+    for (const std::string& muscle : muscles) {
+      parts.push_back({model.number(EmgTarget{What::offset, muscle}, 0)});
+    }
+    const std::size_t o =
+        model.add(amplitude(id + ".level", "", -0.1, 0.1, 0.02), {Meaning::Kind::shift, parts});
+    model.add(candidate(model, id, "EMG baseline of " + of,
+                        fmt::format("The EMG of {} does not return to zero at rest.", of),
+                        EffectKind::input, {o}, {{0.005}}));
+  };
+  std::vector<std::string> all;
+  for (const SystemMuscle& muscle : model.arm().muscles()) all.push_back(muscle.name);
+  if (all.empty()) return;
+  add("offset", "all muscles", all);
+  for (const MuscleGroup& group : model.groups()) {
+    std::vector<std::string> muscles;
+    for (const std::size_t i : group.muscles) muscles.push_back(model.arm().muscles()[i].name);
+    add("offset_" + group.name, group.name, muscles);
+  }
+}
+
+}  // namespace bio::discover

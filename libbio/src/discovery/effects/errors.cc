@@ -1,0 +1,196 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "discovery/effects/effects.h"
+
+// Parameters of the base model that may be wrong: as nuisances with their tolerance, as candidates
+// beyond it. Tolerances: spread between specimens and scaled models (Arnold et al. 2010 report 10
+// to 20 % of F0, a few per cent of the lengths after scaling); judgements, not measurements.
+
+namespace bio::discover {
+namespace {
+
+using info::discover::Candidate;
+using info::discover::EffectKind;
+
+struct MuscleQuantityRule {
+  const char* id;         ///< of the candidate, before the muscle's name
+  const char* parameter;  ///< of the catalogue of parameters
+  const char* words;
+  double lower, upper;  ///< factors
+  double tolerance;     ///< of the logarithm, as a nuisance
+  double sd;            ///< of the logarithm, as a candidate
+};
+constexpr MuscleQuantityRule rules[] = {
+    {"Fmax_", "max_isometric_force", "maximum isometric force", 0.2, 5, 0.15, 0.6},
+    {"lopt_", "optimal_fiber_length", "optimal fibre length", 0.6, 1.6, 0.04, 0.2},
+    {"lslack_", "tendon_slack_length", "tendon slack length", 0.8, 1.25, 0.02, 0.1},
+};
+
+std::string nuisanceName(const std::string& muscle, const MuscleQuantityRule& rule) {
+  return fmt::format("{}.{} factor", muscle, rule.parameter);
+}
+
+constexpr const char* massName = "mass factor";
+constexpr const char* timeName = "activation time factor";
+
+/// The candidate that a nuisance is off by more than its tolerance.
+void addBeyond(EncompassingModel& model, std::size_t quantity, double sd, std::string id,
+               std::string name, std::string sentence, std::vector<std::string> equivalents = {}) {
+  const double start = 1 + sd / 4;
+  Candidate one = candidate(model, std::move(id), std::move(name), std::move(sentence),
+                            EffectKind::parameter, {quantity}, {{start}}, std::move(equivalents));
+  one.sds = {sd};
+  model.add(std::move(one));
+}
+
+}  // namespace
+
+void addNuisances(EncompassingModel& model) {
+  for (const MuscleQuantityRule& rule : rules) {
+    for (const SystemMuscle& muscle : model.arm().muscles()) {
+      model.addNuisance(
+          model.add(factor(nuisanceName(muscle.name, rule), rule.lower, rule.upper, rule.tolerance),
+                    {Meaning::Kind::scale,
+                     model.numbers(fmt::format("{}.{}", muscle.name, rule.parameter))}));
+    }
+  }
+  if (!model.movedBodies().empty()) {
+    std::vector<Meaning::Part> parts;
+    for (const std::string& body : model.movedBodies()) {
+      for (const char* number : {"mass", "inertia.xx", "inertia.yy", "inertia.zz", "inertia.xy",
+                                 "inertia.xz", "inertia.yz"}) {
+        for (const Meaning::Part& part : model.numbers(body + "." + number)) parts.push_back(part);
+      }
+    }
+    model.addNuisance(model.add(factor(massName, 0.3, 3, 0.05), {Meaning::Kind::scale, parts}));
+  }
+  if (model.arm().numMuscles() > 0) {
+    std::vector<Meaning::Part> parts;
+    for (const SystemMuscle& muscle : model.arm().muscles()) {
+      // rates, so that the time scale of the fibres' velocity stays as it is
+      for (const char* rate : {".activation1", ".activation2"}) {
+        for (const auto& part : model.numbers(muscle.name + rate)) {
+          parts.push_back({part.number, -1});
+        }
+      }
+    }
+    model.addNuisance(model.add(factor(timeName, 0.2, 5, 0.2), {Meaning::Kind::scale, parts}));
+  }
+}
+
+void addMassError(EncompassingModel& model) {
+  if (model.movedBodies().empty()) return;
+  addBeyond(model, model.find(massName), 0.3, "mass", "mass of the forearm",
+            "The moving bodies are heavier or lighter than in the model.", {"payload"});
+}
+
+void addActivationError(EncompassingModel& model) {
+  if (model.arm().numMuscles() == 0) return;
+  addBeyond(model, model.find(timeName), 0.8, "tau", "time scale of activation",
+            "The muscles' activation is slower or faster than in the model.");
+}
+
+void addMuscleErrors(EncompassingModel& model) {
+  for (const MuscleQuantityRule& rule : rules) {
+    for (const MuscleGroup& group : model.groups()) {
+      const bool isForce = &rule == &rules[0];
+      if (group.muscles.size() > 1) {
+        std::vector<Meaning::Part> parts;
+        for (const std::size_t i : group.muscles) {
+          const std::string& muscle = model.arm().muscles()[i].name;
+          for (const auto& part : model.numbers(fmt::format("{}.{}", muscle, rule.parameter))) {
+            parts.push_back(part);
+          }
+        }
+        const std::string id = rule.id + group.name;
+        const std::size_t x =
+            model.add(factor(fmt::format("{} factor", id), rule.lower, rule.upper, rule.sd),
+                      {Meaning::Kind::scale, parts});
+        addBeyond(
+            model, x, rule.sd, id, fmt::format("{} of {}", rule.words, group.name),
+            fmt::format("The {} of all heads of {} is wrong.", rule.words, group.name),
+            isForce ? std::vector<std::string>{"gain_" + group.name} : std::vector<std::string>{});
+      }
+      for (const std::size_t i : group.muscles) {
+        const std::string& muscle = model.arm().muscles()[i].name;
+        addBeyond(
+            model, model.find(nuisanceName(muscle, rule)), rule.sd, rule.id + muscle,
+            fmt::format("{} of {}", rule.words, muscle),
+            fmt::format("The {} of {} is wrong.", rule.words, muscle),
+            isForce ? std::vector<std::string>{"gain_" + muscle} : std::vector<std::string>{});
+      }
+    }
+  }
+}
+
+void addTendonCompliance(EncompassingModel& model) {
+  std::vector<Meaning::Part> parts;
+  for (const SystemMuscle& muscle : model.arm().muscles()) {
+    for (const auto& part : model.numbers(muscle.name + ".tendon_strain_scale"))
+      parts.push_back(part);
+  }
+  if (parts.empty()) return;
+  const std::size_t x =
+      model.add(factor("tendon.strain factor", 0.1, 10, 0.5), {Meaning::Kind::scale, parts});
+  model.add(candidate(model, "tendon", "tendon compliance",
+                      "The tendons stretch more, or less, at the same force.",
+                      EffectKind::structure, {x}, {{1.2}, {0.8}}));
+}
+
+void addWrapErrors(EncompassingModel& model) {
+  for (const ModelParameter& parameter : model.parameters().parameters()) {
+    const auto* wrap = std::get_if<WrapTarget>(&parameter.targets.front());
+    if (!wrap || wrap->component != 0) continue;
+    const std::string& name = model.base().wrapObjects[wrap->wrap].name;
+    const double lower = std::max(-0.5 * parameter.value, parameter.lower - parameter.value);
+    const double upper = std::min(parameter.value, parameter.upper - parameter.value);
+    const std::size_t r =
+        model.add(amplitude(fmt::format("wrap_{}.radius", name), "m", lower, upper, 0.006),
+                  {Meaning::Kind::shift, model.numbers(parameter.name)});
+    // near a path point the lengths turn so quickly that each start sees only what is next to it
+    std::vector<std::vector<double>> starts;
+    const auto startAt = [&](double share) {
+      const double shift = share * parameter.value;
+      if (shift > lower && shift < upper) starts.push_back({shift});
+    };
+    for (const double share : {0.06, -0.06, -0.36, -0.26, -0.15, 0.13, 0.19}) startAt(share);
+    for (double share = 0.25; share < 0.4; share += 0.0125) startAt(share);
+    if (starts.empty()) starts.push_back({std::clamp(0.001, lower, upper)});
+    model.add(
+        candidate(model, "wrap_" + name, "radius of wrap object " + name,
+                  fmt::format("The muscles that wrap over {} have different moment arms.", name),
+                  EffectKind::geometry, {r}, starts));
+  }
+}
+
+void addSensorErrors(EncompassingModel& model) {
+  const auto add = [&](const char* id, const char* name, const char* sentence, const char* unit,
+                       double bound, double sd, double start, Meaning::Kind kind,
+                       std::vector<std::string> equivalents = {}) {
+    const double lowest = kind == Meaning::Kind::lag ? 0 : -bound;
+    const std::size_t x =
+        model.add(amplitude(fmt::format("{}.value", id), unit, lowest, bound, sd), {kind, {}});
+    model.add(candidate(model, id, name, sentence, EffectKind::sensor, {x}, {{start}},
+                        std::move(equivalents)));
+  };
+  const bool turns = model.coordinate().isRotation;
+  add("bias", "sensor bias", "The sensor's reading is off by a constant.", turns ? "rad" : "m",
+      turns ? 0.5 : 0.2, turns ? 0.1 : 0.02, turns ? 0.02 : 0.005, Meaning::Kind::bias);
+  add("gain", "sensor gain", "The sensor's reading is a multiple of the coordinate.", "", 0.5, 0.1,
+      0.02, Meaning::Kind::gain);
+  add("clock", "clock offset", "The sensor's clock is behind that of the EMG.", "s", 0.2, 0.05,
+      0.01, Meaning::Kind::clock, {"delay"});
+  add("clock_rate", "clock rate",
+      "The sensor's clock is slow relative to that of the EMG (fast if negative): a sample with "
+      "time stamp t was measured at (1 + rate) t.",
+      "", 0.2, 0.03, 0.01, Meaning::Kind::rate);
+  add("lag", "sensor lag", "The sensor follows the coordinate with a first-order lag.", "s", 0.3,
+      0.05, 0.01, Meaning::Kind::lag);
+  add("drift", "sensor drift", "The sensor's reading drifts at a constant rate.",
+      turns ? "rad/s" : "m/s", turns ? 0.1 : 0.02, turns ? 0.02 : 0.004, turns ? 0.003 : 0.0006,
+      Meaning::Kind::drift);
+}
+
+}  // namespace bio::discover

@@ -1,0 +1,92 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "discovery/effects/effects.h"
+
+// Loads: masses, gravity, constant forces. Priors: what a hand holds in a laboratory (0.7 kg), how
+// well an upper arm is held upright (0.3 rad), slight contact forces (3 N, 1 N·m).
+
+namespace bio::discover {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Unit vector along which gravity has no part, in the plane that the joint moves in; zero if the
+/// joint does not turn about a fixed axis across gravity.
+Vector3d horizontal(const EncompassingModel& model) {
+  const Vector3d direction = model.axis().cross(model.base().gravity);
+  const double size = direction.norm();
+  if (!(size > 1e-6 * model.base().gravity.norm())) return Vector3d::Zero();
+  return direction / size;
+}
+
+}  // namespace
+
+void addExperimentalConditions(EncompassingModel& model) {
+  if (!model.movedBodies().empty()) {
+    model.add(amplitude("known.mass", "kg", 0, 100, 1),
+              {Meaning::Kind::shift, model.numbers(model.movedBodies().back() + ".mass")});
+  }
+  if (!horizontal(model).isZero()) {
+    model.add(amplitude("known.turn", "rad", -std::numbers::pi, std::numbers::pi, 1),
+              {Meaning::Kind::tilt, {}});
+  }
+}
+
+void addPayload(EncompassingModel& model) {
+  if (model.movedBodies().empty()) return;
+  const std::string& hand = model.movedBodies().back();
+  const std::size_t m = model.add(amplitude("payload.mass", "kg", 0, 5, 0.7),
+                                  {Meaning::Kind::shift, model.numbers(hand + ".mass")});
+  model.add(candidate(model, "payload", "mass in the hand",
+                      fmt::format("The {} carries a mass that the model does not have.", hand),
+                      info::discover::EffectKind::structure, {m}, {{0.2}}, {"mass"}));
+}
+
+void addTilt(EncompassingModel& model) {
+  if (horizontal(model).isZero()) return;
+  const std::size_t angle =
+      model.add(amplitude("tilt.angle", "rad", -0.5, 0.5, 0.3), {Meaning::Kind::tilt, {}});
+  model.add(candidate(model, "tilt", "arm tilt",
+                      "Gravity acts in a different direction than the model assumes: the limb is "
+                      "tilted in the plane of the joint.",
+                      info::discover::EffectKind::structure, {angle}, {{0.05}}, {"handforce"}));
+}
+
+void addConstantTorque(EncompassingModel& model) {
+  addExpression(model, {"const",
+                        "constant joint torque",
+                        "A constant torque acts on the joint.",
+                        "c",
+                        {"c"},
+                        {amplitude("const.torque", "N m", -10, 10, 1)},
+                        {{0.2}}});
+}
+
+// τ(q) = F e·∂p/∂q = F(A cos(q + t) + B sin(q + t)) where the joint is a plain hinge, with e
+// horizontal, p the mass centre of the hand and t the known turn of the arm.
+void addHandForce(EncompassingModel& model) {
+  const Vector3d e = horizontal(model);
+  if (e.isZero()) return;
+  const std::string& hand = model.movedBodies().back();
+  const auto arm = [&](double q) { return e.dot(model.velocityOf(hand, q)); };
+  const double A = arm(0), B = arm(std::numbers::pi / 2);
+  for (const double q : {0.7, 1.9}) {
+    if (std::abs(arm(q) - A * std::cos(q) - B * std::sin(q)) > 1e-9) return;
+  }
+  const double sign = A < 0 ? -1 : 1;
+  const auto force = addExpression(
+      model, {"handforce",
+              "horizontal force on the hand",
+              fmt::format("A constant horizontal force acts on the {}.", hand),
+              fmt::format("F*(({:.17g})*cos(q+t)+({:.17g})*sin(q+t))", sign * A, sign * B),
+              {"F", "t"},
+              {amplitude("handforce.force", "N", -30, 30, 3)},
+              {{0.5}},
+              {"tilt"}});
+  if (force) model.extend(model.find("known.turn"), {model.number(ExpressionTarget{*force, 1}, 0)});
+}
+
+}  // namespace bio::discover

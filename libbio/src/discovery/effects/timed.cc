@@ -1,0 +1,42 @@
+#include <fmt/format.h>
+
+#include "discovery/effects/effects.h"
+
+// Forces that begin or end during the trials. Priors: those of a constant torque and of a mass in
+// the hand; the time may be any, which the trials' length says (EncompassingModel::trialsLast).
+
+namespace bio::discover {
+
+using info::discover::EffectKind;
+
+void addTimedForces(EncompassingModel& model) {
+  const auto add = [&](const char* id, const char* name, const char* sentence, TimedForce force,
+                       info::discover::Quantity size, const std::vector<double>& starts) {
+    size.name = fmt::format("{}.{}", id, force.of == TimedForce::Of::mass ? "mass" : "torque");
+    force.amplitude = model.add(std::move(size), {Meaning::Kind::timed, {}});
+    force.time =
+        model.add(shape(fmt::format("{}.time", id), "s", 1, 0, 2, 1), {Meaning::Kind::timed, {}});
+    std::vector<std::vector<double>> all;
+    for (const double start : starts) all.push_back({start, 1.0});
+    model.add(candidate(model, id, name, sentence, EffectKind::structure,
+                        {force.amplitude, force.time}, all));
+    model.addTimedForce(force);
+  };
+  using Of = TimedForce::Of;
+  const auto torque = amplitude("", "N m", -10, 10, 1);
+  add("torque_from", "torque that starts during the trial",
+      "A constant torque starts to act on the joint during the trial.", {Of::force, false, 0, 0},
+      torque, {0.3});
+  add("torque_until", "torque that ends during the trial",
+      "A constant torque acts on the joint and ends during the trial.", {Of::force, true, 0, 0},
+      torque, {0.3});
+  if (model.movedBodies().empty()) return;
+  const auto mass = amplitude("", "kg", 0, 5, 0.7);
+  add("mass_from", "mass picked up by the hand", "The hand picks up a mass during the trial.",
+      {Of::mass, false, 0, 0}, mass, {0.3});
+  add("mass_until", "mass put down by the hand",
+      "The hand carries a mass and puts it down during the trial.", {Of::mass, true, 0, 0}, mass,
+      {0.3});
+}
+
+}  // namespace bio::discover

@@ -1,0 +1,369 @@
+#include "bio/discovery/encompassing_model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <stdexcept>
+
+#include "simulation/integrators.h"
+
+namespace bio::discover {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+EncompassingModel::EncompassingModel(const Model& model, const SystemOptions& arm,
+                                     const std::string& coordinate)
+    : base_(model),
+      armOptions_(arm),
+      arm_(std::make_unique<const MusculoskeletalSystem>(model, arm)),
+      freeIndex_(arm_->skeleton().indexOf(coordinate)),
+      encompassing_(model) {
+  if (freeIndex_ < 0) {
+    throw std::invalid_argument(fmt::format("observed coordinate '{}' is not free", coordinate));
+  }
+  parameters_ = std::make_unique<const ParameterCatalogue>(
+      model, *arm_, StartPoint{arm_->skeleton().defaultValues(), {}});
+  findBodies();
+  findGroups();
+}
+
+const Coordinate& EncompassingModel::coordinate() const {
+  return arm_->skeleton().coordinates()[static_cast<std::size_t>(freeIndex_)];
+}
+
+namespace {
+
+/// A segment's placement in ground, and its first derivative in one coordinate.
+struct Movement {
+  Placement<double> at, derivative;
+};
+
+Movement movement(const MusculoskeletalSystem& arm, std::size_t segment, int freeIndex, double q) {
+  return stepping::withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+    Eigen::Matrix<double, decltype(N)::value, 1> at = arm.skeleton().defaultValues();
+    at[freeIndex] = q;
+    SystemConfiguration<decltype(N)::value> configuration(arm);
+    configuration.moveTo(at);
+    const auto& motion = configuration.motions()[segment];
+    return Movement{Placement<double>(motion.value),
+                    Placement<double>(motion.first[static_cast<std::size_t>(freeIndex)])};
+  });
+}
+
+}  // namespace
+
+Vector3d EncompassingModel::positionOf(const std::string& body, const Vector3d& point,
+                                       double q) const {
+  const BodyPlacement& place = arm_->skeleton().placeOf(body);
+  const Vector3d inSegment = place.X_SB.R * point + place.X_SB.p;
+  if (place.segment == 0) return inSegment;
+  const Placement<double> X = movement(*arm_, place.segment, freeIndex_, q).at;
+  return X.R * inSegment + X.p;
+}
+
+Vector3d EncompassingModel::velocityOf(const std::string& body, double q) const {
+  const BodyPlacement& place = arm_->skeleton().placeOf(body);
+  if (place.segment == 0) return Vector3d::Zero();
+  const Placement<double> X_k = movement(*arm_, place.segment, freeIndex_, q).derivative;
+  const Vector3d center = place.X_SB.R * findBody(base_, body).massCenter + place.X_SB.p;
+  return X_k.R * center + X_k.p;
+}
+
+void EncompassingModel::findBodies() {
+  for (const Body& body : base_.bodies) {
+    const BodyPlacement& place = arm_->skeleton().placeOf(body.name);
+    if (place.segment == 0 || !(body.mass > 0)) continue;
+    const Movement moved = movement(*arm_, place.segment, freeIndex_, middle());
+    const Eigen::Matrix3d turn = moved.derivative.R * moved.at.R.transpose();  // ω×
+    const Vector3d omega(turn(2, 1), turn(0, 2), turn(1, 0));
+    if (omega.norm() < 1e-9 && velocityOf(body.name, middle()).norm() < 1e-9) continue;
+    movedBodies_.push_back(body.name);
+    if (omega.norm() > 0.5) axis_ = omega.normalized();
+  }
+}
+
+VectorXd EncompassingModel::momentArms(const MusculoskeletalSystem& arm) const {
+  VectorXd q = arm.skeleton().defaultValues();
+  q[freeIndex_] = middle();
+  Trajectory still;
+  still.time = {0};
+  still.q = q;
+  still.fibreLength = VectorXd::Ones(static_cast<Index>(arm.numMuscles()));
+  return reportMuscles(arm, still, freeIndex_).momentArm;
+}
+
+void EncompassingModel::findGroups() {
+  const VectorXd momentArm = momentArms(*arm_);
+  for (std::size_t i = 0; i < arm_->numMuscles(); ++i) {
+    const std::string& muscle = arm_->muscles()[i].name;
+    std::size_t length = 0;
+    while (length < muscle.size() && std::isupper(static_cast<unsigned char>(muscle[length]))) {
+      ++length;
+    }
+    const std::string name = length > 0 ? muscle.substr(0, length) : muscle;
+    auto at = std::find_if(groups_.begin(), groups_.end(),
+                           [&](const MuscleGroup& group) { return group.name == name; });
+    if (at == groups_.end()) at = groups_.insert(groups_.end(), MuscleGroup{name, {}, 0});
+    at->muscles.push_back(i);
+    at->momentArm += momentArm[static_cast<Index>(i)];
+  }
+  for (MuscleGroup& group : groups_) group.momentArm /= static_cast<double>(group.muscles.size());
+}
+
+bool EncompassingModel::knows(const std::string& id) const {
+  return std::any_of(candidates_.begin(), candidates_.end(),
+                     [&](const Candidate& candidate) { return candidate.id == id; });
+}
+
+std::size_t EncompassingModel::find(const std::string& quantity) const {
+  for (std::size_t i = 0; i < quantities_.size(); ++i) {
+    if (quantities_[i].name == quantity) return i;
+  }
+  throw std::invalid_argument(fmt::format("no quantity is called '{}'", quantity));
+}
+
+std::size_t EncompassingModel::number(const ParameterTarget& target, double nominal) {
+  for (std::size_t i = 0; i < numbers_.size(); ++i) {
+    if (numbers_[i].target == target) return i;
+  }
+  numbers_.push_back({target, nominal});
+  return numbers_.size() - 1;
+}
+
+std::vector<Meaning::Part> EncompassingModel::numbers(const std::string& parameter) {
+  const ModelParameter& found = parameters_->parameters()[parameters_->find(parameter)];
+  std::vector<Meaning::Part> parts;
+  for (const ParameterTarget& target : found.targets)
+    parts.push_back({number(target, found.value)});
+  return parts;
+}
+
+std::size_t EncompassingModel::add(Quantity quantity, Meaning meaning) {
+  quantities_.push_back(std::move(quantity));
+  meanings_.push_back(std::move(meaning));
+  return quantities_.size() - 1;
+}
+
+std::size_t EncompassingModel::addLaw(SpringGeneralizedForce law) {
+  law.enabled = false;
+  encompassing_.springForces.push_back(std::move(law));
+  laws_.push_back({Law::List::spring, encompassing_.springForces.size() - 1, {}});
+  return laws_.back().index;
+}
+std::size_t EncompassingModel::addLaw(CoordinateLimitForce law) {
+  law.enabled = false;
+  encompassing_.limitForces.push_back(std::move(law));
+  laws_.push_back({Law::List::limit, encompassing_.limitForces.size() - 1, {}});
+  return laws_.back().index;
+}
+std::size_t EncompassingModel::addLaw(ExpressionBasedCoordinateForce law) {
+  law.enabled = false;
+  encompassing_.expressionForces.push_back(std::move(law));
+  laws_.push_back({Law::List::expression, encompassing_.expressionForces.size() - 1, {}});
+  return laws_.back().index;
+}
+std::size_t EncompassingModel::addMuscle(std::size_t muscle, std::vector<std::string> proxies) {
+  SchutteParameters& parameters = *encompassing_.muscles.at(muscle).schutte;
+  proxies_[base_.muscles[muscle].name] = std::move(proxies);
+  laws_.push_back({Law::List::muscle, muscle, {}});
+  // as good as none: a force beside which any other stays as it is
+  parameters.maxIsometricForce *= 1e-30;
+  return number(MuscleTarget{muscle, MuscleQuantity::maxIsometricForce},
+                parameters.maxIsometricForce);
+}
+void EncompassingModel::lawFollows(std::vector<std::size_t> quantities) {
+  laws_.back().quantities = std::move(quantities);
+}
+
+void EncompassingModel::trialsLast(double first, double last) {
+  constexpr double edge = 0.2;     // [s] of a trial's ends where nothing that changes shows
+  constexpr double spacing = 0.6;  // [s] between starts of fits
+  if (!(last - first > 4 * edge)) return;
+  const double lower = first + edge, upper = last - edge;
+  for (const TimedForce& force : timedForces_) {
+    Quantity& time = quantities_[force.time];
+    time.lower = lower;
+    time.upper = upper;
+    time.nominal = (lower + upper) / 2;
+    time.sd = (upper - lower) / std::sqrt(12.0);
+    for (Candidate& one : candidates_) {
+      if (one.quantities.front() != force.amplitude) continue;
+      one.sds[1] = time.sd;
+      const double size = one.starts.front()[0];
+      const auto count = static_cast<int>(std::ceil((upper - lower) / spacing));
+      one.starts.clear();
+      for (int k = 0; k < count; ++k) {
+        one.starts.push_back(Eigen::Vector2d(size, lower + (upper - lower) * (k + 0.5) / count));
+      }
+    }
+  }
+}
+
+void EncompassingModel::forget(const std::vector<std::string>& ids) {
+  std::erase_if(candidates_, [&](const Candidate& candidate) {
+    return std::find(ids.begin(), ids.end(), candidate.id) != ids.end();
+  });
+}
+
+void EncompassingModel::separate(const std::string& one, const std::string& other) {
+  for (Candidate& candidate : candidates_) {
+    if (candidate.id == one) std::erase(candidate.equivalents, other);
+    if (candidate.id == other) std::erase(candidate.equivalents, one);
+  }
+}
+
+VectorXd EncompassingModel::nominal() const {
+  VectorXd values(static_cast<Index>(quantities_.size()));
+  for (Index i = 0; i < values.size(); ++i) {
+    values[i] = quantities_[static_cast<std::size_t>(i)].nominal;
+  }
+  return values;
+}
+
+EncompassingModel::Numbers EncompassingModel::numbersAt(const VectorXd& values) const {
+  const auto n = static_cast<Index>(numbers_.size());
+  Numbers numbers{VectorXd::Ones(n), VectorXd::Zero(n)};
+  for (std::size_t i = 0; i < meanings_.size(); ++i) {
+    const double value = values[static_cast<Index>(i)];
+    for (const Meaning::Part& part : meanings_[i].parts) {
+      const auto k = static_cast<Index>(part.number);
+      if (meanings_[i].kind == Meaning::Kind::scale) {
+        numbers.product[k] *= part.weight == 1 ? value : std::pow(value, part.weight);
+      }
+      if (meanings_[i].kind == Meaning::Kind::shift || meanings_[i].kind == Meaning::Kind::tilt)
+        numbers.sum[k] += part.weight * value;
+    }
+  }
+  return numbers;
+}
+
+ParameterCatalogue::Setting EncompassingModel::settingAt(
+    const VectorXd& values, const std::vector<std::size_t>& wanted) const {
+  ParameterCatalogue::Setting setting{encompassing_, {}, {}, {}};
+  setting.start.q = arm_->skeleton().defaultValues();
+  setting.start.qDot = VectorXd::Zero(setting.start.q.size());
+  const Numbers numbers = numbersAt(values);
+  for (std::size_t i = 0; i < numbers_.size(); ++i) {
+    const double value = numbers.at(i, numbers_[i]);
+    if (value != numbers_[i].nominal) {
+      setTarget(setting, numbers_[i].target, value, numbers_[i].nominal);
+    }
+  }
+  for (std::size_t i = 0; i < meanings_.size(); ++i) {
+    const double angle = values[static_cast<Index>(i)];
+    if (meanings_[i].kind != Meaning::Kind::tilt || angle == 0) continue;
+    setting.model.gravity = Eigen::AngleAxisd(-angle, axis_) * setting.model.gravity;
+  }
+  for (const Law& law : laws_) {
+    const std::size_t amplitude = law.quantities.front();
+    bool on = values[static_cast<Index>(amplitude)] != quantities_[amplitude].nominal;
+    for (const std::size_t quantity : law.quantities) {
+      on = on || std::find(wanted.begin(), wanted.end(), quantity) != wanted.end();
+    }
+    switch (law.list) {
+      case Law::List::spring:
+        setting.model.springForces[law.index].enabled = on;
+        break;
+      case Law::List::limit:
+        setting.model.limitForces[law.index].enabled = on;
+        break;
+      case Law::List::expression:
+        setting.model.expressionForces[law.index].enabled = on;
+        break;
+      case Law::List::muscle:
+        setting.model.muscles[law.index].enabled = on;
+        break;
+    }
+  }
+  return setting;
+}
+
+MusculoskeletalSystem EncompassingModel::armOf(const ParameterCatalogue::Setting& setting) const {
+  const Model& model = setting.model;
+  const auto isShaped = [&](std::size_t m) {
+    const Path& path = model.muscles[m].path;
+    if (path != base_.muscles[m].path || !base_.muscles[m].enabled) return true;
+    for (std::size_t w = 0; w < model.wrapObjects.size(); ++w) {
+      if (model.wrapObjects[w] == base_.wrapObjects[w]) continue;
+      for (const PathWrap& over : path.wraps) {
+        if (over.wrapObject == model.wrapObjects[w].name) return true;
+      }
+    }
+    return false;
+  };
+  std::vector<std::string> shaped;
+  for (std::size_t m = 0; m < model.muscles.size(); ++m) {
+    if (model.muscles[m].enabled && isShaped(m)) shaped.push_back(model.muscles[m].name);
+  }
+  return {model, armOptions_, *arm_, shaped};
+}
+
+ParameterDirection EncompassingModel::direction(const VectorXd& values,
+                                                std::size_t quantity) const {
+  const Meaning& meaning = meanings_.at(quantity);
+  ParameterDirection direction;
+  if (meaning.kind == Meaning::Kind::tilt) {
+    double angle = 0;
+    for (std::size_t i = 0; i < meanings_.size(); ++i) {
+      if (meanings_[i].kind == Meaning::Kind::tilt) angle += values[static_cast<Index>(i)];
+    }
+    const Vector3d turned = Eigen::AngleAxisd(-angle, axis_) * base_.gravity;
+    const Vector3d rate = -axis_.cross(turned);
+    for (int k = 0; k < 3; ++k) direction.push_back({GravityTarget{k}, rate[k], 1});
+  }
+  if (meaning.parts.empty()) return direction;
+  const Numbers numbers = numbersAt(values);
+  for (const Meaning::Part& part : meaning.parts) {
+    const Number& number = numbers_[part.number];
+    double weight = part.weight;
+    if (meaning.kind == Meaning::Kind::scale) {
+      weight *= number.nominal * numbers.product[static_cast<Index>(part.number)] /
+                values[static_cast<Index>(quantity)];
+    }
+    if (weight == 0) continue;
+    direction.push_back({number.target, weight, numbers.at(part.number, number)});
+  }
+  return direction;
+}
+
+SensorLaw EncompassingModel::sensorAt(const VectorXd& values) const {
+  SensorLaw sensor;
+  for (std::size_t i = 0; i < meanings_.size(); ++i) {
+    const double value = values[static_cast<Index>(i)];
+    if (meanings_[i].kind == Meaning::Kind::bias) sensor.bias += value;
+    if (meanings_[i].kind == Meaning::Kind::gain) sensor.gain += value;
+    if (meanings_[i].kind == Meaning::Kind::clock) sensor.clock += value;
+    if (meanings_[i].kind == Meaning::Kind::rate) sensor.rate += value;
+    if (meanings_[i].kind == Meaning::Kind::lag) sensor.lag += value;
+    if (meanings_[i].kind == Meaning::Kind::drift) sensor.drift += value;
+  }
+  return sensor;
+}
+
+Trial withProxies(Trial trial, const EncompassingModel& encompassing) {
+  for (const auto& [muscle, proxies] : encompassing.proxies()) {
+    const auto has = [&](const std::string& name) {
+      return std::find(trial.muscles.begin(), trial.muscles.end(), name);
+    };
+    if (has(muscle) != trial.muscles.end()) continue;
+    VectorXd mean = VectorXd::Zero(trial.times.size());
+    for (const std::string& proxy : proxies) {
+      const auto at = has(proxy);
+      if (at == trial.muscles.end()) {
+        throw std::invalid_argument(
+            fmt::format("{}: no excitation of muscle '{}'", trial.file, proxy));
+      }
+      mean += trial.excitations.col(at - trial.muscles.begin());
+    }
+    trial.muscles.push_back(muscle);
+    trial.excitations.conservativeResize(Eigen::NoChange, trial.excitations.cols() + 1);
+    trial.excitations.rightCols<1>() = mean / static_cast<double>(proxies.size());
+  }
+  return trial;
+}
+
+}  // namespace bio::discover

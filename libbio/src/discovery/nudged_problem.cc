@@ -1,0 +1,58 @@
+#include <algorithm>
+
+#include "bio/calibration/nudge.h"
+#include "bio/discovery/musculoskeletal_problem.h"
+
+namespace bio::discover {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// What MusculoskeletalProblem is while its coordinate is held near what was measured. Must not
+/// outlive it.
+class MusculoskeletalProblem::Nudged final : public info::discover::DiscoveryProblem {
+ public:
+  Nudged(const MusculoskeletalProblem& of, double frequency) : of_(of) {
+    for (const OfTrial& one : of.trials_) {
+      nudges_.push_back(nudgeTo(of.encompassing_.arm(), of.encompassing_.freeIndex(), one.times,
+                                one.measured, frequency));
+    }
+  }
+  const std::vector<Quantity>& quantities() const override { return of_.quantities(); }
+  const std::vector<std::size_t>& nuisances() const override { return of_.nuisances(); }
+  const std::vector<Candidate>& candidates() const override { return of_.candidates(); }
+  int numTrials() const override { return of_.numTrials(); }
+  std::string trialName(int trial) const override { return of_.trialName(trial); }
+  const std::vector<double>& times(int trial) const override { return of_.times(trial); }
+  const VectorXd& measured(int trial) const override { return of_.measured(trial); }
+  const std::vector<double>& latentTimes(int trial) const override {
+    return of_.latentTimes(trial);
+  }
+  double latentLag() const override { return of_.latentLag(); }
+  Prediction predict(int trial, const VectorXd& values, const VectorXd& latent,
+                     const std::vector<std::size_t>& wanted, bool latentToo) const override {
+    return of_.predictWith(&of(trial), trial, values, latent, wanted, latentToo);
+  }
+  VectorXd outputs(int trial, const VectorXd& values, const VectorXd& latent) const override {
+    return of_.outputsOf(of_.of(trial), values, latent, 1, &of(trial));
+  }
+  MatrixXd inputs(int trial) const override { return of_.inputs(trial); }
+  std::vector<std::string> inputNames() const override { return of_.inputNames(); }
+
+ private:
+  const Nudge& of(int trial) const { return nudges_.at(static_cast<std::size_t>(trial)); }
+
+  const MusculoskeletalProblem& of_;
+  std::vector<Nudge> nudges_;
+};
+
+std::unique_ptr<info::discover::DiscoveryProblem> MusculoskeletalProblem::nudged(
+    double frequency) const {
+  if (std::any_of(trials_.begin(), trials_.end(),
+                  [](const OfTrial& one) { return one.times.size() < 4; })) {
+    return nullptr;
+  }
+  return std::make_unique<Nudged>(*this, frequency);
+}
+
+}  // namespace bio::discover

@@ -1,0 +1,231 @@
+#include "bio/discovery/repaired.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "bio/analysis/driven_trial.h"
+#include "bio/analysis/replay.h"
+#include "bio/discovery/with_experimental_conditions.h"
+#include "bio/tables/trial_table.h"
+
+namespace bio::discover {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using info::discover::FittedNumber;
+using info::discover::Verdict;
+
+/// Replays are of the paths themselves.
+SystemOptions withoutTables(const MusculoskeletalProblem& data) {
+  SystemOptions arm = data.encompassing().armOptions();
+  arm.tabulatePaths = false;
+  return arm;
+}
+
+VectorXd ownValues(const MusculoskeletalProblem& data, const VectorXd& values) {
+  return values.head(static_cast<Index>(data.encompassing().quantities().size()));
+}
+
+/// EMG, sensor or a muscle that was switched on: what a model file cannot hold.
+bool concernsTrials(const Augmented& added) {
+  const EmgMapping& m = added.mapping;
+  return !added.muscles.empty() || !m.gain.empty() || m.delay != 0 || m.nonlinearity != 0 ||
+         !m.offset.empty() || !m.crosstalk.empty() || m.fatigue != 0 || !added.sensor.isTrue();
+}
+
+/// The trial with forces that begin or end, as if they were known from outside.
+Trial withTimedForce(Trial trial, const std::string& coordinate, const std::vector<double>& nodes,
+                     const VectorXd& force) {
+  const auto known = std::find_if(trial.applied.begin(), trial.applied.end(),
+                                  [&](const auto& one) { return one.coordinate == coordinate; });
+  AppliedForce& applied = known != trial.applied.end()
+                              ? *known
+                              : trial.applied.emplace_back(
+                                    AppliedForce{coordinate, VectorXd::Zero(trial.times.size())});
+  for (Index i = 0; i < trial.times.size(); ++i) {
+    const auto behind = std::upper_bound(nodes.begin(), nodes.end(), trial.times[i]);
+    const auto k = std::clamp<std::ptrdiff_t>(behind - nodes.begin() - 1, 0,
+                                              static_cast<std::ptrdiff_t>(nodes.size()) - 2);
+    const auto at = static_cast<std::size_t>(k);
+    const double w =
+        std::clamp((trial.times[i] - nodes[at]) / (nodes[at + 1] - nodes[at]), 0.0, 1.0);
+    applied.values[i] += (1 - w) * force[k] + w * force[k + 1];
+  }
+  trial.sha256.clear();  // it is not what is in the file
+  return trial;
+}
+
+struct Compared {
+  double rms = RepairedTrial::none;
+  Index samples = 0;
+};
+
+/// Nothing where the replay does not reach the end.
+Compared replayed(const MusculoskeletalProblem& data, const Model& model, const Trial& trial,
+                  double step, const std::optional<TrialStart>& start) {
+  const std::string& coordinate = data.encompassing().coordinate().name;
+  const SystemOptions options = withoutTables(data);
+  try {
+    const MusculoskeletalSystem arm(withExperimentalConditions(model, options, coordinate, trial),
+                                    options);
+    SimulationOptions simulation = data.options().simulation;
+    simulation.step = step;
+    simulation.progress = {};
+    TrialBeginning beginning = beginningOf(trial, model, arm, {});
+    if (start) {
+      beginning.point.q[arm.skeleton().indexOf(coordinate)] = start->value;
+      beginning.point.qDot[arm.skeleton().indexOf(coordinate)] = start->speed;
+    }
+    const TrialReplay replay = replayTrial(arm, trial, simulation, beginning);
+    if (replay.motion.outcome != Outcome::completed) return {};
+    for (const auto& [name, error] : replay.errors)
+      if (name == coordinate) return {error.rms, error.count};
+  } catch (const std::exception&) {
+    // it has no start, say, or no arm can be made of it
+  }
+  return {};
+}
+
+std::string creditsOf(const MusculoskeletalProblem& data, const Verdict& verdict,
+                      const EffectProvenance& provenance, const std::string& effects) {
+  std::string credits = effects;
+  if (credits.empty()) {
+    credits = "Fitted by " + provenance.tool;
+    for (std::size_t i = 0; i < provenance.data.size(); ++i)
+      credits += (i ? ", " : " to ") + provenance.data[i];
+  }
+  const auto numbers = fittedNumbers(data, verdict);
+  return credits + "; together with them " + std::to_string(numbers.size()) +
+         " values in total were fitted, listed in parameters.csv";
+}
+
+}  // namespace
+
+double Repaired::pooled(double RepairedTrial::*figure, bool heldOut) const {
+  double sum = 0, count = 0;
+  for (const RepairedTrial& one : trials) {
+    if (one.isHeldOut != heldOut) continue;
+    const auto n = static_cast<double>(one.samples);
+    sum += n * std::pow(one.*figure, 2);
+    count += n;
+  }
+  return count > 0 ? std::sqrt(sum / count) : RepairedTrial::none;
+}
+
+std::vector<EffectToAdd> effectsToAdd(const MusculoskeletalProblem& data, const Verdict& verdict) {
+  std::vector<EffectToAdd> effects;
+  for (const auto& found : verdict.effects) {
+    EffectToAdd effect;
+    effect.id = data.candidates()[found.candidate].id;
+    const auto n = static_cast<Index>(found.estimates.size());
+    effect.values.resize(n);
+    effect.sds.resize(n);
+    for (Index i = 0; i < n; ++i) {
+      effect.values[i] = found.estimates[static_cast<std::size_t>(i)].value;
+      effect.sds[i] = found.estimates[static_cast<std::size_t>(i)].sd;
+    }
+    effect.logBayesFactor = found.logBayesFactor;
+    effect.probability = verdict.vetoed ? 0 : found.probability;
+    effects.push_back(std::move(effect));
+  }
+  return effects;
+}
+
+std::vector<RepairedTrial> recordedTrials(const MusculoskeletalProblem& data,
+                                          const Verdict& verdict, const std::vector<int>& heldOut,
+                                          const std::optional<double>& step) {
+  const Model& base = data.encompassing().base();
+  const double nominalStep = stepOf(base, data.options().simulation.integrator, step);
+  std::vector<RepairedTrial> trials;
+  for (int i = 0; i < data.numTrials(); ++i) {
+    RepairedTrial one;
+    one.index = i;
+    one.isHeldOut = std::find(heldOut.begin(), heldOut.end(), i) != heldOut.end();
+    one.start = data.startAt(i, verdict.values);
+    const Compared nominal = replayed(data, base, data.trial(i), nominalStep, {});
+    one.nominal = nominal.rms;
+    one.samples = nominal.samples > 0 ? nominal.samples : data.measured(i).size();
+    one.floor = verdict.outputSd;
+    const VectorXd difference = data.outputs(i, verdict.values, {}) - data.measured(i);
+    one.fitted = std::sqrt(difference.squaredNorm() / static_cast<double>(difference.size()));
+    trials.push_back(std::move(one));
+  }
+  return trials;
+}
+
+Repaired repairedModel(const MusculoskeletalProblem& data, const Verdict& verdict,
+                       const std::vector<int>& heldOut, const std::optional<double>& step,
+                       const EffectProvenance& provenance) {
+  const std::string& coordinate = data.encompassing().coordinate().name;
+  Repaired result{augmentedModel(data.encompassing(), ownValues(data, verdict.values)),
+                  recordedTrials(data, verdict, heldOut, step)};
+  Model& model = result.added.model;
+  const SensorLaw& sensor = result.added.sensor;
+  std::string effects;
+  if (!verdict.effects.empty())
+    effects = effectCredits(data.encompassing(), effectsToAdd(data, verdict), provenance);
+  const std::string credits = creditsOf(data, verdict, provenance, effects);
+  model.credits += model.credits.empty() ? credits : ". " + credits;
+  model.fitted = {data.options().simulation.step, {}};
+  const bool isDriven =
+      concernsTrials(result.added) || data.timedForce(0, verdict.values).size() > 0;
+  const MusculoskeletalSystem arm(model, withoutTables(data));
+  for (RepairedTrial& one : result.trials) {
+    Trial trial = data.trial(one.index);
+    if (!trial.sha256.empty()) model.fitted.starts.push_back(one.start);
+    if (isDriven) {
+      if (const VectorXd force = data.timedForce(one.index, verdict.values); force.size() > 0) {
+        trial = withTimedForce(std::move(trial), coordinate, data.latentTimes(one.index), force);
+      }
+      one.driven = drivenTable(asTrueSensor(trial, coordinate, sensor), arm, result.added.mapping);
+      trial = trialFrom(*one.driven, trial.file, model, {.experimentalConditions = true});
+      one.floor /= 1 + sensor.gain;
+    }
+    const Compared after = replayed(data, model, trial, data.options().simulation.step, one.start);
+    one.after = after.rms;
+    if (after.samples > 0) one.samples = after.samples;
+  }
+  return result;
+}
+
+void takeReplays(Verdict& verdict, const Repaired& repaired) {
+  // what a gap compares is what the sensor shows
+  const double shown = 1 + repaired.added.sensor.gain;
+  const auto take = [&](info::discover::ExcessError& gap, bool heldOut) {
+    gap.nominal = repaired.pooled(&RepairedTrial::nominal, heldOut);
+    gap.after = shown * repaired.pooled(&RepairedTrial::after, heldOut);
+    explainExcess(gap);
+    gap.after /= shown;
+  };
+  take(verdict.gap, false);
+  if (verdict.heldOut) take(*verdict.heldOut, true);
+}
+
+std::vector<FittedNumber> fittedNumbers(const MusculoskeletalProblem& data,
+                                        const Verdict& verdict) {
+  std::vector<FittedNumber> numbers = info::discover::fittedNumbers(data, verdict);
+  const EncompassingModel& encompassing = data.encompassing();
+  const std::string ending = " factor";
+  for (FittedNumber& one : numbers) {
+    if (one.quantity >= encompassing.quantities().size() || !one.name.ends_with(ending)) continue;
+    const std::string stem = one.name.substr(0, one.name.size() - ending.size());
+    const auto& known = encompassing.parameters().parameters();
+    const auto at = std::find_if(known.begin(), known.end(),
+                                 [&](const ModelParameter& p) { return p.name == stem; });
+    if (at == known.end()) continue;
+    const ParameterDirection direction =
+        encompassing.direction(ownValues(data, verdict.values), one.quantity);
+    if (direction.empty()) continue;
+    one.name = stem;
+    one.unit = at->unit;
+    one.nominal = at->value;
+    one.estimate = direction.front().value;
+    one.sd *= std::abs(direction.front().weight);
+    one.prior *= std::abs(at->value);
+  }
+  return numbers;
+}
+
+}  // namespace bio::discover

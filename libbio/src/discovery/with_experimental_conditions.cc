@@ -1,0 +1,50 @@
+#include "bio/discovery/with_experimental_conditions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "bio/discovery/add_effects.h"
+#include "discovery/effects/effects.h"
+
+namespace bio::discover {
+
+Eigen::VectorXd experimentalConditionsOf(const Trial& trial,
+                                         const EncompassingModel& encompassing) {
+  const auto& quantities = encompassing.quantities();
+  Eigen::VectorXd changes = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(quantities.size()));
+  if (!trial.known.any()) return changes;
+  const auto change = [&](const std::string& name, double value, const char* why) {
+    if (value == 0) return;
+    const auto at = std::find_if(quantities.begin(), quantities.end(),
+                                 [&](const auto& one) { return one.name == name; });
+    if (at == quantities.end()) {
+      throw std::invalid_argument(
+          fmt::format("{}: recorded {}, but {}", trial.file, inWords(trial.known), why));
+    }
+    changes[at - quantities.begin()] = value;
+  };
+  change("known.mass", trial.known.massInHand, "the model moves no body that could carry it");
+  change("known.turn", trial.known.armTurn, "the coordinate does not turn bodies across gravity");
+  if (trial.known.armTurn != 0 && encompassing.present().count("handforce") > 0) {
+    throw std::invalid_argument(
+        fmt::format("{}: recorded {}, but the model has a force on the hand ({}), which would turn "
+                    "with the limb",
+                    trial.file, inWords(trial.known), encompassing.present().at("handforce")));
+  }
+  return changes;
+}
+
+Model withExperimentalConditions(const Model& model, const SystemOptions& arm,
+                                 const std::string& coordinate, const Trial& trial) {
+  if (!trial.known.any()) return model;
+  EncompassingModel encompassing(model, arm, coordinate);
+  addExperimentalConditions(encompassing);
+  addHandForce(encompassing);  // which the model may have already
+  return augmentedModel(encompassing,
+                        encompassing.nominal() + experimentalConditionsOf(trial, encompassing))
+      .model;
+}
+
+}  // namespace bio::discover

@@ -1,0 +1,167 @@
+#include "bio/emg/emg.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "emg/emg_remarks.h"
+#include "model/require.h"
+
+namespace bio {
+namespace {
+
+void check(const EmgConfig& config) {
+  require(!config.electrodes.empty(),
+          "EMG: no electrode is mapped to a muscle, must have at least one");
+  require(config.shape >= -3 && config.shape <= 0,
+          fmt::format("EMG shape factor A = {}: must lie within -3 and 0", config.shape));
+  require(config.delay >= 0 && config.delay <= 0.5,
+          fmt::format("electromechanical delay {} s: must lie within 0 and 0.5", config.delay));
+  require(config.outputRate > 2 * config.envelope.cutoff && std::isfinite(config.outputRate),
+          fmt::format("output rate {} Hz: must be more than twice the envelope's cut-off, {} Hz",
+                      config.outputRate, config.envelope.cutoff));
+  for (std::size_t i = 0; i < config.electrodes.size(); ++i) {
+    const Electrode& electrode = config.electrodes[i];
+    for (std::size_t k = 0; k < i; ++k) {
+      require(
+          electrode.channel != config.electrodes[k].channel,
+          fmt::format("EMG channel '{}': is mapped twice, must be mapped once", electrode.channel));
+    }
+    require(!electrode.muscles.empty(),
+            fmt::format("EMG channel '{}': drives no muscle, must drive at least one",
+                        electrode.channel));
+    for (const auto& [muscle, weight] : electrode.muscles) {
+      require(weight > 0 && weight <= 1,
+              fmt::format("EMG channel '{}', muscle '{}': weight {}, must be > 0 and ≤ 1",
+                          electrode.channel, muscle, weight));
+    }
+  }
+}
+
+// What counts as 1.
+void setFull(const Electrode& electrode, ElectrodeTrace& trace) {
+  if (const auto* mvc = std::get_if<MvcValue>(&electrode.full)) {
+    trace.full = mvc->value;
+    trace.fullSource = fmt::format("maximum voluntary contraction ({})", mvc->source);
+  } else {
+    const double percent = std::get<OwnPercentile>(electrode.full).percent;
+    require(percent > 0 && percent <= 100,
+            fmt::format("EMG channel '{}': percentile {}, must be > 0 and ≤ 100", electrode.channel,
+                        percent));
+    trace.full = percentile(trace.envelope, percent);
+    trace.fullSource = fmt::format("percentile {:g} of its own envelope", percent);
+  }
+  require(trace.full > 0 && std::isfinite(trace.full),
+          fmt::format("EMG channel '{}': {} {} ({}) for excitation 1, must be > 0",
+                      electrode.channel, trace.full, trace.unit, trace.fullSource));
+}
+
+constexpr int mostRows = 100'000'000;
+
+// Rows common to all electrodes and inside the span that was asked for.
+Eigen::VectorXd rowTimes(const std::vector<ElectrodeTrace>& traces, const EmgConfig& config) {
+  double first = -std::numeric_limits<double>::infinity();
+  double last = std::numeric_limits<double>::infinity();
+  for (const ElectrodeTrace& trace : traces) {
+    first = std::max(first, trace.startTime);
+    last = std::min(last,
+                    trace.startTime + static_cast<double>(trace.envelope.size() - 1) / trace.rate);
+  }
+  const double begin = config.start.value_or(first);
+  const double end = config.end.value_or(last);
+  require(
+      begin >= first && end <= last + 1e-9,
+      fmt::format(
+          "output from {} s to {} s: must lie within the recording of the electrodes, {} s to {} s",
+          begin, end, first, last));
+  const double count = std::floor((end - begin) * config.outputRate + 1e-6);
+  require(count >= 1,
+          fmt::format(
+              "output from {} s to {} s: has fewer than two rows at {} Hz, must have at least two",
+              begin, end, config.outputRate));
+  require(count < mostRows,
+          fmt::format("output from {} s to {} s at {} Hz: must have at most {} rows", begin, end,
+                      config.outputRate, mostRows));
+  const auto rows = static_cast<Eigen::Index>(count) + 1;
+  return Eigen::VectorXd::NullaryExpr(
+      rows, [&](Eigen::Index i) { return begin + static_cast<double>(i) / config.outputRate; });
+}
+
+}  // namespace
+
+ElectrodeTrace emgEnvelope(const Channel& channel, const EmgConfig& config) {
+  checkWithoutGaps(channel);
+  const double length = static_cast<double>(channel.values.size()) / channel.rate;
+  require(length * config.envelope.cutoff >= 1,
+          fmt::format("EMG channel '{}': {:.3f} s long, must last at least one period of the "
+                      "envelope's cut-off, {:.3f} s",
+                      channel.name, length, 1 / config.envelope.cutoff));
+  ElectrodeTrace out;
+  out.channel = channel.name;
+  out.unit = channel.unit;
+  out.rate = channel.rate;
+  out.startTime = channel.startTime;
+  if (config.signal == EmgSignal::envelope) {
+    out.envelope = channel.values;
+    return out;
+  }
+  try {
+    out.offset = channel.values.mean();
+    out.filtered = (channel.values.array() - out.offset).matrix();
+    if (config.bandPass) out.filtered = bandPassed(out.filtered, channel.rate, *config.bandPass);
+    out.filtered = notched(out.filtered, channel.rate, config.notch);
+    out.envelope = envelope(out.filtered.cwiseAbs(), channel.rate, config.envelope);
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument(fmt::format("EMG channel '{}': {}", channel.name, e.what()));
+  }
+  return out;
+}
+
+EmgResult excitationsFromEmg(const Recording& recording, const EmgConfig& config) {
+  check(config);
+  EmgResult out;
+  // each electrode by itself, at its own rate
+  for (const Electrode& electrode : config.electrodes) {
+    ElectrodeTrace trace = emgEnvelope(findChannel(recording, electrode.channel), config);
+    setFull(electrode, trace);
+    const Clipped clipped = clippedToUnit(trace.envelope / trace.full);
+    trace.fractionBelow = clipped.fractionBelow;
+    trace.fractionAbove = clipped.fractionAbove;
+    trace.excitation =
+        clipped.values.unaryExpr([&](double u) { return shapedExcitation(u, config.shape); });
+    out.electrodes.push_back(std::move(trace));
+    for (const auto& [muscle, weight] : electrode.muscles) {
+      if (std::find(out.muscles.begin(), out.muscles.end(), muscle) == out.muscles.end()) {
+        out.muscles.push_back(muscle);
+      }
+    }
+  }
+  // delayed, on common rows, spread over the muscles
+  out.time = rowTimes(out.electrodes, config);
+  out.excitations =
+      Eigen::MatrixXd::Zero(out.time.size(), static_cast<Eigen::Index>(out.muscles.size()));
+  for (std::size_t i = 0; i < out.electrodes.size(); ++i) {
+    const ElectrodeTrace& trace = out.electrodes[i];
+    const Eigen::VectorXd rows = sampledAt(trace.excitation, trace.rate, trace.startTime,
+                                           (out.time.array() - config.delay).matrix());
+    for (const auto& [muscle, weight] : config.electrodes[i].muscles) {
+      const auto column = std::find(out.muscles.begin(), out.muscles.end(), muscle);
+      out.excitations.col(column - out.muscles.begin()) += weight * rows;
+    }
+  }
+  // 1 is exact for a weight of 1; rounding of a sum of weights must not count
+  out.fractionSumAbove = (out.excitations.array() > 1 + 1e-12).cast<double>().mean();
+  out.excitations = out.excitations.cwiseMin(1.0);
+  if (config.measured) {
+    out.measured =
+        measuredCoordinate(findChannel(recording, config.measured->channel), *config.measured);
+    out.measured_deg = angleAtRows(*out.measured, out.time);
+  }
+  out.remarks = remarksOn(recording, config, out);
+  return out;
+}
+
+}  // namespace bio

@@ -1,0 +1,268 @@
+#include "bio/emg/emg_config.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "bio/tables/file_error.h"
+#include "emg/toml_table.h"
+
+namespace bio {
+namespace {
+
+const auto positive = [](double x) { return x > 0 && std::isfinite(x); };
+const auto finite = [](double x) { return std::isfinite(x); };
+
+int orderOf(TomlTable& table, int standard) {
+  const int order = table.integer("order").value_or(standard);
+  if (order < 1 || order > 10) table.fail("order", "must be 1 to 10");
+  return order;
+}
+
+RecordingFormat formatOf(const std::string& word) {
+  for (const auto format :
+       {RecordingFormat::columns, RecordingFormat::trigno, RecordingFormat::table}) {
+    if (word == nameOf(format)) return format;
+  }
+  return RecordingFormat::automatic;
+}
+
+void readInput(TomlTable& root, EmgConfigFile& out) {
+  TomlTable input = root.table("input");
+  out.layout.format =
+      formatOf(input.word("format", {"automatic", "columns", "trigno", "table"}).value_or(""));
+  if (input.word("signal", {"raw", "envelope"}).value_or("raw") == "envelope") {
+    out.emg.signal = EmgSignal::envelope;
+  }
+  input.finish();
+  for (TomlTable& channel : root.tables("channel")) {
+    ColumnDeclaration column;
+    if (!channel.has("column")) channel.required<double>("column", std::nullopt);
+    try {
+      column.header = *channel.text("column");
+    } catch (const FileError&) {
+      column.number = *channel.integer("column");
+      if (column.number < 1) channel.fail("column", "columns are counted from 1");
+    }
+    column.name = channel.text("name").value_or("");
+    column.unit = channel.text("unit").value_or("");
+    column.rate = channel.number("rate_Hz", positive, "must be > 0");
+    column.scale = channel.number(
+        "scale", [](double x) { return std::isfinite(x) && x != 0; }, "must not be 0");
+    column.offset = channel.number("offset", finite, "must be finite").value_or(0);
+    channel.finish();
+    out.layout.columns.push_back(column);
+  }
+}
+
+void readFilters(TomlTable& root, EmgConfig& emg) {
+  if (emg.signal == EmgSignal::envelope) {
+    for (const char* key : {"bandpass", "notch", "envelope"}) {
+      if (root.has(key)) root.fail(key, "has no effect on a signal that is an envelope");
+    }
+  }
+  TomlTable bandPass = root.table("bandpass");
+  BandPassOptions band;
+  band.low = bandPass.number("low_Hz", positive, "must be > 0").value_or(band.low);
+  band.high = bandPass
+                  .number(
+                      "high_Hz", [&](double x) { return x > band.low && std::isfinite(x); },
+                      fmt::format("must be above low_Hz = {:g}", band.low))
+                  .value_or(band.high);
+  if (!(band.low < band.high)) {
+    bandPass.fail("low_Hz", fmt::format("must be below high_Hz = {:g}", band.high));
+  }
+  band.order = orderOf(bandPass, band.order);
+  emg.bandPass.reset();
+  if (bandPass.flag("enabled").value_or(true)) emg.bandPass = band;
+  bandPass.finish();
+
+  TomlTable notch = root.table("notch");
+  emg.notch.lines = notch.numbers("lines_Hz").value_or(std::vector<double>{});
+  emg.notch.harmonics = notch.integer("harmonics").value_or(emg.notch.harmonics);
+  if (emg.notch.harmonics < 1) notch.fail("harmonics", "must be ≥ 1 (1 is the line itself)");
+  emg.notch.width = notch.number("width_Hz", positive, "must be > 0").value_or(emg.notch.width);
+  emg.notch.order = orderOf(notch, emg.notch.order);
+  for (const double line : emg.notch.lines) {
+    if (!(line > emg.notch.width / 2 && std::isfinite(line))) {
+      notch.fail("lines_Hz", fmt::format("{:g} Hz must be > width_Hz/2", line));
+    }
+  }
+  notch.finish();
+
+  TomlTable envelope = root.table("envelope");
+  emg.envelope.cutoff =
+      envelope.number("cutoff_Hz", positive, "must be > 0").value_or(emg.envelope.cutoff);
+  emg.envelope.order = orderOf(envelope, emg.envelope.order);
+  envelope.finish();
+}
+
+const auto percentRange = [](double x) { return x > 0 && x <= 100; };
+
+void readElectrodes(TomlTable& root, EmgConfigFile& out) {
+  TomlTable normalise = root.table("normalise");
+  const double standard =
+      normalise.number("percentile", percentRange, "must be > 0 and ≤ 100").value_or(99);
+  normalise.finish();
+  for (TomlTable& table : root.tables("electrode")) {
+    Electrode electrode;
+    electrode.channel = table.required("channel", table.text("channel"));
+    electrode.muscles = table.weights("muscles");
+    if (electrode.muscles.empty()) table.fail("muscles", "must name at least one muscle");
+    for (const auto& [muscle, weight] : electrode.muscles) {
+      if (!(weight > 0 && weight <= 1)) {
+        table.fail("muscles", fmt::format("weight of '{}' must be > 0 and ≤ 1", muscle));
+      }
+    }
+    FullDeclaration full;
+    full.mvc = table.number("mvc", positive, "must be > 0");
+    full.unit = table.text("unit").value_or("");
+    full.mvcFile = table.text("mvc_file").value_or("");
+    full.percentile = table.number("percentile", percentRange, "must be > 0 and ≤ 100");
+    if (full.mvc.has_value() + !full.mvcFile.empty() + full.percentile.has_value() > 1) {
+      table.fail(full.mvc ? "mvc" : "mvc_file",
+                 "only one of mvc, mvc_file and percentile can be given");
+    }
+    if (full.mvc && full.unit.empty()) table.fail("mvc", "needs its unit (unit = \"mV\")");
+    if (!full.mvc && !full.unit.empty()) table.fail("unit", "is the unit of mvc, which is absent");
+    if (!full.mvcFile.empty()) {
+      full.mvcFile = (std::filesystem::path(out.file).parent_path() / full.mvcFile).string();
+    }
+    if (!full.mvc && full.mvcFile.empty() && !full.percentile) full.percentile = standard;
+    table.finish();
+    out.emg.electrodes.push_back(electrode);
+    out.full.push_back(full);
+    out.electrodeLines.push_back(table.line());
+  }
+  if (out.emg.electrodes.empty()) {
+    throw FileError(
+        fmt::format("{}: needs at least one [[electrode]] with channel and muscles", out.file));
+  }
+}
+
+void readExcitation(TomlTable& root, EmgConfig& emg) {
+  TomlTable table = root.table("excitation");
+  emg.delay =
+      table
+          .number(
+              "delay_s", [](double x) { return x >= 0 && x <= 0.5; }, "must lie within 0 and 0.5 s")
+          .value_or(emg.delay);
+  emg.shape =
+      table
+          .number(
+              "shape", [](double x) { return x >= -3 && x <= 0; }, "must lie within -3 and 0")
+          .value_or(emg.shape);
+  emg.outputRate =
+      table
+          .number(
+              "rate_Hz", [&](double x) { return x > 2 * emg.envelope.cutoff && std::isfinite(x); },
+              fmt::format("must be more than twice the envelope's cutoff_Hz = {:g}",
+                          emg.envelope.cutoff))
+          .value_or(emg.outputRate);
+  emg.start = table.number("start_s", finite, "must be finite");
+  emg.end = table.number("end_s", finite, "must be finite");
+  if (emg.start && emg.end && !(*emg.start < *emg.end)) {
+    table.fail("end_s", fmt::format("must be after start_s = {:g}", *emg.start));
+  }
+  table.finish();
+}
+
+void readMeasured(TomlTable& root, EmgConfigFile& out) {
+  if (!root.has("measured")) return;
+  TomlTable table = root.table("measured");
+  MeasuredOptions options;
+  options.channel = table.required("channel", table.text("channel"));
+  options.coordinate = table.text("coordinate").value_or(options.coordinate);
+  out.degreesPerUnit = table.number("degrees_per_unit", positive, "must be > 0 (see sign)");
+  options.sign = table
+                     .number(
+                         "sign", [](double x) { return x == 1 || x == -1; }, "must be 1 or -1")
+                     .value_or(options.sign);
+  options.zero = table.number("zero", finite, "must be finite").value_or(options.zero);
+  options.clipBelow =
+      table.number("clip_below", finite, "must be finite").value_or(options.clipBelow);
+  options.clipAbove = table
+                          .number(
+                              "clip_above", [&](double x) { return x > options.clipBelow; },
+                              fmt::format("must be above clip_below = {:g}", options.clipBelow))
+                          .value_or(options.clipAbove);
+  options.lowPass = table.number("lowpass_Hz", positive, "must be > 0");
+  table.finish();
+  out.measuredLine = table.line();
+  out.emg.measured = options;
+}
+
+const Channel& channelAt(const EmgConfigFile& config, int line, const Recording& recording,
+                         const std::string& name) {
+  try {
+    return findChannel(recording, name);
+  } catch (const std::invalid_argument& e) {
+    throw FileError(fmt::format("{}:{}: {}", config.file, line, e.what()));
+  }
+}
+
+MvcValue mvcFromFile(const EmgConfigFile& config, std::size_t i) {
+  const std::string& file = config.full[i].mvcFile;
+  const Recording recording = readRecording(file, config.layout);
+  const Channel& channel =
+      channelAt(config, config.electrodeLines[i], recording, config.emg.electrodes[i].channel);
+  return {emgEnvelope(channel, config.emg).envelope.maxCoeff(), "from " + file};
+}
+
+}  // namespace
+
+EmgConfigFile readEmgConfig(const std::string& file) {
+  EmgConfigFile out;
+  out.file = file;
+  TomlTable root = TomlTable::read(file);
+  readInput(root, out);
+  readFilters(root, out.emg);
+  readElectrodes(root, out);
+  readExcitation(root, out.emg);
+  readMeasured(root, out);
+  root.finish();
+  return out;
+}
+
+EmgConfig emgConfigFor(const EmgConfigFile& config, const Recording& recording) {
+  EmgConfig out = config.emg;
+  for (std::size_t i = 0; i < out.electrodes.size(); ++i) {
+    const FullDeclaration& full = config.full[i];
+    const int line = config.electrodeLines[i];
+    const Channel& channel = channelAt(config, line, recording, out.electrodes[i].channel);
+    if (full.mvc) {
+      if (full.unit != channel.unit) {
+        throw FileError(fmt::format("{}:{}: mvc = {:g} {}, but channel '{}' is in '{}'",
+                                    config.file, line, *full.mvc, full.unit, channel.name,
+                                    channel.unit));
+      }
+      out.electrodes[i].full = MvcValue{*full.mvc, fmt::format("{}:{}", config.file, line)};
+    } else if (!full.mvcFile.empty()) {
+      out.electrodes[i].full = mvcFromFile(config, i);
+    } else {
+      out.electrodes[i].full = OwnPercentile{full.percentile.value()};
+    }
+  }
+  if (out.measured) {
+    const Channel& channel =
+        channelAt(config, config.measuredLine, recording, out.measured->channel);
+    const bool degrees = channel.unit == "deg";
+    const bool radians = channel.unit == "rad";
+    if (config.degreesPerUnit && (degrees || radians)) {
+      throw FileError(fmt::format(
+          "{}:{}: degrees_per_unit = {:g}, but channel '{}' is an angle in {}", config.file,
+          config.measuredLine, *config.degreesPerUnit, channel.name, channel.unit));
+    }
+    if (!config.degreesPerUnit && !degrees && !radians) {
+      throw FileError(fmt::format("{}:{}: channel '{}' is in '{}', needs degrees_per_unit",
+                                  config.file, config.measuredLine, channel.name, channel.unit));
+    }
+    out.measured->degreesPerUnit =
+        config.degreesPerUnit.value_or(radians ? 180 / std::numbers::pi : 1.0);
+  }
+  return out;
+}
+
+}  // namespace bio

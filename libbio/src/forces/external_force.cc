@@ -1,0 +1,60 @@
+#include "bio/forces/external_force.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <stdexcept>
+
+namespace bio {
+
+ExternalForce::ExternalForce(std::vector<double> times, Eigen::MatrixXd values)
+    : times_(std::move(times)), values_(values.transpose()) {
+  if (times_.empty() || static_cast<Eigen::Index>(times_.size()) != values_.cols()) {
+    throw std::invalid_argument(
+        fmt::format("external force: {} times and {} rows, must agree and be ≥ 1", times_.size(),
+                    values_.cols()));
+  }
+  for (std::size_t k = 0; k < times_.size(); ++k) {
+    if (!std::isfinite(times_[k]) || (k > 0 && !(times_[k] > times_[k - 1]))) {
+      throw std::invalid_argument(fmt::format(
+          "external force: time = {} s in row {}, must be finite and rise", times_[k], k + 1));
+    }
+  }
+  for (Eigen::Index k = 0; k < values_.cols(); ++k) {
+    for (Eigen::Index i = 0; i < values_.rows(); ++i) {
+      if (!std::isfinite(values_(i, k))) {
+        throw std::invalid_argument(
+            fmt::format("external force: {} at time {} s (column {}), must be finite",
+                        values_(i, k), times_[static_cast<std::size_t>(k)], i + 1));
+      }
+    }
+  }
+}
+
+ExternalForce::At ExternalForce::at(double t) const {
+  At result{Eigen::VectorXd::Zero(values_.rows()), Eigen::VectorXd::Zero(values_.rows())};
+  std::size_t hint = 0;
+  add(t, hint, result.value);
+  if (empty() || t < times_.front() || t >= times_.back()) return result;
+  const auto k = static_cast<Eigen::Index>(hint);
+  result.slope = (values_.col(k + 1) - values_.col(k)) / (times_[hint + 1] - times_[hint]);
+  return result;
+}
+
+ExternalForce sum(const ExternalForce& one, const ExternalForce& other) {
+  if (one.empty()) return other;
+  if (other.empty()) return one;
+  std::vector<double> times;
+  std::set_union(one.times().begin(), one.times().end(), other.times().begin(), other.times().end(),
+                 std::back_inserter(times));
+  Eigen::MatrixXd values(static_cast<Eigen::Index>(times.size()), one.numCoordinates());
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    values.row(static_cast<Eigen::Index>(k)) =
+        (one.at(times[k]).value + other.at(times[k]).value).transpose();
+  }
+  return {std::move(times), values};
+}
+
+}  // namespace bio

@@ -1,0 +1,47 @@
+#include "bio/model/model.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+namespace bio {
+namespace {
+
+template <class Item>
+const Item& findByName(const std::vector<Item>& items, const std::string& name, const char* kind) {
+  for (const Item& item : items) {
+    if (item.name == name) return item;
+  }
+  std::string known;
+  for (const Item& item : items) known += (known.empty() ? "" : ", ") + item.name;
+  throw std::invalid_argument(
+      fmt::format("the model has no {} called '{}' (it has: {})", kind, name, known));
+}
+
+}  // namespace
+
+const Body& findBody(const Model& model, const std::string& name) {
+  return findByName(model.bodies, name, "body");
+}
+
+const Coordinate& findCoordinate(const Model& model, const std::string& name) {
+  std::string known;
+  for (const Joint& joint : model.joints) {
+    for (const Coordinate& coordinate : joint.coordinates) {
+      if (coordinate.name == name) return coordinate;
+      known += (known.empty() ? "" : ", ") + coordinate.name;
+    }
+  }
+  throw std::invalid_argument(
+      fmt::format("the model has no coordinate called '{}' (it has: {})", name, known));
+}
+
+const WrapObject& findWrapObject(const Model& model, const std::string& name) {
+  return findByName(model.wrapObjects, name, "wrap object");
+}
+
+const Muscle& findMuscle(const Model& model, const std::string& name) {
+  return findByName(model.muscles, name, "muscle");
+}
+
+}  // namespace bio

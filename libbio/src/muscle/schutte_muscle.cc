@@ -1,0 +1,346 @@
+#include "bio/muscle/schutte_muscle.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+#include <stdexcept>
+
+namespace bio {
+namespace {
+
+void requireRule(bool holds, const char* quantity, double value, const char* unit,
+                 const char* rule) {
+  if (!holds) {
+    throw std::invalid_argument(
+        fmt::format("{} is {} {}, must be {}", quantity, value, unit, rule));
+  }
+}
+
+// P and A with their derivatives in act, ℓ and ℓ_MT; κ = 1/cos α.
+struct ForceBalance {
+  double tendon = 0, tendonSlope = 0, tendonCurvature = 0;  // F̂_T over ε
+  double kappa = 1, dKappa = 0, d2Kappa = 0;                // over ℓ
+  double P = 0, dP_dl = 0, dP_dm = 0, d2P_dldl = 0, d2P_dldm = 0, d2P_dmdm = 0;
+  double A = 0, dA_da = 0, dA_dl = 0, d2A_dadl = 0, d2A_dldl = 0;
+};
+
+template <bool second>
+inline ForceBalance forceBalance(const SchutteMuscle<double>& muscle, double activation,
+                                 double fibreLength, double muscleTendonLength,
+                                 SchuttePieces& last) {
+  ForceBalance f;
+  const double perFibre = muscle.perFibre();
+  const double perTendon = muscle.perTendon();
+  const SchutteCurves& curves = muscle.curves();
+
+  // Pennation: d = ℓ cos α = √(ℓ² − w²), κ = ℓ/d.
+  const double w2 = muscle.thickness() * muscle.thickness();
+  double d = std::numeric_limits<double>::quiet_NaN();
+  if (fibreLength > muscle.thickness()) d = std::sqrt(fibreLength * fibreLength - w2);
+  const double perD = 1 / d;
+  f.kappa = fibreLength * perD;
+  f.dKappa = -w2 * perD * perD * perD;
+
+  // Tendon.
+  const double strain = (muscleTendonLength - d) * perTendon - 1;
+  if (!(strain < 0)) {
+    const CurveValue tendon = curves.tendonForce.evaluate(strain, last.tendonForce);
+    f.tendon = tendon.value;
+    f.tendonSlope = tendon.slope;
+    f.tendonCurvature = tendon.curvature;
+  }
+
+  // Fibre.
+  const double l = fibreLength * perFibre;
+  CurveValue passive;
+  if (curves.passiveForce) {
+    passive = curves.passiveForce->evaluate(l, last.passiveForce);
+  } else {
+    const double value = std::exp(8 * l - 12);
+    passive = {value, 8 * value, 64 * value, 512 * value};
+  }
+  const CurveValue active = curves.activeForce.evaluate(l, last.activeForce);
+  const bool floored = activation < muscle.options().activationFloor;
+  const double act = floored ? muscle.options().activationFloor : activation;
+  if (!(active.value < 0)) {
+    f.A = act * active.value;
+    f.dA_da = floored ? 0 : active.value;
+    f.dA_dl = act * active.slope * perFibre;
+    if constexpr (second) {
+      f.d2A_dadl = floored ? 0 : active.slope * perFibre;
+      f.d2A_dldl = act * active.curvature * perFibre * perFibre;
+    }
+  }
+
+  // P = F̂_T κ − f_PE, held at 0 where it is clamped.
+  f.P = f.tendon * f.kappa - passive.value;
+  if (muscle.options().clampForce && f.P < 0) {
+    f.P = 0;
+    if constexpr (second) f.d2Kappa = 3 * w2 * fibreLength * perD * perD * perD * perD * perD;
+    return f;
+  }
+  const double slope = f.tendonSlope * perTendon;
+  f.dP_dm = slope * f.kappa;
+  f.dP_dl = -slope * f.kappa * f.kappa + f.tendon * f.dKappa - passive.slope * perFibre;
+  if constexpr (second) {
+    f.d2Kappa = 3 * w2 * fibreLength * perD * perD * perD * perD * perD;
+    const double curvature = f.tendonCurvature * perTendon * perTendon;
+    f.d2P_dmdm = curvature * f.kappa;
+    f.d2P_dldm = -curvature * f.kappa * f.kappa + slope * f.dKappa;
+    f.d2P_dldl = curvature * f.kappa * f.kappa * f.kappa - 3 * slope * f.kappa * f.dKappa +
+                 f.tendon * f.d2Kappa - passive.curvature * perFibre * perFibre;
+  }
+  return f;
+}
+
+// v(P, A), from the quadratic G(v; P, A) = 0 of its regime: v_x = −G_x/G_v.
+struct Velocity {
+  double v, dv_dP, dv_dA;
+  double G_v, G_vA;  // for the second derivatives; G_vP = −1, G_vv = 2B
+  bool linear;       // P < −B: v = P/B
+};
+
+inline Velocity velocity(double P, double A, double B) {
+  using schutte::maxLengtheningForce;
+  using schutte::shapeLengthening;
+  using schutte::shapeShortening;
+  if (P < -B) return {P / B, 1 / B, 0, -B, 0, true};
+  if (P < A) {
+    const double b = P + shapeShortening * (A + B);
+    const double c = shapeShortening * (P - A);
+    const double root = std::sqrt(b * b - 4 * B * c);
+    const double v = b > 0 ? 2 * c / (b + root) : (b - root) / (2 * B);
+    const double perRoot = 1 / root;
+    return {v,
+            (shapeShortening - v) * perRoot,
+            -shapeShortening * (1 + v) * perRoot,
+            -root,
+            -shapeShortening,
+            false};
+  }
+  const double b = P - maxLengtheningForce * A - shapeLengthening * B;
+  const double c = shapeLengthening * (P - A);
+  const double root = std::sqrt(b * b + 4 * B * c);
+  const double v = b > 0 ? (b + root) / (2 * B) : 2 * c / (root - b);
+  const double perRoot = 1 / root;
+  return {v,
+          (v + shapeLengthening) * perRoot,
+          -(maxLengtheningForce * v + shapeLengthening) * perRoot,
+          root,
+          maxLengtheningForce,
+          false};
+}
+
+inline FibreRateDerivatives assemble(const SchutteMuscle<double>& muscle, const ForceBalance& f,
+                                     const Velocity& u) {
+  const double speed = muscle.speedScale();
+  const double force = muscle.quantities().maxIsometricForce;
+  const double stiffness = force * f.tendonSlope * muscle.perTendon();
+  return {.fibreVelocity = speed * u.v,
+          .tendonForce = force * f.tendon,
+          .dV_dActivation = speed * u.dv_dA * f.dA_da,
+          .dV_dFibreLength = speed * (u.dv_dP * f.dP_dl + u.dv_dA * f.dA_dl),
+          .dV_dMuscleTendonLength = speed * u.dv_dP * f.dP_dm,
+          .dF_dFibreLength = -stiffness * f.kappa,
+          .dF_dMuscleTendonLength = stiffness};
+}
+
+// F̂_T − (A + f_PE) cos α: falls through 0 where the fibre rests stably.
+double forceDifference(const SchutteMuscle<double>& muscle, double activation, double fibreLength,
+                       double muscleTendonLength) {
+  const double l = fibreLength * muscle.perFibre();
+  const double projected =
+      fibreLength > muscle.thickness() ? muscle.projectedFibreLength(fibreLength) : 0.0;
+  const double strain = (muscleTendonLength - projected) * muscle.perTendon() - 1;
+  const double act = std::max(activation, muscle.options().activationFloor);
+  const double fibre = act * muscle.activeForceLength(l) + muscle.passiveForceLength(l);
+  return muscle.normalisedTendonForce(strain) - fibre * projected / fibreLength;
+}
+
+// Chandrupatla's bracketing method (1997): bisection, or inverse quadratic interpolation where
+// three points say that it is safe.
+template <class F>
+double bracketedRoot(const F& f, double a, double fa, double b, double fb, double tolerance) {
+  double c = a, fc = fa, t = 0.5;
+  for (int iteration = 0; iteration < 200; ++iteration) {
+    const double x = a + t * (b - a);
+    const double fx = f(x);
+    if ((fx > 0) == (fa > 0)) {
+      c = a, fc = fa;
+    } else {
+      c = b, b = a, fc = fb, fb = fa;
+    }
+    a = x, fa = fx;
+    const double best = std::abs(fa) < std::abs(fb) ? a : b;
+    const double width = std::abs(b - a);
+    if (fa == 0 || width <= 2 * tolerance) return best;
+    const double xi = (a - b) / (c - b);
+    const double phi = (fa - fb) / (fc - fb);
+    t = 0.5;
+    if (phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi) {
+      t = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb);
+    }
+    const double margin = tolerance / width;
+    t = std::clamp(t, margin, 1 - margin);
+  }
+  return std::abs(fa) < std::abs(fb) ? a : b;
+}
+
+}  // namespace
+
+SchutteCurves::SchutteCurves(const SchutteParameters& parameters)
+    : tendonForce(parameters.tendonForceLength), activeForce(parameters.activeForceLength) {
+  if (parameters.passiveForceLength) passiveForce.emplace(*parameters.passiveForceLength);
+}
+
+SchutteQuantities<double> schutteQuantities(const SchutteParameters& p) {
+  const auto positive = [](double x) { return x > 0 && std::isfinite(x); };
+  requireRule(positive(p.maxIsometricForce), "maximal isometric force", p.maxIsometricForce, "N",
+              "positive and finite");
+  requireRule(positive(p.optimalFibreLength), "optimal fibre length", p.optimalFibreLength, "m",
+              "positive and finite");
+  requireRule(positive(p.tendonSlackLength), "tendon slack length", p.tendonSlackLength, "m",
+              "positive and finite");
+  requireRule(p.pennation >= 0 && p.pennation < std::numbers::pi / 2, "pennation", p.pennation,
+              "rad", "at least 0 and below π/2");
+  requireRule(positive(p.timeScale), "time scale", p.timeScale, "s", "positive and finite");
+  requireRule(positive(p.damping), "fibre damping", p.damping, "F0·t_s/ℓ0", "positive and finite");
+  return {p.maxIsometricForce, p.optimalFibreLength, p.tendonSlackLength,
+          p.pennation,         p.timeScale,          p.damping};
+}
+
+FibreRateDerivatives fibreRateDerivatives(const SchutteMuscle<double>& muscle, double activation,
+                                          double fibreLength, double muscleTendonLength) {
+  SchuttePieces last;
+  return fibreRateDerivatives(muscle, activation, fibreLength, muscleTendonLength, last);
+}
+
+FibreRateDerivatives fibreRateDerivatives(const SchutteMuscle<double>& muscle, double activation,
+                                          double fibreLength, double muscleTendonLength,
+                                          SchuttePieces& last) {
+  const ForceBalance f =
+      forceBalance<false>(muscle, activation, fibreLength, muscleTendonLength, last);
+  return assemble(muscle, f, velocity(f.P, f.A, muscle.quantities().damping));
+}
+
+FibreRateHessian fibreRateHessian(const SchutteMuscle<double>& muscle, double activation,
+                                  double fibreLength, double muscleTendonLength) {
+  SchuttePieces last;
+  const ForceBalance f =
+      forceBalance<true>(muscle, activation, fibreLength, muscleTendonLength, last);
+  const double B = muscle.quantities().damping;
+  const Velocity u = velocity(f.P, f.A, B);
+
+  // v_xy = −(G_vv v_x v_y + G_vx v_y + G_vy v_x)/G_v
+  double v_PP = 0, v_PA = 0, v_AA = 0;
+  if (!u.linear) {
+    v_PP = -(2 * B * u.dv_dP * u.dv_dP - 2 * u.dv_dP) / u.G_v;
+    v_PA = -(2 * B * u.dv_dP * u.dv_dA - u.dv_dA + u.G_vA * u.dv_dP) / u.G_v;
+    v_AA = -(2 * B * u.dv_dA * u.dv_dA + 2 * u.G_vA * u.dv_dA) / u.G_v;
+  }
+  const Eigen::Vector3d dP(0, f.dP_dl, f.dP_dm);
+  const Eigen::Vector3d dA(f.dA_da, f.dA_dl, 0);
+  Eigen::Matrix3d d2P, d2A;
+  d2P << 0, 0, 0, 0, f.d2P_dldl, f.d2P_dldm, 0, f.d2P_dldm, f.d2P_dmdm;
+  d2A << 0, f.d2A_dadl, 0, f.d2A_dadl, f.d2A_dldl, 0, 0, 0, 0;
+
+  const double perTendon = muscle.perTendon();
+  const double force = muscle.quantities().maxIsometricForce;
+  const double curvature = force * f.tendonCurvature * perTendon * perTendon;
+  const double F_ll = curvature * f.kappa * f.kappa - force * f.tendonSlope * perTendon * f.dKappa;
+  const double F_lm = -curvature * f.kappa;
+
+  FibreRateHessian result;
+  result.first = assemble(muscle, f, u);
+  result.d2V = muscle.speedScale() *
+               (v_PP * dP * dP.transpose() + v_AA * dA * dA.transpose() +
+                v_PA * (dP * dA.transpose() + dA * dP.transpose()) + u.dv_dP * d2P + u.dv_dA * d2A);
+  result.d2F << 0, 0, 0, 0, F_ll, F_lm, 0, F_lm, curvature;
+  return result;
+}
+
+MuscleForces muscleForces(const SchutteMuscle<double>& muscle, double activation,
+                          double fibreLength, double muscleTendonLength, double fibreVelocity,
+                          double muscleTendonVelocity) {
+  const double force = muscle.quantities().maxIsometricForce;
+  const double l = fibreLength * muscle.perFibre();
+  const double v = fibreVelocity / muscle.speedScale();
+  const double act = std::max(activation, muscle.options().activationFloor);
+  const double kappa = fibreLength / muscle.projectedFibreLength(fibreLength);
+  MuscleForces result{};
+  result.tendonForce = muscle.tendonForce(fibreLength, muscleTendonLength);
+  result.activeForce = force * act * muscle.activeForceLength(l) * schutte::forceVelocity(v);
+  result.passiveForce = force * muscle.passiveForceLength(l);
+  result.dampingForce = force * muscle.quantities().damping * v;
+  result.pennation = std::asin(muscle.thickness() / fibreLength);
+  result.tendonStrain = muscle.tendonStrain(fibreLength, muscleTendonLength);
+  result.muscleTendonPower = result.tendonForce * muscleTendonVelocity;
+  result.activePower = result.activeForce * fibreVelocity;
+  result.passivePower = result.passiveForce * fibreVelocity;
+  result.dampingPower = result.dampingForce * fibreVelocity;
+  // d(ℓ cos α)/dt = ℓ̇/cos α, because the thickness is constant.
+  result.tendonPower = result.tendonForce * (muscleTendonVelocity - kappa * fibreVelocity);
+  return result;
+}
+
+StaticEquilibrium staticEquilibrium(const SchutteMuscle<double>& muscle, double activation,
+                                    double muscleTendonLength) {
+  requireRule(std::isfinite(activation), "activation", activation, "", "finite");
+  requireRule(std::isfinite(muscleTendonLength), "muscle–tendon length", muscleTendonLength, "m",
+              "finite");
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double slackLength = muscle.quantities().tendonSlackLength;
+  if (muscleTendonLength <= slackLength) {
+    return {StaticEquilibrium::Why::tendonTooShort, nan, nan, 0};
+  }
+
+  // Between the shortest fibre, where the tendon pulls and the fibre cannot, and the fibre that
+  // leaves the tendon slack, look for every place where the difference falls through zero.
+  const double optimal = muscle.quantities().optimalFibreLength;
+  const double lower = std::max(muscle.thickness(), 1e-6 * optimal);
+  const double upper = std::hypot(muscleTendonLength - slackLength, muscle.thickness());
+  const auto difference = [&](double fibreLength) {
+    return forceDifference(muscle, activation, fibreLength, muscleTendonLength);
+  };
+  constexpr int cells = 64;
+  StaticEquilibrium result{StaticEquilibrium::Why::notBracketed, nan, nan, 0};
+  double a = lower, fa = difference(lower);
+  for (int i = 1; i <= cells; ++i) {
+    const double b = i == cells ? upper : lower + (upper - lower) * i / cells;
+    const double fb = difference(b);
+    if (fa > 0 && fb <= 0 && b > a) {
+      const double root = fb == 0 ? b : bracketedRoot(difference, a, fa, b, fb, 1e-15 * optimal);
+      ++result.count;
+      if (result.count == 1 || std::abs(root - optimal) < std::abs(result.fibreLength - optimal)) {
+        result.fibreLength = root;
+      }
+    }
+    a = b, fa = fb;
+  }
+  if (result.count > 0) {
+    result.tendonForce = muscle.tendonForce(result.fibreLength, muscleTendonLength);
+    const bool loaded = result.tendonForce > 0;
+    result.why = loaded ? StaticEquilibrium::Why::found : StaticEquilibrium::Why::forceFree;
+  } else if (fa >= 0 && fa < 1e-4) {
+    // The fibre does not pull where the tendon goes slack: they part without force.
+    result = {StaticEquilibrium::Why::forceFree, upper, 0, 0};
+  }
+  return result;
+}
+
+const char* describe(StaticEquilibrium::Why why) {
+  switch (why) {
+    case StaticEquilibrium::Why::found:
+      return "fibre and tendon force balance";
+    case StaticEquilibrium::Why::forceFree:
+      return "neither fibre nor tendon carries force; the tendon is just slack";
+    case StaticEquilibrium::Why::tendonTooShort:
+      return "the muscle is shorter than its slack tendon, so nothing holds the fibre";
+    case StaticEquilibrium::Why::notBracketed:
+      return "no fibre length balances the tendon";
+  }
+  return "";
+}
+
+}  // namespace bio

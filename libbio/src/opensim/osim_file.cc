@@ -1,0 +1,103 @@
+#include "bio/opensim/osim_file.h"
+
+#include <fmt/format.h>
+#include <tinyxml2.h>
+
+#include <stdexcept>
+
+#include "bio/tables/file_error.h"
+#include "opensim/merge.h"
+#include "opensim/read_model.h"
+#include "opensim/writing.h"
+#include "tables/text_file.h"
+
+namespace bio {
+namespace {
+
+void parse(tinyxml2::XMLDocument& document, const std::string& text, const std::string& file) {
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
+    throw FileError(file + ": is empty, must be an OpenSim model");
+  }
+  if (document.Parse(text.c_str(), text.size()) != tinyxml2::XML_SUCCESS) {
+    throw FileError(fmt::format("{}:{}: is not well-formed XML ({})", file, document.ErrorLineNum(),
+                                tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID())));
+  }
+}
+
+// OpenSim indents with tabs.
+class Printer : public tinyxml2::XMLPrinter {
+ protected:
+  void PrintSpace(int depth) override {
+    for (int i = 0; i < depth; ++i) Write("\t");
+  }
+};
+
+std::string print(const tinyxml2::XMLDocument& document) {
+  Printer printer;
+  document.Print(&printer);
+  return printer.CStr();
+}
+
+// Reads the text as a reader of the file will, and throws unless that gives the same model.
+void checkText(const std::string& text, const tinyxml2::XMLDocument& wanted, osim::Format format,
+               const std::string& file) {
+  tinyxml2::XMLDocument written, again;
+  parse(written, text, file);
+  osim::buildDocument(again, osim::readModel(written, file), format);
+  const std::string difference =
+      osim::firstDifference(*again.RootElement(), *wanted.RootElement(), 1e-12);
+  if (!difference.empty()) {
+    throw std::invalid_argument(
+        fmt::format("{}: the document cannot express the model: {}", file, difference));
+  }
+}
+
+osim::Format formatOf(const tinyxml2::XMLDocument& document) {
+  const osim::Element* model = document.RootElement()->FirstChildElement("Model");
+  return model->FirstChildElement("JointSet") ? osim::Format::opensim4 : osim::Format::opensim3;
+}
+
+}  // namespace
+
+Model readOsim(const std::filesystem::path& file) {
+  tinyxml2::XMLDocument document;
+  parse(document, readTextFile(file), file.string());
+  return osim::readModel(document, file.string());
+}
+
+void writeOsim(const Model& model, const std::filesystem::path& file) {
+  for (const Muscle& muscle : model.muscles) {
+    if (!muscle.schutte) {
+      throw std::invalid_argument(
+          fmt::format("muscle '{}' is a {}: only Schutte muscles can be "
+                      "written to a fresh document",
+                      muscle.name, muscle.className));
+    }
+  }
+  tinyxml2::XMLDocument document;
+  osim::buildDocument(document, model, osim::Format::opensim4);
+  const std::string text = print(document);
+  checkText(text, document, osim::Format::opensim4, file.string());
+  writeTextFile(file, text);
+}
+
+void rewriteOsim(const std::filesystem::path& original, const Model& model,
+                 const std::filesystem::path& file) {
+  const std::string text = readTextFile(original);
+  tinyxml2::XMLDocument document, before, after;
+  parse(document, text, original.string());
+  const Model old = osim::readModel(document, original.string());
+  const osim::Format format = formatOf(document);
+  osim::buildDocument(before, old, format);
+  osim::buildDocument(after, model, format);
+  if (osim::firstDifference(*before.RootElement(), *after.RootElement(), 0).empty()) {
+    writeTextFile(file, text);
+    return;
+  }
+  osim::applyChanges(*document.RootElement(), *before.RootElement(), *after.RootElement());
+  const std::string changed = print(document);
+  checkText(changed, after, format, file.string());
+  writeTextFile(file, changed);
+}
+
+}  // namespace bio

@@ -1,0 +1,81 @@
+#include "opensim/read_model.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include "bio/tables/file_error.h"
+#include "opensim/reading.h"
+
+namespace bio::osim {
+namespace {
+
+const Element& findModel(const tinyxml2::XMLDocument& document, const Source& source) {
+  const Element* root = document.RootElement();
+  if (!root) throw FileError(source.file + ": holds no XML element, must be an OpenSim model");
+  if (std::string_view(root->Name()) != "OpenSimDocument") {
+    fail(source, *root, fmt::format("root element is {}, must be OpenSimDocument", root->Name()));
+  }
+  const int version = root->IntAttribute("Version", 0);
+  if (version < 10000) {
+    fail(source, *root,
+         fmt::format("Version = '{}', must be 10000 or more",
+                     root->Attribute("Version") ? root->Attribute("Version") : ""));
+  }
+  const Element* model = root->FirstChildElement("Model");
+  if (!model) fail(source, *root, "holds no Model, must hold one");
+  for (const Element* set : childrenOf(model)) {
+    if (set->Attribute("file")) {
+      fail(source, *set,
+           fmt::format("is kept in another file ('{}'), must be in this one",
+                       set->Attribute("file")));
+    }
+  }
+  return *model;
+}
+
+void checkUnits(Reading& reading, const Element& model) {
+  const std::string lengths = readText(reading.source, model, "length_units", "meters");
+  const std::string forces = readText(reading.source, model, "force_units", "N");
+  if (lengths != "meters" && lengths != "m") {
+    reading.model.warnings.push_back(
+        fmt::format("length_units = '{}' is ignored: lengths are read as metres", lengths));
+  }
+  if (forces != "N" && forces != "newtons") {
+    reading.model.warnings.push_back(
+        fmt::format("force_units = '{}' is ignored: forces are read as newtons", forces));
+  }
+}
+
+}  // namespace
+
+Model readModel(const tinyxml2::XMLDocument& document, const std::string& file) {
+  Reading reading;
+  reading.source.file = file;
+  const Element& model = findModel(document, reading.source);
+  for (const Element* object : childrenOf(model.FirstChildElement("defaults"))) {
+    reading.source.defaults.emplace(object->Name(), object);
+  }
+  if (const char* name = model.Attribute("name")) reading.model.name = name;
+  reading.model.credits = readText(reading.source, model, "credits", "");
+  reading.model.publications = readText(reading.source, model, "publications", "");
+  const auto g =
+      readNumbers(reading.source, model, "gravity", "m/s²", 3, std::vector<double>{0, -9.80665, 0});
+  reading.model.gravity = {g[0], g[1], g[2]};
+  if (constexpr double most = 1e4; !(reading.model.gravity.stableNorm() <= most)) {
+    fail(reading.source, model,
+         fmt::format("gravity = ({}, {}, {}) m/s², must be at most {} m/s²", g[0], g[1], g[2],
+                     most));
+  }
+  checkUnits(reading, model);
+  readBodies(reading, model);
+  readFrames(reading, model);
+  readJoints(reading, model);
+  readConstraints(reading, model);
+  readWrapObjects(reading, model);
+  readForces(reading, model);
+  readFitted(reading, model);
+  return std::move(reading.model);
+}
+
+}  // namespace bio::osim

@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+
+#include "bio/forces/coordinate_force.h"
+#include "opensim/writing.h"
+
+namespace bio::osim {
+namespace {
+
+void appendEnabled(const Writing& writing, Element& element, bool enabled) {
+  const bool is4 = writing.format == Format::opensim4;
+  appendFlag(element, is4 ? "appliesForce" : "isDisabled", is4 == enabled);
+}
+
+void appendSchutte(Element& element, const SchutteParameters& p) {
+  appendNumber(element, "min_control", p.minControl);
+  appendNumber(element, "max_control", p.maxControl);
+  appendNumber(element, "max_isometric_force", p.maxIsometricForce);
+  appendNumber(element, "optimal_fiber_length", p.optimalFibreLength);
+  appendNumber(element, "tendon_slack_length", p.tendonSlackLength);
+  appendNumber(element, "pennation_angle_at_optimal", p.pennation);
+  appendNumber(element, "time_scale", p.timeScale);
+  appendNumber(element, "activation1", p.activation1);
+  appendNumber(element, "activation2", p.activation2);
+  appendNumber(element, "damping", p.damping);
+  appendSpline(element, p.tendonForceLength, "tendon_force_length_curve");
+  appendSpline(element, p.activeForceLength, "active_force_length_curve");
+  if (p.passiveForceLength) {
+    appendSpline(element, *p.passiveForceLength, "passive_force_length_curve");
+  }
+}
+
+// value·factor, rounded to 15 digits where that is as near as doubles get, so that 85 stays 85.
+double converted(double value, double factor) {
+  const double exact = value * factor;
+  const double round = std::strtod(fmt::format("{:.15g}", exact).c_str(), nullptr);
+  return std::abs(round - exact) <= 2e-16 * std::abs(exact) ? round : exact;
+}
+
+// OpenSim wants limits of an angle in degrees, stiffness and damping per degree.
+void appendLimitForce(const Writing& writing, Element& parent, const CoordinateLimitForce& force) {
+  const bool angle = findCoordinate(writing.model, force.coordinate).isRotation;
+  const double degrees = angle ? 180 / std::numbers::pi : 1.0;
+  Element& element = append(parent, "CoordinateLimitForce", force.name);
+  appendEnabled(writing, element, force.enabled);
+  appendText(element, "coordinate", force.coordinate);
+  appendNumber(element, "upper_stiffness", converted(force.upperStiffness, 1 / degrees));
+  appendNumber(element, "upper_limit", converted(force.upperLimit, degrees));
+  appendNumber(element, "lower_stiffness", converted(force.lowerStiffness, 1 / degrees));
+  appendNumber(element, "lower_limit", converted(force.lowerLimit, degrees));
+  appendNumber(element, "damping", converted(force.damping, 1 / degrees));
+  appendNumber(element, "transition", converted(force.transition, degrees));
+}
+
+}  // namespace
+
+void appendMuscle(const Writing& writing, Element& parent, const Muscle& muscle) {
+  Element& element = append(parent, muscle.className.c_str(), muscle.name);
+  appendEnabled(writing, element, muscle.enabled);
+  appendPath(writing, element, muscle.path);
+  if (muscle.schutte) appendSchutte(element, *muscle.schutte);
+}
+
+void appendCoordinateForces(const Writing& writing, Element& parent) {
+  for (const CoordinateLimitForce& force : writing.model.limitForces) {
+    appendLimitForce(writing, parent, force);
+  }
+  for (const SpringGeneralizedForce& force : writing.model.springForces) {
+    Element& element = append(parent, "SpringGeneralizedForce", force.name);
+    appendEnabled(writing, element, force.enabled);
+    appendText(element, "coordinate", force.coordinate);
+    appendNumber(element, "stiffness", force.stiffness);
+    appendNumber(element, "rest_length", force.restLength);
+    appendNumber(element, "viscosity", force.viscosity);
+  }
+  for (const ExpressionBasedCoordinateForce& force : writing.model.expressionForces) {
+    Element& element = append(parent, "ExpressionBasedCoordinateForce", force.name);
+    appendEnabled(writing, element, force.enabled);
+    appendText(element, "coordinate", force.coordinate);
+    appendText(element, "expression", plainExpression(force));
+  }
+}
+
+}  // namespace bio::osim

@@ -1,0 +1,416 @@
+#include "bio/path/compiled_path.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "path/path_reach.h"
+#include "path/surface/wrap_candidate.h"
+
+namespace bio {
+namespace {
+
+constexpr std::size_t maxConditions = 6;
+
+// A span and a wrap that might touch.
+struct Encounter {
+  std::size_t span = 0;
+  bool moves = false;
+  bool penetrates = false;
+  double lengthChange = 0;    // of a span that must pass on the other side but meets nothing
+  std::size_t decidedIn = 0;  // the posture that tells the way
+  SpanSurface way;
+};
+
+class Compiler {
+ public:
+  Compiler(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
+           const std::vector<std::string>& wrapAsCylinder, const std::vector<Posture>& postures)
+      : model_(model),
+        skeleton_(skeleton),
+        muscle_(muscle),
+        wrapAsCylinder_(wrapAsCylinder),
+        postures_(postures) {}
+
+  CompiledPath compile() {
+    for (std::size_t i = 0; i < muscle_.path.points.size(); ++i) addNode(i);
+    for (std::size_t i = 0; i < muscle_.path.wraps.size(); ++i) addWrap(i);
+    const std::size_t numVariants = std::size_t{1} << path_.conditions.size();
+    for (std::size_t bits = 0; bits < numVariants; ++bits) addVariant(bits);
+    return std::move(path_);
+  }
+
+ private:
+  // A note once, however many variants it holds for.
+  void note(const std::string& text) {
+    const std::string line = fmt::format("{}: {}", muscle_.name, text);
+    if (std::find(path_.notes.begin(), path_.notes.end(), line) == path_.notes.end()) {
+      path_.notes.push_back(line);
+    }
+  }
+
+  void addNode(std::size_t index) {
+    const PathPoint& point = muscle_.path.points[index];
+    const BodyPlacement& place = skeleton_.placeOf(point.body);
+    PathNode node;
+    node.point = index;
+    node.segment = place.segment;
+    node.X_SB = place.X_SB;
+    Vec3<double> location = point.location;
+    if (point.motion) {
+      CompiledPointMotion motion;
+      bool isFixed = true;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::string& coordinate = point.motion->coordinate[i];
+        if (!coordinate.empty()) motion.source[i] = skeleton_.sourceOf(coordinate);
+        motion.location.emplace_back(point.motion->location[i]);
+        isFixed = isFixed && motion.source[i].freeIndex < 0;
+        location[static_cast<Eigen::Index>(i)] =
+            motion.location[i].evaluate(motion.source[i].value).value;
+      }
+      if (!isFixed) {
+        node.motion = static_cast<int>(path_.motions.size());
+        path_.motions.push_back(std::move(motion));
+      }
+    }
+    node.p_S = place.X_SB.R * location + place.X_SB.p;
+    if (point.condition) {
+      const CompiledCondition condition{skeleton_.sourceOf(point.condition->coordinate),
+                                        point.condition->lower, point.condition->upper};
+      if (condition.source.freeIndex < 0) {
+        const double value = condition.source.value;
+        const bool active = value >= condition.lower - conditionMargin &&
+                            value <= condition.upper + conditionMargin;
+        if (!active) return;
+      } else {
+        node.condition = conditionIndex(*point.condition, condition);
+      }
+    }
+    path_.nodes.push_back(std::move(node));
+  }
+
+  int conditionIndex(const PointCondition& given, const CompiledCondition& condition) {
+    for (std::size_t i = 0; i < conditionKeys_.size(); ++i) {
+      const PointCondition& known = conditionKeys_[i];
+      if (known.coordinate == given.coordinate && known.lower == given.lower &&
+          known.upper == given.upper) {
+        return static_cast<int>(i);
+      }
+    }
+    if (conditionKeys_.size() == maxConditions) {
+      throw std::invalid_argument(
+          fmt::format("muscle '{}' has more than {} different conditions on its points",
+                      muscle_.name, maxConditions));
+    }
+    conditionKeys_.push_back(given);
+    path_.conditions.push_back(condition);
+    return static_cast<int>(conditionKeys_.size()) - 1;
+  }
+
+  void addWrap(std::size_t index) {
+    const PathWrap& wrap = muscle_.path.wraps[index];
+    const WrapObject& object = findWrapObject(model_, wrap.wrapObject);
+    if (!object.active) return;
+    const int numPoints = static_cast<int>(muscle_.path.points.size());
+    const int first = wrap.firstPoint < 1 ? 1 : wrap.firstPoint;
+    const int last = wrap.lastPoint < 1 ? numPoints : std::min(wrap.lastPoint, numPoints);
+    if (first >= last) return;
+    CandidateWrap candidate =
+        candidateWrap(object, skeleton_.placeOf(object.body), index, wrapAsCylinder_);
+    candidate.firstPoint = static_cast<std::size_t>(first - 1);
+    candidate.lastPoint = static_cast<std::size_t>(last - 1);
+    if (candidate.shape) {
+      candidate.surface = path_.surfaces.size();
+      path_.surfaces.push_back(*candidate.shape);
+      if (path_.surfaces.size() > 32) {
+        throw std::invalid_argument(
+            fmt::format("muscle '{}' has more than 32 wrap objects", muscle_.name));
+      }
+    }
+    wraps_.push_back(std::move(candidate));
+  }
+
+  // The path with the conditional points whose bits are set.
+  void addVariant(std::size_t bits) {
+    PathVariant variant;
+    std::vector<std::size_t> active;
+    for (std::size_t i = 0; i < path_.nodes.size(); ++i) {
+      const int condition = path_.nodes[i].condition;
+      if (condition < 0 || ((bits >> condition) & 1) != 0) active.push_back(i);
+    }
+    if (active.size() < 2) {
+      throw std::invalid_argument(
+          fmt::format("muscle '{}' has {} active points in some posture, must have at least 2",
+                      muscle_.name, active.size()));
+    }
+    for (std::size_t i = 0; i + 1 < active.size(); ++i) {
+      PathSpan span{active[i], active[i + 1], false, {}};
+      const PathNode& a = path_.nodes[span.a];
+      const PathNode& b = path_.nodes[span.b];
+      span.moves = a.segment != b.segment || a.motion >= 0 || b.motion >= 0;
+      variant.all.push_back(span);
+    }
+    for (const CandidateWrap& wrap : wraps_) {
+      if (wrap.shape) {
+        assign(wrap, variant, bits);
+      } else {
+        leaveOut(wrap, variant, bits);
+      }
+    }
+    for (const PathSpan& span : variant.all) tellOfSeveral(span, bits);
+    // the spans that stay: their length, once and for all
+    const Posture& posture = postures_.front();
+    for (const PathSpan& span : variant.all) {
+      if (span.moves) {
+        variant.moving.push_back(span);
+      } else {
+        variant.fixedLength += fixedLength(span, posture);
+      }
+    }
+    path_.variants.push_back(std::move(variant));
+  }
+
+  std::string nameOf(const SpanSurface& way) const {
+    return muscle_.path.wraps[path_.surfaces[way.surface].wrap].wrapObject;
+  }
+
+  // A span is led round one object; where it touches two at once, that is said.
+  void tellOfSeveral(const PathSpan& span, std::size_t bits) {
+    if (span.surfaces.size() < 2) return;
+    for (const Posture& posture : postures_) {
+      if (!occurs(bits, posture)) continue;
+      std::vector<std::string> touched;
+      for (const SpanSurface& way : span.surfaces) {
+        if (touches(path_, span, way, posture)) touched.push_back(nameOf(way));
+      }
+      if (touched.size() < 2) continue;
+      warnOfSeveral(span, touched);
+      return;
+    }
+  }
+
+  void warnOfSeveral(const PathSpan& span, const std::vector<std::string>& objects) {
+    const auto point = [&](std::size_t node) {
+      return muscle_.path.points[path_.nodes[node].point].name;
+    };
+    const std::string line = fmt::format(
+        "muscle '{}' touches the wrap objects '{}' at once between its points '{}' and '{}': only "
+        "'{}' is used",
+        muscle_.name, fmt::join(objects, "' and '"), point(span.a), point(span.b), objects.front());
+    if (std::find(path_.warnings.begin(), path_.warnings.end(), line) == path_.warnings.end()) {
+      path_.warnings.push_back(line);
+    }
+  }
+
+  // Whether a posture has exactly the conditions of these bits.
+  bool occurs(std::size_t bits, const Posture& posture) const {
+    for (std::size_t i = 0; i < path_.conditions.size(); ++i) {
+      const CompiledCondition& c = path_.conditions[i];
+      const double q = posture.q[static_cast<std::size_t>(c.source.freeIndex)];
+      const double coordinate = c.source.coupling.evaluate(q).value;
+      const bool active =
+          coordinate >= c.lower - conditionMargin && coordinate <= c.upper + conditionMargin;
+      if (active != (((bits >> i) & 1) != 0)) return false;
+    }
+    return true;
+  }
+
+  bool inRange(const CandidateWrap& wrap, const PathSpan& span) const {
+    return path_.nodes[span.a].point >= wrap.firstPoint &&
+           path_.nodes[span.b].point <= wrap.lastPoint;
+  }
+
+  bool movesAgainst(const CandidateWrap& wrap, const PathSpan& span) const {
+    return span.moves || path_.nodes[span.a].segment != wrap.segment;
+  }
+
+  // Ends of a span in a wrap's frame.
+  std::pair<Vec3<double>, Vec3<double>> ends(const CandidateWrap& wrap, const PathSpan& span,
+                                             const Posture& posture) const {
+    const auto seen = [&](std::size_t node) {
+      const Vec3<double> p_G = nodePosition(path_, path_.nodes[node], posture);
+      return seenFrom(posture, wrap.segment, wrap.X_SC, p_G);
+    };
+    return {seen(span.a), seen(span.b)};
+  }
+
+  SpanSurface wayRound(std::size_t index, const Vec3<double>& P, const Vec3<double>& Q) const {
+    const PathSurface& surface = path_.surfaces[index];
+    SpanSurface way{index, Side::counterclockwise, Way::shorter, {}};
+    if (surface.isSphere) {
+      way.way = sphereWay(surface.quadrant, P, Q);
+    } else {
+      way.side = cylinderSide(surface.quadrant, P, Q);
+    }
+    return way;
+  }
+
+  // Gives a surface to the spans that may touch it.
+  void assign(const CandidateWrap& wrap, PathVariant& variant, std::size_t bits) {
+    const PathSurface& surface = path_.surfaces[wrap.surface];
+    std::vector<Encounter> through, around;
+    for (std::size_t i = 0; i < variant.all.size(); ++i) {
+      const PathSpan& span = variant.all[i];
+      if (!inRange(wrap, span)) continue;
+      Encounter encounter;
+      encounter.span = i;
+      encounter.moves = movesAgainst(wrap, span);
+      const std::size_t numPostures = encounter.moves ? postures_.size() : 1;
+      const double reach = encounter.moves ? 1.02 : 1.0;
+      for (std::size_t k = 0; k < numPostures && !encounter.penetrates; ++k) {
+        if (encounter.moves && !occurs(bits, postures_[k])) continue;
+        const auto [P, Q] = ends(wrap, span, postures_[k]);
+        if (!(closestApproach(surface, P, Q) < reach)) continue;
+        encounter.penetrates = true;
+        encounter.way = wayRound(wrap.surface, P, Q);
+        encounter.decidedIn = k;
+      }
+      if (encounter.penetrates) {
+        keepContinuous(wrap, span, bits, encounter);
+        through.push_back(encounter);
+      } else if (passesWrongSide(wrap, span, encounter)) {
+        keepContinuous(wrap, span, bits, encounter);
+        around.push_back(encounter);
+      }
+    }
+    // A span that stays and goes through the object has it for good.
+    const auto stays =
+        std::find_if(through.begin(), through.end(), [](const Encounter& e) { return !e.moves; });
+    if (stays != through.end()) {
+      give(*stays, variant);
+      return;
+    }
+    for (const Encounter& encounter : through) give(encounter, variant);
+    if (!through.empty() || around.empty()) return;
+    give(*std::min_element(around.begin(), around.end(),
+                           [](const Encounter& a, const Encounter& b) {
+                             return a.lengthChange < b.lengthChange;
+                           }),
+         variant);
+  }
+
+  // Whether a span that never meets the object has to be led round it, because it passes near it on
+  // the side that the quadrant forbids.
+  bool passesWrongSide(const CandidateWrap& wrap, const PathSpan& span,
+                       Encounter& encounter) const {
+    const PathSurface& surface = path_.surfaces[wrap.surface];
+    if (surface.quadrant == WrapQuadrant::all) return false;
+    const auto [P, Q] = ends(wrap, span, postures_.front());
+    if (!(closestApproach(surface, P, Q) < 2)) return false;
+    encounter.way = wayRound(wrap.surface, P, Q);
+    if (surfaceIsOutOfPlay(surface, surface.radius, encounter.way, P, Q)) return false;
+    const Span<double> wrapped = surface.isSphere
+                                     ? wrapSphere(surface.radius, encounter.way.way, P, Q)
+                                     : wrapCylinder(surface.radius, encounter.way.side, P, Q);
+    encounter.lengthChange = wrapped.length - (Q - P).norm();
+    return wrapped.touches;
+  }
+
+  // Where a path round a cylinder slips off it: never in a posture in which the path occurs.
+  void keepContinuous(const CandidateWrap& wrap, const PathSpan& span, std::size_t bits,
+                      Encounter& encounter) const {
+    const PathSurface& surface = path_.surfaces[wrap.surface];
+    if (surface.isSphere || !encounter.moves) return;
+    const auto angle = [&](const std::pair<Vec3<double>, Vec3<double>>& at) {
+      return angleRound(encounter.way.side, at.first, at.second);
+    };
+    const double decided = angle(ends(wrap, span, postures_[encounter.decidedIn]));
+    std::vector<double> angles = {decided};
+    for (const Posture& posture : postures_) {
+      if (!occurs(bits, posture)) continue;
+      const auto at = ends(wrap, span, posture);
+      const double nearest = std::min(at.first.head<2>().norm(), at.second.head<2>().norm());
+      if (nearest > surface.radius) angles.push_back(angle(at));
+    }
+    encounter.way.slip = slipAngle(decided, std::move(angles));
+  }
+
+  void give(const Encounter& encounter, PathVariant& variant) {
+    PathSpan& span = variant.all[encounter.span];
+    if (!encounter.moves && !span.surfaces.empty()) {  // the first object has it
+      if (encounter.penetrates) {
+        warnOfSeveral(span, {nameOf(span.surfaces.front()), nameOf(encounter.way)});
+      }
+      return;
+    }
+    span.surfaces.push_back(encounter.way);
+    span.moves = span.moves || encounter.moves;
+  }
+
+  // An object that cannot be evaluated: no moving span may reach it.
+  void leaveOut(const CandidateWrap& wrap, const PathVariant& variant, std::size_t bits) {
+    bool fixedInRange = false, movingInRange = false;
+    for (const PathSpan& span : variant.all) {
+      if (!inRange(wrap, span)) continue;
+      if (!movesAgainst(wrap, span)) {
+        fixedInRange = true;
+        continue;
+      }
+      movingInRange = true;
+      for (const Posture& posture : postures_) {
+        if (!occurs(bits, posture)) continue;
+        const auto [P, Q] = ends(wrap, span, posture);
+        if (closestApproach(wrap.semiAxes, P, Q) < 1.02) refuse(wrap);
+      }
+    }
+    const char* shape = wrap.isTorus ? "torus" : "ellipsoid";
+    if (fixedInRange) {
+      note(fmt::format("the {} '{}' is ignored: spans that do not move are taken as straight",
+                       shape, wrap.name));
+    } else if (movingInRange) {
+      note(fmt::format("the {} '{}' is ignored: no moving span reaches it", shape, wrap.name));
+    }
+  }
+
+  [[noreturn]] void refuse(const CandidateWrap& wrap) const {
+    const Vec3<double>& s = wrap.semiAxes;
+    const std::string what = wrap.isTorus ? fmt::format("torus '{}'", wrap.name)
+                                          : fmt::format("ellipsoid '{}' (semi-axes {}, {}, {} m)",
+                                                        wrap.name, s[0], s[1], s[2]);
+    const std::string message = fmt::format(
+        "muscle '{}' can touch the {} where it moves; only cylinders and spheres are simulated",
+        muscle_.name, what);
+    const auto equal = [](double a, double b) { return std::abs(a - b) <= 1e-9 * a; };
+    if (wrap.isTorus || !(equal(s[0], s[1]) || equal(s[1], s[2]) || equal(s[2], s[0]))) {
+      throw UnsupportedWrap(message);
+    }
+    throw std::invalid_argument(
+        fmt::format("{}; --wrap-as-cylinder {} treats it as a cylinder", message, wrap.name));
+  }
+
+  double fixedLength(const PathSpan& span, const Posture& posture) const {
+    const Vec3<double> P = nodePosition(path_, path_.nodes[span.a], posture);
+    const Vec3<double> Q = nodePosition(path_, path_.nodes[span.b], posture);
+    if (span.surfaces.empty()) return (Q - P).norm();
+    const SpanSurface& way = span.surfaces.front();
+    const PathSurface& surface = path_.surfaces[way.surface];
+    const Vec3<double> p_CP = seenFrom(posture, surface.segment, surface.X_SC, P);
+    const Vec3<double> p_CQ = seenFrom(posture, surface.segment, surface.X_SC, Q);
+    if (surfaceIsOutOfPlay(surface, surface.radius, way, p_CP, p_CQ)) return (Q - P).norm();
+    return surface.isSphere ? wrapSphere(surface.radius, way.way, p_CP, p_CQ).length
+                            : wrapCylinder(surface.radius, way.side, p_CP, p_CQ).length;
+  }
+
+  const Model& model_;
+  const Skeleton& skeleton_;
+  const Muscle& muscle_;
+  const std::vector<std::string>& wrapAsCylinder_;
+  const std::vector<Posture>& postures_;
+  std::vector<PointCondition> conditionKeys_;
+  std::vector<CandidateWrap> wraps_;
+  CompiledPath path_;
+};
+
+}  // namespace
+
+CompiledPath compilePath(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
+                         const std::vector<std::string>& wrapAsCylinder,
+                         const std::vector<Posture>& postures) {
+  for (const std::string& name : wrapAsCylinder) findWrapObject(model, name);
+  return Compiler(model, skeleton, muscle, wrapAsCylinder, postures).compile();
+}
+
+}  // namespace bio

@@ -1,0 +1,139 @@
+#include "bio/path/length_jumps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <stdexcept>
+
+#include "bio/path/path.h"
+#include "simulation/integrators.h"
+
+namespace bio {
+namespace {
+
+constexpr int jumpCells = 720;
+constexpr double leastJump = 1e-5;    // [m]
+constexpr double suspectJump = 1e-6;  // a kink at lift-off is less than a tenth of it in a cell
+
+/// The length of one muscle along the first coordinate.
+template <int N>
+class LengthAlong {
+ public:
+  LengthAlong(const Skeleton& skeleton, const MusclePath& path)
+      : skeleton_(skeleton),
+        path_(path),
+        moved_(skeleton.numSegments()),
+        q_(skeleton.defaultValues()) {}
+
+  struct At {
+    double value, length, slope;
+  };
+  At at(double value) {
+    q_[0] = value;
+    skeleton_.motions<double, N>(q_, moved_.data());
+    const LengthJet<N> jet = path_.length<N>(q_, moved_.data());
+    return {value, jet.length, jet.dL_dq[0]};
+  }
+
+  /// What the length does between two values beyond the trapezium of its slopes [m].
+  static double surprise(const At& a, const At& b) {
+    return std::abs(b.length - a.length - (a.slope + b.slope) / 2 * (b.value - a.value));
+  }
+
+  /// Adds the jumps between two values.
+  void search(double from, double to, const LengthJump& named, std::vector<LengthJump>& jumps) {
+    At left = at(from);
+    for (int cell = 1; cell <= jumpCells; ++cell) {
+      const At right = at(from + (to - from) * cell / jumpCells);
+      if (surprise(left, right) > suspectJump) narrow(left, right, named, jumps);
+      left = right;
+    }
+  }
+
+ private:
+  // Into the half that surprises more, until nothing smooth is left between.
+  void narrow(At low, At high, const LengthJump& named, std::vector<LengthJump>& jumps) {
+    while (high.value - low.value > 1e-10) {
+      const At middle = at(low.value + (high.value - low.value) / 2);
+      (surprise(low, middle) > surprise(middle, high) ? high : low) = middle;
+    }
+    if (!(std::abs(high.length - low.length) >= leastJump)) return;
+    LengthJump jump = named;
+    jump.value = low.value + (high.value - low.value) / 2;
+    jump.size = high.length - low.length;
+    for (const PathSwitch& s : path_.switches()) {
+      jump.conditional = jump.conditional ||
+                         (s.freeIndex == 0 && s.distance(low.value) * s.distance(high.value) <= 0);
+    }
+    jumps.push_back(jump);
+  }
+
+  const Skeleton& skeleton_;
+  const MusclePath& path_;
+  std::vector<RigidMotion<double, N>> moved_;
+  Eigen::Matrix<double, N, 1> q_;
+};
+
+}  // namespace
+
+std::vector<LengthJump> lengthJumps(const Model& model, const Skeleton& skeleton,
+                                    const std::vector<std::string>& wrapAsCylinder, double from,
+                                    double to) {
+  std::vector<LengthJump> jumps;
+  const std::vector<Posture> postures = samplePostures(skeleton);
+  const Coordinate& coordinate = skeleton.coordinates().front();
+  for (const Muscle& muscle : model.muscles) {
+    if (!muscle.enabled) continue;
+    try {
+      const MusclePath path(model, skeleton, muscle, wrapAsCylinder, postures);
+      if (!path.moves()) continue;
+      LengthJump named;
+      named.muscle = muscle.name;
+      named.coordinate = coordinate.name;
+      named.turns = coordinate.isRotation;
+      stepping::withCoordinates(skeleton.numCoordinates(), [&](auto N) {
+        LengthAlong<decltype(N)::value>(skeleton, path).search(from, to, named, jumps);
+      });
+    } catch (const std::invalid_argument&) {  // no path to look at
+    }
+  }
+  return jumps;
+}
+
+std::vector<LengthJump> lengthJumps(const Model& model, double beyond) {
+  std::set<std::string> dependent;
+  for (const auto& constraint : model.couplers) dependent.insert(constraint.dependent);
+  std::vector<LengthJump> all;
+  for (const Joint& joint : model.joints) {
+    for (const Coordinate& c : joint.coordinates) {
+      if (c.locked || dependent.count(c.name) > 0) continue;
+      const double wide = c.isRotation ? std::numbers::pi : 1.0;
+      const bool isOpen = !(c.rangeMax - c.rangeMin <= 2 * wide);
+      const double lower = isOpen ? c.defaultValue - wide : c.rangeMin;
+      const double upper = isOpen ? c.defaultValue + wide : c.rangeMax;
+      const double more = isOpen ? 0 : beyond * (upper - lower);
+      if (!(upper > lower)) continue;
+      try {
+        const Skeleton skeleton(model, {.freeCoordinates = {c.name}, .lockedValues = {}});
+        const auto found = lengthJumps(model, skeleton, {}, lower - more, upper + more);
+        all.insert(all.end(), found.begin(), found.end());
+      } catch (const std::invalid_argument&) {  // nothing that could be simulated
+      }
+    }
+  }
+  return all;
+}
+
+std::string describe(const LengthJump& jump) {
+  const double value = jump.turns ? jump.value * 180 / std::numbers::pi : jump.value;
+  // a border of a condition is a little beyond its round value
+  const double shown = std::abs(value) < 5e-3 ? 0 : value;
+  return fmt::format("the length of {} jumps by {:.3g} mm at {} = {:.4g} {} ({})", jump.muscle,
+                     1000 * std::abs(jump.size), jump.coordinate, shown, jump.turns ? "deg" : "m",
+                     jump.conditional ? "a conditional point" : "its way round a wrap object");
+}
+
+}  // namespace bio

@@ -1,0 +1,224 @@
+#include "bio/path/path_gradient.h"
+
+#include "bio/path/path_length.h"
+#include "info/autodiff/dual.h"
+
+namespace bio {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// ∂L/∂r of a wrapped span and of its end tangents, through the scalar type.
+struct RadiusDerivatives {
+  double length;
+  Vector3d dL_dP, dL_dQ;
+};
+
+RadiusDerivatives inRadius(const PathSurface& surface, const SpanSurface& way, const Vector3d& P,
+                           const Vector3d& Q) {
+  using D = info::Dual<1>;
+  const D radius(surface.radius, 1, 0);
+  const auto constant = [](const Vector3d& v) { return Vec3<D>(D(v.x()), D(v.y()), D(v.z())); };
+  Vec3<D> from = constant(P), to = constant(Q);
+  for (int i = 0; i < 3; ++i) {
+    from[i].derivatives().setZero();
+    to[i].derivatives().setZero();
+  }
+  const Span<D> span = surface.isSphere ? wrapSphere<D>(radius, way.way, from, to)
+                                        : wrapCylinder<D>(radius, way.side, from, to);
+  const auto slope = [](const Vec3<D>& v) {
+    return Vector3d(v.x().derivatives()[0], v.y().derivatives()[0], v.z().derivatives()[0]);
+  };
+  return {span.length.derivatives()[0], slope(span.dL_dP), slope(span.dL_dQ)};
+}
+
+/// The end of a span in ground, and whether q moves it.
+template <int N>
+PointMotionJet<double, N> endInGround(const CompiledPath& path, const PathNode& node,
+                                      const Eigen::Matrix<double, N, 1>& q,
+                                      const RigidMotion<double, N>* moved) {
+  return detail::nodeJet<double, N>(path, node, node.p_S, q, moved);
+}
+
+/// Adds what a point's location does through covector c in ground with slopes c_k:
+/// R_SBᵀXᵀc, and R_SBᵀ(X_kᵀc + Xᵀc_k).
+template <int N, class Out>
+void addPoint(const PathNode& node, const RigidMotion<double, N>* moved, const Vector3d& c,
+              const std::array<Vector3d, N>& c_k, Out& out) {
+  const RigidMotion<double, N>& X = moved[node.segment];
+  out.col(0) += node.X_SB.R.transpose() * (X.value.R.transpose() * c);
+  for (std::size_t k = 0; k < N; ++k) {
+    out.col(static_cast<Eigen::Index>(k) + 1) +=
+        node.X_SB.R.transpose() * (X.first[k].R.transpose() * c + X.value.R.transpose() * c_k[k]);
+  }
+}
+
+}  // namespace
+
+PathGradients::PathGradients(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
+                             const MusclePath& path)
+    : path_(&path.compiled()),
+      numPoints_(muscle.path.points.size()),
+      numWraps_(muscle.path.wraps.size()),
+      mayTouch_(numWraps_, false),
+      used_(numPoints_, false) {
+  for (const PathNode& node : path_->nodes) used_[node.point] = true;
+  for (const PathSurface& surface : path_->surfaces) {
+    const WrapObject& object = findWrapObject(model, muscle.path.wraps[surface.wrap].wrapObject);
+    SurfaceFrame frame;
+    frame.R_SB = skeleton.placeOf(object.body).X_SB.R;
+    // R_BC = Rx Ry Rz turns about: e_z for the last angle, then Rzᵀe_y, then (Ry Rz)ᵀe_x
+    const Vector3d& o = object.frame.orientation;
+    const Matrix3d Rx = Eigen::AngleAxisd(o.x(), Vector3d::UnitX()).toRotationMatrix();
+    const Matrix3d Ry = Eigen::AngleAxisd(o.y(), Vector3d::UnitY()).toRotationMatrix();
+    const Matrix3d Rz = Eigen::AngleAxisd(o.z(), Vector3d::UnitZ()).toRotationMatrix();
+    // an ellipsoid taken as a cylinder has its axes renamed: surface frame = R_BC·renamed
+    const Matrix3d renamed = (Rx * Ry * Rz).transpose() * frame.R_SB.transpose() * surface.X_SC.R;
+    frame.turnAxes.col(0) = renamed.transpose() * ((Ry * Rz).transpose() * Vector3d::UnitX());
+    frame.turnAxes.col(1) = renamed.transpose() * (Rz.transpose() * Vector3d::UnitY());
+    frame.turnAxes.col(2) = renamed.transpose() * Vector3d::UnitZ();
+    frames_.push_back(frame);
+  }
+  for (const PathVariant& variant : path_->variants) {
+    for (const PathSpan& span : variant.all) {
+      for (const SpanSurface& way : span.surfaces) {
+        mayTouch_[path_->surfaces[way.surface].wrap] = true;
+      }
+    }
+  }
+  // fixed spans have both ends and their surface in one segment: its placement does not matter
+  std::vector<RigidMotion<double, 1>> still(skeleton.numSegments(), identityMotion<double, 1>());
+  const Eigen::Matrix<double, 1, 1> anywhere(0.0);
+  for (const PathVariant& variant : path_->variants) {
+    PathGradient<1> sum = workspace<1>();
+    for (const PathSpan& span : variant.all) {
+      unsigned none = 0;
+      if (!span.moves) addSpan<1>(span, anywhere, still.data(), none, true, sum);
+    }
+    PathGradient<0> constant = workspace<0>();
+    for (std::size_t i = 0; i < numPoints_; ++i) constant.points[i] = sum.points[i].col(0);
+    for (std::size_t i = 0; i < numWraps_; ++i) constant.wraps[i] = sum.wraps[i].col(0);
+    constant_.push_back(std::move(constant));
+  }
+}
+
+template <int N>
+PathGradient<N> PathGradients::workspace() const {
+  PathGradient<N> gradient;
+  gradient.points.assign(numPoints_, PathGradient<N>::OfPoint::Zero());
+  gradient.wraps.assign(numWraps_, PathGradient<N>::OfWrap::Zero());
+  return gradient;
+}
+
+template <int N>
+void PathGradients::addSpan(const PathSpan& span, const Eigen::Matrix<double, N, 1>& q,
+                            const RigidMotion<double, N>* moved, unsigned& usedSurfaces,
+                            bool isFixed, PathGradient<N>& out) const {
+  const PathNode& a = path_->nodes[span.a];
+  const PathNode& b = path_->nodes[span.b];
+  const PointMotionJet<double, N> P_G = endInGround<N>(*path_, a, q, moved);
+  const PointMotionJet<double, N> Q_G = endInGround<N>(*path_, b, q, moved);
+  std::array<Vector3d, N> atP, atQ;  // slopes of the end covectors in ground
+
+  for (const SpanSurface& way : span.surfaces) {
+    const unsigned bit = 1u << way.surface;
+    if ((usedSurfaces & bit) != 0) continue;
+    const PathSurface& surface = path_->surfaces[way.surface];
+    const RigidMotion<double, N>& X = moved[surface.segment];
+    const auto seen = [&](const PointMotionJet<double, N>& x) {
+      detail::SpanEnd<double, N> end;
+      end.jet = detail::seenFrom(X, x);
+      return detail::intoFrame(surface.X_SC, end).jet;
+    };
+    const PointMotionJet<double, N> P = seen(P_G);
+    const PointMotionJet<double, N> Q = seen(Q_G);
+    if (surfaceIsOutOfPlay(surface, surface.radius, way, P.value, Q.value)) {
+      if (isFixed) break;  // the first object has it
+      continue;
+    }
+    const SpanToSecondOrder<double> s =
+        surface.isSphere ? wrapSphereToSecondOrder(surface.radius, way.way, P.value, Q.value)
+                         : wrapCylinderToSecondOrder(surface.radius, way.side, P.value, Q.value);
+    if (!s.span.touches) {
+      if (isFixed) break;
+      continue;
+    }
+    usedSurfaces |= bit;
+    const Vector3d& cP = s.span.dL_dP;
+    const Vector3d& cQ = s.span.dL_dQ;
+    const RadiusDerivatives r = inRadius(surface, way, P.value, Q.value);
+    const SurfaceFrame& frame = frames_[way.surface];
+    auto& wrap = out.wraps[surface.wrap];
+    const Matrix3d intoBody = frame.R_SB.transpose() * surface.X_SC.R;
+    const Matrix3d intoGround = X.value.R * surface.X_SC.R;
+    wrap(0, 0) += r.length;
+    wrap.template block<3, 1>(1, 0) -= intoBody * (cP + cQ);
+    const Vector3d moment = P.value.cross(cP) + Q.value.cross(cQ);
+    wrap.template block<3, 1>(4, 0) -= frame.turnAxes.transpose() * moment;
+    for (std::size_t k = 0; k < N; ++k) {
+      const auto column = static_cast<Eigen::Index>(k) + 1;
+      const Vector3d gP = s.hessian.d2L_dPdP * P.first[k] + s.hessian.d2L_dPdQ * Q.first[k];
+      const Vector3d gQ =
+          s.hessian.d2L_dPdQ.transpose() * P.first[k] + s.hessian.d2L_dQdQ * Q.first[k];
+      wrap(0, column) += r.dL_dP.dot(P.first[k]) + r.dL_dQ.dot(Q.first[k]);
+      wrap.template block<3, 1>(1, column) -= intoBody * (gP + gQ);
+      const Vector3d moment_k =
+          P.value.cross(gP) + P.first[k].cross(cP) + Q.value.cross(gQ) + Q.first[k].cross(cQ);
+      wrap.template block<3, 1>(4, column) -= frame.turnAxes.transpose() * moment_k;
+      const Matrix3d turned = X.first[k].R * surface.X_SC.R;
+      atP[k] = intoGround * gP + turned * cP;
+      atQ[k] = intoGround * gQ + turned * cQ;
+    }
+    addPoint<N>(a, moved, intoGround * cP, atP, out.points[a.point]);
+    addPoint<N>(b, moved, intoGround * cQ, atQ, out.points[b.point]);
+    return;
+  }
+
+  // straight: t = D/L, ∂_k t = (∂_kD − t (t·∂_kD))/L
+  const Vector3d D = Q_G.value - P_G.value;
+  const double perLength = 1 / D.norm();
+  const Vector3d t = D * perLength;
+  for (std::size_t k = 0; k < N; ++k) {
+    const Vector3d D_k = Q_G.first[k] - P_G.first[k];
+    atQ[k] = (D_k - t * t.dot(D_k)) * perLength;
+    atP[k] = -atQ[k];
+  }
+  addPoint<N>(a, moved, -t, atP, out.points[a.point]);
+  addPoint<N>(b, moved, t, atQ, out.points[b.point]);
+}
+
+template <int N>
+void PathGradients::evaluate(const Eigen::Matrix<double, N, 1>& q,
+                             const RigidMotion<double, N>* moved, PathGradient<N>& out) const {
+  const PathVariant& variant = activeVariant(*path_, q);
+  const auto index = static_cast<std::size_t>(&variant - path_->variants.data());
+  const PathGradient<0>& fixed = constant_[index];
+  for (std::size_t i = 0; i < numPoints_; ++i) {
+    out.points[i].col(0) = fixed.points[i];
+    out.points[i].template rightCols<N>().setZero();
+  }
+  for (std::size_t i = 0; i < numWraps_; ++i) {
+    out.wraps[i].col(0) = fixed.wraps[i];
+    out.wraps[i].template rightCols<N>().setZero();
+  }
+  unsigned used = 0;
+  for (const PathSpan& span : variant.moving) {
+    addSpan<N>(span, q, moved, used, false, out);
+  }
+}
+
+template PathGradient<1> PathGradients::workspace<1>() const;
+template PathGradient<2> PathGradients::workspace<2>() const;
+template PathGradient<3> PathGradients::workspace<3>() const;
+template PathGradient<4> PathGradients::workspace<4>() const;
+template void PathGradients::evaluate<1>(const Eigen::Matrix<double, 1, 1>&,
+                                         const RigidMotion<double, 1>*, PathGradient<1>&) const;
+template void PathGradients::evaluate<2>(const Eigen::Matrix<double, 2, 1>&,
+                                         const RigidMotion<double, 2>*, PathGradient<2>&) const;
+template void PathGradients::evaluate<3>(const Eigen::Matrix<double, 3, 1>&,
+                                         const RigidMotion<double, 3>*, PathGradient<3>&) const;
+template void PathGradients::evaluate<4>(const Eigen::Matrix<double, 4, 1>&,
+                                         const RigidMotion<double, 4>*, PathGradient<4>&) const;
+
+}  // namespace bio

@@ -1,0 +1,54 @@
+#include "bio/path/radius_limit.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <numbers>
+
+#include "path/path_reach.h"
+
+namespace bio {
+
+RadiusLimit radiusLimit(const CompiledPath& path, std::size_t wrap,
+                        const std::vector<Posture>& postures) {
+  std::map<std::size_t, RadiusLimit> ofNodes;
+  double radius = 0;
+  for (const Posture& posture : postures) {
+    const PathVariant& variant =
+        activeVariant(path, Eigen::Map<const Eigen::VectorXd>(
+                                posture.q.data(), static_cast<Eigen::Index>(posture.q.size())));
+    for (const PathSpan& span : variant.all) {
+      for (const SpanSurface& way : span.surfaces) {
+        const PathSurface& surface = path.surfaces[way.surface];
+        if (surface.wrap != wrap) continue;
+        radius = surface.radius;
+        for (const std::size_t node : {span.a, span.b}) {
+          const Vec3<double> p_G = nodePosition(path, path.nodes[node], posture);
+          const Vec3<double> p_C = seenFrom(posture, surface.segment, surface.X_SC, p_G);
+          const double distance = surface.isSphere ? p_C.norm() : p_C.head<2>().norm();
+          RadiusLimit& least = ofNodes[node];
+          if (distance < least.radius) least = {distance, path.nodes[node].point, posture.q};
+        }
+      }
+    }
+  }
+  RadiusLimit least;
+  for (const auto& [node, limit] : ofNodes) {
+    if (limit.radius > radius && limit.radius < least.radius) least = limit;
+  }
+  return least;
+}
+
+std::string describe(const RadiusLimit& limit, const Path& path, const Skeleton& skeleton) {
+  std::string text = fmt::format("path point {} lies inside at", path.points[limit.point].name);
+  const auto& coordinates = skeleton.coordinates();
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    const bool turns = coordinates[i].isRotation;
+    text +=
+        fmt::format("{} {} = {:.3g} {}", i == 0 ? "" : ",", coordinates[i].name,
+                    turns ? limit.q[i] * 180 / std::numbers::pi : limit.q[i], turns ? "deg" : "m");
+  }
+  return text;
+}
+
+}  // namespace bio

@@ -1,0 +1,85 @@
+#include "bio/sensitivity/coupled_sensitivity.h"
+
+#include <stdexcept>
+
+#include "sensitivity/sensitivity_pass.h"
+
+namespace bio {
+namespace {
+
+void checkNodes(const ExternalNodes& nodes, const MusculoskeletalSystem& arm) {
+  if (nodes.times.empty()) return;
+  bool rises = nodes.times.size() >= 2;
+  for (std::size_t k = 0; k + 1 < nodes.times.size(); ++k) {
+    rises = rises && nodes.times[k] < nodes.times[k + 1];
+  }
+  if (!rises) {
+    throw std::invalid_argument("nodes of the external force: must be at least 2 and rise in time");
+  }
+  if (nodes.coordinate < 0 || nodes.coordinate >= arm.skeleton().numCoordinates()) {
+    throw std::invalid_argument("nodes of the external force: coordinate must be a free one");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> muscleNames(const MusculoskeletalSystem& arm) {
+  std::vector<std::string> names;
+  for (const SystemMuscle& muscle : arm.muscles()) names.push_back(muscle.name);
+  return names;
+}
+
+SystemState startOf(const MusculoskeletalSystem& arm, const ParameterCatalogue::Setting& setting,
+                    const ExcitationSignal& driven, double time) {
+  SystemState start = initialState(arm, setting.start.q, driven, time);
+  start.qDot = setting.start.qDot;
+  return start;
+}
+
+Trajectory simulateSetting(const MusculoskeletalSystem& arm,
+                           const ParameterCatalogue::Setting& setting,
+                           const ExcitationSignal& trial, const SimulationOptions& options) {
+  const ExcitationSignal driven = drivenExcitation(trial, muscleNames(arm), setting.mapping);
+  return simulate(arm, driven, startOf(arm, setting, driven, options.startTime), options);
+}
+
+SensitivityTrajectory simulateWithSensitivities(const MusculoskeletalSystem& arm,
+                                                const ParameterCatalogue& catalogue,
+                                                const ParameterCatalogue::Setting& setting,
+                                                const std::vector<std::size_t>& wanted,
+                                                const ExcitationSignal& trial,
+                                                const SensitivityOptions& options) {
+  std::vector<ParameterDirection> directions;
+  for (const std::size_t index : wanted) {
+    ParameterDirection& direction = directions.emplace_back();
+    for (const ParameterTarget& target : catalogue.parameters().at(index).targets) {
+      direction.push_back({target, 1, setting.values[static_cast<Eigen::Index>(index)]});
+    }
+  }
+  return simulateWithSensitivities(arm, setting, directions, trial, options);
+}
+
+SensitivityTrajectory simulateWithSensitivities(const MusculoskeletalSystem& arm,
+                                                const ParameterCatalogue::Setting& setting,
+                                                const std::vector<ParameterDirection>& wanted,
+                                                const ExcitationSignal& trial,
+                                                const SensitivityOptions& options) {
+  const Integrator integrator = options.simulation.integrator;
+  if (integrator != Integrator::variational && integrator != Integrator::variationalLeft) {
+    throw std::invalid_argument("sensitivities: integrator must be vi or vi-left");
+  }
+  checkNodes(options.externalNodes, arm);
+  const ExcitationSignal driven = drivenExcitation(trial, muscleNames(arm), setting.mapping);
+  const SystemState start = startOf(arm, setting, driven, options.simulation.startTime);
+  stepping::checkSimulation(arm, driven, start, options.simulation);
+  stepping::StepTape tape;
+  Trajectory motion = stepping::simulateVariational(arm, driven, start, options.simulation, &tape);
+  const stepping::ParameterEffects effects(arm, setting, wanted);
+  return stepping::withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+    stepping::SensitivityPass<decltype(N)::value> pass(
+        arm, effects, setting, trial, driven, static_cast<Eigen::Index>(wanted.size()), options);
+    return pass.run(std::move(motion), start, tape);
+  });
+}
+
+}  // namespace bio

@@ -1,0 +1,148 @@
+#include "sensitivity/parameter_effects.h"
+
+#include <algorithm>
+
+namespace bio::stepping {
+
+ParameterEffects::ParameterEffects(const MusculoskeletalSystem& arm,
+                                   const ParameterCatalogue::Setting& setting,
+                                   const std::vector<ParameterDirection>& wanted)
+    : muscles(arm.numMuscles()) {
+  const Model& model = setting.model;
+  const auto armIndex = [&](const std::string& name) {
+    std::size_t i = 0;
+    while (i < arm.numMuscles() && arm.muscles()[i].name != name) ++i;
+    return i;
+  };
+  Eigen::Index column = 0;
+
+  struct Enter {
+    ParameterEffects& effects;
+    const MusculoskeletalSystem& arm;
+    const Model& model;
+    decltype(armIndex)& indexOf;
+    double value, weight;
+    Eigen::Index column;
+
+    void operator()(const MuscleTarget& target) const {
+      const std::size_t i = indexOf(model.muscles[target.muscle].name);
+      if (i == arm.numMuscles()) return;
+      OfMuscle& muscle = effects.muscles[i];
+      const auto quantity = static_cast<std::size_t>(target.quantity);
+      if (target.quantity == MuscleQuantity::activation1) {
+        muscle.activation.push_back({1, column, weight});
+      } else if (target.quantity == MuscleQuantity::activation2) {
+        muscle.activation.push_back({2, column, weight});
+      } else {
+        // a scale multiplies the curve that the catalogue's model has; the arm's is scaled already
+        const bool isScale =
+            quantity >= static_cast<std::size_t>(MuscleQuantity::tendonStrainScale);
+        muscle.fibre.push_back({quantity, column, isScale ? weight / value : weight});
+        if (target.quantity == MuscleQuantity::timeScale) {
+          muscle.activation.push_back({0, column, weight});
+        }
+      }
+    }
+    void operator()(const PointTarget& target) const {
+      const std::size_t i = indexOf(model.muscles[target.muscle].name);
+      if (i == arm.numMuscles()) return;
+      effects.muscles[i].points.push_back(
+          {3 * target.point + static_cast<std::size_t>(target.axis), column, weight});
+    }
+    void operator()(const WrapTarget& target) const {
+      const std::string& name = model.wrapObjects[target.wrap].name;
+      for (const Muscle& muscle : model.muscles) {
+        const std::size_t i = indexOf(muscle.name);
+        if (i == arm.numMuscles()) continue;
+        for (std::size_t place = 0; place < muscle.path.wraps.size(); ++place) {
+          if (muscle.path.wraps[place].wrapObject != name) continue;
+          effects.muscles[i].wraps.push_back(
+              {7 * place + static_cast<std::size_t>(target.component), column, weight});
+        }
+      }
+    }
+    void operator()(const BodyTarget& target) const {
+      effects.addBody(arm, model.bodies[target.body], target.component, column, weight);
+    }
+    void operator()(const LimitForceTarget& target) const {
+      const CoordinateLimitForce& law = model.limitForces[target.force];
+      effects.limitForces.push_back({law,
+                                     arm.skeleton().indexOf(law.coordinate),
+                                     {static_cast<std::size_t>(target.component), column, weight}});
+    }
+    void operator()(const SpringForceTarget& target) const {
+      const SpringGeneralizedForce& law = model.springForces[target.force];
+      effects.springForces.push_back(
+          {law,
+           arm.skeleton().indexOf(law.coordinate),
+           {static_cast<std::size_t>(target.component), column, weight}});
+    }
+    void operator()(const ExpressionTarget& target) const {
+      const ExpressionBasedCoordinateForce& law = model.expressionForces[target.force];
+      effects.expressions.push_back({CoordinateExpression(law),
+                                     arm.skeleton().indexOf(law.coordinate),
+                                     {target.constant, column, weight}});
+    }
+    void operator()(const GravityTarget& target) const {
+      effects.gravity.push_back({static_cast<std::size_t>(target.axis), column, weight});
+    }
+    void operator()(const EmgTarget& target) const {
+      if (target.what == EmgTarget::What::delay) {
+        effects.delay.push_back({0, column, weight});
+      } else {
+        effects.emg.push_back({target, column, weight});
+      }
+    }
+    void operator()(const InitialTarget& target) const {
+      effects.start.push_back({target.coordinate, target.isSpeed, column, weight});
+    }
+  };
+
+  for (const ParameterDirection& direction : wanted) {
+    for (const TargetStep& step : direction) {
+      std::visit(Enter{*this, arm, model, armIndex, step.value, step.weight, column}, step.target);
+    }
+    ++column;
+  }
+}
+
+void ParameterEffects::addBody(const MusculoskeletalSystem& arm, const Body& body, int component,
+                               Eigen::Index column, double weight) {
+  const BodyPlacement& place = arm.skeleton().placeOf(body.name);
+  if (place.segment == 0) return;
+  const Eigen::Matrix3d& R = place.X_SB.R;
+  const Eigen::Vector3d center = R * body.massCenter + place.X_SB.p;
+  Segment change;
+  if (component == 0) {
+    change.mass = 1;
+    change.massMoment = center;
+    change.secondMoment = center * center.transpose();
+  } else if (component <= 3) {
+    const Eigen::Vector3d axis = R.col(component - 1);
+    change.massMoment = body.mass * axis;
+    change.secondMoment = body.mass * (axis * center.transpose() + center * axis.transpose());
+  } else {
+    // Σ m r rᵀ about the mass centre is ½ tr(I)·1 − I
+    constexpr int rows[] = {0, 1, 2, 0, 0, 1};
+    constexpr int columns[] = {0, 1, 2, 1, 2, 2};
+    const int i = rows[component - 4], j = columns[component - 4];
+    Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+    inertia(i, j) = inertia(j, i) = 1;
+    const Eigen::Matrix3d central = 0.5 * inertia.trace() * Eigen::Matrix3d::Identity() - inertia;
+    change.secondMoment = R * central * R.transpose();
+  }
+  change.mass *= weight;
+  change.massMoment *= weight;
+  change.secondMoment *= weight;
+  // what moves several bodies of a segment is one change of that
+  for (OfSegment& other : segments) {
+    if (other.segment != place.segment || other.column != column) continue;
+    other.change.mass += change.mass;
+    other.change.massMoment += change.massMoment;
+    other.change.secondMoment += change.secondMoment;
+    return;
+  }
+  segments.push_back({place.segment, std::move(change), column});
+}
+
+}  // namespace bio::stepping

@@ -1,0 +1,80 @@
+#pragma once
+
+// Where parameters enter the equations of a step; not public.
+
+#include <vector>
+
+#include "bio/parameters/parameters.h"
+#include "bio/path/path_gradient.h"
+
+namespace bio::stepping {
+
+/// column += factor·(derivative in an elementary quantity)
+struct QuantityEffect {
+  std::size_t quantity;  ///< which one, of its kind
+  Eigen::Index column;
+  double factor = 1;
+};
+
+/// The columns of wanted parameters sorted by what they touch.
+class ParameterEffects {
+ public:
+  ParameterEffects(const MusculoskeletalSystem& arm, const ParameterCatalogue::Setting& setting,
+                   const std::vector<ParameterDirection>& wanted);
+
+  struct OfMuscle {
+    std::vector<QuantityEffect> fibre;       ///< quantity: MuscleQuantity below activation1
+    std::vector<QuantityEffect> activation;  ///< quantity: 0 time scale, 1 activation1, 2 …2
+    std::vector<QuantityEffect> points;      ///< quantity: 3·point + axis
+    std::vector<QuantityEffect> wraps;       ///< quantity: 7·wrap + component
+    bool hasGeometry() const { return !points.empty() || !wraps.empty(); }
+  };
+  struct OfSegment {
+    std::size_t segment;
+    Segment change;  ///< derivative of its mass, first and second moments
+    Eigen::Index column;
+  };
+  struct OfLimitForce {
+    CoordinateLimitForce law;
+    int coordinate;
+    QuantityEffect effect;
+  };
+  struct OfSpringForce {
+    SpringGeneralizedForce law;
+    int coordinate;
+    QuantityEffect effect;
+  };
+  struct OfExpression {
+    CoordinateExpression law;
+    int coordinate;
+    QuantityEffect effect;  ///< quantity: constant
+  };
+  struct OfStart {
+    int coordinate;
+    bool isSpeed;
+    Eigen::Index column;
+    double weight;
+  };
+  /// ∂u/∂θ at the rows of the trial.
+  struct OfEmg {
+    EmgTarget target;
+    Eigen::Index column;
+    double weight;
+  };
+
+  std::vector<OfMuscle> muscles;
+  std::vector<OfSegment> segments;
+  std::vector<QuantityEffect> gravity;  ///< quantity: axis
+  std::vector<OfLimitForce> limitForces;
+  std::vector<OfSpringForce> springForces;
+  std::vector<OfExpression> expressions;
+  std::vector<OfStart> start;
+  std::vector<OfEmg> emg;  ///< all but the delay
+  std::vector<QuantityEffect> delay;
+
+ private:
+  void addBody(const MusculoskeletalSystem& arm, const Body& body, int component,
+               Eigen::Index column, double weight);
+};
+
+}  // namespace bio::stepping

@@ -1,0 +1,117 @@
+#pragma once
+
+// Rows of a run's sensitivities; not public.
+
+#include "sensitivity/parameter_jacobian.h"
+
+namespace bio::stepping {
+
+/// Writes d(motion)/dθ row by row, as SensitivityTrajectory has it.
+template <int N>
+class SensitivityRecorder {
+ public:
+  using Index = Eigen::Index;
+  using Vector = Eigen::Matrix<double, N, 1>;
+  using Matrix = Eigen::Matrix<double, N, N>;
+  using State = SensitivityState<N>;
+
+  /// @param result  holds the motion already
+  SensitivityRecorder(const MusculoskeletalSystem& arm, const SensitivityOptions& options,
+                      SystemConfiguration<N>& configuration, DirectEffects<N>& direct,
+                      const SensitivityColumns& columns, SensitivityTrajectory& result)
+      : arm_(arm),
+        muscles_(options.muscles),
+        configuration_(configuration),
+        direct_(direct),
+        result_(result),
+        rows_(static_cast<Index>(result.motion.time.size())) {
+    const auto room = [&](std::size_t count) {
+      return std::vector<SensitivityMatrix>(count,
+                                            SensitivityMatrix(rows_, columns.numParameters()));
+    };
+    result.q = room(N);
+    result.qDot = room(N);
+    if (muscles_) {
+      result.fibreLength = result.activation = result.tendonForce = room(arm.numMuscles());
+    }
+    const auto numNodes = static_cast<Index>(columns.nodes().times.size());
+    if (numNodes > 0) {
+      result.qOfNodes.assign(N, SensitivityMatrix::Zero(rows_, numNodes));
+      result.qDotOfNodes = result.qOfNodes;
+    }
+  }
+
+  /// The next row of the motion, if there is one.
+  void add(const State& state) {
+    if (row_ == rows_) return;
+    const Vector q = result_.motion.q.col(row_);
+    const Vector qDot = result_.motion.qDot.col(row_);
+    if (muscles_) {
+      configuration_.moveTo(q);
+    } else if (!arm_.skeleton().hasConstantInertia() || direct_.changesInertia()) {
+      configuration_.moveSkeletonTo(q);
+    }
+    addCoordinates(qDot, state);
+    for (std::size_t i = 0; muscles_ && i < arm_.numMuscles(); ++i) addMuscle(i, q, state);
+    ++row_;
+  }
+
+ private:
+  /// q̇ = M⁻¹p
+  void addCoordinates(const Vector& qDot, const State& state) {
+    const InertiaJet<N>& inertia = configuration_.inertia();
+    direct_.computeInertia(qDot);
+    momentum_ = state.dp - direct_.momentum();
+    if (!arm_.skeleton().hasConstantInertia()) {
+      for (int k = 0; k < N; ++k) {
+        momentum_ -= (inertia.dM[static_cast<std::size_t>(k)] * qDot) * state.dq.row(k);
+      }
+    }
+    const Matrix perMass = inertia.massMatrix.inverse();
+    speed_.noalias() = perMass * momentum_;
+    const Index parameters = state.columns.numParameters();
+    for (int k = 0; k < N; ++k) {
+      const auto sk = static_cast<std::size_t>(k);
+      result_.q[sk].row(row_) = state.dq.row(k).head(parameters);
+      result_.qDot[sk].row(row_) = speed_.row(k).head(parameters);
+      if (state.columns.nodes().times.empty()) continue;
+      const Index begun = state.columns.numBegun();
+      result_.qOfNodes[sk].row(row_).head(begun) = state.dq.row(k).tail(begun);
+      result_.qDotOfNodes[sk].row(row_).head(begun) = speed_.row(k).tail(begun);
+    }
+  }
+
+  void addMuscle(std::size_t i, const Vector& q, const State& state) {
+    const auto si = static_cast<Index>(i);
+    const Index parameters = state.columns.numParameters();
+    const SchutteMuscle<double>& muscle = arm_.muscles()[i].muscle;
+    const LengthJet<N>& path = configuration_.length(i);
+    const double l = result_.motion.fibreLength(si, row_);
+    const double activation = result_.motion.activation(si, row_);
+    const FibreRateDerivatives r = fibreRateDerivatives(muscle, activation, l, path.length);
+    const FibreParameterDerivatives d =
+        fibreParameterDerivatives(muscle, activation, l, path.length);
+    result_.fibreLength[i].row(row_) = state.fibre.row(si).head(parameters);
+    state.activation.record(si, result_.activation[i].row(row_));
+    auto force = result_.tendonForce[i].row(row_);
+    force = (r.dF_dFibreLength * state.fibre.row(si) +
+             r.dF_dMuscleTendonLength * (path.dL_dq.transpose() * state.dq))
+                .head(parameters);
+    for (const QuantityEffect& effect : direct_.effects().muscles[i].fibre) {
+      force[effect.column] += effect.factor * d.dF[effect.quantity];
+    }
+    direct_.forGeometry(i, q, [&](const QuantityEffect& effect, const auto& gradient) {
+      force[effect.column] += effect.factor * r.dF_dMuscleTendonLength * gradient[0];
+    });
+  }
+
+  const MusculoskeletalSystem& arm_;
+  bool muscles_;
+  SystemConfiguration<N>& configuration_;
+  DirectEffects<N>& direct_;
+  SensitivityTrajectory& result_;
+  Index rows_, row_ = 0;
+  typename State::Rows momentum_, speed_;
+};
+
+}  // namespace bio::stepping

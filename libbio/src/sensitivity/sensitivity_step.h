@@ -1,0 +1,219 @@
+#pragma once
+
+// A step of the variational integrator, differentiated; not public.
+
+#include "sensitivity/parameter_jacobian.h"
+#include "sensitivity/step_tape.h"
+
+namespace bio::stepping {
+
+/// Carries d(state)/dθ over a step r(z′, z, θ) = 0 by the implicit function theorem.
+template <int N>
+class SensitivityStep {
+ public:
+  using Index = Eigen::Index;
+  using RowVector = Eigen::RowVectorXd;
+  using Vector = Eigen::Matrix<double, N, 1>;
+  using Matrix = Eigen::Matrix<double, N, N>;
+  using State = SensitivityState<N>;
+  using Rows = typename State::Rows;
+
+  SensitivityStep(const MusculoskeletalSystem& arm, const SimulationOptions& options,
+                  SystemConfiguration<N>& configuration, DirectEffects<N>& direct, Index columns)
+      : arm_(arm),
+        options_(options),
+        symmetric_(options.integrator == Integrator::variational),
+        configuration_(configuration),
+        direct_(direct),
+        through_(arm.numMuscles()),
+        pieces_(arm.numMuscles()) {
+    forward_.setZero(N, columns);
+    force_.setZero(N, columns);
+    trialFibre_.setZero(static_cast<Index>(arm.numMuscles()), columns);
+    row_.setZero(columns);
+  }
+
+  void widen(const SensitivityColumns& columns) {
+    for (Rows* rows : {&forward_, &force_}) columns.widen(*rows);
+    columns.widen(trialFibre_);
+    for (RowVector* row : {&row_, &middleTime_}) columns.widen(*row);
+  }
+
+  /// Part i of the tape, from a time to a time with their derivatives; null: fixed.
+  void advance(const StepTape& tape, std::size_t i, const RowVector* dt0, const RowVector* dt1,
+               State& state) {
+    const StepTape::Part& part = tape.parts()[i];
+    const double t0 = tape.times()[part.begin].value, t1 = tape.times()[part.end].value;
+    const double h = t1 - t0;
+    const double tMiddle = t0 + h / 2;
+    const double share = symmetric_ ? h / 2 : h;  // of the forces in F⁻
+    const double endShare = symmetric_ ? share : 0;
+    const Vector q0 = tape.q(i), q1 = tape.q(i + 1);
+    const Vector q_m = (q0 + q1) / 2;
+    const Vector v = (q1 - q0) / h;
+    const auto l0 = tape.fibreLength(i), l1 = tape.fibreLength(i + 1);
+    const auto activation = tape.middleActivation(i + 1);
+    const bool timeMoves = dt0 || dt1;
+    if (timeMoves) {
+      state.activation.spread(state.columns);
+      row_.setZero();
+      if (dt1) row_ += *dt1;
+      if (dt0) row_ -= *dt0;  // dh
+      middleTime_ = row_ / 2;
+      if (dt0) middleTime_ += *dt0;
+    }
+
+    // activations at the middle and at the end
+    state.activation.advance({t0, dt0}, {tMiddle, timeMoves ? &middleTime_ : nullptr}, {t1, dt1},
+                             tape.activation(i), activation);
+
+    configuration_.moveTo(q_m);
+    const InertiaJet<N>& inertia = configuration_.inertia();
+
+    // skeleton: (M v) and L_q = ½ vᵀ∂M v − ∂V over the middle configuration and the speed
+    Vector L_q = -inertia.dV;
+    Matrix Mv_q = Matrix::Zero();
+    Matrix L_qq = -inertia.d2V;
+    Matrix L_qv = Matrix::Zero();
+    if (!arm_.skeleton().hasConstantInertia()) {
+      for (int k = 0; k < N; ++k) {
+        const Vector M_k_v = inertia.dM[static_cast<std::size_t>(k)] * v;
+        L_q[k] += v.dot(M_k_v) / 2;
+        Mv_q.col(k) = M_k_v;
+        L_qv.row(k) = M_k_v.transpose();
+        for (int j = 0; j < N; ++j) {
+          L_qq(k, j) += v.dot(inertia.d2M[static_cast<std::size_t>(pairIndex(k, j))] * v) / 2;
+        }
+      }
+    }
+
+    // passive coordinate forces
+    Vector f = Vector::Zero();
+    Matrix f_q = Matrix::Zero();
+    Matrix f_v = Matrix::Zero();
+    arm_.coordinateForces().template add<N>(q_m, v, f, f_q, f_v);
+    force_.setZero();  // what of df does not go through dq′
+    direct_.addPassiveForces(q_m, v, force_);
+    if (!options_.externalForce.empty()) {
+      const ExternalForce::At external = options_.externalForce.at(tMiddle);
+      f += external.value;
+      if (timeMoves) force_ += external.slope * middleTime_;
+    }
+    state.columns.addNodes(tMiddle, force_);
+
+    // muscles: dℓ′ = trialFibre + (V_L/2J) ∂ℓ·dq′
+    Matrix f_end = Matrix::Zero();  // df through the fibres that dq′ moves
+    for (std::size_t m = 0; m < arm_.numMuscles(); ++m) {
+      const auto sm = static_cast<Index>(m);
+      const SchutteMuscle<double>& muscle = arm_.muscles()[m].muscle;
+      const LengthJet<N>& path = configuration_.length(m);
+      const double l_m = (l0[sm] + l1[sm]) / 2;
+      const FibreRateDerivatives r =
+          fibreRateDerivatives(muscle, activation[sm], l_m, path.length, pieces_[m]);
+      const double perJ = 1 / (1 / h - r.dV_dFibreLength / 2);
+      auto trial = trialFibre_.row(sm);
+      const double half = r.dV_dMuscleTendonLength / 2 * perJ;
+      trial = ((1 / h + r.dV_dFibreLength / 2) * perJ) * state.fibre.row(sm) +
+              (half * path.dL_dq[0]) * state.dq.row(0);
+      for (int k = 1; k < N; ++k) trial += (half * path.dL_dq[k]) * state.dq.row(k);
+      state.activation.add(r.dV_dActivation * perJ, state.activation.middle(), sm, trial);
+      if (timeMoves) trial += ((l1[sm] - l0[sm]) / (h * h) * perJ) * row_;
+      addMuscleParameters(m, q_m, activation[sm], l_m, path, r, perJ, trial);
+
+      f -= r.tendonForce * path.dL_dq;
+      f_q.noalias() -= (r.dF_dMuscleTendonLength * path.dL_dq) * path.dL_dq.transpose();
+      f_q -= r.tendonForce * path.d2L_dq2;
+      const double G = r.dF_dFibreLength / 2;
+      f_end.noalias() -= (G * half * path.dL_dq) * path.dL_dq.transpose();
+      for (int k = 0; k < N; ++k) {
+        force_.row(k) -= (G * path.dL_dq[k]) * (state.fibre.row(sm) + trial);
+      }
+    }
+
+    // linear in the ends: x_end = x_q/2 + x_v/h, x_begin = x_q/2 − x_v/h, x_h = −x_v v/h
+    const Matrix& M = inertia.massMatrix;
+    const Matrix residual_q = Mv_q - h / 2 * L_qq - share * f_q;
+    const Matrix residual_v = M - h / 2 * L_qv - share * f_v;
+    const Matrix momentum_q = Mv_q + h / 2 * L_qq + endShare * f_q;
+    const Matrix momentum_v = M + h / 2 * L_qv + endShare * f_v;
+    direct_.computeInertia(v);
+
+    // R: (∂R/∂q′ − …) dq′ = −(all the rest)
+    const Matrix J = residual_q / 2 + residual_v / h - share * f_end;
+    const Matrix perJ = J.inverse();
+    const Matrix atBegin = residual_q / 2 - residual_v / h;
+    forward_.noalias() = (-perJ * atBegin) * state.dq;
+    forward_.noalias() += perJ * state.dp;
+    forward_.noalias() += (share * perJ) * force_;
+    if (direct_.changesInertia()) {
+      forward_.noalias() -= perJ * direct_.momentum();
+      forward_.noalias() += (h / 2 * perJ) * direct_.slope();
+    }
+    if (timeMoves) {
+      const Vector inTime = -residual_v * v / h - L_q / 2 - share / h * f;
+      forward_.noalias() -= (perJ * inTime) * row_;
+    }
+
+    // p′
+    const Matrix endToEnd = momentum_q / 2 + momentum_v / h + endShare * f_end;
+    const Matrix beginToEnd = momentum_q / 2 - momentum_v / h;
+    state.dp.noalias() = endToEnd * forward_;
+    state.dp.noalias() += beginToEnd * state.dq;
+    if (direct_.changesInertia()) state.dp += direct_.momentum() + h / 2 * direct_.slope();
+    if (symmetric_) state.dp += endShare * force_;
+    if (timeMoves) {
+      const Vector inTime = -momentum_v * v / h + L_q / 2 + endShare / h * f;
+      state.dp.noalias() += inTime * row_;
+    }
+
+    // ℓ′ and q′
+    for (std::size_t m = 0; m < arm_.numMuscles(); ++m) {
+      const auto sm = static_cast<Index>(m);
+      const LengthJet<N>& path = configuration_.length(m);
+      auto fibre = state.fibre.row(sm);
+      fibre = trialFibre_.row(sm) + (through_[m] * path.dL_dq[0]) * forward_.row(0);
+      for (int k = 1; k < N; ++k) fibre += (through_[m] * path.dL_dq[k]) * forward_.row(k);
+    }
+    state.dq.swap(forward_);
+  }
+
+ private:
+  /// ∂r/∂θ of one muscle: into its fibre's row and into the force on the skeleton.
+  template <class Row>
+  void addMuscleParameters(std::size_t m, const Vector& q, double activation, double l_m,
+                           const LengthJet<N>& path, const FibreRateDerivatives& r, double perJ,
+                           Row& trial) {
+    through_[m] = r.dV_dMuscleTendonLength / 2 * perJ;
+    const auto& effects = direct_.effects().muscles[m];
+    if (!effects.fibre.empty()) {
+      const FibreParameterDerivatives d =
+          fibreParameterDerivatives(arm_.muscles()[m].muscle, activation, l_m, path.length);
+      for (const QuantityEffect& effect : effects.fibre) {
+        trial[effect.column] += effect.factor * perJ * d.dV[effect.quantity];
+        force_.col(effect.column) -= effect.factor * d.dF[effect.quantity] * path.dL_dq;
+      }
+    }
+    direct_.forGeometry(m, q, [&](const QuantityEffect& effect, const auto& gradient) {
+      trial[effect.column] += effect.factor * r.dV_dMuscleTendonLength * perJ * gradient[0];
+      for (int k = 0; k < N; ++k) {
+        force_(k, effect.column) -=
+            effect.factor * (r.dF_dMuscleTendonLength * gradient[0] * path.dL_dq[k] +
+                             r.tendonForce * gradient[1 + k]);
+      }
+    });
+  }
+
+  const MusculoskeletalSystem& arm_;
+  const SimulationOptions& options_;
+  bool symmetric_;
+  SystemConfiguration<N>& configuration_;
+  DirectEffects<N>& direct_;
+  std::vector<double> through_;        ///< (V_L/2J) of each muscle
+  std::vector<SchuttePieces> pieces_;  ///< of each muscle's last state
+  Rows forward_;                       ///< dq′/dθ
+  Rows force_;                         ///< df/dθ but through dq′
+  SensitivityMatrix trialFibre_;       ///< dℓ′/dθ but through dq′
+  RowVector row_, middleTime_;         ///< dh/dθ and that of the step's middle
+};
+
+}  // namespace bio::stepping

@@ -1,0 +1,122 @@
+#pragma once
+
+// Pieces shared by the integrators of coupled.h; not part of the public interface.
+
+#include <chrono>
+#include <string>
+
+#include "bio/simulation/simulate.h"
+
+namespace bio::stepping {
+
+/// Calls function(std::integral_constant<int, N>) with N = number of free coordinates.
+template <class F>
+decltype(auto) withCoordinates(int count, F&& function) {
+  switch (count) {
+    case 1:
+      return function(std::integral_constant<int, 1>{});
+    case 2:
+      return function(std::integral_constant<int, 2>{});
+    case 3:
+      return function(std::integral_constant<int, 3>{});
+    case 4:
+      return function(std::integral_constant<int, 4>{});
+    default:
+      throw std::invalid_argument("1 to 4 free coordinates can be simulated");
+  }
+}
+
+/// Trajectory with room for `rows` rows, filled from the front.
+class Recorder {
+ public:
+  Recorder(const MusculoskeletalSystem& arm, std::size_t rows) {
+    const auto n = static_cast<Eigen::Index>(arm.numMuscles());
+    const auto N = static_cast<Eigen::Index>(arm.skeleton().numCoordinates());
+    const auto K = static_cast<Eigen::Index>(rows);
+    trajectory_.time.reserve(rows);
+    trajectory_.q.resize(N, K);
+    trajectory_.qDot.resize(N, K);
+    trajectory_.activation.resize(n, K);
+    trajectory_.fibreLength.resize(n, K);
+    trajectory_.muscleWork.resize(K);
+    trajectory_.passiveWork.resize(K);
+    trajectory_.externalWork.resize(K);
+  }
+
+  template <class Q, class QDot, class A, class L>
+  void add(double time, const Q& q, const QDot& qDot, const A& activation, const L& fibreLength,
+           double muscleWork, double passiveWork, double externalWork) {
+    const auto k = static_cast<Eigen::Index>(trajectory_.time.size());
+    trajectory_.time.push_back(time);
+    trajectory_.q.col(k) = q;
+    trajectory_.qDot.col(k) = qDot;
+    trajectory_.activation.col(k) = activation;
+    trajectory_.fibreLength.col(k) = fibreLength;
+    trajectory_.muscleWork[k] = muscleWork;
+    trajectory_.passiveWork[k] = passiveWork;
+    trajectory_.externalWork[k] = externalWork;
+  }
+
+  /// Cuts the unused columns off.
+  Trajectory finish() {
+    const auto K = static_cast<Eigen::Index>(trajectory_.time.size());
+    trajectory_.q.conservativeResize(Eigen::NoChange, K);
+    trajectory_.qDot.conservativeResize(Eigen::NoChange, K);
+    trajectory_.activation.conservativeResize(Eigen::NoChange, K);
+    trajectory_.fibreLength.conservativeResize(Eigen::NoChange, K);
+    trajectory_.muscleWork.conservativeResize(K);
+    trajectory_.passiveWork.conservativeResize(K);
+    trajectory_.externalWork.conservativeResize(K);
+    return std::move(trajectory_);
+  }
+
+  Trajectory& trajectory() { return trajectory_; }
+
+ private:
+  Trajectory trajectory_;
+};
+
+/// Number of output rows of a fixed step, the start included; the last step may be shorter.
+inline std::size_t numRows(const SimulationOptions& options) {
+  return static_cast<std::size_t>(std::ceil(options.duration / options.step - 1e-9)) + 1;
+}
+
+/// Time of row k, the end exactly.
+inline double rowTime(const SimulationOptions& options, std::size_t k) {
+  return options.startTime + std::min(static_cast<double>(k) * options.step, options.duration);
+}
+
+/// Seconds since construction.
+class StopWatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Forces and their derivatives that muscles and passive laws exert at a configuration.
+template <int N>
+struct GeneralisedForce {
+  Eigen::Matrix<double, N, 1> muscle;  ///< −Σ F ∂ℓ/∂q
+  Eigen::Matrix<double, N, 1> passive;
+};
+
+/// What simulate() requires of its arguments. @throws std::invalid_argument
+void checkSimulation(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+                     const SystemState& start, const SimulationOptions& options);
+
+class StepTape;
+
+/// @param tape takes down every part of a step that was accepted, for sensitivities; may be null
+Trajectory simulateVariational(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+                               const SystemState& start, const SimulationOptions& options,
+                               StepTape* tape = nullptr);
+Trajectory simulateRungeKutta4(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+                               const SystemState& start, const SimulationOptions& options);
+Trajectory simulateCvode(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+                         const SystemState& start, const SimulationOptions& options);
+
+}  // namespace bio::stepping

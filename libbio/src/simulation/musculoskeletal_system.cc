@@ -1,0 +1,116 @@
+#include "bio/simulation/musculoskeletal_system.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+
+#include "model/plausible.h"
+#include "simulation/integrators.h"
+#include "skeleton/moved_mass.h"
+
+namespace bio {
+namespace {
+
+/// [m]
+double defaultLength(const Skeleton& skeleton, const MusclePath& path) {
+  return stepping::withCoordinates(skeleton.numCoordinates(), [&](auto N) {
+    constexpr int count = decltype(N)::value;
+    std::vector<RigidMotion<double, count>> moved(skeleton.numSegments());
+    const Eigen::Matrix<double, count, 1> q = skeleton.defaultValues();
+    skeleton.motions<double, count>(q, moved.data());
+    return path.length<count>(q, moved.data()).length;
+  });
+}
+
+}  // namespace
+
+MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOptions& options)
+    : MusculoskeletalSystem(model, options, nullptr, {}) {}
+
+MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOptions& options,
+                                             const MusculoskeletalSystem& like,
+                                             const std::vector<std::string>& shaped)
+    : MusculoskeletalSystem(model, options, &like, shaped) {}
+
+const MusclePath* MusculoskeletalSystem::pathOf(const std::string& muscle) const {
+  for (const SystemMuscle& one : muscles_) {
+    if (one.name == muscle) return &one.path;
+  }
+  return nullptr;
+}
+
+MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOptions& options,
+                                             const MusculoskeletalSystem* like,
+                                             const std::vector<std::string>& shaped)
+    : skeleton_(model, options.skeleton), coordinateForces_(model, skeleton_) {
+  if (!like) {
+    requireMovedMass(model, skeleton_);
+    warnings_ = lockRemarks(model, options.skeleton);
+  }
+  std::vector<Posture> postures;  // sampled for the first path that is compiled
+  for (const Muscle& muscle : model.muscles) {
+    if (!muscle.enabled) {
+      notes_.push_back(fmt::format("muscle '{}' is switched off in the model", muscle.name));
+      continue;
+    }
+    std::optional<MusclePath> compiled;
+    const bool isShaped = std::find(shaped.begin(), shaped.end(), muscle.name) != shaped.end();
+    const MusclePath* ready = like && !isShaped ? like->pathOf(muscle.name) : nullptr;
+    if (like && !isShaped && !ready) continue;  // left out there, for a reason that still holds
+    try {
+      if (ready) {
+        compiled = *ready;
+      } else {
+        if (postures.empty()) postures = samplePostures(skeleton_);
+        compiled.emplace(model, skeleton_, muscle, options.wrapAsCylinder, postures);
+      }
+    } catch (const UnsupportedWrap& e) {
+      warnings_.push_back(fmt::format("{}: the muscle is left out", e.what()));
+      continue;
+    }
+    MusclePath& path = *compiled;
+    if (!like) {
+      warnings_.insert(warnings_.end(), path.warnings().begin(), path.warnings().end());
+      if (const double length = defaultLength(skeleton_, path); length < shortestPath) {
+        warnings_.push_back(
+            fmt::format("muscle '{}': its path is {:.3g} m long in the default "
+                        "posture, usually more than 1 mm",
+                        muscle.name, length));
+      }
+    }
+    if (!path.moves()) {
+      notes_.push_back(
+          fmt::format("muscle '{}' is left out: no free coordinate moves it", muscle.name));
+      continue;
+    }
+    if (!muscle.schutte) {
+      throw std::invalid_argument(
+          fmt::format("muscle '{}' is a {}; only Schutte1993Muscle_Deprecated can be simulated",
+                      muscle.name, muscle.className));
+    }
+    if (options.tabulatePaths && !like) path.tabulate(skeleton_);
+    for (const std::string& note : path.notes()) notes_.push_back(note);
+    for (const PathSwitch& s : path.switches()) {
+      const bool known =
+          std::any_of(switches_.begin(), switches_.end(), [&](const PathSwitch& other) {
+            return other.freeIndex == s.freeIndex && other.value == s.value;
+          });
+      if (!known) switches_.push_back(s);
+    }
+    const SchutteParameters& s = *muscle.schutte;
+    try {
+      curves_.push_back(std::make_unique<const SchutteCurves>(s));
+      muscles_.push_back(
+          {muscle.name,
+           SchutteMuscle<double>(schutteQuantities(s), *curves_.back(), options.muscle),
+           SchutteActivation<double>{s.timeScale, s.activation1, s.activation2}, std::move(path)});
+    } catch (const std::invalid_argument& e) {
+      throw std::invalid_argument(fmt::format("muscle '{}': {}", muscle.name, e.what()));
+    }
+  }
+  if (muscles_.empty()) notes_.push_back("no muscle acts on the free coordinates");
+}
+
+}  // namespace bio

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "bio/simulation/musculoskeletal_system.h"
+#include "simulation/simd/lane_model.h"
+
+namespace bio::lanes {
+
+/// The lists behind a LaneModel.
+template <class Of>
+struct HingeModel {
+  using T = typename Of::Number;
+  std::vector<LaneMuscle<Of>> muscles;
+  std::vector<Condition<Of>> conditions;
+  std::vector<Variant<Of>> variants;
+  std::vector<LaneSpan<Of>> spans;
+  std::vector<Cylinder<Of>> cylinders;
+  T mass, gravityCosine, gravitySine;
+  bool hasForces = false;
+  const CoordinateForces* forces[width] = {};
+
+  LaneModel<Of> view() {
+    LaneModel<Of> arm{static_cast<int>(muscles.size()),
+                      mass,
+                      gravityCosine,
+                      gravitySine,
+                      hasForces,
+                      {},
+                      muscles.data(),
+                      conditions.data(),
+                      variants.data(),
+                      spans.data(),
+                      cylinders.data()};
+    for (int l = 0; l < width; ++l) arm.forces[l] = forces[l];
+    return arm;
+  }
+};
+
+/// An arm with one segment that turns about one hinge, in the form of the lanes: every point and
+/// what is seen of it from a cylinder is middle + along·cos q + across·sin q. Curves and passive
+/// forces are those of `arm`, which must outlive it; they are set in lane 0.
+/// Nothing if the arm has more coordinates, a slider, path points that move in their bodies,
+/// conditions on a coupled coordinate, or paths over spheres.
+std::optional<HingeModel<Single>> hingeModel(const MusculoskeletalSystem& arm);
+
+/// Whether two arms differ in numbers alone.
+bool sameStructure(const HingeModel<Single>& a, const HingeModel<Single>& b);
+
+/// Lists for arms of this structure; every lane must be set before use.
+HingeModel<Lanes> lanesFor(const HingeModel<Single>& arm);
+
+/// An arm of the same structure into a lane.
+void setLane(HingeModel<Lanes>& lanes, int lane, const HingeModel<Single>& arm);
+
+}  // namespace bio::lanes

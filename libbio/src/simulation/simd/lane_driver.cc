@@ -1,0 +1,169 @@
+#include "simulation/simd/lane_driver.h"
+
+#include <cmath>
+
+namespace bio::lanes {
+
+using Eigen::Index;
+
+ActivationCourse::ActivationCourse(const MusculoskeletalSystem& arm,
+                                   const ExcitationSignal& excitation, const SystemState& start,
+                                   const SimulationOptions& options)
+    : middle(start.activation.size(), static_cast<Index>(stepping::numRows(options))), end(middle) {
+  stepping::ActivationPlayer player(arm, excitation, options.startTime);
+  Eigen::VectorXd activation = start.activation;
+  end.col(0) = middle.col(0) = activation;
+  for (Index k = 1; k < end.cols(); ++k) {
+    const double t0 = stepping::rowTime(options, static_cast<std::size_t>(k) - 1);
+    const double t1 = stepping::rowTime(options, static_cast<std::size_t>(k));
+    const double half = t0 + (t1 - t0) / 2;
+    player.advance(t0, half, activation);
+    middle.col(k) = activation;
+    player.advance(half, t1, activation);
+    end.col(k) = activation;
+  }
+}
+
+LaneDriver::LaneDriver(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+                       const SystemState& start, const SimulationOptions& options,
+                       const ActivationCourse& course, double mass)
+    : arm_(&arm),
+      options_(&options),
+      course_(&course),
+      player_(arm, excitation, options.startTime),
+      recorder_(arm, stepping::numRows(options)),
+      mass_(mass),
+      rows_(stepping::numRows(options)),
+      t0_(stepping::rowTime(options, 0)),
+      t1_(t0_),
+      tEnd_(stepping::rowTime(options, 1)),
+      q_(start.q[0]),
+      p_(mass * start.qDot[0]),
+      velocity_(start.qDot[0]),
+      velocityBefore_(velocity_),
+      length_(options.step),
+      lengthBefore_(options.step),
+      fibre_(start.fibreLength),
+      fibreVelocity_(Eigen::VectorXd::Zero(fibre_.size())),
+      fibreVelocityBefore_(fibreVelocity_),
+      activation_(start.activation),
+      middle_(activation_),
+      kept_(activation_),
+      fibreEnd_(fibre_),
+      search_(options.newtonTolerance) {
+  recorder_.add(options.startTime, start.q, start.qDot, activation_, fibre_, 0, 0, 0);
+}
+
+bool LaneDriver::ask(int lane, LaneStep& step) {
+  if (phase_ == Phase::finished || phase_ == Phase::failed) return false;
+  if (phase_ != Phase::meetSwitch) t1_ = tEnd_;
+  if (phase_ == Phase::wholeStep) kept_ = activation_;
+  chooseActivation();
+  // the parabola through the last three ends
+  const double h = t1_ - t0_;
+  const double bend = h * (h + length_) / (length_ + lengthBefore_);
+  step.length[lane] = h;
+  step.q[lane] = q_;
+  step.p[lane] = p_;
+  step.qEnd[lane] = q_ + (h + bend) * velocity_ - bend * velocityBefore_;
+  for (Index i = 0; i < fibre_.size(); ++i) {
+    MuscleStep& muscle = step.muscles[i];
+    muscle.fibreLength[lane] = fibre_[i];
+    muscle.fibreLengthEnd[lane] =
+        fibre_[i] + (h + bend) * fibreVelocity_[i] - bend * fibreVelocityBefore_[i];
+    muscle.activation[lane] = middle_[i];
+  }
+  if (!options_->externalForce.empty()) {
+    std::size_t hint = row_ - 1;
+    Eigen::Matrix<double, 1, 1> force(0.0);
+    options_->externalForce.add(t0_ + h / 2, hint, force);
+    step.external[lane] = force[0];
+  }
+  return true;
+}
+
+void LaneDriver::chooseActivation() {
+  if (!within_) {
+    middle_ = course_->middle.col(static_cast<Index>(row_));
+    activation_ = course_->end.col(static_cast<Index>(row_));
+    return;
+  }
+  const double half = t0_ + (t1_ - t0_) / 2;
+  player_.advance(t0_, half, activation_);
+  middle_ = activation_;
+  player_.advance(half, t1_, activation_);
+}
+
+void LaneDriver::take(int lane, const LaneStep& step) {
+  recorder_.trajectory().newtonIterations += step.iterations[lane];
+  constexpr double furthest = 1e5;  // of what sines are accurate for [rad]
+  if (step.converged[lane] == 0 || !(std::abs(step.qEnd[lane]) < furthest)) {
+    phase_ = Phase::failed;
+    return;
+  }
+  qEnd_ = step.qEnd[lane];
+  pEnd_ = step.pEnd[lane];
+  for (Index i = 0; i < fibre_.size(); ++i) fibreEnd_[i] = step.muscles[i].fibreLengthEnd[lane];
+  works_[0] = step.muscleWork[lane];
+  works_[1] = step.passiveWork[lane];
+  works_[2] = step.externalWork[lane];
+
+  if (phase_ == Phase::wholeStep && search_.begin(arm_->switches(), &q_, &qEnd_)) {
+    meetSwitch();
+    return;
+  }
+  if (phase_ != Phase::meetSwitch) {
+    accept(true);
+    return;
+  }
+  switch (search_.take(qEnd_)) {
+    case stepping::SwitchSearch::Found::met:
+      accept(false);
+      return;
+    case stepping::SwitchSearch::Found::again:
+      meetSwitch();
+      return;
+    case stepping::SwitchSearch::Found::givenUp:
+      phase_ = Phase::jumpSwitch;
+      activation_ = kept_;
+      player_.restart(t0_);
+  }
+}
+
+/// The next step goes to where the switch is looked for.
+void LaneDriver::meetSwitch() {
+  phase_ = Phase::meetSwitch;
+  within_ = true;
+  t1_ = t0_ + search_.fraction() * (tEnd_ - t0_);
+  activation_ = kept_;
+  player_.restart(t0_);
+}
+
+void LaneDriver::accept(bool endsRow) {
+  const double h = t1_ - t0_;
+  velocityBefore_ = velocity_;
+  velocity_ = (qEnd_ - q_) / h;
+  fibreVelocityBefore_.swap(fibreVelocity_);
+  fibreVelocity_ = (fibreEnd_ - fibre_) / h;
+  lengthBefore_ = length_;
+  length_ = h;
+  q_ = qEnd_;
+  p_ = pEnd_;
+  fibre_.swap(fibreEnd_);
+  for (int i = 0; i < 3; ++i) sums_[i] += works_[i];
+  t0_ = t1_;
+  phase_ = Phase::wholeStep;
+  if (!endsRow) return;
+  using Number = Eigen::Matrix<double, 1, 1>;
+  recorder_.add(t1_, Number(q_), Number(p_ / mass_), activation_, fibre_, sums_[0], sums_[1],
+                sums_[2]);
+  ++recorder_.trajectory().steps;
+  within_ = false;  // the course goes on; it differs by 2e-13 where the excitation changes
+  if (++row_ < rows_) {
+    tEnd_ = stepping::rowTime(*options_, row_);
+  } else {
+    phase_ = Phase::finished;
+  }
+}
+
+}  // namespace bio::lanes

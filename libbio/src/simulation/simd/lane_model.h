@@ -1,0 +1,154 @@
+#pragma once
+
+// What the step of lane_step.h works on: arms with one hinge and the same structure, their numbers
+// side by side. Plain data and pointers, so that files of several instruction sets can read it.
+
+#include "simulation/simd/lane_real.h"
+
+namespace bio {
+class CoordinateForces;
+class PiecewiseCubic;
+}  // namespace bio
+
+namespace bio::lanes {
+
+/// A curve, and the piece of it that holds each lane's x: lower ≤ x < upper.
+template <class Of>
+struct Curve {
+  using T = typename Of::Number;
+  T lower, upper;
+  T start, value, slope, quadratic, cubic;  ///< of PiecewiseCubic::Segment
+  const PiecewiseCubic* of[width];
+};
+
+/// A point that turns with the hinge, seen from a frame: middle + along cos q + across sin q [m].
+template <class Of>
+struct Turning {
+  using T = typename Of::Number;
+  T middle[3], along[3], across[3];
+};
+
+/// A cylinder that a span may go round.
+template <class Of>
+struct Cylinder {
+  using T = typename Of::Number;
+  int surface;    ///< its place in the muscle's path
+  bool fixed[2];  ///< whether that end does not move
+  T side;         ///< 1 or −1
+  T radius;       ///< [m]
+  T halfLength;   ///< [m]
+  T slipCosine;   ///< of the slip angle
+  T slipSine;
+  Turning<Of> ends[2];  ///< in the cylinder's frame
+};
+
+/// Between two points of a path. Straight, its square is constant + cosine·cos q + sine·sin q [m²].
+template <class Of>
+struct LaneSpan {
+  using T = typename Of::Number;
+  T constant, cosine, sine;
+  int firstCylinder, numCylinders;  ///< tried in this order
+};
+
+/// The path under some of its conditions.
+template <class Of>
+struct Variant {
+  using T = typename Of::Number;
+  T fixedLength;  ///< [m]
+  int firstSpan, numSpans;
+};
+
+/// Holds where lower ≤ q ≤ upper.
+template <class Of>
+struct Condition {
+  using T = typename Of::Number;
+  T lower, upper;
+};
+
+/// See SchutteMuscle.
+template <class Of>
+struct LaneMuscle {
+  using T = typename Of::Number;
+  T force, perFibre, perTendon, speedScale, thickness, damping, activationFloor;
+  bool clampsForce, hasPassiveCurve;
+  Curve<Of> tendon, active, passive;
+  int firstCondition, numConditions;
+  int firstVariant;  ///< one per set of conditions that hold, by their bits
+};
+
+template <class Of>
+struct LaneModel {
+  using T = typename Of::Number;
+  int numMuscles;
+  T mass;                        ///< M [kg m²]
+  T gravityCosine, gravitySine;  ///< V = gravityCosine·cos q + gravitySine·sin q [J]
+  bool hasForces;                ///< passive ones of the coordinate
+  const CoordinateForces* forces[width];
+  LaneMuscle<Of>* muscles;
+  const Condition<Of>* conditions;
+  const Variant<Of>* variants;
+  const LaneSpan<Of>* spans;
+  const Cylinder<Of>* cylinders;
+};
+
+/// The most cylinders of a muscle.
+inline constexpr int maxCylinders = 8;
+
+/// A step of one muscle.
+struct MuscleStep {
+  // given
+  Real fibreLength;     ///< at the begin [m]
+  Real activation;      ///< at the middle of the step
+  Real fibreLengthEnd;  ///< the first guess, then the end [m]
+  // of the last iteration
+  Real momentArm;  ///< dL/dq [m]
+  Real dV_dMuscleTendonLength, dF_dFibreLength;
+  Real inverse, residual;
+};
+
+/// A step of every lane: what is given, what comes out.
+struct LaneStep {
+  // given
+  Mask wanted;
+  Real length;    ///< h [s]
+  Real q, p;      ///< at the begin
+  Real external;  ///< force at the middle of the step [N m]
+  double newtonTolerance;
+  int maxIterations;
+  bool symmetric;  ///< forces on both ends of the step
+  // the first guess, then the end; garbage where it did not converge
+  Real qEnd;
+  // out
+  Real pEnd;
+  Mask converged;
+  int iterations[width];
+  Real muscleWork, passiveWork, externalWork;  ///< [J]
+  MuscleStep* muscles;                         ///< all of the arm
+};
+
+/// Newton's iteration of VariationalStepper for every lane that is wanted. One per instruction set,
+/// all with the same results: they round alike, since nothing is fused.
+void solvePlain(const LaneModel<Lanes>& arm, LaneStep& step);
+void solveWide(const LaneModel<Lanes>& arm, LaneStep& step);
+
+// What the step asks for rarely, or from laws without lanes
+// -----------------------------------------
+
+/// Finds the pieces that hold x again where a lane has left its own.
+void movePieces(Curve<Lanes>& curve, const Real& x);
+
+/// exp(8l − 12), its slope beside it.
+void exponentialPassiveForce(const Real& l, Real& value, Real& slope);
+
+/// Whether the way between the ends over a cylinder of finite length touches it within its ends.
+bool touchesWithin(const Cylinder<Lanes>& cylinder, const Real (&P)[3], const Real (&Q)[3],
+                   int lane);
+
+/// Force, ∂/∂q and ∂/∂q̇ of the passive coordinate forces in the lanes asked for, else 0.
+struct PassiveForce {
+  Real force, dForce_dq, dForce_dqDot;
+};
+void passiveForce(const LaneModel<Lanes>& arm, const Mask& lanes, const Real& q, const Real& qDot,
+                  PassiveForce& out);
+
+}  // namespace bio::lanes

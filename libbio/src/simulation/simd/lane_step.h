@@ -1,0 +1,126 @@
+#pragma once
+
+// The step of lane_model.h, for the one file per instruction set that compiles it.
+
+#include "simulation/simd/lane_fibre.h"
+#include "simulation/simd/lane_path.h"
+
+namespace bio::lanes {
+namespace {
+
+/// Newton's corrections fall quadratically: is the next one within the tolerance? See
+/// VariationalStepper::isLast.
+inline Mask isLast(const Real& correction, const Real& previous, double tolerance) {
+  constexpr double worthwhile = 1e-4;
+  const Real ratio = correction / previous;
+  return (correction < tolerance) | ((correction <= worthwhile) & (correction <= 0.1 * previous) &
+                                     (correction * ratio * ratio < 0.01 * tolerance));
+}
+
+/// See VariationalStepper::solve, whose comments are not repeated.
+inline void solve(const LaneModel<Lanes>& arm, LaneStep& step) {
+  constexpr double largestTurn = 0.3;
+  constexpr double largestFibreStep = 0.25;
+  const Real none = same(0);
+  const Real one = same(1);
+  const Real& h = step.length;
+  const Real perStep = 1 / h;
+  const Real share = step.symmetric ? h / 2 : h;
+  const Real dMv = arm.mass * perStep;
+  Real previous = none;
+  Mask running = step.wanted;
+  step.converged = running ^ running;
+  for (int iteration = 1; iteration <= step.maxIterations; ++iteration) {
+    const Real q_m = (step.q + step.qEnd) / 2;
+    const Real v = (step.qEnd - step.q) / h;
+    const SineCosine turn = sineCosine(q_m);
+
+    // skeleton and gravity
+    const Real Mv = arm.mass * v;
+    const Real L_q = arm.gravityCosine * turn.sine - arm.gravitySine * turn.cosine;
+    const Real dL_q = (arm.gravityCosine * turn.cosine + arm.gravitySine * turn.sine) / 2;
+
+    PassiveForce passive{none, none, none};
+    if (arm.hasForces) passiveForce(arm, running, q_m, v, passive);
+    const Real dPassive = passive.dForce_dq / 2 + passive.dForce_dqDot / h;
+    Real dTau = dPassive;
+
+    // muscles, fibre lengths eliminated one by one
+    Real force = none;
+    Real eliminated = none;
+    Real carried = none;
+    for (int i = 0; i < arm.numMuscles; ++i) {
+      LaneMuscle<Lanes>& muscle = arm.muscles[i];
+      MuscleStep& kept = step.muscles[i];
+      const PathJet path = muscleTendonLength(arm, muscle, q_m, turn);
+      const Real l_m = (kept.fibreLength + kept.fibreLengthEnd) / 2;
+      const Rate r = fibreRate(muscle, kept.activation, l_m, path.length);
+      force -= r.tendonForce * path.slope;
+      dTau -= r.dF_dMuscleTendonLength / 2 * path.slope * path.slope;
+      dTau -= r.tendonForce / 2 * path.curvature;
+      kept.residual = (kept.fibreLengthEnd - kept.fibreLength) / h - r.fibreVelocity;
+      kept.inverse = 1 / (perStep - r.dV_dFibreLength / 2);
+      const Real G = share / 2 * r.dF_dFibreLength * kept.inverse * path.slope;
+      eliminated -= G * r.dV_dMuscleTendonLength / 2 * path.slope;
+      carried += G * kept.residual;
+      kept.momentArm = path.slope;
+      kept.dV_dMuscleTendonLength = r.dV_dMuscleTendonLength;
+      kept.dF_dFibreLength = r.dF_dFibreLength;
+    }
+
+    const Real R = Mv - h / 2 * L_q - share * (force + passive.force + step.external) - step.p;
+    const Real J = dMv - h / 2 * dL_q - share * dTau - eliminated;
+    const Real dq = (carried - R) / J;
+    const Real size = absolute(dq);
+    Real fibreSize = none;
+    for (int i = 0; i < arm.numMuscles; ++i) {
+      MuscleStep& kept = step.muscles[i];
+      const Real C_dq = -kept.dV_dMuscleTendonLength / 2 * kept.momentArm * dq;
+      kept.residual = -(kept.residual + C_dq) * kept.inverse;  // now δℓ
+      fibreSize = larger(fibreSize, absolute(kept.residual) * arm.muscles[i].perFibre);
+    }
+    // what is not a number, or wild, is given up
+    running &= (size < 1e6) & (fibreSize < 1e6);
+
+    Real shorten = choose(size > largestTurn, largestTurn / size, one);
+    shorten = choose(fibreSize * shorten > largestFibreStep, largestFibreStep / fibreSize, shorten);
+    step.qEnd = choose(running, step.qEnd + shorten * dq, step.qEnd);
+    for (int i = 0; i < arm.numMuscles; ++i) {
+      MuscleStep& kept = step.muscles[i];
+      kept.fibreLengthEnd =
+          choose(running, kept.fibreLengthEnd + shorten * kept.residual, kept.fibreLengthEnd);
+    }
+    const Real correction = larger(size, fibreSize);
+    const Mask last =
+        running & isLast(correction, choose(shorten == 1, previous, none), step.newtonTolerance);
+    previous = correction;
+    for (int l = 0; l < width; ++l) {
+      if (running[l]) step.iterations[l] = iteration;
+    }
+    if (!any(last)) {
+      if (!any(running)) return;
+      continue;
+    }
+
+    // ends of the lanes that have come to theirs, to first order in the last correction
+    for (int i = 0; i < arm.numMuscles; ++i) {
+      const MuscleStep& kept = step.muscles[i];
+      force -= kept.dF_dFibreLength / 2 * kept.residual * kept.momentArm;
+    }
+    force += (dTau - dPassive) * dq;
+    const Real passiveEnd = passive.force + dPassive * dq;
+    const Real moved = step.qEnd - step.q;
+    Real p = Mv + dMv * dq + h / 2 * (L_q + dL_q * dq);
+    if (step.symmetric) p += share * (force + passiveEnd + step.external);
+    step.pEnd = choose(last, p, step.pEnd);
+    step.muscleWork = choose(last, force * moved, step.muscleWork);
+    step.passiveWork = choose(last, passiveEnd * moved, step.passiveWork);
+    step.externalWork = choose(last, step.external * moved, step.externalWork);
+    step.converged |= last;
+    running &= ~last;
+    if (!any(running)) return;
+  }
+}
+
+}  // namespace
+}  // namespace bio::lanes

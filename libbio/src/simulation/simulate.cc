@@ -1,0 +1,175 @@
+#include "bio/simulation/simulate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulation/integrators.h"
+
+namespace bio {
+
+SystemState initialState(const MusculoskeletalSystem& arm, const Eigen::VectorXd& q,
+                         const ExcitationSignal& excitation, double time) {
+  const auto n = static_cast<Eigen::Index>(arm.numMuscles());
+  if (q.size() != arm.skeleton().numCoordinates() || !q.allFinite()) {
+    throw std::invalid_argument(fmt::format("start: {} coordinates, must be {} finite values",
+                                            q.size(), arm.skeleton().numCoordinates()));
+  }
+  if (excitation.numMuscles() != n) {
+    throw std::invalid_argument(
+        fmt::format("excitations: {} columns, the arm has {} muscles", excitation.numMuscles(), n));
+  }
+  SystemState state;
+  state.q = q;
+  state.qDot = Eigen::VectorXd::Zero(q.size());
+  state.activation.resize(n);
+  std::size_t hint = 0;
+  excitation.at(time, hint, state.activation);
+  state.fibreLength.resize(n);
+  stepping::withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+    SystemConfiguration<decltype(N)::value> configuration(arm);
+    configuration.moveTo(q);
+    for (std::size_t i = 0; i < arm.numMuscles(); ++i) {
+      const auto si = static_cast<Eigen::Index>(i);
+      const double length = configuration.length(i).length;
+      if (!std::isfinite(length)) {
+        throw NoStaticEquilibrium(
+            fmt::format("muscle '{}': muscle–tendon length at the start = {} m, must be finite",
+                        arm.muscles()[i].name, length));
+      }
+      const StaticEquilibrium rest =
+          staticEquilibrium(arm.muscles()[i].muscle, state.activation[si], length);
+      if (!rest.isUsable()) {
+        throw NoStaticEquilibrium(fmt::format(
+            "muscle '{}': no static equilibrium at the start with length {:.6g} m and activation "
+            "{:.4g}: {}",
+            arm.muscles()[i].name, length, state.activation[si], describe(rest.why)));
+      }
+      state.fibreLength[si] = rest.fibreLength;
+    }
+  });
+  return state;
+}
+
+void stepping::checkSimulation(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+                               const SystemState& start, const SimulationOptions& options) {
+  const auto require = [](bool holds, const std::string& message) {
+    if (!holds) throw std::invalid_argument(message);
+  };
+  require(options.step > 0 && std::isfinite(options.step),
+          fmt::format("step = {} s, must be > 0", options.step));
+  require(options.duration > 0 && std::isfinite(options.duration),
+          fmt::format("duration = {} s, must be > 0", options.duration));
+  require(
+      options.duration / options.step < 1e8,
+      fmt::format("duration/step = {:.3g} steps, must be < 1e8", options.duration / options.step));
+  const double furthest =
+      std::max(std::abs(options.startTime), std::abs(options.startTime + options.duration));
+  require(options.step > 1e-9 * furthest,
+          fmt::format("time up to {} s, must be below 1e9 steps of {} s: otherwise successive "
+                      "times cannot be distinguished",
+                      furthest, options.step));
+  require(options.maxHalvings >= 0 && options.maxHalvings <= 40,
+          fmt::format("maxHalvings = {}, must be 0 to 40", options.maxHalvings));
+  require(options.newtonTolerance > 0, "newtonTolerance must be > 0");
+  const auto n = static_cast<Eigen::Index>(arm.numMuscles());
+  const Eigen::Index N = arm.skeleton().numCoordinates();
+  require(
+      start.q.size() == N && start.qDot.size() == N && start.activation.size() == n &&
+          start.fibreLength.size() == n && excitation.numMuscles() == n,
+      fmt::format("start state or excitations do not fit an arm with {} coordinates and {} muscles",
+                  N, n));
+  require(start.q.allFinite() && start.qDot.allFinite() && start.activation.allFinite() &&
+              start.fibreLength.allFinite(),
+          "start state: a value is not finite");
+  require(options.externalForce.empty() || options.externalForce.numCoordinates() == N,
+          fmt::format("external force: {} columns, the arm has {} free coordinates",
+                      options.externalForce.numCoordinates(), N));
+}
+
+Trajectory simulate(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+                    const SystemState& start, const SimulationOptions& options) {
+  stepping::checkSimulation(arm, excitation, start, options);
+  switch (options.integrator) {
+    case Integrator::variational:
+    case Integrator::variationalLeft:
+      return stepping::simulateVariational(arm, excitation, start, options);
+    case Integrator::rungeKutta4:
+      return stepping::simulateRungeKutta4(arm, excitation, start, options);
+    case Integrator::cvode:
+      return stepping::simulateCvode(arm, excitation, start, options);
+  }
+  throw std::invalid_argument("unknown integrator");
+}
+
+namespace {
+
+template <int N>
+Energy energyAt(SystemConfiguration<N>& configuration, const Eigen::Matrix<double, N, 1>& q,
+                const Eigen::Matrix<double, N, 1>& qDot) {
+  configuration.moveTo(q);
+  const auto& inertia = configuration.inertia();
+  return {qDot.dot(inertia.massMatrix * qDot) / 2, inertia.potential};
+}
+
+}  // namespace
+
+Energy energyOf(const MusculoskeletalSystem& arm, const Eigen::VectorXd& q,
+                const Eigen::VectorXd& qDot) {
+  return stepping::withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+    SystemConfiguration<decltype(N)::value> configuration(arm);
+    return energyAt<decltype(N)::value>(configuration, q, qDot);
+  });
+}
+
+Eigen::VectorXd energyImbalance(const MusculoskeletalSystem& arm, const Trajectory& trajectory) {
+  return stepping::withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+    SystemConfiguration<decltype(N)::value> configuration(arm);
+    Eigen::VectorXd imbalance(trajectory.q.cols());
+    double first = 0;
+    for (Eigen::Index k = 0; k < trajectory.q.cols(); ++k) {
+      const Energy energy =
+          energyAt<decltype(N)::value>(configuration, trajectory.q.col(k), trajectory.qDot.col(k));
+      const double stored = energy.kinetic + energy.potential;
+      if (k == 0) first = stored;
+      imbalance[k] = stored - first - trajectory.muscleWork[k] - trajectory.passiveWork[k] -
+                     trajectory.externalWork[k];
+    }
+    return imbalance;
+  });
+}
+
+double energyError(const MusculoskeletalSystem& arm, const Trajectory& trajectory) {
+  return energyImbalance(arm, trajectory).cwiseAbs().maxCoeff();
+}
+
+MuscleReport reportMuscles(const MusculoskeletalSystem& arm, const Trajectory& trajectory,
+                           int coordinate) {
+  if (coordinate < 0 || coordinate >= arm.skeleton().numCoordinates()) {
+    throw std::invalid_argument(
+        fmt::format("coordinate {} of {}", coordinate, arm.skeleton().numCoordinates()));
+  }
+  const auto n = static_cast<Eigen::Index>(arm.numMuscles());
+  const Eigen::Index K = trajectory.q.cols();
+  MuscleReport report;
+  report.tendonForce.resize(n, K);
+  report.muscleTendonLength.resize(n, K);
+  report.momentArm.resize(n, K);
+  stepping::withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+    SystemConfiguration<decltype(N)::value> configuration(arm);
+    for (Eigen::Index k = 0; k < K; ++k) {
+      configuration.moveTo(trajectory.q.col(k));
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const auto& length = configuration.length(static_cast<std::size_t>(i));
+        report.muscleTendonLength(i, k) = length.length;
+        report.momentArm(i, k) = -length.dL_dq[coordinate];
+        report.tendonForce(i, k) = arm.muscles()[static_cast<std::size_t>(i)].muscle.tendonForce(
+            trajectory.fibreLength(i, k), length.length);
+      }
+    }
+  });
+  return report;
+}
+
+}  // namespace bio

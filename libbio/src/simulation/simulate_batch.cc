@@ -1,0 +1,171 @@
+#include "bio/simulation/simulate_batch.h"
+
+#include <memory>
+#include <optional>
+
+#include "simulation/simd/hinge_model.h"
+#include "simulation/simd/lane_driver.h"
+
+namespace bio {
+namespace {
+
+using lanes::HingeModel;
+using lanes::Lanes;
+using lanes::Single;
+using Solve = void (*)(const lanes::LaneModel<Lanes>&, lanes::LaneStep&);
+
+Solve solver(LaneInstructions instructions) {
+#ifdef FISHERHILL_WIDE_LANES
+  if (instructions == LaneInstructions::best && __builtin_cpu_supports("avx2")) {
+    return lanes::solveWide;
+  }
+#endif
+  static_cast<void>(instructions);
+  return lanes::solvePlain;
+}
+
+/// Activations of one job, good for all others that have the same laws, excitations and start.
+class SharedCourse {
+ public:
+  SharedCourse(const LaneJob& job, const SimulationOptions& options)
+      : job_(&job), course_(*job.arm, *job.excitation, *job.start, options) {}
+
+  bool fits(const LaneJob& other) const {
+    if (job_->excitation != other.excitation || job_->start->activation != other.start->activation)
+      return false;
+    for (std::size_t i = 0; i < job_->arm->numMuscles(); ++i) {
+      const auto& a = job_->arm->muscles()[i].activation;
+      const auto& b = other.arm->muscles()[i].activation;
+      if (a.timeScale != b.timeScale || a.activation1 != b.activation1 ||
+          a.activation2 != b.activation2)
+        return false;
+    }
+    return true;
+  }
+  const lanes::ActivationCourse& course() const { return course_; }
+
+ private:
+  const LaneJob* job_;
+  lanes::ActivationCourse course_;
+};
+
+/// Some jobs of one structure, at most as many as there are lanes, to their ends.
+class LaneGroup {
+ public:
+  struct Member {
+    const LaneJob* job;
+    const HingeModel<Single>* arm;
+    const lanes::ActivationCourse* course;
+    Trajectory* result;
+  };
+
+  LaneGroup(const std::vector<Member>& members, const SimulationOptions& options)
+      : members_(members), arms_(lanes::lanesFor(*members.front().arm)) {
+    for (int l = 0; l < lanes::width; ++l) {
+      // lanes without a job hold the first one's numbers
+      setLane(arms_, l, *members[hasJob(l) ? static_cast<std::size_t>(l) : 0].arm);
+    }
+    for (const Member& m : members) {
+      drivers_.push_back(std::make_unique<lanes::LaneDriver>(
+          *m.job->arm, *m.job->excitation, *m.job->start, options, *m.course, m.arm->mass));
+    }
+    muscles_.resize(arms_.muscles.size());
+    step_.muscles = muscles_.data();
+    step_.newtonTolerance = options.newtonTolerance;
+    step_.maxIterations = options.maxIterations;
+    step_.symmetric = options.integrator == Integrator::variational;
+  }
+
+  void run(Solve solve) {
+    const lanes::LaneModel<Lanes> arm = arms_.view();
+    while (ask()) {
+      solve(arm, step_);
+      for (std::size_t l = 0; l < drivers_.size(); ++l) {
+        if (step_.wanted[static_cast<int>(l)] != 0) drivers_[l]->take(static_cast<int>(l), step_);
+      }
+    }
+    for (std::size_t l = 0; l < drivers_.size(); ++l) {
+      if (drivers_[l]->succeeded()) *members_[l].result = drivers_[l]->finish();
+    }
+  }
+
+  bool succeeded(std::size_t member) const { return drivers_[member]->succeeded(); }
+
+ private:
+  bool ask() {
+    bool wanted = false;
+    for (int l = 0; l < lanes::width; ++l) {
+      const bool more = hasJob(l) && drivers_[static_cast<std::size_t>(l)]->ask(l, step_);
+      step_.wanted[l] = more ? -1 : 0;
+      wanted = wanted || more;
+      if (!more) rest(l);
+    }
+    return wanted;
+  }
+
+  bool hasJob(int lane) const { return static_cast<std::size_t>(lane) < members_.size(); }
+
+  /// A lane without a step computes along and is not looked at; what is not a number would only
+  /// take time.
+  void rest(int lane) {
+    const int from = hasJob(lane) ? lane : 0;
+    step_.length[lane] = step_.length[from];
+    step_.qEnd[lane] = step_.q[lane] = step_.q[from];
+    step_.p[lane] = step_.p[from];
+    for (lanes::MuscleStep& m : muscles_) {
+      m.fibreLengthEnd[lane] = m.fibreLength[lane] = m.fibreLength[from];
+      m.activation[lane] = m.activation[from];
+    }
+  }
+
+  std::vector<Member> members_;
+  HingeModel<Lanes> arms_;
+  std::vector<std::unique_ptr<lanes::LaneDriver>> drivers_;
+  std::vector<lanes::MuscleStep> muscles_;
+  lanes::LaneStep step_{};
+};
+
+}  // namespace
+
+std::vector<Trajectory> simulateTogether(std::span<const LaneJob> jobs,
+                                         const SimulationOptions& options,
+                                         LaneInstructions instructions) {
+  const bool known = (options.integrator == Integrator::variational ||
+                      options.integrator == Integrator::variationalLeft) &&
+                     !options.progress;
+  std::vector<Trajectory> results(jobs.size());
+  std::vector<std::optional<HingeModel<Single>>> arms(jobs.size());
+  std::vector<bool> waiting(jobs.size(), true);
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    stepping::checkSimulation(*jobs[i].arm, *jobs[i].excitation, *jobs[i].start, options);
+    if (known) arms[i] = lanes::hingeModel(*jobs[i].arm);
+  }
+  const Solve solve = solver(instructions);
+  std::vector<std::unique_ptr<SharedCourse>> courses;
+  for (std::size_t first = 0; first < jobs.size(); ++first) {
+    if (!waiting[first] || !arms[first]) continue;
+    std::vector<LaneGroup::Member> members;
+    std::vector<std::size_t> places;
+    for (std::size_t i = first; i < jobs.size() && members.size() < lanes::width; ++i) {
+      if (!waiting[i] || !arms[i] || !lanes::sameStructure(*arms[first], *arms[i])) continue;
+      if (courses.empty() || !courses.back()->fits(jobs[i])) {
+        courses.push_back(std::make_unique<SharedCourse>(jobs[i], options));
+      }
+      members.push_back({&jobs[i], &*arms[i], &courses.back()->course(), &results[i]});
+      places.push_back(i);
+    }
+    LaneGroup group(members, options);
+    group.run(solve);
+    for (std::size_t m = 0; m < places.size(); ++m) {
+      waiting[places[m]] = false;
+      if (!group.succeeded(m)) arms[places[m]].reset();
+    }
+  }
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    if (arms[i]) continue;
+    results[i] = simulate(*jobs[i].arm, *jobs[i].excitation, *jobs[i].start, options);
+  }
+  return results;
+}
+
+}  // namespace bio

@@ -1,0 +1,217 @@
+#include <fmt/format.h>
+
+#include "sensitivity/step_tape.h"
+#include "simulation/activation_player.h"
+#include "simulation/switch_search.h"
+#include "simulation/variational_step.h"
+
+namespace bio::stepping {
+namespace {
+
+/// A whole motion, step by step: first guesses, halved steps, steps that end where a path switches.
+template <int N>
+class VariationalRun {
+ public:
+  using Stepper = VariationalStepper<N>;
+  using Ends = typename Stepper::Ends;
+  using Vector = typename Stepper::Vector;
+
+  VariationalRun(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+                 const SystemState& start, const SimulationOptions& options, StepTape* tape)
+      : arm_(arm),
+        options_(options),
+        tape_(tape),
+        stepper_(arm, options),
+        player_(arm, excitation, options.startTime),
+        configuration_(arm),
+        recorder_(arm, numRows(options)),
+        activation_(start.activation),
+        middle_(start.activation),
+        keptActivation_(static_cast<std::size_t>(options.maxHalvings) + 1, start.activation) {
+    now_.q = start.q;
+    configuration_.moveTo(now_.q);
+    now_.p = configuration_.inertia().massMatrix * start.qDot;
+    now_.fibreLength = start.fibreLength;
+    velocity_ = start.qDot;
+    velocityBefore_ = velocity_;
+    fibreVelocity_ = Eigen::VectorXd::Zero(start.fibreLength.size());
+    fibreVelocityBefore_ = fibreVelocity_;
+    length_ = lengthBefore_ = options.step;
+    next_ = now_;
+    recorder_.add(options.startTime, now_.q, start.qDot, activation_, now_.fibreLength, 0, 0, 0);
+    if (tape_) tape_->begin(now_.q, now_.fibreLength, activation_);
+  }
+
+  Trajectory run() {
+    const StopWatch watch;
+    const std::size_t rows = numRows(options_);
+    Trajectory& trajectory = recorder_.trajectory();
+    TimeMark begin = markRow(rowTime(options_, 0));
+    for (std::size_t k = 1; k < rows; ++k) {
+      const TimeMark end = markRow(rowTime(options_, k));
+      const double t0 = begin.value;
+      const double t1 = end.value;
+      if (!advance(begin, end, 0)) {
+        trajectory.outcome = Outcome::noSolution;
+        trajectory.failedAt = t0;
+        trajectory.why = fmt::format(
+            "no solution at t = {:.6g} s: the smallest step, {:.3g} s, did not converge (last "
+            "corrections: {})",
+            t0, (t1 - t0) / std::pow(2, options_.maxHalvings), stepper_.describeResidual());
+        break;
+      }
+      begin = end;
+      ++trajectory.steps;
+      if (tape_) tape_->endRow();
+      recorder_.add(t1, now_.q, speed(), activation_, now_.fibreLength, muscleWork_, passiveWork_,
+                    externalWork_);
+      if (options_.progress && !options_.progress(t1)) {
+        trajectory.outcome = Outcome::stopped;
+        trajectory.failedAt = t1;
+        trajectory.why = fmt::format("stopped at t = {:.6g} s", t1);
+        break;
+      }
+    }
+    trajectory.wallSeconds = watch.seconds();
+    return recorder_.finish();
+  }
+
+ private:
+  /// Moves now_ and activation_ from t0 to t1; in halves, and halves of them, where Newton fails,
+  /// and in two parts where a conditional path point comes or goes.
+  bool advance(const TimeMark& begin, const TimeMark& end, int depth) {
+    const double t0 = begin.value;
+    const double t1 = end.value;
+    Eigen::VectorXd& kept = keptActivation_[static_cast<std::size_t>(depth)];
+    kept = activation_;
+    if (solve(t0, t1)) {
+      double split = 0;
+      const PathSwitch* met = findSwitch(t0, t1, kept, split);
+      if (met == nullptr) {
+        accept(begin, end);
+        return true;
+      }
+      const TimeMark middle = markSwitch(split, *met);
+      accept(begin, middle);
+      return advance(middle, end, depth);
+    }
+    if (depth >= options_.maxHalvings) return false;
+    if (depth == 0) ++recorder_.trajectory().halvedSteps;
+    activation_ = kept;
+    player_.restart(t0);
+    const TimeMark middle = markMiddle(begin, end);
+    return advance(begin, middle, depth + 1) && advance(middle, end, depth + 1);
+  }
+
+  TimeMark markRow(double time) { return {time, tape_ ? tape_->addRow(time) : 0}; }
+  TimeMark markSwitch(double time, const PathSwitch& met) {
+    return {time, tape_ ? tape_->addSwitch(time, met) : 0};
+  }
+  TimeMark markMiddle(const TimeMark& begin, const TimeMark& end) {
+    const double time = begin.value + (end.value - begin.value) / 2;
+    return {time, tape_ ? tape_->addMiddle(time, begin.index, end.index) : 0};
+  }
+
+  /// One step from now_ into next_, activation_ moved along.
+  bool solve(double t0, double t1) {
+    const double h = t1 - t0;
+    const double tMiddle = t0 + h / 2;
+    player_.advance(t0, tMiddle, activation_);
+    middle_ = activation_;
+    player_.advance(tMiddle, t1, activation_);
+    // the parabola through the last three ends
+    const double bend = h * (h + length_) / (length_ + lengthBefore_);
+    next_.q = now_.q + (h + bend) * velocity_ - bend * velocityBefore_;
+    next_.fibreLength =
+        now_.fibreLength + (h + bend) * fibreVelocity_ - bend * fibreVelocityBefore_;
+    result_ = stepper_.solve(h, tMiddle, now_, middle_, next_);
+    count(result_.iterations);
+    if (!result_.converged) {  // again from rest, in case the extrapolation was the trouble
+      next_.q = now_.q;
+      next_.fibreLength = now_.fibreLength;
+      result_ = stepper_.solve(h, tMiddle, now_, middle_, next_);
+      count(result_.iterations);
+    }
+    return result_.converged;
+  }
+
+  /// If a path gains or loses points within the step just solved: shortens the step to end there.
+  /// Returns which switch it then ends on, or null.
+  const PathSwitch* findSwitch(double t0, double t1, const Eigen::VectorXd& activationAtStart,
+                               double& split) {
+    SwitchSearch search(options_.newtonTolerance);
+    if (!search.begin(arm_.switches(), now_.q, next_.q)) return nullptr;
+    for (auto found = SwitchSearch::Found::again; found == SwitchSearch::Found::again;) {
+      split = t0 + search.fraction() * (t1 - t0);
+      activation_ = activationAtStart;
+      player_.restart(t0);
+      if (!solve(t0, split)) break;
+      found = search.take(next_.q[search.which().freeIndex]);
+      if (found == SwitchSearch::Found::met) return &search.which();
+    }
+    // not to be met exactly: take the whole step as it is
+    activation_ = activationAtStart;
+    player_.restart(t0);
+    solve(t0, t1);
+    return nullptr;
+  }
+
+  /// next_ becomes now_.
+  void accept(const TimeMark& begin, const TimeMark& end) {
+    const double h = end.value - begin.value;
+    if (tape_) tape_->add(begin.index, end.index, next_.q, next_.fibreLength, middle_, activation_);
+    velocityBefore_ = velocity_;
+    velocity_ = (next_.q - now_.q) / h;
+    fibreVelocityBefore_.swap(fibreVelocity_);
+    fibreVelocity_ = (next_.fibreLength - now_.fibreLength) / h;
+    lengthBefore_ = length_;
+    length_ = h;
+    now_.q.swap(next_.q);
+    now_.p.swap(next_.p);
+    now_.fibreLength.swap(next_.fibreLength);
+    muscleWork_ += result_.muscleWork;
+    passiveWork_ += result_.passiveWork;
+    externalWork_ += result_.externalWork;
+  }
+
+  void count(int iterations) {
+    recorder_.trajectory().newtonIterations += std::min(iterations, options_.maxIterations);
+  }
+
+  /// q̇ = M⁻¹p at the end of the last step.
+  Vector speed() {
+    if (!arm_.skeleton().hasConstantInertia()) configuration_.moveSkeletonTo(now_.q);
+    return configuration_.inertia().massMatrix.ldlt().solve(now_.p);
+  }
+
+  const MusculoskeletalSystem& arm_;
+  const SimulationOptions& options_;
+  StepTape* tape_;
+  Stepper stepper_;
+  ActivationPlayer player_;
+  SystemConfiguration<N> configuration_;
+  Recorder recorder_;
+  Eigen::VectorXd activation_, middle_;
+  Ends now_, next_;
+  // mean speeds of the last two steps, and their lengths [s]
+  Vector velocity_, velocityBefore_;
+  Eigen::VectorXd fibreVelocity_, fibreVelocityBefore_;
+  double length_, lengthBefore_;
+  double muscleWork_ = 0;
+  double passiveWork_ = 0;
+  double externalWork_ = 0;
+  std::vector<Eigen::VectorXd> keptActivation_;  ///< one per depth of halving
+  typename Stepper::Result result_;
+};
+
+}  // namespace
+
+Trajectory simulateVariational(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+                               const SystemState& start, const SimulationOptions& options,
+                               StepTape* tape) {
+  return withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+    return VariationalRun<decltype(N)::value>(arm, excitation, start, options, tape).run();
+  });
+}
+
+}  // namespace bio::stepping

@@ -1,0 +1,70 @@
+#include "skeleton/moved_mass.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "simulation/integrators.h"
+
+namespace bio {
+namespace {
+
+constexpr double negligible = 1e-14;  ///< [kg m²] or [kg]; a grain of sand at a millimetre has more
+/// Of the largest moment: what rounded numbers, or a derivative's step, make of a flat body.
+constexpr double rounded = 0.05;
+constexpr double singular = 1e-10;  ///< least eigenvalue of a mass matrix with ones on its diagonal
+
+Eigen::MatrixXd massMatrixOf(const Skeleton& skeleton) {
+  return stepping::withCoordinates(skeleton.numCoordinates(), [&](auto N) -> Eigen::MatrixXd {
+    constexpr int count = decltype(N)::value;
+    std::vector<RigidMotion<double, count>> moved(skeleton.numSegments());
+    const Eigen::Matrix<double, count, 1> q = skeleton.defaultValues();
+    skeleton.motions<double, count>(q, moved.data());
+    return skeleton.inertia<count>(q, moved.data()).massMatrix;
+  });
+}
+
+}  // namespace
+
+std::string whatMovesNoMass(const Skeleton& skeleton) {
+  const Eigen::MatrixXd M = massMatrixOf(skeleton);
+  if (!M.allFinite()) return "mass matrix: a value is not finite";
+  const std::vector<Coordinate>& free = skeleton.coordinates();
+  for (Eigen::Index k = 0; k < M.rows(); ++k) {
+    if (M(k, k) > negligible) continue;
+    const Coordinate& c = free[static_cast<std::size_t>(k)];
+    return fmt::format(
+        "coordinate '{}' moves no mass (inertia = {:.4g} {}), must move some: the "
+        "bodies behind it need mass, or it has to be locked",
+        c.name, M(k, k), c.isRotation ? "kg m²" : "kg");
+  }
+  const Eigen::VectorXd scale = M.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * M * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(scaled);
+  if (modes.eigenvalues()[0] > singular) return "";
+  std::string names;
+  for (Eigen::Index k = 0; k < M.rows(); ++k) {
+    if (std::abs(modes.eigenvectors()(k, 0)) < 1e-3) continue;
+    names += (names.empty() ? "'" : ", '") + free[static_cast<std::size_t>(k)].name + "'";
+  }
+  return fmt::format(
+      "coordinates {} can move together without moving any mass, must not: one of "
+      "them has to be locked",
+      names);
+}
+
+void requireMovedMass(const Model& model, const Skeleton& skeleton) {
+  for (const Body& body : model.bodies) {
+    const Eigen::Vector3d principal = principalMoments(body);
+    const bool isRounding = principal.minCoeff() >= -rounded * principal.cwiseAbs().maxCoeff();
+    if (skeleton.placeOf(body.name).segment == 0 || isRounding) continue;
+    throw std::invalid_argument(
+        fmt::format("body '{}': least principal moment of inertia = {:.4g} kg m², must be ≥ 0 for "
+                    "a body that moves",
+                    body.name, principal.minCoeff()));
+  }
+  const std::string nothing = whatMovesNoMass(skeleton);
+  if (!nothing.empty()) throw std::invalid_argument(nothing);
+}
+
+}  // namespace bio

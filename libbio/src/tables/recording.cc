@@ -1,0 +1,189 @@
+#include "bio/tables/recording.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "bio/tables/file_error.h"
+#include "tables/recording_layouts.h"
+
+namespace bio {
+namespace {
+
+std::vector<RawColumn> readColumns(const std::string& file, RecordingFormat format) {
+  switch (format) {
+    case RecordingFormat::columns:
+      return readPlainColumns(file);
+    case RecordingFormat::trigno:
+      return readTrigno(file);
+    default:
+      return readTableColumns(file);
+  }
+}
+
+std::string calledIn(const RawColumn& column) {
+  return column.header.empty() ? fmt::format("column {}", column.number)
+                               : fmt::format("column {} '{}'", column.number, column.header);
+}
+
+const ColumnDeclaration* declarationOf(const RawColumn& column, const RecordingLayout& layout) {
+  for (const ColumnDeclaration& declared : layout.columns) {
+    if (declared.number == column.number) return &declared;
+    if (declared.number == 0 && !column.header.empty() && declared.header == column.header) {
+      return &declared;
+    }
+  }
+  return nullptr;
+}
+
+// Every declared column must be in the file, once.
+void checkDeclarations(const std::string& file, const std::vector<RawColumn>& columns,
+                       const RecordingLayout& layout) {
+  for (const ColumnDeclaration& declared : layout.columns) {
+    const auto matches =
+        std::count_if(columns.begin(), columns.end(), [&](const RawColumn& column) {
+          return column.number == declared.number ||
+                 (declared.number == 0 && column.header == declared.header);
+        });
+    if (matches == 1) continue;
+    std::vector<std::string> names;
+    for (const RawColumn& column : columns) names.push_back(calledIn(column));
+    throw FileError(fmt::format("{}: {} is declared, but the file has {}", file,
+                                declared.number > 0 ? fmt::format("column {}", declared.number)
+                                                    : fmt::format("column '{}'", declared.header),
+                                fmt::join(names, ", ")));
+  }
+}
+
+Channel channelOf(const std::string& file, const RawColumn& column,
+                  const ColumnDeclaration& declared) {
+  const auto fail = [&](const std::string& what) {
+    throw FileError(fmt::format("{}: {}: {}", file, calledIn(column), what));
+  };
+  Channel channel;
+  channel.name = !declared.name.empty() ? declared.name : column.header;
+  if (channel.name.empty()) channel.name = fmt::format("column {}", column.number);
+  channel.startTime = column.startTime;
+  // the file's rate and unit stand unless it is silent
+  channel.rate = column.rate;
+  if (declared.rate) {
+    if (!(*declared.rate > 0 && std::isfinite(*declared.rate))) {
+      fail(fmt::format("declared rate {} Hz, must be > 0", *declared.rate));
+    }
+    if (column.rate > 0 && std::abs(*declared.rate / column.rate - 1) > 1e-3) {
+      fail(
+          fmt::format("declared rate {} Hz, but the file says {} Hz", *declared.rate, column.rate));
+    }
+    if (column.rate <= 0) channel.rate = *declared.rate;
+  }
+  if (!(channel.rate > 0)) fail("has no rate in the file and none is declared (rate_Hz)");
+  channel.unit = !declared.unit.empty() ? declared.unit : column.unit;
+  if (!column.unit.empty() && channel.unit != column.unit && !declared.scale) {
+    fail(fmt::format("declared unit '{}', but the file says '{}' (give a scale to convert)",
+                     channel.unit, column.unit));
+  }
+  if (column.values.size() < 2) {
+    fail(fmt::format("has {} values, a recording needs at least 2", column.values.size()));
+  }
+  const double scale = declared.scale.value_or(1.0);
+  if (!std::isfinite(scale) || scale == 0) fail(fmt::format("scale {}, must not be 0", scale));
+  channel.values = (scale * column.values.array() + declared.offset).matrix();
+  return channel;
+}
+
+}  // namespace
+
+double endTime(const Channel& channel) {
+  return channel.startTime + static_cast<double>(channel.values.size() - 1) / channel.rate;
+}
+
+std::string_view nameOf(RecordingFormat format) {
+  switch (format) {
+    case RecordingFormat::columns:
+      return "columns";
+    case RecordingFormat::trigno:
+      return "trigno";
+    case RecordingFormat::table:
+      return "table";
+    default:
+      return "automatic";
+  }
+}
+
+RecordingFormat detectFormat(const std::string& file) {
+  const std::vector<std::string> lines = linesOf(file);
+  // line 7 of a Trigno export: nothing but rates
+  if (lines.size() >= 7) {
+    const std::vector<std::string> rates = cellsOf(lines[6], ',');
+    const auto isRate = [](const std::string& cell) { return cell.ends_with("Hz"); };
+    if (std::all_of(rates.begin(), rates.end(), isRate)) return RecordingFormat::trigno;
+  }
+  // first line with anything in it: nothing but numbers
+  for (const std::string& line : lines) {
+    std::string cells = line;
+    for (char& c : cells) {
+      if (c == '\t' || c == ',' || c == ';') c = ' ';
+    }
+    bool any = false;
+    bool onlyNumbers = true;
+    for (const std::string& cell : cellsOf(cells, ' ')) {
+      if (cell.empty()) continue;
+      any = true;
+      onlyNumbers = onlyNumbers && isNumber(cell);
+    }
+    if (any) return onlyNumbers ? RecordingFormat::columns : RecordingFormat::table;
+  }
+  throw FileError(fmt::format("{}: has only empty lines", file));
+}
+
+Recording readRecording(const std::string& file, const RecordingLayout& layout) {
+  Recording out;
+  out.file = file;
+  out.format = layout.format == RecordingFormat::automatic ? detectFormat(file) : layout.format;
+  const std::vector<RawColumn> columns = readColumns(file, out.format);
+  checkDeclarations(file, columns, layout);
+  for (const RawColumn& column : columns) {
+    const ColumnDeclaration* declared = declarationOf(column, layout);
+    if (declared == nullptr && out.format == RecordingFormat::columns) {
+      out.remarks.push_back(fmt::format(
+          "Column {} is not declared in the configuration and was not read.", column.number));
+      continue;
+    }
+    if (declared == nullptr && column.values.size() < 2) {
+      out.remarks.push_back(fmt::format("{} holds no signal and was not read.", calledIn(column)));
+      continue;
+    }
+    out.channels.push_back(channelOf(file, column, declared ? *declared : ColumnDeclaration{}));
+  }
+  // names are what configurations refer to
+  for (std::size_t i = 0; i < out.channels.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (out.channels[i].name == out.channels[k].name) {
+        throw FileError(fmt::format("{}: two channels are called '{}'; declare other names", file,
+                                    out.channels[i].name));
+      }
+    }
+  }
+  if (out.channels.empty()) {
+    throw FileError(
+        fmt::format("{}: no channel is declared; a file without a header needs its "
+                    "columns declared ([[channel]])",
+                    file));
+  }
+  return out;
+}
+
+const Channel& findChannel(const Recording& recording, const std::string& name) {
+  std::vector<std::string> names;
+  for (const Channel& channel : recording.channels) {
+    if (channel.name == name) return channel;
+    names.push_back(fmt::format("'{}'", channel.name));
+  }
+  throw std::invalid_argument(fmt::format("{}: no channel '{}'; the file has {}", recording.file,
+                                          name, fmt::join(names, ", ")));
+}
+
+}  // namespace bio

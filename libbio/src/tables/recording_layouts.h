@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bio/tables/recording.h"
+
+/// What the readers of the recording formats share.
+namespace bio {
+
+/// One column as it stands in the file.
+struct RawColumn {
+  int number = 0;      ///< counted from 1
+  std::string header;  ///< empty: none
+  std::string unit;    ///< empty: the file does not say
+  double rate = 0;     ///< [Hz]; 0: the file does not say
+  double startTime = 0;
+  Eigen::VectorXd values;  ///< NaN: empty cell; empty cells at the end are cut off
+};
+
+/// The lines of a text file without their line ends. @throws FileError
+std::vector<std::string> linesOf(const std::string& file);
+
+/// The cells of a line, trimmed; the separator ' ' stands for any run of white space.
+std::vector<std::string> cellsOf(const std::string& line, char separator);
+
+/// Is this a number, all of it?
+bool isNumber(const std::string& cell);
+
+/// Columns of numbers from line `firstLine` (counted from 1) to the end of the file.
+/// @throws FileError for a cell that is neither empty nor a finite number
+std::vector<RawColumn> numberColumns(const std::string& file, const std::vector<std::string>& lines,
+                                     std::size_t firstLine, char separator);
+
+/// Reads one format each.
+std::vector<RawColumn> readPlainColumns(const std::string& file);
+std::vector<RawColumn> readTrigno(const std::string& file);
+std::vector<RawColumn> readTableColumns(const std::string& file);
+
+}  // namespace bio

@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <string_view>
+
+#include "bio/tables/file_error.h"
+#include "bio/tables/table_file.h"
+#include "tables/recording_layouts.h"
+
+namespace bio {
+namespace {
+
+// Rows per second. Printed times are rounded, so single intervals may differ; a missing or doubled
+// row moves all that follow by a whole interval against equal spacing between the first and the
+// last.
+double rateOf(const std::string& file, const Eigen::VectorXd& times) {
+  const Eigen::Index last = times.size() - 1;
+  if (last < 1) {
+    throw FileError(fmt::format("{}: has {} rows, a recording needs at least 2", file, last + 1));
+  }
+  const double rate = static_cast<double>(last) / (times[last] - times[0]);
+  for (Eigen::Index i = 0; i <= last; ++i) {
+    const double off = (times[i] - times[0]) * rate - static_cast<double>(i);
+    if (!(std::abs(off) <= 0.25)) {
+      throw FileError(
+          fmt::format("{}: time = {} s in row {} is {:.2g} intervals away from equal spacing at "
+                      "{:.6g} Hz, must be "
+                      "at most 0.25",
+                      file, times[i], i + 1, std::abs(off), rate));
+    }
+  }
+  // a rate read off rounded times is known only so well
+  const double rounded = std::round(rate);
+  return std::abs(rounded / rate - 1) < 1e-4 ? rounded : rate;
+}
+
+// "BIClong_uV" → "uV", "envelope_mV" → "mV"
+std::string unitIn(const std::string& column) {
+  constexpr std::array<std::string_view, 6> units = {"V", "mV", "uV", "deg", "rad", "g"};
+  const auto mark = column.rfind('_');
+  if (mark == std::string::npos) return "";
+  for (const std::string_view unit : units) {
+    if (column.substr(mark + 1) == unit) return std::string(unit);
+  }
+  return "";
+}
+
+// Only every k-th row filled: a signal of rate/k. Empty rows at the ends are cut off.
+RawColumn compressed(const Eigen::VectorXd& cells, double rate, double startTime) {
+  Eigen::Index first = -1;
+  Eigen::Index last = -1;
+  Eigen::Index stride = 0;
+  for (Eigen::Index i = 0; i < cells.size(); ++i) {
+    if (std::isnan(cells[i])) continue;
+    if (first < 0) first = i;
+    stride = std::gcd(stride, i - first);
+    last = i;
+  }
+  RawColumn out;
+  if (first < 0) return out;
+  stride = std::max<Eigen::Index>(stride, 1);
+  out.rate = rate / static_cast<double>(stride);
+  out.startTime = startTime + static_cast<double>(first) / rate;
+  out.values = cells(Eigen::seq(first, last, stride));
+  return out;
+}
+
+}  // namespace
+
+std::vector<RawColumn> readTableColumns(const std::string& file) {
+  const Table table = readTable(file);
+  const Eigen::VectorXd times = timesOf(table);
+  const double rate = rateOf(file, times);
+  std::vector<RawColumn> out;
+  for (std::size_t k = 0; k < table.columns.size(); ++k) {
+    const std::string& name = table.columns[k];
+    if (name == "time" || name == "time_s") continue;
+    RawColumn column = compressed(table.values.col(static_cast<Eigen::Index>(k)), rate, times[0]);
+    column.number = static_cast<int>(k + 1);
+    column.header = name;
+    column.unit = unitIn(name);
+    out.push_back(std::move(column));
+  }
+  return out;
+}
+
+}  // namespace bio

@@ -1,0 +1,270 @@
+#include "bio/tables/trial.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "bio/model/nearest_name.h"
+#include "bio/tables/file_error.h"
+#include "bio/tables/trial_table.h"
+#include "bio/tables/unknown_column.h"
+
+namespace bio {
+namespace {
+
+struct Meaning {
+  enum class Kind { time, muscle, coordinate, applied, extra } kind = Kind::extra;
+  std::string name;
+  bool inDegrees = false;
+};
+
+// "/a/b/c" → "c"
+std::string lastPart(const std::string& path) {
+  return path.substr(path.find_last_of('/') + 1);
+}
+
+// The name that a column of an OpenSim 4 file stands for.
+std::string plainName(const std::string& column) {
+  if (!column.starts_with('/')) return column;
+  if (column.starts_with("/forceset/") && std::count(column.begin(), column.end(), '/') == 2) {
+    return lastPart(column);
+  }
+  if (column.ends_with("/value")) return lastPart(column.substr(0, column.size() - 6));
+  return column;
+}
+
+const Coordinate* findMeasured(const Model& model, const std::string& name) {
+  for (const Joint& joint : model.joints) {
+    for (const Coordinate& coordinate : joint.coordinates) {
+      if (coordinate.name == name) return &coordinate;
+    }
+  }
+  return nullptr;
+}
+
+Meaning meaningOf(const Model& model, const Table& table, const std::string& column) {
+  if (column == "time" || column == "time_s") return {Meaning::Kind::time, column, false};
+  const std::string name = plainName(column);
+  for (const Muscle& muscle : model.muscles) {
+    if (muscle.name == name) return {Meaning::Kind::muscle, name, false};
+  }
+  const bool suffix = name.ends_with("_deg");
+  const std::string bare = suffix ? name.substr(0, name.size() - 4) : name;
+  if (const Coordinate* coordinate = findMeasured(model, name)) {
+    return {Meaning::Kind::coordinate, name, coordinate->isRotation && table.inDegrees};
+  }
+  for (const auto& [ending, ofRotation] : {std::pair{".torque", true}, {".force", false}}) {
+    if (!name.ends_with(ending)) continue;
+    const std::string pushed = name.substr(0, name.rfind('.'));
+    const Coordinate* coordinate = findMeasured(model, pushed);
+    if (coordinate && coordinate->isRotation == ofRotation) {
+      return {Meaning::Kind::applied, pushed, false};
+    }
+  }
+  const Coordinate* coordinate = suffix ? findMeasured(model, bare) : nullptr;
+  if (coordinate && coordinate->isRotation) return {Meaning::Kind::coordinate, bare, true};
+  return {};
+}
+
+class TrialReader {
+ public:
+  TrialReader(Table table, const std::string& name, const Model& model, const TrialOptions& options)
+      : file_(name), model_(model), options_(options), table_(std::move(table)) {}
+
+  Trial read() {
+    trial_.file = file_;
+    trial_.times = timesOf(table_);
+    if (const Eigen::Index rows = trial_.times.size(); rows < 2) {
+      fail(fmt::format("holds {} row{}, must hold at least 2", rows, rows == 1 ? "" : "s"));
+    }
+    for (Eigen::Index row = 0; row < trial_.times.size(); ++row) {
+      const double before = row == 0 ? -HUGE_VAL : trial_.times[row - 1];
+      if (!(trial_.times[row] > before && std::isfinite(trial_.times[row]))) {
+        fail(fmt::format("time = {} s in row {}, must be finite and rise", trial_.times[row], row));
+      }
+    }
+    readHeader();
+    readExperimentalConditions();
+    sortColumns();
+    readExcitations();
+    return std::move(trial_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const {
+    throw FileError(fmt::format("{}: {}", file_, message));
+  }
+  [[noreturn]] void fail(Eigen::Index column, Eigen::Index row, const std::string& message) const {
+    fail(fmt::format("column '{}' at time = {} s: {}",
+                     table_.columns[static_cast<std::size_t>(column)], trial_.times(row), message));
+  }
+
+  std::vector<std::string> names() const {
+    std::vector<std::string> names = {"time"};
+    for (const Muscle& muscle : model_.muscles) names.push_back(muscle.name);
+    for (const Joint& joint : model_.joints)
+      for (const Coordinate& coordinate : joint.coordinates) names.push_back(coordinate.name);
+    return names;
+  }
+
+  // A line of the header that was meant to say something and does not.
+  void readHeader() {
+    std::vector<std::string> meant = knownLines();
+    for (const auto& [key, value] : table_.metadata) {
+      if (std::find(meant.begin(), meant.end(), key) != meant.end()) continue;
+      std::string low = key;
+      for (char& c : low) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      if (low.starts_with("known_")) {
+        fail(fmt::format("header: '{}' is unknown, must be {}{}", key,
+                         fmt::join(knownLines(), " or "), meantInstead(key, knownLines())));
+      }
+    }
+    meant.push_back("inDegrees");
+    for (const auto& [key, value] : table_.metadata) {
+      const std::string nearest = nearestName(key, meant);
+      if (nearest.empty() || nearest == key) continue;
+      trial_.warnings.push_back(
+          fmt::format("{}: header: '{}' is unknown, did you mean '{}'?", file_, key, nearest));
+    }
+  }
+
+  void readExperimentalConditions() {
+    try {
+      trial_.known = experimentalConditionsIn(table_.metadata);
+    } catch (const std::invalid_argument& error) {
+      fail(error.what());
+    }
+    if (trial_.known.any() && !options_.experimentalConditions) {
+      fail(fmt::format("recorded {} (header), which only 'discover' and 'replay' take into account",
+                       inWords(trial_.known)));
+    }
+  }
+
+  void sortColumns() {
+    std::map<std::string, std::string> seen;  // meaning → column
+    for (std::size_t i = 0; i < table_.columns.size(); ++i) {
+      const std::string& column = table_.columns[i];
+      const Meaning meaning = meaningOf(model_, table_, column);
+      if (meaning.kind == Meaning::Kind::extra) {
+        if (!options_.ignoreExtra) {
+          throw UnknownColumn(
+              fmt::format("{}: column '{}' is neither a muscle nor a coordinate of the model, nor "
+                          "a torque on one, and such columns are not ignored{}",
+                          file_, column, meantInstead(column, names())),
+              column);
+        }
+        trial_.warnings.push_back(fmt::format("{}: column '{}' is ignored", file_, column));
+        continue;
+      }
+      if (meaning.kind == Meaning::Kind::time) continue;
+      const bool isApplied = meaning.kind == Meaning::Kind::applied;
+      const auto [found, isNew] = seen.emplace((isApplied ? "." : "") + meaning.name, column);
+      if (!isNew) {
+        fail(fmt::format("columns '{}' and '{}' both give '{}', must be one", found->second, column,
+                         meaning.name));
+      }
+      if (meaning.kind == Meaning::Kind::muscle) {
+        columnOf_[meaning.name] = static_cast<Eigen::Index>(i);
+      } else if (isApplied) {
+        readApplied(static_cast<Eigen::Index>(i), meaning);
+      } else {
+        readMeasured(static_cast<Eigen::Index>(i), meaning);
+      }
+    }
+  }
+
+  void readMeasured(Eigen::Index column, const Meaning& meaning) {
+    const double unit = meaning.inDegrees ? std::numbers::pi / 180 : 1.0;
+    std::vector<double> times, values;
+    for (Eigen::Index row = 0; row < table_.values.rows(); ++row) {
+      const double value = table_.values(row, column);
+      if (std::isnan(value)) continue;
+      times.push_back(trial_.times(row));
+      values.push_back(value * unit);
+    }
+    if (times.empty()) {
+      fail(fmt::format("column '{}' has no value, must have one or be left out",
+                       table_.columns[static_cast<std::size_t>(column)]));
+    }
+    const auto count = static_cast<Eigen::Index>(times.size());
+    trial_.measured.push_back({meaning.name, Eigen::Map<Eigen::VectorXd>(times.data(), count),
+                               Eigen::Map<Eigen::VectorXd>(values.data(), count)});
+  }
+
+  void readApplied(Eigen::Index column, const Meaning& meaning) {
+    const Eigen::VectorXd values = table_.values.col(column);
+    for (Eigen::Index row = 0; row < values.size(); ++row) {
+      if (!std::isfinite(values[row])) fail(column, row, "is missing, must be given in every row");
+    }
+    trial_.applied.push_back({meaning.name, values});
+  }
+
+  void readExcitations() {
+    for (const Muscle& muscle : model_.muscles) {
+      if (muscle.enabled) trial_.muscles.push_back(muscle.name);
+    }
+    for (const Muscle& muscle : model_.muscles) {
+      if (!muscle.enabled && columnOf_.count(muscle.name)) trial_.muscles.push_back(muscle.name);
+    }
+    trial_.excitations.resize(table_.values.rows(),
+                              static_cast<Eigen::Index>(trial_.muscles.size()));
+    for (std::size_t m = 0; m < trial_.muscles.size(); ++m) {
+      const auto target = static_cast<Eigen::Index>(m);
+      const auto found = columnOf_.find(trial_.muscles[m]);
+      if (found == columnOf_.end()) {
+        trial_.excitations.col(target).setConstant(options_.baseline);
+        trial_.warnings.push_back(fmt::format("{}: muscle '{}' has no column, its excitation is {}",
+                                              file_, trial_.muscles[m], options_.baseline));
+        continue;
+      }
+      for (Eigen::Index row = 0; row < table_.values.rows(); ++row) {
+        const double value = table_.values(row, found->second);
+        if (std::isnan(value)) fail(found->second, row, "excitation is missing, must be given");
+        if (!(value >= 0 && value <= 1)) {
+          fail(found->second, row, fmt::format("excitation = {}, must be 0 to 1", value));
+        }
+        trial_.excitations(row, target) = value;
+      }
+    }
+    if (columnOf_.empty()) fail("drives no muscle of the model, must have a column for one");
+  }
+
+  std::string file_;
+  const Model& model_;
+  TrialOptions options_;
+  Table table_;
+  Trial trial_;
+  std::map<std::string, Eigen::Index> columnOf_;  // by muscle
+};
+
+}  // namespace
+
+Trial readTrial(const std::filesystem::path& file, const Model& model,
+                const TrialOptions& options) {
+  return trialFrom(readTable(file), file.string(), model, options);
+}
+
+Trial trialFrom(const Table& table, const std::string& name, const Model& model,
+                const TrialOptions& options) {
+  if (!(options.baseline >= 0 && options.baseline <= 1)) {
+    throw std::domain_error(fmt::format("baseline = {}, must be 0 to 1", options.baseline));
+  }
+  return TrialReader(table, name, model, options).read();
+}
+
+double excitationAt(const Trial& trial, Eigen::Index muscle, double t) {
+  const auto& times = trial.times;
+  const auto column = trial.excitations.col(muscle);
+  const auto above = std::upper_bound(times.data(), times.data() + times.size(), t) - times.data();
+  if (above == 0) return column(0);
+  if (above == times.size()) return column(above - 1);
+  const double share = (t - times(above - 1)) / (times(above) - times(above - 1));
+  return column(above - 1) + share * (column(above) - column(above - 1));
+}
+
+}  // namespace bio

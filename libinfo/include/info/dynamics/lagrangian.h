@@ -1,0 +1,106 @@
+#pragma once
+
+#include "info/autodiff/derivatives.h"
+#include "info/autodiff/recorded_function.h"
+#include "info/dynamics/system.h"
+
+namespace info {
+
+/// The sizes of a mechanical system.
+struct MechanicalDimensions {
+  int coordinate;  ///< n, length of q
+  int kinematic;   ///< length of ρ, the coordinates that follow their drives exactly
+  int force;       ///< length of u, the inputs of the generalised force
+  int parameter;   ///< p, length of θ
+  int output;      ///< l, length of y
+};
+
+template <class S, class T = double>
+using CoordinatesOf = Vector<T, S::coordinateSize>;
+template <class S, class T = double>
+using KinematicOf = Vector<T, S::kinematicSize>;
+template <class S, class T = double>
+using ForceInputOf = Vector<T, S::forceInputSize>;
+
+/// A mechanical system by its Lagrangian L(q, q̇, ρ, ρ̇, θ) [J] and generalised force
+/// f(q, q̇, ρ, ρ̇, u, θ) [N or N m], with outputs y = measure(q, ρ, θ); ρ are kinematic configuration
+/// variables (thesis 2.4.2), prescribed instead of solved for.
+///
+/// Templates over one scalar T, pure as a System's functions; L three times differentiable where
+/// second derivatives of a step are asked for, ∂²L/∂q̇² regular. `dynamic` sizes come with
+/// `MechanicalDimensions mechanicalDimensions() const`.
+template <class S>
+concept LagrangianSystem = requires(const S& s, const CoordinatesOf<S>& q,
+                                    const KinematicOf<S>& rho, const ForceInputOf<S>& u,
+                                    const ParametersOf<S>& theta) {
+  { S::measurementSize } -> std::convertible_to<int>;
+  { s.lagrangian(q, q, rho, rho, theta) } -> std::convertible_to<double>;
+  { s.force(q, q, rho, rho, u, theta) } -> std::convertible_to<CoordinatesOf<S>>;
+  { s.measure(q, rho, theta) } -> std::convertible_to<Vector<double, S::measurementSize>>;
+  { s.parameterNames() } -> std::convertible_to<std::vector<std::string>>;
+};
+
+template <LagrangianSystem S>
+MechanicalDimensions mechanicalDimensionsOf(const S& s) {
+  if constexpr (requires { s.mechanicalDimensions(); }) {
+    return s.mechanicalDimensions();
+  } else {
+    static_assert(S::coordinateSize >= 0 && S::kinematicSize >= 0 && S::forceInputSize >= 0 &&
+                      S::parameterSize >= 0 && S::measurementSize >= 0,
+                  "a dynamic size needs `MechanicalDimensions mechanicalDimensions() const`");
+    return {S::coordinateSize, S::kinematicSize, S::forceInputSize, S::parameterSize,
+            S::measurementSize};
+  }
+}
+
+/// Momentum p = ∂L/∂q̇ of a motion, to start an integrator with.
+template <LagrangianSystem S>
+CoordinatesOf<S> momentum(const S& system, const CoordinatesOf<S>& q, const CoordinatesOf<S>& qDot,
+                          const KinematicOf<S>& rho, const KinematicOf<S>& rhoDot,
+                          const ParametersOf<S>& theta) {
+  const auto kinetic = [&]<class T>(const CoordinatesOf<S, T>& v) {
+    Vector<T, 1> L;
+    L << system.lagrangian(
+        CoordinatesOf<S, T>(q.template cast<T>()), v, KinematicOf<S, T>(rho.template cast<T>()),
+        KinematicOf<S, T>(rhoDot.template cast<T>()), ParametersOf<S, T>(theta.template cast<T>()));
+    return L;
+  };
+  return jacobian(kinetic, qDot).transpose();
+}
+
+/// Velocity q̇ and energy E = pᵀq̇ − L [J] of a momentum.
+template <int N>
+struct Legendre {
+  Vector<double, N> qDot;
+  double energy;
+};
+
+/// The motion behind a momentum, for a Lagrangian that is quadratic in q̇: q̇ = (∂²L/∂q̇²)⁻¹ (p − p₀)
+/// with p₀ = ∂L/∂q̇ at q̇ = 0.
+template <LagrangianSystem S>
+Legendre<S::coordinateSize> legendre(const S& system, const CoordinatesOf<S>& q,
+                                     const CoordinatesOf<S>& p, const KinematicOf<S>& rho,
+                                     const KinematicOf<S>& rhoDot, const ParametersOf<S>& theta) {
+  const auto map = [&]<class T>(const CoordinatesOf<S, T>& v) {
+    Vector<T, 1> L;
+    L << system.lagrangian(
+        CoordinatesOf<S, T>(q.template cast<T>()), v, KinematicOf<S, T>(rho.template cast<T>()),
+        KinematicOf<S, T>(rhoDot.template cast<T>()), ParametersOf<S, T>(theta.template cast<T>()));
+    return L;
+  };
+  const CoordinatesOf<S> rest = CoordinatesOf<S>::Zero(q.size());
+  const CoordinatesOf<S> p0 = momentum(system, q, rest, rho, rhoDot, theta);
+  const auto mass = contractedHessian(map, rest, Vector<double, 1>(1.0));
+  Legendre<S::coordinateSize> out;
+  out.qDot = mass.ldlt().solve(p - p0);
+  out.energy = p.dot(out.qDot) - system.lagrangian(q, out.qDot, rho, rhoDot, theta);
+  return out;
+}
+
+/// How the continuous force f enters a step of length Δt.
+enum class Forcing {
+  left,       ///< F⁻ = Δt f, F⁺ = 0: the thesis's; first order in Δt
+  symmetric,  ///< F⁻ = F⁺ = ½ Δt f: second order at the same cost
+};
+
+}  // namespace info

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <string>
+#include <vector>
+
+#include "info/information/output_covariance.h"
+
+namespace info {
+
+/// Γ_k one below the other: sample k in rows k·h … k·h+h−1.
+/// @throws std::invalid_argument if the Γ_k differ in size
+Eigen::MatrixXd stack(const std::vector<Eigen::MatrixXd>& gamma_k);
+
+/// Fisher information of samples about parameters,
+///     I = Σ_k Γ_kᵀ Σ_k⁻¹ Γ_k
+/// Γ_k = dy_k/dθ (outputs × parameters), Σ_k the covariance of the noise on y_k. Samples and
+/// outputs that were not observed add nothing; of a sample observed in part, the marginal
+/// covariance counts.
+///
+/// Thesis (4.1), there for one Σ and no gaps. Symmetric, positive semidefinite,
+/// [1/(unit_i·unit_j)].
+/// @param gamma stacked Γ_k: (outputs·samples) × parameters
+/// @throws std::invalid_argument if the shapes do not fit; std::domain_error if Γ is not finite
+Eigen::MatrixXd fisherInformation(const Eigen::MatrixXd& gamma, const OutputCovariance& covariance,
+                                  const ObservationMask& observed = {});
+Eigen::MatrixXd fisherInformation(const std::vector<Eigen::MatrixXd>& gamma_k,
+                                  const OutputCovariance& covariance,
+                                  const ObservationMask& observed = {});
+
+/// Fisher information of outputs measured continuously,
+///     I = ∫ Γ(t)ᵀ Σ(t)⁻¹ Γ(t) dt
+/// Σ is here the noise's spectral density [(output unit)²·s]; a sampled measurement at period Δt is
+/// about the same with Σ·Δt. Thesis (4.2). The integral is the trapezoidal sum over the times
+/// given.
+///
+/// @param times [s] strictly rising, one per sample, at least 2
+/// @throws std::invalid_argument if the shapes do not fit or the times do not rise
+Eigen::MatrixXd continuousFisherInformation(const std::vector<double>& times,
+                                            const Eigen::MatrixXd& gamma,
+                                            const OutputCovariance& density);
+
+/// Cramér–Rao bound I⁻¹: no unbiased estimator has a smaller covariance. Thesis (2.1).
+///
+/// @param names of the parameters, for messages; empty: θ0, θ1, …
+/// @throws std::domain_error if I is not finite, if a parameter has no information at all (named),
+/// or if
+///         I is singular to working accuracy after scaling each parameter to unit information
+///         (the combination is named; identifiability.h tells more)
+Eigen::MatrixXd cramerRaoBound(const Eigen::MatrixXd& information,
+                               const std::vector<std::string>& names = {});
+
+}  // namespace info

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "info/discovery/likelihood/discovery_problem.h"
+#include "robots/robot_effects.h"
+
+namespace info::robot {
+
+struct DisagreementOptions {
+  double step = 0.005;          ///< longest time step [s] > 0
+  double latentSpacing = 0.05;  ///< between nodes of the latent acceleration [s] > 0
+  /// Noise of each channel [its unit] > 0; empty: from the data's third differences.
+  std::vector<double> sds;
+  std::vector<std::string> without;  ///< ids of candidates that are left out
+};
+
+/// A robot and its recordings: what info::discover asks, the same for every robot.
+///
+/// The latent force is an acceleration of the cart that nobody commanded [m/s²], of scale 1: what
+/// drives and floors do, and what friction of the first joint nearly is.
+///
+/// Robots may measure several channels; their samples follow each other in time. Values of channel
+/// c are weighted by σ_0/σ_c, so that all have the noise of channel 0, in its unit.
+///
+/// All derivatives are exact. The cart is at rest before the first row.
+class RobotProblem final : public discover::DiscoveryProblem {
+ public:
+  /// @throws std::invalid_argument for a trial that breaks a rule of Trial or has no measured
+  ///   value, a channel with fewer than eight values in all, an unknown id, an option out of range
+  RobotProblem(Model model, std::vector<Trial> trials, DisagreementOptions options = {});
+
+  const std::vector<discover::Quantity>& quantities() const override { return quantities_; }
+  const std::vector<std::size_t>& nuisances() const override { return nuisances_; }
+  const std::vector<discover::Candidate>& candidates() const override { return model_.candidates; }
+  int numTrials() const override { return static_cast<int>(trials_.size()); }
+  std::string trialName(int trial) const override { return of(trial).trial.name; }
+  const std::vector<double>& times(int trial) const override { return of(trial).times; }
+  const std::vector<int>& outputOfSample(int trial) const override { return of(trial).channels; }
+  const Eigen::VectorXd& measured(int trial) const override { return of(trial).measured; }
+  const std::vector<double>& latentTimes(int trial) const override { return of(trial).nodes; }
+  Prediction predict(int trial, const Eigen::VectorXd& values, const Eigen::VectorXd& latent,
+                     const std::vector<std::size_t>& wanted, bool latentToo) const override;
+  Eigen::VectorXd outputs(int trial, const Eigen::VectorXd& values,
+                          const Eigen::VectorXd& latent) const override;
+  Eigen::VectorXd refinedOutputs(int trial, const Eigen::VectorXd& values) const override;
+  Eigen::MatrixXd inputs(int trial) const override;
+  std::vector<std::string> inputNames() const override { return {"cart acceleration"}; }
+
+  const Model& model() const { return model_; }
+  /// By which values of a channel are multiplied, σ_0/σ_c.
+  double weight(int channel) const { return weights_.at(static_cast<std::size_t>(channel)); }
+  /// σ_c [unit of the channel].
+  const std::vector<double>& sds() const { return sds_; }
+  /// Model::states at the trial's rows.
+  Eigen::MatrixXd states(int trial, const Eigen::VectorXd& values) const;
+
+ private:
+  struct OfTrial {
+    Trial trial;
+    std::vector<Sample> samples;
+    std::vector<double> times, nodes;
+    std::vector<int> channels;
+    Eigen::VectorXd measured, weights;  ///< weighted; one for each sample
+    std::size_t start;                  ///< the first quantity of its start
+  };
+  const OfTrial& of(int trial) const { return trials_.at(static_cast<std::size_t>(trial)); }
+  Response simulate(const OfTrial& one, const Eigen::VectorXd& values,
+                    const Eigen::VectorXd& latent, const std::vector<std::size_t>& shared,
+                    bool derivatives, bool latentToo, double stepFactor) const;
+
+  Model model_;
+  DisagreementOptions options_;
+  std::vector<double> sds_, weights_;
+  std::vector<discover::Quantity> quantities_;  ///< the model's, then the trials' starts
+  std::vector<std::size_t> nuisances_;
+  std::vector<OfTrial> trials_;
+};
+
+}  // namespace info::robot

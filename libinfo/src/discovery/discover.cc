@@ -1,0 +1,581 @@
+#include "info/discovery/discover.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "discovery/likelihood/selected_samples.h"
+#include "discovery/nonparametric/nonparametric_force.h"
+#include "discovery/nonparametric/race_formula.h"
+#include "discovery/search/select.h"
+#include "info/discovery/judgement/decide.h"
+#include "info/discovery/judgement/expected_error.h"
+#include "info/discovery/judgement/output_sd.h"
+
+namespace info::discover {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+const char* name(Finding finding) {
+  static constexpr const char* kNames[] = {"none",      "parameter", "named",
+                                           "ambiguous", "unknown",   "numerical"};
+  return kNames[static_cast<int>(finding)];
+}
+const char* name(Stage stage) {
+  static constexpr const char* kNames[] = {"calibrate", "localise", "screen",
+                                           "race",      "decide",   "finished"};
+  return kNames[static_cast<int>(stage)];
+}
+const char* name(EffectKind kind) {
+  static constexpr const char* kNames[] = {"structure", "input", "geometry", "sensor", "parameter"};
+  return kNames[static_cast<int>(kind)];
+}
+
+const char* name(NonparametricForce::Follows follows) {
+  return follows == NonparametricForce::Follows::angle ? "angle" : "speed";
+}
+
+namespace {
+
+constexpr double kWorthSaying = 0.005;  // σ_d that the sentence mentions
+
+std::vector<Estimate> estimatesOf(const Fit& fit, const std::vector<std::size_t>& wanted,
+                                  const DiscoveryProblem& data) {
+  std::vector<Estimate> result;
+  for (const std::size_t q : wanted) {
+    const int i = fit.hypothesis.indexOf(q);
+    if (i < 0) continue;
+    const auto at = static_cast<std::size_t>(i);
+    Estimate e{q, fit.values[static_cast<Index>(q)], fit.sd(at), 0, false};
+    // surprise counts the tolerance of the quantity itself, not that of a race
+    FreeQuantity own = fit.hypothesis.free[at];
+    own.sd = data.quantities()[q].sd;
+    e.surprise = own.coordinate(e.value);
+    const Quantity& quantity = data.quantities()[q];
+    const double margin = 1e-6 * (quantity.upper - quantity.lower);
+    e.atBound = e.value - quantity.lower < margin || quantity.upper - e.value < margin;
+    result.push_back(e);
+  }
+  return result;
+}
+
+// Everything that run() carries from stage to stage.
+class Work {
+ public:
+  Work(const DiscoveryProblem& data, const Options& options, RecordedNoise noise)
+      : data_(data), options_(options) {
+    verdict_.noise = std::move(noise);
+    for (int t = 0; t < data.numTrials(); ++t)
+      if (std::find(options.heldOut.begin(), options.heldOut.end(), t) == options.heldOut.end())
+        trials_.push_back(t);
+  }
+
+  Verdict run(WarmStart* draft) {
+    try {
+      prepare(draft != nullptr ? draft->get() : nullptr);
+      stage_ = Stage::race;
+      report(Stage::screen, 0.25, "");
+      chosen_ = select(*search_, options_);
+      search_->refineEvidence(chosen_, options_.classWidth);
+      if (draft != nullptr)
+        *draft = std::make_shared<const SearchMemory>(SearchMemory{
+            search_->entries(), chosen_, search_->scaleValues(), search_->hasRacedFromNominal()});
+      judge();
+      conclude();
+      verdict_.reached = Stage::finished;
+      report(Stage::finished, 1, "");
+    } catch (const Stopped&) {
+      verdict_.sentence = "Stopped before the end" + keepWhatIsThere() + ".";
+    }
+    if (search_) verdict_.fits = search_->fits() + nonparametricFits_;
+    return verdict_;
+  }
+
+ private:
+  void report(Stage stage, double fraction, const std::string& doing) {
+    fraction_ = std::max(fraction_, fraction);
+    if (options_.progress && !options_.progress({stage, fraction_, doing})) throw Stopped();
+  }
+
+  // What was raced before the search was stopped, and where the base disagrees. Says which name
+  // leads.
+  std::string keepWhatIsThere() {
+    if (!search_ || search_->entries().count({}) == 0 || !search_->at({}).works()) return "";
+    judge();
+    const Entry& entry = search_->at({});
+    const Fit& map = entry.simulation ? *entry.simulation : entry.fit;
+    if (entry.fit.noise.latent > 0)
+      verdict_.localisation = localise(search_->likelihood(), map, entry.fit, mapOptions());
+    const auto best = std::max_element(
+        verdict_.finalists.begin(), verdict_.finalists.end(),
+        [](const Finalist& a, const Finalist& b) { return a.logEvidence < b.logEvidence; });
+    if (best->effects.empty()) return "";
+    return fmt::format(
+        "; of {} hypotheses fitted so far {} leads, with a log Bayes factor of {:.1f} nats against "
+        "the base model",
+        verdict_.finalists.size() - 1, describe(data_, best->effects), best->logEvidence);
+  }
+
+  LocaliseOptions mapOptions() const { return {0.25, 8, 6, options_.falseDiscoveries}; }
+
+  void prepare(const SearchMemory* known) {
+    AdequacyOptions& test = test_;
+    test.level = options_.level;
+    test.evidence = options_.remainder;
+    if (options_.outputSd) {
+      verdict_.outputSd = *options_.outputSd;
+    } else {
+      const OutputSd& found = verdict_.noise.sd;
+      verdict_.outputSd = found.value;
+      verdict_.sdEstimated = true;
+      test.sdError = found.relativeError;
+    }
+    stage_ = Stage::calibrate;
+    search_.emplace(data_, trials_, options_, verdict_.outputSd, [this](const std::string& doing) {
+      report(stage_, fraction_ + 0.5 * (0.9 - fraction_) * 0.05, doing);
+    });
+    if (known != nullptr)
+      search_->adopt(*known);
+    else
+      search_->calibrate();
+    base();
+    verdict_.reached = Stage::localise;
+    report(Stage::localise, 0.2, "");
+  }
+
+  // A simulation that changes with its step says nothing about the world. Asked of what is believed
+  // in the end: a base that lacks something may run away, and then every step is too long.
+  bool stepsTooLong() {
+    const VectorXd& values = search_->simulation(chosen_).values;
+    int worst = 0;
+    for (const int t : trials_) {
+      const VectorXd refined = data_.refinedOutputs(t, values);
+      if (refined.size() == 0) continue;
+      const double change =
+          (refined - data_.outputs(t, values, {})).cwiseAbs().maxCoeff() / verdict_.outputSd;
+      if (!(change > verdict_.numericalError)) continue;
+      verdict_.numericalError = change;
+      worst = t;
+    }
+    if (verdict_.numericalError <= options_.numericalTolerance) return false;
+    verdict_.finding = Finding::numerical;
+    verdict_.sentence = fmt::format(
+        "Halving the time step changes the simulation of {} by {:.2g} standard deviations of the "
+        "measurement noise: use shorter steps.",
+        data_.trialName(worst), verdict_.numericalError);
+    return true;
+  }
+
+  // what there is to say about the base model
+  void base() {
+    const Entry& entry = search_->at({});
+    verdict_.base = entry.fit.values;
+    verdict_.values = entry.fit.values;
+    verdict_.latentSizeBefore = verdict_.latentSizeAfter = entry.fit.noise.latent;
+    verdict_.before = verdict_.after = adequacy(search_->likelihood(), entry.fit, test_);
+    verdict_.calibration = verdict_.nuisancesAfter =
+        estimatesOf(entry.fit, data_.nuisances(), data_);
+  }
+
+  void judge() {
+    const double ofBase = search_->at({}).score;
+    verdict_.finalists.clear();
+    for (const auto& [effects, entry] : search_->entries()) {
+      if (!entry.works()) continue;
+      Finalist f;
+      f.effects = effects;
+      f.logEvidence = entry.score - ofBase;
+      f.latentSize = entry.fit.noise.latent;
+      f.significance = search_->significance(entry);
+      for (const std::size_t e : effects)
+        for (const Estimate& x : estimatesOf(entry.fit, data_.candidates()[e].quantities, data_))
+          f.estimates.push_back(x);
+      verdict_.finalists.push_back(f);
+    }
+    const double rarity =
+        std::log(0.5 / std::max(1.0, static_cast<double>(data_.candidates().size())));
+    const auto posterior = [&](const Finalist& f) {
+      return f.logEvidence + rarity * static_cast<double>(f.effects.size());
+    };
+    std::sort(verdict_.finalists.begin(), verdict_.finalists.end(),
+              [&](const Finalist& a, const Finalist& b) { return posterior(a) > posterior(b); });
+    double sum = 0;
+    for (const Finalist& f : verdict_.finalists)
+      sum += std::exp(posterior(f) - posterior(verdict_.finalists[0]));
+    for (Finalist& f : verdict_.finalists)
+      f.probability = std::exp(posterior(f) - posterior(verdict_.finalists[0])) / sum;
+    base();  // back-substitution may have found a better one
+    const Entry& leader = search_->at(chosen_);
+    if (!chosen_.empty()) {
+      verdict_.after = adequacy(search_->likelihood(), leader.fit, test_);
+      verdict_.values = leader.fit.values;
+      verdict_.latentSizeAfter = leader.fit.noise.latent;
+      verdict_.nuisancesAfter = estimatesOf(leader.fit, data_.nuisances(), data_);
+    }
+    for (Finalist& f : verdict_.finalists) {
+      if (f.effects == chosen_) f.adequate = verdict_.after.adequate();
+      if (f.effects.empty()) f.adequate = verdict_.before.adequate();
+    }
+  }
+  // What a hypothesis makes of the trials that were held out.
+  struct HeldOut {
+    double score = -HUGE_VAL;  // log of their probability given the others
+    double error = HUGE_VAL;   // of the simulation, with starts of their own [unit of the output]
+    double meanSquare = HUGE_VAL;  // of their innovations given the others
+    std::optional<Fit> starts;     // those of their own
+  };
+  HeldOut heldOut(const Entry& entry, const Likelihood& all, const Likelihood& held) const {
+    HeldOut result;
+    // their starts are new: a large latent force leads to them
+    Noise wide = entry.fit.noise, still = entry.fit.noise;
+    wide.latent = std::max(wide.latent, 0.1);
+    still.latent = 0;
+    const Hypothesis hypothesis = makeHypothesis(data_, entry.effects, all.trials());
+    std::optional<Fit> best;
+    const auto together = [&](const Eigen::VectorXd& from) {
+      auto fit = all.tryFit(hypothesis, entry.fit.noise, from, {}, {30, 0.05});
+      if (fit && (!best || fit->logEvidence > best->logEvidence)) best = std::move(fit);
+    };
+    if (const auto first = all.tryFit(hypothesis, wide, entry.fit.values, {}, {10, 0.1}))
+      together(first->values);
+    const Hypothesis starts = startsOnly(data_, held.trials());
+    if (const auto near = held.tryFit(starts, wide, entry.fit.values, {}, {10, 0.1})) {
+      if (auto fit = held.tryFit(starts, still, near->values, {}, {30, 0.01})) {
+        result.error = held.simulationError(fit->values);
+        together(fit->values);  // where everything else is right already
+        result.starts = std::move(fit);
+      }
+    }
+    if (best) {
+      if (search_->exceedsNoise(*best)) best = all.marginal(*best);
+      // log Z of all less that of those that were fitted
+      result.score = best->logEvidence - entry.fit.logEvidence;
+      result.meanSquare = 2 * (best->cost - entry.fit.cost) / static_cast<double>(held.samples());
+    }
+    return result;
+  }
+
+  void conclude() {
+    stage_ = Stage::decide;
+    report(Stage::decide, 0.9, "");
+    const Entry& before = search_->at({});
+    const Entry& after = search_->at(chosen_);
+    Judgement judgement;
+    judgement.raced = verdict_.finalists;
+    judgement.chosen = chosen_;
+    judgement.before = verdict_.before;
+    judgement.after = verdict_.after;
+    judgement.latentBefore = verdict_.latentSizeBefore;
+    judgement.latentAfter = verdict_.latentSizeAfter;
+    const Estimate* worst = nullptr;
+    for (const Estimate& e : verdict_.calibration)
+      if (data_.quantities()[e.quantity].trial < 0 &&
+          (worst == nullptr || std::abs(e.surprise) > std::abs(worst->surprise)))
+        worst = &e;
+    if (worst != nullptr) judgement.surprise = std::abs(worst->surprise);
+
+    gaps(before, after, judgement);
+    if (stepsTooLong()) return;
+    Decision decision = decide(data_.candidates(), judgement, options_);
+    const Fit smoothing =
+        before.fit.noise.latent > 0 ? before.fit : refit(before, options_.latentScale);
+    if (options_.symbolic && (!chosen_.empty() || decision.finding == Finding::unknown)) {
+      verdict_.nonparametric = raceNonparametric(
+          *search_, chosen_, smoothing, options_, verdict_.outputSd,
+          [this](const std::string& doing) { report(stage_, fraction_, doing); },
+          nonparametricFits_);
+      judgement.nonparametricWins = verdict_.nonparametric && verdict_.nonparametric->wins;
+      if (judgement.nonparametricWins) decision = decide(data_.candidates(), judgement, options_);
+    }
+    verdict_.finding = decision.finding;
+    verdict_.effects = decision.effects;
+    verdict_.probability = decision.probability;
+    verdict_.vetoed = decision.vetoed;
+    verdict_.proxy = decision.proxy;
+    collectRivals();
+    // the parameter that is off, where no race was needed to see it
+    if (decision.finding == Finding::parameter && decision.effects.empty())
+      for (std::size_t c = 0; c < data_.candidates().size(); ++c)
+        if (data_.candidates()[c].kind == EffectKind::parameter &&
+            data_.candidates()[c].quantities[0] == worst->quantity) {
+          NamedEffect named;
+          named.candidate = c;
+          named.estimates = {*worst};
+          named.equals = {c};
+          named.equalEvidence = {0};
+          verdict_.effects.push_back(named);
+          break;
+        }
+
+    // where the base disagrees, with the scatter of inputs that is left once effects are named
+    const bool small = before.fit.noise.latent <= options_.latentTolerance;
+    const bool trusted = decision.finding != Finding::unknown && !chosen_.empty();
+    Fit map = search_->simulation({});
+    if (trusted && after.fit.noise.latent > 0)
+      map = refit(before, after.fit.noise.latent);
+    else if (decision.finding == Finding::none && small)
+      map = before.fit;
+    verdict_.localisation = localise(search_->likelihood(), map, smoothing, mapOptions());
+    for (const Screened& s : search_->screen(chosen_, false))
+      verdict_.detectability.push_back(
+          {s.candidate, s.information > 0 ? 5 / std::sqrt(s.information) : HUGE_VAL});
+    std::sort(verdict_.detectability.begin(), verdict_.detectability.end(),
+              [](const Detectable& a, const Detectable& b) { return a.candidate < b.candidate; });
+    if (decision.finding == Finding::unknown && options_.symbolic) {
+      verdict_.unknown = describeUnknown(search_->likelihood(), smoothing);
+      verdict_.formula = raceFormula(*search_, *verdict_.unknown, chosen_, optionsOfFormula());
+    }
+    verdict_.sentence = sentence() + samples();
+  }
+
+  void collectRivals() {
+    for (const NamedEffect& named : verdict_.effects)
+      for (const std::size_t rival : named.equals) {
+        if (rival == named.candidate) continue;
+        const auto known = search_->entries().find(with(without(chosen_, named.candidate), rival));
+        if (known != search_->entries().end() && known->second.works())
+          verdict_.rivals.push_back(known->second.fit);
+      }
+    if (!verdict_.rivals.empty())
+      verdict_.rivals.insert(verdict_.rivals.begin(), search_->at(chosen_).fit);
+  }
+
+  // The race of the formula is the last that is done.
+  Options optionsOfFormula() const {
+    Options options = options_;
+    options.outputSd = verdict_.outputSd;
+    if (options_.progress)
+      options.progress = [this, from = fraction_](const Progress& of) {
+        return options_.progress({Stage::decide, from + of.fraction * (0.97 - from), of.doing});
+      };
+    return options;
+  }
+
+  Fit refit(const Entry& entry, double size) const {
+    const Fit& old = entry.fit;
+    const Noise noise{verdict_.outputSd, size, options_.latentTime};
+    const Likelihood& likelihood = search_->likelihood();
+    if (auto fit = likelihood.tryFit(old.hypothesis, noise, old.values)) return std::move(*fit);
+    // it stands by its latent force only
+    return likelihood.fit(old.hypothesis, noise, old.values,
+                          forceKept(old.eta, old.noise.latent, size));
+  }
+
+  void gaps(const Entry& before, const Entry& after, Judgement& judgement) {
+    ExcessError& gap = verdict_.gap;
+    gap.floor = verdict_.outputSd;
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (const int t : trials_) {
+      low = std::min(low, data_.measured(t).minCoeff());
+      high = std::max(high, data_.measured(t).maxCoeff());
+    }
+    gap.range = high - low;
+    const Noise still{verdict_.outputSd, 0, options_.latentTime};
+    const Likelihood& likelihood = search_->likelihood();
+    const auto nominal = [&](const Likelihood& l) {
+      const auto fit = l.tryFit(startsOnly(data_, l.trials()), still, nominalValues(data_));
+      return fit ? l.simulationError(fit->values)
+                 : HUGE_VAL;  // as it came it may not reach the end
+    };
+    gap.nominal = nominal(likelihood);
+    gap.calibrated = likelihood.simulationError(search_->simulation({}).values);
+    gap.after = likelihood.simulationError(search_->simulation(chosen_).values);
+    explainExcess(gap);
+    if (options_.heldOut.empty()) return;
+    std::vector<int> every;
+    for (int t = 0; t < data_.numTrials(); ++t) every.push_back(t);
+    const VectorXd& scale = search_->scaleValues();
+    const Likelihood all(data_, every, scale, options_.latentTime);
+    const Likelihood held(data_, options_.heldOut, scale, options_.latentTime);
+    const HeldOut without = heldOut(before, all, held);
+    const HeldOut with = chosen_.empty() ? without : heldOut(after, all, held);
+    keepStarts(without, verdict_.base);
+    verdict_.heldOutStarts = keepStarts(with, verdict_.values);
+    ExcessError other;
+    other.floor = gap.floor;
+    other.range = gap.range;
+    other.nominal = nominal(held);
+    other.calibrated = without.error;
+    other.after = with.error;
+    if (with.starts) {
+      const ExpectedError expected = expectedError(held, *with.starts, after.fit);
+      other.expected = expected.rms;
+      other.probability = expected.probability(with.error);
+    }
+    explainExcess(other);
+    verdict_.heldOut = other;
+    verdict_.heldOutBefore = heldOutAdequacy(without.meanSquare, held);
+    verdict_.heldOutAfter =
+        chosen_.empty() ? verdict_.heldOutBefore : heldOutAdequacy(with.meanSquare, held);
+    judgement.strangeBefore = !verdict_.heldOutBefore->expected();
+    judgement.strangeAfter = !verdict_.heldOutAfter->expected();
+    judgement.heldOutFarOff = other.probability && *other.probability < options_.farOff;
+    // by more than chance; a base that fits badly is no exact yardstick, so its simulation must be
+    // no worse, too
+    judgement.heldOutWorse =
+        !chosen_.empty() && with.score < without.score - 3 && with.error > 0.95 * without.error;
+  }
+
+  // Puts the starts of what was held out where those of the others are.
+  std::vector<Estimate> keepStarts(const HeldOut& held, VectorXd& values) const {
+    if (!held.starts) return {};
+    std::vector<std::size_t> starts;
+    for (const FreeQuantity& free : held.starts->hypothesis.free) {
+      starts.push_back(free.quantity);
+      const auto q = static_cast<Index>(free.quantity);
+      values[q] = held.starts->values[q];
+    }
+    return estimatesOf(*held.starts, starts, data_);
+  }
+
+  HeldOutAdequacy heldOutAdequacy(double meanSquare, const Likelihood& held) const {
+    const auto n = static_cast<double>(held.samples());
+    return {meanSquare, chiSquareQuantile(options_.level, n) / n * std::exp(3.29 * test_.sdError)};
+  }
+
+  // How much of what is left is taken for noise of the inputs: a name rests on it.
+  std::string scatter() const {
+    if (verdict_.latentSizeAfter < kWorthSaying) return "";
+    return fmt::format(" {:.2g} % of the inputs' effect is attributed to input noise.",
+                       100 * verdict_.latentSizeAfter);
+  }
+
+  std::string farOff() const {
+    if (!verdict_.heldOut || !verdict_.heldOut->probability ||
+        !(*verdict_.heldOut->probability < options_.farOff))
+      return "";
+    return fmt::format(
+        " However, the held-out errors are larger than expected by chance (p = {:.1g}).",
+        *verdict_.heldOut->probability);
+  }
+
+  // Which samples were not used, and why.
+  std::string samples() const {
+    const RecordedNoise& noise = verdict_.noise;
+    std::string words;
+    if (noise.outliers > 0)
+      words += fmt::format(" {} of {} samples are outliers and were left out.", noise.outliers,
+                           noise.samples);
+    if (noise.spacing > 1)
+      words += fmt::format(
+          " The measurement noise is correlated, so only one sample in {:.2g} s was used.",
+          noise.interval);
+    return words;
+  }
+
+  std::string sentence() const {
+    const auto& candidates = data_.candidates();
+    std::string names;
+    for (const NamedEffect& e : verdict_.effects) {
+      std::string one;
+      for (const std::size_t c : e.equals) one += (one.empty() ? "" : " or ") + candidates[c].name;
+      if (e.equals.size() > 1 && verdict_.effects.size() > 1) one = "(" + one + ")";
+      names += (names.empty() ? "" : ", and ") + one;
+    }
+    switch (verdict_.finding) {
+      case Finding::none:
+        return "No missing effect above the detectable size." + scatter() + farOff();
+      case Finding::parameter:
+        return "Parameter error: " + names + "." + scatter() + farOff();
+      case Finding::named:
+      case Finding::ambiguous:
+        return "Missing: " + names +
+               (verdict_.vetoed && !verdict_.after.sized
+                    ? "; the size of the residual does not match the noise."
+                    : ".") +
+               scatter() + farOff();
+      case Finding::unknown:
+        return "The model lacks an effect that is not in the catalogue." +
+               (names.empty() ? std::string()
+                              : " The closest match is " + names + atBounds() + ".") +
+               cause() + nonparametric() +
+               (verdict_.formula && verdict_.formula->wins
+                    ? " The force " + verdict_.formula->text + " explains the residual."
+                    : "");
+      case Finding::numerical:
+        break;
+    }
+    return verdict_.sentence;
+  }
+
+  std::string cause() const {
+    const Adequacy& left = chosen_.empty() ? verdict_.before : verdict_.after;
+    if (left.causeless) return "";
+    switch (left.remainder.strongest()) {
+      case Cause::state:
+        return " The residual depends on the angle and the speed.";
+      case Cause::inputs:
+        return " The residual depends on the inputs.";
+      case Cause::acceleration:
+        return " The residual depends on the acceleration, which suggests a wrong inertia.";
+      case Cause::sensor:
+        return " The residual depends on the sensor's reading, which suggests an error of the "
+               "sensor.";
+      case Cause::moments:
+        return " The residual depends on the inputs' moments and the angle, which suggests wrong "
+               "moment arms.";
+    }
+    return "";
+  }
+
+  std::string nonparametric() const {
+    if (!verdict_.nonparametric || !verdict_.nonparametric->wins) return "";
+    return fmt::format(" A free-form force of the {} alone explains {}.",
+                       name(verdict_.nonparametric->follows),
+                       chosen_.empty() ? "part of the residual" : "the data better");
+  }
+
+  std::string atBounds() const {
+    std::string quantities;
+    for (const NamedEffect& e : verdict_.effects)
+      for (const Estimate& one : e.estimates)
+        if (one.atBound)
+          quantities += (quantities.empty() ? "" : ", ") + data_.quantities()[one.quantity].name;
+    return quantities.empty() ? "" : " (at its bound: " + quantities + ")";
+  }
+
+  const DiscoveryProblem& data_;
+  const Options& options_;
+  std::vector<int> trials_;
+  AdequacyOptions test_;
+  std::optional<Search> search_;
+  Effects chosen_;
+  Stage stage_ = Stage::calibrate;
+  double fraction_ = 0;
+  int nonparametricFits_ = 0;
+  Verdict verdict_;
+};
+
+}  // namespace
+
+Verdict run(const DiscoveryProblem& data, const Options& options, WarmStart* draft) {
+  std::vector<int> trials;
+  for (int t = 0; t < data.numTrials(); ++t)
+    if (std::find(options.heldOut.begin(), options.heldOut.end(), t) == options.heldOut.end())
+      trials.push_back(t);
+  RecordedNoise noise;
+  if (options.judgeSamples)
+    noise = recordedNoise(data, trials);
+  else if (!options.outputSd)
+    noise.sd = estimateOutputSd(data, trials);
+  if (noise.usesAll()) return Work(data, options, std::move(noise)).run(draft);
+  const SelectedSamples selected(data, noise.kept);
+  return Work(selected, options, std::move(noise)).run(draft);
+}
+
+VectorXd predictedSd(const DiscoveryProblem& data, const Verdict& verdict, int trial) {
+  std::vector<std::size_t> amplitudes;
+  VectorXd sd(static_cast<Index>(verdict.effects.size()));
+  for (const NamedEffect& effect : verdict.effects) {
+    sd[static_cast<Index>(amplitudes.size())] = effect.estimates.front().sd;
+    amplitudes.push_back(effect.estimates.front().quantity);
+  }
+  const auto at = data.predict(trial, verdict.values, {}, amplitudes, false);
+  const VectorXd spread = (at.gamma * sd.asDiagonal()).rowwise().squaredNorm();
+  return (spread.array() + verdict.outputSd * verdict.outputSd).sqrt();
+}
+
+}  // namespace info::discover

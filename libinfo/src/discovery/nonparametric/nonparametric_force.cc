@@ -1,0 +1,179 @@
+#include "discovery/nonparametric/nonparametric_force.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "discovery/judgement/node_states.h"
+#include "discovery/nonparametric/symbolic.h"
+#include "discovery/search/translation.h"
+
+namespace info::discover {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+using Follows = NonparametricForce::Follows;
+
+constexpr double kSize = 0.3;  // prior deviation of each term, in units of the latent force's scale
+constexpr int kDegree = 5;     // of the polynomial in the angle
+constexpr double kGrip = 0.05;  // speed that dry friction turns within, as the catalogues have it
+constexpr int kPoints = 61;     // of the curve that is drawn
+
+// The terms of a force, as functions of (q, q̇) and as text.
+struct Family {
+  Follows follows;
+  double lowest, highest;  // of what it follows
+  std::vector<StateForce> terms;
+};
+
+double rootMeanSquare(const std::vector<VectorXd>& parts) {
+  double squares = 0, count = 0;
+  for (const VectorXd& part : parts) {
+    squares += part.squaredNorm();
+    count += static_cast<double>(part.size());
+  }
+  return std::sqrt(squares / count);
+}
+
+// (q − middle)/half to the powers 0 … 5
+Family elastic(const NodeStates& states) {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const VectorXd& q : states.q) {
+    low = std::min(low, q.minCoeff());
+    high = std::max(high, q.maxCoeff());
+  }
+  Family family{Follows::angle, low, high, {}};
+  const double middle = 0.5 * (low + high), half = 0.5 * (high - low);
+  if (!(half > 0)) return family;
+  for (int power = 0; power <= kDegree; ++power)
+    family.terms.push_back(
+        {power == 0 ? "1" : fmt::format("((q{:+.17g})/{:.17g})^{}", -middle, half, power),
+         [=](double q, double) { return std::pow((q - middle) / half, power); }});
+  return family;
+}
+
+// Viscous, quadratic and dry, each of size 1 at the usual speed
+Family damping(const NodeStates& states) {
+  const double usual = rootMeanSquare(states.qDot);
+  double highest = 0;
+  for (const VectorXd& w : states.qDot) highest = std::max(highest, w.cwiseAbs().maxCoeff());
+  Family family{Follows::speed, -highest, highest, {}};
+  if (!(usual > 0)) return family;
+  family.terms = {
+      {fmt::format("qdot/{:.17g}", usual), [=](double, double w) { return w / usual; }},
+      {fmt::format("qdot*abs(qdot)/{:.17g}", usual * usual),
+       [=](double, double w) { return w * std::abs(w) / (usual * usual); }},
+      {fmt::format("tanh(qdot/{})", kGrip), [](double, double w) { return std::tanh(w / kGrip); }}};
+  return family;
+}
+
+// Size of what the latent force is measured by.
+double scaleOf(const Likelihood& likelihood, const VectorXd& values) {
+  std::vector<VectorXd> parts;
+  for (const int trial : likelihood.trials())
+    parts.emplace_back(
+        likelihood.data().predict(trial, values, {}, {}, true).latentScale.rowwise().norm());
+  return rootMeanSquare(parts);
+}
+
+// The largest first, as it is the unit of the others.
+std::vector<FormulaTerm> formulaOf(Family& family, const VectorXd& coefficients, double sd) {
+  Index first = 0;
+  const double largest = coefficients.cwiseAbs().maxCoeff(&first);
+  std::swap(family.terms.front(), family.terms[static_cast<std::size_t>(first)]);
+  VectorXd sorted = coefficients;
+  std::swap(sorted[0], sorted[first]);
+  const double unit = std::copysign(std::max(largest, 0.01 * sd), sorted[0]);
+  std::vector<FormulaTerm> formula;
+  for (std::size_t k = 0; k < family.terms.size(); ++k) {
+    const double coefficient = sorted[static_cast<Index>(k)];
+    formula.push_back({family.terms[k].expression, k == 0 ? unit : coefficient / unit,
+                       k == 0 ? sd : sd / std::abs(unit)});
+  }
+  return formula;
+}
+
+// c·(e_1 + r_2·e_2 + …) over what it follows, and its deviation by the slopes in c and r_k.
+void drawInto(NonparametricForce& drawn, const Family& family, const Fit& fit,
+              const Candidate& candidate) {
+  const std::size_t n = family.terms.size();
+  std::vector<Index> own;
+  VectorXd values(static_cast<Index>(n)), slopes(static_cast<Index>(n));
+  for (std::size_t k = 0; k < n; ++k) {
+    const int i = fit.hypothesis.indexOf(candidate.quantities[k]);
+    own.push_back(i);
+    values[static_cast<Index>(k)] = fit.values[static_cast<Index>(candidate.quantities[k])];
+    slopes[static_cast<Index>(k)] =
+        fit.hypothesis.free[static_cast<std::size_t>(i)].slope(fit.xi[i]);
+  }
+  const Eigen::MatrixXd covariance =
+      slopes.asDiagonal() * Eigen::MatrixXd(fit.covariance(own, own)) * slopes.asDiagonal();
+  drawn.force.resize(kPoints);
+  drawn.sd.resize(kPoints);
+  for (int i = 0; i < kPoints; ++i) {
+    const double x = family.lowest + (family.highest - family.lowest) * i / (kPoints - 1);
+    drawn.at.push_back(x);
+    VectorXd terms(static_cast<Index>(n));  // which look at one of both alone
+    for (std::size_t k = 0; k < n; ++k) terms[static_cast<Index>(k)] = family.terms[k].at(x, x);
+    double sum = terms[0];
+    VectorXd slope = values[0] * terms;  // in r_k
+    for (Index k = 1; k < terms.size(); ++k) sum += values[k] * terms[k];
+    slope[0] = sum;
+    drawn.force[i] = values[0] * sum;
+    drawn.sd[i] = std::sqrt(std::max(0.0, slope.dot(covariance * slope)));
+  }
+}
+
+}  // namespace
+
+std::optional<NonparametricForce> raceNonparametric(const Search& search, const Effects& chosen,
+                                                    const Fit& smoothing, const Options& options,
+                                                    double outputSd, const Search::Report& report,
+                                                    int& fits) {
+  const NodeStates states = statesAtNodes(search.likelihood(), smoothing);
+  const double sd = kSize * scaleOf(search.likelihood(), smoothing.values);
+  std::optional<NonparametricForce> best;
+  for (Family family : {elastic(states), damping(states)}) {
+    if (family.terms.empty()) continue;
+    const VectorXd coefficients =
+        linearCoefficients(search.likelihood(), smoothing, states, family.terms, sd);
+    const auto widened = search.data().withFormula(formulaOf(family, coefficients, sd), chosen);
+    if (!widened) return {};
+    const auto known = searchMemoryOf(search, chosen, *widened);
+    const auto formula = placeOf(*widened, "formula");
+    if (!known || !formula) return {};
+    Search race(*widened, search.likelihood().trials(), options, outputSd, report);
+    race.take(*known);
+    const auto net = [&](const Effects& effects) {
+      return race.at(effects).score - options.evidence * static_cast<double>(effects.size());
+    };
+    std::vector<Effects> besides = {{}};
+    if (chosen.size() > 1)
+      for (const std::size_t e : known->chosen)
+        if (race.entries().count(without(known->chosen, e)) > 0)
+          besides.push_back(without(known->chosen, e));
+    for (const Effects& rest : besides) {
+      race.raceOne(rest, *formula);
+      const Effects all = with(rest, *formula);
+      if (!race.at(all).works()) continue;
+      const double ahead = net(all) - net(known->chosen);
+      if (best && best->ahead >= ahead) continue;
+      best.emplace();
+      best->follows = family.follows;
+      best->logBayesFactor = race.at(all).score - race.at({}).score;
+      best->ahead = ahead;
+      best->wins = ahead > options.remainder;
+      drawInto(*best, family, race.at(all).fit, widened->candidates()[*formula]);
+      for (const std::size_t e : rest)
+        best->besides.push_back(*placeOf(search.data(), widened->candidates()[e].id));
+    }
+    fits += race.fits();
+  }
+  return best;
+}
+
+}  // namespace info::discover

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "discovery/judgement/node_states.h"
+#include "info/discovery/nonparametric/unknown.h"
+
+// Not public.
+
+namespace info::discover {
+
+/// Looks for the formula of Unknown: fills in terms, evidence, explained, stable and formula.
+void findFormula(const Likelihood& likelihood, const Fit& fit, Unknown& unknown);
+
+/// A generalised force that follows the state.
+struct StateForce {
+  std::string expression;  ///< in q and qdot
+  std::function<double(double q, double qDot)> at;
+};
+
+/// Coefficients of forces by one linear step from a fit, with priors N(0, deviation²), all that is
+/// free in the fit and its latent force beside them.
+Eigen::VectorXd linearCoefficients(const Likelihood& likelihood, const Fit& fit,
+                                   const NodeStates& states, const std::vector<StateForce>& forces,
+                                   double sd);
+
+}  // namespace info::discover

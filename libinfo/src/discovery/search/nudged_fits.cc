@@ -1,0 +1,188 @@
+#include <algorithm>
+#include <cmath>
+
+#include "discovery/search/search.h"
+#include "discovery/search/search_tuning.h"
+#include "info/estimation/nudge_stages.h"
+
+// Fits of a model that is held near the data, and where they lead.
+
+namespace info::discover {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+// of nudgeStages: so firmly held that nothing runs away, so little that what is missing shows
+constexpr std::size_t kHeldStage = 2;
+
+// Fits that are led from a model held near the data: which stage tells the evidence of one from
+// that of another, by how many nats it may be behind the best there, and how many are fitted to
+// their end.
+constexpr std::size_t kHalfWay = 3;
+constexpr double kLedBehind = 10;
+constexpr std::size_t kLedFits = 3;
+// nats that one step of a held model promises
+constexpr double kExplainsMuch = 20;
+
+}  // namespace
+
+std::optional<Search::Led> Search::ledFrom(const Effects& effects, VectorXd start) {
+  if (nudgedLikelihoods_.empty()) return {};
+  const Hypothesis hypothesis = makeHypothesis(data_, effects, trials_);
+  Led led;
+  for (std::size_t i = 0; i < nudgedLikelihoods_.size(); ++i) {
+    const Noise noise{nudgeStages[i].spread * output_, 0, options_.latentTime};
+    const auto fit = nudgedLikelihoods_[i].tryFit(hypothesis, noise, start, {}, {6, 0.1});
+    ++fits_;
+    if (!fit) return {};
+    start = fit->values;
+    if (i == kHalfWay) led.evidence = fit->logEvidence;
+  }
+  led.values = std::move(start);
+  return led;
+}
+
+void Search::raceLed(const Effects& base, const std::vector<std::size_t>& candidates) {
+  std::vector<std::pair<std::size_t, Led>> all;
+  const VectorXd nominal = nominalValues(data_);
+  for (const std::size_t c : candidates) {
+    const Effects effects = with(base, c);
+    if (!raced_.insert(effects).second) continue;
+    report_(describe(data_, effects));
+    VectorXd start = nominal;
+    for (const std::size_t e : base)
+      for (const std::size_t q : data_.candidates()[e].quantities)
+        start[static_cast<Index>(q)] = at(base).fit.values[static_cast<Index>(q)];
+    Fit near = at(base).fit;
+    near.values = std::move(start);
+    if (auto led = ledFrom(effects, bestStart(base, c, near, 0))) all.emplace_back(c, *led);
+  }
+  std::sort(all.begin(), all.end(),
+            [](const auto& a, const auto& b) { return a.second.evidence > b.second.evidence; });
+  const Noise still{output_, 0, options_.latentTime};
+  for (std::size_t i = 0; i < std::min(all.size(), kLedFits); ++i) {
+    const auto& [c, led] = all[i];
+    if (led.evidence < all.front().second.evidence - kLedBehind) break;
+    const Effects effects = with(base, c);
+    report_(describe(data_, effects));
+    const auto fit = likelihood_->tryFit(makeHypothesis(data_, effects, trials_), still, led.values,
+                                         {}, {kShort, 0.1});
+    ++fits_;
+    if (!fit) continue;
+    const Entry& entry = at(effects);
+    const bool known = entry.simulation && entry.simulation->logEvidence > fit->logEvidence - kNews;
+    if (!known) improve(effects, fit->values, kSmallSize, nullptr, bestScore() - kGivenUp);
+  }
+}
+
+VectorXd Search::bestStart(const Effects& base, std::size_t candidate, const Fit& near,
+                           double latent) {
+  const Hypothesis hypothesis = makeHypothesis(data_, with(base, candidate), trials_);
+  const Candidate& c = data_.candidates()[candidate];
+  const std::size_t starts = isGrid(c) ? 2 : c.starts.size();  // the whole grid is searchGrid's
+  if (const auto known = gridStarts_.find(candidate);
+      known != gridStarts_.end() && known->second.values.size() > 0) {
+    // alone, with the nuisances that go with it
+    VectorXd from = latent == 0 && base.empty() ? known->second.values : near.values;
+    const auto amplitude = static_cast<Index>(data_.candidates()[candidate].quantities[0]);
+    from[amplitude] = known->second.values[amplitude];
+    return from;
+  }
+  const bool held = !nudgedLikelihoods_.empty();
+  const Noise noise{(held ? nudgeStages[0].spread : 1) * output_, held ? 0 : latent,
+                    options_.latentTime};
+  const auto eta = held ? std::vector<VectorXd>() : forceKept(near.eta, near.noise.latent, latent);
+  VectorXd from = started(candidate, 0, near.values);
+  double evidence = -1e300;
+  for (std::size_t s = 0; starts > 1 && s < starts; ++s) {
+    const Likelihood& likelihood = held ? nudgedLikelihoods_.front() : *likelihood_;
+    const auto fit = likelihood.tryFit(hypothesis, noise, started(candidate, s, near.values), eta,
+                                       {held ? 3 : 5, 0.1});
+    if (fit && fit->logEvidence > evidence) {
+      evidence = fit->logEvidence;
+      from = fit->values;
+    }
+    ++fits_;
+  }
+  return from;
+}
+
+std::vector<Screened> Search::screenHeld(const Effects& effects) {
+  if (nudgedLikelihoods_.size() <= kHeldStage) return {};
+  const Likelihood& held = nudgedLikelihoods_[kHeldStage];
+  const Noise noise{nudgeStages[kHeldStage].spread * output_, 0, options_.latentTime};
+  const auto fitted = [&](const Effects& of, const VectorXd& from, int iterations) {
+    ++fits_;
+    return held.tryFit(makeHypothesis(data_, of, trials_), noise, from, {}, {iterations, 0.1});
+  };
+  VectorXd start = nominalValues(data_);
+  for (const std::size_t e : effects)
+    for (const std::size_t q : data_.candidates()[e].quantities)
+      start[static_cast<Index>(q)] = at(effects).fit.values[static_cast<Index>(q)];
+  const auto fit = fitted(effects, start, 12);
+  if (!fit) return {};
+  std::vector<Screened> result = screenAt(held, *fit, effects);
+  // what has a grid of starts has several minima: a linear step at 0 sees none of them; looked for
+  // where nothing else explains much
+  if (!result.empty() && result.front().gain > kExplainsMuch) return result;
+  for (Screened& s : result) {
+    const Candidate& c = data_.candidates()[s.candidate];
+    if (!isGrid(c) || !effects.empty()) continue;
+    if (gridStarts_.count(s.candidate) == 0)
+      gridStarts_[s.candidate] = searchGrid(s.candidate, *fit);
+    s.gain = std::max(s.gain, gridStarts_[s.candidate].gain);
+  }
+  std::sort(result.begin(), result.end(),
+            [](const Screened& a, const Screened& b) { return a.gain > b.gain; });
+  return result;
+}
+
+// The amplitude along its grid, then by golden section beside the best, the nuisances fitted at
+// each: a fit of all together is led away by them.
+Search::GridStart Search::searchGrid(std::size_t candidate, const Fit& base) const {
+  const Likelihood& held = nudgedLikelihoods_[kHeldStage];
+  const auto amplitude = static_cast<Index>(data_.candidates()[candidate].quantities[0]);
+  GridStart best;
+  const auto at = [&](double x) {
+    VectorXd values = base.values;
+    values[amplitude] = x;
+    const auto fit = held.tryFit(base.hypothesis, base.noise, values, {}, {2, 0.3});
+    const double gain = fit ? fit->logEvidence - base.logEvidence : -HUGE_VAL;
+    if (gain > best.gain) best = {fit->values, gain};
+    return gain;
+  };
+  std::vector<double> grid = {data_.quantities()[static_cast<std::size_t>(amplitude)].nominal};
+  for (const VectorXd& start : data_.candidates()[candidate].starts) grid.push_back(start[0]);
+  std::sort(grid.begin(), grid.end());
+  std::size_t top = 0;
+  double most = -HUGE_VAL;
+  for (std::size_t k = 0; k < grid.size(); ++k)
+    if (const double gain = at(grid[k]); gain > most) {
+      most = gain;
+      top = k;
+    }
+  double low = grid[top > 0 ? top - 1 : 0], high = grid[std::min(top + 1, grid.size() - 1)];
+  constexpr double kGolden = 0.381966;
+  double left = low + kGolden * (high - low), right = high - kGolden * (high - low);
+  double ofLeft = at(left), ofRight = at(right);
+  for (int k = 0; k < 5; ++k) {
+    if (ofLeft > ofRight) {
+      high = right;
+      right = left;
+      ofRight = ofLeft;
+      left = low + kGolden * (high - low);
+      ofLeft = at(left);
+    } else {
+      low = left;
+      left = right;
+      ofLeft = ofRight;
+      right = high - kGolden * (high - low);
+      ofRight = at(right);
+    }
+  }
+  return best;
+}
+
+}  // namespace info::discover

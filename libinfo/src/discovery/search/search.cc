@@ -1,0 +1,451 @@
+#include "discovery/search/search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "discovery/search/search_tuning.h"
+#include "info/estimation/nudge_stages.h"
+#include "info/probability/random_stream.h"
+
+namespace info::discover {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+std::vector<VectorXd> forceKept(std::vector<VectorXd> eta, double from, double to) {
+  for (VectorXd& one : eta) one *= from / to;
+  return eta;
+}
+
+Search::Search(const DiscoveryProblem& data, std::vector<int> trials, const Options& options,
+               double outputSd, Report report)
+    : data_(data),
+      trials_(std::move(trials)),
+      options_(options),
+      output_(outputSd),
+      report_(std::move(report)) {
+  likelihood_.emplace(data_, trials_, nominalValues(data_), options_.latentTime);
+  for (const NudgeStage& stage : nudgeStages) {
+    auto held = data_.nudged(stage.frequency);
+    if (!held) break;
+    nudged_.push_back(std::move(held));
+    nudgedLikelihoods_.emplace_back(*nudged_.back(), trials_, nominalValues(data_),
+                                    options_.latentTime);
+  }
+}
+
+// Follows σ_d from `size` to where the evidence is largest: MacKay's fixed point
+//     σ_d² ← σ_d²·|η|²/(γ + σ_d/s)
+// then compares with σ_d = 0. Keeps whatever is better than what was known of the hypothesis.
+void Search::improve(const Effects& effects, const VectorXd& start, double size, const Fit* near,
+                     double hopeless) {
+  const Hypothesis hypothesis = makeHypothesis(data_, effects, trials_);
+  Entry found;
+  found.effects = effects;
+  found.score = kFailed;
+  const auto keep = [&](Fit fit) {
+    ++fits_;
+    const double score = scoreOf(fit);
+    if (score > found.score) {
+      found.score = score;
+      found.fit = std::move(fit);
+    }
+  };
+  const auto fitted = [&](double latent, const VectorXd& from, const std::vector<VectorXd>& forces,
+                          const FitOptions& options) {
+    return likelihood_->tryFit(hypothesis, {output_, latent, options_.latentTime}, from, forces,
+                               options);
+  };
+  VectorXd values = start;
+  std::vector<VectorXd> eta;
+  if (near != nullptr) eta = forceKept(near->eta, near->noise.latent, size);
+  for (int round = 0; round < 6 && size > kSmallest; ++round) {
+    std::optional<Fit> tried = fitted(size, values, eta, {kShort, 0.05});
+    if (!tried) break;
+    if (!tried->converged) {
+      if (tried->logEvidence < hopeless) {
+        keep(std::move(*tried));
+        break;
+      }
+      if (auto further = fitted(size, tried->values, tried->eta, {kIterations - kShort, 0.05}))
+        tried = std::move(further);
+    }
+    Fit& fit = *tried;
+    const double ratio = fit.latentNormSquared /
+                         std::max(1e-9, fit.effectiveParameters + size / options_.latentScale);
+    const double factor = std::clamp(std::pow(ratio, 0.6), 0.15, 3.0);
+    values = fit.values;
+    eta = fit.eta;
+    keep(std::move(fit));
+    if (std::abs(std::log(factor)) < 0.15) break;
+    eta = forceKept(std::move(eta), size, factor * size);
+    size *= factor;
+    if (size > 3) break;
+  }
+  if (found.score == kFailed || (size < kHopeless && found.score > hopeless)) {
+    std::optional<Fit> simulation = fitted(0, values, {}, {kShort, 0.02});
+    if (simulation && !simulation->converged && simulation->logEvidence > hopeless)
+      if (auto further = fitted(0, simulation->values, {}, {kIterations, 0.02}))
+        simulation = std::move(further);
+    if (simulation) {
+      found.simulation = *simulation;
+      keep(std::move(*simulation));
+    }
+  }
+  found.jointScore = found.score;
+  const auto known = entries_.find(effects);
+  const bool news = known == entries_.end() || found.jointScore > known->second.jointScore + kNews;
+  if (news && found.works() && exceedsNoise(found.fit) &&
+      found.score > bestScore() - kMarginalGain) {
+    found.fit = likelihood_->marginal(found.fit);
+    found.score = scoreOf(found.fit);
+  }
+  if (known == entries_.end()) {
+    entries_.emplace(effects, std::move(found));
+    return;
+  }
+  Entry& old = known->second;
+  if (found.simulation &&
+      (!old.simulation || found.simulation->logEvidence > old.simulation->logEvidence))
+    old.simulation = std::move(found.simulation);
+  if (found.score > old.score) {
+    old.score = found.score;
+    old.jointScore = found.jointScore;
+    old.fit = std::move(found.fit);
+  }
+}
+
+double Search::scoreOf(const Fit& fit) const {
+  return fit.logEvidence - fit.noise.latent / options_.latentScale;
+}
+
+void Search::calibrate() {
+  report_("base model");
+  improve({}, nominalValues(data_), kFirstSize);
+  // a base that only a large force holds may have run away from the nominal one
+  for (const double size : {kWidest, kRaceSize})
+    if (!at({}).works() || at({}).fit.noise.latent > kFirstSize)
+      improve({}, nominalValues(data_), size);
+  mustWork();
+  // the scale of the latent force where the arm really goes, then once more from both ends
+  const Fit first = at({}).fit;
+  scaleValues_ = first.values;
+  likelihood_.emplace(data_, trials_, first.values, options_.latentTime);
+  entries_.clear();
+  report_("base model");
+  improve({}, first.values, kRaceSize);
+  // where it went it may stand by its latent force only
+  if (!at({}).works()) improve({}, first.values, first.noise.latent, &first);
+  mustWork();
+  const std::uint64_t starts = nudgedLikelihoods_.empty() ? kStarts : kStartsBesidesLed;
+  for (std::uint64_t start = 0; start < starts; ++start) {
+    report_("base model");
+    improve({}, drawn(start), kSmallSize, nullptr, bestScore() - kGivenUp);
+  }
+  report_("base model");
+  if (const auto led = ledFrom({}, nominalValues(data_)))
+    improve({}, led->values, kSmallSize, nullptr, bestScore() - kGivenUp);
+}
+
+// The nominal values, and after those values from the prior.
+VectorXd Search::drawn(std::uint64_t start) const {
+  VectorXd values = nominalValues(data_);
+  if (start == 0) return values;
+  RandomStream random(1, start);
+  for (const FreeQuantity& q : makeHypothesis(data_, {}, trials_).free)
+    if (data_.quantities()[q.quantity].trial < 0)
+      values[static_cast<Index>(q.quantity)] =
+          q.value(std::clamp(kSpread * random.normal(), q.lowest, q.highest));
+  return values;
+}
+
+void Search::adopt(const SearchMemory& known) {
+  racedFromNominal_ = known.racedFromNominal;
+  scaleValues_ = known.scaleValues;
+  likelihood_.emplace(data_, trials_, scaleValues_, options_.latentTime);
+  const auto again = [&](const Entry& entry) {
+    report_(describe(data_, entry.effects));
+    improve(entry.effects, entry.fit.values, entry.fit.noise.latent, &entry.fit);
+  };
+  const Entry& base = known.entries.at({});
+  again(base);
+  mustWork();
+  const double shift = at({}).score - base.score;
+  const Entry& chosen = known.entries.at(known.chosen);
+  const auto net = [&](const Entry& entry) {
+    return entry.score - options_.evidence * static_cast<double>(entry.effects.size());
+  };
+  for (const auto& [effects, entry] : known.entries) {
+    if (effects.empty()) continue;
+    const bool part =
+        std::includes(known.chosen.begin(), known.chosen.end(), effects.begin(), effects.end());
+    const bool rival = effects.size() == known.chosen.size() &&
+                       entry.score > chosen.score - options_.classWidth - kDraftError;
+    if (entry.works() && (part || rival || net(entry) > net(chosen) - kDraftError)) {
+      again(entry);
+    } else {
+      Entry kept = entry;
+      if (kept.works()) kept.score += shift;
+      entries_.emplace(effects, std::move(kept));
+    }
+  }
+}
+
+void Search::take(const SearchMemory& known) {
+  scaleValues_ = known.scaleValues;
+  likelihood_.emplace(data_, trials_, scaleValues_, options_.latentTime);
+  entries_ = known.entries;
+  racedFromNominal_ = known.racedFromNominal;
+}
+
+void Search::mustWork() const {
+  if (!at({}).works())
+    throw std::domain_error(
+        "the model cannot be simulated over these trials, not even with an added latent force");
+}
+
+std::vector<std::size_t> Search::ownQuantities(std::size_t candidate) const {
+  const auto& quantities = data_.candidates()[candidate].quantities;
+  const auto& nuisances = data_.nuisances();
+  std::vector<std::size_t> own;
+  for (std::size_t i = 0; i < quantities.size(); ++i)
+    if (std::find(nuisances.begin(), nuisances.end(), quantities[i]) == nuisances.end())
+      own.push_back(i);
+  return own;
+}
+
+VectorXd Search::started(std::size_t candidate, std::size_t start, VectorXd values) const {
+  const Candidate& c = data_.candidates()[candidate];
+  for (const std::size_t i : ownQuantities(candidate))
+    values[static_cast<Index>(c.quantities[i])] = c.starts.at(start)[static_cast<Index>(i)];
+  return values;
+}
+
+VectorXd Search::absent(std::size_t candidate, VectorXd values) const {
+  const Candidate& c = data_.candidates()[candidate];
+  for (const std::size_t i : ownQuantities(candidate))
+    values[static_cast<Index>(c.quantities[i])] = data_.quantities()[c.quantities[i]].nominal;
+  return values;
+}
+
+const Fit& Search::simulation(const Effects& effects) {
+  Entry& entry = entries_.at(effects);
+  if (!entry.simulation) {
+    const Hypothesis hypothesis = makeHypothesis(data_, effects, trials_);
+    const Noise still{output_, 0, options_.latentTime};
+    entry.simulation = likelihood_->tryFit(hypothesis, still, entry.fit.values, {}, {25, 0.02});
+    if (!entry.simulation) {  // it stands by its latent force only
+      const VectorXd nominal = nominalValues(data_);
+      VectorXd values = nominal;
+      for (const std::size_t e : effects)
+        for (const std::size_t i : ownQuantities(e)) {
+          const auto q = static_cast<Index>(data_.candidates()[e].quantities[i]);
+          values[q] = entry.fit.values[q];
+        }
+      entry.simulation = likelihood_->tryFit(hypothesis, still, values, {}, {25, 0.02});
+      // nor may the nominal model stand with the effects as they are beside other parameters
+      if (!entry.simulation)
+        entry.simulation = likelihood_->fit(hypothesis, still, nominal, {}, {25, 0.02});
+    }
+    ++fits_;
+  }
+  return *entry.simulation;
+}
+
+void Search::raceOne(const Effects& base, std::size_t candidate) {
+  const auto effects = with(base, candidate);
+  if (entries_.count(effects) != 0) return;
+  const Fit near = at(base).fit;
+  const VectorXd& values = near.values;
+  const double raceSize = std::clamp(2 * near.noise.latent, 0.01, kRaceSize);
+  report_(describe(data_, effects));
+  improve(effects, bestStart(base, candidate, near, raceSize), raceSize, &near,
+          bestScore() - kGivenUp);
+  // what contains the base cannot be far worse: a wrong minimum, once more from the base itself
+  if (at(effects).score < at(base).score - options_.evidence)
+    improve(effects, absent(candidate, values), near.noise.latent, &near);
+}
+
+void Search::race(const Effects& base, const std::vector<std::size_t>& candidates) {
+  const std::size_t known = entries_.size();
+  for (const std::size_t c : candidates) raceOne(base, c);
+  raceLed(base, candidates);
+  const bool news = entries_.size() > known;
+  if (!news) return;
+  // cross-starts: everything that is not far behind, and the next three in any case, once more from
+  // the leader's nuisances
+  const auto lead = [&] {
+    std::size_t leader = candidates[0];
+    for (const std::size_t c : candidates)
+      if (at(with(base, c)).score > at(with(base, leader)).score) leader = c;
+    return leader;
+  };
+  const std::size_t leader = lead();
+  const Entry& first = at(with(base, leader));
+  if (!first.works()) return;
+  const VectorXd from = first.fit.values;
+  const double score = first.score;
+  const double size = std::max(2e-3, first.fit.noise.latent);
+  std::vector<double> scores;
+  for (const std::size_t c : candidates) scores.push_back(at(with(base, c)).score);
+  std::sort(scores.rbegin(), scores.rend());
+  const double hopeful = std::min(score - 25, scores[std::min<std::size_t>(3, scores.size() - 1)]);
+  for (const std::size_t c : candidates) {
+    if (c == leader || at(with(base, c)).score < hopeful) continue;
+    report_(describe(data_, with(base, c)));
+    VectorXd start = absent(leader, from);
+    const Entry& own = at(with(base, c));
+    for (const std::size_t i : ownQuantities(c)) {
+      const auto q = static_cast<Index>(data_.candidates()[c].quantities[i]);
+      start[q] = own.fit.values[q];
+    }
+    improve(with(base, c), start, size, &first.fit, bestScore() - kGivenUp);
+  }
+  report_(describe(data_, base));
+  improve(base, absent(leader, from), size, &first.fit);
+}
+
+void Search::raceFromNominal(std::size_t most) {
+  racedFromNominal_ = true;
+  if (const auto held = screenHeld({}); !held.empty()) {
+    std::vector<std::size_t> best;
+    for (const Screened& s : held)
+      if (best.size() < 2 * most && s.information > 0) best.push_back(s.candidate);
+    race({}, best);
+    return;
+  }
+  struct Start {
+    std::size_t candidate;
+    Hypothesis hypothesis;
+    Fit fit;
+  };
+  std::vector<Start> starts;
+  const VectorXd nominal = nominalValues(data_);
+  const Noise wide{output_, kFirstSize, options_.latentTime};
+  const auto bestFirst = [&] {
+    std::sort(starts.begin(), starts.end(),
+              [](const Start& a, const Start& b) { return a.fit.logEvidence > b.fit.logEvidence; });
+  };
+  for (std::size_t c = 0; c < data_.candidates().size(); ++c) {
+    report_(describe(data_, {c}));
+    const Hypothesis hypothesis = makeHypothesis(data_, {c}, trials_);
+    for (std::size_t s = 0; s < data_.candidates()[c].starts.size(); ++s) {
+      auto fit = likelihood_->tryFit(hypothesis, wide, started(c, s, nominal), {}, {3, 0.1});
+      ++fits_;
+      if (fit) starts.push_back({c, hypothesis, std::move(*fit)});
+    }
+  }
+  bestFirst();  // the better half goes on
+  starts.erase(starts.begin() + static_cast<std::ptrdiff_t>((starts.size() + 1) / 2), starts.end());
+  for (Start& start : starts) {
+    report_(describe(data_, {start.candidate}));
+    auto fit =
+        likelihood_->tryFit(start.hypothesis, wide, start.fit.values, start.fit.eta, {3, 0.1});
+    ++fits_;
+    if (fit) start.fit = std::move(*fit);
+  }
+  bestFirst();
+  std::vector<std::size_t> taken;
+  for (const Start& start : starts) {
+    if (taken.size() >= most) break;
+    if (std::find(taken.begin(), taken.end(), start.candidate) != taken.end()) continue;
+    taken.push_back(start.candidate);
+    report_(describe(data_, {start.candidate}));
+    improve({start.candidate}, start.fit.values, kFirstSize, &start.fit);
+  }
+}
+
+bool Search::refitBase(const Effects& base) {
+  const double before = at(base).score;
+  std::vector<std::pair<double, std::size_t>> better;
+  for (std::size_t c = 0; c < data_.candidates().size(); ++c) {
+    if (std::find(base.begin(), base.end(), c) != base.end()) continue;
+    const auto known = entries_.find(with(base, c));
+    if (known == entries_.end() || !(known->second.score > before + options_.evidence)) continue;
+    if (significance(known->second, c) < 2) better.emplace_back(known->second.score, c);
+  }
+  if (better.empty()) return false;
+  const std::size_t best = std::max_element(better.begin(), better.end())->second;
+  drop(with(base, best), best);
+  const double after = at(base).score;
+  if (!(after > before + options_.evidence)) return false;
+  std::erase_if(entries_, [&](const auto& known) {
+    const auto& [effects, entry] = known;
+    return effects.size() > base.size() && entry.score < after &&
+           std::includes(effects.begin(), effects.end(), base.begin(), base.end());
+  });
+  return true;
+}
+
+void Search::drop(const Effects& effects, std::size_t effect) {
+  const Entry& entry = at(effects);
+  if (!entry.works()) return;
+  const Effects rest = without(effects, effect);
+  report_(describe(data_, rest));
+  improve(rest, absent(effect, entry.fit.values),
+          std::clamp(2 * entry.fit.noise.latent, 0.01, kRaceSize), &entry.fit);
+}
+
+double Search::bestScore() const {
+  double best = kFailed;
+  for (const auto& [effects, entry] : entries_) best = std::max(best, entry.score);
+  return best;
+}
+
+bool Search::complete(double within) {
+  const double best = bestScore();
+  std::vector<Effects> unfinished;
+  for (const auto& [effects, entry] : entries_)
+    if (entry.works() && !entry.fit.converged && entry.score > best - within)
+      unfinished.push_back(effects);
+  bool gained = false;
+  for (const Effects& effects : unfinished) {
+    const Entry before = at(effects);
+    report_(describe(data_, effects));
+    improve(effects, before.fit.values, std::max(2e-3, before.fit.noise.latent), &before.fit);
+    gained = gained || at(effects).score > before.score + 1;
+  }
+  return gained;
+}
+
+void Search::refineEvidence(const Effects& effects, double within) {
+  const double score = at(effects).score;
+  for (auto& [others, entry] : entries_) {
+    if (!entry.works() || entry.score < score - within || !exceedsNoise(entry.fit)) continue;
+    report_(describe(data_, others));
+    entry.fit = likelihood_->marginal(entry.fit);
+    entry.score = scoreOf(entry.fit);
+  }
+}
+
+bool Entry::works() const {
+  return score > kFailed;
+}
+
+void Search::enforceNesting() {
+  std::map<Effects, double> asked;  // the score of the larger one when it was asked last
+  for (bool again = true; again;) {
+    again = false;
+    const double best = bestScore();
+    for (const auto& [effects, entry] : entries_) {
+      if (!entry.works()) continue;
+      for (const std::size_t effect : effects) {
+        const Effects rest = without(effects, effect);
+        const auto known = entries_.find(rest);
+        // one that was never raced is worth a fit if it would be among the best
+        const bool gains = known != entries_.end() ? entry.score > known->second.score + 1
+                                                   : entry.score > best - 2 * options_.evidence;
+        if (!gains || significance(entry, effect) > 2) continue;
+        const auto before = asked.find(rest);
+        if (before != asked.end() && entry.score < before->second + 1) continue;
+        asked[rest] = entry.score;
+        drop(effects, effect);
+        again = true;
+      }
+    }
+  }
+}
+
+}  // namespace info::discover

@@ -1,0 +1,70 @@
+#include "info/discovery/search/shorter_steps.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+namespace info::discover {
+
+namespace {
+
+using MakeAttempt = std::function<Attempt(double step)>;
+
+SteppedVerdict runOnce(const MakeAttempt& attempt, double step, double shortest) {
+  WarmStart draft;
+  for (bool first = true;; first = false) {
+    Attempt one = attempt(step);
+    if (!first) one.options.numericalTolerance *= 2;
+    try {
+      Verdict verdict = run(one.data, one.options, &draft);
+      if (verdict.finding != Finding::numerical || step < shortest)
+        return {std::move(verdict), std::move(one.options), step};
+    } catch (const std::domain_error&) {
+      if (step < shortest) throw;
+    }
+    step /= 2;
+  }
+}
+
+bool isWorthASecondLook(const Verdict& verdict, const Options& options) {
+  return verdict.reached == Stage::finished && verdict.finding == Finding::none &&
+         verdict.heldOut && verdict.heldOut->probability &&
+         *verdict.heldOut->probability < options.secondLook;
+}
+
+bool hasAName(const Verdict& verdict) {
+  return verdict.reached == Stage::finished &&
+         (verdict.finding == Finding::named || verdict.finding == Finding::ambiguous ||
+          verdict.finding == Finding::parameter);
+}
+
+}  // namespace
+
+SteppedVerdict runAtShorterSteps(const MakeAttempt& attempt, double step, double shortest) {
+  SteppedVerdict first = runOnce(attempt, step, shortest);
+  if (!isWorthASecondLook(first.verdict, first.options)) return first;
+  double last = first.step;
+  const auto withAll = [&](double at) {
+    last = at;
+    Attempt one = attempt(at);
+    one.options.heldOut.clear();
+    if (one.options.progress)
+      one.options.progress = [tell = one.options.progress](const Progress& of) {
+        return tell({of.stage, 0.99 + 0.01 * of.fraction, of.doing});
+      };
+    return one;
+  };
+  SteppedVerdict second = runOnce(withAll, first.step, shortest);
+  const int fits = first.verdict.fits + second.verdict.fits;
+  if (hasAName(second.verdict)) {
+    second.verdict.heldOutFitted = true;
+    second.verdict.sentence += " It was found only when the held-out trials were fitted as well.";
+    second.verdict.fits = fits;
+    return second;
+  }
+  first.verdict.fits = fits;
+  if (last != first.step) attempt(first.step);  // the caller's model is that of the verdict
+  return first;
+}
+
+}  // namespace info::discover

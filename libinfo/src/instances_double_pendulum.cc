@@ -1,9 +1,0 @@
-#include "info/systems/instances.h"
-
-namespace info {
-
-template class VariationalIntegrator<CartDoublePendulum<>>;
-template Predictor makePredictor(DoublePendulumSteps, Experiment<DoublePendulumSteps>);
-template ExtendedStepMap extend(DoublePendulumSteps, const Vector<double, 2>&);
-
-}  // namespace info

@@ -1,0 +1,83 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "report/report.h"
+#include "support/run_program.h"
+#include "support/scratch_folder.h"
+
+// Built only where CMake found Chromium; the browser is the judge here.
+namespace app {
+namespace {
+
+using support::ProgramResult;
+using support::ScratchFolder;
+
+Figure waves(AxisScale scale, std::size_t curves) {
+  Figure figure{.title = "Waves",
+                .xLabel = "Time [s]",
+                .yLabel = "Angle [deg]",
+                .caption = "What to see.",
+                .xScale = scale,
+                .yScale = scale};
+  for (std::size_t i = 0; i < curves; ++i) {
+    Series series{.name = "curve " + std::to_string(i), .style = static_cast<SeriesStyle>(i % 3)};
+    for (int k = 1; k <= 50; ++k) {
+      series.x.push_back(0.1 * k);
+      series.y.push_back(k == 20 ? std::numeric_limits<double>::quiet_NaN()
+                                 : 2 + std::sin(0.3 * k));
+      if (i != 0) continue;
+      series.bandLow.push_back(series.y.back() - 0.1);
+      series.bandHigh.push_back(series.y.back() + 0.1);
+    }
+    figure.series.push_back(series);
+  }
+  return figure;
+}
+
+ProgramResult openInBrowser(const std::string& html, const ScratchFolder& scratch) {
+  const std::string page = scratch.file("report.html", html);
+  return support::runProgram(
+      {FISHERHILL_CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic",
+       "--no-first-run", "--disable-background-networking", "--disable-component-update",
+       "--disable-sync", "--user-data-dir=" + (scratch / "profile").string(),
+       "--enable-logging=stderr", "--window-size=1280,1600", "--virtual-time-budget=2000",
+       "--dump-dom", "file://" + page},
+      scratch.path());
+}
+
+TEST(ReportInBrowser, DrawsEveryFigureWithoutAConsoleMessage) {
+  Report report;
+  report.title = "A test";
+  report.verdict = "It draws.";
+  report.mainFigure = waves(AxisScale::linear, 1);
+  // 1 × 1 pixel
+  const std::string png(
+      "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\b\0\0\0\0:~\x9bU\0\0\0\nIDATx\x9c"
+      "c`\0\0\0\2\0\1H\xaf\xa4q\0\0\0\0IEND\xae\x42`\x82",
+      67);
+  report.details = {waves(AxisScale::linear, 10), waves(AxisScale::logarithmic, 3), Figure{},
+                    Picture{.title = "A picture", .png = png}};
+  const ScratchFolder scratch;
+  const ProgramResult result = openInBrowser(renderReport(report, Summary({})), scratch);
+  ASSERT_EQ(result.status, 0) << result.err;
+  std::size_t canvases = 0;
+  for (std::size_t at = 0; (at = result.out.find("<canvas", at)) != result.out.npos; ++at)
+    ++canvases;
+  EXPECT_EQ(canvases, 4u);
+  // A refused request would be told here as well: the page's own policy forbids all of them.
+  EXPECT_THAT(result.err, testing::Not(testing::HasSubstr("CONSOLE")));
+}
+
+TEST(ReportInBrowser, WouldBeHeardIfSomethingWentWrong) {
+  const ScratchFolder scratch;
+  std::string html = renderReport({}, Summary({}));
+  html.insert(html.find("<main>"), "<img src=\"http://example.invalid/a.png\">");
+  EXPECT_THAT(openInBrowser(html, scratch).err, testing::HasSubstr("CONSOLE"));
+}
+
+}  // namespace
+}  // namespace app

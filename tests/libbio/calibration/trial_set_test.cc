@@ -1,0 +1,127 @@
+#include "bio/calibration/trial_set.h"
+
+#include <gmock/gmock.h>
+
+#include "bio/analysis/replay.h"
+#include "support/synthetic_elbow.h"
+
+namespace bio {
+namespace {
+
+using fixtures::SyntheticElbow;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+const SyntheticElbow& subject() {
+  static const SyntheticElbow one;
+  return one;
+}
+
+TrialSet set(std::vector<std::string> names, std::vector<Trial> trials, bool ownStart = false) {
+  TrialSetOptions options;
+  options.parameters = std::move(names);
+  options.ownStart = ownStart;
+  options.simulation.newtonTolerance = 1e-12;
+  return {subject().model, SyntheticElbow::options(), std::move(trials), options};
+}
+
+// Two trials of different length, three common parameters, two of each trial's own.
+TEST(TrialSet, SensitivitiesAreDerivativesOfTheOutputs) {
+  const TrialSet trials = set(
+      {"TRI.radius", "hand.mass", "emg.BRA.gain"},
+      {subject().trial("curl_slow", 1.5, {}, 30), subject().trial("curl_fast", 0.6, {}, 50)}, true);
+  ASSERT_EQ(trials.numParameters(), 7u);
+  EXPECT_EQ(trials.numCommon(), 3u);
+  const auto& parameters = trials.parameters();
+  EXPECT_EQ(parameters[3].name, "trial1.initial.elbow_flexion");
+  EXPECT_EQ(parameters[6].name, "trial2.initial.elbow_flexion.speed");
+  EXPECT_TRUE(parameters[3].prior);
+  EXPECT_FALSE(parameters[0].prior);
+  Eigen::VectorXd theta(7);
+  for (std::size_t i = 0; i < 7; ++i) theta[static_cast<Eigen::Index>(i)] = parameters[i].start;
+  theta[1] *= 1.1;
+  theta[6] = 0.3;
+  const info::Predictor predictor = trials.predictor();
+  const info::Prediction at = predictor.withSensitivities(theta);
+  EXPECT_EQ(at.outputs, predictor.outputs(theta));
+  for (Eigen::Index i = 0; i < 7; ++i) {
+    const double h = 1e-4 * trials.known()[i];
+    Eigen::VectorXd up = theta, down = theta;
+    up[i] += h;
+    down[i] -= h;
+    const Eigen::VectorXd difference =
+        ((predictor.outputs(up) - predictor.outputs(down)) / (2 * h)).transpose();
+    const double scale = difference.cwiseAbs().maxCoeff();
+    EXPECT_LT((at.gamma.col(i) - difference).cwiseAbs().maxCoeff(), 1e-4 * scale)
+        << parameters[static_cast<std::size_t>(i)].name;
+  }
+  // one trial's start is nothing to the other
+  const auto first = trials.series()[0].values.size();
+  EXPECT_TRUE((at.gamma.col(3).tail(at.gamma.rows() - first).array() == 0).all());
+  EXPECT_TRUE((at.gamma.col(5).head(first).array() == 0).all());
+}
+
+// The same comparison as `fisherhill replay` makes.
+TEST(TrialSet, MeasuresErrorsAsReplayDoes) {
+  const Trial trial = subject().trial("curl_slow", 1.0, {{"hand.mass", 0.8}}, 30, 3);
+  const TrialSet trials = set({"hand.mass"}, {trial});
+  const Eigen::MatrixXd y =
+      trials.predictor().outputs(Eigen::VectorXd::Constant(1, trials.parameters()[0].start));
+  const ExcitationSignal signal = excitationOf(trial, subject().arm);
+  SimulationOptions simulation;
+  simulation.duration = 1.0;
+  simulation.newtonTolerance = 1e-12;
+  const Trajectory motion =
+      simulate(subject().arm, signal,
+               initialState(subject().arm, startCoordinates(trial, subject().arm, {}), signal, 0.0),
+               simulation);
+  const double rms = compareWithMeasured(subject().arm, motion, trial.measured[0]).rms;
+  EXPECT_GT(rms, 0.01);
+  EXPECT_NEAR(std::sqrt(trials.meanSquare(y)), rms, 1e-12);
+  EXPECT_NEAR(std::sqrt(trials.meanSquare(y, 0)), rms, 1e-12);
+}
+
+TEST(TrialSet, GivesNothingWhereThereIsNoSimulation) {
+  const TrialSet trials = set({"BRA.max_isometric_force"}, {subject().trial("curl_slow", 0.5)});
+  EXPECT_EQ(trials.failure(0, Eigen::VectorXd::Constant(1, 900)), "");
+  const Eigen::VectorXd impossible = Eigen::VectorXd::Constant(1, -5);
+  EXPECT_TRUE(trials.predictor().outputs(impossible).array().isNaN().all());
+  EXPECT_TRUE(trials.predictor().withSensitivities(impossible).gamma.array().isNaN().all());
+  EXPECT_THAT(trials.failure(0, impossible), HasSubstr("BRA"));
+}
+
+TEST(ObservedTimes, AreThoseOfTheMeasurementElseEqualSteps) {
+  const Trial trial = subject().trial("curl_slow", 0.3);
+  const Eigen::VectorXd& measured = trial.measured.front().times;
+  EXPECT_EQ(observedTimes(trial, "elbow_flexion", 0.1),
+            std::vector<double>(measured.begin(), measured.end()));
+  const double begin = trial.times[0];
+  EXPECT_EQ(observedTimes(trial, "pro_sup", 0.1),
+            (std::vector<double>{begin, begin + 0.1, begin + 2 * 0.1, begin + 3 * 0.1}));
+}
+
+TEST(TrialSet, RefusesWhatCannotBeEstimatedFrom) {
+  const Trial good = subject().trial("curl_slow", 0.3);
+  Trial unmeasured = good;
+  unmeasured.measured.clear();
+  const auto fails = [](auto make, const char* message) {
+    EXPECT_THAT(make, ThrowsMessage<std::invalid_argument>(HasSubstr(message)));
+  };
+  fails([&] { set({"hand.mass"}, {}); }, "no trial");
+  fails([&] { set({}, {good}); }, "no parameter is given");
+  fails(
+      [&] {
+        set({"hand.mass"}, {good, unmeasured});
+      },
+      "curl_slow.sto: no measured column of a free angle (elbow_flexion)");
+  Trial pushed = good;
+  pushed.applied.push_back({"elbow_flexion", Eigen::VectorXd::Zero(good.times.size())});
+  fails([&] { set({"hand.mass"}, {pushed}); }, "curl_slow.sto: has an external torque");
+  fails([&] { set({"hand.mas"}, {good}); }, "no parameter is called 'hand.mas'");
+  fails([&] { set({"hand.mass", "hand.mass"}, {good}); }, "'hand.mass' is given twice");
+  fails([&] { set({"emg.gain", "emg.BRA.gain"}, {good}); }, "set the same value");
+  fails([&] { set({"initial.elbow_flexion"}, {good, good}); }, "differs between trials");
+}
+
+}  // namespace
+}  // namespace bio

@@ -1,0 +1,117 @@
+#include "bio/design/separating_design.h"
+
+#include <gtest/gtest.h>
+
+#include "info/discovery/likelihood/joint_fit.h"
+#include "support/cut_trial.h"
+#include "support/numbers.h"
+#include "support/shipped_elbow.h"
+#include "support/throws_saying.h"
+
+namespace bio::discover {
+namespace {
+
+using Eigen::VectorXd;
+using fixtures::cut;
+using fixtures::ShippedElbow;
+using support::degree;
+
+struct Asked {
+  ShippedElbow elbow;
+  MusculoskeletalProblemOptions options;
+  SeparationQuestion question{.first = "visc", .second = "coulomb"};
+  DesignLimits limits;
+
+  Asked() {
+    question.start = elbow.catalogue.nominal().start.q[0];
+    limits.lower = 0;
+    limits.upper = 130 * degree;
+  }
+  SeparatingDesign design() const {
+    return {elbow.model,
+            ShippedElbow::options(),
+            "elbow_flexion",
+            cut(elbow.trial, 2),
+            options,
+            question,
+            limits,
+            {},
+            0.25};
+  }
+};
+
+// What was foreseen is what fits make of it: the motion with one effect, without noise, and the
+// other one fitted with all that the base model does not know.
+TEST(SeparatingDesign, ForeseesWhatFitsThenFind) {
+  Asked asked;
+  asked.question.firstSize = 0.005;  // so small that all is nearly linear
+  asked.question.secondSize = 0.0125;
+  const SeparatingDesign design = asked.design();
+  const SeparatingExperiment e = design.before();
+  const auto costOf = [&](const VectorXd& motion, const std::string& other) {
+    Trial trial = e.trial;
+    trial.measured.front().values = motion;
+    const MusculoskeletalProblem data(asked.elbow.model, ShippedElbow::options(), "elbow_flexion",
+                                      {trial}, asked.options);
+    std::size_t candidate = 0;
+    while (data.candidates()[candidate].id != other) ++candidate;
+    const VectorXd nominal = info::discover::nominalValues(data);
+    const info::discover::Likelihood likelihood(data, {0}, nominal);
+    return likelihood
+        .fit(info::discover::makeHypothesis(data, {candidate}, {0}),
+             {asked.question.noise, 0, 0.08}, nominal, {}, {40, 1e-6})
+        .cost;
+  };
+  EXPECT_GT(e.tells.least(), 0.001);
+  EXPECT_NEAR(e.tells.firstOverSecond / costOf(e.first, "coulomb"), 1, 0.04);
+  EXPECT_NEAR(e.tells.secondOverFirst / costOf(e.second, "visc"), 1, 0.04);
+}
+
+TEST(SeparatingDesign, FindsABetterExperimentWithinTheLimits) {
+  Asked asked;
+  asked.question.first = "delay";  // without a push nothing tells it from the sensor's clock
+  asked.question.second = "clock";
+  asked.question.firstSize = asked.question.secondSize = 0.02;
+  DesignSearchSettings settings;
+  settings.candidates = 12;
+  settings.generations = 2;
+  settings.threads = 1;
+  const SeparatingDesign design = asked.design();
+  const SeparatingResult result = design.search(settings);
+  ASSERT_TRUE(result.improved);
+  EXPECT_EQ(result.runs, 12 + 1 + 1 + 2 * 16);
+  EXPECT_GT(result.after.tells.least(), 5 * result.before.tells.least());
+  EXPECT_LT(result.after.tells.firstDeviation, result.before.tells.firstDeviation);
+  const DesignInputs& inputs = design.inputs();
+  const VectorXd torque = inputs.torqueOf(result.after.trial);
+  EXPECT_LE(torque.cwiseAbs().maxCoeff(), asked.limits.torque * (1 + 1e-9));
+  EXPECT_LE(inputs.largestTorqueRate(result.after.trial), asked.limits.torqueRate * (1 + 1e-6));
+  for (const VectorXd* motion : {&result.after.base, &result.after.first, &result.after.second}) {
+    EXPECT_GE(motion->minCoeff(), asked.limits.lower);
+    EXPECT_LE(motion->maxCoeff(), asked.limits.upper);
+  }
+  settings.threads = 2;
+  const SeparatingResult again = design.search(settings);
+  EXPECT_EQ(result.after.inputs, again.after.inputs);
+  EXPECT_EQ(result.after.tells.least(), again.after.tells.least());
+}
+
+TEST(SeparatingDesign, SaysWhatIsWrongWithAQuestion) {
+  Asked asked;
+  const auto saying = [&](const char* words) {
+    support::throwsSaying([&] { asked.design(); }, words);
+  };
+  asked.question.second = "visc";
+  saying("the two effects must differ");
+  asked.question.second = "ghost";
+  saying("no effect is called 'ghost'");
+  asked.question.second = "coulomb";
+  asked.question.secondSize = -1;
+  saying("size of coulomb");
+  asked.question.secondSize = 0;
+  asked.limits.torque = 0;
+  saying("no input to design");
+}
+
+}  // namespace
+}  // namespace bio::discover

@@ -1,0 +1,112 @@
+// A path that gains or loses conditional points changes its length at once. Every integrator ends a
+// step there, so that they come to one motion.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "bio/simulation/simulate.h"
+#include "simulation/switch_crossing.h"
+#include "support/shipped_elbow.h"
+
+namespace bio {
+namespace {
+
+using fixtures::ShippedElbow;
+constexpr double degree = std::numbers::pi / 180;
+
+Trajectory fall(const MusculoskeletalSystem& arm, double from_deg, double excitation,
+                Integrator integrator, double step, double duration = 3) {
+  const auto muscles = static_cast<Eigen::Index>(arm.numMuscles());
+  const ExcitationSignal signal({0, duration}, Eigen::MatrixXd::Constant(2, muscles, excitation));
+  const SystemState start =
+      initialState(arm, Eigen::VectorXd::Constant(1, from_deg * degree), signal, 0);
+  SimulationOptions options;
+  options.integrator = integrator;
+  options.step = step;
+  options.duration = duration;
+  return simulate(arm, signal, start, options);
+}
+
+/// At the rows that are 10 ms apart [deg].
+std::vector<double> every10ms(const Trajectory& motion, double step) {
+  std::vector<double> q;
+  const auto stride = static_cast<Eigen::Index>(std::lround(0.01 / step));
+  for (Eigen::Index k = 0; k < motion.q.cols(); k += stride) q.push_back(motion.q(0, k) / degree);
+  return q;
+}
+
+double farthest(const std::vector<double>& a, const std::vector<double>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double most = 0;
+  for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) {
+    most = std::max(most, std::abs(a[k] - b[k]));
+  }
+  return most;
+}
+
+TEST(SwitchEvents, IntegratorsAgreeOnAFallThroughThem) {
+  const ShippedElbow elbow;
+  const auto cvode = every10ms(fall(elbow.arm, 60, 0, Integrator::cvode, 0.01), 0.01);
+  const auto vi = every10ms(fall(elbow.arm, 60, 0, Integrator::variational, 1e-4), 1e-4);
+  const auto rk4 = every10ms(fall(elbow.arm, 60, 0, Integrator::rungeKutta4, 1e-4), 1e-4);
+  ASSERT_EQ(cvode.size(), 301u);
+  EXPECT_LT(*std::min_element(cvode.begin(), cvode.end()), -20);
+  EXPECT_LT(farthest(vi, cvode), 0.05);
+  EXPECT_LT(farthest(rk4, cvode), 0.05);
+}
+
+// The coarse steps of everyday use are near that motion, too.
+TEST(SwitchEvents, LongStepsEndOnThemAsWell) {
+  const ShippedElbow elbow;
+  const auto cvode = every10ms(fall(elbow.arm, 60, 0, Integrator::cvode, 0.01), 0.01);
+  const auto vi = every10ms(fall(elbow.arm, 60, 0, Integrator::variational, 0.01), 0.01);
+  EXPECT_LT(farthest(vi, cvode), 3);
+}
+
+// A step that reaches over the jump is of first order, wherever in the step the jump falls.
+TEST(SwitchEvents, RungeKuttaConvergesAcrossThem) {
+  const ShippedElbow elbow;
+  const auto cvode = every10ms(fall(elbow.arm, 20, 0.02, Integrator::cvode, 0.01, 0.6), 0.01);
+  EXPECT_LT(*std::min_element(cvode.begin(), cvode.end()), -2);
+  const auto error = [&](double step) {
+    const Trajectory motion = fall(elbow.arm, 20, 0.02, Integrator::rungeKutta4, step, 0.6);
+    EXPECT_EQ(motion.outcome, Outcome::completed) << motion.why;
+    return farthest(every10ms(motion, step), cvode);
+  };
+  EXPECT_LT(error(2e-4), 1e-5);  // measured 2.2e-6 deg
+  EXPECT_LT(error(1e-4), 2e-6);  // 4.9e-7 deg
+}
+
+TEST(SwitchCrossing, FindsTheChangeOfSign) {
+  int calls = 0;
+  const auto value = [&](double x) {
+    ++calls;
+    return std::cos(x) - 0.3;
+  };
+  const double x = stepping::crossingOf(2, 1, value(0), value(2), value);
+  EXPECT_NEAR(x, std::acos(0.3), 1e-12);
+  EXPECT_LT(calls, 25);
+  // a start that has no sign yet: it is there already
+  EXPECT_NEAR(stepping::crossingOf(1, 1, -1e-16, -1, [](double t) { return -t - 1e-16; }), 0,
+              1e-12);
+}
+
+TEST(SwitchCrossing, TheFirstOfSeveralCounts) {
+  const std::vector<PathSwitch> switches = {{0, FunctionEvaluator(identityFunction()), 0.2},
+                                            {0, FunctionEvaluator(identityFunction()), 0.1},
+                                            {0, FunctionEvaluator(identityFunction()), -0.4}};
+  using Angle = Eigen::Matrix<double, 1, 1>;
+  const Angle from(0.0), to(0.5), back(-0.5), near(0.05);
+  EXPECT_EQ(stepping::firstCrossed(switches, from, from, to), &switches[1]);
+  EXPECT_EQ(stepping::firstCrossed(switches, from, from, back), &switches[2]);
+  EXPECT_EQ(stepping::firstCrossed(switches, from, from, near), nullptr);
+  const Angle at(0.1 - 1e-12);
+  EXPECT_GT(stepping::beyondSwitch(switches[1], at, -1)[0], 0.1);
+  EXPECT_LT(stepping::beyondSwitch(switches[1], at, 1)[0], 0.1 - 1e-8);
+}
+
+}  // namespace
+}  // namespace bio

@@ -1,0 +1,133 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "info/discovery/discover.h"
+#include "info/discovery/likelihood/joint_fit.h"
+#include "info/discovery/nonparametric/unknown.h"
+#include "support/drawn_oscillator.h"
+
+namespace {
+
+using namespace info::discover;
+using Eigen::Index;
+using Eigen::VectorXd;
+using support::kOutput;
+using support::kTime;
+
+// Two trials of the oscillator with a further force f(y_k), which acts on the next sample.
+template <class Force>
+LinearDisagreement withForce(std::uint64_t seed, const Force& force) {
+  LinearDisagreement data(2, 100);
+  VectorXd truth = nominalValues(data);
+  truth.tail(4) << 0.9, -1.2, -0.7, 2;
+  data.draw(seed, truth, kOutput, 0, kTime);
+  for (int t = 0; t < 2; ++t) {
+    const VectorXd noise = data.measured(t) - data.outputs(t, truth, {});
+    VectorXd y = data.outputs(t, truth, {});
+    for (Index k = 0; k < y.size(); ++k) y = data.outputs(t, truth, y.unaryExpr(force));
+    data.measure(t, y + noise);
+  }
+  return data;
+}
+
+Unknown describedIn(const LinearDisagreement& data, double latent) {
+  const Likelihood likelihood(data, {0, 1}, nominalValues(data), kTime);
+  const Fit fit = likelihood.fit(makeHypothesis(data, {}, {0, 1}), {kOutput, latent, kTime},
+                                 nominalValues(data));
+  return describeUnknown(likelihood, fit);
+}
+
+TEST(Formula, IsThatOfTheForceThatIsMissing) {
+  const Unknown found = describedIn(withForce(1, [](double q) { return -20 * q * q * q; }), 1);
+  ASSERT_EQ(found.terms.size(), 1U) << found.formula;
+  const SymbolicTerm& term = found.terms[0];
+  EXPECT_EQ(term.name, "q³");
+  EXPECT_EQ(term.expression, "q^3");
+  // nodes are a step apart, so the force at a node is known to a step
+  EXPECT_NEAR(term.coefficient, -20, 4 * term.sd + 0.5);
+  EXPECT_LT(term.sd, 2);
+  EXPECT_TRUE(found.stable);
+  EXPECT_GT(found.evidence, 20);
+  EXPECT_GT(found.explained, 0.5);
+  EXPECT_LE(found.explained, 1);
+}
+
+TEST(Formula, IsNoneWhereNothingIsMissing) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const Unknown found = describedIn(withForce(seed, [](double) { return 0.0; }), 0.5);
+    EXPECT_LT(found.evidence, 5) << found.formula;
+    EXPECT_GE(found.evidence, 0);
+    EXPECT_EQ(found.terms.empty(), found.evidence == 0);
+  }
+}
+
+// What a parameter may be is nothing for a formula: the input's gain, here known to nothing.
+TEST(Formula, TakesNothingThatAParameterExplains) {
+  class Vague : public LinearDisagreement {
+   public:
+    explicit Vague(LinearDisagreement data)
+        : LinearDisagreement(std::move(data)), wide_(LinearDisagreement::quantities()) {
+      wide_[0].sd = 50;
+    }
+    const std::vector<Quantity>& quantities() const override { return wide_; }
+
+   private:
+    std::vector<Quantity> wide_;
+  };
+  LinearDisagreement louder(2, 100);
+  VectorXd truth = nominalValues(louder);
+  truth[0] = 4;
+  louder.draw(5, truth, kOutput, 0, kTime);
+  const Unknown strict = describedIn(louder, 0.5), vague = describedIn(Vague(louder), 0.5);
+  EXPECT_EQ(strict.terms.at(0).name, "u_u");
+  EXPECT_TRUE(strict.terms[0].expression.empty());
+  EXPECT_GT(strict.evidence, 20);
+  EXPECT_LT(vague.evidence, 5) << vague.formula;
+}
+
+// A catalogue of one force that cannot pull; a constant pull is offered as a formula, nothing else.
+class Nameless : public LinearDisagreement {
+ public:
+  Nameless(LinearDisagreement data, bool offers)
+      : LinearDisagreement(std::move(data)),
+        offers_(offers),
+        known_{LinearDisagreement::candidates()[1]} {}
+  const std::vector<Candidate>& candidates() const override { return known_; }
+  std::unique_ptr<DiscoveryProblem> withFormula(
+      const std::vector<FormulaTerm>& terms, const std::vector<std::size_t>& kept) const override {
+    if (!offers_ || terms.size() > 1) return nullptr;
+    EXPECT_EQ(terms[0].expression, "1");
+    EXPECT_TRUE(kept.empty());
+    auto widened = std::make_unique<Nameless>(*this);
+    widened->known_ = {LinearDisagreement::candidates()[0]};
+    widened->known_[0].id = "formula";
+    widened->known_[0].starts[0][0] = terms[0].start;
+    return widened;
+  }
+
+ private:
+  bool offers_;
+  std::vector<Candidate> known_;
+};
+
+TEST(Formula, IsRacedWhereTheDataOfferIt) {
+  const LinearDisagreement data = withForce(3, [](double) { return -2.0; });
+  Options options;
+  options.outputSd = kOutput;
+  const Verdict plain = run(Nameless(data, false), options);
+  EXPECT_EQ(plain.finding, Finding::unknown) << plain.sentence;
+  EXPECT_FALSE(plain.formula);
+  const Verdict raced = run(Nameless(data, true), options);
+  EXPECT_EQ(raced.finding, Finding::unknown);
+  ASSERT_TRUE(raced.formula);
+  EXPECT_TRUE(raced.formula->wins);
+  EXPECT_GT(raced.formula->logBayesFactor, 20);
+  ASSERT_EQ(raced.formula->values.size(), 1U);
+  EXPECT_NEAR(raced.formula->values[0], -2, 4 * raced.formula->sds[0]);
+  EXPECT_TRUE(raced.formula->after.adequate());
+  EXPECT_NE(raced.sentence.find(raced.formula->text + " explains the residual."), std::string::npos)
+      << raced.sentence;
+}
+
+}  // namespace
