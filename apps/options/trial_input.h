@@ -30,9 +30,8 @@ bio::MusculoskeletalSystem movableSystem(const bio::Model& model, const std::str
 
 /// Reads a trial according to the simulation options. The trial's warnings include those of
 /// reviewTrial and heldRemarks; they are not passed to the summary.
-/// @param experimentalConditions the command takes the experimental conditions (known mass, turn)
-/// into
-///   account
+/// @param experimentalConditions the command takes the known mass and turn of a trial
+///   into account
 /// @throws what readTrial and heldRemarks throw; std::invalid_argument if --step is longer than the
 ///   trial, or for an error of reviewTrial
 bio::Trial readTrialFile(const std::string& file, const bio::Model& model,

@@ -53,9 +53,8 @@ std::string effectCredits(const EncompassingModel& encompassing,
 /// uncertainty are written into the credits, e.g.
 ///   "Effects added by fisherhill 1.0 from curl.sto SHA-256 …; viscous joint damping (visc):
 ///    visc.viscosity 0.301 ± 0.004 N m s/rad, evidence 412 nats, probability 0.999"
-/// @throws std::invalid_argument what EncompassingModel throws; an id that is not in the catalogue
-/// of
-///   this model, or present in it already; a wrong number of values
+/// @throws std::invalid_argument what EncompassingModel throws; an id that is not in the
+///   catalogue of this model, or present in it already; a wrong number of values
 Augmented addEffects(const Model& model, const SystemOptions& arm, const std::string& coordinate,
                      const std::vector<EffectToAdd>& effects, const EffectProvenance& provenance,
                      const std::vector<info::discover::FormulaTerm>& formula = {});

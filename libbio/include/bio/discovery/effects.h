@@ -8,13 +8,14 @@
 namespace bio::discover {
 
 /// One line of the catalogue: adds an effect, or a small family of them, to a model. An effect that
-/// the base model already has becomes EncompassingModel::present(); one that the skeleton cannot
-/// have (tilt, if gravity does not turn the joint) is left out.
+/// the base model already has becomes EncompassingModel::present(); one that the skeleton cannot have
+/// (tilt, if gravity does not turn the joint) is left out.
 struct EffectEntry {
   const char* id;
   void (*add)(EncompassingModel& model);
 };
 
+// clang-format off
 /// The catalogue. τ is the generalised force on the observed coordinate, + up; w = q̇.
 ///
 /// | id | effect | amplitude |
@@ -33,11 +34,12 @@ struct EffectEntry {
 /// | spring | −k·max(0, L − L_r)·∂L/∂q, L from hand to shoulder (see band.cc) | k N/m |
 /// | torque_from, torque_until, mass_from, mass_until | TimedForce (timed_force.h) | N·m or kg |
 /// | fatigue | u_i·[1 − φ(1 − e^{−∫u_i dt/T})], every muscle | φ |
-/// | missing_i | a muscle that the model has but switched off, F0 = r·that of the model, its
-/// lengths within their tolerance | r | | delay, shape, crosstalk_A_B, gain_i, offset_i |
-/// EmgMapping | | | mass, tau, Fmax_i, lopt_i, lslack_i, tendon, wrap_i | factors and shifts of
-/// parameters | | | swap_A_B | channels of two muscles exchanged: EmgMapping | share, 1 where they
-/// are | | bias, gain, clock, clock_rate, lag, drift | SensorLaw | |
+/// | missing_i | a muscle that the model has but switched off; its lengths within their tolerance | r = F0 over the model's |
+/// | delay, shape, crosstalk_A_B, gain_i, offset_i | EmgMapping | |
+/// | mass, tau, Fmax_i, lopt_i, lslack_i, tendon, wrap_i | factors and shifts of parameters | |
+/// | swap_A_B | channels of two muscles exchanged: EmgMapping | share, 1 where they are |
+/// | bias, gain, clock, clock_rate, lag, drift | SensorLaw | |
+// clang-format on
 const std::vector<EffectEntry>& effectEntries();
 
 /// Adds the base model's own uncertain parameters as nuisance parameters: every muscle's F0 (15 %
@@ -53,9 +55,8 @@ void addFormula(EncompassingModel& model, const std::vector<info::discover::Form
 /// @param without  ids of entries or of candidates
 /// @param formula  if not empty, also addFormula of it
 /// @throws std::invalid_argument for an unknown id, with a list of the known ones
-EncompassingModel encompassingModel(const Model& model, const SystemOptions& arm,
-                                    const std::string& coordinate,
-                                    const std::vector<std::string>& without = {},
-                                    const std::vector<info::discover::FormulaTerm>& formula = {});
+EncompassingModel encompassingModel(const Model& model, const SystemOptions& arm, const std::string& coordinate,
+                        const std::vector<std::string>& without = {},
+                        const std::vector<info::discover::FormulaTerm>& formula = {});
 
 }  // namespace bio::discover

@@ -52,9 +52,8 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   using Candidate = info::discover::Candidate;
 
   /// @param coordinate the observed one, measured in every trial; missing samples have no time
-  /// @throws std::invalid_argument what EncompassingModel throws, no trial, a trial without a
-  /// measured
-  ///   value of the coordinate, an integrator without sensitivities, an option out of range, a
+  /// @throws std::invalid_argument what EncompassingModel throws, no trial, a trial without
+  ///   a measured value of the coordinate, an integrator without sensitivities, an option out of range, a
   ///   known mass in the hand of a model without a body to carry it
   MusculoskeletalProblem(const Model& model, const SystemOptions& arm,
                          const std::string& coordinate, std::vector<Trial> trials,
