@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "discover/discover_search.h"
+#include "discover/effect_list.h"
 #include "discover/model_discovery.h"
 #include "options/number_rules.h"
 #include "options/trial_input.h"
@@ -46,6 +47,9 @@ class Discover : public Command {
         ->allow_extra_args(false)
         ->delimiter(',')
         ->type_name("IDS");
+    options.add_flag("--list-effects", listEffects_,
+                     "list every effect of the catalogue for MODEL and exit: id, name, kind, "
+                     "parameters with units");
     options.add_option("--max-effects", maxEffects_, "largest number of effects in one hypothesis")
         ->check(CLI::Range(1, 3))
         ->capture_default_str()
@@ -61,6 +65,11 @@ class Discover : public Command {
   }
 
   ExitStatus run(const CommandContext& context) override {
+    if (listEffects_) {
+      if (!robot_.system.empty())
+        throw std::invalid_argument("--list-effects cannot be combined with --system");
+      return listEffects(context, model_, simulation_);
+    }
     if (!robot_.system.empty()) {
       robot_.trials = trials_;
       robot_.trials.insert(robot_.trials.begin(), model_);
@@ -98,6 +107,7 @@ class Discover : public Command {
   std::vector<std::string> trials_, heldOut_, without_;
   std::optional<double> noise_;
   int maxEffects_ = 3;
+  bool listEffects_ = false;
   std::optional<double> inputScatter_;
   SimulationOptions simulation_;
   RobotRequest robot_;

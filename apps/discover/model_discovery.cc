@@ -24,15 +24,6 @@ namespace {
 
 using info::discover::Finding;
 
-std::string observedIn(const SimulationOptions& simulation) {
-  if (simulation.coordinates.size() != 1) {
-    throw std::invalid_argument(
-        fmt::format("--coordinate: {} coordinates are free, must be one for discover",
-                    simulation.coordinates.size()));
-  }
-  return simulation.coordinates.front();
-}
-
 DiscoverWording wordingOf(const bio::discover::MusculoskeletalProblem& data) {
   const bio::Coordinate& coordinate = data.encompassing().coordinate();
   const bool isAngle = coordinate.isRotation;
@@ -53,6 +44,15 @@ DiscoverWording wordingOf(const bio::discover::MusculoskeletalProblem& data) {
 
 }  // namespace
 
+std::string observedCoordinate(const SimulationOptions& simulation) {
+  if (simulation.coordinates.size() != 1) {
+    throw std::invalid_argument(
+        fmt::format("--coordinate: {} coordinates are free, must be one for discover",
+                    simulation.coordinates.size()));
+  }
+  return simulation.coordinates.front();
+}
+
 ModelDiscovery discoverInModel(const ModelDiscoveryRequest& request,
                                const CommandContext& context) {
   std::vector<std::string> files = request.trials;
@@ -71,7 +71,7 @@ ModelDiscovery discoverInModel(const ModelDiscoveryRequest& request,
   inputsMustDiffer(summary, request.trials.size());
   resultsMustNotBeInputs(summary, folder, names);
   const bio::SystemOptions arm = armOptions(request.simulation);
-  const std::string coordinate = observedIn(request.simulation);
+  const std::string coordinate = observedCoordinate(request.simulation);
   const bio::MusculoskeletalSystem asked(model, arm);
   for (const std::string& warning : asked.warnings()) summary.warn(warning);
   std::unique_ptr<bio::discover::MusculoskeletalProblem> elbow;

@@ -27,6 +27,10 @@ struct ModelDiscovery {
   nlohmann::ordered_json verdict;  ///< verdict.json
 };
 
+/// The one free coordinate, which discover observes.
+/// @throws std::invalid_argument unless there is exactly one
+std::string observedCoordinate(const SimulationOptions& simulation);
+
 /// Searches, writes verdict.json, the model with the effect and a report, and delivers them.
 /// @throws std::exception for bad input, Interrupted after Ctrl-C
 ModelDiscovery discoverInModel(const ModelDiscoveryRequest& request, const CommandContext& context);

@@ -1,4 +1,5 @@
 #include "bio/design/separating_design.h"
+#include "bio/discovery/effect_names.h"
 
 #include <fmt/format.h>
 
@@ -94,6 +95,8 @@ SeparatingDesign::SeparatingDesign(const Model& model, const SystemOptions& arm,
               measuredTimes(trial, question_.period)) {
   require(question_.noise > 0 && std::isfinite(question_.noise),
           fmt::format("noise = {}, must be > 0", question_.noise));
+  question_.first = effectId(question_.first);
+  question_.second = effectId(question_.second);
   require(question_.first != question_.second,
           fmt::format("'{}' is given twice, the two effects must differ", question_.first));
   const MusculoskeletalProblem data = planned(inputs_.at({}));

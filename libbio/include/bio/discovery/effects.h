@@ -52,7 +52,7 @@ void addNuisances(EncompassingModel& model);
 void addFormula(EncompassingModel& model, const std::vector<info::discover::FormulaTerm>& terms);
 
 /// addNuisances, and every entry but those whose ids are in `without`.
-/// @param without  ids of entries or of candidates
+/// @param without  ids of entries or of candidates, or their long names (effect_names.h)
 /// @param formula  if not empty, also addFormula of it
 /// @throws std::invalid_argument for an unknown id, with a list of the known ones
 EncompassingModel encompassingModel(const Model& model, const SystemOptions& arm, const std::string& coordinate,

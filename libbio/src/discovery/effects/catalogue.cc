@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "bio/discovery/effect_names.h"
 #include "discovery/effects/effects.h"
 
 namespace bio::discover {
@@ -64,8 +65,9 @@ void mustBeKnown(const EncompassingModel& encompassing, const std::vector<std::s
 
 EncompassingModel encompassingModel(const Model& model, const SystemOptions& arm,
                                     const std::string& coordinate,
-                                    const std::vector<std::string>& without,
+                                    const std::vector<std::string>& leftOut,
                                     const std::vector<info::discover::FormulaTerm>& formula) {
+  const std::vector<std::string> without = effectIds(leftOut);
   EncompassingModel encompassing(model, arm, coordinate);
   addNuisances(encompassing);
   addExperimentalConditions(encompassing);
