@@ -7,6 +7,7 @@
 #include "bio/discovery/effect_names.h"
 #include "bio/discovery/effects.h"
 #include "discover/model_discovery.h"
+#include "info/discovery/discover.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/json_text.h"
