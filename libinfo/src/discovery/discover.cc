@@ -6,10 +6,12 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "discovery/judgement/held_out_trials.h"
 #include "discovery/likelihood/selected_samples.h"
 #include "discovery/nonparametric/nonparametric_force.h"
 #include "discovery/nonparametric/race_formula.h"
 #include "discovery/search/select.h"
+#include "discovery/verdict_sentence.h"
 #include "info/discovery/judgement/decide.h"
 #include "info/discovery/judgement/expected_error.h"
 #include "info/discovery/judgement/output_sd.h"
@@ -19,28 +21,7 @@ namespace info::discover {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-const char* name(Finding finding) {
-  static constexpr const char* kNames[] = {"none",      "parameter", "named",
-                                           "ambiguous", "unknown",   "numerical"};
-  return kNames[static_cast<int>(finding)];
-}
-const char* name(Stage stage) {
-  static constexpr const char* kNames[] = {"calibrate", "localise", "screen",
-                                           "race",      "decide",   "finished"};
-  return kNames[static_cast<int>(stage)];
-}
-const char* name(EffectKind kind) {
-  static constexpr const char* kNames[] = {"structure", "input", "geometry", "sensor", "parameter"};
-  return kNames[static_cast<int>(kind)];
-}
-
-const char* name(NonparametricForce::Follows follows) {
-  return follows == NonparametricForce::Follows::angle ? "angle" : "speed";
-}
-
 namespace {
-
-constexpr double kWorthSaying = 0.005;  // σ_d that the sentence mentions
 
 std::vector<Estimate> estimatesOf(const Fit& fit, const std::vector<std::size_t>& wanted,
                                   const DiscoveryProblem& data) {
@@ -220,43 +201,6 @@ class Work {
       if (f.effects.empty()) f.adequate = verdict_.before.adequate();
     }
   }
-  // What a hypothesis makes of the trials that were held out.
-  struct HeldOut {
-    double score = -HUGE_VAL;  // log of their probability given the others
-    double error = HUGE_VAL;   // of the simulation, with starts of their own [unit of the output]
-    double meanSquare = HUGE_VAL;  // of their innovations given the others
-    std::optional<Fit> starts;     // those of their own
-  };
-  HeldOut heldOut(const Entry& entry, const Likelihood& all, const Likelihood& held) const {
-    HeldOut result;
-    // their starts are new: a large latent force leads to them
-    Noise wide = entry.fit.noise, still = entry.fit.noise;
-    wide.latent = std::max(wide.latent, 0.1);
-    still.latent = 0;
-    const Hypothesis hypothesis = makeHypothesis(data_, entry.effects, all.trials());
-    std::optional<Fit> best;
-    const auto together = [&](const Eigen::VectorXd& from) {
-      auto fit = all.tryFit(hypothesis, entry.fit.noise, from, {}, {30, 0.05});
-      if (fit && (!best || fit->logEvidence > best->logEvidence)) best = std::move(fit);
-    };
-    if (const auto first = all.tryFit(hypothesis, wide, entry.fit.values, {}, {10, 0.1}))
-      together(first->values);
-    const Hypothesis starts = startsOnly(data_, held.trials());
-    if (const auto near = held.tryFit(starts, wide, entry.fit.values, {}, {10, 0.1})) {
-      if (auto fit = held.tryFit(starts, still, near->values, {}, {30, 0.01})) {
-        result.error = held.simulationError(fit->values);
-        together(fit->values);  // where everything else is right already
-        result.starts = std::move(fit);
-      }
-    }
-    if (best) {
-      if (search_->exceedsNoise(*best)) best = all.marginal(*best);
-      // log Z of all less that of those that were fitted
-      result.score = best->logEvidence - entry.fit.logEvidence;
-      result.meanSquare = 2 * (best->cost - entry.fit.cost) / static_cast<double>(held.samples());
-    }
-    return result;
-  }
 
   void conclude() {
     stage_ = Stage::decide;
@@ -328,7 +272,7 @@ class Work {
       verdict_.unknown = describeUnknown(search_->likelihood(), smoothing);
       verdict_.formula = raceFormula(*search_, *verdict_.unknown, chosen_, optionsOfFormula());
     }
-    verdict_.sentence = sentence() + samples();
+    verdict_.sentence = verdictSentence(data_, verdict_, options_.farOff, !chosen_.empty());
   }
 
   void collectRivals() {
@@ -390,8 +334,9 @@ class Work {
     const VectorXd& scale = search_->scaleValues();
     const Likelihood all(data_, every, scale, options_.latentTime);
     const Likelihood held(data_, options_.heldOut, scale, options_.latentTime);
-    const HeldOut without = heldOut(before, all, held);
-    const HeldOut with = chosen_.empty() ? without : heldOut(after, all, held);
+    const HeldOutTrials without = heldOutTrials(data_, *search_, before, all, held);
+    const HeldOutTrials with =
+        chosen_.empty() ? without : heldOutTrials(data_, *search_, after, all, held);
     keepStarts(without, verdict_.base);
     verdict_.heldOutStarts = keepStarts(with, verdict_.values);
     ExcessError other;
@@ -420,7 +365,7 @@ class Work {
   }
 
   // Puts the starts of what was held out where those of the others are.
-  std::vector<Estimate> keepStarts(const HeldOut& held, VectorXd& values) const {
+  std::vector<Estimate> keepStarts(const HeldOutTrials& held, VectorXd& values) const {
     if (!held.starts) return {};
     std::vector<std::size_t> starts;
     for (const FreeQuantity& free : held.starts->hypothesis.free) {
@@ -434,107 +379,6 @@ class Work {
   HeldOutAdequacy heldOutAdequacy(double meanSquare, const Likelihood& held) const {
     const auto n = static_cast<double>(held.samples());
     return {meanSquare, chiSquareQuantile(options_.level, n) / n * std::exp(3.29 * test_.sdError)};
-  }
-
-  // How much of what is left is taken for noise of the inputs: a name rests on it.
-  std::string scatter() const {
-    if (verdict_.latentSizeAfter < kWorthSaying) return "";
-    return fmt::format(" {:.2g} % of the inputs' effect is attributed to input noise.",
-                       100 * verdict_.latentSizeAfter);
-  }
-
-  std::string farOff() const {
-    if (!verdict_.heldOut || !verdict_.heldOut->probability ||
-        !(*verdict_.heldOut->probability < options_.farOff))
-      return "";
-    return fmt::format(
-        " However, the held-out errors are larger than expected by chance (p = {:.1g}).",
-        *verdict_.heldOut->probability);
-  }
-
-  // Which samples were not used, and why.
-  std::string samples() const {
-    const RecordedNoise& noise = verdict_.noise;
-    std::string words;
-    if (noise.outliers > 0)
-      words += fmt::format(" {} of {} samples are outliers and were left out.", noise.outliers,
-                           noise.samples);
-    if (noise.spacing > 1)
-      words += fmt::format(
-          " The measurement noise is correlated, so only one sample in {:.2g} s was used.",
-          noise.interval);
-    return words;
-  }
-
-  std::string sentence() const {
-    const auto& candidates = data_.candidates();
-    std::string names;
-    for (const NamedEffect& e : verdict_.effects) {
-      std::string one;
-      for (const std::size_t c : e.equals) one += (one.empty() ? "" : " or ") + candidates[c].name;
-      if (e.equals.size() > 1 && verdict_.effects.size() > 1) one = "(" + one + ")";
-      names += (names.empty() ? "" : ", and ") + one;
-    }
-    switch (verdict_.finding) {
-      case Finding::none:
-        return "No missing effect above the detectable size." + scatter() + farOff();
-      case Finding::parameter:
-        return "Parameter error: " + names + "." + scatter() + farOff();
-      case Finding::named:
-      case Finding::ambiguous:
-        return "Missing: " + names +
-               (verdict_.vetoed && !verdict_.after.sized
-                    ? "; the size of the residual does not match the noise."
-                    : ".") +
-               scatter() + farOff();
-      case Finding::unknown:
-        return "The model lacks an effect that is not in the catalogue." +
-               (names.empty() ? std::string()
-                              : " The closest match is " + names + atBounds() + ".") +
-               cause() + nonparametric() +
-               (verdict_.formula && verdict_.formula->wins
-                    ? " The force " + verdict_.formula->text + " explains the residual."
-                    : "");
-      case Finding::numerical:
-        break;
-    }
-    return verdict_.sentence;
-  }
-
-  std::string cause() const {
-    const Adequacy& left = chosen_.empty() ? verdict_.before : verdict_.after;
-    if (left.causeless) return "";
-    switch (left.remainder.strongest()) {
-      case Cause::state:
-        return " The residual depends on the angle and the speed.";
-      case Cause::inputs:
-        return " The residual depends on the inputs.";
-      case Cause::acceleration:
-        return " The residual depends on the acceleration, which suggests a wrong inertia.";
-      case Cause::sensor:
-        return " The residual depends on the sensor's reading, which suggests an error of the "
-               "sensor.";
-      case Cause::moments:
-        return " The residual depends on the inputs' moments and the angle, which suggests wrong "
-               "moment arms.";
-    }
-    return "";
-  }
-
-  std::string nonparametric() const {
-    if (!verdict_.nonparametric || !verdict_.nonparametric->wins) return "";
-    return fmt::format(" A free-form force of the {} alone explains {}.",
-                       name(verdict_.nonparametric->follows),
-                       chosen_.empty() ? "part of the residual" : "the data better");
-  }
-
-  std::string atBounds() const {
-    std::string quantities;
-    for (const NamedEffect& e : verdict_.effects)
-      for (const Estimate& one : e.estimates)
-        if (one.atBound)
-          quantities += (quantities.empty() ? "" : ", ") + data_.quantities()[one.quantity].name;
-    return quantities.empty() ? "" : " (at its bound: " + quantities + ")";
   }
 
   const DiscoveryProblem& data_;

@@ -1,0 +1,132 @@
+#include "discovery/verdict_sentence.h"
+
+#include <fmt/format.h>
+
+namespace info::discover {
+namespace {
+
+constexpr double kWorthSaying = 0.005;  // σ_d that the sentence mentions
+
+class VerdictSentence {
+ public:
+  VerdictSentence(const DiscoveryProblem& data, const Verdict& verdict, double farOff,
+                  bool somethingChosen)
+      : data_(data), verdict_(verdict), farOff_(farOff), somethingChosen_(somethingChosen) {}
+
+  // How much of what is left is taken for noise of the inputs: a name rests on it.
+  std::string scatter() const {
+    if (verdict_.latentSizeAfter < kWorthSaying) return "";
+    return fmt::format(" {:.2g} % of the inputs' effect is attributed to input noise.",
+                       100 * verdict_.latentSizeAfter);
+  }
+
+  std::string farOff() const {
+    if (!verdict_.heldOut || !verdict_.heldOut->probability ||
+        !(*verdict_.heldOut->probability < farOff_))
+      return "";
+    return fmt::format(
+        " However, the held-out errors are larger than expected by chance (p = {:.1g}).",
+        *verdict_.heldOut->probability);
+  }
+
+  // Which samples were not used, and why.
+  std::string samples() const {
+    const RecordedNoise& noise = verdict_.noise;
+    std::string words;
+    if (noise.outliers > 0)
+      words += fmt::format(" {} of {} samples are outliers and were left out.", noise.outliers,
+                           noise.samples);
+    if (noise.spacing > 1)
+      words += fmt::format(
+          " The measurement noise is correlated, so only one sample in {:.2g} s was used.",
+          noise.interval);
+    return words;
+  }
+
+  std::string sentence() const {
+    const auto& candidates = data_.candidates();
+    std::string names;
+    for (const NamedEffect& e : verdict_.effects) {
+      std::string one;
+      for (const std::size_t c : e.equals) one += (one.empty() ? "" : " or ") + candidates[c].name;
+      if (e.equals.size() > 1 && verdict_.effects.size() > 1) one = "(" + one + ")";
+      names += (names.empty() ? "" : ", and ") + one;
+    }
+    switch (verdict_.finding) {
+      case Finding::none:
+        return "No missing effect above the detectable size." + scatter() + farOff();
+      case Finding::parameter:
+        return "Parameter error: " + names + "." + scatter() + farOff();
+      case Finding::named:
+      case Finding::ambiguous:
+        return "Missing: " + names +
+               (verdict_.vetoed && !verdict_.after.sized
+                    ? "; the size of the residual does not match the noise."
+                    : ".") +
+               scatter() + farOff();
+      case Finding::unknown:
+        return "The model lacks an effect that is not in the catalogue." +
+               (names.empty() ? std::string()
+                              : " The closest match is " + names + atBounds() + ".") +
+               cause() + nonparametric() +
+               (verdict_.formula && verdict_.formula->wins
+                    ? " The force " + verdict_.formula->text + " explains the residual."
+                    : "");
+      case Finding::numerical:
+        break;
+    }
+    return verdict_.sentence;
+  }
+
+  std::string cause() const {
+    const Adequacy& left = somethingChosen_ ? verdict_.after : verdict_.before;
+    if (left.causeless) return "";
+    switch (left.remainder.strongest()) {
+      case Cause::state:
+        return " The residual depends on the angle and the speed.";
+      case Cause::inputs:
+        return " The residual depends on the inputs.";
+      case Cause::acceleration:
+        return " The residual depends on the acceleration, which suggests a wrong inertia.";
+      case Cause::sensor:
+        return " The residual depends on the sensor's reading, which suggests an error of the "
+               "sensor.";
+      case Cause::moments:
+        return " The residual depends on the inputs' moments and the angle, which suggests wrong "
+               "moment arms.";
+    }
+    return "";
+  }
+
+  std::string nonparametric() const {
+    if (!verdict_.nonparametric || !verdict_.nonparametric->wins) return "";
+    return fmt::format(" A free-form force of the {} alone explains {}.",
+                       name(verdict_.nonparametric->follows),
+                       somethingChosen_ ? "the data better" : "part of the residual");
+  }
+
+  std::string atBounds() const {
+    std::string quantities;
+    for (const NamedEffect& e : verdict_.effects)
+      for (const Estimate& one : e.estimates)
+        if (one.atBound)
+          quantities += (quantities.empty() ? "" : ", ") + data_.quantities()[one.quantity].name;
+    return quantities.empty() ? "" : " (at its bound: " + quantities + ")";
+  }
+
+ private:
+  const DiscoveryProblem& data_;
+  const Verdict& verdict_;
+  double farOff_;
+  bool somethingChosen_;
+};
+
+}  // namespace
+
+std::string verdictSentence(const DiscoveryProblem& data, const Verdict& verdict, double farOff,
+                            bool somethingChosen) {
+  const VerdictSentence text(data, verdict, farOff, somethingChosen);
+  return text.sentence() + text.samples();
+}
+
+}  // namespace info::discover
