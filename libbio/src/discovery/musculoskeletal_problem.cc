@@ -12,6 +12,7 @@
 #include "bio/discovery/with_experimental_conditions.h"
 #include "bio/sensitivity/coupled_sensitivity.h"
 #include "bio/tables/trial_review.h"
+#include "discovery/initial_speed.h"
 #include "simulation/motion_weights.h"
 
 namespace bio::discover {
@@ -120,8 +121,9 @@ MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemO
     const bool turns = observed.isRotation;
     one.angle =
         own("", turns ? "rad" : "m", start, observed.rangeMin, observed.rangeMax, options_.startSd);
-    one.speed = own(".speed", turns ? "rad/s" : "m/s", 0, turns ? -10.0 : -2.0, turns ? 10.0 : 2.0,
-                    options_.speedSd);
+    one.speed =
+        own(".speed", turns ? "rad/s" : "m/s", 0, turns ? -10.0 : -2.0, turns ? 10.0 : 2.0,
+            std::max(options_.speedSd, std::abs(initialSpeedShown(one.times, one.measured))));
     trials_.push_back(std::move(one));
   }
   latentLag_ = activationLag();

@@ -16,7 +16,8 @@ struct MusculoskeletalProblemOptions {
   double latentSpacing = 0.05;       ///< between nodes of the latent force [s] > 0
   double latentFloor = 0.5;          ///< τ_0 of its scale [N·m] > 0
   double startSd = 0.035;            ///< prior sd of each trial's initial angle [rad] > 0
-  double speedSd = 0.1;              ///< prior sd of each trial's initial speed [rad/s] > 0
+  double speedSd = 0.1;              ///< prior sd of each trial's initial speed [rad/s] > 0, of one
+                                     ///< that starts in motion: as large as that speed
   bool usableSeries = true;          ///< refuse measured series that requireUsable refuses
   std::vector<std::string> without;  ///< ids of effects to exclude from the catalogue
   std::vector<info::discover::FormulaTerm> formula;  ///< of a candidate "formula"; empty: none
@@ -53,8 +54,8 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
 
   /// @param coordinate the observed one, measured in every trial; missing samples have no time
   /// @throws std::invalid_argument what EncompassingModel throws, no trial, a trial without
-  ///   a measured value of the coordinate, an integrator without sensitivities, an option out of range, a
-  ///   known mass in the hand of a model without a body to carry it
+  ///   a measured value of the coordinate, an integrator without sensitivities, an option out of
+  ///   range, a known mass in the hand of a model without a body to carry it
   MusculoskeletalProblem(const Model& model, const SystemOptions& arm,
                          const std::string& coordinate, std::vector<Trial> trials,
                          MusculoskeletalProblemOptions options = {});
