@@ -15,7 +15,8 @@ namespace bio {
 std::string whatMovesNoMass(const Skeleton& skeleton);
 
 /// @throws std::invalid_argument if a free coordinate, or several together, move no mass in the
-///   default posture, or if a body that moves has a negative principal moment of inertia
+///   default posture, or if a body that moves has a principal moment of inertia below
+///   −5 % of its largest (rounded numbers of a flat body pass)
 void requireMovedMass(const Model& model, const Skeleton& skeleton);
 
 }  // namespace bio

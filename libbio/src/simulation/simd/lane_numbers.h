@@ -1,6 +1,6 @@
 #pragma once
 
-// Numbers of several simulations side by side, one per lane, for the files of lanes/ alone. All of
+// Numbers of several simulations side by side, one per lane, for the files of simd/ alone. All of
 // it is compiled once per instruction set, so nothing here may be shared between files by the
 // linker: hence the unnamed namespace. What a lane comes to never depends on the others.
 
