@@ -24,7 +24,8 @@ bio::Model readModel(const std::string& file, Summary& summary);
 
 /// The system with the free coordinates that the model options choose.
 /// @param file  the model's, for the message
-/// @throws std::invalid_argument what Arm throws, or if no muscle moves the free coordinates
+/// @throws std::invalid_argument what MusculoskeletalSystem throws, or if no muscle moves the free
+/// coordinates
 bio::MusculoskeletalSystem movableSystem(const bio::Model& model, const std::string& file,
                                          const SimulationOptions& options, Summary& summary);
 

@@ -48,7 +48,7 @@ class TrialPredictor {
   /// For info::LeastSquares; one output. This experiment must outlive it.
   info::Predictor predictor() const;
 
-  /// The complete simulations. @throws what Arm, initialState and simulate throw
+  /// The complete simulations. @throws what MusculoskeletalSystem, initialState and simulate throw
   Trajectory simulate(const Eigen::VectorXd& theta) const;
   SensitivityTrajectory simulateWithSensitivities(const Eigen::VectorXd& theta) const;
 

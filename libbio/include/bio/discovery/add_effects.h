@@ -25,7 +25,8 @@ struct Augmented {
   std::vector<std::string> muscles;  ///< switched on
 };
 
-/// The model at the given values of all quantities of `widest`, without the forces that are absent.
+/// The model at the given values of all quantities of `encompassing`, without the forces that are
+/// absent.
 Augmented augmentedModel(const EncompassingModel& encompassing, const Eigen::VectorXd& values);
 
 /// One effect to add, with its estimates.

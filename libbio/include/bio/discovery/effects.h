@@ -8,8 +8,8 @@
 namespace bio::discover {
 
 /// One line of the catalogue: adds an effect, or a small family of them, to a model. An effect that
-/// the base model already has becomes EncompassingModel::present(); one that the skeleton cannot have
-/// (tilt, if gravity does not turn the joint) is left out.
+/// the base model already has becomes EncompassingModel::present(); one that the skeleton cannot
+/// have (tilt, if gravity does not turn the joint) is left out.
 struct EffectEntry {
   const char* id;
   void (*add)(EncompassingModel& model);
@@ -55,8 +55,9 @@ void addFormula(EncompassingModel& model, const std::vector<info::discover::Form
 /// @param without  ids of entries or of candidates, or their long names (effect_names.h)
 /// @param formula  if not empty, also addFormula of it
 /// @throws std::invalid_argument for an unknown id, with a list of the known ones
-EncompassingModel encompassingModel(const Model& model, const SystemOptions& arm, const std::string& coordinate,
-                        const std::vector<std::string>& without = {},
-                        const std::vector<info::discover::FormulaTerm>& formula = {});
+EncompassingModel encompassingModel(const Model& model, const SystemOptions& arm,
+                                    const std::string& coordinate,
+                                    const std::vector<std::string>& without = {},
+                                    const std::vector<info::discover::FormulaTerm>& formula = {});
 
 }  // namespace bio::discover

@@ -59,7 +59,7 @@ class EncompassingModel {
   using Candidate = info::discover::Candidate;
 
   /// @param coordinate the observed one; free in `arm`
-  /// @throws std::invalid_argument what Arm throws; a coordinate that is not free
+  /// @throws std::invalid_argument what MusculoskeletalSystem throws; a coordinate that is not free
   EncompassingModel(const Model& model, const SystemOptions& arm, const std::string& coordinate);
 
   // What effects ask ------------------------------------------------------------------------------

@@ -91,7 +91,7 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   /// The trial as given, with an excitation for every muscle that was added (withProxies).
   const Trial& trial(int trial) const { return of(trial).trial; }
   /// The complete simulation at `values`, without a latent force.
-  /// @throws what Arm, initialState and simulate throw
+  /// @throws what MusculoskeletalSystem, initialState and simulate throw
   Trajectory motion(int trial, const Eigen::VectorXd& values) const;
   /// The model that it belongs to.
   MusculoskeletalSystem armAt(int trial, const Eigen::VectorXd& values) const;

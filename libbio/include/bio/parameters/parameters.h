@@ -141,7 +141,7 @@ class ParameterCatalogue {
     Eigen::VectorXd values;  ///< of every parameter of the catalogue
   };
   /// @throws std::invalid_argument for a value that is not finite or at its limit or beyond, or
-  ///   sizes that differ. Other rules are checked when an Arm is constructed.
+  ///   sizes that differ. Other rules are checked when a MusculoskeletalSystem is made.
   Setting at(const std::vector<std::size_t>& selection, const Eigen::VectorXd& values) const;
   /// The values of the model.
   Setting nominal() const { return at({}, Eigen::VectorXd(0)); }

@@ -10,7 +10,7 @@ namespace info::discover {
 /// What an effect touches; printed with its name, and one finalist of each kind is raced.
 enum class EffectKind { structure, input, geometry, sensor, parameter };
 
-/// One number of the widest model: of the base model, of a trial's start, or of an effect.
+/// One number of the encompassing model: of the base model, of a trial's start, or of an effect.
 struct Quantity {
   std::string name;
   std::string unit;    ///< "" for a pure number
