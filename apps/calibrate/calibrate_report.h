@@ -19,6 +19,12 @@ struct CalibrateFindings {
   const bio::CalibratedModel* calibrated;  ///< null: no estimate
 };
 
+/// RMS error of a prediction [deg].
+double rmse(const bio::TrialSet& set, const Eigen::MatrixXd& predicted);
+
+/// RMS error of replays of the calibrated model [deg].
+double rmseAfter(const CalibrateFindings& findings, bool heldOut);
+
 /// Sets the values of summary.json: estimates, rmse_train_deg, rmse_held_out_deg, …
 void tellCalibrate(const CalibrateFindings& findings, Summary& summary);
 

@@ -1,0 +1,123 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "calibrate/calibrate_report.h"
+#include "output/angle_unit.h"
+#include "output/text.h"
+
+namespace app {
+
+double rmse(const bio::TrialSet& set, const Eigen::MatrixXd& predicted) {
+  return std::sqrt(set.meanSquare(predicted)) * radian;
+}
+
+double rmseAfter(const CalibrateFindings& f, bool heldOut) {
+  return f.calibrated->rms(heldOut) * radian;
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json orNullIfNaN(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json estimateJson(const CalibrateFindings& f, const bio::CalibratedParameter& one) {
+  Json json = {{"value", one.value},
+               {"sd", orNullIfNaN(one.sd)},
+               {"unit", one.asked.unit},
+               {"identifiable", one.identifiable},
+               {"model", one.model},
+               {"interval", Json::array({orNullIfNaN(one.lower), orNullIfNaN(one.upper)})},
+               {"sd_data_alone", orNullIfNaN(one.determinacy.bound)},
+               {"at_bound", one.atBound}};
+  if (one.asked.prior) {
+    json["prior"] = {{"mean", one.asked.prior->mean}, {"sd", one.asked.prior->sd}};
+  }
+  if (!one.why.empty()) json["why"] = one.why;
+  if (one.profile && one.identifiable) {
+    json["profile_interval"] =
+        Json::array({orNullIfNaN(one.profile->lower), orNullIfNaN(one.profile->upper)});
+  }
+  if (f.options.bootstrap > 0) {
+    json["bootstrap_sd"] = orNullIfNaN(one.bootstrapSd);
+    json["bootstrap_interval"] =
+        Json::array({orNullIfNaN(one.bootstrapLower), orNullIfNaN(one.bootstrapUpper)});
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string estimateWords(const bio::CalibratedParameter& one) {
+  const std::string was = fmt::format("was {}", numberText(one.model, 6));
+  if (std::isnan(one.sd)) {
+    return fmt::format("{} = {} ({}; no interval: {})", one.asked.name,
+                       withUnit(one.value, one.asked.unit, 6), was, one.why);
+  }
+  return fmt::format("{} = {} ± {} ({})", one.asked.name, numberText(one.value, 6),
+                     withUnit(one.sd, one.asked.unit, 3), was);
+}
+
+std::vector<info::discover::FittedNumber> fittedNumbers(const bio::Calibration& calibration) {
+  std::vector<info::discover::FittedNumber> numbers;
+  for (std::size_t i = 0; i < calibration.parameters.size(); ++i) {
+    const bio::CalibratedParameter& one = calibration.parameters[i];
+    const auto& prior = one.asked.prior;
+    numbers.push_back({i, one.asked.name, one.asked.unit, one.model, one.value, one.sd,
+                       prior ? prior->sd : std::nan(""),
+                       prior ? (one.value - prior->mean) / prior->sd : std::nan("")});
+  }
+  return numbers;
+}
+
+void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
+  const bio::Calibration& c = f.calibration;
+  if (!c.failure.empty()) {
+    summary.set("status", "no solution");
+    summary.set("why", c.failure);
+    return;
+  }
+  summary.set("status", c.converged ? "ok" : "not converged");
+  if (!c.converged) summary.set("why", info::describe(c.why));
+  summary.set("rmse_train_deg", rmseAfter(f, false));
+  summary.set("rmse_train_before_deg", rmse(f.training, c.before));
+  summary.set("rmse_held_out_deg", orNullIfNaN(rmseAfter(f, true)));
+  summary.set("rmse_held_out_before_deg",
+              f.heldOut ? orNullIfNaN(rmse(*f.heldOut, c.heldOutBefore)) : Json(nullptr));
+  Json estimates = Json::object();
+  for (const bio::CalibratedParameter& one : c.parameters) {
+    estimates[one.asked.name] = estimateJson(f, one);
+    if (!one.why.empty() && !one.ofTrial) summary.warn(one.why);
+  }
+  summary.set("estimates", estimates);
+  summary.set("noise_deg", c.noise.sd * radian);
+  summary.set("noise_is", f.options.noise ? "given" : "from the residuals");
+  summary.set("sample_scatter_deg", c.noiseFloor * radian);
+  summary.set("residual_above_noise", c.leavesMoreThanNoise());
+  const double noises =
+      f.options.noise ? rmse(f.training, c.after) / (radian * *f.options.noise) : 0;
+  if (noises > 3) {
+    summary.warn(
+        fmt::format("the residual is {:.3g} times the noise given by --noise-deg: these parameters "
+                    "alone do not explain the trials",
+                    noises));
+  }
+  summary.set("samples_per_independent_value", c.noise.correlationTime);
+  summary.set("reduced_chi_square", orNullIfNaN(c.reducedChiSquare));
+  summary.set("iterations", c.iterations);
+  if (c.starts.size() > 1) {
+    summary.set("starts", c.starts.size());
+    summary.set("starts_that_agree", c.agreeingStarts);
+  }
+  if (f.options.bootstrap > 0) summary.set("bootstrap_converged", c.bootstrapConverged);
+  Json correlation = Json::array();
+  for (const auto& row : c.correlation.rowwise()) {
+    correlation.push_back(std::vector<double>(row.begin(), row.end()));
+  }
+  summary.set("correlation", correlation);
+}
+
+}  // namespace app
