@@ -1,13 +1,15 @@
-// Cost of one muscle of each class: state derivatives, force balance, parameters, activation.
+// Cost of one muscle of each class: rate and balance with state derivatives, derivatives in its
+// numbers, second derivatives, rest, and a step of its activation.
 #include <benchmark/benchmark.h>
 
+#include <cmath>
 #include <random>
 #include <vector>
 
-#include "bio/muscle/degroote_fregly2016.h"
-#include "bio/muscle/hill_muscle.h"
-#include "bio/muscle/millard2012.h"
-#include "bio/muscle/thelen2003.h"
+#include "bio/muscle/fibre_hessian.h"
+#include "bio/muscle/fibre_rest.h"
+#include "bio/muscle/muscle_sensitivity.h"
+#include "bio/muscle/muscle_variant.h"
 
 namespace {
 
@@ -70,6 +72,57 @@ void rigid(benchmark::State& state) {
   });
 }
 
+template <class Shape>
+void inNumbers(benchmark::State& state) {
+  overStates<Shape>(state, [](const auto& m, const State& s) {
+    return fibreRateInNumbers(m, s.activation, s.fibreLength, s.pathLength);
+  });
+}
+
+template <class Shape>
+void hessian(benchmark::State& state) {
+  overStates<Shape>(state, [](const auto& m, const State& s) {
+    return fibreRateHessian(m, s.activation, s.fibreLength, s.pathLength);
+  });
+}
+
+template <class Shape>
+void rest(benchmark::State& state) {
+  overStates<Shape>(state, [](const auto& m, const State& s) {
+    return restingFibre(m, s.activation, s.pathLength);
+  });
+}
+
+template <class Shape>
+void make(benchmark::State& state) {
+  for (auto _ : state) benchmark::DoNotOptimize(muscleOf<Shape>());
+}
+
+// An excitation that rises and falls like an EMG envelope, 10 ms a step.
+template <class Law, bool withDerivatives>
+void activation(benchmark::State& state) {
+  const Law law;
+  std::vector<double> u(1024);
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    const auto t = 0.01 * static_cast<double>(i);
+    u[i] = 0.3 + 0.2 * std::sin(7 * t) + 0.08 * std::sin(31 * t);
+  }
+  double a = u[0];
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const double next = u[(i + 1) & 1023];
+    if constexpr (withDerivatives) {
+      const auto step = law.stepWithDerivatives(u[i & 1023], next, a, 0.01);
+      a = step.value;
+      benchmark::DoNotOptimize(step);
+    } else {
+      a = law.step(u[i & 1023], next, a, 0.01);
+    }
+    ++i;
+    benchmark::DoNotOptimize(a);
+  }
+}
+
 using Thelen = Thelen2003<double>;
 using Millard = Millard2012<double>;
 using DeGroote = DeGrooteFregly2016<double>;
@@ -81,6 +134,20 @@ BENCHMARK(balance<Millard>);
 BENCHMARK(balance<DeGroote>);
 BENCHMARK(rigid<Millard>);
 BENCHMARK(rigid<DeGroote>);
+BENCHMARK(inNumbers<Thelen>);
+BENCHMARK(inNumbers<Millard>);
+BENCHMARK(inNumbers<DeGroote>);
+BENCHMARK(hessian<Thelen>);
+BENCHMARK(hessian<Millard>);
+BENCHMARK(hessian<DeGroote>);
+BENCHMARK(rest<Thelen>);
+BENCHMARK(rest<Millard>);
+BENCHMARK(rest<DeGroote>);
+BENCHMARK(make<Millard>);
+BENCHMARK(activation<FirstOrderActivation<double>, false>);
+BENCHMARK(activation<FirstOrderActivation<double>, true>);
+BENCHMARK(activation<SmoothActivation<double>, false>);
+BENCHMARK(activation<SmoothActivation<double>, true>);
 
 }  // namespace
 

@@ -38,6 +38,13 @@ void DeGrooteFregly2016Parameters<double>::requireRules() const {
   requireRanges(*this);
 }
 
+template <>
+AnyActivation DeGrooteFregly2016Parameters<double>::activation() const {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (ignoreActivationDynamics) return DirectActivation{-infinity, infinity};
+  return SmoothActivation<double>{activationTime, deactivationTime, activationSmoothing};
+}
+
 // f_T depends on ε/e_T alone.
 template <>
 auto DeGrooteFregly2016<double>::tendonForceInOwn(double strain) const -> Own {

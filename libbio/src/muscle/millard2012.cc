@@ -87,6 +87,12 @@ void Millard2012Parameters<double>::requireRules() const {
               ">= 0.01 without damping (fiber_damping < 0.001)");
 }
 
+template <>
+AnyActivation Millard2012Parameters<double>::activation() const {
+  if (ignoreActivationDynamics) return DirectActivation{minimumActivation, 1};
+  return FirstOrderActivation<double>{activationTime, deactivationTime, minimumActivation};
+}
+
 MillardSensitivities::MillardSensitivities(const Millard2012Parameters<double>& p)
     : active(activeCurveOf(varied<5>(p, activePlace))),
       passive(passiveCurveOf(varied<5>(p, passivePlace))),

@@ -25,6 +25,11 @@ void Thelen2003Parameters<double>::requireRules() const {
               "false: Thelen2003Muscle always has activation dynamics");
 }
 
+template <>
+AnyActivation Thelen2003Parameters<double>::activation() const {
+  return FirstOrderActivation<double>{activationTime, deactivationTime, minimumActivation};
+}
+
 // f_T depends on ε/e_T alone.
 template <>
 auto Thelen2003<double>::tendonForceInOwn(double strain) const -> Own {

@@ -57,7 +57,7 @@ std::array<T, 6> powersOf(const std::array<T, 6>& p) {
 
 /// Σ c_k u^k with its first two derivatives in u.
 template <class T, class U>
-CurvePoint<Joint<T, U>> quintic(const std::array<T, 6>& c, const U& u) {
+[[gnu::always_inline]] inline CurvePoint<Joint<T, U>> quintic(const std::array<T, 6>& c, const U& u) {
   using R = Joint<T, U>;
   const U u2 = u * u;
   // low and high halves side by side: half as long a chain of operations as Horner's

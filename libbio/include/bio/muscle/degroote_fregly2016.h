@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bio/muscle/activation_variant.h"
 #include "bio/muscle/hill_shape.h"
 
 namespace bio::muscles {
@@ -51,6 +52,8 @@ struct DeGrooteFregly2016Parameters : HillParameters<T>, MuscleSwitches {
   }
   /// @throws std::invalid_argument naming number, value and rule
   void requireRules() const;
+  /// The activation dynamics that numbers and switches mean.
+  AnyActivation activation() const;
 };
 
 namespace degroote {
@@ -102,6 +105,7 @@ class DeGrooteFregly2016 {
 
   const Parameters& parameters() const { return p_; }
   const T& damping() const { return p_.fibreDamping; }
+  bool dampingActs() const { return true; }
   double minimumActivation() const { return 1e-3; }
   double maximumActivation() const { return std::numeric_limits<double>::infinity(); }
   double shortestFibre(const T& thickness) const { return plainValue(thickness); }
@@ -205,6 +209,8 @@ class DeGrooteFregly2016 {
 
 template <>
 void DeGrooteFregly2016Parameters<double>::requireRules() const;
+template <>
+AnyActivation DeGrooteFregly2016Parameters<double>::activation() const;
 template <>
 auto DeGrooteFregly2016<double>::tendonForceInOwn(double strain) const -> Own;
 template <>

@@ -31,11 +31,12 @@ struct FibreSpeed {
 ///
 ///     Parameters   the class's numbers in OpenSim's terms: T members, `count` of them in the order
 ///                  of `properties`, the five of HillParameters first, at(parameters, i), own rules
-///                  in requireRules(); numOwn = count − 5 are the shape's own
+///                  in requireRules(), activation() the law of its activation; numOwn = count − 5 are the shape's own
 ///     tendonForce(ε), activeForce(l), passiveForce(l)      CurvePoint, in units of F0
 ///     forceVelocity(v, a), speed(P, A, a)                  inverse of each other
 ///     …InOwn(…)    the same functions' derivatives in the class's own numbers (double only)
-///     damping()    B of the fibre force's term B·v
+///     damping()    B of the fibre force's term B·v, and whether it follows its own number;
+///     dampingPlace, minimumActivationPlace   places of the two numbers, `count` if there is none
 ///     minimumActivation(), maximumActivation()   activation acts as clamped to them
 ///     shortestFibre(w)   length below which OpenSim holds the fibre [m], w = ℓ0 sin α0
 ///
@@ -56,6 +57,7 @@ concept HillShape = requires(const S& s, const typename S::Number& x, double d) 
   { s.forceVelocityInOwn(d, d) } -> std::same_as<std::array<double, S::numOwn>>;
   { s.speedInOwn(d, d, d) } -> std::same_as<std::array<double, S::numOwn>>;
   { s.damping() } -> std::convertible_to<typename S::Number>;
+  { s.dampingActs() } -> std::same_as<bool>;
   { S::dampingPlace } -> std::convertible_to<std::size_t>;
   { S::minimumActivationPlace } -> std::convertible_to<std::size_t>;
   { s.minimumActivation() } -> std::convertible_to<typename S::Number>;

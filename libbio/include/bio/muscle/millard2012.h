@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "bio/muscle/activation_variant.h"
 #include "bio/muscle/hill_shape.h"
 #include "bio/muscle/millard_curves.h"
 #include "bio/muscle/millard_speed.h"
@@ -112,6 +113,8 @@ struct Millard2012Parameters : HillParameters<T>, MuscleSwitches {
   /// Ranges and the rules between numbers.
   /// @throws std::invalid_argument naming number, value and rule
   void requireRules() const;
+  /// The activation dynamics that numbers and switches mean.
+  AnyActivation activation() const;
 };
 
 // The curves with the numbers that act in them, after OpenSim's silent changes.
@@ -192,6 +195,7 @@ class Millard2012 {
 
   const Parameters& parameters() const { return p_; }
   const T& damping() const { return damping_; }
+  bool dampingActs() const { return p_.isDamped(); }
   const T& minimumActivation() const { return p_.minimumActivation; }
   double maximumActivation() const { return 1; }
   /// The larger of x₀ ℓ0 and w/sin α_max.
@@ -246,6 +250,8 @@ class Millard2012 {
 
 template <>
 void Millard2012Parameters<double>::requireRules() const;
+template <>
+AnyActivation Millard2012Parameters<double>::activation() const;
 template <>
 auto Millard2012<double>::tendonForceInOwn(double strain) const -> Own;
 template <>

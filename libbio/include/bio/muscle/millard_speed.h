@@ -86,10 +86,11 @@ class MillardSpeed {
 
   static SectionPoint solveIn(const Section& s, const PlaneQuintic& plane, double P, double A,
                               double B) {
-    std::size_t cell = 0;
-    for (std::size_t k = 1; k < cells; ++k) {
-      cell += A * s.nodeY[k] + B * s.nodeX[k] <= P ? 1 : 0;
-    }
+    const auto isPassed = [&](std::size_t node) -> std::size_t {
+      return A * s.nodeY[node] + B * s.nodeX[node] <= P ? 1 : 0;
+    };
+    std::size_t cell = 4 * (isPassed(4) + isPassed(8) + isPassed(12));
+    cell += isPassed(cell + 1) + isPassed(cell + 2) + isPassed(cell + 3);
     const double low = A * s.nodeY[cell] + B * s.nodeX[cell];
     const double d = A * s.nodeY[cell + 1] + B * s.nodeX[cell + 1] - low;
     // u(G) in units of a cell: slopes d/G′ at its ends, none above 3 so that the piece rises

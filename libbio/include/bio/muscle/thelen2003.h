@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "bio/muscle/activation_variant.h"
 #include "bio/muscle/hill_shape.h"
 
 namespace bio::muscles {
@@ -70,6 +71,8 @@ struct Thelen2003Parameters : HillParameters<T>, MuscleSwitches {
   /// Ranges and the rules between numbers.
   /// @throws std::invalid_argument naming number, value and rule
   void requireRules() const;
+  /// The activation dynamics that numbers and switches mean.
+  AnyActivation activation() const;
 };
 
 /// The shape of Thelen's muscle (Thelen 2003, J. Biomech. Eng. 125; OpenSim 4.6, Thelen2003Muscle):
@@ -110,6 +113,7 @@ class Thelen2003 {
 
   const Parameters& parameters() const { return p_; }
   double damping() const { return 0; }
+  bool dampingActs() const { return false; }
   const T& minimumActivation() const { return p_.minimumActivation; }
   double maximumActivation() const { return 1; }
   /// w/sin α_max
@@ -265,6 +269,8 @@ class Thelen2003 {
 
 template <>
 void Thelen2003Parameters<double>::requireRules() const;
+template <>
+AnyActivation Thelen2003Parameters<double>::activation() const;
 template <>
 auto Thelen2003<double>::tendonForceInOwn(double strain) const -> Own;
 template <>
