@@ -83,14 +83,12 @@ Piece<T> rise(const FirstOrderActivation<T>& law, const T& u, const T& slope, co
     const T left = span - passed;
     const RisingSeries<double> plain(plainValue(e), plainValue(z), plainValue(mu));
     // which comes first: the end of the step, u = a, or a = 1
-    const double crossing =
-        plainValue(mu) < 0
-            ? firstZero([&](double x) { return plain.at(x).curvature; }, reach)
-            : reach;
-    const double limit = firstZero([&](double x) { return 2 - plain.at(x).slope; },
-                                   crossing);
-    const double end = firstZero(
-        [&](double x) { return plainValue(left) - plain.at(x).value; }, limit);
+    const double crossing = plainValue(mu) < 0
+                                ? firstZero([&](double x) { return plain.at(x).curvature; }, reach)
+                                : reach;
+    const double limit = firstZero([&](double x) { return 2 - plain.at(x).slope; }, crossing);
+    const double end =
+        firstZero([&](double x) { return plainValue(left) - plain.at(x).value; }, limit);
     const CurvePoint<T> at = series.at(end);
     if (end < limit) {
       const CurvePoint<T> last = series.at(T(end - (at.value - left) / at.slope));
@@ -134,7 +132,8 @@ Piece<T> fall(const FirstOrderActivation<T>& law, const T& u0, const T& slope, c
   const double span = plainValue(rest) / plainValue(law.deactivationTime);
   const double change = plainValue(slope) * plainValue(rest);
   const double x = std::max(std::abs(0.5 + 1.5 * plainValue(u0)),
-                            std::abs(0.5 + 1.5 * (plainValue(u0) + change))) * span;
+                            std::abs(0.5 + 1.5 * (plainValue(u0) + change))) *
+                   span;
   const double count = std::ceil(std::max({x, std::abs(0.75 * change * span), 1.0}));
   const T stretch = rest / count;
   T u = u0, a = a0, passed(0.0);

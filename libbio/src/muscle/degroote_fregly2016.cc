@@ -6,8 +6,10 @@ namespace bio::muscles {
 namespace {
 
 // Places among the class's own numbers.
-constexpr std::size_t dampingOwn = 0, activeWidth = 1, passiveStrain = 2, tendonStrain = 3;
-static_assert(DeGrooteFregly2016<double>::dampingPlace == common::count + dampingOwn);
+struct DeGrooteOwn {
+  static constexpr std::size_t damping = 0, activeWidth = 1, passiveStrain = 2, tendonStrain = 3;
+};
+static_assert(DeGrooteFregly2016<double>::dampingPlace == common::count + DeGrooteOwn::damping);
 
 }  // namespace
 
@@ -49,7 +51,7 @@ AnyActivation DeGrooteFregly2016Parameters<double>::activation() const {
 template <>
 auto DeGrooteFregly2016<double>::tendonForceInOwn(double strain) const -> Own {
   Own d{};
-  d[tendonStrain] = -strain / p_.tendonUnitStrain * tendonForce(strain).slope;
+  d[DeGrooteOwn::tendonStrain] = -strain / p_.tendonUnitStrain * tendonForce(strain).slope;
   return d;
 }
 
@@ -57,7 +59,7 @@ auto DeGrooteFregly2016<double>::tendonForceInOwn(double strain) const -> Own {
 template <>
 auto DeGrooteFregly2016<double>::activeForceInOwn(double l) const -> Own {
   Own d{};
-  d[activeWidth] = -(l - 1) * perWidth_ * activeForce(l).slope;
+  d[DeGrooteOwn::activeWidth] = -(l - 1) * perWidth_ * activeForce(l).slope;
   return d;
 }
 
@@ -68,9 +70,9 @@ auto DeGrooteFregly2016<double>::passiveForceInOwn(double l) const -> Own {
   const CurvePoint<double> f = passiveForce(l);
   const double perStrain = 1 / p_.passiveUnitStrain;
   const double offset = 0.8 * passiveRate_ * offset_ * perStrain;  // ∂o/∂e_M
-  d[passiveStrain] =
+  d[DeGrooteOwn::passiveStrain] =
       -(l - 1) * perStrain * f.slope + offset * passiveScale_ * (f.value - 1.0);
-  if (p_.ignorePassiveFibreForce) d[passiveStrain] = 0;
+  if (p_.ignorePassiveFibreForce) d[DeGrooteOwn::passiveStrain] = 0;
   return d;
 }
 
@@ -83,7 +85,7 @@ template <>
 auto DeGrooteFregly2016<double>::speedInOwn(double P, double A, double a) const -> Own {
   Own d{};
   const FibreSpeed<double> s = speed(P, A, a);
-  d[dampingOwn] = -s.v * s.byForce;
+  d[DeGrooteOwn::damping] = -s.v * s.byForce;
   return d;
 }
 

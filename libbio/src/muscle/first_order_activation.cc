@@ -37,8 +37,8 @@ struct Growth {
 inline Growth growthOf(double x) {
   if (std::abs(x) < 0.02) {
     const double x2 = x * x;
-    const double mean = (1 + x * (1.0 / 2)) + x2 * ((1.0 / 6 + x * (1.0 / 24)) +
-                                                    x2 * (1.0 / 120 + x * (1.0 / 720)));
+    const double mean = (1 + x * (1.0 / 2)) +
+                        x2 * ((1.0 / 6 + x * (1.0 / 24)) + x2 * (1.0 / 120 + x * (1.0 / 720)));
     return {mean, 1 + x * mean};
   }
   const double power = std::exp(x);
@@ -71,8 +71,8 @@ inline RisePoint risePoint(const Rise& r, double sigma) {
 inline double stepTo(const Rise& r, const RisePoint& p) {
   const double per = 1 / p.z;
   const double rho = (r.span - p.s) * per;
-  const double bend = 0.75 * p.e * per;                   // z′/(2z)
-  const double third = 0.25 * (r.mu * p.z - p.e) * per;   // z″/(6z)
+  const double bend = 0.75 * p.e * per;                  // z′/(2z)
+  const double third = 0.25 * (r.mu * p.z - p.e) * per;  // z″/(6z)
   return rho * (1 + rho * (-bend + rho * (2 * bend * bend - third)));
 }
 
@@ -164,8 +164,8 @@ struct Fall {
     const double first = 0.5 + 1.5 * u0, change = 1.5 * slope * h;
     x = (first + 0.5 * change) * span;
     bend = 0.5 * change * span;
-    isShort = std::max(std::abs(first), std::abs(first + change)) * span <= 1 &&
-              std::abs(bend) <= 1;
+    isShort =
+        std::max(std::abs(first), std::abs(first + change)) * span <= 1 && std::abs(bend) <= 1;
   }
 };
 
@@ -193,7 +193,8 @@ ActivationStep<3> fallenWithDerivatives(const Fall& f, const Fallen& end, double
   const double by_x = per * (-f.w0 * end.decay - f.span * end.first);
   const double by_bend = -per * f.span * end.second;
   // x = (½ + ¾(u₀ + u₁)) span, bend = ¾(u₁ − u₀) span
-  const double by_span = per * end.sum + by_x * (0.5 + 0.75 * (u0 + u1)) + by_bend * 0.75 * (u1 - u0);
+  const double by_span =
+      per * end.sum + by_x * (0.5 + 0.75 * (u0 + u1)) + by_bend * 0.75 * (u1 - u0);
   ActivationStep<3> step;
   step.value = 2.0 / 3 * (z1 - 0.5);
   step.d = {0.75 * f.span * (by_x - by_bend),
@@ -211,8 +212,7 @@ ActivationStep<3> throughDuals(const FirstOrderActivation<double>& law, double u
   using D = info::Dual<7>;
   const FirstOrderActivation<D> dual{D(law.activationTime, 7, 4), D(law.deactivationTime, 7, 5),
                                      D(law.minimum, 7, 6)};
-  const D end =
-      detail::stepInPieces(dual, D(u0, 7, 0), D(u1, 7, 1), D(a0, 7, 2), D(h, 7, 3));
+  const D end = detail::stepInPieces(dual, D(u0, 7, 0), D(u1, 7, 1), D(a0, 7, 2), D(h, 7, 3));
   ActivationStep<3> step;
   step.value = end.value();
   for (std::size_t i = 0; i < 7; ++i) step.d[i] = end.derivatives()[static_cast<int>(i)];
@@ -238,8 +238,8 @@ double FirstOrderActivation<double>::step(const double& u0, const double& u1, co
 }
 
 template <>
-ActivationStep<3> FirstOrderActivation<double>::stepWithDerivatives(double u0, double u1,
-                                                                    double a0, double h) const {
+ActivationStep<3> FirstOrderActivation<double>::stepWithDerivatives(double u0, double u1, double a0,
+                                                                    double h) const {
   if (h > 0 && a0 >= minimum && a0 <= 1) {
     const double slope = (u1 - u0) / h;
     if (u0 > a0 || (u0 == a0 && slope > 0)) {

@@ -5,22 +5,25 @@
 namespace bio::muscles {
 namespace {
 
-using P = Millard2012Parameters<double>;
+using MillardNumbers = Millard2012Parameters<double>;
 // Places among all numbers where those of the curves begin.
 constexpr std::size_t activePlace = 6, passivePlace = 11, tendonPlace = 16, velocityPlace = 20;
-static_assert(P::properties[activePlace].name ==
+static_assert(MillardNumbers::properties[activePlace].name ==
               "ActiveForceLengthCurve/min_norm_active_fiber_length");
-static_assert(P::properties[passivePlace].name == "FiberForceLengthCurve/strain_at_zero_force");
-static_assert(P::properties[tendonPlace].name ==
+static_assert(MillardNumbers::properties[passivePlace].name ==
+              "FiberForceLengthCurve/strain_at_zero_force");
+static_assert(MillardNumbers::properties[tendonPlace].name ==
               "TendonForceLengthCurve/strain_at_one_norm_force");
-static_assert(P::properties[velocityPlace].name == "ForceVelocityCurve/concentric_slope_at_vmax");
-static_assert(P::properties[Millard2012<double>::dampingPlace].name == "fiber_damping");
-static_assert(P::properties[Millard2012<double>::minimumActivationPlace].name ==
+static_assert(MillardNumbers::properties[velocityPlace].name ==
+              "ForceVelocityCurve/concentric_slope_at_vmax");
+static_assert(MillardNumbers::properties[Millard2012<double>::dampingPlace].name ==
+              "fiber_damping");
+static_assert(MillardNumbers::properties[Millard2012<double>::minimumActivationPlace].name ==
               "minimum_activation");
 
 // The parameters as dual numbers, those from `place` on varied.
 template <int C>
-Millard2012Parameters<info::Dual<C>> varied(const P& p, std::size_t place) {
+Millard2012Parameters<info::Dual<C>> varied(const MillardNumbers& p, std::size_t place) {
   using D = info::Dual<C>;
   auto q = inNumbers<Millard2012Parameters, D>(p);
   for (int i = 0; i < C; ++i) {
@@ -38,7 +41,7 @@ Millard2012<double>::Own placed(const std::array<double, C>& d, std::size_t plac
   return own;
 }
 
-void requireVelocityRules(const P& p) {
+void requireVelocityRules(const MillardNumbers& p) {
   const double margin = p.maxEccentricForce - 1;
   requireRule(p.concentricSlope < p.concentricNearSlope,
               "ForceVelocityCurve/concentric_slope_at_vmax", p.concentricSlope,

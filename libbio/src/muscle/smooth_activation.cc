@@ -6,29 +6,31 @@
 namespace bio::muscles {
 namespace {
 
-using Three = std::array<double, 3>;
+using PerStage = std::array<double, 3>;
 
 // Gauss's method with three stages.
 constexpr double root15 = 3.8729833462074170;
-constexpr std::array<Three, 3> A{{{5.0 / 36, 2.0 / 9 - root15 / 15, 5.0 / 36 - root15 / 30},
-                                  {5.0 / 36 + root15 / 24, 2.0 / 9, 5.0 / 36 - root15 / 24},
-                                  {5.0 / 36 + root15 / 30, 2.0 / 9 + root15 / 15, 5.0 / 36}}};
-constexpr Three weight{5.0 / 18, 8.0 / 18, 5.0 / 18};
-constexpr Three place{0.5 - root15 / 10, 0.5, 0.5 + root15 / 10};
+constexpr std::array<PerStage, 3> coupling{
+    {{5.0 / 36, 2.0 / 9 - root15 / 15, 5.0 / 36 - root15 / 30},
+     {5.0 / 36 + root15 / 24, 2.0 / 9, 5.0 / 36 - root15 / 24},
+     {5.0 / 36 + root15 / 30, 2.0 / 9 + root15 / 15, 5.0 / 36}}};
+constexpr PerStage stageWeight{5.0 / 18, 8.0 / 18, 5.0 / 18};
+constexpr PerStage stagePlace{0.5 - root15 / 10, 0.5, 0.5 + root15 / 10};
 
 inline double tanhOf(double x) {
   if (std::abs(x) < 0.1) {
     const double y = x * x;
-    return x * (1 + y * (-1.0 / 3 + y * (2.0 / 15 + y * (-17.0 / 315 + y * (62.0 / 2835 +
-                                                          y * (-1382.0 / 155925))))));
+    return x *
+           (1 + y * (-1.0 / 3 + y * (2.0 / 15 + y * (-17.0 / 315 +
+                                                     y * (62.0 / 2835 + y * (-1382.0 / 155925))))));
   }
   return 1 - 2 / (std::exp(2 * x) + 1);
 }
 
 // The law with what all its evaluations share.
-struct Law {
+struct SmoothLaw {
   double perRise, perFall, smoothing;  // 1/τ_a, 1/τ_d, b
-  explicit Law(const SmoothActivation<double>& law)
+  explicit SmoothLaw(const SmoothActivation<double>& law)
       : perRise(1 / law.activationTime),
         perFall(1 / law.deactivationTime),
         smoothing(law.smoothing) {}
@@ -40,7 +42,7 @@ struct Rate {
   double toRise, toFall;  // 1/(τ_a z), z/τ_d
   double value, byActivation, byExcitation;
 };
-inline Rate rateAt(const Law& law, double u, double a) {
+inline Rate rateAt(const SmoothLaw& law, double u, double a) {
   Rate r;
   r.e = u - a;
   r.t = 0.5 * tanhOf(law.smoothing * r.e);
@@ -58,13 +60,13 @@ inline Rate rateAt(const Law& law, double u, double a) {
 }
 
 // The solution of M x = b by cofactors.
-inline Three solve(const std::array<Three, 3>& M, const Three& b) {
-  const Three p{M[1][1] * M[2][2] - M[1][2] * M[2][1], M[1][2] * M[2][0] - M[1][0] * M[2][2],
-                M[1][0] * M[2][1] - M[1][1] * M[2][0]};
-  const Three q{M[0][2] * M[2][1] - M[0][1] * M[2][2], M[0][0] * M[2][2] - M[0][2] * M[2][0],
-                M[0][1] * M[2][0] - M[0][0] * M[2][1]};
-  const Three r{M[0][1] * M[1][2] - M[0][2] * M[1][1], M[0][2] * M[1][0] - M[0][0] * M[1][2],
-                M[0][0] * M[1][1] - M[0][1] * M[1][0]};
+inline PerStage solveStages(const std::array<PerStage, 3>& M, const PerStage& b) {
+  const PerStage p{M[1][1] * M[2][2] - M[1][2] * M[2][1], M[1][2] * M[2][0] - M[1][0] * M[2][2],
+                   M[1][0] * M[2][1] - M[1][1] * M[2][0]};
+  const PerStage q{M[0][2] * M[2][1] - M[0][1] * M[2][2], M[0][0] * M[2][2] - M[0][2] * M[2][0],
+                   M[0][1] * M[2][0] - M[0][0] * M[2][1]};
+  const PerStage r{M[0][1] * M[1][2] - M[0][2] * M[1][1], M[0][2] * M[1][0] - M[0][0] * M[1][2],
+                   M[0][0] * M[1][1] - M[0][1] * M[1][0]};
   const double per = 1 / (M[0][0] * p[0] + M[0][1] * p[1] + M[0][2] * p[2]);
   return {per * (p[0] * b[0] + q[0] * b[1] + r[0] * b[2]),
           per * (p[1] * b[0] + q[1] * b[1] + r[1] * b[2]),
@@ -72,45 +74,46 @@ inline Three solve(const std::array<Three, 3>& M, const Three& b) {
 }
 
 // The stages' matrix I − d diag(J) A.
-inline std::array<Three, 3> matrixOf(const Three& J, double d) {
-  const Three j{d * J[0], d * J[1], d * J[2]};
-  return {{{1 - j[0] * A[0][0], -j[0] * A[0][1], -j[0] * A[0][2]},
-           {-j[1] * A[1][0], 1 - j[1] * A[1][1], -j[1] * A[1][2]},
-           {-j[2] * A[2][0], -j[2] * A[2][1], 1 - j[2] * A[2][2]}}};
+inline std::array<PerStage, 3> matrixOf(const PerStage& J, double d) {
+  const PerStage j{d * J[0], d * J[1], d * J[2]};
+  return {{{1 - j[0] * coupling[0][0], -j[0] * coupling[0][1], -j[0] * coupling[0][2]},
+           {-j[1] * coupling[1][0], 1 - j[1] * coupling[1][1], -j[1] * coupling[1][2]},
+           {-j[2] * coupling[2][0], -j[2] * coupling[2][1], 1 - j[2] * coupling[2][2]}}};
 }
-inline std::array<Three, 3> transposed(const std::array<Three, 3>& M) {
+inline std::array<PerStage, 3> stagesTransposed(const std::array<PerStage, 3>& M) {
   return {{{M[0][0], M[1][0], M[2][0]}, {M[0][1], M[1][1], M[2][1]}, {M[0][2], M[1][2], M[2][2]}}};
 }
 
 struct Stages {
-  Three k;  // ȧ at the stages
+  PerStage k;  // ȧ at the stages
   std::array<Rate, 3> rate;
 };
 
-void evaluate(const Law& law, const Three& u, double a, double d, Stages& s) {
+void evaluateStages(const SmoothLaw& law, const PerStage& u, double a, double d, Stages& s) {
   for (std::size_t i = 0; i < 3; ++i) {
-    const double way = A[i][0] * s.k[0] + A[i][1] * s.k[1] + A[i][2] * s.k[2];
+    const double way = coupling[i][0] * s.k[0] + coupling[i][1] * s.k[1] + coupling[i][2] * s.k[2];
     s.rate[i] = rateAt(law, u[i], a + d * way);
   }
 }
 
 // The rates at the stages of a stretch d from a, where u at the stages is given; s.rate belongs to
 // the last iterate but one, off by less than 1e-6.
-Stages stagesOf(const Law& law, const Three& u, double a, double d) {
+Stages stagesOf(const SmoothLaw& law, const PerStage& u, double a, double d) {
   // to begin with the law is taken for linear about u in the middle and a
   const Rate first = rateAt(law, u[1], a);
   const double outward = first.byExcitation * (u[2] - u[1]);
   const double J0 = first.byActivation;
   Stages s;
-  s.k = solve(matrixOf({J0, J0, J0}, d), {first.value - outward, first.value, first.value + outward});
+  s.k = solveStages(matrixOf({J0, J0, J0}, d),
+                    {first.value - outward, first.value, first.value + outward});
   for (int iteration = 0; iteration < 20; ++iteration) {
-    evaluate(law, u, a, d, s);
-    Three excess, J;
+    evaluateStages(law, u, a, d, s);
+    PerStage excess, J;
     for (std::size_t i = 0; i < 3; ++i) {
       excess[i] = s.rate[i].value - s.k[i];
       J[i] = s.rate[i].byActivation;
     }
-    const Three change = solve(matrixOf(J, d), excess);
+    const PerStage change = solveStages(matrixOf(J, d), excess);
     double largest = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       s.k[i] += change[i];
@@ -133,15 +136,15 @@ double stretchesOf(const SmoothActivation<double>& law, double h) {
 template <>
 double SmoothActivation<double>::step(double u0, double u1, double a0, double h) const {
   if (!(h > 0)) return a0;
-  const Law law(*this);
+  const SmoothLaw law(*this);
   const double count = stretchesOf(*this, h);
   const double d = h / count, du = (u1 - u0) / count;
   double a = a0;
   for (double m = 0; m < count; ++m) {
     const double u = u0 + m * du;
-    const Stages s =
-        stagesOf(law, {u + place[0] * du, u + place[1] * du, u + place[2] * du}, a, d);
-    a += d * (weight[0] * s.k[0] + weight[1] * s.k[1] + weight[2] * s.k[2]);
+    const Stages s = stagesOf(
+        law, {u + stagePlace[0] * du, u + stagePlace[1] * du, u + stagePlace[2] * du}, a, d);
+    a += d * (stageWeight[0] * s.k[0] + stageWeight[1] * s.k[1] + stageWeight[2] * s.k[2]);
   }
   return a;
 }
@@ -155,29 +158,30 @@ ActivationStep<3> SmoothActivation<double>::stepWithDerivatives(double u0, doubl
   r.value = a0;
   r.d[2] = 1;
   if (!(h > 0)) return r;
-  const Law law(*this);
+  const SmoothLaw law(*this);
   const double count = stretchesOf(*this, h);
   const double d = h / count, du = (u1 - u0) / count;
   for (double m = 0; m < count; ++m) {
     const double u = u0 + m * du;
-    const Three at{u + place[0] * du, u + place[1] * du, u + place[2] * du};
+    const PerStage at{u + stagePlace[0] * du, u + stagePlace[1] * du, u + stagePlace[2] * du};
     Stages s = stagesOf(law, at, r.value, d);
-    evaluate(law, at, r.value, d, s);
-    Three J;
+    evaluateStages(law, at, r.value, d, s);
+    PerStage J;
     for (std::size_t i = 0; i < 3; ++i) J[i] = s.rate[i].byActivation;
-    const Three l = 
-        solve(transposed(matrixOf(J, d)), {d * weight[0], d * weight[1], d * weight[2]});
+    const PerStage l = solveStages(stagesTransposed(matrixOf(J, d)),
+                                   {d * stageWeight[0], d * stageWeight[1], d * stageWeight[2]});
     double carried = 1, mean = 0;
     std::array<double, 7> own{};
     for (std::size_t i = 0; i < 3; ++i) {
       const Rate& f = s.rate[i];
       carried += l[i] * J[i];
-      mean += weight[i] * s.k[i];
+      mean += stageWeight[i] * s.k[i];
       const double spread = 0.5 * f.e * (1 - 4 * f.t * f.t) * (f.toRise - f.toFall);  // of g by b
-      const double share = (m + place[i]) / count;
+      const double share = (m + stagePlace[i]) / count;
       own[0] += l[i] * f.byExcitation * (1 - share);
       own[1] += l[i] * f.byExcitation * share;
-      const double way = A[i][0] * s.k[0] + A[i][1] * s.k[1] + A[i][2] * s.k[2];
+      const double way =
+          coupling[i][0] * s.k[0] + coupling[i][1] * s.k[1] + coupling[i][2] * s.k[2];
       own[3] += l[i] * J[i] * way / count;
       own[4] -= l[i] * f.e * (0.5 + f.t) * f.toRise * law.perRise;
       own[5] -= l[i] * f.e * (0.5 - f.t) * f.toFall * law.perFall;

@@ -4,13 +4,14 @@ namespace bio::muscles {
 namespace {
 
 // Places among the class's own numbers.
-constexpr std::size_t tendonStrain = 0, passiveStrain = 1, activeWidth = 2, passiveShape = 3,
-                      velocityShape = 4;
-static_assert(Thelen2003Parameters<double>::properties[common::count + velocityShape].name ==
-              "Af");
-static_assert(
-    Thelen2003Parameters<double>::properties[Thelen2003<double>::minimumActivationPlace].name ==
-    "minimum_activation");
+struct ThelenOwn {
+  static constexpr std::size_t tendonStrain = 0, passiveStrain = 1, activeWidth = 2,
+                               passiveShape = 3, velocityShape = 4;
+};
+static_assert(Thelen2003Parameters<double>::properties[common::count + ThelenOwn::velocityShape]
+                  .name == "Af");
+static_assert(Thelen2003Parameters<double>::properties[Thelen2003<double>::minimumActivationPlace]
+                  .name == "minimum_activation");
 
 }  // namespace
 
@@ -34,7 +35,7 @@ AnyActivation Thelen2003Parameters<double>::activation() const {
 template <>
 auto Thelen2003<double>::tendonForceInOwn(double strain) const -> Own {
   Own d{};
-  d[tendonStrain] = -strain / p_.tendonStrainAtMaxForce * tendonForce(strain).slope;
+  d[ThelenOwn::tendonStrain] = -strain / p_.tendonStrainAtMaxForce * tendonForce(strain).slope;
   return d;
 }
 
@@ -42,7 +43,7 @@ template <>
 auto Thelen2003<double>::activeForceInOwn(double l) const -> Own {
   Own d{};
   const double x = (l - 1) * perWidth_;
-  d[activeWidth] = x * x * activeForce(l).value;
+  d[ThelenOwn::activeWidth] = x * x * activeForce(l).value;
   return d;
 }
 
@@ -53,8 +54,8 @@ auto Thelen2003<double>::passiveForceInOwn(double l) const -> Own {
   if (l <= 1) return d;
   const CurvePoint<double> f = passiveForce(l);
   const double x = (l - 1) / p_.passiveStrainAtMaxForce;
-  d[passiveStrain] = -x * f.slope;
-  d[passiveShape] =
+  d[ThelenOwn::passiveStrain] = -x * f.slope;
+  d[ThelenOwn::passiveShape] =
       x * (f.value + passiveScale_) - f.value * std::exp(p_.passiveShape) * passiveScale_;
   return d;
 }
@@ -66,7 +67,8 @@ auto Thelen2003<double>::forceVelocityInOwn(double v, double a) const -> Own {
                      D(numbers_.threshold, 3, 2)};
   const D f = forceOf<D>(n, branchesOf(n), D(v), D(a)).value;
   Own d{};
-  for (int i = 0; i < 3; ++i) d[velocityShape + static_cast<std::size_t>(i)] = f.derivatives()[i];
+  for (int i = 0; i < 3; ++i)
+    d[ThelenOwn::velocityShape + static_cast<std::size_t>(i)] = f.derivatives()[i];
   return d;
 }
 
@@ -77,7 +79,8 @@ auto Thelen2003<double>::speedInOwn(double P, double A, double a) const -> Own {
                      D(numbers_.threshold, 3, 2)};
   const D v = speedOf<D>(n, branchesOf(n), D(P), D(A), D(a)).v;
   Own d{};
-  for (int i = 0; i < 3; ++i) d[velocityShape + static_cast<std::size_t>(i)] = v.derivatives()[i];
+  for (int i = 0; i < 3; ++i)
+    d[ThelenOwn::velocityShape + static_cast<std::size_t>(i)] = v.derivatives()[i];
   return d;
 }
 

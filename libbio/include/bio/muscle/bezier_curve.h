@@ -20,8 +20,8 @@ struct BezierCorner {
 /// lengths given: otherwise the section would turn back (a C-shaped corner).
 void requireOpenCorner(double chord, double leftLeg, double rightLeg, double x0, double x1);
 
-/// The corner of Millard's curves (OpenSim 4.6, SegmentedQuinticBezierToolkit; Millard et al. 2013):
-/// the tangents of the ends meet in P_c, and
+/// The corner of Millard's curves (OpenSim 4.6, SegmentedQuinticBezierToolkit; Millard et al.
+/// 2013): the tangents of the ends meet in P_c, and
 ///     P₁ = P₂ = P₀ + c·(P_c − P₀),   P₃ = P₄ = P₅ + c·(P_c − P₅)
 /// with c in (0, 1): how close the curve comes to P_c. Since P₁ = P₂ lies on the tangent, the
 /// second derivative is 0 at both ends.
@@ -57,13 +57,14 @@ std::array<T, 6> powersOf(const std::array<T, 6>& p) {
 
 /// Σ c_k u^k with its first two derivatives in u.
 template <class T, class U>
-[[gnu::always_inline]] inline CurvePoint<Joint<T, U>> quintic(const std::array<T, 6>& c, const U& u) {
+[[gnu::always_inline]] inline CurvePoint<Joint<T, U>> quintic(const std::array<T, 6>& c,
+                                                              const U& u) {
   using R = Joint<T, U>;
   const U u2 = u * u;
   // low and high halves side by side: half as long a chain of operations as Horner's
   const R value = (c[0] + c[1] * u) + u2 * ((c[2] + c[3] * u) + u2 * (c[4] + c[5] * u));
-  const R slope = (c[1] + 2.0 * c[2] * u) +
-                  u2 * ((3.0 * c[3] + 4.0 * c[4] * u) + u2 * (5.0 * c[5]));
+  const R slope =
+      (c[1] + 2.0 * c[2] * u) + u2 * ((3.0 * c[3] + 4.0 * c[4] * u) + u2 * (5.0 * c[5]));
   const R curvature = (2.0 * c[2] + 6.0 * c[3] * u) + u2 * (12.0 * c[4] + 20.0 * c[5] * u);
   return {value, slope, curvature};
 }
@@ -85,13 +86,14 @@ struct SectionPoint {
   CurvePoint<double> y;  ///< y, y′ and y″ over x
 };
 /// The point at u + δ from the polynomials at u, with δ so small that δ² is nothing (3e-8).
-inline SectionPoint sectionBeside(const CurvePoint<PlanePoint>& p, double perSpeed, double u,
-                                  double delta) {
+inline SectionPoint sectionBeside(const CurvePoint<PlanePoint>& p, const PlanePoint& third,
+                                  double perSpeed, double u, double delta) {
   const PlanePoint value = p.value + delta * p.slope;
   const PlanePoint slope = p.slope + delta * p.curvature;
+  const PlanePoint curvature = p.curvature + delta * third;
   const double per = perSpeed - delta * p.curvature[0] * perSpeed * perSpeed;
   const double dy = slope[1] * per;
-  return {u + delta, value[0], {value[1], dy, (p.curvature[1] - dy * p.curvature[0]) * per * per}};
+  return {u + delta, value[0], {value[1], dy, (curvature[1] - dy * curvature[0]) * per * per}};
 }
 /// The same to third order, for δ up to about 2e-5.
 inline SectionPoint sectionBeside(const CurvePoint<PlanePoint>& p, const PlanePoint& third,
@@ -133,8 +135,8 @@ struct BezierShape {
 ///
 /// In the section that holds x, x(u) = x is solved for u in 0 … 1 and
 ///     y = y(u),   y′ = y_u/x_u,   y″ = (y_uu x_u − y_u x_uu)/x_u³
-/// C² where neighbours share value and slope. u starts from a table of 32 cells per section (quintic
-/// Hermite pieces of u(x), mostly off by less than 1e-8), after which one or two steps of
+/// C² where neighbours share value and slope. u starts from a table of 32 cells per section
+/// (quintic Hermite pieces of u(x), mostly off by less than 1e-8), after which one or two steps of
 /// Newton's method leave no more than rounding. No allocation, no state.
 ///
 /// T: the number type of the control points.
@@ -177,7 +179,7 @@ class BezierCurve {
         perSpeed = 1 / p.slope[0];
         delta = (at - p.value[0]) * perSpeed;
       }
-      return sectionBeside(p, perSpeed, u, delta).y;
+      return sectionBeside(p, quinticThird(s, u), perSpeed, u, delta).y;
     }
     R u = R(placeIn(i, at));
     for (int k = 0; k < derivativeOrder<R>; ++k) {
@@ -253,9 +255,12 @@ class BezierCurve {
         // the quintic with these values, slopes and curvatures at its ends
         const double d = b.value - a.value - a.slope - 0.5 * a.curvature;
         const double e = b.slope - a.slope - a.curvature, g = b.curvature - a.curvature;
-        table_[i][static_cast<std::size_t>(cell)] = {
-            a.value,           a.slope, 0.5 * a.curvature, 10 * d - 4 * e + 0.5 * g,
-            -15 * d + 7 * e - g, 6 * d - 3 * e + 0.5 * g};
+        table_[i][static_cast<std::size_t>(cell)] = {a.value,
+                                                     a.slope,
+                                                     0.5 * a.curvature,
+                                                     10 * d - 4 * e + 0.5 * g,
+                                                     -15 * d + 7 * e - g,
+                                                     6 * d - 3 * e + 0.5 * g};
         a = b;
       }
     }

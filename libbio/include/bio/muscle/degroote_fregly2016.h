@@ -11,12 +11,12 @@ namespace bio::muscles {
 /// Numbers of DeGrooteFregly2016Muscle, at OpenSim's defaults.
 template <class T = double>
 struct DeGrooteFregly2016Parameters : HillParameters<T>, MuscleSwitches {
-  T fibreDamping = T(0.0);       ///< β [F0/(V ℓ0)] ≥ 0
-  T activeWidth = T(1.0);        ///< ω [1] ≥ 1, active_force_width_scale
-  T passiveUnitStrain = T(0.6);  ///< e_M [1] > 0, passive_fiber_strain_at_one_norm_force
-  T tendonUnitStrain = T(0.049); ///< e_T [1] > 0, tendon_strain_at_one_norm_force
-  T activationTime = T(0.015);   ///< τ_a [s] > 0
-  T deactivationTime = T(0.060); ///< τ_d [s] > 0
+  T fibreDamping = T(0.0);         ///< β [F0/(V ℓ0)] ≥ 0
+  T activeWidth = T(1.0);          ///< ω [1] ≥ 1, active_force_width_scale
+  T passiveUnitStrain = T(0.6);    ///< e_M [1] > 0, passive_fiber_strain_at_one_norm_force
+  T tendonUnitStrain = T(0.049);   ///< e_T [1] > 0, tendon_strain_at_one_norm_force
+  T activationTime = T(0.015);     ///< τ_a [s] > 0
+  T deactivationTime = T(0.060);   ///< τ_d [s] > 0
   T activationSmoothing = T(0.1);  ///< b [1] > 0, activation_dynamics_smoothing
   bool ignorePassiveFibreForce = false;
 
@@ -61,7 +61,8 @@ namespace degroote {
 // The constants of f_v.
 inline constexpr double d1 = -0.3211346127989808, d2 = -8.149, d3 = -0.374, d4 = 0.8825327733249912;
 
-/// y = asinh(d₂v + d₃) where A·f_v(v) + B·v = P, A ≥ 0, B > 0: by Newton's method in a bracket.
+/// y = asinh(d₂v + d₃) where A·f_v(v) + B·v = P, A ≥ 0, B ≥ 0, not both 0: by Newton's
+/// method in a bracket.
 double dampedPlace(double P, double A, double B);
 
 }  // namespace degroote
@@ -75,9 +76,9 @@ double dampedPlace(double P, double A, double B);
 ///     f_PE(l) = (exp(4(l−1)/e_M) − o)/(e⁴ − o),  o = exp(−3.2/e_M)   0 at l = 0.2
 ///     f_v(v) = d₁ asinh(d₂v + d₃) + d₄
 ///
-/// All curves are smooth for l > 0.1495 (f_l has an essential singularity there; the authors' domain
-/// is 0.2 … 1.8). v(P, A) = (sinh((P/A − d₄)/d₁) − d₃)/d₂ grows beyond all bounds where A is small:
-/// a step should solve the force balance instead (HillMuscle::fibreBalance).
+/// All curves are smooth for l > 0.1495 (f_l has an essential singularity there; the authors'
+/// domain is 0.2 … 1.8). v(P, A) = (sinh((P/A − d₄)/d₁) − d₃)/d₂ grows beyond all bounds where A is
+/// small: a step should solve the force balance instead (HillMuscle::fibreBalance).
 ///
 /// Departures from OpenSim: damping (β > 0, not the default) acts on the fibre whatever
 /// tendon_compliance_dynamics_mode says, there only with "implicit" or a rigid tendon; activation
@@ -166,7 +167,7 @@ class DeGrooteFregly2016 {
   FibreSpeed<Joint<T, U>> speed(const U& P, const U& A, const U&) const {
     using R = Joint<T, U>;
     using std::exp;
-    if (plainValue(p_.fibreDamping) == 0) {
+    if (std::is_same_v<T, double> && plainValue(p_.fibreDamping) == 0) {
       const R perA = 1.0 / A;
       const R f = P * perA;
       const R power = exp(R((f - d4) * (1 / d1)));

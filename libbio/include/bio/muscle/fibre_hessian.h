@@ -17,8 +17,8 @@ template <class Shape>
 FibreRateHessian fibreRateHessian(const HillMuscle<Shape>& muscle, double activation,
                                   double fibreLength, double pathLength) {
   using D = info::Dual<3>;
-  const FibreRate<D> r = muscle.fibreRate(D(activation, 3, 0), D(fibreLength, 3, 1),
-                                          D(pathLength, 3, 2));
+  const FibreRate<D> r =
+      muscle.fibreRate(D(activation, 3, 0), D(fibreLength, 3, 1), D(pathLength, 3, 2));
   FibreRateHessian h;
   h.first = {r.fibreVelocity.value(),   r.tendonForce.value(),    r.dV_dActivation.value(),
              r.dV_dFibreLength.value(), r.dV_dPathLength.value(), r.dF_dFibreLength.value(),

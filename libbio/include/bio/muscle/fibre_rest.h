@@ -36,8 +36,8 @@ void requireFiniteRest(double activation, double pathLength);
 /// looked for in 64 cells between the shortest fibre and the one that leaves the tendon slack, then
 /// by a bracketing method. With a rigid tendon the fibre's length follows from the path.
 ///
-/// Departure from OpenSim: where several rests exist it takes the one that Newton's method finds from
-/// ℓ_T = 1.01 ℓs; and it does not let the fibre rest below shortestFibre().
+/// Departure from OpenSim: where several rests exist it takes the one that Newton's method finds
+/// from ℓ_T = 1.01 ℓs; and it does not let the fibre rest below shortestFibre().
 /// @throws std::invalid_argument for an activation or length that is not finite
 template <class Shape>
 FibreRest restingFibre(const HillMuscle<Shape>& muscle, double activation, double pathLength) {
@@ -93,9 +93,9 @@ FibreRest restingFibre(const HillMuscle<Shape>& muscle, double activation, doubl
 /// How a resting fibre follows what it depends on.
 template <class Shape>
 struct RestDerivatives {
-  double dl_dActivation;            ///< [m]
-  double dl_dPathLength;            ///< [1]
-  PerNumber<Shape> dl_dNumber{};    ///< ∂ℓ/∂θ [m per unit]
+  double dl_dActivation;          ///< [m]
+  double dl_dPathLength;          ///< [1]
+  PerNumber<Shape> dl_dNumber{};  ///< ∂ℓ/∂θ [m per unit]
 };
 
 /// By the implicit function theorem on fibreBalance at ℓ̇ = 0; where fibre and tendon carry no force

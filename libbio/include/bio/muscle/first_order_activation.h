@@ -19,7 +19,7 @@ namespace bio::muscles {
 /// - Falling, w = 1/z obeys ẇ = 1/τ_d − w (½ + 3/2 u)/τ_d, linear with a rate linear in time:
 ///       w(h) = w₀ exp(−∫₀ʰ k) + (1/τ_d) ∫₀ʰ exp(−∫ₛʰ k) ds,
 ///   the integral by Gauss's rule with five points over stretches so short that it errs by less
-///   than 1e-12.
+///   than 1e-10.
 /// A change between rising and falling within a step is placed where u = a.
 ///
 /// Departure from OpenSim: activation stops at a_min (and at 1). OpenSim stops its effect there,
@@ -53,8 +53,8 @@ template <>
 double FirstOrderActivation<double>::step(const double& u0, const double& u1, const double& a0,
                                           const double& h) const;
 template <>
-ActivationStep<3> FirstOrderActivation<double>::stepWithDerivatives(double u0, double u1,
-                                                                    double a0, double h) const;
+ActivationStep<3> FirstOrderActivation<double>::stepWithDerivatives(double u0, double u1, double a0,
+                                                                    double h) const;
 static_assert(ActivationLaw<FirstOrderActivation<double>>);
 
 }  // namespace bio::muscles

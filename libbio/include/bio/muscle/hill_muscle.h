@@ -10,21 +10,21 @@ namespace bio::muscles {
 /// Fibre velocity and tendon force at a state, with their first derivatives.
 template <class T>
 struct FibreRate {
-  T fibreVelocity;      ///< ℓ̇ = V(a, ℓ, L) [m/s], lengthening > 0
-  T tendonForce;        ///< F_T [N]
-  T dV_dActivation;     ///< [m/s]
-  T dV_dFibreLength;    ///< [1/s]
-  T dV_dPathLength;     ///< [1/s]
-  T dF_dFibreLength;    ///< [N/m]
-  T dF_dPathLength;     ///< [N/m]
+  T fibreVelocity;    ///< ℓ̇ = V(a, ℓ, L) [m/s], lengthening > 0
+  T tendonForce;      ///< F_T [N]
+  T dV_dActivation;   ///< [m/s]
+  T dV_dFibreLength;  ///< [1/s]
+  T dV_dPathLength;   ///< [1/s]
+  T dF_dFibreLength;  ///< [N/m]
+  T dF_dPathLength;   ///< [N/m]
 };
 
 /// How far a state with a given fibre velocity is from balance, with first derivatives: an equation
 /// for the fibre that stays good where V(a, ℓ, L) grows beyond bounds.
 template <class T>
 struct FibreBalance {
-  T residual;           ///< [a f_l f_v + f_PE + B v] cos α − f_T, in units of F0
-  T tendonForce;        ///< F_T [N]
+  T residual;     ///< [a f_l f_v + f_PE + B v] cos α − f_T, in units of F0
+  T tendonForce;  ///< F_T [N]
   T dR_dActivation;
   T dR_dFibreLength;    ///< [1/m]
   T dR_dPathLength;     ///< [1/m]
@@ -55,9 +55,9 @@ struct RigidRate {
 /// a acts as clamped to the class's least and largest activation. Domain: ℓ > w (and > 0); outside
 /// every result is NaN, so that an iteration which steps there sees a failed step.
 ///
-/// Departure from OpenSim: it holds a fibre at shortestFibre() (ℓ̇ = 0 unless it lengthens, the force
-/// on the skeleton unchanged); here the equation goes on, since a fibre that gets there is outside
-/// what the law describes, which isHeldByOpenSim() tells.
+/// Departure from OpenSim: it holds a fibre at shortestFibre() (ℓ̇ = 0 unless it lengthens, the
+/// force on the skeleton unchanged); here the equation goes on, since a fibre that gets there is
+/// outside what the law describes, which isHeldByOpenSim() tells.
 template <class S>
 class HillMuscle {
  public:

@@ -31,7 +31,8 @@ struct FibreSpeed {
 ///
 ///     Parameters   the class's numbers in OpenSim's terms: T members, `count` of them in the order
 ///                  of `properties`, the five of HillParameters first, at(parameters, i), own rules
-///                  in requireRules(), activation() the law of its activation; numOwn = count − 5 are the shape's own
+///                  in requireRules(), activation() the law of its activation; numOwn = count − 5
+///                  are the shape's own
 ///     tendonForce(ε), activeForce(l), passiveForce(l)      CurvePoint, in units of F0
 ///     forceVelocity(v, a), speed(P, A, a)                  inverse of each other
 ///     …InOwn(…)    the same functions' derivatives in the class's own numbers (double only)

@@ -74,7 +74,9 @@ struct Millard2012Parameters : HillParameters<T>, MuscleSwitches {
       {"TendonForceLengthCurve/norm_force_at_toe_end", "", {.low = 0, .high = 1}},
       {"TendonForceLengthCurve/curviness", "", fraction},
       {"ForceVelocityCurve/concentric_slope_at_vmax", "", notNegative},
-      {"ForceVelocityCurve/concentric_slope_near_vmax", "", {.low = 0, .high = 1, .withHigh = true}},
+      {"ForceVelocityCurve/concentric_slope_near_vmax",
+       "",
+       {.low = 0, .high = 1, .withHigh = true}},
       {"ForceVelocityCurve/isometric_slope", "", {.low = 1}},
       {"ForceVelocityCurve/eccentric_slope_at_vmax", "", notNegative},
       {"ForceVelocityCurve/eccentric_slope_near_vmax", "", positive},
@@ -90,16 +92,16 @@ struct Millard2012Parameters : HillParameters<T>, MuscleSwitches {
   static constexpr auto& at(P& p, std::size_t i) {
     using M = Millard2012Parameters;
     constexpr std::array<T M::*, count> members{
-        &M::maxIsometricForce,   &M::optimalFibreLength,   &M::tendonSlackLength,
+        &M::maxIsometricForce,   &M::optimalFibreLength,     &M::tendonSlackLength,
         &M::pennation,           &M::maxContractionVelocity, &M::fibreDamping,
-        &M::minActiveLength,     &M::transitionLength,     &M::maxActiveLength,
-        &M::shallowSlope,        &M::minActiveForce,       &M::passiveZeroStrain,
-        &M::passiveUnitStrain,   &M::passiveLowStiffness,  &M::passiveUnitStiffness,
-        &M::passiveCurviness,    &M::tendonUnitStrain,     &M::tendonUnitStiffness,
-        &M::tendonToeForce,      &M::tendonCurviness,      &M::concentricSlope,
-        &M::concentricNearSlope, &M::isometricSlope,       &M::eccentricSlope,
-        &M::eccentricNearSlope,  &M::maxEccentricForce,    &M::concentricCurviness,
-        &M::eccentricCurviness,  &M::activationTime,       &M::deactivationTime,
+        &M::minActiveLength,     &M::transitionLength,       &M::maxActiveLength,
+        &M::shallowSlope,        &M::minActiveForce,         &M::passiveZeroStrain,
+        &M::passiveUnitStrain,   &M::passiveLowStiffness,    &M::passiveUnitStiffness,
+        &M::passiveCurviness,    &M::tendonUnitStrain,       &M::tendonUnitStiffness,
+        &M::tendonToeForce,      &M::tendonCurviness,        &M::concentricSlope,
+        &M::concentricNearSlope, &M::isometricSlope,         &M::eccentricSlope,
+        &M::eccentricNearSlope,  &M::maxEccentricForce,      &M::concentricCurviness,
+        &M::eccentricCurviness,  &M::activationTime,         &M::deactivationTime,
         &M::minimumActivation,   &M::maximumPennation};
     return p.*members[i];
   }
@@ -122,9 +124,7 @@ struct Millard2012Parameters : HillParameters<T>, MuscleSwitches {
 template <class T>
 BezierShape<T, 5> activeCurveOf(const Millard2012Parameters<T>& p) {
   const bool held = p.isDamped() || p.ignoreTendonCompliance;
-  const T minimum = held                                  ? T(0.0)
-                    : plainValue(p.minActiveForce) > 0.1 ? p.minActiveForce
-                                                          : T(0.1);
+  const T minimum = held ? T(0.0) : plainValue(p.minActiveForce) > 0.1 ? p.minActiveForce : T(0.1);
   return millardActiveForce<T>(p.minActiveLength, p.transitionLength, p.maxActiveLength,
                                p.shallowSlope, minimum);
 }

@@ -24,12 +24,13 @@ BezierShape<T, 5> millardActiveForce(const T& x0, const T& x1, const T& x3, cons
   const T x1s = 0.5 * (x1 + x_s), y1s = 0.5 * (y1 + 1.0);
   const T x23 = 0.5 * (1.0 + delta + x3);
   const T s23 = -1.0 / ((x3 - delta) - (1.0 + delta));
-  return {{{bezierCorner(x0, minimum, zero, x01, y01, s01, c),
-           bezierCorner(x01, y01, s01, x1s, y1s, s, c), bezierCorner(x1s, y1s, s, one, one, zero, c),
-           bezierCorner(one, one, zero, x23, half, s23, c),
-           bezierCorner(x23, half, s23, x3, minimum, zero, c)}},
-          zero,
-          zero};
+  return {
+      {{bezierCorner(x0, minimum, zero, x01, y01, s01, c),
+        bezierCorner(x01, y01, s01, x1s, y1s, s, c), bezierCorner(x1s, y1s, s, one, one, zero, c),
+        bezierCorner(one, one, zero, x23, half, s23, c),
+        bezierCorner(x23, half, s23, x3, minimum, zero, c)}},
+      zero,
+      zero};
 }
 
 /// f_PE over ℓ/ℓ0: 0 up to 1 + e₀, 1 with slope k_iso at 1 + e₁ and on from there.
@@ -44,7 +45,7 @@ BezierShape<T, 2> millardPassiveForce(const T& e0, const T& e1, const T& k_low, 
   const T delta = plainValue(byStiffness) < plainValue(byWidth) ? byStiffness : byWidth;
   const T x_l = x_z + delta, y_l = 0.5 * k_low * delta;
   return {{{bezierCorner(x_z, zero, zero, x_l, y_l, k_low, c),
-           bezierCorner(x_l, y_l, k_low, x_i, one, k_iso, c)}},
+            bezierCorner(x_l, y_l, k_low, x_i, one, k_iso, c)}},
           zero,
           k_iso};
 }
@@ -63,7 +64,7 @@ BezierShape<T, 2> millardTendonForce(const T& e, const T& k_iso, const T& f_toe,
   const T s_m = y_m / (x_m - x_f);
   const T x_k = 0.5 * (x_f + x_m), y_k = s_m * (x_k - x_f);
   return {{{bezierCorner(one, zero, zero, x_k, y_k, s_m, c),
-           bezierCorner(x_k, y_k, s_m, x_t, f_toe, k_iso, c)}},
+            bezierCorner(x_k, y_k, s_m, x_t, f_toe, k_iso, c)}},
           zero,
           k_iso};
 }
@@ -77,11 +78,12 @@ BezierShape<T, 4> millardForceVelocity(const T& C, const T& C_n, const T& I, con
   const T zero = T(0.0), one = T(1.0), x_n = T(-0.9), x_m = T(0.9);
   const T c = 0.1 + 0.8 * concentric, d = 0.1 + 0.8 * eccentric;
   const T y_n = 0.05 * (C_n + C), y_m = f_max - 0.05 * (E_n + E);
-  return {{{bezierCorner(T(-1.0), zero, C, x_n, y_n, C_n, c),
-           bezierCorner(x_n, y_n, C_n, zero, one, I, c), bezierCorner(zero, one, I, x_m, y_m, E_n, d),
-           bezierCorner(x_m, y_m, E_n, one, f_max, E, d)}},
-          C,
-          E};
+  return {
+      {{bezierCorner(T(-1.0), zero, C, x_n, y_n, C_n, c),
+        bezierCorner(x_n, y_n, C_n, zero, one, I, c), bezierCorner(zero, one, I, x_m, y_m, E_n, d),
+        bezierCorner(x_m, y_m, E_n, one, f_max, E, d)}},
+      C,
+      E};
 }
 
 }  // namespace bio::muscles

@@ -14,9 +14,10 @@ namespace bio::muscles {
 ///
 /// In the parameter u of the curve's section the left-hand side is itself a quintic polynomial,
 ///     G(u) = A·y(u) + B·x(u),
-/// and rises, so that no inverse of the curve is needed: the section and a sixteenth of it are found
-/// among G's values at fixed u, a cubic Hermite piece of u(G) gives the start and a step of
-/// third order, after some of Halley's method where the start is farther away, the root. Outside −1 … 1 the curve is straight.
+/// and rises, so that no inverse of the curve is needed: the section and a sixteenth of it are
+/// found among G's values at fixed u, a cubic Hermite piece of u(G) gives the start and a step of
+/// third order, after some of Halley's method where the start is farther away, the root. Outside −1
+/// … 1 the curve is straight.
 template <class T>
 class MillardSpeed {
  public:
@@ -107,7 +108,8 @@ class MillardSpeed {
       const CurvePoint<PlanePoint> q = quintic(plane, u);
       const CurvePoint<double> g{sum(q.value), sum(q.slope), sum(q.curvature)};
       const double perSlope = 1 / g.slope;
-      // most starts are so near that the next step and the point there follow from what is known here
+      // most starts are so near that the next step and the point there follow from what is known
+      // here
       if (std::abs(g.value - P) * perSlope < nearEnough || k == 8) {
         const PlanePoint third = quinticThird(plane, u);
         const double step = nearStep(g.value - P, perSlope, g.curvature, sum(third));

@@ -8,20 +8,21 @@ namespace bio::muscles {
 
 /// The parts of a muscle's force and the power of each, for reports.
 struct MuscleForces {
-  double tendonForce;        ///< F_T [N]
-  double activeForce;        ///< F0 a f_l f_v, along the fibre [N]
-  double passiveForce;       ///< F0 f_PE, along the fibre [N]
-  double dampingForce;       ///< F0 B v, along the fibre [N]
-  double activeMultiplier;   ///< f_l [1]
-  double passiveMultiplier;  ///< f_PE [1]
-  double velocityMultiplier; ///< f_v [1]
-  double pennation;          ///< α [rad]
-  double tendonStrain;       ///< ε [1]
-  double muscleTendonPower;  ///< F_T·L̇ [W]: what the skeleton puts into the muscle, < 0 when it drives
-  double activePower;        ///< activeForce·ℓ̇ [W], < 0: the contractile element gives work
-  double passivePower;       ///< passiveForce·ℓ̇ [W], stored in the parallel spring
-  double dampingPower;       ///< dampingForce·ℓ̇ [W] ≥ 0, lost
-  double tendonPower;        ///< F_T·ℓ̇_T [W], stored in the tendon
+  double tendonForce;         ///< F_T [N]
+  double activeForce;         ///< F0 a f_l f_v, along the fibre [N]
+  double passiveForce;        ///< F0 f_PE, along the fibre [N]
+  double dampingForce;        ///< F0 B v, along the fibre [N]
+  double activeMultiplier;    ///< f_l [1]
+  double passiveMultiplier;   ///< f_PE [1]
+  double velocityMultiplier;  ///< f_v [1]
+  double pennation;           ///< α [rad]
+  double tendonStrain;        ///< ε [1]
+  double
+      muscleTendonPower;  ///< F_T·L̇ [W]: what the skeleton puts into the muscle, < 0 when it drives
+  double activePower;     ///< activeForce·ℓ̇ [W], < 0: the contractile element gives work
+  double passivePower;  ///< passiveForce·ℓ̇ [W], stored in the parallel spring
+  double dampingPower;  ///< dampingForce·ℓ̇ [W] ≥ 0, lost
+  double tendonPower;   ///< F_T·ℓ̇_T [W], stored in the tendon
 };
 
 /// Velocities in m/s. Where the muscle balances, muscleTendonPower is the sum of the four others.

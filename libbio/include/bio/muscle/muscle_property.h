@@ -51,11 +51,11 @@ inline constexpr std::array<MuscleProperty, count> properties{{
 /// The numbers of class Muscle, at OpenSim's defaults.
 template <class T>
 struct HillParameters {
-  T maxIsometricForce = T(1000.0);    ///< F0 [N] > 0
-  T optimalFibreLength = T(0.1);      ///< ℓ0 [m] > 0
-  T tendonSlackLength = T(0.2);       ///< ℓs [m] > 0
-  T pennation = T(0.0);               ///< α0 at ℓ0 [rad], 0 ≤ α0 < π/2
-  T maxContractionVelocity = T(10.0); ///< V [ℓ0/s] > 0
+  T maxIsometricForce = T(1000.0);     ///< F0 [N] > 0
+  T optimalFibreLength = T(0.1);       ///< ℓ0 [m] > 0
+  T tendonSlackLength = T(0.2);        ///< ℓs [m] > 0
+  T pennation = T(0.0);                ///< α0 at ℓ0 [rad], 0 ≤ α0 < π/2
+  T maxContractionVelocity = T(10.0);  ///< V [ℓ0/s] > 0
 };
 
 /// What of a muscle class is switched rather than measured.

@@ -41,8 +41,8 @@ void addOwn(PerNumber<Shape>& to, const std::array<double, Shape::numOwn>& own, 
 /// A = a f_l and f_PE with their derivatives in the numbers at fixed a and ℓ.
 template <class Shape>
 struct FibreInNumbers {
-  double act;         ///< a as it acts
-  bool isFloored;     ///< it acts as the class's least
+  double act;                ///< a as it acts
+  bool isFloored;            ///< it acts as the class's least
   double w_l0, w_pennation;  ///< ∂w/∂ℓ0, ∂w/∂α0
   CurvePoint<double> active, passive;
   PerNumber<Shape> dActive{}, dPassive{};
@@ -55,13 +55,13 @@ FibreInNumbers<Shape> fibreInNumbers(const HillMuscle<Shape>& muscle, double act
   constexpr std::size_t scale = Shape::Parameters::count;
   const double l = fibreLength * muscle.perFibre();
   const double l_l0 = -l * muscle.perFibre();
-  FibreInNumbers<Shape> f{.act = muscle.acting(activation),
-                          .isFloored = activation < shape.minimumActivation() &&
-                                       Shape::minimumActivationPlace < scale,
-                          .w_l0 = std::sin(p.pennation),
-                          .w_pennation = p.optimalFibreLength * std::cos(p.pennation),
-                          .active = shape.activeForce(l),
-                          .passive = shape.passiveForce(l)};
+  FibreInNumbers<Shape> f{
+      .act = muscle.acting(activation),
+      .isFloored = activation < shape.minimumActivation() && Shape::minimumActivationPlace < scale,
+      .w_l0 = std::sin(p.pennation),
+      .w_pennation = p.optimalFibreLength * std::cos(p.pennation),
+      .active = shape.activeForce(l),
+      .passive = shape.passiveForce(l)};
   f.dActive[common::optimalFibreLength] = f.act * f.active.slope * l_l0;
   f.dActive[scale + scales::activeForce] = f.act * f.active.value;
   f.dActive[scale + scales::activeWidth] = -f.act * f.active.slope * (l - 1);
@@ -128,8 +128,7 @@ InNumbers<Shape> fibreRateInNumbers(const HillMuscle<Shape>& muscle, double acti
   // κ_w = κ w/d²
   const double byThickness =
       speed * s.byForce * t.tendon.value * kappa * muscle.thickness() / (d * d);
-  r.equation[common::optimalFibreLength] +=
-      byThickness * f.w_l0 + p.maxContractionVelocity * s.v;
+  r.equation[common::optimalFibreLength] += byThickness * f.w_l0 + p.maxContractionVelocity * s.v;
   r.equation[common::pennation] += byThickness * f.w_pennation;
   r.equation[common::maxContractionVelocity] += p.optimalFibreLength * s.v;
   detail::addOwn<Shape>(r.equation, muscle.shape().speedInOwn(P, A, f.act), speed);
@@ -161,8 +160,7 @@ InNumbers<Shape> fibreBalanceInNumbers(const HillMuscle<Shape>& muscle, double a
   }
   const double byThickness = -force * muscle.thickness() / (fibreLength * d);
   const double bySpeed = -force_v * v * cosine;  // v goes as 1/(V ℓ0)
-  r.equation[common::optimalFibreLength] +=
-      byThickness * f.w_l0 + bySpeed / p.optimalFibreLength;
+  r.equation[common::optimalFibreLength] += byThickness * f.w_l0 + bySpeed / p.optimalFibreLength;
   r.equation[common::pennation] += byThickness * f.w_pennation;
   r.equation[common::maxContractionVelocity] += bySpeed / p.maxContractionVelocity;
   detail::addOwn<Shape>(r.equation, shape.forceVelocityInOwn(v, f.act), A * cosine);

@@ -27,11 +27,10 @@ struct ClassList {
   /// @throws std::invalid_argument naming the class if it is not in the list
   static Parameters defaultsOf(std::string_view className) {
     Parameters p;
-    const bool found =
-        ((className == Shapes<double>::className
-              ? (p.template emplace<typename Shapes<double>::Parameters>(), true)
-              : false) ||
-         ...);
+    const bool found = ((className == Shapes<double>::className
+                             ? (p.template emplace<typename Shapes<double>::Parameters>(), true)
+                             : false) ||
+                        ...);
     if (!found) refuseClass(className);
     return p;
   }

@@ -12,10 +12,11 @@ namespace bio::muscles {
 ///
 ///     ȧ = [ (½ + f)/(τ_a z) + (½ − f) z/τ_d ] (u − a),   f = ½ tanh(b(u − a))
 ///
-/// smooth; with b = 0.1, OpenSim's default, both time constants act always. A step is Gauss's method
-/// with three stages (implicit, order 6) over stretches of at most the shorter time constant, over
-/// 1 + b/5, its stages solved by Newton's method to rounding; the derivatives are those of that step.
-/// In steps of 10 ms it errs by less than 1e-8 where u − a stays below 0.1, by 1e-5 where u jumps.
+/// smooth; with b = 0.1, OpenSim's default, both time constants act always. A step is Gauss's
+/// method with three stages (implicit, order 6) over stretches of at most the shorter time
+/// constant, over 1 + b/5, its stages solved by Newton's method to rounding; the derivatives are
+/// those of that step. In steps of 10 ms it errs by less than 1e-8 where u − a stays below 0.1, by
+/// 1e-5 where u jumps.
 ///
 /// Departure from OpenSim: there the first muscle evaluated in a process lends its time constants
 /// and smoothing to all others of the process.

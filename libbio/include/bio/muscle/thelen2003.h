@@ -10,17 +10,17 @@ namespace bio::muscles {
 /// Numbers of Thelen2003Muscle, at OpenSim's defaults.
 template <class T = double>
 struct Thelen2003Parameters : HillParameters<T>, MuscleSwitches {
-  T tendonStrainAtMaxForce = T(0.04);   ///< e_T [1] > 0, FmaxTendonStrain
-  T passiveStrainAtMaxForce = T(0.6);   ///< e_M [1] > 0, FmaxMuscleStrain
-  T activeWidth = T(0.45);              ///< γ [1] > 0, KshapeActive
-  T passiveShape = T(5.0);              ///< k [1] > 0, KshapePassive
-  T velocityShape = T(0.25);            ///< A_f [1] > 0, Af
-  T maxLengtheningForce = T(1.4);       ///< F_len [1] > 1, Flen
-  T extrapolationThreshold = T(0.95);   ///< ϑ [1], 1/F_len < ϑ < 1, fv_linear_extrap_threshold
+  T tendonStrainAtMaxForce = T(0.04);  ///< e_T [1] > 0, FmaxTendonStrain
+  T passiveStrainAtMaxForce = T(0.6);  ///< e_M [1] > 0, FmaxMuscleStrain
+  T activeWidth = T(0.45);             ///< γ [1] > 0, KshapeActive
+  T passiveShape = T(5.0);             ///< k [1] > 0, KshapePassive
+  T velocityShape = T(0.25);           ///< A_f [1] > 0, Af
+  T maxLengtheningForce = T(1.4);      ///< F_len [1] > 1, Flen
+  T extrapolationThreshold = T(0.95);  ///< ϑ [1], 1/F_len < ϑ < 1, fv_linear_extrap_threshold
   T maximumPennation = T(1.4706289056333368);  ///< [rad]; says where OpenSim holds the fibre
-  T activationTime = T(0.015);          ///< τ_a [s] > 0
-  T deactivationTime = T(0.05);         ///< τ_d [s] > 0
-  T minimumActivation = T(0.01);        ///< [1], 0.01 ≤ a_min < 1
+  T activationTime = T(0.015);                 ///< τ_a [s] > 0
+  T deactivationTime = T(0.05);                ///< τ_d [s] > 0
+  T minimumActivation = T(0.01);               ///< [1], 0.01 ≤ a_min < 1
 
   Thelen2003Parameters() { minControl = 0.01; }
 
@@ -87,7 +87,8 @@ struct Thelen2003Parameters : HillParameters<T>, MuscleSwitches {
 ///         the tangents of the two at P = 0 below and at P = ϑ A F_len above
 ///
 /// No damping. f_T is C¹ but at ε = 0, f_PE is C⁰ at l = 1, the slope of v(P) halves at P = A:
-/// there the derivatives are those of the upper side (lower at P = A, where v counts as shortening).
+/// there the derivatives are those of the upper side (lower at P = A, where v counts as
+/// shortening).
 template <class T>
 class Thelen2003 {
  public:
@@ -187,11 +188,11 @@ class Thelen2003 {
   /// What the branches of v(P) have in common.
   template <class N>
   struct Branches {
-    N perShape;   // 1/A_f
-    N m;          // (2 + 2/A_f)/(F_len − 1)
-    N end;        // ϑ F_len: P/A where the last tangent begins
-    N endSpeed;   // v/c there
-    N endSlope;   // A/c ∂v/∂P there
+    N perShape;  // 1/A_f
+    N m;         // (2 + 2/A_f)/(F_len − 1)
+    N end;       // ϑ F_len: P/A where the last tangent begins
+    N endSpeed;  // v/c there
+    N endSlope;  // A/c ∂v/∂P there
   };
   template <class N>
   static Branches<N> branchesOf(const Numbers<N>& n) {
