@@ -7,6 +7,7 @@
 #include "emg/emg.h"
 #include "ensemble/ensemble.h"
 #include "moment_arms/moment_arms.h"
+#include "muscle_states/muscle_states.h"
 #include "render/render.h"
 #include "replay/replay.h"
 #include "robot/robot.h"
@@ -24,6 +25,7 @@ std::vector<std::unique_ptr<Command>> allCommands() {
   commands.push_back(emgCommand());
   commands.push_back(ensembleCommand(threadPool));
   commands.push_back(momentArmsCommand());
+  commands.push_back(muscleStatesCommand());
   commands.push_back(renderCommand(drawInOtherProgram));
   commands.push_back(replayCommand());
   commands.push_back(robotCommand());

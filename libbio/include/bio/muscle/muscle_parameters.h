@@ -57,4 +57,9 @@ EquilibriumDerivatives equilibriumDerivatives(const SchutteMuscle<double>& muscl
                                               double activation, double muscleTendonLength,
                                               const StaticEquilibrium& rest);
 
+/// The curves that OpenSim's Schutte class has where a file gives none: F_T/F0 over the tendon's
+/// strain, and f_l over ℓ/ℓ0.
+SplineFunction schutteTendonCurve();
+SplineFunction schutteActiveCurve();
+
 }  // namespace bio
