@@ -101,6 +101,14 @@ void applySuffix(muscles::AnyParameters& any, const std::string& suffix) {
   }
 }
 
+/// @throws std::invalid_argument if the cell is empty
+double fibreLengthIn(const Row& row) {
+  const auto found = row.find("fiber_length");
+  if (found == row.end())
+    throw std::invalid_argument("fiber_length is empty, must be given unless the tendon is rigid");
+  return found->second;
+}
+
 MuscleState schutteState(const Row& row, const std::map<std::string, double>& properties) {
   if (!properties.empty()) {
     throw std::invalid_argument(
@@ -116,7 +124,7 @@ MuscleState schutteState(const Row& row, const std::map<std::string, double>& pr
   const SchutteCurves curves(p);
   const SchutteMuscle<double> muscle(schutteQuantities(p), curves);
   const double a = row.at("activation"), L = row.at("path_length");
-  const FibreRate<double> rate = muscle.fibreVelocity(a, row.at("fiber_length"), L);
+  const FibreRate<double> rate = muscle.fibreVelocity(a, fibreLengthIn(row), L);
   const StaticEquilibrium rest = staticEquilibrium(muscle, a, L);
   return {{}, rate.fibreVelocity, rate.tendonForce, rest.fibreLength, rest.tendonForce};
 }
@@ -144,7 +152,7 @@ MuscleState stateOf(const std::string& className, const Row& row,
       [&](const auto& muscle) {
         MuscleState state;
         if (muscle.hasFibreState()) {
-          const auto rate = muscle.fibreRate(a, row.at("fiber_length"), L);
+          const auto rate = muscle.fibreRate(a, fibreLengthIn(row), L);
           state.fibreVelocity = rate.fibreVelocity;
           state.tendonForce = rate.tendonForce;
         } else {
@@ -188,7 +196,8 @@ class StateReader {
       if (name == "class") {
         className = cells[c];
       } else if (std::find(stateColumns.begin(), stateColumns.end(), name) != stateColumns.end()) {
-        row[name] = number(line, name, cells[c]);
+        const bool mayBeEmpty = name == "fiber_length" || name == "path_speed";
+        if (!mayBeEmpty || !cells[c].empty()) row[name] = number(line, name, cells[c]);
       } else if (!resultColumns.contains(name) && !cells[c].empty()) {
         properties[name] = number(line, name, cells[c]);
       }

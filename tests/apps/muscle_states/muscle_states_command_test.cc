@@ -100,6 +100,7 @@ TEST(MuscleStatesCommand, RefusesWhatItCannotUseInOneLine) {
           "max_isometric_force");
   refused(header + "\nThelen2003Muscle,800,nan,0.25,0.1,10,0.5,0.11,0.362\n",
           "optimal_fiber_length = 'nan'");
+  refused(header + "\nThelen2003Muscle,800,0.12,0.25,0.1,10,0.5,,0.362\n", "fiber_length");
   refused(header + ",Colour\nThelen2003Muscle" + row + ",3\n", "Colour");
   refused(header + ",class\nThelen2003Muscle" + row + ",x\n", "twice");
 }

@@ -18,8 +18,8 @@ struct MuscleState {
 /// Evaluates the muscle laws for the rows of a .csv file with a header. Columns: `class`,
 /// `max_isometric_force` [N], `optimal_fiber_length` [m], `tendon_slack_length` [m], `pennation`
 /// [rad], `max_contraction_velocity` [ℓ0/s] (not used by Schutte's class), `activation`,
-/// `fiber_length` [m] (not used with a rigid tendon), `path_length` [m], `path_speed` [m/s] (used
-/// with a rigid tendon only; may be left out: 0).
+/// `fiber_length` [m] (may be empty with a rigid tendon), `path_length` [m], `path_speed` [m/s]
+/// (used with a rigid tendon only; may be left out: 0).
 ///
 /// `class` is an OpenSim class: Schutte1993Muscle_Deprecated, Thelen2003Muscle,
 /// Millard2012EquilibriumMuscle, DeGrooteFregly2016Muscle, at the class's defaults. A suffix
