@@ -11,7 +11,7 @@ namespace {
 
 constexpr double negligible = 1e-14;  ///< [kg m²] or [kg]; a grain of sand at a millimetre has more
 /// Of the largest moment: what rounded numbers, or a derivative's step, make of a flat body.
-constexpr double rounded = 0.05;
+constexpr double roundingShare = 0.05;
 constexpr double singular = 1e-10;  ///< least eigenvalue of a mass matrix with ones on its diagonal
 
 Eigen::MatrixXd massMatrixOf(const Skeleton& skeleton) {
@@ -56,7 +56,7 @@ std::string whatMovesNoMass(const Skeleton& skeleton) {
 void requireMovedMass(const Model& model, const Skeleton& skeleton) {
   for (const Body& body : model.bodies) {
     const Eigen::Vector3d principal = principalMoments(body);
-    const bool isRounding = principal.minCoeff() >= -rounded * principal.cwiseAbs().maxCoeff();
+    const bool isRounding = principal.minCoeff() >= -roundingShare * principal.cwiseAbs().maxCoeff();
     if (skeleton.placeOf(body.name).segment == 0 || isRounding) continue;
     throw std::invalid_argument(
         fmt::format("body '{}': least principal moment of inertia = {:.4g} kg m², must be ≥ 0 for "
