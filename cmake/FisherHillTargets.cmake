@@ -60,6 +60,8 @@ function(fisherhill_test name)
     add_library(test_headers OBJECT ${PROJECT_BINARY_DIR}/test_headers.cc)
     target_link_libraries(test_headers
       PRIVATE fisherhill_flags fisherhill_test_flags Eigen3::Eigen GTest::gmock)
+    # as its users are
+    set_target_properties(test_headers PROPERTIES POSITION_INDEPENDENT_CODE OFF)
     target_precompile_headers(test_headers PRIVATE
       ${standard_headers} <filesystem> <gmock/gmock.h> <gtest/gtest.h>)
   endif()
@@ -70,6 +72,7 @@ function(fisherhill_test name)
   if(arg_BATCHES AND FISHERHILL_BATCHES)
     set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   endif()
+  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
   target_precompile_headers(${name} REUSE_FROM test_headers)
   target_link_libraries(${name}
     PRIVATE fisherhill_flags fisherhill_test_flags ${arg_LIBS} GTest::gmock GTest::gtest_main)

@@ -11,10 +11,10 @@
 namespace app {
 namespace {
 
-constexpr double width = 960, rowHeight = 30, topMargin = 34, bottomMargin = 52, right = 930;
+constexpr double width = 960, rowHeight = 30, topMargin = 34, bottomMargin = 52, rightEdge = 930;
 // Names stand left of the scale, which gives way to long ones as far as that. A character is 7.4
 // wide on average (DejaVu Sans of 15), names of many capitals more.
-constexpr double leastLeft = 300, mostLeft = 640, gap = 14, perCharacter = 8.2;
+constexpr double leastLeft = 300, mostLeft = 640, labelGap = 14, perCharacter = 8.2;
 
 // Of UTF-8 text.
 std::ptrdiff_t characters(const std::string& text) {
@@ -35,7 +35,7 @@ struct Scale {
   double left;  ///< where `low` is drawn
   double place(double value) const {
     const double inside = std::clamp(value, low, high);
-    return left + (inside - low) / (high - low) * (right - left);
+    return left + (inside - low) / (high - low) * (rightEdge - left);
   }
 };
 
@@ -59,7 +59,7 @@ Scale scaleOf(const std::vector<IntervalRow>& rows) {
   std::ptrdiff_t longest = 0;
   for (const IntervalRow& row : rows) longest = std::max(longest, characters(row.name));
   return {low - margin, high + margin,
-          std::clamp(gap + perCharacter * static_cast<double>(longest), leastLeft, mostLeft)};
+          std::clamp(labelGap + perCharacter * static_cast<double>(longest), leastLeft, mostLeft)};
 }
 
 std::string bar(const Scale& scale, double y, const std::pair<double, double>& ends,
@@ -102,18 +102,18 @@ std::string intervalDrawing(const std::vector<IntervalRow>& rows, const std::str
   }
   svg +=
       fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" font-weight=\"bold\">{}</text>\n",
-                  (left + right) / 2, bottom + 44, htmlText(xLabel));
+                  (left + rightEdge) / 2, bottom + 44, htmlText(xLabel));
   // rows
   double y = topMargin + rowHeight / 2;
   for (const IntervalRow& row : rows) {
     // one that is longer still is narrowed rather than cut off
-    const double room = left - gap;
+    const double room = left - labelGap;
     const std::string narrow =
         perCharacter * static_cast<double>(characters(row.name)) > room
             ? fmt::format(" textLength=\"{:.1f}\" lengthAdjust=\"spacingAndGlyphs\"", room)
             : "";
     svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\"{}>{}</text>\n",
-                       left - gap, y + 5, narrow, htmlText(row.name));
+                       left - labelGap, y + 5, narrow, htmlText(row.name));
     if (row.before) svg += bar(scale, y, *row.before, "#bbbbbb", 10);
     if (row.interval) svg += bar(scale, y, *row.interval, "#0072B2", 4);
     if (row.estimate) {
