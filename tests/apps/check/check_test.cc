@@ -122,7 +122,7 @@ TEST(CheckCommand, MatchesATrialsColumnsWithTheModel) {
   const std::string good = scratch.file("good.csv", "time,BIClong,elbow_flexion_deg\n" + rows);
   const ProgramResult fits = runFisherHill({"check", good, "models/elbow8.osim"});
   EXPECT_EQ(fits.status, 0) << fits.out;
-  EXPECT_THAT(fits.out, HasSubstr("'TRIlong' has no column, its excitation is 0.01 (and 6 more"));
+  EXPECT_THAT(fits.out, HasSubstr("'TRIlong' has no column, its excitation is 0.01 (and 6 similar findings"));
 
   const std::string bad = scratch.file("bad.csv", "time,BIClong,GLUTmax\n" + rows);
   const ProgramResult differs = runFisherHill({"check", bad, "models/elbow8.osim"});

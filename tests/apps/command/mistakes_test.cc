@@ -158,7 +158,7 @@ INSTANTIATE_TEST_SUITE_P(
          ensembleWith({"--parameters", "hand.mass", "--prior", "ulna.mass=1:0.1"}),
          "--prior: ulna.mass is not one of the --parameters"},
         {"PriorZero", ensembleWith({"--parameters", "hand.mass", "--prior", "hand.mass=0.5:0"}),
-         "hand.mass [kg]: deviation = 0 must be > 0"},
+         "hand.mass [kg]: standard deviation = 0 must be > 0"},
         {"BoundsPutAPointInside",
          ensembleWith({"--parameters", "TRI.radius", "--bounds", "TRI.radius=0.01:0.022"}),
          "--bounds: TRI.radius = 0.022 m, must be below 0.0206"},

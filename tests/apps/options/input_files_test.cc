@@ -36,11 +36,12 @@ TEST(InputFiles, PipesAndDevicesAreRefusedAtOnce) {
            "moment-arms ", "emg emg_data/curl_slow_raw.csv --config "}) {
     const ProgramResult fromPipe = inShell("exec \"$0\" " + command + pipe);
     EXPECT_EQ(fromPipe.status, 2) << command;
-    EXPECT_THAT(fromPipe.err, HasSubstr(pipe + ": is a pipe, must be a file")) << command;
+    EXPECT_THAT(fromPipe.err, HasSubstr(pipe + ": is a pipe, must be a regular file")) << command;
     for (const char* device : {"/dev/zero", "/dev/urandom"}) {
       const ProgramResult result = inShell("exec \"$0\" " + command + device);
       EXPECT_EQ(result.status, 2) << command;
-      EXPECT_THAT(result.err, HasSubstr(std::string(device) + ": is a device, must be a file"));
+      EXPECT_THAT(result.err,
+                  HasSubstr(std::string(device) + ": is a device, must be a regular file"));
     }
   }
 }

@@ -159,7 +159,7 @@ TEST(Emg, NamesChannelQuantityAndRuleOfWhatItCannotUse) {
   fails(good, c, "no electrode");
   c = envelopeConfig();
   c.electrodes[0].channel = "x";
-  fails(good, c, "no channel 'x'; there are 'e', 'f'");
+  fails(good, c, "no channel 'x'; the file has 'e', 'f'");
   c = envelopeConfig();
   c.electrodes.push_back(c.electrodes[0]);
   fails(good, c, "mapped twice");

@@ -106,8 +106,9 @@ TEST_F(ReferencePaths, LengthsAndMomentArmsAgreeWithOpenSim) {
 // come to that at 150, and are 5e-6 m and more off from 147 on.
 TEST(WideReferencePaths, LengthsAreOpenSimsBeyondTheJointsRange) {
   const Model model = readOsim(std::string(FISHERHILL_SOURCE_DIR) + "/models/elbow8.osim");
-  const ReferencePath table = readReferencePath(std::filesystem::path(FISHERHILL_SOURCE_DIR) /
-                                                "tests" / "libbio" / "elbow8_paths_wide.csv");
+  const ReferencePath table =
+      readReferencePath(std::filesystem::path(FISHERHILL_SOURCE_DIR) / "tests" / "libbio" / "path" /
+                        "elbow8_paths_wide.csv");
   ASSERT_EQ(table.rows.size(), 196u);
   const Skeleton skeleton(model, {.freeCoordinates = {"elbow_flexion"}, .lockedValues = {}});
   std::vector<RigidMotion<double, 1>> moved(skeleton.numSegments());

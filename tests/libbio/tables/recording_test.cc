@@ -197,7 +197,7 @@ TEST(Channels, AreFoundByNameOrTheNamesAreListed) {
       "f.csv", bio::RecordingFormat::table, {{"a", "", 1, 0, {}}, {"b", "", 1, 0, {}}}, {}};
   EXPECT_THAT(
       [&] { bio::findChannel(r, "c"); },
-      ThrowsMessage<std::invalid_argument>(HasSubstr("f.csv: no channel 'c'; there are 'a', 'b'")));
+      ThrowsMessage<std::invalid_argument>(HasSubstr("f.csv: no channel 'c'; the file has 'a', 'b'")));
 }
 
 }  // namespace
