@@ -272,8 +272,13 @@ std::string verdictOf(const CalibrateFindings& f) {
   std::string text = "RMS error " + changeWords(rmse(f.training, c.before), rmseAfter(f, false),
                                                 "calibration", f.training.trials().size());
   if (f.heldOut) {
-    text += " and " + changeWords(rmse(*f.heldOut, c.heldOutBefore), rmseAfter(f, true), "held-out",
-                                  f.heldOut->trials().size());
+    std::string heldOut = changeWords(rmse(*f.heldOut, c.heldOutBefore), rmseAfter(f, true),
+                                      "held-out", f.heldOut->trials().size());
+    for (const std::string verb : {"fell ", "rose "}) {  // "fell from … and from …"
+      if (text.starts_with("RMS error " + verb) && heldOut.starts_with(verb))
+        heldOut.erase(0, verb.size());
+    }
+    text += " and " + heldOut;
   }
   text += ". " + identifiableWords(identifiable, all) + ".";
   if (!c.converged)

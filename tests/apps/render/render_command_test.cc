@@ -81,7 +81,7 @@ TEST_F(RenderCommand, DrawsAPictureWithoutADisplayAndLeavesNoServer) {
   EXPECT_EQ(static_cast<unsigned char>(png[23]), 120);
   EXPECT_TRUE(made("summary.json"));
   EXPECT_THAT(contentOf(scratch_ / "out/report.html"),
-              HasSubstr("<img alt=\"The arm\" src=\"data:image/png;base64,iVBORw0KGgo"));
+              HasSubstr("<img alt=\"Model\" src=\"data:image/png;base64,iVBORw0KGgo"));
   expectNothingLeftRunning();
 }
 
