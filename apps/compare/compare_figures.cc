@@ -144,7 +144,7 @@ Figure workPrecisionFigure(const CompareFindings& f) {
 }
 
 Figure errorFigure(const CompareFindings& f) {
-  Figure figure{.title = "Error against step size",
+  Figure figure{.title = "Error against step",
                 .xLabel = "Step [s]",
                 .yLabel = "RMS error [deg]",
                 .xScale = AxisScale::logarithmic,

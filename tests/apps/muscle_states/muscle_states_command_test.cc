@@ -51,8 +51,8 @@ TEST(MuscleStatesCommand, AgreesWithOpenSimForEveryClass) {
     EXPECT_LT(std::abs(std::stod(ours[i][1]) - velocity),
               1e-8 * speed + 1e-11 * std::abs(velocity));
     EXPECT_LT(std::abs(std::stod(ours[i][2]) - at(11)), 1e-9 * F0);
-    EXPECT_LT(std::abs(std::stod(ours[i][3]) - at(20)), 1e-7 * l0);
-    EXPECT_LT(std::abs(std::stod(ours[i][4]) - at(21)), 1e-7 * F0);
+    EXPECT_LT(std::abs(std::stod(ours[i][3]) - at(15)), 1e-7 * l0);
+    EXPECT_LT(std::abs(std::stod(ours[i][4]) - at(16)), 1e-7 * F0);
     ++compared[ours[i][0]];
   }
   EXPECT_EQ(compared.size(), 8u);
