@@ -68,7 +68,7 @@ TEST(CompareCommand, WritesTheTableTheSummaryAndTheReport) {
 
   const std::string report = support::contentOf(out + "/report.html");
   for (const char* title :
-       {"Work and precision", "Error against step size", "Where the runs ended",
+       {"Work and precision", "Error against step", "Where the runs ended",
         "Runge–Kutta at three steps", "The variational integrator at two steps",
         "Comparison with the measured motion", "Comparison with other programs"}) {
     EXPECT_THAT(report, HasSubstr(title));
