@@ -10,7 +10,6 @@
 #include "bio/tables/file_error.h"
 #include "bio/tables/recording.h"
 #include "support/scratch_folder.h"
-#include "support/shipped_elbow.h"
 
 // Files that mean harm, or look as if: they are refused with one line, at once, and without taking
 // the machine's memory or the stack.
@@ -169,35 +168,6 @@ TEST_F(HostileFiles, ALongFormulaIsReadAtOnce) {
   const Expression formula(text, {});
   EXPECT_EQ(formula.evaluate<double>(nullptr), 200000);
   EXPECT_LT(std::clock() - start, 2 * CLOCKS_PER_SEC);
-}
-
-TEST_F(HostileFiles, APatternOfManyStarsIsMatchedAtOnce) {
-  const fixtures::ShippedElbow elbow;
-  const std::clock_t start = std::clock();
-  const std::string stars = times(40, "*i");
-  EXPECT_THAT(refusalOf<std::invalid_argument>([&] { elbow.catalogue.select({stars}); }),
-              HasSubstr("no parameter matches"));
-  EXPECT_LT(std::clock() - start, 2 * CLOCKS_PER_SEC);
-  const std::vector<std::size_t> radius = {elbow.catalogue.find("TRI.radius")};
-  for (const std::string pattern : {"TRI*adius", "*RI.*us", "**TRI.radius*", "TRI.ra*a*ius"}) {
-    const bool holds = pattern != "TRI.ra*a*ius";
-    try {
-      EXPECT_EQ(elbow.catalogue.select({pattern}), radius) << pattern;
-      EXPECT_TRUE(holds) << pattern;
-    } catch (const std::invalid_argument&) {
-      EXPECT_FALSE(holds) << pattern;
-    }
-  }
-}
-
-TEST_F(HostileFiles, AMuscleOfNoFiniteLengthIsNamed) {
-  fixtures::ShippedElbow elbow;
-  elbow.model.muscles[0].path.points[0].location.x() = 1e300;
-  const MusculoskeletalSystem arm(elbow.model, fixtures::ShippedElbow::options());
-  const std::string refusal = refusalOf<NoStaticEquilibrium>(
-      [&] { initialState(arm, Eigen::VectorXd::Constant(1, 0.5), elbow.excitation, 0); });
-  EXPECT_THAT(refusal, HasSubstr("muscle '" + elbow.model.muscles[0].name +
-                                 "': muscle–tendon length at the start = inf m, must be finite"));
 }
 
 }  // namespace
