@@ -4,6 +4,7 @@
 
 #include "calibrate/calibrate_report.h"
 #include "output/angle_unit.h"
+#include "output/json_text.h"
 #include "output/text.h"
 
 namespace app {
@@ -20,18 +21,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json orNullIfNaN(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json estimateJson(const CalibrateFindings& f, const bio::CalibratedParameter& one) {
   Json json = {{"value", one.value},
-               {"sd", orNullIfNaN(one.sd)},
+               {"sd", orNull(one.sd)},
                {"unit", one.asked.unit},
                {"identifiable", one.identifiable},
                {"model", one.model},
-               {"interval", Json::array({orNullIfNaN(one.lower), orNullIfNaN(one.upper)})},
-               {"sd_data_alone", orNullIfNaN(one.determinacy.bound)},
+               {"interval", Json::array({orNull(one.lower), orNull(one.upper)})},
+               {"sd_data_alone", orNull(one.determinacy.bound)},
                {"at_bound", one.atBound}};
   if (one.asked.prior) {
     json["prior"] = {{"mean", one.asked.prior->mean}, {"sd", one.asked.prior->sd}};
@@ -39,12 +36,12 @@ Json estimateJson(const CalibrateFindings& f, const bio::CalibratedParameter& on
   if (!one.why.empty()) json["why"] = one.why;
   if (one.profile && one.identifiable) {
     json["profile_interval"] =
-        Json::array({orNullIfNaN(one.profile->lower), orNullIfNaN(one.profile->upper)});
+        Json::array({orNull(one.profile->lower), orNull(one.profile->upper)});
   }
   if (f.options.bootstrap > 0) {
-    json["bootstrap_sd"] = orNullIfNaN(one.bootstrapSd);
+    json["bootstrap_sd"] = orNull(one.bootstrapSd);
     json["bootstrap_interval"] =
-        Json::array({orNullIfNaN(one.bootstrapLower), orNullIfNaN(one.bootstrapUpper)});
+        Json::array({orNull(one.bootstrapLower), orNull(one.bootstrapUpper)});
   }
   return json;
 }
@@ -84,9 +81,9 @@ void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
   if (!c.converged) summary.set("why", info::describe(c.why));
   summary.set("rmse_train_deg", rmseAfter(f, false));
   summary.set("rmse_train_before_deg", rmse(f.training, c.before));
-  summary.set("rmse_held_out_deg", orNullIfNaN(rmseAfter(f, true)));
+  summary.set("rmse_held_out_deg", orNull(rmseAfter(f, true)));
   summary.set("rmse_held_out_before_deg",
-              f.heldOut ? orNullIfNaN(rmse(*f.heldOut, c.heldOutBefore)) : Json(nullptr));
+              f.heldOut ? orNull(rmse(*f.heldOut, c.heldOutBefore)) : Json(nullptr));
   Json estimates = Json::object();
   for (const bio::CalibratedParameter& one : c.parameters) {
     estimates[one.asked.name] = estimateJson(f, one);
@@ -106,7 +103,7 @@ void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
                     noises));
   }
   summary.set("samples_per_independent_value", c.noise.correlationTime);
-  summary.set("reduced_chi_square", orNullIfNaN(c.reducedChiSquare));
+  summary.set("reduced_chi_square", orNull(c.reducedChiSquare));
   summary.set("iterations", c.iterations);
   if (c.starts.size() > 1) {
     summary.set("starts", c.starts.size());

@@ -4,15 +4,13 @@
 
 #include <cmath>
 
+#include "output/json_text.h"
+
 namespace app {
 namespace {
 
 std::string numberOrEmpty(double value) {
   return std::isfinite(value) ? fmt::format("{}", value) : std::string();
-}
-
-nlohmann::ordered_json orNull(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "bio/analysis/replay.h"
 #include "output/angle_unit.h"
+#include "output/json_text.h"
 #include "output/text.h"
 
 namespace app {
@@ -189,13 +190,12 @@ std::string verdictOf(const DesignFindings& f) {
 void tellDesign(const DesignFindings& f, Summary& summary) {
   Json before = Json::object(), after = Json::object(), factor = Json::object();
   const auto asked = f.design.question().parameters.size();
-  const auto finite = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
   for (std::size_t i = 0; i < asked; ++i) {
     const auto k = static_cast<Index>(i);
     const double b = f.result.before.bound[k], a = f.result.after.bound[k];
-    before[f.parameters[i].name] = finite(b);
-    after[f.parameters[i].name] = finite(a);
-    factor[f.parameters[i].name] = finite(b / a);
+    before[f.parameters[i].name] = orNull(b);
+    after[f.parameters[i].name] = orNull(a);
+    factor[f.parameters[i].name] = orNull(b / a);
   }
   summary.set("improved", f.result.improved);
   summary.set("stopped", f.result.stopped);
@@ -205,8 +205,8 @@ void tellDesign(const DesignFindings& f, Summary& summary) {
   if (f.monteCarlo) {
     Json sds = Json::object(), means = Json::object();
     for (std::size_t i = 0; i < asked; ++i) {
-      sds[f.parameters[i].name] = finite(sdOf(*f.monteCarlo, i));
-      means[f.parameters[i].name] = finite(f.monteCarlo->mean[static_cast<Index>(i)]);
+      sds[f.parameters[i].name] = orNull(sdOf(*f.monteCarlo, i));
+      means[f.parameters[i].name] = orNull(f.monteCarlo->mean[static_cast<Index>(i)]);
     }
     summary.set("monte_carlo_sd", sds);
     summary.set("monte_carlo_mean", means);

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "output/angle_unit.h"
+#include "output/json_text.h"
 #include "output/text.h"
 
 namespace app {
@@ -18,10 +19,6 @@ using Eigen::VectorXd;
 using Json = nlohmann::ordered_json;
 
 constexpr double enoughNats = 5;  ///< discovery's own rule for a name
-
-Json finite(double value) {
-  return std::isfinite(value) ? Json(value) : Json();
-}
 
 std::string sized(const std::string& name, double size, const std::string& unit) {
   return fmt::format("{} of {}{}{}", name, numberText(size, 3), unit.empty() ? "" : " ", unit);
@@ -185,7 +182,7 @@ void tellSeparation(const SeparatingFindings& f, Summary& summary) {
   const auto& before = f.result.before.tells;
   const auto& after = f.result.after.tells;
   const auto both = [&](double first, double second) {
-    return Json{{q.first, finite(first)}, {q.second, finite(second)}};
+    return Json{{q.first, orNull(first)}, {q.second, orNull(second)}};
   };
   summary.set("separates", Json{q.first, q.second});
   summary.set("size", both(q.firstSize, q.secondSize));

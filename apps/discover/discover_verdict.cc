@@ -1,9 +1,12 @@
 #include "discover/discover_verdict.h"
 
+#include <fmt/format.h>
+
 #include "calibrate/fitted_table.h"
 #include "discover/written_discovery.h"
 #include "info/discovery/judgement/separation.h"
 #include "info/discovery/likelihood/hypothesis.h"
+#include "output/json_text.h"
 
 namespace app {
 namespace {
@@ -13,16 +16,12 @@ using info::discover::ExcessError;
 using info::discover::Score;
 using nlohmann::ordered_json;
 
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
-
 ordered_json parametersJson(const DiscoverFindings& f, const std::vector<Estimate>& estimates) {
   ordered_json parameters = ordered_json::object();
   for (const Estimate& one : estimates) {
     const auto& quantity = f.data.quantities()[one.quantity];
     parameters[quantity.name] = {
-        {"value", number(one.value)}, {"sd", number(one.sd)}, {"unit", quantity.unit}};
+        {"value", orNull(one.value)}, {"sd", orNull(one.sd)}, {"unit", quantity.unit}};
   }
   return parameters;
 }
@@ -31,16 +30,16 @@ ordered_json excessErrorJson(const DiscoverFindings& f, const ExcessError& gap) 
   const double unit = f.wording.unit;
   const std::string& end = f.wording.gapEnd;
   ordered_json json;
-  json["rmse_nominal" + end] = number(unit * gap.nominal);
-  json["rmse_calibrated" + end] = number(unit * gap.calibrated);
-  json["rmse_after" + end] = number(unit * gap.after);
-  if (gap.expected) json["rmse_expected" + end] = number(unit * *gap.expected);
-  if (gap.probability) json["rmse_probability"] = number(*gap.probability);
-  json["noise_floor" + end] = number(unit * gap.floor);
+  json["rmse_nominal" + end] = orNull(unit * gap.nominal);
+  json["rmse_calibrated" + end] = orNull(unit * gap.calibrated);
+  json["rmse_after" + end] = orNull(unit * gap.after);
+  if (gap.expected) json["rmse_expected" + end] = orNull(unit * *gap.expected);
+  if (gap.probability) json["rmse_probability"] = orNull(*gap.probability);
+  json["noise_floor" + end] = orNull(unit * gap.floor);
   json["gap_closed"] =
-      gap.closedFromCalibrated ? number(*gap.closedFromCalibrated) : ordered_json(nullptr);
+      gap.closedFromCalibrated ? orNull(*gap.closedFromCalibrated) : ordered_json(nullptr);
   json["gap_closed_from_nominal"] =
-      gap.closedFromNominal ? number(*gap.closedFromNominal) : ordered_json(nullptr);
+      gap.closedFromNominal ? orNull(*gap.closedFromNominal) : ordered_json(nullptr);
   return json;
 }
 
@@ -55,28 +54,28 @@ ordered_json localisationJson(const DiscoverFindings& f) {
     json["time_spans"].push_back({{"trial", f.data.trialName(one.trial)},
                                   {"from_s", one.from},
                                   {"to_s", one.to},
-                                  {"score", number(one.z)}});
+                                  {"score", orNull(one.z)}});
   }
   for (const Score& one : map.cells) {
     if (!one.significant || !f.wording.hasMap) continue;
     json["state_regions"].push_back({{"from", {unit * one.lowerQ, unit * one.lowerQDot}},
                                      {"to", {unit * one.upperQ, unit * one.upperQDot}},
-                                     {"score", number(one.z)}});
+                                     {"score", orNull(one.z)}});
   }
   for (const Score& one : map.inputs) {
     json[f.wording.inputs].push_back(
-        {{"name", one.input}, {"score", number(one.z)}, {"significant", one.significant}});
+        {{"name", one.input}, {"score", orNull(one.z)}, {"significant", one.significant}});
   }
   return json;
 }
 
 ordered_json adequacyJson(const info::discover::Adequacy& a, double latentSize) {
-  ordered_json json = {{"mean_square", number(a.meanSquare)},
-                       {"ljung_box_probability", number(a.ljungBoxProbability)},
-                       {"input_probability", number(a.inputProbability)}};
+  ordered_json json = {{"mean_square", orNull(a.meanSquare)},
+                       {"ljung_box_probability", orNull(a.ljungBoxProbability)},
+                       {"input_probability", orNull(a.inputProbability)}};
   for (const info::discover::Cause cause : info::discover::kCauses)
-    json[fmt::format("follows_{}_nats", name(cause))] = number(a.remainder.of(cause));
-  json["latent_size"] = number(latentSize);
+    json[fmt::format("follows_{}_nats", name(cause))] = orNull(a.remainder.of(cause));
+  json["latent_size"] = orNull(latentSize);
   json["adequate"] = a.adequate();
   return json;
 }
@@ -88,10 +87,10 @@ void addSizes(const DiscoverFindings& f, ordered_json& effects) {
   for (std::size_t i = 0; i < f.written->sizes.size(); ++i) {
     const bio::discover::EffectSize& size = f.written->sizes[i];
     effects[i]["along"] = f.data.trialName(f.written->shown);
-    effects[i]["moment_rms_Nm"] = number(size.momentRms);
-    effects[i]["moment_peak_Nm"] = number(size.momentPeak);
-    effects[i]["share_of_muscle_moment"] = number(size.share);
-    effects[i]["motion_rms" + f.wording.gapEnd] = number(unit * size.motionRms);
+    effects[i]["moment_rms_Nm"] = orNull(size.momentRms);
+    effects[i]["moment_peak_Nm"] = orNull(size.momentPeak);
+    effects[i]["share_of_muscle_moment"] = orNull(size.share);
+    effects[i]["motion_rms" + f.wording.gapEnd] = orNull(unit * size.motionRms);
   }
 }
 
@@ -104,12 +103,12 @@ ordered_json trialsJson(const DiscoverFindings& f) {
     ordered_json json{{"file", f.trialFiles[i]}, {"role", one.isHeldOut ? "held_out" : "train"}};
     json["replay_file"] =
         f.written->model.empty() ? ordered_json(nullptr) : ordered_json(f.written->replayFiles[i]);
-    json["rmse_nominal" + end] = number(unit * one.nominal);
-    json["rmse_after" + end] = number(unit * one.after);
-    json["noise_floor" + end] = number(unit * one.floor);
+    json["rmse_nominal" + end] = orNull(unit * one.nominal);
+    json["rmse_after" + end] = orNull(unit * one.after);
+    json["noise_floor" + end] = orNull(unit * one.floor);
     json["start"] = {{"coordinate", one.start.coordinate},
-                     {"value", number(one.start.value)},
-                     {"speed", number(one.start.speed)},
+                     {"value", orNull(one.start.value)},
+                     {"speed", orNull(one.start.speed)},
                      {"unit", f.wording.gapEnd == "_deg" ? "rad" : "m"}};
     list.push_back(std::move(json));
   }
@@ -162,13 +161,13 @@ ordered_json verdictJson(const DiscoverFindings& f) {
                                {"kind", info::discover::name(candidate.kind)},
                                {"surrogate", verdict.proxy},
                                {"parameters", parametersJson(f, effect.estimates)},
-                               {"log_bayes_factor", number(effect.logBayesFactor)},
-                               {"probability", number(effect.probability)}});
+                               {"log_bayes_factor", orNull(effect.logBayesFactor)},
+                               {"probability", orNull(effect.probability)}});
     for (const Estimate& one : effect.estimates) {
       if (f.data.quantities()[one.quantity].name == candidate.id + ".time") {
         const char* change = candidate.id.ends_with("_until") ? "ends_at_s" : "starts_at_s";
         if (candidate.kind == info::discover::EffectKind::structure)
-          json["effects"].back()[change] = number(one.value);
+          json["effects"].back()[change] = orNull(one.value);
       }
     }
     for (const std::size_t c : effect.equals) json["class"].push_back(candidates[c].id);
@@ -188,7 +187,7 @@ ordered_json verdictJson(const DiscoverFindings& f) {
         f.written->model.empty() ? ordered_json(nullptr) : ordered_json(f.written->model);
     json["trials"] = trialsJson(f);
   }
-  json["step_s"] = number(f.step);
+  json["step_s"] = orNull(f.step);
   json["fitted_parameters"] = fittedJson(f.fitted);
   json["innovations"] = {{"before", nullptr}, {"after", nullptr}};
   if (verdict.base.size() > 0) {  // else stopped before there was a base model
@@ -197,32 +196,32 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   }
   if (verdict.heldOutBefore && verdict.heldOutAfter) {
     json["innovations"]["held_out_mean_square"] = {
-        {"before", number(verdict.heldOutBefore->meanSquare)},
-        {"after", number(verdict.heldOutAfter->meanSquare)},
-        {"highest", number(verdict.heldOutAfter->highest)}};
+        {"before", orNull(verdict.heldOutBefore->meanSquare)},
+        {"after", orNull(verdict.heldOutAfter->meanSquare)},
+        {"highest", orNull(verdict.heldOutAfter->highest)}};
   }
   json["undetectable_below"] = ordered_json::object();
   for (const auto& one : verdict.detectability) {
-    json["undetectable_below"][candidates[one.candidate].id] = number(one.amplitude);
+    json["undetectable_below"][candidates[one.candidate].id] = orNull(one.amplitude);
   }
   json["next_experiment"] = f.nextExperiment;
   for (const bio::discover::PredictedExperiment& one : f.predictedExperiments) {
     ordered_json nats = ordered_json::object();
     for (std::size_t i = 0; i < one.nats.size(); ++i)
-      nats[rivalName(f.data, verdict, i + 1)] = number(one.nats[i]);
+      nats[rivalName(f.data, verdict, i + 1)] = orNull(one.nats[i]);
     json["planned_experiments"].push_back(
         {{"what", one.sentence}, {"of", rivalName(f.data, verdict, 0)}, {"expected_nats", nats}});
   }
-  json["noise_sd"] = number(verdict.outputSd);
+  json["noise_sd"] = orNull(verdict.outputSd);
   json["samples"] = {{"recorded", verdict.noise.samples},
                      {"outliers", verdict.noise.outliers},
                      {"every", verdict.noise.spacing},
-                     {"rounded_to", number(f.wording.unit * verdict.noise.quantum)}};
+                     {"rounded_to", orNull(f.wording.unit * verdict.noise.quantum)}};
   json["noise_estimated"] = verdict.sdEstimated;
-  json["wall_s"] = number(f.wallSeconds);
-  json["processor_s"] = number(f.processorSeconds);
+  json["wall_s"] = orNull(f.wallSeconds);
+  json["processor_s"] = orNull(f.processorSeconds);
   json["probability_vetoed"] = verdict.vetoed;
-  json["numerical_error_in_noise_sd"] = number(verdict.numericalError);
+  json["numerical_error_in_noise_sd"] = orNull(verdict.numericalError);
   json["already_in_the_model"] = ordered_json::object();
   for (const auto& [id, where] : f.wording.present) {
     json["already_in_the_model"][id] = where;
@@ -232,9 +231,9 @@ ordered_json verdictJson(const DiscoverFindings& f) {
     ordered_json ids = ordered_json::array();
     for (const std::size_t e : one.effects) ids.push_back(candidates[e].id);
     json["evidence"].push_back({{"effects", ids},
-                                {"log_bayes_factor", number(one.logEvidence)},
-                                {"probability", number(one.probability)},
-                                {"amplitude_over_sd", number(one.significance)}});
+                                {"log_bayes_factor", orNull(one.logEvidence)},
+                                {"probability", orNull(one.probability)},
+                                {"amplitude_over_sd", orNull(one.significance)}});
   }
   if (verdict.nonparametric) {
     const info::discover::NonparametricForce& force = *verdict.nonparametric;
@@ -242,20 +241,20 @@ ordered_json verdictJson(const DiscoverFindings& f) {
     for (const std::size_t c : force.besides) besides.push_back(candidates[c].id);
     json["force_without_a_name"] = {{"follows", info::discover::name(force.follows)},
                                     {"beside", besides},
-                                    {"log_bayes_factor", number(force.logBayesFactor)},
-                                    {"nats_ahead_of_names", number(force.ahead)},
+                                    {"log_bayes_factor", orNull(force.logBayesFactor)},
+                                    {"nats_ahead_of_names", orNull(force.ahead)},
                                     {"wins", force.wins}};
   }
   if (verdict.unknown) {
     json["unknown"] = {{"formula", verdict.unknown->formula},
                        {"stable", verdict.unknown->stable},
-                       {"evidence_nats", number(verdict.unknown->evidence)},
-                       {"explained", number(verdict.unknown->explained)},
-                       {"peak_Hz", number(verdict.unknown->peakFrequency)}};
+                       {"evidence_nats", orNull(verdict.unknown->evidence)},
+                       {"explained", orNull(verdict.unknown->explained)},
+                       {"peak_Hz", orNull(verdict.unknown->peakFrequency)}};
     if (f.wording.forceUnit == "N·m") {
-      json["unknown"]["rms_Nm"] = number(verdict.unknown->forceSize);
+      json["unknown"]["rms_Nm"] = orNull(verdict.unknown->forceSize);
     } else {
-      json["unknown"]["rms"] = number(verdict.unknown->forceSize);
+      json["unknown"]["rms"] = orNull(verdict.unknown->forceSize);
       json["unknown"]["rms_unit"] = f.wording.forceUnit;
     }
   }
@@ -264,8 +263,8 @@ ordered_json verdictJson(const DiscoverFindings& f) {
     ordered_json& race = json["unknown"]["raced"];
     race = {{"formula", raced.text},
             {"wins", raced.wins},
-            {"log_bayes_factor", number(raced.logBayesFactor)},
-            {"amplitude_over_sd", number(raced.significance)},
+            {"log_bayes_factor", orNull(raced.logBayesFactor)},
+            {"amplitude_over_sd", orNull(raced.significance)},
             {"adequate", raced.after.adequate()},
             {"terms", ordered_json::array()},
             {"gap",
@@ -273,8 +272,8 @@ ordered_json verdictJson(const DiscoverFindings& f) {
               {"held_out", raced.heldOut ? excessErrorJson(f, *raced.heldOut) : nullptr}}}};
     for (std::size_t k = 0; k < raced.values.size(); ++k)
       race["terms"].push_back({{"expression", raced.terms[k].expression},
-                               {"value", number(raced.values[k])},
-                               {"sd", number(raced.sds[k])}});
+                               {"value", orNull(raced.values[k])},
+                               {"sd", orNull(raced.sds[k])}});
   }
   return json;
 }

@@ -17,7 +17,7 @@ namespace {
 
 using info::discover::Candidate;
 
-/// "torque [N m], speed [rad/s]" without the effect's id in front.
+/// "stribeck.torque [N m], stribeck.speed [rad/s]".
 std::string parameterList(const bio::discover::EncompassingModel& model, const Candidate& effect) {
   std::string list;
   for (const std::size_t k : effect.quantities) {
@@ -50,7 +50,7 @@ ExitStatus listEffects(const CommandContext& context, const std::string& file,
                        const SimulationOptions& simulation) {
   Summary summary(context);
   const bio::Model model = readModel(file, summary);
-  movableSystem(model, file, simulation, summary);
+  movableSystem(model, file, simulation, summary);  // warns and refuses as a search would
   const bio::discover::EncompassingModel encompassing = bio::discover::encompassingModel(
       model, armOptions(simulation), observedCoordinate(simulation));
   if (context.json) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -9,6 +10,11 @@ namespace app {
 /// @param indent  spaces per level; negative: all on one line
 inline std::string jsonText(const nlohmann::ordered_json& json, int indent = -1) {
   return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+/// The number; null where it is infinite or NaN, for which JSON has no word.
+inline nlohmann::ordered_json orNull(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
 }
 
 }  // namespace app

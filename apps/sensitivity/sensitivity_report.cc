@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "output/json_text.h"
 #include "output/text.h"
 
 namespace app {
@@ -312,16 +313,13 @@ void tellSensitivity(const SensitivityFindings& f, Summary& summary) {
   for (const std::size_t i : ranking(known.normalisedSensitivity)) {
     const auto k = static_cast<Eigen::Index>(i);
     const info::Parameter& p = known.parameters[i];
-    const auto number = [](double x) {
-      return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json();
-    };
     parameters.push_back({{"name", p.name},
                           {"unit", p.unit},
                           {"value", p.start},
                           {"prior_sd", p.prior->sd},
                           {"normalised_sensitivity", known.normalisedSensitivity[k] * factor},
-                          {"bound_alone", number(known.boundAlone[k])},
-                          {"bound_joint", number(known.boundJoint[k])},
+                          {"bound_alone", orNull(known.boundAlone[k])},
+                          {"bound_joint", orNull(known.boundJoint[k])},
                           {"identifiable", static_cast<bool>(known.identifiable[i])}});
   }
   summary.set("parameters", parameters);

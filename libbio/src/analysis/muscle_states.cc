@@ -6,7 +6,9 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 
@@ -15,6 +17,7 @@
 #include "bio/muscle/muscle_variant.h"
 #include "bio/muscle/schutte_muscle.h"
 #include "bio/tables/file_error.h"
+#include "tables/recording_layouts.h"
 #include "tables/text_file.h"
 
 namespace bio {
@@ -37,19 +40,6 @@ const std::set<std::string, std::less<>> resultColumns = {
     "fiber_velocity",      "tendon_force",  "fiber_force",         "active_fiber_force",
     "passive_fiber_force", "tendon_length", "cos_pennation",       "active_fl",
     "passive_multiplier",  "fv_multiplier", "static_fiber_length", "static_tendon_force"};
-
-std::vector<std::string> cellsOf(std::string_view line) {
-  std::vector<std::string> cells;
-  for (;;) {
-    const std::size_t comma = line.find(',');
-    std::string_view cell = line.substr(0, comma);
-    while (!cell.empty() && (cell.front() == ' ' || cell.front() == '\t')) cell.remove_prefix(1);
-    while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\t')) cell.remove_suffix(1);
-    cells.emplace_back(cell);
-    if (comma == std::string_view::npos) return cells;
-    line.remove_prefix(comma + 1);
-  }
-}
 
 /// Sets the property of that name. @return whether the class has one
 template <class Parameters>
@@ -172,7 +162,7 @@ MuscleState stateOf(const std::string& className, const Row& row,
 class StateReader {
  public:
   StateReader(const std::filesystem::path& file, const std::string& header) : file_(file.string()) {
-    columns_ = cellsOf(header);
+    columns_ = cellsOf(header, ',');
     std::set<std::string> seen;
     for (const std::string& name : columns_) {
       if (!seen.insert(name).second) fail(1, fmt::format("column '{}' is given twice", name));
@@ -184,8 +174,8 @@ class StateReader {
     }
   }
 
-  MuscleState read(std::size_t line, std::string_view text) const {
-    const std::vector<std::string> cells = cellsOf(text);
+  MuscleState read(std::size_t line, const std::string& text) const {
+    const std::vector<std::string> cells = cellsOf(text, ',');
     if (cells.size() != columns_.size())
       fail(line, fmt::format("{} cells, must be {}", cells.size(), columns_.size()));
     Row row = {{"path_speed", 0}};
@@ -232,21 +222,17 @@ class StateReader {
 }  // namespace
 
 std::vector<MuscleState> muscleStates(const std::filesystem::path& file) {
-  const std::string text = readTextFile(file);
   std::vector<MuscleState> states;
   std::optional<StateReader> reader;
-  std::size_t line = 0;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    std::string_view one(text.data() + begin, end - begin);
-    if (one.ends_with('\r')) one.remove_suffix(1);
-    begin = end + 1;
-    ++line;
-    if (one.find_first_not_of(" \t") == std::string_view::npos) continue;
+  std::istringstream lines(readTextFile(file));
+  std::size_t number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     if (!reader)
-      reader.emplace(file, std::string(one));
+      reader.emplace(file, line);
     else
-      states.push_back(reader->read(line, one));
+      states.push_back(reader->read(number, line));
   }
   if (!reader) throw FileError(fmt::format("{}: no header line", file.string()));
   if (states.empty()) throw FileError(fmt::format("{}: no row", file.string()));

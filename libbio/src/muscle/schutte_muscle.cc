@@ -6,6 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "bio/muscle/bracketed_root.h"
+
 namespace bio {
 namespace {
 
@@ -158,35 +160,6 @@ double forceDifference(const SchutteMuscle<double>& muscle, double activation, d
   return muscle.normalisedTendonForce(strain) - fibre * projected / fibreLength;
 }
 
-// Chandrupatla's bracketing method (1997): bisection, or inverse quadratic interpolation where
-// three points say that it is safe.
-template <class F>
-double bracketedRoot(const F& f, double a, double fa, double b, double fb, double tolerance) {
-  double c = a, fc = fa, t = 0.5;
-  for (int iteration = 0; iteration < 200; ++iteration) {
-    const double x = a + t * (b - a);
-    const double fx = f(x);
-    if ((fx > 0) == (fa > 0)) {
-      c = a, fc = fa;
-    } else {
-      c = b, b = a, fc = fb, fb = fa;
-    }
-    a = x, fa = fx;
-    const double best = std::abs(fa) < std::abs(fb) ? a : b;
-    const double width = std::abs(b - a);
-    if (fa == 0 || width <= 2 * tolerance) return best;
-    const double xi = (a - b) / (c - b);
-    const double phi = (fa - fb) / (fc - fb);
-    t = 0.5;
-    if (phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi) {
-      t = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb);
-    }
-    const double margin = tolerance / width;
-    t = std::clamp(t, margin, 1 - margin);
-  }
-  return std::abs(fa) < std::abs(fb) ? a : b;
-}
-
 }  // namespace
 
 SchutteCurves::SchutteCurves(const SchutteParameters& parameters)
@@ -310,7 +283,8 @@ StaticEquilibrium staticEquilibrium(const SchutteMuscle<double>& muscle, double 
     const double b = i == cells ? upper : lower + (upper - lower) * i / cells;
     const double fb = difference(b);
     if (fa > 0 && fb <= 0 && b > a) {
-      const double root = fb == 0 ? b : bracketedRoot(difference, a, fa, b, fb, 1e-15 * optimal);
+      const double root =
+          fb == 0 ? b : muscles::bracketedRoot(difference, a, fa, b, fb, 1e-15 * optimal);
       ++result.count;
       if (result.count == 1 || std::abs(root - optimal) < std::abs(result.fibreLength - optimal)) {
         result.fibreLength = root;

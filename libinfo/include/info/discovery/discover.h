@@ -66,7 +66,7 @@ struct Options {
 
 /// One quantity as a hypothesis has it.
 struct Estimate {
-  std::size_t quantity = 0;  ///< index into Disagreement::quantities()
+  std::size_t quantity = 0;  ///< index into DiscoveryProblem::quantities()
   double value = 0;
   double sd = 0;  ///< of the posterior, in the unit of the quantity
   double surprise =
@@ -76,7 +76,7 @@ struct Estimate {
 
 /// A hypothesis that was raced.
 struct Finalist {
-  std::vector<std::size_t> effects;  ///< indices into Disagreement::candidates()
+  std::vector<std::size_t> effects;  ///< indices into DiscoveryProblem::candidates()
   double logEvidence = 0;   ///< log Z − log Z of the base: nats, each at its own best σ_d
   double latentSize = 0;    ///< that σ_d
   double probability = 0;   ///< among all that were raced with as many effects, and fewer
@@ -194,12 +194,12 @@ using WarmStart = std::shared_ptr<const SearchMemory>;
 /// Finds, names and judges what a model lacks.
 /// @param draft  if not null and not empty: starts from there; if not null, left as the search is
 ///   after its race
-/// @throws std::invalid_argument if the data break a rule of Disagreement
+/// @throws std::invalid_argument if the data break a rule of DiscoveryProblem
 Verdict run(const DiscoveryProblem& data, const Options& options = {}, WarmStart* draft = nullptr);
 
 /// Standard deviation of a trial's measurements about the simulation with the effects, at its
 /// times: √(σ_y² + Σ (dy/dA·σ_A)²) over the amplitudes A, each by itself.
-/// @throws what Disagreement::predict throws
+/// @throws what DiscoveryProblem::predict throws
 Eigen::VectorXd predictedSd(const DiscoveryProblem& data, const Verdict& verdict, int trial);
 
 const char* name(Finding finding);

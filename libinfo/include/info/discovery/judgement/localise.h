@@ -22,7 +22,7 @@ struct Score {
 
 struct Localisation {
   std::vector<Score> times, cells, inputs;
-  /// Per fitted trial: latent force and its standard deviation at Disagreement::latentTimes().
+  /// Per fitted trial: latent force and its standard deviation at DiscoveryProblem::latentTimes().
   std::vector<int> trials;
   std::vector<Eigen::VectorXd> force, forceSd;
 };

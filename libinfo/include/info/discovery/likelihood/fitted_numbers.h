@@ -9,7 +9,7 @@ namespace info::discover {
 
 /// A number that was fitted, beside what was known of it before.
 struct FittedNumber {
-  std::size_t quantity = 0;  ///< index into Disagreement::quantities()
+  std::size_t quantity = 0;  ///< index into DiscoveryProblem::quantities()
   std::string name;
   std::string unit;     ///< of the four that follow; "" for a pure number
   double nominal = 0;   ///< as the model had it

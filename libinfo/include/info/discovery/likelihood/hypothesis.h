@@ -11,7 +11,7 @@ namespace info::discover {
 /// A quantity that a hypothesis leaves free, in the coordinate ξ in which its prior is N(0, 1):
 ///     value = nominal + deviation·ξ,   of a logarithmic one   value = nominal·exp(deviation·ξ)
 struct FreeQuantity {
-  std::size_t quantity = 0;  ///< index into Disagreement::quantities()
+  std::size_t quantity = 0;  ///< index into DiscoveryProblem::quantities()
   double nominal = 0, sd = 1;
   bool logarithmic = false;
   double lowest = 0, highest = 0;  ///< bounds of ξ
@@ -24,7 +24,8 @@ struct FreeQuantity {
 /// Which effects are held to be present, and so what is free: the nuisances of the base model, the
 /// starts of the trials in question, and the quantities of the effects.
 struct Hypothesis {
-  std::vector<std::size_t> effects;  ///< indices into Disagreement::candidates(); none: the base
+  std::vector<std::size_t>
+      effects;  ///< indices into DiscoveryProblem::candidates(); none: the base
   std::vector<FreeQuantity> free;
 
   /// Where in `free` a quantity is; −1: it is not free.

@@ -62,7 +62,7 @@ double latentCorrelation(double interval, double time, double lag);
 class Likelihood {
  public:
   /// G is taken where `values` lie and stays: hypotheses are compared under one noise model.
-  /// @throws std::invalid_argument if the data break a rule of Disagreement
+  /// @throws std::invalid_argument if the data break a rule of DiscoveryProblem
   Likelihood(const DiscoveryProblem& data, std::vector<int> trials, const Eigen::VectorXd& values,
              double latentTime = 0.08);
 

@@ -26,9 +26,9 @@ struct RecordedNoise {
 /// follows the motion; more than a sixth of all are none.
 ///
 /// Correlation shows in third differences over m samples, σ_m² = Σ(y_k − 3y_{k−m} + 3y_{k−2m} −
-/// y_{k−3m})²/20n of what a model leaves that is held near the data (Disagreement::nudged): σ_m is
-/// the same for every m where noise is white and grows where it is correlated over m samples. The
-/// least m with σ_2m ≤ 1.15 σ_m is taken. Where holding is not offered the noise is taken for
+/// y_{k−3m})²/20n of what a model leaves that is held near the data (DiscoveryProblem::nudged): σ_m
+/// is the same for every m where noise is white and grows where it is correlated over m samples.
+/// The least m with σ_2m ≤ 1.15 σ_m is taken. Where holding is not offered the noise is taken for
 /// white.
 ///
 /// σ_y is that of third differences (output_deviation.h), of σ_m where samples are left out for
