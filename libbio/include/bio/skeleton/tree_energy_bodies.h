@@ -1,0 +1,186 @@
+#pragma once
+
+// Template bodies of tree_energy.h.
+#include <stdexcept>
+#include <string>
+
+#include "bio/skeleton/tree_energy.h"
+
+namespace bio {
+
+template <int N, class T>
+TreeEnergy<N, T>::TreeEnergy(const ArticulatedTree& tree) : tree_(&tree) {
+  const int n = tree.numCoordinates();
+  if (N != Eigen::Dynamic && N != n) {
+    throw std::invalid_argument("number of coordinates is " + std::to_string(n) + ", must be " +
+                                std::to_string(N));
+  }
+  std::size_t mobilities = 0;
+  for (const Mobility& m : tree.mobilities()) mobilities += m.segment < tree.numMassSegments();
+  const auto segments = static_cast<std::size_t>(tree.numMassSegments());
+  const SpatialVector<T> zero = SpatialVector<T>::Zero();
+  inner_.assign(mobilities, {zero, zero});
+  before_.assign(mobilities, zero);
+  velocity_.assign(segments, zero);
+  momentum_.assign(segments, zero);
+  inertia_.resize(segments);
+  for (auto* x : {&out_.T_v, &out_.T_q, &out_.V_q}) x->resize(n);
+  for (auto* X : {&out_.T_vv, &out_.T_vq, &out_.T_qq, &out_.V_qq}) X->resize(n, n);
+}
+
+template <int N, class T>
+void TreeEnergy<N, T>::setZero() {
+  out_.kinetic = T(0.0);
+  out_.potential = T(0.0);
+  for (auto* x : {&out_.T_v, &out_.T_q, &out_.V_q}) x->setZero();
+  for (auto* X : {&out_.T_vv, &out_.T_vq, &out_.T_qq, &out_.V_qq}) X->setZero();
+}
+
+template <int N, class T>
+const EnergyDerivatives<N, T>& TreeEnergy<N, T>::evaluate(const TreeMotion<T>& motion, const T* v) {
+  setZero();
+  if (tree_->hasConstantInertia()) {
+    constantInertia(motion, v);
+  } else {
+    outward(motion, v);
+    inward();
+    pairs(motion, v);
+  }
+  return out_;
+}
+
+// One turn or shift by q itself: T = ½M v² with M of this posture, the same in all.
+template <int N, class T>
+void TreeEnergy<N, T>::constantInertia(const TreeMotion<T>& motion, const T* v) {
+  const TreeSegment& s = tree_->segments()[1];
+  const SpatialVector<T>& S = motion.screw.front();
+  const SpatialInertia<T> I = inertiaInGround(motion.segments[1], s.mass, s.massCenter, s.inertia);
+  const SpatialVector<T> F = I * S;
+  T M(0.0);
+  for (int i = 0; i < 6; ++i) M += S[i] * F[i];
+  out_.T_vv(0, 0) = M;
+  out_.T_v[0] = M * v[0];
+  out_.kinetic = 0.5 * (out_.T_v[0] * v[0]);
+  // the linear part of F is Σ m ∂r
+  const Eigen::Vector3d& g = tree_->gravity();
+  T turned[3];
+  detail::crossInto(S.data(), F.data() + 3, turned);
+  for (int i = 0; i < 3; ++i) {
+    out_.potential -= g[i] * I.massMoment[i];
+    out_.V_q[0] -= g[i] * F[i + 3];
+    out_.V_qq(0, 0) -= g[i] * turned[i];
+  }
+}
+
+// From the ground outwards: velocities, b, and each segment's own inertia and momentum.
+template <int N, class T>
+void TreeEnergy<N, T>::outward(const TreeMotion<T>& motion, const T* v) {
+  const Eigen::Vector3d& g = tree_->gravity();
+  const auto& mobilities = tree_->mobilities();
+  for (std::size_t s = 1; s < velocity_.size(); ++s) {
+    const TreeSegment& segment = tree_->segments()[s];
+    SpatialVector<T> V = velocity_[static_cast<std::size_t>(segment.parent)];
+    for (int m = segment.firstMobility; m <= segment.lastMobility; ++m) {
+      const auto at = static_cast<std::size_t>(m);
+      const SpatialVector<T>& S = motion.screw[at];
+      const T& v_k = v[mobilities[at].coordinate];
+      SpatialVector<T> b = crossMotion(S, V);
+      if (!mobilities[at].hasFixedScrew) {
+        for (int i = 0; i < 6; ++i) b[i] -= motion.screw1[at][i] * v_k;
+        before_[at] = V;
+      }
+      inner_[at].S = S;
+      inner_[at].b = b;
+      for (int i = 0; i < 6; ++i) V[i] += S[i] * v_k;
+    }
+    velocity_[s] = V;
+    inertia_[s] =
+        inertiaInGround(motion.segments[s], segment.mass, segment.massCenter, segment.inertia);
+    momentum_[s] = inertia_[s] * V;
+    T twice(0.0);
+    for (int i = 0; i < 6; ++i) twice += V[i] * momentum_[s][i];
+    out_.kinetic += 0.5 * twice;
+    for (int i = 0; i < 3; ++i) out_.potential -= g[i] * inertia_[s].massMoment[i];
+  }
+}
+
+// From the ends inwards: inertia and momentum of everything beyond.
+template <int N, class T>
+void TreeEnergy<N, T>::inward() {
+  for (std::size_t s = velocity_.size(); s-- > 1;) {
+    const auto parent = static_cast<std::size_t>(tree_->segments()[s].parent);
+    if (parent == 0) continue;
+    inertia_[parent] += inertia_[s];
+    momentum_[parent] += momentum_[s];
+  }
+}
+
+template <int N, class T>
+void TreeEnergy<N, T>::pairs(const TreeMotion<T>& motion, const T* v) {
+  const Eigen::Vector3d& g = tree_->gravity();
+  const Mobility* mobilities = tree_->mobilities().data();
+  for (std::size_t j = 0; j < inner_.size(); ++j) {
+    const Mobility& mobility = mobilities[j];
+    const int c = mobility.coordinate;
+    const auto segment = static_cast<std::size_t>(mobility.segment);
+    const SpatialInertia<T>& I = inertia_[segment];
+    const SpatialVector<T>& H = momentum_[segment];
+    const SpatialVector<T>& S = inner_[j].S;
+    const SpatialVector<T>& b = inner_[j].b;
+    const SpatialVector<T> F = I * S;
+    const SpatialVector<T> G = crossForce(S, H);
+    const SpatialVector<T> B = I * b;
+    // columns (F_i, W_i), W = I b − G: two products at once for every k
+    Eigen::Matrix<T, 2, 6> FW;
+    for (int i = 0; i < 6; ++i) {
+      FW(0, i) = F[i];
+      FW(1, i) = B[i] - G[i];
+      out_.T_v[c] += S[i] * H[i];
+      out_.T_q[c] -= b[i] * H[i];
+    }
+    // d is the linear part of F; −g·(ω_k × d) = ω_k·(g × d)
+    T gd[3];
+    for (int i = 0; i < 3; ++i) out_.V_q[c] -= g[i] * F[i + 3];
+    for (int i = 0; i < 3; ++i) {
+      const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+      gd[i] = g[i1] * F[i2 + 3] - g[i2] * F[i1 + 3];
+    }
+    if (!mobility.hasFixedScrew) bentScrew(motion, j, v[c], c);
+    for (int k = static_cast<int>(j); k >= 0; k = mobilities[k].parent) {
+      const Inner& inner = inner_[static_cast<std::size_t>(k)];
+      Eigen::Matrix<T, 2, 1> onS = inner.S[0] * FW.col(0), onB = inner.b[0] * FW.col(0);
+      for (int i = 1; i < 6; ++i) {
+        onS += inner.S[i] * FW.col(i);
+        onB += inner.b[i] * FW.col(i);
+      }
+      const T V_qq = inner.S[0] * gd[0] + inner.S[1] * gd[1] + inner.S[2] * gd[2];
+      const int e = mobilities[k].coordinate;
+      out_.T_vv(e, c) += onS[0];
+      out_.T_vq(c, e) -= onB[0];
+      out_.T_qq(e, c) += onB[1];
+      out_.V_qq(e, c) += V_qq;
+      if (k == static_cast<int>(j)) continue;
+      out_.T_vv(c, e) += onS[0];
+      out_.T_vq(e, c) -= onS[1];
+      out_.T_qq(c, e) += onB[1];
+      out_.V_qq(c, e) += V_qq;
+    }
+  }
+}
+
+// What the change of a mobility's own screw adds to its diagonal.
+template <int N, class T>
+void TreeEnergy<N, T>::bentScrew(const TreeMotion<T>& motion, std::size_t j, const T& v, int c) {
+  const auto segment = static_cast<std::size_t>(tree_->mobilities()[j].segment);
+  const SpatialVector<T>& H = momentum_[segment];
+  const SpatialVector<T>& D = motion.screw1[j];
+  const SpatialVector<T> carried = crossMotion(D, before_[j]);
+  const SpatialVector<T> moved = inertia_[segment] * D;
+  for (int i = 0; i < 6; ++i) {
+    out_.T_vq(c, c) += D[i] * H[i];
+    out_.T_qq(c, c) += (motion.screw2[j][i] * v - carried[i]) * H[i];
+  }
+  for (int i = 0; i < 3; ++i) out_.V_qq(c, c) -= tree_->gravity()[i] * moved[i + 3];
+}
+
+}  // namespace bio
