@@ -58,6 +58,12 @@ inline SpatialVector<T> crossForce(const SpatialVector<T>& a, const SpatialVecto
   return c;
 }
 
+/// Plain product of six numbers: a power, or twice an energy.
+template <class T>
+inline T dot(const SpatialVector<T>& a, const SpatialVector<T>& b) {
+  return (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) + (a[3] * b[3] + a[4] * b[4] + a[5] * b[5]);
+}
+
 /// ω × x + s: velocity of the point at x, or change of its place per unit of a screw's amount.
 template <class T>
 inline Eigen::Matrix<T, 3, 1> velocityAt(const SpatialVector<T>& screw,

@@ -56,8 +56,7 @@ void TreeEnergy<N, T>::constantInertia(const TreeMotion<T>& motion, const T* v) 
   const SpatialVector<T>& S = motion.screw.front();
   const SpatialInertia<T> I = inertiaInGround(motion.segments[1], s.mass, s.massCenter, s.inertia);
   const SpatialVector<T> F = I * S;
-  T M(0.0);
-  for (int i = 0; i < 6; ++i) M += S[i] * F[i];
+  const T M = dot(S, F);
   out_.T_vv(0, 0) = M;
   out_.T_v[0] = M * v[0];
   out_.kinetic = 0.5 * (out_.T_v[0] * v[0]);
@@ -77,6 +76,7 @@ template <int N, class T>
 void TreeEnergy<N, T>::outward(const TreeMotion<T>& motion, const T* v) {
   const Eigen::Vector3d& g = tree_->gravity();
   const auto& mobilities = tree_->mobilities();
+  T kinetic(0.0), potential(0.0);
   for (std::size_t s = 1; s < velocity_.size(); ++s) {
     const TreeSegment& segment = tree_->segments()[s];
     SpatialVector<T> V = velocity_[static_cast<std::size_t>(segment.parent)];
@@ -97,11 +97,12 @@ void TreeEnergy<N, T>::outward(const TreeMotion<T>& motion, const T* v) {
     inertia_[s] =
         inertiaInGround(motion.segments[s], segment.mass, segment.massCenter, segment.inertia);
     momentum_[s] = inertia_[s] * V;
-    T twice(0.0);
-    for (int i = 0; i < 6; ++i) twice += V[i] * momentum_[s][i];
-    out_.kinetic += 0.5 * twice;
-    for (int i = 0; i < 3; ++i) out_.potential -= g[i] * inertia_[s].massMoment[i];
+    const auto& massMoment = inertia_[s].massMoment;
+    kinetic += 0.5 * dot(V, momentum_[s]);
+    potential -= g[0] * massMoment[0] + g[1] * massMoment[1] + g[2] * massMoment[2];
   }
+  out_.kinetic = kinetic;
+  out_.potential = potential;
 }
 
 // From the ends inwards: inertia and momentum of everything beyond.
@@ -135,16 +136,14 @@ void TreeEnergy<N, T>::pairs(const TreeMotion<T>& motion, const T* v) {
     for (int i = 0; i < 6; ++i) {
       FW(0, i) = F[i];
       FW(1, i) = B[i] - G[i];
-      out_.T_v[c] += S[i] * H[i];
-      out_.T_q[c] -= b[i] * H[i];
     }
+    out_.T_v[c] += dot(S, H);
+    out_.T_q[c] -= dot(b, H);
     // d is the linear part of F; −g·(ω_k × d) = ω_k·(g × d)
-    T gd[3];
-    for (int i = 0; i < 3; ++i) out_.V_q[c] -= g[i] * F[i + 3];
-    for (int i = 0; i < 3; ++i) {
-      const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
-      gd[i] = g[i1] * F[i2 + 3] - g[i2] * F[i1 + 3];
-    }
+    const T d[3] = {F[3], F[4], F[5]};
+    const T gd[3] = {g[1] * d[2] - g[2] * d[1], g[2] * d[0] - g[0] * d[2],
+                     g[0] * d[1] - g[1] * d[0]};
+    out_.V_q[c] -= g[0] * d[0] + g[1] * d[1] + g[2] * d[2];
     if (!mobility.hasFixedScrew) bentScrew(motion, j, v[c], c);
     for (int k = static_cast<int>(j); k >= 0; k = mobilities[k].parent) {
       const Inner& inner = inner_[static_cast<std::size_t>(k)];
@@ -176,11 +175,10 @@ void TreeEnergy<N, T>::bentScrew(const TreeMotion<T>& motion, std::size_t j, con
   const SpatialVector<T>& D = motion.screw1[j];
   const SpatialVector<T> carried = crossMotion(D, before_[j]);
   const SpatialVector<T> moved = inertia_[segment] * D;
-  for (int i = 0; i < 6; ++i) {
-    out_.T_vq(c, c) += D[i] * H[i];
-    out_.T_qq(c, c) += (motion.screw2[j][i] * v - carried[i]) * H[i];
-  }
-  for (int i = 0; i < 3; ++i) out_.V_qq(c, c) -= tree_->gravity()[i] * moved[i + 3];
+  const Eigen::Vector3d& g = tree_->gravity();
+  out_.T_vq(c, c) += dot(D, H);
+  out_.T_qq(c, c) += dot(motion.screw2[j], H) * v - dot(carried, H);
+  out_.V_qq(c, c) -= g[0] * moved[3] + g[1] * moved[4] + g[2] * moved[5];
 }
 
 }  // namespace bio
