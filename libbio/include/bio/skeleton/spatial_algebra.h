@@ -13,8 +13,23 @@ namespace bio {
 /// origin and force. Power is the plain product ω·n + s·f.
 /// Source: Featherstone, Rigid Body Dynamics Algorithms (2008), chapter 2, with (ω, s) in his
 /// order.
+/// Plain numbers on purpose: Eigen would load them as packets just after they were stored one by
+/// one, for which a processor has to wait.
 template <class T>
-using SpatialVector = Eigen::Matrix<T, 6, 1>;
+struct SpatialVector {
+  T numbers[6];
+
+  static SpatialVector Zero() { return {{T(0.0), T(0.0), T(0.0), T(0.0), T(0.0), T(0.0)}}; }
+  T& operator[](int i) { return numbers[i]; }
+  const T& operator[](int i) const { return numbers[i]; }
+  T* data() { return numbers; }
+  const T* data() const { return numbers; }
+  SpatialVector& operator+=(const SpatialVector& other) {
+    for (int i = 0; i < 6; ++i) numbers[i] += other.numbers[i];
+    return *this;
+  }
+  friend SpatialVector operator+(SpatialVector a, const SpatialVector& b) { return a += b; }
+};
 
 namespace detail {
 
@@ -79,7 +94,7 @@ template <class T>
 struct SpatialInertia {
   T mass{0.0};                                                         ///< [kg]
   Eigen::Matrix<T, 3, 1> massMoment = Eigen::Matrix<T, 3, 1>::Zero();  ///< [kg m]
-  Eigen::Matrix<T, 6, 1> J = Eigen::Matrix<T, 6, 1>::Zero();  ///< xx yy zz xy xz yz [kg m²]
+  SpatialVector<T> J = SpatialVector<T>::Zero();  ///< xx yy zz xy xz yz [kg m²]
 
   SpatialInertia& operator+=(const SpatialInertia& other) {
     mass += other.mass;

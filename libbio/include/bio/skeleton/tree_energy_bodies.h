@@ -131,12 +131,8 @@ void TreeEnergy<N, T>::pairs(const TreeMotion<T>& motion, const T* v) {
     const SpatialVector<T> F = I * S;
     const SpatialVector<T> G = crossForce(S, H);
     const SpatialVector<T> B = I * b;
-    // columns (F_i, W_i), W = I b − G: two products at once for every k
-    Eigen::Matrix<T, 2, 6> FW;
-    for (int i = 0; i < 6; ++i) {
-      FW(0, i) = F[i];
-      FW(1, i) = B[i] - G[i];
-    }
+    SpatialVector<T> W;
+    for (int i = 0; i < 6; ++i) W[i] = B[i] - G[i];
     out_.T_v[c] += dot(S, H);
     out_.T_q[c] -= dot(b, H);
     // d is the linear part of F; −g·(ω_k × d) = ω_k·(g × d)
@@ -147,21 +143,18 @@ void TreeEnergy<N, T>::pairs(const TreeMotion<T>& motion, const T* v) {
     if (!mobility.hasFixedScrew) bentScrew(motion, j, v[c], c);
     for (int k = static_cast<int>(j); k >= 0; k = mobilities[k].parent) {
       const Inner& inner = inner_[static_cast<std::size_t>(k)];
-      Eigen::Matrix<T, 2, 1> onS = inner.S[0] * FW.col(0), onB = inner.b[0] * FW.col(0);
-      for (int i = 1; i < 6; ++i) {
-        onS += inner.S[i] * FW.col(i);
-        onB += inner.b[i] * FW.col(i);
-      }
+      const T SF = dot(inner.S, F), SW = dot(inner.S, W);
+      const T bF = dot(inner.b, F), bW = dot(inner.b, W);
       const T V_qq = inner.S[0] * gd[0] + inner.S[1] * gd[1] + inner.S[2] * gd[2];
       const int e = mobilities[k].coordinate;
-      out_.T_vv(e, c) += onS[0];
-      out_.T_vq(c, e) -= onB[0];
-      out_.T_qq(e, c) += onB[1];
+      out_.T_vv(e, c) += SF;
+      out_.T_vq(c, e) -= bF;
+      out_.T_qq(e, c) += bW;
       out_.V_qq(e, c) += V_qq;
       if (k == static_cast<int>(j)) continue;
-      out_.T_vv(c, e) += onS[0];
-      out_.T_vq(e, c) -= onS[1];
-      out_.T_qq(c, e) += onB[1];
+      out_.T_vv(c, e) += SF;
+      out_.T_vq(e, c) -= SW;
+      out_.T_qq(c, e) += bW;
       out_.V_qq(c, e) += V_qq;
     }
   }
