@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 
+#include "bio/path/surface/wrap_cylinder.h"
 #include "bio/path/surface/wrap_sphere.h"
 #include "bio/skeleton/simbody_tree.h"
 #include "bio/skeleton/tree_motion.h"
@@ -248,21 +249,23 @@ TEST(PointPath, AStraightSpanSeenFromAThirdBodyHasTheSameDerivatives) {
   }
 }
 
-TEST(PointPath, ASpanOverASphereHasTheDerivativesOfDualNumbers) {
-  const ArticulatedTree tree = treeOf(fixtures::threeLinkArm());
+/// A span from the shank over a surface on the pelvis to the upper arm, so that both ends turn as
+/// seen from it, whose frame lies just off the chord, nearer to its beginning.
+template <class Wrap>
+void wrappedSpanIsRight(const Wrap& wrap) {
+  const ArticulatedTree tree = treeOf(fixtures::bodyOfThirtySeven());
   const Eigen::VectorXd q = drawn(tree, 21);
-  const int surface = static_cast<int>(tree.placeOf("fore").segment);
-  const Station from = stationOf(tree, "upper", {0.1, 0.2, 0.1});
-  const Station to = stationOf(tree, "hand", {-0.1, -0.2, 0.1});
+  const int surface = static_cast<int>(tree.placeOf("body0").segment);
+  const Station from = stationOf(tree, "body2", {0.1, 0.2, 0.1});
+  const Station to = stationOf(tree, "body13", {-0.1, -0.2, 0.1});
   const auto X = placed(tree, q);
-  // a sphere whose centre lies just off the chord's middle
   const Placement<double>& X_GC = X.segments[static_cast<std::size_t>(surface)];
-  const Vec3d middle = 0.5 * (stationInGround(X, from) + stationInGround(X, to));
-  const Vec3d center = X_GC.R.transpose() * (middle - X_GC.p) + Vec3d(0.002, 0.01, -0.005);
+  const Vec3d near = 0.7 * stationInGround(X, from) + 0.3 * stationInGround(X, to);
+  const Vec3d center = X_GC.R.transpose() * (near - X_GC.p) + Vec3d(0.002, 0.01, -0.005);
   const auto over = [&](const auto& P, const auto& Q) {
     using T = std::decay_t<decltype(P[0])>;
     const Vec3<T> c = center.cast<T>();
-    return wrapSphereToSecondOrder<T>(T(0.03), Way::shorter, Vec3<T>(P - c), Vec3<T>(Q - c));
+    return wrap(Vec3<T>(P - c), Vec3<T>(Q - c));
   };
   std::vector<int> support;
   const auto jet = spanOver<double>(tree, X, surface, from, to, over, &support);
@@ -272,11 +275,26 @@ TEST(PointPath, ASpanOverASphereHasTheDerivativesOfDualNumbers) {
     const auto along =
         spanOver<Dual>(tree, placedAlong(tree, q, support[i]), surface, from, to, over);
     const auto row = static_cast<Eigen::Index>(i);
-    EXPECT_NEAR(along.length.derivatives()[0], jet.first[row], 1e-12);
+    EXPECT_NEAR(along.length.derivatives()[0], jet.first[row], 1e-12);  // measured 2e-16
     for (Eigen::Index j = 0; j < jet.first.size(); ++j) {
-      EXPECT_NEAR(along.first[j].derivatives()[0], jet.second(row, j), 1e-12);  // measured 5e-15
+      EXPECT_NEAR(along.first[j].derivatives()[0], jet.second(row, j), 1e-12);  // measured 1e-15
     }
   }
+}
+
+TEST(PointPath, ASpanOverASphereHasTheDerivativesOfDualNumbers) {
+  wrappedSpanIsRight([](const auto& P, const auto& Q) {
+    using T = std::decay_t<decltype(P[0])>;
+    return wrapSphereToSecondOrder<T>(T(0.03), Way::shorter, P, Q);
+  });
+}
+
+// Unlike a sphere's, a cylinder's mixed second derivatives are not symmetric.
+TEST(PointPath, ASpanOverACylinderHasTheDerivativesOfDualNumbers) {
+  wrappedSpanIsRight([](const auto& P, const auto& Q) {
+    using T = std::decay_t<decltype(P[0])>;
+    return wrapCylinderToSecondOrder<T>(T(0.03), Side::clockwise, P, Q);
+  });
 }
 
 TEST(PointPath, EvaluatesWithoutAllocation) {
