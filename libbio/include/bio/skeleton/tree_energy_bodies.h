@@ -84,13 +84,13 @@ void TreeEnergy<N, T>::outward(const TreeMotion<T>& motion, const T* v) {
       const auto at = static_cast<std::size_t>(m);
       const SpatialVector<T>& S = motion.screw[at];
       const T& v_k = v[mobilities[at].coordinate];
-      SpatialVector<T> b = crossMotion(S, V);
+      Inner& inner = inner_[at];
+      inner.S = S;
+      inner.b = crossMotion(S, V);
       if (!mobilities[at].hasFixedScrew) {
-        for (int i = 0; i < 6; ++i) b[i] -= motion.screw1[at][i] * v_k;
+        for (int i = 0; i < 6; ++i) inner.b[i] -= motion.screw1[at][i] * v_k;
         before_[at] = V;
       }
-      inner_[at].S = S;
-      inner_[at].b = b;
       for (int i = 0; i < 6; ++i) V[i] += S[i] * v_k;
     }
     velocity_[s] = V;
