@@ -16,12 +16,12 @@ namespace app {
 struct ShownOutput {
   std::string name;   ///< e.g. "elbow_flexion"
   std::string unit;   ///< e.g. "deg"
-  double weight = 1;  ///< its weight in Disagreement::measured
+  double weight = 1;  ///< its weight in DiscoveryProblem::measured
 };
 
 /// Words and units of the report, for one kind of system.
 struct DiscoverWording {
-  std::vector<ShownOutput> outputs;  ///< by Disagreement::outputOfSample
+  std::vector<ShownOutput> outputs;  ///< by DiscoveryProblem::outputOfSample
   double unit = 1;                   ///< factor from internal values to shown ones
   std::string gapEnd;                ///< suffix of names in verdict.json: "_deg", "_m" or "_N"
   std::string force;                 ///< the latent force: "Torque [N·m]"

@@ -7,7 +7,7 @@
 
 namespace info::discover {
 
-using Effects = std::vector<std::size_t>;  ///< indices into Disagreement::candidates(), sorted
+using Effects = std::vector<std::size_t>;  ///< indices into DiscoveryProblem::candidates(), sorted
 
 inline Effects with(Effects effects, std::size_t another) {
   effects.insert(std::upper_bound(effects.begin(), effects.end(), another), another);

@@ -130,7 +130,7 @@ class Search {
     Eigen::VectorXd values;  ///< where it ends
     double evidence = 0;     ///< half way
   };
-  /// Nothing where the model cannot be simulated so, or Disagreement::nudged is not offered.
+  /// Nothing where the model cannot be simulated so, or DiscoveryProblem::nudged is not offered.
   std::optional<Led> ledFrom(const Effects& effects, Eigen::VectorXd start);
   /// Fits from where those end that are led from the nominal values, of candidates beside `base`
   /// that come near the best of them.

@@ -13,7 +13,7 @@ namespace info::discover {
 std::optional<std::size_t> placeOf(const DiscoveryProblem& data, const std::string& id);
 
 /// What a search knows of the effects that it has chosen and of parts of them, for a search of the
-/// same trials with another catalogue (Disagreement::withFormula); nothing if that lacks one of
+/// same trials with another catalogue (DiscoveryProblem::withFormula); nothing if that lacks one of
 /// them.
 std::optional<SearchMemory> searchMemoryOf(const Search& search, const Effects& chosen,
                                            const DiscoveryProblem& widened);
