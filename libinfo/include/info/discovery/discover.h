@@ -152,7 +152,7 @@ struct Verdict {
   Stage reached = Stage::calibrate;
   Finding finding = Finding::none;
   std::string sentence;              ///< the finding as a sentence
-  std::vector<NamedEffect> effects;  ///< in the order they were found; for unknown: the surrogate
+  std::vector<NamedEffect> effects;  ///< in the order they were found; for unknown: the proxy
   double probability = 0;            ///< of all effects together; 0 if none is given
   /// Effects are named, but without a probability: the innovations have the wrong size, or the
   /// errors of the held-out trials are improbably large (Options::farOff).
