@@ -334,7 +334,7 @@ INSTANTIATE_TEST_SUITE_P(
         {"HoldOutIsFitted", discover({"--hold-out", "emg_data/hidden_a/train_1.sto"}),
          "is held out and also used for estimation"},
         {"UnknownEffect", discover({"--without", "ghost"}), "no effect is called 'ghost'"},
-        {"TwoCoordinates", discover({"--coordinate", "elbow_flexion,pro_sup"}), "observes one"},
+        {"TwoCoordinates", discover({"--coordinate", "elbow_flexion,pro_sup"}), "must be one"},
         {"OtherIntegrator", discover({"--integrator", "cvode"}), "vi or vi-left"},
         {"NoiseBelowZero", discover({"--noise-deg", "-1"}), "--noise-deg"},
         {"ScatterBelowZero", discover({"--input-scatter", "-0.1"}), "--input-scatter"},

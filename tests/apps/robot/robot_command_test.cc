@@ -187,7 +187,7 @@ TEST(RobotCommand, SaysWithFiguresThatASearchMadeNoProgress) {
   const ProgramResult again = runFisherHill({"robot", "suspended-mass", "--tolerance", "0",
                                              "--warm-start", out + "/motion_optimised.csv"});
   EXPECT_EQ(again.status, 1);
-  EXPECT_THAT(again.out, AllOf(HasSubstr("No progress: no step along the direction"),
+  EXPECT_THAT(again.out, AllOf(HasSubstr("No progress: no step along the descent direction"),
                                HasSubstr("the cost stays at 10"), HasSubstr("trial motions")));
 }
 
