@@ -63,7 +63,7 @@ py::list plannedOf(const MusculoskeletalProblem& data, const Verdict& verdict,
   return planned;
 }
 
-/// What is there without a name, and the formula that was raced for it.
+/// The unknown effect, and the formula that was compared for it.
 py::object unknownOf(const Verdict& verdict) {
   if (!verdict.unknown) return py::none();
   py::object raced = py::none();

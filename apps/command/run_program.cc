@@ -36,7 +36,7 @@ int printed(int result, const std::string& subcommand) {
   return fail(subcommand, "standard output cannot be written");
 }
 
-/// The word that was probably meant by the first one that means nothing.
+/// The option or command most similar to the first unknown word, for the error message.
 std::string meantBy(const CLI::App& app, const std::vector<std::string>& arguments) {
   std::vector<std::string> options, commands;
   for (const CLI::Option* option : app.get_options()) {

@@ -21,7 +21,7 @@ struct FollowUps {
   std::string otherwise;  ///< for a class that none of them separates
   std::string ifUnknown, ifNamed;
 };
-/// @param loadColumn  the trial's column of the load from outside, e.g. elbow_flexion.torque
+/// @param loadColumn the trial's column of the external load, e.g. elbow_flexion.torque
 FollowUps followUpsOfModels(const std::string& loadColumn);
 
 /// The experiment to do after this verdict, in words: the one that distinguishes most members of a

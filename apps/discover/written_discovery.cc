@@ -19,7 +19,7 @@ using bio::discover::RepairedTrial;
 using info::discover::Finding;
 using info::discover::Verdict;
 
-/// What is missing has no name, but a formula that explains it.
+/// The missing effect is not in the catalogue, but a formula describes it.
 bool isFormula(const Verdict& verdict) {
   return verdict.finding == Finding::unknown && verdict.formula && verdict.formula->wins;
 }

@@ -213,7 +213,7 @@ class RobotSearch {
   }
 
  private:
-  /// The robot at a time step, and what the engine is told.
+  /// The robot at a time step, with the options of the search.
   info::discover::Attempt attempt(const info::robot::Model& model,
                                   const std::vector<info::robot::Trial>& trials, double step) {
     info::robot::DisagreementOptions asked;

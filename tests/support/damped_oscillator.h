@@ -6,7 +6,7 @@
 
 namespace info {
 
-/// A driven linear oscillator whose motion and sensitivities have closed forms.
+/// A driven linear oscillator with closed-form motion and sensitivities.
 ///
 ///     m q̈ + c q̇ + k q = u,   x = (q, q̇),   θ = (c, k),   y = q
 /// q [m], u force [N], c [N s/m], k [N/m]; smooth everywhere.

@@ -77,7 +77,7 @@ class Calibrator {
       const std::size_t i = indexOf(name, "prior");
       asked_[i].prior = prior;
       known_[static_cast<Index>(i)] = prior.sd;
-      // who says what is known is better believed than the model
+      // a prior given by the user replaces the model's value as the start
       if (asked_[i].lower <= asked_[i].upper && std::isfinite(prior.mean)) {
         asked_[i].start = std::clamp(prior.mean, asked_[i].lower, asked_[i].upper);
       }

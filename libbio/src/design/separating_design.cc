@@ -181,7 +181,7 @@ SeparatingResult SeparatingDesign::search(const DesignSearchSettings& settings) 
     std::optional<SeparatingExperiment> e;
     try {
       e = at(x);
-      // what cannot be told apart at all still has a slope to climb
+      // finite also for indistinguishable effects, so that the price still guides the search
       cost = -std::log(std::max(1e-12, e->tells.least())) + price(*e);
     } catch (const std::domain_error&) {
       // impossible

@@ -130,7 +130,9 @@ class SensitivityStep {
       }
     }
 
-    // linear in the ends: x_end = x_q/2 + x_v/h, x_begin = x_q/2 − x_v/h, x_h = −x_v v/h
+    // With q_mid = (q_begin + q_end)/2 and v = (q_end − q_begin)/h, the chain rule gives the
+    // derivatives of any x(q_mid, v): x_end = x_q/2 + x_v/h, x_begin = x_q/2 − x_v/h, x_h = −x_v
+    // v/h.
     const Matrix& M = inertia.massMatrix;
     const Matrix residual_q = Mv_q - h / 2 * L_qq - share * f_q;
     const Matrix residual_v = M - h / 2 * L_qv - share * f_v;

@@ -105,8 +105,8 @@ class LaneGroup {
 
   bool hasJob(int lane) const { return static_cast<std::size_t>(lane) < members_.size(); }
 
-  /// A lane without a step computes along and is not looked at; what is not a number would only
-  /// take time.
+  /// A lane without a step repeats the numbers of a valid lane, since NaN or infinity would slow
+  /// the batch; its result is ignored.
   void rest(int lane) {
     const int from = hasJob(lane) ? lane : 0;
     step_.length[lane] = step_.length[from];

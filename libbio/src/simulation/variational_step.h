@@ -166,7 +166,7 @@ class VariationalStepper {
     return correction * ratio * ratio < 0.01 * options_.newtonTolerance;
   }
 
-  /// What is left of the equations at the last iterate, for the message of a failed step.
+  /// Residual of the equations at the last iterate, for the message of a failed step.
   std::string describeResidual() const {
     std::string text;
     for (std::size_t i = 0; i < rate_.size(); ++i) {

@@ -84,7 +84,7 @@ VectorXd BoundedProfiles::project(const VectorXd& x) const {
       }
       if (sweep > 0 && (z - before).cwiseAbs().maxCoeff() < 1e-10) break;
     }
-    // cut what is left over
+    // clip remaining violations
     z = z.cwiseMax(-1.0).cwiseMin(1.0);
     if (held) z[0] = firstOf(i);
     for (Index k = 0; k + 1 < n; ++k) {

@@ -31,7 +31,7 @@ std::vector<Estimate> estimatesOf(const Fit& fit, const std::vector<std::size_t>
     if (i < 0) continue;
     const auto at = static_cast<std::size_t>(i);
     Estimate e{q, fit.values[static_cast<Index>(q)], fit.sd(at), 0, false};
-    // surprise counts the tolerance of the quantity itself, not that of a race
+    // the prior z-score refers to the quantity's own prior, not to that of a candidate
     FreeQuantity own = fit.hypothesis.free[at];
     own.sd = data.quantities()[q].sd;
     e.surprise = own.coordinate(e.value);
@@ -43,7 +43,7 @@ std::vector<Estimate> estimatesOf(const Fit& fit, const std::vector<std::size_t>
   return result;
 }
 
-// Everything that run() carries from stage to stage.
+// The state of run() from stage to stage.
 class Work {
  public:
   Work(const DiscoveryProblem& data, const Options& options, RecordedNoise noise)
@@ -81,8 +81,8 @@ class Work {
     if (options_.progress && !options_.progress({stage, fraction_, doing})) throw Stopped();
   }
 
-  // What was raced before the search was stopped, and where the base disagrees. Says which name
-  // leads.
+  // The fits before the search was stopped, and the score map of the base model. The sentence names
+  // the leader.
   std::string keepWhatIsThere() {
     if (!search_ || search_->entries().count({}) == 0 || !search_->at({}).works()) return "";
     judge();
@@ -127,8 +127,9 @@ class Work {
     report(Stage::localise, 0.2, "");
   }
 
-  // A simulation that changes with its step says nothing about the world. Asked of what is believed
-  // in the end: a base that lacks something may run away, and then every step is too long.
+  // If a simulation depends on its time step, no conclusion about the system is possible. Tested
+  // with the final effects: a base model with a missing effect may diverge, and then every step is
+  // too long.
   bool stepsTooLong() {
     const VectorXd& values = search_->simulation(chosen_).values;
     int worst = 0;
@@ -150,7 +151,7 @@ class Work {
     return true;
   }
 
-  // what there is to say about the base model
+  // results of the base model
   void base() {
     const Entry& entry = search_->at({});
     verdict_.base = entry.fit.values;
@@ -188,7 +189,7 @@ class Work {
       sum += std::exp(posterior(f) - posterior(verdict_.finalists[0]));
     for (Finalist& f : verdict_.finalists)
       f.probability = std::exp(posterior(f) - posterior(verdict_.finalists[0])) / sum;
-    base();  // back-substitution may have found a better one
+    base();  // a better base may have been found since
     const Entry& leader = search_->at(chosen_);
     if (!chosen_.empty()) {
       verdict_.after = adequacy(search_->likelihood(), leader.fit, test_);
@@ -240,7 +241,7 @@ class Work {
     verdict_.vetoed = decision.vetoed;
     verdict_.proxy = decision.proxy;
     collectRivals();
-    // the parameter that is off, where no race was needed to see it
+    // a parameter in error that is evident without a comparison of candidates
     if (decision.finding == Finding::parameter && decision.effects.empty())
       for (std::size_t c = 0; c < data_.candidates().size(); ++c)
         if (data_.candidates()[c].kind == EffectKind::parameter &&
@@ -254,7 +255,7 @@ class Work {
           break;
         }
 
-    // where the base disagrees, with the scatter of inputs that is left once effects are named
+    // score map of the base model, with the scatter of inputs estimated together with the effects
     const bool small = before.fit.noise.latent <= options_.latentTolerance;
     const bool trusted = decision.finding != Finding::unknown && !chosen_.empty();
     Fit map = search_->simulation({});
@@ -287,7 +288,7 @@ class Work {
       verdict_.rivals.insert(verdict_.rivals.begin(), search_->at(chosen_).fit);
   }
 
-  // The race of the formula is the last that is done.
+  // The formula is compared last.
   Options optionsOfFormula() const {
     Options options = options_;
     options.outputSd = verdict_.outputSd;
@@ -303,7 +304,7 @@ class Work {
     const Noise noise{verdict_.outputSd, size, options_.latentTime};
     const Likelihood& likelihood = search_->likelihood();
     if (auto fit = likelihood.tryFit(old.hypothesis, noise, old.values)) return std::move(*fit);
-    // it stands by its latent force only
+    // the simulation follows the data only because of its latent force
     return likelihood.fit(old.hypothesis, noise, old.values,
                           forceKept(old.eta, old.noise.latent, size));
   }
@@ -322,7 +323,7 @@ class Work {
     const auto nominal = [&](const Likelihood& l) {
       const auto fit = l.tryFit(startsOnly(data_, l.trials()), still, nominalValues(data_));
       return fit ? l.simulationError(fit->values)
-                 : HUGE_VAL;  // as it came it may not reach the end
+                 : HUGE_VAL;  // the original model may not reach the end of a trial
     };
     gap.nominal = nominal(likelihood);
     gap.calibrated = likelihood.simulationError(search_->simulation({}).values);
@@ -358,13 +359,13 @@ class Work {
     judgement.strangeBefore = !verdict_.heldOutBefore->expected();
     judgement.strangeAfter = !verdict_.heldOutAfter->expected();
     judgement.heldOutFarOff = other.probability && *other.probability < options_.farOff;
-    // by more than chance; a base that fits badly is no exact yardstick, so its simulation must be
-    // no worse, too
+    // by more than chance; since the evidence is inaccurate for a base model that fits badly, the
+    // simulation must be no worse either
     judgement.heldOutWorse =
         !chosen_.empty() && with.score < without.score - 3 && with.error > 0.95 * without.error;
   }
 
-  // Puts the starts of what was held out where those of the others are.
+  // Sets the initial states of the held-out trials.
   std::vector<Estimate> keepStarts(const HeldOutTrials& held, VectorXd& values) const {
     if (!held.starts) return {};
     std::vector<std::size_t> starts;

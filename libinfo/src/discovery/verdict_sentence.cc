@@ -5,7 +5,7 @@
 namespace info::discover {
 namespace {
 
-constexpr double kWorthSaying = 0.005;  // σ_d that the sentence mentions
+constexpr double kWorthSaying = 0.005;  // smallest σ_d that the sentence mentions
 
 class VerdictSentence {
  public:
@@ -13,7 +13,7 @@ class VerdictSentence {
                   bool somethingChosen)
       : data_(data), verdict_(verdict), farOff_(farOff), somethingChosen_(somethingChosen) {}
 
-  // How much of what is left is taken for noise of the inputs: a name rests on it.
+  // The scatter attributed to noise of the inputs, on which the effects found depend.
   std::string scatter() const {
     if (verdict_.latentSizeAfter < kWorthSaying) return "";
     return fmt::format(" {:.2g} % of the inputs' effect is attributed to input noise.",
@@ -29,7 +29,7 @@ class VerdictSentence {
         *verdict_.heldOut->probability);
   }
 
-  // Which samples were not used, and why.
+  // The samples that were not used, and the reason.
   std::string samples() const {
     const RecordedNoise& noise = verdict_.noise;
     std::string words;

@@ -47,7 +47,7 @@ const std::vector<EffectEntry>& effectEntries() {
 
 namespace {
 
-/// What is left out must be an entry, a candidate, or present in the model.
+/// Every excluded id must be an entry, a candidate, or present in the model.
 void mustBeKnown(const EncompassingModel& encompassing, const std::vector<std::string>& ids) {
   const auto& entries = effectEntries();
   for (const std::string& id : ids) {

@@ -9,7 +9,7 @@ namespace info {
 
 namespace detail {
 
-/// Directions carried at once: all of them where the number is fixed and small, else blocks of 4.
+/// Directions per evaluation: all of them if their number is fixed and small, else blocks of 4.
 constexpr int directionBlock(int size) {
   return size > 0 && size <= 8 ? size : 4;
 }
@@ -126,7 +126,7 @@ Vector<double, N> hessianVectorProduct(const F& function, const Vector<double, N
   return product;
 }
 
-/// The twin of jacobian(): central differences with steps h·max(1, |z_j|), error O(h²) + O(ε/h).
+/// Reference for jacobian(): central differences with steps h·max(1, |z_j|), error O(h²) + O(ε/h).
 /// @param relativeStep h > 0; 6e-6 = ∛ε balances the two errors
 template <class F, int N>
 auto finiteDifferenceJacobian(const F& function, const Vector<double, N>& z,
@@ -148,7 +148,7 @@ auto finiteDifferenceJacobian(const F& function, const Vector<double, N>& z,
   return out;
 }
 
-/// The twin of contractedHessian(): central differences of central differences.
+/// Reference for contractedHessian(): central differences of central differences.
 /// @param relativeStep h > 0; 1e-4 ≈ ε^(1/4) balances truncation and rounding
 template <class F, int N, int Rows>
 Matrix<double, N, N> finiteDifferenceHessian(const F& function, const Vector<double, N>& z,

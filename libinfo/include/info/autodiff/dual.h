@@ -12,28 +12,28 @@ using Vector = Eigen::Matrix<T, N, 1>;
 template <class T, int R, int C>
 using Matrix = Eigen::Matrix<T, R, C, (R == 1 && C != 1) ? Eigen::RowMajor : Eigen::ColMajor>;
 
-/// A number a + Σ b_i ε_i with ε_i ε_j = 0: carries C directional derivatives b through a function,
+/// A number a + Σ b_i ε_i with ε_i ε_j = 0: propagates C directional derivatives b through a
+/// function,
 ///     f(a + Σ b_i ε_i) = f(a) + f′(a) Σ b_i ε_i
 /// Dual<C, Dual<D>> carries second derivatives. C is fixed, so that nothing is allocated.
 ///
-/// Every operation is evaluated where it stands: no expression types, which is what makes this
-/// quicker to compile than Eigen's scalar (docs/decisions/020-dual-numbers.md) and lets `auto` and
-/// nested literals (0.5 * x) mean what they say. The value is bit for bit what the same arithmetic
-/// in T gives. Comparisons look at the value alone. At a kink
-/// (|a| at 0) the derivative is one of the two sides; √0 has an infinite one.
+/// Every operation is evaluated at once. There are no expression templates, so that it compiles
+/// faster than Eigen's scalar, and `auto` and nested literals (0.5 * x) are safe. The value is bit
+/// for bit that of the same arithmetic in T. Comparisons use only the value. At a kink (|a| at 0)
+/// the derivative is one of the two one-sided derivatives; that of √0 is infinite.
 template <int C, class T = double>
 class Dual {
  public:
   using Scalar = T;
   using DerType = Vector<T, C>;  ///< of the derivatives
 
-  /// Not initialised, as a double is not.
+  /// Not initialised, like a double.
   Dual() = default;
   /// A constant.
   Dual(double value) : value_(value) { fill(T(0.0)); }
   Dual(const T& value) requires(!std::same_as<T, double>) : value_(value) { fill(T(0.0)); }
   Dual(const T& value, const DerType& derivatives) : value_(value), derivatives_(derivatives) {}
-  /// The variable of one direction of `count` = C.
+  /// An independent variable: direction `index` of C.
   Dual(const T& value, int /*count*/, int direction) : Dual(value) {
     derivatives_[direction] = T(1.0);
   }
@@ -166,7 +166,7 @@ class Dual {
     return x.through(tangent, 1.0 - tangent * tangent);
   }
   friend Dual abs(const Dual& x) { return x.value_ < 0.0 ? -x : x; }
-  /// x^y for a plain y.
+  /// x^y for a constant y.
   friend Dual pow(const Dual& x, double y) {
     using std::pow;
     return x.through(pow(x.value_, y), y * pow(x.value_, y - 1));
@@ -208,7 +208,7 @@ class Dual {
   DerType derivatives_;
 };
 
-/// The plain number inside, whatever the nesting.
+/// The value as a double, for any nesting.
 inline double plainValue(double x) {
   return x;
 }
@@ -219,7 +219,7 @@ double plainValue(const Dual<C, T>& x) {
 
 }  // namespace info
 
-/// Lets Eigen's matrices hold Dual numbers, and mix them with double.
+/// Allows Dual numbers as scalars of Eigen's matrices, also mixed with double.
 template <int C, class T>
 struct Eigen::NumTraits<info::Dual<C, T>> : Eigen::NumTraits<double> {
   using Real = info::Dual<C, T>;

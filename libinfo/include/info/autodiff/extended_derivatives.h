@@ -3,10 +3,11 @@
 #include "info/dynamics/sensitivity.h"
 
 /// Values and derivatives of f and g along the sensitivities ψ = dx/dθ, in fixed sizes and without
-/// allocation: the kernels of everything that treats (x, ψ) as one state.
+/// allocation: the kernels of all methods that treat (x, ψ) as one state.
 namespace info {
 
-/// F(w, θ) and dF/dθ where the first n of w follow θ by ψ: D_xF ψ + D_θF.
+/// F(w, θ) and the total derivative dF/dθ = D_xF ψ + D_θF, the first n components of w being x(θ)
+/// with dx/dθ = ψ.
 template <int Rows, int P>
 struct AlongSensitivity {
   Vector<double, Rows> value;
@@ -43,7 +44,7 @@ auto alongPsi(const F& function, const Vector<double, W>& w, const Matrix<double
   return out;
 }
 
-/// One sweep over w directions of numbers that carry p directions themselves.
+/// One sweep over w directions with scalars that carry p directions.
 template <int N, int W, int P, class F>
 auto nestedDerivatives(const F& function, const Vector<double, W>& w,
                        const Matrix<double, N, P>& psi, const Vector<double, P>& theta) {

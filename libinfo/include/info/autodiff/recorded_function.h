@@ -11,9 +11,9 @@ namespace info {
 
 class Recording;
 
-/// A scalar that writes down the operations done with it, so that a template over its scalar can be
-/// turned into a formula, differentiated as a formula, and evaluated many times without repeating
-/// common parts or multiplying by zeros.
+/// A scalar that records the operations done with it, so that a template over its scalar becomes a
+/// formula that can be differentiated symbolically and evaluated many times without repeated common
+/// subexpressions or multiplications by zero.
 ///
 /// A Symbol has no value: it cannot be compared or converted, and a function that branches on its
 /// arguments does not compile with it.
@@ -41,7 +41,7 @@ class Symbol {
   friend Symbol atan(const Symbol& a);
   friend Symbol pow(const Symbol& a, double exponent);
 
-  /// True for a number known while recording, such as a derivative that is identically zero.
+  /// True for a constant, such as a derivative that is identically zero.
   bool isConstant() const { return recording_ == nullptr; }
   bool isZero() const { return isConstant() && constant_ == 0.0; }
 
@@ -54,7 +54,7 @@ class Symbol {
   double constant_;
 };
 
-/// The operations recorded so far, each written once however often it was done.
+/// The recorded operations; equal operations are stored once.
 class Recording {
  public:
   Recording() = default;
@@ -108,7 +108,7 @@ class Recording {
 class RecordedFunction {
  public:
   RecordedFunction() = default;
-  /// @param targets where in `results` each output is written; in order if empty
+  /// @param targets index in `results` of each output; in order if empty
   RecordedFunction(Recording& recording, std::span<const Symbol> outputs,
                    std::vector<int> targets = {});
 
@@ -117,7 +117,7 @@ class RecordedFunction {
   int operationCount() const;
 
   /// @param arguments argumentCount() numbers
-  /// @param results receives output i at its target; what is no target is left as it is
+  /// @param results receives output i at its target; other entries are unchanged
   void evaluate(const double* arguments, double* results) const;
 
  private:

@@ -6,20 +6,20 @@
 
 namespace info {
 
-/// What an input may do.
+/// The limits of an input.
 struct ProfileLimits {
   double lower, upper;               ///< [unit of u], lower < upper
   double rate;                       ///< |du/dt| ≤ rate [unit/s] > 0, may be infinite
-  std::optional<double> first = {};  ///< value at the first knot, if it is held
+  std::optional<double> first = {};  ///< fixed value at the first knot
 };
 
-/// Inputs u(t) drawn as straight lines between knots, and the nearest ones that keep their limits.
+/// Piecewise linear inputs u(t), and the projection onto those that respect their limits.
 ///
 /// The coefficients x of an input are its values at the knots, scaled so that its limits are ±1:
 ///     u(t_k) = (lower + upper)/2 + x_k·(upper − lower)/2
-/// Between knots a straight line keeps what its ends keep, so limits and rates hold at all times if
-///     |x_k| ≤ 1,   |x_{k+1} − x_k| ≤ rate·(t_{k+1} − t_k)·2/(upper − lower).
-/// Inputs stand one behind the other in x.
+/// A linear piece respects the limits if its ends do, so limits and rates hold at all times if
+/// |x_k| ≤ 1, |x_{k+1} − x_k| ≤ rate·(t_{k+1} − t_k)·2/(upper − lower). The inputs follow each
+/// other in x.
 class BoundedProfiles {
  public:
   /// @param knots [s] strictly rising, at least 2
@@ -32,11 +32,11 @@ class BoundedProfiles {
   /// Number of coefficients: inputs × knots.
   Eigen::Index size() const;
 
-  /// The point of the convex set of x that keep all limits which is nearest to x (Dykstra's
-  /// alternating projections, to 1e-9; what is left over is then cut from front to back).
+  /// The projection of x onto the convex set of coefficients that respect all limits (Dykstra's
+  /// alternating projections, to 1e-9; remaining violations are then clipped from front to back).
   Eigen::VectorXd project(const Eigen::VectorXd& x) const;
 
-  /// How far x is outside, in units of x; 0 if inside.
+  /// Violation of the limits by x, in units of x; 0 if there is none.
   double excess(const Eigen::VectorXd& x) const;
 
   /// Values at times, held constant outside the knots: times × inputs.
@@ -47,7 +47,8 @@ class BoundedProfiles {
 
  private:
   Eigen::Index numKnots() const { return static_cast<Eigen::Index>(knots_.size()); }
-  double largestStep(std::size_t input, Eigen::Index knot) const;  ///< of x, to the next knot
+  double largestStep(std::size_t input,
+                     Eigen::Index knot) const;  ///< largest difference of x to the next knot
   double firstOf(std::size_t input) const;
 
   std::vector<double> knots_;

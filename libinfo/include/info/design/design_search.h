@@ -7,43 +7,45 @@
 
 namespace info {
 
-/// What an experiment with certain inputs would tell.
+/// The information of an experiment with given inputs.
 struct DesignOutcome {
-  bool possible = false;        ///< false: there is no such experiment
+  bool possible = false;        ///< false: the experiment is infeasible
   Eigen::MatrixXd information;  ///< I
-  double penalty = 0;           ///< for what the experiment must not do ≥ 0
+  double penalty = 0;           ///< for violated constraints, ≥ 0
 };
 
 /// An experiment whose inputs are coefficients x of a convex set.
 struct DesignProblem {
   /// Pure; called from several threads.
   std::function<DesignOutcome(const Eigen::VectorXd& x)> run;
-  /// The nearest point of the set.
+  /// Projection onto the set.
   std::function<Eigen::VectorXd(const Eigen::VectorXd& x)> project;
-  /// φ(I) and its gradient, given which eigenvalues count as equal.
-  /// @throws std::domain_error where there is none
+  /// φ(I) and its gradient, given the tolerance for equal eigenvalues.
+  /// @throws std::domain_error if undefined
   std::function<InformationCost(const Eigen::MatrixXd& information, double repeatedTolerance)> cost;
 };
 
 struct DesignSearchOptions {
-  double difference = 1e-5;  ///< of a coefficient, for ∂I/∂x and ∂penalty/∂x [unit of x] > 0
-  int threads = 0;           ///< at most so many runs at once; 0: all cores
-  /// Asked after every run, from any thread; once it is true, the search ends where it is.
+  double difference = 1e-5;  ///< step for ∂I/∂x and ∂penalty/∂x [unit of x] > 0
+  int threads = 0;           ///< number of concurrent runs; 0: all cores
+  /// Called after every run, from any thread; returning true ends the search.
   std::function<bool()> stop = {};
 };
 
-/// Searches the inputs of an experiment for J(x) = φ(I(x)) + penalty(x), for info::search().
+/// Optimisation of the inputs of an experiment, J(x) = φ(I(x)) + penalty(x), for info::search().
 ///
-/// For systems whose step has no second derivatives, so that projection.h and discrete_projection.h
-/// cannot give DJ. ∂I/∂x_i is the difference of two exact informations,
+/// For systems without second derivatives of the step, for which projection.h and
+/// discrete_projection.h cannot compute DJ. ∂I/∂x_i is the difference quotient of two exact
+/// information matrices,
 ///     ∂J/∂x_i = ⟨∂φ/∂I, I(x + δe_i) − I(x)⟩/δ + ∂penalty/∂x_i,
-/// all i in parallel; the step δ goes where x + δe_i stays between −1 and 1. Differencing I and not
-/// φ keeps the generalised gradient of λ_min where eigenvalues meet. The direction is that of the
-/// spectral projected gradient, d = P(x − α∂J) − x with Barzilai and Borwein's α = sᵀs/sᵀy, so that
-/// x + γd keeps the limits for all γ ≤ 1 (Birgin, Martínez & Raydan 2000, with a monotone search).
+/// all i in parallel; δ has the sign for which x + δe_i stays between −1 and 1. Differencing I
+/// instead of φ preserves the generalised gradient of λ_min at repeated eigenvalues. The direction
+/// is that of the spectral projected gradient, d = P(x − α∂J) − x with Barzilai and Borwein's α =
+/// sᵀs/sᵀy, so that x + γd respects the limits for all γ ≤ 1 (Birgin, Martínez & Raydan 2000, with
+/// a monotone search).
 class DesignSearch : public SearchProblem {
  public:
-  /// @throws NoInformation, std::domain_error if there is no cost at the start
+  /// @throws NoInformation, std::domain_error if the cost is undefined at the start
   DesignSearch(DesignProblem problem, const Eigen::VectorXd& start,
                DesignSearchOptions options = {});
 

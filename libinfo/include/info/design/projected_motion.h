@@ -5,7 +5,7 @@
 #include "info/design/riccati.h"
 #include "info/design/robust_design.h"
 
-/// What the projections in discrete and in continuous time share.
+/// Common parts of the projections in discrete and in continuous time.
 namespace info {
 
 /// A motion at the times t_k = k·step with its sensitivities.
@@ -15,11 +15,11 @@ struct Motion {
   std::vector<Eigen::MatrixXd> psi;
 };
 
-/// What an information-optimal motion is to be, whichever way of time. n, m, p are the sizes of one
-/// system; of stacked candidates each takes these.
+/// The design of an information-optimal motion in discrete or continuous time. n, m, p are the
+/// sizes of one system; for stacked candidates they are those of each candidate.
 struct MotionDesign {
   Eigen::VectorXd x0;
-  std::vector<Eigen::VectorXd> desiredInput;  ///< û at the times t_k; x̂ is the motion they give
+  std::vector<Eigen::VectorXd> desiredInput;  ///< û at the times t_k; x̂ is the resulting motion
 
   InformationWeights information;
   RobustRule candidateRule = RobustRule::average;  ///< of stacked candidates
@@ -27,40 +27,41 @@ struct MotionDesign {
   Eigen::MatrixXd inputWeight;                     ///< R: m × m ⪰ 0; empty: 0
   InputLimits limits;
 
-  // The quadratic model ½|ζ|² that shapes the direction, and the LQR that projects. `modelState` is
-  // on all states of the direction, `gainState` on those fed back; each way of time says which.
+  // The quadratic model ½|ζ|² that shapes the direction, and the LQR that projects. `modelState`
+  // weights all states of the direction, `gainState` those that are fed back; see the derived
+  // designs.
   Eigen::MatrixXd modelState;  ///< ⪰ 0
   Eigen::MatrixXd modelInput;  ///< m × m ≻ 0
   Eigen::MatrixXd gainState;   ///< ⪰ 0
   Eigen::MatrixXd gainInput;   ///< m × m ≻ 0
 };
 
-/// A motion and its cost J = tracking + φ(I), as the search moves it.
+/// A motion and its cost J = tracking + φ(I) during a search.
 class ProjectedMotion : public SearchProblem {
  public:
   double cost() const final { return current_.cost; }
-  /// I of the first candidate.
+  /// Information matrix of the first candidate.
   const Eigen::MatrixXd& information() const final { return current_.information.front(); }
-  /// I of every candidate.
+  /// Information matrices of all candidates.
   const std::vector<Eigen::MatrixXd>& informations() const { return current_.information; }
-  /// What I of the first candidate has grown to at each t_k.
+  /// Information matrix of the first candidate accumulated up to each t_k.
   std::vector<Eigen::MatrixXd> informationOverTime() const;
   double trial(double step) final;
   void accept() final;
 
   const Motion& motion() const { return motion_; }
-  /// What J would be without φ(I).
+  /// J without φ(I).
   double trackingCost() const { return tracking(motion_); }
 
  protected:
-  /// @param design checked, with every weight filled in
+  /// @param design validated, with every weight set
   ProjectedMotion(ExtendedOutput output, int candidates, const MotionDesign& design,
                   Eigen::MatrixXd inverseNoise);
 
   virtual double tracking(const Motion& motion) const = 0;
-  /// How much ΓᵀΣ⁻¹Γ at t_k counts in I.
+  /// Weight of ΓᵀΣ⁻¹Γ at t_k in I.
   virtual double share(std::size_t k) const = 0;
-  /// P(ξ + step·ζ); false if there is no such motion.
+  /// P(ξ + step·ζ); false if the motion does not exist.
   virtual bool project(double step, Motion& motion) const = 0;
 
   /// Makes a motion the current one.

@@ -6,16 +6,16 @@
 #include "info/dynamics/extended_system.h"
 
 /// One motion for several candidate values of θ: the parameters are unknown before the experiment,
-/// and a motion that tells much at one θ may tell little at another.
+/// and a motion that is informative at one θ may be uninformative at another.
 namespace info {
 
-/// How the costs φ_s = φ(I_s) of the S candidates make one.
+/// Combination of the costs φ_s = φ(I_s) of the S candidates.
 enum class RobustRule {
   average,  ///< Σ φ_s / S
   worst     ///< (Σ φ_s^q)^{1/q}, q = 20: smooth, and between max φ_s and S^{1/20} max φ_s
 };
 
-/// The cost of all candidates and how it follows each information matrix.
+/// The cost of all candidates and its gradient in each information matrix.
 struct CandidatesCost {
   double value;
   std::vector<Eigen::MatrixXd> dvalue_dI;
@@ -28,10 +28,10 @@ CandidatesCost candidatesCost(RobustRule rule, const InformationWeights& weights
                               const std::vector<Eigen::MatrixXd>& information,
                               double repeatedTolerance);
 
-/// The same system at several θ as one, driven by one input: states one below the other, ψ
-/// likewise, and Γ, whose rows belong to the candidates in their order. A projection of it takes
-/// the design of a single candidate; tracking, model and gain count each candidate with 1/S.
-/// @throws std::invalid_argument for no system at all, or sizes that differ
+/// Several copies of a system at different θ, driven by one input: their states, ψ and rows of Γ
+/// are stacked in the order of the candidates. A projection of the stack takes the design of a
+/// single candidate; in tracking, model and gain each candidate has the weight 1/S.
+/// @throws std::invalid_argument if there is no system or sizes differ
 ExtendedStepMap stack(std::vector<ExtendedStepMap> candidates);
 ExtendedFlow stack(std::vector<ExtendedFlow> candidates);
 

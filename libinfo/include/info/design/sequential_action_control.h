@@ -11,23 +11,24 @@
 
 namespace info {
 
-/// How an action is sought.
+/// Options of the search for an action.
 struct ActionOptions {
-  double horizon = 1.2;          ///< T [s] > 0, how far ahead is predicted
-  double step = 0.02;            ///< of the prediction [s] > 0, ≤ T
-  double descentRate = -10;      ///< α_d/J0 [1/s] < 0: dJ/dΔt that an action aims at
+  double horizon = 1.2;          ///< T [s] > 0, prediction horizon
+  double step = 0.02;            ///< time step of the prediction [s] > 0, ≤ T
+  double descentRate = -10;      ///< α_d/J0 [1/s] < 0: target of dJ/dΔt for an action
   double firstDuration = 0.2;    ///< Δt0 [s] > 0, ≤ T
   int maxHalvings = 8;           ///< of Δt0, ≥ 0
-  double improvement = 1e-6;     ///< an action is taken if J falls by this share of J0, in [0, 1)
-  bool searchTime = false;       ///< seek the best time to act; else act at once
-  double waitingExponent = 1.6;  ///< γ of the cost of waiting (τ − t0)^γ, > 0
+  double improvement =
+      1e-6;  ///< an action is accepted if J decreases by this fraction of J0, in [0, 1)
+  bool searchTime = false;       ///< search for the best time to act; else act immediately
+  double waitingExponent = 1.6;  ///< exponent γ of the waiting cost (τ − t0)^γ, > 0
 };
 
-/// Why an action is as it is.
+/// Outcome of the search for an action.
 enum class ActionEnd {
   acts,
-  noGradient,     ///< no input would change J to first order: the controller does nothing
-  noImprovement,  ///< no duration lowered J enough
+  noGradient,     ///< no input changes J to first order: no action
+  noImprovement,  ///< no duration lowered J enough: no action
   notFinite       ///< the predicted motion does not stay finite
 };
 std::string describe(ActionEnd why);
@@ -43,36 +44,36 @@ void checkActionWeights(const Eigen::MatrixXd& inverseCovariance, const Eigen::V
                         const Eigen::MatrixXd& inputWeight);
 }  // namespace detail
 
-/// An input for a while, zero before and after.
+/// A constant input for a limited time, zero before and after.
 template <int M>
 struct Action {
   Vector<double, M> value = Vector<double, M>::Zero();
   double start = 0;     ///< τ − t0 [s]
   double duration = 0;  ///< Δt [s]
   ActionEnd why = ActionEnd::notFinite;
-  double nominalCost = 0;  ///< J0, of doing nothing
+  double nominalCost = 0;  ///< J0, the cost without an action
   double cost = 0;         ///< J with the action
   double slope = 0;        ///< dJ/dΔt at Δt = 0, ≤ 0
   int trials = 0;          ///< durations tried
 };
 
-/// Sequential action control: one short, saturated action that improves the next T seconds, found
-/// without iterating over motions.
+/// Sequential action control: computes one short, saturated action that improves the cost over the
+/// next T seconds, without iterating over motions.
 ///
 /// For systems affine in the input, ẋ = f(x, θ) + h(x, θ) u, extended by ψ: x̄ = (x, ψ). From the
-/// present x̄, with u = 0,
+/// current x̄, with u = 0,
 ///     J = ∫ l(x̄, u) dt,    −dρ/dt = D_x̄ lᵀ + D_x̄ f̄ᵀ ρ,  ρ(T) = 0,     b = h̄ᵀ ρ + D_u lᵀ
 ///     u* = (b bᵀ + R)⁻¹ b α_d,   α_d = descentRate·J0                       (2.21)
-/// u* is clipped to its limits, which hold 0 between them, so that it still descends; the time to
-/// act is t0, or the node with the least |u*| + dJ/dΔt + (τ − t0)^γ; and the duration is Δt0 halved
-/// until J falls. dJ/dΔt at Δt = 0 is the mode insertion gradient
+/// u* is clipped to its limits, which contain 0, so that it remains a descent direction. The time
+/// of action is t0, or the node with the smallest |u*| + dJ/dΔt + (τ − t0)^γ. The duration is Δt0,
+/// halved until J decreases. dJ/dΔt at Δt = 0 is the mode insertion gradient
 ///     ρᵀ (f̄(x̄, u*) − f̄(x̄, 0)) + l(x̄, u*) − l(x̄, 0)
 ///
 /// x̄ and J by Runge–Kutta of order 4, ρ likewise on x̄ interpolated by cubics: errors O(step⁴).
-/// Where the action begins and ends its step is cut. A decision allocates nothing.
+/// Steps are split where the action begins and ends. A decision allocates no memory.
 ///
-/// Source: Wilson, section 2.3.2, after Ansari and Murphey 2016; departs by D_u l, since the output
-/// and with it the information depend on u, and by having no cost at the end.
+/// Source: Wilson's thesis, section 2.3.2, after Ansari and Murphey 2016. Differences: the term D_u
+/// l, since the output and with it the information depend on u, and no terminal cost.
 template <SmoothSystem S>
 class SequentialActionControl {
  public:
@@ -84,12 +85,12 @@ class SequentialActionControl {
 
   /// @param lower, upper limits of u with lower_i < 0 < upper_i
   /// @param inputWeight R ≻ 0
-  /// @throws std::domain_error naming what breaks a rule
+  /// @throws std::domain_error naming the violated rule
   SequentialActionControl(S system, InformationRateCost<S> cost, const Input& lower,
                           const Input& upper, const Matrix<double, m, m>& inputWeight,
                           const ActionOptions& options = {});
 
-  /// The action from x and ψ now.
+  /// The action for the current x and ψ.
   Action<m> decide(const State& x, const Psi& psi, const Theta& theta);
 
   /// J from (x, ψ) with `value` during [start, start + duration], 0 otherwise.
@@ -186,7 +187,7 @@ template <SmoothSystem S>
 double SequentialActionControl<S>::predictedCost(const State& x, const Psi& psi, const Theta& theta,
                                                  const Input& value, double start,
                                                  double duration) const {
-  // the nodes stay where they are, so that the error of the sum changes little with the action
+  // the nodes are kept, so that the error of the sum changes little with the action
   const double end = start + duration;
   Extended at{x, psi};
   double sum = 0;
@@ -285,7 +286,7 @@ Action<SequentialActionControl<S>::m> SequentialActionControl<S>::decide(const S
   sweepBack(theta);
   const double descent = options_.descentRate * action.nominalCost;
 
-  // when to act
+  // time of the action
   std::size_t best = 0;
   if (options_.searchTime) {
     double least = std::numeric_limits<double>::infinity();

@@ -17,31 +17,32 @@ struct InformationWeights {
   double condition = 0;  ///< [1]
 };
 
-/// A cost of information and how it follows I.
+/// A cost of information and its gradient in I.
 struct InformationCost {
   double value;
   Eigen::MatrixXd dvalue_dI;  ///< symmetric; dφ = ⟨dvalue_dI, dI⟩
 };
 
-/// A motion that tells nothing about some combination of the parameters, so that no direction of
-/// descent exists. The text says what to do.
+/// Thrown if a motion has no information about some combination of the parameters, so that no
+/// direction of descent exists. The message says what to do.
 struct NoInformation : std::domain_error {
   using std::domain_error::domain_error;
 };
 
 /// φ(I) and its gradient.
-/// @param repeatedTolerance eigenvalues within this share of λ_max count as equal (optimality.h)
+/// @param repeatedTolerance eigenvalues within this fraction of λ_max count as equal (optimality.h)
 /// @throws std::domain_error if a weight is negative or not finite
 /// @throws NoInformation if λ_min ≤ 1e-14 λ_max and a weight is > 0
 InformationCost informationCost(const InformationWeights& weights,
                                 const Eigen::MatrixXd& information, double repeatedTolerance);
 
-/// Limits on every input, kept by a barrier that costs little until an input comes near one.
+/// Limits on every input, enforced by a barrier whose cost is small until an input approaches a
+/// limit.
 ///
 /// With s = 1 − ((u − mid)/half)², each input and time adds weight·b(s), b(s) = −ln s for s > δ and
-/// its quadratic continuation ½[((s − 2δ)/δ)² − 1] − ln δ below, C² everywhere, so that also a
-/// trajectory outside is judged. δ = 0.1: at a limit an input pays 3.80·weight. Hauser and Saccon
-/// 2006.
+/// its quadratic continuation ½[((s − 2δ)/δ)² − 1] − ln δ below, C² everywhere, so that the cost of
+/// a trajectory outside the limits is defined as well. δ = 0.1: the cost at a limit is 3.80·weight.
+/// Hauser and Saccon 2006.
 struct InputLimits {
   Eigen::VectorXd lower;  ///< [unit of u]; empty: no limits
   Eigen::VectorXd upper;
@@ -57,58 +58,59 @@ Barrier inputBarrier(double u, double lower, double upper, double weight);
 double limitCost(const InputLimits& limits, const Eigen::VectorXd& u);
 Eigen::VectorXd limitSlope(const InputLimits& limits, const Eigen::VectorXd& u);
 
-/// What is known after an iteration. costs.back() and eigenvalues belong to the motion reached.
+/// State of a search after an iteration. costs.back() and eigenvalues belong to the current motion.
 struct SearchProgress {
   int iteration;
   double cost;
-  double slope;                 ///< DJ·ζ of the direction just followed, < 0
+  double slope;                 ///< DJ·ζ of the last direction, < 0
   double step;                  ///< γ taken
   Eigen::VectorXd eigenvalues;  ///< of I
 };
 
-/// How a motion is sought: ξ ← P(ξ + γζ), ζ from the affine LQ problem, γ by Armijo's rule.
+/// Options of the search ξ ← P(ξ + γζ), with ζ from the affine LQ problem and γ by Armijo's rule.
 struct SearchOptions {
   int maxIterations = 100;
   double slopeTolerance = 0.1;  ///< stops at |DJ·ζ| ≤ this [unit of J] …
   double relativeSlope = 0;     ///< … or at |DJ·ζ| ≤ this·J
-  double armijoSlope = 0.4;  ///< a step is taken if J falls by this share of γ·|DJ·ζ|, in (0, 1)
-  double armijoShrink = 0.5;  ///< γ is multiplied by this until then, in (0, 1)
+  double armijoSlope =
+      0.4;  ///< a step is accepted if J decreases by this fraction of γ·|DJ·ζ|, in (0, 1)
+  double armijoShrink = 0.5;  ///< factor by which γ is reduced until then, in (0, 1)
   int maxShrinks = 60;
-  /// The first trial step is at most so large that |γ v_i| ≤ this [unit of u]; the descent can be
-  /// 1e19 where λ_min is tiny. 0: no cap.
+  /// The first trial step is limited to |γ v_i| ≤ this [unit of u], since the direction can be
+  /// extremely long if λ_min is tiny. 0: no limit.
   double largestMove = 0;
-  /// Eigenvalues nearer than this share of λ_max count as equal; see informationCost.
+  /// Eigenvalues closer than this fraction of λ_max count as equal; see informationCost.
   double repeatedTolerance = 1e-9;
-  /// The same when the search gets stuck, before it gives up: λ_min has a kink where eigenvalues
-  /// meet, and searches run into it.
+  /// The same for a last attempt when the search stalls, since λ_min has a kink at repeated
+  /// eigenvalues.
   double stuckTolerance = 0.05;
   /// Called after every iteration; returning false stops.
   std::function<bool(const SearchProgress&)> progress = {};
 };
 
 enum class SearchEnd {
-  slopeSmall,      ///< no direction promises more than the tolerance: a minimum
+  slopeSmall,      ///< the predicted decrease is below the tolerance: a minimum
   noProgress,      ///< no step along the direction lowers J
-  iterationLimit,  ///< J was still falling
-  stopped          ///< the progress callback said so
+  iterationLimit,  ///< J was still decreasing
+  stopped          ///< stopped by the progress callback
 };
 
-/// One line that says it in words.
+/// The reason as one line of text.
 std::string describe(SearchEnd why);
 
-/// A search as it went.
+/// The course of a search.
 struct SearchResult {
   SearchEnd why = SearchEnd::iterationLimit;
   bool converged = false;  ///< why is slopeSmall
   int iterations = 0;
   std::vector<double> costs;   ///< J at the start and after each iteration
-  std::vector<double> slopes;  ///< DJ·ζ at each iteration, the one that ended it included
+  std::vector<double> slopes;  ///< DJ·ζ at each iteration, including the last
   std::vector<double> steps;   ///< γ of each iteration
-  int trials = 0;              ///< motions projected in all line searches
+  int trials = 0;              ///< number of projected motions in all line searches
   Eigen::MatrixXd informationStart, information;
 };
 
-/// What a search needs of a problem; discrete and continuous time differ in nothing else.
+/// The interface of a problem to the search, for discrete and continuous time.
 class SearchProblem {
  public:
   struct Direction {
@@ -120,7 +122,7 @@ class SearchProblem {
   virtual const Eigen::MatrixXd& information() const = 0;
   /// Finds ζ at the current motion.
   virtual Direction findDirection(double repeatedTolerance) = 0;
-  /// J(P(ξ + γζ)); infinite if there is no such motion.
+  /// J(P(ξ + γζ)); infinite if the motion does not exist.
   virtual double trial(double step) = 0;
   /// Makes the last trial the current motion.
   virtual void accept() = 0;

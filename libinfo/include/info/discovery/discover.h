@@ -16,21 +16,21 @@
 
 namespace info::discover {
 
-/// The kinds of answer that there are.
+/// The kinds of verdict.
 enum class Finding {
-  none,       ///< nothing is missing that is larger than Verdict::detectability says
-  parameter,  ///< a parameter of the base model is further off than its tolerance
-  named,      ///< one effect, or several that act together, each without a rival
-  ambiguous,  ///< one of several effects that these data cannot tell apart
-  unknown,    ///< something is missing that no effect of the catalogue explains
-  numerical,  ///< the base model's own time steps are too long to say anything
+  none,       ///< no effect larger than Verdict::detectability is missing
+  parameter,  ///< a parameter of the base model is in error beyond its tolerance
+  named,      ///< one effect, or several together, each without an alternative
+  ambiguous,  ///< one of several effects that these data cannot distinguish
+  unknown,    ///< an effect is missing that the catalogue does not explain
+  numerical,  ///< the base model's time step is too long for a conclusion
 };
 
 enum class Stage { calibrate, localise, screen, race, decide, finished };
 
 struct Progress {
   Stage stage = Stage::calibrate;
-  double fraction = 0;  ///< of the whole, 0 to 1
+  double fraction = 0;  ///< of the total, 0 to 1
   std::string doing;    ///< e.g. "race: visc"
 };
 
@@ -38,167 +38,174 @@ struct Options {
   /// σ_y [unit of the output]; empty: estimated from the data's third differences
   std::optional<double> outputSd;
   double latentTime = 0.08;        ///< ℓ [s] of the latent force
-  double latentScale = 0.02;       ///< s of the prior exp(−σ_d/s) that prefers σ_d = 0
-  double latentTolerance = 0.075;  ///< up to this size the latent force may be noise of the inputs
-  double evidence = 5;             ///< nats that a name must be ahead of the hypothesis without it
-  double significance = 3.5;       ///< deviations that its amplitude must differ from absence by
-  double remainder =
-      3;  ///< nats that a further disturbance with a cause may gain, or a force without a name
-  double classWidth = 4.6;         ///< nats: rivals no further behind than this stay in the class
-  double surprise = 3;             ///< prior deviations beyond which a parameter is in error
-  double level = 0.001;            ///< of every test of adequacy
-  double falseDiscoveries = 0.05;  ///< share among what the score map lights up
+  double latentScale = 0.02;       ///< s of the prior exp(−σ_d/s), which favours σ_d = 0
+  double latentTolerance = 0.075;  ///< largest σ_d that noise of the inputs may explain
+  double evidence =
+      5;  ///< log Bayes factor [nats] that an effect needs over the hypothesis without it
+  double significance = 3.5;  ///< standard deviations by which its amplitude must differ from 0
+  double remainder = 3;       ///< largest log Bayes factor [nats] of a further disturbance with a
+                              ///< Cause, or of a non-parametric force, that is tolerated
+  double classWidth = 4.6;    ///< [nats] alternatives at most so far behind stay in the class
+  double surprise = 3;        ///< prior standard deviations beyond which a parameter is in error
+  double level = 0.001;       ///< significance level of every test of adequacy
+  double falseDiscoveries = 0.05;  ///< false discovery rate of the score map
   int maxEffects = 3;
-  int finalists = 9;         ///< most candidates that are raced at a time
-  std::vector<int> heldOut;  ///< trials that are not fitted, only judged by
-  /// Largest change at half the time step [σ_y]; with a larger one the finding is `numerical`.
+  int finalists = 9;         ///< largest number of candidates fitted at a time
+  std::vector<int> heldOut;  ///< trials that are used for validation only
+  /// Largest change of the outputs at half the time step [σ_y]; beyond it the finding is
+  /// `numerical`.
   double numericalTolerance = 0.2;
-  bool judgeSamples = true;  ///< leave out outliers, and samples whose noise is correlated
-  bool symbolic = true;      ///< look for a formula when no name fits
-  /// runAtShorterSteps: where nothing was found and errors as large as those of the held-out trials
-  /// are less probable than this, these are fitted, too, and all is asked once more; 0: never
+  bool judgeSamples = true;  ///< exclude outliers, and samples with correlated noise
+  bool symbolic = true;      ///< search a formula if no effect of the catalogue fits
+  /// runAtShorterSteps: if nothing was found and errors as large as those of the held-out trials
+  /// are less probable than this, the search is repeated with the held-out trials fitted as well;
+  /// 0: never
   double secondLook = 0.05;
-  /// Less probable errors of held-out trials are told of, and a name has no probability with them.
+  /// If errors as large as those of the held-out trials are less probable than this, the verdict
+  /// says so and gives no probability of an effect.
   double farOff = 0.01;
-  /// Called between fits; false ends the work, and what has been finished is in the verdict.
+  /// Called between fits; returning false ends the search, and the verdict holds the results so
+  /// far.
   std::function<bool(const Progress&)> progress;
 };
 
-/// One quantity as a hypothesis has it.
+/// The estimate of one quantity in a hypothesis.
 struct Estimate {
   std::size_t quantity = 0;  ///< index into DiscoveryProblem::quantities()
   double value = 0;
-  double sd = 0;  ///< of the posterior, in the unit of the quantity
-  double surprise =
-      0;  ///< (value − nominal)/prior deviation; of the logarithm where that is normal
-  bool atBound = false;  ///< within a millionth of its range of a bound
+  double sd = 0;         ///< posterior standard deviation, in the unit of the quantity
+  double surprise = 0;   ///< (value − nominal)/prior standard deviation; of the logarithm if the
+                         ///< prior is log-normal
+  bool atBound = false;  ///< within 1e-6 of its range of a bound
 };
 
-/// A hypothesis that was raced.
+/// A hypothesis that was fitted and compared.
 struct Finalist {
   std::vector<std::size_t> effects;  ///< indices into DiscoveryProblem::candidates()
-  double logEvidence = 0;   ///< log Z − log Z of the base: nats, each at its own best σ_d
+  double logEvidence = 0;  ///< log Z − log Z of the base model [nats], each at its own optimal σ_d
   double latentSize = 0;    ///< that σ_d
-  double probability = 0;   ///< among all that were raced with as many effects, and fewer
-  double significance = 0;  ///< |amplitude − nominal|/deviation, of the least one
-  bool adequate = false;    ///< for the leader and its rivals; the others are not tested
+  double probability = 0;   ///< among all fitted hypotheses with at most as many effects
+  double significance = 0;  ///< smallest |amplitude − nominal|/standard deviation
+  bool adequate = false;    ///< for the leader and its alternatives; the others are not tested
   std::vector<Estimate> estimates;  ///< of the effects' quantities
 };
 
-/// An effect that is said to be missing, and what it cannot be told from.
+/// An effect that the verdict names as missing, and the effects that cannot be distinguished from
+/// it.
 struct NamedEffect {
   std::size_t candidate = 0;
   std::vector<Estimate> estimates;  ///< of its quantities, the amplitude first
-  double logBayesFactor = 0;        ///< nats by which it improves on the others alone
-  /// Of this name against the others in its place; NaN of a surrogate, which is not believed.
+  double logBayesFactor = 0;        ///< log Bayes factor [nats] against the hypothesis without it
+  /// Probability of this effect against the alternatives in its place; NaN for a proxy.
   double probability = 0;
   std::vector<std::size_t> equals;    ///< candidates in its class, itself first
-  std::vector<double> equalEvidence;  ///< log Z of those less that of the leader
+  std::vector<double> equalEvidence;  ///< their log Z relative to that of the leader
   bool exact = false;                 ///< true: some of them are equivalent by declaration
 };
 
-/// The smallest amplitude of a candidate that these data would have shown, 5/√S_cc.
+/// The smallest detectable amplitude of a candidate in these data, 5/√S_cc.
 struct Detectable {
   std::size_t candidate = 0;
-  double amplitude = 0;  ///< [unit of the amplitude]; infinite: they can never show it
+  double amplitude = 0;  ///< [unit of the amplitude]; infinite: undetectable
 };
 
 struct Verdict;
 
-/// How the formula of what has no name (Unknown) did in the race against the effects that imitate
-/// it best. It is no name: what it says is how the force looks.
+/// Comparison of the fitted formula of an unknown effect (Unknown) with the proxy effects. The
+/// formula does not identify an effect; it describes the shape of the force.
 struct RacedFormula {
-  bool wins = false;          ///< alone: as a name it would have been given without a rival
-  double logBayesFactor = 0;  ///< nats by which it improves on the base model
+  bool wins = false;  ///< as a candidate it would have been the verdict, without an alternative
+  double logBayesFactor = 0;  ///< log Bayes factor [nats] against the base model
   double significance = 0;    ///< |c|/deviation, for given r_k
   std::vector<FormulaTerm> terms;
   std::string text;            ///< with values, e.g. "-1.48·(q³ - 3.6·q²)"
   std::vector<double> values;  ///< c, then r_2, … (FormulaTerm)
   std::vector<double> sds;
   Adequacy after;   ///< of the innovations, with the formula
-  ExcessError gap;  ///< on the trials that were fitted
+  ExcessError gap;  ///< on the fitted trials
   std::optional<ExcessError> heldOut;
-  /// Where it wins: the data with the formula as a candidate, and what the race of it said.
+  /// If it wins: the data with the formula as a candidate, and the verdict with it.
   std::shared_ptr<const DiscoveryProblem> data;
   std::shared_ptr<const Verdict> verdict;
 };
 
-/// A force without a name, a smooth function of the angle or of the speed alone, as it did in the
-/// race against the names (docs/decisions/047-nonparametric-forces.md).
+/// A non-parametric force, a smooth function of the position or of the speed alone, and its
+/// comparison with the effects of the catalogue (docs/decisions/047-nonparametric-forces.md).
 struct NonparametricForce {
   enum class Follows { angle, speed };
   Follows follows = Follows::angle;
-  std::vector<std::size_t> besides;  ///< names that stay beside it: candidates
-  double logBayesFactor = 0;         ///< nats by which it improves on the base model, with those
-  /// Nats by which it beats the names, or the base model where there are none; Options::evidence
-  /// paid for each effect.
+  std::vector<std::size_t> besides;  ///< effects that remain in the model beside it: candidates
+  double logBayesFactor =
+      0;  ///< log Bayes factor [nats] against the base model, together with those
+  /// Log Bayes factor [nats] against the named effects, or against the base model if there are
+  /// none, less Options::evidence for each effect.
   double ahead = 0;
-  bool wins = false;       ///< by more than Options::remainder: the names are makeshifts
-  std::vector<double> at;  ///< where the trials have been [unit of the output, or of its rate]
-  Eigen::VectorXd force;   ///< there [unit of the generalised force]
+  bool wins = false;       ///< by more than Options::remainder: the named effects are only a proxy
+  std::vector<double> at;  ///< visited positions or speeds [unit of the output, or of its rate]
+  Eigen::VectorXd force;   ///< the force at these [unit of the generalised force]
   Eigen::VectorXd sd;      ///< of that
 };
 
-/// What was found. Everything up to `reached` is filled in; of a search that was stopped after the
-/// base model was fitted also the localisation, and the finalists that there were by then.
+/// The result of a search. Everything up to `reached` is filled in; for a search that was stopped
+/// after the fit of the base model also the localisation and the finalists so far.
 struct Verdict {
   Stage reached = Stage::calibrate;
   Finding finding = Finding::none;
-  std::string sentence;              ///< the finding in plain words
-  std::vector<NamedEffect> effects;  ///< in the order they were found; for unknown: the surrogate
-  double probability = 0;            ///< of all effects together; 0 where it was vetoed
-  /// Named, but without a probability: the innovations have the wrong size, or the held-out trials
-  /// are too far off (Options::farOff).
+  std::string sentence;              ///< the finding as a sentence
+  std::vector<NamedEffect> effects;  ///< in the order they were found; for unknown: the proxy
+  double probability = 0;            ///< of all effects together; 0 if none is given
+  /// Effects are named, but without a probability: the innovations have the wrong size, or the
+  /// errors of the held-out trials are improbably large (Options::farOff).
   bool vetoed = false;
-  bool proxy = false;  ///< finding unknown: `effects` only imitates what is missing
-  /// Nothing was found without the held-out trials, whose errors were too large for that; all this
-  /// is of a fit of all trials, and none is left to judge by (Options::secondLook).
+  bool proxy = false;  ///< finding unknown: `effects` is only a proxy for the missing effect
+  /// Nothing was found without the held-out trials, although their errors were too large. All
+  /// trials were therefore fitted, and none is left for validation (Options::secondLook).
   bool heldOutFitted = false;
 
   double outputSd = 0;  ///< σ_y
   bool sdEstimated = false;
-  RecordedNoise noise;                   ///< which samples were used, and why not all
+  RecordedNoise noise;                   ///< the samples that were used, and why others were not
   double latentSizeBefore = 0;           ///< σ_d with the base model
   double latentSizeAfter = 0;            ///< σ_d with the effects
-  Eigen::VectorXd base;                  ///< all quantities, base model calibrated
+  Eigen::VectorXd base;                  ///< all quantities of the calibrated base model
   Eigen::VectorXd values;                ///< all quantities with the effects
   std::vector<Estimate> calibration;     ///< nuisances of the base model
   std::vector<Estimate> nuisancesAfter;  ///< with the effects
-  /// Starts of the trials that were held out, fitted to each of them alone, with the effects; their
-  /// values are in `values`, and without the effects in `base`.
+  /// Initial states of the held-out trials, each fitted to its trial alone, with the effects; the
+  /// values are in `values`, and those without the effects in `base`.
   std::vector<Estimate> heldOutStarts;
   Adequacy before, after;
   Localisation localisation;
   std::vector<Finalist> finalists;  ///< best first
-  /// Where names cannot be told apart: the fit with the effects, then one for each rival in place
-  /// of what it cannot be told from, where it was fitted.
+  /// For indistinguishable effects: the fit with the effects, then a fit for each fitted
+  /// alternative in place of the effect that it cannot be distinguished from.
   std::vector<Fit> rivals;
   std::vector<Detectable> detectability;
   ExcessError gap;  ///< on the trials that were fitted
   std::optional<ExcessError> heldOut;
   std::optional<HeldOutAdequacy> heldOutBefore, heldOutAfter;
   std::optional<Unknown> unknown;
-  /// Where all terms of its formula follow the state and the data offer it (withFormula)
+  /// If all terms of its formula are functions of the state and the problem offers it (withFormula)
   std::optional<RacedFormula> formula;
-  /// Where something is missing, and the data offer it (withFormula)
+  /// If an effect is missing and the problem offers it (withFormula)
   std::optional<NonparametricForce> nonparametric;
-  double numericalError = 0;  ///< largest change at half the time step, in σ_y; 0: not offered
+  double numericalError = 0;  ///< largest change at half the time step, in σ_y; 0: not available
   int fits = 0;               ///< how many
 };
 
-/// The hypotheses that a search has fitted, for a search of the same data at another time step to
-/// start from.
+/// The fitted hypotheses of a search, as the starting point of a search of the same data at another
+/// time step.
 struct SearchMemory;
 using WarmStart = std::shared_ptr<const SearchMemory>;
 
-/// Finds, names and judges what a model lacks.
-/// @param draft  if not null and not empty: starts from there; if not null, left as the search is
-///   after its race
+/// Finds and names the effects that are missing in a model, and judges the result.
+/// @param draft if not null and not empty: the starting point; if not null, receives the state of
+///   the search after all fits
 /// @throws std::invalid_argument if the data break a rule of DiscoveryProblem
 Verdict run(const DiscoveryProblem& data, const Options& options = {}, WarmStart* draft = nullptr);
 
 /// Standard deviation of a trial's measurements about the simulation with the effects, at its
-/// times: √(σ_y² + Σ (dy/dA·σ_A)²) over the amplitudes A, each by itself.
+/// times: √(σ_y² + Σ (dy/dA·σ_A)²), the sum being over the amplitudes A without their correlations.
 /// @throws what DiscoveryProblem::predict throws
 Eigen::VectorXd predictedSd(const DiscoveryProblem& data, const Verdict& verdict, int trial);
 

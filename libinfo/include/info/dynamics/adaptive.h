@@ -10,7 +10,7 @@
 
 namespace info {
 
-/// How closely an adaptive integration follows the exact motion.
+/// Tolerances and limits of an adaptive integration.
 struct AdaptiveOptions {
   double relativeTolerance = 1e-8;   ///< of every component, > 0
   double absoluteTolerance = 1e-10;  ///< in the unit of each component, > 0
@@ -18,10 +18,10 @@ struct AdaptiveOptions {
   long maxSteps = 100'000;       ///< > 0, between two requested times
 };
 
-/// How the sensitivities ψ of a continuous system are integrated.
+/// Method of integrating the sensitivities ψ of a continuous system.
 enum class SensitivityMethod {
-  extendedState,  ///< x and ψ as one differential equation, (2.7)
-  forward,        ///< ψ beside x, corrected after it: the solver's own staggered method
+  extendedState,  ///< x and ψ as one system of differential equations, (2.7)
+  forward,        ///< ψ after x in every step: the staggered method of the solver
 };
 
 /// A motion at the requested times.
@@ -29,10 +29,10 @@ template <int N, int P>
 struct AdaptiveTrajectory {
   std::vector<double> times;  ///< those reached [s]
   std::vector<Vector<double, N>> x;
-  std::vector<Matrix<double, N, P>> psi;  ///< empty if not asked for
+  std::vector<Matrix<double, N, P>> psi;  ///< empty unless requested
   bool complete = true;                   ///< false: stopped before the last requested time
   double reachedTime = 0.0;               ///< [s]
-  std::string why;                        ///< why it stopped early, in words; empty if complete
+  std::string why;                        ///< reason for an early stop; empty if complete
   long steps = 0;
   long evaluations = 0;  ///< of f
 };
@@ -174,7 +174,7 @@ AdaptiveTrajectory<S::stateSize, S::parameterSize> integrateWithSensitivity(
       Eigen::Map<StateOf<S>>(zDot, n) = at.xDot;
       Eigen::Map<Psi>(zDot + n, n, p) = at.psiDot;
     };
-    // The block diagonal of D_x f; what is left out, ∂ψ̇/∂x, slows Newton's method only a little.
+    // The block diagonal of D_x f; the omitted ∂ψ̇/∂x slows Newton's method only a little.
     problem.jacobian = [&](double t, const double* z, double* J) {
       const StateOf<S> at = Eigen::Map<const StateOf<S>>(z, n);
       const auto df_dx = stateJacobian(system, at, u(t), theta);

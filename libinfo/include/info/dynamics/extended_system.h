@@ -8,9 +8,9 @@
 #include "info/autodiff/extended_derivatives.h"
 #include "info/dynamics/step_map.h"
 
-/// A system at one θ with its sensitivities ψ = dx/dθ as further states: what the optimisation of a
-/// motion needs, made from any step map or any continuous system. Run-time sizes; pure, and usable
-/// from several threads.
+/// A system at one θ with its sensitivities ψ = dx/dθ as further states, made from any step map or
+/// continuous system, for the optimisation of motions. Run-time sizes; pure, and usable from
+/// several threads.
 namespace info {
 
 /// Γ = D_x g ψ + D_θ g   (2.6)   and the gradient of ⟨P, Γ⟩.
@@ -21,7 +21,7 @@ struct ExtendedOutput {
   struct Gradient {
     Eigen::VectorXd x;
     Eigen::MatrixXd psi;  ///< n × p: D_x gᵀ P
-    Eigen::VectorXd u;    ///< not 0 where u is in g
+    Eigen::VectorXd u;    ///< not 0 if g depends on u
   };
   std::function<Gradient(const Eigen::VectorXd& x, const Eigen::MatrixXd& psi,
                          const Eigen::VectorXd& u, const Eigen::MatrixXd& P)>
@@ -49,7 +49,7 @@ struct ExtendedStepMap {
                             const Eigen::VectorXd& u0, const Eigen::VectorXd& u1)>
       derivatives;
   ExtendedOutput output;
-  int candidates = 1;  ///< how many systems it is a stack of, sizes being those of all
+  int candidates = 1;  ///< number of stacked systems; sizes are those of the stack
 };
 
 /// ẋ = f, ψ̇ = D_x f ψ + D_θ f   (2.7).

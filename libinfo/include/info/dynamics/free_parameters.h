@@ -4,8 +4,8 @@
 
 namespace info {
 
-/// A system of which only some parameters are unknown: θ are those numbered Free, in that order,
-/// the others keep the values given.
+/// A system with some parameters fixed: θ are those with the indices Free, in that order; the
+/// others have given values.
 template <System S, int... Free>
 struct FreeParameters {
   static constexpr int stateSize = S::stateSize, inputSize = S::inputSize,

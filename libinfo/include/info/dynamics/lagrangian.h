@@ -9,7 +9,7 @@ namespace info {
 /// The sizes of a mechanical system.
 struct MechanicalDimensions {
   int coordinate;  ///< n, length of q
-  int kinematic;   ///< length of ρ, the coordinates that follow their drives exactly
+  int kinematic;   ///< length of ρ, the kinematic coordinates with prescribed motion
   int force;       ///< length of u, the inputs of the generalised force
   int parameter;   ///< p, length of θ
   int output;      ///< l, length of y
@@ -22,12 +22,12 @@ using KinematicOf = Vector<T, S::kinematicSize>;
 template <class S, class T = double>
 using ForceInputOf = Vector<T, S::forceInputSize>;
 
-/// A mechanical system by its Lagrangian L(q, q̇, ρ, ρ̇, θ) [J] and generalised force
-/// f(q, q̇, ρ, ρ̇, u, θ) [N or N m], with outputs y = measure(q, ρ, θ); ρ are kinematic configuration
-/// variables (thesis 2.4.2), prescribed instead of solved for.
+/// A mechanical system by its Lagrangian L(q, q̇, ρ, ρ̇, θ) [J] and generalised force f(q, q̇, ρ,
+/// ρ̇, u, θ) [N or N m], with outputs y = measure(q, ρ, θ); ρ are kinematic configuration variables
+/// (Wilson's thesis, 2.4.2), prescribed instead of solved for.
 ///
-/// Templates over one scalar T, pure as a System's functions; L three times differentiable where
-/// second derivatives of a step are asked for, ∂²L/∂q̇² regular. `dynamic` sizes come with
+/// Templates over one scalar T, pure as a System's functions; L three times differentiable if
+/// second derivatives of a step are requested, ∂²L/∂q̇² regular. `dynamic` sizes come with
 /// `MechanicalDimensions mechanicalDimensions() const`.
 template <class S>
 concept LagrangianSystem = requires(const S& s, const CoordinatesOf<S>& q,
@@ -53,7 +53,7 @@ MechanicalDimensions mechanicalDimensionsOf(const S& s) {
   }
 }
 
-/// Momentum p = ∂L/∂q̇ of a motion, to start an integrator with.
+/// Momentum p = ∂L/∂q̇ of a motion, the initial value of an integrator.
 template <LagrangianSystem S>
 CoordinatesOf<S> momentum(const S& system, const CoordinatesOf<S>& q, const CoordinatesOf<S>& qDot,
                           const KinematicOf<S>& rho, const KinematicOf<S>& rhoDot,
@@ -75,8 +75,8 @@ struct Legendre {
   double energy;
 };
 
-/// The motion behind a momentum, for a Lagrangian that is quadratic in q̇: q̇ = (∂²L/∂q̇²)⁻¹ (p − p₀)
-/// with p₀ = ∂L/∂q̇ at q̇ = 0.
+/// The velocity that belongs to a momentum, for a Lagrangian that is quadratic in q̇: q̇ =
+/// (∂²L/∂q̇²)⁻¹ (p − p₀) with p₀ = ∂L/∂q̇ at q̇ = 0.
 template <LagrangianSystem S>
 Legendre<S::coordinateSize> legendre(const S& system, const CoordinatesOf<S>& q,
                                      const CoordinatesOf<S>& p, const KinematicOf<S>& rho,
@@ -97,9 +97,9 @@ Legendre<S::coordinateSize> legendre(const S& system, const CoordinatesOf<S>& q,
   return out;
 }
 
-/// How the continuous force f enters a step of length Δt.
+/// Discretisation of the continuous force f over a step of length Δt.
 enum class Forcing {
-  left,       ///< F⁻ = Δt f, F⁺ = 0: the thesis's; first order in Δt
+  left,       ///< F⁻ = Δt f, F⁺ = 0: that of Wilson's thesis; first order in Δt
   symmetric,  ///< F⁻ = F⁺ = ½ Δt f: second order at the same cost
 };
 

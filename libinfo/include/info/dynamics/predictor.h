@@ -9,10 +9,10 @@
 
 namespace info {
 
-/// What is done to a step map, and when it is measured.
+/// The experiment on a step map: initial state, inputs, and sampling times.
 template <StepMap M>
 struct Experiment {
-  StateOf<M> x0;                      ///< start, known and independent of θ
+  StateOf<M> x0;                      ///< initial state, known and independent of θ
   std::vector<InputOf<M>> inputs;     ///< u_0 … u_K
   std::vector<std::size_t> measured;  ///< steps k of the samples, 0 ≤ k ≤ K
 };
@@ -77,8 +77,8 @@ auto outputOfStateAndParameters(const M& map, const InputOf<M>& u) {
 /// one backward sweep,
 ///     Σ_k w_kᵀ d²y_k/dθ² = Σ_k (D_x gᵀw_k)ᵀ Ω_k + Z_kᵀ (Σ_i w_ik ∂²g_i/∂(x,θ)²) Z_k,   Z_k = (ψ_k,
 ///     I)
-/// which is (2.9) with every term. A step that is not solved leaves the samples after it NaN.
-/// θ is the whole parameter vector of the map, in its units; reparametrise() takes a part of it.
+/// which is (2.9) with every term. After a step that fails, the samples are NaN. θ is the complete
+/// parameter vector of the map, in its units; reparametrise() selects a part of it.
 ///
 /// @throws DimensionError if a sample lies beyond the inputs, or a run-time size does not fit
 template <StepMap M>
@@ -138,7 +138,7 @@ Predictor makePredictor(M map, Experiment<M> experiment) {
         map, experiment.x0, StateSensitivityOf<M>::Zero(d.state, d.parameter).eval(),
         experiment.inputs, parameters);
     if (!run.complete) return Eigen::MatrixXd::Constant(d.parameter, d.parameter, undefined);
-    // what the outputs add themselves, and the weights they put on the states
+    // the direct contribution of the outputs, and their weights on the states
     constexpr int size = addSizes(M::stateSize, M::parameterSize);
     std::vector<StateOf<M>> weights(run.x.size(), StateOf<M>::Zero(d.state));
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(d.parameter, d.parameter);
@@ -159,8 +159,8 @@ Predictor makePredictor(M map, Experiment<M> experiment) {
   return predictor;
 }
 
-/// The predictor of some of a model's parameters, in other units: the full vector is `nominal`,
-/// with nominal[estimated[i]] replaced by unit[i]·θ_i.
+/// The predictor for a subset of a model's parameters, in other units: the full vector is
+/// `nominal`, with nominal[estimated[i]] replaced by unit[i]·θ_i.
 /// @throws std::invalid_argument if sizes differ or an index is out of range
 Predictor reparametrise(Predictor full, Eigen::VectorXd nominal,
                         std::vector<Eigen::Index> estimated, Eigen::VectorXd unit);

@@ -7,13 +7,13 @@
 
 namespace info {
 
-/// States at k = 0 … K and, where asked for, ψ_k = dx_k/dθ.
+/// States at k = 0 … K and, if requested, ψ_k = dx_k/dθ.
 template <int N, int P>
 struct Trajectory {
-  std::vector<Vector<double, N>> x;       ///< shorter than K + 1 if a step was not solved
-  std::vector<Matrix<double, N, P>> psi;  ///< empty if not asked for
-  bool complete = true;                   ///< false: step x.size() − 1 found no solution
-  double residualNorm = 0.0;              ///< of the step that failed
+  std::vector<Vector<double, N>> x;       ///< shorter than K + 1 if a step failed
+  std::vector<Matrix<double, N, P>> psi;  ///< empty unless requested
+  bool complete = true;                   ///< false: step x.size() − 1 failed
+  double residualNorm = 0.0;              ///< of the failed step
 };
 
 template <class M>
@@ -22,7 +22,7 @@ template <class M>
 using StateSensitivityOf = Matrix<double, M::stateSize, M::parameterSize>;
 
 /// Runs a step map from x_0 under u_0 … u_K.
-/// @throws DimensionError where a run-time size is wrong or there is no u_0
+/// @throws DimensionError if a run-time size is wrong or there is no u_0
 template <StepMap M>
 TrajectoryOf<M> simulate(const M& map, const StateOf<M>& x0, const std::vector<InputOf<M>>& inputs,
                          const ParametersOf<M>& theta) {
@@ -44,7 +44,7 @@ TrajectoryOf<M> simulate(const M& map, const StateOf<M>& x0, const std::vector<I
 }
 
 /// The same with ψ_{k+1} = A_k ψ_k + ∂Φ/∂θ   (5.1), exact for the steps taken.
-/// @param psi0 ψ_0 = dx_0/dθ, zero if the start does not depend on θ
+/// @param psi0 ψ_0 = dx_0/dθ, zero if the initial state does not depend on θ
 template <StepMap M>
 TrajectoryOf<M> simulateWithSensitivity(const M& map, const StateOf<M>& x0,
                                         const StateSensitivityOf<M>& psi0,
@@ -75,8 +75,8 @@ TrajectoryOf<M> simulateWithSensitivity(const M& map, const StateOf<M>& x0,
 /// Ω_k = d²x_k/dθ², one symmetric p × p matrix per state component, at k = 0 … K.
 ///
 ///     Ω_{k+1,i} = Σ_j A_{ij} Ω_{k,j} + Zᵀ (∂²Φ_i/∂(x,θ)²) Z,   Z = (ψ_k, I)
-/// For few states and parameters; where only Σ_k w_kᵀΩ_k is needed, contractSecondSensitivity
-/// costs one adjoint sweep. Ω_0 = 0.
+/// For few states and parameters; if only Σ_k w_kᵀΩ_k is needed, contractSecondSensitivity takes
+/// one adjoint sweep. Ω_0 = 0.
 template <StepMap M>
 std::vector<std::vector<Matrix<double, M::parameterSize, M::parameterSize>>> secondSensitivity(
     const M& map, const TrajectoryOf<M>& trajectory, const std::vector<InputOf<M>>& inputs,

@@ -8,7 +8,7 @@
 
 namespace info {
 
-/// x_{k+1} of a step, and whether it was found; non-convergence is a result, not an exception.
+/// x_{k+1} of a step, and whether it converged; non-convergence is a result, not an exception.
 template <int N>
 struct Step {
   Vector<double, N> x1;       ///< x_{k+1}; the last iterate if not converged
@@ -49,10 +49,10 @@ Vector<double, argumentSize<M>> packArgument(const StateOf<M>& x, const InputOf<
   return z;
 }
 
-/// When a Newton iteration of an implicit step ends.
+/// Stopping rule of the Newton iteration of an implicit step.
 struct NewtonOptions {
-  /// Largest |δ_i|/(1 + |x_i|) of the last update; convergence is quadratic, so the error left is
-  /// about the square of it, which is rounding.
+  /// Largest |δ_i|/(1 + |x_i|) of the last update; convergence is quadratic, so the remaining error
+  /// is about its square, below rounding.
   double tolerance = 1e-8;
   int maxIterations = 25;
 };
@@ -111,7 +111,7 @@ auto residualJacobian(const M& map, const StateOf<M>& x1, const StateOf<M>& x, c
 /// x_{k+1} = Φ(x_k, u_k, u_{k+1}, θ) of any kind of step map.
 ///
 /// An implicit map is solved by Newton's method from x_{k+1} ≈ x_k with the exact Jacobian.
-/// @throws DimensionError where a run-time size is wrong
+/// @throws DimensionError if a run-time size is wrong
 template <StepMap M>
 Step<M::stateSize> solve(const M& map, const StateOf<M>& x, const InputOf<M>& u0,
                          const InputOf<M>& u1, const ParametersOf<M>& theta,
@@ -145,9 +145,9 @@ Step<M::stateSize> solve(const M& map, const StateOf<M>& x, const InputOf<M>& u0
   }
 }
 
-/// The step and its exact first derivatives; of an implicit map by the implicit function theorem,
+/// The step and its exact first derivatives; for an implicit map by the implicit function theorem,
 ///     ∂x_{k+1}/∂z = −(∂r/∂x_{k+1})⁻¹ ∂r/∂z.
-/// If the step is not solved, `solution.converged` is false and the derivatives mean nothing.
+/// If the step fails, `solution.converged` is false and the derivatives are meaningless.
 template <StepMap M>
 StepLinearisationOf<M> linearise(const M& map, const StateOf<M>& x, const InputOf<M>& u0,
                                  const InputOf<M>& u1, const ParametersOf<M>& theta) {
@@ -178,7 +178,7 @@ StepLinearisationOf<M> linearise(const M& map, const StateOf<M>& x, const InputO
 
 /// Σ_i w_i ∂²Φ_i/∂z², z = (x_k, u_k, u_{k+1}, θ): the second derivatives of a step, contracted.
 ///
-/// Of an implicit map, with μ = (∂r/∂x_{k+1})⁻ᵀ w and W = ∂(x_{k+1}, z)/∂z: −Wᵀ (Σ μ_i r_i″) W.
+/// For an implicit map, with μ = (∂r/∂x_{k+1})⁻ᵀ w and W = ∂(x_{k+1}, z)/∂z: −Wᵀ (Σ μ_i r_i″) W.
 template <StepMap M>
 Matrix<double, argumentSize<M>, argumentSize<M>> contractedHessian(
     const M& map, const StateOf<M>& x, const InputOf<M>& u0, const InputOf<M>& u1,
@@ -209,8 +209,9 @@ struct SensitivityStep {
   Matrix<double, N, P> psi1;  ///< ψ_{k+1} = ∂Φ/∂x ψ_k + ∂Φ/∂θ   (5.1)
 };
 
-/// One step of x and ψ. Explicit maps carry the p directions (ψ_k, I) through the step itself, so
-/// that the cost grows with p only; ψ is the derivative of the steps taken, exact to rounding.
+/// One step of x and ψ. Explicit maps propagate the p directions (ψ_k, I) through the step itself,
+/// so that the cost grows with p only; ψ is the derivative of the numerical steps, exact to
+/// rounding.
 template <StepMap M>
 SensitivityStep<M::stateSize, M::parameterSize> advance(
     const M& map, const StateOf<M>& x, const Matrix<double, M::stateSize, M::parameterSize>& psi,

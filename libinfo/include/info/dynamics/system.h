@@ -13,8 +13,8 @@ namespace info {
 /// A size known only at run time (a model read from a file); every other size is a number ≥ 0.
 inline constexpr int dynamic = Eigen::Dynamic;
 
-/// A vector whose length contradicts the system it is given to; fixed sizes fail to compile
-/// instead.
+/// Thrown if the length of a vector does not match the system; with fixed sizes this is a
+/// compile-time error.
 struct DimensionError : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
@@ -27,7 +27,8 @@ struct Dimensions {
   int output;     ///< l, length of y
 };
 
-/// The four sizes as compile-time constants; `dynamic` (−1) where a size is known at run time only.
+/// The four sizes as compile-time constants; `dynamic` (−1) for a size that is known at run time
+/// only.
 template <class S>
 concept Sized = requires {
   { S::stateSize } -> std::convertible_to<int>;
@@ -73,11 +74,12 @@ concept Observed = Sized<S> &&
 ///       }
 ///     };
 ///
-/// Laws. f and g are pure: equal arguments give equal results, from any thread, in any order. Time
-/// does not appear (make it a state or an input). The length of θ is the number of names, in the
-/// same order. With a `dynamic` size the struct also has `Dimensions dimensions() const`, and its
-/// vectors are Vector<T, dynamic> there. A constant of the model that nobody identifies is a member
-/// of the struct; whatever is to be identified is in θ. SI units and radians.
+/// Contract: f and g are pure, i.e. equal arguments give equal results, from any thread, in any
+/// order. Time does not appear (make it a state or an input). The length of θ is the number of
+/// names, in the same order. With a `dynamic` size the struct also has `Dimensions dimensions()
+/// const`, and its vectors are Vector<T, dynamic> there. Constants of the model that are not to be
+/// identified are members of the struct; parameters to be identified are in θ. SI units and
+/// radians.
 template <class S>
 concept System = Observed<S> &&
     requires(const S& s, const StateOf<S>& x, const InputOf<S>& u, const ParametersOf<S>& theta) {
@@ -106,10 +108,10 @@ concept SmoothSystem = System<S> &&
 /// Implicit: x_{k+1} solves r(x_{k+1}; x_k, u_k, u_{k+1}, θ) = 0,
 ///     template <class T> Vector<T, n> residual(x1, x, u0, u1, theta) const;
 /// with ∂r/∂x_{k+1} regular at the solution. Differentiated: its own `solve`, `linearise` and
-/// `contractedHessian` with the signatures of step_map.h, for maps that know a faster way.
+/// `contractedHessian` with the signatures of step_map.h, for maps with faster algorithms.
 ///
-/// Laws. Pure, as a System; the time step is a member; Φ of equal arguments is equal. Whatever the
-/// kind, the free functions of step_map.h (solve, linearise, contractedHessian, advance) serve it.
+/// Contract: pure, like a System; the time step is a member. The free functions of step_map.h
+/// (solve, linearise, contractedHessian, advance) work for every kind.
 template <class M>
 concept ExplicitStepMap = Observed<M> &&
     requires(const M& map, const StateOf<M>& x, const InputOf<M>& u, const ParametersOf<M>& theta) {
@@ -163,7 +165,7 @@ inline void requireLength(const char* quantity, Eigen::Index length, Eigen::Inde
                          ", must be " + std::to_string(expected));
 }
 
-/// @throws DimensionError naming x, u or θ where a length is not that of the system
+/// @throws DimensionError naming x, u or θ if its length is not that of the system
 template <Sized S>
 void requireSizes(const S& s, const StateOf<S>& x, const InputOf<S>& u,
                   const ParametersOf<S>& theta) {

@@ -12,16 +12,16 @@ namespace info {
 ///     0 = p_k + D₁L_d + F⁻,   p_{k+1} = D₂L_d + F⁺                          (2.22)
 ///     L_d = Δt L(q_m, v, ρ_m, w, θ),   q_m = (q_k + q_{k+1})/2,   v = (q_{k+1} − q_k)/Δt,
 ///     and ρ_m, w likewise from ρ_k, ρ_{k+1}
-/// Source: Wilson, Information-based Trajectory Optimization, section 2.4. We depart from the
-/// printed (2.23), which lacks Δt; symmetric forcing is the default beside the thesis's left one;
-/// and the second derivatives have the terms of ∂M/∂z that Appendix B.2.1 omits
-/// (docs/theory/variational.md).
+/// Source: Wilson, Information-based Trajectory Optimization, section 2.4. Differences: the factor
+/// Δt, which is missing in the printed (2.23); symmetric forcing as the default beside the
+/// left-endpoint forcing of the thesis; and the terms of ∂M/∂z in the second derivatives that
+/// Appendix B.2.1 omits (docs/theory/variational.md).
 ///
 /// As a step map: state (q, p), input (u, ρ), u_k held over the step, ρ at both ends. L and f are
-/// recorded in the constructor and differentiated as formulas, so they may not branch on their
-/// arguments; a mechanics that must is written as an implicit step map instead (system.h). With
-/// fixed sizes a step allocates nothing after a thread's first. Immutable; usable from several
-/// threads.
+/// recorded in the constructor and differentiated symbolically, so they must not branch on their
+/// arguments; a system that branches is written as an implicit step map instead (system.h). With
+/// fixed sizes a step allocates no memory after the first one of a thread. Immutable; usable from
+/// several threads.
 template <LagrangianSystem S>
 class VariationalIntegrator {
  public:
@@ -51,7 +51,7 @@ class VariationalIntegrator {
   };
   struct Result {
     Coordinates q1, p1;         ///< q_{k+1}, p_{k+1}
-    bool converged = false;     ///< false: q1 is the last iterate and p1 means nothing
+    bool converged = false;     ///< false: q1 is the last iterate and p1 is meaningless
     int iterations = 0;         ///< Newton iterations
     double residualNorm = 0.0;  ///< largest |p_k + D₁L_d + F⁻| at the last evaluation
   };
@@ -73,22 +73,23 @@ class VariationalIntegrator {
   }
   std::vector<std::string> parameterNames() const { return system_.parameterNames(); }
 
-  /// One step by Newton's method from `guess` for q_{k+1}, which an extrapolation makes cheaper.
-  /// @throws DimensionError where a run-time size is wrong
+  /// One step by Newton's method from the initial value `guess` of q_{k+1}, for instance an
+  /// extrapolation.
+  /// @throws DimensionError if a run-time size is wrong
   Result step(const Arguments& z, const Coordinates& guess) const;
   Result step(const Arguments& z) const { return step(z, z.q); }
 
-  /// ∂(q_{k+1}, p_{k+1})/∂z at a step taken, by the implicit function theorem.
+  /// ∂(q_{k+1}, p_{k+1})/∂z at a completed step, by the implicit function theorem.
   Jacobian firstDerivatives(const Arguments& z, const Result& taken) const;
 
   struct SecondDerivatives {
     Jacobian first;
     MatrixStack<stateSize, Hessian> second;  ///< ∂²/∂z² of each component of (q_{k+1}, p_{k+1})
   };
-  /// First and second derivatives at a step taken.
+  /// First and second derivatives at a completed step.
   SecondDerivatives secondDerivatives(const Arguments& z, const Result& taken) const;
 
-  /// Σ_i w_i ∂²(q_{k+1}, p_{k+1})_i/∂z² at a step taken: one Hessian instead of 2n.
+  /// Σ_i w_i ∂²(q_{k+1}, p_{k+1})_i/∂z² at a completed step: one Hessian instead of 2n.
   Hessian contractedSecondDerivatives(const Arguments& z, const Result& taken,
                                       const State& w) const;
 
@@ -338,7 +339,7 @@ auto VariationalIntegrator<S>::contractedHessian(const State& x, const Input& u0
     -> Matrix<double, argumentSize<VariationalIntegrator>, argumentSize<VariationalIntegrator>> {
   const Arguments z = argumentsOf(x, u0, u1, theta);
   const Hessian own = contractedSecondDerivatives(z, step(z), w);
-  // A step map's argument has a u_{k+1} of no effect between ρ_k and ρ_{k+1}.
+  // The argument of a step map has u_{k+1}, which has no effect, between ρ_k and ρ_{k+1}.
   const int first = 2 * d_.coordinate + d_.force + d_.kinematic, gap = d_.force;
   const int rest = int(own.rows()) - first;
   Matrix<double, argumentSize<VariationalIntegrator>, argumentSize<VariationalIntegrator>> out(

@@ -4,27 +4,27 @@
 
 namespace info {
 
-/// A sensor that reads N(y, σ²) and clips at its limits.
+/// A sensor with normal noise, N(y, σ²), that clips at its limits.
 struct ClippedSensor {
   double sd;                                                ///< σ [unit of y] > 0
-  double lower = -std::numeric_limits<double>::infinity();  ///< reads no less, < upper
+  double lower = -std::numeric_limits<double>::infinity();  ///< smallest reading, < upper
   double upper = std::numeric_limits<double>::infinity();   ///< reads no more
 };
 
-/// −ln of the probability (density) of a reading, up to a constant, and how it follows y.
+/// −ln of the probability (density) of a reading, up to a constant, with its derivatives in y.
 struct SampleCost {
   double value;
   double slope;      ///< d/dy
   double curvature;  ///< d²/dy², in [0, 1/σ²]
 };
 
-/// What a reading costs a prediction y: a reading within the limits is a measurement, one at a
-/// limit says only "at least" or "at most" (Tobit):
+/// Cost of a prediction y given a reading: a reading within the limits is a measurement, one at a
+/// limit is an inequality (Tobit):
 ///
 ///     ½ ((y − ỹ)/σ)²   lower < ỹ < upper
 ///     −ln Φ((y − upper)/σ)   ỹ ≥ upper,      −ln Φ((lower − y)/σ)   ỹ ≤ lower
-/// Φ is the standard normal distribution. Convex and smooth in y; correct far in the tails, where
-/// it becomes the parabola ½ t².
+/// Φ is the standard normal distribution. Convex and smooth in y; accurate far in the tails, where
+/// it approaches the parabola ½ t².
 ///
 /// Source: Tobin 1958.
 /// @throws std::domain_error naming value and rule if σ, the limits or the reading break one

@@ -6,7 +6,7 @@
 
 namespace info {
 
-/// How one iteration of an estimation came nearer to the minimum.
+/// Convergence of one iteration of an estimation.
 struct ConvergenceRow {
   int iteration;
   double cost;
@@ -17,8 +17,8 @@ struct ConvergenceRow {
       order;  ///< ln(e_k/e_{k−1})/ln(e_{k−1}/e_{k−2}): 1 linear, 2 quadratic; NaN where undefined
 };
 
-/// The history of an estimation against a minimum known from elsewhere. θ is compared in units of
-/// its own components at the minimum, e_k = |diag(1/θ*)(θ_k − θ*)|, where these are not 0.
+/// The history of an estimation relative to a known minimum. θ is compared in units of its own
+/// components at the minimum, e_k = |diag(1/θ*)(θ_k − θ*)|, where these are not 0.
 std::vector<ConvergenceRow> convergenceTable(const Estimate& estimate,
                                              const Eigen::VectorXd& minimum);
 

@@ -8,7 +8,7 @@
 
 namespace info {
 
-/// A normally distributed vector.
+/// A normally distributed random vector.
 struct Gaussian {
   Eigen::VectorXd mean;
   Eigen::MatrixXd covariance;
@@ -38,11 +38,11 @@ struct NoisySystem {
   OutputCovariance outputNoise;                                 ///< R_k
 };
 
-/// What a filter knows after the samples 0 … k, and on the way there.
+/// The result of a filter after the samples 0 … k.
 struct FilterStep {
   Gaussian predicted;                    ///< x_k given y_0 … y_{k−1}
   Gaussian filtered;                     ///< x_k given y_0 … y_k
-  Eigen::MatrixXd transition;            ///< F_{k−1}, that led here; empty at k = 0
+  Eigen::MatrixXd transition;            ///< F_{k−1}, from the previous sample; empty at k = 0
   Eigen::VectorXd innovation;            ///< of the outputs observed: y_k − h_k(predicted mean)
   Eigen::MatrixXd innovationCovariance;  ///< S_k = H P Hᵀ + R
 };
@@ -55,8 +55,8 @@ struct FilterResult {
 /// The measurement update of one sample,
 ///     K = P Hᵀ S⁻¹,  x̂ = x̄ + K ν                                   (2.15)
 ///     P⁺ = (I − KH) P (I − KH)ᵀ + K R Kᵀ
-/// in Joseph's form, which stays symmetric and positive semidefinite under rounding where the
-/// thesis's P − P Hᵀ S⁻¹ (P Hᵀ)ᵀ need not. Same value.
+/// in Joseph's form, which stays symmetric and positive semidefinite under rounding, unlike P − P
+/// Hᵀ S⁻¹ (P Hᵀ)ᵀ of Wilson's thesis. The value is the same.
 /// @throws std::invalid_argument if shapes do not fit
 FilterStep updateWithMeasurement(const Gaussian& predicted, const LinearisedMap& output,
                                  const Eigen::VectorXd& measured, const Eigen::MatrixXd& noise);
@@ -66,7 +66,7 @@ FilterStep updateWithMeasurement(const Gaussian& predicted, const LinearisedMap&
 ///
 /// @param prior x_0 before any measurement
 /// @param outputs ỹ: outputs × samples, k = 0 … N
-/// @param observed gaps are predicted across
+/// @param observed mask of the outputs; gaps are bridged by prediction
 /// @throws std::invalid_argument if shapes do not fit; std::domain_error if an observed datum is
 /// not finite
 ///         or the prior's covariance is not positive semidefinite

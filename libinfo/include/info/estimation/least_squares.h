@@ -11,38 +11,39 @@
 
 namespace info {
 
-/// What a model says would be measured, and how that follows the parameters.
+/// Predicted outputs of a model and their sensitivities to the parameters.
 struct Prediction {
   Eigen::MatrixXd outputs;  ///< y: outputs × samples
   Eigen::MatrixXd
       gamma;  ///< Γ = dy/dθ stacked: rows k·h … k·h+h−1 belong to sample k, one column per θ
 };
 
-/// A model of an experiment as estimators see it: parameters in, samples out.
+/// A model of an experiment for estimators: parameters in, samples out.
 ///
-/// Laws. Pure: equal θ give equal results, from any thread, in any order. Where θ lies outside the
-/// model's domain the outputs are not finite; estimators then take a shorter step.
+/// Contract: pure, i.e. equal θ give equal results, from any thread, in any order. If θ is outside
+/// the model's domain, the outputs are not finite; estimators then take a shorter step.
 struct Predictor {
   /// y(θ): outputs × samples
   std::function<Eigen::MatrixXd(const Eigen::VectorXd& theta)> outputs;
   /// y(θ) and Γ(θ)
   std::function<Prediction(const Eigen::VectorXd& theta)> withSensitivities;
-  /// Σ_k Σ_i w_ik d²y_ik/dθ² [p × p]; w is outputs × samples. May be empty: no Newton–Raphson then.
+  /// Σ_k Σ_i w_ik d²y_ik/dθ² [p × p]; w is outputs × samples. May be empty; Newton–Raphson is then
+  /// unavailable.
   std::function<Eigen::MatrixXd(const Eigen::VectorXd& theta, const Eigen::MatrixXd& w)>
       contractedCurvature;
 };
 
-/// What was measured.
+/// The measurements.
 struct Measurements {
   Eigen::MatrixXd outputs;        ///< ỹ: outputs × samples
-  OutputCovariance covariance;    ///< of the noise on them
+  OutputCovariance covariance;    ///< covariance of their noise
   ObservationMask observed = {};  ///< false: not measured, the entry of `outputs` is not read
-  RobustLoss loss = {};           ///< what a residual costs; gaussian: least squares
+  RobustLoss loss = {};           ///< cost of a residual; gaussian: least squares
 };
 
 /// The weighted least-squares cost of a model against data, with Gaussian priors,
 ///     β(θ) = ½ Σ_k r_kᵀΣ_k⁻¹r_k + ½ Σ_i (θ_i − μ_i)²/σ_i²,      r_k = ỹ_k − y_k(θ)
-/// the negative log posterior up to a constant. Thesis (2.4), there without priors, with
+/// the negative log posterior up to a constant. Wilson's thesis (2.4), there without priors, with
 ///     dβ/dθ = −Σ_k Γ_kᵀΣ_k⁻¹r_k + (θ − μ)/σ²                     (2.5), whose print lacks the
 ///     minus d²β/dθ² = Σ_k Γ_kᵀΣ_k⁻¹Γ_k − Σ_k r_kᵀΣ_k⁻¹ d²y_k/dθ² + 1/σ²   (2.9)
 ///
@@ -61,23 +62,23 @@ class LeastSquares {
   const std::vector<Parameter>& parameters() const { return parameters_; }
   const Measurements& measurements() const { return measurements_; }
   const Predictor& predictor() const { return predictor_; }
-  /// Second derivatives there are for least squares proper only.
+  /// Second derivatives are available for ordinary least squares only.
   bool hasCurvature() const {
     return predictor_.contractedCurvature && measurements_.loss.kind == RobustLoss::Kind::gaussian;
   }
   /// Start values of the parameters.
   Eigen::VectorXd start() const;
-  /// Number of values measured.
+  /// Number of measured values.
   Eigen::Index observations() const;
 
   struct Linearised {
-    double cost;               ///< β; not finite where the model is undefined
+    double cost;               ///< β; not finite if the model is undefined
     Eigen::VectorXd gradient;  ///< dβ/dθ
     Eigen::MatrixXd information;  ///< Σρ′ΓᵀΣ⁻¹Γ + 1/σ², the Gauss–Newton Hessian (2.10)
     Eigen::MatrixXd residuals;  ///< ỹ − y: outputs × samples, 0 where not observed
   };
 
-  /// β(θ); +∞ where the prediction is not finite.
+  /// β(θ); +∞ if the prediction is not finite.
   double cost(const Eigen::VectorXd& theta) const;
   Linearised linearise(const Eigen::VectorXd& theta) const;
   /// d²β/dθ², exact. @throws std::logic_error if the predictor has no curvature

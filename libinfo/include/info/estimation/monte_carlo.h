@@ -12,19 +12,19 @@ namespace info {
 struct MonteCarloOptions {
   int trials = 300;
   std::uint64_t seed = 1;
-  int threads = 0;  ///< at most so many at once; 0: all cores
+  int threads = 0;  ///< number of threads; 0: all cores
   double startSpread =
       0;  ///< each trial starts uniformly within truth·(1 ± startSpread), in the bounds; ≥ 0
   EstimateOptions
-      estimate;  ///< used for every trial; its progress callback is called from all threads
-  /// Called with the number of trials done, from any thread, one call at a time; returning false
-  /// stops before the trials not yet begun.
+      estimate;  ///< options of every trial; the progress callback is called from all threads
+  /// Called with the number of finished trials, from any thread, one call at a time; returning
+  /// false skips the trials that have not begun.
   std::function<bool(int done, int trials)> progress = {};
 };
 
 struct MonteCarloTrial {
   Eigen::VectorXd start;
-  Eigen::VectorXd parameters;  ///< where the estimator stopped
+  Eigen::VectorXd parameters;  ///< final estimate
   double cost = 0;
   Termination why = Termination::stopped;
   bool converged = false;
@@ -32,23 +32,25 @@ struct MonteCarloTrial {
 };
 
 struct MonteCarloResult {
-  std::vector<MonteCarloTrial> trials;  ///< in order; those not run after a stop are left out
+  std::vector<MonteCarloTrial> trials;  ///< in order, without those skipped after a stop
   int converged = 0;
   Eigen::VectorXd mean;        ///< of the converged trials' estimates
-  Eigen::MatrixXd covariance;  ///< theirs, divided by n − 1; NaN for fewer than two
+  Eigen::MatrixXd
+      covariance;  ///< sample covariance of these (divided by n − 1); NaN for fewer than two
   Eigen::MatrixXd bound;       ///< Cramér–Rao bound at the truth (priors not included)
-  bool complete = true;        ///< false if the callback stopped it
+  bool complete = true;        ///< false if stopped by the callback
 };
 
-/// Simulates an experiment many times and estimates each time: how good is the estimator, and is
-/// the bound attained? Trial i adds noise ~ N(0, Σ_k) to y(θ) and draws its start from
-/// RandomStream(seed, i), so that every number is bitwise the same whatever the number of threads,
-/// and trial i is the same whatever the number of trials.
+/// Monte Carlo study of an estimator: simulates an experiment many times and estimates each time,
+/// to compare the estimates with the Cramér–Rao bound. Trial i adds noise ~ N(0, Σ_k) to y(θ) and
+/// draws its start from RandomStream(seed, i), so that every number is bitwise independent of the
+/// number of threads, and trial i of the number of trials.
 ///
 /// @param predictor must be pure; it is used from several threads
 /// @param truth θ of the simulated data; the parameters' own start values are not used
 /// @param observed as in Measurements
-/// @throws std::invalid_argument if an option is out of range or the truth breaks a bound, and what
+/// @throws std::invalid_argument if an option is out of range or the truth violates a bound, and
+///   what
 ///         estimate() and cramerRaoBound() throw
 MonteCarloResult monteCarlo(const Predictor& predictor, const Eigen::VectorXd& truth,
                             const OutputCovariance& covariance,
@@ -56,12 +58,12 @@ MonteCarloResult monteCarlo(const Predictor& predictor, const Eigen::VectorXd& t
                             const MonteCarloOptions& options = {},
                             const ObservationMask& observed = {});
 
-/// Noise ~ N(0, Σ_k) on samples k = 0 … n−1: outputs × n. Drawn sample by sample.
+/// Noise ~ N(0, Σ_k) on samples k = 0 … n−1: outputs × n. Drawn in the order of the samples.
 /// @throws std::invalid_argument if the covariance is given for another number of samples
 Eigen::MatrixXd drawNoise(const OutputCovariance& covariance, Eigen::Index n, RandomStream& random);
 
-/// body(0) … body(n−1) on at most `threads` threads (0: all cores). An exception of a body ends it
-/// and is thrown here.
+/// body(0) … body(n−1) on at most `threads` threads (0: all cores). An exception in a body ends the
+/// loop and is rethrown.
 void parallelFor(int n, int threads, const std::function<void(int)>& body);
 
 }  // namespace info

@@ -4,14 +4,15 @@
 
 namespace info {
 
-/// One stage of an estimate that is led to its minimum by a model held near the data, less and less
-/// firmly.
+/// One stage of an estimation with nudging, in which the model is pulled towards the data, from
+/// stage to stage less strongly.
 struct NudgeStage {
-  double frequency;  ///< natural frequency of the spring that holds it [rad/s]
-  double spread;     ///< deviations of the noise by which the held model may be off
+  double frequency;  ///< natural frequency of the nudging spring [rad/s]
+  double spread;     ///< error of the nudged model, in standard deviations of the noise
 };
 
-/// From so firm that nothing is unstable to hardly any hold; after them comes the model itself.
+/// From strong nudging, with which no model is unstable, to weak nudging; the original model
+/// follows afterwards.
 inline constexpr std::array nudgeStages = {NudgeStage{12, 3}, NudgeStage{8, 3},   NudgeStage{5, 2},
                                            NudgeStage{3, 2},  NudgeStage{2, 1.5}, NudgeStage{1, 1}};
 

@@ -11,26 +11,27 @@
 
 namespace info {
 
-/// How an on-line estimator looks back and how it iterates.
+/// Window and iteration of an on-line estimator.
 struct OnlineOptions {
-  std::size_t window = 0;  ///< samples looked back at; 0: all of them, from a start that is known
-  /// Standard deviation of each state at a window's start about where the last estimate had it, ≥ 0
-  /// (0: held); read only with a window. [unit of the state]
+  std::size_t window = 0;  ///< number of past samples used; 0: all, from a known initial state
+  /// Prior standard deviation of each state at the start of the window about the last estimate, ≥ 0
+  /// (0: fixed); only used with a window. [unit of the state]
   Eigen::VectorXd startSd = {};
   int maxIterations = 20;            ///< per update, ≥ 1
-  double decrementTolerance = 1e-9;  ///< converged when a further step promises less [nats], > 0
-  std::size_t capacity = 0;          ///< samples to reserve memory for
+  double decrementTolerance = 1e-9;  ///< converged if a further step would gain less [nats], > 0
+  std::size_t capacity = 0;          ///< number of samples to reserve memory for
 };
 
-/// @throws std::domain_error, DimensionError naming the broken rule
+/// @throws std::domain_error, DimensionError naming the violated rule
 void checkOnlineOptions(const OnlineOptions& options, Eigen::Index states);
 
-/// What is known after an update.
+/// The result of an update.
 template <StepMap M>
 struct OnlineEstimate {
   ParametersOf<M> parameters;
-  Matrix<double, M::parameterSize, M::parameterSize> covariance;  ///< bound at the estimate
-  StateOf<M> x;               ///< at the last sample: the observer's state
+  Matrix<double, M::parameterSize, M::parameterSize>
+      covariance;             ///< Cramér–Rao bound at the estimate
+  StateOf<M> x;               ///< state at the last sample
   StateSensitivityOf<M> psi;  ///< dx/dθ there
   std::size_t samples = 0;    ///< k of the last sample + 1
   double cost = 0;            ///< −log posterior up to a constant
@@ -39,15 +40,17 @@ struct OnlineEstimate {
   bool converged = false;
 };
 
-/// Nonlinear least squares on a recording that grows: the estimate of θ after each update is the
+/// Nonlinear least squares on a growing recording: the estimate of θ after each update is the
 /// minimum of
 ///     β = Σ_k Σ_i c_i(ỹ_ik, y_ik(θ, x_s)) + priors of θ + ½ Σ_j ((x_s − x̂_s)_j/σ_j)²
-/// over the window s … K, where c is −log likelihood of a sensor that may clip (censored.h), and
-/// the model run under the measured inputs from x_s observes the state. Over all samples x_s = x_0
-/// is known; over a sliding window it is estimated as well, about where the last estimate had it.
+/// over the window s … K, where c is the negative log likelihood of a sensor that may clip
+/// (censored.h), and the state is that of the model simulated with the measured inputs from x_s. If
+/// all samples are used, x_s = x_0 is known; with a sliding window it is estimated as well, with
+/// the last estimate as its prior mean.
 ///
-/// Levenberg–Marquardt within the bounds, from the last estimate; c″ stands for Σ⁻¹, which is the
-/// Gauss–Newton Hessian of section 2.2.1 where nothing clips. Not converging is a result.
+/// Levenberg–Marquardt within the bounds, from the last estimate; c″ stands for Σ⁻¹, which gives
+/// the Gauss–Newton Hessian (Wilson's thesis, section 2.2.1) if no sample is clipped. Not
+/// converging is a result.
 template <StepMap M>
 class OnlineLeastSquares {
  public:
@@ -55,8 +58,8 @@ class OnlineLeastSquares {
   static_assert(n > 0 && p > 0 && l > 0 && M::inputSize > 0, "fixed sizes");
 
   /// @param sensors one per output
-  /// @throws std::invalid_argument, std::domain_error naming a broken rule of a parameter, sensor
-  ///   or option
+  /// @throws std::invalid_argument, std::domain_error naming the violated rule of a parameter,
+  ///   sensor or option
   OnlineLeastSquares(M map, const StateOf<M>& x0, std::vector<Parameter> parameters,
                      std::vector<ClippedSensor> sensors, OnlineOptions options = {});
 
@@ -64,7 +67,7 @@ class OnlineLeastSquares {
   /// @throws std::domain_error if an input is not finite
   void add(const InputOf<M>& input, const OutputOf<M>& output);
 
-  /// Brings the estimate up to the samples there are. @throws std::domain_error without samples
+  /// Updates the estimate to all samples so far. @throws std::domain_error without samples
   OnlineEstimate<M> update();
 
   std::size_t samples() const { return dropped_ + inputs_.size(); }
@@ -131,7 +134,7 @@ void OnlineLeastSquares<M>::add(const InputOf<M>& input, const OutputOf<M>& outp
   outputs_.push_back(output);
 }
 
-// Moves the window's start to where the model at the present estimate is.
+// Moves the start of the window, with the state of the model at the present estimate.
 template <StepMap M>
 void OnlineLeastSquares<M>::slideWindow() {
   if (options_.window == 0 || inputs_.size() <= options_.window) return;
@@ -158,7 +161,7 @@ typename OnlineLeastSquares<M>::Linearised OnlineLeastSquares<M>::linearise(
   at.sensitivity.template rightCols<n>().setIdentity();
   Vector<double, n + p> xTheta;
   for (std::size_t k = 0; k < inputs_.size(); ++k) {
-    // y and its derivatives along the unknowns
+    // y and its derivatives in the unknowns
     xTheta << at.x, theta;
     const auto g = differentiate(detail::outputOfStateAndParameters(map_, inputs_[k]), xTheta);
     Matrix<double, l, q> gamma = g.jacobian.template leftCols<n>() * at.sensitivity;
@@ -209,7 +212,7 @@ OnlineEstimate<M> OnlineLeastSquares<M>::update() {
   double lambda = 1e-3;
   std::array<bool, q> active{};
   while (true) {
-    // what may move: free, and not pressed against a bound
+    // the free unknowns: not fixed, and not at a bound with the descent direction pointing outwards
     for (int i = 0; i < q; ++i)
       active[std::size_t(i)] =
           isFree(i) && !(i < p && ((z_[i] <= lower_[i] && at.gradient[i] > 0) ||

@@ -7,23 +7,23 @@
 
 namespace info {
 
-/// What is known of a parameter before the experiment: normally distributed about `mean`.
+/// Prior of a parameter: normal with mean `mean`.
 struct GaussianPrior {
   double mean = 0;  ///< in the parameter's unit
   double sd = 1;    ///< standard deviation in the parameter's unit > 0
 };
 
-/// An unknown of a model, as estimators and reports see it. lower == upper holds it fixed.
+/// An unknown parameter of a model, for estimators and reports. lower == upper fixes it.
 struct Parameter {
   std::string name;
-  std::string unit = "";  ///< empty for a pure number
-  double start = 0;       ///< where estimation starts; lower ≤ start ≤ upper
+  std::string unit = "";  ///< empty if dimensionless
+  double start = 0;       ///< initial value of an estimation; lower ≤ start ≤ upper
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
   std::optional<GaussianPrior> prior = std::nullopt;
 };
 
-/// "m1 [kg]", or "m1" for a pure number; names errors and report lines.
+/// "m1 [kg]", or "m1" if dimensionless; for error messages and reports.
 std::string label(const Parameter& parameter);
 
 /// Throws std::invalid_argument unless every name is used once, every start is finite and within

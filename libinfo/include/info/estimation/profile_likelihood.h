@@ -6,23 +6,22 @@
 
 namespace info {
 
-/// One parameter held, all others at their best.
+/// A point of a profile: one parameter fixed, all others optimal.
 struct ProfilePoint {
-  double value;                ///< of the parameter held
-  double cost;                 ///< least β over the other parameters
+  double value;                ///< of the fixed parameter
+  double cost;                 ///< minimal β over the other parameters
   Eigen::VectorXd parameters;  ///< where it is attained
   bool converged;
 };
 
 struct Profile {
-  std::vector<ProfilePoint> points;  ///< in the order of the values asked for
+  std::vector<ProfilePoint> points;  ///< in the order of the requested values
   double threshold;  ///< β at the estimate + z²/2: values below it are in the confidence region
 };
 
-/// The profile likelihood of a parameter: how much worse the best fit becomes as the parameter is
-/// held at other values. Unlike the Cramér–Rao interval it does not suppose that β is a parabola; a
-/// profile that stays below the threshold on one side says that the data do not bound the parameter
-/// there.
+/// The profile likelihood of a parameter: the minimal cost as a function of its fixed value. Unlike
+/// the Cramér–Rao interval it does not assume that β is a parabola; if the profile stays below the
+/// threshold on one side, the data do not bound the parameter there.
 ///
 /// Each point starts from its neighbour's parameters, outwards from the estimate. Source: Raue et
 /// al. 2009; threshold from the likelihood-ratio test with one degree of freedom.
@@ -34,8 +33,8 @@ Profile profileLikelihood(const LeastSquares& problem, const Estimate& estimated
                           Eigen::Index parameter, const std::vector<double>& values,
                           const EstimateOptions& options = {});
 
-/// The values of a parameter at which its profile meets the threshold: a confidence interval that
-/// may be skew.
+/// The values of a parameter at which its profile crosses the threshold: a confidence interval, not
+/// necessarily symmetric.
 struct ProfileInterval {
   Profile profile;
   double lower;  ///< −∞ if the profile stays below the threshold down to the lowest value tried
@@ -45,11 +44,11 @@ struct ProfileInterval {
 };
 
 /// Searches outwards from the estimate: profile points at 1, 2, 4 and 8 times z·deviation on each
-/// side, until one is beyond the threshold; the crossing is sought by regula falsi on the signed
+/// side, until one is beyond the threshold; the crossing is found by regula falsi on the signed
 /// root √(2(β − β̂)), nearly straight in the parameter, to 1 % of the deviation.
 ///
-/// @param deviation of the parameter, as the Cramér–Rao bound gives it [its unit] > 0, finite
-/// @throws std::invalid_argument for another deviation, and what profileLikelihood throws
+/// @param deviation Cramér–Rao standard deviation of the parameter [its unit] > 0, finite
+/// @throws std::invalid_argument for any other deviation, and what profileLikelihood throws
 ProfileInterval profileInterval(const LeastSquares& problem, const Estimate& estimated,
                                 Eigen::Index parameter, double sd,
                                 const EstimateOptions& options = {});

@@ -8,17 +8,17 @@
 
 namespace info {
 
-/// Γ_k one below the other: sample k in rows k·h … k·h+h−1.
+/// The Γ_k stacked: sample k in rows k·h … k·h+h−1.
 /// @throws std::invalid_argument if the Γ_k differ in size
 Eigen::MatrixXd stack(const std::vector<Eigen::MatrixXd>& gamma_k);
 
 /// Fisher information of samples about parameters,
 ///     I = Σ_k Γ_kᵀ Σ_k⁻¹ Γ_k
 /// Γ_k = dy_k/dθ (outputs × parameters), Σ_k the covariance of the noise on y_k. Samples and
-/// outputs that were not observed add nothing; of a sample observed in part, the marginal
-/// covariance counts.
+/// outputs that were not observed contribute nothing; a partly observed sample contributes with its
+/// marginal covariance.
 ///
-/// Thesis (4.1), there for one Σ and no gaps. Symmetric, positive semidefinite,
+/// Wilson's thesis (4.1), there for one Σ and no gaps. Symmetric, positive semidefinite,
 /// [1/(unit_i·unit_j)].
 /// @param gamma stacked Γ_k: (outputs·samples) × parameters
 /// @throws std::invalid_argument if the shapes do not fit; std::domain_error if Γ is not finite
@@ -30,9 +30,9 @@ Eigen::MatrixXd fisherInformation(const std::vector<Eigen::MatrixXd>& gamma_k,
 
 /// Fisher information of outputs measured continuously,
 ///     I = ∫ Γ(t)ᵀ Σ(t)⁻¹ Γ(t) dt
-/// Σ is here the noise's spectral density [(output unit)²·s]; a sampled measurement at period Δt is
-/// about the same with Σ·Δt. Thesis (4.2). The integral is the trapezoidal sum over the times
-/// given.
+/// Here Σ is the spectral density of the noise [(output unit)²·s]; sampling with covariance Σ at
+/// period Δt corresponds approximately to the density Σ·Δt. Wilson's thesis (4.2). The integral is
+/// the trapezoidal sum over the given times.
 ///
 /// @param times [s] strictly rising, one per sample, at least 2
 /// @throws std::invalid_argument if the shapes do not fit or the times do not rise
@@ -40,7 +40,7 @@ Eigen::MatrixXd continuousFisherInformation(const std::vector<double>& times,
                                             const Eigen::MatrixXd& gamma,
                                             const OutputCovariance& density);
 
-/// Cramér–Rao bound I⁻¹: no unbiased estimator has a smaller covariance. Thesis (2.1).
+/// Cramér–Rao bound I⁻¹: no unbiased estimator has a smaller covariance. Wilson's thesis (2.1).
 ///
 /// @param names of the parameters, for messages; empty: θ0, θ1, …
 /// @throws std::domain_error if I is not finite, if a parameter has no information at all (named),

@@ -8,38 +8,39 @@
 
 namespace info {
 
-/// How changes of parameters are compared and put into words.
+/// Scale on which changes of parameters are compared and described.
 enum class ParameterScale {
-  linear,  ///< in units of the prior's deviation, else of |start|, else of 1; sums: "a − 2·b"
+  linear,  ///< in units of the prior standard deviation, else of |start|, else of 1; sums: "a −
+           ///< 2·b"
   logarithmic  ///< in fractions of |start| (must not be 0); products: "m1·L1"
 };
 
-/// A direction in which the parameters can move without any effect on what is measured.
+/// A direction in which the parameters can change without an effect on the outputs.
 struct UndeterminedDirection {
   Eigen::VectorXd direction;            ///< change of θ, in the parameters' units
-  std::vector<std::string> parameters;  ///< those that take part
-  std::string words;  ///< e.g. "m1 +1 %, m2 +1 %": moves together that change no output
+  std::vector<std::string> parameters;  ///< the parameters involved
+  std::string words;  ///< e.g. "m1 +1 %, m2 +1 %": changes that leave all outputs unchanged
 };
 
 struct IdentifiabilityReport {
-  Eigen::Index rank;             ///< number of combinations that are determined
+  Eigen::Index rank;             ///< number of determined combinations
   Eigen::VectorXd eigenvalues;   ///< of the scaled information, rising
   Eigen::MatrixXd eigenvectors;  ///< columns, of the scaled information
   std::vector<UndeterminedDirection> undetermined;
   std::vector<std::string>
-      determined;  ///< combinations known among parameters that are not: "m1/m2"
+      determined;  ///< determined combinations of undetermined parameters: "m1/m2"
   std::vector<std::string>
-      sentences;                ///< the verdict, one line per group of parameters; never empty
+      sentences;                ///< the result, one line per group of parameters; never empty
   Eigen::VectorXd sd;           ///< Cramér–Rao standard deviations; +∞ where undetermined
   Eigen::MatrixXd correlation;  ///< of estimates at the bound; NaN where undetermined
 };
 
-/// What an information matrix says about which parameters can be told apart.
+/// Identifiability of parameters and of their combinations from an information matrix.
 ///
 /// With S = diag(scale), a direction n counts as undetermined if nᵀ(SIS)n ≤ tolerance·λ_max(SIS).
-/// Sparse vectors that span these directions are sought (Gauss–Jordan), parameters that share one
-/// form a group, and the combinations orthogonal to the group's directions are those that are
-/// determined. The statement is local: it holds near the values at which I was taken.
+/// Sparse vectors that span these directions are computed (Gauss–Jordan); parameters in the same
+/// vector form a group, and the combinations orthogonal to the group's directions are determined.
+/// The result is local: it holds near the values at which I was evaluated.
 ///
 /// @param information I or I plus prior information, p × p
 /// @param parameters their names, units, start values and priors

@@ -4,17 +4,17 @@
 
 namespace info {
 
-/// What a motion costs per second while it is to tell about θ and to stay near a place:
+/// Running cost of a motion that is informative about θ and stays near a state:
 ///
 ///     l(x, ψ, u) = tr[(S Γᵀ Σ⁻¹ Γ S + ε 1)⁻¹] + (x − x̂)ᵀ Q (x − x̂),   Γ = D_xg ψ + D_θg
 ///
 /// For one parameter the first term is 1/(Γ²/σ² + ε). S = diag(scale) makes parameters of different
-/// units comparable: a change of θ_i by scale_i counts as 1. ε > 0 keeps the term finite where Γ
-/// tells nothing, such as at rest; there its gradient vanishes, so that without Q nothing would
-/// begin to move. Smooth. Γ may contain u (a load cell), and so may l.
+/// units comparable: a change of θ_i by scale_i counts as 1. ε > 0 keeps the term finite if Γ is
+/// not informative, such as at rest; there its gradient vanishes, so that without Q no motion would
+/// begin. Smooth. Γ may depend on u (a load cell), and so may l.
 ///
-/// Source: Wilson, Information-based Trajectory Optimization, (6.3); departs by ε, without which
-/// the print is singular at rest, by S, and by the term of u.
+/// Source: Wilson, Information-based Trajectory Optimization, (6.3). Differences: ε, without which
+/// the printed cost is singular at rest, S, and the term of u.
 template <SmoothSystem S>
 struct InformationRateCost {
   static constexpr int n = S::stateSize, m = S::inputSize, p = S::parameterSize, l = S::outputSize;

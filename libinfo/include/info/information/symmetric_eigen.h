@@ -10,12 +10,12 @@ struct SymmetricEigen {
   Eigen::MatrixXd vectors;  ///< V: one orthonormal column per value
 };
 
-/// Eigenvalues and eigenvectors of a symmetric matrix; its lower triangle is read. Not finite
-/// entries give results that are not finite. Eigen's solver, compiled once: it is the costliest of
-/// all to compile.
+/// Eigenvalues and eigenvectors of a symmetric matrix; its lower triangle is read. Entries that are
+/// not finite give results that are not finite. This is Eigen's solver, compiled only once because
+/// it takes long to compile.
 SymmetricEigen symmetricEigen(const Eigen::MatrixXd& matrix);
 
-/// The eigenvalues alone, rising.
+/// The eigenvalues alone, in ascending order.
 Eigen::VectorXd symmetricEigenvalues(const Eigen::MatrixXd& matrix);
 
 }  // namespace info

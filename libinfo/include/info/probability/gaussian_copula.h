@@ -4,12 +4,12 @@
 
 namespace info {
 
-/// How numbers with laws of their own hang together: as the components of a normal vector do.
+/// Correlation of quantities with arbitrary marginal distributions by a Gaussian copula.
 ///
-/// z = Λ·Φ⁻¹(u), shares = Φ(z), with ΛΛᵀ the correlation: from independent u, even on (0, 1), come
-/// shares that are even each by itself and correlated. Handed to Marginal::quantile they are draws:
-/// with normal laws whose bounds are far away, of the normal law of that covariance exactly; where
-/// a bound cuts, the laws stay as they are said and the correlation is that before cutting.
+/// z = Λ·Φ⁻¹(u), shares = Φ(z), with ΛΛᵀ the correlation: independent u, uniform on (0, 1), give
+/// correlated shares that are each uniform. Marginal::quantile turns them into samples. For normal
+/// marginals with distant bounds these have exactly the multivariate normal distribution; if a
+/// bound truncates, the marginals are exact and the correlation is that before truncation.
 class GaussianCopula {
  public:
   /// @param correlation symmetric, 1 on the diagonal

@@ -7,19 +7,19 @@
 
 namespace info {
 
-/// Sensitivity over the whole range of the parameters, beside the local one of derivatives. A model
-/// is a function of the unit cube; its outputs may be many (a motion sampled in time), and count
-/// together.
+/// Global sensitivity over the whole range of the parameters, as opposed to local derivatives. A
+/// model is a function on the unit cube; if it has several outputs (a motion sampled in time), they
+/// are evaluated together.
 struct EnsembleOptions {
   int samples = 256;       ///< base points (Sobol) or trajectories (Morris) ≥ 2
-  std::uint64_t seed = 1;  ///< same seed, same bits, whatever the number of threads
+  std::uint64_t seed = 1;  ///< the same seed gives identical results for any number of threads
   int threads = 0;         ///< 0: all cores
-  /// Called with the number of runs done, one call at a time; returning false stops.
+  /// Called with the number of finished runs, one call at a time; returning false stops.
   std::function<bool(int done, int runs)> progress = {};
 };
 
-/// Outputs at a point of the unit cube; not finite where the model is undefined: that point, and
-/// what is compared with it, is left out.
+/// Outputs at a point of the unit cube; not finite if the model is undefined there: the point and
+/// its differences are then excluded.
 using CubeModel = std::function<Eigen::VectorXd(const Eigen::VectorXd& unit)>;
 
 /// Morris's screening (1991), with Campolongo's μ* (2007): along random trajectories on a grid of
@@ -27,20 +27,20 @@ using CubeModel = std::function<Eigen::VectorXd(const Eigen::VectorXd& unit)>;
 /// square over the outputs of (y(x + Δe_i) − y(x))/Δ, for σ with the sign of its mean.
 struct MorrisResult {
   Eigen::VectorXd meanAbsolute;  ///< μ*, per unit of the cube
-  Eigen::VectorXd sd;  ///< σ of the signed effects: large beside μ*: curved or interacting
+  Eigen::VectorXd sd;  ///< σ of the signed effects; large relative to μ*: nonlinear or interacting
   int runs = 0;
-  int undefined = 0;  ///< runs that gave nothing finite
+  int undefined = 0;  ///< number of runs without finite outputs
   bool complete = true;
 };
-/// @throws std::invalid_argument for no parameter or fewer than two trajectories
+/// @throws std::invalid_argument without a parameter or for fewer than two trajectories
 MorrisResult morris(const CubeModel& model, int parameters, const EnsembleOptions& options = {});
 
 /// Sobol's indices by Saltelli's scheme with n·(p + 2) runs: first order by Saltelli et al. (2010),
 /// S_i = E[y_B (y_ABi − y_A)]/V, total by Jansen, T_i = E[(y_A − y_ABi)²]/2V. Variances of several
 /// outputs are added before dividing (Lamboni et al. 2011).
 struct SobolResult {
-  Eigen::VectorXd first;           ///< share of the variance that i explains alone
-  Eigen::VectorXd total;           ///< share that would vanish at best if i were known ≥ first
+  Eigen::VectorXd first;  ///< fraction of the variance explained by parameter i alone
+  Eigen::VectorXd total;  ///< fraction of the variance in which parameter i takes part, ≥ first
   Eigen::VectorXd firstDeviation;  ///< standard errors over the base points
   Eigen::VectorXd totalSd;
   double variance = 0;  ///< summed over the outputs
@@ -57,17 +57,18 @@ SobolResult sobol(const CubeModel& model, int parameters, const EnsembleOptions&
 /// @throws std::invalid_argument for a number of parameters that is not 1 to 32
 Eigen::VectorXd sobolPoint(std::uint64_t index, int parameters, std::uint64_t seed);
 
-/// The indices from outputs that somebody else has computed at the points 0 … n·(p + 2) − 1.
+/// The indices from given outputs at the points 0 … n·(p + 2) − 1.
 /// @param outputs  empty where the model is undefined
 /// @throws std::invalid_argument as morris, or if the outputs are not n·(p + 2)
 SobolResult sobolIndices(const std::vector<Eigen::VectorXd>& outputs, int parameters);
 
-/// How far chance in the choice of base points may have moved the indices.
+/// Uncertainty of the indices due to the choice of base points.
 struct SobolIntervals {
   Eigen::MatrixX2d first, total;  ///< from quantile to quantile
 };
-/// Percentile bootstrap: base points are drawn anew with replacement, all runs of a point together.
-/// Halton's points fill the cube more evenly than chance, so the intervals are rather too wide.
+/// Percentile bootstrap: base points are resampled with replacement, all runs of a point together.
+/// Halton's points fill the cube more evenly than random points, so the intervals tend to be too
+/// wide.
 /// @param replicates ≥ 20
 /// @param confidence in (0, 1)
 /// @throws std::invalid_argument for options out of range, and as sobolIndices
@@ -75,7 +76,7 @@ SobolIntervals bootstrapSobol(const std::vector<Eigen::VectorXd>& outputs, int p
                               int replicates, std::uint64_t seed, double confidence = 0.95);
 
 /// Point `index` of Halton's sequence with digits permuted at random for each prime base (the
-/// permutation depends on seed and base alone): fills the unit cube more evenly than chance.
+/// permutation depends on seed and base alone): fills the unit cube more evenly than random points.
 /// @param dimension 1 to 64
 Eigen::VectorXd haltonPoint(std::uint64_t index, int dimension, std::uint64_t seed);
 

@@ -11,9 +11,9 @@ namespace info {
 /// distributions of quadratic forms in normal variables", Biometrika 86, 1999): with
 /// K(s) = −½ Σ ln(1 − 2 s v_i) and K'(s) = q,
 ///     w = sign(s)·√(2(s·q − K)),   u = s·√K'',   P = 1 − Φ(w + ln(u/w)/w)
-/// Off by a few per cent of itself at most, far out in the tail as well.
+/// The relative error is at most a few per cent, also far out in the tail.
 /// @param variances  v ≥ 0, at least one > 0
-/// @throws std::invalid_argument if there is none, or a number is negative or not finite
+/// @throws std::invalid_argument if none is > 0, or one is negative or not finite
 double tailOfSquares(const Eigen::VectorXd& variances, double q);
 
 }  // namespace info

@@ -5,12 +5,12 @@
 namespace info {
 
 /// Random numbers that are a function of (seed, stream, counter): the n-th number of a stream is
-/// the same on every machine with IEEE arithmetic, whatever other streams do, and whichever thread
-/// draws it.
+/// the same on every machine with IEEE arithmetic, independent of other streams and of the thread
+/// that draws it.
 ///
 /// The 64 bits of draw n are Stafford's mix 13 of k + n·0x9E3779B97F4A7C15 (the finaliser of
 /// SplitMix64, Steele, Lea & Flood 2014), where the key k is mixed from seed and stream. Period 2⁶⁴
-/// per stream; meant for simulation, not for secrets.
+/// per stream; for simulation, not for cryptography.
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::uint64_t stream);

@@ -7,12 +7,12 @@
 
 namespace info {
 
-/// A mailbox that holds the latest value: one thread publishes, one thread reads, neither ever
-/// waits, locks or allocates, and no value is torn.
+/// A wait-free mailbox for the latest value: one thread publishes, one thread reads; neither waits,
+/// locks or allocates, and a value is never read half-written.
 ///
 /// Three slots: the writer fills its own and swaps it with the middle one, the reader swaps the
-/// middle one with its own when it is new. Values between two reads are lost, by design; for all of
-/// them see SampleLog.
+/// middle one with its own when it is new. Intermediate values between two reads are lost by
+/// design; SampleLog keeps all of them.
 template <class T>
 class LatestValue {
   static_assert(std::is_trivially_destructible_v<T>, "a value that owns memory would allocate");
@@ -25,8 +25,8 @@ class LatestValue {
         middle_.exchange(static_cast<std::uint8_t>(writing_ | kFresh), std::memory_order_acq_rel));
   }
 
-  /// Reader's thread only: copies the latest value if it was published since the last call; leaves
-  /// `value` alone and returns false otherwise.
+  /// Reader's thread only: copies the latest value if it was published since the last call;
+  /// otherwise returns false and does not change `value`.
   bool take(T& value) {
     if (!(middle_.load(std::memory_order_relaxed) & kFresh)) return false;
     reading_ = index(middle_.exchange(reading_, std::memory_order_acq_rel));

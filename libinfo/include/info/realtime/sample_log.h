@@ -6,17 +6,17 @@
 
 namespace info {
 
-/// A recording that one thread appends to and any number of threads read, without locks: what was
-/// appended never moves or changes, and its number is published last.
+/// A lock-free recording with one writer and any number of readers: appended samples never move or
+/// change, and their number is published last.
 template <class T>
 class SampleLog {
   static_assert(std::is_trivially_destructible_v<T>, "a sample that owns memory would allocate");
 
  public:
-  /// @param capacity all memory there will ever be
+  /// @param capacity largest number of samples; all memory is allocated at once
   explicit SampleLog(std::size_t capacity) : samples_(capacity) {}
 
-  /// Writer's thread only. False, and nothing appended, when the log is full.
+  /// Writer's thread only. False, without an effect, if the log is full.
   bool append(const T& sample) {
     const std::size_t at = size_.load(std::memory_order_relaxed);
     if (at >= samples_.size()) return false;

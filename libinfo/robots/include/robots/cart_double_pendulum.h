@@ -6,13 +6,14 @@
 
 namespace info {
 
-/// Which parameters of the cart with the double pendulum are identified.
+/// The identified parameters of the cart with the double pendulum.
 enum class DoublePendulumUnknowns {
   mass1AndDamping,  ///< θ = (m1 [kg], c [1e-3 kg m²/s])
   bothMasses,       ///< θ = (m1 [kg], m2 [kg]); c is the member `damping`
 };
 
-/// A cart that drags a double pendulum, two plates on bearings: the robot of chapters 4 and 5.
+/// A cart with a double pendulum made of two plates on bearings: the robot of chapters 4 and 5 of
+/// Wilson's thesis.
 ///
 ///     L = ½ Σ m_i |v_i|² + ½ I1 φ̇1² + ½ I2 (φ̇1 + φ̇2)² + g (m1 s1 + m2 d) cos φ1 + g m2 s2
 ///     cos(φ1+φ2) f = (−c φ̇1, −c φ̇2),   I_i = m_i (L_i² + w_i²)/12 about the centre of mass
@@ -38,9 +39,9 @@ struct CartDoublePendulum {
   double offset = 0.0127;     ///< bearing from either end of link 1 [m]
   double com1 = 0.146;        ///< s1 [m]
   double com2 = 0.125;        ///< s2 [m]
-  double mass2 = 0.0847;      ///< m2 [kg] > 0 where it is known
-  double damping = 0.0;       ///< c [kg m²/s] where it is not identified
-  double dampingUnit = 1e-3;  ///< unit of c in θ [kg m²/s]; chapter 5 of the source used 10e-3
+  double mass2 = 0.0847;      ///< m2 [kg] > 0 if it is known
+  double damping = 0.0;       ///< c [kg m²/s] if it is not identified
+  double dampingUnit = 1e-3;  ///< unit of c in θ [kg m²/s]; 10e-3 in chapter 5 of the source
   double gravity = 9.81;      ///< g [m/s²]
 
   std::vector<std::string> parameterNames() const {
@@ -50,7 +51,7 @@ struct CartDoublePendulum {
       return {"m1", "c"};
   }
 
-  /// What θ stands for, in SI units.
+  /// The parameters θ in SI units.
   template <class T>
   struct Physical {
     T m1, m2, c;
@@ -96,7 +97,7 @@ struct CartDoublePendulum {
     return y;
   }
 
-  /// The equations of motion, derived by hand: mass matrix, Coriolis, gravity, cart, damping.
+  /// The equations of motion: mass matrix, Coriolis, gravity, cart, damping.
   template <class T>
   Vector<T, 6> f(const Vector<T, 6>& x, const Vector<T, 1>& u, const Vector<T, 2>& theta) const {
     using std::cos, std::sin;

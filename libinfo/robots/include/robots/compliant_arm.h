@@ -8,7 +8,7 @@
 namespace info {
 
 /// A gripper that follows a reference along x through compliant joints: ẍ = ω²(r − x) + 2ζω(ṙ − ẋ),
-/// cut at the motors' limit.
+/// limited by the motors.
 struct SystemOptions {
   double naturalFrequency = 25;  ///< ω [rad/s] > 0
   double dampingRatio = 1;       ///< ζ [1] > 0
@@ -17,26 +17,26 @@ struct SystemOptions {
   double start = -0.25;          ///< x at t = 0 [m], at rest
 };
 
-/// The string's load cell: noise, then clipping to [0, capacity].
+/// The load cell of the string: noise, then clipping to [0, capacity].
 struct LoadCell {
   double sd = 0.1;        ///< σ [N] > 0
   double capacity = 2.5;  ///< [N] > 0; infinite: never clips above
 };
 
-/// What the string's top feels and nobody measures: white noise held for a while.
+/// Unmeasured disturbance of the string's top: white noise, piecewise constant.
 struct ArmDisturbance {
   double acceleration = 0.5;  ///< standard deviation [m/s²] ≥ 0
   double hold = 0.01;         ///< [s] > 0
 };
 
-/// One line of the robot's log: its own motion, and the force.
+/// One line of the robot's log: its motion and the force.
 struct SystemReading {
   double time;          ///< [s]
   double reference;     ///< r [m]
   double position;      ///< x [m]
   double velocity;      ///< ẋ [m/s]
   double acceleration;  ///< ẍ [m/s²]
-  double force;         ///< as the load cell has it [N]
+  double force;         ///< reading of the load cell [N]
 };
 
 /// A robot arm with a mass on a string, simulated tick by tick. The load starts at rest, hanging.
@@ -52,13 +52,13 @@ class CompliantArm {
 
   /// The reference accelerates by `command` [m/s²] for one tick.
   void advance(double command);
-  /// Reads the load cell: draws its noise, so once per sample.
+  /// Reading of the load cell; draws its noise, so call it once per sample.
   SystemReading read();
 
   double time() const { return static_cast<double>(ticks_) * tick; }
-  /// (x, φ, ẋ, φ̇), what nobody knows.
+  /// (x, φ, ẋ, φ̇), the true state.
   const Vector<double, 4>& state() const { return state_; }
-  /// The force without noise and limits; the string is slack where it is ≤ 0. [N]
+  /// The force without noise and limits [N]; ≤ 0: the string is slack.
   double tension() const;
 
  private:

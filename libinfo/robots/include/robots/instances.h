@@ -10,9 +10,8 @@
 #include "robots/cart_double_pendulum.h"
 #include "robots/suspended_mass.h"
 
-/// The templates of the robots that come with the library, compiled with it once. A file that
-/// includes this header does not compile them again, which takes a minute for all of them
-/// (docs/decisions/021).
+/// Explicit instantiations of the templates for the library's robots. A file that includes this
+/// header does not compile them again, which saves compile time.
 namespace info {
 
 /// The suspended mass with its length, or mass and length, unknown.

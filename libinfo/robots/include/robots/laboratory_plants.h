@@ -4,8 +4,8 @@
 
 #include "info/dynamics/system.h"
 
-/// Plants with more freedom than the models that are fitted to them: motion out of the plane and
-/// dry friction. Systems like any other; their friction is smoothed below `slowRate`.
+/// Plants with more effects than the models that are fitted to them: motion out of the plane and
+/// dry friction, smoothed below `slowRate`.
 namespace info {
 
 /// Moment −τ·ω/√(ω² + ε²) of dry friction, per unit of τ.
@@ -15,8 +15,9 @@ T dryFrictionShare(const T& rate, double slowRate) {
   return -rate / sqrt(rate * rate + slowRate * slowRate);
 }
 
-/// The cart with the double pendulum whose plane turns by η about the cart's direction of travel,
-/// as if on a third hinge. State (α, β, η, α̇, β̇, η̇), angles of the links absolute in their plane.
+/// The cart with the double pendulum whose plane rotates by η about the cart's direction of travel,
+/// as if by a third hinge. State (α, β, η, α̇, β̇, η̇), angles of the links absolute in their
+/// plane.
 ///
 ///     L = ½ Σ m_i (ẋ_i² + ḣ_i² + h_i² η̇²) + ½ I_i (α̇_i² + η̇² cos²α_i) + g cos η Σ m_i h_i
 /// with (x_i, h_i) the centres of mass in the plane, h downwards, I_i = m_i(L_i² + w_i²)/12 as of

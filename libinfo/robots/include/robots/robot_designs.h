@@ -4,7 +4,8 @@
 #include "info/design/projection.h"
 #include "robots/cart_double_pendulum.h"
 
-/// The two robots of chapters 4 and 5 as systems and tasks for the optimisation of their motions.
+/// The two robots of chapters 4 and 5 of Wilson's thesis as systems and tasks for the optimisation
+/// of motions.
 namespace info {
 
 /// The variational step of the cart with the double pendulum, input the cart's position [m];
@@ -13,9 +14,9 @@ namespace info {
 ExtendedStepMap doublePendulumSteps(double timeStep, double dampingUnit = 1e-3,
                                     const Vector<double, 2>& theta = {0.085, 0.5});
 
-/// Chapter 5: 5 s from x(t) = 0.01 sin(2πt/5) m, information 1.25e4/λ_min, c = 0.05 in 10e-3
-/// kg m²/s, the unit of that chapter. Weights and the unit are not printed; these give an
-/// information near the printed one.
+/// Chapter 5: 5 s from x(t) = 0.01 sin(2πt/5) m, information 1.25e4/λ_min, c = 0.05 in 10e-3 kg
+/// m²/s, the unit of that chapter. Weights and the unit are not printed; those used here give an
+/// information close to the printed one.
 struct StepTask {
   ExtendedStepMap system;
   StepDesign design;
@@ -32,8 +33,8 @@ struct FlowTask {
 };
 
 /// Chapter 4: 5 s from x(t) = 0.05(1 − cos 2πt/5) m, information 100/λ_min per sample a second, at
-/// θ = (0.085 kg, 0.5e-3 kg m²/s). Input the cart's acceleration [m/s²]. The source prints neither
-/// start nor weights; these give its initial bound within 3 %.
+/// θ = (0.085 kg, 0.5e-3 kg m²/s). Input the cart's acceleration [m/s²]. The source gives neither
+/// start nor weights; those used here give its initial bound within 3 %.
 FlowTask doublePendulumFlowTask(double step = 0.01);
 
 /// Section 4.5: 5 s from x(t) = 0.0476(1 − cos 2πt/5) m, 2.07·κ against the cart's acceleration

@@ -6,25 +6,25 @@
 
 #include "info/discovery/likelihood/discovery_problem.h"
 
-/// The two robots of chapter 4 with everything built in that they may lack: the catalogues that
-/// discovery (info/discover) searches.
+/// The two robots of chapter 4 of Wilson's thesis with all effects that may be missing: the
+/// catalogues of discovery (info/discover).
 namespace info::robot {
 
-/// One thing that is measured.
+/// One measured channel.
 struct Channel {
-  std::string name;  ///< of its column, e.g. "link1"
+  std::string name;  ///< name of its column, e.g. "link1"
   std::string unit;  ///< "rad" or "N"
 };
 
-/// One number of a trial's start; at rest otherwise.
+/// One quantity of a trial's initial state; the rest is 0.
 struct StartQuantity {
   std::string name, unit;
-  int channel;   ///< its nominal value is that channel's first sample; −1: 0
-  double sd;     ///< prior, in its unit
-  double bound;  ///< it stays within ± this about nominal
+  int channel;   ///< channel whose first sample is the nominal value; −1: 0
+  double sd;     ///< prior standard deviation, in its unit
+  double bound;  ///< bounds: nominal ± this
 };
 
-/// A recording: the cart's commanded acceleration, and what was measured.
+/// A recording: the cart's commanded acceleration and the measurements.
 struct Trial {
   std::string name;
   std::vector<double> times;         ///< [s] strictly rising, at least 2
@@ -38,20 +38,20 @@ struct Sample {
   int channel = 0;
 };
 
-/// What a simulation is asked for.
+/// A request for a simulation.
 struct Request {
   const Trial& trial;
-  const std::vector<Sample>& samples;      ///< in the order of time, within the trial's
+  const std::vector<Sample>& samples;      ///< in the order of time, within the trial
   const std::vector<double>& nodes;        ///< of the latent acceleration [s], equally spaced
   double step;                             ///< longest time step [s] > 0
   const Eigen::VectorXd& shared;           ///< values of Model::quantities
   const Eigen::VectorXd& start;            ///< values of Model::starts
   const Eigen::VectorXd& latent;           ///< at the nodes [m/s²]; empty: 0
-  const std::vector<std::size_t>& wanted;  ///< of `shared`, each once
+  const std::vector<std::size_t>& wanted;  ///< indices into `shared`, each once
   bool derivatives = false, latentToo = false;
 };
 
-/// Not finite where the simulation fails.
+/// The result of a simulation; not finite if it fails.
 struct Response {
   Eigen::VectorXd outputs;   ///< at the samples, in the channels' units
   Eigen::VectorXd speeds;    ///< their rates
@@ -62,8 +62,8 @@ struct Response {
 
 /// A robot with its catalogue.
 ///
-/// Amplitudes are 0 or more where only that makes sense; at 0 the effect is absent, bit for bit.
-/// Priors: see the sources beside each entry in src/robot_double_pendulum.cc and
+/// Amplitudes that are physically non-negative are ≥ 0; at 0 the effect is absent, bit for bit.
+/// Sources of the priors are given beside each entry in src/robot_double_pendulum.cc and
 /// src/robot_suspended_mass.cc.
 struct Model {
   std::string name;
@@ -81,20 +81,20 @@ struct Model {
 ///
 /// | id | effect | amplitude |
 /// |---|---|---|
-/// | visc_1, visc_2 | τ_i −= b·w_i, beyond the damping of the model | b ≥ 0 [N·m·s/rad] |
+/// | visc_1, visc_2 | τ_i −= b·w_i, in addition to the damping of the model | b ≥ 0 [N·m·s/rad] |
 /// | coulomb_1, coulomb_2 | τ_i −= c·tanh(w_i/0.05 rad/s) | c ≥ 0 [N·m] |
 /// | stribeck_1, stribeck_2 | τ_i −= c·[1 + e^{−(w_i/v)²}]·tanh(w_i/0.05 rad/s) | c ≥ 0 [N·m] |
 /// | drag | −k·|v|·v at the mass centre of each link, v its velocity | k ≥ 0 [N·s²/m²] |
-/// | tilt | gravity's moments are those of α + δ, β + δ | δ [rad] |
+/// | tilt | gravity's moments are those at α + δ, β + δ | δ [rad] |
 /// | locked_2 | τ_2 −= k·(β − α + w_2·2 ms): one link fewer as k → ∞ | k ≥ 0 [N·m/rad] |
 /// | link_3 | a point mass m on a rod of length ℓ below the end of link 2 | m ≥ 0 [kg] |
-/// | lag | T·ȧ_c = a − a_c between command a and cart a_c | T ≥ 0 [s] |
-/// | bias_1, bias_2, gain_1, gain_2 | (1 + g)·angle + b is read | b [rad], g |
-/// | clock | sensors show what was T before | T ≥ 0 [s] |
+/// | lag | T·ȧ_c = a − a_c between command a and actual acceleration a_c | T ≥ 0 [s] |
+/// | bias_1, bias_2, gain_1, gain_2 | the reading is (1 + g)·angle + b | b [rad], g |
+/// | clock | sensors are delayed by T | T ≥ 0 [s] |
 /// | m_1, m_2, com_1, com_2, I_1, I_2, pivots, damping | errors of parameters | |
 ///
-/// The third link hangs L2 − 2·offset below joint 2, starts in line with link 2, and its joint
-/// brakes it by 0.5/s of mℓ² times its rate.
+/// The third link hangs L2 − 2·offset below joint 2 and starts in line with link 2; its joint has
+/// viscous damping, 0.5/s times mℓ² times its rate.
 Model doublePendulum();
 
 /// Cart with a mass on a string (suspended_mass.h), the string's force measured at its top [N].
@@ -105,13 +105,13 @@ Model doublePendulum();
 /// | elastic | the string is C·(F − mg) longer, inner damping 0.2 N·s/m | C ≥ 0 [m/N] |
 /// | visc | moment −b·φ̇ of the pivot | b ≥ 0 [N·m·s/rad] |
 /// | coulomb | moment −c·tanh(φ̇/0.05 rad/s) of the pivot | c ≥ 0 [N·m] |
-/// | tilt | gravity's parts are those of φ + δ; the start is measured from hanging | δ [rad] |
+/// | tilt | gravity's components at φ + δ; initial angle from the vertical | δ [rad] |
 /// | lag | T·ȧ_c = a − a_c between command a and cart a_c | T ≥ 0 [s] |
-/// | saturation | the share s of all force beyond K is lost | s ≥ 0, 1: everything |
-/// | bias, gain | (1 + g)·F + b is read | b [N], g |
-/// | clock | the sensor shows what was T before | T ≥ 0 [s] |
-/// | mass, length | errors of parameters; gain and mass differ by drag alone | |
-/// @param leastForce, greatestForce  measured [N]: where saturation may begin
+/// | saturation | the fraction s of the force beyond K is lost | s ≥ 0; 1: all of it |
+/// | bias, gain | the reading is (1 + g)·F + b | b [N], g |
+/// | clock | the sensor is delayed by T | T ≥ 0 [s] |
+/// | mass, length | errors of parameters; gain and mass differ only with drag | |
+/// @param leastForce, greatestForce measured [N]: the range in which saturation may begin
 Model suspendedMass(double leastForce, double greatestForce);
 
 }  // namespace info::robot

@@ -11,23 +11,24 @@ namespace info::robot {
 struct DisagreementOptions {
   double step = 0.005;          ///< longest time step [s] > 0
   double latentSpacing = 0.05;  ///< between nodes of the latent acceleration [s] > 0
-  /// Noise of each channel [its unit] > 0; empty: from the data's third differences.
+  /// Standard deviation of the noise of each channel [its unit] > 0; empty: from the data's third
+  /// differences.
   std::vector<double> sds;
-  std::vector<std::string> without;  ///< ids of candidates that are left out
+  std::vector<std::string> without;  ///< ids of excluded candidates
 };
 
-/// A robot and its recordings: what info::discover asks, the same for every robot.
+/// The discovery problem of a robot and its recordings for info::discover.
 ///
-/// The latent force is an acceleration of the cart that nobody commanded [m/s²], of scale 1: what
-/// drives and floors do, and what friction of the first joint nearly is.
+/// The latent force is an additional acceleration of the cart [m/s²], of scale 1, as caused by
+/// drives and floors. Friction of the first joint has nearly the same effect.
 ///
-/// Robots may measure several channels; their samples follow each other in time. Values of channel
-/// c are weighted by σ_0/σ_c, so that all have the noise of channel 0, in its unit.
+/// A robot may measure several channels; samples are in the order of time. Values of channel c are
+/// weighted by σ_0/σ_c, so that all have the noise of channel 0, in its unit.
 ///
 /// All derivatives are exact. The cart is at rest before the first row.
 class RobotProblem final : public discover::DiscoveryProblem {
  public:
-  /// @throws std::invalid_argument for a trial that breaks a rule of Trial or has no measured
+  /// @throws std::invalid_argument for a trial that violates a rule of Trial or has no measured
   ///   value, a channel with fewer than eight values in all, an unknown id, an option out of range
   RobotProblem(Model model, std::vector<Trial> trials, DisagreementOptions options = {});
 
@@ -49,7 +50,7 @@ class RobotProblem final : public discover::DiscoveryProblem {
   std::vector<std::string> inputNames() const override { return {"cart acceleration"}; }
 
   const Model& model() const { return model_; }
-  /// By which values of a channel are multiplied, σ_0/σ_c.
+  /// Weight of the values of a channel, σ_0/σ_c.
   double weight(int channel) const { return weights_.at(static_cast<std::size_t>(channel)); }
   /// σ_c [unit of the channel].
   const std::vector<double>& sds() const { return sds_; }
@@ -62,8 +63,8 @@ class RobotProblem final : public discover::DiscoveryProblem {
     std::vector<Sample> samples;
     std::vector<double> times, nodes;
     std::vector<int> channels;
-    Eigen::VectorXd measured, weights;  ///< weighted; one for each sample
-    std::size_t start;                  ///< the first quantity of its start
+    Eigen::VectorXd measured, weights;  ///< weighted values; the weight of each sample
+    std::size_t start;                  ///< index of the first quantity of its initial state
   };
   const OfTrial& of(int trial) const { return trials_.at(static_cast<std::size_t>(trial)); }
   Response simulate(const OfTrial& one, const Eigen::VectorXd& values,
@@ -73,7 +74,8 @@ class RobotProblem final : public discover::DiscoveryProblem {
   Model model_;
   DisagreementOptions options_;
   std::vector<double> sds_, weights_;
-  std::vector<discover::Quantity> quantities_;  ///< the model's, then the trials' starts
+  std::vector<discover::Quantity>
+      quantities_;  ///< those of the model, then the initial states of the trials
   std::vector<std::size_t> nuisances_;
   std::vector<OfTrial> trials_;
 };

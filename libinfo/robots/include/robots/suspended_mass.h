@@ -6,16 +6,17 @@
 
 namespace info {
 
-/// A cart that carries a mass on a string with a load cell at its top: chapter 4's second robot.
+/// A cart with a mass on a string and a load cell at its top: the second robot of chapter 4 of
+/// Wilson's thesis.
 ///
 ///     ẍ = u,   ℓ φ̈ = u cos φ − g sin φ,   state (x, φ, ẋ, φ̇),   θ = (m, ℓ)
 ///     y = F = m (g cos φ + ℓ φ̇² + u sin φ)      tension of the string [N]
 /// φ [rad] from hanging down, the bob at x − ℓ sin φ, u cart acceleration [m/s²]; smooth for ℓ > 0,
-/// a model of the string while F > 0.
+/// valid while the string is taut, F > 0.
 ///
-/// Source: Wilson, Information-based Trajectory Optimization, section 4.5. The output departs from
-/// the printed (4.7), which has the signs of ℓφ̇² and of u reversed and no m on u; ours is the
-/// constraint force from first principles.
+/// Source: Wilson, Information-based Trajectory Optimization, section 4.5. The output differs from
+/// the printed (4.7), in which the signs of ℓφ̇² and of u are reversed and the factor m of u is
+/// missing; here it is the constraint force from first principles.
 struct SuspendedMass {
   static constexpr int stateSize = 4, inputSize = 1, parameterSize = 2, outputSize = 1;
   double gravity = 9.81;  ///< g [m/s²]

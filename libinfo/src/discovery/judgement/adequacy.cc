@@ -47,7 +47,7 @@ Adequacy adequacy(const Likelihood& likelihood, const Fit& fit, const AdequacyOp
   const DiscoveryProblem& data = likelihood.data();
   std::vector<VectorXd> series;
   double power = 0, count = 0;
-  // what parameters that were fitted take away at each lag
+  // reduction of the autocorrelation at each lag by the fitted parameters
   VectorXd taken = VectorXd::Zero(options.lags + 1);
   for (std::size_t t = 0; t < likelihood.trials().size(); ++t) {
     Likelihood::Whitened whitened = likelihood.whitened(t, fit);
@@ -60,14 +60,14 @@ Adequacy adequacy(const Likelihood& likelihood, const Fit& fit, const AdequacyOp
     power += series.back().squaredNorm();
     count += static_cast<double>(series.back().size());
   }
-  // size: parameters that the data determine have used up one innovation each
+  // size: each parameter that the data determine takes one degree of freedom
   double freedom = count;
   for (Index i = 0; i < fit.xi.size(); ++i)
     if (!fit.atBound[static_cast<std::size_t>(i)])
       freedom -= std::clamp(1 - fit.covariance(i, i), 0.0, 1.0);
   Adequacy result;
   result.meanSquare = power / freedom;
-  // σ_y that was estimated widens the band
+  // an estimated σ_y widens the acceptance region
   const double widening = std::exp(3.29 * options.sdError);
   result.lowest = chiSquareQuantile(1 - 0.5 * options.level, freedom) / freedom / widening;
   result.highest = chiSquareQuantile(0.5 * options.level, freedom) / freedom * widening;

@@ -15,7 +15,7 @@ const Finalist* find(const std::vector<Finalist>& raced, const std::vector<std::
   return nullptr;
 }
 
-// the class of one effect, the others staying
+// the class of one effect, the others being kept
 NamedEffect classOf(const std::vector<Candidate>& candidates, const Judgement& judgement,
                     const Finalist& leader, std::size_t effect, const Options& options) {
   NamedEffect named;
@@ -41,7 +41,7 @@ NamedEffect classOf(const std::vector<Candidate>& candidates, const Judgement& j
         std::find(declared.begin(), declared.end(), candidates[c].id) != declared.end();
     if (rival == nullptr && !equal) continue;
     const double behind = rival != nullptr ? rival->logEvidence - leader.logEvidence : 0;
-    // what tells declared equivalents apart within a class is their priors, not the data
+    // declared equivalents in a class differ in their priors only, not in the fit to the data
     const bool tied = equal && behind > -options.classWidth;
     if (tied || rival != nullptr) sum += tied ? 1 : std::exp(behind);
     if (equal || behind > -options.classWidth) {
@@ -54,7 +54,7 @@ NamedEffect classOf(const std::vector<Candidate>& candidates, const Judgement& j
   return named;
 }
 
-// A law without rivals that fits only where a number that shapes it leaves its range.
+// Whether an effect without alternatives has a shape parameter at a bound.
 bool isStretched(const NamedEffect& named, const Candidate& candidate) {
   return named.equals.size() == 1 &&
          std::any_of(named.estimates.begin(), named.estimates.end(), [&](const Estimate& e) {

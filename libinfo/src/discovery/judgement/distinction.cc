@@ -63,7 +63,7 @@ Seen seenOf(const DiscoveryProblem& planned, int trial, const PresentEffect& eff
   return seen;
 }
 
-// (½ Δᵀ S⁻¹ Δ) of Δ once everything in `free` has been adjusted, S = σ² + FFᵀ.
+// ½ Δᵀ S⁻¹ Δ with S = σ² + FFᵀ, the cost of Δ after adjustment of everything in `free`.
 double remaining(const VectorXd& change, const MatrixXd& free, double variance) {
   MatrixXd inner = free.transpose() * free;
   inner.diagonal().array() += variance;

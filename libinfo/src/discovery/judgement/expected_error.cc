@@ -14,10 +14,10 @@ using Eigen::VectorXd;
 
 namespace {
 
-// A root of the covariance of what belongs to no trial.
+// A square root of the covariance of the parameters common to all trials.
 struct Uncertain {
   std::vector<std::size_t> quantities;
-  MatrixXd root;  // in the quantities' units
+  MatrixXd root;  // in the units of the quantities
 };
 
 Uncertain uncertainOf(const Fit& fit, const DiscoveryProblem& data) {
@@ -33,7 +33,7 @@ Uncertain uncertainOf(const Fit& fit, const DiscoveryProblem& data) {
   }
   const MatrixXd covariance = fit.covariance(places, places);
   if (covariance.size() == 0) return uncertain;
-  // those at a bound have no deviation, so it is semidefinite
+  // parameters at a bound have no variance, so it is semidefinite
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(covariance);
   const VectorXd sizes = solver.eigenvalues().cwiseMax(0).cwiseSqrt();
   const Eigen::Map<const VectorXd> scale(slopes.data(), static_cast<Index>(slopes.size()));
@@ -52,10 +52,11 @@ ExpectedError expectedError(const Likelihood& held, const Fit& starts, const Fit
     throw std::invalid_argument("expected error: the starts must be those of the held-out trials");
   const Uncertain uncertain = uncertainOf(fit, held.data());
   const Index samples = held.samples();
-  // what moves the trials: the parameters all of them, starts and inputs each its own
+  // sources of the error: parameters in all trials, initial states and inputs in each trial
+  // separately
   std::vector<Likelihood::Linear> trials;
   Index columns = uncertain.root.cols();
-  Fit scattered = starts;  // where inputs scatter, about nothing
+  Fit scattered = starts;  // about zero latent force
   scattered.noise.latent = fit.noise.latent;
   for (std::size_t t = 0; t < held.trials().size(); ++t) {
     if (fit.noise.latent > 0)
@@ -66,7 +67,7 @@ ExpectedError expectedError(const Likelihood& held, const Fit& starts, const Fit
   }
   const double variance = fit.noise.output * fit.noise.output;
   MatrixXd moved = MatrixXd::Zero(samples, columns);  // in units of N(0, 1)
-  MatrixXd P = MatrixXd::Identity(samples, samples);  // after the starts have followed
+  MatrixXd P = MatrixXd::Identity(samples, samples);  // after the fit of the initial states
   Index row = 0, column = uncertain.root.cols();
   for (const Likelihood::Linear& l : trials) {
     const Index n = l.residuals.size();

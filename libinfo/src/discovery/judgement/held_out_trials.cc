@@ -7,7 +7,7 @@ namespace info::discover {
 HeldOutTrials heldOutTrials(const DiscoveryProblem& data, const Search& search, const Entry& entry,
                             const Likelihood& all, const Likelihood& held) {
   HeldOutTrials result;
-  // their starts are new: a large latent force leads to them
+  // their initial states are not fitted yet: start with a large latent force
   Noise wide = entry.fit.noise, still = entry.fit.noise;
   wide.latent = std::max(wide.latent, 0.1);
   still.latent = 0;
@@ -23,13 +23,13 @@ HeldOutTrials heldOutTrials(const DiscoveryProblem& data, const Search& search, 
   if (const auto near = held.tryFit(starts, wide, entry.fit.values, {}, {10, 0.1})) {
     if (auto fit = held.tryFit(starts, still, near->values, {}, {30, 0.01})) {
       result.error = held.simulationError(fit->values);
-      together(fit->values);  // where everything else is right already
+      together(fit->values);  // the other values are final
       result.starts = std::move(fit);
     }
   }
   if (best) {
     if (search.exceedsNoise(*best)) best = all.marginal(*best);
-    // log Z of all less that of those that were fitted
+    // log Z of all trials less that of the fitted ones
     result.score = best->logEvidence - entry.fit.logEvidence;
     result.meanSquare = 2 * (best->cost - entry.fit.cost) / static_cast<double>(held.samples());
   }

@@ -9,16 +9,16 @@
 
 namespace info::discover {
 
-/// What a hypothesis, fitted to the training trials, makes of the trials that were held out.
+/// The held-out trials under a hypothesis that was fitted to the training trials.
 struct HeldOutTrials {
-  double score = -HUGE_VAL;  ///< log of their probability given the others
-  double error = HUGE_VAL;   ///< of the simulation, with starts of their own [unit of the output]
-  double meanSquare = HUGE_VAL;  ///< of their innovations given the others
-  std::optional<Fit> starts;     ///< those of their own
+  double score = -HUGE_VAL;      ///< log probability given the training trials
+  double error = HUGE_VAL;       ///< of the simulation, initial states fitted [unit of the output]
+  double meanSquare = HUGE_VAL;  ///< of the innovations given the training trials
+  std::optional<Fit> starts;     ///< fitted initial states
 };
 
-/// @param all  likelihood of the training trials and those held out
-/// @param held  likelihood of those held out
+/// @param all  likelihood of the training and held-out trials
+/// @param held  likelihood of the held-out trials
 HeldOutTrials heldOutTrials(const DiscoveryProblem& data, const Search& search, const Entry& entry,
                             const Likelihood& all, const Likelihood& held);
 

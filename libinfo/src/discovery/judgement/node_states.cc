@@ -25,7 +25,7 @@ struct FirstOutput {
   std::vector<double> times;
 };
 
-// y at latent nodes, straight between samples
+// y at the latent nodes, linear between samples
 VectorXd atNodes(const std::vector<double>& nodes, const std::vector<double>& times,
                  const VectorXd& y) {
   VectorXd result(static_cast<Index>(nodes.size()));

@@ -7,7 +7,7 @@
 
 namespace info::discover {
 
-/// Where the simulation of a fit is at the nodes of the latent force, trial by trial.
+/// States of the simulation of a fit at the nodes of the latent force, by trial.
 struct NodeStates {
   std::vector<Likelihood::Linear> linear;  ///< with dy/dd
   std::vector<Eigen::VectorXd> q, qDot;    ///< of the first output

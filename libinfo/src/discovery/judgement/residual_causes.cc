@@ -29,7 +29,7 @@ VectorXd joined(const std::vector<VectorXd>& trials) {
   return all;
 }
 
-// Of mean square 1, if it is not 0.
+// Scaled to mean square 1, unless it is 0.
 VectorXd sized(VectorXd x) {
   const double size = std::sqrt(x.squaredNorm() / static_cast<double>(x.size()));
   if (size > 0) x /= size;
@@ -57,7 +57,7 @@ MatrixXd pivotedRoot(const MatrixXd& K, Index rank) {
   return B;
 }
 
-// Of disturbances with these columns at the samples of each trial.
+// Score and information of disturbances with these columns at the samples of each trial.
 double evidenceOf(const Likelihood& likelihood, const Fit& fit, const NodeStates& states,
                   const std::vector<MatrixXd>& disturbances) {
   if (disturbances.front().cols() == 0) return 0;
@@ -79,8 +79,8 @@ double evidenceOf(const Likelihood& likelihood, const Fit& fit, const NodeStates
   return best - std::log(static_cast<double>(kSizes));
 }
 
-// What forces with these columns at the nodes of all trials, one trial below the other, do to the
-// outputs.
+// Response of the outputs to forces with these columns at the nodes of all trials, stacked by
+// trial.
 std::vector<MatrixXd> outputsOf(const NodeStates& states, const MatrixXd& forces) {
   std::vector<MatrixXd> disturbances;
   Index at = 0;
@@ -103,7 +103,7 @@ MatrixXd fieldOfState(const NodeStates& states) {
   return pivotedRoot(K, kDirections);
 }
 
-// Every input at every lag; before the start of a trial it is what it is there.
+// Every input at every lag; before the start of a trial it has its initial value.
 MatrixXd pastInputs(const Likelihood& likelihood, const NodeStates& states) {
   Index rows = 0;
   for (const MatrixXd& u : states.inputs) rows += u.rows();
@@ -126,9 +126,9 @@ MatrixXd pastInputs(const Likelihood& likelihood, const NodeStates& states) {
   return past;
 }
 
-// q̈ at the nodes as it would be without the latent force there: second differences of the simulated
-// motion, less what the forces at a node and beside it have turned at once. With that in, every
-// force would follow the acceleration that it makes
+// q̈ at the nodes without the latent force: second differences of the simulated motion, less the
+// direct contribution of the forces at the node and its neighbours. Otherwise every force would be
+// correlated with the acceleration that it causes
 // (docs/decisions/049-latent-force-acceleration.md).
 MatrixXd accelerations(const Likelihood& likelihood, const Fit& fit, const NodeStates& states) {
   std::vector<VectorXd> all;
@@ -150,7 +150,7 @@ MatrixXd accelerations(const Likelihood& likelihood, const Fit& fit, const NodeS
         own[i] -= bend(response.col(j), i) * force[j];
       own[i] /= width * width;
     }
-    if (i > 1) {  // there are no differences at the ends
+    if (i > 1) {  // no differences at the ends
       own[0] = own[1];
       own.tail(q.size() - i).setConstant(own[i - 1]);
     }

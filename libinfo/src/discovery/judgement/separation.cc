@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-// One hypothesis in the experiment that is planned.
+// One hypothesis in the planned experiment.
 class Predicted {
  public:
   Predicted(const DiscoveryProblem& planned, const DiscoveryProblem& fitted, const Fit& fit)
@@ -43,7 +43,7 @@ class Predicted {
 
   struct Outcome {
     VectorXd outputs;
-    MatrixXd variance;  // of what is uncertain in it, but for the starts and the latent force
+    MatrixXd variance;  // from its uncertain parameters, without initial states and latent force
     MatrixXd starts, latent;
   };
   Outcome at(int trial, double latentSize) const {

@@ -5,14 +5,14 @@
 
 namespace info::discover {
 
-/// Something over (ξ, η), each trial's η apart.
+/// A vector over (ξ, η), with one block of η per trial.
 struct JointVector {
   Eigen::VectorXd xi;
   std::vector<Eigen::VectorXd> eta;
   double norm() const;
 };
 
-/// The normal equations of a fit over (ξ, η), each trial's η in a block of its own:
+/// The normal equations of a fit over (ξ, η), with one block of η per trial:
 ///     [ A  B₁ᵀ … ] [dξ ]   [ a  ]
 ///     [ B₁ C₁    ] [dη₁] = [ b₁ ]
 ///     [ ⋮      ⋱ ] [ ⋮ ]   [ ⋮  ]
@@ -21,18 +21,18 @@ class DampedSystem {
  public:
   struct Blocks {
     Eigen::MatrixXd information;            ///< A
-    std::vector<Eigen::MatrixXd> coupling;  ///< B, no rows where a trial has no latent force
+    std::vector<Eigen::MatrixXd> coupling;  ///< B, without rows for a trial without latent force
     std::vector<Eigen::MatrixXd> latent;    ///< C
   };
 
   /// A's diagonal times 1 + λ, λ added to C's (whose prior is 1).
   DampedSystem(const Blocks& blocks, double damping);
 
-  /// What pulls at ξ once η has followed: a − ΣBᵀC⁻¹b.
+  /// The right-hand side for ξ after elimination of η: a − ΣBᵀC⁻¹b.
   Eigen::VectorXd pull(const JointVector& right) const;
-  /// dξ of a pull; only `moving` ones move.
+  /// dξ for a right-hand side; only the components in `moving` change.
   Eigen::VectorXd solve(const Eigen::VectorXd& pull, const std::vector<Eigen::Index>& moving) const;
-  /// How η follows dξ.
+  /// dη for a given dξ.
   std::vector<Eigen::VectorXd> follow(const JointVector& right, const Eigen::VectorXd& xi) const;
 
  private:

@@ -21,13 +21,13 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Where along a step its curvature is probed, and the largest 2|a|/|v| that a step is bent by, both
-// as Transtrum and Sethna give them (arXiv:1201.5885).
+// Fraction of a step at which its curvature is evaluated, and the largest accepted 2|a|/|v|, both
+// from Transtrum and Sethna (arXiv:1201.5885).
 constexpr double kProbe = 0.1, kMostBend = 0.75;
 
-// Where J has a kink (a muscle that just touches its cylinder, an excitation cut off at 0) Newton's
-// step promises what it cannot keep. After so many iterations without gain, and with less than so
-// many nats promised, nothing more is to be had there.
+// At a kink of J (a contact that just begins, an input that is clipped) the decrease predicted by
+// Newton's step is not attained. The iteration ends after this many iterations without gain, if the
+// predicted gain is below this many nats.
 constexpr int kIdle = 3;
 constexpr double kAtAKink = 1;
 
@@ -67,9 +67,9 @@ struct Likelihood::Normal {
 
 struct Likelihood::Step {
   Point to;
-  double gain = 0;            // nats that the linear model promises
-  JointVector move;           // straight ahead
-  std::vector<Index> moving;  // ξ that no bound holds back
+  double gain = 0;            // gain predicted by the linear model [nats]
+  JointVector move;           // first-order step
+  std::vector<Index> moving;  // ξ not blocked by a bound
 };
 
 Likelihood::Likelihood(const DiscoveryProblem& data, std::vector<int> trials,
@@ -176,7 +176,7 @@ Likelihood::Normal Likelihood::normalEquations(const std::vector<Linear>& trials
   return normal;
 }
 
-// A damped step within the bounds; what a bound holds back does not move.
+// A damped step within the bounds; components blocked by a bound do not change.
 Likelihood::Step Likelihood::step(const Hypothesis& hypothesis, const Normal& normal,
                                   const DampedSystem& system, const Point& point) const {
   const VectorXd pull = system.pull(normal.downhill);
@@ -211,9 +211,9 @@ Likelihood::Point Likelihood::moved(const Hypothesis& hypothesis, const Point& f
 }
 
 // Geodesic acceleration (docs/decisions/036-geodesic-acceleration.md). The outputs along a straight
-// step v are y + Jv + ½y_vv; one more simulation at h·v gives y_vv, and the step that meets their
-// curve is v + ½a with (JᵀJ/σ² + 1 + λ) a = −Jᵀy_vv/σ². Left straight where the bend is not small
-// beside it.
+// step v are y + Jv + ½y_vv; one more simulation at h·v gives y_vv, and the second-order step is v
+// + ½a with (JᵀJ/σ² + 1 + λ) a = −Jᵀy_vv/σ². The correction is omitted if it is not small relative
+// to v.
 void Likelihood::bend(Step& step, const Hypothesis& hypothesis, const Noise& noise,
                       const std::vector<Linear>& trials, const DampedSystem& system,
                       const Point& point) const {
@@ -234,7 +234,7 @@ void Likelihood::bend(Step& step, const Hypothesis& hypothesis, const Noise& noi
   JointVector bent{system.solve(system.pull(right), step.moving), {}};
   bent.eta = system.follow(right, bent.xi);
   const double turn = bent.norm();
-  if (!(2 * turn <= kMostBend * length)) return;  // nor if the simulation failed there
+  if (!(2 * turn <= kMostBend * length)) return;  // also if the simulation failed there
   for (std::size_t t = 0; t < bent.eta.size(); ++t) bent.eta[t] *= 0.5;
   bent.xi *= 0.5;
   step.to = moved(hypothesis, step.to, bent, 1);
@@ -257,7 +257,7 @@ std::optional<Fit> Likelihood::tryFit(const Hypothesis& hypothesis, const Noise&
                                             noise.output, noise.latent));
   const auto p = static_cast<Index>(hypothesis.free.size());
 
-  // where to start
+  // the starting point
   Point point;
   point.xi.resize(p);
   for (Index i = 0; i < p; ++i) {
@@ -282,8 +282,8 @@ std::optional<Fit> Likelihood::tryFit(const Hypothesis& hypothesis, const Noise&
     return linear;
   };
   const VectorXd tilt = options.tilt.size() == 0 ? VectorXd(VectorXd::Zero(p)) : options.tilt;
-  // ∞ also where a simulation has no derivatives, or such that their squares are no numbers:
-  // nothing goes on from there
+  // ∞ also if a simulation has no finite derivatives, or if their squares overflow: no step can
+  // start there
   const auto costOf = [&](const std::vector<Linear>& linear, const Point& at) {
     double squares = 0;
     for (const Linear& l : linear) {
@@ -304,7 +304,7 @@ std::optional<Fit> Likelihood::tryFit(const Hypothesis& hypothesis, const Noise&
   if (!std::isfinite(fit.cost)) return std::nullopt;
 
   double damping = 1e-6;
-  int idle = 0;  // iterations in a row that gained next to nothing
+  int idle = 0;  // consecutive iterations with negligible gain
   for (fit.iterations = 0; fit.iterations < options.iterations; ++fit.iterations) {
     Normal normal = normalEquations(trials, noise, point);
     normal.downhill.xi -= tilt;
@@ -323,7 +323,7 @@ std::optional<Fit> Likelihood::tryFit(const Hypothesis& hypothesis, const Noise&
         break;
       }
       bend(next, hypothesis, noise, trials, system, point);
-      // the first attempt mostly succeeds, and then its derivatives are needed, too
+      // the first attempt mostly succeeds, and then its derivatives are needed as well
       std::vector<Linear> there;
       double nextCost = kInfinity;
       const bool promising =

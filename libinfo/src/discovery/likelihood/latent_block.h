@@ -9,7 +9,7 @@ namespace info::discover {
 /// 1 + WᵀW/σ_y², the block of one trial's latent force in the information; lower triangle.
 inline Eigen::MatrixXd latentBlock(const Eigen::MatrixXd& W, double output) {
   Eigen::MatrixXd C = Eigen::MatrixXd::Identity(W.cols(), W.cols());
-  if (W.cols() != 0)  // Eigen takes a reference to the first of no columns
+  if (W.cols() != 0)  // Eigen would access the first of no columns
     C.selfadjointView<Eigen::Lower>().rankUpdate(W.transpose(), 1 / (output * output));
   return C;
 }

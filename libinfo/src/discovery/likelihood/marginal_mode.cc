@@ -3,7 +3,8 @@
 #include "discovery/likelihood/latent_block.h"
 #include "info/discovery/likelihood/joint_fit.h"
 
-// The parameters that are most probable by themselves: docs/decisions/042-marginal-mode.md.
+// The most probable parameters after marginalisation over the latent forces:
+// docs/decisions/042-marginal-mode.md.
 
 namespace info::discover {
 
@@ -13,12 +14,13 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Of a posterior deviation: how far apart two determinants are taken. W is smooth, and its own
-// error (Newton's tolerance) is far below that.
+// Step of the differences of determinants, in posterior standard deviations. W is smooth, and its
+// own error (Newton's tolerance) is far below that.
 constexpr double kApart = 0.02;
 
-// What is more probable by itself has more evidence. One that loses so many nats was led astray:
-// the slope is that of a kink, or of a motion that nearly falls over (set 71437 lost 355).
+// The marginal mode must not have less evidence than the joint one. A loss of more nats than this
+// means that the gradient was useless, as at a kink or for a nearly unstable motion; the result is
+// then discarded.
 constexpr double kLost = 2;
 
 double logDeterminant(const MatrixXd& W, double output) {
@@ -28,8 +30,8 @@ double logDeterminant(const MatrixXd& W, double output) {
 
 }  // namespace
 
-// d ½log|H_ηη|/dξ along the valley of J, where η follows ξ; differences of one trial at a time, as
-// a start moves its own alone. 0 where the simulation fails.
+// d ½log|H_ηη|/dξ along the minimum of J over η; by differences for one trial at a time, since an
+// initial state affects its own trial only. 0 if the simulation fails.
 VectorXd Likelihood::logDeterminantSlope(const Fit& fit) const {
   const auto p = fit.xi.size();
   const double output = fit.noise.output;
@@ -41,7 +43,7 @@ VectorXd Likelihood::logDeterminantSlope(const Fit& fit) const {
         -block.solve(MatrixXd(here.latent.transpose() * here.gamma)) / (output * output);
     const double logHere = logDeterminant(here.latent, output);
     Fit beside = fit;
-    beside.hypothesis.free.clear();  // none of their derivatives is asked for
+    beside.hypothesis.free.clear();  // no derivatives in ξ are needed
     for (Index i = 0; i < p; ++i) {
       const FreeQuantity& q = fit.hypothesis.free[static_cast<std::size_t>(i)];
       if (here.gamma.col(i).isZero(0) || q.lowest >= q.highest) continue;

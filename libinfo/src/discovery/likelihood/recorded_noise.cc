@@ -23,7 +23,7 @@ constexpr double kMadOfNormal = 1.4826;
 
 // Outliers.
 constexpr std::size_t kNeighbours = 4;    // on either side
-constexpr double kLongestWindow = 0.15;   // [s] that a parabola follows
+constexpr double kLongestWindow = 0.15;   // [s] over which a parabola follows the motion
 constexpr double kOutlier = 8;            // robust deviations
 constexpr double kMostOutliers = 1 / 6.;  // of all samples
 
@@ -31,8 +31,8 @@ constexpr double kMostOutliers = 1 / 6.;  // of all samples
 constexpr int kMostSpacing = 12;
 constexpr double kLongestInterval = 0.12;  // [s] between samples that are kept
 constexpr double kPlateau = 1.15;
-constexpr std::array kHolds = {12.0, 8.0, 5.0};  // of the model that the residuals are of [rad/s]
-constexpr double kHoldSpread = 3;                // deviations that it may be off
+constexpr std::array kHolds = {12.0, 8.0, 5.0};  // nudging frequencies tried [rad/s]
+constexpr double kHoldSpread = 3;                // noise of the nudged fits [σ_y]
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -40,7 +40,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// Sample k less what the parabola of least absolute deviations through its neighbours has there.
+// Sample k less the value of the parabola of least absolute deviations through its neighbours.
 double offParabola(const std::vector<double>& times, const VectorXd& y, std::size_t k) {
   const std::size_t width = 2 * kNeighbours;
   const std::size_t first =
@@ -75,7 +75,8 @@ double offParabola(const std::vector<double>& times, const VectorXd& y, std::siz
   return y[static_cast<Index>(k)] - c[0];
 }
 
-// Of one trial with one output; those at either end are extrapolated to, and judged by their own.
+// For one trial with one output; the samples at either end are extrapolated, with a scale of their
+// own.
 std::vector<bool> outliersOf(const std::vector<double>& times, const VectorXd& y) {
   std::vector<bool> out(times.size(), false);
   const std::size_t width = 2 * kNeighbours + 1;
@@ -99,7 +100,7 @@ std::vector<bool> outliersOf(const std::vector<double>& times, const VectorXd& y
   return out;
 }
 
-// The step in which values are written, where many are equal.
+// The quantisation step of the values, if many are equal.
 double quantumOf(const DiscoveryProblem& data, const std::vector<int>& trials) {
   std::vector<double> values;
   for (const int trial : trials) {
@@ -119,7 +120,7 @@ double quantumOf(const DiscoveryProblem& data, const std::vector<int>& trials) {
   return 2 * different < values.size() ? quantum : 0;
 }
 
-// What a model leaves that is held near the data, of its best parameters; by trial.
+// Residuals of the nudged model at its best parameters, by trial.
 std::optional<std::vector<VectorXd>> residuals(const DiscoveryProblem& data,
                                                const std::vector<int>& trials, double sd) {
   VectorXd values = nominalValues(data);

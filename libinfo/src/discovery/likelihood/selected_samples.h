@@ -10,7 +10,7 @@ namespace info::discover {
 class SelectedSamples final : public DiscoveryProblem {
  public:
   /// @param data  must outlive this
-  /// @param kept  by trial: indices of the samples that stay, rising, at least one
+  /// @param kept by trial: ascending indices of the kept samples, at least one
   SelectedSamples(const DiscoveryProblem& data, const std::vector<std::vector<std::size_t>>& kept);
   SelectedSamples(std::unique_ptr<DiscoveryProblem> data,
                   const std::vector<std::vector<std::size_t>>& kept);

@@ -16,14 +16,14 @@ double logNormalBelow(double x) {
 
 double logNormalWithin(double lowest, double highest) {
   if (lowest > highest) return -std::numeric_limits<double>::infinity();
-  // in the tail that is the smaller one, differences keep their digits
+  // in the smaller tail differences do not lose digits
   if (lowest > 0) return logNormalWithin(-highest, -lowest);
   const double upper = logNormalBelow(highest), lower = logNormalBelow(lowest);
   return upper + std::log1p(-std::exp(lower - upper));
 }
 
 double logMassAtBound(double g, double h, double w) {
-  // complete the square: a normal distribution about −g/h, cut off at 0 and w
+  // complete the square: a normal distribution about −g/h, truncated at 0 and w
   const double root = std::sqrt(h), shift = g / root;
   return 0.5 * shift * shift - std::log(root) + logNormalWithin(shift, shift + w * root);
 }

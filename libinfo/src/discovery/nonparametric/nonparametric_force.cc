@@ -18,15 +18,15 @@ namespace {
 
 using Follows = NonparametricForce::Follows;
 
-constexpr double kSize = 0.3;  // prior deviation of each term, in units of the latent force's scale
+constexpr double kSize = 0.3;  // prior sd of each term, in units of the latent force's scale
 constexpr int kDegree = 5;     // of the polynomial in the angle
-constexpr double kGrip = 0.05;  // speed that dry friction turns within, as the catalogues have it
-constexpr int kPoints = 61;     // of the curve that is drawn
+constexpr double kGrip = 0.05;  // speed scale of dry friction, as in the catalogues
+constexpr int kPoints = 61;     // points of the plotted curve
 
 // The terms of a force, as functions of (q, q̇) and as text.
 struct Family {
   Follows follows;
-  double lowest, highest;  // of what it follows
+  double lowest, highest;  // range of its argument
   std::vector<StateForce> terms;
 };
 
@@ -56,7 +56,7 @@ Family elastic(const NodeStates& states) {
   return family;
 }
 
-// Viscous, quadratic and dry, each of size 1 at the usual speed
+// viscous, quadratic and dry friction, each of size 1 at the typical speed
 Family damping(const NodeStates& states) {
   const double usual = rootMeanSquare(states.qDot);
   double highest = 0;
@@ -71,7 +71,7 @@ Family damping(const NodeStates& states) {
   return family;
 }
 
-// Size of what the latent force is measured by.
+// RMS of the scale of the latent force.
 double scaleOf(const Likelihood& likelihood, const VectorXd& values) {
   std::vector<VectorXd> parts;
   for (const int trial : likelihood.trials())
@@ -80,7 +80,7 @@ double scaleOf(const Likelihood& likelihood, const VectorXd& values) {
   return rootMeanSquare(parts);
 }
 
-// The largest first, as it is the unit of the others.
+// The largest first, since it is the unit of the others.
 std::vector<FormulaTerm> formulaOf(Family& family, const VectorXd& coefficients, double sd) {
   Index first = 0;
   const double largest = coefficients.cwiseAbs().maxCoeff(&first);
@@ -97,7 +97,8 @@ std::vector<FormulaTerm> formulaOf(Family& family, const VectorXd& coefficients,
   return formula;
 }
 
-// c·(e_1 + r_2·e_2 + …) over what it follows, and its deviation by the slopes in c and r_k.
+// c·(e_1 + r_2·e_2 + …) as a function of its argument, and its standard deviation from the
+// derivatives in c and r_k.
 void drawInto(NonparametricForce& drawn, const Family& family, const Fit& fit,
               const Candidate& candidate) {
   const std::size_t n = family.terms.size();
@@ -117,10 +118,10 @@ void drawInto(NonparametricForce& drawn, const Family& family, const Fit& fit,
   for (int i = 0; i < kPoints; ++i) {
     const double x = family.lowest + (family.highest - family.lowest) * i / (kPoints - 1);
     drawn.at.push_back(x);
-    VectorXd terms(static_cast<Index>(n));  // which look at one of both alone
+    VectorXd terms(static_cast<Index>(n));  // each depends on q or q̇ alone
     for (std::size_t k = 0; k < n; ++k) terms[static_cast<Index>(k)] = family.terms[k].at(x, x);
     double sum = terms[0];
-    VectorXd slope = values[0] * terms;  // in r_k
+    VectorXd slope = values[0] * terms;  // derivatives in r_k
     for (Index k = 1; k < terms.size(); ++k) sum += values[k] * terms[k];
     slope[0] = sum;
     drawn.force[i] = values[0] * sum;

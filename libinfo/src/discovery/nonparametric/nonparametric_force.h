@@ -7,12 +7,12 @@
 
 namespace info::discover {
 
-/// Races forces without a name, each a smooth function of the angle or of the speed alone, against
-/// the names that a search has chosen, or against none
-/// (docs/decisions/047-nonparametric-forces.md). The better one of them; nothing if the data do
+/// Compares non-parametric forces, each a smooth function of the position or of the speed alone,
+/// with the effects that a search has chosen, or with none
+/// (docs/decisions/047-nonparametric-forces.md). Returns the better one; empty if the problem does
 /// not offer formulas, or if neither could be fitted.
-/// @param smoothing  the base model with latent force: where the arm really goes
-/// @param fits  grows by how many there were
+/// @param smoothing fit of the base model with latent force, which follows the measured motion
+/// @param fits is increased by the number of fits
 std::optional<NonparametricForce> raceNonparametric(const Search& search, const Effects& chosen,
                                                     const Fit& smoothing, const Options& options,
                                                     double outputSd, const Search::Report& report,

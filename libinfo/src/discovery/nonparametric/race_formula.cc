@@ -10,13 +10,13 @@
 namespace info::discover {
 namespace {
 
-// None if one does not follow the state.
+// Empty if a term is not a function of the state.
 std::vector<FormulaTerm> termsOf(const Unknown& unknown) {
   std::vector<FormulaTerm> formula;
-  double unit = 1;  // of the others: the amplitude
+  double unit = 1;  // unit of the other coefficients: the amplitude
   for (const SymbolicTerm& term : unknown.terms) {
     if (term.expression.empty()) return {};
-    // terms may cancel each other, so that each may be many times larger than their sum
+    // terms may nearly cancel, so that each may be many times larger than their sum
     const double sd = std::max(30 * term.sd, 3 * std::abs(term.coefficient));
     formula.push_back({term.expression, term.coefficient / unit, sd / std::abs(unit)});
     unit = unknown.terms.front().coefficient;

@@ -7,10 +7,11 @@
 
 namespace info::discover {
 
-/// Puts the formula of what has no name into the model and races it: run() on the same data with
-/// the formula and the effects in `kept` alone, from what a search knows of these. Nothing if a
-/// term does not follow the state, if the data do not offer it, or if the work was stopped.
-/// @param options  of that race; `symbolic` is taken as false
+/// Adds the formula of an unknown effect to the model and compares it: run() on the same data with
+/// only the formula and the effects in `kept` as candidates, starting from the results of a search
+/// about these. Empty if a term is not a function of the state, if the problem does not offer
+/// formulas, or if the search was stopped.
+/// @param options of that run; `symbolic` is taken as false
 std::optional<RacedFormula> raceFormula(const Search& search, const Unknown& unknown,
                                         const Effects& kept, Options options);
 

@@ -18,10 +18,10 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr int kRepeats = 100;   // bootstraps
-constexpr double kBlock = 0.5;  // [s] what they draw whole
+constexpr double kBlock = 0.5;  // [s] length of a bootstrap block
 constexpr Index kMostTerms = 3;
 
-// A force that a formula may have, as columns at the nodes of all trials.
+// A possible term of a formula, as columns of force at the nodes of all trials.
 struct Library {
   std::vector<std::string> names, expressions;
   std::vector<MatrixXd> columns;  // per trial: nodes × terms
@@ -48,7 +48,7 @@ const std::vector<StateTerm>& stateTerms() {
   return terms;
 }
 
-// Running sums, e.g. of a muscle's moment over the time it has worked.
+// Integrals over time, e.g. of an actuator's moment.
 MatrixXd integrals(const MatrixXd& values, const std::vector<double>& times) {
   MatrixXd sums = MatrixXd::Zero(values.rows(), values.cols());
   for (Index i = 1; i < values.rows(); ++i) {
@@ -73,7 +73,7 @@ Library libraryOf(const Likelihood& likelihood, const Fit& fit, const NodeStates
     const int trial = likelihood.trials()[t];
     const auto& nodes = data.latentTimes(trial);
     const auto n = static_cast<Index>(nodes.size());
-    // channels of the latent force: the moment of each input's actuator, and one of constant size
+    // channels of the latent force: the moment of each input's actuator, and one of constant scale
     const MatrixXd scale = data.predict(trial, fit.values, {}, {}, true).latentScale;
     haveMoments = haveMoments && scale.cols() == numInputs + 1;
     const auto own = static_cast<Index>(stateTerms().size());
@@ -98,8 +98,8 @@ Library libraryOf(const Likelihood& likelihood, const Fit& fit, const NodeStates
   return library;
 }
 
-// What is left of a library's forces, and of the innovations, after everything that is free in the
-// fit has had its part: normal equations of each block of time, the last one of the priors.
+// The terms' forces and the innovations after elimination of everything that is free in the fit:
+// normal equations of each block of time, the last one being that of the priors.
 struct Remains {
   std::vector<MatrixXd> normal;
   std::vector<VectorXd> right;
@@ -175,7 +175,7 @@ Subset bestSubset(const MatrixXd& normal, const VectorXd& right, double samples)
         A(i, j) = normal(terms[static_cast<std::size_t>(i)], terms[static_cast<std::size_t>(j)]);
       if (!(A(i, i) > 0)) return;
     }
-    // terms that say the same are no two terms
+    // collinear terms are not both used
     const auto scale = A.diagonal().cwiseSqrt().cwiseInverse().eval();
     const auto unit = (scale.asDiagonal() * A * scale.asDiagonal()).eval();
     const Eigen::LDLT<std::decay_t<decltype(A)>> factor(unit);
@@ -198,7 +198,8 @@ Subset bestSubset(const MatrixXd& normal, const VectorXd& right, double samples)
   return best;
 }
 
-// Share of the latent force's power that the formula takes away, each node by its certainty.
+// Fraction of the latent force's power that the formula explains, each node weighted by its
+// certainty.
 double shareExplained(const Likelihood& likelihood, const Fit& fit, const Library& library,
                       const Subset& best) {
   double power = 0, left = 0;

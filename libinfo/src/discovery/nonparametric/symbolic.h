@@ -11,17 +11,17 @@
 
 namespace info::discover {
 
-/// Looks for the formula of Unknown: fills in terms, evidence, explained, stable and formula.
+/// Searches the formula of Unknown: sets terms, evidence, explained, stable and formula.
 void findFormula(const Likelihood& likelihood, const Fit& fit, Unknown& unknown);
 
-/// A generalised force that follows the state.
+/// A generalised force that is a function of the state.
 struct StateForce {
   std::string expression;  ///< in q and qdot
   std::function<double(double q, double qDot)> at;
 };
 
-/// Coefficients of forces by one linear step from a fit, with priors N(0, deviation²), all that is
-/// free in the fit and its latent force beside them.
+/// Coefficients of forces by one linear step from a fit, with priors N(0, sd²), together with the
+/// free quantities of the fit and its latent force.
 Eigen::VectorXd linearCoefficients(const Likelihood& likelihood, const Fit& fit,
                                    const NodeStates& states, const std::vector<StateForce>& forces,
                                    double sd);

@@ -30,7 +30,7 @@ void spectrum(const Likelihood& likelihood, const Fit& fit, Unknown& unknown) {
       }
       sum += cosine * cosine + sine * sine;
     }
-    // against the spectrum that the prior of the force has, 1/[(1 + (2πfℓ)²)(1 + (2πfτ)²)]
+    // relative to the spectrum of the force's prior, 1/[(1 + (2πfℓ)²)(1 + (2πfτ)²)]
     const double slow = 2 * std::numbers::pi * f * fit.noise.latentTime;
     const double lag = 2 * std::numbers::pi * f * likelihood.data().latentLag();
     sum *= (1 + slow * slow) * (1 + lag * lag);

@@ -5,7 +5,7 @@
 #include "discovery/search/search_tuning.h"
 #include "info/estimation/nudge_stages.h"
 
-// Fits of a model that is held near the data, and where they lead.
+// Fits with nudging, and the fits of the original model that continue from them.
 
 namespace info::discover {
 
@@ -14,16 +14,15 @@ using Eigen::VectorXd;
 
 namespace {
 
-// of nudgeStages: so firmly held that nothing runs away, so little that what is missing shows
+// of nudgeStages: strong enough for stability, weak enough for missing effects to show
 constexpr std::size_t kHeldStage = 2;
 
-// Fits that are led from a model held near the data: which stage tells the evidence of one from
-// that of another, by how many nats it may be behind the best there, and how many are fitted to
-// their end.
+// Fits that start with nudging: the stage at which their evidence is compared, by how many nats one
+// may be behind the best there, and how many are fitted to convergence.
 constexpr std::size_t kHalfWay = 3;
 constexpr double kLedBehind = 10;
 constexpr std::size_t kLedFits = 3;
-// nats that one step of a held model promises
+// predicted gain [nats] of one step of a nudged model
 constexpr double kExplainsMuch = 20;
 
 }  // namespace
@@ -81,10 +80,10 @@ VectorXd Search::bestStart(const Effects& base, std::size_t candidate, const Fit
                            double latent) {
   const Hypothesis hypothesis = makeHypothesis(data_, with(base, candidate), trials_);
   const Candidate& c = data_.candidates()[candidate];
-  const std::size_t starts = isGrid(c) ? 2 : c.starts.size();  // the whole grid is searchGrid's
+  const std::size_t starts = isGrid(c) ? 2 : c.starts.size();  // searchGrid covers the whole grid
   if (const auto known = gridStarts_.find(candidate);
       known != gridStarts_.end() && known->second.values.size() > 0) {
-    // alone, with the nuisances that go with it
+    // alone, with the nuisance parameters of that fit
     VectorXd from = latent == 0 && base.empty() ? known->second.values : near.values;
     const auto amplitude = static_cast<Index>(data_.candidates()[candidate].quantities[0]);
     from[amplitude] = known->second.values[amplitude];
@@ -124,8 +123,8 @@ std::vector<Screened> Search::screenHeld(const Effects& effects) {
   const auto fit = fitted(effects, start, 12);
   if (!fit) return {};
   std::vector<Screened> result = screenAt(held, *fit, effects);
-  // what has a grid of starts has several minima: a linear step at 0 sees none of them; looked for
-  // where nothing else explains much
+  // candidates with a grid of starts have several minima, which a linear step at 0 does not find;
+  // they are searched if nothing else explains much
   if (!result.empty() && result.front().gain > kExplainsMuch) return result;
   for (Screened& s : result) {
     const Candidate& c = data_.candidates()[s.candidate];
@@ -139,8 +138,9 @@ std::vector<Screened> Search::screenHeld(const Effects& effects) {
   return result;
 }
 
-// The amplitude along its grid, then by golden section beside the best, the nuisances fitted at
-// each: a fit of all together is led away by them.
+// The amplitude on its grid, then by golden section next to the best value, with the nuisance
+// parameters fitted at each; a joint fit would be led to another minimum by the nuisance
+// parameters.
 Search::GridStart Search::searchGrid(std::size_t candidate, const Fit& base) const {
   const Likelihood& held = nudgedLikelihoods_[kHeldStage];
   const auto amplitude = static_cast<Index>(data_.candidates()[candidate].quantities[0]);

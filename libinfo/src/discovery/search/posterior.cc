@@ -6,7 +6,7 @@
 #include "info/discovery/likelihood/joint_fit.h"
 #include "info/discovery/likelihood/truncated.h"
 
-// What a fit says once it is found: evidence, covariance, scores, innovations, latent force.
+// Results of a converged fit: evidence, covariance, scores, innovations, latent force.
 
 namespace info::discover {
 
@@ -19,7 +19,8 @@ double Fit::sd(std::size_t free) const {
   return std::abs(hypothesis.free[free].slope(xi[i])) * std::sqrt(covariance(i, i));
 }
 
-// Laplace's evidence, the posterior covariance, and what the latent force has used up.
+// Laplace's evidence, the posterior covariance, and the effective number of parameters of the
+// latent force.
 void Likelihood::finish(Fit& fit, const std::vector<Linear>& trials, const VectorXd& tilt) const {
   const Hypothesis& h = fit.hypothesis;
   const Index p = fit.xi.size();
@@ -30,7 +31,7 @@ void Likelihood::finish(Fit& fit, const std::vector<Linear>& trials, const Vecto
   fit.latentNormSquared = 0;
   fit.effectiveParameters = 0;
   Index samples = 0;
-  std::vector<MatrixXd> carried;  // C⁻¹WᵀΓ/σ², how η follows ξ
+  std::vector<MatrixXd> carried;  // C⁻¹WᵀΓ/σ² = −dη/dξ
   for (std::size_t t = 0; t < trials.size(); ++t) {
     const Linear& l = trials[t];
     samples += l.residuals.size();
@@ -41,14 +42,14 @@ void Likelihood::finish(Fit& fit, const std::vector<Linear>& trials, const Vecto
     const MatrixXd L = block.matrixL();
     logDeterminant += 2 * L.diagonal().array().log().sum();
     MatrixXd half = precision * l.latent.transpose() * l.gamma;
-    if (p > 0) block.matrixL().solveInPlace(half);  // Eigen refers to what an empty one has not
+    if (p > 0) block.matrixL().solveInPlace(half);  // Eigen does not allow empty matrices here
     R.noalias() -= half.transpose() * half;
     const MatrixXd inverse = block.matrixL().solve(MatrixXd::Identity(L.rows(), L.rows()));
     fit.latentNormSquared += fit.eta[t].squaredNorm();
     fit.effectiveParameters += static_cast<double>(L.rows()) - inverse.squaredNorm();
     carried.push_back(inverse.transpose() * half);
   }
-  // the parameters: those at a bound have a one-sided mass of their own
+  // the parameters: those at a bound contribute a one-sided probability mass
   std::vector<Index> inside;
   fit.atBound.assign(static_cast<std::size_t>(p), false);
   for (Index i = 0; i < p; ++i) {

@@ -4,7 +4,8 @@
 
 #include "discovery/search/search.h"
 
-// What the fits that there are say: of candidates that have not been fitted, of effects that have.
+// Predictions from existing fits: of candidates that have not been fitted, and of effects that
+// have.
 
 namespace info::discover {
 
@@ -14,7 +15,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-// with so large a latent force the base is too far from the data for linear steps
+// with so large a latent force the base model is too far from the data for linear steps
 constexpr double kPoor = 0.2;
 
 }  // namespace
@@ -28,7 +29,7 @@ std::vector<Screened> Search::screenAt(const Likelihood& likelihood, const Fit& 
                                        const Effects& effects) const {
   std::vector<Screened> result;
   const auto& candidates = data_.candidates();
-  // candidates whose shape quantities have several starts are seen once for each
+  // candidates with several starting values of shape parameters are evaluated once for each
   std::size_t rounds = 1;
   const auto roundsOf = [](const Candidate& c) {
     return c.quantities.size() > 1 ? c.starts.size() : 1;
@@ -42,14 +43,14 @@ std::vector<Screened> Search::screenAt(const Likelihood& likelihood, const Fit& 
       if (roundsOf(candidates[c]) <= round) continue;
       which.push_back(c);
       amplitudes.push_back(candidates[c].quantities[0]);
-      // shape quantities as this start has them, the amplitude absent
+      // shape parameters at this start, the amplitude 0
       for (std::size_t i = 1; i < candidates[c].quantities.size(); ++i) {
         const std::size_t q = candidates[c].quantities[i];
         if (fit.hypothesis.indexOf(q) < 0)
           values[static_cast<Index>(q)] = candidates[c].starts[round][static_cast<Index>(i)];
       }
     }
-    if (which.empty()) continue;  // everything that there is has been chosen
+    if (which.empty()) continue;  // all candidates have been chosen
     std::vector<Likelihood::Linear> linear;
     std::vector<MatrixXd> columns;
     for (std::size_t t = 0; t < trials_.size(); ++t) {
@@ -70,7 +71,7 @@ std::vector<Screened> Search::screenAt(const Likelihood& likelihood, const Fit& 
         S *= value * value;
       }
       if (there >= 0) {
-        // widening the prior of a parameter that is free: a disturbance in it of the variance added
+        // wider prior of a free parameter: equivalent to a disturbance with the additional variance
         const double narrow = fit.hypothesis.free[static_cast<std::size_t>(there)].sd;
         variance = std::max(0.0, variance - narrow * narrow);
       }
@@ -81,7 +82,7 @@ std::vector<Screened> Search::screenAt(const Likelihood& likelihood, const Fit& 
       s.gain = (blocked ? 0 : 0.5 * variance * g * g / growth) - 0.5 * std::log(growth);
       s.information =
           std::max(projected.information(static_cast<Index>(i), static_cast<Index>(i)), 0.0);
-      if (!std::isfinite(s.gain)) {  // it has no derivative here
+      if (!std::isfinite(s.gain)) {  // no derivative here
         s.gain = -HUGE_VAL;
         s.information = 0;
       }
@@ -133,7 +134,7 @@ std::vector<std::size_t> Search::shortlist(const Effects& effects, int most) {
     if (s.information > 0 && std::find(list.begin(), list.end(), s.candidate) == list.end())
       list.push_back(s.candidate);
   };
-  // what there is room for comes from all modes in turn
+  // candidates are taken from all modes in turn
   for (std::size_t i = 0; i < filter.size(); ++i)
     for (const auto* mode : {&filter, &simulation, &held})
       if (i < mode->size() && static_cast<int>(list.size()) < most - 2) add((*mode)[i]);
@@ -154,7 +155,7 @@ std::vector<std::size_t> Search::shortlist(const Effects& effects, int most) {
 double Search::significance(const Entry& entry, std::size_t effect) const {
   const std::size_t amplitude = data_.candidates()[effect].quantities[0];
   const int i = entry.fit.hypothesis.indexOf(amplitude);
-  // its deviation for given shape quantities: at amplitude 0 there is nothing to be shaped
+  // its standard deviation for given shape parameters, which have no effect at amplitude 0
   std::vector<Index> own;
   for (const std::size_t q : data_.candidates()[effect].quantities) {
     const int k = entry.fit.hypothesis.indexOf(q);

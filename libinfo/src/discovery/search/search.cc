@@ -36,9 +36,10 @@ Search::Search(const DiscoveryProblem& data, std::vector<int> trials, const Opti
   }
 }
 
-// Follows σ_d from `size` to where the evidence is largest: MacKay's fixed point
+// Maximises the evidence over σ_d, starting from `size`: MacKay's fixed point
 //     σ_d² ← σ_d²·|η|²/(γ + σ_d/s)
-// then compares with σ_d = 0. Keeps whatever is better than what was known of the hypothesis.
+// then compares with σ_d = 0. The result is kept if it is better than the previous one for the
+// hypothesis.
 void Search::improve(const Effects& effects, const VectorXd& start, double size, const Fit* near,
                      double hopeless) {
   const Hypothesis hypothesis = makeHypothesis(data_, effects, trials_);
@@ -124,19 +125,19 @@ double Search::scoreOf(const Fit& fit) const {
 void Search::calibrate() {
   report_("base model");
   improve({}, nominalValues(data_), kFirstSize);
-  // a base that only a large force holds may have run away from the nominal one
+  // a base model that needs a large latent force may have moved far from the nominal parameters
   for (const double size : {kWidest, kRaceSize})
     if (!at({}).works() || at({}).fit.noise.latent > kFirstSize)
       improve({}, nominalValues(data_), size);
   mustWork();
-  // the scale of the latent force where the arm really goes, then once more from both ends
+  // evaluate the scale of the latent force along the measured motion, then repeat from both ends
   const Fit first = at({}).fit;
   scaleValues_ = first.values;
   likelihood_.emplace(data_, trials_, first.values, options_.latentTime);
   entries_.clear();
   report_("base model");
   improve({}, first.values, kRaceSize);
-  // where it went it may stand by its latent force only
+  // there it may follow the data only because of its latent force
   if (!at({}).works()) improve({}, first.values, first.noise.latent, &first);
   mustWork();
   const std::uint64_t starts = nudgedLikelihoods_.empty() ? kStarts : kStartsBesidesLed;
@@ -149,7 +150,7 @@ void Search::calibrate() {
     improve({}, led->values, kSmallSize, nullptr, bestScore() - kGivenUp);
 }
 
-// The nominal values, and after those values from the prior.
+// The nominal values, followed by samples of the prior.
 VectorXd Search::drawn(std::uint64_t start) const {
   VectorXd values = nominalValues(data_);
   if (start == 0) return values;
@@ -236,7 +237,7 @@ const Fit& Search::simulation(const Effects& effects) {
     const Hypothesis hypothesis = makeHypothesis(data_, effects, trials_);
     const Noise still{output_, 0, options_.latentTime};
     entry.simulation = likelihood_->tryFit(hypothesis, still, entry.fit.values, {}, {25, 0.02});
-    if (!entry.simulation) {  // it stands by its latent force only
+    if (!entry.simulation) {  // it follows the data only because of its latent force
       const VectorXd nominal = nominalValues(data_);
       VectorXd values = nominal;
       for (const std::size_t e : effects)
@@ -245,7 +246,8 @@ const Fit& Search::simulation(const Effects& effects) {
           values[q] = entry.fit.values[q];
         }
       entry.simulation = likelihood_->tryFit(hypothesis, still, values, {}, {25, 0.02});
-      // nor may the nominal model stand with the effects as they are beside other parameters
+      // nor may the nominal model be simulable with effects that were fitted beside other
+      // parameters
       if (!entry.simulation)
         entry.simulation = likelihood_->fit(hypothesis, still, nominal, {}, {25, 0.02});
     }
@@ -263,7 +265,8 @@ void Search::raceOne(const Effects& base, std::size_t candidate) {
   report_(describe(data_, effects));
   improve(effects, bestStart(base, candidate, near, raceSize), raceSize, &near,
           bestScore() - kGivenUp);
-  // what contains the base cannot be far worse: a wrong minimum, once more from the base itself
+  // a hypothesis that contains the base cannot be much worse: a wrong minimum; repeat from the base
+  // itself
   if (at(effects).score < at(base).score - options_.evidence)
     improve(effects, absent(candidate, values), near.noise.latent, &near);
 }
@@ -274,8 +277,8 @@ void Search::race(const Effects& base, const std::vector<std::size_t>& candidate
   raceLed(base, candidates);
   const bool news = entries_.size() > known;
   if (!news) return;
-  // cross-starts: everything that is not far behind, and the next three in any case, once more from
-  // the leader's nuisances
+  // cross-starts: all hypotheses that are not far behind, and the next three in any case, are
+  // repeated from the leader's nuisance parameters
   const auto lead = [&] {
     std::size_t leader = candidates[0];
     for (const std::size_t c : candidates)
@@ -337,7 +340,7 @@ void Search::raceFromNominal(std::size_t most) {
       if (fit) starts.push_back({c, hypothesis, std::move(*fit)});
     }
   }
-  bestFirst();  // the better half goes on
+  bestFirst();  // the better half is continued
   starts.erase(starts.begin() + static_cast<std::ptrdiff_t>((starts.size() + 1) / 2), starts.end());
   for (Start& start : starts) {
     report_(describe(data_, {start.candidate}));
@@ -425,7 +428,7 @@ bool Entry::works() const {
 }
 
 void Search::enforceNesting() {
-  std::map<Effects, double> asked;  // the score of the larger one when it was asked last
+  std::map<Effects, double> asked;  // score of the larger one at its last test
   for (bool again = true; again;) {
     again = false;
     const double best = bestScore();
@@ -434,7 +437,7 @@ void Search::enforceNesting() {
       for (const std::size_t effect : effects) {
         const Effects rest = without(effects, effect);
         const auto known = entries_.find(rest);
-        // one that was never raced is worth a fit if it would be among the best
+        // one that was never fitted is fitted if it would be among the best
         const bool gains = known != entries_.end() ? entry.score > known->second.score + 1
                                                    : entry.score > best - 2 * options_.evidence;
         if (!gains || significance(entry, effect) > 2) continue;

@@ -5,11 +5,11 @@
 namespace info::discover {
 namespace {
 
-constexpr std::size_t kFromNominal = 4;  // single names that are raced once more
-// How many are raced in the place of one of several names: of five, const was none beside fatigue
-// (set 61112 of validation/discovery).
+constexpr std::size_t kFromNominal = 4;  // single effects that are fitted once more
+// Number of alternatives that are fitted in the place of each of several effects. It is large
+// because linear predictions may rank the true one low.
 constexpr int kRivals = 7;
-constexpr std::size_t kPartners = 2;  // rivals of each of two names that are tried together
+constexpr std::size_t kPartners = 2;  // alternatives of each of two effects that are tried together
 
 class Selection {
  public:
@@ -39,28 +39,29 @@ class Selection {
           !(chosen_.empty() && latentForceRemains() && simplify()))
         break;
     }
-    // names that are told apart by fits which were not done
+    // distinctions that rest on unconverged fits
     for (int i = 0; i < 2 && search_.complete(2 * options_.classWidth); ++i)
       search_.enforceNesting();
     return chosen_ = best();
   }
 
  private:
-  // Without any name, and with a latent force that no noise of the inputs explains: the base may
-  // have run away, and every effect that was raced from there with it (sets 66012 and 66155).
+  // No effect was found, and the latent force is too large for noise of the inputs: the parameters
+  // of the base model may be in a wrong minimum, and with them every effect that was fitted from
+  // there.
   bool latentForceRemains() const {
     return search_.at({}).fit.noise.latent > options_.latentTolerance;
   }
 
-  // A parameter that is said to be off may stand for another one: where all of them are uncertain,
-  // the fits have several minima, and what was raced from the base's found the nearest ones.
+  // A parameter in error may be a proxy of another one: if all of them are uncertain, the fits have
+  // several minima, and those started from the base model found the nearest ones.
   bool onlyParameter() const {
     return chosen_.size() == 1 &&
            search_.data().candidates()[chosen_.front()].kind == EffectKind::parameter;
   }
 
-  // Before a second name is given, single ones are tried from elsewhere: a base that is far off may
-  // have led to makeshifts for one effect that explains everything.
+  // Before a second effect is accepted, single effects are fitted from other starts: from a base
+  // model that is far off, the fits may have led to proxies of one effect that explains everything.
   bool simplify() {
     if (search_.hasRacedFromNominal()) return false;
     search_.raceFromNominal(kFromNominal);
@@ -70,7 +71,7 @@ class Selection {
     return chosen_ != before;
   }
 
-  // The best of all that have been raced where every effect is significant and earns its place.
+  // The best fitted hypothesis in which every effect is significant and has enough evidence.
   Effects best() const {
     Effects best;
     double score = search_.at({}).score;
@@ -88,7 +89,7 @@ class Selection {
     return search_.significance(entry) > options_.significance;
   }
 
-  // Is anything to be gained beyond what has been chosen?
+  // Whether a further effect would gain evidence.
   bool promising() {
     search_.simulation(chosen_);
     for (const bool simulation : {false, true})
@@ -97,7 +98,7 @@ class Selection {
     return false;
   }
 
-  // With two effects or more, each may have been a makeshift for something else.
+  // With two effects or more, each may be a proxy of another one.
   bool swapOne() {
     if (chosen_.size() < 2) return false;
     const Effects now = chosen_;
@@ -115,8 +116,8 @@ class Selection {
     return chosen_ != now;
   }
 
-  // Two names may be makeshifts for each other's sake, so that neither gives way alone (Stribeck
-  // friction and one muscle's baseline for dry friction and the baseline of all, set 63112).
+  // Two effects may be proxies that support each other, so that neither can be replaced alone (e.g.
+  // Stribeck friction with an offset of one input, for dry friction with an offset of all).
   bool swapTwo() {
     if (chosen_.size() < 2) return false;
     const Effects now = chosen_;
@@ -139,7 +140,7 @@ class Selection {
     return chosen_ != now;
   }
 
-  // The best of what has been raced in the place of one of several.
+  // The best alternatives that were fitted in the place of one of several effects.
   std::vector<std::size_t> rivalsOf(const Effects& effects, std::size_t effect) const {
     const Effects rest = without(effects, effect);
     std::vector<std::pair<double, std::size_t>> ranked;
@@ -155,7 +156,7 @@ class Selection {
     return best;
   }
 
-  // A newcomer that helps much but leaves nothing to one of those before it takes its place.
+  // A new effect that gains much but makes an earlier one superfluous replaces it.
   bool replaceOne(const std::vector<std::size_t>& list) {
     const double score = search_.at(chosen_).score;
     for (const std::size_t newcomer : list) {

@@ -5,9 +5,9 @@
 
 namespace info::discover {
 
-/// Greedy selection from the calibrated base: an effect at a time, each earning its place by
-/// Options::evidence and significant beside the others, each then tried against its rivals; at most
-/// Options::maxEffects. None: empty.
+/// Greedy selection from the calibrated base model: one effect at a time, each with a log Bayes
+/// factor of at least Options::evidence and significant beside the others, each then compared with
+/// its alternatives; at most Options::maxEffects. Empty if there is none.
 Effects select(Search& search, const Options& options);
 
 }  // namespace info::discover

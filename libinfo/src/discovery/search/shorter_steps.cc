@@ -63,7 +63,7 @@ SteppedVerdict runAtShorterSteps(const MakeAttempt& attempt, double step, double
     return second;
   }
   first.verdict.fits = fits;
-  if (last != first.step) attempt(first.step);  // the caller's model is that of the verdict
+  if (last != first.step) attempt(first.step);  // leaves the caller with the model of the verdict
   return first;
 }
 

@@ -15,7 +15,7 @@ std::optional<std::size_t> placeOf(const DiscoveryProblem& data, const std::stri
 
 namespace {
 
-// What one catalogue says in terms of another one that holds less, and a formula.
+// Translation of quantities to a catalogue with fewer effects and a formula.
 class Translation {
  public:
   Translation(const DiscoveryProblem& from, const DiscoveryProblem& to) : from_(from), to_(to) {
@@ -28,7 +28,7 @@ class Translation {
     }
   }
 
-  // What the other one does not know stays nominal.
+  // Quantities that the other catalogue lacks are nominal.
   VectorXd values(const VectorXd& old) const {
     VectorXd result = nominalValues(to_);
     for (std::size_t i = 0; i < source_.size(); ++i)
@@ -36,7 +36,7 @@ class Translation {
     return result;
   }
 
-  // Nothing if one of them is not there.
+  // Empty if one of them is missing.
   std::optional<Effects> effects(const Effects& old) const {
     Effects result;
     for (const std::size_t e : old) {
@@ -73,7 +73,7 @@ class Translation {
  private:
   const DiscoveryProblem& from_;
   const DiscoveryProblem& to_;
-  std::vector<Index> source_;  // where each quantity of the other catalogue comes from, or −1
+  std::vector<Index> source_;  // source of each quantity of the other catalogue, or −1
 };
 
 }  // namespace

@@ -8,24 +8,24 @@
 
 namespace info::discover {
 
-/// How far simulation (no latent force) and data are apart, root mean square over all samples, in
+/// Root mean square difference of simulation (without latent force) and data over all samples, in
 /// the unit of the output.
 struct ExcessError {
-  double nominal = NAN;     ///< base model as it came, starts fitted; NaN: not looked at yet
+  double nominal = NAN;     ///< original base model, initial states fitted; NaN: not computed yet
   double calibrated = NAN;  ///< base model after calibration
   double after = NAN;       ///< with the effects
   double floor = NAN;       ///< σ_y
-  double range = NAN;       ///< of the data, for normalised errors
-  /// What `after` may be expected to be of held-out trials, were the model found true
-  /// (expectedError); empty for those that were fitted
+  double range = NAN;       ///< range of the data, for normalised errors
+  /// Expected `after` of held-out trials if the model found were true (expectedError); empty for
+  /// fitted trials
   std::optional<double> expected;
-  std::optional<double> probability;  ///< that `after` is as large as it is, were that model true
-  /// 1 − (after² − floor²)/(before² − floor²); empty if before² < 1.2·floor², three
-  /// deviations of a mean square over 450 samples: no gap to close
+  std::optional<double> probability;  ///< of at least the observed `after` if that model were true
+  /// 1 − (after² − floor²)/(before² − floor²); empty if there is no gap to close: before² <
+  /// 1.2·floor², three standard deviations of a mean square over 450 samples
   std::optional<double> closedFromCalibrated, closedFromNominal;
 };
 
-/// Fills in `closedFrom…`.
+/// Sets `closedFrom…`.
 void explainExcess(ExcessError& gap);
 
 }  // namespace info::discover

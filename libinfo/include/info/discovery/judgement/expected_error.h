@@ -6,25 +6,26 @@
 
 namespace info::discover {
 
-/// Root mean square of ỹ − y that is to be expected of a fit in trials that it has not seen, were
-/// its model true: what fitted trials leave unknown moves the simulation of others, and no
-/// calibration of the same trials gets below that.
+/// Expected root mean square of ỹ − y of a fit in held-out trials, if its model were true:
+/// parameters that the fitted trials leave uncertain change the simulation of other trials, and no
+/// calibration on the same trials can do better.
 ///
-/// With Γ = dy/dξ of what the fit determines, cov(ξ) its posterior, W = dy/dη of its latent force
-/// (inputs scatter in new trials, too) and the trials' own starts S fitted to them, which takes
-/// P = 1 − S(SᵀS + σ_y²)⁻¹Sᵀ off,
+/// With Γ = dy/dξ of the parameters shared with the fit, cov(ξ) their posterior covariance, W =
+/// dy/dη of the latent force (inputs scatter in new trials as well), and the initial states of the
+/// held-out trials fitted to them, S = dy/d(start), so that only the projection P = 1 − S(SᵀS +
+/// σ_y²)⁻¹Sᵀ of the error remains,
 ///     E|e|² = tr P(Γ cov(ξ) Γᵀ + WWᵀ + SSᵀ + σ_y²)Pᵀ,   the result is √(E|e|²/N)
 ///
-/// The sum of squares is a quadratic form in normal variables; `probability` is the chance that it
-/// is as large as it was (tailOfSquares).
-/// @param held    of the trials in question
-/// @param starts  startsOnly() fitted to them, without latent force, all else from `fit`
-/// @param fit     of other trials
+/// The sum of squares is a quadratic form in normal variables; `probability` is the probability of
+/// at least the observed value (tailOfSquares).
+/// @param held the held-out trials
+/// @param starts startsOnly() fitted to them without latent force, all other values from `fit`
+/// @param fit the fit of the other trials
 /// @throws std::invalid_argument if `starts` is of other trials
 struct ExpectedError {
   double rms = 0;                        ///< √(E|e|²/N) [unit of the output]
   Eigen::VectorXd variances;             ///< of e, along its principal axes
-  double probability(double rms) const;  ///< of an error as large as that
+  double probability(double rms) const;  ///< of an error at least as large
 };
 ExpectedError expectedError(const Likelihood& held, const Fit& starts, const Fit& fit);
 

@@ -8,7 +8,8 @@
 
 namespace info::discover {
 
-/// One element of a score map: a disturbance of the generalised force that is confined to a place.
+/// One element of a score map: a disturbance of the generalised force that is local in time or in
+/// (q, q̇).
 struct Score {
   int trial = -1;                       ///< −1: over all trials
   double from = 0, to = 0;              ///< times [s], of a hat
@@ -16,8 +17,8 @@ struct Score {
   double lowerQDot = 0, upperQDot = 0;  ///< its rate, of a cell
   std::string input;                    ///< of an input
   double z = 0;              ///< N(0, 1) under the base model with any admissible parameters
-  double amplitude = 0;      ///< force that explains most [unit of the generalised force]
-  bool significant = false;  ///< after Benjamini and Hochberg
+  double amplitude = 0;      ///< estimated force [unit of the generalised force]
+  bool significant = false;  ///< by Benjamini and Hochberg's procedure
 };
 
 struct Localisation {
@@ -34,13 +35,14 @@ struct LocaliseOptions {
 };
 
 /// Score map: z_j = g_j/√S_jj with score and information of disturbance j after elimination of
-/// everything that is free in the fit (parameters with their priors, starts, latent force).
-/// @param fit       of the base model, with the latent force that is tolerated as input noise
-/// @param smoothing fit of the base model with the latent force that the data ask for: gives r(t)
+/// everything that is free in the fit (parameters with their priors, initial states, latent force).
+/// @param fit of the base model, with a latent force of the size tolerated as input noise
+/// @param smoothing fit of the base model with a latent force of the estimated size: gives r(t)
 Localisation localise(const Likelihood& likelihood, const Fit& fit, const Fit& smoothing,
                       const LocaliseOptions& options = {});
 
-/// Marks those that survive Benjamini and Hochberg's procedure at the given share.
+/// Marks the elements that are significant by Benjamini and Hochberg's procedure at the given false
+/// discovery rate.
 void benjaminiHochberg(std::vector<Score>& scores, double share);
 
 }  // namespace info::discover

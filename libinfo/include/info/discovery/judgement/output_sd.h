@@ -7,19 +7,19 @@
 
 namespace info::discover {
 
-/// Third differences of samples that are equally spaced, Σ(Δ³y)²; those beside a gap, a value that
-/// is not finite or another spacing are left out.
+/// Third differences of samples that are equally spaced, Σ(Δ³y)²; differences over a gap, a value
+/// that is not finite or another spacing are omitted.
 struct ThirdDifferences {
   double squares = 0;
   double count = 0;
   /// @param times  [s], as many as values
   void add(const std::vector<double>& times, const Eigen::Ref<const Eigen::VectorXd>& values);
-  /// Of white noise: third differences have twenty times its variance.
+  /// σ_y² of white noise: third differences have twenty times its variance.
   double sd() const;
 };
 
 /// σ_y from the third differences of equally spaced samples, Σ(Δ³y)²/20: exact for noise on a curve
-/// that a parabola follows over four samples; slower curves add little.
+/// that is a parabola over any four samples; smooth curves add little.
 struct OutputSd {
   double value = 0;
   double relativeError = 0;  ///< standard error of value²/value², for noise

@@ -7,22 +7,23 @@
 
 namespace info::discover {
 
-/// A number that was fitted, beside what was known of it before.
+/// A fitted quantity beside its prior.
 struct FittedNumber {
   std::size_t quantity = 0;  ///< index into DiscoveryProblem::quantities()
   std::string name;
-  std::string unit;     ///< of the four that follow; "" for a pure number
-  double nominal = 0;   ///< as the model had it
-  double estimate = 0;  ///< as it is now
-  double sd = 0;        ///< standard deviation of the estimate; NaN: not known
-  double prior = 0;     ///< standard deviation of what was known beforehand; NaN: nothing was
-  /// How many of those the estimate is away from what was known, of the logarithm where that is
-  /// normal; NaN: nothing was known
+  std::string unit;     ///< of the next four; "" if dimensionless
+  double nominal = 0;   ///< value in the model
+  double estimate = 0;  ///< fitted value
+  double sd = 0;        ///< standard deviation of the estimate; NaN: unknown
+  double prior = 0;     ///< prior standard deviation; NaN: no prior
+  /// Difference of estimate and nominal value in prior standard deviations, of the logarithm if the
+  /// prior is log-normal; NaN: no prior
   double priorZ = 0;
 };
 
-/// Every number that a verdict fitted: the effects' quantities, the nuisances, the trials' starts
-/// (a start as the sensor shows it), each once. Empty before there was a base model.
+/// Every quantity that a verdict fitted, each once: those of the effects, the nuisance parameters
+/// and the initial states of the trials (as the sensor shows them). Empty if no base model was
+/// fitted.
 std::vector<FittedNumber> fittedNumbers(const DiscoveryProblem& data, const Verdict& verdict);
 
 }  // namespace info::discover

@@ -8,7 +8,7 @@
 
 namespace info::discover {
 
-/// A quantity that a hypothesis leaves free, in the coordinate ξ in which its prior is N(0, 1):
+/// A free quantity of a hypothesis, in the coordinate ξ in which its prior is N(0, 1):
 ///     value = nominal + deviation·ξ,   of a logarithmic one   value = nominal·exp(deviation·ξ)
 struct FreeQuantity {
   std::size_t quantity = 0;  ///< index into DiscoveryProblem::quantities()
@@ -21,30 +21,30 @@ struct FreeQuantity {
   double coordinate(double value) const;
 };
 
-/// Which effects are held to be present, and so what is free: the nuisances of the base model, the
-/// starts of the trials in question, and the quantities of the effects.
+/// A set of effects assumed present, and the resulting free quantities: the nuisance parameters of
+/// the base model, the initial states of the given trials, and the quantities of the effects.
 struct Hypothesis {
   std::vector<std::size_t>
-      effects;  ///< indices into DiscoveryProblem::candidates(); none: the base
+      effects;  ///< indices into DiscoveryProblem::candidates(); none: the base model
   std::vector<FreeQuantity> free;
 
-  /// Where in `free` a quantity is; −1: it is not free.
+  /// Index of a quantity in `free`; −1: not free.
   int indexOf(std::size_t quantity) const;
 };
 
-/// A parameter error widens the prior of a nuisance that is free anyway.
-/// @param trials whose data are looked at; starts of others are not free
+/// A parameter error widens the prior of a nuisance parameter, which is free in any case.
+/// @param trials the trials in use; initial states of others are not free
 /// @throws std::invalid_argument if a quantity breaks a rule of Quantity, or an index is too large
 Hypothesis makeHypothesis(const DiscoveryProblem& data, const std::vector<std::size_t>& effects,
                           const std::vector<int>& trials);
-/// Only the starts of the given trials free, all else as it is: what a trial that was held out may
-/// adjust.
+/// The hypothesis in which only the initial states of the given trials are free, as for held-out
+/// trials.
 Hypothesis startsOnly(const DiscoveryProblem& data, const std::vector<int>& trials);
 
 /// Nominal values of all quantities.
 Eigen::VectorXd nominalValues(const DiscoveryProblem& data);
 
-/// "visc + bias", "base" for none.
+/// "visc + bias"; "base" without effects.
 std::string describe(const DiscoveryProblem& data, const std::vector<std::size_t>& effects);
 
 }  // namespace info::discover

@@ -12,20 +12,21 @@ namespace info::discover {
 class DampedSystem;
 struct JointVector;
 
-/// How the data scatter about the model.
+/// The noise model: how the data scatter about the model.
 struct Noise {
   double output = 0;         ///< σ_y > 0, of every sample
-  double latent = 0;         ///< σ_d ≥ 0, of the latent force in units of its scale G
-  double latentTime = 0.08;  ///< ℓ [s] > 0: the latent force forgets itself within
+  double latent = 0;         ///< σ_d ≥ 0, size of the latent force in units of its scale G
+  double latentTime = 0.08;  ///< ℓ [s] > 0, correlation time of the latent force
 };
 
-/// A hypothesis fitted to the trials: the most probable parameters, starts and latent forces, of
-/// all together (Likelihood::fit) or of the parameters by themselves (Likelihood::marginal).
+/// A hypothesis fitted to the trials: the most probable parameters, initial states and latent
+/// forces, either jointly (Likelihood::fit) or with the latent forces marginalised
+/// (Likelihood::marginal).
 struct Fit {
   Hypothesis hypothesis;
   Noise noise;
   Eigen::VectorXd values;  ///< of all quantities
-  Eigen::VectorXd xi;      ///< of the free ones, prior N(0, 1)
+  Eigen::VectorXd xi;      ///< of the free quantities, prior N(0, 1)
   std::vector<Eigen::VectorXd>
       eta;                     ///< latent force of each trial, prior N(0, 1); empty if σ_d = 0
   double cost = 0;             ///< J = ½Σe²/σ_y² + ½|ξ|² + ½|η|²
@@ -33,35 +34,35 @@ struct Fit {
   Eigen::MatrixXd covariance;  ///< of ξ; 0 for those at a bound
   std::vector<bool> atBound;
   double latentNormSquared = 0;    ///< |η|²
-  double effectiveParameters = 0;  ///< γ: how many of the η the data determine
+  double effectiveParameters = 0;  ///< γ: effective number of the η that the data determine
   bool converged = false;
   int iterations = 0;
 
-  double sd(std::size_t free) const;  ///< of a free quantity's value
+  double sd(std::size_t free) const;  ///< standard deviation of a free quantity's value
 };
 
 struct FitOptions {
   int iterations = 15;
-  double tolerance = 0.02;    ///< nats that another step may still gain
-  Eigen::VectorXd tilt = {};  ///< c: what is minimised is J + cᵀξ; empty: 0
+  double tolerance = 0.02;    ///< [nats] converged if a further step would gain less
+  Eigen::VectorXd tilt = {};  ///< c: the minimised function is J + cᵀξ; empty: 0
 };
 
-/// Correlation over an interval Δ [s] of an Ornstein–Uhlenbeck process of time constant ℓ behind a
-/// lag τ:
+/// Correlation over an interval Δ [s] of an Ornstein–Uhlenbeck process with time constant ℓ after a
+/// first-order lag τ:
 ///     κ(Δ) = (ℓ e^{−Δ/ℓ} − τ e^{−Δ/τ})/(ℓ − τ),   e^{−Δ/ℓ} for τ = 0
 double latentCorrelation(double interval, double time, double lag);
 
 /// Gaussian likelihood of whole trials: docs/decisions/030-latent-force-likelihood.md.
 ///
 /// The latent force is d = σ_d·L·η at its nodes, LLᵀ = (GGᵀ)∘κ(|t_i−t_j|), η ~ N(0, 1). All
-/// that is uncertain is then N(0, 1) before the data, and with residuals e = ỹ − y(ξ, η)
+/// unknowns are then N(0, 1) a priori, and with residuals e = ỹ − y(ξ, η)
 ///     J = ½|e|²/σ_y² + ½|ξ|² + ½|η|²
 ///     log Z = −J − ½ log|H| − N·log(σ_y√2π),   H = 1 + ΓᵀΓ/σ_y² over (ξ, η)
-/// where bounds cut the normal distributions off. For a linear model without bounds log Z is
+/// where bounds truncate the normal distributions. For a linear model without bounds log Z is
 /// exactly the sum of a Kalman filter's innovation terms.
 class Likelihood {
  public:
-  /// G is taken where `values` lie and stays: hypotheses are compared under one noise model.
+  /// G is evaluated at `values` and held: hypotheses are compared under one noise model.
   /// @throws std::invalid_argument if the data break a rule of DiscoveryProblem
   Likelihood(const DiscoveryProblem& data, std::vector<int> trials, const Eigen::VectorXd& values,
              double latentTime = 0.08);
@@ -70,45 +71,44 @@ class Likelihood {
   const std::vector<int>& trials() const { return trials_; }
   Eigen::Index samples() const;
 
-  /// Starts at `start` (all quantities) and the latent forces `eta` (empty: 0), ends at a minimum
-  /// of J.
+  /// Minimises J, starting from `start` (all quantities) and the latent forces `eta` (empty: 0).
   /// @throws std::domain_error if the model cannot be simulated at the start
   Fit fit(const Hypothesis& hypothesis, const Noise& noise, const Eigen::VectorXd& start,
           const std::vector<Eigen::VectorXd>& eta = {}, const FitOptions& options = {}) const;
-  /// The same, and nothing where the model cannot be simulated at the start.
+  /// The same; empty if the model cannot be simulated at the start.
   std::optional<Fit> tryFit(const Hypothesis& hypothesis, const Noise& noise,
                             const Eigen::VectorXd& start,
                             const std::vector<Eigen::VectorXd>& eta = {},
                             const FitOptions& options = {}) const;
 
-  /// The same hypothesis with the parameters most probable by themselves, whatever the latent
-  /// forces are: the minimum over ξ of
+  /// The same hypothesis with the most probable parameters after marginalisation over the latent
+  /// forces: the minimum over ξ of
   ///     min_η J + ½ log|H_ηη(ξ)|,   H_ηη = 1 + WᵀW/σ_y²,   W = dy/dη
-  /// and the latent forces that go with them. A fit of all together lacks the second term, which is
-  /// larger where latent forces move the model more: it prefers too little damping, so that small
-  /// forces do, by two deviations at 5 % of EMG noise (docs/decisions/042-marginal-mode.md).
+  /// and the latent forces at that ξ. The joint fit lacks the second term, which is larger where
+  /// latent forces have a larger effect on the outputs. It therefore underestimates damping,
+  /// because small latent forces then suffice (docs/decisions/042-marginal-mode.md).
   ///
-  /// That term's slope is taken where `near` is and held; what comes out is `near` of a second call
-  /// that does better. `near` itself where there is no latent force, where the simulation fails,
-  /// and where what comes out has less evidence.
+  /// The gradient of that term is evaluated at `near` and held; a second call with the result as
+  /// `near` improves it. Returns `near` if there is no latent force, if the simulation fails, or if
+  /// the result has less evidence.
   Fit marginal(const Fit& near) const;
 
-  /// What the data say at a fit about further disturbances of the outputs.
+  /// Score and information of further disturbances of the outputs at a fit.
   struct Linear {
     Eigen::VectorXd residuals;  ///< e = ỹ − y
     Eigen::MatrixXd gamma;      ///< dy/dξ
     Eigen::MatrixXd latent;     ///< dy/dη
-    Eigen::MatrixXd extra;      ///< dy/dq of further quantities
+    Eigen::MatrixXd extra;      ///< dy/dq of the further quantities
     Eigen::MatrixXd force;      ///< dy/dd
     Eigen::VectorXd speeds;
   };
   /// @param at    in the order of trials()
-  /// @param extra further quantities, at the values that `values` gives them
+  /// @param extra further quantities, at their values in `values`
   Linear linearise(std::size_t at, const Fit& fit, const Eigen::VectorXd& values,
                    const std::vector<std::size_t>& extra, bool force) const;
 
   /// Score and information of further disturbances, per trial samples × disturbances, after
-  /// elimination of all that is free in the fit (but for what is at a bound).
+  /// elimination of all quantities that are free in the fit and not at a bound.
   struct Projected {
     Eigen::VectorXd score;
     Eigen::MatrixXd information;
@@ -116,7 +116,7 @@ class Likelihood {
   Projected project(const Fit& fit, const std::vector<Linear>& trials,
                     const std::vector<Eigen::MatrixXd>& disturbances) const;
 
-  /// What would be white if ξ were known, with LLᵀ = σ_y² + WWᵀ, in the order of time. With ξ
+  /// Whitened residuals (white for known ξ) in the order of time, with LLᵀ = σ_y² + WWᵀ. With ξ
   /// fitted the innovations' covariance is 1 − (L⁻¹Γ) cov(ξ) (L⁻¹Γ)ᵀ.
   struct Whitened {
     Eigen::VectorXd innovations;  ///< L⁻¹(e + Wη)
@@ -124,7 +124,8 @@ class Likelihood {
   };
   Whitened whitened(std::size_t at, const Fit& fit) const;
 
-  /// Latent force at its nodes [unit of the generalised force], and its posterior deviation.
+  /// Latent force at its nodes [unit of the generalised force], and its posterior standard
+  /// deviation.
   Eigen::VectorXd force(std::size_t at, const Fit& fit) const;
   Eigen::VectorXd forceSd(std::size_t at, const Fit& fit) const;
 

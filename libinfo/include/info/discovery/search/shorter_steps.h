@@ -6,31 +6,32 @@
 
 namespace info::discover {
 
-/// A model at one time step, and what the engine is told.
+/// A model at one time step, and the options of its search.
 struct Attempt {
   const DiscoveryProblem& data;
   Options options;
 };
 
-/// What was found at a step, and with which options.
+/// The verdict at a time step, and the options used.
 struct SteppedVerdict {
   Verdict verdict;
   Options options;
   double step = 0;  ///< [s]
 };
 
-/// Steps that are too long look like an effect: run() again at half the step, from where it has
-/// ended, while the finding is `numerical`, or the model cannot be simulated over the trials at all
-/// (std::domain_error), and the step is not below `shortest`. Where paths touch and lift off at
-/// different times errors do not vanish with the step: from the second on
-/// Options::numericalTolerance counts twice.
+/// The error of too long a time step can look like a missing effect. Therefore run() is repeated at
+/// half the step, continuing from the last result, while the finding is `numerical` or the model
+/// cannot be simulated over the trials (std::domain_error), and the step is not below `shortest`.
+/// If contacts begin and end at different times, errors do not vanish with the step: from the
+/// second run on Options::numericalTolerance is doubled.
 ///
-/// Where nothing was found and errors as large as those of the held-out trials are improbable
-/// (Options::secondLook), all trials are fitted and all is asked once more: a name that is found
-/// then is the answer, with Verdict::heldOutFitted; else the sentence says how improbable.
-/// @param attempt   makes the model at a step [s], with the same quantities and latent nodes at
-///   each; it lives until the next call
-/// @param step      [s] the first
+/// If nothing was found although errors as large as those of the held-out trials are improbable
+/// (Options::secondLook), the search is repeated with all trials fitted. An effect found then is
+/// the verdict, with Verdict::heldOutFitted; otherwise the sentence gives the probability of the
+/// errors.
+/// @param attempt returns the model at a step [s], with the same quantities and latent nodes at
+///   each; valid until the next call
+/// @param step [s] the first step
 /// @param shortest  [s]; infinite: only the first step is taken
 /// @throws what attempt and run() throw
 SteppedVerdict runAtShorterSteps(const std::function<Attempt(double step)>& attempt, double step,
