@@ -67,13 +67,16 @@ class Search {
 
   ChainPath run() {
     if (isFresh_) contacts_ = tautPolygon(P_, Q_, objects_, inPlay_, 400);
-    const int maxRounds = 8 + 6 * static_cast<int>(objects_.size());
+    constexpr int maxRounds = 60;
     for (int round = 0; round < maxRounds; ++round) {
       if (!solve()) {
+        if (settleEach() || (isFresh_ && dropMostDoubtful())) continue;
         if (!startAfresh()) break;
         continue;
       }
       if (liftOff() || touchDown()) continue;
+      // a polygon may rest on a ridge; given more rounds it slides down
+      if (isFresh_ && !isShortest(path_) && startAfresh()) continue;
       return finish(path_.event);
     }
     return finish(ChainEvent::notFound);
@@ -99,13 +102,60 @@ class Search {
     return true;
   }
 
+  // Each object by itself between its neighbours' contacts, a few times over: brings together what
+  // is too far apart for Newton's method on all of them. False if that has been done, or fails.
+  bool settleEach() {
+    if (objects_.size() < 2 || ++numSettled_ > 8) return false;
+    ChainPath alone;
+    for (int sweep = 0; sweep < 6; ++sweep) {
+      Vector3d from = P_;
+      for (std::size_t j = 0; j < objects_.size(); ++j) {
+        ContactMemory& c = contacts_[j];
+        if (!inPlay_[j] || c.passing != Passing::touching) continue;
+        Vector3d to = Q_;
+        for (std::size_t k = objects_.size() - 1; k > j; --k) {
+          if (inPlay_[k] && contacts_[k].passing == Passing::touching) {
+            to = objects_[k].R_GS * contacts_[k].p_SA + objects_[k].p_GS;
+          }
+        }
+        ContactGuesses guess;
+        guess.count = 1;
+        guess.each[0] = {static_cast<int>(j), c.p_SA, c.u_SA, c.arc};
+        if (!detail::solveContacts(from, to, objects_, guess, alone)) return false;
+        c.p_SA = guess.each[0].x;
+        c.u_SA = guess.each[0].u;
+        c.arc = guess.each[0].arc;
+        if (c.arc < 0) {
+          c.passing = Passing::clear;
+        } else {
+          from = alone.contacts[0].B;
+        }
+      }
+    }
+    path_.iterations += alone.iterations;
+    return true;
+  }
+
+  // A polygon's shortest contact may be none; if it is, its object is touched again when it is cut.
+  bool dropMostDoubtful() {
+    ContactMemory* shortest = nullptr;
+    for (std::size_t j = 0; j < objects_.size(); ++j) {
+      ContactMemory& c = contacts_[j];
+      if (!inPlay_[j] || c.passing != Passing::touching) continue;
+      if (shortest == nullptr || c.arc < shortest->arc) shortest = &c;
+    }
+    if (shortest == nullptr) return false;
+    shortest->passing = Passing::clear;
+    return ++numDropped_ <= 12;
+  }
+
   // From the hints; a second time with more rounds.
   bool startAfresh() {
     if (++numFresh_ > 3) return false;
     if (!isFresh_) path_.event = ChainEvent::jumped;
     isFresh_ = true;
     timesLeft_ = {};
-    contacts_ = tautPolygon(P_, Q_, objects_, inPlay_, 300 + 500 * numFresh_);
+    contacts_ = tautPolygon(P_, Q_, objects_, inPlay_, 400 << (2 * numFresh_));
     return true;
   }
 
@@ -155,6 +205,20 @@ class Search {
     return false;
   }
 
+  // A surface that is convex everywhere is not cut by its tangents.
+  bool cutsAgain() const {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(path_.numContacts); ++i) {
+      const ChainObject& object = objects_[static_cast<std::size_t>(path_.contacts[i].object)];
+      if (!std::holds_alternative<TorusSurface>(object.surface)) continue;
+      for (const ChainPiece& piece : {path_.pieces[i], path_.pieces[i + 1]}) {
+        const LowestPoint lowest = lowestOnSegment(
+            object.surface, intoFrame(object, piece.from), intoFrame(object, piece.to));
+        if (lowest.height < -1e-7 * sizeOf(object.surface)) return true;
+      }
+    }
+    return false;
+  }
+
   ChainPath finish(ChainEvent event) {
     path_.event = event;
     path_.length = path_.pieces[0].length;
@@ -165,6 +229,7 @@ class Search {
       path_.passing[j] = inPlay_[j] ? contacts_[j].passing : Passing::endInside;
     }
     path_.isShortest = isShortest(path_);
+    if (event != ChainEvent::notFound && cutsAgain()) path_.event = ChainEvent::cutsAgain;
     return path_;
   }
 
@@ -172,7 +237,7 @@ class Search {
   std::span<const ChainObject> objects_;
   std::array<ContactMemory, maxChain> contacts_;
   bool isFresh_;
-  int numFresh_ = 0;
+  int numFresh_ = 0, numDropped_ = 0, numSettled_ = 0;
   std::array<bool, maxChain> inPlay_{};
   std::array<int, maxChain> timesLeft_{};
   ChainPath path_;

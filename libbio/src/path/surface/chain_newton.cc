@@ -169,18 +169,29 @@ double trustedShare(const ChainPath& path, std::span<const ChainObject> objects,
 }
 
 ContactGuesses moved(const ContactGuesses& guesses, const ChainPath& path,
-                     std::span<const ChainObject> objects, const LinearSystem& step, double share) {
+                     std::span<const ChainObject> objects, const LinearSystem& step) {
   ContactGuesses to = guesses;
   for (std::size_t j = 0; j < static_cast<std::size_t>(guesses.count); ++j) {
     const ChainContact& c = path.contacts[j];
     const double* d = step.b + 4 * j;
     const Eigen::Matrix3d& R = objects[static_cast<std::size_t>(c.object)].R_GS;
     ContactGuess& guess = to.each[j];
-    guess.x += R.transpose() * (share * (d[0] * c.atA.u + d[1] * c.atA.b));
-    guess.u += R.transpose() * (share * d[2] * c.atA.b);
-    guess.arc += share * d[3];
+    guess.x += R.transpose() * (d[0] * c.atA.u + d[1] * c.atA.b);
+    guess.u += R.transpose() * (d[2] * c.atA.b);
+    guess.arc += d[3];
   }
   return to;
+}
+
+// A share of the way from one to the other.
+ContactGuesses between(const ContactGuesses& from, const ContactGuesses& to, double share) {
+  ContactGuesses at = from;
+  for (std::size_t j = 0; j < static_cast<std::size_t>(from.count); ++j) {
+    at.each[j].x += share * (to.each[j].x - from.each[j].x);
+    at.each[j].u += share * (to.each[j].u - from.each[j].u);
+    at.each[j].arc += share * (to.each[j].arc - from.each[j].arc);
+  }
+  return at;
 }
 
 // Every piece runs on in the direction of the geodesics, not against it.
@@ -191,6 +202,26 @@ bool runsOn(const ChainPath& path) {
     if (!(c.atB.u.dot(path.pieces[j + 1].t) > 0.5)) return false;
   }
   return true;
+}
+
+// Goes Newton's step, or less of it until the error falls; `error` and the next right-hand sides in
+// `system` are those of where it ends. Guesses stay as they are if it does not fall.
+bool shorten(const Vector3d& P, const Vector3d& Q, std::span<const ChainObject> objects,
+             LinearSystem& system, double tolerance, ContactGuesses& guesses, ChainPath& path,
+             double& error) {
+  double share = trustedShare(path, objects, system);
+  const ContactGuesses full = moved(guesses, path, objects, system);
+  const double before = error;
+  for (int i = 0; i < 8; ++i, share *= 0.4) {
+    ContactGuesses trial = share == 1 ? full : between(guesses, full, share);
+    draw(P, Q, objects, trial, tolerance, path);
+    error = assembleCosines(path, system);
+    if (error < before * (1 - 0.1 * share)) {
+      guesses = trial;
+      return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace
@@ -225,42 +256,28 @@ bool solveInPlace(LinearSystem& system) {
 
 bool solveContacts(const Vector3d& P, const Vector3d& Q, std::span<const ChainObject> objects,
                    ContactGuesses& guesses, ChainPath& path) {
-  constexpr double fine = 1e-13;
-  double tolerance = 1e-7;  // of the geodesics: as far as Newton's step will come
+  // the geodesics need no more digits than the next step will leave
+  constexpr double coarse = 1e-6, fine = 1e-13;
+  double tolerance = coarse;
   LinearSystem system;
   draw(P, Q, objects, guesses, tolerance, path);
   double error = assembleCosines(path, system);
   for (int i = 0; i < maxIterations; ++i) {
-    if (tolerance > fine && error < 1e-6) {
+    if (tolerance > fine && !(error > 10 * tolerance)) {
       tolerance = fine;
       draw(P, Q, objects, guesses, tolerance, path);
       error = assembleCosines(path, system);
     }
     if (!std::isfinite(error)) return false;
-    if (error <= goal && tolerance == fine) return runsOn(path);
+    if (error <= goal) return runsOn(path);
     assembleMatrix(path, system);
     if (!solveInPlace(system)) return false;
     ++path.iterations;
-    tolerance = std::clamp(0.01 * error * error, fine, 1e-7);
-    if (error < 1e-3) tolerance = fine;
-    // shorter steps until the error falls
-    const LinearSystem step = system;
-    const ChainPath was = path;
-    double share = trustedShare(was, objects, step);
+    tolerance = std::clamp(0.01 * error * error, fine, coarse);
     const double before = error;
-    bool fell = false;
-    for (int k = 0; k < 8 && !fell; ++k, share *= 0.4) {
-      ContactGuesses trial = moved(guesses, was, objects, step, share);
-      const int iterations = path.iterations;
-      draw(P, Q, objects, trial, tolerance, path);
-      path.iterations = iterations;
-      error = assembleCosines(path, system);
-      fell = error < before * (1 - 0.1 * share);
-      if (fell) guesses = trial;
-    }
-    if (!fell) {
-      if (before > 1e-10) return false;  // else: where rounding ends
-      path = was;
+    if (!shorten(P, Q, objects, system, tolerance, guesses, path, error)) {
+      // the error does not fall: no solution near, or where rounding ends
+      if (before > 1e-10) return false;
       draw(P, Q, objects, guesses, fine, path);
       return runsOn(path);
     }

@@ -42,24 +42,35 @@ double difference(const Motion& a, const Motion& b, double perSize) {
 }
 
 // One step by a rule whose error is even in the substep: rows of Neville's scheme until two
-// neighbours agree. `row(k, m)` is the rule with k + 1 times its fewest substeps.
-constexpr int maxRows = 9;
+// neighbours agree. `row(k)` is the rule with k + 1 times its fewest substeps.
+constexpr int maxRows = 10;
+struct NevilleFactors {
+  double factor[maxRows][maxRows] = {};
+  constexpr NevilleFactors() {
+    for (int k = 0; k < maxRows; ++k) {
+      for (int j = 0; j < k; ++j) {
+        const double ratio = static_cast<double>(k + 1) / (k - j);
+        factor[k][j] = 1 / (ratio * ratio - 1);
+      }
+    }
+  }
+};
+constexpr NevilleFactors neville;
+
 template <class Row>
 bool extrapolate(const Row& row, double perSize, double tolerance, Motion& result) {
   Motion table[maxRows];  // the last row, from its start to its end
   for (int k = 0; k < maxRows; ++k) {
     Motion left = row(k);
     for (int j = 0; j < k; ++j) {
-      const double ratio = static_cast<double>(k + 1) / (k - j);
-      const double factor = 1 / (ratio * ratio - 1);
-      Motion right;
+      const double factor = neville.factor[k][j];
       for (int i = 0; i < numPositions; ++i) {
-        right.position[i] =
-            left.position[i] + (left.position[i] - table[j].position[i]) * factor;
-        right.slope[i] = left.slope[i] + (left.slope[i] - table[j].slope[i]) * factor;
+        const double position = left.position[i], slope = left.slope[i];
+        left.position[i] += (position - table[j].position[i]) * factor;
+        left.slope[i] += (slope - table[j].slope[i]) * factor;
+        table[j].position[i] = position;
+        table[j].slope[i] = slope;
       }
-      table[j] = left;
-      left = right;
     }
     if (k > 0 && difference(left, table[k - 1], perSize) <= tolerance) {
       result = left;
@@ -70,34 +81,48 @@ bool extrapolate(const Row& row, double perSize, double tolerance, Motion& resul
   return false;
 }
 
-// Störmer's rule in summed form, for accelerations of the position alone.
+// Two numbers side by side: two rows are computed at once, each waiting for its own divisions.
+using Pair = double __attribute__((vector_size(16)));
+
+// Rows 2k and 2k + 1 by Störmer's rule in summed form, for accelerations of the position alone:
+// n = 2k + 1 and 2k + 2 substeps of h/n.
 template <class Flow>
-Motion stoermer(const Flow& flow, const Motion& start, const double* f0, double h, int n) {
-  const double H = h / n;
-  double d[numPositions], f[numPositions];
-  Motion now;
+void stoermer(const Flow& flow, const Motion& start, const double* f0, double h, int k,
+              Motion* rows) {
+  const int n = 2 * k + 2;
+  const Pair H = {h / (n - 1), h / n};
+  const Pair perH = {(n - 1) / h, n / h};
+  const Pair square = H * H;
+  Pair d[numPositions], f[numPositions], position[numPositions];
   for (int i = 0; i < numPositions; ++i) {
     d[i] = H * (start.slope[i] + 0.5 * H * f0[i]);
-    now.position[i] = start.position[i] + d[i];
+    position[i] = start.position[i] + d[i];
   }
-  for (int k = 1;; ++k) {
-    const double curvature = flow.accelerate(now.position, f);
-    f[3] = -curvature * now.position[3];
-    f[4] = -curvature * now.position[4];
-    if (k == n) break;
+  for (int substep = 1;; ++substep) {
+    const Pair curvature = flow.accelerate(position, f);
+    f[3] = -curvature * position[3];
+    f[4] = -curvature * position[4];
+    if (substep >= n - 1) {
+      const int lane = substep - (n - 1);
+      for (int i = 0; i < numPositions; ++i) {
+        const Pair slope = d[i] * perH + 0.5 * H * f[i];
+        rows[lane].position[i] = position[i][lane];
+        rows[lane].slope[i] = slope[lane];
+      }
+      if (lane == 1) return;
+    }
     for (int i = 0; i < numPositions; ++i) {
-      d[i] += H * H * f[i];
-      now.position[i] += d[i];
+      d[i] += square * f[i];
+      position[i] += d[i];
     }
   }
-  for (int i = 0; i < numPositions; ++i) now.slope[i] = d[i] / H + 0.5 * H * f[i];
-  return now;
 }
 
 // Steps by a surface's Flow.
 template <class S>
 class FlowStepper {
  public:
+  static constexpr double reach = S::Flow::reach;
   FlowStepper(const S& surface, const GeodesicPoint& start)
       : flow_(surface, start.x, start.u), perSize_(1 / surface.size()) {}
   bool step(GeodesicPoint& p, double h, double tolerance) const {
@@ -107,7 +132,11 @@ class FlowStepper {
     f0[3] = -curvature * start.position[3];
     f0[4] = -curvature * start.position[4];
     Motion end;
-    const auto row = [&](int k) { return stoermer(flow_, start, f0, h, k + 1); };
+    Motion rows[2];
+    const auto row = [&](int k) {
+      if (k % 2 == 0) stoermer(flow_, start, f0, h, k / 2, rows);
+      return rows[k % 2];
+    };
     if (!extrapolate(row, perSize_, tolerance, end)) return false;
     p = pointOf(end);
     return true;
@@ -122,6 +151,7 @@ class FlowStepper {
 template <class S>
 class DerivativeStepper {
  public:
+  static constexpr double reach = 0.5;
   DerivativeStepper(const S& surface, const GeodesicPoint&)
       : surface_(surface), perSize_(1 / surface.size()) {}
   bool step(GeodesicPoint& p, double h, double tolerance) const {
@@ -177,6 +207,7 @@ class DerivativeStepper {
 // Great circle.
 class SphereStepper {
  public:
+  static constexpr double reach = 1;
   SphereStepper(const SphereSurface& surface, const GeodesicPoint&) : radius_(surface.radius()) {}
   bool step(GeodesicPoint& p, double h, double) const {
     const double c = std::cos(h / radius_), s = std::sin(h / radius_);
@@ -197,6 +228,7 @@ class SphereStepper {
 // Helix.
 class CylinderStepper {
  public:
+  static constexpr double reach = 1;
   CylinderStepper(const CylinderSurface& surface, const GeodesicPoint& start)
       : perSquare_(1 / (surface.radius() * surface.radius())),
         turning_((start.x[0] * start.u[1] - start.x[1] * start.u[0]) * perSquare_) {}
@@ -223,17 +255,17 @@ FlowStepper<S> stepperOf(const S& s, const GeodesicPoint& p) {
   return {s, p};
 }
 
-// A step that the extrapolation is likely to reach in: a share of the distance over which ∇g
-// changes by itself, in the mean of along the path and at the most.
+// The distance over which ∇g changes by itself, in the mean of along the path and at the most:
+// extrapolation is likely to reach in steps of `reach` times that.
 template <class S>
-double likelyStep(const S& surface, const GeodesicPoint& p) {
+double naturalStep(const S& surface, const GeodesicPoint& p) {
   double most = 0;
   for (int i = 0; i < 3; ++i) {
     most = std::max(most, surface.hessianTimes(p.x, Vector3d::Unit(i)).squaredNorm());
   }
   const double along = surface.hessianTimes(p.x, p.u).squaredNorm();
   const double slope = surface.gradient(p.x).squaredNorm();
-  return 1.1 * std::sqrt(slope / std::sqrt(std::max(along * most, 1e-12 * most * most)));
+  return std::sqrt(slope / std::sqrt(std::max(along * most, 1e-12 * most * most)));
 }
 
 // From p over length s; `visit(p, h)` before each step that is taken.
@@ -242,7 +274,7 @@ void walk(const S& surface, const Stepper& stepper, GeodesicPoint& p, double s, 
           const Visit& visit) {
   double left = s;
   for (int i = 0; i < 400 && left != 0; ++i) {
-    const double likely = likelyStep(surface, p);
+    const double likely = Stepper::reach * naturalStep(surface, p);
     // equal steps, rather than a small last one
     double h = left / std::max(1.0, std::ceil(std::min(std::abs(left) / likely, 1e6)));
     GeodesicPoint to = p;

@@ -46,6 +46,7 @@ struct ChainMemory {
 enum class ChainEvent {
   none,      ///< found from the memory, or the first of its kind
   jumped,    ///< the remembered way has ended: it was looked for afresh from the hints
+  cutsAgain, ///< a straight piece cuts a touched torus elsewhere: it must stand twice in the chain
   notFound,  ///< no path satisfies the equations to the tolerance: the result is not valid
 };
 
@@ -98,7 +99,8 @@ struct ChainPath {
 /// through the hints (bio/path/surface/taut_polygon.h). The result depends on the memory only
 /// through which of several local geodesics it is, and to rounding.
 ///
-/// Domain: the contact with one object is one arc. Ends inside an object: Passing::endInside.
+/// Domain: the contact with one object is one arc; a torus that a path touches over one rim and
+/// under the other stands twice in the chain (ChainEvent::cutsAgain tells). Ends inside an object: Passing::endInside.
 /// Source of the idea of solving a chain by natural variations: Scholz, Sherman, Stavness, Delp,
 /// Kecskeméthy, Multibody System Dynamics 36 (2016) 195. Departures: Gaussian curvature from g
 /// alone, no quaternion frames, touch and lift-off as above, extrapolation instead of Runge–Kutta.

@@ -34,16 +34,18 @@ class EllipsoidSurface {
   ///     x″ = −J/|Ax|⁴ Ax,   K = det A/|Ax|⁴
   class Flow {
    public:
+    static constexpr double reach = 0.7;  ///< steps that extrapolation reaches in, found by trial
     Flow(const EllipsoidSurface& surface, const Eigen::Vector3d& x, const Eigen::Vector3d& u)
         : weights_(surface.weights_), determinant_(surface.weights_.prod()) {
       joachimsthal_ = surface.weighted(u).dot(u) * surface.weighted(x).squaredNorm();
     }
-    /// Writes x″ and returns Gauss's curvature K.
-    double accelerate(const double* x, double* acceleration) const {
-      const double gx = weights_[0] * x[0], gy = weights_[1] * x[1], gz = weights_[2] * x[2];
-      const double square = gx * gx + gy * gy + gz * gz;
-      const double perFourth = 1 / (square * square);
-      const double pull = -joachimsthal_ * perFourth;
+    /// Writes x″ and returns Gauss's curvature K. T: double, or several side by side.
+    template <class T>
+    T accelerate(const T* x, T* acceleration) const {
+      const T gx = weights_[0] * x[0], gy = weights_[1] * x[1], gz = weights_[2] * x[2];
+      const T square = gx * gx + gy * gy + gz * gz;
+      const T perFourth = 1.0 / (square * square);
+      const T pull = -joachimsthal_ * perFourth;
       acceleration[0] = pull * gx;
       acceleration[1] = pull * gy;
       acceleration[2] = pull * gz;

@@ -18,7 +18,7 @@ class TorusSurface {
   double number(int i) const { return i == 0 ? ring_ : tube_; }
   double size() const { return ring_ + tube_; }
   double value(const Eigen::Vector3d& x) const {
-    const double fromRing = std::hypot(x[0], x[1]) - ring_;
+    const double fromRing = rho(x) - ring_;
     return 0.5 * (fromRing * fromRing + x[2] * x[2] - tube_ * tube_);
   }
   Eigen::Vector3d gradient(const Eigen::Vector3d& x) const {
@@ -50,17 +50,18 @@ class TorusSurface {
   ///     x″ = −(1 − R c²/ρ³)/r² ∇g,   K = (ρ − R)/(r²ρ)
   class Flow {
    public:
+    static constexpr double reach = 1.1;  ///< steps that extrapolation reaches in, found by trial
     Flow(const TorusSurface& surface, const Eigen::Vector3d& x, const Eigen::Vector3d& u)
         : ring_(surface.ring_), perTubeSquared_(1 / (surface.tube_ * surface.tube_)) {
       const double c = x[0] * u[1] - x[1] * u[0];
       ringClairaut_ = ring_ * c * c;
     }
-    /// Writes x″ and returns Gauss's curvature K.
-    double accelerate(const double* x, double* acceleration) const {
-      const double perRho = 1 / std::sqrt(x[0] * x[0] + x[1] * x[1]);
-      const double pull =
-          -(1 - ringClairaut_ * perRho * perRho * perRho) * perTubeSquared_;
-      const double shrink = 1 - ring_ * perRho;
+    /// Writes x″ and returns Gauss's curvature K. T: double, or several side by side.
+    template <class T>
+    T accelerate(const T* x, T* acceleration) const {
+      const T perRho = perRoot(x[0] * x[0] + x[1] * x[1]);
+      const T pull = -(1.0 - ringClairaut_ * perRho * perRho * perRho) * perTubeSquared_;
+      const T shrink = 1.0 - ring_ * perRho;
       acceleration[0] = pull * shrink * x[0];
       acceleration[1] = pull * shrink * x[1];
       acceleration[2] = pull * x[2];
@@ -68,6 +69,13 @@ class TorusSurface {
     }
 
    private:
+    static double perRoot(double square) { return 1 / std::sqrt(square); }
+    template <class T>
+    static T perRoot(const T& square) {
+      T root = square;
+      for (unsigned i = 0; i < sizeof(T) / sizeof(double); ++i) root[i] = std::sqrt(square[i]);
+      return 1.0 / root;
+    }
     double ring_, perTubeSquared_, ringClairaut_;
   };
 
