@@ -59,9 +59,9 @@ inline WalkedPoint walkTorus(double ring, double tube, const WalkedPoint& start,
   const double rho = ring + tube * std::cos(y[1]);
   const double c = std::cos(y[0]), d = std::sin(y[0]);
   const double rhoRate = -tube * std::sin(y[1]) * y[3];
-  return {{rho * c, rho * d, tube * std::sin(y[1])},
-          {rhoRate * c - rho * d * y[2], rhoRate * d + rho * c * y[2],
-           tube * std::cos(y[1]) * y[3]}};
+  return {
+      {rho * c, rho * d, tube * std::sin(y[1])},
+      {rhoRate * c - rho * d * y[2], rhoRate * d + rho * c * y[2], tube * std::cos(y[1]) * y[3]}};
 }
 
 /// How far [m] from Q somebody ends who sets out from P along the path's first tangent, walks

@@ -53,6 +53,20 @@ bool isShortest(const ChainPath& path) {
   return true;
 }
 
+// A contact half the object's size from where it was, or run through in the other sense, belongs to
+// another way.
+bool hasLeapt(std::span<const ChainObject> objects, const std::array<ContactMemory, maxChain>& was,
+              const std::array<ContactMemory, maxChain>& is) {
+  for (std::size_t j = 0; j < objects.size(); ++j) {
+    if (was[j].passing != Passing::touching || is[j].passing != Passing::touching) continue;
+    const double size = sizeOf(objects[j].surface);
+    if ((was[j].p_SA - is[j].p_SA).norm() > 0.5 * size || was[j].u_SA.dot(is[j].u_SA) < 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
 class Search {
  public:
   Search(const Vector3d& P, const Vector3d& Q, std::span<const ChainObject> objects,
@@ -70,7 +84,7 @@ class Search {
     constexpr int maxRounds = 60;
     for (int round = 0; round < maxRounds; ++round) {
       if (!solve()) {
-        if (settleEach() || (isFresh_ && dropMostDoubtful())) continue;
+        if (isFresh_ && (settleEach() || dropMostDoubtful())) continue;
         if (!startAfresh()) break;
         continue;
       }
@@ -211,8 +225,8 @@ class Search {
       const ChainObject& object = objects_[static_cast<std::size_t>(path_.contacts[i].object)];
       if (!std::holds_alternative<TorusSurface>(object.surface)) continue;
       for (const ChainPiece& piece : {path_.pieces[i], path_.pieces[i + 1]}) {
-        const LowestPoint lowest = lowestOnSegment(
-            object.surface, intoFrame(object, piece.from), intoFrame(object, piece.to));
+        const LowestPoint lowest = lowestOnSegment(object.surface, intoFrame(object, piece.from),
+                                                   intoFrame(object, piece.to));
         if (lowest.height < -1e-7 * sizeOf(object.surface)) return true;
       }
     }
@@ -252,7 +266,11 @@ ChainPath solveChain(const Vector3d& P, const Vector3d& Q, std::span<const Chain
                                             objects.size(), maxChain));
   }
   Search search(P, Q, objects, memory);
-  const ChainPath path = search.run();
+  ChainPath path = search.run();
+  if (path.event == ChainEvent::none && memory.known &&
+      hasLeapt(objects, memory.contacts, search.contacts())) {
+    path.event = ChainEvent::jumped;
+  }
   memory.known = path.event != ChainEvent::notFound;
   memory.contacts = search.contacts();
   return path;

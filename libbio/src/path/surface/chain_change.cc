@@ -124,8 +124,8 @@ std::array<ContactShift, maxChain> ChainChanges::shifts(const ChainScrews& motio
                        c.atA.normal;
     span = endMotion(j + 1, motion) - startMotion(j + 1, motion);
     if (j + 1 < m) span += result[j + 1].aside * path_.contacts[j + 1].atA.b;
-    result[j].alongB = (-c.atB.twist * asideAtB(j, result[j]) +
-                        turning.cross(c.atB.n).dot(out.t) + c.atB.n.dot(span) / out.length) /
+    result[j].alongB = (-c.atB.twist * asideAtB(j, result[j]) + turning.cross(c.atB.n).dot(out.t) +
+                        c.atB.n.dot(span) / out.length) /
                        c.atB.normal;
   }
   return result;
@@ -170,8 +170,7 @@ EndHessian ChainChanges::ends() const {
   const auto m = static_cast<std::size_t>(path_.numContacts);
   const ChainPiece& first = path_.pieces[0];
   if (m == 0) {
-    const Matrix3d across =
-        (Matrix3d::Identity() - first.t * first.t.transpose()) / first.length;
+    const Matrix3d across = (Matrix3d::Identity() - first.t * first.t.transpose()) / first.length;
     return {across, -across, across};
   }
   const ChainPiece& last = path_.pieces[m];
@@ -185,8 +184,8 @@ EndHessian ChainChanges::ends() const {
   };
   const double asideA = inverse_[0][0] * perFirst;
   hessian.PP = perFirst * (A.n * A.n.transpose() + (1 - asideA) * A.b * A.b.transpose());
-  hessian.QQ = perLast * (B.n * B.n.transpose() +
-                          (1 - asideB(2 * m - 1, -perLast)) * B.b * B.b.transpose());
+  hessian.QQ =
+      perLast * (B.n * B.n.transpose() + (1 - asideB(2 * m - 1, -perLast)) * B.b * B.b.transpose());
   hessian.PQ = -perLast * asideB(0, perFirst) * A.b * B.b.transpose();
   return hessian;
 }
@@ -198,8 +197,8 @@ std::array<NumberIntegral, maxSurfaceNumbers> contactNumbers(const ChainObject& 
 }
 
 double numberChange(const NumberIntegral& number, const ContactShift& shift) {
-  return -shift.alongA * number.first + shift.alongB * number.last +
-         shift.aside * number.sideways + shift.turn * number.turned;
+  return -shift.alongA * number.first + shift.alongB * number.last + shift.aside * number.sideways +
+         shift.turn * number.turned;
 }
 
 }  // namespace bio

@@ -14,8 +14,8 @@ constexpr double goal = 1e-12;
 
 // The frame at a point of an object, turned into G.
 SurfaceFrame frameInG(const ChainObject& object, const Vector3d& x, const Vector3d& u) {
-  SurfaceFrame frame = std::visit(
-      [&](const auto& surface) { return surfaceFrame(surface, x, u); }, object.surface);
+  SurfaceFrame frame =
+      std::visit([&](const auto& surface) { return surfaceFrame(surface, x, u); }, object.surface);
   frame.n = object.R_GS * frame.n;
   frame.u = object.R_GS * frame.u;
   frame.b = object.R_GS * frame.b;
@@ -34,8 +34,7 @@ ChainContact shootFrom(std::span<const ChainObject> objects, ContactGuess& guess
   guess.u = object.R_GS.transpose() * contact.atA.u;
   contact.A = object.R_GS * guess.x + object.p_GS;
   contact.arc = guess.arc;
-  const GeodesicPoint end =
-      shootGeodesic(object.surface, guess.x, guess.u, guess.arc, tolerance);
+  const GeodesicPoint end = shootGeodesic(object.surface, guess.x, guess.u, guess.arc, tolerance);
   contact.atB = frameInG(object, end.x, end.u);
   contact.B = object.R_GS * end.x + object.p_GS;
   contact.a = end.a;
@@ -273,7 +272,7 @@ bool solveContacts(const Vector3d& P, const Vector3d& Q, std::span<const ChainOb
     assembleMatrix(path, system);
     if (!solveInPlace(system)) return false;
     ++path.iterations;
-    tolerance = std::clamp(0.01 * error * error, fine, coarse);
+    tolerance = error < 1e-3 ? fine : coarse;  // the last step but one starts from fine ones
     const double before = error;
     if (!shorten(P, Q, objects, system, tolerance, guesses, path, error)) {
       // the error does not fall: no solution near, or where rounding ends

@@ -4,81 +4,27 @@
 #include <cmath>
 #include <limits>
 
+#include "extrapolation.h"
+
 namespace bio {
 namespace {
 
+using namespace detail;
 using Eigen::Vector3d;
-
-// Positions x, y, z, a, r and their slopes.
-constexpr int numPositions = 5;
-struct Motion {
-  double position[numPositions];
-  double slope[numPositions];
-};
 
 Motion motionOf(const GeodesicPoint& p) {
   return {{p.x[0], p.x[1], p.x[2], p.a, p.r}, {p.u[0], p.u[1], p.u[2], p.aSlope, p.rSlope}};
 }
 GeodesicPoint pointOf(const Motion& m) {
-  return {{m.position[0], m.position[1], m.position[2]}, {m.slope[0], m.slope[1], m.slope[2]},
-          m.position[3], m.slope[3], m.position[4], m.slope[4]};
+  return {{m.position[0], m.position[1], m.position[2]},
+          {m.slope[0], m.slope[1], m.slope[2]},
+          m.position[3],
+          m.slope[3],
+          m.position[4],
+          m.slope[4]};
 }
 GeodesicPoint startOf(const Vector3d& x, const Vector3d& u) {
   return {x, u, 1, 0, 0, 1};
-}
-
-// The difference of two motions, positions relative to a size, large numbers relative to
-// themselves.
-double difference(const Motion& a, const Motion& b, double perSize) {
-  double worst = 0;
-  for (int i = 0; i < numPositions; ++i) {
-    const bool isPlain = i == 3;  // a; the others are lengths
-    const double p = std::abs(a.position[i] - b.position[i]) * (isPlain ? 1 : perSize);
-    const double v = std::abs(a.slope[i] - b.slope[i]) * (isPlain ? 1 / perSize : 1);
-    const double large = i < 3 ? 1 : 1 + std::abs(b.slope[i]) * (isPlain ? 1 / perSize : 1);
-    worst = std::max(worst, std::max(p, v / large));
-  }
-  return worst;
-}
-
-// One step by a rule whose error is even in the substep: rows of Neville's scheme until two
-// neighbours agree. `row(k)` is the rule with k + 1 times its fewest substeps.
-constexpr int maxRows = 10;
-struct NevilleFactors {
-  double factor[maxRows][maxRows] = {};
-  constexpr NevilleFactors() {
-    for (int k = 0; k < maxRows; ++k) {
-      for (int j = 0; j < k; ++j) {
-        const double ratio = static_cast<double>(k + 1) / (k - j);
-        factor[k][j] = 1 / (ratio * ratio - 1);
-      }
-    }
-  }
-};
-constexpr NevilleFactors neville;
-
-template <class Row>
-bool extrapolate(const Row& row, double perSize, double tolerance, Motion& result) {
-  Motion table[maxRows];  // the last row, from its start to its end
-  for (int k = 0; k < maxRows; ++k) {
-    Motion left = row(k);
-    for (int j = 0; j < k; ++j) {
-      const double factor = neville.factor[k][j];
-      for (int i = 0; i < numPositions; ++i) {
-        const double position = left.position[i], slope = left.slope[i];
-        left.position[i] += (position - table[j].position[i]) * factor;
-        left.slope[i] += (slope - table[j].slope[i]) * factor;
-        table[j].position[i] = position;
-        table[j].slope[i] = slope;
-      }
-    }
-    if (k > 0 && difference(left, table[k - 1], perSize) <= tolerance) {
-      result = left;
-      return true;
-    }
-    table[k] = left;
-  }
-  return false;
 }
 
 // Two numbers side by side: two rows are computed at once, each waiting for its own divisions.
@@ -246,7 +192,9 @@ class CylinderStepper {
 };
 
 // The step of a surface.
-inline SphereStepper stepperOf(const SphereSurface& s, const GeodesicPoint& p) { return {s, p}; }
+inline SphereStepper stepperOf(const SphereSurface& s, const GeodesicPoint& p) {
+  return {s, p};
+}
 inline CylinderStepper stepperOf(const CylinderSurface& s, const GeodesicPoint& p) {
   return {s, p};
 }
@@ -317,8 +265,8 @@ struct Integrand {
     perShift = -(surface.thirdTwice(x, frame.u).dot(frame.b) * d.value +
                  bending * d.gradient.dot(frame.b)) *
                    perSquare +
-               2 * bending * d.value * gradient.dot(surface.hessianTimes(x, frame.b)) *
-                   perSquare * perSquare;
+               2 * bending * d.value * gradient.dot(surface.hessianTimes(x, frame.b)) * perSquare *
+                   perSquare;
     const double perDirection = -2 * d.value * perSquare;
     perShift += perDirection * frame.twist * bent.dot(frame.n);
     perTurn = perDirection * bent.dot(frame.b);

@@ -96,9 +96,7 @@ LowestPoint lowestOnSegment(const Surface& surface, const Vector3d& x, const Vec
 
 bool isInside(const Surface& surface, const Vector3d& x) {
   return std::visit(
-      [&](const auto& s) {
-        return !(s.value(x) > 1e-12 * s.gradient(x).norm() * s.size());
-      },
+      [&](const auto& s) { return !(s.value(x) > 1e-12 * s.gradient(x).norm() * s.size()); },
       surface);
 }
 

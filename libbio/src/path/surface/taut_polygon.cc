@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 
 constexpr int cornersPerLeg = 16;
 constexpr double roughness = 4e-3;  // over the rounds: moves of this share of the whole are small
-constexpr int finer = 8;  // pieces of a side near a contact
+constexpr int finer = 8;            // pieces of a side near a contact
 constexpr int maxCorners = 4 * (maxChain + 1) * cornersPerLeg;
 
 Vector3d intoFrame(const ChainObject& object, const Vector3d& p_G) {

@@ -73,8 +73,8 @@ Vector3d hintOfShortest(const Surface& surface, const Vector3d& P, const Vector3
   const Vector3d m = lowestOnSegment(surface, P, Q).point;
   Vector3d out = std::visit([&](const auto& s) { return s.gradient(m); }, surface);
   out -= d * d.dot(out);
-  if (!(out.norm() > 1e-9 * std::visit([&](const auto& s) { return s.gradient(P).norm(); },
-                                       surface))) {
+  if (!(out.norm() >
+        1e-9 * std::visit([&](const auto& s) { return s.gradient(P).norm(); }, surface))) {
     out = anyAcross(d);
   }
   out.normalize();

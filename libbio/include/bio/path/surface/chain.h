@@ -44,18 +44,18 @@ struct ChainMemory {
 
 /// What became of a search that was not a plain continuation of the last posture's path.
 enum class ChainEvent {
-  none,      ///< found from the memory, or the first of its kind
-  jumped,    ///< the remembered way has ended: it was looked for afresh from the hints
-  cutsAgain, ///< a straight piece cuts a touched torus elsewhere: it must stand twice in the chain
-  notFound,  ///< no path satisfies the equations to the tolerance: the result is not valid
+  none,       ///< found from the memory, or the first of its kind
+  jumped,     ///< the remembered way has ended, or the posture has leapt: another may be followed
+  cutsAgain,  ///< a straight piece cuts a touched torus elsewhere: it must stand twice in the chain
+  notFound,   ///< no path satisfies the equations to the tolerance: the result is not valid
 };
 
 /// A touched object's part of the path; vectors in G.
 struct ChainContact {
-  int object = 0;          ///< its place among the objects
-  Eigen::Vector3d A, B;    ///< first and last contact
-  SurfaceFrame atA, atB;   ///< u along the path
-  double arc = 0;          ///< geodesic length s from A to B [m] ≥ 0
+  int object = 0;                               ///< its place among the objects
+  Eigen::Vector3d A, B;                         ///< first and last contact
+  SurfaceFrame atA, atB;                        ///< u along the path
+  double arc = 0;                               ///< geodesic length s from A to B [m] ≥ 0
   double a = 1, aSlope = 0, r = 0, rSlope = 1;  ///< at B, as in GeodesicPoint
 };
 
@@ -70,12 +70,12 @@ struct ChainPiece {
 struct ChainPath {
   double length = 0;  ///< L [m]
   int numContacts = 0;
-  std::array<ChainContact, maxChain> contacts;    ///< the objects that are touched, in order
-  std::array<ChainPiece, maxChain + 1> pieces;    ///< numContacts + 1 of them
-  std::array<Passing, maxChain> passing{};        ///< of each object
+  std::array<ChainContact, maxChain> contacts;  ///< the objects that are touched, in order
+  std::array<ChainPiece, maxChain + 1> pieces;  ///< numContacts + 1 of them
+  std::array<Passing, maxChain> passing{};      ///< of each object
   ChainEvent event = ChainEvent::none;
-  int iterations = 0;     ///< Newton's, of all tries together
-  bool isShortest = true; ///< among its neighbours: no conjugate point, it does not slip sideways
+  int iterations = 0;      ///< Newton's, of all tries together
+  bool isShortest = true;  ///< among its neighbours: no conjugate point, it does not slip sideways
 
   const Eigen::Vector3d& tangentP() const { return pieces[0].t; }
   const Eigen::Vector3d& tangentQ() const {
@@ -100,10 +100,11 @@ struct ChainPath {
 /// through which of several local geodesics it is, and to rounding.
 ///
 /// Domain: the contact with one object is one arc; a torus that a path touches over one rim and
-/// under the other stands twice in the chain (ChainEvent::cutsAgain tells). Ends inside an object: Passing::endInside.
-/// Source of the idea of solving a chain by natural variations: Scholz, Sherman, Stavness, Delp,
-/// Kecskeméthy, Multibody System Dynamics 36 (2016) 195. Departures: Gaussian curvature from g
-/// alone, no quaternion frames, touch and lift-off as above, extrapolation instead of Runge–Kutta.
+/// under the other stands twice in the chain (ChainEvent::cutsAgain tells). Ends inside an object:
+/// Passing::endInside. Source of the idea of solving a chain by natural variations: Scholz,
+/// Sherman, Stavness, Delp, Kecskeméthy, Multibody System Dynamics 36 (2016) 195. Departures:
+/// Gaussian curvature from g alone, no quaternion frames, touch and lift-off as above,
+/// extrapolation instead of Runge–Kutta.
 ///
 /// Allocates nothing.
 /// @throws std::invalid_argument for more than maxChain objects

@@ -51,9 +51,9 @@ extern template GeodesicPoint shootByDerivatives(const CylinderSurface&, const E
 /// and beside come the changes of that integral as the geodesic's start moves sideways by 1 m and
 /// turns by 1 rad, and F at both ends, by which it changes as they slide along.
 struct NumberIntegral {
-  double length;    ///< ∂L/∂θ
-  double sideways;  ///< ∫ (D_bF a + F_u·(τ a n + a′ b)) ds
-  double turned;    ///< the same with r for a
+  double length;       ///< ∂L/∂θ
+  double sideways;     ///< ∫ (D_bF a + F_u·(τ a n + a′ b)) ds
+  double turned;       ///< the same with r for a
   double first, last;  ///< F at the two ends
 };
 

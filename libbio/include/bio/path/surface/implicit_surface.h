@@ -19,17 +19,17 @@ struct NumberDerivative {
 /// - size() [m]: tolerances are relative to it
 /// Units of g are the surface's own: only ratios of its derivatives matter.
 template <class S>
-concept ImplicitSurface =
-    requires(const S& s, const Eigen::Vector3d& x, const Eigen::Vector3d& u, int i) {
-      { S::numNumbers } -> std::convertible_to<int>;
-      { s.number(i) } -> std::same_as<double>;
-      { s.size() } -> std::same_as<double>;
-      { s.value(x) } -> std::same_as<double>;
-      { s.gradient(x) } -> std::same_as<Eigen::Vector3d>;
-      { s.hessianTimes(x, u) } -> std::same_as<Eigen::Vector3d>;
-      { s.thirdTwice(x, u) } -> std::same_as<Eigen::Vector3d>;
-      { s.ofNumber(x, i) } -> std::same_as<NumberDerivative>;
-    };
+concept ImplicitSurface = requires(const S& s, const Eigen::Vector3d& x, const Eigen::Vector3d& u,
+                                   int i) {
+  { S::numNumbers } -> std::convertible_to<int>;
+  { s.number(i) } -> std::same_as<double>;
+  { s.size() } -> std::same_as<double>;
+  { s.value(x) } -> std::same_as<double>;
+  { s.gradient(x) } -> std::same_as<Eigen::Vector3d>;
+  { s.hessianTimes(x, u) } -> std::same_as<Eigen::Vector3d>;
+  { s.thirdTwice(x, u) } -> std::same_as<Eigen::Vector3d>;
+  { s.ofNumber(x, i) } -> std::same_as<NumberDerivative>;
+};
 
 /// At a point of a surface, for a direction u in it: the frame and how it bends.
 struct SurfaceFrame {
