@@ -15,10 +15,6 @@ using detail::ContactGuess;
 using detail::ContactGuesses;
 using Eigen::Vector3d;
 
-Vector3d intoFrame(const ChainObject& object, const Vector3d& p_G) {
-  return object.R_GS.transpose() * (p_G - object.p_GS);
-}
-
 // The second variation of the length over sideways shifts and turns (β, θ) of the contacts,
 //   Σ (displacement across a piece)²/d + Σ ∫ (y′² − K y²) ds,
 // is positive: the path is the shortest among its neighbours.
@@ -74,8 +70,8 @@ class Search {
       : P_(P), Q_(Q), objects_(objects), contacts_(memory.contacts), isFresh_(!memory.known) {
     for (std::size_t j = 0; j < objects.size(); ++j) {
       const ChainObject& object = objects[j];
-      inPlay_[j] = !isInside(object.surface, intoFrame(object, P)) &&
-                   !isInside(object.surface, intoFrame(object, Q));
+      inPlay_[j] = !isInside(object.surface, object.intoFrame(P)) &&
+                   !isInside(object.surface, object.intoFrame(Q));
     }
   }
 
@@ -129,7 +125,7 @@ class Search {
         Vector3d to = Q_;
         for (std::size_t k = objects_.size() - 1; k > j; --k) {
           if (inPlay_[k] && contacts_[k].passing == Passing::touching) {
-            to = objects_[k].R_GS * contacts_[k].p_SA + objects_[k].p_GS;
+            to = objects_[k].outOfFrame(contacts_[k].p_SA);
           }
         }
         ContactGuesses guess;
@@ -203,8 +199,8 @@ class Search {
       if (timesLeft_[j] > 1) continue;  // left for good: its arc is negative or next to nothing
       const ChainObject& object = objects_[j];
       const ChainPiece& straight = path_.pieces[piece];
-      const LowestPoint lowest = lowestOnSegment(object.surface, intoFrame(object, straight.from),
-                                                 intoFrame(object, straight.to));
+      const LowestPoint lowest = lowestOnSegment(object.surface, object.intoFrame(straight.from),
+                                                 object.intoFrame(straight.to));
       const double size = sizeOf(object.surface);
       if (!(lowest.height < -1e-12 * size)) continue;
       ContactMemory& contact = contacts_[j];
@@ -225,8 +221,8 @@ class Search {
       const ChainObject& object = objects_[static_cast<std::size_t>(path_.contacts[i].object)];
       if (!std::holds_alternative<TorusSurface>(object.surface)) continue;
       for (const ChainPiece& piece : {path_.pieces[i], path_.pieces[i + 1]}) {
-        const LowestPoint lowest = lowestOnSegment(object.surface, intoFrame(object, piece.from),
-                                                   intoFrame(object, piece.to));
+        const LowestPoint lowest = lowestOnSegment(object.surface, object.intoFrame(piece.from),
+                                                   object.intoFrame(piece.to));
         if (lowest.height < -1e-7 * sizeOf(object.surface)) return true;
       }
     }

@@ -192,7 +192,7 @@ EndHessian ChainChanges::ends() const {
 
 std::array<NumberIntegral, maxSurfaceNumbers> contactNumbers(const ChainObject& object,
                                                              const ChainContact& contact) {
-  const Vector3d x = object.R_GS.transpose() * (contact.A - object.p_GS);
+  const Vector3d x = object.intoFrame(contact.A);
   return numberIntegrals(object.surface, x, object.R_GS.transpose() * contact.atA.u, contact.arc);
 }
 

@@ -32,11 +32,11 @@ ChainContact shootFrom(std::span<const ChainObject> objects, ContactGuess& guess
   contact.object = guess.object;
   contact.atA = frameInG(object, guess.x, guess.u);
   guess.u = object.R_GS.transpose() * contact.atA.u;
-  contact.A = object.R_GS * guess.x + object.p_GS;
+  contact.A = object.outOfFrame(guess.x);
   contact.arc = guess.arc;
   const GeodesicPoint end = shootGeodesic(object.surface, guess.x, guess.u, guess.arc, tolerance);
   contact.atB = frameInG(object, end.x, end.u);
-  contact.B = object.R_GS * end.x + object.p_GS;
+  contact.B = object.outOfFrame(end.x);
   contact.a = end.a;
   contact.aSlope = end.aSlope;
   contact.r = end.r;
@@ -183,7 +183,7 @@ ContactGuesses moved(const ContactGuesses& guesses, const ChainPath& path,
 }
 
 // A share of the way from one to the other.
-ContactGuesses between(const ContactGuesses& from, const ContactGuesses& to, double share) {
+ContactGuesses shareOfTheWay(const ContactGuesses& from, const ContactGuesses& to, double share) {
   ContactGuesses at = from;
   for (std::size_t j = 0; j < static_cast<std::size_t>(from.count); ++j) {
     at.each[j].x += share * (to.each[j].x - from.each[j].x);
@@ -212,7 +212,7 @@ bool shorten(const Vector3d& P, const Vector3d& Q, std::span<const ChainObject> 
   const ContactGuesses full = moved(guesses, path, objects, system);
   const double before = error;
   for (int i = 0; i < 8; ++i, share *= 0.4) {
-    ContactGuesses trial = share == 1 ? full : between(guesses, full, share);
+    ContactGuesses trial = share == 1 ? full : shareOfTheWay(guesses, full, share);
     draw(P, Q, objects, trial, tolerance, path);
     error = assembleCosines(path, system);
     if (error < before * (1 - 0.1 * share)) {

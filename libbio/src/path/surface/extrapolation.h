@@ -7,14 +7,14 @@ namespace bio::detail {
 
 // Positions x, y, z, a, r and their slopes.
 inline constexpr int numPositions = 5;
-struct Motion {
+struct JacobiMotion {
   double position[numPositions];
   double slope[numPositions];
 };
 
 // The difference of two motions, positions relative to a size, large numbers relative to
 // themselves.
-inline double difference(const Motion& a, const Motion& b, double perSize) {
+inline double difference(const JacobiMotion& a, const JacobiMotion& b, double perSize) {
   double worst = 0;
   for (int i = 0; i < numPositions; ++i) {
     const bool isPlain = i == 3;  // a; the others are lengths
@@ -43,10 +43,10 @@ struct NevilleFactors {
 inline constexpr NevilleFactors neville;
 
 template <class Row>
-bool extrapolate(const Row& row, double perSize, double tolerance, Motion& result) {
-  Motion table[maxRows];  // the last row, from its start to its end
+bool extrapolate(const Row& row, double perSize, double tolerance, JacobiMotion& result) {
+  JacobiMotion table[maxRows];  // the last row, from its start to its end
   for (int k = 0; k < maxRows; ++k) {
-    Motion left = row(k);
+    JacobiMotion left = row(k);
     for (int j = 0; j < k; ++j) {
       const double factor = neville.factor[k][j];
       for (int i = 0; i < numPositions; ++i) {

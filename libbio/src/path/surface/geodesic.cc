@@ -12,10 +12,10 @@ namespace {
 using namespace detail;
 using Eigen::Vector3d;
 
-Motion motionOf(const GeodesicPoint& p) {
+JacobiMotion motionOf(const GeodesicPoint& p) {
   return {{p.x[0], p.x[1], p.x[2], p.a, p.r}, {p.u[0], p.u[1], p.u[2], p.aSlope, p.rSlope}};
 }
-GeodesicPoint pointOf(const Motion& m) {
+GeodesicPoint pointOf(const JacobiMotion& m) {
   return {{m.position[0], m.position[1], m.position[2]},
           {m.slope[0], m.slope[1], m.slope[2]},
           m.position[3],
@@ -23,7 +23,7 @@ GeodesicPoint pointOf(const Motion& m) {
           m.position[4],
           m.slope[4]};
 }
-GeodesicPoint startOf(const Vector3d& x, const Vector3d& u) {
+GeodesicPoint geodesicStart(const Vector3d& x, const Vector3d& u) {
   return {x, u, 1, 0, 0, 1};
 }
 
@@ -33,8 +33,8 @@ using Pair = double __attribute__((vector_size(16)));
 // Rows 2k and 2k + 1 by Störmer's rule in summed form, for accelerations of the position alone:
 // n = 2k + 1 and 2k + 2 substeps of h/n.
 template <class Flow>
-void stoermer(const Flow& flow, const Motion& start, const double* f0, double h, int k,
-              Motion* rows) {
+void stoermer(const Flow& flow, const JacobiMotion& start, const double* f0, double h, int k,
+              JacobiMotion* rows) {
   const int n = 2 * k + 2;
   const Pair H = {h / (n - 1), h / n};
   const Pair perH = {(n - 1) / h, n / h};
@@ -72,13 +72,13 @@ class FlowStepper {
   FlowStepper(const S& surface, const GeodesicPoint& start)
       : flow_(surface, start.x, start.u), perSize_(1 / surface.size()) {}
   bool step(GeodesicPoint& p, double h, double tolerance) const {
-    const Motion start = motionOf(p);
+    const JacobiMotion start = motionOf(p);
     double f0[numPositions];
     const double curvature = flow_.accelerate(start.position, f0);
     f0[3] = -curvature * start.position[3];
     f0[4] = -curvature * start.position[4];
-    Motion end;
-    Motion rows[2];
+    JacobiMotion end;
+    JacobiMotion rows[2];
     const auto row = [&](int k) {
       if (k % 2 == 0) stoermer(flow_, start, f0, h, k / 2, rows);
       return rows[k % 2];
@@ -101,8 +101,8 @@ class DerivativeStepper {
   DerivativeStepper(const S& surface, const GeodesicPoint&)
       : surface_(surface), perSize_(1 / surface.size()) {}
   bool step(GeodesicPoint& p, double h, double tolerance) const {
-    const Motion start = motionOf(p);
-    Motion end;
+    const JacobiMotion start = motionOf(p);
+    JacobiMotion end;
     const auto row = [&](int k) { return midpoint(start, h, 2 * (k + 1)); };
     if (!extrapolate(row, perSize_, tolerance, end)) return false;
     p = pointOf(end);
@@ -110,19 +110,19 @@ class DerivativeStepper {
   }
 
  private:
-  Motion rate(const Motion& m) const {
+  JacobiMotion rate(const JacobiMotion& m) const {
     const Vector3d x(m.position[0], m.position[1], m.position[2]);
     const Vector3d u(m.slope[0], m.slope[1], m.slope[2]);
     const SurfaceFrame frame = surfaceFrame(surface_, x, u);
     const double curvature = frame.normal * frame.sideways - frame.twist * frame.twist;
-    Motion rate;
+    JacobiMotion rate;
     for (int i = 0; i < numPositions; ++i) rate.position[i] = m.slope[i];
     for (int i = 0; i < 3; ++i) rate.slope[i] = frame.normal * u.squaredNorm() * frame.n[i];
     for (int i = 3; i < numPositions; ++i) rate.slope[i] = -curvature * m.position[i];
     return rate;
   }
-  static Motion moved(const Motion& m, const Motion& rate, double h) {
-    Motion to;
+  static JacobiMotion moved(const JacobiMotion& m, const JacobiMotion& rate, double h) {
+    JacobiMotion to;
     for (int i = 0; i < numPositions; ++i) {
       to.position[i] = m.position[i] + h * rate.position[i];
       to.slope[i] = m.slope[i] + h * rate.slope[i];
@@ -130,16 +130,16 @@ class DerivativeStepper {
     return to;
   }
   // The midpoint rule with Gragg's smoothing.
-  Motion midpoint(const Motion& start, double h, int n) const {
+  JacobiMotion midpoint(const JacobiMotion& start, double h, int n) const {
     const double H = h / n;
-    Motion before = start;
-    Motion now = moved(start, rate(start), H);
+    JacobiMotion before = start;
+    JacobiMotion now = moved(start, rate(start), H);
     for (int k = 1; k < n; ++k) {
-      const Motion next = moved(before, rate(now), 2 * H);
+      const JacobiMotion next = moved(before, rate(now), 2 * H);
       before = now;
       now = next;
     }
-    const Motion after = moved(before, rate(now), H);
+    const JacobiMotion after = moved(before, rate(now), H);
     for (int i = 0; i < numPositions; ++i) {
       now.position[i] = 0.5 * (now.position[i] + after.position[i]);
       now.slope[i] = 0.5 * (now.slope[i] + after.slope[i]);
@@ -278,7 +278,7 @@ std::array<NumberIntegral, maxSurfaceNumbers> integrate(const S& surface, const 
                                                         const Vector3d& u, double s) {
   constexpr double tolerance = 1e-13;
   std::array<NumberIntegral, maxSurfaceNumbers> result{};
-  GeodesicPoint p = startOf(x, u);
+  GeodesicPoint p = geodesicStart(x, u);
   const auto stepper = stepperOf(surface, p);
   const auto addPanel = [&](const GeodesicPoint& from, double h) {
     GeodesicPoint at = from;
@@ -317,7 +317,7 @@ GeodesicPoint shootGeodesic(const Surface& surface, const Vector3d& x, const Vec
                             double tolerance) {
   return std::visit(
       [&](const auto& shape) {
-        GeodesicPoint p = startOf(x, u);
+        GeodesicPoint p = geodesicStart(x, u);
         walk(shape, stepperOf(shape, p), p, s, tolerance, visitNothing);
         return p;
       },
@@ -327,7 +327,7 @@ GeodesicPoint shootGeodesic(const Surface& surface, const Vector3d& x, const Vec
 template <ImplicitSurface S>
 GeodesicPoint shootByDerivatives(const S& surface, const Vector3d& x, const Vector3d& u, double s,
                                  double tolerance) {
-  GeodesicPoint p = startOf(x, u);
+  GeodesicPoint p = geodesicStart(x, u);
   walk(surface, DerivativeStepper<S>(surface, p), p, s, tolerance, visitNothing);
   return p;
 }

@@ -14,13 +14,6 @@ constexpr double roughness = 4e-3;  // over the rounds: moves of this share of t
 constexpr int finer = 8;            // pieces of a side near a contact
 constexpr int maxCorners = 4 * (maxChain + 1) * cornersPerLeg;
 
-Vector3d intoFrame(const ChainObject& object, const Vector3d& p_G) {
-  return object.R_GS.transpose() * (p_G - object.p_GS);
-}
-Vector3d outOfFrame(const ChainObject& object, const Vector3d& p_S) {
-  return object.R_GS * p_S + object.p_GS;
-}
-
 struct Polygon {
   int numCorners = 0;
   std::array<Vector3d, maxCorners> corner;
@@ -46,7 +39,7 @@ Polygon throughHints(const Vector3d& P, const Vector3d& Q, std::span<const Chain
     from = to;
   };
   for (std::size_t j = 0; j < objects.size(); ++j) {
-    if (inPlay[j]) lead(outOfFrame(objects[j], objects[j].hint));
+    if (inPlay[j]) lead(objects[j].outOfFrame(objects[j].hint));
   }
   lead(Q);
   return polygon;
@@ -58,11 +51,11 @@ int pushOut(std::span<const ChainObject> objects, const std::array<bool, maxChai
   int touched = -1;
   for (std::size_t j = 0; j < objects.size(); ++j) {
     if (!inPlay[j]) continue;
-    const Vector3d p_S = intoFrame(objects[j], p_G);
+    const Vector3d p_S = objects[j].intoFrame(p_G);
     std::visit(
         [&](const auto& surface) {
           if (!(surface.value(p_S) < 0)) return;
-          p_G = outOfFrame(objects[j], ontoSurface(surface, p_S));
+          p_G = objects[j].outOfFrame(ontoSurface(surface, p_S));
           touched = static_cast<int>(j);
         },
         objects[j].surface);
@@ -132,7 +125,7 @@ std::array<ContactMemory, maxChain> tautPolygon(const Vector3d& P, const Vector3
       if (polygon.touched[i] != static_cast<int>(j)) continue;
       if (contact.passing == Passing::clear) {
         contact.passing = Passing::touching;
-        contact.p_SA = intoFrame(objects[j], polygon.corner[i]);
+        contact.p_SA = objects[j].intoFrame(polygon.corner[i]);
         contact.u_SA = objects[j].R_GS.transpose() *
                        (polygon.corner[i + 1] - polygon.corner[i - 1]).normalized();
       } else {

@@ -19,6 +19,11 @@ struct ChainObject {
   /// Near the surface, in its frame S: the side on which a path goes round whose way is not known
   /// from its last posture; bio/path/surface/way.h finds one.
   Eigen::Vector3d hint = Eigen::Vector3d::UnitX();
+
+  Eigen::Vector3d intoFrame(const Eigen::Vector3d& p_G) const {
+    return R_GS.transpose() * (p_G - p_GS);
+  }
+  Eigen::Vector3d outOfFrame(const Eigen::Vector3d& p_S) const { return R_GS * p_S + p_GS; }
 };
 
 /// How the path passes one of the objects.
