@@ -54,6 +54,9 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
 # The module is one Python's own, by the name of its file; NumPy is found when it is imported.
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${FISHERHILL_PYTHON_DEPENDS}, python3-numpy")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "fisherhill")
+# They compile the package's Python files, and remove what was compiled.
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
+  ${PROJECT_SOURCE_DIR}/packaging/python/postinst ${PROJECT_SOURCE_DIR}/packaging/python/prerm)
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION
 "The Python module: replays, sensitivities, calibration and discovery with
 musculoskeletal models, and Fisher information, bounds and estimation for

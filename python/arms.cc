@@ -9,6 +9,7 @@
 #include "bio/model/integrator_names.h"
 #include "bio/opensim/osim_file.h"
 #include "bio/tables/trial_table.h"
+#include "docstrings.h"
 #include "interruptible.h"
 
 namespace python {
@@ -37,6 +38,13 @@ bio::Trial trialOf(const bio::Model& model, const py::dict& columns, const std::
                    name, py::bytes(reinterpret_cast<const char*>(table.values.data()),
                                    sizeof(double) * static_cast<std::size_t>(table.values.size()))))
           .attr("encode")());
+  return trial;
+}
+
+bio::Trial loadTrial(const std::string& file, const bio::Model& model, bool ignoreExtra) {
+  bio::Trial trial =
+      bio::readTrial(file, model, {.ignoreExtra = ignoreExtra, .experimentalConditions = true});
+  trial.sha256 = digestOf(py::module_::import("pathlib").attr("Path")(file).attr("read_bytes")());
   return trial;
 }
 
@@ -81,8 +89,10 @@ py::dict errorsOf(const bio::MusculoskeletalSystem& arm, const bio::Trial& trial
 }
 
 py::object replay(const bio::Model& given, const bio::Trial& trial,
-                  const std::map<std::string, double>& initial, const py::kwargs& keywords) {
-  const SystemChoice choice = armChoice(keywords);
+                  const std::map<std::string, double>& initial, const Names& coordinate,
+                  const std::map<std::string, double>& lock, const std::string& integrator,
+                  std::optional<double> step) {
+  const SystemChoice choice = armChoice(coordinate, lock, integrator, step);
   bio::TrialReplay replayed;
   const bio::Trajectory& motion = replayed.motion;
   bio::MuscleReport muscles;
@@ -142,28 +152,17 @@ bio::SimulationOptions SystemChoice::simulation() const {
   return options;
 }
 
-SystemChoice armChoice(const py::kwargs& keywords) {
-  SystemChoice choice;
-  for (const auto& [key, value] : keywords) {
-    const auto name = key.cast<std::string>();
-    if (name == "coordinate") {
-      choice.coordinates = py::isinstance<py::str>(value)
-                               ? std::vector<std::string>{value.cast<std::string>()}
-                               : value.cast<std::vector<std::string>>();
-    } else if (name == "lock") {
-      choice.locks = value.cast<std::map<std::string, double>>();
-    } else if (name == "integrator") {
-      choice.integrator = value.cast<std::string>();
-    } else if (name == "step") {
-      choice.step = value.cast<double>();
-      if (!(*choice.step > 0)) {
-        throw std::invalid_argument(fmt::format("step = {} s, must be > 0", *choice.step));
-      }
-    } else {
-      throw std::invalid_argument(fmt::format("unknown argument '{}'", name));
-    }
+SystemChoice armChoice(const Names& coordinate, const std::map<std::string, double>& lock,
+                       const std::string& integrator, std::optional<double> step) {
+  if (step && !(*step > 0)) {
+    throw std::invalid_argument(fmt::format("step = {} s, must be > 0", *step));
   }
-  return choice;
+  const auto* one = std::get_if<std::string>(&coordinate);
+  return {.coordinates =
+              one ? std::vector<std::string>{*one} : std::get<std::vector<std::string>>(coordinate),
+          .locks = lock,
+          .integrator = integrator,
+          .step = step};
 }
 
 std::string digestOf(const py::object& bytes) {
@@ -191,106 +190,47 @@ bio::SimulationOptions during(const bio::Trial& trial, bio::SimulationOptions op
 }
 
 void defineSystems(py::module_& module) {
-  py::class_<bio::Model>(module, "Model", "A musculoskeletal model.")
-      .def_readonly("name", &bio::Model::name)
-      .def_readonly("warnings", &bio::Model::warnings, "what was read but is not simulated")
-      .def_property_readonly("coordinates", &coordinatesOf)
-      .def_property_readonly("muscles", &musclesOf, "enabled muscles")
+  py::class_<bio::Model> model(module, "Model", docstrings::Model);
+  model.attr("__module__") = packageName;
+  model.def_readonly("name", &bio::Model::name, docstrings::Model_name)
+      .def_readonly("warnings", &bio::Model::warnings, docstrings::Model_warnings)
+      .def_property_readonly("coordinates", &coordinatesOf, docstrings::Model_coordinates)
+      .def_property_readonly("muscles", &musclesOf, docstrings::Model_muscles)
       .def(
           "write",
-          [](const bio::Model& model, const std::string& file) { bio::writeOsim(model, file); },
-          "file"_a, "Writes the model as an .osim file.")
-      .def("__repr__", [](const bio::Model& model) {
-        return fmt::format("<fisherhill.Model '{}', {} muscles>", model.name,
-                           musclesOf(model).size());
+          [](const bio::Model& self, const std::string& file) { bio::writeOsim(self, file); },
+          "file"_a, docstrings::Model_write)
+      .def("__repr__", [](const bio::Model& self) {
+        return fmt::format("<fisherhill.Model '{}', {} muscles>", self.name,
+                           musclesOf(self).size());
       });
-  py::class_<bio::Trial>(module, "Trial",
-                         "Excitations, measured coordinates and loads of one recording.")
-      .def_readonly("name", &bio::Trial::file)
-      .def_readonly("times", &bio::Trial::times, "[s]")
-      .def_readonly("muscles", &bio::Trial::muscles)
-      .def_readonly("excitations", &bio::Trial::excitations, "0 to 1; times × muscles")
-      .def_property_readonly("measured", &measuredOf,
-                             "{coordinate: (times [s], values [rad] or [m])}")
+  py::class_<bio::Trial> trial(module, "Trial", docstrings::Trial);
+  trial.attr("__module__") = packageName;
+  trial.def_readonly("name", &bio::Trial::file, docstrings::Trial_name)
+      .def_readonly("times", &bio::Trial::times, docstrings::Trial_times)
+      .def_readonly("muscles", &bio::Trial::muscles, docstrings::Trial_muscles)
+      .def_readonly("excitations", &bio::Trial::excitations, docstrings::Trial_excitations)
+      .def_property_readonly("measured", &measuredOf, docstrings::Trial_measured)
       .def_property_readonly(
-          "known_mass_in_hand", [](const bio::Trial& trial) { return trial.known.massInHand; },
-          "mass held by design [kg]; only discover and replay take it into account")
+          "known_mass_in_hand", [](const bio::Trial& self) { return self.known.massInHand; },
+          docstrings::Trial_known_mass_in_hand)
       .def_property_readonly(
-          "known_arm_turn", [](const bio::Trial& trial) { return trial.known.armTurn; },
-          "angle by which the whole limb was turned [rad]; only discover and replay take it into "
-          "account")
-      .def_readonly("warnings", &bio::Trial::warnings)
-      .def("__repr__", [](const bio::Trial& trial) {
-        return fmt::format("<fisherhill.Trial '{}', {} rows>", trial.file, trial.times.size());
+          "known_arm_turn", [](const bio::Trial& self) { return self.known.armTurn; },
+          docstrings::Trial_known_arm_turn)
+      .def_readonly("warnings", &bio::Trial::warnings, docstrings::Trial_warnings)
+      .def("__repr__", [](const bio::Trial& self) {
+        return fmt::format("<fisherhill.Trial '{}', {} rows>", self.file, self.times.size());
       });
   module.def(
       "load_model", [](const std::string& file) { return bio::readOsim(file); }, "file"_a,
-      "Reads an OpenSim 3 or 4 model (.osim).");
-  module.def(
-      "load_trial",
-      [](const std::string& file, const bio::Model& model, bool ignoreExtra) {
-        bio::Trial trial = bio::readTrial(
-            file, model, {.ignoreExtra = ignoreExtra, .experimentalConditions = true});
-        trial.sha256 =
-            digestOf(py::module_::import("pathlib").attr("Path")(file).attr("read_bytes")());
-        return trial;
-      },
-      "file"_a, "model"_a, py::kw_only(), "ignore_extra"_a = false,
-      R"doc(Reads a trial of the model (.sto, .mot or .csv).
-
-Header lines known_mass_in_hand_kg=1 and known_arm_turn_deg=-45 state the experimental conditions.)doc");
+      docstrings::load_model);
+  module.def("load_trial", &loadTrial, "file"_a, "model"_a, py::kw_only(), "ignore_extra"_a = false,
+             docstrings::load_trial);
   module.def("make_trial", &trialOf, "model"_a, "columns"_a, py::kw_only(), "name"_a = "trial",
              "ignore_extra"_a = false, "known_mass_in_hand"_a = 0.0, "known_arm_turn"_a = 0.0,
-             R"doc(Makes a trial from arrays.
-
-Parameters
-----------
-model : Model
-columns : dict
-    {column: values}, named as in a file: 'time' [s]; muscles (excitation, 0 to 1); 'elbow_flexion'
-    [rad] or 'elbow_flexion_deg', NaN where it was not measured; 'elbow_flexion.torque' [N m], an
-    external load.
-known_mass_in_hand : float
-    Mass that the subject held by design [kg].
-known_arm_turn : float
-    Angle by which the whole limb was turned against the ground [rad], positive as the coordinate
-    rises.)doc");
-  module.def("replay", &replay, "model"_a, "trial"_a, py::kw_only(),
-             "initial"_a = std::map<std::string, double>(),
-             R"doc(Simulates the motion produced by a trial's excitations.
-
-Parameters
-----------
-model : Model
-trial : Trial
-initial : dict
-    {coordinate: initial value in rad or m}; default: the fitted or first measured value, else the
-    model's default value.
-
-Other keywords: coordinate='elbow_flexion' (the free coordinate, or a list of them),
-lock={name: value} in rad or m, integrator='vi' ('vi-left', 'rk4' or 'cvode'), step [s].
-The default step is the one that the model was fitted with, else 0.01 s (rk4: 0.0002 s).
-
-Returns
--------
-time : array
-    [s]
-q, q_dot : array, times x coordinates
-    [rad] and [rad/s], or [m] and [m/s].
-activation, fibre_length, tendon_force, moment_arm : array, times x muscles
-    [1], [m], [N], [m].
-coordinates, muscles : list of str
-    Names of the columns.
-rms_error : dict
-    {coordinate: RMS error in rad or m}, where it was measured.
-energy_error : float
-    [J]
-outcome : str
-    'ok', 'unstable' or 'no solution'; `why` gives the reason.
-start_from : str
-    'given', 'model' (fitted by discover or calibrate for this trial), 'measured' or 'default'.
-step : float
-    Time step [s].)doc");
+             docstrings::make_trial);
+  defineWithChoice(module, "replay", &replay, docstrings::replay, "model"_a, "trial"_a,
+                   py::kw_only(), "initial"_a = std::map<std::string, double>());
 }
 
 }  // namespace python

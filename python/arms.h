@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "bio/model/model.h"
@@ -13,7 +14,7 @@
 
 namespace python {
 
-/// What most functions of arms are given, as keyword arguments.
+/// The options that most functions of arms have.
 struct SystemChoice {
   std::vector<std::string> coordinates = {"elbow_flexion"};  ///< free
   std::map<std::string, double> locks;                       ///< [rad] or [m]
@@ -25,9 +26,22 @@ struct SystemChoice {
   bio::SimulationOptions simulation() const;
 };
 
-/// Reads `coordinate` (a name or a list of them), `lock`, `integrator` and `step`.
-/// @throws std::invalid_argument for any other keyword
-SystemChoice armChoice(const py::kwargs& keywords);
+/// A name or a list of them.
+using Names = std::variant<std::string, std::vector<std::string>>;
+
+/// @throws std::invalid_argument for a step that is not > 0
+SystemChoice armChoice(const Names& coordinate, const std::map<std::string, double>& lock,
+                       const std::string& integrator, std::optional<double> step);
+
+/// Defines a function whose last four arguments are those of armChoice(), by name.
+/// @param before  annotations of the arguments before them, and the docstring
+template <class Function, class... Annotations>
+void defineWithChoice(py::module_& module, const char* name, Function function,
+                      const Annotations&... before) {
+  module.def(name, function, before..., "coordinate"_a = "elbow_flexion",
+             "lock"_a = std::map<std::string, double>(), "integrator"_a = "vi",
+             "step"_a = py::none());
+}
 
 /// SHA-256 of a bytes object, by which models know trials that they were fitted to.
 std::string digestOf(const py::object& bytes);

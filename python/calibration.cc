@@ -5,6 +5,7 @@
 
 #include "arms.h"
 #include "bio/calibration/calibrated_model.h"
+#include "docstrings.h"
 #include "interruptible.h"
 
 namespace python {
@@ -37,8 +38,9 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
                      const std::vector<bio::Trial>& holdOut, std::optional<double> noise,
                      bool priors, const Pairs& prior, const Pairs& bounds, const std::string& loss,
                      bool ownStart, int starts, std::uint64_t seed, int threads,
-                     const py::kwargs& keywords) {
-  const SystemChoice choice = armChoice(keywords);
+                     const Names& coordinate, const std::map<std::string, double>& lock,
+                     const std::string& integrator, std::optional<double> step) {
+  const SystemChoice choice = armChoice(coordinate, lock, integrator, step);
   for (const auto* set : {&trials, &holdOut})
     for (const bio::Trial& trial : *set) mustBeOfTheModelAsItIs(trial);
   bio::CalibrationOptions options;
@@ -88,54 +90,11 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
 }  // namespace
 
 void defineCalibration(py::module_& module) {
-  module.def("calibrate", &calibrate, "model"_a, "trials"_a, "parameters"_a, py::kw_only(),
-             "hold_out"_a = std::vector<bio::Trial>(), "noise"_a = py::none(), "priors"_a = true,
-             "prior"_a = Pairs(), "bounds"_a = Pairs(), "loss"_a = "gaussian",
-             "own_start"_a = false, "starts"_a = 1, "seed"_a = 1, "threads"_a = 1,
-             R"doc(Estimates model parameters from measured motions.
-
-Parameters
-----------
-model : Model
-trials : list of Trial
-    Calibration trials with a measured angle.
-parameters : list of str
-    Names of the parameters to estimate.
-hold_out : list of Trial
-    Trials used only to test the estimates.
-noise : float, optional
-    Standard deviation of the measured angle [rad]; estimated from the residuals by default.
-priors : bool
-    False: estimate without priors; bounds still apply.
-prior : dict
-    {name: (mean, sd)} instead of the default prior.
-bounds : dict
-    {name: (low, high)} instead of the default bounds.
-loss : str
-    'gaussian', 'huber' or 'student'.
-own_start : bool
-    True: estimate the initial angle and speed of each trial as well.
-starts : int
-    Number of optimiser starts; the first is the model's own values.
-
-Other keywords: coordinate='elbow_flexion' (the free coordinate, or a list of them),
-lock={name: value} in rad or m, integrator='vi' ('vi-left', 'rk4' or 'cvode'), step [s].
-
-Returns
--------
-estimates : dict
-    {name: value, sd, lower, upper, unit, model, identifiable, at_bound, why}.
-correlation : array
-converged : bool
-why : str
-    Why the search ended.
-iterations : int
-noise, effective_noise : float
-    Standard deviation of the noise, and after widening for its correlation [rad].
-rmse_before, rmse_after, rmse_held_out_before, rmse_held_out : float
-    RMS errors [rad].
-model : Model or None
-    The calibrated model.)doc");
+  defineWithChoice(module, "calibrate", &calibrate, docstrings::calibrate, "model"_a, "trials"_a,
+                   "parameters"_a, py::kw_only(), "hold_out"_a = std::vector<bio::Trial>(),
+                   "noise"_a = py::none(), "priors"_a = true, "prior"_a = Pairs(),
+                   "bounds"_a = Pairs(), "loss"_a = "gaussian", "own_start"_a = false,
+                   "starts"_a = 1, "seed"_a = 1, "threads"_a = 1);
 }
 
 }  // namespace python

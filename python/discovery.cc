@@ -7,6 +7,7 @@
 #include "bio/discovery/predicted_experiments.h"
 #include "bio/discovery/repaired.h"
 #include "bio/tables/trial_table.h"
+#include "docstrings.h"
 #include "info/discovery/judgement/separation.h"
 #include "info/discovery/search/shorter_steps.h"
 #include "interruptible.h"
@@ -155,8 +156,9 @@ py::list fittedOf(const MusculoskeletalProblem& data, const Verdict& verdict) {
 py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
                     const std::vector<bio::Trial>& holdOut, std::optional<double> noise,
                     const std::vector<std::string>& without, int maxEffects,
-                    const py::kwargs& keywords) {
-  const SystemChoice choice = armChoice(keywords);
+                    const Names& coordinate, const std::map<std::string, double>& lock,
+                    const std::string& integrator, std::optional<double> firstStep) {
+  const SystemChoice choice = armChoice(coordinate, lock, integrator, firstStep);
   if (choice.coordinates.size() != 1) {
     throw std::invalid_argument("coordinate: several are free, must be one for discover");
   }
@@ -216,69 +218,9 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
 }  // namespace
 
 void defineDiscovery(py::module_& module) {
-  module.def("discover", &discover, "model"_a, "trials"_a, py::kw_only(),
-             "hold_out"_a = std::vector<bio::Trial>(), "noise"_a = py::none(),
-             "without"_a = std::vector<std::string>(), "max_effects"_a = 3,
-             R"doc(Finds and names the effect that a model lacks.
-
-Parameters
-----------
-model : Model
-trials : list of Trial
-    Trials with the measured coordinate.
-hold_out : list of Trial
-    Trials used to test the result. They may have a known mass in the hand, as `trials` may.
-noise : float, optional
-    Standard deviation of the measured coordinate [rad]; estimated from the data by default.
-without : list of str
-    Ids of effects to exclude from the catalogue.
-max_effects : int
-    Largest number of effects in one hypothesis.
-
-Other keywords: coordinate='elbow_flexion' (the free coordinate, or a list of them),
-lock={name: value} in rad or m, integrator='vi' ('vi-left', 'rk4' or 'cvode'), step [s].
-
-Returns
--------
-verdict : str
-    'named', 'ambiguous', 'parameter', 'none', 'unknown' or 'numerical'.
-sentence : str
-    The verdict in words.
-effects : list
-    For each effect: id, name, kind, parameters, log_bayes_factor [nats], probability,
-    cannot_be_told_from (ids of the effects that these data cannot distinguish from it) and, for
-    the first held-out trial (else the first trial), moment_rms and moment_peak [N m],
-    share_of_muscle_moment, motion_rms [rad].
-surrogate : bool
-    True: the effects are only proxies of an effect outside the catalogue.
-gap, gap_held_out
-    RMS errors [rad]: nominal, calibrated, after, noise_floor; closed: fraction of the excess error
-    that is explained. For held-out trials also expected, the expected value of `after`, and
-    probability, the p-value of an error at least as large.
-held_out_fitted : bool
-    True: the effect was found only when the held-out trials were fitted as well.
-undetectable_below : dict
-    {id: smallest detectable amplitude}.
-planned_experiments : list
-    If effects cannot be distinguished, experiments that would distinguish them, the best first:
-    what, of, expected_nats {rival: expected log Bayes factor}.
-unknown
-    If no effect fits: formula, stable, evidence [nats], explained, peak_frequency [Hz] and rms [N m]
-    of the missing force; raced: the formula fitted as a candidate effect.
-force_without_a_name
-    The best free-form force, a smooth function of the angle or of the speed alone: follows, beside
-    (ids of the effects fitted with it), log_bayes_factor, nats_ahead_of_names (log Bayes factor
-    against the named effects), wins (True: the named effects are probably only proxies), and force
-    with its sd [N m] at angles [rad] or speeds [rad/s].
-model : Model or None
-    The model with the effects and all fitted parameters, if there is a verdict to build in.
-trials : list
-    For each trial: name, role, RMS errors [rad] in replay with the original model (nominal) and with
-    the returned one (after), noise_floor, start, start_speed, and trial, the one that was replayed.
-fitted_parameters : list
-    For each: name, unit, nominal, estimate, sd, prior_sd, prior_z.
-noise, probability_vetoed, step, fits
-    Noise used [rad], whether no probability is given, time step [s], number of fits.)doc");
+  defineWithChoice(module, "discover", &discover, docstrings::discover, "model"_a, "trials"_a,
+                   py::kw_only(), "hold_out"_a = std::vector<bio::Trial>(), "noise"_a = py::none(),
+                   "without"_a = std::vector<std::string>(), "max_effects"_a = 3);
 }
 
 }  // namespace python

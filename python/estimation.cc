@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "docstrings.h"
 #include "info/estimation/estimate.h"
 #include "info/information/fisher.h"
 #include "info/information/identifiability.h"
@@ -133,68 +134,17 @@ py::object identifiability(const MatrixXd& information, const VectorXd& values,
 }  // namespace
 
 void defineEstimation(py::module_& module) {
+  const std::vector<std::string> unnamed;
   module.def("fisher_information", &fisherInformation, "gamma"_a, "noise"_a, py::kw_only(),
-             "outputs"_a = 1,
-             R"doc(Fisher information, the sum over samples of gamma^T Sigma^-1 gamma.
-
-Parameters
-----------
-gamma : array
-    samples x outputs x parameters, or (samples * outputs) x parameters with `outputs` given.
-noise : float or array
-    Standard deviation of the outputs, one for each output, or their covariance.)doc");
-  module.def(
-      "cramer_rao_bound", &info::cramerRaoBound, "information"_a,
-      "names"_a = std::vector<std::string>(),
-      R"doc(Cramer-Rao bound, the inverse of the information: no unbiased estimator has a smaller covariance.
-
-Raises ValueError with the names of parameters about which there is no information.)doc");
-  module.def("identifiability", &identifiability, "information"_a, "values"_a,
-             "names"_a = std::vector<std::string>(),
-             R"doc(Which parameters, or combinations of them, are identifiable.
-
-Returns
--------
-rank : int
-sentences : list of str
-sd : array
-correlation : array
-determined : list of str
-    Combinations that are determined.)doc");
+             "outputs"_a = 1, docstrings::fisher_information);
+  module.def("cramer_rao_bound", &info::cramerRaoBound, "information"_a, "names"_a = unnamed,
+             docstrings::cramer_rao_bound);
+  module.def("identifiability", &identifiability, "information"_a, "values"_a, "names"_a = unnamed,
+             docstrings::identifiability);
   module.def("estimate", &estimate, "predict"_a, "measured"_a, "noise"_a, "start"_a, py::kw_only(),
-             "names"_a = std::vector<std::string>(), "sensitivities"_a = py::none(),
-             "bounds"_a = Pairs(), "prior"_a = Pairs(), "method"_a = "levenberg-marquardt",
-             "iterations"_a = 100, "confidence"_a = 0.95,
-             R"doc(Weighted least squares with bounds and priors.
-
-Parameters
-----------
-predict : callable or System
-    predict(theta) returns samples x outputs, as `measured`.
-measured : array, samples x outputs
-    NaN: not measured.
-noise : float or array
-    As in fisher_information.
-start : array
-    Start values of the parameters.
-names : list of str
-sensitivities : callable, optional
-    sensitivities(theta) returns gamma. Default: predict.sensitivities, else central differences.
-bounds : dict
-    {name: (low, high)}.
-prior : dict
-    {name: (mean, sd)}.
-method : str
-    'levenberg-marquardt', 'gauss-newton' or 'gradient-descent'.
-iterations : int
-    Largest number of iterations.
-confidence : float
-    Of the intervals.
-
-Returns
--------
-parameters, names, sd, covariance (the Cramer-Rao bound at the estimate), information, intervals,
-at_bound, converged, why, cost, iterations, evaluations, reduced_chi_square.)doc");
+             "names"_a = unnamed, "sensitivities"_a = py::none(), "bounds"_a = Pairs(),
+             "prior"_a = Pairs(), "method"_a = "levenberg-marquardt", "iterations"_a = 100,
+             "confidence"_a = 0.95, docstrings::estimate);
 }
 
 }  // namespace python

@@ -46,9 +46,8 @@ void translate(std::exception_ptr thrown) {
 }  // namespace
 }  // namespace python
 
-PYBIND11_MODULE(fisherhill, module) {
-  module.doc() =
-      "Hill muscles and Fisher information: simulate, identify and explain how muscles move limbs.";
+PYBIND11_MODULE(_fisherhill, module) {
+  module.doc() = "The compiled part of the package fisherhill.";
   module.attr("__version__") = info::version();
   pybind11::register_exception_translator(&python::translate);
   python::defineSystems(module);

@@ -15,6 +15,9 @@ namespace python {
 namespace py = pybind11;
 using namespace py::literals;
 
+/// The package that the compiled module `_fisherhill` is part of, by which its classes are called.
+inline constexpr char packageName[] = "fisherhill";
+
 /// Two numbers by name: bounds (low, high), priors (mean, sd).
 using Pairs = std::map<std::string, std::pair<double, double>>;
 

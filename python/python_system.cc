@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "docstrings.h"
 #include "info/autodiff/derivatives.h"
 
 namespace python {
@@ -203,26 +204,9 @@ info::Predictor predictorOf(const py::object& outputs, const py::object& sensiti
 }
 
 void defineSystem(py::module_& module) {
-  py::class_<PythonSystem>(
-      module, "System",
-      R"doc(A system defined by Python functions: x' = f(x, u, theta, t), y = g(x, u, theta).
-
-Parameters
-----------
-f : callable
-x0 : array
-    Initial state.
-times : array
-    Sample times [s].
-inputs : array, times x inputs, optional
-    Linear between the times.
-g : callable, optional
-    Outputs; default: the state.
-f_x, f_theta, g_x, g_theta : callable, optional
-    Jacobians with the arguments of f and g. If they are given, sensitivities are exact, else they
-    are central differences.
-substeps : int
-    Runge-Kutta steps (fourth order) from one time to the next.)doc")
+  py::class_<PythonSystem> system(module, "System", docstrings::System);
+  system.attr("__module__") = packageName;
+  system
       .def(py::init([](py::object f, const VectorXd& x0, const VectorXd& times,
                        const py::object& inputs, py::object g, py::object f_x, py::object f_theta,
                        py::object g_x, py::object g_theta, int substeps) {
@@ -235,14 +219,14 @@ substeps : int
            "f"_a, "x0"_a, "times"_a, py::kw_only(), "inputs"_a = py::none(), "g"_a = py::none(),
            "f_x"_a = py::none(), "f_theta"_a = py::none(), "g_x"_a = py::none(),
            "g_theta"_a = py::none(), "substeps"_a = 1)
-      .def("__call__", &PythonSystem::outputs, "theta"_a, "y, samples x outputs")
+      .def("__call__", &PythonSystem::outputs, "theta"_a, docstrings::System_call)
       .def(
           "sensitivities",
           [](const PythonSystem& s, const VectorXd& theta) {
             return s.withSensitivities(theta).second;
           },
-          "theta"_a, "dy/dtheta, (samples * outputs) x parameters, ordered by sample")
-      .def_property_readonly("times", &PythonSystem::times);
+          "theta"_a, docstrings::System_sensitivities)
+      .def_property_readonly("times", &PythonSystem::times, docstrings::System_times);
 }
 
 }  // namespace python

@@ -4,6 +4,7 @@
 #include "bio/analysis/replay.h"
 #include "bio/calibration/trial_predictor.h"
 #include "bio/parameters/parameter_information.h"
+#include "docstrings.h"
 #include "interruptible.h"
 
 namespace python {
@@ -11,12 +12,12 @@ namespace {
 
 py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& trials,
                        const std::vector<std::string>& parameters, double noise,
-                       const py::kwargs& keywords) {
-  const SystemChoice choice = armChoice(keywords);
+                       const Names& freeCoordinates, const std::map<std::string, double>& lock,
+                       const std::string& integrator, std::optional<double> step) {
+  const SystemChoice choice = armChoice(freeCoordinates, lock, integrator, step);
   if (trials.empty()) throw std::invalid_argument("trials: empty, must have at least one");
   std::vector<Eigen::MatrixXd> gammas;
-  std::vector<Eigen::VectorXd> outputs;
-  std::vector<std::vector<double>> times;
+  std::vector<Eigen::VectorXd> outputs, times;
   bio::ParameterInformation information;
   Eigen::VectorXd values;
   interruptible([&](const std::atomic<bool>& goOn) {
@@ -32,9 +33,10 @@ py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& t
                                               {bio::startCoordinates(trial, arm, {}), {}});
       selection = catalogue.select(parameters);
       values = catalogue.values(selection);
-      times.push_back(bio::observedTimes(trial, coordinate, options.step));
+      const std::vector<double> observed = bio::observedTimes(trial, coordinate, options.step);
+      times.push_back(Eigen::VectorXd::Map(observed.data(), std::ssize(observed)));
       const bio::TrialPredictor experiment(catalogue, choice.armOptions(),
-                                           bio::excitationOf(trial, arm), coordinate, times.back(),
+                                           bio::excitationOf(trial, arm), coordinate, observed,
                                            selection, options);
       auto at = experiment.withSensitivities(values);
       if (!goOn) return;
@@ -62,8 +64,10 @@ py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& t
                  "correlation"_a = information.correlation, "sentences"_a = information.sentences);
 }
 
-py::list listParameters(const bio::Model& model, const py::kwargs& keywords) {
-  const SystemChoice choice = armChoice(keywords);
+py::list listParameters(const bio::Model& model, const Names& coordinate,
+                        const std::map<std::string, double>& lock, const std::string& integrator,
+                        std::optional<double> step) {
+  const SystemChoice choice = armChoice(coordinate, lock, integrator, step);
   const bio::MusculoskeletalSystem arm(model, choice.armOptions());
   const bio::ParameterCatalogue catalogue(model, arm, {arm.skeleton().defaultValues(), {}});
   py::list list;
@@ -78,47 +82,10 @@ py::list listParameters(const bio::Model& model, const py::kwargs& keywords) {
 }  // namespace
 
 void defineSensitivity(py::module_& module) {
-  module.def("list_parameters", &listParameters, "model"_a,
-             R"doc(Lists the parameters of the model that affect the motion.
-
-Each has name, value, unit, meaning, lower, upper, deviation (prior standard deviation) and is_group.)doc");
-  module.def(
-      "sensitivity", &sensitivity, "model"_a, "trials"_a, "parameters"_a, py::kw_only(),
-      "noise"_a = std::numbers::pi / 180,
-      R"doc(Exact sensitivities of the coordinate to parameters, and the information of a measurement.
-
-Parameters
-----------
-model : Model
-trials : list of Trial
-parameters : list of str
-    Names, which may contain *, or ['all'].
-noise : float
-    Standard deviation of the measured coordinate [rad].
-
-Other keywords: coordinate='elbow_flexion' (the free coordinate, or a list of them),
-lock={name: value} in rad or m, integrator='vi' ('vi-left', 'rk4' or 'cvode'), step [s].
-
-Returns
--------
-names, units, values
-    Of the parameters.
-times, outputs : list of arrays
-    Sample times [s] and simulated coordinate [rad], for each trial.
-gamma : list of arrays, times x parameters
-    Sensitivities, for each trial.
-fisher : array
-    Fisher information.
-normalised_sensitivity : array
-    RMS change of the motion per prior standard deviation.
-bound_alone, bound_joint : array
-    Cramer-Rao standard deviations with the other parameters known, and with all estimated together
-    with their priors.
-identifiable : list of bool
-    True: the data at least halve the prior standard deviation.
-correlation : array
-sentences : list of str
-    Which parameters are not separately identifiable.)doc");
+  defineWithChoice(module, "list_parameters", &listParameters, docstrings::list_parameters,
+                   "model"_a, py::kw_only());
+  defineWithChoice(module, "sensitivity", &sensitivity, docstrings::sensitivity, "model"_a,
+                   "trials"_a, "parameters"_a, py::kw_only(), "noise"_a = std::numbers::pi / 180);
 }
 
 }  // namespace python

@@ -12,6 +12,8 @@ import numpy as np
 
 import fisherhill as fh
 
+import stub
+
 ELBOW = "models/elbow8.osim"
 SLOW = "emg_data/curl_slow.sto"
 HIDDEN = "emg_data/hidden_a/train_1.sto"
@@ -33,6 +35,7 @@ class Arms(unittest.TestCase):
 
     def test_replay_gives_rows_for_times_and_columns_for_muscles(self):
         motion = fh.replay(self.model, self.trial)
+        stub.check(motion, "ReplayResult")
         rows = len(motion.time)
         self.assertEqual(motion.outcome, "ok")
         self.assertEqual(motion.q.shape, (rows, 1))
@@ -56,6 +59,7 @@ class Arms(unittest.TestCase):
     def test_sensitivity_is_the_difference_of_two_motions(self):
         name, h = "hand.mass", 1e-4
         found = fh.sensitivity(self.model, [self.trial], [name])
+        stub.check(found, "SensitivityResult")
         value = found.values[0]
         outputs = []
         for mass in (value - h, value + h):
@@ -76,6 +80,7 @@ class Arms(unittest.TestCase):
         columns["elbow_flexion"] = np.interp(columns["time"], truth.time, truth.q[:, 0])
         made = fh.make_trial(self.model, columns)
         found = fh.calibrate(self.model, [made], ["hand.mass"], noise=0.5 * DEGREE, priors=False)
+        stub.check(found, "CalibrationResult")
         self.assertTrue(found.converged)
         mass = found.estimates["hand.mass"]
         self.assertTrue(mass.identifiable)
@@ -87,6 +92,7 @@ class Arms(unittest.TestCase):
     def test_discover_names_the_damping_that_is_hidden(self):
         trial = fh.load_trial(HIDDEN, self.model)
         found = fh.discover(self.model, [trial], noise=0.5 * DEGREE, max_effects=1)
+        stub.check(found, "DiscoveryResult")
         self.assertEqual(found.verdict, "named")
         self.assertEqual([one.id for one in found.effects], ["visc"])
         force = found.force_without_a_name
@@ -114,6 +120,7 @@ class Arms(unittest.TestCase):
         trials = [fh.load_trial(HIDDEN.replace("train_1", one), self.model) for one in ("train_1", "train_2")]
         found = fh.discover(self.model, trials[:1], hold_out=trials[1:], noise=0.5 * DEGREE, max_effects=1)
         self.assertEqual([one.id for one in found.effects], ["visc"])
+        stub.check(found, "DiscoveryResult")
         held = found.gap_held_out
         self.assertGreater(held.expected, held.noise_floor)  # what is left unknown comes on top
         self.assertGreater(held.probability, 0.05)  # else it would be fitted, too
@@ -125,6 +132,7 @@ class Arms(unittest.TestCase):
     def test_discover_plans_what_would_tell_names_apart(self):
         trial = fh.load_trial("emg_data/hidden_c/train_1.sto", self.model)  # a mass in the hand, or of it
         found = fh.discover(self.model, [trial], noise=0.5 * DEGREE, max_effects=1)
+        stub.check(found, "DiscoveryResult")
         self.assertEqual(found.verdict, "ambiguous")
         self.assertIsNone(found.unknown)
         self.assertGreater(len(found.planned_experiments), 1)
@@ -139,12 +147,14 @@ class Arms(unittest.TestCase):
     def test_discover_gives_a_formula_of_what_has_no_name(self):
         trials = [fh.load_trial(HIDDEN.replace("train_1", one), self.model) for one in ("train_1", "train_2")]
         found = fh.discover(self.model, trials, noise=0.5 * DEGREE, max_effects=0)
+        stub.check(found, "DiscoveryResult")
         self.assertEqual(found.verdict, "unknown")
         self.assertEqual((found.effects, found.planned_experiments), ([], []))
         self.assertGreater(found.unknown.evidence, 5)
         self.assertIsNone(found.unknown.raced)  # one effect at least is needed for that
         others = [one for one in found.undetectable_below if one != "const"]
         raced = fh.discover(self.model, trials, noise=0.5 * DEGREE, max_effects=1, without=others).unknown.raced
+        stub.check(raced, "RacedFormula")
         self.assertTrue(raced.wins)
         self.assertEqual([one.expression for one in raced.terms], ["qdot"])  # viscous damping of 0.3 N m s
         self.assertLess(abs(raced.terms[0].value + 0.3), 3 * raced.terms[0].sd)
@@ -193,7 +203,6 @@ class Arms(unittest.TestCase):
             lambda: fh.replay(self.model, self.trial, integrator="euler"),
             lambda: fh.replay(self.model, self.trial, step=0),
             lambda: fh.replay(self.model, self.trial, step=5),
-            lambda: fh.replay(self.model, self.trial, stride=1),
             lambda: fh.replay(self.model, self.trial, coordinate="knee"),
             lambda: fh.sensitivity(self.model, [], ["hand.mass"]),
             lambda: fh.sensitivity(self.model, [self.trial], ["hand.weight"]),
@@ -204,6 +213,23 @@ class Arms(unittest.TestCase):
                 one()
             self.assertEqual(str(raised.exception).count("\n"), 0)
             self.assertGreater(len(str(raised.exception)), 10)
+
+    def test_options_have_names_and_types(self):
+        for given in ({"stride": 1}, {"step": "long"}, {"lock": 1}, {"coordinate": 1}):
+            for function in (lambda: fh.replay(self.model, self.trial, **given),
+                             lambda: fh.list_parameters(self.model, **given),
+                             lambda: fh.sensitivity(self.model, [self.trial], ["hand.mass"], **given),
+                             lambda: fh.calibrate(self.model, [self.trial], ["hand.mass"], **given),
+                             lambda: fh.discover(self.model, [self.trial], **given)):
+                with self.subTest(given), self.assertRaises(TypeError):
+                    function()
+
+    def test_one_coordinate_is_a_name_or_a_list_of_it(self):
+        one, listed = (fh.list_parameters(self.model, coordinate=name) for name in ("elbow_flexion", ["elbow_flexion"]))
+        self.assertEqual(one, listed)
+        self.assertEqual(len({parameter.name for parameter in one}), len(one))
+        for parameter in one:
+            stub.check(parameter, "ModelParameter")
 
     def test_ctrl_c_ends_a_long_call_soon_and_other_threads_run_meanwhile(self):
         trial = fh.load_trial(HIDDEN, self.model)
@@ -266,7 +292,9 @@ class Systems(unittest.TestCase):
         np.testing.assert_allclose(fh.cramer_rao_bound(information), np.linalg.inv(information), rtol=1e-9)
         both = fh.fisher_information(np.stack([gamma, 2 * gamma], axis=1), [0.1, 0.2])
         np.testing.assert_allclose(both, 2 * information, rtol=1e-12)
-        self.assertEqual(fh.identifiability(information, [1.3, 0.7]).rank, 2)
+        found = fh.identifiability(information, [1.3, 0.7])
+        stub.check(found, "IdentifiabilityResult")
+        self.assertEqual(found.rank, 2)
         with self.assertRaisesRegex(ValueError, "spring"):
             fh.cramer_rao_bound([[1.0, 0], [0, 0]], ["mass", "spring"])
 
@@ -287,6 +315,7 @@ class Systems(unittest.TestCase):
         measured = line([1, 2])
         measured[5:20] = np.nan
         found = fh.estimate(line, measured, 0.1, [0, 0], names=["offset", "slope"], method="gauss-newton")
+        stub.check(found, "EstimateResult")
         np.testing.assert_allclose(found.parameters, [1, 2], atol=1e-8)
         design = np.stack([np.ones(41), self.times], axis=1)[~np.isnan(measured)]
         np.testing.assert_allclose(found.covariance, 0.01 * np.linalg.inv(design.T @ design), rtol=1e-6)

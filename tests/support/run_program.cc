@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <stdexcept>
 
 #include "support/scratch_folder.h"
@@ -19,6 +20,7 @@ ProgramResult runProgram(const std::vector<std::string>& command,
   for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
 
+  const auto begin = std::chrono::steady_clock::now();
   const pid_t child = fork();
   if (child < 0) throw std::runtime_error("fork failed");
   if (child == 0) {
@@ -34,9 +36,10 @@ ProgramResult runProgram(const std::vector<std::string>& command,
   }
   int state = 0;
   if (waitpid(child, &state, 0) != child) throw std::runtime_error("waitpid failed");
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   const int status = WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
   if (status == 127) throw std::runtime_error(command.front() + " could not be started");
-  return {status, contentOf(outFile), contentOf(errFile)};
+  return {status, contentOf(outFile), contentOf(errFile), taken.count()};
 }
 
 ProgramResult runFisherHill(std::vector<std::string> arguments) {

@@ -8,9 +8,10 @@ namespace support {
 
 /// What a finished program left.
 struct ProgramResult {
-  int status = -1;  ///< exit status, or 128 + the signal that ended it
-  std::string out;  ///< standard output
-  std::string err;  ///< standard error
+  int status = -1;     ///< exit status, or 128 + the signal that ended it
+  std::string out;     ///< standard output
+  std::string err;     ///< standard error
+  double seconds = 0;  ///< from its start to its end
 };
 
 /// Runs a program without a shell, standard input closed, and waits for it.

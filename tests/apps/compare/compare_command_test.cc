@@ -56,7 +56,11 @@ TEST(CompareCommand, WritesTheTableTheSummaryAndTheReport) {
   EXPECT_EQ(json["integrator"], "vi");
   EXPECT_EQ(json["step_s"], 0.01);
   EXPECT_NEAR(json["duration_s"].get<double>(), 0.3, 1e-12);
-  EXPECT_GT(json["wall_s"].get<double>(), 0);
+  std::istringstream row(lines[6]);
+  std::vector<std::string> chosen;
+  for (std::string cell; std::getline(row, cell, ',');) chosen.push_back(cell);
+  EXPECT_NEAR(json["wall_s"].get<double>() / (1e-3 * std::stod(chosen.at(6))), 1, 1e-6);
+  EXPECT_LT(json["wall_s"].get<double>(), result.seconds);
   EXPECT_LT(json["largest_stable_step_s"]["rk4"].get<double>(), 0.002);
   EXPECT_GE(json["largest_stable_step_s"]["vi"].get<double>(), 0.01);
   EXPECT_NEAR(json["observed_order"]["vi"].get<double>(), 2, 0.3);

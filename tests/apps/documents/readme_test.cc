@@ -33,6 +33,11 @@ bool isRunByCi(const std::string& line) {
   return line.starts_with("./start") || line.starts_with("cmake ") || line.starts_with("ctest ");
 }
 
+/// tests/python/pip_install runs them.
+bool isRunByPipTest(const std::string& line) {
+  return line.starts_with("python3 -m venv ") || line.starts_with("v/bin/pip ");
+}
+
 TEST(Readme, EveryCommandOfTheProgramWorks) {
   const ScratchFolder scratch;
   for (const char* data : {"models", "emg_data"}) {
@@ -43,7 +48,7 @@ TEST(Readme, EveryCommandOfTheProgramWorks) {
   std::string script = "set -eux\nPATH='" + std::string(FISHERHILL_PROGRAM_FOLDER) + "':$PATH\n";
   int commands = 0;
   for (const std::string& line : shellLines(source / "README.md")) {
-    if (isRunByCi(line) || line.starts_with("export PATH=")) continue;
+    if (isRunByCi(line) || isRunByPipTest(line) || line.starts_with("export PATH=")) continue;
     EXPECT_THAT(line, testing::StartsWith("fisherhill ")) << "nobody runs this command";
     script += line + "\n";
     ++commands;
@@ -112,6 +117,19 @@ TEST(Readme, ItsTestCommandIsWhatCiRuns) {
   EXPECT_EQ(found, 2);
 }
 
+TEST(Readme, ItsPipCommandsAreWhatTheirTestRuns) {
+  const std::string test = contentOf(source / "tests/python/pip_install");
+  int found = 0;
+  for (const std::string& line : shellLines(source / "README.md")) {
+    if (!isRunByPipTest(line)) continue;
+    // the program and the last word name the environment, which is elsewhere in the test
+    const std::size_t begin = line.find(' ');
+    EXPECT_THAT(test, testing::HasSubstr(line.substr(begin, line.rfind(' ') + 1 - begin)));
+    ++found;
+  }
+  EXPECT_EQ(found, 2);
+}
+
 TEST(Readme, ListsExactlyTheSubcommandsThereAre) {
   const std::string readme = contentOf(source / "README.md");
   const std::string help = support::runFisherHill({"--help"}).out;
@@ -141,9 +159,9 @@ TEST(Version, IsTheSameInTheProgramTheBuildAndTheCitation) {
 
 TEST(Contributing, ItsCommandsAreWhatCiRuns) {
   const std::string ci = contentOf(source / ".ci/run");
-  for (const std::string& line : shellLines(source / "CONTRIBUTING.md")) {
-    EXPECT_THAT(ci, testing::HasSubstr("\n" + line));
-  }
+  const std::vector<std::string> lines = shellLines(source / "CONTRIBUTING.md");
+  for (const std::string& line : lines) EXPECT_THAT(ci, testing::HasSubstr("\n" + line));
+  EXPECT_EQ(lines.size(), 3u);
 }
 
 TEST(Start, RunsTheReadmesFirstResult) {

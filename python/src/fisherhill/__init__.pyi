@@ -1,0 +1,1066 @@
+"""Hill muscles and Fisher information: simulate, identify and explain how muscles move limbs.
+
+Everything is in SI units and radians; arrays have one row per time.
+
+Errors: values and files that break a rule raise ValueError, and a computation that cannot be
+carried out raises RuntimeError, each with one line that says which quantity and which rule. An
+argument of a wrong type or name raises TypeError. replay, sensitivity, calibrate and discover can be
+interrupted by Ctrl-C (KeyboardInterrupt), and other threads run meanwhile.
+
+What functions return is a types.SimpleNamespace; its members are those of the classes below that
+are marked `type_check_only`, which exist for type checkers alone.
+"""
+
+# The docstrings of the compiled module are made from this file (python/docstrings.py).
+
+from collections.abc import Callable, Sequence
+from typing import Literal, TypeAlias, type_check_only
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__all__ = [
+    "Model",
+    "System",
+    "Trial",
+    "calibrate",
+    "cramer_rao_bound",
+    "discover",
+    "estimate",
+    "fisher_information",
+    "identifiability",
+    "list_parameters",
+    "load_model",
+    "load_trial",
+    "make_trial",
+    "replay",
+    "sensitivity",
+]
+
+__version__: str
+
+_Array: TypeAlias = NDArray[np.float64]
+_Integrator: TypeAlias = Literal["vi", "vi-left", "rk4", "cvode"]
+
+# Models and trials --------------------------------------------------------------------------------
+
+class Model:
+    """A musculoskeletal model, made by load_model, calibrate or discover."""
+
+    @property
+    def name(self) -> str:
+        """Name of the model."""
+
+    @property
+    def coordinates(self) -> list[str]:
+        """Names of all coordinates."""
+
+    @property
+    def muscles(self) -> list[str]:
+        """Names of the enabled muscles."""
+
+    @property
+    def warnings(self) -> list[str]:
+        """What the file contains but is not simulated, one line each."""
+
+    def write(self, file: str) -> None:
+        """Writes the model as an OpenSim 4 file (.osim).
+
+        Parameters
+        ----------
+        file : str
+            The file appears complete or not at all.
+
+        Raises
+        ------
+        ValueError
+            If the file cannot be written, or a muscle is not a Schutte muscle.
+        """
+
+class Trial:
+    """Excitations, measured coordinates and loads of one recording, made by load_trial or make_trial."""
+
+    @property
+    def name(self) -> str:
+        """Name of the file, or the name given to make_trial."""
+
+    @property
+    def times(self) -> _Array:
+        """Times [s]."""
+
+    @property
+    def muscles(self) -> list[str]:
+        """Names of the columns of `excitations`: the enabled muscles of the model, in its order, then
+        those switched off that have a column."""
+
+    @property
+    def excitations(self) -> _Array:
+        """Excitations, 0 to 1; times x muscles."""
+
+    @property
+    def measured(self) -> dict[str, tuple[_Array, _Array]]:
+        """{coordinate: (times [s], values [rad] or [m])}, without the times at which it was not measured."""
+
+    @property
+    def known_mass_in_hand(self) -> float:
+        """Mass held by design [kg]; only discover and replay take it into account."""
+
+    @property
+    def known_arm_turn(self) -> float:
+        """Angle by which the whole limb was turned [rad]; only discover and replay take it into account."""
+
+    @property
+    def warnings(self) -> list[str]:
+        """Remarks on the columns, one line each."""
+
+def load_model(file: str) -> Model:
+    """Reads an OpenSim 3 or 4 model (.osim).
+
+    Parameters
+    ----------
+    file : str
+
+    Returns
+    -------
+    Model
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read, is not a model, or breaks a rule; the line names file and element.
+    """
+
+def load_trial(file: str, model: Model, *, ignore_extra: bool = False) -> Trial:
+    """Reads a trial of the model (.sto, .mot or .csv).
+
+    Header lines known_mass_in_hand_kg=1 and known_arm_turn_deg=-45 state the experimental conditions.
+
+    Parameters
+    ----------
+    file : str
+    model : Model
+    ignore_extra : bool
+        True: ignore columns that match nothing in the model, with a warning.
+
+    Returns
+    -------
+    Trial
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read or breaks a rule; the line names file, column and row.
+    """
+
+def make_trial(
+    model: Model,
+    columns: dict[str, ArrayLike],
+    *,
+    name: str = "trial",
+    ignore_extra: bool = False,
+    known_mass_in_hand: float = 0.0,
+    known_arm_turn: float = 0.0,
+) -> Trial:
+    """Makes a trial from arrays.
+
+    Parameters
+    ----------
+    model : Model
+    columns : dict
+        {column: values}, named as in a file, all of one length: 'time' [s]; muscles (excitation, 0 to
+        1); 'elbow_flexion' [rad] or 'elbow_flexion_deg', NaN where it was not measured;
+        'elbow_flexion.torque' [N m], an external load.
+    name : str
+        Name of the trial in messages.
+    ignore_extra : bool
+        True: ignore columns that match nothing in the model, with a warning.
+    known_mass_in_hand : float
+        Mass that the subject held by design [kg].
+    known_arm_turn : float
+        Angle by which the whole limb was turned against the ground [rad], positive as the coordinate
+        rises.
+
+    Returns
+    -------
+    Trial
+
+    Raises
+    ------
+    ValueError
+        If columns differ in length or break a rule of a file's columns.
+    """
+
+# Replay -------------------------------------------------------------------------------------------
+
+@type_check_only
+class ReplayResult:
+    time: _Array
+    coordinates: list[str]
+    muscles: list[str]
+    q: _Array
+    q_dot: _Array
+    activation: _Array
+    fibre_length: _Array
+    tendon_force: _Array
+    moment_arm: _Array
+    rms_error: dict[str, float]
+    energy_error: float
+    outcome: Literal["ok", "unstable", "no solution"]
+    why: str
+    start_from: Literal["given", "model", "measured", "default"]
+    step: float
+    steps: int
+    newton_iterations: int
+    warnings: list[str]
+
+def replay(
+    model: Model,
+    trial: Trial,
+    *,
+    initial: dict[str, float] = {},
+    coordinate: str | Sequence[str] = "elbow_flexion",
+    lock: dict[str, float] = {},
+    integrator: _Integrator = "vi",
+    step: float | None = None,
+) -> ReplayResult:
+    """Simulates the motion produced by a trial's excitations.
+
+    Parameters
+    ----------
+    model : Model
+    trial : Trial
+    initial : dict
+        {coordinate: initial value [rad] or [m]}, at rest. Default: the fitted or first measured value,
+        else the model's default value.
+    coordinate : str or list of str
+        The free coordinate, or several.
+    lock : dict
+        {coordinate: value [rad] or [m]} at which other coordinates are locked. Default: the model's
+        default values.
+    integrator : {'vi', 'vi-left', 'rk4', 'cvode'}
+        Midpoint variational (second order), the same with forces at the left end of a step only
+        (first order), Runge-Kutta (fourth order), or CVODE (adaptive).
+    step : float, optional
+        Time step [s] > 0; of CVODE the interval of the output. Default: the one with which the model
+        was fitted, else 0.01 s (rk4: 0.0002 s).
+
+    Returns
+    -------
+    time : array
+        [s]
+    coordinates, muscles : list of str
+        Names of the columns.
+    q, q_dot : array, times x coordinates
+        [rad] and [rad/s], or [m] and [m/s].
+    activation, fibre_length, tendon_force : array, times x muscles
+        0 to 1, [m], [N].
+    moment_arm : array, times x muscles
+        About the first free coordinate [m].
+    rms_error : dict
+        {coordinate: RMS error [rad] or [m]} of the free coordinates that were measured.
+    energy_error : float
+        Largest energy error of the integrator [J].
+    outcome : str
+        'ok', 'unstable' or 'no solution'; of the last two the rows up to that time are returned.
+    why : str
+        The reason if the outcome is not 'ok', else empty.
+    start_from : str
+        Source of the initial state: 'given', 'model' (fitted by discover or calibrate for this trial),
+        'measured' or 'default'.
+    step : float
+        Time step [s].
+    steps, newton_iterations : int
+    warnings : list of str
+        About the model as it was simulated.
+
+    Raises
+    ------
+    ValueError
+        For an unknown coordinate or integrator, or a step that is not > 0 or longer than the trial.
+    RuntimeError
+        If a muscle has no static equilibrium at the start.
+    """
+
+# Parameters and their information -----------------------------------------------------------------
+
+@type_check_only
+class ModelParameter:
+    name: str
+    value: float
+    unit: str
+    meaning: str
+    lower: float
+    upper: float
+    deviation: float
+    is_group: bool
+
+def list_parameters(
+    model: Model,
+    *,
+    coordinate: str | Sequence[str] = "elbow_flexion",
+    lock: dict[str, float] = {},
+    integrator: _Integrator = "vi",
+    step: float | None = None,
+) -> list[ModelParameter]:
+    """Lists the parameters of the model that affect the motion.
+
+    Parameters
+    ----------
+    model : Model
+    coordinate, lock
+        As in replay.
+    integrator, step
+        Without effect on the list.
+
+    Returns
+    -------
+    list
+        For each parameter:
+
+        name : str
+        value : float
+            In the model [unit].
+        unit : str
+            Empty for a pure number.
+        meaning : str
+        lower, upper : float
+            Default bounds [unit].
+        deviation : float
+            Default prior standard deviation [unit].
+        is_group : bool
+            True: it sets several parameters together and is not part of 'all'.
+
+    Raises
+    ------
+    ValueError
+        For an unknown coordinate.
+    """
+
+@type_check_only
+class SensitivityResult:
+    names: list[str]
+    units: list[str]
+    values: _Array
+    times: list[_Array]
+    outputs: list[_Array]
+    gamma: list[_Array]
+    fisher: _Array
+    normalised_sensitivity: _Array
+    bound_alone: _Array
+    bound_joint: _Array
+    identifiable: list[bool]
+    correlation: _Array
+    sentences: list[str]
+
+def sensitivity(
+    model: Model,
+    trials: Sequence[Trial],
+    parameters: Sequence[str],
+    *,
+    noise: float = 0.017453292519943295,
+    coordinate: str | Sequence[str] = "elbow_flexion",
+    lock: dict[str, float] = {},
+    integrator: _Integrator = "vi",
+    step: float | None = None,
+) -> SensitivityResult:
+    """Exact sensitivities of the coordinate to parameters, and the information of a measurement.
+
+    Parameters
+    ----------
+    model : Model
+    trials : list of Trial
+        At least one. The coordinate is taken to be measured at the times at which it was; if it was
+        not, at every time step.
+    parameters : list of str
+        Names, which may contain *, or ['all']; list_parameters lists them.
+    noise : float
+        Standard deviation of the measured coordinate [rad] or [m] > 0; default: 1 degree.
+    coordinate : str or list of str
+        The free coordinate, or several, of which the first is the measured one.
+    lock, integrator, step
+        As in replay, but the integrator must be 'vi' or 'vi-left', and the default step is 0.01 s.
+
+    Returns
+    -------
+    names, units : list of str
+        Of the parameters.
+    values : array, parameters
+        In the model.
+    times : list of arrays
+        Sample times of each trial [s].
+    outputs : list of arrays
+        Simulated coordinate of each trial [rad] or [m].
+    gamma : list of arrays, samples x parameters
+        Sensitivities of each trial [unit of the coordinate / unit of the parameter].
+    fisher : array, parameters x parameters
+        Fisher information of all trials together, without priors.
+    normalised_sensitivity : array, parameters
+        RMS change of the coordinate per prior standard deviation [rad] or [m].
+    bound_alone, bound_joint : array, parameters
+        Cramér–Rao standard deviations with the other parameters known (inf without information), and
+        with all estimated together with their priors.
+    identifiable : list of bool
+        True: the data at least halve the prior standard deviation.
+    correlation : array, parameters x parameters
+        Of estimates with the joint bound.
+    sentences : list of str
+        Which parameters are not separately identifiable.
+
+    Raises
+    ------
+    ValueError
+        For no trial, an unknown parameter (with the nearest names), a trial with known_mass_in_hand or
+        known_arm_turn, or a simulation that does not reach the end of a trial.
+    """
+
+# Calibration --------------------------------------------------------------------------------------
+
+@type_check_only
+class ParameterEstimate:
+    value: float
+    sd: float
+    lower: float
+    upper: float
+    unit: str
+    model: float
+    identifiable: bool
+    at_bound: bool
+    why: str
+
+@type_check_only
+class CalibrationResult:
+    estimates: dict[str, ParameterEstimate]
+    correlation: _Array
+    converged: bool
+    why: str
+    iterations: int
+    noise: float
+    effective_noise: float
+    rmse_before: float
+    rmse_after: float
+    rmse_held_out_before: float
+    rmse_held_out: float
+    model: Model | None
+
+def calibrate(
+    model: Model,
+    trials: Sequence[Trial],
+    parameters: Sequence[str],
+    *,
+    hold_out: Sequence[Trial] = [],
+    noise: float | None = None,
+    priors: bool = True,
+    prior: dict[str, tuple[float, float]] = {},
+    bounds: dict[str, tuple[float, float]] = {},
+    loss: Literal["gaussian", "huber", "student"] = "gaussian",
+    own_start: bool = False,
+    starts: int = 1,
+    seed: int = 1,
+    threads: int = 1,
+    coordinate: str | Sequence[str] = "elbow_flexion",
+    lock: dict[str, float] = {},
+    integrator: _Integrator = "vi",
+    step: float | None = None,
+) -> CalibrationResult:
+    """Estimates model parameters from measured motions.
+
+    Parameters
+    ----------
+    model : Model
+    trials : list of Trial
+        Calibration trials with a measured angle.
+    parameters : list of str
+        Names of the parameters to estimate; list_parameters lists them.
+    hold_out : list of Trial
+        Trials used only to test the estimates.
+    noise : float, optional
+        Standard deviation of the measured angles [rad] > 0. Default: estimated from the residuals.
+    priors : bool
+        False: estimate without priors; bounds still apply.
+    prior : dict
+        {name: (mean, sd)} instead of the default prior, in the unit of the parameter.
+    bounds : dict
+        {name: (low, high)} instead of the default bounds, in the unit of the parameter.
+    loss : {'gaussian', 'huber', 'student'}
+        Loss function of the residuals; the last two are robust.
+    own_start : bool
+        True: estimate the initial angle and speed of each trial as well.
+    starts : int
+        Number of optimiser starts; the first is the model's own values.
+    seed : int
+        Seed of the other starts.
+    threads : int
+        Number of trials simulated at once.
+    coordinate, lock, integrator, step
+        As in replay, but the integrator must be 'vi' or 'vi-left', and the default step is 0.01 s.
+
+    Returns
+    -------
+    estimates : dict
+        {name: estimate}, each with
+
+        value, sd, lower, upper : float
+            Estimate, standard deviation and 95 % interval [unit]; the last three are NaN without an
+            interval.
+        unit : str
+        model : float
+            Value in the given model [unit].
+        identifiable : bool
+        at_bound : bool
+        why : str
+            Why there is no interval, else empty.
+    correlation : array, estimates x estimates
+    converged : bool
+    why : str
+        Why the search ended.
+    iterations : int
+    noise, effective_noise : float
+        Standard deviation of the noise, and after widening for its correlation [rad].
+    rmse_before, rmse_after : float
+        RMS errors of the calibration trials with the given and the calibrated model [rad].
+    rmse_held_out_before, rmse_held_out : float
+        The same for the held-out trials; NaN without any.
+    model : Model or None
+        The calibrated model.
+
+    Raises
+    ------
+    ValueError
+        For an unknown parameter, a trial without a measured angle or with an external torque,
+        known_mass_in_hand or known_arm_turn, or an option out of range.
+    RuntimeError
+        If no estimate is possible, with the reason.
+    """
+
+# Discovery ----------------------------------------------------------------------------------------
+
+@type_check_only
+class EffectParameter:
+    value: float
+    sd: float
+    unit: str
+
+@type_check_only
+class Effect:
+    id: str
+    name: str
+    kind: Literal["structure", "input", "geometry", "sensor", "parameter"]
+    parameters: dict[str, EffectParameter]
+    log_bayes_factor: float
+    probability: float
+    cannot_be_told_from: list[str]
+    moment_rms: float
+    moment_peak: float
+    share_of_muscle_moment: float
+    motion_rms: float
+
+@type_check_only
+class ExcessError:
+    nominal: float
+    calibrated: float
+    after: float
+    expected: float | None
+    probability: float | None
+    noise_floor: float
+    closed: float | None
+
+@type_check_only
+class PlannedExperiment:
+    what: str
+    of: str
+    expected_nats: dict[str, float]
+
+@type_check_only
+class FormulaTerm:
+    expression: str
+    value: float
+    sd: float
+
+@type_check_only
+class RacedFormula:
+    formula: str
+    wins: bool
+    terms: list[FormulaTerm]
+    log_bayes_factor: float
+    amplitude_over_sd: float
+    adequate: bool
+    gap: ExcessError
+    gap_held_out: ExcessError | None
+
+@type_check_only
+class UnknownForce:
+    formula: str
+    stable: bool
+    evidence: float
+    explained: float
+    peak_frequency: float
+    rms: float
+    raced: RacedFormula | None
+
+@type_check_only
+class NonparametricForce:
+    follows: Literal["angle", "speed"]
+    beside: list[str]
+    log_bayes_factor: float
+    nats_ahead_of_names: float
+    wins: bool
+    at: _Array
+    force: _Array
+    sd: _Array
+
+@type_check_only
+class DiscoveryTrial:
+    name: str
+    role: Literal["train", "held_out"]
+    nominal: float
+    after: float
+    noise_floor: float
+    start: float
+    start_speed: float
+    trial: Trial
+
+@type_check_only
+class FittedParameter:
+    name: str
+    unit: str
+    nominal: float
+    estimate: float
+    sd: float
+    prior_sd: float
+    prior_z: float
+
+@type_check_only
+class DiscoveryResult:
+    verdict: Literal["named", "ambiguous", "parameter", "none", "unknown", "numerical"]
+    sentence: str
+    effects: list[Effect]
+    surrogate: bool
+    probability_vetoed: bool
+    noise: float
+    gap: ExcessError
+    gap_held_out: ExcessError | None
+    held_out_fitted: bool
+    undetectable_below: dict[str, float]
+    planned_experiments: list[PlannedExperiment]
+    unknown: UnknownForce | None
+    force_without_a_name: NonparametricForce | None
+    model: Model | None
+    trials: list[DiscoveryTrial]
+    fitted_parameters: list[FittedParameter]
+    step: float
+    fits: int
+
+def discover(
+    model: Model,
+    trials: Sequence[Trial],
+    *,
+    hold_out: Sequence[Trial] = [],
+    noise: float | None = None,
+    without: Sequence[str] = [],
+    max_effects: int = 3,
+    coordinate: str | Sequence[str] = "elbow_flexion",
+    lock: dict[str, float] = {},
+    integrator: _Integrator = "vi",
+    step: float | None = None,
+) -> DiscoveryResult:
+    """Finds and names the effect that a model lacks.
+
+    Parameters
+    ----------
+    model : Model
+    trials : list of Trial
+        Trials with the measured coordinate. known_mass_in_hand and known_arm_turn are taken into
+        account.
+    hold_out : list of Trial
+        Trials used to test the result.
+    noise : float, optional
+        Standard deviation of the measured coordinate [rad] or [m]. Default: estimated from the data.
+    without : list of str
+        Ids of effects to exclude from the catalogue.
+    max_effects : int
+        Largest number of effects in one hypothesis.
+    coordinate : str
+        The one free coordinate, which is the measured one.
+    lock : dict
+        As in replay.
+    integrator : {'vi', 'vi-left'}
+    step : float, optional
+        Time step [s] > 0. Default: 0.01 s, halved where this is too long.
+
+    Returns
+    -------
+    verdict : str
+        'named', 'ambiguous' (effects that these data cannot distinguish), 'parameter' (a parameter of
+        the model is in error), 'none', 'unknown' (something is missing that no effect of the catalogue
+        explains) or 'numerical' (the time step is too long).
+    sentence : str
+        The verdict in words.
+    effects : list
+        For each effect:
+
+        id, name : str
+        kind : str
+            'structure', 'input', 'geometry', 'sensor' or 'parameter'.
+        parameters : dict
+            {name: value, sd, unit}.
+        log_bayes_factor : float
+            [nats]
+        probability : float
+            Compared with the effects that could take its place; NaN of a proxy.
+        cannot_be_told_from : list of str
+            Ids of the effects that these data cannot distinguish, this one first.
+        moment_rms, moment_peak : float
+            [N m] or [N], in the first held-out trial, else the first trial; NaN if undefined, as for
+            an effect of the sensor.
+        share_of_muscle_moment : float
+            moment_rms as a fraction of the muscles' net moment (RMS).
+        motion_rms : float
+            RMS change of the motion [rad] or [m].
+    surrogate : bool
+        True: the effects are only proxies of an effect outside the catalogue.
+    probability_vetoed : bool
+        True: no probability of the verdict is given, since the residuals or the errors of held-out
+        trials contradict it.
+    noise : float
+        Standard deviation of the noise that was used [rad] or [m].
+    gap, gap_held_out
+        RMS errors [rad] or [m] of the trials and of the held-out trials (None without any):
+
+        nominal, calibrated, after : float
+            With the given model, with its parameters fitted, and with the effects as well.
+        expected : float or None
+            Expected value of `after`; for held-out trials only.
+        probability : float or None
+            p-value of an error at least as large as `after`; for held-out trials only.
+        noise_floor : float
+        closed : float or None
+            Fraction of the excess error of the calibrated model that the effects explain; None if
+            there is no excess error.
+    held_out_fitted : bool
+        True: the effect was found only when the held-out trials were fitted as well.
+    undetectable_below : dict
+        {id: smallest detectable amplitude}; inf: the data cannot show the effect.
+    planned_experiments : list
+        If effects cannot be distinguished, experiments that would distinguish them, the best first:
+
+        what : str
+            What to do.
+        of : str
+            The leading effects, ids joined by ' + '.
+        expected_nats : dict
+            {rival: expected log Bayes factor of `of` against it [nats]}.
+    unknown
+        If no effect fits, the missing force, else None:
+
+        formula : str
+        stable : bool
+            True: every term is selected in 90 % of the bootstrap samples.
+        evidence : float
+            Of the formula [nats].
+        explained : float
+            Fraction of the missing force's power that the formula explains.
+        peak_frequency : float
+            [Hz]
+        rms : float
+            [N m] or [N]
+        raced
+            The formula fitted as a candidate effect, or None: formula, wins (True: as a named effect
+            it would have no rival), terms (expression, value, sd), log_bayes_factor [nats],
+            amplitude_over_sd, adequate (True: the residuals pass every test), gap, gap_held_out.
+    force_without_a_name
+        The best free-form force, a smooth function of the angle or of the speed alone, or None:
+
+        follows : str
+            'angle' or 'speed'.
+        beside : list of str
+            Ids of the effects that were fitted with it.
+        log_bayes_factor : float
+            [nats]
+        nats_ahead_of_names : float
+            Log Bayes factor against the named effects [nats].
+        wins : bool
+            True: the named effects are probably only proxies.
+        at : array
+            Angles [rad] or speeds [rad/s], or [m] or [m/s].
+        force, sd : array
+            The force there, and its standard deviation [N m] or [N].
+    model : Model or None
+        The model with the effects, if any, and all fitted parameters. None unless effects are named
+        that are not proxies, or nothing is missing.
+    trials : list
+        For each trial:
+
+        name : str
+        role : str
+            'train' or 'held_out'.
+        nominal, after : float
+            RMS errors [rad] or [m] in replay with the given and the returned model; NaN if unavailable.
+        noise_floor : float
+            Noise of the trial that was replayed [rad] or [m].
+        start, start_speed : float
+            Fitted initial value [rad] or [m] and speed [rad/s] or [m/s].
+        trial : Trial
+            The one to replay with the returned model.
+    fitted_parameters : list
+        For each: name, unit, nominal, estimate, sd, prior_sd [unit], and prior_z, the difference from
+        the prior mean in prior standard deviations; NaN if there is none.
+    step : float
+        Time step [s].
+    fits : int
+        Number of fits.
+
+    Raises
+    ------
+    ValueError
+        For several free coordinates, a trial in which the coordinate was not measured, an unknown id,
+        or an option out of range.
+    """
+
+# Systems defined in Python ------------------------------------------------------------------------
+
+class System:
+    """A system defined by Python functions: x' = f(x, u, theta, t), y = g(x, u, theta).
+
+    Steps are those of the classical Runge-Kutta method, with u linear between the times.
+
+    Parameters
+    ----------
+    f : callable
+        f(x, u, theta, t) returns x', as long as the state.
+    x0 : array, states
+        Initial state.
+    times : array, samples
+        Sample times [s], strictly rising.
+    inputs : array, samples x inputs, optional
+        Default: u is empty.
+    g : callable, optional
+        g(x, u, theta) returns the outputs; default: the state.
+    f_x, f_theta : callable, optional
+        Jacobians of f, states x states and states x parameters, with the arguments of f. If they are
+        given, sensitivities are those of the steps exactly, else central differences.
+    g_x, g_theta : callable, optional
+        Jacobians of g, outputs x states and outputs x parameters, with the arguments of g.
+    substeps : int
+        Steps from one time to the next, at least 1.
+
+    Raises
+    ------
+    ValueError
+        For times that do not rise, sizes that do not fit, f_x without f_theta or the reverse, or f_x
+        with g but without g_x and g_theta. What the functions raise comes back unchanged.
+    """
+
+    def __init__(
+        self,
+        f: Callable[[_Array, _Array, _Array, float], ArrayLike],
+        x0: ArrayLike,
+        times: ArrayLike,
+        *,
+        inputs: ArrayLike | None = None,
+        g: Callable[[_Array, _Array, _Array], ArrayLike] | None = None,
+        f_x: Callable[[_Array, _Array, _Array, float], ArrayLike] | None = None,
+        f_theta: Callable[[_Array, _Array, _Array, float], ArrayLike] | None = None,
+        g_x: Callable[[_Array, _Array, _Array], ArrayLike] | None = None,
+        g_theta: Callable[[_Array, _Array, _Array], ArrayLike] | None = None,
+        substeps: int = 1,
+    ) -> None: ...
+    def __call__(self, theta: ArrayLike) -> _Array:
+        """Simulates the outputs.
+
+        Parameters
+        ----------
+        theta : array, parameters
+
+        Returns
+        -------
+        array, samples x outputs
+        """
+
+    def sensitivities(self, theta: ArrayLike) -> _Array:
+        """Derivatives of the outputs with respect to the parameters.
+
+        Parameters
+        ----------
+        theta : array, parameters
+
+        Returns
+        -------
+        array, (samples * outputs) x parameters
+            dy/dtheta, the outputs of the first sample first.
+        """
+
+    @property
+    def times(self) -> _Array:
+        """Sample times [s]."""
+
+def fisher_information(gamma: ArrayLike, noise: ArrayLike, *, outputs: int = 1) -> _Array:
+    """Fisher information, the sum over samples of gamma^T Sigma^-1 gamma.
+
+    Parameters
+    ----------
+    gamma : array
+        Sensitivities: samples x outputs x parameters, or (samples * outputs) x parameters with
+        `outputs` given.
+    noise : float or array
+        Standard deviation of the outputs > 0, one for each output, or their covariance, outputs x
+        outputs.
+    outputs : int
+        Number of outputs of one sample; not used for three dimensions.
+
+    Returns
+    -------
+    array, parameters x parameters
+        [1 / (unit of one parameter * unit of the other)]
+
+    Raises
+    ------
+    ValueError
+        For shapes that do not fit, a noise that is not > 0, or values that are not finite.
+    """
+
+def cramer_rao_bound(information: ArrayLike, names: Sequence[str] = []) -> _Array:
+    """Cramér–Rao bound, the inverse of the information: no unbiased estimator has a smaller covariance.
+
+    Parameters
+    ----------
+    information : array, parameters x parameters
+    names : list of str
+        Of the parameters, for messages.
+
+    Returns
+    -------
+    array, parameters x parameters
+        Covariance.
+
+    Raises
+    ------
+    ValueError
+        If there is no information about a parameter or a combination of parameters, which it names.
+    """
+
+@type_check_only
+class IdentifiabilityResult:
+    rank: int
+    sentences: list[str]
+    sd: _Array
+    correlation: _Array
+    determined: list[str]
+
+def identifiability(
+    information: ArrayLike, values: ArrayLike, names: Sequence[str] = []
+) -> IdentifiabilityResult:
+    """Which parameters, or combinations of them, are identifiable near the given values.
+
+    Parameters
+    ----------
+    information : array, parameters x parameters
+    values : array, parameters
+        Values at which the information was computed. Combinations are products of powers, or sums if a
+        value is 0.
+    names : list of str
+        Of the parameters.
+
+    Returns
+    -------
+    rank : int
+        Number of combinations that are determined.
+    sentences : list of str
+    sd : array, parameters
+        Cramér–Rao standard deviations; inf where undetermined.
+    correlation : array, parameters x parameters
+        NaN where undetermined.
+    determined : list of str
+        Combinations that are determined of parameters that are not.
+
+    Raises
+    ------
+    ValueError
+        For sizes that do not fit, or an information that is not finite.
+    """
+
+@type_check_only
+class EstimateResult:
+    parameters: _Array
+    names: list[str]
+    converged: bool
+    why: str
+    cost: float
+    iterations: int
+    evaluations: int
+    information: _Array
+    covariance: _Array
+    sd: _Array
+    intervals: _Array
+    at_bound: list[bool]
+    reduced_chi_square: float
+
+def estimate(
+    predict: Callable[[_Array], ArrayLike] | System,
+    measured: ArrayLike,
+    noise: ArrayLike,
+    start: ArrayLike,
+    *,
+    names: Sequence[str] = [],
+    sensitivities: Callable[[_Array], ArrayLike] | None = None,
+    bounds: dict[str, tuple[float, float]] = {},
+    prior: dict[str, tuple[float, float]] = {},
+    method: Literal["levenberg-marquardt", "gauss-newton", "gradient-descent"] = "levenberg-marquardt",
+    iterations: int = 100,
+    confidence: float = 0.95,
+) -> EstimateResult:
+    """Weighted least squares with bounds and priors.
+
+    Parameters
+    ----------
+    predict : callable or System
+        predict(theta) returns samples x outputs, as `measured`.
+    measured : array, samples x outputs
+        NaN: not measured. One dimension: samples of one output.
+    noise : float or array
+        As in fisher_information.
+    start : array, parameters
+        Start values of the parameters.
+    names : list of str
+        Of the parameters.
+    sensitivities : callable, optional
+        sensitivities(theta) returns samples x outputs x parameters, or (samples * outputs) x
+        parameters. Default: predict.sensitivities, else central differences.
+    bounds : dict
+        {name: (low, high)}.
+    prior : dict
+        {name: (mean, sd)}.
+    method : {'levenberg-marquardt', 'gauss-newton', 'gradient-descent'}
+    iterations : int
+        Largest number of iterations.
+    confidence : float
+        Of the intervals, between 0 and 1.
+
+    Returns
+    -------
+    parameters : array, parameters
+        The estimates.
+    names : list of str
+    converged : bool
+    why : str
+        Why the search ended.
+    cost : float
+        Half the weighted sum of squares, priors included.
+    iterations, evaluations : int
+        Steps taken, and predictions computed.
+    information, covariance : array, parameters x parameters
+        At the estimate, priors included; the covariance is the Cramér–Rao bound.
+    sd : array, parameters
+    intervals : array, parameters x 2
+        Lower and upper ends.
+    at_bound : list of bool
+        True: the estimate is at a bound, and its interval does not hold.
+    reduced_chi_square : float
+        Near 1 if model and noise fit the data.
+
+    Raises
+    ------
+    ValueError
+        For shapes that do not fit, an unknown name or method, an option out of range, a prediction at
+        the start that is not finite, or a parameter without prior that changes no prediction there.
+        What `predict` raises comes back unchanged.
+    """

@@ -1,0 +1,76 @@
+"""Builds the package `fisherhill`: CMake makes the compiled module (target fisherhill_python), setuptools the rest.
+
+What has been compiled in a build folder is used again. The folder is the one in the environment variable
+FISHERHILL_BUILD, else build/program where `./start` has made it, else build/pip.
+"""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import sysconfig
+
+from setuptools import Extension, setup
+from setuptools.command.build_ext import build_ext
+
+source = pathlib.Path(__file__).resolve().parent
+
+
+def found(file, pattern):
+    match = re.search(pattern, (source / file).read_text(encoding="utf-8"), re.MULTILINE)
+    if match is None:
+        raise SystemExit(f"setup.py: {file} has no line that matches {pattern}")
+    return match.group(1)
+
+
+def build_folder():
+    """The build folder, and the options to configure it with."""
+    given = os.environ.get("FISHERHILL_BUILD")
+    folder = pathlib.Path(given) if given else source / "build/program"
+    if not given and not (folder / "CMakeCache.txt").exists():
+        folder = source / "build/pip"
+    cache = folder / "CMakeCache.txt"
+    configured = cache.read_text(encoding="utf-8") if cache.exists() else ""
+    options = ["-DFISHERHILL_PYTHON=ON"]
+    if not configured:
+        # the module needs neither pictures nor MPI
+        options += ["--preset", "program", "-DFISHERHILL_VIEW=OFF", "-DFISHERHILL_MPI=OFF"]
+    python = re.search(r"^Python3_EXECUTABLE:\w+=(.*)$", configured, re.MULTILINE)
+    was_removed = python is not None and not os.path.exists(python.group(1))
+    if "FISHERHILL_PYTHON:BOOL=ON" not in configured or was_removed:
+        options.append(f"-DPython3_EXECUTABLE={sys.executable}")
+    return folder.resolve(), options
+
+
+class CMakeBuild(build_ext):
+    def build_extension(self, extension):
+        folder, options = build_folder()
+        subprocess.run(["cmake", "-S", source, "-B", folder, *options], check=True, cwd=source)
+        subprocess.run(["cmake", "--build", folder, "--target", "fisherhill_python"], check=True)
+        name = "_fisherhill" + sysconfig.get_config_var("EXT_SUFFIX")
+        built = folder / "python/fisherhill" / name
+        if not built.exists():
+            raise SystemExit(
+                f"setup.py: {folder} is configured for another Python, since it has not made {name}; "
+                f"configure it with -DPython3_EXECUTABLE={sys.executable}, or set FISHERHILL_BUILD to another folder"
+            )
+        target = pathlib.Path(self.get_ext_fullpath(extension.name))
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(built, target)
+
+
+(source / "build").mkdir(exist_ok=True)
+setup(
+    version=found("CMakeLists.txt", r"^project\(FisherHill VERSION ([0-9.]+) "),
+    description=found("CMakeLists.txt", r'^  DESCRIPTION "(.*)"\)$'),
+    author=found("CITATION.cff", r'^  - name: "(.*)"$'),
+    license=found("CITATION.cff", r"^license: (.*)$"),
+    package_dir={"": "python/src"},
+    packages=["fisherhill"],
+    package_data={"fisherhill": ["*.pyi", "py.typed"]},
+    ext_modules=[Extension("fisherhill._fisherhill", sources=[])],
+    cmdclass={"build_ext": CMakeBuild},
+    options={"egg_info": {"egg_base": "build"}},
+)
