@@ -15,7 +15,7 @@ namespace {
 using fixtures::SyntheticElbow;
 using support::degree;
 
-const SyntheticElbow& elbow() {
+const SyntheticElbow& nudgedElbow() {
   static const SyntheticElbow one;
   return one;
 }
@@ -23,7 +23,7 @@ const SyntheticElbow& elbow() {
 TrialSet setOf(const std::vector<Trial>& trials, const std::vector<std::string>& names) {
   TrialSetOptions options;
   options.parameters = names;
-  return {elbow().model, SyntheticElbow::options(), trials, options};
+  return {nudgedElbow().model, SyntheticElbow::options(), trials, options};
 }
 
 double rms(const Eigen::MatrixXd& difference) {
@@ -33,7 +33,7 @@ double rms(const Eigen::MatrixXd& difference) {
 // A wrong model that is held firmly is near the data; less firmly, further off; the true one is
 // near them however it is held.
 TEST(Nudge, HoldsTheModelNearTheData) {
-  const Trial trial = elbow().trial("curl_fast", 2, {{"TRI.radius", 0.0205}});
+  const Trial trial = nudgedElbow().trial("curl_fast", 2, {{"TRI.radius", 0.0205}});
   const TrialSet set = setOf({trial}, {"TRI.radius"});
   const Eigen::VectorXd wrong = Eigen::VectorXd::Constant(1, 0.016),
                         right = Eigen::VectorXd::Constant(1, 0.0205);
@@ -50,7 +50,7 @@ TEST(Nudge, HoldsTheModelNearTheData) {
 }
 
 TEST(Nudge, KeepsDerivativesExact) {
-  const TrialSet set = setOf({elbow().trial("curl_fast", 1)}, {"TRI.radius", "hand.mass"});
+  const TrialSet set = setOf({nudgedElbow().trial("curl_fast", 1)}, {"TRI.radius", "hand.mass"});
   const std::vector<TrialPredictor> held = set.nudged(5);
   const info::Predictor predictor = set.predictor(held);
   const Eigen::VectorXd at = (Eigen::VectorXd(2) << 0.017, 0.6).finished();
@@ -73,7 +73,7 @@ TEST(Nudge, LeadsACalibrationIntoTheValleyOfTheTruth) {
   const std::map<std::string, double> truth = {{"TRI.radius", 0.0202}};
   for (const char* name : {"curl_slow", "curl_fast", "cocontraction"}) {
     trials.push_back(
-        SyntheticElbow::noisy(elbow().trial(name, 4, truth, 40), 0.5, 11, trials.size()));
+        SyntheticElbow::noisy(nudgedElbow().trial(name, 4, truth, 40), 0.5, 11, trials.size()));
   }
   CalibrationOptions options;
   options.trials.parameters = {"TRI.radius"};

@@ -29,12 +29,12 @@ TEST(TimedForce, BeginsAndEndsSmoothly) {
   }
 }
 
-struct Case {
+struct TimedCase {
   ShippedElbow elbow{"elbow8", "curl_fast"};
   MusculoskeletalProblem data{elbow.model, ShippedElbow::options(), "elbow_flexion", {elbow.trial}};
   VectorXd values = VectorXd(static_cast<Index>(data.quantities().size()));
 
-  Case() {
+  TimedCase() {
     for (Index i = 0; i < values.size(); ++i)
       values[i] = data.quantities()[static_cast<std::size_t>(i)].nominal;
   }
@@ -51,7 +51,7 @@ struct Case {
 };
 
 TEST(TimedForce, MayChangeAnywhereInTheTrials) {
-  const Case c;
+  const TimedCase c;
   const auto& effect = c.find("torque_from");
   const auto& time = c.data.quantities()[effect.quantities[1]];
   const double first = c.elbow.trial.times[0], last = first + c.elbow.trial.duration();
@@ -66,7 +66,7 @@ TEST(TimedForce, MayChangeAnywhereInTheTrials) {
 
 // Nothing moves before the force begins, and something after it.
 TEST(TimedForce, MovesNothingBeforeItBegins) {
-  Case c;
+  TimedCase c;
   const VectorXd before = c.data.outputs(0, c.values, {});
   c.put("mass_from", 0.5, 1.5);
   const VectorXd after = c.data.outputs(0, c.values, {});
@@ -81,7 +81,7 @@ TEST(TimedForce, MovesNothingBeforeItBegins) {
 // A mass carried all the time is the mass of the hand: what it does along the measured course is
 // what it does to a model that follows that.
 TEST(TimedForce, AMassDoesWhatItsWeightDoesAtRest) {
-  const Case c;
+  const TimedCase c;
   const std::vector<double> times = {0, 0.5, 1, 1.5, 2}, nodes = {0.5, 1, 1.5};
   const double q = 1.1;
   const VectorXd weight =
@@ -94,7 +94,7 @@ TEST(TimedForce, AMassDoesWhatItsWeightDoesAtRest) {
 }
 
 TEST(TimedForce, StandsInTheDrivenTrialThatReplaysAsItWasScored) {
-  Case c;
+  TimedCase c;
   c.put("torque_from", 0.4, 1.7);
   info::discover::Verdict verdict;
   verdict.values = c.values;

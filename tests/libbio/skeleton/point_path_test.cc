@@ -18,7 +18,7 @@ namespace {
 using Vec3d = Eigen::Vector3d;
 using Dual = info::Dual<1>;
 
-ArticulatedTree treeOf(const Model& model) {
+ArticulatedTree treeOfPoints(const Model& model) {
   return ArticulatedTree(model, {independentCoordinates(model), {}});
 }
 
@@ -98,7 +98,7 @@ PointPath longPath(const ArticulatedTree& tree) {
 
 TEST(PointPath, LengthIsTheSumOfDistancesOfSimbodysPoints) {
   const Model model = fixtures::bodyOfThirtySeven();
-  const ArticulatedTree tree = treeOf(model);
+  const ArticulatedTree tree = treeOfPoints(model);
   const SimbodyTree reference(model);
   const Eigen::VectorXd q = drawn(tree, 3);
   std::map<std::string, double> values;
@@ -118,12 +118,12 @@ TEST(PointPath, LengthIsTheSumOfDistancesOfSimbodysPoints) {
 }
 
 TEST(PointPath, DerivativesAreThoseOfDualNumbersAndDifferences) {
-  const ArticulatedTree whole = treeOf(fixtures::bodyOfThirtySeven());
+  const ArticulatedTree whole = treeOfPoints(fixtures::bodyOfThirtySeven());
   for (unsigned seed = 1; seed < 4; ++seed) {
     derivativesAreRight(whole, longPath(whole), drawn(whole, seed));
   }
   // one coordinate moves both ends: the cap follows flex, which also carries the forearm
-  const ArticulatedTree arm = treeOf(fixtures::threeLinkArm());
+  const ArticulatedTree arm = treeOfPoints(fixtures::threeLinkArm());
   const PointPath path(
       arm, {stationOf(arm, "cap", {0.1, 0.02, 0}), stationOf(arm, "hand", {0.02, 0.1, 0.05}),
             stationOf(arm, "ground", {0.3, 0.2, 0.1})});
@@ -131,7 +131,7 @@ TEST(PointPath, DerivativesAreThoseOfDualNumbersAndDifferences) {
 }
 
 TEST(PointPath, PointsThatMoveInTheirBodyAddTheirCoordinates) {
-  ArticulatedTree tree = treeOf(fixtures::threeLinkArm());
+  ArticulatedTree tree = treeOfPoints(fixtures::threeLinkArm());
   PointMotion point;
   point.coordinate = {"flex", "", "follow"};
   point.location = {Function{0.1, SplineFunction{{-2, 0, 1, 2}, {0, 1, 3, 2}}},
@@ -146,7 +146,7 @@ TEST(PointPath, PointsThatMoveInTheirBodyAddTheirCoordinates) {
 }
 
 TEST(PointPath, SupportIsWhatLiesBetweenTheEnds) {
-  const ArticulatedTree tree = treeOf(fixtures::bodyOfThirtySeven());
+  const ArticulatedTree tree = treeOfPoints(fixtures::bodyOfThirtySeven());
   const PointPath knee(
       tree, {stationOf(tree, "body1", Vec3d::Zero()), stationOf(tree, "body2", Vec3d(0, 0.5, 0))});
   EXPECT_EQ(knee.support(), std::vector<int>{tree.indexOf("q2")});
@@ -161,7 +161,7 @@ TEST(PointPath, SupportIsWhatLiesBetweenTheEnds) {
 }
 
 TEST(SegmentChain, MovementsInTheGroundAreThoseOfDualNumbers) {
-  const ArticulatedTree tree = treeOf(fixtures::bodyOfThirtySeven());
+  const ArticulatedTree tree = treeOfPoints(fixtures::bodyOfThirtySeven());
   const Eigen::VectorXd q = drawn(tree, 9);
   const Station hand = stationOf(tree, "body14", {0.1, 0.2, 0.3});
   const SegmentChain chain(tree, 0, hand.segment);
@@ -218,7 +218,7 @@ SupportedLength<T> spanOver(const ArticulatedTree& tree, const TreeMotion<T>& mo
 }
 
 TEST(PointPath, AStraightSpanSeenFromAThirdBodyHasTheSameDerivatives) {
-  const ArticulatedTree tree = treeOf(fixtures::bodyOfThirtySeven());
+  const ArticulatedTree tree = treeOfPoints(fixtures::bodyOfThirtySeven());
   const Eigen::VectorXd q = drawn(tree, 12);
   const Station from = stationOf(tree, "body3", {0.1, 0.2, 0.3});
   const Station to = stationOf(tree, "body13", {0.1, 0, 0});
@@ -253,7 +253,7 @@ TEST(PointPath, AStraightSpanSeenFromAThirdBodyHasTheSameDerivatives) {
 /// seen from it, whose frame lies just off the chord, nearer to its beginning.
 template <class Wrap>
 void wrappedSpanIsRight(const Wrap& wrap) {
-  const ArticulatedTree tree = treeOf(fixtures::bodyOfThirtySeven());
+  const ArticulatedTree tree = treeOfPoints(fixtures::bodyOfThirtySeven());
   const Eigen::VectorXd q = drawn(tree, 21);
   const int surface = static_cast<int>(tree.placeOf("body0").segment);
   const Station from = stationOf(tree, "body2", {0.1, 0.2, 0.1});
@@ -298,7 +298,7 @@ TEST(PointPath, ASpanOverACylinderHasTheDerivativesOfDualNumbers) {
 }
 
 TEST(PointPath, EvaluatesWithoutAllocation) {
-  const ArticulatedTree tree = treeOf(fixtures::bodyOfThirtySeven());
+  const ArticulatedTree tree = treeOfPoints(fixtures::bodyOfThirtySeven());
   const PointPath path = longPath(tree);
   const auto motion = placed(tree, drawn(tree, 1));
   auto out = path.newLength<double>();
@@ -308,7 +308,7 @@ TEST(PointPath, EvaluatesWithoutAllocation) {
 }
 
 TEST(PointPath, RefusesWhatIsNoPath) {
-  const ArticulatedTree tree = treeOf(fixtures::threeLinkArm());
+  const ArticulatedTree tree = treeOfPoints(fixtures::threeLinkArm());
   EXPECT_THROW(PointPath(tree, {stationOf(tree, "hand", Vec3d::Zero())}), std::invalid_argument);
   EXPECT_THROW(PointPath(tree, {{0, Vec3d::Zero()}, {99, Vec3d::Zero()}}), std::invalid_argument);
   const double nan = std::numeric_limits<double>::quiet_NaN();
