@@ -1,15 +1,13 @@
-#include <cmath>
+#include <fmt/format.h>
+
 #include <optional>
 
 #include "arms.h"
-#include "bio/discovery/effect_size.h"
-#include "bio/discovery/musculoskeletal_problem.h"
-#include "bio/discovery/predicted_experiments.h"
-#include "bio/discovery/repaired.h"
+#include "bio/discovery/workflow.h"
 #include "bio/tables/trial_table.h"
 #include "docstrings.h"
 #include "info/discovery/judgement/separation.h"
-#include "info/discovery/search/shorter_steps.h"
+#include "info/version.h"
 #include "interruptible.h"
 
 namespace python {
@@ -107,45 +105,34 @@ struct Written {
   py::list trials;
 };
 
-Written writtenOf(const MusculoskeletalProblem& data, Verdict& verdict,
-                  const std::vector<int>& heldOut, const std::optional<double>& step) {
+Written writtenOf(bio::discover::DiscoveryResult& result) {
   Written written;
-  const bool isFound = !verdict.effects.empty() && !verdict.proxy;
-  const bool isDone = verdict.reached == info::discover::Stage::finished;
-  std::vector<bio::discover::RepairedTrial> trials;
-  bio::discover::Repaired repaired;
-  if (verdict.base.size() == 0) return written;
-  if (isDone && (isFound || verdict.finding == info::discover::Finding::none)) {
-    repaired = bio::discover::repairedModel(data, verdict, heldOut, step, {"fisherhill", {}});
-    bio::discover::takeReplays(verdict, repaired);
-    trials = repaired.trials;
-  } else {
-    trials = bio::discover::recordedTrials(data, verdict, heldOut, step);
-  }
-  for (const auto& one : trials) {
-    bio::Trial trial = data.trial(one.index);
+  for (const auto& one : result.trials) {
+    bio::Trial trial = result.data->trial(one.index);
     if (one.driven) {
+      bio::Model& model = result.repaired->added.model;
       const std::string recorded = trial.sha256;
-      trial = bio::trialFrom(*one.driven, trial.file + " (driven)", repaired.added.model,
+      trial = bio::trialFrom(*one.driven, trial.file + " (driven)", model,
                              {.experimentalConditions = true});
       trial.sha256 = digestOf(py::bytes(recorded + " driven"));
       bio::TrialStart start = one.start;
       start.file = trial.file;
       start.sha256 = trial.sha256;
-      repaired.added.model.fitted.starts.push_back(std::move(start));
+      model.fitted.starts.push_back(std::move(start));
     }
-    written.trials.append(results(
-        "name"_a = data.trialName(one.index), "role"_a = one.isHeldOut ? "held_out" : "train",
-        "nominal"_a = one.nominal, "after"_a = one.after, "noise_floor"_a = one.floor,
-        "start"_a = one.start.value, "start_speed"_a = one.start.speed, "trial"_a = trial));
+    written.trials.append(results("name"_a = result.data->trialName(one.index),
+                                  "role"_a = one.isHeldOut ? "held_out" : "train",
+                                  "nominal"_a = one.nominal, "after"_a = one.after,
+                                  "noise_floor"_a = one.floor, "start"_a = one.start.value,
+                                  "start_speed"_a = one.start.speed, "trial"_a = trial));
   }
-  if (!repaired.trials.empty()) written.model = py::cast(repaired.added.model);
+  if (result.repaired) written.model = py::cast(result.repaired->added.model);
   return written;
 }
 
-py::list fittedOf(const MusculoskeletalProblem& data, const Verdict& verdict) {
+py::list fittedOf(const std::vector<info::discover::FittedNumber>& fitted) {
   py::list list;
-  for (const auto& one : bio::discover::fittedNumbers(data, verdict)) {
+  for (const auto& one : fitted) {
     list.append(results("name"_a = one.name, "unit"_a = one.unit, "nominal"_a = one.nominal,
                         "estimate"_a = one.estimate, "sd"_a = one.sd, "prior_sd"_a = one.prior,
                         "prior_z"_a = one.priorZ));
@@ -162,45 +149,39 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
   if (choice.coordinates.size() != 1) {
     throw std::invalid_argument("coordinate: several are free, must be one for discover");
   }
-  info::discover::Options options;
-  options.maxEffects = maxEffects;
-  options.outputSd = noise;
-  for (std::size_t i = 0; i < holdOut.size(); ++i) {
-    options.heldOut.push_back(static_cast<int>(trials.size() + i));
-  }
   trials.insert(trials.end(), holdOut.begin(), holdOut.end());
-  bio::discover::MusculoskeletalProblemOptions elbow;
-  elbow.simulation = choice.simulation();
-  elbow.simulation.duration = 1;
-  elbow.without = without;
-  std::unique_ptr<MusculoskeletalProblem> data;
-  info::discover::SteppedVerdict found;
-  std::vector<bio::discover::PredictedExperiment> predictedExperiments;
+  bio::discover::DiscoveryRequest asked{model,
+                                        choice.armOptions(),
+                                        choice.coordinates.front(),
+                                        std::move(trials),
+                                        holdOut.size(),
+                                        choice.step,
+                                        {},
+                                        {},
+                                        {}};
+  asked.problem.simulation = choice.simulation();
+  asked.problem.simulation.duration = 1;
+  asked.problem.without = without;
+  asked.search.maxEffects = maxEffects;
+  asked.search.outputSd = noise;
+  asked.provenance.tool = "fisherhill " + std::string(info::version());
+  for (const bio::Trial& trial : asked.trials)
+    asked.provenance.data.push_back(fmt::format("{} SHA-256 {}", trial.file, trial.sha256));
+  bio::discover::DiscoveryResult result;
   interruptible([&](const std::atomic<bool>& goOn) {
-    options.progress = [&](const info::discover::Progress&) { return goOn.load(); };
-    const auto attempt = [&](double step) {
-      elbow.simulation.step = step;
-      data = std::make_unique<MusculoskeletalProblem>(model, choice.armOptions(),
-                                                      choice.coordinates.front(), trials, elbow);
-      return info::discover::Attempt{*data, options};
-    };
-    found = info::discover::runAtShorterSteps(
-        attempt, elbow.simulation.step, choice.step ? HUGE_VAL : bio::discover::shortestSearchStep);
-    if (goOn)
-      predictedExperiments = bio::discover::predictExperiments(
-          model, choice.armOptions(), trials.front(), elbow, *data, found.verdict);
+    asked.search.progress = [&](const info::discover::Progress&) { return goOn.load(); };
+    result = bio::discover::discover(asked);
   });
-  Verdict& verdict = found.verdict;
-  const std::vector<int>& heldOut = found.options.heldOut;
-  const Written written = writtenOf(*data, verdict, heldOut, choice.step);
+  const MusculoskeletalProblem& data = *result.data;
+  const info::discover::SteppedVerdict& found = result.found;
+  const Verdict& verdict = found.verdict;
+  const Written written = writtenOf(result);
   py::list effects;
-  for (const auto& effect : verdict.effects)
-    effects.append(effectOf(*data, effect,
-                            bio::discover::effectSize(*data, effect.candidate, verdict.values,
-                                                      heldOut.empty() ? 0 : heldOut.front())));
+  for (std::size_t i = 0; i < verdict.effects.size(); ++i)
+    effects.append(effectOf(data, verdict.effects[i], result.sizes[i]));
   py::dict undetectable;
   for (const auto& one : verdict.detectability) {
-    undetectable[data->candidates()[one.candidate].id.c_str()] = one.amplitude;
+    undetectable[data.candidates()[one.candidate].id.c_str()] = one.amplitude;
   }
   return results(
       "verdict"_a = info::discover::name(verdict.finding), "sentence"_a = verdict.sentence,
@@ -208,10 +189,10 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
       "noise"_a = verdict.outputSd, "gap"_a = excessErrorOf(verdict.gap),
       "gap_held_out"_a = verdict.heldOut ? excessErrorOf(*verdict.heldOut) : py::none(),
       "held_out_fitted"_a = verdict.heldOutFitted, "undetectable_below"_a = undetectable,
-      "planned_experiments"_a = plannedOf(*data, verdict, predictedExperiments),
+      "planned_experiments"_a = plannedOf(data, verdict, result.experiments),
       "unknown"_a = unknownOf(verdict),
-      "force_without_a_name"_a = nonparametricForceOf(*data, verdict), "model"_a = written.model,
-      "trials"_a = written.trials, "fitted_parameters"_a = fittedOf(*data, verdict),
+      "force_without_a_name"_a = nonparametricForceOf(data, verdict), "model"_a = written.model,
+      "trials"_a = written.trials, "fitted_parameters"_a = fittedOf(result.fitted),
       "step"_a = found.step, "fits"_a = verdict.fits);
 }
 

@@ -6,36 +6,38 @@
 #include <optional>
 #include <string>
 
-#include "info/discovery/search/shorter_steps.h"
+#include "info/discovery/discover.h"
+#include "output/progress_bar.h"
 #include "output/summary.h"
 
 /// Search options and search, shared by discovery in musculoskeletal models and in robots.
 namespace app {
 
-/// Options of the search; held-out trials come last.
+/// Options of the search.
 /// @param inputScatter of --input-scatter; empty: the default
 /// @throws std::invalid_argument if that is negative or no number
-info::discover::Options engineOptions(int maxEffects, const std::optional<double>& inputScatter,
-                                      std::size_t training, std::size_t heldOut);
+info::discover::Options engineOptions(int maxEffects, const std::optional<double>& inputScatter);
 void addInputScatter(CLI::App& options, std::optional<double>& inputScatter,
                      const std::string& when = {}, const std::string& group = "Options");
 
-struct DiscoverSearch : info::discover::SteppedVerdict {
-  double wallSeconds = 0;       ///< of all attempts
-  double processorSeconds = 0;  ///< processor time of all attempts
-  bool interrupted = false;
-};
-
-/// info::discover::runAtShorterSteps with a progress bar (unless quiet); Ctrl-C ends it with the
+/// A search as its user sees it: a progress bar (unless quiet), and Ctrl-C, which ends it with the
 /// result so far.
-DiscoverSearch searchForEffects(const std::function<info::discover::Attempt(double step)>& attempt,
-                                double step, double shortest, bool quiet = false);
+class WatchedSearch {
+ public:
+  explicit WatchedSearch(bool quiet = false);
+
+  /// For info::discover::Options::progress. Refers to this object.
+  std::function<bool(const info::discover::Progress&)> progress();
+  bool wasInterrupted() const { return interrupted_; }
+  /// Takes the progress bar away.
+  void end() { bar_.reset(); }
+
+ private:
+  std::optional<ProgressBar> bar_;
+  bool interrupted_ = false;
+};
 
 /// Warns if there is one trial only and none is held out.
 void warnOfOneTrial(Summary& summary, std::size_t training, std::size_t heldOut);
-
-/// Whether the effects may be built into the model. Proxies may not: they would hide the unknown
-/// effect.
-bool mayBeAdded(const info::discover::Verdict& verdict);
 
 }  // namespace app

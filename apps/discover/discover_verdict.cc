@@ -115,6 +115,116 @@ ordered_json trialsJson(const DiscoverFindings& f) {
   return list;
 }
 
+/// The effects, and the ids of those that cannot be distinguished from them.
+void addEffects(const DiscoverFindings& f, ordered_json& json) {
+  const auto& candidates = f.data.candidates();
+  const auto& verdict = f.verdict;
+  json["effects"] = ordered_json::array();
+  json["class"] = ordered_json::array();
+  for (const auto& effect : verdict.effects) {
+    const auto& candidate = candidates[effect.candidate];
+    json["effects"].push_back({{"id", candidate.id},
+                               {"name", candidate.name},
+                               {"kind", info::discover::name(candidate.kind)},
+                               {"surrogate", verdict.proxy},
+                               {"parameters", parametersJson(f, effect.estimates)},
+                               {"log_bayes_factor", orNull(effect.logBayesFactor)},
+                               {"probability", orNull(effect.probability)}});
+    for (const Estimate& one : effect.estimates) {
+      if (f.data.quantities()[one.quantity].name == candidate.id + ".time") {
+        const char* change = candidate.id.ends_with("_until") ? "ends_at_s" : "starts_at_s";
+        if (candidate.kind == info::discover::EffectKind::structure)
+          json["effects"].back()[change] = orNull(one.value);
+      }
+    }
+    for (const std::size_t c : effect.equals) json["class"].push_back(candidates[c].id);
+  }
+}
+
+void addInnovations(const info::discover::Verdict& verdict, ordered_json& json) {
+  json["innovations"] = {{"before", nullptr}, {"after", nullptr}};
+  if (verdict.base.size() > 0) {  // else stopped before there was a base model
+    json["innovations"] = {{"before", adequacyJson(verdict.before, verdict.latentSizeBefore)},
+                           {"after", adequacyJson(verdict.after, verdict.latentSizeAfter)}};
+  }
+  if (verdict.heldOutBefore && verdict.heldOutAfter) {
+    json["innovations"]["held_out_mean_square"] = {
+        {"before", orNull(verdict.heldOutBefore->meanSquare)},
+        {"after", orNull(verdict.heldOutAfter->meanSquare)},
+        {"highest", orNull(verdict.heldOutAfter->highest)}};
+  }
+}
+
+void addPlannedExperiments(const DiscoverFindings& f, ordered_json& json) {
+  for (const bio::discover::PredictedExperiment& one : f.predictedExperiments) {
+    ordered_json nats = ordered_json::object();
+    for (std::size_t i = 0; i < one.nats.size(); ++i)
+      nats[rivalName(f.data, f.verdict, i + 1)] = orNull(one.nats[i]);
+    json["planned_experiments"].push_back(
+        {{"what", one.sentence}, {"of", rivalName(f.data, f.verdict, 0)}, {"expected_nats", nats}});
+  }
+}
+
+ordered_json evidenceJson(const DiscoverFindings& f) {
+  const auto& candidates = f.data.candidates();
+  ordered_json list = ordered_json::array();
+  for (const auto& one : f.verdict.finalists) {
+    ordered_json ids = ordered_json::array();
+    for (const std::size_t e : one.effects) ids.push_back(candidates[e].id);
+    list.push_back({{"effects", ids},
+                    {"log_bayes_factor", orNull(one.logEvidence)},
+                    {"probability", orNull(one.probability)},
+                    {"amplitude_over_sd", orNull(one.significance)}});
+  }
+  return list;
+}
+
+ordered_json nonparametricForceJson(const DiscoverFindings& f) {
+  const info::discover::NonparametricForce& force = *f.verdict.nonparametric;
+  ordered_json besides = ordered_json::array();
+  for (const std::size_t c : force.besides) besides.push_back(f.data.candidates()[c].id);
+  return {{"follows", info::discover::name(force.follows)},
+          {"beside", besides},
+          {"log_bayes_factor", orNull(force.logBayesFactor)},
+          {"nats_ahead_of_names", orNull(force.ahead)},
+          {"wins", force.wins}};
+}
+
+/// The unknown effect, and the formula that was compared for it.
+void addUnknown(const DiscoverFindings& f, ordered_json& json) {
+  const auto& verdict = f.verdict;
+  if (verdict.unknown) {
+    json["unknown"] = {{"formula", verdict.unknown->formula},
+                       {"stable", verdict.unknown->stable},
+                       {"evidence_nats", orNull(verdict.unknown->evidence)},
+                       {"explained", orNull(verdict.unknown->explained)},
+                       {"peak_Hz", orNull(verdict.unknown->peakFrequency)}};
+    if (f.wording.forceUnit == "N·m") {
+      json["unknown"]["rms_Nm"] = orNull(verdict.unknown->forceSize);
+    } else {
+      json["unknown"]["rms"] = orNull(verdict.unknown->forceSize);
+      json["unknown"]["rms_unit"] = f.wording.forceUnit;
+    }
+  }
+  if (verdict.formula) {
+    const info::discover::RacedFormula& raced = *verdict.formula;
+    ordered_json& race = json["unknown"]["raced"];
+    race = {{"formula", raced.text},
+            {"wins", raced.wins},
+            {"log_bayes_factor", orNull(raced.logBayesFactor)},
+            {"amplitude_over_sd", orNull(raced.significance)},
+            {"adequate", raced.after.adequate()},
+            {"terms", ordered_json::array()},
+            {"gap",
+             {{"train", excessErrorJson(f, raced.gap)},
+              {"held_out", raced.heldOut ? excessErrorJson(f, *raced.heldOut) : nullptr}}}};
+    for (std::size_t k = 0; k < raced.values.size(); ++k)
+      race["terms"].push_back({{"expression", raced.terms[k].expression},
+                               {"value", orNull(raced.values[k])},
+                               {"sd", orNull(raced.sds[k])}});
+  }
+}
+
 }  // namespace
 
 void tellFindings(const DiscoverFindings& f, Summary& summary) {
@@ -152,33 +262,14 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   json["verdict"] = verdictWord(verdict);
   json["sentence"] = verdict.sentence;
   json["stage_reached"] = info::discover::name(verdict.reached);
-  json["effects"] = ordered_json::array();
-  json["class"] = ordered_json::array();
-  for (const auto& effect : verdict.effects) {
-    const auto& candidate = candidates[effect.candidate];
-    json["effects"].push_back({{"id", candidate.id},
-                               {"name", candidate.name},
-                               {"kind", info::discover::name(candidate.kind)},
-                               {"surrogate", verdict.proxy},
-                               {"parameters", parametersJson(f, effect.estimates)},
-                               {"log_bayes_factor", orNull(effect.logBayesFactor)},
-                               {"probability", orNull(effect.probability)}});
-    for (const Estimate& one : effect.estimates) {
-      if (f.data.quantities()[one.quantity].name == candidate.id + ".time") {
-        const char* change = candidate.id.ends_with("_until") ? "ends_at_s" : "starts_at_s";
-        if (candidate.kind == info::discover::EffectKind::structure)
-          json["effects"].back()[change] = orNull(one.value);
-      }
-    }
-    for (const std::size_t c : effect.equals) json["class"].push_back(candidates[c].id);
-  }
+  addEffects(f, json);
   addSizes(f, json["effects"]);
   json["localisation"] = localisationJson(f);
   json["gap"] = {{"train", excessErrorJson(f, verdict.gap)},
                  {"held_out", verdict.heldOut ? excessErrorJson(f, *verdict.heldOut) : nullptr}};
   json["held_out_fitted"] = verdict.heldOutFitted;
   if (f.written) {
-    const bool isCorrected = f.written->repaired && f.written->repaired->trials.front().driven;
+    const bool isCorrected = !f.written->trials.empty() && f.written->trials.front().driven;
     json["rmse_after_is_of"] =
         isCorrected
             ? "the driven trials: excitations as the muscles received them, sensor errors removed"
@@ -189,29 +280,13 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   }
   json["step_s"] = orNull(f.step);
   json["fitted_parameters"] = fittedJson(f.fitted);
-  json["innovations"] = {{"before", nullptr}, {"after", nullptr}};
-  if (verdict.base.size() > 0) {  // else stopped before there was a base model
-    json["innovations"] = {{"before", adequacyJson(verdict.before, verdict.latentSizeBefore)},
-                           {"after", adequacyJson(verdict.after, verdict.latentSizeAfter)}};
-  }
-  if (verdict.heldOutBefore && verdict.heldOutAfter) {
-    json["innovations"]["held_out_mean_square"] = {
-        {"before", orNull(verdict.heldOutBefore->meanSquare)},
-        {"after", orNull(verdict.heldOutAfter->meanSquare)},
-        {"highest", orNull(verdict.heldOutAfter->highest)}};
-  }
+  addInnovations(verdict, json);
   json["undetectable_below"] = ordered_json::object();
   for (const auto& one : verdict.detectability) {
     json["undetectable_below"][candidates[one.candidate].id] = orNull(one.amplitude);
   }
   json["next_experiment"] = f.nextExperiment;
-  for (const bio::discover::PredictedExperiment& one : f.predictedExperiments) {
-    ordered_json nats = ordered_json::object();
-    for (std::size_t i = 0; i < one.nats.size(); ++i)
-      nats[rivalName(f.data, verdict, i + 1)] = orNull(one.nats[i]);
-    json["planned_experiments"].push_back(
-        {{"what", one.sentence}, {"of", rivalName(f.data, verdict, 0)}, {"expected_nats", nats}});
-  }
+  addPlannedExperiments(f, json);
   json["noise_sd"] = orNull(verdict.outputSd);
   json["samples"] = {{"recorded", verdict.noise.samples},
                      {"outliers", verdict.noise.outliers},
@@ -226,55 +301,9 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   for (const auto& [id, where] : f.wording.present) {
     json["already_in_the_model"][id] = where;
   }
-  json["evidence"] = ordered_json::array();
-  for (const auto& one : verdict.finalists) {
-    ordered_json ids = ordered_json::array();
-    for (const std::size_t e : one.effects) ids.push_back(candidates[e].id);
-    json["evidence"].push_back({{"effects", ids},
-                                {"log_bayes_factor", orNull(one.logEvidence)},
-                                {"probability", orNull(one.probability)},
-                                {"amplitude_over_sd", orNull(one.significance)}});
-  }
-  if (verdict.nonparametric) {
-    const info::discover::NonparametricForce& force = *verdict.nonparametric;
-    ordered_json besides = ordered_json::array();
-    for (const std::size_t c : force.besides) besides.push_back(candidates[c].id);
-    json["force_without_a_name"] = {{"follows", info::discover::name(force.follows)},
-                                    {"beside", besides},
-                                    {"log_bayes_factor", orNull(force.logBayesFactor)},
-                                    {"nats_ahead_of_names", orNull(force.ahead)},
-                                    {"wins", force.wins}};
-  }
-  if (verdict.unknown) {
-    json["unknown"] = {{"formula", verdict.unknown->formula},
-                       {"stable", verdict.unknown->stable},
-                       {"evidence_nats", orNull(verdict.unknown->evidence)},
-                       {"explained", orNull(verdict.unknown->explained)},
-                       {"peak_Hz", orNull(verdict.unknown->peakFrequency)}};
-    if (f.wording.forceUnit == "N·m") {
-      json["unknown"]["rms_Nm"] = orNull(verdict.unknown->forceSize);
-    } else {
-      json["unknown"]["rms"] = orNull(verdict.unknown->forceSize);
-      json["unknown"]["rms_unit"] = f.wording.forceUnit;
-    }
-  }
-  if (verdict.formula) {
-    const info::discover::RacedFormula& raced = *verdict.formula;
-    ordered_json& race = json["unknown"]["raced"];
-    race = {{"formula", raced.text},
-            {"wins", raced.wins},
-            {"log_bayes_factor", orNull(raced.logBayesFactor)},
-            {"amplitude_over_sd", orNull(raced.significance)},
-            {"adequate", raced.after.adequate()},
-            {"terms", ordered_json::array()},
-            {"gap",
-             {{"train", excessErrorJson(f, raced.gap)},
-              {"held_out", raced.heldOut ? excessErrorJson(f, *raced.heldOut) : nullptr}}}};
-    for (std::size_t k = 0; k < raced.values.size(); ++k)
-      race["terms"].push_back({{"expression", raced.terms[k].expression},
-                               {"value", orNull(raced.values[k])},
-                               {"sd", orNull(raced.sds[k])}});
-  }
+  json["evidence"] = evidenceJson(f);
+  if (verdict.nonparametric) json["force_without_a_name"] = nonparametricForceJson(f);
+  addUnknown(f, json);
   return json;
 }
 

@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
-#include "bio/discovery/musculoskeletal_problem.h"
+#include "bio/discovery/workflow.h"
 #include "calibrate/fitted_table.h"
 #include "discover/discover_report.h"
 #include "discover/discover_search.h"
 #include "discover/proposed_experiments_text.h"
 #include "discover/suggested_experiments.h"
 #include "discover/written_discovery.h"
+#include "info/version.h"
 #include "options/input_rules.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
@@ -42,6 +41,14 @@ DiscoverWording wordingOf(const bio::discover::MusculoskeletalProblem& data) {
   return wording;
 }
 
+bio::discover::EffectProvenance provenanceOf(const Summary& summary) {
+  bio::discover::EffectProvenance provenance;
+  provenance.tool = "fisherhill " + std::string(info::version());
+  for (const Summary::InputFile& input : summary.inputs())
+    provenance.data.push_back(fmt::format("{} SHA-256 {}", input.path, input.sha256));
+  return provenance;
+}
+
 }  // namespace
 
 std::string observedCoordinate(const SimulationOptions& simulation) {
@@ -70,43 +77,31 @@ ModelDiscovery discoverInModel(const ModelDiscoveryRequest& request,
   }
   inputsMustDiffer(summary, request.trials.size());
   resultsMustNotBeInputs(summary, folder, names);
-  const bio::SystemOptions arm = armOptions(request.simulation);
   const std::string coordinate = observedCoordinate(request.simulation);
-  const bio::MusculoskeletalSystem asked(model, arm);
-  for (const std::string& warning : asked.warnings()) summary.warn(warning);
-  std::unique_ptr<bio::discover::MusculoskeletalProblem> elbow;
-  bio::discover::MusculoskeletalProblemOptions options;
-  const auto attempt = [&](double step) {
-    options.simulation = simulationOptions(request.simulation, 0, 1);
-    options.simulation.step = step;
-    options.without = request.without;
-    elbow = std::make_unique<bio::discover::MusculoskeletalProblem>(model, arm, coordinate, trials,
-                                                                    options);
-    info::discover::Attempt one{
-        *elbow, engineOptions(request.maxEffects, request.inputScatter, request.trials.size(),
-                              request.heldOut.size())};
-    const bool isAngle = elbow->encompassing().coordinate().isRotation;
-    if (request.noise) one.options.outputSd = isAngle ? *request.noise / radian : *request.noise;
-    return one;
-  };
-  DiscoverSearch found = searchForEffects(
-      attempt, request.simulation.stepOrDefault(),
-      request.simulation.step ? HUGE_VAL : bio::discover::shortestSearchStep, context.quiet);
-  const bio::discover::MusculoskeletalProblem& data = *elbow;
-  const WrittenDiscovery written =
-      writeDiscovery({request, files, data, found.verdict, found.options.heldOut}, summary, folder);
-  if (written.repaired) bio::discover::takeReplays(found.verdict, *written.repaired);
+  const bio::SystemOptions arm = armOptions(request.simulation);
+  const bio::MusculoskeletalSystem compiled(model, arm);
+  for (const std::string& warning : compiled.warnings()) summary.warn(warning);
+  const bool isAngle = bio::findCoordinate(model, coordinate).isRotation;
+  bio::discover::DiscoveryRequest asked{
+      model, arm, coordinate, trials, request.heldOut.size(), request.simulation.step, {}, {}, {}};
+  asked.problem.simulation = simulationOptions(request.simulation, 0, 1);
+  asked.problem.without = request.without;
+  asked.search = engineOptions(request.maxEffects, request.inputScatter);
+  if (request.noise) asked.search.outputSd = isAngle ? *request.noise / radian : *request.noise;
+  asked.provenance = provenanceOf(summary);
+  WatchedSearch watch(context.quiet);
+  asked.search.progress = watch.progress();
+  bio::discover::DiscoveryResult result = bio::discover::discover(asked);
+  watch.end();
+  const WrittenDiscovery written = writeDiscovery({request, files, result}, summary, folder);
+  const bio::discover::MusculoskeletalProblem& data = *result.data;
+  const info::discover::SteppedVerdict& found = result.found;
   const info::discover::Verdict& verdict = found.verdict;
-  const std::vector<info::discover::FittedNumber> fitted =
-      bio::discover::fittedNumbers(data, verdict);
   const DiscoverWording wording = wordingOf(data);
   warnOfOneTrial(summary, request.trials.size(), request.heldOut.size());
-  const std::vector<bio::discover::PredictedExperiment> predictedExperiments =
-      bio::discover::predictExperiments(model, arm, trials.front(), options, data, verdict);
   std::string next =
-      predictedExperimentSentence(predictedExperiments, data, verdict, found.options.evidence);
+      predictedExperimentSentence(result.experiments, data, verdict, found.options.evidence);
   if (next.empty()) {
-    const bool isAngle = data.encompassing().coordinate().isRotation;
     next =
         followUp(data, verdict, followUpsOfModels(coordinate + (isAngle ? ".torque" : ".force")));
   }
@@ -117,10 +112,10 @@ ModelDiscovery discoverInModel(const ModelDiscoveryRequest& request,
                                   found.options,
                                   verdict,
                                   next,
-                                  predictedExperiments,
+                                  result.experiments,
                                   found.wallSeconds,
                                   found.processorSeconds,
-                                  fitted,
+                                  result.fitted,
                                   &written,
                                   found.step};
   summary.setSimulation(request.simulation.integrator, found.step, longestDuration(trials),
@@ -128,10 +123,10 @@ ModelDiscovery discoverInModel(const ModelDiscoveryRequest& request,
   tellFindings(findings, summary);
   const nlohmann::ordered_json json = verdictJson(findings);
   folder.write("verdict.json", [&](std::ostream& out) { out << jsonText(json, 2) << '\n'; });
-  if (!fitted.empty())
-    folder.write("parameters.csv", [&](std::ostream& out) { writeFitted(fitted, out); });
+  if (!result.fitted.empty())
+    folder.write("parameters.csv", [&](std::ostream& out) { writeFitted(result.fitted, out); });
   deliver(context, summary, discoverReport(findings), folder);
-  if (found.interrupted) throw Interrupted{};
+  if (watch.wasInterrupted()) throw Interrupted{};
   return {verdict.finding == Finding::numerical ? ExitStatus::answerIsNo : ExitStatus::done, json};
 }
 

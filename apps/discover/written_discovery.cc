@@ -5,9 +5,6 @@
 #include <cmath>
 
 #include "bio/opensim/osim_file.h"
-#include "discover/discover_search.h"
-#include "info/version.h"
-#include "options/system_options.h"
 #include "output/angle_unit.h"
 #include "output/sha256.h"
 #include "output/text.h"
@@ -16,18 +13,6 @@ namespace app {
 namespace {
 
 using bio::discover::RepairedTrial;
-using info::discover::Finding;
-using info::discover::Verdict;
-
-/// The missing effect is not in the catalogue, but a formula describes it.
-bool isFormula(const Verdict& verdict) {
-  return verdict.finding == Finding::unknown && verdict.formula && verdict.formula->wins;
-}
-
-/// Nothing is missing, and the parameters were fitted all the same.
-bool isRefitted(const Verdict& verdict) {
-  return verdict.reached == info::discover::Stage::finished && verdict.finding == Finding::none;
-}
 
 /// The options of a command that say what is simulated.
 std::string optionsOf(const SimulationOptions& options, bool withStep) {
@@ -47,61 +32,43 @@ std::string optionsOf(const SimulationOptions& options, bool withStep) {
 
 class DiscoveryWriter {
  public:
-  DiscoveryWriter(const ModelDiscoveryResult& found, Summary& summary, OutputFolder& folder)
-      : found_(found), summary_(summary), folder_(folder) {
-    provenance_.tool = "fisherhill " + std::string(info::version());
-    for (const Summary::InputFile& input : summary.inputs())
-      provenance_.data.push_back(fmt::format("{} SHA-256 {}", input.path, input.sha256));
-  }
+  DiscoveryWriter(const DiscoveryToWrite& discovery, Summary& summary, OutputFolder& folder)
+      : request_(discovery.request),
+        files_(discovery.files),
+        result_(discovery.result),
+        summary_(summary),
+        folder_(folder) {}
 
   WrittenDiscovery write() {
-    const Verdict& verdict = found_.verdict;
-    written_.replayFiles = found_.files;
-    if (verdict.base.size() == 0) return std::move(written_);  // stopped before there was a model
-    if (isFormula(verdict)) {
-      const auto& data =
-          dynamic_cast<const bio::discover::MusculoskeletalProblem&>(*verdict.formula->data);
-      writeModels(data, *verdict.formula->verdict, verdict.formula->terms, "with_effect.osim");
-    } else if (mayBeAdded(verdict)) {
-      writeModels(found_.data, verdict, {}, "with_effect.osim");
-    } else if (isRefitted(verdict)) {
-      writeModels(found_.data, verdict, {}, "refitted.osim");
-    } else {
-      written_.trials = bio::discover::recordedTrials(found_.data, verdict, found_.heldOut,
-                                                      found_.request.simulation.step);
-    }
-    measureEffects();
+    written_.replayFiles = files_;
+    written_.trials = result_.trials;
+    written_.shown = result_.shown;
+    written_.sizes = result_.sizes;
+    if (result_.found.verdict.base.size() == 0)
+      return std::move(written_);  // stopped before there was a model
+    if (result_.repaired) writeModels(*result_.repaired);
     tellCommands();
     return std::move(written_);
   }
 
  private:
-  void writeModels(const bio::discover::MusculoskeletalProblem& data, const Verdict& verdict,
-                   const std::vector<info::discover::FormulaTerm>& formula,
-                   const std::string& name) {
-    const SimulationOptions& typed = found_.request.simulation;
-    bio::discover::Repaired& repaired = written_.repaired.emplace(
-        bio::discover::repairedModel(data, verdict, found_.heldOut, typed.step, provenance_));
+  void writeModels(bio::discover::Repaired& repaired) {
     bio::Model& model = repaired.added.model;
     std::size_t training = 0, heldOut = 0;
     for (const RepairedTrial& one : repaired.trials) {
       const std::size_t number = one.isHeldOut ? ++heldOut : ++training;
       if (one.driven) writeDriven(one, number, model);
     }
-    written_.model = name;
-    folder_.writeFile(name, [&](const std::filesystem::path& path) {
-      bio::rewriteOsim(found_.request.model, model, path);
-    });
-    if (!verdict.effects.empty()) {
-      const bio::discover::Augmented alone = bio::discover::addEffects(
-          data.encompassing().base(), armOptions(typed), data.encompassing().coordinate().name,
-          bio::discover::effectsToAdd(data, verdict), provenance_, formula);
-      folder_.writeFile("effect_only.osim", [&](const std::filesystem::path& path) {
-        bio::rewriteOsim(found_.request.model, alone.model, path);
-      });
-    }
-    written_.trials = repaired.trials;
+    written_.model = result_.addsEffect ? "with_effect.osim" : "refitted.osim";
+    writeOsim(written_.model, model);
+    if (result_.effectOnly) writeOsim("effect_only.osim", result_.effectOnly->model);
     for (const RepairedTrial& one : repaired.trials) compareWithFit(one, repaired.added.sensor);
+  }
+
+  void writeOsim(const std::string& name, const bio::Model& model) {
+    folder_.writeFile(name, [&](const std::filesystem::path& path) {
+      bio::rewriteOsim(request_.model, model, path);
+    });
   }
 
   void writeDriven(const RepairedTrial& trial, std::size_t number, bio::Model& model) {
@@ -120,7 +87,7 @@ class DiscoveryWriter {
 
   /// A corrected recording has other degrees, and may have fewer samples.
   void compareWithFit(const RepairedTrial& one, const bio::discover::SensorLaw& sensor) {
-    const bool turns = found_.data.encompassing().coordinate().isRotation;
+    const bool turns = result_.data->encompassing().coordinate().isRotation;
     const double unit = turns ? radian : 1e3;
     bio::discover::SensorLaw besidesBias = sensor;
     besidesBias.bias = 0;
@@ -133,22 +100,15 @@ class DiscoveryWriter {
                     numberText(unit * one.fitted)));
   }
 
-  void measureEffects() {
-    if (!found_.heldOut.empty()) written_.shown = found_.heldOut.front();
-    for (const auto& effect : found_.verdict.effects)
-      written_.sizes.push_back(bio::discover::effectSize(found_.data, effect.candidate,
-                                                         found_.verdict.values, written_.shown));
-  }
-
   void tellCommands() {
-    const SimulationOptions& typed = found_.request.simulation;
+    const SimulationOptions& typed = request_.simulation;
     written_.commands.emplace_back("this report", summary_.commandLine());
     for (const RepairedTrial& one : written_.trials) {
-      const std::string& file = found_.files[static_cast<std::size_t>(one.index)];
+      const std::string& file = files_[static_cast<std::size_t>(one.index)];
       const std::string& replayed = written_.replayFiles[static_cast<std::size_t>(one.index)];
       written_.commands.emplace_back(
           file + ", original model",
-          fmt::format("fisherhill replay {} {}{}", shellWord(found_.request.model), shellWord(file),
+          fmt::format("fisherhill replay {} {}{}", shellWord(request_.model), shellWord(file),
                       optionsOf(typed, true)));
       if (written_.model.empty()) continue;
       const std::string model =
@@ -159,10 +119,11 @@ class DiscoveryWriter {
     }
   }
 
-  const ModelDiscoveryResult& found_;
+  const ModelDiscoveryRequest& request_;
+  const std::vector<std::string>& files_;
+  bio::discover::DiscoveryResult& result_;
   Summary& summary_;
   OutputFolder& folder_;
-  bio::discover::EffectProvenance provenance_;
   WrittenDiscovery written_;
 };
 
@@ -179,9 +140,9 @@ std::vector<std::string> namesOfDiscovery(std::size_t training, std::size_t held
   return names;
 }
 
-WrittenDiscovery writeDiscovery(const ModelDiscoveryResult& found, Summary& summary,
+WrittenDiscovery writeDiscovery(const DiscoveryToWrite& discovery, Summary& summary,
                                 OutputFolder& folder) {
-  return DiscoveryWriter(found, summary, folder).write();
+  return DiscoveryWriter(discovery, summary, folder).write();
 }
 
 }  // namespace app

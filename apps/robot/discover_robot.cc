@@ -10,6 +10,7 @@
 #include "discover/discover_report.h"
 #include "discover/discover_search.h"
 #include "discover/suggested_experiments.h"
+#include "info/discovery/search/shorter_steps.h"
 #include "info/version.h"
 #include "options/input_rules.h"
 #include "options/number_rules.h"
@@ -162,10 +163,16 @@ class RobotSearch {
       summary.addInput(request_.with);
     }
     resultsMustNotBeInputs(summary, folder, names);
-    const DiscoverSearch found =
-        searchForEffects([&](double step) { return attempt(model, trials, step); },
-                         request_.step.value_or(info::robot::DisagreementOptions{}.step),
-                         request_.step ? HUGE_VAL : 1e-3);
+    WatchedSearch watch(context_.quiet);
+    const info::discover::SteppedVerdict found = info::discover::runAtShorterSteps(
+        [&](double step) {
+          info::discover::Attempt one = attempt(model, trials, step);
+          one.options.progress = watch.progress();
+          return one;
+        },
+        request_.step.value_or(info::robot::DisagreementOptions{}.step),
+        request_.step ? HUGE_VAL : 1e-3);
+    watch.end();
     const info::discover::Verdict& verdict = found.verdict;
     warnOfOneTrial(summary, request_.trials.size(), request_.heldOut.size());
     DiscoverWording wording = wordingOf(*data_);
@@ -203,12 +210,12 @@ class RobotSearch {
                  [&](std::ostream& out) { out << jsonText(verdictJson(findings), 2) << '\n'; });
     if (!fitted.empty())
       folder.write("parameters.csv", [&](std::ostream& out) { writeFitted(fitted, out); });
-    if (mayBeAdded(verdict))
+    if (info::discover::mayBeAdded(verdict))
       folder.write("with_effect.json", [&](std::ostream& out) {
         out << jsonText(repaired(findings, summary), 2) << '\n';
       });
     deliver(context_, summary, discoverReport(findings), folder);
-    if (found.interrupted) throw Interrupted{};
+    if (watch.wasInterrupted()) throw Interrupted{};
     return verdict.finding == Finding::numerical ? ExitStatus::answerIsNo : ExitStatus::done;
   }
 
@@ -224,9 +231,9 @@ class RobotSearch {
       asked.sds.push_back(isAngle ? request_.noise[c] * degree : request_.noise[c]);
     }
     data_ = std::make_unique<RobotProblem>(model, trials, asked);
-    info::discover::Attempt one{
-        *data_, engineOptions(request_.maxEffects, request_.inputScatter, request_.trials.size(),
-                              request_.heldOut.size())};
+    info::discover::Attempt one{*data_, engineOptions(request_.maxEffects, request_.inputScatter)};
+    for (std::size_t i = request_.trials.size(); i < trials.size(); ++i)
+      one.options.heldOut.push_back(static_cast<int>(i));
     if (!request_.noise.empty()) one.options.outputSd = data_->sds().front();
     return one;
   }

@@ -193,6 +193,13 @@ struct Verdict {
   int fits = 0;               ///< how many
 };
 
+/// Whether the effects of a verdict may be built into the model. Proxies may not: they would hide
+/// the unknown effect.
+inline bool mayBeAdded(const Verdict& verdict) {
+  return verdict.reached == Stage::finished && !verdict.proxy && !verdict.effects.empty() &&
+         verdict.finding != Finding::numerical;
+}
+
 /// The fitted hypotheses of a search, as the starting point of a search of the same data at another
 /// time step.
 struct SearchMemory;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+#include <ctime>
 #include <stdexcept>
 
 namespace info::discover {
@@ -18,7 +20,7 @@ SteppedVerdict runOnce(const MakeAttempt& attempt, double step, double shortest)
     try {
       Verdict verdict = run(one.data, one.options, &draft);
       if (verdict.finding != Finding::numerical || step < shortest)
-        return {std::move(verdict), std::move(one.options), step};
+        return {std::move(verdict), std::move(one.options), step, 0, 0};
     } catch (const std::domain_error&) {
       if (step < shortest) throw;
     }
@@ -38,9 +40,14 @@ bool hasAName(const Verdict& verdict) {
           verdict.finding == Finding::parameter);
 }
 
-}  // namespace
+/// Processor time of this thread [s].
+double threadSeconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
-SteppedVerdict runAtShorterSteps(const MakeAttempt& attempt, double step, double shortest) {
+SteppedVerdict runTwiceIfNeeded(const MakeAttempt& attempt, double step, double shortest) {
   SteppedVerdict first = runOnce(attempt, step, shortest);
   if (!isWorthASecondLook(first.verdict, first.options)) return first;
   double last = first.step;
@@ -65,6 +72,18 @@ SteppedVerdict runAtShorterSteps(const MakeAttempt& attempt, double step, double
   first.verdict.fits = fits;
   if (last != first.step) attempt(first.step);  // leaves the caller with the model of the verdict
   return first;
+}
+
+}  // namespace
+
+SteppedVerdict runAtShorterSteps(const MakeAttempt& attempt, double step, double shortest) {
+  const auto begin = std::chrono::steady_clock::now();
+  const double used = threadSeconds();
+  SteppedVerdict found = runTwiceIfNeeded(attempt, step, shortest);
+  found.wallSeconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  found.processorSeconds = threadSeconds() - used;
+  return found;
 }
 
 }  // namespace info::discover

@@ -16,7 +16,9 @@ struct Attempt {
 struct SteppedVerdict {
   Verdict verdict;
   Options options;
-  double step = 0;  ///< [s]
+  double step = 0;              ///< [s]
+  double wallSeconds = 0;       ///< of all attempts
+  double processorSeconds = 0;  ///< of all attempts, which have one thread
 };
 
 /// The error of too long a time step can look like a missing effect. Therefore run() is repeated at

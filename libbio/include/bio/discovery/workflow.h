@@ -1,0 +1,55 @@
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bio/discovery/effect_size.h"
+#include "bio/discovery/musculoskeletal_problem.h"
+#include "bio/discovery/predicted_experiments.h"
+#include "bio/discovery/repaired.h"
+#include "info/discovery/search/shorter_steps.h"
+
+namespace bio::discover {
+
+/// What a search for a missing effect is asked.
+struct DiscoveryRequest {
+  const Model& model;
+  SystemOptions arm;
+  std::string coordinate;      ///< the observed one
+  std::vector<Trial> trials;   ///< those held out last
+  std::size_t numHeldOut = 0;  ///< < trials.size(); tested by only
+  std::optional<double> step;  ///< [s]; empty: that of problem.simulation, halved if need be
+  MusculoskeletalProblemOptions problem;
+  info::discover::Options search;  ///< heldOut is set by discover()
+  EffectProvenance provenance;     ///< for the credits of written models
+};
+
+/// What a search found, with everything that follows from it.
+struct DiscoveryResult {
+  std::unique_ptr<MusculoskeletalProblem> data;
+  info::discover::SteppedVerdict found;
+
+  /// The model with all fitted values, if the search has a model: with the effects found, with the
+  /// formula of an unknown effect, or, if nothing is missing, with refitted parameters only.
+  std::optional<Repaired> repaired;
+  bool addsEffect = false;              ///< `repaired` has an effect or a formula
+  std::optional<Augmented> effectOnly;  ///< the effects found, all other values as in the request
+  std::vector<RepairedTrial> trials;    ///< replays of all trials
+  int shown = 0;                        ///< the trial of `sizes`: a held-out one if there is one
+  std::vector<EffectSize> sizes;        ///< of Verdict::effects
+  std::vector<info::discover::FittedNumber> fitted;
+  std::vector<PredictedExperiment> experiments;  ///< that would distinguish the alternatives
+};
+
+/// Searches for effects that a model lacks, repairs the model and replays every trial with it.
+///
+/// The search is info::discover::runAtShorterSteps on a MusculoskeletalProblem; repairedModel gives
+/// the model, whose errors replace those of the fit in the verdict (takeReplays). A search that was
+/// stopped has neither model nor experiments.
+/// @throws what MusculoskeletalProblem, runAtShorterSteps and repairedModel throw
+DiscoveryResult discover(const DiscoveryRequest& request);
+
+}  // namespace bio::discover
