@@ -6,6 +6,7 @@
 
 #include "bio/analysis/replay.h"
 #include "bio/discovery/with_experimental_conditions.h"
+#include "bio/model/free_coordinates.h"
 #include "bio/model/integrator_names.h"
 #include "bio/opensim/osim_file.h"
 #include "bio/tables/trial_table.h"
@@ -92,7 +93,7 @@ py::object replay(const bio::Model& given, const bio::Trial& trial,
                   const std::map<std::string, double>& initial, const Names& coordinate,
                   const std::map<std::string, double>& lock, const std::string& integrator,
                   std::optional<double> step) {
-  const SystemChoice choice = armChoice(coordinate, lock, integrator, step);
+  const SystemChoice choice = armChoice(given, {trial}, coordinate, lock, integrator, step);
   bio::TrialReplay replayed;
   const bio::Trajectory& motion = replayed.motion;
   bio::MuscleReport muscles;
@@ -152,17 +153,23 @@ bio::SimulationOptions SystemChoice::simulation() const {
   return options;
 }
 
-SystemChoice armChoice(const Names& coordinate, const std::map<std::string, double>& lock,
+SystemChoice armChoice(const bio::Model& model, const std::vector<bio::Trial>& trials,
+                       const Names& coordinate, const std::map<std::string, double>& lock,
                        const std::string& integrator, std::optional<double> step) {
   if (step && !(*step > 0)) {
     throw std::invalid_argument(fmt::format("step = {} s, must be > 0", *step));
   }
   const auto* one = std::get_if<std::string>(&coordinate);
-  return {.coordinates =
-              one ? std::vector<std::string>{*one} : std::get<std::vector<std::string>>(coordinate),
-          .locks = lock,
-          .integrator = integrator,
-          .step = step};
+  std::vector<std::string> free =
+      one ? std::vector<std::string>{*one} : std::get<std::vector<std::string>>(coordinate);
+  if (free.empty()) {
+    std::set<std::string> locked, measured;
+    for (const auto& [name, value] : lock) locked.insert(name);
+    for (const bio::Trial& trial : trials)
+      for (const bio::MeasuredMotion& motion : trial.measured) measured.insert(motion.coordinate);
+    free = bio::freeByDefault(model, locked, measured);
+  }
+  return {.coordinates = std::move(free), .locks = lock, .integrator = integrator, .step = step};
 }
 
 std::string digestOf(const py::object& bytes) {

@@ -16,8 +16,8 @@ namespace python {
 
 /// The options that most functions of arms have.
 struct SystemChoice {
-  std::vector<std::string> coordinates = {"elbow_flexion"};  ///< free
-  std::map<std::string, double> locks;                       ///< [rad] or [m]
+  std::vector<std::string> coordinates;  ///< free
+  std::map<std::string, double> locks;   ///< [rad] or [m]
   std::string integrator = "vi";
   std::optional<double> step;  ///< [s]; none: the integrator's default
 
@@ -29,8 +29,10 @@ struct SystemChoice {
 /// A name or a list of them.
 using Names = std::variant<std::string, std::vector<std::string>>;
 
-/// @throws std::invalid_argument for a step that is not > 0
-SystemChoice armChoice(const Names& coordinate, const std::map<std::string, double>& lock,
+/// @param trials  if no coordinate is named, bio::freeByDefault takes those that they measure
+/// @throws std::invalid_argument for a step that is not > 0, and what freeByDefault throws
+SystemChoice armChoice(const bio::Model& model, const std::vector<bio::Trial>& trials,
+                       const Names& coordinate, const std::map<std::string, double>& lock,
                        const std::string& integrator, std::optional<double> step);
 
 /// Defines a function whose last four arguments are those of armChoice(), by name.
@@ -38,7 +40,7 @@ SystemChoice armChoice(const Names& coordinate, const std::map<std::string, doub
 template <class Function, class... Annotations>
 void defineWithChoice(py::module_& module, const char* name, Function function,
                       const Annotations&... before) {
-  module.def(name, function, before..., "coordinate"_a = "elbow_flexion",
+  module.def(name, function, before..., "coordinate"_a = std::vector<std::string>(),
              "lock"_a = std::map<std::string, double>(), "integrator"_a = "vi",
              "step"_a = py::none());
 }

@@ -40,7 +40,7 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
                      bool ownStart, int starts, std::uint64_t seed, int threads,
                      const Names& coordinate, const std::map<std::string, double>& lock,
                      const std::string& integrator, std::optional<double> step) {
-  const SystemChoice choice = armChoice(coordinate, lock, integrator, step);
+  const SystemChoice choice = armChoice(model, trials, coordinate, lock, integrator, step);
   for (const auto* set : {&trials, &holdOut})
     for (const bio::Trial& trial : *set) mustBeOfTheModelAsItIs(trial);
   bio::CalibrationOptions options;

@@ -145,7 +145,7 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
                     const std::vector<std::string>& without, int maxEffects,
                     const Names& coordinate, const std::map<std::string, double>& lock,
                     const std::string& integrator, std::optional<double> firstStep) {
-  const SystemChoice choice = armChoice(coordinate, lock, integrator, firstStep);
+  const SystemChoice choice = armChoice(model, trials, coordinate, lock, integrator, firstStep);
   if (choice.coordinates.size() != 1) {
     throw std::invalid_argument("coordinate: several are free, must be one for discover");
   }

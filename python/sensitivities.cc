@@ -14,7 +14,7 @@ py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& t
                        const std::vector<std::string>& parameters, double noise,
                        const Names& freeCoordinates, const std::map<std::string, double>& lock,
                        const std::string& integrator, std::optional<double> step) {
-  const SystemChoice choice = armChoice(freeCoordinates, lock, integrator, step);
+  const SystemChoice choice = armChoice(model, trials, freeCoordinates, lock, integrator, step);
   if (trials.empty()) throw std::invalid_argument("trials: empty, must have at least one");
   std::vector<Eigen::MatrixXd> gammas;
   std::vector<Eigen::VectorXd> outputs, times;
@@ -67,7 +67,7 @@ py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& t
 py::list listParameters(const bio::Model& model, const Names& coordinate,
                         const std::map<std::string, double>& lock, const std::string& integrator,
                         std::optional<double> step) {
-  const SystemChoice choice = armChoice(coordinate, lock, integrator, step);
+  const SystemChoice choice = armChoice(model, {}, coordinate, lock, integrator, step);
   const bio::MusculoskeletalSystem arm(model, choice.armOptions());
   const bio::ParameterCatalogue catalogue(model, arm, {arm.skeleton().defaultValues(), {}});
   py::list list;

@@ -116,6 +116,7 @@ class Calibrate : public Command {
 
     const bio::Model model = bio::readOsim(model_);
     for (const std::string& warning : model.warnings) summary.warn(warning);
+    chooseCoordinates(simulation_, model, trials_);
     const bio::TrialSet training(model, armOptions(simulation_), read(trials_, model, summary),
                                  typed.trials);
     for (const std::string& warning : training.arm().warnings()) summary.warn(warning);
@@ -168,9 +169,10 @@ class Calibrate : public Command {
   }
 
  private:
-  ExitStatus listAll(const CommandContext& context) const {
+  ExitStatus listAll(const CommandContext& context) {
     Summary summary(context);
     const bio::Model model = readModel(model_, summary);
+    chooseCoordinates(simulation_, model, trials_);
     return listParameters(context, model, movableSystem(model, model_, simulation_, summary));
   }
 

@@ -56,6 +56,7 @@ class Compare : public Command {
     OutputFolder folder(context, {"compare.csv"});
     Summary summary(context);
     const bio::Model model = readModel(model_, summary);
+    chooseCoordinates(simulation_, model, {trial_});
     const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
     const TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
     const auto& free = arm.skeleton().coordinates();

@@ -130,6 +130,7 @@ class Design : public Command {
     OutputFolder folder(context, {"design.sto"});
     Summary summary(context);
     const bio::Model model = readModel(model_, summary);
+    chooseCoordinates(simulation_, model, {trial_});
     const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
     const TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
     const bio::ParameterCatalogue catalogue(model, arm, {input.start.q, {}});
@@ -179,6 +180,7 @@ class Design : public Command {
     OutputFolder folder(context, {"design.sto"});
     Summary summary(context);
     const bio::Model model = readModel(model_, summary);
+    chooseCoordinates(simulation_, model, {trial_});
     const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
     summary.addInput(trial_);
     const bio::Trial trial = readTrialFile(trial_, model, simulation_, true);

@@ -47,9 +47,10 @@ nlohmann::ordered_json effectJson(const bio::discover::EncompassingModel& model,
 }  // namespace
 
 ExitStatus listEffects(const CommandContext& context, const std::string& file,
-                       const SimulationOptions& simulation) {
+                       SimulationOptions simulation) {
   Summary summary(context);
   const bio::Model model = readModel(file, summary);
+  chooseCoordinates(simulation, model, {});
   movableSystem(model, file, simulation, summary);  // warns and refuses as a search would
   const bio::discover::EncompassingModel encompassing = bio::discover::encompassingModel(
       model, armOptions(simulation), observedCoordinate(simulation));

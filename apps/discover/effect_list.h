@@ -11,6 +11,6 @@ namespace app {
 /// that the same data never tell from it. Effects that the model already has come last.
 /// @throws std::invalid_argument, bio::FileError for bad input
 ExitStatus listEffects(const CommandContext& context, const std::string& model,
-                       const SimulationOptions& simulation);
+                       SimulationOptions simulation);
 
 }  // namespace app

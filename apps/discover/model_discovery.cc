@@ -60,8 +60,7 @@ std::string observedCoordinate(const SimulationOptions& simulation) {
   return simulation.coordinates.front();
 }
 
-ModelDiscovery discoverInModel(const ModelDiscoveryRequest& request,
-                               const CommandContext& context) {
+ModelDiscovery discoverInModel(ModelDiscoveryRequest request, const CommandContext& context) {
   std::vector<std::string> files = request.trials;
   files.insert(files.end(), request.heldOut.begin(), request.heldOut.end());
   const std::vector<std::string> names =
@@ -69,6 +68,7 @@ ModelDiscovery discoverInModel(const ModelDiscoveryRequest& request,
   OutputFolder folder(context, names);
   Summary summary(context);
   const bio::Model model = readModel(request.model, summary);
+  chooseCoordinates(request.simulation, model, request.trials);
   std::vector<bio::Trial> trials;
   for (const std::string& file : files) {
     summary.addInput(file);

@@ -33,6 +33,6 @@ std::string observedCoordinate(const SimulationOptions& simulation);
 
 /// Searches, writes verdict.json, the model with the effect and a report, and delivers them.
 /// @throws std::exception for bad input, Interrupted after Ctrl-C
-ModelDiscovery discoverInModel(const ModelDiscoveryRequest& request, const CommandContext& context);
+ModelDiscovery discoverInModel(ModelDiscoveryRequest request, const CommandContext& context);
 
 }  // namespace app

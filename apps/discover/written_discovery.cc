@@ -17,7 +17,7 @@ using bio::discover::RepairedTrial;
 /// The options of a command that say what is simulated.
 std::string optionsOf(const SimulationOptions& options, bool withStep) {
   std::string text;
-  if (options.coordinates != SimulationOptions().coordinates)
+  if (!options.areChosen)
     for (const std::string& name : options.coordinates) text += " --coordinate " + shellWord(name);
   for (const Assignment& lock : options.locks)
     text += " --lock " + shellWord(fmt::format("{}={}", lock.name, lock.value));

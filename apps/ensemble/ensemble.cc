@@ -214,10 +214,9 @@ class Ensemble : public Command {
   }
 
   /// By pointer, since the ensemble points into it.
-  std::unique_ptr<const EnsembleStudy> prepare(Summary& summary) const {
-    if (simulation_.coordinates.empty())
-      throw std::invalid_argument("--coordinate: must name at least one");
+  std::unique_ptr<const EnsembleStudy> prepare(Summary& summary) {
     const bio::Model model = readModel(model_, summary);
+    chooseCoordinates(simulation_, model, {trial_});
     const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
     TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
     bio::ParameterCatalogue catalogue(model, arm, {input.start.q, input.start.qDot});

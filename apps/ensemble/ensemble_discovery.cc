@@ -68,9 +68,12 @@ std::vector<DataSet> dataSetsIn(const fs::path& folder) {
 }
 
 /// Every file is read once before anything long begins; all become inputs of the summary.
-void checkSets(const ModelDiscoveryRequest& each, const std::vector<DataSet>& sets,
-               Summary& summary) {
+void checkSets(ModelDiscoveryRequest& each, const std::vector<DataSet>& sets, Summary& summary) {
   const bio::Model model = readModel(each.model, summary);
+  std::vector<std::string> training;
+  for (const DataSet& set : sets)
+    training.insert(training.end(), set.training.begin(), set.training.end());
+  chooseCoordinates(each.simulation, model, training);
   (void)movableSystem(model, each.model, each.simulation, summary);
   for (const DataSet& set : sets) {
     for (const auto* files : {&set.training, &set.heldOut}) {
@@ -133,7 +136,7 @@ Report discoveryReport(const std::vector<std::vector<std::string>>& rows, const 
 
 }  // namespace
 
-ExitStatus discoverInSets(const ModelDiscoveryRequest& each, const fs::path& folder,
+ExitStatus discoverInSets(ModelDiscoveryRequest each, const fs::path& folder,
                           const CommandContext& context, WorkerPool& pool, int threads) {
   const std::vector<DataSet> sets = dataSetsIn(folder);
   RowWork work;

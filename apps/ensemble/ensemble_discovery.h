@@ -14,7 +14,7 @@ namespace app {
 /// in verdicts/NAME, and verdicts.csv has one row per set; a set that has its row is skipped.
 /// @param each the model and the options for all sets; its trials are ignored
 /// @throws std::exception for bad input, Interrupted after Ctrl-C
-ExitStatus discoverInSets(const ModelDiscoveryRequest& each, const std::filesystem::path& folder,
+ExitStatus discoverInSets(ModelDiscoveryRequest each, const std::filesystem::path& folder,
                           const CommandContext& context, WorkerPool& pool, int threads);
 
 }  // namespace app

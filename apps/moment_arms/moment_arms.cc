@@ -41,6 +41,7 @@ class MomentArms : public Command {
     OutputFolder folder(context, {"moment_arms.csv"});
     Summary summary(context);
     const bio::Model model = readModel(model_, summary);
+    chooseCoordinates(model_options_, model, {});
     const bio::SkeletonOptions options = armOptions(model_options_).skeleton;
     const bio::Skeleton skeleton(model, options);
     for (const std::string& remark : lockRemarks(model, options)) summary.warn(remark);

@@ -48,11 +48,13 @@ nlohmann::ordered_json settingsOf(const SimulationOptions& options) {
 }
 
 void addModelOptions(CLI::App& subcommand, SimulationOptions& options) {
-  subcommand.add_option("--coordinate", options.coordinates, "free coordinate; may be repeated")
+  subcommand
+      .add_option("--coordinate", options.coordinates,
+                  "free coordinate; may be repeated; default: the measured coordinates of the "
+                  "trials, else all that the model does not lock")
       ->type_name("NAME")
       ->allow_extra_args(false)
       ->delimiter(',')
-      ->capture_default_str()
       ->group(modelGroup);
   addAssignments(subcommand, "--lock", options.locks,
                  "value at which another coordinate is locked, as 30deg or 0.52 (rad; m if it "

@@ -13,9 +13,10 @@ namespace app {
 /// The options that every subcommand with a simulation has, as they were typed; names are checked
 /// against the model later.
 struct SimulationOptions {
-  std::string integrator = "vi";                             ///< vi, vi-left, rk4 or cvode
-  std::optional<double> step;                                ///< Δt [s] > 0; see stepOrDefault
-  std::vector<std::string> coordinates = {"elbow_flexion"};  ///< the free ones
+  std::string integrator = "vi";         ///< vi, vi-left, rk4 or cvode
+  std::optional<double> step;            ///< Δt [s] > 0; see stepOrDefault
+  std::vector<std::string> coordinates;  ///< the free ones; empty: chooseCoordinates() chooses
+  bool areChosen = false;                ///< `coordinates` were chosen, not typed
   std::vector<Assignment> locks;    ///< values of locked coordinates that differ from the defaults
   std::vector<Assignment> initial;  ///< start values of free coordinates
   std::vector<std::string> wrapAsCylinder;  ///< ellipsoids to treat as cylinders

@@ -4,9 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 
 #include "bio/analysis/replay.h"
+#include "bio/model/free_coordinates.h"
 #include "bio/opensim/osim_file.h"
 #include "bio/tables/trial_review.h"
 #include "options/system_options.h"
@@ -40,6 +42,20 @@ bio::Model readModel(const std::string& file, Summary& summary) {
   bio::Model model = bio::readOsim(file);
   for (const std::string& warning : model.warnings) summary.warn(warning);
   return model;
+}
+
+void chooseCoordinates(SimulationOptions& options, const bio::Model& model,
+                       const std::vector<std::string>& trials) {
+  if (!options.coordinates.empty()) return;
+  options.areChosen = true;
+  std::set<std::string> locked, measured;
+  for (const Assignment& lock : options.locks) locked.insert(lock.name);
+  for (const std::string& file : trials) {
+    const bio::Trial trial = bio::readTrial(
+        file, model, {.ignoreExtra = options.ignoreExtra, .experimentalConditions = true});
+    for (const bio::MeasuredMotion& motion : trial.measured) measured.insert(motion.coordinate);
+  }
+  options.coordinates = bio::freeByDefault(model, locked, measured);
 }
 
 bio::MusculoskeletalSystem movableSystem(const bio::Model& model, const std::string& file,

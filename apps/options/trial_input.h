@@ -22,6 +22,12 @@ void addTrialArgument(CLI::App& subcommand, std::string& trial);
 /// @throws what readOsim throws
 bio::Model readModel(const std::string& file, Summary& summary);
 
+/// Chooses the free coordinates if none were typed: bio::freeByDefault with what the trials
+/// measure.
+/// @throws what readTrial and freeByDefault throw
+void chooseCoordinates(SimulationOptions& options, const bio::Model& model,
+                       const std::vector<std::string>& trials);
+
 /// The system with the free coordinates that the model options choose.
 /// @param file  the model's, for the message
 /// @throws std::invalid_argument what MusculoskeletalSystem throws, or if no muscle moves the free

@@ -31,6 +31,7 @@ class Replay : public Command {
     OutputFolder folder(context, {"states.sto", "forces.sto"});
     Summary summary(context);
     bio::Model model = readModel(model_, summary);
+    chooseCoordinates(simulation_, model, {trial_});
     summary.addInput(trial_);
     const bio::Trial trial = readTrialFile(trial_, model, simulation_, true);
     for (const std::string& warning : trial.warnings) summary.warn(warning);

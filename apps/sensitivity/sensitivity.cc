@@ -87,6 +87,7 @@ class Sensitivity : public Command {
     OutputFolder folder(context, fileNames());
     Summary summary(context);
     const bio::Model model = readModel(model_, summary);
+    chooseCoordinates(simulation_, model, trials_);
     const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
     if (list_) return listParameters(context, model, arm);
 

@@ -218,7 +218,7 @@ def replay(
     trial: Trial,
     *,
     initial: dict[str, float] = {},
-    coordinate: str | Sequence[str] = "elbow_flexion",
+    coordinate: str | Sequence[str] = [],
     lock: dict[str, float] = {},
     integrator: _Integrator = "vi",
     step: float | None = None,
@@ -233,7 +233,8 @@ def replay(
         {coordinate: initial value [rad] or [m]}, at rest. Default: the fitted or first measured value,
         else the model's default value.
     coordinate : str or list of str
-        The free coordinate, or several.
+        The free coordinate, or several. Default: the measured coordinates of the trial, else all that
+        the model does not lock.
     lock : dict
         {coordinate: value [rad] or [m]} at which other coordinates are locked. Default: the model's
         default values.
@@ -297,7 +298,7 @@ class ModelParameter:
 def list_parameters(
     model: Model,
     *,
-    coordinate: str | Sequence[str] = "elbow_flexion",
+    coordinate: str | Sequence[str] = [],
     lock: dict[str, float] = {},
     integrator: _Integrator = "vi",
     step: float | None = None,
@@ -358,7 +359,7 @@ def sensitivity(
     parameters: Sequence[str],
     *,
     noise: float = 0.017453292519943295,
-    coordinate: str | Sequence[str] = "elbow_flexion",
+    coordinate: str | Sequence[str] = [],
     lock: dict[str, float] = {},
     integrator: _Integrator = "vi",
     step: float | None = None,
@@ -457,7 +458,7 @@ def calibrate(
     starts: int = 1,
     seed: int = 1,
     threads: int = 1,
-    coordinate: str | Sequence[str] = "elbow_flexion",
+    coordinate: str | Sequence[str] = [],
     lock: dict[str, float] = {},
     integrator: _Integrator = "vi",
     step: float | None = None,
@@ -658,7 +659,7 @@ def discover(
     noise: float | None = None,
     without: Sequence[str] = [],
     max_effects: int = 3,
-    coordinate: str | Sequence[str] = "elbow_flexion",
+    coordinate: str | Sequence[str] = [],
     lock: dict[str, float] = {},
     integrator: _Integrator = "vi",
     step: float | None = None,

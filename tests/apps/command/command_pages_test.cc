@@ -107,7 +107,7 @@ TEST_F(Pages, ManPageTellsValuesAsTheyAreTyped) {
   for (const char* entry :
        {"\\fB\\-\\-prior\\fR \\fINAME=MEAN:SD\\fR\n", "\\fB\\-\\-out\\fR \\fIDIR\\fR\n",
         "\\fB\\-\\-starts\\fR \\fIN\\fR\n", "\\fB\\-\\-loss\\fR \\fBgaussian|huber|student\\fR\n",
-        "may be repeated; default elbow_flexion\n", "fisherhill check\\fR \\fIFILE\\fR... ["}) {
+        "may be repeated; default: the measured", "fisherhill check\\fR \\fIFILE\\fR... ["}) {
     EXPECT_THAT(page, testing::HasSubstr(entry));
   }
 }

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "bio/model/model.h"
+
+namespace bio {
+
+/// The free coordinates of a simulation if its user names none, in the order of the model: those
+/// that the model does not lock and that are measured; if there is none, those measured; without a
+/// measurement all that the model does not lock. Dependent coordinates of couplers are left out. If
+/// only one coordinate can be free it is that one, measured or not.
+/// @param locked    coordinates that the user locks; left out
+/// @param measured  names of the measured coordinates; may be empty
+/// @throws std::invalid_argument if all coordinates are locked; names those of `locked`
+std::vector<std::string> freeByDefault(const Model& model, const std::set<std::string>& locked,
+                                       const std::set<std::string>& measured);
+
+}  // namespace bio

@@ -1,0 +1,31 @@
+#include "bio/model/free_coordinates.h"
+
+#include <stdexcept>
+
+#include "bio/skeleton/articulated_tree.h"
+
+namespace bio {
+
+std::vector<std::string> freeByDefault(const Model& model, const std::set<std::string>& locked,
+                                       const std::set<std::string>& measured) {
+  std::vector<std::string> movable, unlocked;
+  for (const std::string& name : independentCoordinates(model)) {
+    if (locked.contains(name)) continue;
+    movable.push_back(name);
+    if (!findCoordinate(model, name).locked) unlocked.push_back(name);
+  }
+  if (unlocked.size() == 1) return unlocked;
+  const auto amongMeasured = [&](const std::vector<std::string>& names) {
+    std::vector<std::string> found;
+    for (const std::string& name : names)
+      if (measured.contains(name)) found.push_back(name);
+    return found;
+  };
+  for (const auto& found : {amongMeasured(unlocked), amongMeasured(movable), unlocked})
+    if (!found.empty()) return found;
+  std::string message = "every coordinate of the model is locked: none can be free";
+  for (const std::string& name : locked) message += "; " + name + " is locked by request";
+  throw std::invalid_argument(message);
+}
+
+}  // namespace bio

@@ -1,0 +1,60 @@
+#include "bio/model/free_coordinates.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "bio/opensim/osim_file.h"
+#include "support/throws_saying.h"
+
+namespace bio {
+namespace {
+
+using testing::ElementsAre;
+
+// The shipped elbow with only these coordinates unlocked.
+Model elbowWithUnlocked(const std::set<std::string>& names) {
+  Model model = readOsim(std::filesystem::path(FISHERHILL_SOURCE_DIR) / "models/elbow8.osim");
+  for (Joint& joint : model.joints)
+    for (Coordinate& one : joint.coordinates) one.locked = !names.contains(one.name);
+  return model;
+}
+
+TEST(FreeByDefault, IsTheOnlyUnlockedCoordinateWhateverIsMeasured) {
+  const Model model = elbowWithUnlocked({"elbow_flexion"});
+  EXPECT_THAT(freeByDefault(model, {}, {}), ElementsAre("elbow_flexion"));
+  EXPECT_THAT(freeByDefault(model, {}, {"elbow_flexion", "shoulder_elv"}),
+              ElementsAre("elbow_flexion"));
+}
+
+TEST(FreeByDefault, AreTheMeasuredAmongSeveralUnlocked) {
+  const Model model = elbowWithUnlocked({"elbow_flexion", "pro_sup", "shoulder_elv"});
+  EXPECT_THAT(freeByDefault(model, {}, {"pro_sup", "elbow_flexion", "deviation"}),
+              ElementsAre("elbow_flexion", "pro_sup"));
+  EXPECT_THAT(freeByDefault(model, {"elbow_flexion"}, {"pro_sup", "elbow_flexion"}),
+              ElementsAre("pro_sup"));
+}
+
+TEST(FreeByDefault, AreTheMeasuredWhereTheModelLocksThem) {
+  EXPECT_THAT(freeByDefault(elbowWithUnlocked({"elbow_flexion", "pro_sup"}), {}, {"shoulder_elv"}),
+              ElementsAre("shoulder_elv"));
+  EXPECT_THAT(freeByDefault(elbowWithUnlocked({}), {}, {"shoulder_elv"}),
+              ElementsAre("shoulder_elv"));
+}
+
+TEST(FreeByDefault, AreAllUnlockedWithoutAMeasurement) {
+  const Model model = elbowWithUnlocked({"elbow_flexion", "pro_sup", "shoulder_elv"});
+  EXPECT_THAT(freeByDefault(model, {}, {}),
+              ElementsAre("shoulder_elv", "elbow_flexion", "pro_sup"));
+}
+
+TEST(FreeByDefault, RefusesAModelThatLocksAll) {
+  support::throwsSaying([] { freeByDefault(elbowWithUnlocked({}), {}, {}); },
+                        "every coordinate of the model is locked");
+  support::throwsSaying(
+      [] { freeByDefault(elbowWithUnlocked({"elbow_flexion"}), {"elbow_flexion"}, {}); },
+      "elbow_flexion is locked by request");
+}
+
+}  // namespace
+}  // namespace bio
