@@ -130,6 +130,17 @@ void readCondition(const Reading& reading, const Element& element, PathPoint& po
   point.condition = condition;
 }
 
+// As OpenSim's MovingPathPoint does; a name that the model lacks is refused later.
+void holdWithinRange(const Model& model, const std::string& name, Function& function) {
+  for (const Joint& joint : model.joints) {
+    for (const Coordinate& coordinate : joint.coordinates) {
+      if (coordinate.name != name) continue;
+      function.low = coordinate.rangeMin;
+      function.high = coordinate.rangeMax;
+    }
+  }
+}
+
 void readMotion(Reading& reading, const Element& element, PathPoint& point) {
   PointMotion motion;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -146,6 +157,7 @@ void readMotion(Reading& reading, const Element& element, PathPoint& point) {
                                                                       : nullptr;
     if (property && !readText(reading.source, element, property).empty()) {
       motion.coordinate[i] = readCoordinateName(reading, element, property);
+      holdWithinRange(reading.model, motion.coordinate[i], motion.location[i]);
     } else if (!std::holds_alternative<ConstantFunction>(motion.location[i].shape)) {
       fail(reading.source, element, fmt::format("{} is missing, must be given", plain));
     }

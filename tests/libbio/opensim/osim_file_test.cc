@@ -108,6 +108,8 @@ TEST_F(SharedModel, OpenSim3ArmHasTheNumbersOfItsFile) {
   ASSERT_TRUE(moving.motion);
   EXPECT_EQ(moving.body, "radius");
   EXPECT_EQ(moving.motion->coordinate[2], "pro_sup");
+  EXPECT_EQ(moving.motion->location[2].low, findCoordinate(model, "pro_sup").rangeMin);
+  EXPECT_EQ(moving.motion->location[2].high, findCoordinate(model, "pro_sup").rangeMax);
   EXPECT_THAT(std::get<SplineFunction>(moving.motion->location[2].shape).y,
               ElementsAre(-0.01, -0.01358, -0.01083));
   EXPECT_THAT(std::get<PiecewiseLinearFunction>(moving.motion->location[1].shape).x,

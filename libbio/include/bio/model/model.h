@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <array>
+#include <limits>
 #include <optional>
 #include <string>
 #include <variant>
@@ -48,12 +49,15 @@ struct PolynomialFunction {
   friend bool operator==(const PolynomialFunction&, const PolynomialFunction&) = default;
 };
 
-/// scale · shape(x); nested MultiplierFunctions are multiplied out into `scale`.
+/// scale · shape(x), x held within low … high; nested MultiplierFunctions are multiplied out into
+/// `scale`.
 struct Function {
   double scale = 1;
   std::variant<ConstantFunction, LinearFunction, SplineFunction, PiecewiseLinearFunction,
                PolynomialFunction>
       shape;
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
   friend bool operator==(const Function&, const Function&) = default;
 };
 
@@ -142,7 +146,8 @@ struct PointCondition {
   friend bool operator==(const PointCondition&, const PointCondition&) = default;
 };
 
-/// Location by three functions of coordinates.
+/// Location by three functions of coordinates, each held within its coordinate's range as in
+/// OpenSim: beyond it the point stays where it is at the range's end.
 struct PointMotion {
   std::array<std::string, 3> coordinate;  ///< empty: constant
   std::array<Function, 3> location;       ///< x, y, z in the body frame [m]

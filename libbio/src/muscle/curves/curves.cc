@@ -152,6 +152,21 @@ std::variant<PiecewiseCubic, PolynomialFunction> compileShape(const Function& fu
   return std::visit(Compile{}, function.shape);
 }
 
+// The curve between low and high, its value there beyond them.
+PiecewiseCubic held(const PiecewiseCubic& curve, double low, double high) {
+  std::vector<double> knots{low};
+  std::vector<PiecewiseCubic::Segment> segments{{low, curve.evaluate(low).value, 0, 0, 0},
+                                                curve.segmentAt(low)};
+  for (const double knot : curve.knots()) {
+    if (!(low < knot && knot < high)) continue;
+    knots.push_back(knot);
+    segments.push_back(curve.segmentAt(knot));
+  }
+  knots.push_back(high);
+  segments.push_back({high, curve.evaluate(high).value, 0, 0, 0});
+  return {std::move(knots), std::move(segments)};
+}
+
 }  // namespace
 
 PiecewiseCubic::PiecewiseCubic(std::vector<double> knots, std::vector<Segment> segments)
@@ -175,7 +190,20 @@ PiecewiseLinear::PiecewiseLinear(const PiecewiseLinearFunction& points)
     : PiecewiseCubic(polyline(points)) {}
 
 FunctionEvaluator::FunctionEvaluator(const Function& function)
-    : scale_(function.scale), shape_(compileShape(function)) {}
+    : scale_(function.scale),
+      shape_(compileShape(function)),
+      low_(function.low),
+      high_(function.high) {
+  if (!std::isfinite(low_) && !std::isfinite(high_)) return;
+  if (!(low_ <= high_)) {
+    throw std::invalid_argument(
+        fmt::format("a function is held within {} to {}, must not fall", low_, high_));
+  }
+  if (const auto* curve = std::get_if<PiecewiseCubic>(&shape_)) {
+    constexpr double most = std::numeric_limits<double>::max();
+    shape_ = held(*curve, std::max(low_, -most), std::min(high_, most));
+  }
+}
 
 bool FunctionEvaluator::isIdentity() const {
   const auto* curve = std::get_if<PiecewiseCubic>(&shape_);
@@ -188,6 +216,9 @@ CurveValue FunctionEvaluator::evaluate(double x) const {
   if (const auto* curve = std::get_if<PiecewiseCubic>(&shape_)) {
     const CurveValue y = curve->evaluate(x);
     return {scale_ * y.value, scale_ * y.slope, scale_ * y.curvature, scale_ * y.third};
+  }
+  if (x < low_ || x > high_) {
+    return {this->value(std::clamp(x, low_, high_)), 0, 0, 0};
   }
   // Horner's scheme for the polynomial and its first three derivatives.
   double value = 0, slope = 0, halfCurvature = 0, sixthThird = 0;

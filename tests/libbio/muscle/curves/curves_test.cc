@@ -2,12 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "support/elbow_curves.h"
 #include "support/finite_difference.h"
+#include "support/throws_saying.h"
 
 namespace bio {
 namespace {
@@ -235,6 +239,35 @@ TEST(FunctionEvaluator, GivesTheSameThroughTheScalarType) {
       EXPECT_NEAR(dual.derivatives()[0], y.slope, 1e-12 * (1 + std::abs(y.slope)));
     }
   }
+}
+
+TEST(FunctionEvaluator, HoldsItsArgumentWithinLowAndHigh) {
+  using First = info::Dual<1>;
+  const std::vector<Function> functions{{0.5, SplineFunction{{0, 1, 2, 4, 5}, {0, 1, 8, 64, 2}}},
+                                        {2, LinearFunction{3, 1}},
+                                        {1, PolynomialFunction{{1, -2, 0.5, 4, -1}}}};
+  for (const Function& free : functions) {
+    for (const auto& [low, high] : {std::pair{0.5, 4.5}, {1.2, 1.8}, {-1.0, 2.0}}) {
+      Function held = free;
+      held.low = low;
+      held.high = high;
+      const FunctionEvaluator evaluator(held), unheld(free);
+      for (const double x : {-3.0, 0.7, 1.25, 1.5, 1.75, 4.6, 9.0}) {
+        const bool isInside = low <= x && x <= high;
+        const CurveValue y = evaluator.evaluate(x);
+        const CurveValue expected = unheld.evaluate(std::clamp(x, low, high));
+        EXPECT_NEAR(y.value, expected.value, 1e-14 * (1 + std::abs(expected.value))) << x;
+        EXPECT_EQ(y.slope, isInside ? expected.slope : 0) << x;
+        const First dual = evaluator.value(First(x, 1, 0));
+        EXPECT_NEAR(dual.value(), y.value, 1e-12 * (1 + std::abs(y.value)));
+        EXPECT_NEAR(dual.derivatives()[0], y.slope, 1e-12 * (1 + std::abs(y.slope)));
+      }
+    }
+  }
+  Function wrong = functions[0];
+  wrong.low = 2;
+  wrong.high = 1;
+  support::throwsSaying([&] { FunctionEvaluator{wrong}; }, "must not fall");
 }
 
 // Steps and leaps over splines, a polyline and a curve without knots; borders, ends, no number.

@@ -121,7 +121,8 @@ class PiecewiseLinear : public PiecewiseCubic {
   explicit PiecewiseLinear(const PiecewiseLinearFunction& points);
 };
 
-/// Evaluates any function that a model file can hold: scale·shape(x).
+/// Evaluates any function that a model file can hold: scale·shape(x), constant below Function::low
+/// and above Function::high.
 class FunctionEvaluator {
  public:
   /// @throws std::invalid_argument for points that a spline or polyline cannot go through
@@ -138,8 +139,9 @@ class FunctionEvaluator {
       return T(scale_) * curve->value(x);
     }
     T sum(0.0);
+    const T within = plainValue(x) < low_ ? T(low_) : plainValue(x) > high_ ? T(high_) : x;
     for (const double c : std::get<PolynomialFunction>(shape_).coefficients) {
-      const T shifted = sum * x;
+      const T shifted = sum * within;
       sum = shifted + T(c);
     }
     return T(scale_) * sum;
@@ -147,7 +149,8 @@ class FunctionEvaluator {
 
  private:
   double scale_;
-  std::variant<PiecewiseCubic, PolynomialFunction> shape_;
+  std::variant<PiecewiseCubic, PolynomialFunction> shape_;  ///< a piecewise cubic is held itself
+  double low_, high_;                                       ///< hold a polynomial
 };
 
 }  // namespace bio
