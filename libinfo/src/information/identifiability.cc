@@ -131,6 +131,117 @@ std::string moves(const VectorXd& scaled, const VectorXd& s,
   return text;
 }
 
+// Cramér–Rao standard deviations and correlations within the determined subspace.
+void setAccuracy(IdentifiabilityReport& report, const VectorXd& s) {
+  const Index p = s.size();
+  const MatrixXd known = report.eigenvectors.rightCols(report.rank);
+  const MatrixXd covariance =
+      s.asDiagonal() *
+      (known * report.eigenvalues.tail(report.rank).cwiseInverse().asDiagonal() *
+       known.transpose()) *
+      s.asDiagonal();
+  report.sd = covariance.diagonal().cwiseSqrt();
+  report.correlation.resize(p, p);
+  for (Index i = 0; i < p; ++i)
+    for (Index j = 0; j < p; ++j)
+      report.correlation(i, j) = i == j ? 1.0 : covariance(i, j) / (report.sd[i] * report.sd[j]);
+}
+
+// The null directions in words; no accuracy where one reaches.
+void setUndetermined(IdentifiabilityReport& report, const MatrixXd& null, const VectorXd& s,
+                     const std::vector<Parameter>& parameters, ParameterScale scale) {
+  for (Index r = 0; r < null.rows(); ++r) {
+    UndeterminedDirection direction;
+    direction.direction = null.row(r).transpose().cwiseProduct(s);
+    direction.words = moves(null.row(r).transpose(), s, parameters, scale);
+    for (Index i = 0; i < s.size(); ++i) {
+      if (null(r, i) == 0) continue;
+      direction.parameters.push_back(parameters[static_cast<std::size_t>(i)].name);
+      report.sd[i] = std::numeric_limits<double>::infinity();
+      for (Index j = 0; j < s.size(); ++j)
+        if (i != j)
+          report.correlation(i, j) = report.correlation(j, i) =
+              std::numeric_limits<double>::quiet_NaN();
+    }
+    report.undetermined.push_back(std::move(direction));
+  }
+}
+
+// Null directions (rows) that share parameters (members).
+struct ConfoundedGroup {
+  std::vector<Index> rows, members;
+};
+
+std::vector<ConfoundedGroup> confoundedGroups(const MatrixXd& null) {
+  std::vector<ConfoundedGroup> groups;
+  std::vector<bool> done(static_cast<std::size_t>(null.rows()), false);
+  for (Index seed = 0; seed < null.rows(); ++seed) {
+    if (done[static_cast<std::size_t>(seed)]) continue;
+    std::vector<Index> rows{seed};
+    done[static_cast<std::size_t>(seed)] = true;
+    for (std::size_t n = 0; n < rows.size(); ++n)
+      for (Index r = 0; r < null.rows(); ++r)
+        if (!done[static_cast<std::size_t>(r)] &&
+            (null.row(r).array() * null.row(rows[n]).array() != 0).any()) {
+          done[static_cast<std::size_t>(r)] = true;
+          rows.push_back(r);
+        }
+    std::vector<Index> members;
+    for (Index i = 0; i < null.cols(); ++i)
+      if ((null(rows, i).array() != 0).any()) members.push_back(i);
+    groups.push_back({std::move(rows), std::move(members)});
+  }
+  return groups;
+}
+
+// The orthogonal complement of the group's directions: exponents, or coefficients in θ's units.
+std::vector<std::string> determinedCombinations(const ConfoundedGroup& group, const MatrixXd& null,
+                                                const VectorXd& s,
+                                                const std::vector<Parameter>& parameters,
+                                                ParameterScale scale) {
+  const auto& [rows, members] = group;
+  const MatrixXd part = null(rows, members);
+  const Eigen::JacobiSVD<MatrixXd> svd(part, Eigen::ComputeFullV);
+  const Index rest = static_cast<Index>(members.size() - rows.size());
+  const MatrixXd combinations = reducedRows(svd.matrixV().rightCols(rest).transpose());
+  std::vector<std::string> determined;
+  for (Index c = 0; c < rest; ++c) {
+    VectorXd full = VectorXd::Zero(s.size());
+    for (std::size_t m = 0; m < members.size(); ++m) {
+      const Index i = members[m];
+      const double entry = combinations(c, static_cast<Index>(m));
+      const double sign = parameters[static_cast<std::size_t>(i)].start < 0 ? -1 : 1;
+      full[i] = scale == ParameterScale::logarithmic ? sign * entry : entry / s[i];
+    }
+    full = simplest(full);
+    determined.push_back(scale == ParameterScale::logarithmic ? product(full, parameters)
+                                                              : sum(full, parameters));
+  }
+  return determined;
+}
+
+// What is determined of a group, and what is not.
+void addSentences(const ConfoundedGroup& group, IdentifiabilityReport& report, const MatrixXd& null,
+                  const VectorXd& s, const std::vector<Parameter>& parameters,
+                  ParameterScale scale) {
+  std::vector<std::string> names, changes;
+  for (Index i : group.members) names.push_back(parameters[static_cast<std::size_t>(i)].name);
+  for (Index r : group.rows)
+    changes.push_back(report.undetermined[static_cast<std::size_t>(r)].words);
+  if (group.members.size() == group.rows.size()) {
+    for (const std::string& name : names)
+      report.sentences.push_back(name + " has no effect on what is measured");
+    return;
+  }
+  const auto determined = determinedCombinations(group, null, s, parameters, scale);
+  report.determined.insert(report.determined.end(), determined.begin(), determined.end());
+  report.sentences.push_back(fmt::format(
+      "{} are not separately identifiable: only {} {} determined ({} together change no output)",
+      join(names), join(determined), determined.size() == 1 ? "is" : "are", changes.front()));
+  for (std::size_t n = 1; n < changes.size(); ++n)
+    report.sentences.back() += fmt::format("; nor do {}", changes[n]);
+}
+
 }  // namespace
 
 IdentifiabilityReport identifiability(const MatrixXd& information,
@@ -154,91 +265,15 @@ IdentifiabilityReport identifiability(const MatrixXd& information,
       largest > 0 ? (report.eigenvalues.array() <= tolerance * largest).count() : p;
   report.rank = p - nullity;
 
-  // what is known of the rest: pseudo-inverse, then infinities where a null direction reaches
-  const MatrixXd known = report.eigenvectors.rightCols(report.rank);
-  const MatrixXd covariance =
-      s.asDiagonal() *
-      (known * report.eigenvalues.tail(report.rank).cwiseInverse().asDiagonal() *
-       known.transpose()) *
-      s.asDiagonal();
-  report.sd = covariance.diagonal().cwiseSqrt();
-  report.correlation.resize(p, p);
-  for (Index i = 0; i < p; ++i)
-    for (Index j = 0; j < p; ++j)
-      report.correlation(i, j) = i == j ? 1.0 : covariance(i, j) / (report.sd[i] * report.sd[j]);
+  setAccuracy(report, s);
   if (nullity == 0) {
     report.sentences.push_back("all parameters are identifiable");
     return report;
   }
-
   const MatrixXd null = reducedRows(report.eigenvectors.leftCols(nullity).transpose());
-  for (Index r = 0; r < nullity; ++r) {
-    UndeterminedDirection direction;
-    direction.direction = null.row(r).transpose().cwiseProduct(s);
-    direction.words = moves(null.row(r).transpose(), s, parameters, scale);
-    for (Index i = 0; i < p; ++i) {
-      if (null(r, i) == 0) continue;
-      direction.parameters.push_back(parameters[static_cast<std::size_t>(i)].name);
-      report.sd[i] = std::numeric_limits<double>::infinity();
-      for (Index j = 0; j < p; ++j)
-        if (i != j)
-          report.correlation(i, j) = report.correlation(j, i) =
-              std::numeric_limits<double>::quiet_NaN();
-    }
-    report.undetermined.push_back(std::move(direction));
-  }
-
-  // groups: null directions that share parameters
-  std::vector<bool> done(static_cast<std::size_t>(nullity), false);
-  for (Index seed = 0; seed < nullity; ++seed) {
-    if (done[static_cast<std::size_t>(seed)]) continue;
-    std::vector<Index> rows{seed};
-    done[static_cast<std::size_t>(seed)] = true;
-    for (std::size_t n = 0; n < rows.size(); ++n)
-      for (Index r = 0; r < nullity; ++r)
-        if (!done[static_cast<std::size_t>(r)] &&
-            (null.row(r).array() * null.row(rows[n]).array() != 0).any()) {
-          done[static_cast<std::size_t>(r)] = true;
-          rows.push_back(r);
-        }
-    std::vector<Index> members;
-    std::vector<std::string> names, changes;
-    for (Index i = 0; i < p; ++i)
-      if ((null(rows, i).array() != 0).any()) {
-        members.push_back(i);
-        names.push_back(parameters[static_cast<std::size_t>(i)].name);
-      }
-    for (Index r : rows) changes.push_back(report.undetermined[static_cast<std::size_t>(r)].words);
-    if (members.size() == rows.size()) {
-      for (const std::string& name : names)
-        report.sentences.push_back(name + " has no effect on what is measured");
-      continue;
-    }
-    // orthogonal complement of the group's directions: exponents, or coefficients in θ's units
-    const MatrixXd part = null(rows, members);
-    const Eigen::JacobiSVD<MatrixXd> svd(part, Eigen::ComputeFullV);
-    const Index rest = static_cast<Index>(members.size() - rows.size());
-    const MatrixXd combinations = reducedRows(svd.matrixV().rightCols(rest).transpose());
-    std::vector<std::string> determined;
-    for (Index c = 0; c < rest; ++c) {
-      VectorXd full = VectorXd::Zero(p);
-      for (std::size_t m = 0; m < members.size(); ++m) {
-        const Index i = members[m];
-        const double entry = combinations(c, static_cast<Index>(m));
-        const double sign = parameters[static_cast<std::size_t>(i)].start < 0 ? -1 : 1;
-        full[i] = scale == ParameterScale::logarithmic ? sign * entry : entry / s[i];
-      }
-      full = simplest(full);
-      determined.push_back(scale == ParameterScale::logarithmic ? product(full, parameters)
-                                                                : sum(full, parameters));
-    }
-    report.determined.insert(report.determined.end(), determined.begin(), determined.end());
-    report.sentences.push_back(fmt::format(
-        "{} are not separately identifiable: only {} {} determined ({} together change no output)",
-        join(names), join(determined), determined.size() == 1 ? "is" : "are", changes.front()));
-    for (std::size_t n = 1; n < changes.size(); ++n)
-      report.sentences.back() += fmt::format("; nor do {}", changes[n]);
-  }
+  setUndetermined(report, null, s, parameters, scale);
+  for (const ConfoundedGroup& group : confoundedGroups(null))
+    addSentences(group, report, null, s, parameters, scale);
   return report;
 }
 

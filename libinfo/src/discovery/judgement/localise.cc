@@ -13,6 +13,149 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+namespace {
+
+/// Disturbances of the generalised force, each with its force at the nodes of every trial; those
+/// that are zero everywhere are left out.
+class Disturbances {
+ public:
+  Disturbances(const Likelihood& likelihood, const NodeStates& states)
+      : likelihood_(likelihood), states_(states), columns_(likelihood.trials().size()) {}
+
+  void addHats(double width);
+  void addCells(int cellsQ, int cellsQDot);
+  void addInputs();
+
+  std::vector<Score>& scores() { return scores_; }
+  /// The change of the outputs by each disturbance: per trial samples × disturbances.
+  std::vector<MatrixXd> outputs() const;
+
+ private:
+  /// @param forceOf the force at the nodes of a trial
+  template <class ForceOf>
+  void add(const Score& score, const ForceOf& forceOf);
+  VectorXd noForce(std::size_t trial) const {
+    return VectorXd::Zero(states_.linear[trial].force.cols());
+  }
+
+  const Likelihood& likelihood_;
+  const NodeStates& states_;
+  std::vector<Score> scores_;
+  std::vector<std::vector<VectorXd>> columns_;  // per trial
+};
+
+template <class ForceOf>
+void Disturbances::add(const Score& score, const ForceOf& forceOf) {
+  bool any = false;
+  std::vector<VectorXd> forces;
+  for (std::size_t t = 0; t < columns_.size(); ++t) {
+    forces.push_back(forceOf(t));
+    any = any || forces.back().squaredNorm() > 0;
+  }
+  if (!any) return;
+  for (std::size_t t = 0; t < columns_.size(); ++t)
+    columns_[t].push_back(states_.linear[t].force * forces[t]);
+  scores_.push_back(score);
+}
+
+// Hats in time, half a width apart.
+void Disturbances::addHats(double width) {
+  for (std::size_t t = 0; t < columns_.size(); ++t) {
+    const auto& nodes = likelihood_.data().latentTimes(likelihood_.trials()[t]);
+    const double half = 0.5 * width;
+    for (double middle = nodes.front(); middle <= nodes.back() + 1e-9; middle += half) {
+      Score score;
+      score.trial = likelihood_.trials()[t];
+      score.from = middle - half;
+      score.to = middle + half;
+      add(score, [&](std::size_t of) {
+        VectorXd f = noForce(of);
+        if (of == t)
+          for (Index i = 0; i < f.size(); ++i)
+            f[i] = std::max(0.0, 1 - std::abs(nodes[static_cast<std::size_t>(i)] - middle) / half);
+        return f;
+      });
+    }
+  }
+}
+
+struct StateRange {
+  double lowestQ = 1e300, highestQ = -1e300, lowestQDot = 1e300, highestQDot = -1e300;
+};
+
+StateRange rangeOf(const NodeStates& states) {
+  StateRange range;
+  for (std::size_t t = 0; t < states.q.size(); ++t) {
+    range.lowestQ = std::min(range.lowestQ, states.q[t].minCoeff());
+    range.highestQ = std::max(range.highestQ, states.q[t].maxCoeff());
+    range.lowestQDot = std::min(range.lowestQDot, states.qDot[t].minCoeff());
+    range.highestQDot = std::max(range.highestQDot, states.qDot[t].maxCoeff());
+  }
+  return range;
+}
+
+// Cells of equal size in the visited part of (q, q̇).
+void Disturbances::addCells(int cellsQ, int cellsQDot) {
+  const auto& q = states_.q;
+  const auto& qDot = states_.qDot;
+  const StateRange range = rangeOf(states_);
+  const double widthQ = (range.highestQ - range.lowestQ) / cellsQ + 1e-12,
+               widthQDot = (range.highestQDot - range.lowestQDot) / cellsQDot + 1e-12;
+  for (int a = 0; a < cellsQ; ++a)
+    for (int b = 0; b < cellsQDot; ++b) {
+      Score score;
+      score.lowerQ = range.lowestQ + a * widthQ;
+      score.upperQ = score.lowerQ + widthQ;
+      score.lowerQDot = range.lowestQDot + b * widthQDot;
+      score.upperQDot = score.lowerQDot + widthQDot;
+      add(score, [&](std::size_t of) {
+        VectorXd f = noForce(of);
+        for (Index i = 0; i < f.size(); ++i)
+          f[i] = q[of][i] >= score.lowerQ && q[of][i] < score.upperQ &&
+                         qDot[of][i] >= score.lowerQDot && qDot[of][i] < score.upperQDot
+                     ? 1
+                     : 0;
+        return f;
+      });
+    }
+}
+
+// Forces proportional to an input.
+void Disturbances::addInputs() {
+  const auto names = likelihood_.data().inputNames();
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    Score score;
+    score.input = names[j];
+    add(score,
+        [&](std::size_t of) { return VectorXd(states_.inputs[of].col(static_cast<Index>(j))); });
+  }
+}
+
+std::vector<MatrixXd> Disturbances::outputs() const {
+  std::vector<MatrixXd> outputs;
+  const auto m = static_cast<Index>(scores_.size());
+  for (std::size_t t = 0; t < columns_.size(); ++t) {
+    MatrixXd block(states_.linear[t].residuals.size(), m);
+    for (Index j = 0; j < m; ++j) block.col(j) = columns_[t][static_cast<std::size_t>(j)];
+    outputs.push_back(std::move(block));
+  }
+  return outputs;
+}
+
+// z = g/√S and the most probable amplitude g/S of each disturbance.
+void setScores(std::vector<Score>& scores, const Likelihood::Projected& projected) {
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    const auto j = static_cast<Index>(i);
+    const double information = projected.information(j, j);
+    if (information > 1e-12) {
+      scores[i].z = projected.score[j] / std::sqrt(information);
+      scores[i].amplitude = projected.score[j] / information;
+    }
+  }
+}
+
+}  // namespace
+
 void benjaminiHochberg(std::vector<Score>& scores, double share) {
   std::vector<std::size_t> order(scores.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -30,110 +173,27 @@ void benjaminiHochberg(std::vector<Score>& scores, double share) {
 
 Localisation localise(const Likelihood& likelihood, const Fit& fit, const Fit& smoothing,
                       const LocaliseOptions& options) {
-  const DiscoveryProblem& data = likelihood.data();
-  const std::size_t n = likelihood.trials().size();
   Localisation result;
   result.trials = likelihood.trials();
 
   const NodeStates states = statesAtNodes(likelihood, fit);
-  const auto& linear = states.linear;
-  const auto& q = states.q;
-  const auto& qDot = states.qDot;
-  double range[4] = {1e300, -1e300, 1e300, -1e300};
-  for (std::size_t t = 0; t < n; ++t) {
-    range[0] = std::min(range[0], q[t].minCoeff());
-    range[1] = std::max(range[1], q[t].maxCoeff());
-    range[2] = std::min(range[2], qDot[t].minCoeff());
-    range[3] = std::max(range[3], qDot[t].maxCoeff());
-  }
+  Disturbances disturbances(likelihood, states);
+  std::vector<Score>& scores = disturbances.scores();
+  disturbances.addHats(options.width);
+  const auto numTimes = static_cast<std::ptrdiff_t>(scores.size());
+  disturbances.addCells(options.cellsQ, options.cellsQDot);
+  const auto numTimesAndCells = static_cast<std::ptrdiff_t>(scores.size());
+  disturbances.addInputs();
+  setScores(scores, likelihood.project(fit, states.linear, disturbances.outputs()));
 
-  // one column of force per element of the map
-  std::vector<Score> scores;
-  std::vector<std::vector<VectorXd>> columns(n);
-  const auto add = [&](const Score& score, const auto& forceOf) {
-    bool any = false;
-    std::vector<VectorXd> forces;
-    for (std::size_t t = 0; t < n; ++t) {
-      forces.push_back(forceOf(t));
-      any = any || forces.back().squaredNorm() > 0;
-    }
-    if (!any) return;
-    for (std::size_t t = 0; t < n; ++t) columns[t].push_back(linear[t].force * forces[t]);
-    scores.push_back(score);
-  };
-  for (std::size_t t = 0; t < n; ++t) {
-    const auto& nodes = data.latentTimes(likelihood.trials()[t]);
-    const double half = 0.5 * options.width;
-    for (double middle = nodes.front(); middle <= nodes.back() + 1e-9; middle += half) {
-      Score score;
-      score.trial = likelihood.trials()[t];
-      score.from = middle - half;
-      score.to = middle + half;
-      add(score, [&](std::size_t of) {
-        VectorXd f = VectorXd::Zero(linear[of].force.cols());
-        if (of == t)
-          for (Index i = 0; i < f.size(); ++i)
-            f[i] = std::max(0.0, 1 - std::abs(nodes[static_cast<std::size_t>(i)] - middle) / half);
-        return f;
-      });
-    }
-  }
-  const std::size_t numTimes = scores.size();
-  const double width[2] = {(range[1] - range[0]) / options.cellsQ + 1e-12,
-                           (range[3] - range[2]) / options.cellsQDot + 1e-12};
-  for (int a = 0; a < options.cellsQ; ++a)
-    for (int b = 0; b < options.cellsQDot; ++b) {
-      Score score;
-      score.lowerQ = range[0] + a * width[0];
-      score.upperQ = score.lowerQ + width[0];
-      score.lowerQDot = range[2] + b * width[1];
-      score.upperQDot = score.lowerQDot + width[1];
-      add(score, [&](std::size_t of) {
-        VectorXd f = VectorXd::Zero(linear[of].force.cols());
-        for (Index i = 0; i < f.size(); ++i)
-          f[i] = q[of][i] >= score.lowerQ && q[of][i] < score.upperQ &&
-                         qDot[of][i] >= score.lowerQDot && qDot[of][i] < score.upperQDot
-                     ? 1
-                     : 0;
-        return f;
-      });
-    }
-  const std::size_t numCells = scores.size() - numTimes;
-  const auto names = data.inputNames();
-  for (std::size_t j = 0; j < names.size(); ++j) {
-    Score score;
-    score.input = names[j];
-    add(score,
-        [&](std::size_t of) { return VectorXd(states.inputs[of].col(static_cast<Index>(j))); });
-  }
+  const auto cells = scores.begin() + numTimes, inputs = scores.begin() + numTimesAndCells;
+  result.times.assign(scores.begin(), cells);
+  result.cells.assign(cells, inputs);
+  result.inputs.assign(inputs, scores.end());
+  for (std::vector<Score>* map : {&result.times, &result.cells, &result.inputs})
+    benjaminiHochberg(*map, options.falseDiscoveries);
 
-  std::vector<MatrixXd> disturbances;
-  const auto m = static_cast<Index>(scores.size());
-  for (std::size_t t = 0; t < n; ++t) {
-    MatrixXd block(linear[t].residuals.size(), m);
-    for (Index j = 0; j < m; ++j) block.col(j) = columns[t][static_cast<std::size_t>(j)];
-    disturbances.push_back(std::move(block));
-  }
-  const auto projected = likelihood.project(fit, linear, disturbances);
-  for (Index j = 0; j < m; ++j) {
-    Score& score = scores[static_cast<std::size_t>(j)];
-    const double information = projected.information(j, j);
-    if (information > 1e-12) {
-      score.z = projected.score[j] / std::sqrt(information);
-      score.amplitude = projected.score[j] / information;
-    }
-  }
-  const auto from = scores.begin();
-  const auto cells = from + static_cast<std::ptrdiff_t>(numTimes);
-  const auto last = cells + static_cast<std::ptrdiff_t>(numCells);
-  result.times.assign(from, cells);
-  result.cells.assign(cells, last);
-  result.inputs.assign(last, scores.end());
-  benjaminiHochberg(result.times, options.falseDiscoveries);
-  benjaminiHochberg(result.cells, options.falseDiscoveries);
-  benjaminiHochberg(result.inputs, options.falseDiscoveries);
-
-  for (std::size_t t = 0; t < n; ++t) {
+  for (std::size_t t = 0; t < likelihood.trials().size(); ++t) {
     result.force.push_back(likelihood.force(t, smoothing));
     result.forceSd.push_back(likelihood.forceSd(t, smoothing));
   }

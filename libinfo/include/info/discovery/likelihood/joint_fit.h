@@ -136,6 +136,7 @@ class Likelihood {
   struct Point;
   struct Normal;
   struct Step;
+  class JointMinimisation;
   static double cost(const Noise& noise, const Point& point, double squares);
   double simulatedCost(const Noise& noise, const Point& point) const;
   Normal normalEquations(const std::vector<Linear>& trials, const Noise& noise,
