@@ -30,7 +30,7 @@ class VariationalRun {
         keptActivation_(static_cast<std::size_t>(options.maxHalvings) + 1, start.activation) {
     now_.q = start.q;
     configuration_.moveTo(now_.q);
-    now_.p = configuration_.inertia().massMatrix * start.qDot;
+    now_.p = configuration_.massMatrix() * start.qDot;
     now_.fibreLength = start.fibreLength;
     velocity_ = start.qDot;
     velocityBefore_ = velocity_;
@@ -181,7 +181,7 @@ class VariationalRun {
   /// q̇ = M⁻¹p at the end of the last step.
   Vector speed() {
     if (!arm_.skeleton().hasConstantInertia()) configuration_.moveSkeletonTo(now_.q);
-    return configuration_.inertia().massMatrix.ldlt().solve(now_.p);
+    return configuration_.massMatrix().ldlt().solve(now_.p);
   }
 
   const MusculoskeletalSystem& arm_;
@@ -209,7 +209,7 @@ class VariationalRun {
 Trajectory simulateVariational(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
                                const SystemState& start, const SimulationOptions& options,
                                StepTape* tape) {
-  return withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+  return withCoordinates(arm.skeleton(), [&](auto N) {
     return VariationalRun<decltype(N)::value>(arm, excitation, start, options, tape).run();
   });
 }

@@ -205,7 +205,7 @@ InertiaJet<N> Skeleton::inertia(const Eigen::Matrix<double, N, 1>& q,
   using Ad = info::Dual<N>;
   Eigen::Matrix<Ad, N, 1> qAd;
   for (int i = 0; i < N; ++i) qAd[i] = Ad(q[i], N, i);
-  std::array<RigidMotion<Ad, N>, maxSegments> movedAd;
+  std::array<RigidMotion<Ad, N>, maxFixedSegments> movedAd;
   motions<Ad, N>(qAd, movedAd.data());
   for (std::size_t s = 1; s < segments_.size(); ++s) {
     const auto& X = movedAd[s];
