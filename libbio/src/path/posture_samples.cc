@@ -102,13 +102,14 @@ std::vector<int> pathSupport(const Model& model, const Skeleton& skeleton, const
     if (index >= 0) support.insert(index);
   };
   for (const PathPoint& point : muscle.path.points) {
-    segments.insert(tree.placeOf(point.body).segment);
+    segments.insert(static_cast<int>(tree.placeOf(point.body).segment));
     if (point.condition) follow(point.condition->coordinate);
     if (!point.motion) continue;
     for (const std::string& coordinate : point.motion->coordinate) follow(coordinate);
   }
   for (const PathWrap& wrap : muscle.path.wraps) {
-    segments.insert(tree.placeOf(findWrapObject(model, wrap.wrapObject).body).segment);
+    const std::string& body = findWrapObject(model, wrap.wrapObject).body;
+    segments.insert(static_cast<int>(tree.placeOf(body).segment));
   }
   // two segments of the path move against each other by what is between each and the first
   for (const int segment : segments) {
@@ -125,8 +126,8 @@ const std::vector<Posture>& PostureSamples::of(const Muscle& muscle) {
   auto found = lists_.find(varying);
   if (found == lists_.end()) {
     found = lists_
-                .emplace(varying, few ? samplePostures(*skeleton_)
-                                      : samplePostures(*skeleton_, varying))
+                .emplace(varying,
+                         few ? samplePostures(*skeleton_) : samplePostures(*skeleton_, varying))
                 .first;
   }
   return found->second;

@@ -4,11 +4,13 @@
 
 namespace bio {
 
-RadiusDerivatives inRadius(const PathSurface& surface, const SpanSurface& way, const Eigen::Vector3d& P,
-                           const Eigen::Vector3d& Q) {
+RadiusDerivatives inRadius(const PathSurface& surface, const SpanSurface& way,
+                           const Eigen::Vector3d& P, const Eigen::Vector3d& Q) {
   using D = info::Dual<1>;
   const D radius(surface.radius, 1, 0);
-  const auto constant = [](const Eigen::Vector3d& v) { return Vec3<D>(D(v.x()), D(v.y()), D(v.z())); };
+  const auto constant = [](const Eigen::Vector3d& v) {
+    return Vec3<D>(D(v.x()), D(v.y()), D(v.z()));
+  };
   Vec3<D> from = constant(P), to = constant(Q);
   for (int i = 0; i < 3; ++i) {
     from[i].derivatives().setZero();

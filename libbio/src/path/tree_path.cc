@@ -57,8 +57,7 @@ TreePlaces::TreePlaces(const Skeleton& skeleton) {
   for (const Segment& segment : skeleton.segments()) {
     const BodyPlacement& inTree = tree.placeOf(segment.name);
     const BodyPlacement& inSkeleton = skeleton.placeOf(segment.name);
-    places_.push_back(
-        {static_cast<int>(inTree.segment), inTree.X_SB * inverse(inSkeleton.X_SB)});
+    places_.push_back({static_cast<int>(inTree.segment), inTree.X_SB * inverse(inSkeleton.X_SB)});
   }
 }
 
@@ -152,10 +151,10 @@ detail::SpanOverSurface detail::spanOverSurface(const CompiledPath& path,
     found.p_CP = found.X_GC.R.transpose() * (p_GP - found.X_GC.p);
     found.p_CQ = found.X_GC.R.transpose() * (p_GQ - found.X_GC.p);
     if (surfaceIsOutOfPlay(surface, surface.radius, over.way, found.p_CP, found.p_CQ)) continue;
-    found.span = surface.isSphere ? wrapSphereToSecondOrder(surface.radius, over.way.way,
-                                                            found.p_CP, found.p_CQ)
-                                  : wrapCylinderToSecondOrder(surface.radius, over.way.side,
-                                                              found.p_CP, found.p_CQ);
+    found.span =
+        surface.isSphere
+            ? wrapSphereToSecondOrder(surface.radius, over.way.way, found.p_CP, found.p_CQ)
+            : wrapCylinderToSecondOrder(surface.radius, over.way.side, found.p_CP, found.p_CQ);
     if (!found.span.span.touches) continue;
     used |= bit;
     found.over = &over;

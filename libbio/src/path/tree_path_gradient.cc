@@ -84,8 +84,7 @@ void PathGradients::addSurface(const TreeSpan& span, const detail::SpanOverSurfa
     const Vector3d gQ = s.span.hessian.d2L_dPdQ.transpose() * P_i + s.span.hessian.d2L_dQdQ * Q_i;
     wrap(0, column) += r.dL_dP.dot(P_i) + r.dL_dQ.dot(Q_i);
     wrap.block<3, 1>(1, column) -= intoBody * (gP + gQ);
-    const Vector3d moment_i =
-        s.p_CP.cross(gP) + P_i.cross(cP) + s.p_CQ.cross(gQ) + Q_i.cross(cQ);
+    const Vector3d moment_i = s.p_CP.cross(gP) + P_i.cross(cP) + s.p_CQ.cross(gQ) + Q_i.cross(cQ);
     wrap.block<3, 1>(4, column) -= frame.turnAxes.transpose() * moment_i;
     u[i] = R * gP;
     w[i] = R * gQ;
@@ -114,8 +113,7 @@ void PathGradients::evaluate(const Eigen::VectorXd& q, const TreePath& path,
     const TreeSpan span{piece, tree, motion, work, k};
     const Vector3d P = stationInGround(motion, piece.from);
     const Vector3d Q = stationInGround(motion, piece.to);
-    const detail::SpanOverSurface s =
-        detail::spanOverSurface(*path_, piece, motion, P, Q, used);
+    const detail::SpanOverSurface s = detail::spanOverSurface(*path_, piece, motion, P, Q, used);
     if (s.over) {
       slotMovesOf(s.over->toP, motion, P, work, u, k);
       slotMovesOf(s.over->toQ, motion, Q, work, w, k);

@@ -12,9 +12,8 @@ using Eigen::Vector3d;
 SpatialInertia<double> momentsInGround(const Segment& moments, const Placement<double>& X) {
   SpatialInertia<double> I;
   const Vector3d turned = X.R * moments.massMoment;
-  const Matrix3d second = X.R * moments.secondMoment * X.R.transpose() +
-                          turned * X.p.transpose() + X.p * turned.transpose() +
-                          moments.mass * X.p * X.p.transpose();
+  const Matrix3d second = X.R * moments.secondMoment * X.R.transpose() + turned * X.p.transpose() +
+                          X.p * turned.transpose() + moments.mass * X.p * X.p.transpose();
   const Matrix3d J = second.trace() * Matrix3d::Identity() - second;
   I.mass = moments.mass;
   I.massMoment = turned + moments.mass * X.p;
@@ -38,8 +37,8 @@ Vector3d linearPart(const SpatialVector<double>& h) {
 }
 
 void addSegment(const ArticulatedTree& tree, const TreeMotion<double>& motion, int segment,
-                const SpatialInertia<double>& change, const Eigen::VectorXd& v,
-                Eigen::Index column, TreeRows& momentum, TreeRows& slope) {
+                const SpatialInertia<double>& change, const Eigen::VectorXd& v, Eigen::Index column,
+                TreeRows& momentum, TreeRows& slope) {
   const std::vector<std::size_t> way = mobilitiesTo(tree, segment);
   SpatialVector<double> V = SpatialVector<double>::Zero();
   std::vector<SpatialVector<double>> b;

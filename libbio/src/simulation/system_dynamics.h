@@ -112,7 +112,8 @@ class SystemDynamics {
       }
       const Eigen::Index a = 2 * count() + i;
       const Eigen::Index l = a + numMuscles_;
-      jacobian.block(count(), l, n, Eigen::fix<1>) = -factor_.solve(Vector(r.dF_dFibreLength * path.dL_dq));
+      jacobian.block(count(), l, n, Eigen::fix<1>) =
+          -factor_.solve(Vector(r.dF_dFibreLength * path.dL_dq));
       const auto& law = arm_.muscles()[si].activation;
       jacobian(a, a) = -law.rateConstant(u_[i], u_[i] >= y[a]);
       jacobian.block(l, 0, Eigen::fix<1>, n) = r.dV_dMuscleTendonLength * path.dL_dq.transpose();
@@ -127,7 +128,7 @@ class SystemDynamics {
   const FibreRateDerivatives& rate(std::size_t muscle) const { return rate_[muscle]; }
 
  private:
-  Eigen::Index count() const { return countOf<N>(static_cast<int>(numCoordinates_)); }
+  Eigen::Index count() const { return countOf<N>(numCoordinates_); }
 
   /// Derivatives of −Ṁ q̇ + ½ q̇ᵀ∂M q̇ − ∂V − M q̈ at the last state.
   void addInertia(Matrix& dForce_dq, Matrix& dForce_dqDot) {
@@ -197,29 +198,28 @@ class SystemDynamics {
     muscle_.setZero();
     for (Eigen::Index i = 0; i < numMuscles_; ++i) {
       const auto si = static_cast<std::size_t>(i);
-      rate_[si] =
-          fibreRateDerivatives(arm_.muscles()[si].muscle, y[2 * count() + i],
-                               y[2 * count() + numMuscles_ + i],
-                               configuration_.length(si).length, pieces_[si]);
+      rate_[si] = fibreRateDerivatives(arm_.muscles()[si].muscle, y[2 * count() + i],
+                                       y[2 * count() + numMuscles_ + i],
+                                       configuration_.length(si).length, pieces_[si]);
       muscle_ -= rate_[si].tendonForce * configuration_.length(si).dL_dq;
     }
-    Vector force = muscle_ + passive_ + external_;
-    addInertia(force);
-    acceleration_ = factor_.solve(force);
+    force_ = muscle_ + passive_ + external_;
+    addInertia(force_);
+    acceleration_ = factor_.solve(force_);
   }
 
   const MusculoskeletalSystem& arm_;
   const ExcitationSignal& excitation_;
   const ExternalForce& externalForce_;
   SystemConfiguration<N> configuration_;
-  Eigen::Index numCoordinates_;
+  int numCoordinates_;
   Eigen::Index numMuscles_;
   State u_;
   std::vector<FibreRateDerivatives> rate_;
   std::vector<SchuttePieces> pieces_;  ///< of the last state
   std::size_t hint_ = 0;
   std::size_t externalRow_ = 0;
-  Vector q_, qDot_, acceleration_, muscle_, passive_, external_;
+  Vector q_, qDot_, acceleration_, force_, muscle_, passive_, external_;
   Matrix tau_q_, tau_v_;
   Eigen::LDLT<Matrix> factor_;
   std::optional<TreeRates> rates_;

@@ -50,8 +50,8 @@ void SystemConfiguration<Eigen::Dynamic>::shift(const Vector& d) {
     for (std::size_t a = 0; a < support.size(); ++a) {
       double change = 0;
       for (std::size_t b = 0; b < support.size(); ++b) {
-        change += path.second(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) *
-                  d[support[b]];
+        change +=
+            path.second(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) * d[support[b]];
       }
       path.length += d[support[a]] * (path.dL_dq[support[a]] + change / 2);
       path.dL_dq[support[a]] += change;

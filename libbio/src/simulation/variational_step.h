@@ -152,10 +152,9 @@ class VariationalStepper {
       if (isLast(correction, shorten == 1 ? previous : 0)) {
         // L_q, forces and M v belong to the last iterate but one; to first order in the correction
         for (std::size_t i = 0; i < rate_.size(); ++i) {
-          addAlong<N>(
-              muscle_,
-              -(rate_[i].dF_dFibreLength / 2 * residual_[static_cast<Eigen::Index>(i)]),
-              configuration_.length(i));
+          addAlong<N>(muscle_,
+                      -(rate_[i].dF_dFibreLength / 2 * residual_[static_cast<Eigen::Index>(i)]),
+                      configuration_.length(i));
         }
         dTau -= dPassive;
         muscle_.noalias() += dTau * dq;
@@ -165,11 +164,7 @@ class VariationalStepper {
         L_q += R;
         R.noalias() = dMv * dq;
         end.p = Mv + R + h / 2 * L_q;
-        if (symmetric_) {
-          end.p += share * (muscle_ + passive_ + external_);
-        } else {
-          end.p += Vector::Zero(countOf<N>(arm_));
-        }
+        if (symmetric_) end.p += share * (muscle_ + passive_ + external_);
         result.muscleWork = muscle_.dot(step);
         result.passiveWork = passive_.dot(step);
         result.externalWork = external_.dot(step);

@@ -65,7 +65,8 @@ std::string whatMovesNoMass(const Skeleton& skeleton) {
 void requireMovedMass(const Model& model, const Skeleton& skeleton) {
   for (const Body& body : model.bodies) {
     const Eigen::Vector3d principal = principalMoments(body);
-    const bool isRounding = principal.minCoeff() >= -roundingShare * principal.cwiseAbs().maxCoeff();
+    const bool isRounding =
+        principal.minCoeff() >= -roundingShare * principal.cwiseAbs().maxCoeff();
     if (skeleton.placeOf(body.name).segment == 0 || isRounding) continue;
     throw std::invalid_argument(
         fmt::format("body '{}': least principal moment of inertia = {:.4g} kg m², must be ≥ 0 for "

@@ -80,7 +80,7 @@ class PathGradients {
                     PathGradient<Eigen::Dynamic>& out) const;
 
   const CompiledPath* path_;
-  std::vector<std::string> bodies_;        ///< of the path's points
+  std::vector<std::string> bodies_;  ///< of the path's points
   std::size_t numPoints_, numWraps_;
   std::vector<SurfaceFrame> frames_;       ///< of CompiledPath::surfaces
   std::vector<PathGradient<0>> constant_;  ///< of the fixed spans, per variant

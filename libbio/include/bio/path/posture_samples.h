@@ -21,8 +21,9 @@ std::vector<Posture> samplePostures(const Skeleton& skeleton, const std::vector<
 /// against another, rising. The skeleton must have a tree.
 std::vector<int> pathSupport(const Model& model, const Skeleton& skeleton, const Muscle& muscle);
 
-/// The postures for compiling the paths of a skeleton, each list made once: samplePostures(skeleton)
-/// for up to four coordinates, otherwise those of the coordinates that move a path.
+/// The postures for compiling the paths of a skeleton, each list made once:
+/// samplePostures(skeleton) for up to four coordinates, otherwise those of the coordinates that
+/// move a path.
 class PostureSamples {
  public:
   /// Both must outlive this object.

@@ -12,11 +12,11 @@ namespace bio {
 /// A muscle–tendon length over any number of coordinates, of which its support can change it.
 template <>
 struct LengthJet<Eigen::Dynamic, double> {
-  double length = 0;        ///< ℓ_MT [m]
-  Eigen::VectorXd dL_dq;    ///< over all coordinates [m/rad]; 0 outside the support
+  double length = 0;         ///< ℓ_MT [m]
+  Eigen::VectorXd dL_dq;     ///< over all coordinates [m/rad]; 0 outside the support
   std::vector<int> support;  ///< indices of coordinates, rising
-  Eigen::MatrixXd second;   ///< ∂²ℓ/∂q² over the support [m/rad²]
-  bool wrapped = false;     ///< a moving span touches a wrap object
+  Eigen::MatrixXd second;    ///< ∂²ℓ/∂q² over the support [m/rad²]
+  bool wrapped = false;      ///< a moving span touches a wrap object
 
   /// ∂²ℓ/∂q_i∂q_j of two coordinates.
   double secondIn(int i, int j) const;
