@@ -43,8 +43,9 @@ struct ArmOfSeven {
   }
 
   explicit ArmOfSeven(double duration = 1, std::vector<std::string> free = coordinates(),
-                      bool asTree = false)
-      : options{{std::move(free), {}, asTree}, {}, {}},
+                      bool asTree = false, Model given = heldModel())
+      : model(std::move(given)),
+        options{{std::move(free), {}, asTree}, {}, {}},
         arm(model, options),
         excitation(lifting(arm, duration)) {
     const std::map<std::string, double> from = {
@@ -57,7 +58,7 @@ struct ArmOfSeven {
     start = initialState(arm, q, excitation, 0);
   }
 
-  Model model = heldModel();
+  Model model;
   SystemOptions options;
   MusculoskeletalSystem arm;
   ExcitationSignal excitation;

@@ -109,8 +109,8 @@ class SensitivityStep {
       const double perJ = 1 / (1 / h - r.dV_dFibreLength / 2);
       auto trial = trialFibre_.row(sm);
       const double half = r.dV_dMuscleTendonLength / 2 * perJ;
-      trial = ((1 / h + r.dV_dFibreLength / 2) * perJ) * state.fibre.row(sm);
-      forEachMoved<N>(path, [&](int k, int) { trial += (half * path.dL_dq[k]) * state.dq.row(k); });
+      setAlong(trial, ((1 / h + r.dV_dFibreLength / 2) * perJ) * state.fibre.row(sm), half, path,
+               state.dq);
       state.activation.add(r.dV_dActivation * perJ, state.activation.middle(), sm, trial);
       if (timeMoves) trial += ((l1[sm] - l0[sm]) / (h * h) * perJ) * row_;
       addMuscleParameters(m, q_m, activation[sm], l_m, path, r, perJ, trial);
@@ -167,15 +167,25 @@ class SensitivityStep {
     for (std::size_t m = 0; m < arm_.numMuscles(); ++m) {
       const auto sm = static_cast<Index>(m);
       const LengthJet<N>& path = configuration_.length(m);
-      auto fibre = state.fibre.row(sm);
-      fibre = trialFibre_.row(sm);
-      forEachMoved<N>(
-          path, [&](int k, int) { fibre += (through_[m] * path.dL_dq[k]) * forward_.row(k); });
+      setAlong(state.fibre.row(sm), trialFibre_.row(sm), through_[m], path, forward_);
     }
     state.dq.swap(forward_);
   }
 
  private:
+  /// row = base + factor Σ_k ∂_kℓ rows_k, in one pass for one coordinate
+  template <class Row, class Base, class Rows>
+  static void setAlong(Row&& row, const Base& base, double factor, const LengthJet<N>& path,
+                       const Rows& rows) {
+    if constexpr (N == Eigen::Dynamic) {
+      row = base;
+      for (const int k : path.support) row += (factor * path.dL_dq[k]) * rows.row(k);
+    } else {
+      row = base + (factor * path.dL_dq[0]) * rows.row(0);
+      for (int k = 1; k < N; ++k) row += (factor * path.dL_dq[k]) * rows.row(k);
+    }
+  }
+
   /// ∂r/∂θ of one muscle: into its fibre's row and into the force on the skeleton.
   template <class Row>
   void addMuscleParameters(std::size_t m, const Vector& q, double activation, double l_m,

@@ -138,7 +138,8 @@ class ExplicitRun {
   }
 
  private:
-  void hold(const Vector& at) {
+  template <class At>
+  void hold(const At& at) {
     held_ = at;
     if (!arm_.switches().empty()) dynamics_.holdConditions(held_);
   }
@@ -200,8 +201,8 @@ class ExplicitRun {
   }
 
   const PathSwitch* crossed() const {
-    return firstCrossed(arm_.switches(), held_, Vector(dynamics_.coordinates(y_)),
-                        Vector(dynamics_.coordinates(end_)));
+    return firstCrossed(arm_.switches(), held_, dynamics_.coordinates(y_),
+                        dynamics_.coordinates(end_));
   }
 
   bool fail(double failedAt, const std::string& how, double at) {

@@ -179,9 +179,11 @@ class VariationalRun {
   }
 
   /// q̇ = M⁻¹p at the end of the last step.
-  Vector speed() {
+  const Vector& speed() {
     if (!arm_.skeleton().hasConstantInertia()) configuration_.moveSkeletonTo(now_.q);
-    return configuration_.massMatrix().ldlt().solve(now_.p);
+    factor_.compute(configuration_.massMatrix());
+    speed_ = factor_.solve(now_.p);
+    return speed_;
   }
 
   const MusculoskeletalSystem& arm_;
@@ -195,6 +197,8 @@ class VariationalRun {
   Ends now_, next_;
   // mean speeds of the last two steps, and their lengths [s]
   Vector velocity_, velocityBefore_;
+  Vector speed_;
+  Eigen::LDLT<Eigen::Matrix<double, N, N>> factor_;
   Eigen::VectorXd fibreVelocity_, fibreVelocityBefore_;
   double length_, lengthBefore_;
   double muscleWork_ = 0;

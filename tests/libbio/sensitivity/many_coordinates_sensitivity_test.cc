@@ -8,7 +8,7 @@ namespace {
 
 using fixtures::ArmOfSeven;
 
-// Of every kind: muscle, path point, wrap object, mass, gravity, passive force, start.
+// Of every kind: muscle, path point, wrap object, mass, passive force, start.
 TEST(ManyCoordinates, SensitivitiesMatchDifferencesOnAnArmOfSeven) {
   const ArmOfSeven c(0.2);
   const Eigen::VectorXd speeds = Eigen::VectorXd::LinSpaced(7, -0.6, 0.7);
@@ -16,7 +16,7 @@ TEST(ManyCoordinates, SensitivitiesMatchDifferencesOnAnArmOfSeven) {
   const auto wanted = catalogue.select(
       {"BIClong.max_isometric_force", "BIClong.point9.x", "BIClong.point10.y", "BRD.point3.z",
        "TRI.radius", "TRI.rotation.x", "TRI.translation.y", "hand.mass", "radius.mass_center.x",
-       "humerus.mass", "hand.inertia.yy", "hold_elv_angle.*", "gravity.*", "initial.*"});
+       "humerus.mass", "hand.inertia.yy", "hold_elv_angle.*", "initial.*"});
   SimulationOptions options;
   options.duration = 0.12;
   const fixtures::DiscoveryProblem d =
