@@ -3,7 +3,7 @@
 
 #include "bio/analysis/replay.h"
 #include "bio/opensim/osim_file.h"
-#include "support/arm_of_seven.h"
+#include "libbio/simulation/arm_of_seven.h"
 
 namespace {
 

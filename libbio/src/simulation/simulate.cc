@@ -107,9 +107,10 @@ namespace {
 
 template <int N>
 Energy energyAt(SystemConfiguration<N>& configuration, const Eigen::Matrix<double, N, 1>& q,
-                const Eigen::Matrix<double, N, 1>& qDot) {
+                const Eigen::Matrix<double, N, 1>& qDot, Eigen::Matrix<double, N, 1>& momentum) {
   configuration.moveTo(q);
-  return {qDot.dot(configuration.massMatrix() * qDot) / 2, configuration.potential()};
+  momentum.noalias() = configuration.massMatrix() * qDot;
+  return {qDot.dot(momentum) / 2, configuration.potential()};
 }
 
 }  // namespace
@@ -118,7 +119,8 @@ Energy energyOf(const MusculoskeletalSystem& arm, const Eigen::VectorXd& q,
                 const Eigen::VectorXd& qDot) {
   return stepping::withCoordinates(arm.skeleton(), [&](auto N) {
     SystemConfiguration<decltype(N)::value> configuration(arm);
-    return energyAt<decltype(N)::value>(configuration, q, qDot);
+    Eigen::Matrix<double, decltype(N)::value, 1> momentum = q;
+    return energyAt<decltype(N)::value>(configuration, q, qDot, momentum);
   });
 }
 
@@ -127,9 +129,12 @@ Eigen::VectorXd energyImbalance(const MusculoskeletalSystem& arm, const Trajecto
     SystemConfiguration<decltype(N)::value> configuration(arm);
     Eigen::VectorXd imbalance(trajectory.q.cols());
     double first = 0;
+    Eigen::Matrix<double, decltype(N)::value, 1> q = arm.skeleton().defaultValues();
+    Eigen::Matrix<double, decltype(N)::value, 1> qDot = q, momentum = q;
     for (Eigen::Index k = 0; k < trajectory.q.cols(); ++k) {
-      const Energy energy =
-          energyAt<decltype(N)::value>(configuration, trajectory.q.col(k), trajectory.qDot.col(k));
+      q = trajectory.q.col(k);
+      qDot = trajectory.qDot.col(k);
+      const Energy energy = energyAt<decltype(N)::value>(configuration, q, qDot, momentum);
       const double stored = energy.kinetic + energy.potential;
       if (k == 0) first = stored;
       imbalance[k] = stored - first - trajectory.muscleWork[k] - trajectory.passiveWork[k] -

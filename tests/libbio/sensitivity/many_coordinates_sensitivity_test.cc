@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "support/arm_of_seven.h"
+#include "libbio/simulation/arm_of_seven.h"
 #include "support/sensitivity_differences.h"
 
 namespace bio {

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "bio/simulation/simulate.h"
+#include "libbio/simulation/arm_of_seven.h"
 #include "simulation/system_dynamics.h"
 #include "support/allocations.h"
-#include "support/arm_of_seven.h"
 
 namespace bio {
 namespace {
@@ -53,10 +53,13 @@ TEST(ManyCoordinates, IntegratorsAgreeOnAnArmOfSeven) {
   EXPECT_LT(apart(played(c, stepsOf(Integrator::variational, 1e-3, 1)), reference), 1e-4);
 }
 
-/// With the biceps the errors are no clean power of the step: laws have corners between the rows.
-Model withoutBiceps() {
+/// The five muscles with which this motion is smooth: with biceps or anconeus, too, it meets
+/// corners between the ends of steps, and the errors are no clean power of the step.
+Model smoothlyMoved() {
   Model model = ArmOfSeven::heldModel();
-  for (Muscle& muscle : model.muscles) muscle.enabled = !muscle.name.starts_with("BIC");
+  for (Muscle& muscle : model.muscles) {
+    muscle.enabled = !muscle.name.starts_with("BIC") && muscle.name != "ANC";
+  }
   return model;
 }
 
@@ -70,7 +73,7 @@ double rootMeanSquare(const Trajectory& a, const Trajectory& b) {
 }
 
 TEST(ManyCoordinates, TheVariationalSchemeIsOfSecondOrder) {
-  const ArmOfSeven c(1, ArmOfSeven::coordinates(), false, withoutBiceps());
+  const ArmOfSeven c(1, ArmOfSeven::coordinates(), false, smoothlyMoved());
   const Trajectory reference = tightCvode(c, 0.05, 1);
   std::vector<double> errors;
   for (const double step : {0.005, 0.0025, 0.00125}) {
