@@ -3,6 +3,7 @@
 
 #include "bio/analysis/replay.h"
 #include "bio/opensim/osim_file.h"
+#include "libbio/simulation/arm_of_seven.h"
 
 namespace {
 
@@ -52,6 +53,25 @@ void configuration(benchmark::State& state) {
   }
 }
 BENCHMARK(configuration);
+
+/// Half a second of an arm with 1 … 7 coordinates; up to four by code of fixed size, too.
+void coordinates(benchmark::State& state) {
+  const std::vector<std::string> all = bio::fixtures::ArmOfSeven::coordinates();
+  const bool asTree = state.range(1) != 0;
+  const bio::fixtures::ArmOfSeven c(1, {all.begin(), all.begin() + state.range(0)}, asTree);
+  bio::SimulationOptions options;
+  options.step = 0.01;
+  options.duration = 0.5;
+  for (auto _ : state) {
+    const bio::Trajectory motion = bio::simulate(c.arm, c.excitation, c.start, options);
+    benchmark::DoNotOptimize(motion.q.data());
+  }
+}
+BENCHMARK(coordinates)
+    ->ArgNames({"n", "tree"})
+    ->ArgsProduct({{1, 2, 3, 4}, {0, 1}})
+    ->Args({7, 1})
+    ->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 

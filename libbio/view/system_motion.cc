@@ -186,12 +186,6 @@ SkeletonOptions skeletonFor(const Model& model, const std::vector<const SystemMo
       if (moves) moving.push_back(name);
     }
   }
-  if (moving.size() > static_cast<std::size_t>(maxFreeCoordinates)) {
-    throw std::invalid_argument(fmt::format(
-        "{} coordinates move ({}), at most {} can be shown moving; hold the others with "
-        "--lock",
-        moving.size(), fmt::join(moving, ", "), maxFreeCoordinates));
-  }
   if (!moving.empty()) options.freeCoordinates = moving;
   for (const std::string& name : options.freeCoordinates) held.erase(name);
   options.lockedValues.merge(held);

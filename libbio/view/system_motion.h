@@ -37,7 +37,6 @@ double valueAt(const Eigen::VectorXd& times, const Eigen::VectorXd& values, doub
 /// Coordinates that move in any of the motions are free, the others are locked where the first
 /// motion that has them holds them. Values already in `options` win; if nothing moves, its free
 /// coordinates stay.
-/// @throws std::invalid_argument if more than maxFreeCoordinates move
 SkeletonOptions skeletonFor(const Model& model, const std::vector<const SystemMotion*>& motions,
                             SkeletonOptions options);
 

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "bio/path/posture_samples.h"
+
 namespace bio::view {
 namespace {
 
@@ -42,6 +44,18 @@ bool isRound(const WrapObject& wrap) {
   return wrap.shape == WrapShape::cylinder || wrap.shape == WrapShape::sphere;
 }
 
+SystemPoser::Posture poseOnTree(const Skeleton& skeleton, const std::vector<std::string>& bodies,
+                                const std::vector<MusclePath>& paths, const Eigen::VectorXd& q) {
+  const bio::Posture placed = postureOf(skeleton, {q.begin(), q.end()});
+  SystemPoser::Posture posture;
+  for (const std::string& body : bodies) {
+    const BodyPlacement& place = skeleton.placeOf(body);
+    posture.bodies[body] = placed.placements[place.segment] * place.X_SB;
+  }
+  for (const MusclePath& path : paths) posture.muscles.push_back({path.pathPoints(placed, 0.05)});
+  return posture;
+}
+
 template <int N>
 SystemPoser::Posture poseWith(const Skeleton& skeleton, const std::vector<std::string>& bodies,
                               const std::vector<MusclePath>& paths, const Eigen::VectorXd& q) {
@@ -57,6 +71,21 @@ SystemPoser::Posture poseWith(const Skeleton& skeleton, const std::vector<std::s
     posture.muscles.push_back({path.pathPoints<N>(free, moved.data(), 0.05)});
   }
   return posture;
+}
+
+SystemPoser::Posture poseAt(const Skeleton& skeleton, const std::vector<std::string>& bodies,
+                            const std::vector<MusclePath>& paths, const Eigen::VectorXd& q) {
+  if (skeleton.tree()) return poseOnTree(skeleton, bodies, paths, q);
+  switch (q.size()) {
+    case 1:
+      return poseWith<1>(skeleton, bodies, paths, q);
+    case 2:
+      return poseWith<2>(skeleton, bodies, paths, q);
+    case 3:
+      return poseWith<3>(skeleton, bodies, paths, q);
+    default:
+      return poseWith<4>(skeleton, bodies, paths, q);
+  }
 }
 
 }  // namespace
@@ -100,12 +129,13 @@ double tubeRadius(double tendonForce) {
 SystemPoser::SystemPoser(const Model& model, const SkeletonOptions& options,
                          const std::vector<std::string>& wrapAsCylinder)
     : skeleton_(model, options) {
+  PostureSamples postures(model, skeleton_);
   bodies_.push_back("ground");
   for (const Body& body : model.bodies) bodies_.push_back(body.name);
   for (const Muscle& muscle : model.muscles) {
     if (!muscle.enabled) continue;
     try {
-      paths_.emplace_back(model, skeleton_, muscle, wrapAsCylinder);
+      paths_.emplace_back(model, skeleton_, muscle, wrapAsCylinder, postures.of(muscle));
     } catch (const UnsupportedWrap& error) {
       warnings_.push_back(fmt::format("{}: the muscle is left out", error.what()));
       continue;
@@ -128,20 +158,7 @@ SystemPoser::Posture SystemPoser::pose(const Eigen::VectorXd& q,
                                             q.size(), radii.size(), skeleton_.numCoordinates(),
                                             paths_.size()));
   }
-  Posture posture;
-  switch (q.size()) {
-    case 1:
-      posture = poseWith<1>(skeleton_, bodies_, paths_, q);
-      break;
-    case 2:
-      posture = poseWith<2>(skeleton_, bodies_, paths_, q);
-      break;
-    case 3:
-      posture = poseWith<3>(skeleton_, bodies_, paths_, q);
-      break;
-    default:
-      posture = poseWith<4>(skeleton_, bodies_, paths_, q);
-  }
+  Posture posture = poseAt(skeleton_, bodies_, paths_, q);
   for (std::size_t i = 0; i < paths_.size(); ++i) {
     MuscleShape& muscle = posture.muscles[i];
     muscle.radius = radii[i];

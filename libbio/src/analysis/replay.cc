@@ -8,6 +8,8 @@
 #include <optional>
 
 #include "bio/model/integrator_names.h"
+#include "bio/path/posture_samples.h"
+#include "bio/path/tree_path.h"
 #include "simulation/integrators.h"
 #include "simulation/motion_weights.h"
 
@@ -298,13 +300,14 @@ PathSample samplePaths(const Model& model, const Skeleton& skeleton,
                        const std::vector<std::string>& wrapAsCylinder,
                        const Eigen::VectorXd& values) {
   std::vector<MusclePath> paths;
+  PostureSamples postures(model, skeleton);
   PathSample sample;
   sample.value = values;
   for (const Muscle& muscle : model.muscles) {
     if (!muscle.enabled) continue;
     std::optional<MusclePath> compiled;
     try {
-      compiled.emplace(model, skeleton, muscle, wrapAsCylinder);
+      compiled.emplace(model, skeleton, muscle, wrapAsCylinder, postures.of(muscle));
     } catch (const UnsupportedWrap& e) {
       sample.warnings.push_back(fmt::format("{}: the muscle is left out", e.what()));
       continue;
@@ -325,19 +328,37 @@ PathSample samplePaths(const Model& model, const Skeleton& skeleton,
   sample.momentArm.resize(values.size(), n);
   sample.momentArmSlope.resize(values.size(), n);
   sample.wrapped.resize(values.size(), n);
-  stepping::withCoordinates(skeleton.numCoordinates(), [&](auto N) {
+  const auto record = [&](Eigen::Index k, Eigen::Index i, const auto& jet, double second) {
+    sample.length(k, i) = jet.length;
+    sample.momentArm(k, i) = -jet.dL_dq[0];
+    sample.momentArmSlope(k, i) = -second;
+    sample.wrapped(k, i) = jet.wrapped ? 1 : 0;
+  };
+  stepping::withCoordinates(skeleton, [&](auto N) {
     constexpr int count = decltype(N)::value;
-    std::vector<RigidMotion<double, count>> moved(skeleton.numSegments());
     Eigen::Matrix<double, count, 1> q = skeleton.defaultValues();
-    for (Eigen::Index k = 0; k < values.size(); ++k) {
-      q[0] = values[k];
-      skeleton.motions<double, count>(q, moved.data());
-      for (Eigen::Index i = 0; i < n; ++i) {
-        const auto jet = paths[static_cast<std::size_t>(i)].length<count>(q, moved.data());
-        sample.length(k, i) = jet.length;
-        sample.momentArm(k, i) = -jet.dL_dq[0];
-        sample.momentArmSlope(k, i) = -jet.d2L_dq2(0, 0);
-        sample.wrapped(k, i) = jet.wrapped ? 1 : 0;
+    if constexpr (count == Eigen::Dynamic) {
+      TreePaths onTree(skeleton);
+      for (std::size_t i = 0; i < paths.size(); ++i) {
+        onTree.add(findMuscle(model, sample.muscles[i]), paths[i]);
+      }
+      for (Eigen::Index k = 0; k < values.size(); ++k) {
+        q[0] = values[k];
+        onTree.moveTo(q);
+        for (Eigen::Index i = 0; i < n; ++i) {
+          const auto& jet = onTree.length(static_cast<std::size_t>(i));
+          record(k, i, jet, jet.secondIn(0, 0));
+        }
+      }
+    } else {
+      std::vector<RigidMotion<double, count>> moved(skeleton.numSegments());
+      for (Eigen::Index k = 0; k < values.size(); ++k) {
+        q[0] = values[k];
+        skeleton.motions<double, count>(q, moved.data());
+        for (Eigen::Index i = 0; i < n; ++i) {
+          const auto jet = paths[static_cast<std::size_t>(i)].length<count>(q, moved.data());
+          record(k, i, jet, jet.d2L_dq2(0, 0));
+        }
       }
     }
   });

@@ -8,13 +8,13 @@ namespace {
 
 /// Mass matrix's entry of a coordinate at mid-range, the others at their defaults.
 double inertiaOf(const MusculoskeletalSystem& arm, int freeIndex) {
-  return stepping::withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+  return stepping::withCoordinates(arm.skeleton(), [&](auto N) {
     Eigen::Matrix<double, decltype(N)::value, 1> at = arm.skeleton().defaultValues();
     const Coordinate& one = arm.skeleton().coordinates()[static_cast<std::size_t>(freeIndex)];
     at[freeIndex] = (one.rangeMin + one.rangeMax) / 2;
     SystemConfiguration<decltype(N)::value> configuration(arm);
     configuration.moveSkeletonTo(at);
-    return double(configuration.inertia().massMatrix(freeIndex, freeIndex));
+    return double(configuration.massMatrix()(freeIndex, freeIndex));
   });
 }
 

@@ -253,7 +253,7 @@ bool ExperimentDesign::keepsLimits(const DesignedExperiment& e) const {
 std::vector<MuscleGroup> flexorsAndExtensors(const MusculoskeletalSystem& arm, const VectorXd& q,
                                              int coordinate) {
   std::vector<MuscleGroup> groups = {{"flexors", {}}, {"extensors", {}}};
-  stepping::withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+  stepping::withCoordinates(arm.skeleton(), [&](auto N) {
     SystemConfiguration<decltype(N)::value> configuration(arm);
     configuration.moveTo(q);
     for (std::size_t i = 0; i < arm.numMuscles(); ++i) {

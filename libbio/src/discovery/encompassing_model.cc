@@ -43,14 +43,18 @@ struct Movement {
 };
 
 Movement movement(const MusculoskeletalSystem& arm, std::size_t segment, int freeIndex, double q) {
-  return stepping::withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+  return stepping::withCoordinates(arm.skeleton(), [&](auto N) {
     Eigen::Matrix<double, decltype(N)::value, 1> at = arm.skeleton().defaultValues();
     at[freeIndex] = q;
     SystemConfiguration<decltype(N)::value> configuration(arm);
     configuration.moveTo(at);
-    const auto& motion = configuration.motions()[segment];
-    return Movement{Placement<double>(motion.value),
-                    Placement<double>(motion.first[static_cast<std::size_t>(freeIndex)])};
+    if constexpr (decltype(N)::value == Eigen::Dynamic) {
+      return Movement{configuration.placement(segment), configuration.change(segment, freeIndex)};
+    } else {
+      const auto& motion = configuration.motions()[segment];
+      return Movement{Placement<double>(motion.value),
+                      Placement<double>(motion.first[static_cast<std::size_t>(freeIndex)])};
+    }
   });
 }
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "bio/path/path_gradient.h"
+#include "bio/path/posture_samples.h"
 #include "bio/path/radius_limit.h"
 
 namespace bio {
@@ -143,12 +144,12 @@ class Collector {
 
   // A radius ends where a point of a path over the wrap object comes inside.
   void limitRadius(ModelParameter& radius, const std::string& wrapObject) {
-    if (postures_.empty()) postures_ = samplePostures(arm_.skeleton());
     for (const SystemMuscle& muscle : arm_.muscles()) {
-      const Path& path = model_.muscles[indexOf(muscle.name)].path;
+      const Muscle& given = model_.muscles[indexOf(muscle.name)];
+      const Path& path = given.path;
       for (std::size_t i = 0; i < path.wraps.size(); ++i) {
         if (path.wraps[i].wrapObject != wrapObject) continue;
-        const RadiusLimit limit = radiusLimit(muscle.path.compiled(), i, postures_);
+        const RadiusLimit limit = radiusLimit(muscle.path.compiled(), i, postures_.of(given));
         if (!(limit.radius < radius.limit)) continue;
         radius.limit = limit.radius;
         radius.whyLimited =
@@ -327,7 +328,7 @@ class Collector {
   const StartPoint& start_;
   const EmgMapping& mapping_;
   std::vector<TouchedWrap> touched_;
-  std::vector<Posture> postures_;  // once they are needed
+  PostureSamples postures_{model_, arm_.skeleton()};
   std::vector<ModelParameter> parameters_;
 };
 

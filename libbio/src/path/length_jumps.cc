@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
 #include "bio/path/path.h"
+#include "bio/path/posture_samples.h"
+#include "bio/path/tree_path.h"
 #include "simulation/integrators.h"
 
 namespace bio {
@@ -22,20 +25,31 @@ constexpr double suspectJump = 1e-6;  // a kink at lift-off is less than a tenth
 template <int N>
 class LengthAlong {
  public:
-  LengthAlong(const Skeleton& skeleton, const MusclePath& path)
-      : skeleton_(skeleton),
-        path_(path),
-        moved_(skeleton.numSegments()),
-        q_(skeleton.defaultValues()) {}
+  LengthAlong(const Skeleton& skeleton, const Muscle& muscle, const MusclePath& path)
+      : skeleton_(skeleton), path_(path), q_(skeleton.defaultValues()) {
+    if constexpr (N == Eigen::Dynamic) {
+      onTree_.emplace(skeleton);
+      onTree_->add(muscle, path);
+    } else {
+      static_cast<void>(muscle);
+      moved_.resize(skeleton.numSegments());
+    }
+  }
 
   struct At {
     double value, length, slope;
   };
   At at(double value) {
     q_[0] = value;
-    skeleton_.motions<double, N>(q_, moved_.data());
-    const LengthJet<N> jet = path_.length<N>(q_, moved_.data());
-    return {value, jet.length, jet.dL_dq[0]};
+    if constexpr (N == Eigen::Dynamic) {
+      onTree_->moveTo(q_);
+      const auto& jet = onTree_->length(0);
+      return {value, jet.length, jet.dL_dq[0]};
+    } else {
+      skeleton_.motions<double, N>(q_, moved_.data());
+      const LengthJet<N> jet = path_.length<N>(q_, moved_.data());
+      return {value, jet.length, jet.dL_dq[0]};
+    }
   }
 
   /// What the length does between two values beyond the trapezium of its slopes [m].
@@ -73,7 +87,8 @@ class LengthAlong {
 
   const Skeleton& skeleton_;
   const MusclePath& path_;
-  std::vector<RigidMotion<double, N>> moved_;
+  std::vector<RigidMotion<double, N == Eigen::Dynamic ? 1 : N>> moved_;
+  std::optional<TreePaths> onTree_;
   Eigen::Matrix<double, N, 1> q_;
 };
 
@@ -83,19 +98,19 @@ std::vector<LengthJump> lengthJumps(const Model& model, const Skeleton& skeleton
                                     const std::vector<std::string>& wrapAsCylinder, double from,
                                     double to) {
   std::vector<LengthJump> jumps;
-  const std::vector<Posture> postures = samplePostures(skeleton);
+  PostureSamples postures(model, skeleton);
   const Coordinate& coordinate = skeleton.coordinates().front();
   for (const Muscle& muscle : model.muscles) {
     if (!muscle.enabled) continue;
     try {
-      const MusclePath path(model, skeleton, muscle, wrapAsCylinder, postures);
+      const MusclePath path(model, skeleton, muscle, wrapAsCylinder, postures.of(muscle));
       if (!path.moves()) continue;
       LengthJump named;
       named.muscle = muscle.name;
       named.coordinate = coordinate.name;
       named.turns = coordinate.isRotation;
-      stepping::withCoordinates(skeleton.numCoordinates(), [&](auto N) {
-        LengthAlong<decltype(N)::value>(skeleton, path).search(from, to, named, jumps);
+      stepping::withCoordinates(skeleton, [&](auto N) {
+        LengthAlong<decltype(N)::value>(skeleton, muscle, path).search(from, to, named, jumps);
       });
     } catch (const std::invalid_argument&) {  // no path to look at
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bio/path/posture_samples.h"
 #include "path/path_reach.h"
 
 namespace bio {
@@ -44,7 +45,8 @@ std::vector<Vec3<double>> arc(const PathSurface& surface, const SpanSurface& way
 
 MusclePath::MusclePath(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
                        const std::vector<std::string>& wrapAsCylinder)
-    : MusclePath(model, skeleton, muscle, wrapAsCylinder, samplePostures(skeleton)) {}
+    : MusclePath(model, skeleton, muscle, wrapAsCylinder,
+                 PostureSamples(model, skeleton).of(muscle)) {}
 
 MusclePath::MusclePath(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
                        const std::vector<std::string>& wrapAsCylinder,
@@ -84,10 +86,8 @@ void MusclePath::tabulate(const Skeleton& skeleton) {
                                              coordinate.rangeMax + range / 10, tablePieces, exact);
 }
 
-std::vector<Eigen::Vector3d> MusclePath::polyline(const std::vector<double>& q,
-                                                  const std::vector<Placement<double>>& placements,
-                                                  double step) const {
-  const Posture posture{q, placements};
+std::vector<Eigen::Vector3d> MusclePath::pathPoints(const Posture& posture, double step) const {
+  const auto& q = posture.q;
   const PathVariant& variant = activeVariant(
       compiled_, Eigen::Map<const Eigen::VectorXd>(q.data(), static_cast<Eigen::Index>(q.size())));
   const auto position = [&](std::size_t node) {
@@ -106,7 +106,7 @@ std::vector<Eigen::Vector3d> MusclePath::polyline(const std::vector<double>& q,
       const auto points = arc(surface, way, p_CP, p_CQ, step);
       if (points.empty()) continue;
       used[way.surface] = true;
-      const Placement<double> X_GC = placements[surface.segment] * surface.X_SC;
+      const Placement<double> X_GC = posture.placements[surface.segment] * surface.X_SC;
       for (const Vec3<double>& p_C : points) line.push_back(X_GC.R * p_C + X_GC.p);
       break;
     }

@@ -1,37 +1,13 @@
 #include "bio/path/path_gradient.h"
 
 #include "bio/path/path_length.h"
-#include "info/autodiff/dual.h"
+#include "path/radius_derivatives.h"
 
 namespace bio {
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-/// ∂L/∂r of a wrapped span and of its end tangents, through the scalar type.
-struct RadiusDerivatives {
-  double length;
-  Vector3d dL_dP, dL_dQ;
-};
-
-RadiusDerivatives inRadius(const PathSurface& surface, const SpanSurface& way, const Vector3d& P,
-                           const Vector3d& Q) {
-  using D = info::Dual<1>;
-  const D radius(surface.radius, 1, 0);
-  const auto constant = [](const Vector3d& v) { return Vec3<D>(D(v.x()), D(v.y()), D(v.z())); };
-  Vec3<D> from = constant(P), to = constant(Q);
-  for (int i = 0; i < 3; ++i) {
-    from[i].derivatives().setZero();
-    to[i].derivatives().setZero();
-  }
-  const Span<D> span = surface.isSphere ? wrapSphere<D>(radius, way.way, from, to)
-                                        : wrapCylinder<D>(radius, way.side, from, to);
-  const auto slope = [](const Vec3<D>& v) {
-    return Vector3d(v.x().derivatives()[0], v.y().derivatives()[0], v.z().derivatives()[0]);
-  };
-  return {span.length.derivatives()[0], slope(span.dL_dP), slope(span.dL_dQ)};
-}
 
 /// The end of a span in ground, and whether q moves it.
 template <int N>
@@ -64,6 +40,7 @@ PathGradients::PathGradients(const Model& model, const Skeleton& skeleton, const
       mayTouch_(numWraps_, false),
       used_(numPoints_, false) {
   for (const PathNode& node : path_->nodes) used_[node.point] = true;
+  for (const PathPoint& point : muscle.path.points) bodies_.push_back(point.body);
   for (const PathSurface& surface : path_->surfaces) {
     const WrapObject& object = findWrapObject(model, muscle.path.wraps[surface.wrap].wrapObject);
     SurfaceFrame frame;

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
+#include "bio/path/posture_samples.h"
 #include "bio/skeleton/skeleton_motion.h"
 
 namespace bio {
@@ -22,6 +24,7 @@ Posture postureAt(const Skeleton& skeleton, const std::vector<double>& q) {
 }
 
 Posture postureAt(const Skeleton& skeleton, const std::vector<double>& q) {
+  if (skeleton.tree()) return postureOf(skeleton, q);
   switch (q.size()) {
     case 1:
       return postureAt<1>(skeleton, q);
@@ -42,6 +45,11 @@ double interpolate(double a, double b, std::size_t i, std::size_t n) {
 
 std::vector<Posture> samplePostures(const Skeleton& skeleton) {
   const std::size_t n = skeleton.coordinates().size();
+  if (n > 4) {
+    std::vector<int> all(n);
+    std::iota(all.begin(), all.end(), 0);
+    return samplePostures(skeleton, all);
+  }
   constexpr std::array<std::size_t, 4> resolution = {181, 31, 13, 7};
   const std::size_t perCoordinate = resolution[n - 1];
 

@@ -75,7 +75,7 @@ SensitivityTrajectory simulateWithSensitivities(const MusculoskeletalSystem& arm
   stepping::StepTape tape;
   Trajectory motion = stepping::simulateVariational(arm, driven, start, options.simulation, &tape);
   const stepping::ParameterEffects effects(arm, setting, wanted);
-  return stepping::withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+  return stepping::withCoordinates(arm.skeleton(), [&](auto N) {
     stepping::SensitivityPass<decltype(N)::value> pass(
         arm, effects, setting, trial, driven, static_cast<Eigen::Index>(wanted.size()), options);
     return pass.run(std::move(motion), start, tape);

@@ -5,6 +5,8 @@
 #include "bio/skeleton/skeleton_motion.h"
 #include "sensitivity/parameter_effects.h"
 #include "sensitivity/sensitivity_state.h"
+#include "sensitivity/tree_inertia_effects.h"
+#include "simulation/coordinate_sums.h"
 #include "simulation/integrators.h"
 
 namespace bio::stepping {
@@ -21,11 +23,17 @@ class DirectEffects {
   DirectEffects(const MusculoskeletalSystem& arm, const ParameterEffects& effects,
                 const Model& model, const SystemConfiguration<N>& configuration, Index columns)
       : arm_(arm), effects_(effects), configuration_(configuration) {
-    inertia_.setZero(N, columns);
-    slope_.setZero(N, columns);
-    for (const SystemMuscle& muscle : arm.muscles()) {
+    inertia_.setZero(countOf<N>(arm), columns);
+    slope_.setZero(countOf<N>(arm), columns);
+    for (std::size_t m = 0; m < arm.numMuscles(); ++m) {
+      const SystemMuscle& muscle = arm.muscles()[m];
       gradients_.emplace_back(model, arm.skeleton(), findMuscle(model, muscle.name), muscle.path);
-      workspaces_.push_back(gradients_.back().template workspace<N>());
+      if constexpr (N == Eigen::Dynamic) {
+        workspaces_.push_back(gradients_.back().workspace(arm.treePath(m)));
+        treeWork_.push_back(arm.treePath(m).newWork());
+      } else {
+        workspaces_.push_back(gradients_.back().template workspace<N>());
+      }
     }
   }
 
@@ -42,7 +50,12 @@ class DirectEffects {
     const auto& effects = effects_.muscles[m];
     if (!effects.hasGeometry()) return;
     PathGradient<N>& gradient = workspaces_[m];
-    gradients_[m].template evaluate<N>(q, configuration_.motions().data(), gradient);
+    if constexpr (N == Eigen::Dynamic) {
+      gradients_[m].evaluate(q, arm_.treePath(m), *arm_.tree(), configuration_.motion(),
+                             treeWork_[m], gradient);
+    } else {
+      gradients_[m].template evaluate<N>(q, configuration_.motions().data(), gradient);
+    }
     for (const QuantityEffect& effect : effects.points) {
       use(effect,
           gradient.points[effect.quantity / 3].row(static_cast<Index>(effect.quantity % 3)));
@@ -79,6 +92,15 @@ class DirectEffects {
     if (!changesInertia()) return;  // both stay 0
     inertia_.setZero();
     slope_.setZero();
+    if constexpr (N == Eigen::Dynamic) {
+      addTreeInertia(arm_, configuration_, effects_, v, inertia_, slope_);
+    } else {
+      computeFixedInertia(v);
+    }
+  }
+
+ private:
+  void computeFixedInertia(const Vector& v) {
     for (const auto& effect : effects_.segments) {
       const RigidMotion<double, N>& X = configuration_.motions()[effect.segment];
       const auto along = [&](auto&& part) {
@@ -117,12 +139,12 @@ class DirectEffects {
     }
   }
 
- private:
   const MusculoskeletalSystem& arm_;
   const ParameterEffects& effects_;
   const SystemConfiguration<N>& configuration_;
   std::vector<PathGradients> gradients_;
   std::vector<PathGradient<N>> workspaces_;
+  std::vector<SupportedLength<double>> treeWork_;
   Rows inertia_, slope_;
 };
 

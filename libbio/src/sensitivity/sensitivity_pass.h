@@ -32,8 +32,8 @@ class SensitivityPass {
         direct_(arm, effects, setting.model, configuration_, state_.columns.count()),
         step_(arm, options.simulation, configuration_, direct_, state_.columns.count()) {
     const Index columns = state_.columns.count();
-    state_.dq.setZero(N, columns);
-    state_.dp.setZero(N, columns);
+    state_.dq.setZero(countOf<N>(arm), columns);
+    state_.dp.setZero(countOf<N>(arm), columns);
     state_.fibre.setZero(static_cast<Index>(arm.numMuscles()), columns);
     unit_.setZero(columns);
     unit_[state_.columns.ofTime()] = 1;
@@ -63,20 +63,18 @@ class SensitivityPass {
     const Vector q = start.q;
     const Vector qDot = start.qDot;
     configuration_.moveTo(q);
-    const InertiaJet<N>& inertia = configuration_.inertia();
+    const EnergyDerivatives<N>& energy = configuration_.energy(qDot);
     auto& [columns, dq, dp, fibres, activation] = state_;
     for (const auto& effect : direct_.effects().start) {
       if (effect.isSpeed) {
-        dp.col(effect.column) += effect.weight * inertia.massMatrix.col(effect.coordinate);
+        dp.col(effect.column) += effect.weight * energy.T_vv.col(effect.coordinate);
       } else {
         dq(effect.coordinate, effect.column) += effect.weight;
       }
     }
     direct_.computeInertia(qDot);
     dp += direct_.momentum();
-    for (int k = 0; k < N; ++k) {
-      dp += (inertia.dM[static_cast<std::size_t>(k)] * qDot) * dq.row(k);
-    }
+    for (Index k = 0; k < dq.rows(); ++k) dp += energy.T_vq.col(k) * dq.row(k);
     activation.start(time);
     for (std::size_t i = 0; i < arm_.numMuscles(); ++i) {
       const auto si = static_cast<Index>(i);

@@ -3,6 +3,7 @@
 // Rows of a run's sensitivities; not public.
 
 #include "sensitivity/parameter_jacobian.h"
+#include "simulation/coordinate_sums.h"
 
 namespace bio::stepping {
 
@@ -29,14 +30,15 @@ class SensitivityRecorder {
       return std::vector<SensitivityMatrix>(count,
                                             SensitivityMatrix(rows_, columns.numParameters()));
     };
-    result.q = room(N);
-    result.qDot = room(N);
+    const auto n = static_cast<std::size_t>(countOf<N>(arm));
+    result.q = room(n);
+    result.qDot = room(n);
     if (muscles_) {
       result.fibreLength = result.activation = result.tendonForce = room(arm.numMuscles());
     }
     const auto numNodes = static_cast<Index>(columns.nodes().times.size());
     if (numNodes > 0) {
-      result.qOfNodes.assign(N, SensitivityMatrix::Zero(rows_, numNodes));
+      result.qOfNodes.assign(n, SensitivityMatrix::Zero(rows_, numNodes));
       result.qDotOfNodes = result.qOfNodes;
     }
   }
@@ -59,18 +61,18 @@ class SensitivityRecorder {
  private:
   /// q̇ = M⁻¹p
   void addCoordinates(const Vector& qDot, const State& state) {
-    const InertiaJet<N>& inertia = configuration_.inertia();
+    const EnergyDerivatives<N>& energy = configuration_.energy(qDot);
     direct_.computeInertia(qDot);
     momentum_ = state.dp - direct_.momentum();
     if (!arm_.skeleton().hasConstantInertia()) {
-      for (int k = 0; k < N; ++k) {
-        momentum_ -= (inertia.dM[static_cast<std::size_t>(k)] * qDot) * state.dq.row(k);
+      for (Index k = 0; k < state.dq.rows(); ++k) {
+        momentum_ -= energy.T_vq.col(k) * state.dq.row(k);
       }
     }
-    const Matrix perMass = inertia.massMatrix.inverse();
+    const Matrix perMass = energy.T_vv.inverse();
     speed_.noalias() = perMass * momentum_;
     const Index parameters = state.columns.numParameters();
-    for (int k = 0; k < N; ++k) {
+    for (int k = 0; k < countOf<N>(arm_); ++k) {
       const auto sk = static_cast<std::size_t>(k);
       result_.q[sk].row(row_) = state.dq.row(k).head(parameters);
       result_.qDot[sk].row(row_) = speed_.row(k).head(parameters);

@@ -4,6 +4,7 @@
 
 #include "sensitivity/parameter_jacobian.h"
 #include "sensitivity/step_tape.h"
+#include "simulation/coordinate_sums.h"
 
 namespace bio::stepping {
 
@@ -27,8 +28,8 @@ class SensitivityStep {
         direct_(direct),
         through_(arm.numMuscles()),
         pieces_(arm.numMuscles()) {
-    forward_.setZero(N, columns);
-    force_.setZero(N, columns);
+    forward_.setZero(countOf<N>(arm), columns);
+    force_.setZero(countOf<N>(arm), columns);
     trialFibre_.setZero(static_cast<Index>(arm.numMuscles()), columns);
     row_.setZero(columns);
   }
@@ -68,29 +69,24 @@ class SensitivityStep {
                              tape.activation(i), activation);
 
     configuration_.moveTo(q_m);
-    const InertiaJet<N>& inertia = configuration_.inertia();
-
+    const int n = countOf<N>(arm_);
     // skeleton: (M v) and L_q = ½ vᵀ∂M v − ∂V over the middle configuration and the speed
-    Vector L_q = -inertia.dV;
-    Matrix Mv_q = Matrix::Zero();
-    Matrix L_qq = -inertia.d2V;
-    Matrix L_qv = Matrix::Zero();
+    const EnergyDerivatives<N>& energy = configuration_.energy(v);
+    Vector L_q = -energy.V_q;
+    Matrix Mv_q = Matrix::Zero(n, n);
+    Matrix L_qq = -energy.V_qq;
+    Matrix L_qv = Matrix::Zero(n, n);
     if (!arm_.skeleton().hasConstantInertia()) {
-      for (int k = 0; k < N; ++k) {
-        const Vector M_k_v = inertia.dM[static_cast<std::size_t>(k)] * v;
-        L_q[k] += v.dot(M_k_v) / 2;
-        Mv_q.col(k) = M_k_v;
-        L_qv.row(k) = M_k_v.transpose();
-        for (int j = 0; j < N; ++j) {
-          L_qq(k, j) += v.dot(inertia.d2M[static_cast<std::size_t>(pairIndex(k, j))] * v) / 2;
-        }
-      }
+      L_q += energy.T_q;
+      Mv_q = energy.T_vq;
+      L_qv = energy.T_vq.transpose();
+      L_qq += energy.T_qq;
     }
 
     // passive coordinate forces
-    Vector f = Vector::Zero();
-    Matrix f_q = Matrix::Zero();
-    Matrix f_v = Matrix::Zero();
+    Vector f = Vector::Zero(n);
+    Matrix f_q = Matrix::Zero(n, n);
+    Matrix f_v = Matrix::Zero(n, n);
     arm_.coordinateForces().template add<N>(q_m, v, f, f_q, f_v);
     force_.setZero();  // what of df does not go through dq′
     direct_.addPassiveForces(q_m, v, force_);
@@ -102,7 +98,7 @@ class SensitivityStep {
     state.columns.addNodes(tMiddle, force_);
 
     // muscles: dℓ′ = trialFibre + (V_L/2J) ∂ℓ·dq′
-    Matrix f_end = Matrix::Zero();  // df through the fibres that dq′ moves
+    Matrix f_end = Matrix::Zero(n, n);  // df through the fibres that dq′ moves
     for (std::size_t m = 0; m < arm_.numMuscles(); ++m) {
       const auto sm = static_cast<Index>(m);
       const SchutteMuscle<double>& muscle = arm_.muscles()[m].muscle;
@@ -113,27 +109,26 @@ class SensitivityStep {
       const double perJ = 1 / (1 / h - r.dV_dFibreLength / 2);
       auto trial = trialFibre_.row(sm);
       const double half = r.dV_dMuscleTendonLength / 2 * perJ;
-      trial = ((1 / h + r.dV_dFibreLength / 2) * perJ) * state.fibre.row(sm) +
-              (half * path.dL_dq[0]) * state.dq.row(0);
-      for (int k = 1; k < N; ++k) trial += (half * path.dL_dq[k]) * state.dq.row(k);
+      setAlong(trial, ((1 / h + r.dV_dFibreLength / 2) * perJ) * state.fibre.row(sm), half, path,
+               state.dq);
       state.activation.add(r.dV_dActivation * perJ, state.activation.middle(), sm, trial);
       if (timeMoves) trial += ((l1[sm] - l0[sm]) / (h * h) * perJ) * row_;
       addMuscleParameters(m, q_m, activation[sm], l_m, path, r, perJ, trial);
 
-      f -= r.tendonForce * path.dL_dq;
-      f_q.noalias() -= (r.dF_dMuscleTendonLength * path.dL_dq) * path.dL_dq.transpose();
-      f_q -= r.tendonForce * path.d2L_dq2;
+      addAlong<N>(f, -r.tendonForce, path);
+      addOuter<N>(f_q, -r.dF_dMuscleTendonLength, path);
+      addSecond<N>(f_q, -r.tendonForce, path);
       const double G = r.dF_dFibreLength / 2;
-      f_end.noalias() -= (G * half * path.dL_dq) * path.dL_dq.transpose();
-      for (int k = 0; k < N; ++k) {
+      addOuter<N>(f_end, -(G * half), path);
+      forEachMoved<N>(path, [&](int k, int) {
         force_.row(k) -= (G * path.dL_dq[k]) * (state.fibre.row(sm) + trial);
-      }
+      });
     }
 
     // With q_mid = (q_begin + q_end)/2 and v = (q_end − q_begin)/h, the chain rule gives the
     // derivatives of any x(q_mid, v): x_end = x_q/2 + x_v/h, x_begin = x_q/2 − x_v/h, x_h = −x_v
     // v/h.
-    const Matrix& M = inertia.massMatrix;
+    const Matrix& M = energy.T_vv;
     const Matrix residual_q = Mv_q - h / 2 * L_qq - share * f_q;
     const Matrix residual_v = M - h / 2 * L_qv - share * f_v;
     const Matrix momentum_q = Mv_q + h / 2 * L_qq + endShare * f_q;
@@ -172,14 +167,25 @@ class SensitivityStep {
     for (std::size_t m = 0; m < arm_.numMuscles(); ++m) {
       const auto sm = static_cast<Index>(m);
       const LengthJet<N>& path = configuration_.length(m);
-      auto fibre = state.fibre.row(sm);
-      fibre = trialFibre_.row(sm) + (through_[m] * path.dL_dq[0]) * forward_.row(0);
-      for (int k = 1; k < N; ++k) fibre += (through_[m] * path.dL_dq[k]) * forward_.row(k);
+      setAlong(state.fibre.row(sm), trialFibre_.row(sm), through_[m], path, forward_);
     }
     state.dq.swap(forward_);
   }
 
  private:
+  /// row = base + factor Σ_k ∂_kℓ rows_k, in one pass for one coordinate
+  template <class Row, class Base, class Rows>
+  static void setAlong(Row&& row, const Base& base, double factor, const LengthJet<N>& path,
+                       const Rows& rows) {
+    if constexpr (N == Eigen::Dynamic) {
+      row = base;
+      for (const int k : path.support) row += (factor * path.dL_dq[k]) * rows.row(k);
+    } else {
+      row = base + (factor * path.dL_dq[0]) * rows.row(0);
+      for (int k = 1; k < N; ++k) row += (factor * path.dL_dq[k]) * rows.row(k);
+    }
+  }
+
   /// ∂r/∂θ of one muscle: into its fibre's row and into the force on the skeleton.
   template <class Row>
   void addMuscleParameters(std::size_t m, const Vector& q, double activation, double l_m,
@@ -197,11 +203,11 @@ class SensitivityStep {
     }
     direct_.forGeometry(m, q, [&](const QuantityEffect& effect, const auto& gradient) {
       trial[effect.column] += effect.factor * r.dV_dMuscleTendonLength * perJ * gradient[0];
-      for (int k = 0; k < N; ++k) {
+      forEachMoved<N>(path, [&](int k, int slot) {
         force_(k, effect.column) -=
             effect.factor * (r.dF_dMuscleTendonLength * gradient[0] * path.dL_dq[k] +
-                             r.tendonForce * gradient[1 + k]);
-      }
+                             r.tendonForce * gradient[1 + slot]);
+      });
     });
   }
 

@@ -158,8 +158,9 @@ class AdaptiveRun {
     const auto n = static_cast<Eigen::Index>(arm_.numMuscles());
     const auto state = view(y_.get());
     const auto work = view(work_.get());
-    recorder_.add(t, state.template head<N>(), state.template segment<N>(N),
-                  state.segment(2 * N, n), state.tail(n), work[0], work[1], work[2]);
+    const auto& parts = task_.dynamics;
+    recorder_.add(t, parts.coordinates(state), parts.speeds(state), parts.activations(state),
+                  state.tail(n), work[0], work[1], work[2]);
   }
 
   bool end(Outcome outcome, double at, const std::string& why) {
@@ -200,7 +201,8 @@ class AdaptiveRun {
   /// At a switch: from here on the equations are others.
   void beginAnew() {
     check(CVodeGetRootInfo(cvode(), crossed_.data()), "CVodeGetRootInfo");
-    Eigen::Matrix<double, N, 1> held = view(y_.get()).template head<N>();
+    const auto state = view(y_.get());
+    Eigen::Matrix<double, N, 1> held = task_.dynamics.coordinates(state);
     for (std::size_t i = 0; i < crossed_.size(); ++i) {
       if (crossed_[i] != 0) held = beyondSwitch(task_.switches[i], held, -crossed_[i]);
     }
@@ -240,7 +242,7 @@ class AdaptiveRun {
 
 Trajectory simulateCvode(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
                          const SystemState& start, const SimulationOptions& options) {
-  return withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+  return withCoordinates(arm.skeleton(), [&](auto N) {
     return AdaptiveRun<decltype(N)::value>(arm, excitation, start, options).run();
   });
 }

@@ -9,20 +9,20 @@
 
 namespace bio::stepping {
 
-/// Calls function(std::integral_constant<int, N>) with N = number of free coordinates.
+/// Calls function(std::integral_constant<int, N>) with N = number of free coordinates, or
+/// Eigen::Dynamic for a skeleton that is evaluated as a tree.
 template <class F>
-decltype(auto) withCoordinates(int count, F&& function) {
-  switch (count) {
+decltype(auto) withCoordinates(const Skeleton& skeleton, F&& function) {
+  if (skeleton.tree()) return function(std::integral_constant<int, Eigen::Dynamic>{});
+  switch (skeleton.numCoordinates()) {
     case 1:
       return function(std::integral_constant<int, 1>{});
     case 2:
       return function(std::integral_constant<int, 2>{});
     case 3:
       return function(std::integral_constant<int, 3>{});
-    case 4:
-      return function(std::integral_constant<int, 4>{});
     default:
-      throw std::invalid_argument("1 to 4 free coordinates can be simulated");
+      return function(std::integral_constant<int, 4>{});
   }
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "bio/path/posture_samples.h"
 #include "model/plausible.h"
 #include "simulation/integrators.h"
 #include "skeleton/moved_mass.h"
@@ -14,13 +15,20 @@ namespace bio {
 namespace {
 
 /// [m]
-double defaultLength(const Skeleton& skeleton, const MusclePath& path) {
-  return stepping::withCoordinates(skeleton.numCoordinates(), [&](auto N) {
+double defaultLength(const Skeleton& skeleton, const Muscle& muscle, const MusclePath& path) {
+  return stepping::withCoordinates(skeleton, [&](auto N) {
     constexpr int count = decltype(N)::value;
-    std::vector<RigidMotion<double, count>> moved(skeleton.numSegments());
     const Eigen::Matrix<double, count, 1> q = skeleton.defaultValues();
-    skeleton.motions<double, count>(q, moved.data());
-    return path.length<count>(q, moved.data()).length;
+    if constexpr (count == Eigen::Dynamic) {
+      TreePaths paths(skeleton);
+      paths.add(muscle, path);
+      paths.moveTo(q);
+      return paths.length(0).length;
+    } else {
+      std::vector<RigidMotion<double, count>> moved(skeleton.numSegments());
+      skeleton.motions<double, count>(q, moved.data());
+      return path.length<count>(q, moved.data()).length;
+    }
   });
 }
 
@@ -41,6 +49,15 @@ const MusclePath* MusculoskeletalSystem::pathOf(const std::string& muscle) const
   return nullptr;
 }
 
+void MusculoskeletalSystem::addTreePaths(const Model& model) {
+  if (!skeleton_.tree()) return;
+  tree_ = std::make_unique<ArticulatedTree>(*skeleton_.tree());
+  for (const SystemMuscle& muscle : muscles_) {
+    treePaths_.emplace_back(*tree_, skeleton_, findMuscle(model, muscle.name),
+                            muscle.path.compiled());
+  }
+}
+
 MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOptions& options,
                                              const MusculoskeletalSystem* like,
                                              const std::vector<std::string>& shaped)
@@ -49,7 +66,7 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
     requireMovedMass(model, skeleton_);
     warnings_ = lockRemarks(model, options.skeleton);
   }
-  std::vector<Posture> postures;  // sampled for the first path that is compiled
+  PostureSamples postures(model, skeleton_);
   for (const Muscle& muscle : model.muscles) {
     if (!muscle.enabled) {
       notes_.push_back(fmt::format("muscle '{}' is switched off in the model", muscle.name));
@@ -63,8 +80,7 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
       if (ready) {
         compiled = *ready;
       } else {
-        if (postures.empty()) postures = samplePostures(skeleton_);
-        compiled.emplace(model, skeleton_, muscle, options.wrapAsCylinder, postures);
+        compiled.emplace(model, skeleton_, muscle, options.wrapAsCylinder, postures.of(muscle));
       }
     } catch (const UnsupportedWrap& e) {
       warnings_.push_back(fmt::format("{}: the muscle is left out", e.what()));
@@ -73,7 +89,7 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
     MusclePath& path = *compiled;
     if (!like) {
       warnings_.insert(warnings_.end(), path.warnings().begin(), path.warnings().end());
-      if (const double length = defaultLength(skeleton_, path); length < shortestPath) {
+      if (const double length = defaultLength(skeleton_, muscle, path); length < shortestPath) {
         warnings_.push_back(
             fmt::format("muscle '{}': its path is {:.3g} m long in the default "
                         "posture, usually more than 1 mm",
@@ -110,6 +126,7 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
       throw std::invalid_argument(fmt::format("muscle '{}': {}", muscle.name, e.what()));
     }
   }
+  addTreePaths(model);
   if (muscles_.empty()) notes_.push_back("no muscle acts on the free coordinates");
 }
 

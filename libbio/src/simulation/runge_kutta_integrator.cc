@@ -110,7 +110,7 @@ class ExplicitRun {
         step_(dynamics_, y_),
         stability_(arm.numMuscles()),
         recorder_(arm, numRows(options)) {
-    hold(y_.template head<N>());
+    hold(dynamics_.coordinates(y_));
   }
 
   Trajectory run() {
@@ -138,14 +138,15 @@ class ExplicitRun {
   }
 
  private:
-  void hold(const Vector& at) {
+  template <class At>
+  void hold(const At& at) {
     held_ = at;
     if (!arm_.switches().empty()) dynamics_.holdConditions(held_);
   }
 
   void record(double t) {
     const auto n = static_cast<Eigen::Index>(arm_.numMuscles());
-    recorder_.add(t, y_.template head<N>(), y_.template segment<N>(N), y_.segment(2 * N, n),
+    recorder_.add(t, dynamics_.coordinates(y_), dynamics_.speeds(y_), dynamics_.activations(y_),
                   y_.tail(n), work_.muscle, work_.passive, work_.external);
   }
 
@@ -175,9 +176,9 @@ class ExplicitRun {
           work = step_.finish(t + done, x, y_, end_);
           return distance(end_);
         });
-        hold(beyondSwitch(*met, Vector(end_.template head<N>()), before));
+        hold(beyondSwitch(*met, Vector(dynamics_.coordinates(end_)), before));
       } else {
-        hold(end_.template head<N>());
+        hold(dynamics_.coordinates(end_));
       }
       y_.swap(end_);
       work_.muscle += work.muscle;
@@ -186,7 +187,7 @@ class ExplicitRun {
       if (!met) break;
       done += taken;
     }
-    if (y_.allFinite() && y_.template segment<N>(N).cwiseAbs().maxCoeff() < largestSpeed) {
+    if (y_.allFinite() && dynamics_.speeds(y_).cwiseAbs().maxCoeff() < largestSpeed) {
       return true;
     }
     return fail(
@@ -200,8 +201,8 @@ class ExplicitRun {
   }
 
   const PathSwitch* crossed() const {
-    return firstCrossed(arm_.switches(), held_, Vector(y_.template head<N>()),
-                        Vector(end_.template head<N>()));
+    return firstCrossed(arm_.switches(), held_, dynamics_.coordinates(y_),
+                        dynamics_.coordinates(end_));
   }
 
   bool fail(double failedAt, const std::string& how, double at) {
@@ -227,7 +228,7 @@ class ExplicitRun {
 
 Trajectory simulateRungeKutta4(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
                                const SystemState& start, const SimulationOptions& options) {
-  return withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+  return withCoordinates(arm.skeleton(), [&](auto N) {
     return ExplicitRun<decltype(N)::value>(arm, excitation, start, options).run();
   });
 }

@@ -27,7 +27,7 @@ SystemState initialState(const MusculoskeletalSystem& arm, const Eigen::VectorXd
   std::size_t hint = 0;
   excitation.at(time, hint, state.activation);
   state.fibreLength.resize(n);
-  stepping::withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+  stepping::withCoordinates(arm.skeleton(), [&](auto N) {
     SystemConfiguration<decltype(N)::value> configuration(arm);
     configuration.moveTo(q);
     for (std::size_t i = 0; i < arm.numMuscles(); ++i) {
@@ -107,30 +107,34 @@ namespace {
 
 template <int N>
 Energy energyAt(SystemConfiguration<N>& configuration, const Eigen::Matrix<double, N, 1>& q,
-                const Eigen::Matrix<double, N, 1>& qDot) {
+                const Eigen::Matrix<double, N, 1>& qDot, Eigen::Matrix<double, N, 1>& momentum) {
   configuration.moveTo(q);
-  const auto& inertia = configuration.inertia();
-  return {qDot.dot(inertia.massMatrix * qDot) / 2, inertia.potential};
+  momentum.noalias() = configuration.massMatrix() * qDot;
+  return {qDot.dot(momentum) / 2, configuration.potential()};
 }
 
 }  // namespace
 
 Energy energyOf(const MusculoskeletalSystem& arm, const Eigen::VectorXd& q,
                 const Eigen::VectorXd& qDot) {
-  return stepping::withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+  return stepping::withCoordinates(arm.skeleton(), [&](auto N) {
     SystemConfiguration<decltype(N)::value> configuration(arm);
-    return energyAt<decltype(N)::value>(configuration, q, qDot);
+    Eigen::Matrix<double, decltype(N)::value, 1> momentum = q;
+    return energyAt<decltype(N)::value>(configuration, q, qDot, momentum);
   });
 }
 
 Eigen::VectorXd energyImbalance(const MusculoskeletalSystem& arm, const Trajectory& trajectory) {
-  return stepping::withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+  return stepping::withCoordinates(arm.skeleton(), [&](auto N) {
     SystemConfiguration<decltype(N)::value> configuration(arm);
     Eigen::VectorXd imbalance(trajectory.q.cols());
     double first = 0;
+    Eigen::Matrix<double, decltype(N)::value, 1> q = arm.skeleton().defaultValues();
+    Eigen::Matrix<double, decltype(N)::value, 1> qDot = q, momentum = q;
     for (Eigen::Index k = 0; k < trajectory.q.cols(); ++k) {
-      const Energy energy =
-          energyAt<decltype(N)::value>(configuration, trajectory.q.col(k), trajectory.qDot.col(k));
+      q = trajectory.q.col(k);
+      qDot = trajectory.qDot.col(k);
+      const Energy energy = energyAt<decltype(N)::value>(configuration, q, qDot, momentum);
       const double stored = energy.kinetic + energy.potential;
       if (k == 0) first = stored;
       imbalance[k] = stored - first - trajectory.muscleWork[k] - trajectory.passiveWork[k] -
@@ -156,7 +160,7 @@ MuscleReport reportMuscles(const MusculoskeletalSystem& arm, const Trajectory& t
   report.tendonForce.resize(n, K);
   report.muscleTendonLength.resize(n, K);
   report.momentArm.resize(n, K);
-  stepping::withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+  stepping::withCoordinates(arm.skeleton(), [&](auto N) {
     SystemConfiguration<decltype(N)::value> configuration(arm);
     for (Eigen::Index k = 0; k < K; ++k) {
       configuration.moveTo(trajectory.q.col(k));

@@ -28,8 +28,8 @@ Coordinates beyondSwitch(const PathSwitch& met, Coordinates q, double before) {
 
 /// The switch that a motion from q to qEnd crosses first, as a straight line would; null if none.
 /// @param held  where the conditional points are those of the motion's start
-template <class Coordinates>
-const PathSwitch* firstCrossed(const std::vector<PathSwitch>& switches, const Coordinates& held,
+template <class Held, class Coordinates>
+const PathSwitch* firstCrossed(const std::vector<PathSwitch>& switches, const Held& held,
                                const Coordinates& q, const Coordinates& qEnd) {
   const PathSwitch* first = nullptr;
   double earliest = 2;

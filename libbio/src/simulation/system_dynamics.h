@@ -2,7 +2,11 @@
 
 // First-order form of the coupled equations, for the explicit and the adaptive integrator.
 
+#include <optional>
+
+#include "simulation/coordinate_sums.h"
 #include "simulation/integrators.h"
+#include "simulation/tree_rates.h"
 
 namespace bio::stepping {
 
@@ -24,12 +28,36 @@ class SystemDynamics {
         excitation_(excitation),
         externalForce_(external),
         configuration_(arm),
+        numCoordinates_(arm.skeleton().numCoordinates()),
         numMuscles_(static_cast<Eigen::Index>(arm.numMuscles())),
         u_(State::Zero(numMuscles_)),
         rate_(arm.numMuscles()),
-        pieces_(arm.numMuscles()) {}
+        pieces_(arm.numMuscles()),
+        qDot_(Vector::Zero(numCoordinates_)),
+        acceleration_(qDot_),
+        muscle_(qDot_),
+        passive_(qDot_),
+        external_(qDot_),
+        tau_q_(Matrix::Zero(numCoordinates_, numCoordinates_)),
+        tau_v_(tau_q_),
+        factor_(numCoordinates_) {
+    if constexpr (N == Eigen::Dynamic) rates_.emplace(*arm.tree());
+  }
 
-  Eigen::Index size() const { return 2 * N + 2 * numMuscles_; }
+  Eigen::Index size() const { return 2 * count() + 2 * numMuscles_; }
+  /// Parts of a state.
+  template <class Y>
+  auto coordinates(Y&& y) const {
+    return y.head(Eigen::fix<N>(numCoordinates_));
+  }
+  template <class Y>
+  auto speeds(Y&& y) const {
+    return y.segment(count(), Eigen::fix<N>(numCoordinates_));
+  }
+  template <class Y>
+  auto activations(Y&& y) const {
+    return y.segment(2 * count(), numMuscles_);
+  }
 
   State pack(const SystemState& state) const {
     State y(size());
@@ -50,12 +78,13 @@ class SystemDynamics {
   template <class Y, class YDot>
   Power derivative(double t, const Y& y, YDot&& yDot) {
     evaluate(t, y);
-    yDot.template head<N>() = qDot_;
-    yDot.template segment<N>(N) = acceleration_;
+    coordinates(yDot) = qDot_;
+    speeds(yDot) = acceleration_;
     for (Eigen::Index i = 0; i < numMuscles_; ++i) {
       const auto si = static_cast<std::size_t>(i);
-      yDot[2 * N + i] = activationRate(arm_.muscles()[si].activation, u_[i], y[2 * N + i]);
-      yDot[2 * N + numMuscles_ + i] = rate_[si].fibreVelocity;
+      yDot[2 * count() + i] =
+          activationRate(arm_.muscles()[si].activation, u_[i], y[2 * count() + i]);
+      yDot[2 * count() + numMuscles_ + i] = rate_[si].fibreVelocity;
     }
     return {muscle_.dot(qDot_), passive_.dot(qDot_), external_.dot(qDot_)};
   }
@@ -64,12 +93,57 @@ class SystemDynamics {
   template <class Y, class J>
   void jacobian(double t, const Y& y, J&& jacobian) {
     evaluate(t, y);
-    const InertiaJet<N>& inertia = configuration_.inertia();
     jacobian.setZero();
-    jacobian.template block<N, N>(0, N).setIdentity();
-    Matrix dForce_dq = tau_q_ - inertia.d2V;
+    const auto n = Eigen::fix<N>(numCoordinates_);
+    jacobian.block(0, count(), n, n).setIdentity();
+    Matrix dForce_dq = tau_q_;
     Matrix dForce_dqDot = tau_v_;
-    if (!arm_.skeleton().hasConstantInertia()) {
+    addInertia(dForce_dq, dForce_dqDot);
+    for (Eigen::Index i = 0; i < numMuscles_; ++i) {
+      const auto si = static_cast<std::size_t>(i);
+      const FibreRateDerivatives& r = rate_[si];
+      const LengthJet<N>& path = configuration_.length(si);
+      if constexpr (N == Eigen::Dynamic) {
+        addOuter<N>(dForce_dq, -r.dF_dMuscleTendonLength, path);
+        addSecond<N>(dForce_dq, -r.tendonForce, path);
+      } else {
+        dForce_dq -= r.dF_dMuscleTendonLength * path.dL_dq * path.dL_dq.transpose() +
+                     r.tendonForce * path.d2L_dq2;
+      }
+      const Eigen::Index a = 2 * count() + i;
+      const Eigen::Index l = a + numMuscles_;
+      jacobian.block(count(), l, n, Eigen::fix<1>) =
+          -factor_.solve(Vector(r.dF_dFibreLength * path.dL_dq));
+      const auto& law = arm_.muscles()[si].activation;
+      jacobian(a, a) = -law.rateConstant(u_[i], u_[i] >= y[a]);
+      jacobian.block(l, 0, Eigen::fix<1>, n) = r.dV_dMuscleTendonLength * path.dL_dq.transpose();
+      jacobian(l, a) = r.dV_dActivation;
+      jacobian(l, l) = r.dV_dFibreLength;
+    }
+    jacobian.block(count(), 0, n, n) = factor_.solve(dForce_dq);
+    jacobian.block(count(), count(), n, n) = factor_.solve(dForce_dqDot);
+  }
+
+  /// Of the last state that was evaluated.
+  const FibreRateDerivatives& rate(std::size_t muscle) const { return rate_[muscle]; }
+
+ private:
+  Eigen::Index count() const { return countOf<N>(numCoordinates_); }
+
+  /// Derivatives of −Ṁ q̇ + ½ q̇ᵀ∂M q̇ − ∂V − M q̈ at the last state.
+  void addInertia(Matrix& dForce_dq, Matrix& dForce_dqDot) {
+    if constexpr (N == Eigen::Dynamic) {
+      const EnergyDerivatives<N>& e = configuration_.energy(qDot_);
+      dForce_dq += e.T_qq - e.V_qq;
+      dForce_dqDot += e.T_vq.transpose() - e.T_vq;
+      rates_->evaluate(q_, qDot_);
+      dForce_dq -= rates_->momentumRate();
+      dForce_dqDot -= rates_->massRate();
+      dForce_dq -= configuration_.energy(acceleration_).T_vq;
+    } else {
+      const InertiaJet<N>& inertia = configuration_.inertia();
+      dForce_dq -= inertia.d2V;
+      if (arm_.skeleton().hasConstantInertia()) return;
       for (int k = 0; k < N; ++k) {
         const auto sk = static_cast<std::size_t>(k);
         for (int j = 0; j < N; ++j) {
@@ -85,36 +159,36 @@ class SystemDynamics {
         dForce_dq.col(k) -= inertia.dM[sk] * acceleration_;
       }
     }
-    for (Eigen::Index i = 0; i < numMuscles_; ++i) {
-      const auto si = static_cast<std::size_t>(i);
-      const FibreRateDerivatives& r = rate_[si];
-      const LengthJet<N>& path = configuration_.length(si);
-      dForce_dq -= r.dF_dMuscleTendonLength * path.dL_dq * path.dL_dq.transpose() +
-                   r.tendonForce * path.d2L_dq2;
-      const Eigen::Index a = 2 * N + i;
-      const Eigen::Index l = a + numMuscles_;
-      jacobian.template block<N, 1>(N, l) = -factor_.solve(Vector(r.dF_dFibreLength * path.dL_dq));
-      const auto& law = arm_.muscles()[si].activation;
-      jacobian(a, a) = -law.rateConstant(u_[i], u_[i] >= y[a]);
-      jacobian.template block<1, N>(l, 0) = r.dV_dMuscleTendonLength * path.dL_dq.transpose();
-      jacobian(l, a) = r.dV_dActivation;
-      jacobian(l, l) = r.dV_dFibreLength;
-    }
-    jacobian.template block<N, N>(N, 0) = factor_.solve(dForce_dq);
-    jacobian.template block<N, N>(N, N) = factor_.solve(dForce_dqDot);
   }
 
-  /// Of the last state that was evaluated.
-  const FibreRateDerivatives& rate(std::size_t muscle) const { return rate_[muscle]; }
+  /// −Ṁ q̇ + ½ q̇ᵀ∂M q̇ − ∂V; factors M.
+  void addInertia(Vector& force) {
+    if constexpr (N == Eigen::Dynamic) {
+      const EnergyDerivatives<N>& e = configuration_.energy(qDot_);
+      force += e.T_q - e.V_q;
+      force.noalias() -= e.T_vq * qDot_;
+      factor_.compute(e.T_vv);
+    } else {
+      const InertiaJet<N>& inertia = configuration_.inertia();
+      force -= inertia.dV;
+      if (!arm_.skeleton().hasConstantInertia()) {
+        for (int k = 0; k < N; ++k) {
+          const Vector M_k_v = inertia.dM[static_cast<std::size_t>(k)] * qDot_;
+          force[k] += qDot_.dot(M_k_v) / 2;
+          force -= qDot_[k] * M_k_v;
+        }
+      }
+      factor_.compute(inertia.massMatrix);
+    }
+  }
 
- private:
   template <class Y>
   void evaluate(double t, const Y& y) {
-    const Vector q = y.template head<N>();
-    qDot_ = y.template segment<N>(N);
+    q_ = coordinates(y);
+    const Vector& q = q_;
+    qDot_ = speeds(y);
     excitation_.at(t, hint_, u_);
     configuration_.moveTo(q);
-    const InertiaJet<N>& inertia = configuration_.inertia();
     passive_.setZero();
     tau_q_.setZero();
     tau_v_.setZero();
@@ -124,36 +198,31 @@ class SystemDynamics {
     muscle_.setZero();
     for (Eigen::Index i = 0; i < numMuscles_; ++i) {
       const auto si = static_cast<std::size_t>(i);
-      rate_[si] =
-          fibreRateDerivatives(arm_.muscles()[si].muscle, y[2 * N + i], y[2 * N + numMuscles_ + i],
-                               configuration_.length(si).length, pieces_[si]);
+      rate_[si] = fibreRateDerivatives(arm_.muscles()[si].muscle, y[2 * count() + i],
+                                       y[2 * count() + numMuscles_ + i],
+                                       configuration_.length(si).length, pieces_[si]);
       muscle_ -= rate_[si].tendonForce * configuration_.length(si).dL_dq;
     }
-    Vector force = muscle_ + passive_ + external_ - inertia.dV;
-    if (!arm_.skeleton().hasConstantInertia()) {
-      for (int k = 0; k < N; ++k) {
-        const Vector M_k_v = inertia.dM[static_cast<std::size_t>(k)] * qDot_;
-        force[k] += qDot_.dot(M_k_v) / 2;
-        force -= qDot_[k] * M_k_v;
-      }
-    }
-    factor_.compute(inertia.massMatrix);
-    acceleration_ = factor_.solve(force);
+    force_ = muscle_ + passive_ + external_;
+    addInertia(force_);
+    acceleration_ = factor_.solve(force_);
   }
 
   const MusculoskeletalSystem& arm_;
   const ExcitationSignal& excitation_;
   const ExternalForce& externalForce_;
   SystemConfiguration<N> configuration_;
+  int numCoordinates_;
   Eigen::Index numMuscles_;
   State u_;
   std::vector<FibreRateDerivatives> rate_;
   std::vector<SchuttePieces> pieces_;  ///< of the last state
   std::size_t hint_ = 0;
   std::size_t externalRow_ = 0;
-  Vector qDot_, acceleration_, muscle_, passive_, external_;
+  Vector q_, qDot_, acceleration_, force_, muscle_, passive_, external_;
   Matrix tau_q_, tau_v_;
   Eigen::LDLT<Matrix> factor_;
+  std::optional<TreeRates> rates_;
 };
 
 }  // namespace bio::stepping

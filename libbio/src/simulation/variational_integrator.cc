@@ -30,7 +30,7 @@ class VariationalRun {
         keptActivation_(static_cast<std::size_t>(options.maxHalvings) + 1, start.activation) {
     now_.q = start.q;
     configuration_.moveTo(now_.q);
-    now_.p = configuration_.inertia().massMatrix * start.qDot;
+    now_.p = configuration_.massMatrix() * start.qDot;
     now_.fibreLength = start.fibreLength;
     velocity_ = start.qDot;
     velocityBefore_ = velocity_;
@@ -179,9 +179,11 @@ class VariationalRun {
   }
 
   /// q̇ = M⁻¹p at the end of the last step.
-  Vector speed() {
+  const Vector& speed() {
     if (!arm_.skeleton().hasConstantInertia()) configuration_.moveSkeletonTo(now_.q);
-    return configuration_.inertia().massMatrix.ldlt().solve(now_.p);
+    factor_.compute(configuration_.massMatrix());
+    speed_ = factor_.solve(now_.p);
+    return speed_;
   }
 
   const MusculoskeletalSystem& arm_;
@@ -195,6 +197,8 @@ class VariationalRun {
   Ends now_, next_;
   // mean speeds of the last two steps, and their lengths [s]
   Vector velocity_, velocityBefore_;
+  Vector speed_;
+  Eigen::LDLT<Eigen::Matrix<double, N, N>> factor_;
   Eigen::VectorXd fibreVelocity_, fibreVelocityBefore_;
   double length_, lengthBefore_;
   double muscleWork_ = 0;
@@ -209,7 +213,7 @@ class VariationalRun {
 Trajectory simulateVariational(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
                                const SystemState& start, const SimulationOptions& options,
                                StepTape* tape) {
-  return withCoordinates(arm.skeleton().numCoordinates(), [&](auto N) {
+  return withCoordinates(arm.skeleton(), [&](auto N) {
     return VariationalRun<decltype(N)::value>(arm, excitation, start, options, tape).run();
   });
 }

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "simulation/coordinate_sums.h"
 #include "simulation/integrators.h"
 
 namespace bio::stepping {
@@ -23,7 +24,11 @@ class VariationalStepper {
         rate_(arm.numMuscles()),
         pieces_(arm.numMuscles()),
         inverse_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(arm.numMuscles()))),
-        residual_(inverse_) {}
+        residual_(inverse_),
+        muscle_(Vector::Zero(countOf<N>(arm))),
+        passive_(muscle_),
+        external_(muscle_),
+        work_(countOf<N>(arm)) {}
 
   struct Ends {
     Vector q, p;
@@ -48,49 +53,60 @@ class VariationalStepper {
     options_.externalForce.add(middle, row_, external_);
     const double share = symmetric_ ? h / 2 : h;  // of the forces in F⁻
     double previous = 0;                          // largest correction of the iteration before
-    Vector at, place;  // where the configuration was computed, and where it is
+    // where the configuration was computed, and where it is
+    auto&& at = work_.template vector<0>();
+    auto&& place = work_.template vector<1>();
+    auto&& q_m = work_.template vector<2>();
+    auto&& v = work_.template vector<3>();
+    auto&& L_q = work_.template vector<4>();
+    auto&& carried = work_.template vector<5>();
+    auto&& dq = work_.template vector<6>();
+    auto&& R = work_.template vector<7>();
+    auto&& dMv = work_.template matrix<0>();
+    auto&& dL_q = work_.template matrix<1>();
+    auto&& tau_q = work_.template matrix<2>();
+    auto&& tau_v = work_.template matrix<3>();
+    auto&& dPassive = work_.template matrix<4>();
+    auto&& dTau = work_.template matrix<5>();
+    auto&& eliminated = work_.template matrix<6>();
+    auto&& J = work_.template matrix<7>();
     for (result.iterations = 1; result.iterations <= options_.maxIterations; ++result.iterations) {
-      const Vector q_m = (begin.q + end.q) / 2;
-      const Vector v = (end.q - begin.q) / h;
+      q_m = (begin.q + end.q) / 2;
+      v = (end.q - begin.q) / h;
       if (result.iterations > 1 && (q_m - at).cwiseAbs().maxCoeff() < near) {
-        configuration_.shift(q_m - place);
+        dq = q_m - place;
+        configuration_.shift(dq);
       } else {
         configuration_.moveTo(q_m);
         at = q_m;
       }
       place = q_m;
-      const InertiaJet<N>& inertia = configuration_.inertia();
 
       // skeleton: M v and ½ vᵀ∂M v − ∂V with their derivatives in the end configuration
-      const Vector Mv = inertia.massMatrix * v;
-      Vector L_q = -inertia.dV;
-      Matrix dMv = inertia.massMatrix / h;
-      Matrix dL_q = -inertia.d2V / 2;
+      const EnergyDerivatives<N>& energy = configuration_.energy(v);
+      const Vector& Mv = energy.T_v;
+      L_q = -energy.V_q;
+      dMv = energy.T_vv / h;
+      dL_q = -energy.V_qq / 2;
       if (!arm_.skeleton().hasConstantInertia()) {
-        for (int k = 0; k < N; ++k) {
-          const auto sk = static_cast<std::size_t>(k);
-          const Vector M_k_v = inertia.dM[sk] * v;
-          L_q[k] += v.dot(M_k_v) / 2;
-          dMv.col(k) += M_k_v / 2;
-          dL_q.row(k) += M_k_v.transpose() / h;
-          for (int j = 0; j < N; ++j) {
-            dL_q(k, j) += v.dot(inertia.d2M[static_cast<std::size_t>(pairIndex(k, j))] * v) / 4;
-          }
-        }
+        L_q += energy.T_q;
+        dMv += energy.T_vq / 2;
+        dL_q += energy.T_vq.transpose() / h;
+        dL_q += energy.T_qq / 2;
       }
 
       // passive coordinate forces
       passive_.setZero();
-      Matrix tau_q = Matrix::Zero();
-      Matrix tau_v = Matrix::Zero();
+      tau_q.setZero(countOf<N>(arm_), countOf<N>(arm_));
+      tau_v.setZero(countOf<N>(arm_), countOf<N>(arm_));
       arm_.coordinateForces().template add<N>(q_m, v, passive_, tau_q, tau_v);
-      const Matrix dPassive = tau_q / 2 + tau_v / h;
-      Matrix dTau = dPassive;
+      dPassive = tau_q / 2 + tau_v / h;
+      dTau = dPassive;
 
       // muscles: forces on the skeleton, and fibre lengths eliminated one by one
       muscle_.setZero();
-      Matrix eliminated = Matrix::Zero();
-      Vector carried = Vector::Zero();
+      eliminated.setZero(countOf<N>(arm_), countOf<N>(arm_));
+      carried.setZero(countOf<N>(arm_));
       for (std::size_t i = 0; i < rate_.size(); ++i) {
         const auto si = static_cast<Eigen::Index>(i);
         const LengthJet<N>& path = configuration_.length(i);
@@ -98,21 +114,21 @@ class VariationalStepper {
         rate_[i] = fibreRateDerivatives(arm_.muscles()[i].muscle, activation[si], l_m, path.length,
                                         pieces_[i]);
         const FibreRateDerivatives& r = rate_[i];
-        muscle_ -= r.tendonForce * path.dL_dq;
-        dTau.noalias() -= (r.dF_dMuscleTendonLength / 2 * path.dL_dq) * path.dL_dq.transpose();
-        dTau -= r.tendonForce / 2 * path.d2L_dq2;
+        addAlong<N>(muscle_, -r.tendonForce, path);
+        addOuter<N>(dTau, -(r.dF_dMuscleTendonLength / 2), path);
+        addSecond<N>(dTau, -(r.tendonForce / 2), path);
         residual_[si] = (end.fibreLength[si] - begin.fibreLength[si]) / h - r.fibreVelocity;
         inverse_[si] = 1 / (1 / h - r.dV_dFibreLength / 2);
         // G_i C_i/J_i with C = −½ V_L ∂ℓ, G = share·½ F_ℓ ∂ℓ
         const double G = share / 2 * r.dF_dFibreLength;
-        eliminated.noalias() -=
-            (G * inverse_[si] * r.dV_dMuscleTendonLength / 2 * path.dL_dq) * path.dL_dq.transpose();
-        carried += G * inverse_[si] * residual_[si] * path.dL_dq;
+        addOuter<N>(eliminated, -(G * inverse_[si] * r.dV_dMuscleTendonLength / 2), path);
+        addAlong<N>(carried, G * inverse_[si] * residual_[si], path);
       }
 
-      const Vector R = Mv - h / 2 * L_q - share * (muscle_ + passive_ + external_) - begin.p;
-      const Matrix J = dMv - h / 2 * dL_q - share * dTau - eliminated;
-      Vector dq = solveSmall(J, carried - R);
+      R = Mv - h / 2 * L_q - share * (muscle_ + passive_ + external_) - begin.p;
+      J = dMv - h / 2 * dL_q - share * dTau - eliminated;
+      carried -= R;
+      solveSmall(J, carried, dq);
       if (!dq.allFinite()) return result;
 
       // trust limits: a step of the arm or of a fibre that is too bold is shortened as a whole
@@ -136,15 +152,19 @@ class VariationalStepper {
       if (isLast(correction, shorten == 1 ? previous : 0)) {
         // L_q, forces and M v belong to the last iterate but one; to first order in the correction
         for (std::size_t i = 0; i < rate_.size(); ++i) {
-          muscle_ -= (rate_[i].dF_dFibreLength / 2 * residual_[static_cast<Eigen::Index>(i)]) *
-                     configuration_.length(i).dL_dq;
+          addAlong<N>(muscle_,
+                      -(rate_[i].dF_dFibreLength / 2 * residual_[static_cast<Eigen::Index>(i)]),
+                      configuration_.length(i));
         }
-        muscle_ += (dTau - dPassive) * dq;
-        passive_ += dPassive * dq;
-        const Vector step = end.q - begin.q;
-        end.p = Mv + dMv * dq + h / 2 * (L_q + dL_q * dq) +
-                (symmetric_ ? Vector(share * (muscle_ + passive_ + external_))
-                            : Vector(Vector::Zero()));
+        dTau -= dPassive;
+        muscle_.noalias() += dTau * dq;
+        passive_.noalias() += dPassive * dq;
+        const auto step = end.q - begin.q;
+        R.noalias() = dL_q * dq;
+        L_q += R;
+        R.noalias() = dMv * dq;
+        end.p = Mv + R + h / 2 * L_q;
+        if (symmetric_) end.p += share * (muscle_ + passive_ + external_);
         result.muscleWork = muscle_.dot(step);
         result.passiveWork = passive_.dot(step);
         result.externalWork = external_.dot(step);
@@ -184,11 +204,12 @@ class VariationalStepper {
   static constexpr double largestTurn = 0.3;        ///< [rad] per iteration
   static constexpr double largestFibreStep = 0.25;  ///< of ℓ0 per iteration
 
-  static Vector solveSmall(const Matrix& J, const Vector& b) {
+  void solveSmall(const Matrix& J, const Vector& b, Vector& x) {
     if constexpr (N == 1) {
-      return b / J(0, 0);
+      x = b / J(0, 0);
     } else {
-      return J.partialPivLu().solve(b);
+      factor_.compute(J);
+      x = factor_.solve(b);
     }
   }
 
@@ -203,6 +224,8 @@ class VariationalStepper {
   Vector muscle_;
   Vector passive_;
   Vector external_;
+  Scratch<N, 8, 8> work_;
+  Eigen::PartialPivLU<Matrix> factor_;
   std::size_t row_ = 0;  ///< of the external force
 };
 

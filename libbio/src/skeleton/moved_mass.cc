@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "bio/skeleton/tree_energy.h"
 #include "simulation/integrators.h"
 
 namespace bio {
@@ -15,12 +16,20 @@ constexpr double roundingShare = 0.05;
 constexpr double singular = 1e-10;  ///< least eigenvalue of a mass matrix with ones on its diagonal
 
 Eigen::MatrixXd massMatrixOf(const Skeleton& skeleton) {
-  return stepping::withCoordinates(skeleton.numCoordinates(), [&](auto N) -> Eigen::MatrixXd {
+  return stepping::withCoordinates(skeleton, [&](auto N) -> Eigen::MatrixXd {
     constexpr int count = decltype(N)::value;
-    std::vector<RigidMotion<double, count>> moved(skeleton.numSegments());
     const Eigen::Matrix<double, count, 1> q = skeleton.defaultValues();
-    skeleton.motions<double, count>(q, moved.data());
-    return skeleton.inertia<count>(q, moved.data()).massMatrix;
+    if constexpr (count == Eigen::Dynamic) {
+      TreeMotion<double> motion = skeleton.tree()->newMotion<double>();
+      skeleton.tree()->place(q.data(), motion);
+      TreeEnergy<count> energy(*skeleton.tree());
+      const Eigen::VectorXd still = Eigen::VectorXd::Zero(q.size());
+      return energy.evaluate(motion, still.data()).T_vv;
+    } else {
+      std::vector<RigidMotion<double, count>> moved(skeleton.numSegments());
+      skeleton.motions<double, count>(q, moved.data());
+      return skeleton.inertia<count>(q, moved.data()).massMatrix;
+    }
   });
 }
 
@@ -56,7 +65,8 @@ std::string whatMovesNoMass(const Skeleton& skeleton) {
 void requireMovedMass(const Model& model, const Skeleton& skeleton) {
   for (const Body& body : model.bodies) {
     const Eigen::Vector3d principal = principalMoments(body);
-    const bool isRounding = principal.minCoeff() >= -roundingShare * principal.cwiseAbs().maxCoeff();
+    const bool isRounding =
+        principal.minCoeff() >= -roundingShare * principal.cwiseAbs().maxCoeff();
     if (skeleton.placeOf(body.name).segment == 0 || isRounding) continue;
     throw std::invalid_argument(
         fmt::format("body '{}': least principal moment of inertia = {:.4g} kg m², must be ≥ 0 for "

@@ -1,4 +1,5 @@
 #include "bio/skeleton/skeleton.h"
+#include "bio/skeleton/articulated_tree.h"
 #include "bio/skeleton/skeleton_motion.h"
 
 #include <fmt/format.h>
@@ -103,10 +104,8 @@ Skeleton::Skeleton(const Model& model, const SkeletonOptions& options) : gravity
   // which coordinates are free, coupled or constant
   std::map<std::string, const CoordinateCoupler*> couplers;
   for (const CoordinateCoupler& coupler : model.couplers) couplers[coupler.dependent] = &coupler;
-  if (options.freeCoordinates.empty() ||
-      static_cast<int>(options.freeCoordinates.size()) > maxFreeCoordinates) {
-    throw std::invalid_argument(fmt::format("{} free coordinates, must be 1 to {}",
-                                            options.freeCoordinates.size(), maxFreeCoordinates));
+  if (options.freeCoordinates.empty()) {
+    throw std::invalid_argument("0 free coordinates, must be 1 or more");
   }
   for (const std::string& name : options.freeCoordinates) {
     coordinates_.push_back(findCoordinate(model, name));
@@ -232,10 +231,6 @@ Skeleton::Skeleton(const Model& model, const SkeletonOptions& options) : gravity
     }
     waiting = later;
   }
-  if (segments_.size() > maxSegments) {
-    throw std::invalid_argument(
-        fmt::format("{} moving segments, at most {}", segments_.size() - 1, maxSegments - 1));
-  }
   for (const Body& body : model.bodies) {
     const auto place = places_.find(body.name);
     if (place == places_.end()) {
@@ -258,6 +253,11 @@ Skeleton::Skeleton(const Model& model, const SkeletonOptions& options) : gravity
     }
   }
 
+  if (options.asTree || numCoordinates() > maxFixedCoordinates ||
+      segments_.size() > maxFixedSegments) {
+    tree_ = std::make_shared<const ArticulatedTree>(model, options);
+  }
+
   // one segment that turns about, or shifts along, one axis: M is a constant
   if (segments_.size() == 2 && segmentMotions_[1].factors.size() == 1 &&
       segmentMotions_[1].factors[0].isIdentity) {
@@ -265,6 +265,19 @@ Skeleton::Skeleton(const Model& model, const SkeletonOptions& options) : gravity
     motions<double, 1>(Eigen::Matrix<double, 1, 1>::Zero(), moved.data());
     constantMass_ = detail::momentProduct(segments_[1], moved[1].first[0], moved[1].first[0]);
     constantInertia_ = true;
+  }
+}
+
+void Skeleton::placements(const double* q, Placement<double>* out) const {
+  out[0] = Placement<double>{};
+  for (std::size_t s = 1; s < segments_.size(); ++s) {
+    const SegmentMotion& motion = segmentMotions_[s];
+    Placement<double> X = out[motion.parent];
+    for (const Factor& factor : motion.factors) {
+      const double amount = amountOf<double>(factor, q[factor.freeIndex]).value;
+      X = X * factor.before * elementary(factor.turns, factor.axis, amount);
+    }
+    out[s] = X;
   }
 }
 

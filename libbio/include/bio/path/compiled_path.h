@@ -98,7 +98,7 @@ struct Posture {
 
 /// The postures in which compilePath checks which surfaces a span can touch: the default posture,
 /// then a grid over the coordinates' ranges, nearest to the default first. One list serves all
-/// muscles.
+/// muscles. More than four coordinates: posture_samples.h, of all coordinates.
 std::vector<Posture> samplePostures(const Skeleton& skeleton);
 
 /// See MusclePath.

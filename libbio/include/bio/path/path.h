@@ -65,7 +65,7 @@ class MusclePath {
   ///   points in some posture
   MusclePath(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
              const std::vector<std::string>& wrapAsCylinder);
-  /// The same for one of many muscles, with postures = samplePostures(skeleton).
+  /// The same for one of many muscles, with postures = PostureSamples(…).of(muscle).
   MusclePath(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
              const std::vector<std::string>& wrapAsCylinder, const std::vector<Posture>& postures);
 
@@ -107,12 +107,10 @@ class MusclePath {
   std::vector<Eigen::Vector3d> pathPoints(const Eigen::Matrix<double, N, 1>& q,
                                           const RigidMotion<double, N>* moved,
                                           double step = 0.1) const;
+  /// The same for any number of coordinates.
+  std::vector<Eigen::Vector3d> pathPoints(const Posture& posture, double step = 0.1) const;
 
  private:
-  std::vector<Eigen::Vector3d> polyline(const std::vector<double>& q,
-                                        const std::vector<Placement<double>>& placements,
-                                        double step) const;
-
   CompiledPath compiled_;
   PathParameters<double> parameters_;
   std::shared_ptr<const PathTable> table_;

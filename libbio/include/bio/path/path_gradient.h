@@ -4,17 +4,20 @@
 #include <vector>
 
 #include "bio/path/path.h"
+#include "bio/path/tree_path.h"
 #include "bio/skeleton/skeleton.h"
 
 namespace bio {
 
 /// Derivatives of a muscle–tendon length and its slope with respect to the parameters of the path:
-/// column 0 is ∂ℓ/∂θ, column 1 + k is ∂²ℓ/∂q_k∂θ, one row per θ.
+/// column 0 is ∂ℓ/∂θ, column 1 + k is ∂²ℓ/∂q_k∂θ, one row per θ. N = Eigen::Dynamic: k counts the
+/// coordinates of the path's support.
 template <int N>
 struct PathGradient {
-  using OfPoint = Eigen::Matrix<double, 3, 1 + N>;
+  static constexpr int columns = N == Eigen::Dynamic ? Eigen::Dynamic : 1 + N;
+  using OfPoint = Eigen::Matrix<double, 3, columns>;
   /// radius; then translation x, y, z and rotation x, y, z of the wrap object in its body
-  using OfWrap = Eigen::Matrix<double, 7, 1 + N>;
+  using OfWrap = Eigen::Matrix<double, 7, columns>;
   std::vector<OfPoint> points;  ///< of Path::points, over their locations in their bodies [1]
   std::vector<OfWrap> wraps;    ///< of Path::wraps; unused for a wrap that is left out
 };
@@ -45,6 +48,13 @@ class PathGradients {
   void evaluate(const Eigen::Matrix<double, N, 1>& q, const RigidMotion<double, N>* moved,
                 PathGradient<N>& out) const;
 
+  /// The same for a path over a tree.
+  PathGradient<Eigen::Dynamic> workspace(const TreePath& path) const;
+  /// @param work  of the path, TreePath::newWork()
+  void evaluate(const Eigen::VectorXd& q, const TreePath& path, const ArticulatedTree& tree,
+                const TreeMotion<double>& motion, SupportedLength<double>& work,
+                PathGradient<Eigen::Dynamic>& out) const;
+
   /// Whether a span may touch, in some posture, the wrap object with this index in Path::wraps.
   bool mayTouch(std::size_t wrap) const { return mayTouch_[wrap]; }
   /// Whether the point with this index in Path::points is active in some posture.
@@ -62,7 +72,15 @@ class PathGradients {
                const RigidMotion<double, N>* moved, unsigned& usedSurfaces, bool isFixed,
                PathGradient<N>& out) const;
 
+  struct TreeSpan;
+  void addSurface(const TreeSpan& span, const detail::SpanOverSurface& s,
+                  PathGradient<Eigen::Dynamic>& out) const;
+  void addTreePoint(const TreeSpan& span, std::size_t node, const SegmentChain* chain,
+                    const Eigen::Vector3d& c, std::size_t slopes,
+                    PathGradient<Eigen::Dynamic>& out) const;
+
   const CompiledPath* path_;
+  std::vector<std::string> bodies_;  ///< of the path's points
   std::size_t numPoints_, numWraps_;
   std::vector<SurfaceFrame> frames_;       ///< of CompiledPath::surfaces
   std::vector<PathGradient<0>> constant_;  ///< of the fixed spans, per variant

@@ -323,9 +323,9 @@ std::vector<Eigen::Vector3d> MusclePath::pathPoints(const Eigen::Matrix<double, 
   for (const PathSurface& surface : compiled_.surfaces) {
     segments = std::max(segments, surface.segment + 1);
   }
-  std::vector<Placement<double>> placements(segments);
-  for (std::size_t s = 0; s < segments; ++s) placements[s] = moved[s].value;
-  return polyline(std::vector<double>(q.data(), q.data() + q.size()), placements, step);
+  Posture posture{std::vector<double>(q.data(), q.data() + q.size()), {}};
+  for (std::size_t s = 0; s < segments; ++s) posture.placements.push_back(moved[s].value);
+  return pathPoints(posture, step);
 }
 
 }  // namespace bio

@@ -9,7 +9,9 @@
 #include "bio/muscle/activation/activation.h"
 #include "bio/muscle/schutte_muscle.h"
 #include "bio/path/path.h"
+#include "bio/path/tree_path.h"
 #include "bio/skeleton/skeleton.h"
+#include "bio/skeleton/tree_energy.h"
 
 namespace bio {
 
@@ -53,6 +55,11 @@ class MusculoskeletalSystem {
   const std::vector<SystemMuscle>& muscles() const { return muscles_; }
   std::size_t numMuscles() const { return muscles_.size(); }
 
+  /// The skeleton's tree with the moving points of the paths; null: Skeleton::tree() is.
+  const ArticulatedTree* tree() const { return tree_.get(); }
+  /// Of a muscle, over tree().
+  const TreePath& treePath(std::size_t muscle) const { return treePaths_[muscle]; }
+
   /// Coordinate values at which a path gains or loses conditional points, each listed once.
   const std::vector<PathSwitch>& switches() const { return switches_; }
 
@@ -68,11 +75,15 @@ class MusculoskeletalSystem {
                         const MusculoskeletalSystem* like, const std::vector<std::string>& shaped);
   /// The path that can be reused; null: it must be compiled.
   const MusclePath* pathOf(const std::string& muscle) const;
+  /// The muscles' paths over tree_, where the skeleton has a tree.
+  void addTreePaths(const Model& model);
 
   Skeleton skeleton_;
   CoordinateForces coordinateForces_;
   std::vector<std::unique_ptr<const SchutteCurves>> curves_;
   std::vector<SystemMuscle> muscles_;
+  std::unique_ptr<ArticulatedTree> tree_;
+  std::vector<TreePath> treePaths_;
   std::vector<PathSwitch> switches_;
   std::vector<std::string> notes_;
   std::vector<std::string> warnings_;
@@ -87,7 +98,11 @@ class SystemConfiguration {
   using Vector = Eigen::Matrix<double, N, 1>;
 
   explicit SystemConfiguration(const MusculoskeletalSystem& arm)
-      : arm_(&arm), motions_(arm.skeleton().numSegments()), lengths_(arm.numMuscles()) {}
+      : arm_(&arm), motions_(arm.skeleton().numSegments()), lengths_(arm.numMuscles()) {
+    energy_.T_q.setZero();
+    energy_.T_vq.setZero();
+    energy_.T_qq.setZero();
+  }
 
   void moveTo(const Vector& q) {
     moveSkeletonTo(q);
@@ -140,15 +155,40 @@ class SystemConfiguration {
 
   const std::vector<RigidMotion<double, N>>& motions() const { return motions_; }
   const InertiaJet<N>& inertia() const { return inertia_; }
+  const Eigen::Matrix<double, N, N>& massMatrix() const { return inertia_.massMatrix; }
+  double potential() const { return inertia_.potential; }
+
+  /// What a step needs of the skeleton at speed v. Where M is constant, its derivatives stay 0.
+  const EnergyDerivatives<N>& energy(const Vector& v) {
+    EnergyDerivatives<N>& e = energy_;
+    e.T_vv = inertia_.massMatrix;
+    e.T_v.noalias() = inertia_.massMatrix * v;
+    e.V_q = inertia_.dV;
+    e.V_qq = inertia_.d2V;
+    if (arm_->skeleton().hasConstantInertia()) return e;
+    for (int k = 0; k < N; ++k) {
+      const Vector M_k_v = inertia_.dM[static_cast<std::size_t>(k)] * v;
+      e.T_q[k] = v.dot(M_k_v) / 2;
+      e.T_vq.col(k) = M_k_v;
+      for (int j = 0; j < N; ++j) {
+        e.T_qq(k, j) = v.dot(inertia_.d2M[static_cast<std::size_t>(pairIndex(k, j))] * v) / 2;
+      }
+    }
+    return e;
+  }
+
   const LengthJet<N>& length(std::size_t muscle) const { return lengths_[muscle]; }
 
  private:
   const MusculoskeletalSystem* arm_;
   std::vector<RigidMotion<double, N>> motions_;
   InertiaJet<N> inertia_;
+  EnergyDerivatives<N> energy_;
   std::vector<LengthJet<N>> lengths_;
   Vector held_;
   bool holds_ = false;
 };
 
 }  // namespace bio
+
+#include "bio/simulation/tree_configuration.h"

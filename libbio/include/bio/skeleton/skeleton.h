@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "bio/skeleton/rigid_motion.h"
 
 namespace bio {
+class ArticulatedTree;
 namespace detail {
 template <class T>
 struct CurveJet;
@@ -25,6 +27,9 @@ Placement<double> placementOf(const FramePlacement& frame);
 struct SkeletonOptions {
   std::vector<std::string> freeCoordinates;    ///< order = order of q; at least one
   std::map<std::string, double> lockedValues;  ///< overrides defaults [rad] or [m]
+  /// Spatial algebra (articulated_tree.h) for few coordinates, too; more than
+  /// maxFixedCoordinates always have it.
+  bool asTree = false;
 };
 
 /// A line for each coordinate that is locked outside its range by more than 1° or 1 mm, usually
@@ -45,9 +50,10 @@ inline Function identityFunction() {
   return Function{1, LinearFunction{1, 0}};
 }
 
-/// At most this many moving segments and free coordinates (evaluation uses no heap).
-constexpr std::size_t maxSegments = 24;
-constexpr int maxFreeCoordinates = 4;
+/// Up to so many segments and free coordinates are evaluated by code of fixed size; what has more
+/// is an articulated tree.
+constexpr std::size_t maxFixedSegments = 24;
+constexpr int maxFixedCoordinates = 4;
 
 /// The segment of a body and its fixed placement there.
 struct BodyPlacement {
@@ -78,6 +84,9 @@ struct InertiaJet {
 ///     M_kl = Σ tr(∂_kX P ∂_lXᵀ),   V = −Σ g·(R Σ m r + p Σ m)
 /// (equivalent to the usual ½ m|ċ|² + ½ ωᵀJω; no angular velocity is needed). Independent check:
 /// simbody_tree.h, which computes the complete model, including locked coordinates, with Simbody.
+///
+/// More than maxFixedCoordinates, or maxFixedSegments, are evaluated by tree() instead of motions()
+/// and inertia().
 ///
 /// Constant after construction; all evaluation functions are pure and do not allocate.
 class Skeleton {
@@ -120,6 +129,13 @@ class Skeleton {
   InertiaJet<N> inertia(const Eigen::Matrix<double, N, 1>& q,
                         const RigidMotion<double, N>* moved) const;
 
+  /// The same skeleton by spatial algebra; null: motions() and inertia() serve.
+  const ArticulatedTree* tree() const { return tree_.get(); }
+
+  /// Placement of every segment in ground at q, numCoordinates() values, for any number of them;
+  /// out has numSegments() entries.
+  void placements(const double* q, Placement<double>* out) const;
+
   /// True if M does not depend on q (a single hinge or slider): derivatives of M are exactly zero.
   bool hasConstantInertia() const { return constantInertia_; }
 
@@ -157,6 +173,7 @@ class Skeleton {
   Eigen::Vector3d gravity_;
   bool constantInertia_ = false;
   double constantMass_ = 0;
+  std::shared_ptr<const ArticulatedTree> tree_;
 };
 
 // Compiled once, in src/instances; other scalars need bio/skeleton/skeleton_motion.h.

@@ -2,6 +2,7 @@
 
 // Template bodies of skeleton.h.
 #include <Eigen/Dense>
+#include <stdexcept>
 
 #include "bio/skeleton/skeleton.h"
 #include "info/autodiff/dual.h"
@@ -202,10 +203,13 @@ InertiaJet<N> Skeleton::inertia(const Eigen::Matrix<double, N, 1>& q,
 
   // mass matrix: first and second derivatives need second and third derivatives of the placements,
   // the third through the scalar type
+  if (segments_.size() > maxFixedSegments) {
+    throw std::logic_error("so many segments are evaluated as a tree");
+  }
   using Ad = info::Dual<N>;
   Eigen::Matrix<Ad, N, 1> qAd;
   for (int i = 0; i < N; ++i) qAd[i] = Ad(q[i], N, i);
-  std::array<RigidMotion<Ad, N>, maxSegments> movedAd;
+  std::array<RigidMotion<Ad, N>, maxFixedSegments> movedAd;
   motions<Ad, N>(qAd, movedAd.data());
   for (std::size_t s = 1; s < segments_.size(); ++s) {
     const auto& X = movedAd[s];

@@ -1,0 +1,31 @@
+#include <gtest/gtest.h>
+
+#include "libbio/simulation/arm_of_seven.h"
+#include "support/sensitivity_differences.h"
+
+namespace bio {
+namespace {
+
+using fixtures::ArmOfSeven;
+
+// Of every kind: muscle, path point, wrap object, mass, passive force, start.
+TEST(ManyCoordinates, SensitivitiesMatchDifferencesOnAnArmOfSeven) {
+  const ArmOfSeven c(0.2);
+  const Eigen::VectorXd speeds = Eigen::VectorXd::LinSpaced(7, -0.6, 0.7);
+  const ParameterCatalogue catalogue(c.model, c.arm, {c.start.q, speeds});
+  const auto wanted = catalogue.select(
+      {"BIClong.max_isometric_force", "BIClong.point9.x", "BIClong.point10.y", "BRD.point3.z",
+       "TRI.radius", "TRI.rotation.x", "TRI.translation.y", "hand.mass", "radius.mass_center.x",
+       "humerus.mass", "hand.inertia.yy", "hold_elv_angle.*", "initial.*"});
+  SimulationOptions options;
+  options.duration = 0.12;
+  const fixtures::DiscoveryProblem d =
+      fixtures::compareWithDifferences(c.arm, c.options, c.excitation, catalogue, wanted, options);
+  fixtures::tell(d);
+  EXPECT_GT(d.parameters, 25);
+  EXPECT_GT(d.compared, 300);
+  EXPECT_LT(d.worst, 1e-5) << d.of;
+}
+
+}  // namespace
+}  // namespace bio

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <numbers>
+
+#include "bio/simulation/simulate.h"
+#include "support/elbow_model.h"
+
+namespace bio::fixtures {
+
+/// The shipped elbow's arm with shoulder, elbow, forearm and wrist free: seven coordinates, eight
+/// muscles that lift and lower the forearm, springs that hold the others.
+struct ArmOfSeven {
+  static Model heldModel() {
+    Model model = elbowModel();
+    const auto hold = [&](const char* name, double stiffness, double rest, double viscosity) {
+      model.springForces.push_back({std::string("hold_") + name, name, stiffness, rest, viscosity});
+    };
+    hold("elv_angle", 40, 0.5, 2);
+    hold("shoulder_elv", 40, 0.9, 2);
+    hold("shoulder_rot", 20, -0.4, 1);
+    hold("pro_sup", 3, 0.2, 0.1);
+    hold("deviation", 3, 0.1, 0.05);
+    hold("flexion", 3, -0.1, 0.05);
+    return model;
+  }
+  static std::vector<std::string> coordinates() {
+    return {"elbow_flexion", "shoulder_elv", "elv_angle", "shoulder_rot",
+            "pro_sup",       "deviation",    "flexion"};
+  }
+  static ExcitationSignal lifting(const MusculoskeletalSystem& arm, double duration) {
+    std::vector<double> times;
+    for (double t = 0; t < duration + 0.015; t += 0.01) times.push_back(t);
+    Eigen::MatrixXd u(times.size(), arm.numMuscles());
+    for (Eigen::Index k = 0; k < u.rows(); ++k) {
+      for (Eigen::Index i = 0; i < u.cols(); ++i) {
+        const double phase = 0.4 * static_cast<double>(i);
+        const double wave = std::sin(std::numbers::pi * times[static_cast<std::size_t>(k)] - phase);
+        const bool flexes = arm.muscles()[static_cast<std::size_t>(i)].name.starts_with("B");
+        u(k, i) = 0.02 + (flexes ? 0.16 : 0.04) * wave * wave;
+      }
+    }
+    return {times, u};
+  }
+
+  explicit ArmOfSeven(double duration = 1, std::vector<std::string> free = coordinates(),
+                      bool asTree = false, Model given = heldModel())
+      : model(std::move(given)),
+        options{{std::move(free), {}, asTree}, {}, {}},
+        arm(model, options),
+        excitation(lifting(arm, duration)) {
+    const std::map<std::string, double> from = {
+        {"elbow_flexion", 0.7}, {"shoulder_elv", 0.8}, {"elv_angle", 0.5}, {"shoulder_rot", -0.3},
+        {"pro_sup", 0.1},       {"deviation", 0.05},   {"flexion", -0.05}};
+    Eigen::VectorXd q(arm.skeleton().numCoordinates());
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      q[i] = from.at(arm.skeleton().coordinates()[static_cast<std::size_t>(i)].name);
+    }
+    start = initialState(arm, q, excitation, 0);
+  }
+
+  Model model;
+  SystemOptions options;
+  MusculoskeletalSystem arm;
+  ExcitationSignal excitation;
+  SystemState start;
+};
+
+}  // namespace bio::fixtures

@@ -1,0 +1,156 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bio/simulation/simulate.h"
+#include "libbio/simulation/arm_of_seven.h"
+#include "simulation/system_dynamics.h"
+#include "support/allocations.h"
+
+namespace bio {
+namespace {
+
+using fixtures::ArmOfSeven;
+
+SimulationOptions stepsOf(Integrator integrator, double step, double duration) {
+  SimulationOptions o;
+  o.integrator = integrator;
+  o.step = step;
+  o.duration = duration;
+  return o;
+}
+
+Trajectory played(const ArmOfSeven& c, const SimulationOptions& o) {
+  Trajectory motion = simulate(c.arm, c.excitation, c.start, o);
+  EXPECT_EQ(motion.outcome, Outcome::completed) << motion.why;
+  return motion;
+}
+
+Trajectory tightCvode(const ArmOfSeven& c, double rows, double duration) {
+  SimulationOptions o = stepsOf(Integrator::cvode, rows, duration);
+  o.relativeTolerance = 1e-11;
+  o.absoluteTolerance = 1e-13;
+  return played(c, o);
+}
+
+/// Largest distance at the rows of b, which has fewer.
+double apart(const Trajectory& a, const Trajectory& b) {
+  const auto every = (a.q.cols() - 1) / (b.q.cols() - 1);
+  double largest = 0;
+  for (Eigen::Index k = 0; k < b.q.cols(); ++k) {
+    largest = std::max(largest, (a.q.col(k * every) - b.q.col(k)).cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+TEST(ManyCoordinates, IntegratorsAgreeOnAnArmOfSeven) {
+  const ArmOfSeven c;
+  const Trajectory reference = tightCvode(c, 0.05, 1);
+  const Eigen::VectorXd range = reference.q.rowwise().maxCoeff() - reference.q.rowwise().minCoeff();
+  EXPECT_GT(range[0], 0.3);           // the elbow moves,
+  EXPECT_GT(range.minCoeff(), 0.01);  // and so does everything else
+  EXPECT_LT(apart(played(c, stepsOf(Integrator::rungeKutta4, 1e-4, 1)), reference), 1e-5);
+  EXPECT_LT(apart(played(c, stepsOf(Integrator::variational, 1e-3, 1)), reference), 1e-4);
+}
+
+/// The five muscles with which this motion is smooth: with biceps or anconeus, too, it meets
+/// corners between the ends of steps, and the errors are no clean power of the step.
+Model smoothlyMoved() {
+  Model model = ArmOfSeven::heldModel();
+  for (Muscle& muscle : model.muscles) {
+    muscle.enabled = !muscle.name.starts_with("BIC") && muscle.name != "ANC";
+  }
+  return model;
+}
+
+double rootMeanSquare(const Trajectory& a, const Trajectory& b) {
+  const auto every = (a.q.cols() - 1) / (b.q.cols() - 1);
+  double sum = 0;
+  for (Eigen::Index k = 0; k < b.q.cols(); ++k) {
+    sum += (a.q.col(k * every) - b.q.col(k)).squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(b.q.size()));
+}
+
+TEST(ManyCoordinates, TheVariationalSchemeIsOfSecondOrder) {
+  const ArmOfSeven c(1, ArmOfSeven::coordinates(), false, smoothlyMoved());
+  const Trajectory reference = tightCvode(c, 0.05, 1);
+  std::vector<double> errors;
+  for (const double step : {0.005, 0.0025, 0.00125}) {
+    errors.push_back(
+        rootMeanSquare(played(c, stepsOf(Integrator::variational, step, 1)), reference));
+  }
+  std::printf("  errors %.3g, %.3g, %.3g rad\n", errors[0], errors[1], errors[2]);
+  EXPECT_NEAR(std::log2(errors[0] / errors[2]) / 2, 2.0, 0.1);
+}
+
+TEST(ManyCoordinates, EnergyErrorFallsWithTheSquareOfTheStep) {
+  const ArmOfSeven c;
+  const auto error = [&](Integrator integrator, double step) {
+    return energyError(c.arm, played(c, stepsOf(integrator, step, 1)));
+  };
+  EXPECT_LT(error(Integrator::rungeKutta4, 1e-4), 1e-6);
+  const double coarse = error(Integrator::variational, 0.005);
+  const double fine = error(Integrator::variational, 0.00125);
+  std::printf("  energy error %.3g, %.3g\n", coarse, fine);
+  EXPECT_NEAR(std::log2(coarse / fine) / 2, 2.0, 0.2);
+}
+
+TEST(ManyCoordinates, JacobianMatchesCentralDifferences) {
+  const ArmOfSeven c;
+  stepping::SystemDynamics<Eigen::Dynamic> dynamics(c.arm, c.excitation);
+  Eigen::VectorXd y = dynamics.pack(c.start);
+  const auto n = static_cast<Eigen::Index>(c.arm.numMuscles());
+  y.segment(7, 7) << 1.3, -0.4, 0.8, -0.6, 1.1, 0.7, -0.9;
+  y.tail(n) *= 1.001;  // away from the kink at fibre speed 0
+  Eigen::MatrixXd J(y.size(), y.size());
+  dynamics.jacobian(0.533, y, J);
+  Eigen::VectorXd plus(y.size()), minus(y.size());
+  for (Eigen::Index j = 0; j < y.size(); ++j) {
+    const double h = 1e-7;
+    Eigen::VectorXd shifted = y;
+    shifted[j] = y[j] + h;
+    dynamics.derivative(0.533, shifted, plus);
+    shifted[j] = y[j] - h;
+    dynamics.derivative(0.533, shifted, minus);
+    const Eigen::VectorXd difference = (plus - minus) / (2 * h);
+    const double scale = std::max(1.0, difference.cwiseAbs().maxCoeff());
+    EXPECT_LT((difference - J.col(j)).cwiseAbs().maxCoeff() / scale, 2e-6) << "column " << j;
+  }
+}
+
+TEST(ManyCoordinates, NothingIsAllocatedInAStep) {
+  const ArmOfSeven c;
+  for (const Integrator integrator :
+       {Integrator::variational, Integrator::variationalLeft, Integrator::rungeKutta4}) {
+    const double step = integrator == Integrator::rungeKutta4 ? 1e-4 : 0.005;
+    const auto count = [&](double duration) {
+      const long before = support::allocations();
+      played(c, stepsOf(integrator, step, duration));
+      return support::allocations() - before;
+    };
+    count(0.1);
+    EXPECT_EQ(count(0.2), count(0.9));
+  }
+}
+
+// Two ways of the same skeleton and paths: code of fixed size, and the tree.
+TEST(ManyCoordinates, OneToFourAsATreeMoveAsTheyDoWithout) {
+  const std::vector<std::string> all = ArmOfSeven::coordinates();
+  for (std::size_t n = 1; n <= 4; ++n) {
+    const std::vector<std::string> free(all.begin(), all.begin() + static_cast<long>(n));
+    const ArmOfSeven fixed(1, free), tree(1, free, true);
+    ASSERT_FALSE(fixed.arm.tree());
+    ASSERT_TRUE(tree.arm.tree());
+    for (const Integrator integrator :
+         {Integrator::variational, Integrator::variationalLeft, Integrator::rungeKutta4}) {
+      const SimulationOptions o =
+          stepsOf(integrator, integrator == Integrator::rungeKutta4 ? 2e-4 : 0.005, 0.5);
+      EXPECT_LT(apart(played(fixed, o), played(tree, o)), 1e-10) << n;
+    }
+    EXPECT_LT(apart(tightCvode(fixed, 0.05, 0.5), tightCvode(tree, 0.05, 0.5)), 1e-8) << n;
+  }
+}
+
+}  // namespace
+}  // namespace bio
