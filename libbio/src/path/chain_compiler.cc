@@ -78,28 +78,30 @@ class ChainCompiler {
     return {seen(span_.a), seen(span_.b)};
   }
 
+  // From the nearest posture in which the chord reaches it.
   Vec3<double> hintFor(std::size_t member) const {
-    const Posture* reached = postures_.front();
     for (const Posture* posture : postures_) {
       const auto [P, Q] = endsSeen(member, *posture);
-      if (!(closestApproach(surface(member), P, Q) < 1.02)) continue;
-      reached = posture;
-      break;
+      if (closestApproach(surface(member), P, Q) < 1.02) return hintIn(member, *posture);
     }
-    const auto [P, Q] = endsSeen(member, *reached);
+    return hintIn(member, *postures_.front());
+  }
+
+  Vec3<double> hintIn(std::size_t member, const Posture& posture) const {
+    const auto [P, Q] = endsSeen(member, posture);
     const PathSurface& s = surface(member);
     if (s.general) {
       if (s.quadrant == WrapQuadrant::all) return hintOfShortest(*s.general, P, Q);
       return hintTowards(*s.general, directionOf(s.quadrant), P, Q);
     }
-    // the middle of the way that is decided for it alone
-    const SpanSurface& way = span_.surfaces[member];
+    // the middle of the way of the object alone
     if (s.isSphere) {
-      const double sign = way.way == Way::shorter ? 1 : -1;
+      const double sign = sphereWay(s.quadrant, P, Q) == Way::shorter ? 1 : -1;
       return sign * s.radius * (P.normalized() + Q.normalized()).normalized();
     }
-    const double sign = way.side == Side::counterclockwise ? 1 : -1;
-    const Eigen::AngleAxisd half(sign * angleRound(way.side, P, Q) / 2, Vec3<double>::UnitZ());
+    const Side side = cylinderSide(s.quadrant, P, Q);
+    const double sign = side == Side::counterclockwise ? 1 : -1;
+    const Eigen::AngleAxisd half(sign * angleRound(side, P, Q) / 2, Vec3<double>::UnitZ());
     Vec3<double> hint = half * Vec3<double>(P.x(), P.y(), 0).normalized() * s.radius;
     hint.z() = std::clamp((P.z() + Q.z()) / 2, -s.halfLength, s.halfLength);
     return hint;
@@ -173,6 +175,71 @@ class ChainCompiler {
     return deciding.front();
   }
 
+  // A path in one posture, and where the search for it ended.
+  struct Found {
+    ChainPath taut;
+    ChainMemory memory;
+  };
+  static Found search(const ChainPosture& here, const PlacedChain& placed,
+                      const ChainMemory& from) {
+    Found found;
+    found.memory = from;
+    found.taut = solveChain(here.P, here.Q, placed.all(), found.memory);
+    return found;
+  }
+
+  // The ways in a posture as if it were the only one.
+  Found decidedHere(const ChainPosture& here, PlacedChain placed, const Posture& posture) const {
+    Found first = search(here, placed, {});
+    const bool holds = isFound(first) && passesThroughNone(first.taut, placed);
+    for (std::size_t j = 0; j < placed.count; ++j) {
+      const ChainObject& object = placed.objects[j];
+      if (isInside(object.surface, object.intoFrame(here.P)) ||
+          isInside(object.surface, object.intoFrame(here.Q))) {
+        continue;
+      }
+      placed.objects[j].hint = hintIn(j, posture);
+    }
+    Found second = search(here, placed, {});
+    if (!isFound(second) || !passesThroughNone(second.taut, placed)) return first;
+    return !holds || second.taut.length < first.taut.length ? second : first;
+  }
+
+  static bool isFound(const Found& found) { return found.taut.event != ChainEvent::notFound; }
+
+  // Whether a path that was followed has wound itself out of what its objects' quadrants mean: the
+  // middle of each contact lies on the named side, of "all" there is no shorter way.
+  bool keepsItsWay(const Found& followed, const PlacedChain& placed, double shortest) const {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(followed.taut.numContacts); ++i) {
+      const ChainContact& contact = followed.taut.contacts[i];
+      const auto j = static_cast<std::size_t>(contact.object);
+      const ChainObject& object = placed.objects[j];
+      if (std::holds_alternative<TorusSurface>(object.surface)) continue;
+      const WrapQuadrant quadrant = surface(j).quadrant;
+      if (quadrant == WrapQuadrant::all) {
+        if (shortest < followed.taut.length - 1e-9) return false;
+        continue;
+      }
+      const Vec3<double> middle = shootGeodesic(object.surface, object.intoFrame(contact.A),
+                                                object.R_GS.transpose() * contact.atA.u,
+                                                contact.arc / 2)
+                                      .x;
+      if (directionOf(quadrant).dot(middle) < 0) return false;
+    }
+    return followed.taut.isShortest;
+  }
+
+  Found decide(const ChainPosture& here, const Posture& posture, const ChainMemory* known) const {
+    const PlacedChain placed = placeChain(path_, chain_, here.X_GC);
+    if (known == nullptr) return decidedHere(here, placed, posture);
+    const Found followed = search(here, placed, *known);
+    if (isFound(followed) && followed.taut.numContacts == 0) return followed;
+    const Found anew = decidedHere(here, placed, posture);
+    if (!isFound(anew)) return followed;
+    if (!isFound(followed)) return anew;
+    return keepsItsWay(followed, placed, anew.taut.length) ? followed : anew;
+  }
+
   // From the first posture to all others, each on from the nearest one known.
   void follow(std::size_t first) {
     const std::size_t n = postures_.size();
@@ -183,38 +250,36 @@ class ChainCompiler {
       ends.push_back(chainEnds(chain_, here.back().X_GC, here.back().P, here.back().Q));
     }
     std::vector<ChainMemory> memories(n);
-    std::vector<std::size_t> from(n, first);
+    std::vector<std::size_t> from(n, n);
     std::vector<double> distance(n, std::numeric_limits<double>::infinity());
     std::vector<bool> done(n, false), isKept(n, false);
     for (std::size_t count = 0, next = first; count < n; ++count) {
       done[next] = true;
-      const PlacedChain placed = placeChain(path_, chain_, here[next].X_GC);
-      ChainMemory memory = memories[from[next]];
-      const ChainPath taut = solveChain(here[next].P, here[next].Q, placed.all(), memory);
-      const bool isFound = taut.event != ChainEvent::notFound;
+      const ChainMemory* known = from[next] < n ? &memories[from[next]] : nullptr;
+      const Found found = decide(here[next], *postures_[next], known);
+      isKept[next] = isFound(found);
       ++result_.numPostures;
-      if (!isFound) ++result_.numNotFound;
-      noteInside(taut);
-      memories[next] = isFound ? memory : memories[from[next]];
-      isKept[next] = isFound;
+      if (!isKept[next]) ++result_.numNotFound;
+      noteInside(found.taut);
+      memories[next] = found.memory;
+      double nearest = std::numeric_limits<double>::infinity();
+      std::size_t following = n;
       for (std::size_t i = 0; i < n; ++i) {
         if (done[i]) continue;
         double d = 0;
         for (std::size_t k = 0; k < 6 * size(); ++k) {
           d += (ends[i][k] - ends[next][k]) * (ends[i][k] - ends[next][k]);
         }
-        if (!isFound) continue;
-        if (d < distance[i]) {
+        if (isKept[next] && d < distance[i]) {
           distance[i] = d;
           from[i] = next;
         }
+        if (distance[i] <= nearest) {
+          nearest = distance[i];
+          following = i;
+        }
       }
-      double nearest = std::numeric_limits<double>::infinity();
-      for (std::size_t i = 0; i < n; ++i) {
-        if (done[i] || !(distance[i] <= nearest)) continue;
-        nearest = distance[i];
-        next = i;
-      }
+      next = following;
     }
     if (result_.numNotFound == result_.numPostures) {
       throw UnsupportedWrap("no taut string is found over its wrap objects");
