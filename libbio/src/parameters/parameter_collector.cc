@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 
 #include "bio/path/path_gradient.h"
@@ -138,18 +139,23 @@ class Collector {
       if (!gradients.mayTouch(i)) continue;
       const auto known = [&](const TouchedWrap& wrap) { return wrap.name == wraps[i].wrapObject; };
       if (std::any_of(touched_.begin(), touched_.end(), known)) continue;
-      touched_.push_back({wraps[i].wrapObject, muscle.path.parameters().radii[i]});
+      const auto& surfaces = muscle.path.compiled().surfaces;
+      const auto surface = std::find_if(surfaces.begin(), surfaces.end(),
+                                        [&](const PathSurface& each) { return each.wrap == i; });
+      touched_.push_back(
+          {wraps[i].wrapObject, muscle.path.parameters().radii[i], surface->general});
     }
   }
 
   // A radius ends where a point of a path over the wrap object comes inside.
-  void limitRadius(ModelParameter& radius, const std::string& wrapObject) {
+  void limitRadius(ModelParameter& radius, const std::string& wrapObject, int number = 0) {
     for (const SystemMuscle& muscle : arm_.muscles()) {
       const Muscle& given = model_.muscles[indexOf(muscle.name)];
       const Path& path = given.path;
       for (std::size_t i = 0; i < path.wraps.size(); ++i) {
         if (path.wraps[i].wrapObject != wrapObject) continue;
-        const RadiusLimit limit = radiusLimit(muscle.path.compiled(), i, postures_.of(given));
+        const RadiusLimit limit =
+            radiusLimit(muscle.path.compiled(), i, postures_.of(given), number);
         if (!(limit.radius < radius.limit)) continue;
         radius.limit = limit.radius;
         radius.whyLimited =
@@ -166,9 +172,13 @@ class Collector {
       while (model_.wrapObjects[index].name != touched.name) ++index;
       const WrapObject& wrap = model_.wrapObjects[index];
       const double radius = touched.radius;
-      add(wrap.name + ".radius", "m", fmt::format("radius of the wrap object in {}", wrap.body),
-          radius, around(radius, 0.3, 2, 0.15), {WrapTarget{index, 0}});
-      limitRadius(parameters_.back(), wrap.name);
+      if (touched.general) {
+        addNumbers(index, *touched.general);
+      } else {
+        add(wrap.name + ".radius", "m", fmt::format("radius of the wrap object in {}", wrap.body),
+            radius, around(radius, 0.3, 2, 0.15), {WrapTarget{index, 0}});
+        limitRadius(parameters_.back(), wrap.name);
+      }
       for (int axis = 0; axis < 3; ++axis) {
         const double value = wrap.frame.translation[axis];
         add(fmt::format("{}.translation.{}", wrap.name, axisName(axis)), "m",
@@ -176,7 +186,7 @@ class Collector {
             {WrapTarget{index, 1 + axis}});
       }
       const bool isSphere = wrap.shape == WrapShape::sphere ||
-                            (wrap.shape == WrapShape::ellipsoid &&
+                            (wrap.shape == WrapShape::ellipsoid && !touched.general &&
                              (wrap.semiAxes.array() - radius).abs().maxCoeff() <= 1e-9 * radius);
       for (int axis = 0; axis < 3 && !isSphere; ++axis) {
         const double value = wrap.frame.orientation[axis];
@@ -184,6 +194,27 @@ class Collector {
             fmt::format("orientation of the wrap object in {} (body-fixed x-y-z)", wrap.body),
             value, {value - 0.6, value + 0.6, 0.1}, {WrapTarget{index, 4 + axis}});
       }
+    }
+  }
+
+  // The semi-axes of an ellipsoid, the radii of a torus.
+  void addNumbers(std::size_t index, const Surface& surface) {
+    const WrapObject& wrap = model_.wrapObjects[index];
+    const bool isTorus = wrap.shape == WrapShape::torus;
+    constexpr const char* ofTorus[] = {"outer_radius", "inner_radius"};
+    for (int n = 0; n < numNumbersOf(surface); ++n) {
+      const double value = std::visit([&](const auto& each) { return each.number(n); }, surface);
+      const std::string name = isTorus ? ofTorus[n] : fmt::format("semi_axis.{}", axisName(n));
+      add(fmt::format("{}.{}", wrap.name, name), "m",
+          fmt::format("{} of the wrap object in {}", isTorus ? "radius" : "semi-axis", wrap.body),
+          value, around(value, 0.3, 2, 0.15), {WrapTarget{index, 7 + n}});
+      ModelParameter& number = parameters_.back();
+      limitRadius(number, wrap.name, n);
+      if (!isTorus) continue;
+      // a torus keeps its hole
+      constexpr double hole = 1.05;
+      if (n == 0) number.lower = std::max(number.lower, hole * wrap.radius);
+      if (n == 1) number.upper = std::max(value, std::min(number.upper, wrap.outerRadius / hole));
     }
   }
 
@@ -321,6 +352,7 @@ class Collector {
   struct TouchedWrap {
     std::string name;
     double radius;
+    std::optional<Surface> general;
   };
 
   const Model& model_;

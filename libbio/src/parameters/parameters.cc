@@ -75,7 +75,11 @@ struct SetInModel {
   }
   void operator()(const WrapTarget& target) const {
     WrapObject& wrap = model.wrapObjects[target.wrap];
-    if (target.component >= 4) {
+    if (target.component >= 7 && wrap.shape == WrapShape::ellipsoid) {
+      wrap.semiAxes[target.component - 7] = value;
+    } else if (target.component >= 7) {
+      (target.component == 7 ? wrap.outerRadius : wrap.radius) = value;
+    } else if (target.component >= 4) {
       wrap.frame.orientation[target.component - 4] = value;
     } else if (target.component >= 1) {
       wrap.frame.translation[target.component - 1] = value;

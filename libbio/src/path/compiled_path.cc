@@ -1,13 +1,14 @@
 #include "bio/path/compiled_path.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
 
+#include "path/chain_compiler.h"
 #include "path/path_reach.h"
+#include "bio/path/surface/way.h"
 #include "path/surface/wrap_candidate.h"
 
 namespace bio {
@@ -40,6 +41,7 @@ class Compiler {
     for (std::size_t i = 0; i < muscle_.path.wraps.size(); ++i) addWrap(i);
     const std::size_t numVariants = std::size_t{1} << path_.conditions.size();
     for (std::size_t bits = 0; bits < numVariants; ++bits) addVariant(bits);
+    for (const CandidateWrap& wrap : wraps_) noteUnreached(wrap);
     return std::move(path_);
   }
 
@@ -122,13 +124,11 @@ class Compiler {
         candidateWrap(object, skeleton_.placeOf(object.body), index, wrapAsCylinder_);
     candidate.firstPoint = static_cast<std::size_t>(first - 1);
     candidate.lastPoint = static_cast<std::size_t>(last - 1);
-    if (candidate.shape) {
-      candidate.surface = path_.surfaces.size();
-      path_.surfaces.push_back(*candidate.shape);
-      if (path_.surfaces.size() > 32) {
-        throw std::invalid_argument(
-            fmt::format("muscle '{}' has more than 32 wrap objects", muscle_.name));
-      }
+    candidate.surface = path_.surfaces.size();
+    path_.surfaces.push_back(candidate.shape);
+    if (path_.surfaces.size() > 32) {
+      throw std::invalid_argument(
+          fmt::format("muscle '{}' has more than 32 wrap objects", muscle_.name));
     }
     wraps_.push_back(std::move(candidate));
   }
@@ -153,14 +153,8 @@ class Compiler {
       span.moves = a.segment != b.segment || a.motion >= 0 || b.motion >= 0;
       variant.all.push_back(span);
     }
-    for (const CandidateWrap& wrap : wraps_) {
-      if (wrap.shape) {
-        assign(wrap, variant, bits);
-      } else {
-        leaveOut(wrap, variant, bits);
-      }
-    }
-    for (const PathSpan& span : variant.all) tellOfSeveral(span, bits);
+    for (const CandidateWrap& wrap : wraps_) assign(wrap, variant, bits);
+    for (PathSpan& span : variant.all) chainUp(span, bits);
     // the spans that stay: their length, once and for all
     const Posture& posture = postures_.front();
     for (const PathSpan& span : variant.all) {
@@ -177,32 +171,70 @@ class Compiler {
     return muscle_.path.wraps[path_.surfaces[way.surface].wrap].wrapObject;
   }
 
-  // A span is led round one object; where it touches two at once, that is said.
-  void tellOfSeveral(const PathSpan& span, std::size_t bits) {
-    if (span.surfaces.size() < 2) return;
+  std::string pointName(std::size_t node) const {
+    return muscle_.path.points[path_.nodes[node].point].name;
+  }
+
+  // Surfaces without a closed form, and those that a span touches at once, are solved together.
+  void chainUp(PathSpan& span, std::size_t bits) {
+    const bool isGeneral = std::any_of(
+        span.surfaces.begin(), span.surfaces.end(),
+        [&](const SpanSurface& way) { return path_.surfaces[way.surface].general.has_value(); });
+    if (!isGeneral && !touchesSeveral(span, bits)) return;
+    std::vector<const Posture*> occurring;
     for (const Posture& posture : postures_) {
-      if (!occurs(bits, posture)) continue;
-      std::vector<std::string> touched;
-      for (const SpanSurface& way : span.surfaces) {
-        if (touches(path_, span, way, posture)) touched.push_back(nameOf(way));
-      }
-      if (touched.size() < 2) continue;
-      warnOfSeveral(span, touched);
-      return;
+      if (occurs(bits, posture)) occurring.push_back(&posture);
+    }
+    if (!span.moves || occurring.empty()) occurring = {&postures_.front()};
+    try {
+      CompiledChain compiled = compileChain(path_, span, occurring);
+      tellOfChain(span, compiled);
+      span.chain = static_cast<int>(path_.chains.size());
+      path_.chains.push_back(std::move(compiled.chain));
+    } catch (const UnsupportedWrap& e) {
+      throw UnsupportedWrap(fmt::format("muscle '{}', between its points '{}' and '{}': {}",
+                                        muscle_.name, pointName(span.a), pointName(span.b),
+                                        e.what()));
     }
   }
 
-  void warnOfSeveral(const PathSpan& span, const std::vector<std::string>& objects) {
-    const auto point = [&](std::size_t node) {
-      return muscle_.path.points[path_.nodes[node].point].name;
-    };
-    const std::string line = fmt::format(
-        "muscle '{}' touches the wrap objects '{}' at once between its points '{}' and '{}': only "
-        "'{}' is used",
-        muscle_.name, fmt::join(objects, "' and '"), point(span.a), point(span.b), objects.front());
-    if (std::find(path_.warnings.begin(), path_.warnings.end(), line) == path_.warnings.end()) {
-      path_.warnings.push_back(line);
+  void noteUnreached(const CandidateWrap& wrap) {
+    if (!wrap.shape.general) return;
+    for (const PathVariant& variant : path_.variants) {
+      for (const PathSpan& span : variant.all) {
+        for (const SpanSurface& way : span.surfaces) {
+          if (way.surface == wrap.surface) return;
+        }
+      }
     }
+    const bool isTorus = std::holds_alternative<TorusSurface>(*wrap.shape.general);
+    note(fmt::format("the {} '{}' is ignored: no span reaches it",
+                     isTorus ? "torus" : "ellipsoid", wrap.name));
+  }
+
+  void tellOfChain(const PathSpan& span, const CompiledChain& compiled) {
+    const std::string where =
+        fmt::format("between its points '{}' and '{}'", pointName(span.a), pointName(span.b));
+    for (const std::size_t surface : compiled.endInside) {
+      note(fmt::format("{} an end lies inside the wrap object '{}' in some posture, in which the "
+                       "object is passed by",
+                       where, muscle_.path.wraps[path_.surfaces[surface].wrap].wrapObject));
+    }
+    if (compiled.numNotFound == 0) return;
+    path_.warnings.push_back(fmt::format(
+        "muscle '{}' has no taut string {} in {} of {} postures", muscle_.name, where,
+        compiled.numNotFound, compiled.numPostures));
+  }
+
+  bool touchesSeveral(const PathSpan& span, std::size_t bits) const {
+    if (span.surfaces.size() < 2) return false;
+    if (!span.moves) return true;
+    return std::any_of(postures_.begin(), postures_.end(), [&](const Posture& posture) {
+      return occurs(bits, posture) &&
+             std::count_if(span.surfaces.begin(), span.surfaces.end(), [&](const SpanSurface& way) {
+               return touches(path_, span, way, posture);
+             }) > 1;
+    });
   }
 
   // Whether a posture has exactly the conditions of these bits.
@@ -240,6 +272,7 @@ class Compiler {
   SpanSurface wayRound(std::size_t index, const Vec3<double>& P, const Vec3<double>& Q) const {
     const PathSurface& surface = path_.surfaces[index];
     SpanSurface way{index, Side::counterclockwise, Way::shorter, {}};
+    if (surface.general) return way;
     if (surface.isSphere) {
       way.way = sphereWay(surface.quadrant, P, Q);
     } else {
@@ -300,6 +333,7 @@ class Compiler {
     if (surface.quadrant == WrapQuadrant::all) return false;
     const auto [P, Q] = ends(wrap, span, postures_.front());
     if (!(closestApproach(surface, P, Q) < 2)) return false;
+    if (surface.general) return bendsRound(surface, P, Q, encounter);
     encounter.way = wayRound(wrap.surface, P, Q);
     if (surfaceIsOutOfPlay(surface, surface.radius, encounter.way, P, Q)) return false;
     const Span<double> wrapped = surface.isSphere
@@ -309,11 +343,24 @@ class Compiler {
     return wrapped.touches;
   }
 
+  // The same for a surface without a closed form: its way towards the quadrant touches.
+  bool bendsRound(const PathSurface& surface, const Vec3<double>& P, const Vec3<double>& Q,
+                  Encounter& encounter) const {
+    if (std::holds_alternative<TorusSurface>(*surface.general)) return false;
+    ChainObject object{*surface.general};
+    object.hint = hintTowards(*surface.general, directionOf(surface.quadrant), P, Q);
+    ChainMemory memory;
+    const ChainPath taut = solveChain(P, Q, {&object, 1}, memory);
+    encounter.way.surface = static_cast<std::size_t>(&surface - path_.surfaces.data());
+    encounter.lengthChange = taut.length - (Q - P).norm();
+    return taut.event != ChainEvent::notFound && taut.numContacts > 0 && taut.isShortest;
+  }
+
   // Where a path round a cylinder slips off it: never in a posture in which the path occurs.
   void keepContinuous(const CandidateWrap& wrap, const PathSpan& span, std::size_t bits,
                       Encounter& encounter) const {
     const PathSurface& surface = path_.surfaces[wrap.surface];
-    if (surface.isSphere || !encounter.moves) return;
+    if (surface.isSphere || surface.general || !encounter.moves) return;
     const auto angle = [&](const std::pair<Vec3<double>, Vec3<double>>& at) {
       return angleRound(encounter.way.side, at.first, at.second);
     };
@@ -330,61 +377,24 @@ class Compiler {
 
   void give(const Encounter& encounter, PathVariant& variant) {
     PathSpan& span = variant.all[encounter.span];
-    if (!encounter.moves && !span.surfaces.empty()) {  // the first object has it
-      if (encounter.penetrates) {
-        warnOfSeveral(span, {nameOf(span.surfaces.front()), nameOf(encounter.way)});
-      }
-      return;
-    }
+    const bool isSecond = !encounter.moves && !span.surfaces.empty();
+    if (isSecond && !encounter.penetrates) return;
     span.surfaces.push_back(encounter.way);
     span.moves = span.moves || encounter.moves;
-  }
-
-  // An object that cannot be evaluated: no moving span may reach it.
-  void leaveOut(const CandidateWrap& wrap, const PathVariant& variant, std::size_t bits) {
-    bool fixedInRange = false, movingInRange = false;
-    for (const PathSpan& span : variant.all) {
-      if (!inRange(wrap, span)) continue;
-      if (!movesAgainst(wrap, span)) {
-        fixedInRange = true;
-        continue;
-      }
-      movingInRange = true;
-      for (const Posture& posture : postures_) {
-        if (!occurs(bits, posture)) continue;
-        const auto [P, Q] = ends(wrap, span, posture);
-        if (closestApproach(wrap.semiAxes, P, Q) < 1.02) refuse(wrap);
-      }
-    }
-    const char* shape = wrap.isTorus ? "torus" : "ellipsoid";
-    if (fixedInRange) {
-      note(fmt::format("the {} '{}' is ignored: spans that do not move are taken as straight",
-                       shape, wrap.name));
-    } else if (movingInRange) {
-      note(fmt::format("the {} '{}' is ignored: no moving span reaches it", shape, wrap.name));
-    }
-  }
-
-  [[noreturn]] void refuse(const CandidateWrap& wrap) const {
-    const Vec3<double>& s = wrap.semiAxes;
-    const std::string what = wrap.isTorus ? fmt::format("torus '{}'", wrap.name)
-                                          : fmt::format("ellipsoid '{}' (semi-axes {}, {}, {} m)",
-                                                        wrap.name, s[0], s[1], s[2]);
-    const std::string message = fmt::format(
-        "muscle '{}' can touch the {} where it moves; only cylinders and spheres are simulated",
-        muscle_.name, what);
-    const auto equal = [](double a, double b) { return std::abs(a - b) <= 1e-9 * a; };
-    if (wrap.isTorus || !(equal(s[0], s[1]) || equal(s[1], s[2]) || equal(s[2], s[0]))) {
-      throw UnsupportedWrap(message);
-    }
-    throw std::invalid_argument(
-        fmt::format("{}; --wrap-as-cylinder {} treats it as a cylinder", message, wrap.name));
   }
 
   double fixedLength(const PathSpan& span, const Posture& posture) const {
     const Vec3<double> P = nodePosition(path_, path_.nodes[span.a], posture);
     const Vec3<double> Q = nodePosition(path_, path_.nodes[span.b], posture);
     if (span.surfaces.empty()) return (Q - P).norm();
+    if (span.chain >= 0) {
+      const PathChain& chain = path_.chains[static_cast<std::size_t>(span.chain)];
+      const auto place = [&](const Vec3<double>& p_G) {
+        return seenFrom(posture, path_.nodes[span.a].segment, {}, p_G);
+      };
+      unsigned used = 0;
+      return spanOver(path_, chain, place(P), place(Q), used).span.length;
+    }
     const SpanSurface& way = span.surfaces.front();
     const PathSurface& surface = path_.surfaces[way.surface];
     const Vec3<double> p_CP = seenFrom(posture, surface.segment, surface.X_SC, P);

@@ -94,18 +94,31 @@ std::vector<Eigen::Vector3d> MusclePath::pathPoints(const Posture& posture, doub
     return nodePosition(compiled_, compiled_.nodes[node], posture);
   };
   std::vector<Eigen::Vector3d> line = {position(variant.all.front().a)};
-  std::vector<bool> used(compiled_.surfaces.size(), false);
+  unsigned used = 0;
   for (const PathSpan& span : variant.all) {
     const Vec3<double> Q = position(span.b);
+    if (span.chain >= 0) {
+      const PathChain& chain = compiled_.chains[static_cast<std::size_t>(span.chain)];
+      ChainPlacements X_GC;
+      for (std::size_t j = 0; j < static_cast<std::size_t>(chain.count); ++j) {
+        const PathSurface& surface = compiled_.surfaces[chain.members[j].surface];
+        X_GC[j] = posture.placements[surface.segment] * surface.X_SC;
+      }
+      const PlacedChain placed = placeChain(compiled_, chain, X_GC);
+      const ChainPath taut = tautChain(compiled_, chain, placed, X_GC, line.back(), Q, used);
+      for (const Vec3<double>& p_G : chainPoints(placed, taut, step)) line.push_back(p_G);
+      line.push_back(Q);
+      continue;
+    }
     for (const SpanSurface& way : span.surfaces) {
-      if (used[way.surface]) continue;
+      if (((used >> way.surface) & 1u) != 0) continue;
       const PathSurface& surface = compiled_.surfaces[way.surface];
       const Vec3<double> p_CP = seenFrom(posture, surface.segment, surface.X_SC, line.back());
       const Vec3<double> p_CQ = seenFrom(posture, surface.segment, surface.X_SC, Q);
       if (surfaceIsOutOfPlay(surface, surface.radius, way, p_CP, p_CQ)) continue;
       const auto points = arc(surface, way, p_CP, p_CQ, step);
       if (points.empty()) continue;
-      used[way.surface] = true;
+      used |= 1u << way.surface;
       const Placement<double> X_GC = posture.placements[surface.segment] * surface.X_SC;
       for (const Vec3<double>& p_C : points) line.push_back(X_GC.R * p_C + X_GC.p);
       break;

@@ -113,6 +113,18 @@ Vec3<double> seenFrom(const Posture& posture, std::size_t segment, const Placeme
 double closestApproach(const PathSurface& surface, const Vec3<double>& p_CP,
                        const Vec3<double>& p_CQ) {
   const double never = std::numeric_limits<double>::infinity();
+  if (surface.general && std::holds_alternative<TorusSurface>(*surface.general)) {
+    const Vec3<double> d = p_CQ - p_CP;
+    const double t = std::clamp(-p_CP.dot(d) / d.squaredNorm(), 0.0, 1.0);
+    return (p_CP + t * d).norm() / sizeOf(*surface.general);
+  }
+  if (surface.general && std::holds_alternative<EllipsoidSurface>(*surface.general)) {
+    const Vec3<double>& semiAxes = std::get<EllipsoidSurface>(*surface.general).semiAxes();
+    const Vec3<double> P = p_CP.cwiseQuotient(semiAxes);
+    const Vec3<double> d = p_CQ.cwiseQuotient(semiAxes) - P;
+    const double t = -P.dot(d) / d.squaredNorm();
+    return t > 0 && t < 1 ? (P + t * d).norm() : never;
+  }
   Vec3<double> P = p_CP, d = p_CQ - p_CP;
   if (!surface.isSphere) P.z() = 0, d.z() = 0;
   const double t = -P.dot(d) / d.squaredNorm();
@@ -120,14 +132,6 @@ double closestApproach(const PathSurface& surface, const Vec3<double>& p_CP,
   const double height = p_CP.z() + t * (p_CQ.z() - p_CP.z());
   if (!surface.isSphere && std::abs(height) > 1.02 * surface.halfLength) return never;
   return (P + t * d).norm() / surface.radius;
-}
-
-double closestApproach(const Vec3<double>& semiAxes, const Vec3<double>& p_CP,
-                       const Vec3<double>& p_CQ) {
-  const Vec3<double> P = p_CP.cwiseQuotient(semiAxes);
-  const Vec3<double> d = p_CQ.cwiseQuotient(semiAxes) - P;
-  const double t = std::clamp(-P.dot(d) / d.squaredNorm(), 0.0, 1.0);
-  return (P + t * d).norm();
 }
 
 bool touches(const CompiledPath& path, const PathSpan& span, const SpanSurface& way,

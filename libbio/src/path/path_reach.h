@@ -11,17 +11,14 @@ Vec3<double> nodePosition(const CompiledPath& path, const PathNode& node, const 
 Vec3<double> seenFrom(const Posture& posture, std::size_t segment, const Placement<double>& X_SC,
                       const Vec3<double>& p_G);
 
-/// Whether a span that is led over one surface alone touches it in a posture.
+/// Whether a span that is led over one surface with a closed form alone touches it in a posture.
 bool touches(const CompiledPath& path, const PathSpan& span, const SpanSurface& way,
              const Posture& posture);
 
 /// The least distance of a segment's inner points from the origin (of a cylinder: from its axis),
-/// in units of the radius; infinite where it is that of an end, or beyond a cylinder's ends.
+/// in units of the radius; infinite where it is that of an end, or beyond a cylinder's ends. Of an
+/// ellipsoid in its semi-axes; of a torus in the radius of the sphere round it, ends included.
 double closestApproach(const PathSurface& surface, const Vec3<double>& p_CP,
-                       const Vec3<double>& p_CQ);
-
-/// As above for an ellipsoid: below 1 the segment goes through it. Ends inside count.
-double closestApproach(const Vec3<double>& semiAxes, const Vec3<double>& p_CP,
                        const Vec3<double>& p_CQ);
 
 }  // namespace bio

@@ -2,15 +2,39 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
 #include <numbers>
 
 #include "path/path_reach.h"
 
 namespace bio {
+namespace {
+
+constexpr double noReach = std::numeric_limits<double>::infinity();
+
+// The number at which the surface, growing, reaches a point.
+double numberReaching(const EllipsoidSurface& surface, int number, const Vec3<double>& p) {
+  Vec3<double> x = p.cwiseQuotient(surface.semiAxes());
+  x[number] = 0;
+  const double left = 1 - x.squaredNorm();
+  return left > 0 ? std::abs(p[number]) / std::sqrt(left) : noReach;
+}
+double numberReaching(const TorusSurface& surface, int number, const Vec3<double>& p) {
+  const double rho = std::hypot(p.x(), p.y());
+  if (number == 1) return std::hypot(rho - surface.ringRadius(), p.z());
+  const double across = surface.tubeRadius() * surface.tubeRadius() - p.z() * p.z();
+  return across > 0 ? rho - std::sqrt(across) : noReach;
+}
+double numberReaching(const SphereSurface&, int, const Vec3<double>& p) { return p.norm(); }
+double numberReaching(const CylinderSurface&, int, const Vec3<double>& p) {
+  return p.head<2>().norm();
+}
+
+}  // namespace
 
 RadiusLimit radiusLimit(const CompiledPath& path, std::size_t wrap,
-                        const std::vector<Posture>& postures) {
+                        const std::vector<Posture>& postures, int number) {
   std::map<std::size_t, RadiusLimit> ofNodes;
   double radius = 0;
   for (const Posture& posture : postures) {
@@ -21,11 +45,13 @@ RadiusLimit radiusLimit(const CompiledPath& path, std::size_t wrap,
       for (const SpanSurface& way : span.surfaces) {
         const PathSurface& surface = path.surfaces[way.surface];
         if (surface.wrap != wrap) continue;
-        radius = surface.radius;
+        const Surface shape = surfaceOf(surface);
+        radius = std::visit([&](const auto& each) { return each.number(number); }, shape);
         for (const std::size_t node : {span.a, span.b}) {
           const Vec3<double> p_G = nodePosition(path, path.nodes[node], posture);
           const Vec3<double> p_C = seenFrom(posture, surface.segment, surface.X_SC, p_G);
-          const double distance = surface.isSphere ? p_C.norm() : p_C.head<2>().norm();
+          const double distance = std::visit(
+              [&](const auto& each) { return numberReaching(each, number, p_C); }, shape);
           RadiusLimit& least = ofNodes[node];
           if (distance < least.radius) least = {distance, path.nodes[node].point, posture.q};
         }

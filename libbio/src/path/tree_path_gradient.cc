@@ -19,7 +19,7 @@ PathGradient<Eigen::Dynamic> PathGradients::workspace(const TreePath& path) cons
   const auto columns = static_cast<Eigen::Index>(1 + path.support().size());
   PathGradient<Eigen::Dynamic> gradient;
   gradient.points.assign(numPoints_, PathGradient<Eigen::Dynamic>::OfPoint::Zero(3, columns));
-  gradient.wraps.assign(numWraps_, PathGradient<Eigen::Dynamic>::OfWrap::Zero(7, columns));
+  gradient.wraps.assign(numWraps_, PathGradient<Eigen::Dynamic>::OfWrap::Zero(numWrapRows, columns));
   return gradient;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "bio/path/path_gradient.h"
+
 namespace bio::stepping {
 
 ParameterEffects::ParameterEffects(const MusculoskeletalSystem& arm,
@@ -57,7 +59,7 @@ ParameterEffects::ParameterEffects(const MusculoskeletalSystem& arm,
         for (std::size_t place = 0; place < muscle.path.wraps.size(); ++place) {
           if (muscle.path.wraps[place].wrapObject != name) continue;
           effects.muscles[i].wraps.push_back(
-              {7 * place + static_cast<std::size_t>(target.component), column, weight});
+              {numWrapRows * place + static_cast<std::size_t>(target.component), column, weight});
         }
       }
     }

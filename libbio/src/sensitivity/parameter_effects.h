@@ -26,7 +26,7 @@ class ParameterEffects {
     std::vector<QuantityEffect> fibre;       ///< quantity: MuscleQuantity below activation1
     std::vector<QuantityEffect> activation;  ///< quantity: 0 time scale, 1 activation1, 2 …2
     std::vector<QuantityEffect> points;      ///< quantity: 3·point + axis
-    std::vector<QuantityEffect> wraps;       ///< quantity: 7·wrap + component
+    std::vector<QuantityEffect> wraps;       ///< quantity: numWrapRows·wrap + component
     bool hasGeometry() const { return !points.empty() || !wraps.empty(); }
   };
   struct OfSegment {

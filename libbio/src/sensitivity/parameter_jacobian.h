@@ -61,7 +61,8 @@ class DirectEffects {
           gradient.points[effect.quantity / 3].row(static_cast<Index>(effect.quantity % 3)));
     }
     for (const QuantityEffect& effect : effects.wraps) {
-      use(effect, gradient.wraps[effect.quantity / 7].row(static_cast<Index>(effect.quantity % 7)));
+      use(effect, gradient.wraps[effect.quantity / numWrapRows].row(
+                      static_cast<Index>(effect.quantity % numWrapRows)));
     }
   }
 

@@ -61,13 +61,14 @@ void gradientsMatchDifferences(const Model& model, const std::vector<std::string
       std::size_t index = 0;
       while (model.wrapObjects[index].name != muscle.path.wraps[w].wrapObject) ++index;
       ++wraps;
-      for (int c = 0; c < 7; ++c) {
+      for (int c = 0; c < numWrapRows; ++c) {
         check(
             [&](Model& other, double shift) {
               WrapObject& wrap = other.wrapObjects[index];
               if (c == 0) wrap.radius += shift;
               if (c > 0 && c < 4) wrap.frame.translation[c - 1] += shift;
-              if (c >= 4) wrap.frame.orientation[c - 4] += shift;
+              if (c >= 4 && c < 7) wrap.frame.orientation[c - 4] += shift;
+              if (c >= 7 && wrap.shape == WrapShape::ellipsoid) wrap.semiAxes[c - 7] += shift;
             },
             g.wraps[w].row(c), muscle.name + " over " + muscle.path.wraps[w].wrapObject);
       }
@@ -87,6 +88,25 @@ INSTANTIATE_TEST_SUITE_P(OverTheRange, PathGradientAt, ::testing::Values(-0.5, 0
 
 TEST(PathGradient, MatchesDifferencesForTwoCoordinates) {
   const fixtures::ShippedElbow elbow;
+  gradientsMatchDifferences<2>(elbow.model, {"shoulder_rot", "elbow_flexion"},
+                               Eigen::Vector2d(0.1, 1.3), 3e-7);
+}
+
+// The triceps' cylinder replaced by an ellipsoid.
+TEST(PathGradient, MatchesDifferencesOverEllipsoids) {
+  fixtures::ShippedElbow elbow;
+  for (WrapObject& wrap : elbow.model.wrapObjects) {
+    if (wrap.name != "TRI") continue;
+    wrap.shape = WrapShape::ellipsoid;
+    wrap.semiAxes = {wrap.radius, 1.1 * wrap.radius, 0.04};
+  }
+  const Skeleton skeleton(elbow.model, {{"elbow_flexion"}, {}});
+  const MusclePath path(elbow.model, skeleton, findMuscle(elbow.model, "TRIlong"), {});
+  EXPECT_FALSE(path.compiled().chains.empty());
+  for (const double angle : {0.7, 1.2, 1.9}) {
+    gradientsMatchDifferences<1>(elbow.model, {"elbow_flexion"}, Eigen::Matrix<double, 1, 1>(angle),
+                                 3e-7);
+  }
   gradientsMatchDifferences<2>(elbow.model, {"shoulder_rot", "elbow_flexion"},
                                Eigen::Vector2d(0.1, 1.3), 3e-7);
 }

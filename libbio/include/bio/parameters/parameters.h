@@ -27,7 +27,8 @@ struct PointTarget {
 };
 struct WrapTarget {
   std::size_t wrap;
-  int component;  ///< 0 radius, 1–3 translation, 4–6 rotation in the body
+  int component;  ///< 0 radius, 1–3 translation, 4–6 rotation in the body; 7–9 semi-axes of an
+                  ///< ellipsoid; 7, 8 outer and inner radius of a torus
   friend bool operator==(const WrapTarget&, const WrapTarget&) = default;
 };
 struct BodyTarget {

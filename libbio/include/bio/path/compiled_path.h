@@ -3,12 +3,14 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "bio/model/model.h"
 #include "bio/muscle/curves/curves.h"
+#include "bio/path/path_chain.h"
 #include "bio/path/span.h"
 #include "bio/path/surface/wrap_rule.h"
 #include "bio/skeleton/rigid_motion.h"
@@ -39,7 +41,7 @@ struct CompiledCondition {
   double upper = 0;
 };
 
-/// A cylinder about z or a sphere, in the frame of its segment.
+/// A cylinder about z, a sphere or a surface without a closed form, in the frame of its segment.
 struct PathSurface {
   bool isSphere = false;
   std::size_t wrap = 0;     ///< its index in Path::wraps
@@ -48,7 +50,11 @@ struct PathSurface {
   double radius = 0;        ///< [m]
   double halfLength = 0;    ///< cylinder [m]
   WrapQuadrant quadrant = WrapQuadrant::all;
+  std::optional<Surface> general;  ///< an ellipsoid or a torus; then `radius` is its first number
 };
+
+/// The surface of any kind, as chains need it.
+Surface surfaceOf(const PathSurface& surface);
 
 /// A surface that a span may touch, and the side on which it then passes.
 struct SpanSurface {
@@ -64,6 +70,7 @@ struct PathSpan {
   std::size_t b = 0;
   bool moves = false;
   std::vector<SpanSurface> surfaces;  ///< in the order in which they are tried
+  int chain = -1;  ///< index into CompiledPath::chains if they are solved together, −1: one by one
 };
 
 /// The path while a given set of conditional points is active.
@@ -79,13 +86,14 @@ struct CompiledPath {
   std::vector<CompiledPointMotion> motions;
   std::vector<CompiledCondition> conditions;
   std::vector<PathSurface> surfaces;
+  std::vector<PathChain> chains;
   std::vector<PathVariant> variants;  ///< by the bits of the active conditions
   std::vector<std::string> notes;
-  std::vector<std::string> warnings;  ///< spans that touch several objects, of which one is used
+  std::vector<std::string> warnings;  ///< what a path does that its author will not expect
 };
 
-/// Thrown for a path that moves over a surface without an exact geodesic here: a torus, or an
-/// ellipsoid with three different semi-axes. No option can change this.
+/// Thrown for a path that cannot be computed here and that no option can change. Callers leave the
+/// muscle out with a warning.
 class UnsupportedWrap : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };

@@ -9,6 +9,11 @@
 
 namespace bio {
 
+/// Rows of a PathGradient for each wrap object.
+inline constexpr int numWrapRows = 10;
+/// The row of a number of a surface: 0 of a cylinder or sphere, 7 … 9 of a general surface.
+constexpr int wrapNumberRow(bool isGeneral, int number) { return isGeneral ? 7 + number : 0; }
+
 /// Derivatives of a muscle–tendon length and its slope with respect to the parameters of the path:
 /// column 0 is ∂ℓ/∂θ, column 1 + k is ∂²ℓ/∂q_k∂θ, one row per θ. N = Eigen::Dynamic: k counts the
 /// coordinates of the path's support.
@@ -16,8 +21,10 @@ template <int N>
 struct PathGradient {
   static constexpr int columns = N == Eigen::Dynamic ? Eigen::Dynamic : 1 + N;
   using OfPoint = Eigen::Matrix<double, 3, columns>;
-  /// radius; then translation x, y, z and rotation x, y, z of the wrap object in its body
-  using OfWrap = Eigen::Matrix<double, 7, columns>;
+  /// radius of a cylinder or sphere; translation x, y, z and rotation x, y, z of the wrap object in
+  /// its body; of an ellipsoid the semi-axes x, y, z, of a torus the outer radius (of the ring) and
+  /// the inner one (of the tube)
+  using OfWrap = Eigen::Matrix<double, numWrapRows, columns>;
   std::vector<OfPoint> points;  ///< of Path::points, over their locations in their bodies [1]
   std::vector<OfWrap> wraps;    ///< of Path::wraps; unused for a wrap that is left out
 };
@@ -29,7 +36,8 @@ struct PathGradient {
 /// tangents c, and the change of those as q_k moves the ends is g_k = H·∂_k(ends). A point's
 /// location pulls them back through its placement; a shift of the surface is the opposite shift of
 /// both ends, a turn ω of it moves them by −ω×p, which leaves the moment Σ p×c. The radius is
-/// carried through the span by the scalar type. Spans that do not move contribute a constant.
+/// carried through the span by the scalar type. Chains (path_chain.h) give way by ChainChanges, and
+/// their surfaces' numbers by contactNumbers. Spans that do not move contribute a constant.
 ///
 /// A moving point's location is that of its functions plus a constant shift. The side of a path and
 /// the objects that a span may touch are held fixed.
@@ -71,6 +79,10 @@ class PathGradients {
   void addSpan(const PathSpan& span, const Eigen::Matrix<double, N, 1>& q,
                const RigidMotion<double, N>* moved, unsigned& usedSurfaces, bool isFixed,
                PathGradient<N>& out) const;
+  template <int N>
+  void addChain(const PathSpan& span, const Eigen::Matrix<double, N, 1>& q,
+                const RigidMotion<double, N>* moved, unsigned& usedSurfaces,
+                PathGradient<N>& out) const;
 
   struct TreeSpan;
   void addSurface(const TreeSpan& span, const detail::SpanOverSurface& s,

@@ -1,7 +1,11 @@
 #pragma once
 
 // Template bodies of path.h.
+#include <stdexcept>
+#include <type_traits>
+
 #include "bio/path/path.h"
+#include "bio/path/surface/chain_change.h"
 #include "bio/skeleton/skeleton_motion.h"
 
 namespace bio {
@@ -225,11 +229,134 @@ void addSpan(LengthJet<N, T>& jet, const SpanToSecondOrder<T>& s, const SpanEnd<
   }
 }
 
+/// How a segment moves with q_i, as a screw about the ground's origin, and how the screw does with
+/// q_j: x_i = v + ω×x, ∂_j(v + ω×x) = ∂_ijx for a point x of the segment.
+template <int N>
+Screw screwOf(const RigidMotion<double, N>& X, int i) {
+  const Placement<double>& X_i = X.first[static_cast<std::size_t>(i)];
+  const Mat3<double> W = X_i.R * X.value.R.transpose();
+  Screw screw;
+  screw.angular = {W(2, 1), W(0, 2), W(1, 0)};
+  screw.linear = X_i.p - screw.angular.cross(X.value.p);
+  return screw;
+}
+template <int N>
+Screw screwChange(const RigidMotion<double, N>& X, int i, int j) {
+  const Placement<double>& X_i = X.first[static_cast<std::size_t>(i)];
+  const Placement<double>& X_j = X.first[static_cast<std::size_t>(j)];
+  const Placement<double>& X_ij = X.second[static_cast<std::size_t>(pairIndex(i, j))];
+  const Mat3<double> W = X_ij.R * X.value.R.transpose() + X_i.R * X_j.R.transpose();
+  const Vec3<double> turning = screwOf(X, i).angular;
+  Screw screw;
+  screw.angular = {W(2, 1), W(0, 2), W(1, 0)};
+  screw.linear = X_ij.p - screw.angular.cross(X.value.p) - turning.cross(X_j.p);
+  return screw;
+}
+
+/// The placements of a chain's surfaces in the ground.
+template <int N>
+ChainPlacements chainInGround(const CompiledPath& path, const PathChain& chain,
+                              const RigidMotion<double, N>* moved) {
+  ChainPlacements X_GC;
+  for (std::size_t j = 0; j < static_cast<std::size_t>(chain.count); ++j) {
+    const PathSurface& surface = path.surfaces[chain.members[j].surface];
+    X_GC[j] = moved[surface.segment].value * surface.X_SC;
+  }
+  return X_GC;
+}
+
+/// How the ends of a chain in the ground and its objects move with q_i.
+template <int N>
+ChainScrews chainMotion(const CompiledPath& path, const PathChain& chain,
+                        const SpanEnd<double, N>& P, const SpanEnd<double, N>& Q,
+                        const RigidMotion<double, N>* moved, int i) {
+  ChainScrews motion;
+  if (!P.fixed) motion.P = P.jet.first[static_cast<std::size_t>(i)];
+  if (!Q.fixed) motion.Q = Q.jet.first[static_cast<std::size_t>(i)];
+  for (std::size_t j = 0; j < static_cast<std::size_t>(chain.count); ++j) {
+    const std::size_t segment = path.surfaces[chain.members[j].surface].segment;
+    if (segment != 0) motion.objects[j] = screwOf<N>(moved[segment], i);
+  }
+  return motion;
+}
+
+/// A chain whose objects belong to several segments, by the chain rule over ends and placements:
+///     ∂_ijL = (∂_i∇L)·m_j + ∇L·∂_im_j,   m_i the motions of ends and objects with q_i
+/// (which of the two moves matters: turns do not commute).
+template <int N>
+void addMovingChain(LengthJet<N>& jet, const CompiledPath& path, const PathChain& chain,
+                    const ChainPath& taut, const SpanEnd<double, N>& P,
+                    const SpanEnd<double, N>& Q, const RigidMotion<double, N>* moved) {
+  const ChainScrews gradient = chainGradient(taut);
+  const ChainChanges changes(taut);
+  const auto count = static_cast<std::size_t>(chain.count);
+  const auto along = [&](const ChainScrews& g, const ChainScrews& m) {
+    double sum = g.P.dot(m.P) + g.Q.dot(m.Q);
+    for (std::size_t j = 0; j < count; ++j) {
+      sum += g.objects[j].linear.dot(m.objects[j].linear) +
+             g.objects[j].angular.dot(m.objects[j].angular);
+    }
+    return sum;
+  };
+  std::array<ChainScrews, N> motions;
+  for (int i = 0; i < N; ++i) {
+    const auto si = static_cast<std::size_t>(i);
+    motions[si] = chainMotion<N>(path, chain, P, Q, moved, i);
+    jet.dL_dq[i] += along(gradient, motions[si]);
+    const ChainScrews changed = changes.gradientChange(motions[si]);
+    for (int j = 0; j <= i; ++j) {
+      double bent = alongSecond(P, i, j, gradient.P) + alongSecond(Q, i, j, gradient.Q);
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t segment = path.surfaces[chain.members[k].surface].segment;
+        if (segment == 0) continue;
+        const Screw turned = screwChange<N>(moved[segment], j, i);
+        bent += gradient.objects[k].linear.dot(turned.linear) +
+                gradient.objects[k].angular.dot(turned.angular);
+      }
+      addSecond<double, N>(jet, i, j,
+                           along(changed, motions[static_cast<std::size_t>(j)]) + bent);
+    }
+  }
+  jet.length += taut.length;
+}
+
+/// Adds a span over a chain; straight where it touches nothing.
+template <int N>
+void addChain(LengthJet<N>& jet, const CompiledPath& path, const PathSpan& span,
+              const SpanEnd<double, N>& P, const SpanEnd<double, N>& Q,
+              const RigidMotion<double, N>* moved, const double* radii, unsigned& used) {
+  const PathChain& chain = path.chains[static_cast<std::size_t>(span.chain)];
+  if (chain.inOneSegment) {
+    PathSurface carrier;
+    carrier.segment = path.surfaces[chain.members[0].surface].segment;
+    const SpanEnd<double, N> p_SP = seenFromSurface(carrier, moved, P);
+    const SpanEnd<double, N> p_SQ = seenFromSurface(carrier, moved, Q);
+    const SpanToSecondOrder<double> s =
+        spanOver(path, chain, p_SP.jet.value, p_SQ.jet.value, used, radii);
+    if (!s.span.touches) return addStraight(jet, P, Q);
+    addSpan(jet, s, p_SP, p_SQ);
+  } else {
+    const ChainPlacements X_GC = chainInGround<N>(path, chain, moved);
+    const PlacedChain placed = placeChain(path, chain, X_GC, radii);
+    const ChainPath taut = tautChain(path, chain, placed, X_GC, P.jet.value, Q.jet.value, used);
+    if (taut.numContacts == 0) return addStraight(jet, P, Q);
+    addMovingChain<N>(jet, path, chain, taut, P, Q, moved);
+  }
+  jet.wrapped = jet.wrapped || span.moves;
+}
+
 /// Adds the span over the first surface that it touches and that is not in use, else straight.
 template <class T, int N>
 void addPathSpan(LengthJet<N, T>& jet, const CompiledPath& path, const PathSpan& span,
                  const SpanEnd<T, N>& P, const SpanEnd<T, N>& Q, const RigidMotion<T, N>* moved,
                  const T* radii, unsigned& used) {
+  if (span.chain >= 0) {
+    if constexpr (std::is_same_v<T, double>) {
+      return addChain<N>(jet, path, span, P, Q, moved, radii, used);
+    } else {
+      throw std::logic_error("a chain of wrap objects is computed for numbers of type double only");
+    }
+  }
   for (const SpanSurface& way : span.surfaces) {
     const unsigned bit = 1u << way.surface;
     if ((used & bit) != 0) continue;

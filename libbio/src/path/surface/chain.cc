@@ -66,9 +66,15 @@ bool hasLeapt(std::span<const ChainObject> objects, const std::array<ContactMemo
 class Search {
  public:
   Search(const Vector3d& P, const Vector3d& Q, std::span<const ChainObject> objects,
-         const ChainMemory& memory)
-      : P_(P), Q_(Q), objects_(objects), contacts_(memory.contacts), isFresh_(!memory.known) {
+         const ChainMemory& memory, unsigned leftOut)
+      : P_(P),
+        Q_(Q),
+        objects_(objects),
+        contacts_(memory.contacts),
+        isFresh_(!memory.known),
+        leftOut_(leftOut) {
     for (std::size_t j = 0; j < objects.size(); ++j) {
+      if (isLeftOut(j)) continue;
       const ChainObject& object = objects[j];
       inPlay_[j] = !isInside(object.surface, object.intoFrame(P)) &&
                    !isInside(object.surface, object.intoFrame(Q));
@@ -95,6 +101,8 @@ class Search {
   const std::array<ContactMemory, maxChain>& contacts() const { return contacts_; }
 
  private:
+  bool isLeftOut(std::size_t object) const { return ((leftOut_ >> object) & 1u) != 0; }
+
   bool solve() {
     ContactGuesses guesses;
     for (std::size_t j = 0; j < objects_.size(); ++j) {
@@ -236,7 +244,9 @@ class Search {
       path_.length += path_.contacts[i].arc + path_.pieces[i + 1].length;
     }
     for (std::size_t j = 0; j < objects_.size(); ++j) {
-      path_.passing[j] = inPlay_[j] ? contacts_[j].passing : Passing::endInside;
+      path_.passing[j] = inPlay_[j]     ? contacts_[j].passing
+                         : isLeftOut(j) ? Passing::clear
+                                        : Passing::endInside;
     }
     path_.isShortest = isShortest(path_);
     if (event != ChainEvent::notFound && cutsAgain()) path_.event = ChainEvent::cutsAgain;
@@ -247,6 +257,7 @@ class Search {
   std::span<const ChainObject> objects_;
   std::array<ContactMemory, maxChain> contacts_;
   bool isFresh_;
+  unsigned leftOut_;
   int numFresh_ = 0, numDropped_ = 0, numSettled_ = 0;
   std::array<bool, maxChain> inPlay_{};
   std::array<int, maxChain> timesLeft_{};
@@ -256,12 +267,12 @@ class Search {
 }  // namespace
 
 ChainPath solveChain(const Vector3d& P, const Vector3d& Q, std::span<const ChainObject> objects,
-                     ChainMemory& memory) {
+                     ChainMemory& memory, unsigned leftOut) {
   if (objects.size() > maxChain) {
     throw std::invalid_argument(fmt::format("a span of a path passes {} surfaces, must be <= {}",
                                             objects.size(), maxChain));
   }
-  Search search(P, Q, objects, memory);
+  Search search(P, Q, objects, memory, leftOut);
   ChainPath path = search.run();
   if (path.event == ChainEvent::none && memory.known &&
       hasLeapt(objects, memory.contacts, search.contacts())) {

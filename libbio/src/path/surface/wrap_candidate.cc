@@ -13,7 +13,6 @@ namespace {
 bool ellipsoidAsSurface(const WrapObject& object, const std::vector<std::string>& wrapAsCylinder,
                         CandidateWrap& candidate, PathSurface& surface) {
   const Vec3<double>& s = object.semiAxes;
-  candidate.semiAxes = s;
   const auto equal = [&](int i, int j) { return std::abs(s[i] - s[j]) <= 1e-9 * s[i]; };
   if (equal(0, 1) && equal(1, 2)) {
     surface.isSphere = true;
@@ -46,6 +45,16 @@ bool ellipsoidAsSurface(const WrapObject& object, const std::vector<std::string>
   return true;
 }
 
+// The surface of an ellipsoid or a torus.
+Surface generalSurface(const WrapObject& object) {
+  try {
+    if (object.shape == WrapShape::torus) return TorusSurface(object.outerRadius, object.radius);
+    return EllipsoidSurface(object.semiAxes);
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument(fmt::format("wrap object '{}': {}", object.name, e.what()));
+  }
+}
+
 }  // namespace
 
 CandidateWrap candidateWrap(const WrapObject& object, const BodyPlacement& place, std::size_t index,
@@ -68,11 +77,14 @@ CandidateWrap candidateWrap(const WrapObject& object, const BodyPlacement& place
       surface.radius = object.radius;
       break;
     case WrapShape::torus:
-      candidate.isTorus = true;
-      candidate.semiAxes.setConstant(object.radius + object.outerRadius);
-      return candidate;
+      surface.general = generalSurface(object);
+      surface.radius = object.outerRadius;
+      break;
     case WrapShape::ellipsoid:
-      if (!ellipsoidAsSurface(object, wrapAsCylinder, candidate, surface)) return candidate;
+      if (!ellipsoidAsSurface(object, wrapAsCylinder, candidate, surface)) {
+        surface.general = generalSurface(object);
+        surface.radius = object.semiAxes.x();
+      }
       break;
   }
   if (!(surface.radius > 0)) {
@@ -81,7 +93,7 @@ CandidateWrap candidateWrap(const WrapObject& object, const BodyPlacement& place
   }
   const bool alongAxis =
       surface.quadrant == WrapQuadrant::plusZ || surface.quadrant == WrapQuadrant::minusZ;
-  if (alongAxis && !surface.isSphere) {
+  if (alongAxis && !surface.isSphere && !surface.general) {
     throw std::invalid_argument(
         fmt::format("wrap object '{}': quadrant {} lies along the cylinder's axis, must be across",
                     object.name, object.quadrant));

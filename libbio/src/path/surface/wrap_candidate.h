@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,22 +8,20 @@
 
 namespace bio {
 
-/// A wrap of a path: a surface that can be evaluated, or the ellipsoid around one that cannot.
+/// A wrap of a path.
 struct CandidateWrap {
   std::string name;
   std::size_t firstPoint = 0, lastPoint = 0;  ///< in Path::points
   std::size_t segment = 0;
   Placement<double> X_SC;
-  std::optional<PathSurface> shape;              ///< what can be evaluated
-  std::size_t surface = 0;                       ///< of `shape` in CompiledPath::surfaces
-  Vec3<double> semiAxes = Vec3<double>::Zero();  ///< without shape
-  bool isTorus = false;
+  PathSurface shape;
+  std::size_t surface = 0;  ///< of `shape` in CompiledPath::surfaces
 };
 
 /// Cylinders and spheres as they are, ellipsoids with three equal semi-axes as spheres, those named
-/// in `wrapAsCylinder` as cylinders. Points and place in CompiledPath::surfaces are the caller's.
+/// in `wrapAsCylinder` as cylinders, other ellipsoids and tori as general surfaces. Points and place in CompiledPath::surfaces are the caller's.
 /// @param index  its place in Path::wraps
-/// @throws std::invalid_argument a radius ≤ 0, a quadrant along a cylinder's axis, an ellipsoid to
+/// @throws std::invalid_argument a radius or semi-axis ≤ 0, a torus without a hole, a quadrant along a cylinder's axis, an ellipsoid to
 ///   be a cylinder without two equal semi-axes
 CandidateWrap candidateWrap(const WrapObject& object, const BodyPlacement& place, std::size_t index,
                             const std::vector<std::string>& wrapAsCylinder);

@@ -8,10 +8,8 @@
 #include <stdexcept>
 
 namespace bio {
-namespace {
 
-// The unit vector of a quadrant.
-Vec3<double> direction(WrapQuadrant quadrant) {
+Vec3<double> directionOf(WrapQuadrant quadrant) {
   switch (quadrant) {
     case WrapQuadrant::plusX:
       return Vec3<double>::UnitX();
@@ -30,8 +28,6 @@ Vec3<double> direction(WrapQuadrant quadrant) {
   }
   return Vec3<double>::Zero();
 }
-
-}  // namespace
 
 WrapQuadrant wrapQuadrant(const std::string& word) {
   if (word == "all" || word == "All" || word == "ALL") return WrapQuadrant::all;
@@ -71,7 +67,7 @@ Side cylinderSide(WrapQuadrant quadrant, const Vec3<double>& p_CP, const Vec3<do
   if (quadrant == WrapQuadrant::all) return shorter;
   // The middle of the shorter way is along u + w, of the longer way opposite.
   const Side longer = leftward ? Side::clockwise : Side::counterclockwise;
-  return direction(quadrant).head<2>().dot(u + w) >= 0 ? shorter : longer;
+  return directionOf(quadrant).head<2>().dot(u + w) >= 0 ? shorter : longer;
 }
 
 double angleRound(Side side, const Vec3<double>& p_CP, const Vec3<double>& p_CQ) {
@@ -112,7 +108,7 @@ bool hasSlippedOff(const SlipAngle& slip, Side side, const Vec3<double>& p_CP,
 Way sphereWay(WrapQuadrant quadrant, const Vec3<double>& p_CP, const Vec3<double>& p_CQ) {
   if (quadrant == WrapQuadrant::all) return Way::shorter;
   const Vec3<double> middle = p_CP.normalized() + p_CQ.normalized();
-  return direction(quadrant).dot(middle) >= 0 ? Way::shorter : Way::longer;
+  return directionOf(quadrant).dot(middle) >= 0 ? Way::shorter : Way::longer;
 }
 
 bool cylinderTouches(double radius, double length, Side side, const Vec3<double>& p_CP,

@@ -112,8 +112,10 @@ struct ChainPath {
 /// extrapolation instead of Runge–Kutta.
 ///
 /// Allocates nothing.
+/// @param leftOut  bits of the objects that are as if they were not there (Passing::clear)
 /// @throws std::invalid_argument for more than maxChain objects
 ChainPath solveChain(const Eigen::Vector3d& P, const Eigen::Vector3d& Q,
-                     std::span<const ChainObject> objects, ChainMemory& memory);
+                     std::span<const ChainObject> objects, ChainMemory& memory,
+                     unsigned leftOut = 0);
 
 }  // namespace bio

@@ -15,6 +15,9 @@ enum class WrapQuadrant { all, plusX, minusX, plusY, minusY, plusZ, minusZ };
 /// @throws std::invalid_argument for any other word
 WrapQuadrant wrapQuadrant(const std::string& word);
 
+/// The unit vector towards the named side; zero for "all".
+Vec3<double> directionOf(WrapQuadrant quadrant);
+
 /// The side on which a path from P to Q goes round a cylinder about z.
 ///
 /// Of the two ways round the cylinder, a quadrant ±x or ±y selects the one whose middle direction

@@ -1,0 +1,148 @@
+#include "bio/path/path_chain.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "bio/path/compiled_path.h"
+#include "bio/path/surface/chain_change.h"
+
+namespace bio {
+namespace {
+
+// Beyond its ends a cylinder does not hold the string.
+bool isBeyondEnds(const PathSurface& surface, const ChainObject& object,
+                  const ChainContact& contact) {
+  if (surface.isSphere || surface.general) return false;
+  return std::abs(object.intoFrame(contact.A).z()) > surface.halfLength &&
+         std::abs(object.intoFrame(contact.B).z()) > surface.halfLength;
+}
+
+// The kept posture whose ends lie nearest.
+std::size_t nearestStart(const PathChain& chain, const ChainEnds& ends) {
+  const std::size_t numStarts = chain.starts.size();
+  std::array<float, maxChainStarts> distance{};
+  const auto numbers = static_cast<std::size_t>(6 * chain.count);
+  for (std::size_t i = 0; i < numbers; ++i) {
+    const float* column = chain.startEnds.data() + i * numStarts;
+    const float here = ends[i];
+    for (std::size_t s = 0; s < numStarts; ++s) {
+      const float d = column[s] - here;
+      distance[s] += d * d;
+    }
+  }
+  const auto last = distance.begin() + static_cast<std::ptrdiff_t>(numStarts);
+  return static_cast<std::size_t>(std::min_element(distance.begin(), last) - distance.begin());
+}
+
+}  // namespace
+
+Surface surfaceOf(const PathSurface& surface) {
+  if (surface.general) return *surface.general;
+  if (surface.isSphere) return SphereSurface(surface.radius);
+  return CylinderSurface(surface.radius);
+}
+
+ChainEnds chainEnds(const PathChain& chain, const ChainPlacements& X_GC, const Vec3<double>& P,
+                    const Vec3<double>& Q) {
+  ChainEnds ends{};
+  for (std::size_t j = 0; j < static_cast<std::size_t>(chain.count); ++j) {
+    const Vec3<double> p = X_GC[j].R.transpose() * (P - X_GC[j].p);
+    const Vec3<double> q = X_GC[j].R.transpose() * (Q - X_GC[j].p);
+    for (std::size_t i = 0; i < 3; ++i) {
+      ends[6 * j + i] = static_cast<float>(p[static_cast<Eigen::Index>(i)]);
+      ends[6 * j + 3 + i] = static_cast<float>(q[static_cast<Eigen::Index>(i)]);
+    }
+  }
+  return ends;
+}
+
+PlacedChain placeChain(const CompiledPath& path, const PathChain& chain,
+                       const ChainPlacements& X_GC, const double* radii) {
+  PlacedChain placed;
+  placed.count = static_cast<std::size_t>(chain.count);
+  for (std::size_t j = 0; j < placed.count; ++j) {
+    const PathChain::Member& member = chain.members[j];
+    PathSurface surface = path.surfaces[member.surface];
+    if (radii != nullptr && !surface.general) surface.radius = radii[surface.wrap];
+    placed.objects[j] = {surfaceOf(surface), X_GC[j].R, X_GC[j].p, member.hint};
+  }
+  return placed;
+}
+
+ChainPath tautChain(const CompiledPath& path, const PathChain& chain, const PlacedChain& placed,
+                    const ChainPlacements& X_GC, const Vec3<double>& P, const Vec3<double>& Q,
+                    unsigned& used) {
+  unsigned leftOut = 0;
+  for (std::size_t j = 0; j < placed.count; ++j) {
+    leftOut |= ((used >> chain.members[j].surface) & 1u) << j;
+  }
+  ChainMemory start;
+  if (!chain.starts.empty()) {
+    start = chain.starts[nearestStart(chain, chainEnds(chain, X_GC, P, Q))];
+  }
+  ChainPath taut;
+  for (;;) {
+    ChainMemory memory = start;
+    taut = solveChain(P, Q, placed.all(), memory, leftOut);
+    if (taut.event == ChainEvent::notFound) {
+      throw std::domain_error(fmt::format(
+          "no taut string is found from ({}, {}, {}) to ({}, {}, {}) m over wrap object {} of its "
+          "path{}",
+          P[0], P[1], P[2], Q[0], Q[1], Q[2], path.surfaces[chain.members[0].surface].wrap + 1,
+          placed.count > 1 ? " and others" : ""));
+    }
+    bool holds = true;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(taut.numContacts); ++i) {
+      const ChainContact& contact = taut.contacts[i];
+      const auto j = static_cast<std::size_t>(contact.object);
+      if (!isBeyondEnds(path.surfaces[chain.members[j].surface], placed.objects[j], contact)) {
+        continue;
+      }
+      leftOut |= 1u << j;
+      holds = false;
+    }
+    if (holds) break;
+  }
+  for (std::size_t j = 0; j < placed.count; ++j) {
+    if (taut.passing[j] == Passing::touching) used |= 1u << chain.members[j].surface;
+  }
+  return taut;
+}
+
+SpanToSecondOrder<double> spanOver(const CompiledPath& path, const PathChain& chain,
+                                   const Vec3<double>& p_SP, const Vec3<double>& p_SQ,
+                                   unsigned& used, const double* radii) {
+  ChainPlacements X_SC;
+  for (std::size_t j = 0; j < static_cast<std::size_t>(chain.count); ++j) {
+    X_SC[j] = path.surfaces[chain.members[j].surface].X_SC;
+  }
+  const PlacedChain placed = placeChain(path, chain, X_SC, radii);
+  const ChainPath taut = tautChain(path, chain, placed, X_SC, p_SP, p_SQ, used);
+  const EndHessian ends = ChainChanges(taut).ends();
+  return {{taut.length, -taut.tangentP(), taut.tangentQ(), taut.numContacts > 0},
+          {ends.PP, ends.PQ, ends.QQ}};
+}
+
+std::vector<Vec3<double>> chainPoints(const PlacedChain& placed, const ChainPath& taut,
+                                      double step) {
+  std::vector<Vec3<double>> points;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(taut.numContacts); ++i) {
+    const ChainContact& contact = taut.contacts[i];
+    const ChainObject& object = placed.objects[static_cast<std::size_t>(contact.object)];
+    const double bend = std::max({std::abs(contact.atA.normal), std::abs(contact.atB.normal),
+                                  1 / sizeOf(object.surface)});
+    const int pieces = std::clamp(static_cast<int>(std::ceil(contact.arc * bend / step)), 1, 1000);
+    const Vec3<double> x = object.intoFrame(contact.A);
+    const Vec3<double> u = object.R_GS.transpose() * contact.atA.u;
+    for (int k = 0; k <= pieces; ++k) {
+      const double arc = contact.arc * k / pieces;
+      points.push_back(object.outOfFrame(shootGeodesic(object.surface, x, u, arc).x));
+    }
+  }
+  return points;
+}
+
+}  // namespace bio
