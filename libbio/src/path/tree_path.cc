@@ -4,6 +4,7 @@
 #include <set>
 
 #include "bio/skeleton/tree_motion.h"
+#include "path/tree_chain.h"
 
 namespace bio {
 namespace {
@@ -39,6 +40,29 @@ void addStraight(const TreePath::Piece& piece, const TreeMotion<double>& motion,
     for (const int j : piece.slots) out.second(i, j) += u[i].dot(u[j]) * perLength;
   }
   addSecondsAlong(piece.chain, motion, b, out.moves.data(), t, out.second);
+}
+
+/// @param chainOf  makes the chain from one segment of the tree to another
+template <class ChainOf>
+TreePath::OverChain overChainOf(const CompiledPath& path, const PathSpan& span,
+                                const TreePlaces& places, const Station& from, const Station& to,
+                                const ChainOf& chainOf) {
+  const PathChain& chain = path.chains[static_cast<std::size_t>(span.chain)];
+  const std::size_t first = path.surfaces[chain.members[0].surface].segment;
+  const int carrier = places.segmentOf(first);
+  TreePath::OverChain over{static_cast<std::size_t>(span.chain),
+                           carrier,
+                           places.offsetOf(first),
+                           {},
+                           chainOf(carrier, from.segment),
+                           chainOf(carrier, to.segment)};
+  for (std::size_t j = 0; j < static_cast<std::size_t>(chain.count); ++j) {
+    const PathSurface& surface = path.surfaces[chain.members[j].surface];
+    const int segment = places.segmentOf(surface.segment);
+    over.members.push_back(
+        {segment, places.offsetOf(surface.segment) * surface.X_SC, chainOf(carrier, segment)});
+  }
+  return over;
 }
 
 }  // namespace
@@ -79,7 +103,7 @@ TreePath::TreePath(ArticulatedTree& tree, const Skeleton& skeleton, const Muscle
     stations.push_back({tree.addMovingPoint(point.body, *point.motion), Vec3<double>::Zero()});
   }
   std::set<int> support;
-  const auto chainOf = [&](int from, int to) {
+  const auto chainOf = [&](int from, int to) -> SegmentChain {
     SegmentChain chain(tree, from, to);
     support.insert(chain.support().begin(), chain.support().end());
     return chain;
@@ -89,7 +113,8 @@ TreePath::TreePath(ArticulatedTree& tree, const Skeleton& skeleton, const Muscle
     for (const PathSpan& span : variant.moving) {
       const Station &from = stations[span.a], &to = stations[span.b];
       SegmentChain chain = chainOf(from.segment, to.segment);
-      Piece piece{span.a, span.b, from, to, chain, chain.support(), {}};
+      Piece piece{span.a, span.b, from, to, chain, chain.support(), {}, {}};
+      if (span.chain >= 0) piece.overChain = overChainOf(path, span, places, from, to, chainOf);
       for (const SpanSurface& way : span.surfaces) {
         const PathSurface& surface = path.surfaces[way.surface];
         const int segment = places.segmentOf(surface.segment);
@@ -109,6 +134,10 @@ TreePath::TreePath(ArticulatedTree& tree, const Skeleton& skeleton, const Muscle
         over.toP.renumber(support_);
         over.toQ.renumber(support_);
       }
+      if (!piece.overChain) continue;
+      piece.overChain->toP.renumber(support_);
+      piece.overChain->toQ.renumber(support_);
+      for (auto& member : piece.overChain->members) member.chain.renumber(support_);
     }
   }
 }
@@ -118,17 +147,24 @@ SupportedLength<double> TreePath::newWork() const {
   const auto k = static_cast<Eigen::Index>(support_.size());
   work.first.setZero(k);
   work.second.setZero(k, k);
-  std::size_t steps = 0;
+  std::size_t steps = 0, moving = 2;
   for (const auto& pieces : variants_) {
     for (const Piece& piece : pieces) {
       steps = std::max(steps, piece.chain.steps().size());
+      if (const auto& over = piece.overChain) {
+        moving = std::max(moving, 2 + 2 * over->members.size());
+        steps = std::max(steps, over->toP.steps().size() + over->toQ.steps().size());
+        for (const auto& member : over->members) {
+          steps = std::max(steps, member.chain.steps().size());
+        }
+      }
       for (const OverSurface& over : piece.surfaces) {
         steps = std::max(steps, over.toP.steps().size() + over.toQ.steps().size());
       }
     }
   }
   work.moves.resize(steps);
-  work.slotMoves.resize(2 * support_.size());
+  work.slotMoves.resize(moving * support_.size());
   return work;
 }
 
@@ -176,6 +212,14 @@ void TreePath::evaluate(const CompiledPath& path, const Eigen::VectorXd& conditi
   for (const Piece& piece : variants_[index]) {
     const Vec3<double> P = stationInGround(motion, piece.from);
     const Vec3<double> Q = stationInGround(motion, piece.to);
+    if (piece.overChain) {
+      if (addTreeChain(path, *piece.overChain, motion, P, Q, used, work)) {
+        out.wrapped = true;
+      } else {
+        addStraight(piece, motion, P, Q, work);
+      }
+      continue;
+    }
     const detail::SpanOverSurface s = detail::spanOverSurface(path, piece, motion, P, Q, used);
     if (s.over) {
       addSpan(s.span, s.X_GC, s.over->toP, P, s.over->toQ, Q, motion, work);

@@ -47,7 +47,8 @@ class TreePlaces {
 ///
 /// A straight span is seen from the segment at which it begins (point_path.h), one over a wrap
 /// object from that object's segment: length, gradient and Hessian in its ends by the wrap rule,
-/// then addSpan. Which spans, sides and objects count is as for MusclePath::length.
+/// then addSpan. Objects that are passed together (path_chain.h) move ends and objects as screws.
+/// Which spans, sides and objects count is as for MusclePath::length.
 class TreePath {
  public:
   /// What a surface asks of a span that may go over it.
@@ -57,12 +58,26 @@ class TreePath {
     Placement<double> X_SC;  ///< surface in it
     SegmentChain toP, toQ;
   };
+  /// Surfaces that are passed together, seen from the segment of the first of them.
+  struct OverChain {
+    struct Member {
+      int segment = 0;         ///< of the tree
+      Placement<double> X_TC;  ///< surface in it
+      SegmentChain chain;      ///< from the carrier to it
+    };
+    std::size_t chain = 0;   ///< in CompiledPath::chains
+    int carrier = 0;         ///< segment of the tree
+    Placement<double> X_TS;  ///< the skeleton's segment in it
+    std::vector<Member> members;
+    SegmentChain toP, toQ;
+  };
   struct Piece {
     std::size_t a = 0, b = 0;  ///< nodes of the compiled path
     Station from, to;
     SegmentChain chain;
     std::vector<int> slots;  ///< of the support that the straight span has
     std::vector<OverSurface> surfaces;
+    std::optional<OverChain> overChain;  ///< then without `surfaces`
   };
 
   /// @param tree  of the skeleton; points that move in their bodies become segments of it
