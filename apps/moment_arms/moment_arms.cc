@@ -1,7 +1,11 @@
 #include "moment_arms/moment_arms.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <ostream>
+
+#include "bio/analysis/path_postures.h"
 #include "bio/analysis/replay.h"
 #include "bio/path/length_jumps.h"
 #include "options/number_rules.h"
@@ -34,13 +38,21 @@ class MomentArms : public Command {
                     "last angle [deg] or position [mm]; default: end of the coordinate's range")
         ->check(finite());
     options.add_option("--points", points_, "number of values, at least 2")->capture_default_str();
+    CLI::Option* postures = options.add_option(
+        "--postures", postures_,
+        "table (.csv) of postures instead of a range: columns named like coordinates [rad] or [m], "
+        "which are free; other columns are ignored");
+    postures->check(CLI::ExistingFile)->type_name("FILE");
+    for (const char* other : {"--from", "--to", "--points"}) postures->excludes(other);
     addModelOptions(options, model_options_);
+    postures->excludes("--coordinate");
   }
 
   ExitStatus run(const CommandContext& context) override {
     OutputFolder folder(context, {"moment_arms.csv"});
     Summary summary(context);
     const bio::Model model = readModel(model_, summary);
+    if (!postures_.empty()) return runPostures(context, folder, summary, model);
     chooseCoordinates(model_options_, model, {});
     const bio::SkeletonOptions options = armOptions(model_options_).skeleton;
     const bio::Skeleton skeleton(model, options);
@@ -85,6 +97,78 @@ class MomentArms : public Command {
   }
 
  private:
+  ExitStatus runPostures(const CommandContext& context, OutputFolder& folder, Summary& summary,
+                         const bio::Model& model) {
+    summary.addInput(postures_);
+    const bio::PostureTable postures = bio::readPostures(postures_, model);
+    if (!postures.ignored.empty()) {
+      summary.warn(
+          fmt::format("{}: {} columns are no coordinates of the model and ignored, first "
+                      "'{}'",
+                      postures_, postures.ignored.size(), postures.ignored.front()));
+    }
+    model_options_.coordinates = postures.coordinates;
+    const bio::SkeletonOptions options = armOptions(model_options_).skeleton;
+    for (const std::string& remark : lockRemarks(model, options)) summary.warn(remark);
+    const bio::PathPostures paths =
+        bio::pathsAt(model, postures, options.lockedValues, model_options_.wrapAsCylinder);
+    for (const std::string& warning : paths.warnings) summary.warn(warning);
+    require(!paths.muscles.empty(), fmt::format("{}: no muscle can be computed", model_));
+    folder.write("moment_arms.csv",
+                 [&](std::ostream& out) { writePostures(postures, paths, out); });
+    summary.set("coordinates", paths.coordinates);
+    summary.set("postures", postures.values.rows());
+    summary.set("muscles", paths.muscles);
+    summary.set("notes", paths.notes);
+    const Eigen::Index missing = paths.length.array().isNaN().count();
+    summary.set("lengths_without_value", missing);
+    Report report;
+    report.title = fmt::format("Muscle–tendon lengths of {} in {}", model_, postures_);
+    report.verdict =
+        fmt::format("{} muscles in {} postures.", paths.muscles.size(), postures.values.rows());
+    if (missing > 0) report.verdict += fmt::format(" {} lengths have no value.", missing);
+    Table table{"", {"muscle", "shortest [mm]", "longest [mm]"}, {}};
+    for (std::size_t i = 0; i < paths.muscles.size(); ++i) {
+      const auto lengths = paths.length.col(static_cast<Eigen::Index>(i)).array();
+      table.rows.push_back(
+          {paths.muscles[i],
+           fmt::format("{:.2f}", 1e3 * lengths.minCoeff<Eigen::PropagateNumbers>()),
+           fmt::format("{:.2f}", 1e3 * lengths.maxCoeff<Eigen::PropagateNumbers>())});
+    }
+    report.details.push_back(table);
+    for (const std::string& note : paths.notes) report.details.push_back(Paragraph{note});
+    deliver(context, summary, report, folder);
+    return ExitStatus::done;
+  }
+
+  /// One row per posture; names of touched objects are joined by |, - stands for none.
+  static void writePostures(const bio::PostureTable& postures, const bio::PathPostures& paths,
+                            std::ostream& out) {
+    const auto cell = [](double value) {
+      return std::isfinite(value) ? fmt::format("{:.17g}", value) : std::string();
+    };
+    out << "posture";
+    for (const std::string& name : paths.coordinates) out << ',' << name;
+    for (const std::string& muscle : paths.muscles) {
+      out << ',' << muscle << ".length_m," << muscle << ".wrapped";
+      for (const std::string& name : paths.coordinates) {
+        out << ',' << muscle << ".dlength_d." << name;
+      }
+    }
+    out << '\n';
+    for (Eigen::Index k = 0; k < postures.values.rows(); ++k) {
+      out << k;
+      for (const double value : postures.values.row(k)) out << ',' << cell(value);
+      for (std::size_t i = 0; i < paths.muscles.size(); ++i) {
+        const auto& touched = paths.touched[i][static_cast<std::size_t>(k)];
+        out << ',' << cell(paths.length(k, static_cast<Eigen::Index>(i))) << ','
+            << (touched.empty() ? "-" : fmt::format("{}", fmt::join(touched, "|")));
+        for (const double slope : paths.slope[i].row(k)) out << ',' << cell(slope);
+      }
+      out << '\n';
+    }
+  }
+
   static void require(bool holds, const std::string& message) {
     if (!holds) throw std::invalid_argument(message);
   }
@@ -139,6 +223,7 @@ class MomentArms : public Command {
   std::optional<double> from_;
   std::optional<double> to_;
   int points_ = 131;
+  std::string postures_;
   SimulationOptions model_options_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "bio/path/posture_samples.h"
 #include "path/path_reach.h"
@@ -87,6 +88,24 @@ void MusclePath::tabulate(const Skeleton& skeleton) {
 }
 
 std::vector<Eigen::Vector3d> MusclePath::pathPoints(const Posture& posture, double step) const {
+  unsigned used = 0;
+  return trace(posture, step, used);
+}
+
+std::vector<std::size_t> MusclePath::touchedWraps(const Posture& posture) const {
+  unsigned used = 0;
+  trace(posture, std::numbers::pi, used);
+  std::vector<std::size_t> wraps;
+  for (std::size_t i = 0; i < compiled_.surfaces.size(); ++i) {
+    if (((used >> i) & 1u) != 0) wraps.push_back(compiled_.surfaces[i].wrap);
+  }
+  std::sort(wraps.begin(), wraps.end());
+  return wraps;
+}
+
+/// @param used  becomes the bits of the surfaces that are touched
+std::vector<Eigen::Vector3d> MusclePath::trace(const Posture& posture, double step,
+                                               unsigned& used) const {
   const auto& q = posture.q;
   const PathVariant& variant = activeVariant(
       compiled_, Eigen::Map<const Eigen::VectorXd>(q.data(), static_cast<Eigen::Index>(q.size())));
@@ -94,7 +113,6 @@ std::vector<Eigen::Vector3d> MusclePath::pathPoints(const Posture& posture, doub
     return nodePosition(compiled_, compiled_.nodes[node], posture);
   };
   std::vector<Eigen::Vector3d> line = {position(variant.all.front().a)};
-  unsigned used = 0;
   for (const PathSpan& span : variant.all) {
     const Vec3<double> Q = position(span.b);
     if (span.chain >= 0) {

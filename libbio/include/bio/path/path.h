@@ -109,8 +109,12 @@ class MusclePath {
                                           double step = 0.1) const;
   /// The same for any number of coordinates.
   std::vector<Eigen::Vector3d> pathPoints(const Posture& posture, double step = 0.1) const;
+  /// Which of Path::wraps the path touches, moving spans or not, rising.
+  std::vector<std::size_t> touchedWraps(const Posture& posture) const;
 
  private:
+  std::vector<Eigen::Vector3d> trace(const Posture& posture, double step, unsigned& used) const;
+
   CompiledPath compiled_;
   PathParameters<double> parameters_;
   std::shared_ptr<const PathTable> table_;

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bio/model/model.h"
+
+namespace bio {
+
+/// Postures of a model, one row each.
+struct PostureTable {
+  std::vector<std::string> coordinates;
+  Eigen::MatrixXd values;            ///< rows × coordinates [rad] or [m]
+  std::vector<std::string> ignored;  ///< columns that are no coordinate of the model
+};
+
+/// Reads a .csv file with a row of names; columns whose name is a coordinate count.
+/// @throws FileError naming file, line and column: no such column, one given twice, a cell of one
+///   that is not a finite number, a row with too few or too many cells, no row
+PostureTable readPostures(const std::filesystem::path& file, const Model& model);
+
+/// Muscle–tendon lengths in given postures.
+struct PathPostures {
+  std::vector<std::string> coordinates;
+  std::vector<std::string> muscles;
+  Eigen::MatrixXd length;              ///< ℓ_MT, rows = postures, columns = muscles [m]
+  std::vector<Eigen::MatrixXd> slope;  ///< of each muscle ∂ℓ/∂q, postures × coordinates [m/rad]
+  /// Of each muscle, in each posture the names of the wrap objects that its path touches.
+  std::vector<std::vector<std::vector<std::string>>> touched;
+  std::vector<std::string> notes;
+  std::vector<std::string> warnings;  ///< muscles or postures that cannot be computed
+};
+
+/// Paths of all enabled muscles, whatever their class, with the table's coordinates free and the
+/// others at their defaults or where `locked` says. NaN where a path cannot be computed.
+/// @throws std::invalid_argument what Skeleton and MusclePath throw
+PathPostures pathsAt(const Model& model, const PostureTable& postures,
+                     const std::map<std::string, double>& locked,
+                     const std::vector<std::string>& wrapAsCylinder);
+
+}  // namespace bio
