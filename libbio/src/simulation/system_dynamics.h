@@ -27,6 +27,7 @@ class SystemDynamics {
         numMuscles_(static_cast<Eigen::Index>(arm.numMuscles())),
         u_(State::Zero(numMuscles_)),
         rate_(arm.numMuscles()),
+        rigid_(arm.numMuscles()),
         pieces_(arm.numMuscles()) {}
 
   Eigen::Index size() const { return 2 * N + 2 * numMuscles_; }
@@ -54,7 +55,7 @@ class SystemDynamics {
     yDot.template segment<N>(N) = acceleration_;
     for (Eigen::Index i = 0; i < numMuscles_; ++i) {
       const auto si = static_cast<std::size_t>(i);
-      yDot[2 * N + i] = activationRate(arm_.muscles()[si].activation, u_[i], y[2 * N + i]);
+      yDot[2 * N + i] = arm_.muscles()[si].activation.rate(u_[i], y[2 * N + i]);
       yDot[2 * N + numMuscles_ + i] = rate_[si].fibreVelocity;
     }
     return {muscle_.dot(qDot_), passive_.dot(qDot_), external_.dot(qDot_)};
@@ -89,15 +90,27 @@ class SystemDynamics {
       const auto si = static_cast<std::size_t>(i);
       const FibreRateDerivatives& r = rate_[si];
       const LengthJet<N>& path = configuration_.length(si);
+      const auto& law = arm_.muscles()[si].activation;
+      jacobian(2 * N + i, 2 * N + i) = law.rateSlope(u_[i], y[2 * N + i]);
+      if (!arm_.muscles()[si].muscle.hasFibreState()) {
+        const muscles::RigidRate<double>& rigid = rigid_[si];
+        const Vector F_q =
+            rigid.dF_dPathLength * path.dL_dq + rigid.dF_dPathSpeed * (path.d2L_dq2 * qDot_);
+        dForce_dq -= path.dL_dq * F_q.transpose() + rigid.tendonForce * path.d2L_dq2;
+        dForce_dqDot -= rigid.dF_dPathSpeed * path.dL_dq * path.dL_dq.transpose();
+        if (!law.isDirect()) {
+          jacobian.template block<N, 1>(N, 2 * N + i) =
+              -factor_.solve(Vector(rigid.dF_dActivation * path.dL_dq));
+        }
+        continue;
+      }
       dForce_dq -= r.dF_dMuscleTendonLength * path.dL_dq * path.dL_dq.transpose() +
                    r.tendonForce * path.d2L_dq2;
       const Eigen::Index a = 2 * N + i;
       const Eigen::Index l = a + numMuscles_;
       jacobian.template block<N, 1>(N, l) = -factor_.solve(Vector(r.dF_dFibreLength * path.dL_dq));
-      const auto& law = arm_.muscles()[si].activation;
-      jacobian(a, a) = -law.rateConstant(u_[i], u_[i] >= y[a]);
       jacobian.template block<1, N>(l, 0) = r.dV_dMuscleTendonLength * path.dL_dq.transpose();
-      jacobian(l, a) = r.dV_dActivation;
+      if (!law.isDirect()) jacobian(l, a) = r.dV_dActivation;
       jacobian(l, l) = r.dV_dFibreLength;
     }
     jacobian.template block<N, N>(N, 0) = factor_.solve(dForce_dq);
@@ -124,10 +137,18 @@ class SystemDynamics {
     muscle_.setZero();
     for (Eigen::Index i = 0; i < numMuscles_; ++i) {
       const auto si = static_cast<std::size_t>(i);
-      rate_[si] =
-          fibreRateDerivatives(arm_.muscles()[si].muscle, y[2 * N + i], y[2 * N + numMuscles_ + i],
-                               configuration_.length(si).length, pieces_[si]);
-      muscle_ -= rate_[si].tendonForce * configuration_.length(si).dL_dq;
+      const SystemMuscle& muscle = arm_.muscles()[si];
+      const LengthJet<N>& path = configuration_.length(si);
+      const double activation = muscle.activation.acting(u_[i], y[2 * N + i]);
+      if (muscle.muscle.hasFibreState()) {
+        rate_[si] = muscle.muscle.rate(activation, y[2 * N + numMuscles_ + i], path.length,
+                                       pieces_[si]);
+      } else {
+        rigid_[si] = muscle.muscle.rigidRate(activation, path.length, path.dL_dq.dot(qDot_));
+        rate_[si] = {};
+        rate_[si].tendonForce = rigid_[si].tendonForce;
+      }
+      muscle_ -= rate_[si].tendonForce * path.dL_dq;
     }
     Vector force = muscle_ + passive_ + external_ - inertia.dV;
     if (!arm_.skeleton().hasConstantInertia()) {
@@ -147,7 +168,8 @@ class SystemDynamics {
   SystemConfiguration<N> configuration_;
   Eigen::Index numMuscles_;
   State u_;
-  std::vector<FibreRateDerivatives> rate_;
+  std::vector<FibreRateDerivatives> rate_;  ///< with a rigid tendon the fibre stays as it is
+  std::vector<muscles::RigidRate<double>> rigid_;
   std::vector<SchuttePieces> pieces_;  ///< of the last state
   std::size_t hint_ = 0;
   std::size_t externalRow_ = 0;

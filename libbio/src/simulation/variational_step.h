@@ -95,8 +95,13 @@ class VariationalStepper {
         const auto si = static_cast<Eigen::Index>(i);
         const LengthJet<N>& path = configuration_.length(i);
         const double l_m = (begin.fibreLength[si] + end.fibreLength[si]) / 2;
-        rate_[i] = fibreRateDerivatives(arm_.muscles()[i].muscle, activation[si], l_m, path.length,
-                                        pieces_[i]);
+        const SimulatedMuscle& muscle = arm_.muscles()[i].muscle;
+        if (!muscle.hasFibreState()) {
+          addRigid(i, activation[si], path, v, h, dTau);
+          continue;
+        }
+        rate_[i] = muscle.rateNear(activation[si], l_m, path.length,
+                                   (end.fibreLength[si] - begin.fibreLength[si]) / h, pieces_[i]);
         const FibreRateDerivatives& r = rate_[i];
         muscle_ -= r.tendonForce * path.dL_dq;
         dTau.noalias() -= (r.dF_dMuscleTendonLength / 2 * path.dL_dq) * path.dL_dq.transpose();
@@ -183,6 +188,23 @@ class VariationalStepper {
   static constexpr double worthwhile = 1e-4;        ///< corrections above are always followed
   static constexpr double largestTurn = 0.3;        ///< [rad] per iteration
   static constexpr double largestFibreStep = 0.25;  ///< of ℓ0 per iteration
+
+  /// The force of a muscle with a rigid tendon and its derivatives in the end configuration; its
+  /// fibre has no equation and stays as it is.
+  void addRigid(std::size_t i, double activation, const LengthJet<N>& path, const Vector& v,
+                double h, Matrix& dTau) {
+    const muscles::RigidRate<double> r =
+        arm_.muscles()[i].muscle.rigidRate(activation, path.length, path.dL_dq.dot(v));
+    muscle_ -= r.tendonForce * path.dL_dq;
+    const Vector F_q = r.dF_dPathLength * path.dL_dq + r.dF_dPathSpeed * (path.d2L_dq2 * v);
+    dTau.noalias() -=
+        path.dL_dq * (F_q / 2 + r.dF_dPathSpeed / h * path.dL_dq).transpose();
+    dTau -= r.tendonForce / 2 * path.d2L_dq2;
+    rate_[i] = {};
+    rate_[i].tendonForce = r.tendonForce;
+    residual_[static_cast<Eigen::Index>(i)] = 0;
+    inverse_[static_cast<Eigen::Index>(i)] = 0;
+  }
 
   static Vector solveSmall(const Matrix& J, const Vector& b) {
     if constexpr (N == 1) {
