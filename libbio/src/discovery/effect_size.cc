@@ -22,12 +22,13 @@ double rootMeanSquare(const VectorXd& values) {
 // bracket, since the velocity has kinks; NaN where there is none.
 double steppedFibre(const SimulatedMuscle& muscle, double activation, double length,
                     double muscleTendonLength, double h) {
-  double low = 2 * muscle.thickness() - length, high = muscleTendonLength + muscle.thickness();
+  double low = std::max(2 * muscle.thickness() - length, muscle.shortestFibre());
+  double high = muscleTendonLength + muscle.thickness();
   double next = length;
   SchuttePieces pieces{};
   for (int i = 0; i < 200 && std::isfinite(next); ++i) {
     const FibreRateDerivatives rate = muscle.rateNear(
-        activation, (length + next) / 2, muscleTendonLength, (next - length) / h, pieces);
+        activation, (length + next) / 2, muscleTendonLength, (next - length) / h, h, pieces);
     const double residual = (next - length) / h - rate.fibreVelocity;
     (residual > 0 ? high : low) = next;
     double better = next - residual / (1 / h - rate.dV_dFibreLength / 2);

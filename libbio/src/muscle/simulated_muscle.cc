@@ -25,6 +25,7 @@ StaticEquilibrium::Why whyOf(muscles::FibreRest::Why why) {
   using From = muscles::FibreRest::Why;
   switch (why) {
     case From::found:
+    case From::held:
       return StaticEquilibrium::Why::found;
     case From::forceFree:
       return StaticEquilibrium::Why::forceFree;
@@ -36,10 +37,11 @@ StaticEquilibrium::Why whyOf(muscles::FibreRest::Why why) {
   return StaticEquilibrium::Why::notBracketed;
 }
 
-muscles::FibreRest asFibreRest(const StaticEquilibrium& rest) {
+muscles::FibreRest asFibreRest(const StaticEquilibrium& rest, bool isHeld) {
   using Why = muscles::FibreRest::Why;
   const bool found = rest.why == StaticEquilibrium::Why::found;
-  return {found ? Why::found : Why::forceFree, rest.fibreLength, rest.tendonForce, rest.count};
+  return {isHeld ? Why::held : found ? Why::found : Why::forceFree, rest.fibreLength,
+          rest.tendonForce, rest.count};
 }
 
 template <class Muscle>
@@ -61,22 +63,44 @@ double SimulatedMuscle::thickness() const {
   return std::visit([](const auto& muscle) -> double { return muscle.thickness(); }, *other_);
 }
 
-FibreRateDerivatives SimulatedMuscle::otherRate(double activation, double fibreLength,
-                                                double pathLength) const {
+double SimulatedMuscle::shortestFibre() const {
+  if (!other_) return 0;
   return std::visit(
-      [&](const auto& muscle) {
-        return asDerivatives(muscle.fibreRate(activation, fibreLength, pathLength));
+      []<class Shape>(const muscles::HillMuscle<Shape>& muscle) -> double {
+        return muscle.hasFibreState() && muscles::holdsFibre<Shape> ? muscle.shortestFibre() : 0;
       },
       *other_);
 }
 
+FibreRateDerivatives SimulatedMuscle::otherRate(double activation, double fibreLength,
+                                                double pathLength) const {
+  const double shortest = mayBeHeld(fibreLength) ? shortestFibre() : 0;
+  FibreRateDerivatives r = std::visit(
+      [&](const auto& muscle) {
+        return asDerivatives(
+            muscle.fibreRate(activation, std::max(fibreLength, shortest), pathLength));
+      },
+      *other_);
+  if (!(fibreLength <= shortest)) return r;
+  if (fibreLength < shortest) r.dV_dFibreLength = r.dF_dFibreLength = 0;
+  if (r.fibreVelocity <= 0) {
+    r.fibreVelocity = r.dV_dActivation = r.dV_dFibreLength = r.dV_dMuscleTendonLength = 0;
+  }
+  return r;
+}
+
 FibreRateDerivatives SimulatedMuscle::otherRateNear(double activation, double fibreLength,
-                                                    double pathLength, double fibreVelocity) const {
-  return std::visit(
+                                                    double pathLength, double fibreVelocity,
+                                                    double h) const {
+  // an iterate may be shorter than what is allowed, and even than the muscle's thickness
+  const double shortest =
+      mayBeHeld(std::min(fibreLength, fibreLength + h / 2 * fibreVelocity)) ? shortestFibre() : 0;
+  const double length = std::max(fibreLength, shortest * (1 - 1e-9));
+  FibreRateDerivatives near = std::visit(
       [&](const auto& muscle) -> FibreRateDerivatives {
         if constexpr (stepsByBalance<decltype(muscle)>) {
           const muscles::FibreBalance<double> b =
-              muscle.fibreBalance(activation, fibreLength, pathLength, fibreVelocity);
+              muscle.fibreBalance(activation, length, pathLength, fibreVelocity);
           const double per = -1 / b.dR_dFibreVelocity;
           return {fibreVelocity + b.residual * per,
                   b.tendonForce,
@@ -86,10 +110,17 @@ FibreRateDerivatives SimulatedMuscle::otherRateNear(double activation, double fi
                   b.dF_dFibreLength,
                   b.dF_dPathLength};
         } else {
-          return asDerivatives(muscle.fibreRate(activation, fibreLength, pathLength));
+          return asDerivatives(muscle.fibreRate(activation, length, pathLength));
         }
       },
       *other_);
+  if (length > fibreLength) near.dV_dFibreLength = near.dF_dFibreLength = 0;
+  const double toShortest = (shortest - fibreLength) / h + fibreVelocity / 2;
+  if (shortest > 0 && near.fibreVelocity <= toShortest) {
+    near.fibreVelocity = toShortest;
+    near.dV_dActivation = near.dV_dFibreLength = near.dV_dMuscleTendonLength = 0;
+  }
+  return near;
 }
 
 muscles::RigidRate<double> SimulatedMuscle::rigidRate(double activation, double pathLength,
@@ -130,7 +161,8 @@ SimulatedMuscle::RestSlopes SimulatedMuscle::restSlopes(double activation, doubl
   }
   return std::visit(
       [&](const auto& muscle) -> RestSlopes {
-        const auto d = muscles::restDerivatives(muscle, activation, pathLength, asFibreRest(rest));
+        const auto d = muscles::restDerivatives(muscle, activation, pathLength,
+                                                asFibreRest(rest, isHeld(rest.fibreLength)));
         return {d.dl_dActivation, d.dl_dPathLength, padded(d.dl_dNumber)};
       },
       *other_);
@@ -157,6 +189,18 @@ SimulatedMuscle::InNumbers SimulatedMuscle::inNumbers(double activation, double 
           const auto d =
               muscles::fibreRateInNumbers(muscle, activation, fibreLength, pathLength);
           return {padded(d.equation), padded(d.tendonForce)};
+        }
+      },
+      *other_);
+}
+
+PerMuscleNumber SimulatedMuscle::shortestInNumbers() const {
+  return std::visit(
+      []<class Shape>(const muscles::HillMuscle<Shape>& muscle) -> PerMuscleNumber {
+        if constexpr (muscles::holdsFibre<Shape>) {
+          return padded(muscles::shortestFibreInNumbers(muscle));
+        } else {
+          return {};
         }
       },
       *other_);

@@ -23,7 +23,7 @@ struct HillPrior {
 template <class Parameters>
 HillPrior hillPrior(const Parameters& p, std::size_t i) {
   const auto& property = Parameters::properties[i];
-  // of the switched: where the fibre is held is not simulated; a rigid tendon has no curve, and
+  // the largest pennation is a limit of the law and no measured number; a rigid tendon has no curve, and
   // activation that is the excitation no time constants
   const std::string_view name = property.name;
   const bool isTime = name.ends_with("activation_time_constant") ||

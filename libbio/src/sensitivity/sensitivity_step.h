@@ -114,8 +114,9 @@ class SensitivityStep {
       const double l_m = (l0[sm] + l1[sm]) / 2;
       const double l_v = (l1[sm] - l0[sm]) / h;
       const FibreRateDerivatives r =
-          muscle.rateNear(activation[sm], l_m, path.length, l_v, pieces_[m]);
-      const double perJ = 1 / (1 / h - r.dV_dFibreLength / 2);
+          muscle.rateNear(activation[sm], l_m, path.length, l_v, h, pieces_[m]);
+      const bool isHeld = muscle.isHeld(l1[sm]);
+      const double perJ = isHeld ? 0 : 1 / (1 / h - r.dV_dFibreLength / 2);
       auto trial = trialFibre_.row(sm);
       const double half = r.dV_dMuscleTendonLength / 2 * perJ;
       trial = ((1 / h + r.dV_dFibreLength / 2) * perJ) * state.fibre.row(sm) +
@@ -124,6 +125,7 @@ class SensitivityStep {
       state.activation.add(r.dV_dActivation * perJ, state.activation.middle(), sm, trial);
       if (timeMoves) trial += ((l1[sm] - l0[sm]) / (h * h) * perJ) * row_;
       addMuscleParameters(m, q_m, activation[sm], l_m, l_v, path, r, perJ, trial);
+      if (isHeld) addShortest(m, trial);
 
       f -= r.tendonForce * path.dL_dq;
       f_q.noalias() -= (r.dF_dMuscleTendonLength * path.dL_dq) * path.dL_dq.transpose();
@@ -188,8 +190,8 @@ class SensitivityStep {
   /// ∂r/∂θ of one muscle: into its fibre's row and into the force on the skeleton.
   template <class Row>
   void addMuscleParameters(std::size_t m, const Vector& q, double activation, double l_m,
-                           double l_v, const LengthJet<N>& path, const FibreRateDerivatives& r, double perJ,
-                           Row& trial) {
+                           double l_v, const LengthJet<N>& path, const FibreRateDerivatives& r,
+                           double perJ, Row& trial) {
     through_[m] = r.dV_dMuscleTendonLength / 2 * perJ;
     const auto& effects = direct_.effects().muscles[m];
     if (!effects.fibre.empty()) {
@@ -208,6 +210,17 @@ class SensitivityStep {
                              r.tendonForce * gradient[1 + k]);
       }
     });
+  }
+
+  /// ∂ℓ′/∂θ of a fibre that is held.
+  template <class Row>
+  void addShortest(std::size_t m, Row& trial) {
+    const auto& effects = direct_.effects().muscles[m];
+    if (effects.fibre.empty()) return;
+    const PerMuscleNumber d = arm_.muscles()[m].muscle.shortestInNumbers();
+    for (const QuantityEffect& effect : effects.fibre) {
+      trial[effect.column] += effect.factor * d[effect.quantity];
+    }
   }
 
   /// The force of a muscle with a rigid tendon, which has no fibre to carry on, with what it adds

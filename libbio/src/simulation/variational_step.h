@@ -101,7 +101,8 @@ class VariationalStepper {
           continue;
         }
         rate_[i] = muscle.rateNear(activation[si], l_m, path.length,
-                                   (end.fibreLength[si] - begin.fibreLength[si]) / h, pieces_[i]);
+                                   (end.fibreLength[si] - begin.fibreLength[si]) / h, h,
+                                   pieces_[i]);
         const FibreRateDerivatives& r = rate_[i];
         muscle_ -= r.tendonForce * path.dL_dq;
         dTau.noalias() -= (r.dF_dMuscleTendonLength / 2 * path.dL_dq) * path.dL_dq.transpose();

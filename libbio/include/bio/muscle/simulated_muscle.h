@@ -37,6 +37,13 @@ class SimulatedMuscle {
   double thickness() const;                                ///< w [m]
   bool hasFibreState() const { return hasFibreState_; }    ///< false: rigid tendon
 
+  /// Length at which the class holds a fibre with an elastic tendon [m]: there it shortens no
+  /// further, ℓ̇ = max(V, 0), and what pulls on it shortens the tendon. 0: never.
+  double shortestFibre() const;
+  bool isHeld(double fibreLength) const {
+    return mayBeHeld(fibreLength) && fibreLength <= shortestFibre() * (1 + 1e-9);
+  }
+
   /// V(a, ℓ, L) and F_T of an elastic muscle with first derivatives.
   FibreRateDerivatives rate(double activation, double fibreLength, double pathLength,
                             SchuttePieces& last) const {
@@ -45,15 +52,18 @@ class SimulatedMuscle {
     }
     return otherRate(activation, fibreLength, pathLength);
   }
-  /// The same for an implicit step that has the fibre move with a velocity v. For a class whose
-  /// step solves the balance of forces R(a, ℓ, L, v) = 0 it is the velocity to which Newton's
-  /// method moves v, v − R/R_v, with derivatives −R_x/R_v: exact where R = 0.
+  /// The same for an implicit midpoint step of h [s] that has the fibre move with a velocity v
+  /// from ℓ − h v/2 to ℓ + h v/2. For a class whose step solves the balance of forces
+  /// R(a, ℓ, L, v) = 0 it is the velocity to which Newton's method moves v, v − R/R_v, with
+  /// derivatives −R_x/R_v: exact where R = 0. Where a fibre is held it is the velocity that takes
+  /// it to shortestFibre(), with derivatives 0, if v − V is more than that equation's error: the
+  /// lesser of the two errors vanishes in the end.
   FibreRateDerivatives rateNear(double activation, double fibreLength, double pathLength,
-                                double fibreVelocity, SchuttePieces& last) const {
+                                double fibreVelocity, double h, SchuttePieces& last) const {
     if (schutte_) {
       return fibreRateDerivatives(*schutte_, activation, fibreLength, pathLength, last);
     }
-    return otherRateNear(activation, fibreLength, pathLength, fibreVelocity);
+    return otherRateNear(activation, fibreLength, pathLength, fibreVelocity, h);
   }
   /// F(a, L, L̇) of a muscle with a rigid tendon.
   muscles::RigidRate<double> rigidRate(double activation, double pathLength,
@@ -79,12 +89,16 @@ class SimulatedMuscle {
   };
   InNumbers inNumbers(double activation, double fibreLength, double pathLength,
                       double fibreVelocity) const;
+  /// Of shortestFibre() [m per unit].
+  PerMuscleNumber shortestInNumbers() const;
   PerMuscleNumber rigidInNumbers(double activation, double pathLength, double pathSpeed) const;
 
  private:
   FibreRateDerivatives otherRate(double activation, double fibreLength, double pathLength) const;
   FibreRateDerivatives otherRateNear(double activation, double fibreLength, double pathLength,
-                                     double fibreVelocity) const;
+                                     double fibreVelocity, double h) const;
+  /// No class holds a fibre at its optimal length or beyond.
+  bool mayBeHeld(double fibreLength) const { return other_ && !(fibreLength * perFibre_ >= 1); }
 
   std::optional<SchutteMuscle<double>> schutte_;
   const muscles::AnyMuscle* other_ = nullptr;
