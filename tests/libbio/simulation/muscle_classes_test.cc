@@ -81,8 +81,8 @@ TEST(MuscleClasses, SensitivitiesMatchDifferencesForEveryNumberOfAMuscle) {
   for (const char* name : classes) {
     SCOPED_TRACE(name);
     const ElbowOfClass elbow(name);
-    auto names = std::vector<std::string>{"BIClong.*", "TRIlong.*", "TRI.radius", "hand.mass",
-                                          "initial.*"};
+    const std::vector<std::string> names{"BIClong.*",  "TRIlong.*", "ANC.*",
+                                         "TRI.radius", "hand.mass", "initial.*"};
     const DiscoveryProblem d = fixtures::compareWithDifferences(
         elbow.arm, ShippedElbow::options(), elbow.excitation, elbow.catalogue,
         elbow.catalogue.select(names), forSeconds(0.2));
@@ -115,6 +115,13 @@ TEST(MuscleClasses, EveryNumberIsWrittenAndReadBack) {
       EXPECT_EQ(again.muscles[i].hill, calibrated.muscles[i].hill) << again.muscles[i].name;
     }
     EXPECT_NE(again.muscles, elbow.model.muscles);
+  }
+}
+
+TEST(MuscleClasses, TheShippedVariantsAreTheShippedElbowConverted) {
+  for (const char* name : {"Thelen2003", "Millard2012", "DeGrooteFregly2016"}) {
+    const Model shipped = readOsim(ShippedElbow::root() + "/models/elbow8_" + name + ".osim");
+    EXPECT_EQ(shipped.muscles, ElbowOfClass::converted(name).muscles) << name;
   }
 }
 
