@@ -32,9 +32,7 @@ constexpr std::array<SameNumber, 2> sameNumbers{{
 /// The number of that name or of one that means the same; null if the class has none.
 template <class Parameters>
 double* numberNamed(Parameters& p, std::string_view name) {
-  const auto place = [&](std::string_view given) {
-    return muscles::placeOf<Parameters>(given);
-  };
+  const auto place = [&](std::string_view given) { return muscles::placeOf<Parameters>(given); };
   std::size_t i = place(name);
   for (const SameNumber& names : sameNumbers) {
     bool isOne = false;
@@ -77,8 +75,8 @@ class Converter {
 
   void convert(Muscle& muscle) {
     muscles::MuscleSwitches switches;
-    const Numbers numbers = muscle.schutte ? ofSchutte(*muscle.schutte, switches)
-                                           : ofHill(*muscle.hill, switches);
+    const Numbers numbers =
+        muscle.schutte ? ofSchutte(*muscle.schutte, switches) : ofHill(*muscle.hill, switches);
     muscle.schutte.reset();
     muscle.hill.reset();
     muscle.className = target_;

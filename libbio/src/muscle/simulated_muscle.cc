@@ -40,8 +40,10 @@ StaticEquilibrium::Why whyOf(muscles::FibreRest::Why why) {
 muscles::FibreRest asFibreRest(const StaticEquilibrium& rest, bool isHeld) {
   using Why = muscles::FibreRest::Why;
   const bool found = rest.why == StaticEquilibrium::Why::found;
-  return {isHeld ? Why::held : found ? Why::found : Why::forceFree, rest.fibreLength,
-          rest.tendonForce, rest.count};
+  return {isHeld  ? Why::held
+          : found ? Why::found
+                  : Why::forceFree,
+          rest.fibreLength, rest.tendonForce, rest.count};
 }
 
 template <class Muscle>
@@ -186,8 +188,7 @@ SimulatedMuscle::InNumbers SimulatedMuscle::inNumbers(double activation, double 
                                                         fibreVelocity);
           return {padded(d.equation, per), padded(d.tendonForce)};
         } else {
-          const auto d =
-              muscles::fibreRateInNumbers(muscle, activation, fibreLength, pathLength);
+          const auto d = muscles::fibreRateInNumbers(muscle, activation, fibreLength, pathLength);
           return {padded(d.equation), padded(d.tendonForce)};
         }
       },

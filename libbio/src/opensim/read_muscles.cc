@@ -128,10 +128,8 @@ muscles::AnyParameters readHill(const Source& source, const Element& element) {
             readFlag(source, element, "ignore_tendon_compliance", p.ignoreTendonCompliance);
         p.ignoreActivationDynamics =
             readFlag(source, element, "ignore_activation_dynamics", p.ignoreActivationDynamics);
-        p.minControl =
-            readNumber(source, element, "min_control", "", Rule::finite, p.minControl);
-        p.maxControl =
-            readNumber(source, element, "max_control", "", Rule::finite, p.maxControl);
+        p.minControl = readNumber(source, element, "min_control", "", Rule::finite, p.minControl);
+        p.maxControl = readNumber(source, element, "max_control", "", Rule::finite, p.maxControl);
         readOptional(source, element, p);
         for (std::size_t i = 0; i < Parameters::count; ++i) {
           if (!p.isGiven(i)) continue;

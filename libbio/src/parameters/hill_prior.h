@@ -23,13 +23,13 @@ struct HillPrior {
 template <class Parameters>
 HillPrior hillPrior(const Parameters& p, std::size_t i) {
   const auto& property = Parameters::properties[i];
-  // the largest pennation is a limit of the law and no measured number; a rigid tendon has no curve, and
-  // activation that is the excitation no time constants
+  // the largest pennation is a limit of the law and no measured number; a rigid tendon has no
+  // curve, and activation that is the excitation no time constants
   const std::string_view name = property.name;
-  const bool isTime = name.ends_with("activation_time_constant") ||
-                      name == "activation_dynamics_smoothing";
-  const bool isTendon = name.starts_with("TendonForceLengthCurve/") ||
-                        name == "tendon_strain_at_one_norm_force";
+  const bool isTime =
+      name.ends_with("activation_time_constant") || name == "activation_dynamics_smoothing";
+  const bool isTendon =
+      name.starts_with("TendonForceLengthCurve/") || name == "tendon_strain_at_one_norm_force";
   if (!p.isGiven(i) || name == "maximum_pennation_angle" ||
       (p.ignoreTendonCompliance && isTendon) || (p.ignoreActivationDynamics && isTime)) {
     return {false, 0, 0, 0};

@@ -323,11 +323,11 @@ class Collector {
   void addGroup(const char* name, const std::string& quantity, const char* meaning) {
     ModelParameter group;
     for (const ModelParameter& parameter : parameters_) {
-      const bool isMember = !parameter.isGroup && parameter.name.ends_with("." + quantity) &&
-                            (std::holds_alternative<MuscleTarget>(parameter.targets.front()) ||
-                             std::holds_alternative<MuscleNumberTarget>(
-                                 parameter.targets.front()) ||
-                             std::holds_alternative<EmgTarget>(parameter.targets.front()));
+      const bool isMember =
+          !parameter.isGroup && parameter.name.ends_with("." + quantity) &&
+          (std::holds_alternative<MuscleTarget>(parameter.targets.front()) ||
+           std::holds_alternative<MuscleNumberTarget>(parameter.targets.front()) ||
+           std::holds_alternative<EmgTarget>(parameter.targets.front()));
       if (!isMember) continue;
       if (group.targets.empty()) {
         group = parameter;

@@ -50,8 +50,8 @@ ParameterEffects::ParameterEffects(const MusculoskeletalSystem& arm,
       if (i == arm.numMuscles()) return;
       OfMuscle& muscle = effects.muscles[i];
       muscle.fibre.push_back({target.place, column, weight});
-      const std::string_view name = std::visit(
-          [&](const auto& p) { return p.properties[target.place].name; }, *given.hill);
+      const std::string_view name =
+          std::visit([&](const auto& p) { return p.properties[target.place].name; }, *given.hill);
       const auto own = arm.muscles()[i].activation.names();
       for (std::size_t k = 0; k < own.size(); ++k) {
         if (own[k] == name) muscle.activation.push_back({k, column, weight});

@@ -123,8 +123,7 @@ class SensitivityRecorder {
     const muscles::RigidRate<double> r = muscle.rigidRate(activation, path.length, speed);
     const PerMuscleNumber d = muscle.rigidInNumbers(activation, path.length, speed);
     const SimulatedMuscle::RestSlopes l = muscle.restSlopes(
-        activation, path.length,
-        {StaticEquilibrium::Why::found, r.fibreLength, r.tendonForce, 1});
+        activation, path.length, {StaticEquilibrium::Why::found, r.fibreLength, r.tendonForce, 1});
     state.activation.record(si, result_.activation[i].row(row_));
     const RowVector length = path.dL_dq.transpose() * state.dq;
     auto fibre = result_.fibreLength[i].row(row_);

@@ -226,8 +226,7 @@ class SensitivityStep {
   /// The force of a muscle with a rigid tendon, which has no fibre to carry on, with what it adds
   /// to the derivatives over the middle configuration and the speed, and to df/dθ.
   void addRigid(std::size_t m, const Vector& q, const Vector& v, double activation,
-                const LengthJet<N>& path, const State& state, Vector& f, Matrix& f_q,
-                Matrix& f_v) {
+                const LengthJet<N>& path, const State& state, Vector& f, Matrix& f_q, Matrix& f_v) {
     through_[m] = 0;
     const auto sm = static_cast<Index>(m);
     trialFibre_.row(sm).setZero();

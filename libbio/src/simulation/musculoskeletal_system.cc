@@ -86,9 +86,10 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
       continue;
     }
     if (!muscle.canBeSimulated()) {
-      throw std::invalid_argument(fmt::format("muscle '{}' is a {}; the classes that can be "
-                                              "simulated are {}",
-                                              muscle.name, muscle.className, simulatedClasses()));
+      throw std::invalid_argument(
+          fmt::format("muscle '{}' is a {}; the classes that can be "
+                      "simulated are {}",
+                      muscle.name, muscle.className, simulatedClasses()));
     }
     if (options.tabulatePaths && !like) path.tabulate(skeleton_);
     for (const std::string& note : path.notes()) notes_.push_back(note);
@@ -103,15 +104,15 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
       if (muscle.schutte) {
         const SchutteParameters& s = *muscle.schutte;
         curves_.push_back(std::make_unique<const SchutteCurves>(s));
-        muscles_.push_back(
-            {muscle.name,
-             SimulatedMuscle(
-                 SchutteMuscle<double>(schutteQuantities(s), *curves_.back(), options.muscle)),
-             ActivationDynamics(
-                 SchutteActivation<double>{s.timeScale, s.activation1, s.activation2}),
-             std::move(path)});
+        muscles_.push_back({muscle.name,
+                            SimulatedMuscle(SchutteMuscle<double>(schutteQuantities(s),
+                                                                  *curves_.back(), options.muscle)),
+                            ActivationDynamics(SchutteActivation<double>{s.timeScale, s.activation1,
+                                                                         s.activation2}),
+                            std::move(path)});
       } else {
-        others_.push_back(std::make_unique<const muscles::AnyMuscle>(muscles::compile(*muscle.hill)));
+        others_.push_back(
+            std::make_unique<const muscles::AnyMuscle>(muscles::compile(*muscle.hill)));
         muscles_.push_back({muscle.name, SimulatedMuscle(*others_.back()),
                             ActivationDynamics(muscles::activationOf(*muscle.hill)),
                             std::move(path)});

@@ -42,8 +42,7 @@ SystemState initialState(const MusculoskeletalSystem& arm, const Eigen::VectorXd
             fmt::format("muscle '{}': muscle–tendon length at the start = {} m, must be finite",
                         arm.muscles()[i].name, length));
       }
-      const StaticEquilibrium rest =
-          arm.muscles()[i].muscle.rest(state.activation[si], length);
+      const StaticEquilibrium rest = arm.muscles()[i].muscle.rest(state.activation[si], length);
       if (!rest.isUsable()) {
         throw NoStaticEquilibrium(fmt::format(
             "muscle '{}': no static equilibrium at the start with length {:.6g} m and activation "

@@ -141,8 +141,8 @@ class SystemDynamics {
       const LengthJet<N>& path = configuration_.length(si);
       const double activation = muscle.activation.acting(u_[i], y[2 * N + i]);
       if (muscle.muscle.hasFibreState()) {
-        rate_[si] = muscle.muscle.rate(activation, y[2 * N + numMuscles_ + i], path.length,
-                                       pieces_[si]);
+        rate_[si] =
+            muscle.muscle.rate(activation, y[2 * N + numMuscles_ + i], path.length, pieces_[si]);
       } else {
         rigid_[si] = muscle.muscle.rigidRate(activation, path.length, path.dL_dq.dot(qDot_));
         rate_[si] = {};

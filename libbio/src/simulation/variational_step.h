@@ -100,9 +100,9 @@ class VariationalStepper {
           addRigid(i, activation[si], path, v, h, dTau);
           continue;
         }
-        rate_[i] = muscle.rateNear(activation[si], l_m, path.length,
-                                   (end.fibreLength[si] - begin.fibreLength[si]) / h, h,
-                                   pieces_[i]);
+        rate_[i] =
+            muscle.rateNear(activation[si], l_m, path.length,
+                            (end.fibreLength[si] - begin.fibreLength[si]) / h, h, pieces_[i]);
         const FibreRateDerivatives& r = rate_[i];
         muscle_ -= r.tendonForce * path.dL_dq;
         dTau.noalias() -= (r.dF_dMuscleTendonLength / 2 * path.dL_dq) * path.dL_dq.transpose();
@@ -198,8 +198,7 @@ class VariationalStepper {
         arm_.muscles()[i].muscle.rigidRate(activation, path.length, path.dL_dq.dot(v));
     muscle_ -= r.tendonForce * path.dL_dq;
     const Vector F_q = r.dF_dPathLength * path.dL_dq + r.dF_dPathSpeed * (path.d2L_dq2 * v);
-    dTau.noalias() -=
-        path.dL_dq * (F_q / 2 + r.dF_dPathSpeed / h * path.dL_dq).transpose();
+    dTau.noalias() -= path.dL_dq * (F_q / 2 + r.dF_dPathSpeed / h * path.dL_dq).transpose();
     dTau -= r.tendonForce / 2 * path.d2L_dq2;
     rate_[i] = {};
     rate_[i].tendonForce = r.tendonForce;

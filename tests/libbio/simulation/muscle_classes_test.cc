@@ -54,7 +54,9 @@ struct ElbowOfClass {
   ParameterCatalogue catalogue;
 };
 
-double lastAngle(const Trajectory& motion) { return motion.q(0, motion.q.cols() - 1); }
+double lastAngle(const Trajectory& motion) {
+  return motion.q(0, motion.q.cols() - 1);
+}
 
 TEST(MuscleClasses, AllIntegratorsGoToOneMotion) {
   for (const char* name : classes) {

@@ -9,8 +9,8 @@ namespace bio {
 
 /// What became of a model's muscles.
 struct MuscleConversion {
-  std::size_t converted = 0;       ///< muscles of another class before
-  std::vector<std::string> lost;   ///< one line per number or kind of number that is not carried
+  std::size_t converted = 0;      ///< muscles of another class before
+  std::vector<std::string> lost;  ///< one line per number or kind of number that is not carried
 };
 
 /// Makes every muscle that can be simulated one of the named class: Thelen2003, Millard2012,

@@ -56,7 +56,8 @@ struct DeGrooteFregly2016Parameters : HillParameters<T>, MuscleSwitches {
   constexpr bool isGiven(std::size_t) const { return true; }
   /// The activation dynamics that numbers and switches mean.
   AnyActivation activation() const;
-  friend bool operator==(const DeGrooteFregly2016Parameters&, const DeGrooteFregly2016Parameters&) = default;
+  friend bool operator==(const DeGrooteFregly2016Parameters&,
+                         const DeGrooteFregly2016Parameters&) = default;
 };
 
 namespace degroote {

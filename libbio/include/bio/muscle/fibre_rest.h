@@ -24,9 +24,7 @@ struct FibreRest {
   double fibreLength;  ///< ℓ [m]; NaN unless usable
   double tendonForce;  ///< F_T [N]; NaN unless usable
   int count;           ///< stable rests seen; above 1 the one nearest ℓ0 is given
-  bool isUsable() const {
-    return why == Why::found || why == Why::forceFree || why == Why::held;
-  }
+  bool isUsable() const { return why == Why::found || why == Why::forceFree || why == Why::held; }
 };
 
 /// One line for people.

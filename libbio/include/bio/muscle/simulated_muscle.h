@@ -33,9 +33,9 @@ class SimulatedMuscle {
   /// @throws std::bad_optional_access for other classes
   const SchutteMuscle<double>& schutte() const { return schutte_.value(); }
 
-  double perFibre() const { return perFibre_; }            ///< 1/ℓ0 [1/m]
-  double thickness() const;                                ///< w [m]
-  bool hasFibreState() const { return hasFibreState_; }    ///< false: rigid tendon
+  double perFibre() const { return perFibre_; }          ///< 1/ℓ0 [1/m]
+  double thickness() const;                              ///< w [m]
+  bool hasFibreState() const { return hasFibreState_; }  ///< false: rigid tendon
 
   /// Length at which the class holds a fibre with an elastic tendon [m]: there it shortens no
   /// further, ℓ̇ = max(V, 0), and what pulls on it shortens the tendon. 0: never.

@@ -73,10 +73,9 @@ struct InitialTarget {
   bool isSpeed;
   friend bool operator==(const InitialTarget&, const InitialTarget&) = default;
 };
-using ParameterTarget =
-    std::variant<MuscleTarget, PointTarget, WrapTarget, BodyTarget, LimitForceTarget,
-                 SpringForceTarget, ExpressionTarget, GravityTarget, EmgTarget, InitialTarget,
-                 MuscleNumberTarget>;
+using ParameterTarget = std::variant<MuscleTarget, PointTarget, WrapTarget, BodyTarget,
+                                     LimitForceTarget, SpringForceTarget, ExpressionTarget,
+                                     GravityTarget, EmgTarget, InitialTarget, MuscleNumberTarget>;
 
 /// A parameter of the model, of the relation between EMG and excitation, or of the initial state,
 /// with its name.

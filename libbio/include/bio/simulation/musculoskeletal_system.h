@@ -36,8 +36,8 @@ struct SystemMuscle {
 class MusculoskeletalSystem {
  public:
   /// @throws std::invalid_argument what Skeleton and MusclePath throw, non-physical muscle
-  ///   parameters, a moving muscle of a class that is not known, free coordinates that move no mass,
-  ///   a moving body with a negative principal moment of inertia
+  ///   parameters, a moving muscle of a class that is not known, free coordinates that move no
+  ///   mass, a moving body with a negative principal moment of inertia
   MusculoskeletalSystem(const Model& model, const SystemOptions& options);
 
   /// The same, but faster, for a model that differs from that of another arm in numerical values
