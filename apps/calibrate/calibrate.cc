@@ -210,8 +210,10 @@ class Calibrate : public Command {
 
   /// What is positive by its nature: numbers of a muscle, masses, radii. A position is not.
   static bool cannotBeNegative(const bio::ModelParameter& one) {
-    return one.lower >= 0 && (std::holds_alternative<bio::MuscleTarget>(one.targets.front()) ||
-                              one.unit == "kg" || one.name.ends_with(".radius"));
+    return one.lower >= 0 &&
+           (std::holds_alternative<bio::MuscleTarget>(one.targets.front()) ||
+            std::holds_alternative<bio::MuscleNumberTarget>(one.targets.front()) ||
+            one.unit == "kg" || one.name.ends_with(".radius"));
   }
 
   static void boundsMustBePossible(const bio::TrialSet& training,

@@ -20,13 +20,15 @@ double rootMeanSquare(const VectorXd& values) {
 
 // The length of a fibre after a step of the implicit midpoint rule, by Newton's method within a
 // bracket, since the velocity has kinks; NaN where there is none.
-double steppedFibre(const SchutteMuscle<double>& muscle, double activation, double length,
+double steppedFibre(const SimulatedMuscle& muscle, double activation, double length,
                     double muscleTendonLength, double h) {
-  double low = 2 * muscle.thickness() - length, high = muscleTendonLength + muscle.thickness();
+  double low = std::max(2 * muscle.thickness() - length, muscle.shortestFibre());
+  double high = muscleTendonLength + muscle.thickness();
   double next = length;
+  SchuttePieces pieces{};
   for (int i = 0; i < 200 && std::isfinite(next); ++i) {
-    const FibreRateDerivatives rate =
-        fibreRateDerivatives(muscle, activation, (length + next) / 2, muscleTendonLength);
+    const FibreRateDerivatives rate = muscle.rateNear(
+        activation, (length + next) / 2, muscleTendonLength, (next - length) / h, h, pieces);
     const double residual = (next - length) / h - rate.fibreVelocity;
     (residual > 0 ? high : low) = next;
     double better = next - residual / (1 / h - rate.dV_dFibreLength / 2);
@@ -45,6 +47,8 @@ VectorXd muscleMoments(const MusculoskeletalSystem& arm, const Trajectory& motio
   Trajectory along;
   along.time = motion.time;
   along.q = motion.q;
+  along.qDot = motion.qDot;
+  along.activation = activation;
   along.fibreLength = MatrixXd::Constant(n, rows, EffectSize::unknown);
   SystemConfiguration<1> bodies(arm);
   using Vector = SystemConfiguration<1>::Vector;
@@ -52,7 +56,7 @@ VectorXd muscleMoments(const MusculoskeletalSystem& arm, const Trajectory& motio
   for (Index i = 0; i < n; ++i) {
     const auto m = static_cast<std::size_t>(i);
     const StaticEquilibrium rest =
-        staticEquilibrium(arm.muscles()[m].muscle, activation(i, 0), bodies.length(m).length);
+        arm.muscles()[m].muscle.rest(activation(i, 0), bodies.length(m).length);
     if (rest.isUsable()) along.fibreLength(i, 0) = rest.fibreLength;
   }
   for (Index k = 0; k + 1 < rows; ++k) {
@@ -60,6 +64,7 @@ VectorXd muscleMoments(const MusculoskeletalSystem& arm, const Trajectory& motio
     bodies.moveTo(Vector((motion.q(0, k) + motion.q(0, k + 1)) / 2));
     for (Index i = 0; i < n; ++i) {
       const auto m = static_cast<std::size_t>(i);
+      if (!arm.muscles()[m].muscle.hasFibreState()) continue;  // its force follows the path
       along.fibreLength(i, k + 1) = steppedFibre(
           arm.muscles()[m].muscle, (activation(i, k) + activation(i, k + 1)) / 2,
           along.fibreLength(i, k), bodies.length(m).length, motion.time[at + 1] - motion.time[at]);

@@ -192,8 +192,7 @@ double MusculoskeletalProblem::activationLag() const {
     for (const double t : times) {
       one.excitation.at(t, hint, u);
       for (Index i = 0; i < u.size(); ++i) {
-        const auto& law = encompassing_.arm().muscles()[static_cast<std::size_t>(i)].activation;
-        sum += 2 / (law.rateConstant(u[i], true) + law.rateConstant(u[i], false));
+        sum += encompassing_.arm().muscles()[static_cast<std::size_t>(i)].activation.lag(u[i]);
         ++count;
       }
     }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace bio {
@@ -42,6 +43,15 @@ const WrapObject& findWrapObject(const Model& model, const std::string& name) {
 
 const Muscle& findMuscle(const Model& model, const std::string& name) {
   return findByName(model.muscles, name, "muscle");
+}
+
+std::string simulatedClasses() {
+  std::string list = "Schutte1993Muscle_Deprecated";
+  for (const std::string_view name : muscles::MuscleClasses::names) {
+    list += ", ";
+    list += name;
+  }
+  return list;
 }
 
 }  // namespace bio

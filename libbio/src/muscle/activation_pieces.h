@@ -70,6 +70,14 @@ double firstZero(const F& f, double end) {
   return bracketedRoot(f, 0.0, first, end, last, 1e-15 * end);
 }
 
+/// A root that was found in plain numbers, after one step of Newton's method in the number type; as
+/// it is where rounding alone makes that step long.
+template <class T>
+T polished(double root, const T& step, double whole) {
+  if (!(std::abs(plainValue(step)) < 1e-6 * whole)) return T(root);
+  return root - step;
+}
+
 template <class T>
 Piece<T> rise(const FirstOrderActivation<T>& law, const T& u, const T& slope, const T& a,
               const T& rest) {
@@ -100,7 +108,7 @@ Piece<T> rise(const FirstOrderActivation<T>& law, const T& u, const T& slope, co
     }
     if (crossing < reach) {
       const double bend = plainValue(mu) * plainValue(at.slope) * 1.5;  // of z′ at e = 0
-      const T sigma = crossing - at.curvature / bend;
+      const T sigma = polished(crossing, T(at.curvature / bend), reach);
       const T time = (passed + series.at(sigma).value) * law.activationTime;
       return {T(u + slope * time), time, Ended::crossing};
     }
@@ -152,7 +160,9 @@ Piece<T> fall(const FirstOrderActivation<T>& law, const T& u0, const T& slope, c
     };
     const T end = after(stretch);
     const double least = plainValue(law.minimum);
-    const bool crosses = plainValue(u) + plainValue(slope) * whole > plainValue(end);
+    // u below a and not rising stays below; rounding may say otherwise
+    const bool crosses =
+        plainValue(slope) > 0 && plainValue(u) + plainValue(slope) * whole > plainValue(end);
     const double crossing = crosses ? firstZero(above, whole) : whole;
     if (plainAfter(crossing) < least) {
       const double t = firstZero([&](double time) { return plainAfter(time) - least; }, crossing);
@@ -163,7 +173,8 @@ Piece<T> fall(const FirstOrderActivation<T>& law, const T& u0, const T& slope, c
     }
     if (crosses) {
       // ȧ = 0 there, so that u − a changes as u does
-      const T time = crossing - (u + slope * crossing - after(T(crossing))) / plainValue(slope);
+      const T lag = u + slope * crossing - after(T(crossing));
+      const T time = polished(crossing, T(lag / plainValue(slope)), whole);
       return {T(u + slope * time), T(passed + time), Ended::crossing};
     }
     a = end;

@@ -10,6 +10,8 @@ const char* describe(FibreRest::Why why) {
       return "fibre and tendon force balance";
     case FibreRest::Why::forceFree:
       return "neither fibre nor tendon carries force; the tendon is just slack";
+    case FibreRest::Why::held:
+      return "the fibre is held at the least length of its class";
     case FibreRest::Why::tendonTooShort:
       return "the muscle is shorter than its slack tendon, so nothing holds the fibre";
     case FibreRest::Why::notBracketed:

@@ -207,6 +207,11 @@ ActivationStep<3> fallenWithDerivatives(const Fall& f, const Fallen& end, double
   return step;
 }
 
+/// u and a are one but for rounding: there is no branch to tell, and no change of it.
+bool isLevel(double u0, double u1, double a0) {
+  return std::abs(u0 - a0) + std::abs(u1 - a0) < 1e-13;
+}
+
 ActivationStep<3> throughDuals(const FirstOrderActivation<double>& law, double u0, double u1,
                                double a0, double h) {
   using D = info::Dual<7>;
@@ -225,6 +230,7 @@ template <>
 double FirstOrderActivation<double>::step(const double& u0, const double& u1, const double& a0,
                                           const double& h) const {
   if (h > 0 && a0 >= minimum && a0 <= 1) {
+    if (isLevel(u0, u1, a0)) return a0;
     const double slope = (u1 - u0) / h;
     if (u0 > a0 || (u0 == a0 && slope > 0)) {
       const Risen end = risen(Rise(u0, slope, a0, h, activationTime));
@@ -242,14 +248,17 @@ ActivationStep<3> FirstOrderActivation<double>::stepWithDerivatives(double u0, d
                                                                     double h) const {
   if (h > 0 && a0 >= minimum && a0 <= 1) {
     const double slope = (u1 - u0) / h;
-    if (u0 > a0 || (u0 == a0 && slope > 0)) {
+    const bool level = isLevel(u0, u1, a0);
+    if (!level && (u0 > a0 || (u0 == a0 && slope > 0))) {
       const Rise r(u0, slope, a0, h, activationTime);
       const Risen end = risen(r);
       if (end.found) return risenWithDerivatives(r, end, slope, h, activationTime);
     } else if (const Fall f(u0, slope, a0, h, deactivationTime); f.isShort) {
       const Fallen end = fallen(f);
       const double a1 = 2.0 / 3 * (1 / end.w - 0.5);
-      if (a1 >= u1 && a1 >= minimum) return fallenWithDerivatives(f, end, u0, u1, deactivationTime);
+      if (level || (a1 >= u1 && a1 >= minimum)) {
+        return fallenWithDerivatives(f, end, u0, u1, deactivationTime);
+      }
     }
   }
   return throughDuals(*this, u0, u1, a0, h);

@@ -67,11 +67,11 @@ Model readOsim(const std::filesystem::path& file) {
 
 void writeOsim(const Model& model, const std::filesystem::path& file) {
   for (const Muscle& muscle : model.muscles) {
-    if (!muscle.schutte) {
+    if (!muscle.canBeSimulated()) {
       throw std::invalid_argument(
-          fmt::format("muscle '{}' is a {}: only Schutte muscles can be "
-                      "written to a fresh document",
-                      muscle.name, muscle.className));
+          fmt::format("muscle '{}' is a {}: only muscles of the classes {} can be written to a "
+                      "fresh document",
+                      muscle.name, muscle.className, simulatedClasses()));
     }
   }
   tinyxml2::XMLDocument document;

@@ -94,7 +94,7 @@ bool isPassive(std::string_view kind) {
 void warnOfOtherMuscles(Model& model) {
   std::map<std::string, std::string> names;
   for (const Muscle& muscle : model.muscles) {
-    if (muscle.schutte || !muscle.enabled) continue;
+    if (muscle.canBeSimulated() || !muscle.enabled) continue;
     std::string& list = names[muscle.className];
     list += (list.empty() ? "" : ", ") + muscle.name;
   }

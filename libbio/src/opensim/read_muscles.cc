@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 #include <cmath>
 
+#include <initializer_list>
 #include <numbers>
+#include <stdexcept>
 #include <string_view>
 
 #include "bio/muscle/muscle_parameters.h"
@@ -64,6 +66,94 @@ SchutteParameters readSchutte(Reading& reading, const Element& element) {
   return p;
 }
 
+// One number of a class's table; of a sub-object where its name has a class in front. Null: absent.
+struct Place {
+  const Element* owner;  // of the property
+  std::string property;
+  const Element* element;
+};
+Place findNumber(const Source& source, const Element& element, std::string_view name) {
+  const std::size_t cut = name.find('/');
+  if (cut == name.npos) {
+    const std::string property(name);
+    return {&element, property, findProperty(source, element, property.c_str())};
+  }
+  const std::string owner(name.substr(0, cut)), property(name.substr(cut + 1));
+  const Element* curve = findProperty(source, element, owner.c_str());
+  return {curve, property, curve ? curve->FirstChildElement(property.c_str()) : nullptr};
+}
+
+// The optional numbers of a curve: all in the file or none.
+bool areGiven(const Source& source, const Element& element,
+              std::initializer_list<const char*> names) {
+  std::size_t given = 0;
+  for (const char* name : names) {
+    const Element* number = findNumber(source, element, name).element;
+    if (number && !trimmedText(number).empty()) ++given;
+  }
+  if (given != 0 && given != names.size()) {
+    fail(source, element,
+         fmt::format("{} of the {} optional numbers of {} are given, must be all or none", given,
+                     names.size(),
+                     std::string_view(*names.begin())
+                         .substr(0, std::string_view(*names.begin()).find('/'))));
+  }
+  return given != 0;
+}
+
+void readOptional(const Source&, const Element&, muscles::Thelen2003Parameters<double>&) {}
+void readOptional(const Source& source, const Element& element,
+                  muscles::DeGrooteFregly2016Parameters<double>& p) {
+  p.ignorePassiveFibreForce =
+      readFlag(source, element, "ignore_passive_fiber_force", p.ignorePassiveFibreForce);
+}
+void readOptional(const Source& source, const Element& element,
+                  muscles::Millard2012Parameters<double>& p) {
+  p.passiveShapeIsGiven = areGiven(
+      source, element,
+      {"FiberForceLengthCurve/stiffness_at_low_force",
+       "FiberForceLengthCurve/stiffness_at_one_norm_force", "FiberForceLengthCurve/curviness"});
+  p.tendonShapeIsGiven = areGiven(
+      source, element,
+      {"TendonForceLengthCurve/stiffness_at_one_norm_force",
+       "TendonForceLengthCurve/norm_force_at_toe_end", "TendonForceLengthCurve/curviness"});
+}
+
+// Every number by the class's own table; where the file is silent OpenSim's default stands.
+muscles::AnyParameters readHill(const Source& source, const Element& element) {
+  muscles::AnyParameters any = muscles::MuscleClasses::defaultsOf(element.Name());
+  std::visit(
+      [&]<class Parameters>(Parameters& p) {
+        p.ignoreTendonCompliance =
+            readFlag(source, element, "ignore_tendon_compliance", p.ignoreTendonCompliance);
+        p.ignoreActivationDynamics =
+            readFlag(source, element, "ignore_activation_dynamics", p.ignoreActivationDynamics);
+        p.minControl = readNumber(source, element, "min_control", "", Rule::finite, p.minControl);
+        p.maxControl = readNumber(source, element, "max_control", "", Rule::finite, p.maxControl);
+        readOptional(source, element, p);
+        for (std::size_t i = 0; i < Parameters::count; ++i) {
+          if (!p.isGiven(i)) continue;
+          const auto& property = Parameters::properties[i];
+          Place place = findNumber(source, element, property.name);
+          // so it was called in files of OpenSim 2
+          if (!place.element && property.name == "pennation_angle_at_optimal") {
+            place = findNumber(source, element, "pennation_angle");
+          }
+          if (!place.element) continue;
+          double& value = Parameters::at(p, i);
+          value = readNumber(source, *place.owner, place.property.c_str(),
+                             std::string(property.unit).c_str(), Rule::finite, value);
+        }
+        try {
+          p.requireRules();
+        } catch (const std::invalid_argument& broken) {
+          fail(source, element, broken.what());
+        }
+      },
+      any);
+  return any;
+}
+
 }  // namespace
 
 Muscle readMuscle(Reading& reading, const Element& element) {
@@ -74,6 +164,8 @@ Muscle readMuscle(Reading& reading, const Element& element) {
   muscle.path = readPath(reading, element);
   if (muscle.className.starts_with("Schutte1993Muscle")) {
     muscle.schutte = readSchutte(reading, element);
+  } else if (muscles::MuscleClasses::has(muscle.className)) {
+    muscle.hill = readHill(reading.source, element);
   }
   return muscle;
 }

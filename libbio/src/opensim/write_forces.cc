@@ -33,6 +33,38 @@ void appendSchutte(Element& element, const SchutteParameters& p) {
   }
 }
 
+void appendOptional(Element&, const muscles::Thelen2003Parameters<double>&) {}
+void appendOptional(Element&, const muscles::Millard2012Parameters<double>&) {}
+void appendOptional(Element& element, const muscles::DeGrooteFregly2016Parameters<double>& p) {
+  appendFlag(element, "ignore_passive_fiber_force", p.ignorePassiveFibreForce);
+}
+
+// Every number by the class's own table, those of a sub-object together in it.
+void appendHill(Element& element, const muscles::AnyParameters& any) {
+  std::visit(
+      [&]<class Parameters>(const Parameters& p) {
+        appendNumber(element, "min_control", p.minControl);
+        appendNumber(element, "max_control", p.maxControl);
+        appendFlag(element, "ignore_tendon_compliance", p.ignoreTendonCompliance);
+        appendFlag(element, "ignore_activation_dynamics", p.ignoreActivationDynamics);
+        appendOptional(element, p);
+        Element* curve = nullptr;
+        for (std::size_t i = 0; i < Parameters::count; ++i) {
+          if (!p.isGiven(i)) continue;
+          const std::string_view name = Parameters::properties[i].name;
+          const std::size_t cut = name.find('/');
+          if (cut == name.npos) {
+            appendNumber(element, std::string(name).c_str(), Parameters::at(p, i));
+            continue;
+          }
+          const std::string owner(name.substr(0, cut)), property(name.substr(cut + 1));
+          if (!curve || owner != curve->Name()) curve = &append(element, owner.c_str());
+          appendNumber(*curve, property.c_str(), Parameters::at(p, i));
+        }
+      },
+      any);
+}
+
 // value·factor, rounded to 15 digits where that is as near as doubles get, so that 85 stays 85.
 double converted(double value, double factor) {
   const double exact = value * factor;
@@ -62,6 +94,7 @@ void appendMuscle(const Writing& writing, Element& parent, const Muscle& muscle)
   appendEnabled(writing, element, muscle.enabled);
   appendPath(writing, element, muscle.path);
   if (muscle.schutte) appendSchutte(element, *muscle.schutte);
+  if (muscle.hill) appendHill(element, *muscle.hill);
 }
 
 void appendCoordinateForces(const Writing& writing, Element& parent) {

@@ -11,6 +11,7 @@
 #include "bio/path/path_gradient.h"
 #include "bio/path/posture_samples.h"
 #include "bio/path/radius_limit.h"
+#include "parameters/hill_prior.h"
 
 namespace bio {
 namespace {
@@ -107,6 +108,7 @@ class Collector {
 
   void addMuscle(const SystemMuscle& muscle) {
     const std::size_t index = indexOf(muscle.name);
+    if (!model_.muscles[index].schutte) return addHill(index);
     const SchutteParameters& schutte = *model_.muscles[index].schutte;
     for (const MuscleRule& rule : muscleRules) {
       if (rule.quantity == MuscleQuantity::passiveForceScale && !schutte.passiveForceLength) {
@@ -119,6 +121,24 @@ class Collector {
       add(muscle.name + "." + rule.name, rule.unit, rule.meaning, value, habit,
           {MuscleTarget{index, rule.quantity}});
     }
+  }
+
+  // A muscle of another class, by the table of its class.
+  void addHill(std::size_t index) {
+    const Muscle& muscle = model_.muscles[index];
+    std::visit(
+        [&]<class Parameters>(const Parameters& p) {
+          for (std::size_t i = 0; i < Parameters::count; ++i) {
+            const HillPrior known = hillPrior(p, i);
+            if (!known.counts) continue;
+            const auto& property = Parameters::properties[i];
+            const bool isPennation = i == muscles::common::pennation;
+            add(fmt::format("{}.{}", muscle.name, isPennation ? "pennation_angle" : property.name),
+                property.unit.data(), fmt::format("of a {}", muscle.className), p.at(p, i),
+                {known.lower, known.upper, known.sd}, {MuscleNumberTarget{index, i}});
+          }
+        },
+        *muscle.hill);
   }
 
   void addPoints(const SystemMuscle& muscle) {
@@ -322,6 +342,11 @@ class Collector {
     addGroup("activation.time_scale", "time_scale", "time scale of all muscles");
     addGroup("activation.activation1", "activation1", "activation1 of all muscles");
     addGroup("activation.activation2", "activation2", "activation2 of all muscles");
+    addGroup("activation.activation_time_constant", "activation_time_constant",
+             "time constant of rising activation of all muscles");
+    addGroup("activation.deactivation_time_constant", "deactivation_time_constant",
+             "time constant of falling activation of all muscles");
+    addGroup("muscles.fiber_damping", "fiber_damping", "damping of all muscles");
     addGroup("muscles.damping", "damping", "damping of all muscles");
     addGroup("muscles.tendon_strain_scale", "tendon_strain_scale", "compliance of all tendons");
     addGroup("muscles.active_force_scale", "active_force_scale", "strength of all muscles");
@@ -330,9 +355,11 @@ class Collector {
   void addGroup(const char* name, const std::string& quantity, const char* meaning) {
     ModelParameter group;
     for (const ModelParameter& parameter : parameters_) {
-      const bool isMember = !parameter.isGroup && parameter.name.ends_with("." + quantity) &&
-                            (std::holds_alternative<MuscleTarget>(parameter.targets.front()) ||
-                             std::holds_alternative<EmgTarget>(parameter.targets.front()));
+      const bool isMember =
+          !parameter.isGroup && parameter.name.ends_with("." + quantity) &&
+          (std::holds_alternative<MuscleTarget>(parameter.targets.front()) ||
+           std::holds_alternative<MuscleNumberTarget>(parameter.targets.front()) ||
+           std::holds_alternative<EmgTarget>(parameter.targets.front()));
       if (!isMember) continue;
       if (group.targets.empty()) {
         group = parameter;

@@ -65,6 +65,9 @@ struct SetInModel {
     }
     muscle.*schutteNumber(target.quantity) = value;
   }
+  void operator()(const MuscleNumberTarget& target) const {
+    std::visit([&](auto& p) { p.at(p, target.place) = value; }, *model.muscles[target.muscle].hill);
+  }
   void operator()(const PointTarget& target) const {
     PathPoint& point = model.muscles[target.muscle].path.points[target.point];
     if (point.motion) {
@@ -170,6 +173,11 @@ ParameterCatalogue::ParameterCatalogue(const Model& model, const Musculoskeletal
   if (start_.qDot.size() == 0) start_.qDot = Eigen::VectorXd::Zero(n);
   for (const SystemMuscle& muscle : arm.muscles()) muscles_.push_back(muscle.name);
   parameters_ = collectParameters(model_, arm, start_, mapping_);
+}
+
+bool ParameterCatalogue::has(const std::string& name) const {
+  return std::any_of(parameters_.begin(), parameters_.end(),
+                     [&](const ModelParameter& p) { return p.name == name; });
 }
 
 std::size_t ParameterCatalogue::find(const std::string& name) const {

@@ -86,13 +86,25 @@ void ExcitationSensitivity::start(double time, SensitivityMatrix& rows) {
   // later by d: the excitation at the start is that of d earlier; none is known before the first
   // row
   const std::vector<double>& times = driven_.times();
-  if (effects_.delay.empty() || !(time > times.front()) || !(time < times.back())) return;
-  std::size_t k = 0;
-  while (times[k + 1] <= time) ++k;
-  driven_.at(times[k], hint_, from_);
-  driven_.at(times[k + 1], hint_, to_);
-  for (const QuantityEffect& effect : effects_.delay) {
-    rows.col(placeOf(effect.column)) -= effect.factor * (to_ - from_) / (times[k + 1] - times[k]);
+  if (!effects_.delay.empty() && time > times.front() && time < times.back()) {
+    std::size_t k = 0;
+    while (times[k + 1] <= time) ++k;
+    driven_.at(times[k], hint_, from_);
+    driven_.at(times[k + 1], hint_, to_);
+    for (const QuantityEffect& effect : effects_.delay) {
+      rows.col(placeOf(effect.column)) -= effect.factor * (to_ - from_) / (times[k + 1] - times[k]);
+    }
+  }
+  // activation begins as the excitation within the law's limits
+  driven_.at(time, hint_, from_);
+  for (Index i = 0; i < rows.rows(); ++i) {
+    const auto si = static_cast<std::size_t>(i);
+    const ActivationDynamics::Start start = arm_.muscles()[si].activation.start(from_[i]);
+    if (start.byExcitation == 1) continue;
+    rows.row(i) *= start.byExcitation;
+    for (const QuantityEffect& effect : effects_.muscles[si].activation) {
+      rows(i, placeOf(effect.column)) += effect.factor * start.byNumber[effect.quantity];
+    }
   }
 }
 
@@ -118,8 +130,8 @@ void ExcitationSensitivity::advance(double t0, double t1, const Eigen::RowVector
     for (Index i = 0; i < out.rows(); ++i) {
       const auto si = static_cast<std::size_t>(i);
       const auto& effects = effects_.muscles[si];
-      const ActivationStep p = stepActivationWithDerivatives(arm_.muscles()[si].activation,
-                                                             from_[i], to_[i], now_[i], h);
+      const ActivationStep p =
+          arm_.muscles()[si].activation.stepWithDerivatives(from_[i], to_[i], now_[i], h);
       now_[i] = p.value;
       auto row = out.row(i);
       if (first) {

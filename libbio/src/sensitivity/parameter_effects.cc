@@ -1,6 +1,7 @@
 #include "sensitivity/parameter_effects.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include "bio/path/path_gradient.h"
 
@@ -43,6 +44,19 @@ ParameterEffects::ParameterEffects(const MusculoskeletalSystem& arm,
         if (target.quantity == MuscleQuantity::timeScale) {
           muscle.activation.push_back({0, column, weight});
         }
+      }
+    }
+    void operator()(const MuscleNumberTarget& target) const {
+      const Muscle& given = model.muscles[target.muscle];
+      const std::size_t i = indexOf(given.name);
+      if (i == arm.numMuscles()) return;
+      OfMuscle& muscle = effects.muscles[i];
+      muscle.fibre.push_back({target.place, column, weight});
+      const std::string_view name =
+          std::visit([&](const auto& p) { return p.properties[target.place].name; }, *given.hill);
+      const auto own = arm.muscles()[i].activation.names();
+      for (std::size_t k = 0; k < own.size(); ++k) {
+        if (own[k] == name) muscle.activation.push_back({k, column, weight});
       }
     }
     void operator()(const PointTarget& target) const {

@@ -23,8 +23,8 @@ class ParameterEffects {
                    const std::vector<ParameterDirection>& wanted);
 
   struct OfMuscle {
-    std::vector<QuantityEffect> fibre;       ///< quantity: MuscleQuantity below activation1
-    std::vector<QuantityEffect> activation;  ///< quantity: 0 time scale, 1 activation1, 2 …2
+    std::vector<QuantityEffect> fibre;       ///< quantity: a place in PerMuscleNumber
+    std::vector<QuantityEffect> activation;  ///< quantity: a place in ActivationDynamics::names
     std::vector<QuantityEffect> points;      ///< quantity: 3·point + axis
     std::vector<QuantityEffect> wraps;       ///< quantity: numWrapRows·wrap + component
     bool hasGeometry() const { return !points.empty() || !wraps.empty(); }

@@ -78,19 +78,19 @@ class SensitivityPass {
     activation.start(time);
     for (std::size_t i = 0; i < arm_.numMuscles(); ++i) {
       const auto si = static_cast<Index>(i);
-      const SchutteMuscle<double>& muscle = arm_.muscles()[i].muscle;
+      const SimulatedMuscle& muscle = arm_.muscles()[i].muscle;
       const LengthJet<N>& path = configuration_.length(i);
-      const StaticEquilibrium rest = staticEquilibrium(muscle, start.activation[si], path.length);
-      const EquilibriumDerivatives d =
-          equilibriumDerivatives(muscle, start.activation[si], path.length, rest);
+      const StaticEquilibrium rest = muscle.rest(start.activation[si], path.length);
+      const SimulatedMuscle::RestSlopes d =
+          muscle.restSlopes(start.activation[si], path.length, rest);
       auto fibre = fibres.row(si);
-      fibre = d.dl_dMuscleTendonLength * (path.dL_dq.transpose() * dq);
+      fibre = d.dl_dPathLength * (path.dL_dq.transpose() * dq);
       activation.add(d.dl_dActivation, activation.end(), si, fibre);
       for (const QuantityEffect& effect : direct_.effects().muscles[i].fibre) {
-        fibre[effect.column] += effect.factor * d.dl_dQuantity[effect.quantity];
+        fibre[effect.column] += effect.factor * d.dl_dNumber[effect.quantity];
       }
       direct_.forGeometry(i, q, [&](const QuantityEffect& effect, const auto& gradient) {
-        fibre[effect.column] += effect.factor * d.dl_dMuscleTendonLength * gradient[0];
+        fibre[effect.column] += effect.factor * d.dl_dPathLength * gradient[0];
       });
     }
   }

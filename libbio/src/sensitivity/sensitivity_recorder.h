@@ -12,6 +12,7 @@ template <int N>
 class SensitivityRecorder {
  public:
   using Index = Eigen::Index;
+  using RowVector = Eigen::RowVectorXd;
   using Vector = Eigen::Matrix<double, N, 1>;
   using Matrix = Eigen::Matrix<double, N, N>;
   using State = SensitivityState<N>;
@@ -54,7 +55,13 @@ class SensitivityRecorder {
       configuration_.moveSkeletonTo(q);
     }
     addCoordinates(qDot, state);
-    for (std::size_t i = 0; muscles_ && i < arm_.numMuscles(); ++i) addMuscle(i, q, state);
+    for (std::size_t i = 0; muscles_ && i < arm_.numMuscles(); ++i) {
+      if (arm_.muscles()[i].muscle.hasFibreState()) {
+        addMuscle(i, q, state);
+      } else {
+        addRigid(i, q, qDot, state);
+      }
+    }
     ++row_;
   }
 
@@ -86,13 +93,13 @@ class SensitivityRecorder {
   void addMuscle(std::size_t i, const Vector& q, const State& state) {
     const auto si = static_cast<Index>(i);
     const Index parameters = state.columns.numParameters();
-    const SchutteMuscle<double>& muscle = arm_.muscles()[i].muscle;
+    const SimulatedMuscle& muscle = arm_.muscles()[i].muscle;
     const LengthJet<N>& path = configuration_.length(i);
     const double l = result_.motion.fibreLength(si, row_);
     const double activation = result_.motion.activation(si, row_);
-    const FibreRateDerivatives r = fibreRateDerivatives(muscle, activation, l, path.length);
-    const FibreParameterDerivatives d =
-        fibreParameterDerivatives(muscle, activation, l, path.length);
+    SchuttePieces unknown;
+    const FibreRateDerivatives r = muscle.rate(activation, l, path.length, unknown);
+    const SimulatedMuscle::InNumbers d = muscle.inNumbers(activation, l, path.length, 0);
     result_.fibreLength[i].row(row_) = state.fibre.row(si).head(parameters);
     state.activation.record(si, result_.activation[i].row(row_));
     auto force = result_.tendonForce[i].row(row_);
@@ -104,6 +111,42 @@ class SensitivityRecorder {
     }
     direct_.forGeometry(i, q, [&](const QuantityEffect& effect, const auto& gradient) {
       force[effect.column] += effect.factor * r.dF_dMuscleTendonLength * gradient[0];
+    });
+  }
+
+  /// With a rigid tendon fibre length and force follow from the row.
+  void addRigid(std::size_t i, const Vector& q, const Vector& qDot, const State& state) {
+    const auto si = static_cast<Index>(i);
+    const Index parameters = state.columns.numParameters();
+    const SimulatedMuscle& muscle = arm_.muscles()[i].muscle;
+    const LengthJet<N>& path = configuration_.length(i);
+    const double activation = result_.motion.activation(si, row_);
+    const double speed = path.dL_dq.dot(qDot);
+    const muscles::RigidRate<double> r = muscle.rigidRate(activation, path.length, speed);
+    const PerMuscleNumber d = muscle.rigidInNumbers(activation, path.length, speed);
+    const SimulatedMuscle::RestSlopes l = muscle.restSlopes(
+        activation, path.length, {StaticEquilibrium::Why::found, r.fibreLength, r.tendonForce, 1});
+    state.activation.record(si, result_.activation[i].row(row_));
+    const RowVector length = path.dL_dq.transpose() * state.dq;
+    auto fibre = result_.fibreLength[i].row(row_);
+    auto force = result_.tendonForce[i].row(row_);
+    fibre = l.dl_dPathLength * length.head(parameters);
+    Vector F_q = r.dF_dPathLength * path.dL_dq;
+    addSecondTimes<N>(F_q, r.dF_dPathSpeed, path, qDot);
+    force = (F_q.transpose() * state.dq + r.dF_dPathSpeed * (path.dL_dq.transpose() * speed_))
+                .head(parameters);
+    force += r.dF_dActivation * result_.activation[i].row(row_);
+    for (const QuantityEffect& effect : direct_.effects().muscles[i].fibre) {
+      fibre[effect.column] += effect.factor * l.dl_dNumber[effect.quantity];
+      force[effect.column] += effect.factor * d[effect.quantity];
+    }
+    direct_.forGeometry(i, q, [&](const QuantityEffect& effect, const auto& gradient) {
+      double change = r.dF_dPathLength * gradient[0];
+      forEachMoved<N>(path, [&](int k, int slot) {
+        change += r.dF_dPathSpeed * gradient[1 + slot] * qDot[k];
+      });
+      fibre[effect.column] += effect.factor * l.dl_dPathLength * gradient[0];
+      force[effect.column] += effect.factor * change;
     });
   }
 

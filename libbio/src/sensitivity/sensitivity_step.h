@@ -101,19 +101,26 @@ class SensitivityStep {
     Matrix f_end = Matrix::Zero(n, n);  // df through the fibres that dq′ moves
     for (std::size_t m = 0; m < arm_.numMuscles(); ++m) {
       const auto sm = static_cast<Index>(m);
-      const SchutteMuscle<double>& muscle = arm_.muscles()[m].muscle;
+      const SimulatedMuscle& muscle = arm_.muscles()[m].muscle;
       const LengthJet<N>& path = configuration_.length(m);
+      if (!muscle.hasFibreState()) {
+        addRigid(m, q_m, v, activation[sm], path, state, f, f_q, f_v);
+        continue;
+      }
       const double l_m = (l0[sm] + l1[sm]) / 2;
+      const double l_v = (l1[sm] - l0[sm]) / h;
       const FibreRateDerivatives r =
-          fibreRateDerivatives(muscle, activation[sm], l_m, path.length, pieces_[m]);
-      const double perJ = 1 / (1 / h - r.dV_dFibreLength / 2);
+          muscle.rateNear(activation[sm], l_m, path.length, l_v, h, pieces_[m]);
+      const bool isHeld = muscle.isHeld(l1[sm]);
+      const double perJ = isHeld ? 0 : 1 / (1 / h - r.dV_dFibreLength / 2);
       auto trial = trialFibre_.row(sm);
       const double half = r.dV_dMuscleTendonLength / 2 * perJ;
       setAlong(trial, ((1 / h + r.dV_dFibreLength / 2) * perJ) * state.fibre.row(sm), half, path,
                state.dq);
       state.activation.add(r.dV_dActivation * perJ, state.activation.middle(), sm, trial);
       if (timeMoves) trial += ((l1[sm] - l0[sm]) / (h * h) * perJ) * row_;
-      addMuscleParameters(m, q_m, activation[sm], l_m, path, r, perJ, trial);
+      addMuscleParameters(m, q_m, activation[sm], l_m, l_v, path, r, perJ, trial);
+      if (isHeld) addShortest(m, trial);
 
       addAlong<N>(f, -r.tendonForce, path);
       addOuter<N>(f_q, -r.dF_dMuscleTendonLength, path);
@@ -189,13 +196,13 @@ class SensitivityStep {
   /// ∂r/∂θ of one muscle: into its fibre's row and into the force on the skeleton.
   template <class Row>
   void addMuscleParameters(std::size_t m, const Vector& q, double activation, double l_m,
-                           const LengthJet<N>& path, const FibreRateDerivatives& r, double perJ,
-                           Row& trial) {
+                           double l_v, const LengthJet<N>& path, const FibreRateDerivatives& r,
+                           double perJ, Row& trial) {
     through_[m] = r.dV_dMuscleTendonLength / 2 * perJ;
     const auto& effects = direct_.effects().muscles[m];
     if (!effects.fibre.empty()) {
-      const FibreParameterDerivatives d =
-          fibreParameterDerivatives(arm_.muscles()[m].muscle, activation, l_m, path.length);
+      const SimulatedMuscle::InNumbers d =
+          arm_.muscles()[m].muscle.inNumbers(activation, l_m, path.length, l_v);
       for (const QuantityEffect& effect : effects.fibre) {
         trial[effect.column] += effect.factor * perJ * d.dV[effect.quantity];
         force_.col(effect.column) -= effect.factor * d.dF[effect.quantity] * path.dL_dq;
@@ -207,6 +214,56 @@ class SensitivityStep {
         force_(k, effect.column) -=
             effect.factor * (r.dF_dMuscleTendonLength * gradient[0] * path.dL_dq[k] +
                              r.tendonForce * gradient[1 + slot]);
+      });
+    });
+  }
+
+  /// ∂ℓ′/∂θ of a fibre that is held.
+  template <class Row>
+  void addShortest(std::size_t m, Row& trial) {
+    const auto& effects = direct_.effects().muscles[m];
+    if (effects.fibre.empty()) return;
+    const PerMuscleNumber d = arm_.muscles()[m].muscle.shortestInNumbers();
+    for (const QuantityEffect& effect : effects.fibre) {
+      trial[effect.column] += effect.factor * d[effect.quantity];
+    }
+  }
+
+  /// The force of a muscle with a rigid tendon, which has no fibre to carry on, with what it adds
+  /// to the derivatives over the middle configuration and the speed, and to df/dθ.
+  void addRigid(std::size_t m, const Vector& q, const Vector& v, double activation,
+                const LengthJet<N>& path, const State& state, Vector& f, Matrix& f_q, Matrix& f_v) {
+    through_[m] = 0;
+    const auto sm = static_cast<Index>(m);
+    trialFibre_.row(sm).setZero();
+    const SimulatedMuscle& muscle = arm_.muscles()[m].muscle;
+    const double speed = path.dL_dq.dot(v);
+    const muscles::RigidRate<double> r = muscle.rigidRate(activation, path.length, speed);
+    addAlong<N>(f, -r.tendonForce, path);
+    Vector F_q = r.dF_dPathLength * path.dL_dq;
+    addSecondTimes<N>(F_q, r.dF_dPathSpeed, path, v);
+    f_q.noalias() -= path.dL_dq * F_q.transpose();
+    addSecond<N>(f_q, -r.tendonForce, path);
+    addOuter<N>(f_v, -r.dF_dPathSpeed, path);
+    forEachMoved<N>(path, [&](int k, int) {
+      state.activation.add(-r.dF_dActivation * path.dL_dq[k], state.activation.middle(), sm,
+                           force_.row(k));
+    });
+    const auto& effects = direct_.effects().muscles[m];
+    if (!effects.fibre.empty()) {
+      const PerMuscleNumber d = muscle.rigidInNumbers(activation, path.length, speed);
+      for (const QuantityEffect& effect : effects.fibre) {
+        force_.col(effect.column) -= effect.factor * d[effect.quantity] * path.dL_dq;
+      }
+    }
+    direct_.forGeometry(m, q, [&](const QuantityEffect& effect, const auto& gradient) {
+      double change = r.dF_dPathLength * gradient[0];
+      forEachMoved<N>(path, [&](int k, int slot) {
+        change += r.dF_dPathSpeed * gradient[1 + slot] * v[k];
+      });
+      forEachMoved<N>(path, [&](int k, int slot) {
+        force_(k, effect.column) -=
+            effect.factor * (change * path.dL_dq[k] + r.tendonForce * gradient[1 + slot]);
       });
     });
   }

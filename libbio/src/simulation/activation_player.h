@@ -30,8 +30,8 @@ class ActivationPlayer {
       const double stop = next < rows.size() ? std::min(rows[next], t1) : t1;
       excitation_->at(stop, hint_, to_);
       for (Eigen::Index i = 0; i < activation.size(); ++i) {
-        activation[i] = stepActivation(arm_->muscles()[static_cast<std::size_t>(i)].activation,
-                                       from_[i], to_[i], activation[i], stop - t);
+        activation[i] = arm_->muscles()[static_cast<std::size_t>(i)].activation.step(
+            from_[i], to_[i], activation[i], stop - t);
       }
       from_.swap(to_);
       t = stop;

@@ -58,6 +58,23 @@ void addSecond(Eigen::Matrix<double, N, N>& sum, double factor, const LengthJet<
   }
 }
 
+/// sum += factor ∂²ℓ v
+template <int N>
+void addSecondTimes(Eigen::Matrix<double, N, 1>& sum, double factor, const LengthJet<N>& path,
+                    const Eigen::Matrix<double, N, 1>& v) {
+  if constexpr (N == Eigen::Dynamic) {
+    for (std::size_t b = 0; b < path.support.size(); ++b) {
+      const double scaled = factor * v[path.support[b]];
+      for (std::size_t a = 0; a < path.support.size(); ++a) {
+        sum[path.support[a]] +=
+            scaled * path.second(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+      }
+    }
+  } else {
+    sum.noalias() += factor * (path.d2L_dq2 * v);
+  }
+}
+
 /// force += factor ∂ℓ
 template <int N>
 void addAlong(Eigen::Matrix<double, N, 1>& force, double factor, const LengthJet<N>& path) {

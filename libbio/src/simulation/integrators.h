@@ -108,6 +108,11 @@ struct GeneralisedForce {
 void checkSimulation(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
                      const SystemState& start, const SimulationOptions& options);
 
+/// Fills in what follows from the rest of a motion: fibre lengths where the tendon is rigid, and
+/// activations that are the excitation.
+void completeStates(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+                    Trajectory& motion);
+
 class StepTape;
 
 /// @param tape takes down every part of a step that was accepted, for sensitivities; may be null

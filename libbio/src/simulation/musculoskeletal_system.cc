@@ -101,10 +101,11 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
           fmt::format("muscle '{}' is left out: no free coordinate moves it", muscle.name));
       continue;
     }
-    if (!muscle.schutte) {
+    if (!muscle.canBeSimulated()) {
       throw std::invalid_argument(
-          fmt::format("muscle '{}' is a {}; only Schutte1993Muscle_Deprecated can be simulated",
-                      muscle.name, muscle.className));
+          fmt::format("muscle '{}' is a {}; the classes that can be "
+                      "simulated are {}",
+                      muscle.name, muscle.className, simulatedClasses()));
     }
     if (options.tabulatePaths && !like) path.tabulate(skeleton_);
     for (const std::string& note : path.notes()) notes_.push_back(note);
@@ -115,13 +116,23 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
           });
       if (!known) switches_.push_back(s);
     }
-    const SchutteParameters& s = *muscle.schutte;
     try {
-      curves_.push_back(std::make_unique<const SchutteCurves>(s));
-      muscles_.push_back(
-          {muscle.name,
-           SchutteMuscle<double>(schutteQuantities(s), *curves_.back(), options.muscle),
-           SchutteActivation<double>{s.timeScale, s.activation1, s.activation2}, std::move(path)});
+      if (muscle.schutte) {
+        const SchutteParameters& s = *muscle.schutte;
+        curves_.push_back(std::make_unique<const SchutteCurves>(s));
+        muscles_.push_back({muscle.name,
+                            SimulatedMuscle(SchutteMuscle<double>(schutteQuantities(s),
+                                                                  *curves_.back(), options.muscle)),
+                            ActivationDynamics(SchutteActivation<double>{s.timeScale, s.activation1,
+                                                                         s.activation2}),
+                            std::move(path)});
+      } else {
+        others_.push_back(
+            std::make_unique<const muscles::AnyMuscle>(muscles::compile(*muscle.hill)));
+        muscles_.push_back({muscle.name, SimulatedMuscle(*others_.back()),
+                            ActivationDynamics(muscles::activationOf(*muscle.hill)),
+                            std::move(path)});
+      }
     } catch (const std::invalid_argument& e) {
       throw std::invalid_argument(fmt::format("muscle '{}': {}", muscle.name, e.what()));
     }

@@ -26,6 +26,10 @@ SystemState initialState(const MusculoskeletalSystem& arm, const Eigen::VectorXd
   state.activation.resize(n);
   std::size_t hint = 0;
   excitation.at(time, hint, state.activation);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    double& activation = state.activation[i];
+    activation = arm.muscles()[static_cast<std::size_t>(i)].activation.start(activation).value;
+  }
   state.fibreLength.resize(n);
   stepping::withCoordinates(arm.skeleton(), [&](auto N) {
     SystemConfiguration<decltype(N)::value> configuration(arm);
@@ -38,8 +42,7 @@ SystemState initialState(const MusculoskeletalSystem& arm, const Eigen::VectorXd
             fmt::format("muscle '{}': muscle–tendon length at the start = {} m, must be finite",
                         arm.muscles()[i].name, length));
       }
-      const StaticEquilibrium rest =
-          staticEquilibrium(arm.muscles()[i].muscle, state.activation[si], length);
+      const StaticEquilibrium rest = arm.muscles()[i].muscle.rest(state.activation[si], length);
       if (!rest.isUsable()) {
         throw NoStaticEquilibrium(fmt::format(
             "muscle '{}': no static equilibrium at the start with length {:.6g} m and activation "
@@ -91,16 +94,53 @@ void stepping::checkSimulation(const MusculoskeletalSystem& arm, const Excitatio
 Trajectory simulate(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
                     const SystemState& start, const SimulationOptions& options) {
   stepping::checkSimulation(arm, excitation, start, options);
-  switch (options.integrator) {
-    case Integrator::variational:
-    case Integrator::variationalLeft:
-      return stepping::simulateVariational(arm, excitation, start, options);
-    case Integrator::rungeKutta4:
-      return stepping::simulateRungeKutta4(arm, excitation, start, options);
-    case Integrator::cvode:
-      return stepping::simulateCvode(arm, excitation, start, options);
+  const auto run = [&] {
+    switch (options.integrator) {
+      case Integrator::variational:
+      case Integrator::variationalLeft:
+        return stepping::simulateVariational(arm, excitation, start, options);
+      case Integrator::rungeKutta4:
+        return stepping::simulateRungeKutta4(arm, excitation, start, options);
+      case Integrator::cvode:
+        return stepping::simulateCvode(arm, excitation, start, options);
+    }
+    throw std::invalid_argument("unknown integrator");
+  };
+  Trajectory motion = run();
+  stepping::completeStates(arm, excitation, motion);
+  return motion;
+}
+
+void stepping::completeStates(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+                              Trajectory& motion) {
+  const auto rows = static_cast<Eigen::Index>(motion.time.size());
+  std::vector<std::size_t> direct, rigid;
+  for (std::size_t i = 0; i < arm.numMuscles(); ++i) {
+    if (arm.muscles()[i].activation.isDirect()) direct.push_back(i);
+    if (!arm.muscles()[i].muscle.hasFibreState()) rigid.push_back(i);
   }
-  throw std::invalid_argument("unknown integrator");
+  if (!direct.empty()) {
+    Eigen::VectorXd u(excitation.numMuscles());
+    std::size_t hint = 0;
+    for (Eigen::Index k = 0; k < rows; ++k) {
+      excitation.at(motion.time[static_cast<std::size_t>(k)], hint, u);
+      for (const std::size_t i : direct) {
+        const auto si = static_cast<Eigen::Index>(i);
+        motion.activation(si, k) = arm.muscles()[i].activation.acting(u[si], 0);
+      }
+    }
+  }
+  if (rigid.empty()) return;
+  withCoordinates(arm.skeleton(), [&](auto N) {
+    SystemConfiguration<decltype(N)::value> configuration(arm);
+    for (Eigen::Index k = 0; k < rows; ++k) {
+      configuration.moveTo(motion.q.col(k));
+      for (const std::size_t i : rigid) {
+        motion.fibreLength(static_cast<Eigen::Index>(i), k) =
+            arm.muscles()[i].muscle.rigidRate(0, configuration.length(i).length, 0).fibreLength;
+      }
+    }
+  });
 }
 
 namespace {
@@ -168,8 +208,11 @@ MuscleReport reportMuscles(const MusculoskeletalSystem& arm, const Trajectory& t
         const auto& length = configuration.length(static_cast<std::size_t>(i));
         report.muscleTendonLength(i, k) = length.length;
         report.momentArm(i, k) = -length.dL_dq[coordinate];
-        report.tendonForce(i, k) = arm.muscles()[static_cast<std::size_t>(i)].muscle.tendonForce(
-            trajectory.fibreLength(i, k), length.length);
+        const SimulatedMuscle& muscle = arm.muscles()[static_cast<std::size_t>(i)].muscle;
+        const bool isRigid = !muscle.hasFibreState();
+        report.tendonForce(i, k) = muscle.tendonForce(
+            isRigid ? trajectory.activation(i, k) : 0, trajectory.fibreLength(i, k), length.length,
+            isRigid ? length.dL_dq.dot(trajectory.qDot.col(k)) : 0);
       }
     }
   });

@@ -34,8 +34,9 @@ class SharedCourse {
     if (job_->excitation != other.excitation || job_->start->activation != other.start->activation)
       return false;
     for (std::size_t i = 0; i < job_->arm->numMuscles(); ++i) {
-      const auto& a = job_->arm->muscles()[i].activation;
-      const auto& b = other.arm->muscles()[i].activation;
+      // lanes take muscles of Schutte's class alone
+      const auto& a = *job_->arm->muscles()[i].activation.schutte();
+      const auto& b = *other.arm->muscles()[i].activation.schutte();
       if (a.timeScale != b.timeScale || a.activation1 != b.activation1 ||
           a.activation2 != b.activation2)
         return false;

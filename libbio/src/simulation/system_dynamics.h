@@ -32,12 +32,14 @@ class SystemDynamics {
         numMuscles_(static_cast<Eigen::Index>(arm.numMuscles())),
         u_(State::Zero(numMuscles_)),
         rate_(arm.numMuscles()),
+        rigid_(arm.numMuscles()),
         pieces_(arm.numMuscles()),
         qDot_(Vector::Zero(numCoordinates_)),
         acceleration_(qDot_),
         muscle_(qDot_),
         passive_(qDot_),
         external_(qDot_),
+        along_(qDot_),
         tau_q_(Matrix::Zero(numCoordinates_, numCoordinates_)),
         tau_v_(tau_q_),
         factor_(numCoordinates_) {
@@ -82,8 +84,7 @@ class SystemDynamics {
     speeds(yDot) = acceleration_;
     for (Eigen::Index i = 0; i < numMuscles_; ++i) {
       const auto si = static_cast<std::size_t>(i);
-      yDot[2 * count() + i] =
-          activationRate(arm_.muscles()[si].activation, u_[i], y[2 * count() + i]);
+      yDot[2 * count() + i] = arm_.muscles()[si].activation.rate(u_[i], y[2 * count() + i]);
       yDot[2 * count() + numMuscles_ + i] = rate_[si].fibreVelocity;
     }
     return {muscle_.dot(qDot_), passive_.dot(qDot_), external_.dot(qDot_)};
@@ -103,21 +104,28 @@ class SystemDynamics {
       const auto si = static_cast<std::size_t>(i);
       const FibreRateDerivatives& r = rate_[si];
       const LengthJet<N>& path = configuration_.length(si);
-      if constexpr (N == Eigen::Dynamic) {
-        addOuter<N>(dForce_dq, -r.dF_dMuscleTendonLength, path);
-        addSecond<N>(dForce_dq, -r.tendonForce, path);
-      } else {
-        dForce_dq -= r.dF_dMuscleTendonLength * path.dL_dq * path.dL_dq.transpose() +
-                     r.tendonForce * path.d2L_dq2;
-      }
+      const auto& law = arm_.muscles()[si].activation;
       const Eigen::Index a = 2 * count() + i;
+      jacobian(a, a) = law.rateSlope(u_[i], y[a]);
+      addSecond<N>(dForce_dq, -r.tendonForce, path);
+      if (!arm_.muscles()[si].muscle.hasFibreState()) {
+        const muscles::RigidRate<double>& rigid = rigid_[si];
+        along_ = rigid.dF_dPathLength * path.dL_dq;
+        addSecondTimes<N>(along_, rigid.dF_dPathSpeed, path, qDot_);
+        dForce_dq.noalias() -= path.dL_dq * along_.transpose();
+        addOuter<N>(dForce_dqDot, -rigid.dF_dPathSpeed, path);
+        if (!law.isDirect()) {
+          jacobian.block(count(), a, n, Eigen::fix<1>) =
+              -factor_.solve(Vector(rigid.dF_dActivation * path.dL_dq));
+        }
+        continue;
+      }
+      addOuter<N>(dForce_dq, -r.dF_dMuscleTendonLength, path);
       const Eigen::Index l = a + numMuscles_;
       jacobian.block(count(), l, n, Eigen::fix<1>) =
           -factor_.solve(Vector(r.dF_dFibreLength * path.dL_dq));
-      const auto& law = arm_.muscles()[si].activation;
-      jacobian(a, a) = -law.rateConstant(u_[i], u_[i] >= y[a]);
       jacobian.block(l, 0, Eigen::fix<1>, n) = r.dV_dMuscleTendonLength * path.dL_dq.transpose();
-      jacobian(l, a) = r.dV_dActivation;
+      if (!law.isDirect()) jacobian(l, a) = r.dV_dActivation;
       jacobian(l, l) = r.dV_dFibreLength;
     }
     jacobian.block(count(), 0, n, n) = factor_.solve(dForce_dq);
@@ -198,10 +206,18 @@ class SystemDynamics {
     muscle_.setZero();
     for (Eigen::Index i = 0; i < numMuscles_; ++i) {
       const auto si = static_cast<std::size_t>(i);
-      rate_[si] = fibreRateDerivatives(arm_.muscles()[si].muscle, y[2 * count() + i],
-                                       y[2 * count() + numMuscles_ + i],
-                                       configuration_.length(si).length, pieces_[si]);
-      muscle_ -= rate_[si].tendonForce * configuration_.length(si).dL_dq;
+      const SystemMuscle& muscle = arm_.muscles()[si];
+      const LengthJet<N>& path = configuration_.length(si);
+      const double activation = muscle.activation.acting(u_[i], y[2 * count() + i]);
+      if (muscle.muscle.hasFibreState()) {
+        rate_[si] = muscle.muscle.rate(activation, y[2 * count() + numMuscles_ + i], path.length,
+                                       pieces_[si]);
+      } else {
+        rigid_[si] = muscle.muscle.rigidRate(activation, path.length, path.dL_dq.dot(qDot_));
+        rate_[si] = {};
+        rate_[si].tendonForce = rigid_[si].tendonForce;
+      }
+      addAlong<N>(muscle_, -rate_[si].tendonForce, path);
     }
     force_ = muscle_ + passive_ + external_;
     addInertia(force_);
@@ -215,11 +231,12 @@ class SystemDynamics {
   int numCoordinates_;
   Eigen::Index numMuscles_;
   State u_;
-  std::vector<FibreRateDerivatives> rate_;
+  std::vector<FibreRateDerivatives> rate_;  ///< with a rigid tendon the fibre stays as it is
+  std::vector<muscles::RigidRate<double>> rigid_;
   std::vector<SchuttePieces> pieces_;  ///< of the last state
   std::size_t hint_ = 0;
   std::size_t externalRow_ = 0;
-  Vector q_, qDot_, acceleration_, force_, muscle_, passive_, external_;
+  Vector q_, qDot_, acceleration_, force_, muscle_, passive_, external_, along_;
   Matrix tau_q_, tau_v_;
   Eigen::LDLT<Matrix> factor_;
   std::optional<TreeRates> rates_;

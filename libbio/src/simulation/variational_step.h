@@ -111,8 +111,14 @@ class VariationalStepper {
         const auto si = static_cast<Eigen::Index>(i);
         const LengthJet<N>& path = configuration_.length(i);
         const double l_m = (begin.fibreLength[si] + end.fibreLength[si]) / 2;
-        rate_[i] = fibreRateDerivatives(arm_.muscles()[i].muscle, activation[si], l_m, path.length,
-                                        pieces_[i]);
+        const SimulatedMuscle& muscle = arm_.muscles()[i].muscle;
+        if (!muscle.hasFibreState()) {
+          addRigid(i, activation[si], path, v, h, dTau);
+          continue;
+        }
+        rate_[i] =
+            muscle.rateNear(activation[si], l_m, path.length,
+                            (end.fibreLength[si] - begin.fibreLength[si]) / h, h, pieces_[i]);
         const FibreRateDerivatives& r = rate_[i];
         addAlong<N>(muscle_, -r.tendonForce, path);
         addOuter<N>(dTau, -(r.dF_dMuscleTendonLength / 2), path);
@@ -204,6 +210,25 @@ class VariationalStepper {
   static constexpr double largestTurn = 0.3;        ///< [rad] per iteration
   static constexpr double largestFibreStep = 0.25;  ///< of ℓ0 per iteration
 
+  /// The force of a muscle with a rigid tendon and its derivatives in the end configuration; its
+  /// fibre has no equation and stays as it is.
+  void addRigid(std::size_t i, double activation, const LengthJet<N>& path, const Vector& v,
+                double h, Matrix& dTau) {
+    const muscles::RigidRate<double> r =
+        arm_.muscles()[i].muscle.rigidRate(activation, path.length, path.dL_dq.dot(v));
+    addAlong<N>(muscle_, -r.tendonForce, path);
+    // ∂F over the end configuration
+    auto&& F_q = work_.template vector<8>();
+    F_q = (r.dF_dPathLength / 2 + r.dF_dPathSpeed / h) * path.dL_dq;
+    addSecondTimes<N>(F_q, r.dF_dPathSpeed / 2, path, v);
+    dTau.noalias() -= path.dL_dq * F_q.transpose();
+    addSecond<N>(dTau, -(r.tendonForce / 2), path);
+    rate_[i] = {};
+    rate_[i].tendonForce = r.tendonForce;
+    residual_[static_cast<Eigen::Index>(i)] = 0;
+    inverse_[static_cast<Eigen::Index>(i)] = 0;
+  }
+
   void solveSmall(const Matrix& J, const Vector& b, Vector& x) {
     if constexpr (N == 1) {
       x = b / J(0, 0);
@@ -224,7 +249,7 @@ class VariationalStepper {
   Vector muscle_;
   Vector passive_;
   Vector external_;
-  Scratch<N, 8, 8> work_;
+  Scratch<N, 9, 8> work_;
   Eigen::PartialPivLU<Matrix> factor_;
   std::size_t row_ = 0;  ///< of the external force
 };

@@ -30,17 +30,17 @@ double lengthAt(const SchutteMuscle<double>& muscle, const Point& point) {
 TEST(MuscleParameters, DerivativesAgreeWithTheScalarType) {
   const fixtures::ShippedElbow elbow;
   for (const SystemMuscle& m : elbow.arm.muscles()) {
-    const SchutteQuantities<double>& p = m.muscle.quantities();
+    const SchutteQuantities<double>& p = m.muscle.schutte().quantities();
     const SchutteQuantities<D> q{D(p.maxIsometricForce, 6, 0), D(p.optimalFibreLength, 6, 1),
                                  D(p.tendonSlackLength, 6, 2), D(p.pennation, 6, 3),
                                  D(p.timeScale, 6, 5),         D(p.damping, 6, 4)};
-    const SchutteMuscle<D> dual(q, m.muscle.curves(), m.muscle.options());
+    const SchutteMuscle<D> dual(q, m.muscle.schutte().curves(), m.muscle.schutte().options());
     for (const Point& point : points) {
       const double l = point.fibre * p.optimalFibreLength;
-      const double L = lengthAt(m.muscle, point);
+      const double L = lengthAt(m.muscle.schutte(), point);
       const FibreRate<D> rate = dual.fibreVelocity(D(point.activation), D(l), D(L));
       const FibreParameterDerivatives d =
-          fibreParameterDerivatives(m.muscle, point.activation, l, L);
+          fibreParameterDerivatives(m.muscle.schutte(), point.activation, l, L);
       for (std::size_t k = 0; k < 6; ++k) {
         const double V = rate.fibreVelocity.derivatives()[static_cast<Eigen::Index>(k)];
         const double F = rate.tendonForce.derivatives()[static_cast<Eigen::Index>(k)];
@@ -94,7 +94,7 @@ TEST(MuscleParameters, CurveScalesAgreeWithScaledCurves) {
 
 TEST(MuscleParameters, AStrongerMuscleIsNoFaster) {
   const fixtures::ShippedElbow elbow;
-  const SchutteMuscle<double>& muscle = elbow.arm.muscles()[6].muscle;
+  const SchutteMuscle<double>& muscle = elbow.arm.muscles()[6].muscle.schutte();
   const double l = 0.95 * muscle.quantities().optimalFibreLength;
   const double L = lengthAt(muscle, points[0]);
   const auto d = fibreParameterDerivatives(muscle, 0.3, l, L);
@@ -143,7 +143,7 @@ TEST(MuscleParameters, AFibreAtRestFollowsWhatHoldsIt) {
 TEST(MuscleParameters, AFibreBesideASlackTendonFollowsItsLength) {
   // so short that neither pulls
   const fixtures::ShippedElbow elbow;
-  const SchutteMuscle<double>& muscle = elbow.arm.muscles()[3].muscle;
+  const SchutteMuscle<double>& muscle = elbow.arm.muscles()[3].muscle.schutte();
   ASSERT_EQ(elbow.arm.muscles()[3].name, "ANC");
   const auto restAt = [&](double L) { return staticEquilibrium(muscle, 0.01, L); };
   const SchutteQuantities<double>& p = muscle.quantities();

@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "bio/muscle/muscle_variant.h"
+
 /// A musculoskeletal model as plain data: the content of an .osim file. SI units and radians
 /// throughout. Names are unique within their list and refer to each other by name.
 namespace bio {
@@ -202,6 +204,9 @@ struct Muscle {
   bool enabled = true;    ///< false: appliesForce=false / isDisabled=true
   Path path;
   std::optional<SchutteParameters> schutte;  ///< present if the class is a Schutte muscle
+  /// Present if it is another class that can be simulated (muscle_variant.h).
+  std::optional<muscles::AnyParameters> hill = {};
+  bool canBeSimulated() const { return schutte || hill; }
   friend bool operator==(const Muscle&, const Muscle&) = default;
 };
 
@@ -289,6 +294,9 @@ struct Model {
   std::vector<std::string> remarks;   ///< one line each: content that was interpreted differently
   friend bool operator==(const Model&, const Model&) = default;
 };
+
+/// Names of the muscle classes that can be simulated, for messages.
+std::string simulatedClasses();
 
 /// The named item, or throws std::invalid_argument with a list of the existing names.
 const Body& findBody(const Model& model, const std::string& name);

@@ -52,8 +52,12 @@ struct DeGrooteFregly2016Parameters : HillParameters<T>, MuscleSwitches {
   }
   /// @throws std::invalid_argument naming number, value and rule
   void requireRules() const;
+  /// Whether the number of that place is one; all are.
+  constexpr bool isGiven(std::size_t) const { return true; }
   /// The activation dynamics that numbers and switches mean.
   AnyActivation activation() const;
+  friend bool operator==(const DeGrooteFregly2016Parameters&,
+                         const DeGrooteFregly2016Parameters&) = default;
 };
 
 namespace degroote {
@@ -93,6 +97,7 @@ class DeGrooteFregly2016 {
   static constexpr std::size_t dampingPlace = 5;
   static constexpr std::size_t minimumActivationPlace = Parameters::count;  ///< none
   static constexpr bool rigidForceIsCut = false;
+  static constexpr bool stepsByBalance = true;
 
   explicit DeGrooteFregly2016(const Parameters& p) : p_(p) {
     using std::exp;

@@ -18,12 +18,13 @@ struct FibreRest {
     forceFree,       ///< neither carries force; fibreLength leaves the tendon just slack
     tendonTooShort,  ///< L ≤ ℓs: the tendon is slack at every fibre length
     notBracketed,    ///< no sign change of the force difference between the borders
+    held,            ///< it would be shorter than the class lets it; the tendon may be slack
   };
   Why why;
-  double fibreLength;  ///< ℓ [m]; NaN unless found or forceFree
-  double tendonForce;  ///< F_T [N]; NaN unless found or forceFree
+  double fibreLength;  ///< ℓ [m]; NaN unless usable
+  double tendonForce;  ///< F_T [N]; NaN unless usable
   int count;           ///< stable rests seen; above 1 the one nearest ℓ0 is given
-  bool isUsable() const { return why == Why::found || why == Why::forceFree; }
+  bool isUsable() const { return why == Why::found || why == Why::forceFree || why == Why::held; }
 };
 
 /// One line for people.
@@ -34,10 +35,11 @@ void requireFiniteRest(double activation, double pathLength);
 
 /// The stable fibre length with V(a, ℓ, L) = 0, i.e. where f_T − (A + f_PE) cos α falls through 0:
 /// looked for in 64 cells between the shortest fibre and the one that leaves the tendon slack, then
-/// by a bracketing method. With a rigid tendon the fibre's length follows from the path.
+/// by a bracketing method. A class that holds its fibres has it rest at shortestFibre() where
+/// every longer one would shorten. With a rigid tendon the fibre's length follows from the path.
 ///
 /// Departure from OpenSim: where several rests exist it takes the one that Newton's method finds
-/// from ℓ_T = 1.01 ℓs; and it does not let the fibre rest below shortestFibre().
+/// from ℓ_T = 1.01 ℓs.
 /// @throws std::invalid_argument for an activation or length that is not finite
 template <class Shape>
 FibreRest restingFibre(const HillMuscle<Shape>& muscle, double activation, double pathLength) {
@@ -45,7 +47,10 @@ FibreRest restingFibre(const HillMuscle<Shape>& muscle, double activation, doubl
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const auto& p = muscle.parameters();
   const Shape& shape = muscle.shape();
-  if (pathLength <= p.tendonSlackLength) return {FibreRest::Why::tendonTooShort, nan, nan, 0};
+  const double least = muscle.hasFibreState() && holdsFibre<Shape> ? muscle.shortestFibre() : 0;
+  if (pathLength <= p.tendonSlackLength && !(least > 0)) {
+    return {FibreRest::Why::tendonTooShort, nan, nan, 0};
+  }
   if (!muscle.hasFibreState()) {
     const RigidRate<double> rate = muscle.rigidRate(activation, pathLength, 0.0);
     const bool loaded = rate.tendonForce > 0;
@@ -61,11 +66,12 @@ FibreRest restingFibre(const HillMuscle<Shape>& muscle, double activation, doubl
     const double fibre = act * shape.activeForce(l).value + shape.passiveForce(l).value;
     return shape.tendonForce((pathLength - d) * muscle.perTendon() - 1).value - fibre * d / length;
   };
-  const double lower = std::max(w, 1e-6 * p.optimalFibreLength);
-  const double upper = std::hypot(pathLength - p.tendonSlackLength, w);
+  const double lower = std::max({w, least, 1e-6 * p.optimalFibreLength});
+  const double upper = std::hypot(std::max(pathLength - p.tendonSlackLength, 0.0), w);
   constexpr int cells = 64;
   FibreRest rest{FibreRest::Why::notBracketed, nan, nan, 0};
-  double a = lower, fa = difference(lower);
+  const double atLower = difference(lower);
+  double a = lower, fa = atLower;
   for (int i = 1; i <= cells; ++i) {
     const double b = i == cells ? upper : lower + (upper - lower) * i / cells;
     const double fb = difference(b);
@@ -84,6 +90,9 @@ FibreRest restingFibre(const HillMuscle<Shape>& muscle, double activation, doubl
     const double strain = muscle.tendonStrain(rest.fibreLength, pathLength);
     rest.tendonForce = p.maxIsometricForce * shape.tendonForce(strain).value;
     rest.why = rest.tendonForce > 0 ? FibreRest::Why::found : FibreRest::Why::forceFree;
+  } else if (least > 0 && (atLower <= 0 || upper <= least)) {
+    const double force = shape.tendonForce(muscle.tendonStrain(least, pathLength)).value;
+    rest = {FibreRest::Why::held, least, p.maxIsometricForce * force, 1};
   } else if (fa >= 0 && fa < 1e-12) {
     rest = {FibreRest::Why::forceFree, upper, 0, 0};  // they part without force
   }
@@ -98,7 +107,8 @@ struct RestDerivatives {
   PerNumber<Shape> dl_dNumber{};  ///< ∂ℓ/∂θ [m per unit]
 };
 
-/// By the implicit function theorem on fibreBalance at ℓ̇ = 0; where fibre and tendon carry no force
+/// By the implicit function theorem on fibreBalance at ℓ̇ = 0; of shortestFibre() where the fibre is
+/// held; where fibre and tendon carry no force
 /// (F_T < 1e-9 F0) or the tendon is rigid, of ℓ = √((L − ℓs)² + w²).
 template <class Shape>
 RestDerivatives<Shape> restDerivatives(const HillMuscle<Shape>& muscle, double activation,
@@ -106,6 +116,12 @@ RestDerivatives<Shape> restDerivatives(const HillMuscle<Shape>& muscle, double a
   const auto& p = muscle.parameters();
   RestDerivatives<Shape> r{};
   const double length = rest.fibreLength;
+  if constexpr (holdsFibre<Shape>) {
+    if (rest.why == FibreRest::Why::held) {
+      r.dl_dNumber = shortestFibreInNumbers(muscle);
+      return r;
+    }
+  }
   if (!muscle.hasFibreState() || rest.tendonForce < 1e-9 * p.maxIsometricForce) {
     const double along = (pathLength - p.tendonSlackLength) / length;
     const double across = muscle.thickness() / length;

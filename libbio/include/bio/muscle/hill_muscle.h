@@ -55,9 +55,9 @@ struct RigidRate {
 /// a acts as clamped to the class's least and largest activation. Domain: ℓ > w (and > 0); outside
 /// every result is NaN, so that an iteration which steps there sees a failed step.
 ///
-/// Departure from OpenSim: it holds a fibre at shortestFibre() (ℓ̇ = 0 unless it lengthens, the
-/// force on the skeleton unchanged); here the equation goes on, since a fibre that gets there is
-/// outside what the law describes, which isHeldByOpenSim() tells.
+/// Where OpenSim holds a fibre, at shortestFibre() (ℓ̇ = 0 unless it lengthens, the force on the
+/// skeleton unchanged), the law itself goes on; holding is what SimulatedMuscle and restingFibre
+/// do.
 template <class S>
 class HillMuscle {
  public:
@@ -85,7 +85,7 @@ class HillMuscle {
 
   /// Whether the fibre's length is a state: false with a rigid tendon.
   bool hasFibreState() const { return !parameters().ignoreTendonCompliance; }
-  /// Below it OpenSim holds the fibre [m].
+  /// Below it OpenSim holds the fibre [m], if the class does so.
   double shortestFibre() const { return shape_.shortestFibre(thickness_); }
   bool isHeldByOpenSim(double fibreLength) const { return fibreLength <= shortestFibre(); }
 

@@ -39,6 +39,7 @@ struct FibreSpeed {
 ///     damping()    B of the fibre force's term B·v, and whether it follows its own number;
 ///     dampingPlace, minimumActivationPlace   places of the two numbers, `count` if there is none
 ///     minimumActivation(), maximumActivation()   activation acts as clamped to them
+///     stepsByBalance     an implicit step solves the balance of forces, not ℓ̇ = V(a, ℓ, L)
 ///     shortestFibre(w)   length below which OpenSim holds the fibre [m], w = ℓ0 sin α0
 ///
 /// Curves take any argument of the shape's number type, plain ones also dual numbers.
@@ -65,6 +66,7 @@ concept HillShape = requires(const S& s, const typename S::Number& x, double d) 
   { s.maximumActivation() } -> std::convertible_to<double>;
   { s.shortestFibre(x) } -> std::convertible_to<double>;
   { S::rigidForceIsCut } -> std::convertible_to<bool>;
+  { S::stepsByBalance } -> std::convertible_to<bool>;
 };
 
 }  // namespace bio::muscles

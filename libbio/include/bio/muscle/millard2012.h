@@ -115,8 +115,14 @@ struct Millard2012Parameters : HillParameters<T>, MuscleSwitches {
   /// Ranges and the rules between numbers.
   /// @throws std::invalid_argument naming number, value and rule
   void requireRules() const;
+  /// Whether the number of that place is one: without the optional numbers of a curve theirs are
+  /// not.
+  constexpr bool isGiven(std::size_t i) const {
+    return i >= 13 && i <= 15 ? passiveShapeIsGiven : i < 17 || i > 19 || tendonShapeIsGiven;
+  }
   /// The activation dynamics that numbers and switches mean.
   AnyActivation activation() const;
+  friend bool operator==(const Millard2012Parameters&, const Millard2012Parameters&) = default;
 };
 
 // The curves with the numbers that act in them, after OpenSim's silent changes.
@@ -182,6 +188,7 @@ class Millard2012 {
   static constexpr std::size_t dampingPlace = 5;
   static constexpr std::size_t minimumActivationPlace = 30;
   static constexpr bool rigidForceIsCut = true;
+  static constexpr bool stepsByBalance = false;
 
   explicit Millard2012(const Parameters& p)
       : p_(p),

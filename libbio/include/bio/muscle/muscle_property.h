@@ -56,6 +56,7 @@ struct HillParameters {
   T tendonSlackLength = T(0.2);        ///< ℓs [m] > 0
   T pennation = T(0.0);                ///< α0 at ℓ0 [rad], 0 ≤ α0 < π/2
   T maxContractionVelocity = T(10.0);  ///< V [ℓ0/s] > 0
+  friend bool operator==(const HillParameters&, const HillParameters&) = default;
 };
 
 /// What of a muscle class is switched rather than measured.

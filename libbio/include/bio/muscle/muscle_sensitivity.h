@@ -16,12 +16,43 @@ inline constexpr std::size_t tendonStrain = 0, activeForce = 1, activeWidth = 2,
 }
 
 /// How many numbers results are differentiated in: one per property of the class, in the order of
-/// Parameters::properties, then one per scale. maximum_pennation_angle and the time constants of
-/// the activation enter no result here.
+/// Parameters::properties, then one per scale. maximum_pennation_angle enters only where a
+/// fibre is held, the time constants of the activation no result here.
 template <class Shape>
 inline constexpr std::size_t numNumbers = Shape::Parameters::count + scales::count;
 template <class Shape>
 using PerNumber = std::array<double, numNumbers<Shape>>;
+
+/// Whether fibres of the class are held at shortestFibre(): of those with a largest pennation.
+template <class Shape>
+inline constexpr bool holdsFibre =
+    placeOf<typename Shape::Parameters>("maximum_pennation_angle") < Shape::Parameters::count;
+
+/// ∂/∂θ of shortestFibre() of a class that holds its fibres: of the shortest active fibre where the
+/// class has one and that is longer, else of w/sin α_max.
+template <class Shape>
+PerNumber<Shape> shortestFibreInNumbers(const HillMuscle<Shape>& muscle) {
+  static_assert(holdsFibre<Shape>);
+  using Parameters = typename Shape::Parameters;
+  constexpr std::size_t activePlace =
+      placeOf<Parameters>("ActiveForceLengthCurve/min_norm_active_fiber_length");
+  constexpr std::size_t pennationPlace = placeOf<Parameters>("maximum_pennation_angle");
+  const Parameters& p = muscle.parameters();
+  const double largest = Parameters::at(p, pennationPlace);
+  PerNumber<Shape> r{};
+  if constexpr (activePlace < Parameters::count) {
+    const double active = Parameters::at(p, activePlace);
+    if (active * p.optimalFibreLength >= muscle.thickness() / std::sin(largest)) {
+      r[common::optimalFibreLength] = active;
+      r[activePlace] = p.optimalFibreLength;
+      return r;
+    }
+  }
+  r[common::optimalFibreLength] = std::sin(p.pennation) / std::sin(largest);
+  r[common::pennation] = p.optimalFibreLength * std::cos(p.pennation) / std::sin(largest);
+  r[pennationPlace] = -muscle.shortestFibre() / std::tan(largest);
+  return r;
+}
 
 /// Partial derivatives of an equation's left-hand side and of the tendon force in a muscle's
 /// numbers. At a kink those of the side that the law itself takes.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string_view>
 #include <variant>
 
@@ -22,6 +23,13 @@ struct ClassList {
   using Parameters = std::variant<typename Shapes<double>::Parameters...>;
   /// A muscle of any class, ready to be evaluated.
   using Muscle = std::variant<HillMuscle<Shapes<double>>...>;
+
+  /// OpenSim's names of the classes.
+  static constexpr std::array<std::string_view, sizeof...(Shapes)> names{
+      Shapes<double>::className...};
+  static constexpr bool has(std::string_view className) {
+    return ((className == Shapes<double>::className) || ...);
+  }
 
   /// A muscle of that class at OpenSim's defaults.
   /// @throws std::invalid_argument naming the class if it is not in the list

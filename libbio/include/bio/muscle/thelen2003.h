@@ -71,8 +71,11 @@ struct Thelen2003Parameters : HillParameters<T>, MuscleSwitches {
   /// Ranges and the rules between numbers.
   /// @throws std::invalid_argument naming number, value and rule
   void requireRules() const;
+  /// Whether the number of that place is one; all are.
+  constexpr bool isGiven(std::size_t) const { return true; }
   /// The activation dynamics that numbers and switches mean.
   AnyActivation activation() const;
+  friend bool operator==(const Thelen2003Parameters&, const Thelen2003Parameters&) = default;
 };
 
 /// The shape of Thelen's muscle (Thelen 2003, J. Biomech. Eng. 125; OpenSim 4.6, Thelen2003Muscle):
@@ -99,6 +102,7 @@ class Thelen2003 {
   static constexpr std::size_t dampingPlace = Parameters::count;  ///< none
   static constexpr std::size_t minimumActivationPlace = 15;
   static constexpr bool rigidForceIsCut = true;
+  static constexpr bool stepsByBalance = false;
 
   explicit Thelen2003(const Parameters& p) : p_(p) {
     using std::exp;

@@ -10,7 +10,7 @@ namespace bio {
 ///
 /// Read are: bodies, joints (Weld, Pin, Slider, Universal, Planar, Gimbal, Free, Custom),
 /// coordinates, CoordinateCouplerConstraint, wrap objects, paths of all muscles, parameters of
-/// Schutte1993Muscle_Deprecated, CoordinateLimitForce, SpringGeneralizedForce,
+/// those of simulatedClasses(), CoordinateLimitForce, SpringGeneralizedForce,
 /// ExpressionBasedCoordinateForce. Offset frames are folded into their bodies. For missing elements
 /// the model's <defaults> apply, then OpenSim's own defaults: mass_center 0, inertia 0, coordinate
 /// 0 in ±10, quadrant all, F0 1000 N, ℓ0 0.1 m, ℓs 0.2 m, pennation 0, damping 0.1, and the curves
@@ -22,7 +22,8 @@ Model readOsim(const std::filesystem::path& file);
 
 /// Writes the model as a fresh OpenSim 4 document. The file appears complete or not at all.
 /// @throws FileError if it cannot be written, or the model breaks a rule of model.h
-/// @throws std::invalid_argument if a muscle is not a Schutte muscle, whose parameters Model lacks
+/// @throws std::invalid_argument if a muscle is not of simulatedClasses(), so that Model lacks its
+/// numbers
 void writeOsim(const Model& model, const std::filesystem::path& file);
 
 /// Writes to `file` a copy of the document `original` that is changed to describe `model`: numbers

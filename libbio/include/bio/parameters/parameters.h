@@ -20,6 +20,12 @@ struct MuscleTarget {
   MuscleQuantity quantity;
   friend bool operator==(const MuscleTarget&, const MuscleTarget&) = default;
 };
+/// A number of a muscle of another class than Schutte's.
+struct MuscleNumberTarget {
+  std::size_t muscle;
+  std::size_t place;  ///< in the class's table of properties
+  friend bool operator==(const MuscleNumberTarget&, const MuscleNumberTarget&) = default;
+};
 struct PointTarget {
   std::size_t muscle, point;
   int axis;  ///< 0 x, 1 y, 2 z of the location in the body
@@ -68,9 +74,9 @@ struct InitialTarget {
   bool isSpeed;
   friend bool operator==(const InitialTarget&, const InitialTarget&) = default;
 };
-using ParameterTarget =
-    std::variant<MuscleTarget, PointTarget, WrapTarget, BodyTarget, LimitForceTarget,
-                 SpringForceTarget, ExpressionTarget, GravityTarget, EmgTarget, InitialTarget>;
+using ParameterTarget = std::variant<MuscleTarget, PointTarget, WrapTarget, BodyTarget,
+                                     LimitForceTarget, SpringForceTarget, ExpressionTarget,
+                                     GravityTarget, EmgTarget, InitialTarget, MuscleNumberTarget>;
 
 /// A parameter of the model, of the relation between EMG and excitation, or of the initial state,
 /// with its name.
@@ -97,8 +103,9 @@ struct StartPoint {
 /// All parameters that affect the motion, by name.
 ///
 /// Parameters of muscles have OpenSim's names (max_isometric_force, optimal_fiber_length,
-/// tendon_slack_length, pennation_angle, damping, time_scale, activation1, activation2), points by
-/// their index (TRIlong.point2.x), wrap objects by name (TRI.radius, TRI.translation.x,
+/// tendon_slack_length, pennation_angle, damping, time_scale, activation1, activation2; of other
+/// classes FmaxTendonStrain, TendonForceLengthCurve/strain_at_one_norm_force, …), points by their
+/// index (TRIlong.point2.x), wrap objects by name (TRI.radius, TRI.translation.x,
 /// TRI.rotation.x), bodies by name (hand.mass, hand.mass_center.x, hand.inertia.xx), passive forces
 /// by name (elbow_flexion_ligaments.upper_stiffness). emg.BRA.gain, emg.delay, emg.nonlinearity;
 /// initial.elbow_flexion, initial.elbow_flexion.speed. Groups: activation.time_scale, emg.gain, …
@@ -117,6 +124,9 @@ class ParameterCatalogue {
   /// Index of a name; spelling variants are understood (optimal_fibre_length, pennation, x for
   /// translation.x of a wrap object). @throws std::invalid_argument with the nearest names
   std::size_t find(const std::string& name) const;
+
+  /// Whether a parameter has exactly this name.
+  bool has(const std::string& name) const;
 
   /// Indices of names, in order, each once. A name may contain `*`; "all" means all except groups.
   /// @throws std::invalid_argument as find does, if a pattern matches nothing, or if a group is

@@ -6,8 +6,8 @@
 
 #include "bio/forces/coordinate_force.h"
 #include "bio/model/model.h"
-#include "bio/muscle/activation/activation.h"
-#include "bio/muscle/schutte_muscle.h"
+#include "bio/muscle/activation_dynamics.h"
+#include "bio/muscle/simulated_muscle.h"
 #include "bio/path/path.h"
 #include "bio/path/tree_path.h"
 #include "bio/skeleton/skeleton.h"
@@ -19,15 +19,15 @@ struct SystemOptions {
   SkeletonOptions skeleton;  ///< free coordinates, and values of the locked ones
   std::vector<std::string>
       wrapAsCylinder;          ///< ellipsoids with two equal semi-axes to treat as cylinders
-  SchutteOptions muscle;       ///< activation floor, treatment of negative forces
+  SchutteOptions muscle;       ///< of Schutte's class: activation floor, negative forces
   bool tabulatePaths = false;  ///< MusclePath::tabulate; worthwhile after a few simulations
 };
 
 /// One muscle ready to be simulated.
 struct SystemMuscle {
   std::string name;
-  SchutteMuscle<double> muscle;
-  SchutteActivation<double> activation;
+  SimulatedMuscle muscle;
+  ActivationDynamics activation;
   MusclePath path;
 };
 
@@ -38,7 +38,7 @@ struct SystemMuscle {
 class MusculoskeletalSystem {
  public:
   /// @throws std::invalid_argument what Skeleton and MusclePath throw, non-physical muscle
-  ///   parameters, a moving muscle of a class other than Schutte's, free coordinates that move no
+  ///   parameters, a moving muscle of a class that is not known, free coordinates that move no
   ///   mass, a moving body with a negative principal moment of inertia
   MusculoskeletalSystem(const Model& model, const SystemOptions& options);
 
@@ -81,6 +81,7 @@ class MusculoskeletalSystem {
   Skeleton skeleton_;
   CoordinateForces coordinateForces_;
   std::vector<std::unique_ptr<const SchutteCurves>> curves_;
+  std::vector<std::unique_ptr<const muscles::AnyMuscle>> others_;  ///< of classes but Schutte's
   std::vector<SystemMuscle> muscles_;
   std::unique_ptr<ArticulatedTree> tree_;
   std::vector<TreePath> treePaths_;

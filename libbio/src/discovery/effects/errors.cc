@@ -69,10 +69,16 @@ void addNuisances(EncompassingModel& model) {
   if (model.arm().numMuscles() > 0) {
     std::vector<Meaning::Part> parts;
     for (const SystemMuscle& muscle : model.arm().muscles()) {
-      // rates, so that the time scale of the fibres' velocity stays as it is
-      for (const char* rate : {".activation1", ".activation2"}) {
-        for (const auto& part : model.numbers(muscle.name + rate)) {
-          parts.push_back({part.number, -1});
+      if (muscle.activation.schutte()) {
+        // rates, so that the time scale of the fibres' velocity stays as it is
+        for (const char* rate : {".activation1", ".activation2"}) {
+          for (const auto& part : model.numbers(muscle.name + rate)) {
+            parts.push_back({part.number, -1});
+          }
+        }
+      } else if (!muscle.activation.isDirect()) {
+        for (const char* time : {".activation_time_constant", ".deactivation_time_constant"}) {
+          for (const auto& part : model.numbers(muscle.name + time)) parts.push_back(part);
         }
       }
     }
@@ -128,8 +134,13 @@ void addMuscleErrors(EncompassingModel& model) {
 void addTendonCompliance(EncompassingModel& model) {
   std::vector<Meaning::Part> parts;
   for (const SystemMuscle& muscle : model.arm().muscles()) {
-    for (const auto& part : model.numbers(muscle.name + ".tendon_strain_scale"))
-      parts.push_back(part);
+    const auto names = {".tendon_strain_scale", ".FmaxTendonStrain",
+                        ".tendon_strain_at_one_norm_force",
+                        ".TendonForceLengthCurve/strain_at_one_norm_force"};
+    for (const char* name : names) {
+      if (!model.parameters().has(muscle.name + name)) continue;
+      for (const auto& part : model.numbers(muscle.name + name)) parts.push_back(part);
+    }
   }
   if (parts.empty()) return;
   const std::size_t x =

@@ -48,7 +48,8 @@ class HingeCompiler {
 
  private:
   bool add(const SystemMuscle& given) {
-    const SchutteMuscle<double>& m = given.muscle;
+    if (!given.muscle.ifSchutte()) return false;  // no kernel in lanes
+    const SchutteMuscle<double>& m = *given.muscle.ifSchutte();
     LaneMuscle<Single> muscle{};
     muscle.force = m.quantities().maxIsometricForce;
     muscle.perFibre = m.perFibre();
