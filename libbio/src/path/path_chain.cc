@@ -39,10 +39,10 @@ std::size_t nearestStart(const PathChain& chain, const ChainEnds& ends) {
 
 }  // namespace
 
-Surface surfaceOf(const PathSurface& surface) {
+Surface surfaceOf(const PathSurface& surface, double radius) {
   if (surface.general) return *surface.general;
-  if (surface.isSphere) return SphereSurface(surface.radius);
-  return CylinderSurface(surface.radius);
+  if (surface.isSphere) return SphereSurface(radius);
+  return CylinderSurface(radius);
 }
 
 ChainEnds chainEnds(const PathChain& chain, const ChainPlacements& X_GC, const Vec3<double>& P,
@@ -65,9 +65,9 @@ PlacedChain placeChain(const CompiledPath& path, const PathChain& chain,
   placed.count = static_cast<std::size_t>(chain.count);
   for (std::size_t j = 0; j < placed.count; ++j) {
     const PathChain::Member& member = chain.members[j];
-    PathSurface surface = path.surfaces[member.surface];
-    if (radii != nullptr && !surface.general) surface.radius = radii[surface.wrap];
-    placed.objects[j] = {surfaceOf(surface), X_GC[j].R, X_GC[j].p, member.hint};
+    const PathSurface& surface = path.surfaces[member.surface];
+    const double radius = radii != nullptr ? radii[surface.wrap] : surface.radius;
+    placed.objects[j] = {surfaceOf(surface, radius), X_GC[j].R, X_GC[j].p, member.hint};
   }
   return placed;
 }

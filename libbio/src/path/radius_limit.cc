@@ -45,7 +45,7 @@ RadiusLimit radiusLimit(const CompiledPath& path, std::size_t wrap,
       for (const SpanSurface& way : span.surfaces) {
         const PathSurface& surface = path.surfaces[way.surface];
         if (surface.wrap != wrap) continue;
-        const Surface shape = surfaceOf(surface);
+        const Surface shape = surfaceOf(surface, surface.radius);
         radius = std::visit([&](const auto& each) { return each.number(number); }, shape);
         for (const std::size_t node : {span.a, span.b}) {
           const Vec3<double> p_G = nodePosition(path, path.nodes[node], posture);

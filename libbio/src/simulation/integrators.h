@@ -9,21 +9,12 @@
 
 namespace bio::stepping {
 
-/// Calls function(std::integral_constant<int, N>) with N = number of free coordinates, or
+/// Calls function(std::integral_constant<int, N>) with N = 1 for one free coordinate, or
 /// Eigen::Dynamic for a skeleton that is evaluated as a tree.
 template <class F>
 decltype(auto) withCoordinates(const Skeleton& skeleton, F&& function) {
   if (skeleton.tree()) return function(std::integral_constant<int, Eigen::Dynamic>{});
-  switch (skeleton.numCoordinates()) {
-    case 1:
-      return function(std::integral_constant<int, 1>{});
-    case 2:
-      return function(std::integral_constant<int, 2>{});
-    case 3:
-      return function(std::integral_constant<int, 3>{});
-    default:
-      return function(std::integral_constant<int, 4>{});
-  }
+  return function(std::integral_constant<int, 1>{});
 }
 
 /// Trajectory with room for `rows` rows, filled from the front.

@@ -54,7 +54,8 @@ struct PathSurface {
 };
 
 /// The surface of any kind, as chains need it.
-Surface surfaceOf(const PathSurface& surface);
+/// @param radius  of a cylinder or sphere [m]
+Surface surfaceOf(const PathSurface& surface, double radius);
 
 /// A surface that a span may touch, and the side on which it then passes.
 struct SpanSurface {
