@@ -189,35 +189,44 @@ class ChainCompiler {
   }
 
   // The ways in a posture as if it were the only one.
-  Found decidedHere(const ChainPosture& here, PlacedChain placed, const Posture& posture) const {
-    Found first = search(here, placed, {});
+  Found decidedHere(const ChainPosture& here, PlacedChain placed) const {
+    const Found first = search(here, placed, {});
     const bool holds = isFound(first) && passesThroughNone(first.taut, placed);
     for (std::size_t j = 0; j < placed.count; ++j) {
-      const ChainObject& object = placed.objects[j];
-      if (isInside(object.surface, object.intoFrame(here.P)) ||
-          isInside(object.surface, object.intoFrame(here.Q))) {
-        continue;
-      }
-      placed.objects[j].hint = hintIn(j, posture);
+      ChainObject& object = placed.objects[j];
+      const Vec3<double> P = object.intoFrame(here.P), Q = object.intoFrame(here.Q);
+      if (isInside(object.surface, P) || isInside(object.surface, Q)) continue;
+      object.hint = hintHere(j, object.surface, P, Q);
     }
-    Found second = search(here, placed, {});
+    const Found second = search(here, placed, {});
     if (!isFound(second) || !passesThroughNone(second.taut, placed)) return first;
     return !holds || second.taut.length < first.taut.length ? second : first;
   }
 
+  // On the named side of the chord, of "all" where the surface is nearest to it.
+  Vec3<double> hintHere(std::size_t member, const Surface& shape, const Vec3<double>& P,
+                        const Vec3<double>& Q) const {
+    const WrapQuadrant quadrant = surface(member).quadrant;
+    Vec3<double> side = directionOf(quadrant);
+    if (quadrant == WrapQuadrant::all) {
+      const Vec3<double> deepest = lowestOnSegment(shape, P, Q).point;
+      side = std::visit([&](const auto& each) { return each.gradient(deepest); }, shape);
+    }
+    if (!(side.norm() > 0)) return chain_.members[member].hint;
+    return hintTowards(shape, side, P, Q);
+  }
+
   static bool isFound(const Found& found) { return found.taut.event != ChainEvent::notFound; }
 
-  // Whether a path that was followed has wound itself out of what its objects' quadrants mean: the
-  // middle of each contact lies on the named side, of "all" there is no shorter way.
-  bool keepsItsWay(const Found& followed, const PlacedChain& placed, double shortest) const {
+  // Whether a path that was followed has not wound itself out of what its objects' quadrants mean:
+  // the middle of each contact lies on the named side.
+  bool keepsItsSides(const Found& followed, const PlacedChain& placed) const {
     for (std::size_t i = 0; i < static_cast<std::size_t>(followed.taut.numContacts); ++i) {
       const ChainContact& contact = followed.taut.contacts[i];
       const auto j = static_cast<std::size_t>(contact.object);
       const ChainObject& object = placed.objects[j];
-      if (std::holds_alternative<TorusSurface>(object.surface)) continue;
       const WrapQuadrant quadrant = surface(j).quadrant;
-      if (quadrant == WrapQuadrant::all) {
-        if (shortest < followed.taut.length - 1e-9) return false;
+      if (std::holds_alternative<TorusSurface>(object.surface) || quadrant == WrapQuadrant::all) {
         continue;
       }
       const Vec3<double> middle = shootGeodesic(object.surface, object.intoFrame(contact.A),
@@ -229,15 +238,28 @@ class ChainCompiler {
     return followed.taut.isShortest;
   }
 
-  Found decide(const ChainPosture& here, const Posture& posture, const ChainMemory* known) const {
+  // Whether it may go round another way, should that be shorter.
+  bool isFree(const Found& followed) const {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(followed.taut.numContacts); ++i) {
+      const PathSurface& touched =
+          surface(static_cast<std::size_t>(followed.taut.contacts[i].object));
+      const bool isTorus =
+          touched.general && std::holds_alternative<TorusSurface>(*touched.general);
+      if (!isTorus && touched.quadrant == WrapQuadrant::all) return true;
+    }
+    return false;
+  }
+
+  Found decide(const ChainPosture& here, const ChainMemory* known) const {
     const PlacedChain placed = placeChain(path_, chain_, here.X_GC);
-    if (known == nullptr) return decidedHere(here, placed, posture);
+    if (known == nullptr) return decidedHere(here, placed);
     const Found followed = search(here, placed, *known);
-    if (isFound(followed) && followed.taut.numContacts == 0) return followed;
-    const Found anew = decidedHere(here, placed, posture);
+    const bool keeps = isFound(followed) && keepsItsSides(followed, placed);
+    if (keeps && !isFree(followed)) return followed;
+    const Found anew = decidedHere(here, placed);
     if (!isFound(anew)) return followed;
-    if (!isFound(followed)) return anew;
-    return keepsItsWay(followed, placed, anew.taut.length) ? followed : anew;
+    const bool isShorter = anew.taut.length < followed.taut.length - 1e-9;
+    return keeps && !isShorter ? followed : anew;
   }
 
   // From the first posture to all others, each on from the nearest one known.
@@ -256,7 +278,7 @@ class ChainCompiler {
     for (std::size_t count = 0, next = first; count < n; ++count) {
       done[next] = true;
       const ChainMemory* known = from[next] < n ? &memories[from[next]] : nullptr;
-      const Found found = decide(here[next], *postures_[next], known);
+      const Found found = decide(here[next], known);
       isKept[next] = isFound(found);
       ++result_.numPostures;
       if (!isKept[next]) ++result_.numNotFound;
