@@ -132,6 +132,7 @@ const Run runs[] = {
     {"EnsembleWithSobolIndices",
      {"ensemble", model, slow, "--parameters", "TRI.radius,hand.mass", "--draws", "4", "--sobol"}},
     {"MomentArms", {"moment-arms", model, "--points", "21"}},
+    {"MomentArmsInPostures", {"moment-arms", model, "--postures", "models/elbow8_postures.csv"}},
     {"MuscleStates", {"muscle-states", "models/muscle_states.csv"}},
     {"Replay", {"replay", model, slow}},
     {"ReplayThatFails", {"replay", model, slow, "--integrator", "rk4", "--step", "0.02"}},
