@@ -150,7 +150,7 @@ class Comparison {
       groups[coordinatesOf(muscle)].push_back(&muscle);
     }
     for (const auto& [coordinates, muscles] : groups) {
-      switch (std::min<std::size_t>(coordinates.size(), bio::maxFreeCoordinates)) {
+      switch (std::min<std::size_t>(coordinates.size(), 4)) {
         case 1:
           runFree<1>(coordinates, muscles);
           break;
