@@ -14,6 +14,7 @@ namespace bio {
 namespace {
 
 constexpr std::size_t numOrderPostures = 6;
+constexpr double mostWound = 4;  // arc over the object's size
 
 // The ends and the members' placements in one posture, in the ground.
 struct ChainPosture {
@@ -219,14 +220,17 @@ class ChainCompiler {
   static bool isFound(const Found& found) { return found.taut.event != ChainEvent::notFound; }
 
   // Whether a path that was followed has not wound itself out of what its objects' quadrants mean:
-  // the middle of each contact lies on the named side.
+  // the middle of each contact lies on the named side, or where none is named it goes round less
+  // than about two thirds of the object.
   bool keepsItsSides(const Found& followed, const PlacedChain& placed) const {
     for (std::size_t i = 0; i < static_cast<std::size_t>(followed.taut.numContacts); ++i) {
       const ChainContact& contact = followed.taut.contacts[i];
       const auto j = static_cast<std::size_t>(contact.object);
       const ChainObject& object = placed.objects[j];
       const WrapQuadrant quadrant = surface(j).quadrant;
-      if (std::holds_alternative<TorusSurface>(object.surface) || quadrant == WrapQuadrant::all) {
+      if (std::holds_alternative<TorusSurface>(object.surface)) continue;
+      if (quadrant == WrapQuadrant::all) {
+        if (contact.arc > mostWound * sizeOf(object.surface)) return false;
         continue;
       }
       const Vec3<double> middle = shootGeodesic(object.surface, object.intoFrame(contact.A),
@@ -238,28 +242,13 @@ class ChainCompiler {
     return followed.taut.isShortest;
   }
 
-  // Whether it may go round another way, should that be shorter.
-  bool isFree(const Found& followed) const {
-    for (std::size_t i = 0; i < static_cast<std::size_t>(followed.taut.numContacts); ++i) {
-      const PathSurface& touched =
-          surface(static_cast<std::size_t>(followed.taut.contacts[i].object));
-      const bool isTorus =
-          touched.general && std::holds_alternative<TorusSurface>(*touched.general);
-      if (!isTorus && touched.quadrant == WrapQuadrant::all) return true;
-    }
-    return false;
-  }
-
   Found decide(const ChainPosture& here, const ChainMemory* known) const {
     const PlacedChain placed = placeChain(path_, chain_, here.X_GC);
     if (known == nullptr) return decidedHere(here, placed);
     const Found followed = search(here, placed, *known);
-    const bool keeps = isFound(followed) && keepsItsSides(followed, placed);
-    if (keeps && !isFree(followed)) return followed;
+    if (isFound(followed) && keepsItsSides(followed, placed)) return followed;
     const Found anew = decidedHere(here, placed);
-    if (!isFound(anew)) return followed;
-    const bool isShorter = anew.taut.length < followed.taut.length - 1e-9;
-    return keeps && !isShorter ? followed : anew;
+    return isFound(anew) ? anew : followed;
   }
 
   // From the first posture to all others, each on from the nearest one known.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -39,7 +40,16 @@ class LengthAlong {
   struct At {
     double value, length, slope;
   };
+  /// NaN where the path cannot be computed.
   At at(double value) {
+    try {
+      return computed(value);
+    } catch (const std::domain_error&) {
+      constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+      return {value, nan, nan};
+    }
+  }
+  At computed(double value) {
     q_[0] = value;
     if constexpr (N == Eigen::Dynamic) {
       onTree_->moveTo(q_);

@@ -1,5 +1,6 @@
 #include "bio/simulation/tree_configuration.h"
 
+#include <limits>
 #include <stdexcept>
 
 #include "bio/skeleton/tree_motion.h"
@@ -30,8 +31,12 @@ SystemConfiguration<Eigen::Dynamic>::SystemConfiguration(const MusculoskeletalSy
 void SystemConfiguration<Eigen::Dynamic>::moveTo(const Vector& q) {
   moveSkeletonTo(q);
   for (std::size_t i = 0; i < lengths_.size(); ++i) {
-    arm_->treePath(i).evaluate(arm_->muscles()[i].path.compiled(), holds_ ? held_ : q_, motion_,
-                               work_[i], lengths_[i]);
+    try {
+      arm_->treePath(i).evaluate(arm_->muscles()[i].path.compiled(), holds_ ? held_ : q_, motion_,
+                                 work_[i], lengths_[i]);
+    } catch (const std::domain_error&) {  // no taut string: an iteration sees a failed step
+      lengths_[i].length = std::numeric_limits<double>::quiet_NaN();
+    }
   }
 }
 
