@@ -7,11 +7,13 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <sstream>
 
 #include "bio/path/posture_samples.h"
 #include "bio/path/tree_path.h"
 #include "bio/tables/file_error.h"
 #include "tables/recording_layouts.h"
+#include "tables/text_file.h"
 
 namespace bio {
 namespace {
@@ -50,7 +52,9 @@ std::vector<MusclePath> compileAll(const Model& model, const Skeleton& skeleton,
 }  // namespace
 
 PostureTable readPostures(const std::filesystem::path& file, const Model& model) {
-  const std::vector<std::string> lines = linesOf(file.string());
+  std::vector<std::string> lines;
+  std::istringstream text(readTextFile(file));
+  for (std::string line; std::getline(text, line);) lines.push_back(std::move(line));
   const auto fail = [&](std::size_t line, const std::string& message) {
     throw FileError(fmt::format("{}:{}: {}", file.string(), line + 1, message));
   };

@@ -14,7 +14,16 @@ namespace bio {
 namespace {
 
 constexpr std::size_t numOrderPostures = 6;
-constexpr double mostWound = 4;  // arc over the object's size
+constexpr double mostWound = 4;    // arc over the object's size
+constexpr double mostBeyond = 0.7;  // of the object's extent beyond its middle
+
+// How far a sphere, cylinder or ellipsoid reaches along a direction of its frame.
+double extentAlong(const Surface& surface, const Vec3<double>& direction) {
+  if (const auto* ellipsoid = std::get_if<EllipsoidSurface>(&surface)) {
+    return ellipsoid->semiAxes().cwiseProduct(direction).norm();
+  }
+  return sizeOf(surface);
+}
 
 // The ends and the members' placements in one posture, in the ground.
 struct ChainPosture {
@@ -220,8 +229,8 @@ class ChainCompiler {
   static bool isFound(const Found& found) { return found.taut.event != ChainEvent::notFound; }
 
   // Whether a path that was followed has not wound itself out of what its objects' quadrants mean:
-  // the middle of each contact lies on the named side, or where none is named it goes round less
-  // than about two thirds of the object.
+  // the middle of each contact lies on the named side or not far beyond the object's middle, or
+  // where no side is named it goes round less than about two thirds of the object.
   bool keepsItsSides(const Found& followed, const PlacedChain& placed) const {
     for (std::size_t i = 0; i < static_cast<std::size_t>(followed.taut.numContacts); ++i) {
       const ChainContact& contact = followed.taut.contacts[i];
@@ -237,7 +246,8 @@ class ChainCompiler {
                                                 object.R_GS.transpose() * contact.atA.u,
                                                 contact.arc / 2)
                                       .x;
-      if (directionOf(quadrant).dot(middle) < 0) return false;
+      const Vec3<double> side = directionOf(quadrant);
+      if (side.dot(middle) < -mostBeyond * extentAlong(object.surface, side)) return false;
     }
     return followed.taut.isShortest;
   }

@@ -147,7 +147,7 @@ TEST(PosturesCommand, RefusesWhatItCannotRead) {
   refused("elbow_flexion\n1,2\n", "2 cells, must be 1");
   refused("elbow_flexion\n1\nflexed\n", "bad.csv:3: elbow_flexion = 'flexed'");
   refused("elbow_flexion\ninf\n", "must be a finite number");
-  refused("elbow_flexion\n1\n", "--postures excludes --from", {"--from", "0"});
+  refused("elbow_flexion\n1\n", "excludes --postures", {"--from", "0"});
 }
 
 }  // namespace

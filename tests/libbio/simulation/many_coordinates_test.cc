@@ -135,21 +135,58 @@ TEST(ManyCoordinates, NothingIsAllocatedInAStep) {
 }
 
 // Two ways of the same skeleton and paths: code of fixed size, and the tree.
-TEST(ManyCoordinates, OneToFourAsATreeMoveAsTheyDoWithout) {
-  const std::vector<std::string> all = ArmOfSeven::coordinates();
-  for (std::size_t n = 1; n <= 4; ++n) {
-    const std::vector<std::string> free(all.begin(), all.begin() + static_cast<long>(n));
-    const ArmOfSeven fixed(1, free), tree(1, free, true);
-    ASSERT_FALSE(fixed.arm.tree());
-    ASSERT_TRUE(tree.arm.tree());
-    for (const Integrator integrator :
-         {Integrator::variational, Integrator::variationalLeft, Integrator::rungeKutta4}) {
-      const SimulationOptions o =
-          stepsOf(integrator, integrator == Integrator::rungeKutta4 ? 2e-4 : 0.005, 0.5);
-      EXPECT_LT(apart(played(fixed, o), played(tree, o)), 1e-10) << n;
-    }
-    EXPECT_LT(apart(tightCvode(fixed, 0.05, 0.5), tightCvode(tree, 0.05, 0.5)), 1e-8) << n;
+TEST(ManyCoordinates, OneAsATreeMovesAsItDoesWithout) {
+  const std::vector<std::string> free{ArmOfSeven::coordinates().front()};
+  const ArmOfSeven fixed(1, free), tree(1, free, true);
+  ASSERT_FALSE(fixed.arm.tree());
+  ASSERT_TRUE(tree.arm.tree());
+  for (const Integrator integrator :
+       {Integrator::variational, Integrator::variationalLeft, Integrator::rungeKutta4}) {
+    const SimulationOptions o =
+        stepsOf(integrator, integrator == Integrator::rungeKutta4 ? 2e-4 : 0.005, 0.5);
+    EXPECT_LT(apart(played(fixed, o), played(tree, o)), 1e-10);
   }
+  EXPECT_LT(apart(tightCvode(fixed, 0.05, 0.5), tightCvode(tree, 0.05, 0.5)), 1e-8);
+}
+
+// Two to four: the tree's lengths and energies against code of fixed size.
+template <int N>
+void expectKernelsAgree() {
+  const std::vector<std::string> all = ArmOfSeven::coordinates();
+  const ArmOfSeven c(1, {all.begin(), all.begin() + N});
+  ASSERT_TRUE(c.arm.tree());
+  SystemConfiguration<N> fixed(c.arm);
+  SystemConfiguration<Eigen::Dynamic> tree(c.arm);
+  const Eigen::VectorXd from = c.start.q;
+  for (int k = 0; k < 5; ++k) {
+    const Eigen::VectorXd q = from + 0.1 * k * Eigen::VectorXd::LinSpaced(N, -1, 2);
+    const Eigen::VectorXd v = Eigen::VectorXd::LinSpaced(N, 3, -1 - k);
+    fixed.moveTo(q);
+    tree.moveTo(q);
+    const auto& a = fixed.energy(v);
+    const auto& b = tree.energy(v);
+    EXPECT_LT((a.T_vv - b.T_vv).cwiseAbs().maxCoeff(), 1e-13);
+    EXPECT_LT((a.T_q - b.T_q).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_LT((a.T_vq - b.T_vq).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_LT((a.T_qq - b.T_qq).cwiseAbs().maxCoeff(), 1e-11);
+    EXPECT_LT((a.V_q - b.V_q).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_LT((a.V_qq - b.V_qq).cwiseAbs().maxCoeff(), 1e-12);
+    for (std::size_t i = 0; i < c.arm.numMuscles(); ++i) {
+      EXPECT_NEAR(fixed.length(i).length, tree.length(i).length, 1e-14);
+      EXPECT_LT((fixed.length(i).dL_dq - tree.length(i).dL_dq).cwiseAbs().maxCoeff(), 1e-13);
+      for (int r = 0; r < N; ++r) {
+        for (int s = 0; s < N; ++s) {
+          EXPECT_NEAR(fixed.length(i).d2L_dq2(r, s), tree.length(i).secondIn(r, s), 1e-11);
+        }
+      }
+    }
+  }
+}
+
+TEST(ManyCoordinates, TwoToFourHaveTheKernelsOfCodeOfFixedSize) {
+  expectKernelsAgree<2>();
+  expectKernelsAgree<3>();
+  expectKernelsAgree<4>();
 }
 
 }  // namespace
