@@ -1,10 +1,10 @@
 // Muscle–tendon lengths of a model against a table of OpenSim's own:
 //     posture_tables MODEL.osim POSTURES.csv
 // The table has a column for each coordinate; NAME.length_m, NAME.wrapped (wrap objects touched,
-// joined by |; - for none) and NAME.dlength_d.COORDINATE for each path. Prints a table of our length
-// less OpenSim's, by what OpenSim's path touches. A taut string over the same objects is no longer
-// than any other path past them, so each row in which ours is longer than OpenSim's by more than
-// 1e-6 m is examined:
+// joined by |; - for none) and NAME.dlength_d.COORDINATE for each path. Prints a table of our
+// length less OpenSim's, by what OpenSim's path touches. A taut string over the same objects is no
+// longer than any other path past them, so each row in which ours is longer than OpenSim's by more
+// than 1e-6 m is examined:
 //   shorter than its points  OpenSim's length is below that of straight lines through the points
 //   through an object        it is below that of the taut string over one of the objects alone
 //   sum of chords            OpenSim adds chords of about 1 mm, and ours added so is not longer
@@ -105,8 +105,7 @@ double lossOfChords(const bio::CompiledPath& path, const MovedSkeleton<N>& at) {
       Eigen::Vector3d from = A;
       loss += contact.arc;
       for (int k = 1; k <= n; ++k) {
-        const Eigen::Vector3d to =
-            bio::shootGeodesic(object.surface, A, u, contact.arc * k / n).x;
+        const Eigen::Vector3d to = bio::shootGeodesic(object.surface, A, u, contact.arc * k / n).x;
         loss -= (to - from).norm();
         from = to;
       }
@@ -135,8 +134,8 @@ class Comparison {
       : model_(model), table_(std::move(table)) {
     for (const bio::Joint& joint : model.joints) {
       for (const bio::Coordinate& c : joint.coordinates) {
-        const bool isInTable = std::find(table_.columns.begin(), table_.columns.end(), c.name) !=
-                               table_.columns.end();
+        const bool isInTable =
+            std::find(table_.columns.begin(), table_.columns.end(), c.name) != table_.columns.end();
         if (isInTable) coordinates_.push_back(c.name);
       }
     }
@@ -168,7 +167,8 @@ class Comparison {
 
   bool report() const {
     bool holds = failed_ == 0;
-    fmt::print("| touched in OpenSim | rows | ours longer by > 1e-6 m | most | least | RMS [mm] |\n");
+    fmt::print(
+        "| touched in OpenSim | rows | ours longer by > 1e-6 m | most | least | RMS [mm] |\n");
     fmt::print("|---|---|---|---|---|---|\n");
     int rows = 0;
     for (const auto& [name, d] : classes_) {

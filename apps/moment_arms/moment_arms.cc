@@ -144,9 +144,6 @@ class MomentArms : public Command {
   /// One row per posture; names of touched objects are joined by |, - stands for none.
   static void writePostures(const bio::PostureTable& postures, const bio::PathPostures& paths,
                             std::ostream& out) {
-    const auto cell = [](double value) {
-      return std::isfinite(value) ? fmt::format("{:.17g}", value) : std::string();
-    };
     out << "posture";
     for (const std::string& name : paths.coordinates) out << ',' << name;
     for (const std::string& muscle : paths.muscles) {
@@ -158,12 +155,12 @@ class MomentArms : public Command {
     out << '\n';
     for (Eigen::Index k = 0; k < postures.values.rows(); ++k) {
       out << k;
-      for (const double value : postures.values.row(k)) out << ',' << cell(value);
+      for (const double value : postures.values.row(k)) out << ',' << cellText(value);
       for (std::size_t i = 0; i < paths.muscles.size(); ++i) {
         const auto& touched = paths.touched[i][static_cast<std::size_t>(k)];
-        out << ',' << cell(paths.length(k, static_cast<Eigen::Index>(i))) << ','
+        out << ',' << cellText(paths.length(k, static_cast<Eigen::Index>(i))) << ','
             << (touched.empty() ? "-" : fmt::format("{}", fmt::join(touched, "|")));
-        for (const double slope : paths.slope[i].row(k)) out << ',' << cell(slope);
+        for (const double slope : paths.slope[i].row(k)) out << ',' << cellText(slope);
       }
       out << '\n';
     }

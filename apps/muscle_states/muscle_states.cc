@@ -8,14 +8,10 @@
 
 #include "bio/analysis/muscle_states.h"
 #include "output/result.h"
+#include "output/text.h"
 
 namespace app {
 namespace {
-
-/// All digits; empty: there is none.
-std::string cell(double value) {
-  return std::isfinite(value) ? fmt::format("{:.17g}", value) : std::string();
-}
 
 class MuscleStates : public Command {
  public:
@@ -43,8 +39,9 @@ class MuscleStates : public Command {
     folder.write("muscle_states.csv", [&](std::ostream& out) {
       out << "class,fiber_velocity,tendon_force,static_fiber_length,static_tendon_force\n";
       for (const bio::MuscleState& one : states) {
-        out << one.className << ',' << cell(one.fibreVelocity) << ',' << cell(one.tendonForce)
-            << ',' << cell(one.staticFibreLength) << ',' << cell(one.staticTendonForce) << '\n';
+        out << one.className << ',' << cellText(one.fibreVelocity) << ','
+            << cellText(one.tendonForce) << ',' << cellText(one.staticFibreLength) << ','
+            << cellText(one.staticTendonForce) << '\n';
       }
     });
     nlohmann::ordered_json classes = nlohmann::ordered_json::object();

@@ -27,6 +27,10 @@ std::string numberText(double value, int digits) {
   return fmt::format("{:.{}g}", value, digits);
 }
 
+std::string cellText(double value) {
+  return std::isfinite(value) ? fmt::format("{:.17g}", value) : std::string();
+}
+
 std::string withUnit(double value, const std::string& unit, int digits) {
   return numberText(value, digits) + (unit.empty() ? "" : " " + unit);
 }

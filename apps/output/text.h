@@ -13,6 +13,9 @@ std::string oneLine(std::string_view text);
 /// The number with at most `digits` significant digits; "–" when it is not finite.
 std::string numberText(double value, int digits = 4);
 
+/// The number with all its digits, for a cell of a table; empty when it is not finite.
+std::string cellText(double value);
+
 /// "0.016 m", or "0.016" for a pure number.
 std::string withUnit(double value, const std::string& unit, int digits = 4);
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -207,12 +206,7 @@ class StateReader {
   }
 
   double number(std::size_t line, const std::string& column, const std::string& cell) const {
-    double value = 0;
-    const char* end = cell.data() + cell.size();
-    const auto [stop, error] = std::from_chars(cell.data(), end, value);
-    if (error != std::errc() || stop != end || !std::isfinite(value))
-      fail(line, fmt::format("{} = '{}', must be a finite number", column, cell));
-    return value;
+    return finiteNumber(file_, line, column, cell);
   }
 
   std::string file_;

@@ -3,10 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <limits>
-#include <optional>
 #include <sstream>
 
 #include "bio/path/posture_samples.h"
@@ -17,15 +14,6 @@
 
 namespace bio {
 namespace {
-
-bool isCoordinate(const Model& model, const std::string& name) {
-  for (const Joint& joint : model.joints) {
-    for (const Coordinate& coordinate : joint.coordinates) {
-      if (coordinate.name == name) return true;
-    }
-  }
-  return false;
-}
 
 /// All paths that can be compiled.
 std::vector<MusclePath> compileAll(const Model& model, const Skeleton& skeleton,
@@ -68,7 +56,7 @@ PostureTable readPostures(const std::filesystem::path& file, const Model& model)
   PostureTable table;
   std::vector<std::size_t> columns;
   for (std::size_t c = 0; c < names.size(); ++c) {
-    if (!isCoordinate(model, names[c])) {
+    if (!coordinateOrNull(model, names[c])) {
       table.ignored.push_back(names[c]);
       continue;
     }
@@ -90,13 +78,7 @@ PostureTable readPostures(const std::filesystem::path& file, const Model& model)
     }
     std::vector<double> row;
     for (const std::size_t c : columns) {
-      double value = 0;
-      const char* end = cells[c].data() + cells[c].size();
-      const auto [stop, error] = std::from_chars(cells[c].data(), end, value);
-      if (error != std::errc() || stop != end || !std::isfinite(value)) {
-        fail(k, fmt::format("{} = '{}', must be a finite number", names[c], cells[c]));
-      }
-      row.push_back(value);
+      row.push_back(finiteNumber(file.string(), k + 1, names[c], cells[c]));
     }
     rows.push_back(std::move(row));
   }
@@ -122,11 +104,9 @@ PathPostures pathsAt(const Model& model, const PostureTable& postures,
   PathPostures result;
   result.coordinates = postures.coordinates;
   const std::vector<MusclePath> paths = compileAll(model, skeleton, wrapAsCylinder, result);
-  // one tree per muscle: a posture in which one path fails leaves the others
-  std::vector<TreePaths> trees;
+  TreePaths lengths(skeleton);
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    trees.emplace_back(skeleton);
-    trees.back().add(findMuscle(model, result.muscles[i]), paths[i]);
+    lengths.add(findMuscle(model, result.muscles[i]), paths[i]);
   }
 
   const Eigen::Index numPostures = postures.values.rows();
@@ -140,10 +120,10 @@ PathPostures pathsAt(const Model& model, const PostureTable& postures,
   for (Eigen::Index k = 0; k < numPostures; ++k) {
     const Eigen::VectorXd q = postures.values.row(k);
     const Posture posture = postureOf(skeleton, {q.begin(), q.end()});
+    lengths.moveTo(q);
     for (std::size_t i = 0; i < paths.size(); ++i) {
       try {
-        trees[i].moveTo(q);
-        const LengthJet<Eigen::Dynamic>& length = trees[i].length(0);
+        const LengthJet<Eigen::Dynamic>& length = lengths.length(i);
         result.length(k, static_cast<Eigen::Index>(i)) = length.length;
         result.slope[i].row(k) = length.dL_dq;
         const Muscle& muscle = findMuscle(model, result.muscles[i]);

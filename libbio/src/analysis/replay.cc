@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "bio/model/integrator_names.h"
+#include "bio/path/path_lengths.h"
 #include "bio/path/posture_samples.h"
-#include "bio/path/tree_path.h"
 #include "simulation/integrators.h"
 #include "simulation/motion_weights.h"
 
@@ -328,40 +328,22 @@ PathSample samplePaths(const Model& model, const Skeleton& skeleton,
   sample.momentArm.resize(values.size(), n);
   sample.momentArmSlope.resize(values.size(), n);
   sample.wrapped.resize(values.size(), n);
-  const auto record = [&](Eigen::Index k, Eigen::Index i, const auto& jet, double second) {
-    sample.length(k, i) = jet.length;
-    sample.momentArm(k, i) = -jet.dL_dq[0];
-    sample.momentArmSlope(k, i) = -second;
-    sample.wrapped(k, i) = jet.wrapped ? 1 : 0;
-  };
-  stepping::withCoordinates(skeleton, [&](auto N) {
-    constexpr int count = decltype(N)::value;
-    Eigen::Matrix<double, count, 1> q = skeleton.defaultValues();
-    if constexpr (count == Eigen::Dynamic) {
-      TreePaths onTree(skeleton);
-      for (std::size_t i = 0; i < paths.size(); ++i) {
-        onTree.add(findMuscle(model, sample.muscles[i]), paths[i]);
-      }
-      for (Eigen::Index k = 0; k < values.size(); ++k) {
-        q[0] = values[k];
-        onTree.moveTo(q);
-        for (Eigen::Index i = 0; i < n; ++i) {
-          const auto& jet = onTree.length(static_cast<std::size_t>(i));
-          record(k, i, jet, jet.secondIn(0, 0));
-        }
-      }
-    } else {
-      std::vector<RigidMotion<double, count>> moved(skeleton.numSegments());
-      for (Eigen::Index k = 0; k < values.size(); ++k) {
-        q[0] = values[k];
-        skeleton.motions<double, count>(q, moved.data());
-        for (Eigen::Index i = 0; i < n; ++i) {
-          const auto jet = paths[static_cast<std::size_t>(i)].length<count>(q, moved.data());
-          record(k, i, jet, jet.d2L_dq2(0, 0));
-        }
-      }
+  PathLengths lengths(skeleton);
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    lengths.add(findMuscle(model, sample.muscles[i]), paths[i]);
+  }
+  Eigen::VectorXd q = skeleton.defaultValues();
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    q[0] = values[k];
+    lengths.moveTo(q);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const PathLengths::Along along = lengths.along(static_cast<std::size_t>(i));
+      sample.length(k, i) = along.length;
+      sample.momentArm(k, i) = -along.slope;
+      sample.momentArmSlope(k, i) = -along.curvature;
+      sample.wrapped(k, i) = along.wrapped ? 1 : 0;
     }
-  });
+  }
   return sample;
 }
 

@@ -198,7 +198,11 @@ class Converter {
           std::max(0.0, p.timeScale / numbers.at("activation_time_constant") - p.activation2);
     }
     if (const auto damping = numbers.find("fiber_damping"); damping != numbers.end()) {
-      if (damping->second > 0) p.damping = damping->second;
+      if (damping->second > 0) {
+        p.damping = damping->second;
+      } else {
+        lose("fiber_damping of 0");
+      }
     }
     p.minControl = switches.minControl;
     p.maxControl = switches.maxControl;

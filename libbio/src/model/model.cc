@@ -25,11 +25,20 @@ const Body& findBody(const Model& model, const std::string& name) {
   return findByName(model.bodies, name, "body");
 }
 
+const Coordinate* coordinateOrNull(const Model& model, const std::string& name) {
+  for (const Joint& joint : model.joints) {
+    for (const Coordinate& coordinate : joint.coordinates) {
+      if (coordinate.name == name) return &coordinate;
+    }
+  }
+  return nullptr;
+}
+
 const Coordinate& findCoordinate(const Model& model, const std::string& name) {
+  if (const Coordinate* found = coordinateOrNull(model, name)) return *found;
   std::string known;
   for (const Joint& joint : model.joints) {
     for (const Coordinate& coordinate : joint.coordinates) {
-      if (coordinate.name == name) return coordinate;
       known += (known.empty() ? "" : ", ") + coordinate.name;
     }
   }

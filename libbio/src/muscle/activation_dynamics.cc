@@ -1,7 +1,6 @@
 #include "bio/muscle/activation_dynamics.h"
 
 #include <algorithm>
-#include <type_traits>
 
 #include "info/autodiff/dual.h"
 
@@ -17,6 +16,42 @@ double slopeOfRate(const Law<double>& law, double u, double a) {
   const auto& [first, second, third] = law;
   const Law<Number> inDual{Number(first), Number(second), Number(third)};
   return inDual.rate(Number(u), Number(a, 1, 0)).derivatives()[0];
+}
+
+// Schutte's law has functions of its own, the others have members.
+double lawRate(const SchutteActivation<double>& law, double u, double a) {
+  return activationRate(law, u, a);
+}
+template <class Law>
+double lawRate(const Law& law, double u, double a) {
+  return law.rate(u, a);
+}
+double lawStep(const SchutteActivation<double>& law, double u0, double u1, double a0, double h) {
+  return stepActivation(law, u0, u1, a0, h);
+}
+template <class Law>
+double lawStep(const Law& law, double u0, double u1, double a0, double h) {
+  return law.step(u0, u1, a0, h);
+}
+ActivationStep lawStepWithDerivatives(const SchutteActivation<double>& law, double u0, double u1,
+                                      double a0, double h) {
+  return stepActivationWithDerivatives(law, u0, u1, a0, h);
+}
+template <class Law>
+ActivationStep lawStepWithDerivatives(const Law& law, double u0, double u1, double a0, double h) {
+  const auto step = law.stepWithDerivatives(u0, u1, a0, h);
+  ActivationStep result{step.value, decltype(ActivationStep::d)::Zero()};
+  for (std::size_t i = 0; i < step.d.size(); ++i) {
+    result.d[static_cast<Eigen::Index>(i)] = step.d[i];
+  }
+  return result;
+}
+std::span<const std::string_view> lawNames(const SchutteActivation<double>&) {
+  return schutteNames;
+}
+template <class Law>
+std::span<const std::string_view> lawNames(const Law&) {
+  return Law::names;
 }
 
 }  // namespace
@@ -37,16 +72,7 @@ ActivationDynamics::Start ActivationDynamics::start(double u) const {
 }
 
 double ActivationDynamics::rate(double u, double a) const {
-  return std::visit(
-      [&](const auto& law) -> double {
-        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(law)>,
-                                     SchutteActivation<double>>) {
-          return activationRate(law, u, a);
-        } else {
-          return law.rate(u, a);
-        }
-      },
-      law_);
+  return std::visit([&](const auto& law) { return lawRate(law, u, a); }, law_);
 }
 
 double ActivationDynamics::rateSlope(double u, double a) const {
@@ -67,48 +93,17 @@ double ActivationDynamics::rateSlope(double u, double a) const {
 }
 
 double ActivationDynamics::otherStep(double u0, double u1, double a0, double h) const {
-  return std::visit(
-      [&](const auto& law) -> double {
-        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(law)>,
-                                     SchutteActivation<double>>) {
-          return stepActivation(law, u0, u1, a0, h);
-        } else {
-          return law.step(u0, u1, a0, h);
-        }
-      },
-      law_);
+  return std::visit([&](const auto& law) { return lawStep(law, u0, u1, a0, h); }, law_);
 }
 
 ActivationStep ActivationDynamics::stepWithDerivatives(double u0, double u1, double a0,
                                                        double h) const {
-  return std::visit(
-      [&](const auto& law) -> ActivationStep {
-        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(law)>,
-                                     SchutteActivation<double>>) {
-          return stepActivationWithDerivatives(law, u0, u1, a0, h);
-        } else {
-          const auto step = law.stepWithDerivatives(u0, u1, a0, h);
-          ActivationStep result{step.value, decltype(ActivationStep::d)::Zero()};
-          for (std::size_t i = 0; i < step.d.size(); ++i) {
-            result.d[static_cast<Eigen::Index>(i)] = step.d[i];
-          }
-          return result;
-        }
-      },
-      law_);
+  return std::visit([&](const auto& law) { return lawStepWithDerivatives(law, u0, u1, a0, h); },
+                    law_);
 }
 
 std::span<const std::string_view> ActivationDynamics::names() const {
-  return std::visit(
-      [](const auto& law) -> std::span<const std::string_view> {
-        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(law)>,
-                                     SchutteActivation<double>>) {
-          return schutteNames;
-        } else {
-          return std::remove_cvref_t<decltype(law)>::names;
-        }
-      },
-      law_);
+  return std::visit([](const auto& law) { return lawNames(law); }, law_);
 }
 
 double ActivationDynamics::lag(double u) const {

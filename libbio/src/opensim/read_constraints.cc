@@ -8,15 +8,6 @@
 namespace bio::osim {
 namespace {
 
-bool hasCoordinate(const Model& model, const std::string& name) {
-  for (const Joint& joint : model.joints) {
-    for (const Coordinate& coordinate : joint.coordinates) {
-      if (coordinate.name == name) return true;
-    }
-  }
-  return false;
-}
-
 void readCoupler(Reading& reading, const Element& element, std::map<std::string, int>& dependents) {
   const Source& source = reading.source;
   std::istringstream names(readText(source, element, "independent_coordinate_names"));
@@ -57,7 +48,7 @@ std::string readCoordinateName(const Reading& reading, const Element& object,
   if (const auto slash = name.find_last_of('/'); slash != std::string::npos) {
     name = name.substr(slash + 1);
   }
-  if (!hasCoordinate(reading.model, name)) {
+  if (!coordinateOrNull(reading.model, name)) {
     fail(reading.source, object,
          fmt::format("{} = '{}', must name a coordinate of the model", property, name),
          object.FirstChildElement(property));

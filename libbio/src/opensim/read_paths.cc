@@ -132,13 +132,10 @@ void readCondition(const Reading& reading, const Element& element, PathPoint& po
 
 // As OpenSim's MovingPathPoint does; a name that the model lacks is refused later.
 void holdWithinRange(const Model& model, const std::string& name, Function& function) {
-  for (const Joint& joint : model.joints) {
-    for (const Coordinate& coordinate : joint.coordinates) {
-      if (coordinate.name != name) continue;
-      function.low = coordinate.rangeMin;
-      function.high = coordinate.rangeMax;
-    }
-  }
+  const Coordinate* coordinate = coordinateOrNull(model, name);
+  if (!coordinate) return;
+  function.low = coordinate->rangeMin;
+  function.high = coordinate->rangeMax;
 }
 
 void readMotion(Reading& reading, const Element& element, PathPoint& point) {

@@ -6,9 +6,9 @@
 #include <limits>
 #include <stdexcept>
 
+#include "bio/path/surface/way.h"
 #include "path/chain_compiler.h"
 #include "path/path_reach.h"
-#include "bio/path/surface/way.h"
 #include "path/surface/wrap_candidate.h"
 
 namespace bio {
@@ -167,10 +167,6 @@ class Compiler {
     path_.variants.push_back(std::move(variant));
   }
 
-  std::string nameOf(const SpanSurface& way) const {
-    return muscle_.path.wraps[path_.surfaces[way.surface].wrap].wrapObject;
-  }
-
   std::string pointName(std::size_t node) const {
     return muscle_.path.points[path_.nodes[node].point].name;
   }
@@ -208,22 +204,23 @@ class Compiler {
       }
     }
     const bool isTorus = std::holds_alternative<TorusSurface>(*wrap.shape.general);
-    note(fmt::format("the {} '{}' is ignored: no span reaches it",
-                     isTorus ? "torus" : "ellipsoid", wrap.name));
+    note(fmt::format("the {} '{}' is ignored: no span reaches it", isTorus ? "torus" : "ellipsoid",
+                     wrap.name));
   }
 
   void tellOfChain(const PathSpan& span, const CompiledChain& compiled) {
     const std::string where =
         fmt::format("between its points '{}' and '{}'", pointName(span.a), pointName(span.b));
     for (const std::size_t surface : compiled.endInside) {
-      note(fmt::format("{} an end lies inside the wrap object '{}' in some posture, in which the "
-                       "object is passed by",
-                       where, muscle_.path.wraps[path_.surfaces[surface].wrap].wrapObject));
+      note(
+          fmt::format("{} an end lies inside the wrap object '{}' in some posture, in which the "
+                      "object is passed by",
+                      where, muscle_.path.wraps[path_.surfaces[surface].wrap].wrapObject));
     }
     if (compiled.numNotFound == 0) return;
-    path_.warnings.push_back(fmt::format(
-        "muscle '{}' has no taut string {} in {} of {} postures", muscle_.name, where,
-        compiled.numNotFound, compiled.numPostures));
+    path_.warnings.push_back(fmt::format("muscle '{}' has no taut string {} in {} of {} postures",
+                                         muscle_.name, where, compiled.numNotFound,
+                                         compiled.numPostures));
   }
 
   bool touchesSeveral(const PathSpan& span, std::size_t bits) const {

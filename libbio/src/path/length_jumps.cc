@@ -6,14 +6,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 #include <set>
 #include <stdexcept>
 
-#include "bio/path/path.h"
+#include "bio/path/path_lengths.h"
 #include "bio/path/posture_samples.h"
-#include "bio/path/tree_path.h"
-#include "simulation/integrators.h"
 
 namespace bio {
 namespace {
@@ -23,18 +20,11 @@ constexpr double leastJump = 1e-5;    // [m]
 constexpr double suspectJump = 1e-6;  // a kink at lift-off is less than a tenth of it in a cell
 
 /// The length of one muscle along the first coordinate.
-template <int N>
 class LengthAlong {
  public:
   LengthAlong(const Skeleton& skeleton, const Muscle& muscle, const MusclePath& path)
-      : skeleton_(skeleton), path_(path), q_(skeleton.defaultValues()) {
-    if constexpr (N == Eigen::Dynamic) {
-      onTree_.emplace(skeleton);
-      onTree_->add(muscle, path);
-    } else {
-      static_cast<void>(muscle);
-      moved_.resize(skeleton.numSegments());
-    }
+      : path_(path), lengths_(skeleton), q_(skeleton.defaultValues()) {
+    lengths_.add(muscle, path);
   }
 
   struct At {
@@ -42,23 +32,14 @@ class LengthAlong {
   };
   /// NaN where the path cannot be computed.
   At at(double value) {
+    q_[0] = value;
+    lengths_.moveTo(q_);
     try {
-      return computed(value);
+      const PathLengths::Along along = lengths_.along(0);
+      return {value, along.length, along.slope};
     } catch (const std::domain_error&) {
       constexpr double nan = std::numeric_limits<double>::quiet_NaN();
       return {value, nan, nan};
-    }
-  }
-  At computed(double value) {
-    q_[0] = value;
-    if constexpr (N == Eigen::Dynamic) {
-      onTree_->moveTo(q_);
-      const auto& jet = onTree_->length(0);
-      return {value, jet.length, jet.dL_dq[0]};
-    } else {
-      skeleton_.motions<double, N>(q_, moved_.data());
-      const LengthJet<N> jet = path_.length<N>(q_, moved_.data());
-      return {value, jet.length, jet.dL_dq[0]};
     }
   }
 
@@ -95,11 +76,9 @@ class LengthAlong {
     jumps.push_back(jump);
   }
 
-  const Skeleton& skeleton_;
   const MusclePath& path_;
-  std::vector<RigidMotion<double, N == Eigen::Dynamic ? 1 : N>> moved_;
-  std::optional<TreePaths> onTree_;
-  Eigen::Matrix<double, N, 1> q_;
+  PathLengths lengths_;
+  Eigen::VectorXd q_;
 };
 
 }  // namespace
@@ -119,9 +98,7 @@ std::vector<LengthJump> lengthJumps(const Model& model, const Skeleton& skeleton
       named.muscle = muscle.name;
       named.coordinate = coordinate.name;
       named.turns = coordinate.isRotation;
-      stepping::withCoordinates(skeleton, [&](auto N) {
-        LengthAlong<decltype(N)::value>(skeleton, muscle, path).search(from, to, named, jumps);
-      });
+      LengthAlong(skeleton, muscle, path).search(from, to, named, jumps);
     } catch (const std::invalid_argument&) {  // no path to look at
     }
   }

@@ -117,11 +117,7 @@ std::vector<Eigen::Vector3d> MusclePath::trace(const Posture& posture, double st
     const Vec3<double> Q = position(span.b);
     if (span.chain >= 0) {
       const PathChain& chain = compiled_.chains[static_cast<std::size_t>(span.chain)];
-      ChainPlacements X_GC;
-      for (std::size_t j = 0; j < static_cast<std::size_t>(chain.count); ++j) {
-        const PathSurface& surface = compiled_.surfaces[chain.members[j].surface];
-        X_GC[j] = posture.placements[surface.segment] * surface.X_SC;
-      }
+      const ChainPlacements X_GC = placementsIn(posture, compiled_, chain);
       const PlacedChain placed = placeChain(compiled_, chain, X_GC);
       const ChainPath taut = tautChain(compiled_, chain, placed, X_GC, line.back(), Q, used);
       for (const Vec3<double>& p_G : chainPoints(placed, taut, step)) line.push_back(p_G);

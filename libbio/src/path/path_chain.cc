@@ -132,8 +132,8 @@ std::vector<Vec3<double>> chainPoints(const PlacedChain& placed, const ChainPath
   for (std::size_t i = 0; i < static_cast<std::size_t>(taut.numContacts); ++i) {
     const ChainContact& contact = taut.contacts[i];
     const ChainObject& object = placed.objects[static_cast<std::size_t>(contact.object)];
-    const double bend = std::max({std::abs(contact.atA.normal), std::abs(contact.atB.normal),
-                                  1 / sizeOf(object.surface)});
+    const double bend = std::max(
+        {std::abs(contact.atA.normal), std::abs(contact.atB.normal), 1 / sizeOf(object.surface)});
     const int pieces = std::clamp(static_cast<int>(std::ceil(contact.arc * bend / step)), 1, 1000);
     const Vec3<double> x = object.intoFrame(contact.A);
     const Vec3<double> u = object.R_GS.transpose() * contact.atA.u;

@@ -2,6 +2,7 @@
 
 #include "bio/path/path_length.h"
 #include "path/radius_derivatives.h"
+#include "path/touched_object.h"
 
 namespace bio {
 namespace {
@@ -167,7 +168,7 @@ void PathGradients::addSpan(const PathSpan& span, const Eigen::Matrix<double, N,
 }
 
 // ∇L of the ends and of each object's screw about the ground's origin, and how they change with
-// q_k; seen from the frame in which the object's numbers are.
+// q_k.
 template <int N>
 void PathGradients::addChain(const PathSpan& span, const Eigen::Matrix<double, N, 1>& q,
                              const RigidMotion<double, N>* moved, unsigned& usedSurfaces,
@@ -184,14 +185,11 @@ void PathGradients::addChain(const PathSpan& span, const Eigen::Matrix<double, N
       tautChain(*path_, chain, placed, X_GC, P.jet.value, Q.jet.value, usedSurfaces);
   const ChainScrews gradient = chainGradient(taut);
   const ChainChanges changes(taut);
-  std::array<ChainScrews, N> changed;
-  std::array<std::array<ContactShift, maxChain>, N> shifts;
+  std::array<ChainScrews, N> motions, changed;
   std::array<Vector3d, N> atP, atQ;
   for (std::size_t k = 0; k < N; ++k) {
-    const ChainScrews motion =
-        detail::chainMotion<N>(*path_, chain, P, Q, moved, static_cast<int>(k));
-    changed[k] = changes.gradientChange(motion);
-    shifts[k] = changes.shifts(motion);
+    motions[k] = detail::chainMotion<N>(*path_, chain, P, Q, moved, static_cast<int>(k));
+    changed[k] = changes.gradientChange(motions[k]);
     atP[k] = changed[k].P;
     atQ[k] = changed[k].Q;
   }
@@ -202,38 +200,14 @@ void PathGradients::addChain(const PathSpan& span, const Eigen::Matrix<double, N
     const auto j = static_cast<std::size_t>(contact.object);
     const std::size_t index = chain.members[j].surface;
     const PathSurface& surface = path_->surfaces[index];
-    const SurfaceFrame& frame = frames_[index];
-    const RigidMotion<double, N>& X = moved[surface.segment];
+    const Matrix3d R_GB = moved[surface.segment].value.R * frames_[index].R_SB;
+    const TouchedObject object(surface, X_GC[j], R_GB, frames_[index].turnAxes, placed.objects[j],
+                               contact, gradient.objects[j]);
     auto& wrap = out.wraps[surface.wrap];
-    const auto numbers = contactNumbers(placed.objects[j], contact);
-    const int numNumbers = numNumbersOf(placed.objects[j].surface);
-    for (int n = 0; n < numNumbers; ++n) {
-      const NumberIntegral& number = numbers[static_cast<std::size_t>(n)];
-      const int row = wrapNumberRow(surface.general.has_value(), n);
-      wrap(row, 0) += number.length;
-      for (std::size_t k = 0; k < N; ++k) {
-        wrap(row, static_cast<Eigen::Index>(k) + 1) += numberChange(number, shifts[k][i]);
-      }
-    }
-    // force in the body's axes, moment about the surface's origin in the surface's
-    const Matrix3d R_GB = X.value.R * frame.R_SB;
-    const Screw& g = gradient.objects[j];
-    const Vector3d moment = g.angular - X_GC[j].p.cross(g.linear);
-    wrap.template block<3, 1>(1, 0) += R_GB.transpose() * g.linear;
-    wrap.template block<3, 1>(4, 0) +=
-        frame.turnAxes.transpose() * (X_GC[j].R.transpose() * moment);
+    object.addTo(wrap);
     for (std::size_t k = 0; k < N; ++k) {
-      const auto column = static_cast<Eigen::Index>(k) + 1;
-      const Screw& g_k = changed[k].objects[j];
-      const Placement<double> X_k = X.first[k];
-      const Vector3d origin_k = X_k.R * surface.X_SC.p + X_k.p;
-      const Vector3d moment_k =
-          g_k.angular - X_GC[j].p.cross(g_k.linear) - origin_k.cross(g.linear);
-      wrap.template block<3, 1>(1, column) +=
-          R_GB.transpose() * g_k.linear + (X_k.R * frame.R_SB).transpose() * g.linear;
-      wrap.template block<3, 1>(4, column) +=
-          frame.turnAxes.transpose() * (X_GC[j].R.transpose() * moment_k +
-                                        (X_k.R * surface.X_SC.R).transpose() * moment);
+      object.addChangeTo(wrap, static_cast<Eigen::Index>(k) + 1, changes.shifts(motions[k])[i],
+                         changed[k].objects[j], motions[k].objects[j]);
     }
   }
 }

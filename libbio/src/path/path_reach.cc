@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 
 #include "bio/path/posture_samples.h"
 #include "bio/skeleton/skeleton_motion.h"
@@ -24,17 +23,7 @@ Posture postureAt(const Skeleton& skeleton, const std::vector<double>& q) {
 }
 
 Posture postureAt(const Skeleton& skeleton, const std::vector<double>& q) {
-  if (skeleton.tree()) return postureOf(skeleton, q);
-  switch (q.size()) {
-    case 1:
-      return postureAt<1>(skeleton, q);
-    case 2:
-      return postureAt<2>(skeleton, q);
-    case 3:
-      return postureAt<3>(skeleton, q);
-    default:
-      return postureAt<4>(skeleton, q);
-  }
+  return skeleton.tree() ? postureOf(skeleton, q) : postureAt<1>(skeleton, q);
 }
 
 double interpolate(double a, double b, std::size_t i, std::size_t n) {
@@ -45,13 +34,8 @@ double interpolate(double a, double b, std::size_t i, std::size_t n) {
 
 std::vector<Posture> samplePostures(const Skeleton& skeleton) {
   const std::size_t n = skeleton.coordinates().size();
-  if (n > 4) {
-    std::vector<int> all(n);
-    std::iota(all.begin(), all.end(), 0);
-    return samplePostures(skeleton, all);
-  }
   constexpr std::array<std::size_t, 4> resolution = {181, 31, 13, 7};
-  const std::size_t perCoordinate = resolution[n - 1];
+  const std::size_t perCoordinate = resolution.at(n - 1);
 
   // ranges, cut to a turn (or a metre) around the default where they say nothing
   std::vector<double> reference, lower, upper;
@@ -108,6 +92,13 @@ Vec3<double> seenFrom(const Posture& posture, std::size_t segment, const Placeme
   const Placement<double>& X = posture.placements[segment];
   const Vec3<double> p_S = X.R.transpose() * (p_G - X.p);
   return X_SC.R.transpose() * (p_S - X_SC.p);
+}
+
+ChainPlacements placementsIn(const Posture& posture, const CompiledPath& path,
+                             const PathChain& chain) {
+  return placementsOf(path, chain, [&](std::size_t segment) -> const Placement<double>& {
+    return posture.placements[segment];
+  });
 }
 
 double closestApproach(const PathSurface& surface, const Vec3<double>& p_CP,

@@ -11,6 +11,10 @@ Vec3<double> nodePosition(const CompiledPath& path, const PathNode& node, const 
 Vec3<double> seenFrom(const Posture& posture, std::size_t segment, const Placement<double>& X_SC,
                       const Vec3<double>& p_G);
 
+/// The surfaces of a chain in the ground.
+ChainPlacements placementsIn(const Posture& posture, const CompiledPath& path,
+                             const PathChain& chain);
+
 /// Whether a span that is led over one surface with a closed form alone touches it in a posture.
 bool touches(const CompiledPath& path, const PathSpan& span, const SpanSurface& way,
              const Posture& posture);

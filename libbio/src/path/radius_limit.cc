@@ -26,7 +26,9 @@ double numberReaching(const TorusSurface& surface, int number, const Vec3<double
   const double across = surface.tubeRadius() * surface.tubeRadius() - p.z() * p.z();
   return across > 0 ? rho - std::sqrt(across) : noReach;
 }
-double numberReaching(const SphereSurface&, int, const Vec3<double>& p) { return p.norm(); }
+double numberReaching(const SphereSurface&, int, const Vec3<double>& p) {
+  return p.norm();
+}
 double numberReaching(const CylinderSurface&, int, const Vec3<double>& p) {
   return p.head<2>().norm();
 }

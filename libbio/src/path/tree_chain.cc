@@ -5,16 +5,6 @@
 namespace bio {
 namespace {
 
-/// The power of forces and moments at the motions of what they act on.
-double powerOf(const ChainScrews& g, const ChainScrews& m, std::size_t count) {
-  double sum = g.P.dot(m.P) + g.Q.dot(m.Q);
-  for (std::size_t j = 0; j < count; ++j) {
-    sum += g.objects[j].linear.dot(m.objects[j].linear) +
-           g.objects[j].angular.dot(m.objects[j].angular);
-  }
-  return sum;
-}
-
 /// Adds g·∂²x over the slots of a chain of segments, g a force at the point x.
 void addBent(const SegmentChain& chain, const TreeMotion<double>& motion, const Vec3<double>& x,
              const Vec3<double>& g, SupportedLength<double>& work) {

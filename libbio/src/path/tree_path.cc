@@ -245,10 +245,13 @@ void TreePaths::add(const Muscle& muscle, const MusclePath& path) {
 
 void TreePaths::moveTo(const Eigen::VectorXd& q) {
   if (!motion_) motion_ = tree_.newMotion<double>();
+  q_ = q;
   tree_.place(q.data(), *motion_);
-  for (std::size_t i = 0; i < paths_.size(); ++i) {
-    paths_[i].evaluate(compiled_[i]->compiled(), q, *motion_, work_[i], lengths_[i]);
-  }
+}
+
+const LengthJet<Eigen::Dynamic>& TreePaths::length(std::size_t index) {
+  paths_[index].evaluate(compiled_[index]->compiled(), q_, *motion_, work_[index], lengths_[index]);
+  return lengths_[index];
 }
 
 }  // namespace bio

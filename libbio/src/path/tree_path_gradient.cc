@@ -1,5 +1,6 @@
 #include "bio/path/path_gradient.h"
 #include "path/radius_derivatives.h"
+#include "path/touched_object.h"
 #include "path/tree_chain.h"
 
 namespace bio {
@@ -93,18 +94,6 @@ void PathGradients::addSurface(const TreeSpan& span, const detail::SpanOverSurfa
   }
 }
 
-/// A touched object of a chain with the force and moment on it.
-struct PathGradients::TreeObject {
-  const PathSurface& surface;
-  const SurfaceFrame& frame;
-  Placement<double> X_GC;
-  Matrix3d R_BG;    ///< into the axes of its body
-  Screw wrench;     ///< about the ground's origin
-  Vector3d moment;  ///< about its own origin
-  int numNumbers;   ///< of its own
-  std::array<NumberIntegral, maxSurfaceNumbers> numbers;
-};
-
 // As PathGradients::addChain for a fixed number of coordinates. The motions of the ends, once used,
 // become the slopes of the covectors there.
 bool PathGradients::addTreeChain(const TreeSpan& span, const Vector3d& P, const Vector3d& Q,
@@ -115,16 +104,21 @@ bool PathGradients::addTreeChain(const TreeSpan& span, const Vector3d& P, const 
   const ChainScrews gradient = chainGradient(chain.taut);
   const ChainChanges changes(chain.taut);
   fillChainMotions(over, span.motion, P, Q, span.work);
-  const auto count = static_cast<std::size_t>(chain.taut.numContacts);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t j = static_cast<std::size_t>(chain.taut.contacts[i].object);
-    const TreeObject object = treeObject(over, chain, chain.taut.contacts[i], gradient);
-    addTreeObject(object, out);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(chain.taut.numContacts); ++i) {
+    const ChainContact& contact = chain.taut.contacts[i];
+    const auto j = static_cast<std::size_t>(contact.object);
+    const std::size_t index = path_->chains[over.chain].members[j].surface;
+    const PathSurface& surface = path_->surfaces[index];
+    const Placement<double>& X_GC = chain.X_GC[j];
+    const Matrix3d R_GB = X_GC.R * surface.X_SC.R.transpose() * frames_[index].R_SB;
+    const TouchedObject object(surface, X_GC, R_GB, frames_[index].turnAxes,
+                               chain.placed.objects[j], contact, gradient.objects[j]);
+    auto& wrap = out.wraps[surface.wrap];
+    object.addTo(wrap);
     for (std::size_t k = 0; k < span.supported; ++k) {
       const ChainScrews motion = chainMotionOf(over, span.work, k);
-      addTreeObjectChange(object, changes.shifts(motion)[i],
-                          changes.gradientChange(motion).objects[j], motion.objects[j],
-                          static_cast<Eigen::Index>(k) + 1, out);
+      object.addChangeTo(wrap, static_cast<Eigen::Index>(k) + 1, changes.shifts(motion)[i],
+                         changes.gradientChange(motion).objects[j], motion.objects[j]);
     }
   }
   for (std::size_t k = 0; k < span.supported; ++k) {
@@ -135,59 +129,6 @@ bool PathGradients::addTreeChain(const TreeSpan& span, const Vector3d& P, const 
   addTreePoint(span, span.piece.a, &over.toP, gradient.P, 0, out);
   addTreePoint(span, span.piece.b, &over.toQ, gradient.Q, span.supported, out);
   return true;
-}
-
-PathGradients::TreeObject PathGradients::treeObject(const TreePath::OverChain& over,
-                                                    const TautTreeChain& chain,
-                                                    const ChainContact& contact,
-                                                    const ChainScrews& gradient) const {
-  const auto j = static_cast<std::size_t>(contact.object);
-  const std::size_t index = path_->chains[over.chain].members[j].surface;
-  const PathSurface& surface = path_->surfaces[index];
-  const SurfaceFrame& frame = frames_[index];
-  const Placement<double>& X_GC = chain.X_GC[j];
-  const Screw& g = gradient.objects[j];
-  return {surface,
-          frame,
-          X_GC,
-          (X_GC.R * surface.X_SC.R.transpose() * frame.R_SB).transpose(),
-          g,
-          g.angular - X_GC.p.cross(g.linear),
-          numNumbersOf(chain.placed.objects[j].surface),
-          contactNumbers(chain.placed.objects[j], contact)};
-}
-
-void PathGradients::addTreeObject(const TreeObject& object,
-                                  PathGradient<Eigen::Dynamic>& out) const {
-  auto& wrap = out.wraps[object.surface.wrap];
-  for (int n = 0; n < object.numNumbers; ++n) {
-    wrap(wrapNumberRow(object.surface.general.has_value(), n), 0) +=
-        object.numbers[static_cast<std::size_t>(n)].length;
-  }
-  wrap.block<3, 1>(1, 0) += object.R_BG * object.wrench.linear;
-  wrap.block<3, 1>(4, 0) +=
-      object.frame.turnAxes.transpose() * (object.X_GC.R.transpose() * object.moment);
-}
-
-// Force and moment in axes that move with the object.
-void PathGradients::addTreeObjectChange(const TreeObject& object, const ContactShift& shift,
-                                        const Screw& changed, const Screw& motion,
-                                        Eigen::Index column,
-                                        PathGradient<Eigen::Dynamic>& out) const {
-  auto& wrap = out.wraps[object.surface.wrap];
-  for (int n = 0; n < object.numNumbers; ++n) {
-    wrap(wrapNumberRow(object.surface.general.has_value(), n), column) +=
-        numberChange(object.numbers[static_cast<std::size_t>(n)], shift);
-  }
-  const Vector3d& origin = object.X_GC.p;
-  const Vector3d originMoves = motion.linear + motion.angular.cross(origin);
-  const Vector3d moment =
-      changed.angular - origin.cross(changed.linear) - originMoves.cross(object.wrench.linear);
-  wrap.block<3, 1>(1, column) +=
-      object.R_BG * (changed.linear - motion.angular.cross(object.wrench.linear));
-  wrap.block<3, 1>(4, column) +=
-      object.frame.turnAxes.transpose() *
-      (object.X_GC.R.transpose() * (moment - motion.angular.cross(object.moment)));
 }
 
 void PathGradients::evaluate(const Eigen::VectorXd& q, const TreePath& path,

@@ -142,9 +142,8 @@ class SensitivityRecorder {
     }
     direct_.forGeometry(i, q, [&](const QuantityEffect& effect, const auto& gradient) {
       double change = r.dF_dPathLength * gradient[0];
-      forEachMoved<N>(path, [&](int k, int slot) {
-        change += r.dF_dPathSpeed * gradient[1 + slot] * qDot[k];
-      });
+      forEachMoved<N>(
+          path, [&](int k, int slot) { change += r.dF_dPathSpeed * gradient[1 + slot] * qDot[k]; });
       fibre[effect.column] += effect.factor * l.dl_dPathLength * gradient[0];
       force[effect.column] += effect.factor * change;
     });

@@ -258,9 +258,8 @@ class SensitivityStep {
     }
     direct_.forGeometry(m, q, [&](const QuantityEffect& effect, const auto& gradient) {
       double change = r.dF_dPathLength * gradient[0];
-      forEachMoved<N>(path, [&](int k, int slot) {
-        change += r.dF_dPathSpeed * gradient[1 + slot] * v[k];
-      });
+      forEachMoved<N>(
+          path, [&](int k, int slot) { change += r.dF_dPathSpeed * gradient[1 + slot] * v[k]; });
       forEachMoved<N>(path, [&](int k, int slot) {
         force_(k, effect.column) -=
             effect.factor * (change * path.dL_dq[k] + r.tendonForce * gradient[1 + slot]);

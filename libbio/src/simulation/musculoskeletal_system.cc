@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "bio/path/path_lengths.h"
 #include "bio/path/posture_samples.h"
 #include "model/plausible.h"
 #include "simulation/integrators.h"
@@ -16,20 +17,10 @@ namespace {
 
 /// [m]
 double defaultLength(const Skeleton& skeleton, const Muscle& muscle, const MusclePath& path) {
-  return stepping::withCoordinates(skeleton, [&](auto N) {
-    constexpr int count = decltype(N)::value;
-    const Eigen::Matrix<double, count, 1> q = skeleton.defaultValues();
-    if constexpr (count == Eigen::Dynamic) {
-      TreePaths paths(skeleton);
-      paths.add(muscle, path);
-      paths.moveTo(q);
-      return paths.length(0).length;
-    } else {
-      std::vector<RigidMotion<double, count>> moved(skeleton.numSegments());
-      skeleton.motions<double, count>(q, moved.data());
-      return path.length<count>(q, moved.data()).length;
-    }
-  });
+  PathLengths lengths(skeleton);
+  lengths.add(muscle, path);
+  lengths.moveTo(skeleton.defaultValues());
+  return lengths.along(0).length;
 }
 
 }  // namespace

@@ -148,7 +148,7 @@ namespace {
 template <int N>
 Energy energyAt(SystemConfiguration<N>& configuration, const Eigen::Matrix<double, N, 1>& q,
                 const Eigen::Matrix<double, N, 1>& qDot, Eigen::Matrix<double, N, 1>& momentum) {
-  configuration.moveTo(q);
+  configuration.moveSkeletonTo(q);
   momentum.noalias() = configuration.massMatrix() * qDot;
   return {qDot.dot(momentum) / 2, configuration.potential()};
 }

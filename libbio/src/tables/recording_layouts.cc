@@ -72,6 +72,18 @@ std::vector<std::string> cellsOf(const std::string& line, char separator) {
   }
 }
 
+double finiteNumber(const std::string& file, std::size_t line, const std::string& column,
+                    const std::string& cell) {
+  double value = 0;
+  const char* end = cell.data() + cell.size();
+  const auto [stop, error] = std::from_chars(cell.data(), end, value);
+  if (error != std::errc() || stop != end || !std::isfinite(value)) {
+    throw FileError(
+        fmt::format("{}:{}: {} = '{}', must be a finite number", file, line, column, cell));
+  }
+  return value;
+}
+
 bool isNumber(const std::string& text) {
   double value = 0;
   return parse(text, value) && std::isfinite(value);

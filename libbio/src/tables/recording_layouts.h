@@ -24,6 +24,11 @@ std::vector<std::string> linesOf(const std::string& file);
 /// The cells of a line, trimmed; the separator ' ' stands for any run of white space.
 std::vector<std::string> cellsOf(const std::string& line, char separator);
 
+/// The number in a cell of a named column. @throws FileError unless it is a finite number, all of
+/// it
+double finiteNumber(const std::string& file, std::size_t line, const std::string& column,
+                    const std::string& cell);
+
 /// Is this a number, all of it?
 bool isNumber(const std::string& cell);
 

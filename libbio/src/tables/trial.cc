@@ -38,15 +38,6 @@ std::string plainName(const std::string& column) {
   return column;
 }
 
-const Coordinate* findMeasured(const Model& model, const std::string& name) {
-  for (const Joint& joint : model.joints) {
-    for (const Coordinate& coordinate : joint.coordinates) {
-      if (coordinate.name == name) return &coordinate;
-    }
-  }
-  return nullptr;
-}
-
 Meaning meaningOf(const Model& model, const Table& table, const std::string& column) {
   if (column == "time" || column == "time_s") return {Meaning::Kind::time, column, false};
   const std::string name = plainName(column);
@@ -55,18 +46,18 @@ Meaning meaningOf(const Model& model, const Table& table, const std::string& col
   }
   const bool suffix = name.ends_with("_deg");
   const std::string bare = suffix ? name.substr(0, name.size() - 4) : name;
-  if (const Coordinate* coordinate = findMeasured(model, name)) {
+  if (const Coordinate* coordinate = coordinateOrNull(model, name)) {
     return {Meaning::Kind::coordinate, name, coordinate->isRotation && table.inDegrees};
   }
   for (const auto& [ending, ofRotation] : {std::pair{".torque", true}, {".force", false}}) {
     if (!name.ends_with(ending)) continue;
     const std::string pushed = name.substr(0, name.rfind('.'));
-    const Coordinate* coordinate = findMeasured(model, pushed);
+    const Coordinate* coordinate = coordinateOrNull(model, pushed);
     if (coordinate && coordinate->isRotation == ofRotation) {
       return {Meaning::Kind::applied, pushed, false};
     }
   }
-  const Coordinate* coordinate = suffix ? findMeasured(model, bare) : nullptr;
+  const Coordinate* coordinate = suffix ? coordinateOrNull(model, bare) : nullptr;
   if (coordinate && coordinate->isRotation) return {Meaning::Kind::coordinate, bare, true};
   return {};
 }

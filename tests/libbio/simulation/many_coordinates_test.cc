@@ -4,6 +4,7 @@
 
 #include "bio/simulation/simulate.h"
 #include "libbio/simulation/arm_of_seven.h"
+#include "libbio/simulation/jacobian_check.h"
 #include "simulation/system_dynamics.h"
 #include "support/allocations.h"
 
@@ -103,20 +104,7 @@ TEST(ManyCoordinates, JacobianMatchesCentralDifferences) {
   const auto n = static_cast<Eigen::Index>(c.arm.numMuscles());
   y.segment(7, 7) << 1.3, -0.4, 0.8, -0.6, 1.1, 0.7, -0.9;
   y.tail(n) *= 1.001;  // away from the kink at fibre speed 0
-  Eigen::MatrixXd J(y.size(), y.size());
-  dynamics.jacobian(0.533, y, J);
-  Eigen::VectorXd plus(y.size()), minus(y.size());
-  for (Eigen::Index j = 0; j < y.size(); ++j) {
-    const double h = 1e-7;
-    Eigen::VectorXd shifted = y;
-    shifted[j] = y[j] + h;
-    dynamics.derivative(0.533, shifted, plus);
-    shifted[j] = y[j] - h;
-    dynamics.derivative(0.533, shifted, minus);
-    const Eigen::VectorXd difference = (plus - minus) / (2 * h);
-    const double scale = std::max(1.0, difference.cwiseAbs().maxCoeff());
-    EXPECT_LT((difference - J.col(j)).cwiseAbs().maxCoeff() / scale, 2e-6) << "column " << j;
-  }
+  fixtures::expectJacobianOfDifferences(dynamics, 0.533, y);
 }
 
 TEST(ManyCoordinates, NothingIsAllocatedInAStep) {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "bio/simulation/simulate_batch.h"
-#include "simulation/system_dynamics.h"
+#include "libbio/simulation/jacobian_check.h"
 #include "support/allocations.h"
 #include "support/elbow_model.h"
 #include "support/numbers.h"
@@ -86,20 +86,7 @@ void jacobianMatchesDifferences(const Case& c, double speed) {
   const auto n = static_cast<Eigen::Index>(c.arm.numMuscles());
   y.segment(N, N).setConstant(speed);
   y.tail(n) *= 1.001;  // away from the kink at fibre speed 0
-  Eigen::MatrixXd J(y.size(), y.size());
-  dynamics.jacobian(0.533, y, J);
-  Eigen::VectorXd plus(y.size()), minus(y.size());
-  for (Eigen::Index j = 0; j < y.size(); ++j) {
-    const double h = 1e-7;
-    Eigen::VectorXd shifted = y;
-    shifted[j] = y[j] + h;
-    dynamics.derivative(0.533, shifted, plus);
-    shifted[j] = y[j] - h;
-    dynamics.derivative(0.533, shifted, minus);
-    const Eigen::VectorXd difference = (plus - minus) / (2 * h);
-    const double scale = std::max(1.0, difference.cwiseAbs().maxCoeff());
-    EXPECT_LT((difference - J.col(j)).cwiseAbs().maxCoeff() / scale, 2e-6) << "column " << j;
-  }
+  fixtures::expectJacobianOfDifferences(dynamics, 0.533, y);
 }
 
 TEST(Coupled, AnalyticJacobianMatchesCentralDifferences) {

@@ -301,6 +301,8 @@ std::string simulatedClasses();
 /// The named item, or throws std::invalid_argument with a list of the existing names.
 const Body& findBody(const Model& model, const std::string& name);
 const Coordinate& findCoordinate(const Model& model, const std::string& name);
+/// Null if there is none of that name.
+const Coordinate* coordinateOrNull(const Model& model, const std::string& name);
 const WrapObject& findWrapObject(const Model& model, const std::string& name);
 const Muscle& findMuscle(const Model& model, const std::string& name);
 

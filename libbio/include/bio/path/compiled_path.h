@@ -93,6 +93,18 @@ struct CompiledPath {
   std::vector<std::string> warnings;  ///< what a path does that its author will not expect
 };
 
+/// Where the surfaces of a chain are, by where their segments are: placementOf(segment).
+template <class PlacementOf>
+ChainPlacements placementsOf(const CompiledPath& path, const PathChain& chain,
+                             const PlacementOf& placementOf) {
+  ChainPlacements X;
+  for (std::size_t j = 0; j < static_cast<std::size_t>(chain.count); ++j) {
+    const PathSurface& surface = path.surfaces[chain.members[j].surface];
+    X[j] = placementOf(surface.segment) * surface.X_SC;
+  }
+  return X;
+}
+
 /// Thrown for a path that cannot be computed here and that no option can change. Callers leave the
 /// muscle out with a warning.
 class UnsupportedWrap : public std::invalid_argument {
@@ -106,8 +118,8 @@ struct Posture {
 };
 
 /// The postures in which compilePath checks which surfaces a span can touch: the default posture,
-/// then a grid over the coordinates' ranges, nearest to the default first. One list serves all
-/// muscles. More than four coordinates: posture_samples.h, of all coordinates.
+/// then a grid over the ranges of up to four coordinates, nearest to the default first. One list
+/// serves all muscles. More coordinates: posture_samples.h.
 std::vector<Posture> samplePostures(const Skeleton& skeleton);
 
 /// See MusclePath.

@@ -45,24 +45,24 @@ struct PathSwitch {
 /// The path of one muscle, compiled for a skeleton: the constant length of the fixed spans, and the
 /// moving spans. Evaluation is pure and does not allocate.
 ///
-/// A span is straight, or passes over one wrap object. An object is used by the first span that
-/// touches it, and a span uses the first object that it touches. The side of an object on which a
-/// span passes is decided once, at construction (wrap_rule.h), from the default posture and the
-/// coordinates' ranges. Between switches of conditional points the length is C¹.
+/// A span is straight, passes over one cylinder or sphere, or over a chain of wrap objects that are
+/// solved together (path_chain.h): those that it touches at once, ellipsoids and tori. An object is
+/// used by the first span that touches it. The side of an object on which a span passes is decided
+/// once, at construction (wrap_rule.h), from the default posture and the coordinates' ranges.
+/// Between switches of conditional points the length is C¹ as long as a chain keeps its way.
 ///
-/// Departures from OpenSim: paths over spheres and cylinders are exact geodesics; they never change
-/// sides, but slip off a cylinder where they would wrap the long way round (wrap_rule.h); and an
-/// object that no span touches within the coordinates' ranges, and in whose radius no span end
-/// lies, is ignored.
+/// Departures from OpenSim: paths over wrap objects are exact geodesics; over spheres and cylinders
+/// they never change sides, but slip off a cylinder where they would wrap the long way round
+/// (wrap_rule.h); and an object that no span touches within the coordinates' ranges, and in whose
+/// radius no span end lies, is ignored.
 class MusclePath {
  public:
   /// @param wrapAsCylinder names of ellipsoids with two equal semi-axes to be treated as cylinders
   ///   about the third axis
-  /// @throws UnsupportedWrap for a torus or a three-axial ellipsoid that a moving span can touch
-  /// @throws std::invalid_argument for another ellipsoid that a moving span can touch, one in
-  /// wrapAsCylinder
-  ///   without two equal semi-axes, names that the model lacks, a path that has less than two
-  ///   points in some posture
+  /// @throws UnsupportedWrap for a span over more than maxChain objects at once, or over objects
+  ///   over which no taut string is found in any posture
+  /// @throws std::invalid_argument for an ellipsoid in wrapAsCylinder without two equal semi-axes,
+  ///   names that the model lacks, a path that has less than two points in some posture
   MusclePath(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
              const std::vector<std::string>& wrapAsCylinder);
   /// The same for one of many muscles, with postures = PostureSamples(…).of(muscle).
@@ -73,7 +73,7 @@ class MusclePath {
   bool moves() const;
   /// One line each: wraps of fixed spans that are treated as straight, wraps out of reach.
   const std::vector<std::string>& notes() const { return compiled_.notes; }
-  /// One line each: spans that touch several wrap objects at once, of which one is used.
+  /// One line each: spans over which no taut string is found in some postures.
   const std::vector<std::string>& warnings() const { return compiled_.warnings; }
   /// Coordinate values at which conditional points switch.
   std::vector<PathSwitch> switches() const;

@@ -25,7 +25,7 @@ inline constexpr std::size_t maxChainStarts = 256;
 /// one nearest to it, so that the result does not depend on what was evaluated before.
 struct PathChain {
   struct Member {
-    std::size_t surface = 0;  ///< in CompiledPath::surfaces
+    std::size_t surface = 0;                          ///< in CompiledPath::surfaces
     Eigen::Vector3d hint = Eigen::Vector3d::UnitX();  ///< ChainObject::hint
   };
   int count = 0;
@@ -65,7 +65,8 @@ PlacedChain placeChain(const CompiledPath& path, const PathChain& chain,
 ///
 /// Allocates nothing.
 /// @param placed  placeChain of the same chain and placements
-/// @param used  bits of the surfaces that other spans use, which are left out; those touched are added
+/// @param used  bits of the surfaces that other spans use, which are left out; those touched are
+/// added
 /// @throws std::domain_error if no taut string is found
 ChainPath tautChain(const CompiledPath& path, const PathChain& chain, const PlacedChain& placed,
                     const ChainPlacements& X_GC, const Vec3<double>& P, const Vec3<double>& Q,

@@ -9,11 +9,6 @@
 
 namespace bio {
 
-struct TautTreeChain;
-struct ChainScrews;
-struct ContactShift;
-struct Screw;
-
 /// Rows of a PathGradient for each wrap object.
 inline constexpr int numWrapRows = 10;
 /// The row of a number of a surface: 0 of a cylinder or sphere, 7 … 9 of a general surface.
@@ -97,15 +92,8 @@ class PathGradients {
   void addTreePoint(const TreeSpan& span, std::size_t node, const SegmentChain* chain,
                     const Eigen::Vector3d& c, std::size_t slopes,
                     PathGradient<Eigen::Dynamic>& out) const;
-  struct TreeObject;
   bool addTreeChain(const TreeSpan& span, const Eigen::Vector3d& P, const Eigen::Vector3d& Q,
                     unsigned& used, PathGradient<Eigen::Dynamic>& out) const;
-  TreeObject treeObject(const TreePath::OverChain& over, const TautTreeChain& chain,
-                        const ChainContact& contact, const ChainScrews& gradient) const;
-  void addTreeObject(const TreeObject& object, PathGradient<Eigen::Dynamic>& out) const;
-  void addTreeObjectChange(const TreeObject& object, const ContactShift& shift,
-                           const Screw& changed, const Screw& motion, Eigen::Index column,
-                           PathGradient<Eigen::Dynamic>& out) const;
 
   const CompiledPath* path_;
   std::vector<std::string> bodies_;  ///< of the path's points

@@ -257,12 +257,9 @@ Screw screwChange(const RigidMotion<double, N>& X, int i, int j) {
 template <int N>
 ChainPlacements chainInGround(const CompiledPath& path, const PathChain& chain,
                               const RigidMotion<double, N>* moved) {
-  ChainPlacements X_GC;
-  for (std::size_t j = 0; j < static_cast<std::size_t>(chain.count); ++j) {
-    const PathSurface& surface = path.surfaces[chain.members[j].surface];
-    X_GC[j] = moved[surface.segment].value * surface.X_SC;
-  }
-  return X_GC;
+  return placementsOf(path, chain, [&](std::size_t segment) -> const Placement<double>& {
+    return moved[segment].value;
+  });
 }
 
 /// How the ends of a chain in the ground and its objects move with q_i.
@@ -285,24 +282,16 @@ ChainScrews chainMotion(const CompiledPath& path, const PathChain& chain,
 /// (which of the two moves matters: turns do not commute).
 template <int N>
 void addMovingChain(LengthJet<N>& jet, const CompiledPath& path, const PathChain& chain,
-                    const ChainPath& taut, const SpanEnd<double, N>& P,
-                    const SpanEnd<double, N>& Q, const RigidMotion<double, N>* moved) {
+                    const ChainPath& taut, const SpanEnd<double, N>& P, const SpanEnd<double, N>& Q,
+                    const RigidMotion<double, N>* moved) {
   const ChainScrews gradient = chainGradient(taut);
   const ChainChanges changes(taut);
   const auto count = static_cast<std::size_t>(chain.count);
-  const auto along = [&](const ChainScrews& g, const ChainScrews& m) {
-    double sum = g.P.dot(m.P) + g.Q.dot(m.Q);
-    for (std::size_t j = 0; j < count; ++j) {
-      sum += g.objects[j].linear.dot(m.objects[j].linear) +
-             g.objects[j].angular.dot(m.objects[j].angular);
-    }
-    return sum;
-  };
   std::array<ChainScrews, N> motions;
   for (int i = 0; i < N; ++i) {
     const auto si = static_cast<std::size_t>(i);
     motions[si] = chainMotion<N>(path, chain, P, Q, moved, i);
-    jet.dL_dq[i] += along(gradient, motions[si]);
+    jet.dL_dq[i] += powerOf(gradient, motions[si], count);
     const ChainScrews changed = changes.gradientChange(motions[si]);
     for (int j = 0; j <= i; ++j) {
       double bent = alongSecond(P, i, j, gradient.P) + alongSecond(Q, i, j, gradient.Q);
@@ -314,7 +303,7 @@ void addMovingChain(LengthJet<N>& jet, const CompiledPath& path, const PathChain
                 gradient.objects[k].angular.dot(turned.angular);
       }
       addSecond<double, N>(jet, i, j,
-                           along(changed, motions[static_cast<std::size_t>(j)]) + bent);
+                           powerOf(changed, motions[static_cast<std::size_t>(j)], count) + bent);
     }
   }
   jet.length += taut.length;

@@ -114,13 +114,15 @@ class TreePaths {
 
   /// The path must outlive this object.
   void add(const Muscle& muscle, const MusclePath& path);
-  /// Places all; call after the last add().
+  /// Places the skeleton; call after the last add().
   void moveTo(const Eigen::VectorXd& q);
-  const LengthJet<Eigen::Dynamic>& length(std::size_t index) const { return lengths_[index]; }
+  /// Evaluates one path there. @throws std::domain_error if it has no taut string
+  const LengthJet<Eigen::Dynamic>& length(std::size_t index);
 
  private:
   const Skeleton* skeleton_;
   ArticulatedTree tree_;
+  Eigen::VectorXd q_;
   std::optional<TreeMotion<double>> motion_;
   std::vector<const MusclePath*> compiled_;
   std::vector<TreePath> paths_;

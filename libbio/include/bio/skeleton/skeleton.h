@@ -51,7 +51,7 @@ inline Function identityFunction() {
 }
 
 /// Up to so many segments and free coordinates are simulated by code of fixed size; what has more
-/// is an articulated tree, which is 3.5 times faster with two coordinates and 22 times with four.
+/// is an articulated tree, which is several times faster (docs/decisions/057-articulated-trees.md).
 constexpr std::size_t maxFixedSegments = 24;
 constexpr int maxFixedCoordinates = 1;
 

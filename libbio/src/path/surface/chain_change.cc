@@ -35,6 +35,15 @@ ChainScrews chainGradient(const ChainPath& path) {
   return gradient;
 }
 
+double powerOf(const ChainScrews& gradient, const ChainScrews& motion, std::size_t count) {
+  double sum = gradient.P.dot(motion.P) + gradient.Q.dot(motion.Q);
+  for (std::size_t j = 0; j < count; ++j) {
+    const Screw &g = gradient.objects[j], &m = motion.objects[j];
+    sum += g.linear.dot(m.linear) + g.angular.dot(m.angular);
+  }
+  return sum;
+}
+
 ChainChanges::ChainChanges(const ChainPath& path) : path_(path) {
   // rows: the sides at the first and at the last contact; columns: β, θ
   detail::LinearSystem matrix;

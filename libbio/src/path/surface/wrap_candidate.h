@@ -19,10 +19,11 @@ struct CandidateWrap {
 };
 
 /// Cylinders and spheres as they are, ellipsoids with three equal semi-axes as spheres, those named
-/// in `wrapAsCylinder` as cylinders, other ellipsoids and tori as general surfaces. Points and place in CompiledPath::surfaces are the caller's.
+/// in `wrapAsCylinder` as cylinders, other ellipsoids and tori as general surfaces. Points and
+/// place in CompiledPath::surfaces are the caller's.
 /// @param index  its place in Path::wraps
-/// @throws std::invalid_argument a radius or semi-axis ≤ 0, a torus without a hole, a quadrant along a cylinder's axis, an ellipsoid to
-///   be a cylinder without two equal semi-axes
+/// @throws std::invalid_argument a radius or semi-axis ≤ 0, a torus without a hole, a quadrant
+///   along a cylinder's axis, an ellipsoid to be a cylinder without two equal semi-axes
 CandidateWrap candidateWrap(const WrapObject& object, const BodyPlacement& place, std::size_t index,
                             const std::vector<std::string>& wrapAsCylinder);
 

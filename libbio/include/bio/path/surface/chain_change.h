@@ -29,6 +29,10 @@ struct ChainScrews {
 /// for an object whose contacts A, B end the piece t and start t′; 0 for one that is not touched.
 ChainScrews chainGradient(const ChainPath& path);
 
+/// The power of a gradient's forces and moments at the motions of what they act on, `count`
+/// objects.
+double powerOf(const ChainScrews& gradient, const ChainScrews& motion, std::size_t count);
+
 /// Second derivatives of L over the ends [1/m].
 struct EndHessian {
   Eigen::Matrix3d PP, PQ, QQ;  ///< PQ: rows P, columns Q
