@@ -7,6 +7,7 @@
 #include "bio/analysis/replay.h"
 #include "bio/discovery/with_experimental_conditions.h"
 #include "bio/model/free_coordinates.h"
+#include "bio/skeleton/articulated_tree.h"
 #include "bio/model/integrator_names.h"
 #include "bio/opensim/osim_file.h"
 #include "bio/tables/trial_table.h"
@@ -17,7 +18,9 @@ namespace python {
 namespace {
 
 bio::Trial trialOf(const bio::Model& model, const py::dict& columns, const std::string& name,
-                   bool ignoreExtra, double knownMassInHand, double knownArmTurn) {
+                   bool ignoreExtra, double knownMassInHand, double knownArmTurn,
+                   const std::vector<std::string>& prescribe,
+                   const std::map<std::string, double>& hold) {
   bio::Table table;
   table.metadata = bio::headerOf({knownMassInHand, knownArmTurn});
   for (const auto& [key, values] : columns) {
@@ -33,7 +36,10 @@ bio::Trial trialOf(const bio::Model& model, const py::dict& columns, const std::
     table.values.col(index) = column;
   }
   bio::Trial trial = bio::trialFrom(table, name, model,
-                                    {.ignoreExtra = ignoreExtra, .experimentalConditions = true});
+                                    {.ignoreExtra = ignoreExtra,
+                                     .experimentalConditions = true,
+                                     .prescribed = prescribe,
+                                     .held = hold});
   trial.sha256 = digestOf(
       py::repr(py::make_tuple(
                    name, py::bytes(reinterpret_cast<const char*>(table.values.data()),
@@ -42,19 +48,32 @@ bio::Trial trialOf(const bio::Model& model, const py::dict& columns, const std::
   return trial;
 }
 
-bio::Trial loadTrial(const std::string& file, const bio::Model& model, bool ignoreExtra) {
-  bio::Trial trial =
-      bio::readTrial(file, model, {.ignoreExtra = ignoreExtra, .experimentalConditions = true});
+bio::Trial loadTrial(const std::string& file, const bio::Model& model, bool ignoreExtra,
+                     const std::vector<std::string>& prescribe,
+                     const std::map<std::string, double>& hold) {
+  bio::Trial trial = bio::readTrial(file, model,
+                                    {.ignoreExtra = ignoreExtra,
+                                     .experimentalConditions = true,
+                                     .prescribed = prescribe,
+                                     .held = hold});
   trial.sha256 = digestOf(py::module_::import("pathlib").attr("Path")(file).attr("read_bytes")());
   return trial;
 }
 
-py::dict measuredOf(const bio::Trial& trial) {
-  py::dict measured;
-  for (const bio::MeasuredMotion& one : trial.measured) {
-    measured[one.coordinate.c_str()] = py::make_tuple(one.times, one.values);
+py::dict coursesOf(const std::vector<bio::MeasuredMotion>& motions) {
+  py::dict courses;
+  for (const bio::MeasuredMotion& one : motions) {
+    courses[one.coordinate.c_str()] = py::make_tuple(one.times, one.values);
   }
-  return measured;
+  return courses;
+}
+
+py::dict channelsOf(const bio::Trial& trial) {
+  py::dict channels;
+  for (const bio::MeasuredChannel& one : trial.channels) {
+    channels[bio::nameOf(one.what).c_str()] = py::make_tuple(one.times, one.values);
+  }
+  return channels;
 }
 
 std::vector<std::string> coordinatesOf(const bio::Model& model) {
@@ -87,6 +106,23 @@ py::dict errorsOf(const bio::MusculoskeletalSystem& arm, const bio::Trial& trial
     }
   }
   return errors;
+}
+
+py::dict channelErrorsOf(const bio::TrialReplay& replay) {
+  py::dict errors;
+  for (const bio::ChannelError& one : replay.channelErrors) {
+    errors[bio::nameOf(one.what).c_str()] = one.error.rms;
+  }
+  return errors;
+}
+
+py::dict reactionsOf(const bio::MusculoskeletalSystem& arm, const bio::Trajectory& motion) {
+  py::dict reactions;
+  for (const int k : arm.prescribed()) {
+    const std::string& name = arm.skeleton().coordinates()[static_cast<std::size_t>(k)].name;
+    reactions[name.c_str()] = Eigen::VectorXd(motion.reaction.row(k));
+  }
+  return reactions;
 }
 
 py::object replay(const bio::Model& given, const bio::Trial& trial,
@@ -125,7 +161,9 @@ py::object replay(const bio::Model& given, const bio::Trial& trial,
                  "fibre_length"_a = motion.fibreLength.transpose().eval(),
                  "tendon_force"_a = muscles.tendonForce.transpose().eval(),
                  "moment_arm"_a = muscles.momentArm.transpose().eval(),
-                 "rms_error"_a = errorsOf(*arm, trial, motion), "energy_error"_a = energyError,
+                 "reaction"_a = reactionsOf(*arm, motion),
+                 "rms_error"_a = errorsOf(*arm, trial, motion),
+                 "channel_rms_error"_a = channelErrorsOf(replayed), "energy_error"_a = energyError,
                  "outcome"_a = bio::name(motion.outcome), "why"_a = motion.why,
                  "start_from"_a = bio::name(replayed.beginning.from),
                  "step"_a = replayed.options.step, "steps"_a = motion.steps,
@@ -137,6 +175,9 @@ py::object replay(const bio::Model& given, const bio::Trial& trial,
 bio::SystemOptions SystemChoice::armOptions() const {
   bio::SystemOptions options;
   options.skeleton.freeCoordinates = coordinates;
+  options.skeleton.freeCoordinates.insert(options.skeleton.freeCoordinates.end(),
+                                          prescribed.begin(), prescribed.end());
+  options.prescribed = prescribed;
   options.skeleton.lockedValues = locks;
   return options;
 }
@@ -153,6 +194,22 @@ bio::SimulationOptions SystemChoice::simulation() const {
   return options;
 }
 
+namespace {
+
+/// Whether freeByDefault() has to find one: always where nothing is prescribed.
+bool canBeFree(const bio::Model& model, const std::map<std::string, double>& lock,
+               const std::set<std::string>& prescribed) {
+  if (prescribed.empty()) return true;
+  for (const std::string& name : bio::independentCoordinates(model)) {
+    const bool isFixed = lock.contains(name) || prescribed.contains(name) ||
+                         bio::findCoordinate(model, name).locked;
+    if (!isFixed) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 SystemChoice armChoice(const bio::Model& model, const std::vector<bio::Trial>& trials,
                        const Names& coordinate, const std::map<std::string, double>& lock,
                        const std::string& integrator, std::optional<double> step) {
@@ -162,14 +219,22 @@ SystemChoice armChoice(const bio::Model& model, const std::vector<bio::Trial>& t
   const auto* one = std::get_if<std::string>(&coordinate);
   std::vector<std::string> free =
       one ? std::vector<std::string>{*one} : std::get<std::vector<std::string>>(coordinate);
-  if (free.empty()) {
-    std::set<std::string> locked, measured;
+  std::set<std::string> given;
+  for (const bio::Trial& trial : trials)
+    for (const bio::MeasuredMotion& course : trial.prescribed) given.insert(course.coordinate);
+  const std::vector<std::string> prescribed(given.begin(), given.end());
+  if (free.empty() && canBeFree(model, lock, given)) {
+    std::set<std::string> locked = given, measured;
     for (const auto& [name, value] : lock) locked.insert(name);
     for (const bio::Trial& trial : trials)
       for (const bio::MeasuredMotion& motion : trial.measured) measured.insert(motion.coordinate);
     free = bio::freeByDefault(model, locked, measured);
   }
-  return {.coordinates = std::move(free), .locks = lock, .integrator = integrator, .step = step};
+  return {.coordinates = std::move(free),
+          .prescribed = prescribed,
+          .locks = lock,
+          .integrator = integrator,
+          .step = step};
 }
 
 std::string digestOf(const py::object& bytes) {
@@ -217,7 +282,13 @@ void defineSystems(py::module_& module) {
       .def_readonly("times", &bio::Trial::times, docstrings::Trial_times)
       .def_readonly("muscles", &bio::Trial::muscles, docstrings::Trial_muscles)
       .def_readonly("excitations", &bio::Trial::excitations, docstrings::Trial_excitations)
-      .def_property_readonly("measured", &measuredOf, docstrings::Trial_measured)
+      .def_property_readonly(
+          "measured", [](const bio::Trial& self) { return coursesOf(self.measured); },
+          docstrings::Trial_measured)
+      .def_property_readonly(
+          "prescribed", [](const bio::Trial& self) { return coursesOf(self.prescribed); },
+          docstrings::Trial_prescribed)
+      .def_property_readonly("channels", &channelsOf, docstrings::Trial_channels)
       .def_property_readonly(
           "known_mass_in_hand", [](const bio::Trial& self) { return self.known.massInHand; },
           docstrings::Trial_known_mass_in_hand)
@@ -232,9 +303,11 @@ void defineSystems(py::module_& module) {
       "load_model", [](const std::string& file) { return bio::readOsim(file); }, "file"_a,
       docstrings::load_model);
   module.def("load_trial", &loadTrial, "file"_a, "model"_a, py::kw_only(), "ignore_extra"_a = false,
+             "prescribe"_a = std::vector<std::string>(), "hold"_a = std::map<std::string, double>(),
              docstrings::load_trial);
   module.def("make_trial", &trialOf, "model"_a, "columns"_a, py::kw_only(), "name"_a = "trial",
              "ignore_extra"_a = false, "known_mass_in_hand"_a = 0.0, "known_arm_turn"_a = 0.0,
+             "prescribe"_a = std::vector<std::string>(), "hold"_a = std::map<std::string, double>(),
              docstrings::make_trial);
   defineWithChoice(module, "replay", &replay, docstrings::replay, "model"_a, "trial"_a,
                    py::kw_only(), "initial"_a = std::map<std::string, double>());

@@ -28,6 +28,7 @@ py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& t
       mustBeOfTheModelAsItIs(trial);
       bio::SimulationOptions options = during(trial, choice.simulation());
       options.externalForce = bio::externalForceOf(trial, arm);
+      options.prescribed = bio::prescribedMotionOf(trial, arm);
       options.progress = [&](double) { return goOn.load(); };
       const bio::ParameterCatalogue catalogue(model, arm,
                                               {bio::startCoordinates(trial, arm, {}), {}});

@@ -18,6 +18,7 @@
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/angle_unit.h"
+#include "output/json_text.h"
 #include "output/progress_bar.h"
 #include "output/result.h"
 #include "output/sha256.h"
@@ -77,6 +78,10 @@ class Calibrate : public Command {
         ->check(positive())
         ->type_name("DEG")
         ->group(group);
+    list("--noise", channelNoise_,
+         "standard deviation of another measured channel, e.g. elbow_flexion.moment=0.5, in its "
+         "unit; default: estimated in the same way; may be repeated")
+        ->type_name("NAME=VALUE");
     options
         .add_option("--loss", loss_,
                     "loss function: gaussian, or the outlier-robust huber or student")
@@ -97,6 +102,7 @@ class Calibrate : public Command {
         ->type_name("N")
         ->group(group);
     addSimulationOptions(options, simulation_);
+    addPrescribing(options, simulation_);
   }
 
   ExitStatus run(const CommandContext& context) override {
@@ -198,6 +204,12 @@ class Calibrate : public Command {
       options.bounds[bounds.name] = {bounds.first, bounds.second};
     }
     if (noise_) options.noise = *noise_ / radian;
+    for (const std::string& text : channelNoise_) {
+      const Assignment one = parseAssignment(text);
+      if (!options.channelNoise.emplace(one.name, one.value).second) {
+        throw std::invalid_argument(fmt::format("--noise: '{}' is given twice", one.name));
+      }
+    }
     options.loss.kind = loss_ == "huber"     ? info::RobustLoss::Kind::huber
                         : loss_ == "student" ? info::RobustLoss::Kind::student
                                              : info::RobustLoss::Kind::gaussian;
@@ -231,7 +243,7 @@ class Calibrate : public Command {
                                Summary& summary) const {
     std::vector<bio::Trial> trials;
     for (const std::string& file : files) {
-      trials.push_back(readTrialFile(file, model, simulation_));
+      trials.push_back(readTrialFile(file, model, simulation_, {.channels = true}));
       for (const std::string& warning : trials.back().warnings) summary.warn(warning);
       for (const bio::MeasuredMotion& motion : trials.back().measured) {
         const std::string why = bio::whyNotUsable(motion);
@@ -324,7 +336,11 @@ class Calibrate : public Command {
         file = folder.active() ? folder.path(name).string() : name;
       }
       json["replay_file"] = file;
-      json["rmse_after_deg"] = one.after * radian;
+      json["rmse_after_deg"] = orNull(one.after * radian);
+      for (const bio::ChannelError& channel : one.channels) {
+        json["rms_error"][nameOf(channel.what)] = {
+            {"value", channel.error.rms}, {"unit", bio::unitOf(channel.what, calibrated.model)}};
+      }
       json["start"] = nlohmann::ordered_json::array();
       for (const bio::TrialStart& start : one.starts) {
         json["start"].push_back(
@@ -336,7 +352,8 @@ class Calibrate : public Command {
   }
 
   std::string model_;
-  std::vector<std::string> trials_, heldOut_, parameters_, priors_, bounds_, profile_;
+  std::vector<std::string> trials_, heldOut_, parameters_, priors_, bounds_, profile_,
+      channelNoise_;
   bool ownStart_ = false, noPriors_ = false, list_ = false;
   std::optional<double> noise_;
   std::string loss_ = "gaussian";

@@ -13,8 +13,18 @@
 namespace app {
 namespace {
 
-std::vector<double> degrees(const Eigen::VectorXd& values) {
-  const Eigen::VectorXd result = values * radian;
+/// Angles are shown in degrees, everything else in its unit.
+struct ShownUnit {
+  double factor;
+  std::string name;
+};
+ShownUnit shownUnit(const bio::MeasuredGroup& channel) {
+  if (channel.areAngles) return {radian, "deg"};
+  return {1, channel.unit == "N·m" ? "N m" : channel.unit.empty() ? "1" : channel.unit};
+}
+
+std::vector<double> inUnit(const Eigen::VectorXd& values, const ShownUnit& unit) {
+  const Eigen::VectorXd result = values * unit.factor;
   return {result.begin(), result.end()};
 }
 
@@ -32,40 +42,46 @@ Figure overlay(const bio::TrialSet& set, std::size_t index, const Eigen::MatrixX
   const std::string& file = set.trials()[series.trial].file;
   const Eigen::VectorXd was = before.middleCols(begin, n).transpose();
   const Eigen::VectorXd is = after.middleCols(begin, n).transpose();
+  const ShownUnit unit = shownUnit(set.channels()[series.channel]);
   const auto rms = [&](const Eigen::VectorXd& y) {
-    return std::sqrt((y - series.values).squaredNorm() / static_cast<double>(n)) * radian;
+    return std::sqrt((y - series.values).squaredNorm() / static_cast<double>(n)) * unit.factor;
   };
-  Figure figure{.title = fmt::format("{} ({})", file, role),
-                .xLabel = "Time [s]",
-                .yLabel = fmt::format("{} [deg]", series.coordinate),
-                .caption = fmt::format("RMS error {:.3g} deg before calibration, {:.3g} deg after.",
-                                       rms(was), rms(is))};
+  Figure figure{
+      .title = fmt::format("{} ({})", file, role),
+      .xLabel = "Time [s]",
+      .yLabel = fmt::format("{} [{}]", nameOf(series.what), unit.name),
+      .caption = fmt::format("RMS error {0:.3g} {2} before calibration, {1:.3g} {2} after.",
+                             rms(was), rms(is), unit.name)};
   figure.series.push_back({.name = "measured",
                            .x = series.times,
-                           .y = degrees(series.values),
+                           .y = inUnit(series.values, unit),
                            .style = SeriesStyle::points});
   figure.series.push_back(
-      {.name = "before", .x = series.times, .y = degrees(was), .style = SeriesStyle::dashed});
-  figure.series.push_back({.name = "calibrated", .x = series.times, .y = degrees(is)});
+      {.name = "before", .x = series.times, .y = inUnit(was, unit), .style = SeriesStyle::dashed});
+  figure.series.push_back({.name = "calibrated", .x = series.times, .y = inUnit(is, unit)});
   return figure;
 }
 
-Figure residualFigure(const CalibrateFindings& f) {
-  Figure figure{.title = "Residuals",
+/// Of one channel.
+Figure residualFigure(const CalibrateFindings& f, std::size_t channel) {
+  const bio::MeasuredGroup& shown = f.training.channels()[channel];
+  const ShownUnit unit = shownUnit(shown);
+  Figure figure{.title = f.training.hasOnlyAngles() ? "Residuals" : "Residuals of " + shown.name,
                 .xLabel = "Time [s]",
-                .yLabel = "Measured − calibrated [deg]",
+                .yLabel = fmt::format("Measured − calibrated [{}]", unit.name),
                 .caption =
                     "Residuals of the calibrated model. White noise scatters about 0; slow waves "
                     "indicate an error of the model."};
   const auto add = [&](const bio::TrialSet& set, const Eigen::MatrixXd& after, bool held) {
     for (std::size_t i = 0; i < set.series().size() && figure.series.size() < 8; ++i) {
       const bio::MeasuredSeries& series = set.series()[i];
+      if (set.channels()[series.channel].name != shown.name) continue;
       const Eigen::VectorXd r =
           series.values - after.middleCols(beginOf(set, i), series.values.size()).transpose();
       figure.series.push_back(
           {.name = set.trials()[series.trial].file + (held ? " (held out)" : ""),
            .x = series.times,
-           .y = degrees(r),
+           .y = inUnit(r, unit),
            .style = held ? SeriesStyle::dashed : SeriesStyle::line});
     }
   };
@@ -224,7 +240,27 @@ std::string aboveNoise(const CalibrateFindings& f) {
       f.calibration.noiseFloor * radian);
 }
 
+/// One sentence for each channel where not only angles were measured.
+std::string channelNoiseText(const CalibrateFindings& f) {
+  std::string text;
+  for (std::size_t i = 0; i < f.training.channels().size(); ++i) {
+    const bio::MeasuredGroup& channel = f.training.channels()[i];
+    const bio::ResidualNoise& noise = f.calibration.channelNoise[i];
+    const ShownUnit unit = shownUnit(channel);
+    const bool isGiven = channel.areAngles ? f.options.noise.has_value()
+                                           : f.options.channelNoise.contains(channel.name);
+    text += fmt::format("{}{}: {:.3g} {} {}", text.empty() ? "Noise of " : "; ", channel.name,
+                        noise.sd * unit.factor, unit.name,
+                        isGiven ? "(given)" : "(from the residuals)");
+    if (noise.correlationTime > 1) {
+      text += fmt::format(", {:.3g} samples count as one independent value", noise.correlationTime);
+    }
+  }
+  return text + fmt::format(". The reduced χ² is {:.3g}.", f.calibration.reducedChiSquare);
+}
+
 std::string noiseText(const CalibrateFindings& f) {
+  if (!f.training.hasOnlyAngles()) return channelNoiseText(f);
   const bio::ResidualNoise& noise = f.calibration.noise;
   if (f.options.noise) {
     return fmt::format("White noise of {:.3g} deg was given; the reduced χ² is {:.3g}.{}",
@@ -252,13 +288,35 @@ std::string noiseText(const CalibrateFindings& f) {
 }
 
 /// "fell from 12° to 1.49° on the calibration trial"
-std::string changeWords(double before, double after, const char* role, std::size_t trials) {
-  const std::string was = fmt::format("{:.3g}°", before), is = fmt::format("{:.3g}°", after);
+std::string changeWords(double before, double after, const std::string& unit, const char* role,
+                        std::size_t trials) {
+  const std::string was = fmt::format("{:.3g}{}", before, unit),
+                    is = fmt::format("{:.3g}{}", after, unit);
   const std::string change =
       !std::isfinite(before) ? "is " + is
       : was == is            ? "stayed at " + is
                   : fmt::format("{} from {} to {}", after < before ? "fell" : "rose", was, is);
   return fmt::format("{} on the {} trial{}", change, role, trials == 1 ? "" : "s");
+}
+
+/// RMS error before and after: of the angles, or of the first channel if there are none.
+struct Change {
+  double before, after;
+  std::string unit;  ///< as it follows a number
+  std::string of;    ///< "of NAME ", or empty for angles
+};
+Change changeOf(const CalibrateFindings& f, bool heldOut) {
+  const bio::Calibration& c = f.calibration;
+  const bio::TrialSet* set = heldOut ? f.heldOut : &f.training;
+  if (!set) return {};
+  const Eigen::MatrixXd& before = heldOut ? c.heldOutBefore : c.before;
+  const Eigen::MatrixXd& after = heldOut ? c.heldOutAfter : c.after;
+  for (const bio::MeasuredGroup& channel : set->channels()) {
+    if (channel.areAngles) return {rmse(*set, before), rmseAfter(f, heldOut), "°", ""};
+  }
+  const bio::MeasuredGroup& first = set->channels().front();
+  return {std::sqrt(set->meanSquareOf(before, 0)), std::sqrt(set->meanSquareOf(after, 0)),
+          " " + shownUnit(first).name, fmt::format("of {} ", first.name)};
 }
 
 std::string verdictOf(const CalibrateFindings& f) {
@@ -269,13 +327,15 @@ std::string verdictOf(const CalibrateFindings& f) {
     all += !one.ofTrial;
     identifiable += !one.ofTrial && one.identifiable;
   }
-  std::string text = "RMS error " + changeWords(rmse(f.training, c.before), rmseAfter(f, false),
-                                                "calibration", f.training.trials().size());
+  const Change training = changeOf(f, false), other = changeOf(f, true);
+  std::string text = "RMS error " + training.of +
+                     changeWords(training.before, training.after, training.unit, "calibration",
+                                 f.training.trials().size());
   if (f.heldOut) {
-    std::string heldOut = changeWords(rmse(*f.heldOut, c.heldOutBefore), rmseAfter(f, true),
-                                      "held-out", f.heldOut->trials().size());
+    std::string heldOut =
+        changeWords(other.before, other.after, other.unit, "held-out", f.heldOut->trials().size());
     for (const std::string verb : {"fell ", "rose "}) {  // "fell from … and from …"
-      if (text.starts_with("RMS error " + verb) && heldOut.starts_with(verb))
+      if (text.starts_with("RMS error " + training.of + verb) && heldOut.starts_with(verb))
         heldOut.erase(0, verb.size());
     }
     text += " and " + heldOut;
@@ -321,7 +381,9 @@ Report calibrateReport(const CalibrateFindings& f) {
   }
   report.details.push_back(Section{"Residuals"});
   report.details.push_back(Paragraph{noiseText(f)});
-  report.details.push_back(residualFigure(f));
+  for (std::size_t i = 0; i < f.training.channels().size(); ++i) {
+    report.details.push_back(residualFigure(f, i));
+  }
   if (!c.noise.autocorrelation.empty()) report.details.push_back(autocorrelationFigure(f));
   if (c.starts.size() > 1) report.details.push_back(startTable(f));
   report.details.push_back(Paragraph{

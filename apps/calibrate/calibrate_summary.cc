@@ -46,6 +46,33 @@ Json estimateJson(const CalibrateFindings& f, const bio::CalibratedParameter& on
   return json;
 }
 
+/// RMS errors and noise of each measured channel, in its unit.
+Json channelsJson(const CalibrateFindings& f) {
+  const bio::Calibration& c = f.calibration;
+  Json channels = Json::object();
+  for (std::size_t i = 0; i < f.training.channels().size(); ++i) {
+    const bio::MeasuredGroup& channel = f.training.channels()[i];
+    const double unit = channel.areAngles ? radian : 1;
+    const auto rms = [&](const bio::TrialSet& set, const Eigen::MatrixXd& predicted) {
+      for (std::size_t k = 0; k < set.channels().size(); ++k) {
+        if (set.channels()[k].name != channel.name) continue;
+        return orNull(std::sqrt(set.meanSquareOf(predicted, k)) * unit);
+      }
+      return Json(nullptr);
+    };
+    Json& json = channels[channel.name];
+    json = {{"unit", channel.areAngles ? "deg" : channel.unit},
+            {"rmse_train_before", rms(f.training, c.before)},
+            {"rmse_train", rms(f.training, c.after)},
+            {"noise", c.channelNoise[i].sd * unit},
+            {"samples_per_independent_value", c.channelNoise[i].correlationTime}};
+    if (!f.heldOut) continue;
+    json["rmse_held_out_before"] = rms(*f.heldOut, c.heldOutBefore);
+    json["rmse_held_out"] = rms(*f.heldOut, c.heldOutAfter);
+  }
+  return channels;
+}
+
 }  // namespace
 
 std::string estimateWords(const bio::CalibratedParameter& one) {
@@ -79,18 +106,20 @@ void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
   }
   summary.set("status", c.converged ? "ok" : "not converged");
   if (!c.converged) summary.set("why", info::describe(c.why));
-  summary.set("rmse_train_deg", rmseAfter(f, false));
-  summary.set("rmse_train_before_deg", rmse(f.training, c.before));
+  summary.set("rmse_train_deg", orNull(rmseAfter(f, false)));
+  summary.set("rmse_train_before_deg", orNull(rmse(f.training, c.before)));
   summary.set("rmse_held_out_deg", orNull(rmseAfter(f, true)));
   summary.set("rmse_held_out_before_deg",
               f.heldOut ? orNull(rmse(*f.heldOut, c.heldOutBefore)) : Json(nullptr));
+  if (!f.training.hasOnlyAngles()) summary.set("channels", channelsJson(f));
   Json estimates = Json::object();
   for (const bio::CalibratedParameter& one : c.parameters) {
     estimates[one.asked.name] = estimateJson(f, one);
     if (!one.why.empty() && !one.ofTrial) summary.warn(one.why);
   }
   summary.set("estimates", estimates);
-  summary.set("noise_deg", c.noise.sd * radian);
+  const bool firstAreAngles = f.training.channels().front().areAngles;
+  summary.set("noise_deg", firstAreAngles ? Json(c.noise.sd * radian) : Json(nullptr));
   summary.set("noise_is", f.options.noise ? "given" : "from the residuals");
   summary.set("sample_scatter_deg", c.noiseFloor * radian);
   summary.set("residual_above_noise", c.leavesMoreThanNoise());

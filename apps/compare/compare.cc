@@ -49,6 +49,7 @@ class Compare : public Command {
         ->allow_extra_args(false);
     options.add_flag("--png", png_, "write the figures of the report as PNG files as well");
     addSimulationOptions(options, simulation_);
+    addPrescribing(options, simulation_);
   }
 
   ExitStatus run(const CommandContext& context) override {
@@ -57,6 +58,7 @@ class Compare : public Command {
     Summary summary(context);
     const bio::Model model = readModel(model_, summary);
     chooseCoordinates(simulation_, model, {trial_});
+    requireFreeCoordinate(simulation_);
     const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
     const TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
     const auto& free = arm.skeleton().coordinates();
@@ -69,6 +71,7 @@ class Compare : public Command {
     options.startTime = input.startTime;
     options.duration = input.duration;
     options.externalForce = input.externalForce;
+    options.prescribed = input.prescribed;
     bio::Comparison comparison;
     {
       ProgressBar bar("compare");

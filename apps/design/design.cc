@@ -183,7 +183,8 @@ class Design : public Command {
     chooseCoordinates(simulation_, model, {trial_});
     const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
     summary.addInput(trial_);
-    const bio::Trial trial = readTrialFile(trial_, model, simulation_, true);
+    const bio::Trial trial =
+        readTrialFile(trial_, model, simulation_, {.experimentalConditions = true});
     for (const std::string& warning : trial.warnings) summary.warn(warning);
     const bio::Coordinate& coordinate = rotationOf(arm);
     bio::discover::SeparationQuestion question;

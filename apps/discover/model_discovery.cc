@@ -72,7 +72,8 @@ ModelDiscovery discoverInModel(ModelDiscoveryRequest request, const CommandConte
   std::vector<bio::Trial> trials;
   for (const std::string& file : files) {
     summary.addInput(file);
-    trials.push_back(readTrialFile(file, model, request.simulation, true));
+    trials.push_back(
+        readTrialFile(file, model, request.simulation, {.experimentalConditions = true}));
     for (const std::string& warning : trials.back().warnings) summary.warn(warning);
   }
   inputsMustDiffer(summary, request.trials.size());

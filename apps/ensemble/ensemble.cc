@@ -137,6 +137,7 @@ class Ensemble : public Command {
         ->group(sets);
     addInputScatter(options, inputScatter_, "with --discover: ", sets);
     addSimulationOptions(options, simulation_);
+    addPrescribing(options, simulation_);
   }
 
   ExitStatus run(const CommandContext& given) override {
@@ -217,6 +218,7 @@ class Ensemble : public Command {
   std::unique_ptr<const EnsembleStudy> prepare(Summary& summary) {
     const bio::Model model = readModel(model_, summary);
     chooseCoordinates(simulation_, model, {trial_});
+    requireFreeCoordinate(simulation_);
     const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
     TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
     bio::ParameterCatalogue catalogue(model, arm, {input.start.q, input.start.qDot});
@@ -246,6 +248,7 @@ class Ensemble : public Command {
     bio::SimulationOptions options =
         simulationOptions(simulation_, study.input.startTime, study.input.duration);
     options.externalForce = study.input.externalForce;
+    options.prescribed = study.input.prescribed;
     study.ensemble = std::make_unique<bio::SystemBatch>(
         study.catalogue, armOptions(simulation_), study.input.excitation, study.coordinate.name,
         study.measured, course, selection, options);

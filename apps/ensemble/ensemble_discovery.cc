@@ -79,7 +79,7 @@ void checkSets(ModelDiscoveryRequest& each, const std::vector<DataSet>& sets, Su
     for (const auto* files : {&set.training, &set.heldOut}) {
       for (const std::string& file : *files) {
         summary.addInput(file);
-        (void)readTrialFile(file, model, each.simulation, true);
+        (void)readTrialFile(file, model, each.simulation, {.experimentalConditions = true});
       }
     }
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "bio/model/integrator_names.h"
+#include "options/number_rules.h"
 
 namespace app {
 namespace {
@@ -41,10 +42,15 @@ nlohmann::ordered_json settingsOf(const SimulationOptions& options) {
     for (const Assignment& one : assignments) list[one.name] = one.value;
     return list;
   };
-  return {{"integrator", options.integrator},   {"step_s", options.stepOrDefault()},
-          {"coordinates", options.coordinates}, {"locked", listed(options.locks)},
-          {"initial", listed(options.initial)}, {"wrap_as_cylinder", options.wrapAsCylinder},
-          {"ignore_extra", options.ignoreExtra}};
+  return {{"integrator", options.integrator},
+          {"step_s", options.stepOrDefault()},
+          {"coordinates", options.coordinates},
+          {"locked", listed(options.locks)},
+          {"initial", listed(options.initial)},
+          {"wrap_as_cylinder", options.wrapAsCylinder},
+          {"ignore_extra", options.ignoreExtra},
+          {"prescribed", options.prescribed},
+          {"held", options.held}};
 }
 
 void addModelOptions(CLI::App& subcommand, SimulationOptions& options) {
@@ -66,6 +72,25 @@ void addModelOptions(CLI::App& subcommand, SimulationOptions& options) {
       ->type_name("NAME")
       ->allow_extra_args(false)
       ->delimiter(',')
+      ->group(modelGroup);
+}
+
+void addPrescribing(CLI::App& subcommand, SimulationOptions& options) {
+  options.takesPrescribed = true;
+  subcommand
+      .add_option("--prescribe", options.prescribed,
+                  "coordinate that moves as its column in the trial says, as on a dynamometer; "
+                  "what holds it there is NAME.reaction; may be repeated")
+      ->type_name("NAME")
+      ->allow_extra_args(false)
+      ->delimiter(',')
+      ->group(modelGroup);
+  subcommand
+      .add_option("--prescribe-cutoff", options.prescribeCutoff,
+                  "smooth the prescribed motions, so that a sine of this frequency [Hz] is halved; "
+                  "default: not smoothed")
+      ->check(positive())
+      ->type_name("HZ")
       ->group(modelGroup);
 }
 

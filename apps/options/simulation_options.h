@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -13,10 +14,16 @@ namespace app {
 /// The options that every subcommand with a simulation has, as they were typed; names are checked
 /// against the model later.
 struct SimulationOptions {
-  std::string integrator = "vi";         ///< vi, vi-left, rk4 or cvode
-  std::optional<double> step;            ///< Δt [s] > 0; see stepOrDefault
-  std::vector<std::string> coordinates;  ///< the free ones; empty: chooseCoordinates() chooses
-  bool areChosen = false;                ///< `coordinates` were chosen, not typed
+  std::string integrator = "vi";          ///< vi, vi-left, rk4 or cvode
+  std::optional<double> step;             ///< Δt [s] > 0; see stepOrDefault
+  std::vector<std::string> coordinates;   ///< the free ones; empty: chooseCoordinates() chooses
+  bool areChosen = false;                 ///< `coordinates` were chosen, not typed
+  std::vector<std::string> prescribed;    ///< coordinates whose motion is that of the trial
+  bool takesPrescribed = false;           ///< the command has these options
+  std::optional<double> prescribeCutoff;  ///< smooths that motion [Hz] > 0
+  /// Locked coordinates whose reaction is wanted, with their values [rad] or [m];
+  /// chooseCoordinates() fills them in.
+  std::map<std::string, double> held;
   std::vector<Assignment> locks;    ///< values of locked coordinates that differ from the defaults
   std::vector<Assignment> initial;  ///< start values of free coordinates
   std::vector<std::string> wrapAsCylinder;  ///< ellipsoids to treat as cylinders
@@ -27,6 +34,10 @@ struct SimulationOptions {
 };
 
 void addSimulationOptions(CLI::App& subcommand, SimulationOptions& options);
+
+/// Adds --prescribe and --prescribe-cutoff, for commands that take the motion of coordinates from a
+/// trial.
+void addPrescribing(CLI::App& subcommand, SimulationOptions& options);
 
 /// All of them as one JSON object, to compare with another run.
 nlohmann::ordered_json settingsOf(const SimulationOptions& options);

@@ -10,6 +10,7 @@
 #include "bio/analysis/replay.h"
 #include "bio/model/free_coordinates.h"
 #include "bio/opensim/osim_file.h"
+#include "bio/skeleton/articulated_tree.h"
 #include "bio/tables/trial_review.h"
 #include "options/system_options.h"
 #include "output/sha256.h"
@@ -44,18 +45,101 @@ bio::Model readModel(const std::string& file, Summary& summary) {
   return model;
 }
 
-void chooseCoordinates(SimulationOptions& options, const bio::Model& model,
-                       const std::vector<std::string>& trials) {
-  if (!options.coordinates.empty()) return;
-  options.areChosen = true;
-  std::set<std::string> locked, measured;
-  for (const Assignment& lock : options.locks) locked.insert(lock.name);
+namespace {
+
+/// What the trials measure.
+struct MeasuredNames {
+  std::set<std::string> coordinates, moments;
+};
+
+MeasuredNames measuredIn(const std::vector<std::string>& trials, const bio::Model& model,
+                         const SimulationOptions& options) {
+  MeasuredNames names;
   for (const std::string& file : trials) {
     const bio::Trial trial = bio::readTrial(
         file, model, {.ignoreExtra = options.ignoreExtra, .experimentalConditions = true});
-    for (const bio::MeasuredMotion& motion : trial.measured) measured.insert(motion.coordinate);
+    for (const bio::MeasuredMotion& motion : trial.measured) {
+      names.coordinates.insert(motion.coordinate);
+    }
+    for (const bio::MeasuredChannel& channel : trial.channels) {
+      if (channel.what.kind == bio::Observable::Kind::moment) names.moments.insert(channel.what.of);
+    }
   }
-  options.coordinates = bio::freeByDefault(model, locked, measured);
+  return names;
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void checkPrescribed(const SimulationOptions& options, const bio::Model& model) {
+  for (const std::string& name : options.prescribed) {
+    (void)bio::findCoordinate(model, name);
+    if (std::count(options.prescribed.begin(), options.prescribed.end(), name) > 1) {
+      throw std::invalid_argument(fmt::format("--prescribe: '{}' is given twice", name));
+    }
+    if (contains(options.coordinates, name)) {
+      throw std::invalid_argument(fmt::format(
+          "'{}' is given with --coordinate and --prescribe, must be free or prescribed", name));
+    }
+    for (const Assignment& lock : options.locks) {
+      if (lock.name != name) continue;
+      throw std::invalid_argument(fmt::format(
+          "'{}' is given with --lock and --prescribe, must be locked or prescribed", name));
+    }
+  }
+}
+
+/// The locked coordinates at which a moment is measured, or all of them.
+void holdLocked(SimulationOptions& options, const bio::Model& model,
+                const std::set<std::string>& moments, bool all) {
+  const std::map<std::string, double> locks = byName(options.locks);
+  for (const std::string& name : bio::independentCoordinates(model)) {
+    if (contains(options.prescribed, name)) continue;
+    const bool isMeasured = moments.contains(name);
+    if (contains(options.coordinates, name)) {
+      if (!isMeasured) continue;
+      throw std::invalid_argument(fmt::format(
+          "'{0}.moment' is measured, but '{0}' is free to move, where nothing holds it: must be "
+          "prescribed (--prescribe {0}, its motion is that of the trial) or locked (--lock {0}=…)",
+          name));
+    }
+    if (!isMeasured && !all) continue;
+    const auto at = locks.find(name);
+    options.held[name] =
+        at != locks.end() ? at->second : bio::findCoordinate(model, name).defaultValue;
+  }
+}
+
+}  // namespace
+
+void chooseCoordinates(SimulationOptions& options, const bio::Model& model,
+                       const std::vector<std::string>& trials, bool allReactions) {
+  checkPrescribed(options, model);
+  const bool isTyped = !options.coordinates.empty();
+  if (isTyped && (trials.empty() || !options.takesPrescribed) && !allReactions) return;
+  MeasuredNames measured = measuredIn(trials, model, options);
+  if (!options.takesPrescribed) measured.moments.clear();
+  if (!isTyped) {
+    options.areChosen = true;
+    std::set<std::string> locked(options.prescribed.begin(), options.prescribed.end());
+    for (const Assignment& lock : options.locks) locked.insert(lock.name);
+    const std::vector<std::string> all = bio::independentCoordinates(model);
+    const bool canBeFree = std::any_of(all.begin(), all.end(), [&](const std::string& name) {
+      return !locked.contains(name) && !bio::findCoordinate(model, name).locked;
+    });
+    const bool mustBeFree = options.prescribed.empty() && measured.moments.empty() && !allReactions;
+    if (canBeFree || mustBeFree)
+      options.coordinates = bio::freeByDefault(model, locked, measured.coordinates);
+  }
+  holdLocked(options, model, measured.moments, allReactions);
+}
+
+void requireFreeCoordinate(const SimulationOptions& options) {
+  if (!options.coordinates.empty()) return;
+  throw std::invalid_argument(
+      "every coordinate is prescribed or held: one must be free (--coordinate), since this command "
+      "is about its motion");
 }
 
 bio::MusculoskeletalSystem movableSystem(const bio::Model& model, const std::string& file,
@@ -76,10 +160,12 @@ bio::MusculoskeletalSystem movableSystem(const bio::Model& model, const std::str
 }
 
 bio::Trial readTrialFile(const std::string& file, const bio::Model& model,
-                         const SimulationOptions& options, bool experimentalConditions) {
-  bio::Trial trial = bio::readTrial(
-      file, model,
-      {.ignoreExtra = options.ignoreExtra, .experimentalConditions = experimentalConditions});
+                         const SimulationOptions& options, const TrialUse& use) {
+  bio::Trial trial = bio::readTrial(file, model,
+                                    {.ignoreExtra = options.ignoreExtra,
+                                     .experimentalConditions = use.experimentalConditions,
+                                     .prescribed = options.prescribed,
+                                     .held = options.held});
   trial.sha256 = sha256OfFile(file);
   const double duration = trial.duration();
   if (options.step && *options.step > duration) {
@@ -94,6 +180,18 @@ bio::Trial readTrialFile(const std::string& file, const bio::Model& model,
   for (std::string& line : bio::heldRemarks(trial, model, armOptions(options).skeleton)) {
     trial.warnings.push_back(std::move(line));
   }
+  for (const bio::MeasuredChannel& channel : trial.channels) {
+    if (use.channels) continue;
+    trial.warnings.push_back(fmt::format(
+        "{}: column '{}' is measured, but not used by this command", file, nameOf(channel.what)));
+  }
+  if (options.prescribeCutoff) {
+    bio::smoothPrescribed(trial, *options.prescribeCutoff);
+  } else {
+    for (std::string& line : bio::roughnessRemarks(trial, model)) {
+      trial.warnings.push_back(std::move(line));
+    }
+  }
   return trial;
 }
 
@@ -105,13 +203,14 @@ double longestDuration(const std::vector<bio::Trial>& trials) {
 
 TrialInput readTrialInput(const std::string& file, const bio::Model& model,
                           const bio::MusculoskeletalSystem& arm, const SimulationOptions& options,
-                          Summary& summary) {
+                          Summary& summary, const TrialUse& use) {
   summary.addInput(file);
   TrialInput input;
-  input.trial = readTrialFile(file, model, options);
+  input.trial = readTrialFile(file, model, options, use);
   for (const std::string& warning : input.trial.warnings) summary.warn(warning);
   input.excitation = bio::excitationOf(input.trial, arm);
   input.externalForce = bio::externalForceOf(input.trial, arm);
+  input.prescribed = bio::prescribedMotionOf(input.trial, arm);
   input.startTime = input.trial.times[0];
   input.duration = input.trial.duration();
   const bio::TrialBeginning beginning =

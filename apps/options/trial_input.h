@@ -23,10 +23,23 @@ void addTrialArgument(CLI::App& subcommand, std::string& trial);
 bio::Model readModel(const std::string& file, Summary& summary);
 
 /// Chooses the free coordinates if none were typed: bio::freeByDefault with what the trials
-/// measure.
-/// @throws what readTrial and freeByDefault throw
+/// measure, without those that are prescribed; locked coordinates at which a trial measures the
+/// moment are held.
+/// @param allReactions  every coordinate that is locked is held
+/// @throws what readTrial and freeByDefault throw; std::invalid_argument for a prescribed
+///   coordinate that is also free or locked, or a moment measured at a free one
 void chooseCoordinates(SimulationOptions& options, const bio::Model& model,
-                       const std::vector<std::string>& trials);
+                       const std::vector<std::string>& trials, bool allReactions = false);
+
+/// For commands that are about the motion of a coordinate that is simulated.
+/// @throws std::invalid_argument if all coordinates are prescribed or held
+void requireFreeCoordinate(const SimulationOptions& options);
+
+/// What a command makes of the rest of a trial.
+struct TrialUse {
+  bool experimentalConditions = false;  ///< takes the known mass and turn into account
+  bool channels = false;                ///< uses all measured channels, not coordinates alone
+};
 
 /// The system with the free coordinates that the model options choose.
 /// @param file  the model's, for the message
@@ -36,13 +49,12 @@ bio::MusculoskeletalSystem movableSystem(const bio::Model& model, const std::str
                                          const SimulationOptions& options, Summary& summary);
 
 /// Reads a trial according to the simulation options. The trial's warnings include those of
-/// reviewTrial and heldRemarks; they are not passed to the summary.
-/// @param experimentalConditions the command takes the known mass and turn of a trial
-///   into account
+/// reviewTrial, heldRemarks and roughnessRemarks, and say what the command does not use; they are
+/// not passed to the summary. Prescribed motions are smoothed if that is asked for.
 /// @throws what readTrial and heldRemarks throw; std::invalid_argument if --step is longer than the
 ///   trial, or for an error of reviewTrial
 bio::Trial readTrialFile(const std::string& file, const bio::Model& model,
-                         const SimulationOptions& options, bool experimentalConditions = false);
+                         const SimulationOptions& options, const TrialUse& use = {});
 
 /// Duration of the longest trial [s]; 0 without trials.
 double longestDuration(const std::vector<bio::Trial>& trials);
@@ -52,6 +64,7 @@ struct TrialInput {
   bio::Trial trial;
   bio::ExcitationSignal excitation;  ///< of the arm's muscles
   bio::ExternalForce externalForce;  ///< empty: none
+  bio::PrescribedMotion prescribed;  ///< of the arm's prescribed coordinates
   double startTime = 0;              ///< [s]
   double duration = 0;               ///< [s]
   bio::TrialBeginning::From from;    ///< where the initial state comes from
@@ -62,6 +75,6 @@ struct TrialInput {
 /// throw
 TrialInput readTrialInput(const std::string& file, const bio::Model& model,
                           const bio::MusculoskeletalSystem& arm, const SimulationOptions& options,
-                          Summary& summary);
+                          Summary& summary, const TrialUse& use = {});
 
 }  // namespace app

@@ -32,6 +32,11 @@ class Replay : public Command {
                     "DeGrooteFregly2016, Schutte1993 or RigidTendon; the model is written, too, "
                     "and what its muscles lost is said")
         ->type_name("CLASS");
+    addPrescribing(options, simulation_);
+    options.add_flag(
+        "--reactions", reactions_,
+        "also the reactions at all locked coordinates, as NAME.reaction in forces.sto; "
+        "without it, at those with a column NAME.moment");
     options.add_flag("--strict", strict_,
                      "exit with status 1 if a coordinate leaves its range by more than a tenth of "
                      "it, or a fibre leaves 0.2 to 2 optimal lengths");
@@ -44,9 +49,10 @@ class Replay : public Command {
     Summary summary(context);
     bio::Model model = readModel(model_, summary);
     if (!muscleClass_.empty()) convertMuscles(model, folder, summary);
-    chooseCoordinates(simulation_, model, {trial_});
+    chooseCoordinates(simulation_, model, {trial_}, reactions_);
     summary.addInput(trial_);
-    const bio::Trial trial = readTrialFile(trial_, model, simulation_, true);
+    const bio::Trial trial = readTrialFile(trial_, model, simulation_,
+                                           {.experimentalConditions = true, .channels = true});
     for (const std::string& warning : trial.warnings) summary.warn(warning);
     if (trial.known.any()) {
       model = bio::discover::withExperimentalConditions(model, armOptions(simulation_),
@@ -103,6 +109,7 @@ class Replay : public Command {
   std::string trial_;
   SimulationOptions simulation_;
   std::string muscleClass_;  ///< empty: as in the model
+  bool reactions_ = false;
   bool strict_ = false;
 };
 

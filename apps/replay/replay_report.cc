@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "bio/analysis/observed_motion.h"
 #include "bio/analysis/replay.h"
 #include "bio/model/integrator_names.h"
 #include "output/angle_unit.h"
@@ -47,6 +48,63 @@ Figure motionFigure(const ReplayFindings& f, std::size_t index) {
                              .x = {measured->times.begin(), measured->times.end()},
                              .y = inUnit(measured->values, unit.factor),
                              .style = SeriesStyle::points});
+  }
+  return figure;
+}
+
+/// "N·m" reads better as "N m" on an axis; an activation has no unit.
+std::string shownUnit(const bio::Observable& what, const bio::Model& model) {
+  const std::string unit = bio::unitOf(what, model);
+  return unit == "N·m" ? "N m" : unit.empty() ? "1" : unit;
+}
+
+/// Another measured channel than a coordinate, over all rows of the motion.
+Figure channelFigure(const ReplayFindings& f, const bio::MeasuredChannel& channel,
+                     const bio::MeasuredError& error) {
+  const std::string name = bio::nameOf(channel.what);
+  const std::string unit = shownUnit(channel.what, f.model);
+  const std::vector<double>& time = f.replay.motion.time;
+  const bio::ObservedMotion all(
+      f.arm, {{channel.what, Eigen::Map<const Eigen::VectorXd>(
+                                 time.data(), static_cast<Eigen::Index>(time.size()))}});
+  Figure figure{
+      .title = fmt::format("Simulated and measured {}", name),
+      .xLabel = "Time [s]",
+      .yLabel = fmt::format("{} [{}]", name, unit),
+      .caption = fmt::format("RMS error {:.3g} {} over {} samples.", error.rms, unit, error.count)};
+  figure.series.push_back(
+      {.name = "simulated", .x = time, .y = inUnit(all.values(f.replay.motion), 1)});
+  figure.series.push_back({.name = "measured",
+                           .x = {channel.times.begin(), channel.times.end()},
+                           .y = inUnit(channel.values, 1),
+                           .style = SeriesStyle::points});
+  return figure;
+}
+
+std::vector<Figure> channelFigures(const ReplayFindings& f) {
+  std::vector<Figure> figures;
+  for (const bio::ChannelError& one : f.replay.channelErrors) {
+    for (const bio::MeasuredChannel& channel : f.trial.channels) {
+      if (channel.what == one.what) figures.push_back(channelFigure(f, channel, one.error));
+    }
+  }
+  return figures;
+}
+
+/// What holds or drives the prescribed coordinates; of one unit.
+Figure reactionFigure(const ReplayFindings& f, bool ofRotations) {
+  Figure figure{.title = ofRotations ? "Reaction moments" : "Reaction forces",
+                .xLabel = "Time [s]",
+                .yLabel = ofRotations ? "Reaction [N m]" : "Reaction [N]",
+                .caption =
+                    "What keeps the coordinates on their prescribed course; positive: "
+                    "pushes the coordinate up."};
+  for (const int k : f.arm.prescribed()) {
+    const bio::Coordinate& c = f.arm.skeleton().coordinates()[static_cast<std::size_t>(k)];
+    if (c.isRotation != ofRotations) continue;
+    figure.series.push_back({.name = c.name,
+                             .x = f.replay.motion.time,
+                             .y = inUnit(f.replay.motion.reaction.row(k), 1)});
   }
   return figure;
 }
@@ -109,7 +167,39 @@ std::string comparison(const ReplayFindings& f) {
         text.empty() ? "Simulated " : "; ", coordinate.name, error.rms * unit.factor, unit.name,
         error.count, error.largest * unit.factor, unit.name, error.largestAt);
   }
+  for (const bio::ChannelError& one : f.replay.channelErrors) {
+    const std::string unit = shownUnit(one.what, f.model);
+    text += fmt::format(
+        "{}{} differs from the measurement by {:.3g} {} (RMS over {} samples), at most {:.3g} {} "
+        "at {:.3g} s",
+        text.empty() ? "Simulated " : "; ", bio::nameOf(one.what), one.error.rms, unit,
+        one.error.count, one.error.largest, unit, one.error.largestAt);
+  }
   return text.empty() ? "Simulated; the trial has no measured coordinate to compare with" : text;
+}
+
+}  // namespace
+
+namespace {
+
+/// Of every measured channel that the motion reaches, with its unit.
+nlohmann::ordered_json channelErrors(const ReplayFindings& f) {
+  nlohmann::ordered_json errors = nlohmann::ordered_json::object();
+  const auto add = [&](const std::string& name, const bio::MeasuredError& error, double factor,
+                       const std::string& unit) {
+    errors[name] = {{"value", error.rms * factor},
+                    {"unit", unit},
+                    {"max", error.largest * factor},
+                    {"samples", error.count}};
+  };
+  for (const auto& [name, error] : f.replay.errors) {
+    const bool turns = bio::findCoordinate(f.model, name).isRotation;
+    add(name, error, turns ? radian : 1, turns ? "deg" : "m");
+  }
+  for (const bio::ChannelError& one : f.replay.channelErrors) {
+    add(bio::nameOf(one.what), one.error, 1, bio::unitOf(one.what, f.model));
+  }
+  return errors;
 }
 
 }  // namespace
@@ -133,6 +223,14 @@ void tellReplay(const ReplayFindings& f, Summary& summary) {
     summary.set(prefix + "rms_error" + suffix, error.rms * unitOf(coordinate).factor);
     summary.set(prefix + "max_error" + suffix, error.largest * unitOf(coordinate).factor);
     summary.set(prefix + "compared_samples", error.count);
+  }
+  summary.set("rms_error", channelErrors(f));
+  if (!f.arm.prescribed().empty()) {
+    std::vector<std::string> prescribed;
+    for (const int k : f.arm.prescribed()) {
+      prescribed.push_back(f.arm.skeleton().coordinates()[static_cast<std::size_t>(k)].name);
+    }
+    summary.set("prescribed", prescribed);
   }
   summary.set("start_from", bio::name(f.replay.beginning.from));
   summary.set("final_time_s", motion.time.back());
@@ -163,9 +261,17 @@ Report replayReport(const ReplayFindings& f) {
     report.verdict = fmt::format("The motion leaves the valid range of the model: {}. {}",
                                  f.left->what, report.verdict);
   }
-  report.mainFigure = motionFigure(f, 0);
-  for (std::size_t i = 1; i < f.arm.skeleton().coordinates().size(); ++i) {
-    report.details.push_back(motionFigure(f, i));
+  // where the first coordinate is prescribed, what was measured of it comes first
+  std::vector<Figure> figures = channelFigures(f);
+  for (std::size_t i = 0; i < f.arm.skeleton().coordinates().size(); ++i) {
+    const bool first = i == 0 && !f.arm.isPrescribed(0);
+    figures.insert(first ? figures.begin() : figures.end(), motionFigure(f, i));
+  }
+  report.mainFigure = std::move(figures.front());
+  for (std::size_t i = 1; i < figures.size(); ++i) report.details.push_back(std::move(figures[i]));
+  for (const bool ofRotations : {true, false}) {
+    Figure figure = reactionFigure(f, ofRotations);
+    if (!figure.series.empty()) report.details.push_back(std::move(figure));
   }
   report.details.push_back(Section{"Muscles"});
   report.details.push_back(

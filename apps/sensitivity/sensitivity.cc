@@ -14,6 +14,7 @@
 #include "options/trial_input.h"
 #include "output/progress_bar.h"
 #include "output/result.h"
+#include "output/text.h"
 #include "sensitivity/sensitivity_report.h"
 
 namespace app {
@@ -66,6 +67,14 @@ class Sensitivity : public Command {
         ->type_name("DEGREES")
         ->capture_default_str();
     options
+        .add_option("--observe", observe_,
+                    "what is measured, with the standard deviation of its noise, instead of the "
+                    "first coordinate: elbow_flexion=0.5deg, elbow_flexion.moment=0.5, "
+                    "BRA.fiber_length=0.001, …; may be repeated")
+        ->delimiter(',')
+        ->type_name("NAME=SD")
+        ->allow_extra_args(false);
+    options
         .add_option("--profile", profile_,
                     "one of the --parameters, whose profile likelihood is computed")
         ->type_name("NAME");
@@ -80,6 +89,7 @@ class Sensitivity : public Command {
         ->check(CLI::Range(2, 1000000))
         ->capture_default_str();
     addSimulationOptions(options, simulation_);
+    addPrescribing(options, simulation_);
   }
 
   ExitStatus run(const CommandContext& context) override {
@@ -93,7 +103,8 @@ class Sensitivity : public Command {
 
     std::vector<Study> studies;
     for (const std::string& file : trials_) {
-      TrialInput input = readTrialInput(file, model, arm, simulation_, summary);
+      TrialInput input =
+          readTrialInput(file, model, arm, simulation_, summary, {.channels = !observe_.empty()});
       bio::ParameterCatalogue catalogue(model, arm, {input.start.q, input.start.qDot});
       std::vector<double> times = bio::observedTimes(
           input.trial, arm.skeleton().coordinates().front().name, simulation_.stepOrDefault());
@@ -104,8 +115,11 @@ class Sensitivity : public Command {
     const bio::Coordinate& coordinate = arm.skeleton().coordinates().front();
     SensitivityFindings findings{
         model_, trials_, coordinate, first.input.trial, noise_ / shownFactor(coordinate), 0};
+    findings.model = &model;
+    readObserved(model, arm, first.times, findings);
     for (const Study& study : studies) {
-      findings.samples += static_cast<Eigen::Index>(study.times.size());
+      findings.samples += static_cast<Eigen::Index>(study.times.size() *
+                                                    std::max<std::size_t>(1, observed_.size()));
     }
     // every name is looked up before anything long begins
     const auto swept = swept_.empty() ? std::optional<std::size_t>() : first.catalogue.find(swept_);
@@ -155,6 +169,10 @@ class Sensitivity : public Command {
     }
     if (!(noise_ > 0 && std::isfinite(noise_))) {
       throw std::invalid_argument(fmt::format("--noise: {} deg, must be > 0", noise_));
+    }
+    if (!observe_.empty() && (!profile_.empty() || !global_.empty())) {
+      throw std::invalid_argument(
+          "--observe goes with --all and --parameters, not with --profile or --global");
     }
     if ((!profile_.empty() || !global_.empty()) && names_.empty()) {
       throw std::invalid_argument("--profile and --global require --parameters NAMES");
@@ -212,18 +230,102 @@ class Sensitivity : public Command {
     bio::SimulationOptions chosen =
         simulationOptions(simulation_, study.input.startTime, study.input.duration);
     chosen.externalForce = study.input.externalForce;
+    chosen.prescribed = study.input.prescribed;
     return chosen;
+  }
+
+  /// What --observe names; without it the first coordinate is observed, which must be free.
+  void readObserved(const bio::Model& model, const bio::MusculoskeletalSystem& arm,
+                    const std::vector<double>& times, SensitivityFindings& findings) {
+    for (const std::string& text : observe_) {
+      const Assignment one = parseAssignment(text);
+      bio::ChannelCandidate channel{{bio::Observable::Kind::coordinate, one.name, 0}, one.value};
+      const bool isCoordinate = bio::coordinateOrNull(model, one.name) != nullptr;
+      if (!isCoordinate && !bio::readObservable(one.name, model, channel.what)) {
+        throw std::invalid_argument(
+            fmt::format("--observe: '{}' is nothing that can be measured of this model", one.name));
+      }
+      if (!(channel.sd > 0)) {
+        throw std::invalid_argument(
+            fmt::format("--observe: noise of '{}' = {}, must be > 0", one.name, channel.sd));
+      }
+      (void)bio::ObservedMotion(arm, {seriesOf(channel, times)});
+      findings.observed +=
+          fmt::format("{}{} (noise {} {})", findings.observed.empty() ? "" : ", ", one.name,
+                      numberText(channel.sd), bio::unitOf(channel.what, model));
+      observed_.push_back(std::move(channel));
+    }
+    if (!observed_.empty()) {
+      findings.noise = 1;
+    } else if (simulation_.coordinates.empty()) {
+      throw std::invalid_argument(
+          "no coordinate is free to be observed: --observe must name what is measured");
+    }
+  }
+
+  static bio::ObservedSeries seriesOf(const bio::ChannelCandidate& channel,
+                                      const std::vector<double>& times) {
+    return {channel.what, Eigen::Map<const Eigen::VectorXd>(
+                              times.data(), static_cast<Eigen::Index>(times.size()))};
   }
 
   bio::TrialPredictor experiment(const Study& study,
                                  const std::vector<std::size_t>& selection) const {
-    return {study.catalogue,
-            armOptions(simulation_),
-            study.input.excitation,
-            simulation_.coordinates.front(),
-            study.times,
-            selection,
-            options(study)};
+    if (observed_.empty()) {
+      return {study.catalogue,
+              armOptions(simulation_),
+              study.input.excitation,
+              simulation_.coordinates.front(),
+              study.times,
+              selection,
+              options(study)};
+    }
+    std::vector<bio::ObservedSeries> series;
+    for (const bio::ChannelCandidate& one : observed_) series.push_back(seriesOf(one, study.times));
+    return {study.catalogue, armOptions(simulation_), study.input.excitation, std::move(series),
+            selection,       options(study)};
+  }
+
+  /// Γ in standard deviations of the noise where channels are observed.
+  void scaleByNoise(const Study& study, Eigen::MatrixXd& gamma) const {
+    const auto n = static_cast<Eigen::Index>(study.times.size());
+    for (std::size_t i = 0; i < observed_.size(); ++i) {
+      gamma.middleRows(static_cast<Eigen::Index>(i) * n, n) /= observed_[i].sd;
+    }
+  }
+
+  /// What other channels would add, unless that would take long.
+  void addGains(const std::vector<Study>& studies, const bio::MusculoskeletalSystem& arm,
+                const std::vector<std::size_t>& selection, SensitivityFindings& findings) const {
+    std::vector<bio::ChannelCandidate> candidates = bio::usualChannels(arm);
+    std::erase_if(candidates, [&](const bio::ChannelCandidate& one) {
+      const bool isFirst = observed_.empty() &&
+                           one.what.kind == bio::Observable::Kind::coordinate &&
+                           one.what.of == simulation_.coordinates.front();
+      return isFirst || std::any_of(observed_.begin(), observed_.end(),
+                                    [&](const auto& seen) { return seen.what == one.what; });
+    });
+    const double work =
+        std::pow(static_cast<double>(selection.size()), 3) * static_cast<double>(candidates.size());
+    if (work > 2e9) return;
+    std::vector<Eigen::MatrixXd> gammas(candidates.size());
+    for (const Study& study : studies) {
+      const auto s =
+          bio::simulateWithSensitivities(arm, study.catalogue, study.catalogue.nominal(), selection,
+                                         study.input.excitation, {options(study), true, true});
+      for (std::size_t c = 0; c < candidates.size(); ++c) {
+        const Eigen::MatrixXd gamma =
+            bio::ObservedMotion(arm, {seriesOf(candidates[c], study.times)}).linearised(s).gamma;
+        if (gammas[c].size() == 0) {
+          gammas[c] = gamma;
+          continue;
+        }
+        Eigen::MatrixXd all(gammas[c].rows() + gamma.rows(), gamma.cols());
+        all << gammas[c], gamma;
+        gammas[c] = std::move(all);
+      }
+    }
+    findings.gains = bio::channelGains(*findings.information, candidates, gammas);
   }
 
   Sweep sweep(const Study& study, std::size_t index) const {
@@ -264,9 +366,11 @@ class Sensitivity : public Command {
             "{}: the simulation does not reach the end of the trial", study.input.trial.file));
       }
       gammas.push_back(linearised.gamma);
+      scaleByNoise(study, gammas.back());
       bar.update(static_cast<double>(gammas.size()) / static_cast<double>(studies.size() + 1));
     }
     findings.information = bio::informationAbout(catalogue, selection, gammas, findings.noise);
+    addGains(studies, arm, selection, findings);
     // what all sensitivities cost beside the motion: the best of five, since others use the machine
     const Study& first = studies.front();
     double alone = 0, with = 0;
@@ -390,6 +494,8 @@ class Sensitivity : public Command {
   bool all_ = false;
   std::vector<std::string> names_;
   double noise_ = 1;
+  std::vector<std::string> observe_;
+  std::vector<bio::ChannelCandidate> observed_;
   std::string profile_;
   std::string global_;
   int samples_ = 64;

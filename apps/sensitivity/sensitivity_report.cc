@@ -110,16 +110,18 @@ Figure courseFigure(const SensitivityFindings& f) {
 Table rankingTable(const SensitivityFindings& f, const std::string& title,
                    const Eigen::VectorXd& score, std::size_t most) {
   const bio::ParameterInformation& known = *f.information;
-  const char* unit = shownUnit(f.coordinate);
+  const std::string unit = f.shownUnit();
   Table table{.title = title,
-              .columns = {"parameter", "value", fmt::format("influence on the motion [{}]", unit),
+              .columns = {"parameter", "value",
+                          fmt::format("influence on the {} [{}]",
+                                      f.observed.empty() ? "motion" : "measurement", unit),
                           "prior ±", "bound alone ±", "bound jointly ±", "identifiable"}};
   for (const std::size_t i : ranking(score)) {
     if (table.rows.size() == most) break;
     const auto k = static_cast<Eigen::Index>(i);
     const info::Parameter& p = known.parameters[i];
     table.rows.push_back({p.name, withUnit(p.start, p.unit),
-                          numberText(known.normalisedSensitivity[k] * shownFactor(f.coordinate), 3),
+                          numberText(known.normalisedSensitivity[k] * f.shownFactor(), 3),
                           numberText(p.prior->sd, 3), numberText(known.boundAlone[k], 3),
                           numberText(known.boundJoint[k], 3),
                           known.identifiable[i] ? "yes" : "no"});
@@ -179,6 +181,50 @@ Table globalTable(const SensitivityFindings& f) {
   return table;
 }
 
+/// "elbow_flexion with 1 deg of noise"
+std::string observationOf(const SensitivityFindings& f) {
+  if (!f.observed.empty()) return f.observed;
+  return fmt::format("{} with {} {} of noise", f.coordinate.name,
+                     numberText(f.noise * shownFactor(f.coordinate)), shownUnit(f.coordinate));
+}
+
+/// In words, with its noise: "BRA.fiber_length (0.001 m)".
+std::string channelWords(const SensitivityFindings& f, const bio::ChannelCandidate& channel) {
+  using Kind = bio::Observable::Kind;
+  const bool isAngle =
+      (channel.what.kind == Kind::coordinate || channel.what.kind == Kind::speed) &&
+      bio::findCoordinate(*f.model, channel.what.of).isRotation;
+  const std::string unit = bio::unitOf(channel.what, *f.model);
+  const double factor = isAngle ? 180 / std::numbers::pi : 1;
+  return fmt::format(
+      "{} ({})", bio::nameOf(channel.what),
+      isAngle ? withUnit(channel.sd * factor, channel.what.kind == Kind::speed ? "deg/s" : "deg")
+              : withUnit(channel.sd, unit == "N·m" ? "N m" : unit));
+}
+
+Table gainTable(const SensitivityFindings& f, std::size_t most) {
+  Table table{.title = "What other measurements would add",
+              .columns = {"channel (noise)", "information [nats]", "parameter helped most",
+                          "bound now ±", "bound then ±"}};
+  for (const bio::ChannelGain& gain : f.gains) {
+    if (table.rows.size() == most) break;
+    table.rows.push_back({channelWords(f, gain.channel), numberText(gain.information, 3),
+                          gain.parameter, numberText(gain.before, 3), numberText(gain.after, 3)});
+  }
+  return table;
+}
+
+/// Which further channel would tell most; empty where none would.
+std::string gainSentence(const SensitivityFindings& f) {
+  if (f.gains.empty() || f.gains.front().information < 0.1) return "";
+  const bio::ChannelGain& best = f.gains.front();
+  return fmt::format(
+      " Of what could be measured beside it, {} would tell most: the bound on {} would fall from "
+      "{} to {}.",
+      channelWords(f, best.channel), best.parameter, numberText(best.before, 3),
+      numberText(best.after, 3));
+}
+
 std::string verdictOf(const SensitivityFindings& f) {
   std::string text;
   for (const Sweep& sweep : f.sweeps) {
@@ -197,22 +243,29 @@ std::string verdictOf(const SensitivityFindings& f) {
   const auto count = std::count(known.identifiable.begin(), known.identifiable.end(), true);
   if (known.parameters.size() == 1) {
     return text +
-           fmt::format(
-               "{} samples of {} with {} {} of noise determine {} to ±{} (Cramér–Rao bound).",
-               f.samples, f.coordinate.name, numberText(f.noise * shownFactor(f.coordinate)),
-               shownUnit(f.coordinate), known.parameters[0].name,
-               withUnit(known.boundAlone[0], known.parameters[0].unit));
+           fmt::format("{} samples of {} determine {} to ±{} (Cramér–Rao bound).", f.samples,
+                       observationOf(f), known.parameters[0].name,
+                       withUnit(known.boundAlone[0], known.parameters[0].unit)) +
+           gainSentence(f);
   }
   text += fmt::format(
-      "{} from {} samples of {} with {} {} of noise (prior standard deviation at least halved). "
-      "The motion is most sensitive to {}.",
+      "{} from {} samples of {} (prior standard deviation at least halved). The {} is most "
+      "sensitive "
+      "to {}.",
       identifiableWords(count, static_cast<std::ptrdiff_t>(known.parameters.size())), f.samples,
-      f.coordinate.name, numberText(f.noise * shownFactor(f.coordinate)), shownUnit(f.coordinate),
+      observationOf(f), f.observed.empty() ? "motion" : "measurement",
       known.parameters[ranking(known.normalisedSensitivity).front()].name);
-  return text;
+  return text + gainSentence(f);
 }
 
 }  // namespace
+
+double SensitivityFindings::shownFactor() const {
+  return observed.empty() ? app::shownFactor(coordinate) : 1;
+}
+std::string SensitivityFindings::shownUnit() const {
+  return observed.empty() ? app::shownUnit(coordinate) : "standard deviations of the noise";
+}
 
 double shownFactor(const bio::Coordinate& coordinate) {
   return coordinate.isRotation ? 180 / std::numbers::pi : 1e3;
@@ -228,7 +281,7 @@ void writeSensitivities(const SensitivityFindings& f, std::ostream& out) {
     const auto k = static_cast<Eigen::Index>(i);
     const info::Parameter& p = known.parameters[i];
     out << fmt::format("{},{},{},{},{},{},{}\n", p.name, p.unit, cell(p.start),
-                       cell(known.normalisedSensitivity[k] * shownFactor(f.coordinate)),
+                       cell(known.normalisedSensitivity[k] * f.shownFactor()),
                        cell(known.boundAlone[k]), cell(known.boundJoint[k]),
                        known.identifiable[i] ? "true" : "false");
   }
@@ -313,14 +366,15 @@ void tellSensitivity(const SensitivityFindings& f, Summary& summary) {
   for (const std::size_t i : ranking(known.normalisedSensitivity)) {
     const auto k = static_cast<Eigen::Index>(i);
     const info::Parameter& p = known.parameters[i];
-    parameters.push_back({{"name", p.name},
-                          {"unit", p.unit},
-                          {"value", p.start},
-                          {"prior_sd", p.prior->sd},
-                          {"normalised_sensitivity", known.normalisedSensitivity[k] * factor},
-                          {"bound_alone", orNull(known.boundAlone[k])},
-                          {"bound_joint", orNull(known.boundJoint[k])},
-                          {"identifiable", static_cast<bool>(known.identifiable[i])}});
+    parameters.push_back(
+        {{"name", p.name},
+         {"unit", p.unit},
+         {"value", p.start},
+         {"prior_sd", p.prior->sd},
+         {"normalised_sensitivity", known.normalisedSensitivity[k] * f.shownFactor()},
+         {"bound_alone", orNull(known.boundAlone[k])},
+         {"bound_joint", orNull(known.boundJoint[k])},
+         {"identifiable", static_cast<bool>(known.identifiable[i])}});
   }
   summary.set("parameters", parameters);
   std::vector<std::string> names;
@@ -328,6 +382,18 @@ void tellSensitivity(const SensitivityFindings& f, Summary& summary) {
     if (names.size() < 20) names.push_back(known.parameters[i].name);
   }
   summary.set("most_information", names);
+  if (!f.observed.empty()) summary.set("observed", f.observed);
+  auto further = nlohmann::ordered_json::array();
+  for (const bio::ChannelGain& gain : f.gains) {
+    further.push_back({{"channel", bio::nameOf(gain.channel.what)},
+                       {"noise", gain.channel.sd},
+                       {"unit", bio::unitOf(gain.channel.what, *f.model)},
+                       {"information_nats", gain.information},
+                       {"parameter", gain.parameter},
+                       {"bound_before", gain.before},
+                       {"bound_after", gain.after}});
+  }
+  if (!f.gains.empty()) summary.set("further_channels", further);
   summary.set("determined_combinations", known.determinedCombinations);
   summary.set("not_told_apart", known.sentences);
   summary.set("cost_ratio", f.costRatio);
@@ -375,6 +441,12 @@ Report sensitivityReport(const SensitivityFindings& f) {
     for (const std::string& sentence : known.sentences) {
       report.details.push_back(Paragraph{sentence + "."});
     }
+  }
+  if (!f.gains.empty()) {
+    report.details.push_back(gainTable(f, 12));
+    report.details.push_back(Paragraph{
+        "Each channel alone is added to what is measured, at the same times, with the noise "
+        "given in brackets, which is usual in a laboratory."});
   }
   if (f.profile) report.details.push_back(profileFigure(*f.profile));
   if (f.global.morris || f.global.sobol) report.details.push_back(globalTable(f));

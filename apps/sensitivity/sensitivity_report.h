@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bio/parameters/channel_information.h"
 #include "bio/parameters/parameter_information.h"
 #include "bio/tables/trial.h"
 #include "info/estimation/profile_likelihood.h"
@@ -44,15 +45,25 @@ struct SensitivityFindings {
   std::vector<std::string> trialFiles;
   const bio::Coordinate& coordinate;  ///< the one observed
   const bio::Trial& trial;            ///< the first
-  double noise;                       ///< [rad] or [m]
+  double noise;                       ///< [rad] or [m]; 1 where something else is observed
   Eigen::Index samples;               ///< of all trials
+  const bio::Model* model = nullptr;
   std::vector<Sweep> sweeps = {};
   std::vector<std::string> parameters = {};  ///< of the local analysis, in the order of its columns
   std::optional<bio::ParameterInformation> information = {};
   std::optional<bio::SensitivityTrajectory> local = {};  ///< of the first trial
   double costRatio = 0;
+  /// What is observed instead of the coordinate, in words; empty: the coordinate. Sensitivities are
+  /// then in standard deviations of the noise.
+  std::string observed = {};
+  /// What other channels would add, the most first; empty: not computed.
+  std::vector<bio::ChannelGain> gains = {};
   std::optional<ProfileFinding> profile = {};
   GlobalFinding global = {};
+
+  /// Unit in which the sensitivities to the observation are shown, and its factor.
+  double shownFactor() const;
+  std::string shownUnit() const;
 };
 
 /// Degrees for a rotation, millimetres for a translation.

@@ -27,19 +27,25 @@ struct DiscoveryProblem {
 inline Eigen::VectorXd everything(const MusculoskeletalSystem& arm, const Trajectory& motion) {
   const MuscleReport report = reportMuscles(arm, motion);
   Eigen::VectorXd all(motion.q.size() + motion.qDot.size() + motion.fibreLength.size() +
-                      motion.activation.size() + report.tendonForce.size());
+                      motion.activation.size() + report.tendonForce.size() +
+                      motion.reaction.size());
   const Eigen::MatrixXd q = motion.q.transpose(), qDot = motion.qDot.transpose(),
                         l = motion.fibreLength.transpose(), a = motion.activation.transpose(),
-                        F = report.tendonForce.transpose();
-  all << q.reshaped(), qDot.reshaped(), l.reshaped(), a.reshaped(), F.reshaped();
+                        F = report.tendonForce.transpose(), R = motion.reaction.transpose();
+  all << q.reshaped(), qDot.reshaped(), l.reshaped(), a.reshaped(), F.reshaped(), R.reshaped();
   return all;
 }
 
 /// The sensitivities of all that in one parameter.
 inline Eigen::VectorXd everything(const SensitivityTrajectory& s, Eigen::Index column) {
   std::vector<double> all;
-  for (const auto* group : {&s.q, &s.qDot, &s.fibreLength, &s.activation, &s.tendonForce}) {
+  for (const auto* group :
+       {&s.q, &s.qDot, &s.fibreLength, &s.activation, &s.tendonForce, &s.reaction}) {
     for (const SensitivityMatrix& m : *group) {
+      if (m.size() == 0) {  // the reaction at a free coordinate
+        all.resize(all.size() + static_cast<std::size_t>(s.motion.q.cols()), 0.0);
+        continue;
+      }
       for (Eigen::Index k = 0; k < m.rows(); ++k) all.push_back(m(k, column));
     }
   }
@@ -70,8 +76,8 @@ inline DiscoveryProblem compareWithDifferences(const MusculoskeletalSystem& arm,
                                                const std::vector<std::size_t>& wanted,
                                                SimulationOptions options) {
   options.newtonTolerance = 1e-12;
-  const SensitivityTrajectory s = simulateWithSensitivities(arm, catalogue, catalogue.nominal(),
-                                                            wanted, excitation, {options, true});
+  const SensitivityTrajectory s = simulateWithSensitivities(
+      arm, catalogue, catalogue.nominal(), wanted, excitation, {options, true, true});
   const Eigen::Index K = s.motion.q.cols();
   const Eigen::Index motionRows = 2 * s.motion.q.size();
   const Eigen::VectorXd values = everything(arm, s.motion);

@@ -176,6 +176,7 @@ void Runs::confirm(ConvergedReference& reference) const {
 SimulationOptions Runs::simulationOptions(Integrator integrator, double step) const {
   SimulationOptions simulation;
   simulation.externalForce = options_->externalForce;
+  simulation.prescribed = options_->prescribed;
   simulation.integrator = integrator;
   simulation.step = step;
   simulation.startTime = options_->startTime;

@@ -7,15 +7,38 @@
 #include "bio/sensitivity/coupled_sensitivity.h"
 
 namespace bio {
+namespace {
+
+struct Course {
+  std::string column;
+  const Eigen::VectorXd* times;
+  const Eigen::VectorXd* values;
+};
+
+/// All that a trial gives at times of its own; not constants, which stand in no file.
+std::vector<Course> coursesOf(const Trial& trial) {
+  std::vector<Course> courses;
+  for (const auto* list : {&trial.measured, &trial.prescribed}) {
+    for (const MeasuredMotion& motion : *list) {
+      if (list == &trial.prescribed && motion.times.size() == 1) continue;
+      courses.push_back({motion.coordinate, &motion.times, &motion.values});
+    }
+  }
+  for (const MeasuredChannel& channel : trial.channels) {
+    courses.push_back({nameOf(channel.what), &channel.times, &channel.values});
+  }
+  return courses;
+}
+
+}  // namespace
 
 Table drivenTable(const Trial& trial, const MusculoskeletalSystem& arm, const EmgMapping& mapping) {
   const std::vector<std::string> muscles = muscleNames(arm);
   const ExcitationSignal driven = drivenExcitation(excitationOf(trial, arm), muscles, mapping);
   const double first = trial.times[0], last = trial.times[trial.times.size() - 1];
   std::set<double> times(trial.times.begin(), trial.times.end());
-  for (const MeasuredMotion& motion : trial.measured) {
-    times.insert(motion.times.begin(), motion.times.end());
-  }
+  const std::vector<Course> courses = coursesOf(trial);
+  for (const Course& course : courses) times.insert(course.times->begin(), course.times->end());
   for (const double t : driven.times()) {
     if (t > first && t < last) times.insert(t);
   }
@@ -25,7 +48,7 @@ Table drivenTable(const Trial& trial, const MusculoskeletalSystem& arm, const Em
   table.columns.insert(table.columns.end(), muscles.begin(), muscles.end());
   table.metadata.merge(headerOf(trial.known));
   const auto n = static_cast<Eigen::Index>(muscles.size());
-  const auto measured = static_cast<Eigen::Index>(trial.measured.size());
+  const auto measured = static_cast<Eigen::Index>(courses.size());
   const auto applied = static_cast<Eigen::Index>(trial.applied.size());
   table.values = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(times.size()),
                                            1 + n + measured + applied, std::nan(""));
@@ -43,11 +66,11 @@ Table drivenTable(const Trial& trial, const MusculoskeletalSystem& arm, const Em
     ++row;
   }
   for (Eigen::Index k = 0; k < measured; ++k) {
-    const MeasuredMotion& motion = trial.measured[static_cast<std::size_t>(k)];
-    table.columns.push_back(motion.coordinate);
-    for (Eigen::Index i = 0; i < motion.times.size(); ++i) {
-      const auto place = std::distance(times.begin(), times.find(motion.times[i]));
-      table.values(place, 1 + n + k) = motion.values[i];
+    const auto& [column, at, values] = courses[static_cast<std::size_t>(k)];
+    table.columns.push_back(column);
+    for (Eigen::Index i = 0; i < at->size(); ++i) {
+      const auto place = std::distance(times.begin(), times.find((*at)[i]));
+      table.values(place, 1 + n + k) = (*values)[i];
     }
   }
   for (const AppliedForce& push : trial.applied) {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "bio/analysis/observed_motion.h"
 #include "bio/model/integrator_names.h"
 #include "bio/path/path_lengths.h"
 #include "bio/path/posture_samples.h"
@@ -50,7 +51,12 @@ Eigen::VectorXd startCoordinates(const Trial& trial, const MusculoskeletalSystem
                                  const std::map<std::string, double>& given) {
   const auto& free = arm.skeleton().coordinates();
   for (const auto& [name, value] : given) {
-    if (arm.skeleton().indexOf(name) < 0) {
+    const int index = arm.skeleton().indexOf(name);
+    if (index >= 0 && arm.isPrescribed(index)) {
+      throw std::invalid_argument(
+          fmt::format("start of '{}': its motion is prescribed, must not be given", name));
+    }
+    if (index < 0) {
       std::string known;
       for (const Coordinate& c : free) known += (known.empty() ? "" : ", ") + c.name;
       throw std::invalid_argument(
@@ -70,6 +76,7 @@ Eigen::VectorXd startCoordinates(const Trial& trial, const MusculoskeletalSystem
     const auto at = given.find(free[i].name);
     q[static_cast<Eigen::Index>(i)] = at != given.end() ? at->second : value;
   }
+  if (!arm.prescribed().empty()) prescribedMotionOf(trial, arm).place(trial.times[0], q);
   return q;
 }
 
@@ -84,10 +91,14 @@ TrialBeginning beginningOf(const Trial& trial, const Model& model, const Musculo
   TrialBeginning beginning;
   beginning.point.q = startCoordinates(trial, arm, given);
   beginning.point.qDot = Eigen::VectorXd::Zero(beginning.point.q.size());
+  if (!arm.prescribed().empty()) {
+    Eigen::VectorXd q = beginning.point.q;
+    prescribedMotionOf(trial, arm).place(trial.times[0], q, beginning.point.qDot);
+  }
   bool isMeasured = false, isFitted = false;
   for (Eigen::Index i = 0; i < beginning.point.q.size(); ++i) {
     const std::string& free = arm.skeleton().coordinates()[static_cast<std::size_t>(i)].name;
-    if (given.contains(free)) continue;
+    if (given.contains(free) || arm.isPrescribed(static_cast<int>(i))) continue;
     for (const MeasuredMotion& measured : trial.measured)
       isMeasured = isMeasured || (measured.coordinate == free && measured.values.size() > 0);
     for (const TrialStart& start : model.fitted.starts) {
@@ -124,6 +135,29 @@ std::vector<double> observedTimes(const Trial& trial, const std::string& coordin
   return times;
 }
 
+namespace {
+
+/// Where the simulation has a value; rms 0 if it has none.
+MeasuredError errorOf(const Eigen::VectorXd& times, const Eigen::VectorXd& simulated,
+                      const Eigen::VectorXd& measured) {
+  MeasuredError error;
+  double sum = 0;
+  for (Eigen::Index i = 0; i < times.size(); ++i) {
+    const double difference = simulated[i] - measured[i];
+    if (std::isnan(difference)) continue;
+    sum += difference * difference;
+    ++error.count;
+    if (std::abs(difference) > error.largest) {
+      error.largest = std::abs(difference);
+      error.largestAt = times[i];
+    }
+  }
+  if (error.count > 0) error.rms = std::sqrt(sum / static_cast<double>(error.count));
+  return error;
+}
+
+}  // namespace
+
 MeasuredError compareWithMeasured(const MusculoskeletalSystem& arm, const Trajectory& trajectory,
                                   const MeasuredMotion& measured) {
   const int index = arm.skeleton().indexOf(measured.coordinate);
@@ -132,28 +166,21 @@ MeasuredError compareWithMeasured(const MusculoskeletalSystem& arm, const Trajec
         fmt::format("measured coordinate '{}' is not free", measured.coordinate));
   }
   const std::vector<double>& time = trajectory.time;
-  MeasuredError error;
-  double sum = 0;
+  Eigen::VectorXd simulated =
+      Eigen::VectorXd::Constant(measured.times.size(), std::numeric_limits<double>::quiet_NaN());
   for (Eigen::Index i = 0; i < measured.times.size(); ++i) {
     const double t = measured.times[i];
     if (t < time.front() - 1e-9 || t > time.back() + 1e-9) continue;
     const auto w = weightsAt(time, t);
-    const double simulated =
+    simulated[i] =
         w ? w->value(trajectory.q.row(index), trajectory.qDot.row(index)) : trajectory.q(index, 0);
-    const double difference = simulated - measured.values[i];
-    sum += difference * difference;
-    ++error.count;
-    if (std::abs(difference) > error.largest) {
-      error.largest = std::abs(difference);
-      error.largestAt = t;
-    }
   }
+  const MeasuredError error = errorOf(measured.times, simulated, measured.values);
   if (error.count == 0) {
     throw std::invalid_argument(
         fmt::format("measured coordinate '{}': no value between {} s and {} s", measured.coordinate,
                     time.front(), time.back()));
   }
-  error.rms = std::sqrt(sum / static_cast<double>(error.count));
   return error;
 }
 
@@ -164,6 +191,7 @@ TrialReplay replayTrial(const MusculoskeletalSystem& arm, const Trial& trial,
   options.startTime = trial.times[0];
   options.duration = trial.duration();
   options.externalForce = externalForceOf(trial, arm);
+  options.prescribed = prescribedMotionOf(trial, arm);
   replay.beginning = std::move(beginning);
   SystemState start = initialState(arm, replay.beginning.point.q, excitation, options.startTime);
   start.qDot = replay.beginning.point.qDot;
@@ -175,6 +203,12 @@ TrialReplay replayTrial(const MusculoskeletalSystem& arm, const Trial& trial,
       replay.errors.emplace_back(measured.coordinate,
                                  compareWithMeasured(arm, replay.motion, measured));
     }
+  }
+  for (const MeasuredChannel& channel : trial.channels) {
+    if (channel.times[0] > replay.motion.time.back()) continue;
+    const ObservedMotion observed(arm, {{channel.what, channel.times}});
+    replay.channelErrors.push_back(
+        {channel.what, errorOf(channel.times, observed.values(replay.motion), channel.values)});
   }
   options.progress = {};
   replay.options = std::move(options);
@@ -290,9 +324,17 @@ Table forcesTable(const MusculoskeletalSystem& arm, const Trajectory& trajectory
   table.name = "tendon forces [N]";
   table.columns = {"time"};
   for (const SystemMuscle& muscle : arm.muscles()) table.columns.push_back(muscle.name);
-  table.values.resize(K, report.tendonForce.rows() + 1);
+  const auto prescribed = static_cast<Eigen::Index>(arm.prescribed().size());
+  const Eigen::Index muscles = report.tendonForce.rows();
+  table.values.resize(K, 1 + muscles + prescribed);
   table.values.col(0) = Eigen::Map<const Eigen::VectorXd>(trajectory.time.data(), K);
-  table.values.rightCols(report.tendonForce.rows()) = report.tendonForce.transpose();
+  table.values.middleCols(1, muscles) = report.tendonForce.transpose();
+  for (Eigen::Index i = 0; i < prescribed; ++i) {
+    const int k = arm.prescribed()[static_cast<std::size_t>(i)];
+    table.columns.push_back(arm.skeleton().coordinates()[static_cast<std::size_t>(k)].name +
+                            ".reaction");
+    table.values.col(1 + muscles + i) = trajectory.reaction.row(k).transpose();
+  }
   return table;
 }
 

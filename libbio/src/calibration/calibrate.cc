@@ -51,6 +51,7 @@ class Calibrator {
         predictor_(training.predictor()),
         measured_(training.measured()) {
     check(options);
+    checkChannels();
     if (heldOut_ && heldOut_->parameters().size() != training.numCommon()) {
       throw std::invalid_argument("held-out trials must have the same common parameters");
     }
@@ -113,6 +114,66 @@ class Calibrator {
   }
 
  private:
+  /// Noise is given of channels that there are.
+  void checkChannels() const {
+    for (const auto& [name, sd] : options_.channelNoise) {
+      const auto& channels = training_.channels();
+      const bool isThere = std::any_of(channels.begin(), channels.end(), [&](const auto& one) {
+        return one.name == name && !one.areAngles;
+      });
+      if (!isThere) {
+        throw std::invalid_argument(fmt::format("noise of '{}': no trial measures it", name));
+      }
+      if (!(sd > 0 && std::isfinite(sd))) {
+        throw std::invalid_argument(fmt::format("noise of '{}' = {}, must be > 0", name, sd));
+      }
+    }
+  }
+
+  /// The noise that was given of a channel.
+  std::optional<double> givenNoise(std::size_t channel) const {
+    const MeasuredGroup& one = training_.channels()[channel];
+    if (one.areAngles) return options_.noise;
+    const auto at = options_.channelNoise.find(one.name);
+    if (at == options_.channelNoise.end()) return {};
+    return at->second;
+  }
+
+  bool hasOneChannel() const { return training_.channels().size() == 1; }
+
+  /// Of each sample, relative to the first channel, so that all have its effective noise; 1 until
+  /// noises are known.
+  void weigh(const std::vector<ResidualNoise>& noises) {
+    if (hasOneChannel()) return;
+    weight_.resize(1, measured_.size());
+    Index at = 0;
+    for (const MeasuredSeries& series : training_.series()) {
+      const Index n = series.values.size();
+      weight_.middleCols(at, n).setConstant(noises[series.channel].effective /
+                                            noises.front().effective);
+      at += n;
+    }
+  }
+  MatrixXd weighted(const MatrixXd& outputs) const {
+    if (weight_.size() == 0) return outputs;
+    return outputs.cwiseQuotient(weight_);
+  }
+  info::Predictor weightedPredictor() const {
+    if (weight_.size() == 0) return predictor_;
+    info::Predictor scaled;
+    scaled.outputs = [outputs = predictor_.outputs, weight = weight_](const VectorXd& theta) {
+      return MatrixXd(outputs(theta).cwiseQuotient(weight));
+    };
+    scaled.withSensitivities = [both = predictor_.withSensitivities,
+                                weight = weight_](const VectorXd& theta) {
+      info::Prediction at = both(theta);
+      at.outputs = at.outputs.cwiseQuotient(weight).eval();
+      at.gamma.array().colwise() /= weight.transpose().array().col(0);
+      return at;
+    };
+    return scaled;
+  }
+
   Index common() const { return static_cast<Index>(training_.numCommon()); }
 
   static VectorXd valuesOf(const std::vector<info::Parameter>& parameters) {
@@ -164,7 +225,7 @@ class Calibrator {
     const info::OutputCovariance covariance(MatrixXd::Constant(1, 1, sigma * sigma));
     std::vector<info::Parameter> parameters = asked_;
     for (const std::size_t i : held_) parameters[i].lower = parameters[i].upper = asked_[i].start;
-    return {predictor_, {measured_, covariance, {}, options_.loss}, parameters};
+    return {weightedPredictor(), {weighted(measured_), covariance, {}, options_.loss}, parameters};
   }
 
   info::EstimateOptions estimateOptions() {
@@ -178,29 +239,49 @@ class Calibrator {
     return estimate;
   }
 
-  std::vector<VectorXd> residualSeries(const MatrixXd& predicted) const {
+  /// Of one channel.
+  std::vector<VectorXd> residualSeries(const MatrixXd& predicted, std::size_t channel) const {
     std::vector<VectorXd> series;
     Index at = 0;
     for (const MeasuredSeries& one : training_.series()) {
       const Index n = one.values.size();
-      series.push_back(one.values - predicted.middleCols(at, n).transpose());
+      if (one.channel == channel) {
+        series.push_back(one.values - predicted.middleCols(at, n).transpose());
+      }
       at += n;
     }
     return series;
   }
 
   /// Of the residuals that a prediction leaves after so many parameters were fitted.
-  ResidualNoise noiseOf(const MatrixXd& predicted, Index fitted) const {
-    const VectorXd r = (measured_ - predicted).transpose();
+  std::vector<ResidualNoise> noisesOf(const MatrixXd& predicted, Index fitted) const {
+    std::vector<ResidualNoise> noises;
+    for (std::size_t channel = 0; channel < training_.channels().size(); ++channel) {
+      const std::vector<VectorXd> series = residualSeries(predicted, channel);
+      Index samples = 0;
+      for (const VectorXd& one : series) samples += one.size();
+      const auto share = static_cast<double>(samples) / static_cast<double>(measured_.size());
+      noises.push_back(
+          noiseOf(series, samples, static_cast<double>(fitted) * share, givenNoise(channel)));
+    }
+    return noises;
+  }
+
+  ResidualNoise noiseOf(const std::vector<VectorXd>& series, Index samples, double fitted,
+                        const std::optional<double>& given) const {
+    VectorXd r(samples);
+    Index at = 0;
+    for (const VectorXd& one : series) {
+      r.segment(at, one.size()) = one;
+      at += one.size();
+    }
     ResidualNoise noise;
     const bool gaussian = options_.loss.kind == info::RobustLoss::Kind::gaussian;
-    const auto freedom = static_cast<double>(std::max<Index>(1, r.size() - fitted));
+    const double freedom = std::max(1.0, static_cast<double>(r.size()) - fitted);
     noise.sd = gaussian ? std::sqrt(r.squaredNorm() / freedom) : info::robustSd(r);
-    if (r.squaredNorm() > 0) {
-      noise.autocorrelation = info::autocorrelation(residualSeries(predicted), r.size() / 4);
-    }
-    if (options_.noise) {
-      noise.sd = *options_.noise;
+    if (r.squaredNorm() > 0) noise.autocorrelation = info::autocorrelation(series, r.size() / 4);
+    if (given) {
+      noise.sd = *given;
     } else {
       noise.correlationTime = info::autocorrelationTime(noise.autocorrelation, r.size());
     }
@@ -208,6 +289,12 @@ class Calibrator {
     noise.sd = std::max(noise.sd, 1e-9);
     noise.effective = noise.sd * std::sqrt(noise.correlationTime);
     return noise;
+  }
+
+  void setNoise(std::vector<ResidualNoise> noises) {
+    weigh(noises);
+    result_.noise = noises.front();
+    result_.channelNoise = std::move(noises);
   }
 
   Index numPriors() const {
@@ -218,8 +305,17 @@ class Calibrator {
   double chiSquare() const {
     const Index fitted = std::max<Index>(0, static_cast<Index>(asked_.size()) - numPriors());
     const double freedom = static_cast<double>(std::max<Index>(1, measured_.size() - fitted));
-    return (measured_ - result_.after).squaredNorm() /
-           (result_.noise.sd * result_.noise.sd * freedom);
+    if (hasOneChannel()) {
+      return (measured_ - result_.after).squaredNorm() /
+             (result_.noise.sd * result_.noise.sd * freedom);
+    }
+    double sum = 0;
+    for (std::size_t channel = 0; channel < result_.channelNoise.size(); ++channel) {
+      for (const VectorXd& r : residualSeries(result_.after, channel)) {
+        sum += (r / result_.channelNoise[channel].sd).squaredNorm();
+      }
+    }
+    return sum / freedom;
   }
 
   void fit() {
@@ -233,8 +329,9 @@ class Calibrator {
     const auto p = static_cast<Index>(asked_.size());
     const std::vector<VectorXd> led = ledFrom(valuesOf(asked_), estimate);
     const MatrixXd guess = best(led);
-    result_.noise = noiseOf(guess, 0);
-    result_.noise.effective = result_.noise.sd;  // white until there is a fit
+    std::vector<ResidualNoise> first = noisesOf(guess, 0);
+    for (ResidualNoise& one : first) one.effective = one.sd;  // white until there is a fit
+    setNoise(std::move(first));
     {
       const info::MultiStart found = info::estimateFromStarts(
           problem(result_.noise.effective), known_,
@@ -246,10 +343,14 @@ class Calibrator {
     result_.iterations = estimate_.iterations;
     result_.evaluations = estimate_.evaluations;
     for (int round = 0; round < noiseRounds && result_.complete; ++round) {
-      const double before = result_.noise.effective;
+      const std::vector<ResidualNoise> before = result_.channelNoise;
       result_.after = predictor_.outputs(estimate_.parameters);
-      result_.noise = noiseOf(result_.after, std::max<Index>(0, p - numPriors()));
-      const bool isSettled = std::abs(result_.noise.effective - before) <= noiseSettled * before;
+      setNoise(noisesOf(result_.after, std::max<Index>(0, p - numPriors())));
+      bool isSettled = true;
+      for (std::size_t i = 0; i < before.size(); ++i) {
+        const double change = result_.channelNoise[i].effective - before[i].effective;
+        isSettled = isSettled && std::abs(change) <= noiseSettled * before[i].effective;
+      }
       // also where it is settled: the cost that profiles compare with is that of this noise
       estimate_ = info::estimate(problem(result_.noise.effective), estimate_.parameters, estimate);
       result_.iterations += estimate_.iterations;
@@ -273,26 +374,42 @@ class Calibrator {
     result_.noiseFloor = floor;
     const double sd = std::max(options_.noise.value_or(floor), 1e-4);
     const std::vector<info::Parameter> parameters = problem(sd).parameters();
-    return ledStarts(training_, parameters, startsOnBothSides(training_, parameters, start), sd,
-                     estimate);
+    std::vector<VectorXd> starts = startsOnBothSides(training_, parameters, start);
+    // what is held near its course, and measured in one unit, is led there
+    if (!training_.hasOnlyAngles()) return starts;
+    return ledStarts(training_, parameters, starts, sd, estimate);
   }
 
   /// The prediction nearest to the data, of the start and of those.
   MatrixXd best(const std::vector<VectorXd>& starts) const {
     MatrixXd nearest =
         atStart_.allFinite() ? atStart_ : MatrixXd::Constant(1, measured_.size(), measured_.mean());
+    const auto distance = [&](const MatrixXd& predicted) {
+      if (hasOneChannel()) return (measured_ - predicted).norm();
+      double sum = 0;  // of the channels, each relative to the spread of its measurements
+      for (std::size_t channel = 0; channel < training_.channels().size(); ++channel) {
+        sum += training_.meanSquareOf(predicted, channel) / spreadOf(channel);
+      }
+      return sum;
+    };
     for (const VectorXd& start : starts) {
       const MatrixXd there = predictor_.outputs(start);
-      if ((measured_ - there).norm() < (measured_ - nearest).norm()) nearest = there;
+      if (distance(there) < distance(nearest)) nearest = there;
     }
     return nearest;
   }
 
+  /// Mean square of a channel's measurements about 0.
+  double spreadOf(std::size_t channel) const {
+    const double spread = training_.meanSquareOf(MatrixXd::Zero(1, measured_.size()), channel);
+    return std::max(spread, std::numeric_limits<double>::min());
+  }
+
   /// What the data determine, and the intervals of it.
   void judge() {
-    const info::Prediction at = predictor_.withSensitivities(estimate_.parameters);
+    const info::Prediction at = weightedPredictor().withSensitivities(estimate_.parameters);
     const double sigma = result_.noise.effective;
-    const VectorXd white = (measured_ - at.outputs).transpose() / sigma;
+    const VectorXd white = (weighted(measured_) - at.outputs).transpose() / sigma;
     // a robust loss makes less of normal noise; scale by what it makes of these residuals
     const double widening =
         options_.loss.kind == info::RobustLoss::Kind::gaussian
@@ -323,7 +440,9 @@ class Calibrator {
         if (free[k] >= common()) own(i, i) += weight;  // what is known of a start was measured
       }
       const VectorXd known = known_(free);
-      told = info::determinacy(own, freeParameters, known, "the measured angles");
+      told =
+          info::determinacy(own, freeParameters, known,
+                            training_.hasOnlyAngles() ? "the measured angles" : "the measurements");
       const MatrixXd covariance = scaledInverse(all, known);
       sd = covariance.diagonal().cwiseSqrt();
       result_.correlation(free, free) = covariance.array() / (sd * sd.transpose()).array();
@@ -438,6 +557,7 @@ class Calibrator {
   VectorXd known_;
   info::Predictor predictor_;
   MatrixXd measured_;
+  MatrixXd weight_;  ///< 1 × samples; empty: all 1
   MatrixXd atStart_;
   std::vector<std::size_t> profiled_;
   std::vector<std::size_t> held_;

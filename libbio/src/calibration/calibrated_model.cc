@@ -34,9 +34,13 @@ void compareWithReplay(const MusculoskeletalSystem& arm, const Trial& trial,
         replayTrial(arm, trial, simulation, {start, TrialBeginning::From::model});
     if (replay.motion.outcome != Outcome::completed) return;
     double sum = 0;
+    one.channels = replay.channelErrors;
     for (const auto& [name, error] : replay.errors) {
       const auto i = static_cast<std::size_t>(arm.skeleton().indexOf(name));
-      if (!arm.skeleton().coordinates()[i].isRotation) continue;
+      if (!arm.skeleton().coordinates()[i].isRotation) {
+        one.channels.push_back({{Observable::Kind::coordinate, name, 0}, error});
+        continue;
+      }
       sum += static_cast<double>(error.count) * error.rms * error.rms;
       one.samples += error.count;
     }
@@ -78,6 +82,7 @@ CalibratedModel calibratedModel(const TrialSet& training, const TrialSet* heldOu
       const StartPoint start =
           set->startAt(i, isHeldOut ? theta.head(static_cast<Index>(training.numCommon())) : theta);
       for (std::size_t c = 0; c < free.size(); ++c) {
+        if (calibrated.isPrescribed(static_cast<int>(c))) continue;
         const auto k = static_cast<Index>(c);
         one.starts.push_back({trial.file, trial.sha256, free[c].name, start.q[k], start.qDot[k]});
       }
@@ -87,7 +92,14 @@ CalibratedModel calibratedModel(const TrialSet& training, const TrialSet* heldOu
       }
       if (isDriven) {
         one.driven = drivenTable(trial, set->arm(), calibration.calibrated->mapping);
-        trial = trialFrom(*one.driven, trial.file, result.model);
+        TrialOptions options;
+        for (const MeasuredMotion& course : trial.prescribed) {
+          if (course.times.size() > 1) options.prescribed.push_back(course.coordinate);
+        }
+        Trial driven = trialFrom(*one.driven, trial.file, result.model, options);
+        driven.prescribed = std::move(trial.prescribed);
+        driven.channels = std::move(trial.channels);
+        trial = std::move(driven);
       }
       compareWithReplay(calibrated, trial, simulation, start, one);
       result.trials.push_back(std::move(one));

@@ -72,7 +72,9 @@ std::vector<VectorXd> startsOnBothSides(const TrialSet& trials,
 
 double measuredSd(const TrialSet& trials) {
   info::discover::ThirdDifferences differences;
-  for (const MeasuredSeries& series : trials.series()) differences.add(series.times, series.values);
+  for (const MeasuredSeries& series : trials.series()) {
+    if (trials.channels()[series.channel].areAngles) differences.add(series.times, series.values);
+  }
   return differences.count > 0 ? differences.sd() : 0;
 }
 

@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
-
-#include "simulation/motion_weights.h"
 
 namespace bio {
 namespace {
@@ -20,95 +19,96 @@ TrialPredictor::TrialPredictor(const ParameterCatalogue& catalogue, const System
                                ExcitationSignal trial, const std::string& coordinate,
                                std::vector<double> times, std::vector<std::size_t> selection,
                                const SimulationOptions& options)
+    : TrialPredictor(
+          catalogue, arm, std::move(trial),
+          {{{Observable::Kind::coordinate, coordinate, 0},
+            Eigen::Map<const Eigen::VectorXd>(times.data(), static_cast<Index>(times.size()))}},
+          std::move(selection), options) {
+  const auto& free = arm.skeleton.freeCoordinates;
+  if (std::find(free.begin(), free.end(), coordinate) == free.end()) {
+    throw std::invalid_argument(fmt::format("observed coordinate '{}' is not free", coordinate));
+  }
+}
+
+TrialPredictor::TrialPredictor(const ParameterCatalogue& catalogue, const SystemOptions& arm,
+                               ExcitationSignal trial, std::vector<ObservedSeries> series,
+                               std::vector<std::size_t> selection, const SimulationOptions& options)
     : catalogue_(&catalogue),
       armOptions_(arm),
       trial_(std::move(trial)),
-      coordinate_(-1),
-      times_(std::move(times)),
+      series_(std::move(series)),
       selection_(std::move(selection)),
       options_(options) {
-  const auto& free = arm.skeleton.freeCoordinates;
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    if (free[i] == coordinate) coordinate_ = static_cast<int>(i);
-  }
-  if (coordinate_ < 0) {
-    throw std::invalid_argument(fmt::format("observed coordinate '{}' is not free", coordinate));
-  }
   if (options.integrator != Integrator::variational &&
       options.integrator != Integrator::variationalLeft) {
     throw std::invalid_argument("sensitivities: integrator must be vi or vi-left");
   }
-  double last = -std::numeric_limits<double>::infinity();
-  for (const double t : times_) {
-    const bool inside = t >= options.startTime - 1e-9 &&
-                        t <= options.startTime + options.duration + 1e-9 && t > last;
-    if (!inside) {
-      throw std::invalid_argument(
-          fmt::format("observed time {} s must rise and lie within {} to {} s", t,
-                      options.startTime, options.startTime + options.duration));
+  for (const ObservedSeries& one : series_) {
+    size_ += one.times.size();
+    double last = -std::numeric_limits<double>::infinity();
+    for (const double t : one.times) {
+      const bool inside = t >= options.startTime - 1e-9 &&
+                          t <= options.startTime + options.duration + 1e-9 && t > last;
+      if (!inside) {
+        throw std::invalid_argument(
+            fmt::format("observed time {} s must rise and lie within {} to {} s", t,
+                        options.startTime, options.startTime + options.duration));
+      }
+      last = t;
     }
-    last = t;
   }
 }
 
-Trajectory TrialPredictor::simulate(const Eigen::VectorXd& theta) const {
-  return simulateAt(catalogue_->at(selection_, theta));
-}
-Trajectory TrialPredictor::simulateAt(ParameterCatalogue::Setting setting) const {
+TrialPredictor::Held TrialPredictor::heldAt(ParameterCatalogue::Setting setting) const {
   SimulationOptions options = options_;
   for (const Nudge& nudge : nudges_) apply(nudge, setting.model, options.externalForce);
-  const MusculoskeletalSystem arm(setting.model, armOptions_);
-  return simulateSetting(arm, setting, trial_, options);
+  MusculoskeletalSystem arm(setting.model, armOptions_);
+  return {std::move(setting), std::move(options), std::move(arm)};
+}
+
+Trajectory TrialPredictor::simulate(const Eigen::VectorXd& theta) const {
+  const Held held = heldAt(catalogue_->at(selection_, theta));
+  return simulateSetting(held.arm, held.setting, trial_, held.options);
 }
 
 SensitivityTrajectory TrialPredictor::simulateWithSensitivities(
     const Eigen::VectorXd& theta) const {
-  return sensitivitiesAt(catalogue_->at(selection_, theta));
+  return sensitivitiesOf(heldAt(catalogue_->at(selection_, theta)), false, false);
 }
-SensitivityTrajectory TrialPredictor::sensitivitiesAt(ParameterCatalogue::Setting setting) const {
-  SimulationOptions options = options_;
-  for (const Nudge& nudge : nudges_) apply(nudge, setting.model, options.externalForce);
-  const MusculoskeletalSystem arm(setting.model, armOptions_);
-  return bio::simulateWithSensitivities(arm, *catalogue_, setting, selection_, trial_,
-                                        {options, false});
+
+SensitivityTrajectory TrialPredictor::sensitivitiesOf(const Held& held, bool muscles,
+                                                      bool reactions) const {
+  SensitivityOptions options;
+  options.simulation = held.options;
+  options.muscles = muscles;
+  options.reactions = reactions;
+  return bio::simulateWithSensitivities(held.arm, *catalogue_, held.setting, selection_, trial_,
+                                        options);
 }
 
 Eigen::VectorXd TrialPredictor::outputs(const Eigen::VectorXd& theta) const {
-  Eigen::VectorXd y = Eigen::VectorXd::Constant(static_cast<Index>(times_.size()), nan);
   const ParameterCatalogue::Setting setting = catalogue_->at(selection_, theta);
-  Trajectory motion;
   try {
-    motion = simulateAt(setting);
+    const Held held = heldAt(setting);
+    return ObservedMotion(held.arm, series_)
+        .values(simulateSetting(held.arm, held.setting, trial_, held.options));
   } catch (const std::exception&) {
-    return y;  // outside the model's domain
+    return Eigen::VectorXd::Constant(size_, nan);  // outside the model's domain
   }
-  for (std::size_t i = 0; i < times_.size(); ++i) {
-    if (const auto w = weightsAt(motion.time, times_[i])) {
-      y[static_cast<Index>(i)] = w->value(motion.q.row(coordinate_), motion.qDot.row(coordinate_));
-    }
-  }
-  return y;
 }
 
 TrialPredictor::Linearised TrialPredictor::withSensitivities(const Eigen::VectorXd& theta) const {
-  const auto K = static_cast<Index>(times_.size());
-  Linearised result{Eigen::VectorXd::Constant(K, nan),
-                    Eigen::MatrixXd::Constant(K, theta.size(), nan)};
   const ParameterCatalogue::Setting setting = catalogue_->at(selection_, theta);
-  SensitivityTrajectory s;
   try {
-    s = sensitivitiesAt(setting);
+    const Held held = heldAt(setting);
+    const ObservedMotion observed(held.arm, series_);
+    ObservedMotion::Linearised at = observed.linearised(
+        sensitivitiesOf(held, observed.needsMuscles(), observed.needsReactions()));
+    return {std::move(at.values), std::move(at.gamma)};
   } catch (const std::exception&) {
-    return result;
+    return {Eigen::VectorXd::Constant(size_, nan),
+            Eigen::MatrixXd::Constant(size_, theta.size(), nan)};
   }
-  const auto c = static_cast<std::size_t>(coordinate_);
-  for (Index i = 0; i < K; ++i) {
-    const auto w = weightsAt(s.motion.time, times_[static_cast<std::size_t>(i)]);
-    if (!w) continue;
-    result.outputs[i] = w->value(s.motion.q.row(coordinate_), s.motion.qDot.row(coordinate_));
-    result.gamma.row(i) = w->rows(s.q[c], s.qDot[c]);
-  }
-  return result;
 }
 
 info::Predictor TrialPredictor::predictor() const {
@@ -130,14 +130,14 @@ info::Predictor joined(const std::vector<TrialPredictor>& experiments) {
     if (experiment.selection() != experiments.front().selection()) {
       throw std::invalid_argument("joined experiments must have the same parameters");
     }
-    samples += static_cast<Index>(experiment.times().size());
+    samples += experiment.size();
   }
   info::Predictor predictor;
   predictor.outputs = [experiments, samples](const Eigen::VectorXd& theta) {
     Eigen::MatrixXd y(1, samples);
     Index at = 0;
     for (const TrialPredictor& experiment : experiments) {
-      const auto count = static_cast<Index>(experiment.times().size());
+      const Index count = experiment.size();
       y.middleCols(at, count) = experiment.outputs(theta).transpose();
       at += count;
     }
@@ -147,7 +147,7 @@ info::Predictor joined(const std::vector<TrialPredictor>& experiments) {
     info::Prediction all{Eigen::MatrixXd(1, samples), Eigen::MatrixXd(samples, theta.size())};
     Index at = 0;
     for (const TrialPredictor& experiment : experiments) {
-      const auto count = static_cast<Index>(experiment.times().size());
+      const Index count = experiment.size();
       const TrialPredictor::Linearised part = experiment.withSensitivities(theta);
       all.outputs.middleCols(at, count) = part.outputs.transpose();
       all.gamma.middleRows(at, count) = part.gamma;

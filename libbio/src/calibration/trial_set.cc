@@ -52,37 +52,66 @@ TrialSet::TrialSet(const Model& model, const SystemOptions& arm, std::vector<Tri
         std::make_unique<const ParameterCatalogue>(model, *arm_, beginnings_.back().point));
   }
   collectParameters(options);
-  collectSeries(options);
+  collectSeries(model);
   std::vector<std::size_t> all = selection_;
   all.insert(all.end(), own_.begin(), own_.end());
-  for (const MeasuredSeries& series : series_) {
-    const Trial& trial = trials_[series.trial];
+  for (std::size_t i = 0; i < trials_.size(); ++i) {
+    const Trial& trial = trials_[i];
     SimulationOptions simulation = options.simulation;
     simulation.startTime = trial.times[0];
     simulation.duration = trial.duration();
+    simulation.prescribed = prescribedMotionOf(trial, *arm_);
     simulation.progress = {};
-    experiments_.emplace_back(*catalogues_[series.trial], arm, excitationOf(trial, *arm_),
-                              series.coordinate, series.times, all, simulation);
+    std::vector<ObservedSeries> observed;
+    for (const MeasuredSeries& one : series_) {
+      if (one.trial != i) continue;
+      observed.push_back({one.what, Eigen::Map<const Eigen::VectorXd>(
+                                        one.times.data(), static_cast<Index>(one.times.size()))});
+    }
+    try {
+      (void)ObservedMotion(*arm_, observed);
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("{}: {}", trial.file, error.what()));
+    }
+    experiments_.emplace_back(*catalogues_[i], arm, excitationOf(trial, *arm_), std::move(observed),
+                              all, simulation);
+    begin_.push_back(begin_.back() + experiments_.back().size());
   }
 }
 
-void TrialSet::collectSeries(const TrialSetOptions&) {
+std::size_t TrialSet::channelOf(const Observable& what, const Model& model) {
+  const bool isAngle =
+      what.kind == Observable::Kind::coordinate && findCoordinate(model, what.of).isRotation;
+  MeasuredGroup group{isAngle ? "angles" : nameOf(what), unitOf(what, model), isAngle};
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    if (channels_[i].name == group.name) return i;
+  }
+  channels_.push_back(std::move(group));
+  return channels_.size() - 1;
+}
+
+void TrialSet::collectSeries(const Model& model) {
+  const auto add = [&](std::size_t trial, const Observable& what, const Eigen::VectorXd& times,
+                       const Eigen::VectorXd& values) {
+    series_.push_back({trial, what, channelOf(what, model), {times.begin(), times.end()}, values});
+  };
   for (std::size_t i = 0; i < trials_.size(); ++i) {
     const std::size_t before = series_.size();
     for (const MeasuredMotion& measured : trials_[i].measured) {
       const int index = arm_->skeleton().indexOf(measured.coordinate);
       if (index < 0 || measured.times.size() == 0) continue;
-      if (!arm_->skeleton().coordinates()[static_cast<std::size_t>(index)].isRotation) continue;
-      series_.push_back({i,
-                         measured.coordinate,
-                         {measured.times.begin(), measured.times.end()},
-                         measured.values});
+      add(i, {Observable::Kind::coordinate, measured.coordinate, 0}, measured.times,
+          measured.values);
+    }
+    for (const MeasuredChannel& channel : trials_[i].channels) {
+      add(i, channel.what, channel.times, channel.values);
     }
     if (series_.size() == before) {
       std::vector<std::string> names;
       for (const Coordinate& c : arm_->skeleton().coordinates()) names.push_back(c.name);
-      throw std::invalid_argument(fmt::format("{}: no measured column of a free angle ({})",
-                                              trials_[i].file, fmt::join(names, ", ")));
+      throw std::invalid_argument(
+          fmt::format("{}: no measured column of a free coordinate ({}), nor of anything else",
+                      trials_[i].file, fmt::join(names, ", ")));
     }
   }
 }
@@ -148,45 +177,37 @@ Eigen::MatrixXd TrialSet::measured() const {
 
 std::vector<TrialPredictor> TrialSet::nudged(double frequency) const {
   std::vector<TrialPredictor> held = experiments_;
-  for (std::size_t s = 0; s < series_.size(); ++s) {
-    for (const MeasuredSeries& other : series_) {
-      if (other.trial != series_[s].trial || other.times.size() < 4) continue;
-      held[s].hold(nudgeTo(*arm_, arm_->skeleton().indexOf(other.coordinate), other.times,
-                           other.values, frequency));
-    }
+  for (const MeasuredSeries& one : series_) {
+    if (one.what.kind != Observable::Kind::coordinate || one.times.size() < 4) continue;
+    held[one.trial].hold(
+        nudgeTo(*arm_, arm_->skeleton().indexOf(one.what.of), one.times, one.values, frequency));
   }
   return held;
 }
 
 info::Predictor TrialSet::predictor(const std::vector<TrialPredictor>& experiments) const {
-  // where the samples of each series begin
-  std::vector<Index> begin = {0};
-  for (const MeasuredSeries& series : series_) begin.push_back(begin.back() + series.values.size());
   info::Predictor predictor;
-  predictor.outputs = [this, begin, &experiments](const Eigen::VectorXd& theta) {
-    Eigen::MatrixXd y(1, begin.back());
-    info::parallelFor(static_cast<int>(series_.size()), threads_, [&](int i) {
-      const auto s = static_cast<std::size_t>(i);
-      y.middleCols(begin[s], begin[s + 1] - begin[s]) =
-          experiments[s].outputs(thetaOf(series_[s].trial, theta)).transpose();
+  predictor.outputs = [this, &experiments](const Eigen::VectorXd& theta) {
+    Eigen::MatrixXd y(1, begin_.back());
+    info::parallelFor(static_cast<int>(trials_.size()), threads_, [&](int i) {
+      const auto t = static_cast<std::size_t>(i);
+      y.middleCols(begin_[t], begin_[t + 1] - begin_[t]) =
+          experiments[t].outputs(thetaOf(t, theta)).transpose();
     });
     return y;
   };
-  predictor.withSensitivities = [this, begin, &experiments](const Eigen::VectorXd& theta) {
-    info::Prediction all{Eigen::MatrixXd(1, begin.back()),
-                         Eigen::MatrixXd::Zero(begin.back(), theta.size())};
+  predictor.withSensitivities = [this, &experiments](const Eigen::VectorXd& theta) {
+    info::Prediction all{Eigen::MatrixXd(1, begin_.back()),
+                         Eigen::MatrixXd::Zero(begin_.back(), theta.size())};
     const auto common = static_cast<Index>(selection_.size());
     const auto own = static_cast<Index>(own_.size());
-    info::parallelFor(static_cast<int>(series_.size()), threads_, [&](int i) {
-      const auto s = static_cast<std::size_t>(i);
-      const std::size_t trial = series_[s].trial;
-      const Index first = begin[s], count = begin[s + 1] - begin[s];
-      const TrialPredictor::Linearised part =
-          experiments[s].withSensitivities(thetaOf(trial, theta));
+    info::parallelFor(static_cast<int>(trials_.size()), threads_, [&](int i) {
+      const auto t = static_cast<std::size_t>(i);
+      const Index first = begin_[t], count = begin_[t + 1] - begin_[t];
+      const TrialPredictor::Linearised part = experiments[t].withSensitivities(thetaOf(t, theta));
       all.outputs.middleCols(first, count) = part.outputs.transpose();
       all.gamma.block(first, 0, count, common) = part.gamma.leftCols(common);
-      all.gamma.block(first, common + static_cast<Index>(trial) * own, count, own) =
-          part.gamma.rightCols(own);
+      all.gamma.block(first, common + i * own, count, own) = part.gamma.rightCols(own);
     });
     return all;
   };
@@ -194,33 +215,49 @@ info::Predictor TrialSet::predictor(const std::vector<TrialPredictor>& experimen
 }
 
 std::string TrialSet::failure(std::size_t trial, const Eigen::VectorXd& theta) const {
-  for (std::size_t s = 0; s < series_.size(); ++s) {
-    if (series_[s].trial != trial) continue;
-    try {
-      return experiments_[s].simulate(thetaOf(trial, theta)).why;
-    } catch (const std::exception& error) {
-      return error.what();
-    }
+  try {
+    return experiments_[trial].simulate(thetaOf(trial, theta)).why;
+  } catch (const std::exception& error) {
+    return error.what();
   }
-  return {};
 }
 
-double TrialSet::meanSquare(const Eigen::MatrixXd& predicted) const {
-  return (predicted - measured()).squaredNorm() / static_cast<double>(predicted.size());
-}
+namespace {
 
-double TrialSet::meanSquare(const Eigen::MatrixXd& predicted, std::size_t trial) const {
+/// Mean square difference over the series for which `counts` holds; NaN without one.
+template <class Counts>
+double meanSquareWhere(const std::vector<MeasuredSeries>& all, const Eigen::MatrixXd& predicted,
+                       const Counts& counts) {
   double sum = 0;
   Index at = 0, count = 0;
-  for (const MeasuredSeries& series : series_) {
+  for (const MeasuredSeries& series : all) {
     const Index n = series.values.size();
-    if (series.trial == trial) {
+    if (counts(series)) {
       sum += (predicted.middleCols(at, n).transpose() - series.values).squaredNorm();
       count += n;
     }
     at += n;
   }
   return sum / static_cast<double>(count);
+}
+
+}  // namespace
+
+double TrialSet::meanSquare(const Eigen::MatrixXd& predicted) const {
+  return meanSquareWhere(series_, predicted, [&](const MeasuredSeries& series) {
+    return channels_[series.channel].areAngles;
+  });
+}
+
+double TrialSet::meanSquareOf(const Eigen::MatrixXd& predicted, std::size_t channel) const {
+  return meanSquareWhere(series_, predicted,
+                         [&](const MeasuredSeries& series) { return series.channel == channel; });
+}
+
+double TrialSet::meanSquare(const Eigen::MatrixXd& predicted, std::size_t trial) const {
+  return meanSquareWhere(series_, predicted, [&](const MeasuredSeries& series) {
+    return series.trial == trial && channels_[series.channel].areAngles;
+  });
 }
 
 std::vector<double> TrialSet::largestDifferences(const Eigen::MatrixXd& a,
@@ -230,7 +267,9 @@ std::vector<double> TrialSet::largestDifferences(const Eigen::MatrixXd& a,
   for (const MeasuredSeries& series : series_) {
     const Index n = series.values.size();
     const double difference = (a.middleCols(at, n) - b.middleCols(at, n)).cwiseAbs().maxCoeff();
-    largest[series.trial] = std::max(largest[series.trial], difference);
+    if (channels_[series.channel].areAngles) {
+      largest[series.trial] = std::max(largest[series.trial], difference);
+    }
     at += n;
   }
   return largest;

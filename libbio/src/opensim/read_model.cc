@@ -74,6 +74,7 @@ Model readModel(const tinyxml2::XMLDocument& document, const std::string& file) 
   readConstraints(reading, model);
   readWrapObjects(reading, model);
   readForces(reading, model);
+  readMarkers(reading, model);
   readFitted(reading, model);
   return std::move(reading.model);
 }

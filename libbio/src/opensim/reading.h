@@ -64,6 +64,9 @@ Path readPath(Reading& reading, const Element& force);
 void readForces(Reading& reading, const Element& model);
 Muscle readMuscle(Reading& reading, const Element& element);
 
+/// A marker whose body the model does not have is left out, with a remark.
+void readMarkers(Reading& reading, const Element& model);
+
 /// The element FisherHill.
 void readFitted(Reading& reading, const Element& model);
 

@@ -2,6 +2,25 @@
 
 namespace bio::osim {
 
+namespace {
+
+void appendMarkers(const Writing& writing, Element& top) {
+  if (writing.model.markers.empty()) return;
+  const bool is4 = writing.format == Format::opensim4;
+  Element& markers = appendSet(writing, top, "MarkerSet", "markerset");
+  for (const Marker& marker : writing.model.markers) {
+    Element& element = append(markers, "Marker", marker.name);
+    if (is4) {
+      appendText(element, "socket_parent_frame", bodyPath(marker.body));
+    } else {
+      appendText(element, "body", marker.body);
+    }
+    appendNumbers(element, "location", marker.location);
+  }
+}
+
+}  // namespace
+
 void buildDocument(tinyxml2::XMLDocument& document, const Model& model, Format format) {
   const Writing writing{model, format};
   const bool is4 = format == Format::opensim4;
@@ -35,6 +54,7 @@ void buildDocument(tinyxml2::XMLDocument& document, const Model& model, Format f
   Element& forces = appendSet(writing, top, "ForceSet", "forceset");
   for (const Muscle& muscle : model.muscles) appendMuscle(writing, forces, muscle);
   appendCoordinateForces(writing, forces);
+  appendMarkers(writing, top);
   appendFitted(writing, top);
 }
 

@@ -319,6 +319,7 @@ class Collector {
     const auto& coordinates = arm_.skeleton().coordinates();
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
+      if (arm_.isPrescribed(static_cast<int>(i))) continue;
       const bool turns = coordinates[i].isRotation;
       const double value = start_.q[k];
       const double wide = turns ? pi : 1;
@@ -329,6 +330,7 @@ class Collector {
     }
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
+      if (arm_.isPrescribed(static_cast<int>(i))) continue;
       const bool turns = coordinates[i].isRotation;
       add("initial." + coordinates[i].name + ".speed", turns ? "rad/s" : "m/s",
           "speed at the start", start_.qDot.size() ? start_.qDot[k] : 0.0,

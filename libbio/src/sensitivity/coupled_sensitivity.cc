@@ -75,6 +75,7 @@ SensitivityTrajectory simulateWithSensitivities(const MusculoskeletalSystem& arm
   stepping::StepTape tape;
   Trajectory motion = stepping::simulateVariational(arm, driven, start, options.simulation, &tape);
   stepping::completeStates(arm, driven, motion);
+  stepping::addReactions(arm, driven, options.simulation, motion);
   const stepping::ParameterEffects effects(arm, setting, wanted);
   return stepping::withCoordinates(arm.skeleton(), [&](auto N) {
     stepping::SensitivityPass<decltype(N)::value> pass(

@@ -22,6 +22,7 @@ class SensitivityPass {
                   const SensitivityOptions& options)
       : arm_(arm),
         options_(options),
+        driven_(driven),
         configuration_(arm),
         state_{SensitivityColumns(numParameters, options.externalNodes),
                {},
@@ -43,8 +44,8 @@ class SensitivityPass {
     const StopWatch watch;
     SensitivityTrajectory result;
     result.motion = std::move(motion);
-    SensitivityRecorder<N> recorder(arm_, options_, configuration_, direct_, state_.columns,
-                                    result);
+    SensitivityRecorder<N> recorder(arm_, options_, driven_, configuration_, direct_,
+                                    state_.columns, result);
     begin(start, result.motion.time.front());
     recorder.add(state_);
     TapeSlopes slopes(tape);
@@ -61,7 +62,11 @@ class SensitivityPass {
   /// own parameters.
   void begin(const SystemState& start, double time) {
     const Vector q = start.q;
-    const Vector qDot = start.qDot;
+    Vector qDot = start.qDot;
+    if (!arm_.prescribed().empty()) {
+      Vector placed = q;
+      options_.simulation.prescribed.place(time, placed, qDot);
+    }
     configuration_.moveTo(q);
     const EnergyDerivatives<N>& energy = configuration_.energy(qDot);
     auto& [columns, dq, dp, fibres, activation] = state_;
@@ -124,6 +129,7 @@ class SensitivityPass {
 
   const MusculoskeletalSystem& arm_;
   const SensitivityOptions& options_;
+  const ExcitationSignal& driven_;
   SystemConfiguration<N> configuration_;
   SensitivityState<N> state_;
   DirectEffects<N> direct_;

@@ -3,6 +3,7 @@
 // Rows of a run's sensitivities; not public.
 
 #include "sensitivity/parameter_jacobian.h"
+#include "sensitivity/reaction_slopes.h"
 #include "simulation/coordinate_sums.h"
 
 namespace bio::stepping {
@@ -19,10 +20,11 @@ class SensitivityRecorder {
 
   /// @param result  holds the motion already
   SensitivityRecorder(const MusculoskeletalSystem& arm, const SensitivityOptions& options,
-                      SystemConfiguration<N>& configuration, DirectEffects<N>& direct,
-                      const SensitivityColumns& columns, SensitivityTrajectory& result)
+                      const ExcitationSignal& driven, SystemConfiguration<N>& configuration,
+                      DirectEffects<N>& direct, const SensitivityColumns& columns,
+                      SensitivityTrajectory& result)
       : arm_(arm),
-        muscles_(options.muscles),
+        muscles_(options.muscles || options.reactions),
         configuration_(configuration),
         direct_(direct),
         result_(result),
@@ -41,6 +43,13 @@ class SensitivityRecorder {
     if (numNodes > 0) {
       result.qOfNodes.assign(n, SensitivityMatrix::Zero(rows_, numNodes));
       result.qDotOfNodes = result.qOfNodes;
+    }
+    if (options.reactions && !arm.prescribed().empty()) {
+      result.reaction.resize(n);
+      for (const int k : arm.prescribed()) {
+        result.reaction[static_cast<std::size_t>(k)].resize(rows_, columns.numParameters());
+      }
+      reactions_.emplace(arm, options.simulation, driven, configuration, direct);
     }
   }
 
@@ -62,6 +71,7 @@ class SensitivityRecorder {
         addRigid(i, q, qDot, state);
       }
     }
+    if (reactions_) reactions_->add(row_, state, speed_, result_);
     ++row_;
   }
 
@@ -76,7 +86,7 @@ class SensitivityRecorder {
         momentum_ -= energy.T_vq.col(k) * state.dq.row(k);
       }
     }
-    const Matrix perMass = energy.T_vv.inverse();
+    const Matrix perMass = inverseMass(energy.T_vv);
     speed_.noalias() = perMass * momentum_;
     const Index parameters = state.columns.numParameters();
     for (int k = 0; k < countOf<N>(arm_); ++k) {
@@ -88,6 +98,19 @@ class SensitivityRecorder {
       result_.qOfNodes[sk].row(row_).head(begun) = state.dq.row(k).tail(begun);
       result_.qDotOfNodes[sk].row(row_).head(begun) = speed_.row(k).tail(begun);
     }
+  }
+
+  /// M⁻¹; of prescribed coordinates the speed is given, and its derivative is 0.
+  Matrix inverseMass(const Matrix& M) {
+    if (arm_.prescribed().empty()) return M.inverse();
+    Matrix reduced = M;
+    for (const int k : arm_.prescribed()) {
+      reduced.row(k).setZero();
+      reduced.col(k).setZero();
+      reduced(k, k) = 1;
+      momentum_.row(k).setZero();
+    }
+    return reduced.inverse();
   }
 
   void addMuscle(std::size_t i, const Vector& q, const State& state) {
@@ -156,6 +179,7 @@ class SensitivityRecorder {
   SensitivityTrajectory& result_;
   Index rows_, row_ = 0;
   typename State::Rows momentum_, speed_;
+  std::optional<ReactionSlopes<N>> reactions_;
 };
 
 }  // namespace bio::stepping

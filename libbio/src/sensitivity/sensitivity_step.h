@@ -144,7 +144,9 @@ class SensitivityStep {
 
     // R: (∂R/∂q′ − …) dq′ = −(all the rest)
     const Matrix J = residual_q / 2 + residual_v / h - share * f_end;
-    const Matrix perJ = J.inverse();
+    // of prescribed coordinates dq′ is known: 0, or what a time that moves makes of it
+    const bool isGiven = !arm_.prescribed().empty();
+    const Matrix perJ = inverseOf(J);
     const Matrix atBegin = residual_q / 2 - residual_v / h;
     forward_.noalias() = (-perJ * atBegin) * state.dq;
     forward_.noalias() += perJ * state.dp;
@@ -156,6 +158,7 @@ class SensitivityStep {
     if (timeMoves) {
       const Vector inTime = -residual_v * v / h - L_q / 2 - share / h * f;
       forward_.noalias() -= (perJ * inTime) * row_;
+      if (isGiven && dt1) addGiven(t1, *dt1);
     }
 
     // p′
@@ -180,6 +183,27 @@ class SensitivityStep {
   }
 
  private:
+  /// J⁻¹ from residuals to dq′. Where coordinates are prescribed their residuals are not solved:
+  /// their columns are 0, and givenColumns_ carries their dq′ to all others.
+  Matrix inverseOf(Matrix J) {
+    if (arm_.prescribed().empty()) return J.inverse();
+    for (const int k : arm_.prescribed()) {
+      J.row(k).setZero();
+      J(k, k) = 1;
+    }
+    givenColumns_ = J.inverse();
+    Matrix perJ = givenColumns_;
+    for (const int k : arm_.prescribed()) perJ.col(k).setZero();
+    return perJ;
+  }
+
+  /// dq′ of prescribed coordinates at the end t1 of a step, which moves.
+  void addGiven(double t1, const RowVector& dt1) {
+    Vector q = Vector::Zero(countOf<N>(arm_)), speed = q;
+    options_.prescribed.place(t1, q, speed);
+    forward_.noalias() += Vector(givenColumns_ * speed) * dt1;
+  }
+
   /// row = base + factor Σ_k ∂_kℓ rows_k, in one pass for one coordinate
   template <class Row, class Base, class Rows>
   static void setAlong(Row&& row, const Base& base, double factor, const LengthJet<N>& path,
@@ -272,6 +296,7 @@ class SensitivityStep {
   bool symmetric_;
   SystemConfiguration<N>& configuration_;
   DirectEffects<N>& direct_;
+  Matrix givenColumns_;                ///< used where a coordinate is prescribed
   std::vector<double> through_;        ///< (V_L/2J) of each muscle
   std::vector<SchuttePieces> pieces_;  ///< of each muscle's last state
   Rows forward_;                       ///< dq′/dθ

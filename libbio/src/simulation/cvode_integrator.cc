@@ -94,7 +94,7 @@ class AdaptiveRun {
               const SystemState& start, const SimulationOptions& options)
       : arm_(arm),
         options_(options),
-        task_{{arm, excitation, options.externalForce}, arm.switches()},
+        task_{{arm, excitation, options.externalForce, options.prescribed}, arm.switches()},
         recorder_(arm, numRows(options)),
         reached_(options.startTime) {
     const std::vector<double>& outside = options.externalForce.times();
@@ -132,7 +132,9 @@ class AdaptiveRun {
     context_.reset(rawContext);
     y_.reset(N_VNew_Serial(size, context_.get()));
     work_.reset(N_VNew_Serial(3, context_.get()));
-    view(y_.get()) = task_.dynamics.pack(start);
+    auto state = view(y_.get());
+    state = task_.dynamics.pack(start);
+    task_.dynamics.place(options_.startTime, state);
     view(work_.get()).setZero();
     matrix_.reset(SUNDenseMatrix(size, size, context_.get()));
     solver_.reset(SUNLinSol_Dense(y_.get(), matrix_.get(), context_.get()));
@@ -156,7 +158,8 @@ class AdaptiveRun {
 
   void record(double t) {
     const auto n = static_cast<Eigen::Index>(arm_.numMuscles());
-    const auto state = view(y_.get());
+    auto state = view(y_.get());
+    task_.dynamics.place(t, state);
     const auto work = view(work_.get());
     const auto& parts = task_.dynamics;
     recorder_.add(t, parts.coordinates(state), parts.speeds(state), parts.activations(state),

@@ -104,6 +104,11 @@ void checkSimulation(const MusculoskeletalSystem& arm, const ExcitationSignal& e
 void completeStates(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
                     Trajectory& motion);
 
+/// Adds the reactions of the prescribed coordinates to a motion; to one of the variational
+/// integrators, which do not sum it up themselves, also their work by the trapezoidal rule.
+void addReactions(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+                  const SimulationOptions& options, Trajectory& motion);
+
 class StepTape;
 
 /// @param tape takes down every part of a step that was accepted, for sensitivities; may be null

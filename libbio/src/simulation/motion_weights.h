@@ -31,6 +31,11 @@ struct MotionWeights {
     return slopeOfValue0 * q(row) + slopeOfValue1 * q(row + 1) + slopeOfSpeed0 * qDot(row) +
            slopeOfSpeed1 * qDot(row + 1);
   }
+  template <class Values, class Speeds>
+  Eigen::RowVectorXd slopeRows(const Values& q, const Speeds& qDot) const {
+    return slopeOfValue0 * q.row(row) + slopeOfValue1 * q.row(row + 1) +
+           slopeOfSpeed0 * qDot.row(row) + slopeOfSpeed1 * qDot.row(row + 1);
+  }
 };
 
 /// Nothing where the motion has not come so far.

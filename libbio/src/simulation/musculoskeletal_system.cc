@@ -23,6 +23,23 @@ double defaultLength(const Skeleton& skeleton, const Muscle& muscle, const Muscl
   return lengths.along(0).length;
 }
 
+std::vector<int> indicesOf(const std::vector<std::string>& prescribed, const Skeleton& skeleton) {
+  std::vector<int> indices;
+  for (const std::string& name : prescribed) {
+    const int index = skeleton.indexOf(name);
+    if (index < 0) {
+      throw std::invalid_argument(fmt::format(
+          "prescribed coordinate '{}': the model has no such coordinate that can move", name));
+    }
+    if (std::find(indices.begin(), indices.end(), index) != indices.end()) {
+      throw std::invalid_argument(fmt::format("coordinate '{}' is prescribed twice", name));
+    }
+    indices.push_back(index);
+  }
+  std::sort(indices.begin(), indices.end());
+  return indices;
+}
+
 }  // namespace
 
 MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOptions& options)
@@ -32,6 +49,10 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
                                              const MusculoskeletalSystem& like,
                                              const std::vector<std::string>& shaped)
     : MusculoskeletalSystem(model, options, &like, shaped) {}
+
+bool MusculoskeletalSystem::isPrescribed(int coordinate) const {
+  return std::binary_search(prescribed_.begin(), prescribed_.end(), coordinate);
+}
 
 const MusclePath* MusculoskeletalSystem::pathOf(const std::string& muscle) const {
   for (const SystemMuscle& one : muscles_) {
@@ -52,7 +73,9 @@ void MusculoskeletalSystem::addTreePaths(const Model& model) {
 MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOptions& options,
                                              const MusculoskeletalSystem* like,
                                              const std::vector<std::string>& shaped)
-    : skeleton_(model, options.skeleton), coordinateForces_(model, skeleton_) {
+    : skeleton_(model, options.skeleton),
+      prescribed_(indicesOf(options.prescribed, skeleton_)),
+      coordinateForces_(model, skeleton_) {
   if (!like) {
     requireMovedMass(model, skeleton_);
     warnings_ = lockRemarks(model, options.skeleton);
@@ -129,6 +152,11 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
     }
   }
   addTreePaths(model);
+  for (const Marker& marker : model.markers) {
+    const BodyPlacement& place = skeleton_.placeOf(marker.body);
+    markers_.push_back({marker.body + "." + marker.name, place.segment,
+                        place.X_SB.R * marker.location + place.X_SB.p});
+  }
   if (muscles_.empty()) notes_.push_back("no muscle acts on the free coordinates");
 }
 

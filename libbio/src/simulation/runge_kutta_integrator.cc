@@ -104,12 +104,13 @@ class ExplicitRun {
               const SystemState& start, const SimulationOptions& options)
       : arm_(arm),
         options_(options),
-        dynamics_(arm, excitation, options.externalForce),
+        dynamics_(arm, excitation, options.externalForce, options.prescribed),
         y_(dynamics_.pack(start)),
         end_(y_),
         step_(dynamics_, y_),
         stability_(arm.numMuscles()),
         recorder_(arm, numRows(options)) {
+    dynamics_.place(options.startTime, y_);
     hold(dynamics_.coordinates(y_));
   }
 
@@ -145,6 +146,7 @@ class ExplicitRun {
   }
 
   void record(double t) {
+    dynamics_.place(t, y_);
     const auto n = static_cast<Eigen::Index>(arm_.numMuscles());
     recorder_.add(t, dynamics_.coordinates(y_), dynamics_.speeds(y_), dynamics_.activations(y_),
                   y_.tail(n), work_.muscle, work_.passive, work_.external);

@@ -9,6 +9,12 @@
 
 namespace bio {
 
+namespace {
+
+constexpr double sameTime = 1e-9;  ///< [s]
+
+}  // namespace
+
 SystemState initialState(const MusculoskeletalSystem& arm, const Eigen::VectorXd& q,
                          const ExcitationSignal& excitation, double time) {
   const auto n = static_cast<Eigen::Index>(arm.numMuscles());
@@ -89,6 +95,21 @@ void stepping::checkSimulation(const MusculoskeletalSystem& arm, const Excitatio
   require(options.externalForce.empty() || options.externalForce.numCoordinates() == N,
           fmt::format("external force: {} columns, the arm has {} free coordinates",
                       options.externalForce.numCoordinates(), N));
+  std::vector<int> given;
+  for (const PrescribedMotion::Course& course : options.prescribed.courses()) {
+    given.push_back(course.coordinate);
+    const bool covers = course.first <= options.startTime + sameTime &&
+                        course.last >= options.startTime + options.duration - sameTime;
+    require(covers,
+            fmt::format("prescribed motion: given from {:.6g} s to {:.6g} s, must cover the "
+                        "simulation from {:.6g} s to {:.6g} s",
+                        course.first, course.last, options.startTime,
+                        options.startTime + options.duration));
+  }
+  std::sort(given.begin(), given.end());
+  require(given == arm.prescribed(),
+          "prescribed motion: must be given for the prescribed coordinates of the system, and no "
+          "other");
 }
 
 Trajectory simulate(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
@@ -108,6 +129,7 @@ Trajectory simulate(const MusculoskeletalSystem& arm, const ExcitationSignal& ex
   };
   Trajectory motion = run();
   stepping::completeStates(arm, excitation, motion);
+  stepping::addReactions(arm, excitation, options, motion);
   return motion;
 }
 

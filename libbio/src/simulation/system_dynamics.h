@@ -11,8 +11,10 @@
 namespace bio::stepping {
 
 inline const ExternalForce noExternalForce;
+inline const PrescribedMotion nothingPrescribed;
 
-/// ẏ = f(t, y) with y = (q, q̇, activations, fibre lengths):
+/// ẏ = f(t, y) with y = (q, q̇, activations, fibre lengths); prescribed coordinates take their
+/// values from their course, whatever y says:
 ///     M q̈ = −Σ F_i ∂ℓ_i + τ_passive + τ_external − Ṁ q̇ + ½ q̇ᵀ∂M q̇ − ∂V,   ȧ = activation law,   ℓ̇
 ///     = V
 template <int N>
@@ -23,10 +25,12 @@ class SystemDynamics {
   using State = Eigen::VectorXd;
 
   SystemDynamics(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
-                 const ExternalForce& external = noExternalForce)
+                 const ExternalForce& external = noExternalForce,
+                 const PrescribedMotion& prescribed = nothingPrescribed)
       : arm_(arm),
         excitation_(excitation),
         externalForce_(external),
+        prescribed_(prescribed),
         configuration_(arm),
         numCoordinates_(arm.skeleton().numCoordinates()),
         numMuscles_(static_cast<Eigen::Index>(arm.numMuscles())),
@@ -40,6 +44,7 @@ class SystemDynamics {
         passive_(qDot_),
         external_(qDot_),
         along_(qDot_),
+        reaction_(qDot_),
         tau_q_(Matrix::Zero(numCoordinates_, numCoordinates_)),
         tau_v_(tau_q_),
         factor_(numCoordinates_) {
@@ -76,6 +81,17 @@ class SystemDynamics {
     double external = 0;  ///< of what pushes from outside [W]
   };
 
+  /// Puts prescribed coordinates and their speeds where they are at time t.
+  template <class Y>
+  void place(double t, Y& y) {
+    if (prescribed_.empty()) return;
+    q_ = coordinates(y);
+    qDot_ = speeds(y);
+    prescribed_.place(t, q_, qDot_);
+    coordinates(y) = q_;
+    speeds(y) = qDot_;
+  }
+
   /// f(t, y) into yDot; returns the powers. NaN where a fibre has left its domain.
   template <class Y, class YDot>
   Power derivative(double t, const Y& y, YDot&& yDot) {
@@ -87,7 +103,7 @@ class SystemDynamics {
       yDot[2 * count() + i] = arm_.muscles()[si].activation.rate(u_[i], y[2 * count() + i]);
       yDot[2 * count() + numMuscles_ + i] = rate_[si].fibreVelocity;
     }
-    return {muscle_.dot(qDot_), passive_.dot(qDot_), external_.dot(qDot_)};
+    return {muscle_.dot(qDot_), passive_.dot(qDot_), external_.dot(qDot_) + reaction_.dot(qDot_)};
   }
 
   /// ∂f/∂y, dense; size() × size().
@@ -130,13 +146,23 @@ class SystemDynamics {
     }
     jacobian.block(count(), 0, n, n) = factor_.solve(dForce_dq);
     jacobian.block(count(), count(), n, n) = factor_.solve(dForce_dqDot);
+    for (const int k : arm_.prescribed()) {
+      for (const Eigen::Index at : {Eigen::Index{k}, count() + k}) {
+        jacobian.row(at).setZero();
+        jacobian.col(at).setZero();
+      }
+    }
   }
 
   /// Of the last state that was evaluated.
   const FibreRateDerivatives& rate(std::size_t muscle) const { return rate_[muscle]; }
-
- private:
-  Eigen::Index count() const { return countOf<N>(numCoordinates_); }
+  const Vector& acceleration() const { return acceleration_; }
+  /// What keeps the prescribed coordinates on their course; 0 for the others.
+  const Vector& reaction() const { return reaction_; }
+  const Matrix& massMatrix() const { return massMatrix_; }
+  /// For M with the rows and columns of prescribed coordinates replaced by those of the unit
+  /// matrix.
+  const Eigen::LDLT<Matrix>& factor() const { return factor_; }
 
   /// Derivatives of −Ṁ q̇ + ½ q̇ᵀ∂M q̇ − ∂V − M q̈ at the last state.
   void addInertia(Matrix& dForce_dq, Matrix& dForce_dqDot) {
@@ -169,13 +195,50 @@ class SystemDynamics {
     }
   }
 
+ private:
+  Eigen::Index count() const { return countOf<N>(numCoordinates_); }
+
+  void factorMass(const Matrix& M) {
+    if (prescribed_.empty()) {
+      factor_.compute(M);
+      return;
+    }
+    massMatrix_ = M;
+    reduced_ = M;
+    for (const int k : arm_.prescribed()) {
+      reduced_.row(k).setZero();
+      reduced_.col(k).setZero();
+      reduced_(k, k) = 1;
+    }
+    factor_.compute(reduced_);
+  }
+
+  /// M q̈ = force + reaction, with q̈ given for the prescribed coordinates.
+  void solveAcceleration() {
+    if (prescribed_.empty()) {
+      acceleration_ = factor_.solve(force_);
+      return;
+    }
+    reaction_ = force_;
+    for (const auto& course : prescribed_.courses()) {
+      reaction_ -= massMatrix_.col(course.coordinate) * acceleration_[course.coordinate];
+    }
+    for (const auto& course : prescribed_.courses()) {
+      reaction_[course.coordinate] = acceleration_[course.coordinate];
+    }
+    acceleration_ = factor_.solve(reaction_);
+    along_.noalias() = massMatrix_ * acceleration_ - force_;
+    reaction_.setZero();
+    for (const int k : arm_.prescribed()) reaction_[k] = along_[k];
+  }
+
   /// −Ṁ q̇ + ½ q̇ᵀ∂M q̇ − ∂V; factors M.
   void addInertia(Vector& force) {
     if constexpr (N == Eigen::Dynamic) {
       const EnergyDerivatives<N>& e = configuration_.energy(qDot_);
       force += e.T_q - e.V_q;
       force.noalias() -= e.T_vq * qDot_;
-      factor_.compute(e.T_vv);
+      factorMass(e.T_vv);
     } else {
       const InertiaJet<N>& inertia = configuration_.inertia();
       force -= inertia.dV;
@@ -186,7 +249,7 @@ class SystemDynamics {
           force -= qDot_[k] * M_k_v;
         }
       }
-      factor_.compute(inertia.massMatrix);
+      factorMass(inertia.massMatrix);
     }
   }
 
@@ -195,6 +258,7 @@ class SystemDynamics {
     q_ = coordinates(y);
     const Vector& q = q_;
     qDot_ = speeds(y);
+    prescribed_.place(t, q_, qDot_, acceleration_);
     excitation_.at(t, hint_, u_);
     configuration_.moveTo(q);
     passive_.setZero();
@@ -221,12 +285,13 @@ class SystemDynamics {
     }
     force_ = muscle_ + passive_ + external_;
     addInertia(force_);
-    acceleration_ = factor_.solve(force_);
+    solveAcceleration();
   }
 
   const MusculoskeletalSystem& arm_;
   const ExcitationSignal& excitation_;
   const ExternalForce& externalForce_;
+  const PrescribedMotion& prescribed_;
   SystemConfiguration<N> configuration_;
   int numCoordinates_;
   Eigen::Index numMuscles_;
@@ -236,8 +301,9 @@ class SystemDynamics {
   std::vector<SchuttePieces> pieces_;  ///< of the last state
   std::size_t hint_ = 0;
   std::size_t externalRow_ = 0;
-  Vector q_, qDot_, acceleration_, force_, muscle_, passive_, external_, along_;
+  Vector q_, qDot_, acceleration_, force_, muscle_, passive_, external_, along_, reaction_;
   Matrix tau_q_, tau_v_;
+  Matrix massMatrix_, reduced_;  ///< used where a coordinate is prescribed
   Eigen::LDLT<Matrix> factor_;
   std::optional<TreeRates> rates_;
 };

@@ -29,16 +29,17 @@ class VariationalRun {
         middle_(start.activation),
         keptActivation_(static_cast<std::size_t>(options.maxHalvings) + 1, start.activation) {
     now_.q = start.q;
-    configuration_.moveTo(now_.q);
-    now_.p = configuration_.massMatrix() * start.qDot;
-    now_.fibreLength = start.fibreLength;
     velocity_ = start.qDot;
+    options.prescribed.place(options.startTime, now_.q, velocity_);
+    configuration_.moveTo(now_.q);
+    now_.p = configuration_.massMatrix() * velocity_;
+    now_.fibreLength = start.fibreLength;
     velocityBefore_ = velocity_;
     fibreVelocity_ = Eigen::VectorXd::Zero(start.fibreLength.size());
     fibreVelocityBefore_ = fibreVelocity_;
     length_ = lengthBefore_ = options.step;
     next_ = now_;
-    recorder_.add(options.startTime, now_.q, start.qDot, activation_, now_.fibreLength, 0, 0, 0);
+    recorder_.add(options.startTime, now_.q, velocity_, activation_, now_.fibreLength, 0, 0, 0);
     if (tape_) tape_->begin(now_.q, now_.fibreLength, activation_);
   }
 
@@ -63,7 +64,7 @@ class VariationalRun {
       begin = end;
       ++trajectory.steps;
       if (tape_) tape_->endRow();
-      recorder_.add(t1, now_.q, speed(), activation_, now_.fibreLength, muscleWork_, passiveWork_,
+      recorder_.add(t1, now_.q, speed(t1), activation_, now_.fibreLength, muscleWork_, passiveWork_,
                     externalWork_);
       if (options_.progress && !options_.progress(t1)) {
         trajectory.outcome = Outcome::stopped;
@@ -124,10 +125,12 @@ class VariationalRun {
     next_.q = now_.q + (h + bend) * velocity_ - bend * velocityBefore_;
     next_.fibreLength =
         now_.fibreLength + (h + bend) * fibreVelocity_ - bend * fibreVelocityBefore_;
+    options_.prescribed.place(t1, next_.q);
     result_ = stepper_.solve(h, tMiddle, now_, middle_, next_);
     count(result_.iterations);
     if (!result_.converged) {  // again from rest, in case the extrapolation was the trouble
       next_.q = now_.q;
+      options_.prescribed.place(t1, next_.q);
       next_.fibreLength = now_.fibreLength;
       result_ = stepper_.solve(h, tMiddle, now_, middle_, next_);
       count(result_.iterations);
@@ -178,11 +181,27 @@ class VariationalRun {
     recorder_.trajectory().newtonIterations += std::min(iterations, options_.maxIterations);
   }
 
-  /// q̇ = M⁻¹p at the end of the last step.
-  const Vector& speed() {
+  /// q̇ = M⁻¹p at the end of the last step, at time t; of prescribed coordinates as given.
+  const Vector& speed(double t) {
     if (!arm_.skeleton().hasConstantInertia()) configuration_.moveSkeletonTo(now_.q);
-    factor_.compute(configuration_.massMatrix());
-    speed_ = factor_.solve(now_.p);
+    if (arm_.prescribed().empty()) {
+      factor_.compute(configuration_.massMatrix());
+      speed_ = factor_.solve(now_.p);
+      return speed_;
+    }
+    massMatrix_ = configuration_.massMatrix();
+    momentum_ = now_.p;
+    speed_ = now_.p;
+    options_.prescribed.place(t, placed_ = now_.q, speed_);
+    for (const int k : arm_.prescribed()) momentum_ -= massMatrix_.col(k) * speed_[k];
+    for (const int k : arm_.prescribed()) {
+      momentum_[k] = speed_[k];
+      massMatrix_.row(k).setZero();
+      massMatrix_.col(k).setZero();
+      massMatrix_(k, k) = 1;
+    }
+    factor_.compute(massMatrix_);
+    speed_ = factor_.solve(momentum_);
     return speed_;
   }
 
@@ -197,7 +216,8 @@ class VariationalRun {
   Ends now_, next_;
   // mean speeds of the last two steps, and their lengths [s]
   Vector velocity_, velocityBefore_;
-  Vector speed_;
+  Vector speed_, momentum_, placed_;
+  Eigen::Matrix<double, N, N> massMatrix_;
   Eigen::LDLT<Eigen::Matrix<double, N, N>> factor_;
   Eigen::VectorXd fibreVelocity_, fibreVelocityBefore_;
   double length_, lengthBefore_;

@@ -43,8 +43,9 @@ class VariationalStepper {
     double externalWork = 0;
   };
 
-  /// Solves for the end of a step of length h; `end` holds the first guess of q and fibreLength and
-  /// is overwritten (with garbage if not converged).
+  /// Solves for the end of a step of length h; `end` holds the first guess of q and fibreLength,
+  /// and the prescribed coordinates where they are to end, and is overwritten (with garbage if not
+  /// converged).
   /// @param middle  time of the step's middle [s]
   Result solve(double h, double middle, const Ends& begin, const Eigen::VectorXd& activation,
                Ends& end) {
@@ -134,6 +135,11 @@ class VariationalStepper {
       R = Mv - h / 2 * L_q - share * (muscle_ + passive_ + external_) - begin.p;
       J = dMv - h / 2 * dL_q - share * dTau - eliminated;
       carried -= R;
+      for (const int k : arm_.prescribed()) {  // q' is given
+        J.row(k).setZero();
+        J(k, k) = 1;
+        carried[k] = 0;
+      }
       solveSmall(J, carried, dq);
       if (!dq.allFinite()) return result;
 

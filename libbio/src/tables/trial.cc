@@ -18,9 +18,10 @@ namespace bio {
 namespace {
 
 struct Meaning {
-  enum class Kind { time, muscle, coordinate, applied, extra } kind = Kind::extra;
+  enum class Kind { time, muscle, coordinate, applied, channel, extra } kind = Kind::extra;
   std::string name;
   bool inDegrees = false;
+  Observable what = {};  ///< of a channel
 };
 
 // "/a/b/c" → "c"
@@ -36,6 +37,18 @@ std::string plainName(const std::string& column) {
   }
   if (column.ends_with("/value")) return lastPart(column.substr(0, column.size() - 6));
   return column;
+}
+
+Meaning channelOf(const Model& model, const Table& table, const std::string& bare, bool suffix) {
+  Meaning meaning;
+  if (!readObservable(bare, model, meaning.what)) return {};
+  const bool isAngularSpeed = meaning.what.kind == Observable::Kind::speed &&
+                              findCoordinate(model, meaning.what.of).isRotation;
+  if (suffix && !isAngularSpeed) return {};
+  meaning.kind = Meaning::Kind::channel;
+  meaning.name = bare;
+  meaning.inDegrees = isAngularSpeed && (suffix || table.inDegrees);
+  return meaning;
 }
 
 Meaning meaningOf(const Model& model, const Table& table, const std::string& column) {
@@ -59,7 +72,7 @@ Meaning meaningOf(const Model& model, const Table& table, const std::string& col
   }
   const Coordinate* coordinate = suffix ? coordinateOrNull(model, bare) : nullptr;
   if (coordinate && coordinate->isRotation) return {Meaning::Kind::coordinate, bare, true};
-  return {};
+  return channelOf(model, table, bare, suffix);
 }
 
 class TrialReader {
@@ -82,6 +95,7 @@ class TrialReader {
     readHeader();
     readExperimentalConditions();
     sortColumns();
+    takePrescribed();
     readExcitations();
     return std::move(trial_);
   }
@@ -145,7 +159,8 @@ class TrialReader {
         if (!options_.ignoreExtra) {
           throw UnknownColumn(
               fmt::format("{}: column '{}' is neither a muscle nor a coordinate of the model, nor "
-                          "a torque on one, and such columns are not ignored{}",
+                          "a torque on one, nor anything else that can be measured, and such "
+                          "columns are not ignored{}",
                           file_, column, meantInstead(column, names())),
               column);
         }
@@ -163,13 +178,17 @@ class TrialReader {
         columnOf_[meaning.name] = static_cast<Eigen::Index>(i);
       } else if (isApplied) {
         readApplied(static_cast<Eigen::Index>(i), meaning);
+      } else if (meaning.kind == Meaning::Kind::channel) {
+        MeasuredMotion course = readCourse(static_cast<Eigen::Index>(i), meaning);
+        trial_.channels.push_back(
+            {meaning.what, std::move(course.times), std::move(course.values)});
       } else {
-        readMeasured(static_cast<Eigen::Index>(i), meaning);
+        trial_.measured.push_back(readCourse(static_cast<Eigen::Index>(i), meaning));
       }
     }
   }
 
-  void readMeasured(Eigen::Index column, const Meaning& meaning) {
+  MeasuredMotion readCourse(Eigen::Index column, const Meaning& meaning) {
     const double unit = meaning.inDegrees ? std::numbers::pi / 180 : 1.0;
     std::vector<double> times, values;
     for (Eigen::Index row = 0; row < table_.values.rows(); ++row) {
@@ -183,8 +202,56 @@ class TrialReader {
                        table_.columns[static_cast<std::size_t>(column)]));
     }
     const auto count = static_cast<Eigen::Index>(times.size());
-    trial_.measured.push_back({meaning.name, Eigen::Map<Eigen::VectorXd>(times.data(), count),
-                               Eigen::Map<Eigen::VectorXd>(values.data(), count)});
+    return {meaning.name, Eigen::Map<Eigen::VectorXd>(times.data(), count),
+            Eigen::Map<Eigen::VectorXd>(values.data(), count)};
+  }
+
+  // A held coordinate may be measured, where it is held.
+  void dropHeld(const std::string& name, double value) {
+    const auto at =
+        std::find_if(trial_.measured.begin(), trial_.measured.end(),
+                     [&](const MeasuredMotion& motion) { return motion.coordinate == name; });
+    if (at == trial_.measured.end()) return;
+    const bool turns = findCoordinate(model_, name).isRotation;
+    const double away = (at->values.array() - value).abs().maxCoeff();
+    if (!(away < (turns ? std::numbers::pi / 90 : 2e-3))) {
+      const double unit = turns ? 180 / std::numbers::pi : 1e3;
+      fail(
+          fmt::format("column '{0}' is up to {1:.3g} {2} away from {3:.4g} {2}, at which '{0}' is "
+                      "locked, must be within 2 {2}: --prescribe {0} takes its motion from the "
+                      "column",
+                      name, away * unit, turns ? "deg" : "mm", value * unit));
+    }
+    trial_.measured.erase(at);
+  }
+
+  // Prescribed coordinates are an input, not a measurement to compare with.
+  void takePrescribed() {
+    for (const std::string& name : options_.prescribed) {
+      const auto at =
+          std::find_if(trial_.measured.begin(), trial_.measured.end(),
+                       [&](const MeasuredMotion& motion) { return motion.coordinate == name; });
+      if (at == trial_.measured.end()) {
+        fail(
+            fmt::format("has no column '{}', must have one: the motion of this coordinate is "
+                        "prescribed",
+                        name));
+      }
+      const double first = at->times[0], last = at->times[at->times.size() - 1];
+      if (first > trial_.times[0] || last < trial_.times[trial_.times.size() - 1]) {
+        fail(
+            fmt::format("column '{}' has values from {:.6g} s to {:.6g} s, must have them from the "
+                        "first row to the last: the motion of this coordinate is prescribed",
+                        name, first, last));
+      }
+      trial_.prescribed.push_back(std::move(*at));
+      trial_.measured.erase(at);
+    }
+    for (const auto& [name, value] : options_.held) {
+      dropHeld(name, value);
+      trial_.prescribed.push_back({name, Eigen::VectorXd::Constant(1, trial_.times[0]),
+                                   Eigen::VectorXd::Constant(1, value)});
+    }
   }
 
   void readApplied(Eigen::Index column, const Meaning& meaning) {

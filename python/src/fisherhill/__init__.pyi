@@ -102,6 +102,15 @@ class Trial:
         """{coordinate: (times [s], values [rad] or [m])}, without the times at which it was not measured."""
 
     @property
+    def prescribed(self) -> dict[str, tuple[_Array, _Array]]:
+        """The same of the coordinates whose motion is given; one that is held has one value."""
+
+    @property
+    def channels(self) -> dict[str, tuple[_Array, _Array]]:
+        """{column: (times [s], values)} of all else that was measured, e.g. 'elbow_flexion.moment' [N m],
+        'BRA.fiber_length' [m]."""
+
+    @property
     def known_mass_in_hand(self) -> float:
         """Mass held by design [kg]; only discover and replay take it into account."""
 
@@ -130,7 +139,14 @@ def load_model(file: str) -> Model:
         If the file cannot be read, is not a model, or breaks a rule; the line names file and element.
     """
 
-def load_trial(file: str, model: Model, *, ignore_extra: bool = False) -> Trial:
+def load_trial(
+    file: str,
+    model: Model,
+    *,
+    ignore_extra: bool = False,
+    prescribe: Sequence[str] = [],
+    hold: dict[str, float] = {},
+) -> Trial:
     """Reads a trial of the model (.sto, .mot or .csv).
 
     Header lines known_mass_in_hand_kg=1 and known_arm_turn_deg=-45 state the experimental conditions.
@@ -141,6 +157,11 @@ def load_trial(file: str, model: Model, *, ignore_extra: bool = False) -> Trial:
     model : Model
     ignore_extra : bool
         True: ignore columns that match nothing in the model, with a warning.
+    prescribe : list of str
+        Coordinates that move as their columns say, as on a dynamometer, in all functions that take
+        the trial.
+    hold : dict
+        {coordinate: value [rad] or [m]} at which a device holds it, so that its moment is known.
 
     Returns
     -------
@@ -160,6 +181,8 @@ def make_trial(
     ignore_extra: bool = False,
     known_mass_in_hand: float = 0.0,
     known_arm_turn: float = 0.0,
+    prescribe: Sequence[str] = [],
+    hold: dict[str, float] = {},
 ) -> Trial:
     """Makes a trial from arrays.
 
@@ -169,7 +192,8 @@ def make_trial(
     columns : dict
         {column: values}, named as in a file, all of one length: 'time' [s]; muscles (excitation, 0 to
         1); 'elbow_flexion' [rad] or 'elbow_flexion_deg', NaN where it was not measured;
-        'elbow_flexion.torque' [N m], an external load.
+        'elbow_flexion.torque' [N m], an external load; 'elbow_flexion.moment' [N m], what the limb
+        exerts on a device there; 'BRA.fiber_length' [m] and others that a file may have.
     name : str
         Name of the trial in messages.
     ignore_extra : bool
@@ -179,6 +203,8 @@ def make_trial(
     known_arm_turn : float
         Angle by which the whole limb was turned against the ground [rad], positive as the coordinate
         rises.
+    prescribe, hold
+        As in load_trial.
 
     Returns
     -------
@@ -203,7 +229,9 @@ class ReplayResult:
     fibre_length: _Array
     tendon_force: _Array
     moment_arm: _Array
+    reaction: dict[str, _Array]
     rms_error: dict[str, float]
+    channel_rms_error: dict[str, float]
     energy_error: float
     outcome: Literal["ok", "unstable", "no solution"]
     why: str
@@ -257,8 +285,13 @@ def replay(
         0 to 1, [m], [N].
     moment_arm : array, times x muscles
         About the first free coordinate [m].
+    reaction : dict
+        {coordinate: values [N m] or [N]} of the prescribed and held coordinates: what keeps them on
+        their course.
     rms_error : dict
         {coordinate: RMS error [rad] or [m]} of the free coordinates that were measured.
+    channel_rms_error : dict
+        {column: RMS error} of all else that was measured, in its unit.
     energy_error : float
         Largest energy error of the integrator [J].
     outcome : str

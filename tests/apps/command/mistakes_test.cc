@@ -101,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(
         {"GroupAndMember", calibrateWith({}, "emg.gain,emg.BRA.gain"), "set the same value"},
         {"NothingMeasured",
          {"calibrate", model, "$/good.csv", "--parameters", "hand.mass", "--out", "$/out"},
-         "$/good.csv: no measured column of a free angle"},
+         "$/good.csv: no measured column of a free coordinate"},
         {"MissingTrial", {"calibrate", model, "$/no.sto", "--parameters", "hand.mass"}, "$/no.sto"},
         {"NotAModel",
          {"calibrate", "$/text.osim", slow, "--parameters", "hand.mass"},

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "support/calibration_statistics.h"
+#include "support/torque_statistics.h"
 
 namespace bio::fixtures {
 namespace {
@@ -16,6 +17,27 @@ TEST(CalibrationCoverage, RepetitionsAttainTheBoundAndTheirIntervalsHold) {
     EXPECT_GE(s.coverage[k], 0.92);
     EXPECT_LE(s.coverage[k], 0.98);
   }
+}
+
+/// Of 200 repetitions a variance is known to 10 %, a coverage of 95 % to 1.5 %.
+void expectTheBound(const TorqueStatistics& s) {
+  EXPECT_EQ(s.converged, 200);
+  EXPECT_LT(s.bias.abs().maxCoeff(), 3.5);
+  EXPECT_GT(s.variance.minCoeff(), 0.7);
+  EXPECT_LT(s.variance.maxCoeff(), 1.3);
+  EXPECT_GE(s.coverage.minCoeff(), 0.91);
+}
+
+TEST(CalibrationCoverage, TorqueOfADynamometerAttainsTheBound) {
+  expectTheBound(repeatTorqueCalibration(200, {}));
+}
+
+TEST(CalibrationCoverage, MomentAngleAndFascicleTogetherAttainTheirBound) {
+  const TorqueStatistics moment = repeatTorqueCalibration(200, {.shoulder = true});
+  const TorqueStatistics all = repeatTorqueCalibration(200, {.fascicle = true, .shoulder = true});
+  expectTheBound(all);
+  // the bound falls, and the estimates with it
+  EXPECT_LT((all.bound / moment.bound).minCoeff(), 0.9);
 }
 
 }  // namespace

@@ -113,7 +113,7 @@ TEST(TrialSet, RefusesWhatCannotBeEstimatedFrom) {
       [&] {
         set({"hand.mass"}, {good, unmeasured});
       },
-      "curl_slow.sto: no measured column of a free angle (elbow_flexion)");
+      "curl_slow.sto: no measured column of a free coordinate (elbow_flexion)");
   Trial pushed = good;
   pushed.applied.push_back({"elbow_flexion", Eigen::VectorXd::Zero(good.times.size())});
   fails([&] { set({"hand.mass"}, {pushed}); }, "curl_slow.sto: has an external torque");

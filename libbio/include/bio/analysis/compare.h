@@ -30,6 +30,7 @@ struct CompareOptions {
   double startTime = 0;              ///< [s]
   double duration = 0;               ///< [s] > 0
   ExternalForce externalForce = {};  ///< empty: no external force
+  PrescribedMotion prescribed = {};  ///< of the arm's prescribed coordinates
   int timings = 5;  ///< least number of runs of each cell, whose median is reported; ≥ 1
   double usefulError = 0.017453293;  ///< RMS below which a step counts as stable [rad] > 0
   double stepResolution = 1.02;      ///< ratio at which the bisection for a step ends, > 1

@@ -22,9 +22,24 @@ ExcitationSignal excitationOf(const Trial& trial, const MusculoskeletalSystem& a
 /// @throws std::invalid_argument if it acts on a coordinate that is not free
 ExternalForce externalForceOf(const Trial& trial, const MusculoskeletalSystem& arm);
 
-/// Initial values of the free coordinates [rad] or [m]: as given, else the first measured value,
+/// The motion of the system's prescribed coordinates in a trial.
+/// @throws std::invalid_argument if the trial lacks one of them
+PrescribedMotion prescribedMotionOf(const Trial& trial, const MusculoskeletalSystem& arm);
+
+/// Smooths the prescribed courses of a trial (smoothed_motion.h), sampled at equal steps from its
+/// first row to its last; constants stay.
+/// @param cutoff  [Hz] > 0
+/// @throws std::invalid_argument what smoothed() throws
+void smoothPrescribed(Trial& trial, double cutoff);
+
+/// One sentence for each prescribed course whose acceleration is mostly noise of the measurement.
+std::vector<std::string> roughnessRemarks(const Trial& trial, const Model& model);
+
+/// Initial values of the free coordinates [rad] or [m]: prescribed ones as their course begins, the
+/// others as given, else the first measured value,
 /// else the default.
-/// @throws std::invalid_argument for a name that is not free, or a value that is not finite
+/// @throws std::invalid_argument for a name that is not free, or is prescribed, or a value that is
+///   not finite
 Eigen::VectorXd startCoordinates(const Trial& trial, const MusculoskeletalSystem& arm,
                                  const std::map<std::string, double>& given);
 
@@ -63,6 +78,12 @@ struct MeasuredError {
 MeasuredError compareWithMeasured(const MusculoskeletalSystem& arm, const Trajectory& trajectory,
                                   const MeasuredMotion& measured);
 
+/// The same against any other measured channel.
+struct ChannelError {
+  Observable what;
+  MeasuredError error;  ///< in unitOf(what)
+};
+
 /// A simulated trial, with its errors against the measurement.
 struct TrialReplay {
   TrialBeginning beginning;
@@ -70,6 +91,7 @@ struct TrialReplay {
   Trajectory motion;
   /// For every free coordinate with a measured value that the motion reaches.
   std::vector<std::pair<std::string, MeasuredError>> errors;
+  std::vector<ChannelError> channelErrors;  ///< of the trial's channels that the motion reaches
 };
 
 /// The motion that `fisherhill replay MODEL TRIAL` makes over all rows of the trial.
@@ -100,7 +122,8 @@ std::optional<LeftRange> leftRange(const MusculoskeletalSystem& arm, const Traje
 Table statesTable(const Model& model, const MusculoskeletalSystem& arm,
                   const Trajectory& trajectory);
 
-/// Tendon forces [N], one column per muscle.
+/// Tendon forces [N], one column per muscle, and NAME.reaction [N·m] or [N] of each prescribed
+/// coordinate: what keeps it on its course.
 Table forcesTable(const MusculoskeletalSystem& arm, const Trajectory& trajectory,
                   const MuscleReport& report);
 

@@ -23,6 +23,8 @@ struct CalibrationOptions {
   /// Standard deviation of the white noise of the measured angles [rad] > 0; empty: estimated from
   /// the residuals.
   std::optional<double> noise;
+  /// The same of other measured channels, by the column's name, in their units [> 0].
+  std::map<std::string, double> channelNoise = {};
   info::RobustLoss loss;
   int starts = 1;
   std::uint64_t seed = 1;
@@ -51,11 +53,12 @@ struct CalibratedParameter {
   double bootstrapSd, bootstrapLower, bootstrapUpper;
 };
 
-/// Noise of the measured angles.
+/// Noise of a measured channel.
 struct ResidualNoise {
-  double sd = 0;  ///< standard deviation of one sample [rad]: given, or that of the residuals
-  double correlationTime = 1;  ///< samples per independent value; 1 if the noise was given
-  double effective = 0;        ///< deviation·√correlationTime, the sd used by the fit [rad]
+  double sd = 0;  ///< standard deviation of one sample [rad, or the channel's unit]: given, or that
+                  ///< of the residuals
+  double correlationTime = 1;           ///< samples per independent value; 1 if the noise was given
+  double effective = 0;                 ///< deviation·√correlationTime, the sd used by the fit
   std::vector<double> autocorrelation;  ///< of the residuals, at lags 0, 1, … samples
 };
 
@@ -69,14 +72,15 @@ struct Calibration {
   std::vector<info::StartOutcome> starts;
   int agreeingStarts = 0;
   int bootstrapConverged = 0;
-  bool complete = true;  ///< false if the progress callback stopped it
-  ResidualNoise noise;
+  bool complete = true;                     ///< false if the progress callback stopped it
+  ResidualNoise noise;                      ///< of the first of the set's channels
+  std::vector<ResidualNoise> channelNoise;  ///< of all of them, in that order
   double noiseFloor = 0;  ///< noise from third differences of the measured angles [rad]
   /// Whether the residuals exceed the scatter of neighbouring samples by half: then other
   /// parameters or effects are wrong, too.
   bool leavesMoreThanNoise() const { return noiseFloor > 0 && noise.sd > 1.5 * noiseFloor; }
   double reducedChiSquare = 0;    ///< of single samples; near 1 if the noise was given correctly
-  Eigen::MatrixXd before, after;  ///< of the calibration trials, 1 × samples [rad]
+  Eigen::MatrixXd before, after;  ///< of the calibration trials, 1 × samples
   Eigen::MatrixXd heldOutBefore, heldOutAfter;  ///< of the others
   /// The model, the EMG mapping and the first trial's initial state at the estimate.
   std::optional<ParameterCatalogue::Setting> calibrated;
@@ -88,7 +92,9 @@ struct Calibration {
 /// sensitivities (estimate.h). A step to parameters at which a trial cannot be simulated is
 /// rejected.
 ///
-/// If no noise is given, σ is estimated together with θ: σ² = Σr²/(n − p) (with a robust loss σ =
+/// Each measured channel has a noise of its own: all angles are one channel. If no noise is given,
+/// σ is estimated together with θ, of several channels by turns: σ² = Σr²/(n − p), p shared among
+/// them by their numbers of samples (with a robust loss σ =
 /// 1.4826·median|r|), multiplied by the number τ of samples per independent value, from the
 /// autocorrelation of the residuals. A model that does not fit has slowly varying residuals;
 /// without τ a thousand of them would count as a thousand measurements.

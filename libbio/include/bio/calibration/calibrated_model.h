@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "bio/analysis/replay.h"
 #include "bio/calibration/calibrate.h"
 #include "bio/tables/table_file.h"
 
@@ -19,6 +20,7 @@ struct CalibratedTrial {
   double after = std::numeric_limits<double>::quiet_NaN();  ///< root mean square error of the
                                                             ///< measured angles [rad]; NaN: none
   Eigen::Index samples = 0;                                 ///< samples of `after`
+  std::vector<ChannelError> channels = {};  ///< errors of all that was measured beside angles
 };
 
 /// The model at the estimate, with initial states and time step (Model::fitted), and the RMS errors

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bio/analysis/observed_motion.h"
 #include "bio/calibration/nudge.h"
 #include "bio/sensitivity/coupled_sensitivity.h"
 #include "bio/tables/trial.h"
@@ -11,11 +12,11 @@
 
 namespace bio {
 
-/// A trial as a function for estimators: from parameters to a coordinate at the measured times.
+/// A trial as a function for estimators: from parameters to what was measured, at its times.
 ///
 /// For every θ the model is changed, compiled and simulated; sensitivities are those of the
-/// discrete motion, interpolated to the measured times in the same way as the motion. Immutable:
-/// may be used from several threads.
+/// discrete motion, interpolated to the measured times in the same way as the motion. One
+/// simulation gives all channels. Immutable: may be used from several threads.
 class TrialPredictor {
  public:
   /// @param trial excitations; its measured values are not used
@@ -28,20 +29,29 @@ class TrialPredictor {
                  ExcitationSignal trial, const std::string& coordinate, std::vector<double> times,
                  std::vector<std::size_t> selection, const SimulationOptions& options);
 
-  const std::vector<double>& times() const { return times_; }
+  /// The same with any observables, series after series.
+  /// @param options  with the motion of prescribed coordinates
+  /// @throws std::invalid_argument if a time is outside the simulation or does not rise, or the
+  ///   integrator has no sensitivities
+  TrialPredictor(const ParameterCatalogue& catalogue, const SystemOptions& arm,
+                 ExcitationSignal trial, std::vector<ObservedSeries> series,
+                 std::vector<std::size_t> selection, const SimulationOptions& options);
+
+  /// Number of samples of all series.
+  Eigen::Index size() const { return size_; }
   const std::vector<std::size_t>& selection() const { return selection_; }
   const ParameterCatalogue& catalogue() const { return *catalogue_; }
 
   /// Adds a nudge that holds the model near a measured course; several may act together.
   void hold(Nudge nudge) { nudges_.push_back(std::move(nudge)); }
 
-  /// The coordinate at the times [rad] or [m]; NaN after the end of a failed simulation, and
+  /// The observables at their times, in their units; NaN after the end of a failed simulation, and
   /// everywhere if no model can be built with θ.
   Eigen::VectorXd outputs(const Eigen::VectorXd& theta) const;
 
   struct Linearised {
     Eigen::VectorXd outputs;  ///< at the times
-    Eigen::MatrixXd gamma;    ///< Γ = dy/dθ: times × parameters
+    Eigen::MatrixXd gamma;    ///< Γ = dy/dθ: samples × parameters
   };
   Linearised withSensitivities(const Eigen::VectorXd& theta) const;
 
@@ -53,14 +63,20 @@ class TrialPredictor {
   SensitivityTrajectory simulateWithSensitivities(const Eigen::VectorXd& theta) const;
 
  private:
-  Trajectory simulateAt(ParameterCatalogue::Setting setting) const;
-  SensitivityTrajectory sensitivitiesAt(ParameterCatalogue::Setting setting) const;
+  /// The setting with the nudges, and its system.
+  struct Held {
+    ParameterCatalogue::Setting setting;
+    SimulationOptions options;
+    MusculoskeletalSystem arm;
+  };
+  Held heldAt(ParameterCatalogue::Setting setting) const;
+  SensitivityTrajectory sensitivitiesOf(const Held& held, bool muscles, bool reactions) const;
 
   const ParameterCatalogue* catalogue_;
   SystemOptions armOptions_;
   ExcitationSignal trial_;
-  int coordinate_;
-  std::vector<double> times_;
+  std::vector<ObservedSeries> series_;
+  Eigen::Index size_ = 0;
   std::vector<std::size_t> selection_;
   SimulationOptions options_;
   std::vector<Nudge> nudges_;

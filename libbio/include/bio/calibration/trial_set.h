@@ -21,24 +21,31 @@ struct TrialSetOptions {
   int threads = 1;                        ///< trials simulated at once
 };
 
-/// Measured samples of one coordinate in one trial.
+/// Measured samples of one observable in one trial.
 struct MeasuredSeries {
   std::size_t trial;  ///< index in the set
-  std::string coordinate;
+  Observable what;
+  std::size_t channel;        ///< of TrialSet::channels()
   std::vector<double> times;  ///< [s]
-  Eigen::VectorXd values;     ///< [rad]
+  Eigen::VectorXd values;     ///< in the channel's unit
+};
+
+/// Measurements with the same unit and noise: all angles, or one other observable in all trials.
+struct MeasuredGroup {
+  std::string name;  ///< "angles", or the column's name
+  std::string unit;
+  bool areAngles = false;
 };
 
 /// Several trials of one model as one experiment: θ = (parameters of the model, common to all;
-/// then, if asked for, start and start speed of each trial's free coordinates), outputs = the
-/// measured angles of all trials, concatenated.
-///
-/// All angles have the same weight. Each trial is simulated over all its rows from the initial
-/// state of beginningOf().
+/// then, if asked for, start and start speed of each trial's free coordinates), outputs = all that
+/// was measured in all trials, concatenated, in its units. Each trial is simulated over all its
+/// rows from the initial state of beginningOf().
 class TrialSet {
  public:
   /// @throws std::invalid_argument, naming the file where there is one, for no trial, a trial with
-  ///   an external torque or without a measured free angle, an unknown name, one given twice or two
+  ///   an external torque or without a measured channel, a channel that cannot be observed
+  ///   (observed_motion.h), an unknown name, one given twice or two
   ///   that set the same value, an initial state as common parameter of several trials, another
   ///   integrator
   TrialSet(const Model& model, const SystemOptions& arm, std::vector<Trial> trials,
@@ -48,7 +55,11 @@ class TrialSet {
   const std::vector<Trial>& trials() const { return trials_; }
   /// Initial state of each trial before the estimation.
   const std::vector<TrialBeginning>& beginnings() const { return beginnings_; }
+  /// Trial by trial.
   const std::vector<MeasuredSeries>& series() const { return series_; }
+  const std::vector<MeasuredGroup>& channels() const { return channels_; }
+  /// Whether nothing but angles was measured.
+  bool hasOnlyAngles() const { return channels_.size() == 1 && channels_.front().areAngles; }
   /// The catalogue of a trial; catalogues differ only in the initial state.
   const ParameterCatalogue& catalogue(std::size_t trial = 0) const { return *catalogues_[trial]; }
   /// Indices of the common parameters in the catalogue.
@@ -65,7 +76,7 @@ class TrialSet {
   /// Prior standard deviation of each, in its unit.
   const Eigen::VectorXd& known() const { return known_; }
 
-  /// 1 × samples [rad]
+  /// 1 × samples
   Eigen::MatrixXd measured() const;
   /// 1 × samples; NaN after the end of a failed simulation. The set must outlive it.
   info::Predictor predictor() const { return predictor(experiments_); }
@@ -76,14 +87,18 @@ class TrialSet {
   info::Predictor predictor(const std::vector<TrialPredictor>& experiments) const;
   /// Why the trial's simulation does not reach its end; empty if it does.
   std::string failure(std::size_t trial, const Eigen::VectorXd& theta) const;
-  /// Mean square difference [rad²] of predictions from measurements: of all, and of each trial.
+  /// Mean square difference [rad²] of predictions from the measured angles: of all trials, and of
+  /// one; NaN without angles.
   double meanSquare(const Eigen::MatrixXd& predicted) const;
   double meanSquare(const Eigen::MatrixXd& predicted, std::size_t trial) const;
-  /// Largest difference of two predictions [rad], by trial.
+  /// That of the measurements of a channel, in the square of its unit.
+  double meanSquareOf(const Eigen::MatrixXd& predicted, std::size_t channel) const;
+  /// Largest difference of two predictions of angles [rad], by trial.
   std::vector<double> largestDifferences(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) const;
 
  private:
-  void collectSeries(const TrialSetOptions& options);
+  void collectSeries(const Model& model);
+  std::size_t channelOf(const Observable& what, const Model& model);
   void collectParameters(const TrialSetOptions& options);
   Eigen::VectorXd thetaOf(std::size_t trial, const Eigen::VectorXd& theta) const;
 
@@ -97,7 +112,9 @@ class TrialSet {
   std::vector<info::Parameter> parameters_;
   Eigen::VectorXd known_;
   std::vector<MeasuredSeries> series_;
-  std::vector<TrialPredictor> experiments_;  ///< one per series
+  std::vector<MeasuredGroup> channels_;
+  std::vector<Eigen::Index> begin_ = {0};  ///< where the samples of each trial begin, and their end
+  std::vector<TrialPredictor> experiments_;  ///< one per trial
 };
 
 /// Indices of the parameters that the names select, each once.

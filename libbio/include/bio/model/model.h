@@ -276,6 +276,14 @@ struct FittedSimulation {
   friend bool operator==(const FittedSimulation&, const FittedSimulation&) = default;
 };
 
+/// A point of a body that motion capture follows.
+struct Marker {
+  std::string name;
+  std::string body;
+  Eigen::Vector3d location = Eigen::Vector3d::Zero();  ///< in the body [m]
+  friend bool operator==(const Marker&, const Marker&) = default;
+};
+
 struct Model {
   std::string name;
   std::string credits;  ///< who made it, and where its numbers come from
@@ -289,6 +297,7 @@ struct Model {
   std::vector<CoordinateLimitForce> limitForces;
   std::vector<SpringGeneralizedForce> springForces;
   std::vector<ExpressionBasedCoordinateForce> expressionForces;
+  std::vector<Marker> markers;
   FittedSimulation fitted;
   std::vector<std::string> warnings;  ///< one line each: what was read but is not simulated
   std::vector<std::string> remarks;   ///< one line each: content that was interpreted differently

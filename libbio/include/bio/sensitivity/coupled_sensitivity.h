@@ -20,6 +20,9 @@ struct SensitivityTrajectory {
   std::vector<SensitivityMatrix> fibreLength;  ///< of each muscle; empty unless asked for
   std::vector<SensitivityMatrix> activation;   ///< of each muscle; empty unless asked for
   std::vector<SensitivityMatrix> tendonForce;  ///< of each muscle; empty unless asked for
+  /// Of the reaction at each free coordinate; empty for those that are not prescribed, and unless
+  /// asked for.
+  std::vector<SensitivityMatrix> reaction;
   std::vector<SensitivityMatrix> qOfNodes;     ///< dq/dd of each free coordinate: times × nodes
   std::vector<SensitivityMatrix> qDotOfNodes;  ///< dq̇/dd of each free coordinate
   double wallSeconds = 0;  ///< of the sensitivities; motion.wallSeconds is that of the motion
@@ -36,6 +39,7 @@ struct ExternalNodes {
 struct SensitivityOptions {
   SimulationOptions simulation;  ///< integrator: variational or variationalLeft
   bool muscles = false;          ///< also fibre lengths, activations and tendon forces
+  bool reactions = false;        ///< also reactions, for which those of the muscles are needed
   ExternalNodes externalNodes = {};
 };
 

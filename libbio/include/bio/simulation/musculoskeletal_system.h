@@ -17,10 +17,12 @@ namespace bio {
 
 struct SystemOptions {
   SkeletonOptions skeleton;  ///< free coordinates, and values of the locked ones
-  std::vector<std::string>
-      wrapAsCylinder;          ///< ellipsoids with two equal semi-axes to treat as cylinders
+  std::vector<std::string> wrapAsCylinder =
+      {};                      ///< ellipsoids with two equal semi-axes to treat as cylinders
   SchutteOptions muscle;       ///< of Schutte's class: activation floor, negative forces
   bool tabulatePaths = false;  ///< MusclePath::tabulate; worthwhile after a few simulations
+  /// Those of the free coordinates whose motion is given (SimulationOptions::prescribed).
+  std::vector<std::string> prescribed = {};
 };
 
 /// One muscle ready to be simulated.
@@ -31,6 +33,13 @@ struct SystemMuscle {
   MusclePath path;
 };
 
+/// A marker of the model, in the segment that carries it.
+struct SystemMarker {
+  std::string name;  ///< BODY.MARKER
+  std::size_t segment = 0;
+  Eigen::Vector3d p_S;  ///< [m]
+};
+
 /// A model compiled for simulation: the skeleton with its free coordinates, the muscles that these
 /// move, and the passive coordinate forces. A muscle whose path moves over a surface without an
 /// exact geodesic (UnsupportedWrap) is left out with a warning. Constant: functions take the state
@@ -39,7 +48,8 @@ class MusculoskeletalSystem {
  public:
   /// @throws std::invalid_argument what Skeleton and MusclePath throw, non-physical muscle
   ///   parameters, a moving muscle of a class that is not known, free coordinates that move no
-  ///   mass, a moving body with a negative principal moment of inertia
+  ///   mass, a moving body with a negative principal moment of inertia, a prescribed coordinate
+  ///   that is not among the free ones or is named twice
   MusculoskeletalSystem(const Model& model, const SystemOptions& options);
 
   /// The same, but faster, for a model that differs from that of another arm in numerical values
@@ -51,9 +61,14 @@ class MusculoskeletalSystem {
                         const MusculoskeletalSystem& like, const std::vector<std::string>& shaped);
 
   const Skeleton& skeleton() const { return skeleton_; }
+  /// Free indices of the prescribed coordinates, rising.
+  const std::vector<int>& prescribed() const { return prescribed_; }
+  bool isPrescribed(int coordinate) const;
+
   const CoordinateForces& coordinateForces() const { return coordinateForces_; }
   const std::vector<SystemMuscle>& muscles() const { return muscles_; }
   std::size_t numMuscles() const { return muscles_.size(); }
+  const std::vector<SystemMarker>& markers() const { return markers_; }
 
   /// The skeleton's tree with the moving points of the paths; null: Skeleton::tree() is.
   const ArticulatedTree* tree() const { return tree_.get(); }
@@ -79,10 +94,12 @@ class MusculoskeletalSystem {
   void addTreePaths(const Model& model);
 
   Skeleton skeleton_;
+  std::vector<int> prescribed_;
   CoordinateForces coordinateForces_;
   std::vector<std::unique_ptr<const SchutteCurves>> curves_;
   std::vector<std::unique_ptr<const muscles::AnyMuscle>> others_;  ///< of classes but Schutte's
   std::vector<SystemMuscle> muscles_;
+  std::vector<SystemMarker> markers_;
   std::unique_ptr<ArticulatedTree> tree_;
   std::vector<TreePath> treePaths_;
   std::vector<PathSwitch> switches_;

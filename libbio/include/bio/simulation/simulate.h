@@ -9,6 +9,7 @@
 #include "bio/forces/external_force.h"
 #include "bio/muscle/activation/excitation.h"
 #include "bio/simulation/musculoskeletal_system.h"
+#include "bio/simulation/prescribed_motion.h"
 
 namespace bio {
 
@@ -43,6 +44,9 @@ struct SimulationOptions {
   std::function<bool(double)> progress;
   /// External force; empty: none.
   ExternalForce externalForce = {};
+  /// Motion of the system's prescribed coordinates, each of them and no other, over the whole time.
+  /// What the start state says of them is not used.
+  PrescribedMotion prescribed = {};
 };
 
 /// How a simulation ended. If not `completed`, the rows up to that time are kept.
@@ -57,7 +61,11 @@ struct Trajectory {
   Eigen::MatrixXd fibreLength;   ///< [m]
   Eigen::VectorXd muscleWork;    ///< done by the muscles on the skeleton since the start [J]
   Eigen::VectorXd passiveWork;   ///< done by the coordinate forces since the start [J]
-  Eigen::VectorXd externalWork;  ///< done by the external force since the start [J]
+  Eigen::VectorXd externalWork;  ///< done by the external force and by what moves the prescribed
+                                 ///< coordinates since the start [J]
+  /// Generalised forces that keep the prescribed coordinates on their course, rows = free
+  /// coordinates [N·m] or [N], 0 for those that are not prescribed; empty if none is.
+  Eigen::MatrixXd reaction;
 
   Outcome outcome = Outcome::completed;
   double failedAt = 0;  ///< [s]; the last time reached if not completed
@@ -95,8 +103,13 @@ SystemState initialState(const MusculoskeletalSystem& arm, const Eigen::VectorXd
 /// fails, the outcome is noSolution. A step within which a path gains or loses conditional points
 /// is split there, since the length jumps.
 ///
+/// A prescribed coordinate has its given value at the end of every step; its row of the first two
+/// equations is not solved. Its reaction at a row is what the equations of motion lack there,
+///     R = M q̈ + Ṁ q̇ − ½ q̇ᵀ∂M q̇ + ∂V − f,   M_ff q̈_f = (f + …)_f − M_fp q̈_p
+/// with f at that row, from the given accelerations q̈_p and those of the others.
+///
 /// @throws std::invalid_argument sizes (the external force's too), step ≤ 0, duration ≤ 0, a
-///   step below 1e-9 of the time
+///   step below 1e-9 of the time, a prescribed coordinate without a course over the whole time
 Trajectory simulate(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
                     const SystemState& start, const SimulationOptions& options);
 

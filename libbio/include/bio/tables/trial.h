@@ -2,12 +2,14 @@
 
 #include <Eigen/Dense>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "bio/model/model.h"
 #include "bio/tables/experimental_conditions.h"
+#include "bio/tables/observable.h"
 
 namespace bio {
 
@@ -33,7 +35,10 @@ struct Trial {
                                      ///< those switched off that have a column
   Eigen::MatrixXd excitations;       ///< 0 to 1; one row per time, one column per muscle
   std::vector<AppliedForce> applied;
-  std::vector<MeasuredMotion> measured;
+  std::vector<MeasuredMotion> measured;    ///< of coordinates that are simulated, or locked
+  std::vector<MeasuredMotion> prescribed;  ///< of TrialOptions::prescribed and held; one sample: a
+                                           ///< constant
+  std::vector<MeasuredChannel> channels;   ///< all else that was measured
   ExperimentalConditions known;
   std::vector<std::string> warnings;  ///< one line each
 
@@ -47,19 +52,26 @@ struct TrialOptions {
   /// Whether the caller takes Trial::known into account; if not, a trial with such conditions is
   /// refused.
   bool experimentalConditions = false;
+  /// Coordinates whose measured course is the motion that they make.
+  std::vector<std::string> prescribed = {};
+  /// Coordinates held at a value [rad] or [m], which may not have a column that differs.
+  std::map<std::string, double> held = {};
 };
 
 /// Reads a .sto, .mot or .csv table as a trial of the model: column `time` [s], one column per
 /// driven muscle (0 to 1 in every row), and a column per measured coordinate – an angle is in
 /// degrees when the header says inDegrees=yes or the name ends in `_deg`, else in radians. A column
-/// `elbow_flexion.torque` [N·m] (for a translation: `.force` [N]) is an external load. Header lines
-/// give Trial::known (known_changes.h); another line that begins with known_ is an error, and one
-/// that nearly matches inDegrees or such a line gets a warning. OpenSim's paths count as names:
+/// `elbow_flexion.torque` [N·m] (for a translation: `.force` [N]) is an external load. Other
+/// measured columns are named as Observable says; a speed is in degrees per second when the header
+/// says inDegrees=yes or the name ends in `_deg`. Header lines give Trial::known (known_changes.h);
+/// another line that begins with known_ is an error, and one that nearly matches inDegrees or such
+/// a line gets a warning. OpenSim's paths count as names:
 /// `/forceset/BRA/activation` is not an excitation, `/forceset/BRA` and
 /// `/jointset/elbow/elbow_flexion/value` are understood. Empty cells and NaN: not measured. A
 /// muscle without a column gets the baseline, with a warning.
-/// @throws FileError naming file, column and row for a value outside its range, a muscle or a
-///   torque with gaps, an unknown column, two columns with the same meaning, experimental
+/// @throws FileError naming file, column and row for a value outside its range, a prescribed
+///   coordinate without a column, or whose values do not cover the trial, a muscle or a torque with
+///   gaps, an unknown column, two columns with the same meaning, experimental
 ///   conditions that are out of range or that the caller cannot take into account, or a table that
 ///   table_file.h refuses
 Trial readTrial(const std::filesystem::path& file, const Model& model,

@@ -193,6 +193,7 @@ bool match(const std::vector<A>& a, const std::vector<A>& b, Same same) {
 }  // namespace
 
 std::optional<HingeModel<Single>> hingeModel(const MusculoskeletalSystem& arm) {
+  if (!arm.prescribed().empty()) return {};
   return HingeCompiler(arm).compile();
 }
 

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "bio/sensitivity/coupled_sensitivity.h"
+#include "bio/tables/observable.h"
+
+namespace bio {
+
+/// An observable at the times at which it is wanted.
+struct ObservedSeries {
+  Observable what;
+  Eigen::VectorXd times;  ///< [s] rising
+};
+
+/// Observables of simulated motions at any times, with their sensitivities; series after series.
+///
+/// Coordinates, their speeds and markers follow from the cubic of Hermite between rows of the
+/// motion, whose error falls with the fourth (speeds: third) power of the step; moments, fibre
+/// lengths, tendon forces and activations are linear between rows, with an error that falls with
+/// the square of the step like that of the integrator.
+class ObservedMotion {
+ public:
+  /// @throws std::invalid_argument for a coordinate that is not free, a moment at a coordinate that
+  ///   is not prescribed, a muscle that is not simulated, a marker that the model does not have
+  ObservedMotion(const MusculoskeletalSystem& arm, std::vector<ObservedSeries> series);
+
+  const std::vector<ObservedSeries>& series() const { return series_; }
+  Eigen::Index size() const { return size_; }
+  /// What the sensitivities need of simulateWithSensitivities().
+  bool needsMuscles() const { return needsMuscles_; }
+  bool needsReactions() const { return needsReactions_; }
+
+  /// In unitOf(); NaN at times that the motion has not reached.
+  Eigen::VectorXd values(const Trajectory& motion) const;
+
+  struct Linearised {
+    Eigen::VectorXd values;
+    Eigen::MatrixXd gamma;  ///< d(values)/dθ: size() × parameters
+  };
+  /// @param motion with what needsMuscles() and needsReactions() ask for
+  Linearised linearised(const SensitivityTrajectory& motion) const;
+
+ private:
+  /// Position of a marker along `axis`, and its derivatives in the coordinates if asked for.
+  double markerAt(const SystemMarker& marker, int axis, const Eigen::VectorXd& q,
+                  Eigen::RowVectorXd* slope) const;
+
+  const MusculoskeletalSystem* arm_;
+  std::vector<ObservedSeries> series_;
+  std::vector<int> sources_;  ///< index of the coordinate, muscle or marker of each series
+  Eigen::Index size_ = 0;
+  bool needsMuscles_ = false, needsReactions_ = false;
+};
+
+}  // namespace bio

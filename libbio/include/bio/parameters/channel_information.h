@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <string>
+#include <vector>
+
+#include "bio/analysis/observed_motion.h"
+#include "bio/parameters/parameter_information.h"
+
+namespace bio {
+
+/// Something that could be measured, and how well.
+struct ChannelCandidate {
+  Observable what;
+  double sd;  ///< noise of a sample, in unitOf(what) [> 0]
+};
+
+/// All that can be measured of a system, with noise that is usual in a laboratory: angles 0.5°,
+/// shifts 1 mm, their speeds 5°/s and 10 mm/s, moments 0.5 N·m, forces 2 N, fibre lengths 1 mm,
+/// tendon forces 10 N, activations 0.05, markers 2 mm. Prescribed coordinates are inputs: of them
+/// only the moment.
+std::vector<ChannelCandidate> usualChannels(const MusculoskeletalSystem& arm);
+
+/// What a further channel would add to what is known of the parameters.
+struct ChannelGain {
+  ChannelCandidate channel;
+  double information = 0;        ///< ½ log det(I_with + Λ)/det(I_without + Λ) [nats]
+  std::string parameter;         ///< the one whose joint bound falls most
+  double before = 0, after = 0;  ///< its joint bounds, without and with the channel
+};
+
+/// Of each candidate alone beside what is measured, the one that tells most first.
+/// @param known       with the Fisher information I of what is measured and the priors Λ
+/// @param candidates  as many as gammas
+/// @param gammas      dy/dθ of each candidate: samples × parameters
+/// @throws std::invalid_argument if sizes differ or a noise is not > 0
+std::vector<ChannelGain> channelGains(const ParameterInformation& known,
+                                      const std::vector<ChannelCandidate>& candidates,
+                                      const std::vector<Eigen::MatrixXd>& gammas);
+
+}  // namespace bio

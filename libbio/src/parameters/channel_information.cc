@@ -1,0 +1,108 @@
+#include "bio/parameters/channel_information.h"
+
+#include <algorithm>
+#include <numbers>
+#include <stdexcept>
+
+namespace bio {
+namespace {
+
+using Kind = Observable::Kind;
+
+constexpr double radiansPerDegree = std::numbers::pi / 180;
+
+double usualSd(Kind kind, bool turns) {
+  switch (kind) {
+    case Kind::coordinate:
+      return turns ? 0.5 * radiansPerDegree : 1e-3;
+    case Kind::speed:
+      return turns ? 5 * radiansPerDegree : 1e-2;
+    case Kind::moment:
+      return turns ? 0.5 : 2;
+    case Kind::fibreLength:
+      return 1e-3;
+    case Kind::tendonForce:
+      return 10;
+    case Kind::activation:
+      return 0.05;
+    case Kind::marker:
+      break;
+  }
+  return 2e-3;
+}
+
+}  // namespace
+
+std::vector<ChannelCandidate> usualChannels(const MusculoskeletalSystem& arm) {
+  std::vector<ChannelCandidate> channels;
+  const auto add = [&](Kind kind, const std::string& of, bool turns, int axis = 0) {
+    channels.push_back({{kind, of, axis}, usualSd(kind, turns)});
+  };
+  const auto& coordinates = arm.skeleton().coordinates();
+  for (std::size_t k = 0; k < coordinates.size(); ++k) {
+    const Coordinate& c = coordinates[k];
+    if (arm.isPrescribed(static_cast<int>(k))) {
+      add(Kind::moment, c.name, c.isRotation);
+    } else {
+      add(Kind::coordinate, c.name, c.isRotation);
+      add(Kind::speed, c.name, c.isRotation);
+    }
+  }
+  for (const SystemMuscle& muscle : arm.muscles()) {
+    for (const Kind kind : {Kind::fibreLength, Kind::tendonForce, Kind::activation}) {
+      add(kind, muscle.name, false);
+    }
+  }
+  for (const SystemMarker& marker : arm.markers()) {
+    if (marker.segment == 0) continue;  // on the ground
+    for (int axis = 0; axis < 3; ++axis) add(Kind::marker, marker.name, false, axis);
+  }
+  return channels;
+}
+
+std::vector<ChannelGain> channelGains(const ParameterInformation& known,
+                                      const std::vector<ChannelCandidate>& candidates,
+                                      const std::vector<Eigen::MatrixXd>& gammas) {
+  const auto p = static_cast<Eigen::Index>(known.parameters.size());
+  if (candidates.size() != gammas.size() || known.fisher.rows() != p) {
+    throw std::invalid_argument("channel gains: a Γ for each candidate, an I for each parameter");
+  }
+  Eigen::VectorXd sd(p);
+  for (Eigen::Index i = 0; i < p; ++i) {
+    sd[i] = known.parameters[static_cast<std::size_t>(i)].prior->sd;
+  }
+  // in units of prior deviations: I + Λ becomes S I S + 1
+  const auto scaled = [&](const Eigen::MatrixXd& information) -> Eigen::LLT<Eigen::MatrixXd> {
+    Eigen::MatrixXd A = sd.asDiagonal() * information * sd.asDiagonal();
+    A.diagonal().array() += 1;
+    return A.llt();
+  };
+  const auto logDeterminant = [](const Eigen::LLT<Eigen::MatrixXd>& A) {
+    return 2 * A.matrixLLT().diagonal().array().log().sum();
+  };
+  const auto bounds = [&](const Eigen::LLT<Eigen::MatrixXd>& A) -> Eigen::ArrayXd {
+    return A.solve(Eigen::MatrixXd::Identity(p, p)).diagonal().array().sqrt();
+  };
+  const Eigen::LLT<Eigen::MatrixXd> now = scaled(known.fisher);
+  const Eigen::ArrayXd boundsNow = bounds(now);
+  std::vector<ChannelGain> gains;
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    if (!(candidates[c].sd > 0) || gammas[c].cols() != p) {
+      throw std::invalid_argument("channel gains: noise must be > 0, Γ must fit the parameters");
+    }
+    const Eigen::MatrixXd gamma = gammas[c] / candidates[c].sd;
+    const Eigen::LLT<Eigen::MatrixXd> then = scaled(known.fisher + gamma.transpose() * gamma);
+    const Eigen::ArrayXd boundsThen = bounds(then);
+    Eigen::Index best = 0;
+    (boundsThen / boundsNow).minCoeff(&best);
+    gains.push_back({candidates[c], (logDeterminant(then) - logDeterminant(now)) / 2,
+                     known.parameters[static_cast<std::size_t>(best)].name,
+                     boundsNow[best] * sd[best], boundsThen[best] * sd[best]});
+  }
+  std::stable_sort(gains.begin(), gains.end(), [](const ChannelGain& a, const ChannelGain& b) {
+    return a.information > b.information;
+  });
+  return gains;
+}
+
+}  // namespace bio

@@ -1,0 +1,118 @@
+#pragma once
+
+// Sensitivities of the reactions at prescribed coordinates; not public.
+
+#include "sensitivity/parameter_jacobian.h"
+#include "simulation/coordinate_sums.h"
+#include "simulation/system_dynamics.h"
+
+namespace bio::stepping {
+
+/// dR/dθ of the reactions R at one row of a motion. With τ(q, q̇, F, θ) all that is in
+/// M q̈ = τ + R at given accelerations, less ∂(M q̈), and X_f = M_ff⁻¹ dτ_f, X_p = 0,
+///     dR = M X − dτ
+template <int N>
+class ReactionSlopes {
+ public:
+  using Index = Eigen::Index;
+  using Vector = Eigen::Matrix<double, N, 1>;
+  using Matrix = Eigen::Matrix<double, N, N>;
+  using Rows = typename SensitivityState<N>::Rows;
+
+  /// @param configuration  shared with the caller, who moves it to the row's coordinates
+  ReactionSlopes(const MusculoskeletalSystem& arm, const SimulationOptions& simulation,
+                 const ExcitationSignal& driven, SystemConfiguration<N>& configuration,
+                 DirectEffects<N>& direct)
+      : arm_(arm),
+        dynamics_(arm, driven, simulation.externalForce, simulation.prescribed),
+        configuration_(configuration),
+        direct_(direct),
+        y_(dynamics_.size()),
+        yDot_(dynamics_.size()) {}
+
+  /// Into result.reaction, from what stands in `result` for the row and its muscles. Moves the
+  /// configuration.
+  /// @param speed  dq̇/dθ
+  void add(Index row, const SensitivityState<N>& state, const Rows& speed,
+           SensitivityTrajectory& result) {
+    const Trajectory& motion = result.motion;
+    const Vector q = motion.q.col(row), qDot = motion.qDot.col(row);
+    y_ << q, qDot, motion.activation.col(row), motion.fibreLength.col(row);
+    dynamics_.derivative(motion.time[static_cast<std::size_t>(row)], y_, yDot_);
+    const int n = countOf<N>(arm_);
+    Vector passive = Vector::Zero(n);
+    Matrix tau_q = Matrix::Zero(n, n), tau_v = tau_q;
+    arm_.coordinateForces().template add<N>(q, qDot, passive, tau_q, tau_v);
+    dynamics_.addInertia(tau_q, tau_v);
+    tau_.noalias() = tau_q * state.dq;
+    tau_.noalias() += tau_v * speed;
+    direct_.addPassiveForces(q, qDot, tau_);
+    for (std::size_t i = 0; i < arm_.numMuscles(); ++i) {
+      addMuscle(i, q, result.tendonForce[i].row(row), state);
+    }
+    addInertia(q, qDot);
+    Rows X = tau_;
+    for (const int k : arm_.prescribed()) X.row(k).setZero();
+    X = dynamics_.factor().solve(X).eval();
+    tau_ = dynamics_.massMatrix() * X - tau_;
+    for (const int k : arm_.prescribed()) {
+      result.reaction[static_cast<std::size_t>(k)].row(row) =
+          tau_.row(k).head(state.columns.numParameters());
+    }
+  }
+
+ private:
+  /// d(−F ∂ℓ)
+  template <class Force>
+  void addMuscle(std::size_t i, const Vector& q, const Force& force,
+                 const SensitivityState<N>& state) {
+    const LengthJet<N>& path = configuration_.length(i);
+    const double F = dynamics_.rate(i).tendonForce;
+    forEachMoved<N>(path, [&](int k, int slot) {
+      tau_.row(k).head(force.size()) -= path.dL_dq[k] * force;
+      forEachMoved<N>(path, [&](int j, int other) {
+        tau_.row(k) -= (F * secondOf(path, slot, other)) * state.dq.row(j);
+      });
+    });
+    direct_.forGeometry(i, q, [&](const QuantityEffect& effect, const auto& gradient) {
+      forEachMoved<N>(path, [&](int k, int slot) {
+        tau_(k, effect.column) -= effect.factor * F * gradient[1 + slot];
+      });
+    });
+  }
+
+  static double secondOf(const LengthJet<N>& path, int slot, int other) {
+    if constexpr (N == Eigen::Dynamic) {
+      return path.second(slot, other);
+    } else {
+      return path.d2L_dq2(slot, other);
+    }
+  }
+
+  /// ∂/∂θ of −M q̈ − Ṁ q̇ + ½ q̇ᵀ∂M q̇ − ∂V; the rate of the momentum by central differences.
+  void addInertia(const Vector& q, const Vector& qDot) {
+    if (!direct_.changesInertia()) return;
+    direct_.computeInertia(dynamics_.acceleration());
+    tau_ -= direct_.momentum();
+    direct_.computeInertia(qDot);
+    tau_ += direct_.slope();
+    const double speed = qDot.cwiseAbs().maxCoeff();
+    if (arm_.skeleton().hasConstantInertia() || speed == 0) return;
+    const double dt = 1e-5 / speed;  // 1e-5 rad or m: errors of 1e-10 of the momentum's range
+    configuration_.moveSkeletonTo(q + dt * qDot);
+    direct_.computeInertia(qDot);
+    tau_ -= direct_.momentum() / (2 * dt);
+    configuration_.moveSkeletonTo(q - dt * qDot);
+    direct_.computeInertia(qDot);
+    tau_ += direct_.momentum() / (2 * dt);
+  }
+
+  const MusculoskeletalSystem& arm_;
+  SystemDynamics<N> dynamics_;
+  SystemConfiguration<N>& configuration_;
+  DirectEffects<N>& direct_;
+  Eigen::VectorXd y_, yDot_;
+  Rows tau_;
+};
+
+}  // namespace bio::stepping
