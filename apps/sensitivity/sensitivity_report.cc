@@ -346,7 +346,7 @@ void tellSensitivity(const SensitivityFindings& f, Summary& summary) {
   const double factor = shownFactor(f.coordinate);
   summary.set("status", "ok");
   summary.set("samples", f.samples);
-  summary.set("noise_" + unit, f.noise * factor);
+  if (f.observed.empty()) summary.set("noise_" + unit, f.noise * factor);
   for (const Sweep& sweep : f.sweeps) {
     auto runs = nlohmann::ordered_json::array();
     for (const SweepRun& run : sweep.runs) {

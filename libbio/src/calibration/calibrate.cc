@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "calibration/channel_noise.h"
 #include "calibration/nudged_starts.h"
 #include "info/estimation/monte_carlo.h"
 #include "info/estimation/residuals.h"
@@ -49,9 +50,9 @@ class Calibrator {
         asked_(training.parameters()),
         known_(training.known()),
         predictor_(training.predictor()),
-        measured_(training.measured()) {
+        measured_(training.measured()),
+        channels_(training, options) {
     check(options);
-    checkChannels();
     if (heldOut_ && heldOut_->parameters().size() != training.numCommon()) {
       throw std::invalid_argument("held-out trials must have the same common parameters");
     }
@@ -114,66 +115,6 @@ class Calibrator {
   }
 
  private:
-  /// Noise is given of channels that there are.
-  void checkChannels() const {
-    for (const auto& [name, sd] : options_.channelNoise) {
-      const auto& channels = training_.channels();
-      const bool isThere = std::any_of(channels.begin(), channels.end(), [&](const auto& one) {
-        return one.name == name && !one.areAngles;
-      });
-      if (!isThere) {
-        throw std::invalid_argument(fmt::format("noise of '{}': no trial measures it", name));
-      }
-      if (!(sd > 0 && std::isfinite(sd))) {
-        throw std::invalid_argument(fmt::format("noise of '{}' = {}, must be > 0", name, sd));
-      }
-    }
-  }
-
-  /// The noise that was given of a channel.
-  std::optional<double> givenNoise(std::size_t channel) const {
-    const MeasuredGroup& one = training_.channels()[channel];
-    if (one.areAngles) return options_.noise;
-    const auto at = options_.channelNoise.find(one.name);
-    if (at == options_.channelNoise.end()) return {};
-    return at->second;
-  }
-
-  bool hasOneChannel() const { return training_.channels().size() == 1; }
-
-  /// Of each sample, relative to the first channel, so that all have its effective noise; 1 until
-  /// noises are known.
-  void weigh(const std::vector<ResidualNoise>& noises) {
-    if (hasOneChannel()) return;
-    weight_.resize(1, measured_.size());
-    Index at = 0;
-    for (const MeasuredSeries& series : training_.series()) {
-      const Index n = series.values.size();
-      weight_.middleCols(at, n).setConstant(noises[series.channel].effective /
-                                            noises.front().effective);
-      at += n;
-    }
-  }
-  MatrixXd weighted(const MatrixXd& outputs) const {
-    if (weight_.size() == 0) return outputs;
-    return outputs.cwiseQuotient(weight_);
-  }
-  info::Predictor weightedPredictor() const {
-    if (weight_.size() == 0) return predictor_;
-    info::Predictor scaled;
-    scaled.outputs = [outputs = predictor_.outputs, weight = weight_](const VectorXd& theta) {
-      return MatrixXd(outputs(theta).cwiseQuotient(weight));
-    };
-    scaled.withSensitivities = [both = predictor_.withSensitivities,
-                                weight = weight_](const VectorXd& theta) {
-      info::Prediction at = both(theta);
-      at.outputs = at.outputs.cwiseQuotient(weight).eval();
-      at.gamma.array().colwise() /= weight.transpose().array().col(0);
-      return at;
-    };
-    return scaled;
-  }
-
   Index common() const { return static_cast<Index>(training_.numCommon()); }
 
   static VectorXd valuesOf(const std::vector<info::Parameter>& parameters) {
@@ -225,7 +166,9 @@ class Calibrator {
     const info::OutputCovariance covariance(MatrixXd::Constant(1, 1, sigma * sigma));
     std::vector<info::Parameter> parameters = asked_;
     for (const std::size_t i : held_) parameters[i].lower = parameters[i].upper = asked_[i].start;
-    return {weightedPredictor(), {weighted(measured_), covariance, {}, options_.loss}, parameters};
+    return {channels_.weighted(predictor_),
+            {channels_.weighted(measured_), covariance, {}, options_.loss},
+            parameters};
   }
 
   info::EstimateOptions estimateOptions() {
@@ -239,60 +182,8 @@ class Calibrator {
     return estimate;
   }
 
-  /// Of one channel.
-  std::vector<VectorXd> residualSeries(const MatrixXd& predicted, std::size_t channel) const {
-    std::vector<VectorXd> series;
-    Index at = 0;
-    for (const MeasuredSeries& one : training_.series()) {
-      const Index n = one.values.size();
-      if (one.channel == channel) {
-        series.push_back(one.values - predicted.middleCols(at, n).transpose());
-      }
-      at += n;
-    }
-    return series;
-  }
-
-  /// Of the residuals that a prediction leaves after so many parameters were fitted.
-  std::vector<ResidualNoise> noisesOf(const MatrixXd& predicted, Index fitted) const {
-    std::vector<ResidualNoise> noises;
-    for (std::size_t channel = 0; channel < training_.channels().size(); ++channel) {
-      const std::vector<VectorXd> series = residualSeries(predicted, channel);
-      Index samples = 0;
-      for (const VectorXd& one : series) samples += one.size();
-      const auto share = static_cast<double>(samples) / static_cast<double>(measured_.size());
-      noises.push_back(
-          noiseOf(series, samples, static_cast<double>(fitted) * share, givenNoise(channel)));
-    }
-    return noises;
-  }
-
-  ResidualNoise noiseOf(const std::vector<VectorXd>& series, Index samples, double fitted,
-                        const std::optional<double>& given) const {
-    VectorXd r(samples);
-    Index at = 0;
-    for (const VectorXd& one : series) {
-      r.segment(at, one.size()) = one;
-      at += one.size();
-    }
-    ResidualNoise noise;
-    const bool gaussian = options_.loss.kind == info::RobustLoss::Kind::gaussian;
-    const double freedom = std::max(1.0, static_cast<double>(r.size()) - fitted);
-    noise.sd = gaussian ? std::sqrt(r.squaredNorm() / freedom) : info::robustSd(r);
-    if (r.squaredNorm() > 0) noise.autocorrelation = info::autocorrelation(series, r.size() / 4);
-    if (given) {
-      noise.sd = *given;
-    } else {
-      noise.correlationTime = info::autocorrelationTime(noise.autocorrelation, r.size());
-    }
-    // angles that repeat exactly still were not measured better than this [rad]
-    noise.sd = std::max(noise.sd, 1e-9);
-    noise.effective = noise.sd * std::sqrt(noise.correlationTime);
-    return noise;
-  }
-
   void setNoise(std::vector<ResidualNoise> noises) {
-    weigh(noises);
+    channels_.weigh(noises);
     result_.noise = noises.front();
     result_.channelNoise = std::move(noises);
   }
@@ -305,13 +196,13 @@ class Calibrator {
   double chiSquare() const {
     const Index fitted = std::max<Index>(0, static_cast<Index>(asked_.size()) - numPriors());
     const double freedom = static_cast<double>(std::max<Index>(1, measured_.size() - fitted));
-    if (hasOneChannel()) {
+    if (channels_.areOne()) {
       return (measured_ - result_.after).squaredNorm() /
              (result_.noise.sd * result_.noise.sd * freedom);
     }
     double sum = 0;
     for (std::size_t channel = 0; channel < result_.channelNoise.size(); ++channel) {
-      for (const VectorXd& r : residualSeries(result_.after, channel)) {
+      for (const VectorXd& r : channels_.residuals(result_.after, channel)) {
         sum += (r / result_.channelNoise[channel].sd).squaredNorm();
       }
     }
@@ -329,7 +220,7 @@ class Calibrator {
     const auto p = static_cast<Index>(asked_.size());
     const std::vector<VectorXd> led = ledFrom(valuesOf(asked_), estimate);
     const MatrixXd guess = best(led);
-    std::vector<ResidualNoise> first = noisesOf(guess, 0);
+    std::vector<ResidualNoise> first = channels_.of(guess, 0);
     for (ResidualNoise& one : first) one.effective = one.sd;  // white until there is a fit
     setNoise(std::move(first));
     {
@@ -345,7 +236,7 @@ class Calibrator {
     for (int round = 0; round < noiseRounds && result_.complete; ++round) {
       const std::vector<ResidualNoise> before = result_.channelNoise;
       result_.after = predictor_.outputs(estimate_.parameters);
-      setNoise(noisesOf(result_.after, std::max<Index>(0, p - numPriors())));
+      setNoise(channels_.of(result_.after, std::max<Index>(0, p - numPriors())));
       bool isSettled = true;
       for (std::size_t i = 0; i < before.size(); ++i) {
         const double change = result_.channelNoise[i].effective - before[i].effective;
@@ -384,32 +275,19 @@ class Calibrator {
   MatrixXd best(const std::vector<VectorXd>& starts) const {
     MatrixXd nearest =
         atStart_.allFinite() ? atStart_ : MatrixXd::Constant(1, measured_.size(), measured_.mean());
-    const auto distance = [&](const MatrixXd& predicted) {
-      if (hasOneChannel()) return (measured_ - predicted).norm();
-      double sum = 0;  // of the channels, each relative to the spread of its measurements
-      for (std::size_t channel = 0; channel < training_.channels().size(); ++channel) {
-        sum += training_.meanSquareOf(predicted, channel) / spreadOf(channel);
-      }
-      return sum;
-    };
     for (const VectorXd& start : starts) {
       const MatrixXd there = predictor_.outputs(start);
-      if (distance(there) < distance(nearest)) nearest = there;
+      if (channels_.distance(there) < channels_.distance(nearest)) nearest = there;
     }
     return nearest;
   }
 
-  /// Mean square of a channel's measurements about 0.
-  double spreadOf(std::size_t channel) const {
-    const double spread = training_.meanSquareOf(MatrixXd::Zero(1, measured_.size()), channel);
-    return std::max(spread, std::numeric_limits<double>::min());
-  }
-
   /// What the data determine, and the intervals of it.
   void judge() {
-    const info::Prediction at = weightedPredictor().withSensitivities(estimate_.parameters);
+    const info::Prediction at =
+        channels_.weighted(predictor_).withSensitivities(estimate_.parameters);
     const double sigma = result_.noise.effective;
-    const VectorXd white = (weighted(measured_) - at.outputs).transpose() / sigma;
+    const VectorXd white = (channels_.weighted(measured_) - at.outputs).transpose() / sigma;
     // a robust loss makes less of normal noise; scale by what it makes of these residuals
     const double widening =
         options_.loss.kind == info::RobustLoss::Kind::gaussian
@@ -557,7 +435,7 @@ class Calibrator {
   VectorXd known_;
   info::Predictor predictor_;
   MatrixXd measured_;
-  MatrixXd weight_;  ///< 1 × samples; empty: all 1
+  ChannelNoise channels_;
   MatrixXd atStart_;
   std::vector<std::size_t> profiled_;
   std::vector<std::size_t> held_;
