@@ -23,7 +23,8 @@ int orderOf(TomlTable& table, int standard) {
 
 RecordingFormat formatOf(const std::string& word) {
   for (const auto format :
-       {RecordingFormat::columns, RecordingFormat::trigno, RecordingFormat::table}) {
+       {RecordingFormat::columns, RecordingFormat::trigno, RecordingFormat::table,
+        RecordingFormat::c3d, RecordingFormat::xdf}) {
     if (word == nameOf(format)) return format;
   }
   return RecordingFormat::automatic;
@@ -32,7 +33,7 @@ RecordingFormat formatOf(const std::string& word) {
 void readInput(TomlTable& root, EmgConfigFile& out) {
   TomlTable input = root.table("input");
   out.layout.format =
-      formatOf(input.word("format", {"automatic", "columns", "trigno", "table"}).value_or(""));
+      formatOf(input.word("format", {"automatic", "columns", "trigno", "table", "c3d", "xdf"}).value_or(""));
   if (input.word("signal", {"raw", "envelope"}).value_or("raw") == "envelope") {
     out.emg.signal = EmgSignal::envelope;
   }
