@@ -6,10 +6,9 @@
 
 // The input is an XDF file.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static fuzz::InputFile file("a.xdf");
-  const auto& path = file.holding(fuzz::textOf(data, size));
   fuzz::readsOrRefuses<bio::FileError>([&] {
-    for (const bio::XdfStream& stream : bio::readXdf(path).streams) {
+    const bio::XdfFile xdf = bio::xdfFrom(fuzz::textOf(data, size), "a.xdf");
+    for (const bio::XdfStream& stream : xdf.streams) {
       for (const bio::Channel& channel : stream.channels) {
         if (!(channel.rate > 0) || !std::isfinite(channel.startTime)) {
           fuzz::finding("channel", channel.name.c_str());

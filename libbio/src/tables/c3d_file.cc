@@ -136,14 +136,19 @@ Layout layoutOf(const Bytes& bytes, const C3dParameters& parameters,
   layout.points = agreed(bytes, parameters.numbers("POINT:USED", true), bytes.uint16(2, "header"),
                          "POINT:USED");
   layout.samplesPerFrame = bytes.uint16(18, "header");
-  const std::size_t perFrame = bytes.uint16(4, "header");
+  std::size_t perFrame = bytes.uint16(4, "header");
+  const std::vector<double> used = parameters.numbers("ANALOG:USED", true);
+  // Motion Monitor counts channels here instead of values
+  if (layout.samplesPerFrame > 1 && !used.empty() &&
+      used.front() == static_cast<double>(perFrame) && perFrame % layout.samplesPerFrame != 0) {
+    perFrame *= layout.samplesPerFrame;
+  }
   const std::size_t divisor = std::max<std::size_t>(layout.samplesPerFrame, 1);
   if (perFrame % divisor != 0 || (perFrame > 0 && layout.samplesPerFrame == 0)) {
     bytes.fail(fmt::format("header: {} analog values per frame in {} samples, must be a multiple",
                            perFrame, layout.samplesPerFrame));
   }
-  layout.channels = agreed(bytes, parameters.numbers("ANALOG:USED", true),
-                           static_cast<double>(perFrame / divisor), "ANALOG:USED");
+  layout.channels = agreed(bytes, used, static_cast<double>(perFrame / divisor), "ANALOG:USED");
   layout.scale = static_cast<double>(bytes.float32(12, "header"));
   if (const auto scale = parameters.numbers("POINT:SCALE"); !scale.empty()) {
     if ((scale.front() < 0) != (layout.scale < 0)) {
@@ -157,8 +162,9 @@ Layout layoutOf(const Bytes& bytes, const C3dParameters& parameters,
   if (!std::isfinite(layout.scale) || (layout.points > 0 && layout.scale == 0)) {
     bytes.fail(fmt::format("POINT:SCALE = {:g}, must be finite and not 0", layout.scale));
   }
-  layout.data = agreed(bytes, parameters.numbers("POINT:DATA_START", true),
-                       bytes.uint16(16, "header"), "POINT:DATA_START");
+  std::vector<double> start = parameters.numbers("POINT:DATA_START", true);
+  std::erase(start, 0.0);  // 0: not stated
+  layout.data = agreed(bytes, start, bytes.uint16(16, "header"), "POINT:DATA_START");
   if (layout.data < 2) {
     bytes.fail(
         fmt::format("POINT:DATA_START = {}, must be a block behind the header", layout.data));
@@ -311,13 +317,16 @@ std::vector<Channel> analogOf(const Bytes& bytes, const C3dParameters& parameter
 }  // namespace
 
 C3dFile readC3d(const std::filesystem::path& file) {
-  const std::string content = readTextFile(file);
+  return c3dFrom(readTextFile(file), file.string());
+}
+
+C3dFile c3dFrom(std::string_view content, const std::string& name) {
   const std::optional<Start> start = startOf(content);
   if (!start) {
-    throw FileError(fmt::format("{}: is no C3D file, must begin with its header and parameters",
-                                file.string()));
+    throw FileError(
+        fmt::format("{}: is no C3D file, must begin with its header and parameters", name));
   }
-  const Bytes bytes(file.string(), content, start->format);
+  const Bytes bytes(name, content, start->format);
   bytes.require(0, block, "header");
   const C3dParameters parameters(bytes, start->parameters);
   C3dFile out;

@@ -36,6 +36,9 @@ C3dParameters::C3dParameters(const Bytes& bytes, std::size_t start) : bytes_(byt
   constexpr std::string_view what = "parameter section";
   std::map<int, std::string> groups;
   std::vector<Entry> entries;
+  // 0 blocks: the section does not say how long it is
+  const std::size_t blocks = bytes_.uint8(start + 2, what);
+  const std::size_t end = blocks > 0 ? start + 512 * blocks : bytes_.size();
   for (std::size_t at = start + 4;;) {
     // length of the name, negative if locked; number of the group, negative for the group itself
     const int nameLength = std::abs(static_cast<std::int8_t>(bytes_.uint8(at, what)));
@@ -45,25 +48,29 @@ C3dParameters::C3dParameters(const Bytes& bytes, std::size_t start) : bytes_(byt
     const std::string name = nameOfEntry(bytes_.text(at + 2, length, what));
     const std::size_t pointer = at + 2 + length;
     const std::size_t offset = bytes_.uint16(pointer, what);
+    std::size_t description = pointer + 2;
     if (group < 0) {
       groups.emplace(-group, name);
     } else if (group > 0) {
       entries.push_back({group, name, valueAt(pointer + 2, name)});
+      const Value& value = entries.back().value;
+      description = value.at + value.count * static_cast<std::size_t>(std::abs(value.type));
     }
     if (offset == 0) break;
-    if (offset < 2) {
-      bytes_.fail(
-          fmt::format("parameter '{}': next entry {} byte on, must be 2 or more", name, offset));
-    }
     at = pointer + offset;
+    if (offset >= 2 && at < end) continue;
+    // the last entry of some files points anywhere; nothing but zeros is behind it
+    const std::size_t behind = description + 1 + bytes_.uint8(description, what);
+    if (bytes_.uint8(behind, what) == 0) break;
+    bytes_.fail(
+        fmt::format("parameter '{}': next entry at byte {}, must be behind byte {} and "
+                    "before {}",
+                    name, at, pointer + 1, end));
   }
+  // parameters of no group mean nothing that is known here
   for (const Entry& entry : entries) {
     const auto group = groups.find(entry.group);
-    if (group == groups.end()) {
-      bytes_.fail(fmt::format("parameter '{}': group {}, must be one of the file's groups",
-                              entry.name, entry.group));
-    }
-    values_.emplace(group->second + ":" + entry.name, entry.value);
+    if (group != groups.end()) values_.emplace(group->second + ":" + entry.name, entry.value);
   }
 }
 

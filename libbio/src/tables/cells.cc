@@ -101,21 +101,24 @@ std::string lowered(std::string_view text) {
   return low;
 }
 
-std::string readTableText(const std::filesystem::path& file) {
-  std::string text = readTextFile(file);
-  const std::string_view start = std::string_view(text).substr(0, 4);
+void requireTableText(std::string_view text, const std::string& file) {
+  const std::string_view start = text.substr(0, 4);
   // Without a mark, every second byte of the first letters is 0.
   const bool marked = start.starts_with("\xFF\xFE") || start.starts_with("\xFE\xFF");
   const bool halfEmpty = start.size() >= 2 && (start[0] == 0) != (start[1] == 0);
   if (marked || halfEmpty) {
     throw FileError(fmt::format(
-        "{}: is UTF-16, must be UTF-8 (save it as CSV UTF-8, or: iconv -f UTF-16 -t UTF-8)",
-        file.string()));
+        "{}: is UTF-16, must be UTF-8 (save it as CSV UTF-8, or: iconv -f UTF-16 -t UTF-8)", file));
   }
   if (text.find('\0') != text.npos) {
     throw FileError(
-        fmt::format("{}: holds bytes that are no text, must be a table in UTF-8", file.string()));
+        fmt::format("{}: holds bytes that are no text, must be a table in UTF-8", file));
   }
+}
+
+std::string readTableText(const std::filesystem::path& file) {
+  std::string text = readTextFile(file);
+  requireTableText(text, file.string());
   return text;
 }
 

@@ -15,6 +15,9 @@ std::string lowered(std::string_view text);
 
 inline constexpr std::string_view byteOrderMark = "\xEF\xBB\xBF";
 
+/// @throws FileError with advice for UTF-16 and UTF-32, and for bytes that are no text
+void requireTableText(std::string_view text, const std::string& file);
+
 /// readTextFile, and @throws FileError with advice for UTF-16 and UTF-32.
 std::string readTableText(const std::filesystem::path& file);
 

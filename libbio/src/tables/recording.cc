@@ -32,6 +32,10 @@ std::vector<RawColumn> readColumns(const std::string& file, RecordingFormat form
   }
 }
 
+bool isBinary(RecordingFormat format) {
+  return format == RecordingFormat::c3d || format == RecordingFormat::xdf;
+}
+
 std::string calledIn(const RawColumn& column) {
   return column.header.empty() ? fmt::format("column {}", column.number)
                                : fmt::format("column {} '{}'", column.number, column.header);
@@ -130,6 +134,9 @@ RecordingFormat detectFormat(const std::string& file) {
     const std::string bytes = readTextFile(file);
     if (file.ends_with(".xdf") || tables::isXdf(bytes)) return RecordingFormat::xdf;
     if (file.ends_with(".c3d") || tables::isC3d(bytes)) return RecordingFormat::c3d;
+    if (bytes.starts_with("PathFileType")) {
+      throw FileError(fmt::format("{}: holds markers (TRC), must hold signals", file));
+    }
   }
   const std::vector<std::string> lines = linesOf(file);
   // line 7 of a Trigno export: nothing but rates
@@ -183,6 +190,12 @@ Recording readRecording(const std::string& file, const RecordingLayout& layout) 
                                     out.channels[i].name));
       }
     }
+  }
+  if (out.channels.empty() && isBinary(out.format)) {
+    throw FileError(fmt::format("{}: holds no {}, a recording needs some", file,
+                                out.format == RecordingFormat::c3d
+                                    ? "analog channels"
+                                    : "stream of numbers at a steady rate"));
   }
   if (out.channels.empty()) {
     throw FileError(

@@ -21,9 +21,13 @@ namespace bio {
 
 double tables::metresPer(std::string_view unit) {
   const std::string low = lowered(trimmed(unit));
-  if (low == "mm" || low == "millimeters" || low == "millimetres") return 1e-3;
-  if (low == "cm" || low == "centimeters" || low == "centimetres") return 1e-2;
-  if (low == "m" || low == "meters" || low == "metres") return 1;
+  // some programs keep the first letters only
+  const auto begins = [&](std::string_view whole) {
+    return low.size() > 2 && whole.starts_with(low);
+  };
+  if (low == "mm" || begins("millimeters") || begins("millimetres")) return 1e-3;
+  if (low == "cm" || begins("centimeters") || begins("centimetres")) return 1e-2;
+  if (low == "m" || begins("meters") || begins("metres")) return 1;
   return 0;
 }
 
@@ -39,7 +43,12 @@ class TrcReader {
   }
 
   MarkerTrajectories read() {
-    if (next().front() != "PathFileType") fail("is no TRC file, must begin with PathFileType");
+    const std::string_view first = next().front();
+    if (first != "PathFileType") {
+      fail(first.starts_with("PathFileType")
+               ? "'PathFileType' is not followed by a tab, cells must be between tabs"
+               : "is no TRC file, must begin with PathFileType");
+    }
     readHeader();
     readNames();
     readRows();
@@ -182,8 +191,12 @@ class TrcReader {
 }  // namespace
 
 MarkerTrajectories readTrc(const std::filesystem::path& file) {
-  const std::string text = tables::readTableText(file);
-  return TrcReader(file.string(), text).read();
+  return trcFrom(readTextFile(file), file.string());
+}
+
+MarkerTrajectories trcFrom(std::string_view text, const std::string& name) {
+  tables::requireTableText(text, name);
+  return TrcReader(name, text).read();
 }
 
 MarkerTrajectories readMarkers(const std::filesystem::path& file) {

@@ -179,8 +179,11 @@ std::string whyLeftOut(const RawXdfStream& stream) {
 }  // namespace
 
 XdfFile readXdf(const std::filesystem::path& file) {
-  const std::string content = readTextFile(file);
-  const Bytes bytes(file.string(), content);
+  return xdfFrom(readTextFile(file), file.string());
+}
+
+XdfFile xdfFrom(std::string_view content, const std::string& name) {
+  const Bytes bytes(name, content);
   tables::RawXdf raw = tables::readXdfChunks(bytes);
   XdfFile out;
   if (raw.unread > 0) {

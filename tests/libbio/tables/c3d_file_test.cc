@@ -160,6 +160,12 @@ TEST_F(C3d, IsARecordingOfItsAnalogChannels) {
   // whatever the file is called
   EXPECT_EQ(readRecording(folder_.file("a.bin", C3dSample{}.write())).channels.size(), 2);
   EXPECT_EQ(readMarkers(folder_ / "a.bin").names.size(), 2);
+  C3dSample markers;
+  markers.channels = 0;
+  markers.samplesPerFrame = 0;
+  markers.without = {"ANALOG:OFFSET"};
+  EXPECT_THAT([&] { readRecording(folder_.file("c.c3d", markers.write())); },
+              testing::ThrowsMessage<FileError>(HasSubstr("c.c3d: holds no analog channels")));
   // channels of one name are told apart by their numbers
   C3dSample twice;
   twice.without = {"ANALOG:LABELS"};
@@ -170,6 +176,33 @@ TEST_F(C3d, IsARecordingOfItsAnalogChannels) {
   layout.columns = {
       {.number = 2, .header = "", .name = "second", .unit = "", .rate = {}, .scale = {}}};
   EXPECT_EQ(readRecording(named, layout).channels[1].name, "second");
+}
+
+// As programs of several makers write them.
+TEST_F(C3d, ReadsWhatItCanWhereTheParameterSectionIsOdd) {
+  C3dSample sample;
+  sample.without = {"POINT:DATA_START", "POINT:UNITS"};
+  sample.more = {C3dSample::scalarOf("POINT", "DATA_START", 2, 0),
+                 C3dSample::textOf("POINT", "UNITS", {"mete"}, 4)};
+  EXPECT_DOUBLE_EQ(read(sample).markers.positions(0, 0), static_cast<double>(0.1F) * -150);
+  const std::string good = C3dSample{}.write();
+  // a parameter of no group: the header tells the same
+  std::string bytes = good;
+  bytes.at(bytes.find("USED") - 1) = 9;
+  EXPECT_EQ(refusalOf(bytes), "");
+  // the last entry points out of the section, whose length is known
+  bytes = good;
+  bytes.at(514) = 1;
+  const std::size_t last = bytes.find("OFFSET") + 6;
+  bytes.at(last + 1) = 0x40;
+  EXPECT_EQ(refusalOf(bytes), "");
+  // channels instead of values per frame
+  sample.channels = 3;
+  sample.without = {"ANALOG:LABELS"};
+  sample.more = {};
+  bytes = sample.write();
+  bytes.at(4) = 3;
+  EXPECT_EQ(readC3d(folder_.file("m.c3d", bytes)).analog.size(), 3);
 }
 
 struct Broken {
@@ -239,9 +272,8 @@ TEST_F(C3d, RefusesBrokenFilesInOneLine) {
       {"type of a value", valueOf("USED", -2, 3), "parameter 'USED': type 3, must be -1"},
       {"dimensions", valueOf("USED", -1, 8), "parameter 'USED': 8 dimensions, must be ≤ 7"},
       {"a long value", valueOf("LABELS", 1, 255), "parameter 'LABELS' needs 2040 bytes"},
-      {"pointer", valueOf("USED", -4, 1), "parameter 'USED': next entry 1 byte on, must be 2"},
-      {"pointer beyond", valueOf("USED", -3, 120), "(cut off?)"},
-      {"group", valueOf("USED", -9, 9), "group 9, must be one of the file's"},
+      {"pointer", valueOf("USED", -4, 1), "parameter 'USED': next entry at byte"},
+      {"pointer beyond", valueOf("USED", -3, 120), "must be behind byte"},
       {"text for a number", valueOf("USED", -2, 0xFF), "POINT:USED: is a text, must be a number"},
       {"number for a text", valueOf("LABELS", -2, 1), "POINT:LABELS: is a number, must be a text"},
       {"analog scale",

@@ -4,6 +4,7 @@
 
 #include "bio/tables/file_error.h"
 #include "bio/tables/marker_trajectories.h"
+#include "bio/tables/recording.h"
 #include "support/scratch_folder.h"
 
 namespace bio {
@@ -71,6 +72,7 @@ TEST_F(Trc, RefusesBrokenFilesInOneLine) {
   EXPECT_THAT(refusalOf(std::string("\xFF\xFEP\0", 4)), HasSubstr("is UTF-16, must be UTF-8"));
   EXPECT_THAT(refusalOf("PathFileType\n" + std::string(5, '\0')), HasSubstr("are no text"));
   refused("PathFileType", "Path", "a.trc:1: is no TRC file, must begin with PathFileType");
+  refused("PathFileType\t", "PathFileType,", "a.trc:1: 'PathFileType' is not followed by a tab");
   refused("DataRate", "Rate", "a.trc:3: has no DataRate, must have one");
   refused("100\t100\t3", "0\t100\t3", "a.trc:3: DataRate = 0 Hz, must be > 0");
   refused("100\t100\t3", "fast\t100\t3", "a.trc:3: DataRate = 'fast', must be a number");
@@ -98,6 +100,11 @@ TEST_F(Trc, RefusesBrokenFilesInOneLine) {
   refused("0.52", "0.51", "must be at most 0.25");
   refused("\n2\t", "\ntwo\t", "a.trc:8: Frame# = 'two', must be a number");
   refused("\t1000\t", "\t1.000,5\t", "must be a number without thousands separators");
+}
+
+TEST_F(Trc, IsNoRecording) {
+  EXPECT_THAT([&] { readRecording(folder_.file("a.trc", walk)); },
+              testing::ThrowsMessage<FileError>(HasSubstr("holds markers (TRC)")));
 }
 
 // Lines that end early cannot ask for more cells than the file's size lets expect.

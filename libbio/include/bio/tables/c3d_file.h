@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bio/tables/marker_trajectories.h"
@@ -28,5 +29,8 @@ struct C3dFile {
 /// @throws FileError for a file that is no C3D, is cut off, or contradicts itself in what decides
 ///   how its numbers are read
 C3dFile readC3d(const std::filesystem::path& file);
+
+/// The same from bytes in memory, which messages call `name`.
+C3dFile c3dFrom(std::string_view bytes, const std::string& name);
 
 }  // namespace bio

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace bio {
@@ -29,6 +30,9 @@ MarkerTrajectories readMarkers(const std::filesystem::path& file);
 ///   seen, counts that contradict the header, times that do not rise by 1/DataRate (a frame more
 ///   than a quarter of an interval off)
 MarkerTrajectories readTrc(const std::filesystem::path& file);
+
+/// The same from a text in memory, which messages call `name`.
+MarkerTrajectories trcFrom(std::string_view text, const std::string& name);
 
 /// The columns x, y, z of a marker.
 /// @throws std::invalid_argument with a list of the existing names

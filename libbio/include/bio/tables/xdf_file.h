@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bio/tables/recording.h"
@@ -30,5 +31,8 @@ struct XdfFile {
 /// @throws FileError for a file that is no XDF, a chunk whose length or content does not fit, a
 ///   stream without a header, stamps that go back
 XdfFile readXdf(const std::filesystem::path& file);
+
+/// The same from bytes in memory, which messages call `name`.
+XdfFile xdfFrom(std::string_view bytes, const std::string& name);
 
 }  // namespace bio
