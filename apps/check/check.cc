@@ -15,6 +15,7 @@
 #include "bio/tables/table_file.h"
 #include "bio/tables/trial.h"
 #include "bio/tables/trial_review.h"
+#include "check/recording_contents.h"
 #include "output/result.h"
 #include "output/text.h"
 
@@ -135,10 +136,19 @@ Contents checkTrial(const std::string& file, const std::vector<bio::Model>& mode
           figure, columns};
 }
 
+Contents checkRecording(const std::string& file, Findings& findings, Summary& summary,
+                        nlohmann::ordered_json& recordings) {
+  RecordingContents contents = recordingContents(file);
+  for (const std::string& remark : contents.remarks) findings.add(file, "unusual", remark);
+  recordings.push_back(std::move(contents.summary));
+  summary.set("recordings", recordings);
+  return std::move(contents.parts);
+}
+
 class Check : public Command {
  public:
   About about() const override {
-    return {"check", "Check models and trials, and list errors and unusual values",
+    return {"check", "Check models, trials and recordings, and list errors and unusual values",
             "fisherhill check models/elbow8.osim"};
   }
 
@@ -146,7 +156,8 @@ class Check : public Command {
     options
         .add_option(
             "FILE", files_,
-            "models (.osim) and trials (.sto, .mot, .csv); trials are checked against the models")
+            "models (.osim), trials (.sto, .mot, .csv), which are checked against the models, and "
+            "recordings (.c3d, .trc, .xdf)")
         ->required()
         ->check(CLI::ExistingFile)
         ->type_name("");
@@ -162,6 +173,7 @@ class Check : public Command {
     // Models first: a trial is checked against all of them.
     std::vector<bio::Model> models;
     std::vector<std::string> modelFiles;
+    nlohmann::ordered_json recordings = nlohmann::ordered_json::array();
     const auto checkAll = [&](bool areModels) {
       for (const std::string& file : files_) {
         if (isModel(file) != areModels) continue;
@@ -171,7 +183,9 @@ class Check : public Command {
             modelFiles.push_back(file);
           }
           const Contents contents = areModels ? checkModel(file, models.back(), findings)
-                                              : checkTrial(file, models, findings);
+                                    : isRecordedFile(file)
+                                        ? checkRecording(file, findings, summary, recordings)
+                                        : checkTrial(file, models, findings);
           report.details.insert(report.details.end(), contents.begin(), contents.end());
         } catch (const bio::FileError& error) {
           findings.add(file, "error", error.what());

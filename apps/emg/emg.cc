@@ -7,6 +7,7 @@
 
 #include "bio/emg/emg.h"
 #include "bio/emg/emg_config.h"
+#include "bio/emg/emg_recordings.h"
 #include "bio/tables/recording.h"
 #include "bio/tables/table_file.h"
 #include "output/result.h"
@@ -88,19 +89,24 @@ Figure measuredFigure(const bio::MeasuredCoordinate& measured) {
   return figure;
 }
 
-bio::Table trialOf(const bio::EmgResult& result) {
+bio::Table trialOf(const bio::EmgResult& result, const std::vector<bio::MeasuredOptions>& columns) {
   bio::Table table;
   table.name = "excitations";
   table.columns = {"time"};
   table.columns.insert(table.columns.end(), result.muscles.begin(), result.muscles.end());
   const Eigen::Index muscles = result.excitations.cols();
-  table.values.resize(result.time.size(), 1 + muscles + (result.measured ? 1 : 0));
+  table.values.resize(result.time.size(),
+                      1 + muscles + (result.measured ? 1 : 0) + result.columns.cols());
   table.values.col(0) = result.time;
   table.values.middleCols(1, muscles) = result.excitations;
   if (result.measured) {
     table.columns.push_back(result.measured->coordinate + "_deg");
     table.values.col(1 + muscles) = result.measured_deg;
   }
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    table.columns.push_back(columns[k].coordinate);
+  }
+  table.values.rightCols(result.columns.cols()) = result.columns;
   return table;
 }
 
@@ -113,8 +119,9 @@ class Emg : public Command {
 
   void addOptions(CLI::App& options) override {
     options
-        .add_option("RAW", recording_,
-                    "raw recording: text columns, Trigno export, .sto, .mot or .csv")
+        .add_option("RAW", recordings_,
+                    "raw recording: text columns, Trigno export, .sto, .mot, .csv, .c3d or .xdf; "
+                    "further recordings of the same movement ([[recording]])")
         ->required()
         ->check(CLI::ExistingFile)
         ->type_name("");
@@ -129,26 +136,29 @@ class Emg : public Command {
   ExitStatus run(const CommandContext& context) override {
     OutputFolder folder(context, {"excitations.sto"});
     Summary summary(context);
-    summary.addInput(recording_);
+    for (const std::string& recording : recordings_) summary.addInput(recording);
     summary.addInput(config_);
     const bio::EmgConfigFile file = bio::readEmgConfig(config_);
     for (const bio::FullDeclaration& full : file.full) {
       if (!full.mvcFile.empty()) summary.addInput(full.mvcFile);
     }
-    const bio::Recording recording = bio::readRecording(recording_, file.layout);
-    const bio::EmgResult result =
-        bio::excitationsFromEmg(recording, bio::emgConfigFor(file, recording));
+    const bio::JoinedRecordings joined = bio::readRecordings(file, recordings_);
+    const bio::EmgConfig config = bio::emgConfigFor(file, joined.recording);
+    const bio::EmgResult result = bio::excitationsFromEmg(joined.recording, config);
+    for (const std::string& warning : result.warnings) summary.warn(warning);
     folder.writeFile("excitations.sto", [&](const std::filesystem::path& path) {
-      bio::writeTable(trialOf(result), path);
+      bio::writeTable(trialOf(result, config.columns), path);
     });
-    tell(recording, result, summary);
+    tell(joined, result, summary);
     deliver(context, summary, reportOn(result), folder);
     return ExitStatus::done;
   }
 
  private:
-  void tell(const bio::Recording& recording, const bio::EmgResult& result, Summary& summary) const {
-    summary.set("format", std::string(bio::nameOf(recording.format)));
+  void tell(const bio::JoinedRecordings& joined, const bio::EmgResult& result,
+            Summary& summary) const {
+    summary.set("format", std::string(bio::nameOf(joined.recording.format)));
+    if (!joined.placed.empty()) summary.set("further_recordings", placedIn(joined));
     summary.set("rows", result.time.size());
     summary.set("duration_s", result.time[result.time.size() - 1] - result.time[0]);
     summary.set("muscles", result.muscles);
@@ -171,14 +181,33 @@ class Emg : public Command {
     summary.set("remarks", result.remarks);
   }
 
+  static nlohmann::ordered_json placedIn(const bio::JoinedRecordings& joined) {
+    nlohmann::ordered_json out = nlohmann::ordered_json::array();
+    for (const bio::JoinedRecordings::Placed& placed : joined.placed) {
+      nlohmann::ordered_json one = {{"file", placed.file}, {"offset_s", placed.offset}};
+      if (placed.found) {
+        one["correlation"] = placed.found->correlation;
+        one["next_best_correlation"] = placed.found->rival;
+      }
+      out.push_back(one);
+    }
+    return out;
+  }
+
   Report reportOn(const bio::EmgResult& result) const {
     Report report;
-    report.title = fmt::format("Excitations from {}", recording_);
+    report.title = fmt::format("Excitations from {}", fmt::join(recordings_, ", "));
     report.verdict =
         fmt::format("{} electrode{} drive{} {}.", result.electrodes.size(),
                     result.electrodes.size() == 1 ? "" : "s",
                     result.electrodes.size() == 1 ? "s" : "", fmt::join(result.muscles, ", "));
     report.mainFigure = excitationFigure(result);
+    if (!result.warnings.empty()) {
+      report.details.emplace_back(Section{"Channels that look wrong"});
+      for (const std::string& warning : result.warnings) {
+        report.details.emplace_back(Paragraph{warning});
+      }
+    }
     report.details.emplace_back(Section{"Processing steps and limitations"});
     for (const std::string& remark : result.remarks) report.details.emplace_back(Paragraph{remark});
     if (result.measured) report.details.emplace_back(measuredFigure(*result.measured));
@@ -189,7 +218,7 @@ class Emg : public Command {
     return report;
   }
 
-  std::string recording_;
+  std::vector<std::string> recordings_;
   std::string config_;
 };
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "bio/emg/channel_review.h"
 #include "emg/emg_remarks.h"
 #include "model/require.h"
 
@@ -90,6 +91,43 @@ Eigen::VectorXd rowTimes(const std::vector<ElectrodeTrace>& traces, const EmgCon
       rows, [&](Eigen::Index i) { return begin + static_cast<double>(i) / config.outputRate; });
 }
 
+// Limits a measured channel to what the rows can show.
+MeasuredOptions withoutAliasing(MeasuredOptions options, double rate, double outputRate) {
+  const double limit = 0.4 * outputRate;
+  if (rate <= outputRate || (options.lowPass && *options.lowPass <= limit)) return options;
+  options.lowPass = limit;
+  options.lowPassOrder = 6;
+  return options;
+}
+
+Eigen::MatrixXd columnsAt(const Recording& recording, const EmgConfig& config,
+                          const Eigen::VectorXd& times) {
+  Eigen::MatrixXd out(times.size(), static_cast<Eigen::Index>(config.columns.size()));
+  for (std::size_t k = 0; k < config.columns.size(); ++k) {
+    const Channel& channel = findChannel(recording, config.columns[k].channel);
+    const MeasuredOptions options =
+        withoutAliasing(config.columns[k], channel.rate, config.outputRate);
+    out.col(static_cast<Eigen::Index>(k)) =
+        angleAtRows(measuredCoordinate(channel, options), times);
+  }
+  return out;
+}
+
+std::vector<std::string> warningsOn(const Recording& recording, const EmgConfig& config) {
+  std::vector<ReviewedChannel> channels;
+  const ChannelUse use =
+      config.signal == EmgSignal::raw ? ChannelUse::rawEmg : ChannelUse::envelope;
+  for (const Electrode& electrode : config.electrodes) {
+    channels.push_back({&findChannel(recording, electrode.channel), use});
+  }
+  const auto add = [&](const MeasuredOptions& options) {
+    channels.push_back({&findChannel(recording, options.channel), ChannelUse::measured});
+  };
+  if (config.measured) add(*config.measured);
+  for (const MeasuredOptions& column : config.columns) add(column);
+  return reviewChannels(channels);
+}
+
 }  // namespace
 
 ElectrodeTrace emgEnvelope(const Channel& channel, const EmgConfig& config) {
@@ -156,10 +194,13 @@ EmgResult excitationsFromEmg(const Recording& recording, const EmgConfig& config
   out.fractionSumAbove = (out.excitations.array() > 1 + 1e-12).cast<double>().mean();
   out.excitations = out.excitations.cwiseMin(1.0);
   if (config.measured) {
-    out.measured =
-        measuredCoordinate(findChannel(recording, config.measured->channel), *config.measured);
+    const Channel& channel = findChannel(recording, config.measured->channel);
+    out.measured = measuredCoordinate(
+        channel, withoutAliasing(*config.measured, channel.rate, config.outputRate));
     out.measured_deg = angleAtRows(*out.measured, out.time);
   }
+  out.columns = columnsAt(recording, config, out.time);
+  out.warnings = warningsOn(recording, config);
   out.remarks = remarksOn(recording, config, out);
   return out;
 }

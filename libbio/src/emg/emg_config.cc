@@ -22,22 +22,21 @@ int orderOf(TomlTable& table, int standard) {
 }
 
 RecordingFormat formatOf(const std::string& word) {
-  for (const auto format :
-       {RecordingFormat::columns, RecordingFormat::trigno, RecordingFormat::table}) {
+  for (const auto format : {RecordingFormat::columns, RecordingFormat::trigno,
+                            RecordingFormat::table, RecordingFormat::c3d, RecordingFormat::xdf}) {
     if (word == nameOf(format)) return format;
   }
   return RecordingFormat::automatic;
 }
 
-void readInput(TomlTable& root, EmgConfigFile& out) {
-  TomlTable input = root.table("input");
-  out.layout.format =
-      formatOf(input.word("format", {"automatic", "columns", "trigno", "table"}).value_or(""));
-  if (input.word("signal", {"raw", "envelope"}).value_or("raw") == "envelope") {
-    out.emg.signal = EmgSignal::envelope;
-  }
-  input.finish();
-  for (TomlTable& channel : root.tables("channel")) {
+RecordingFormat readFormat(TomlTable& table) {
+  return formatOf(
+      table.word("format", {"automatic", "columns", "trigno", "table", "c3d", "xdf"}).value_or(""));
+}
+
+std::vector<ColumnDeclaration> readChannels(TomlTable& owner) {
+  std::vector<ColumnDeclaration> out;
+  for (TomlTable& channel : owner.tables("channel")) {
     ColumnDeclaration column;
     if (!channel.has("column")) channel.required<double>("column", std::nullopt);
     try {
@@ -53,7 +52,37 @@ void readInput(TomlTable& root, EmgConfigFile& out) {
         "scale", [](double x) { return std::isfinite(x) && x != 0; }, "must not be 0");
     column.offset = channel.number("offset", finite, "must be finite").value_or(0);
     channel.finish();
-    out.layout.columns.push_back(column);
+    out.push_back(column);
+  }
+  return out;
+}
+
+void readInput(TomlTable& root, EmgConfigFile& out) {
+  TomlTable input = root.table("input");
+  out.layout.format = readFormat(input);
+  if (input.word("signal", {"raw", "envelope"}).value_or("raw") == "envelope") {
+    out.emg.signal = EmgSignal::envelope;
+  }
+  input.finish();
+  out.layout.columns = readChannels(root);
+  for (TomlTable& table : root.tables("recording")) {
+    FurtherRecording further;
+    further.line = table.line();
+    further.layout.format = readFormat(table);
+    further.layout.columns = readChannels(table);
+    further.offset = table.number("offset_s", finite, "must be finite");
+    further.match = table.text("match").value_or("");
+    further.with = table.text("with").value_or("");
+    further.within = table.number("within_s", positive, "must be > 0");
+    if (further.offset && !further.match.empty()) {
+      table.fail("offset_s", "must be alone: match finds the offset");
+    }
+    if (!further.offset) {
+      if (further.match.empty()) table.required<double>("offset_s", std::nullopt);
+      if (further.with.empty()) table.required<double>("with", std::nullopt);
+    }
+    table.finish();
+    out.further.push_back(std::move(further));
   }
 }
 
@@ -194,6 +223,31 @@ void readMeasured(TomlTable& root, EmgConfigFile& out) {
   out.emg.measured = options;
 }
 
+void readColumns(TomlTable& root, EmgConfigFile& out) {
+  for (TomlTable& table : root.tables("column")) {
+    MeasuredOptions options;
+    options.channel = table.required("channel", table.text("channel"));
+    options.coordinate = table.required("name", table.text("name"));
+    const double scale =
+        table
+            .number(
+                "scale", [](double x) { return std::isfinite(x) && x != 0; }, "must not be 0")
+            .value_or(1);
+    const double offset = table.number("offset", finite, "must be finite").value_or(0);
+    options.degreesPerUnit = std::abs(scale);
+    options.sign = scale < 0 ? -1 : 1;
+    options.zero = -offset / scale;
+    options.lowPass = table.number("lowpass_Hz", positive, "must be > 0");
+    table.finish();
+    if (options.coordinate.empty() || options.coordinate == "time" ||
+        options.coordinate.find_first_of("\t\",") != std::string::npos) {
+      table.fail("name", "must be a name without tab, comma or quote, and not 'time'");
+    }
+    out.columnLines.push_back(table.line());
+    out.emg.columns.push_back(options);
+  }
+}
+
 const Channel& channelAt(const EmgConfigFile& config, int line, const Recording& recording,
                          const std::string& name) {
   try {
@@ -222,6 +276,7 @@ EmgConfigFile readEmgConfig(const std::string& file) {
   readElectrodes(root, out);
   readExcitation(root, out.emg);
   readMeasured(root, out);
+  readColumns(root, out);
   root.finish();
   return out;
 }
@@ -244,6 +299,9 @@ EmgConfig emgConfigFor(const EmgConfigFile& config, const Recording& recording) 
     } else {
       out.electrodes[i].full = OwnPercentile{full.percentile.value()};
     }
+  }
+  for (std::size_t k = 0; k < out.columns.size(); ++k) {
+    channelAt(config, config.columnLines[k], recording, out.columns[k].channel);
   }
   if (out.measured) {
     const Channel& channel =

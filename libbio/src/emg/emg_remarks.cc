@@ -95,6 +95,11 @@ std::vector<std::string> remarksOn(const Recording& recording, const EmgConfig& 
                     "instrument's limits or missing and are not used.",
                     result.measured->coordinate, config.measured->channel, result.measured->rate,
                     percent(result.measured->notMeasured)));
+    if (result.measured->rate > config.outputRate) {
+      out.push_back(fmt::format(
+          "It was low-passed at {:g} Hz or below before rows were taken from it at {:g} Hz.",
+          0.4 * config.outputRate, config.outputRate));
+    }
   }
   addLimits(config, result, out);
   out.insert(out.end(), recording.remarks.begin(), recording.remarks.end());

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "bio/emg/filter.h"
+#include "emg/bridged.h"
 
 namespace bio {
 namespace {
@@ -31,7 +32,8 @@ void check(const Channel& channel, const MeasuredOptions& options) {
   }
 }
 
-// Gaps replaced by straight lines, held at the ends.
+}  // namespace
+
 Eigen::VectorXd bridged(const Eigen::VectorXd& x) {
   Eigen::VectorXd out = x;
   Eigen::Index previous = -1;
@@ -52,8 +54,6 @@ Eigen::VectorXd bridged(const Eigen::VectorXd& x) {
   return out;
 }
 
-}  // namespace
-
 MeasuredCoordinate measuredCoordinate(const Channel& channel, const MeasuredOptions& options) {
   check(channel, options);
   MeasuredCoordinate out{options.coordinate, channel.rate, channel.startTime, {}, 0};
@@ -71,7 +71,7 @@ MeasuredCoordinate measuredCoordinate(const Channel& channel, const MeasuredOpti
   }
   if (options.lowPass) {
     const Eigen::VectorXd smooth = filterZeroPhase(
-        butterworthLowPass(2, *options.lowPass, channel.rate, Passes::forwardAndBackward),
+        butterworthLowPass(options.lowPassOrder, *options.lowPass, channel.rate, Passes::forwardAndBackward),
         bridged(seen));
     out.angle_deg = seen.binaryExpr(smooth, [](double raw, double filtered) {
       return std::isnan(raw) ? notMeasured : filtered;

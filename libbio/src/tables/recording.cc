@@ -8,13 +8,21 @@
 #include <stdexcept>
 
 #include "bio/tables/file_error.h"
+#include "tables/c3d_parameters.h"
 #include "tables/recording_layouts.h"
+#include "tables/text_file.h"
+#include "tables/xdf_chunks.h"
 
 namespace bio {
 namespace {
 
-std::vector<RawColumn> readColumns(const std::string& file, RecordingFormat format) {
+std::vector<RawColumn> readColumns(const std::string& file, RecordingFormat format,
+                                   std::vector<std::string>& remarks) {
   switch (format) {
+    case RecordingFormat::c3d:
+      return readC3dColumns(file, remarks);
+    case RecordingFormat::xdf:
+      return readXdfColumns(file, remarks);
     case RecordingFormat::columns:
       return readPlainColumns(file);
     case RecordingFormat::trigno:
@@ -22,6 +30,10 @@ std::vector<RawColumn> readColumns(const std::string& file, RecordingFormat form
     default:
       return readTableColumns(file);
   }
+}
+
+bool isBinary(RecordingFormat format) {
+  return format == RecordingFormat::c3d || format == RecordingFormat::xdf;
 }
 
 std::string calledIn(const RawColumn& column) {
@@ -108,12 +120,24 @@ std::string_view nameOf(RecordingFormat format) {
       return "trigno";
     case RecordingFormat::table:
       return "table";
+    case RecordingFormat::c3d:
+      return "c3d";
+    case RecordingFormat::xdf:
+      return "xdf";
     default:
       return "automatic";
   }
 }
 
 RecordingFormat detectFormat(const std::string& file) {
+  {
+    const std::string bytes = readTextFile(file);
+    if (file.ends_with(".xdf") || tables::isXdf(bytes)) return RecordingFormat::xdf;
+    if (file.ends_with(".c3d") || tables::isC3d(bytes)) return RecordingFormat::c3d;
+    if (bytes.starts_with("PathFileType")) {
+      throw FileError(fmt::format("{}: holds markers (TRC), must hold signals", file));
+    }
+  }
   const std::vector<std::string> lines = linesOf(file);
   // line 7 of a Trigno export: nothing but rates
   if (lines.size() >= 7) {
@@ -143,7 +167,7 @@ Recording readRecording(const std::string& file, const RecordingLayout& layout) 
   Recording out;
   out.file = file;
   out.format = layout.format == RecordingFormat::automatic ? detectFormat(file) : layout.format;
-  const std::vector<RawColumn> columns = readColumns(file, out.format);
+  const std::vector<RawColumn> columns = readColumns(file, out.format, out.remarks);
   checkDeclarations(file, columns, layout);
   for (const RawColumn& column : columns) {
     const ColumnDeclaration* declared = declarationOf(column, layout);
@@ -166,6 +190,12 @@ Recording readRecording(const std::string& file, const RecordingLayout& layout) 
                                     out.channels[i].name));
       }
     }
+  }
+  if (out.channels.empty() && isBinary(out.format)) {
+    throw FileError(fmt::format("{}: holds no {}, a recording needs some", file,
+                                out.format == RecordingFormat::c3d
+                                    ? "analog channels"
+                                    : "stream of numbers at a steady rate"));
   }
   if (out.channels.empty()) {
     throw FileError(

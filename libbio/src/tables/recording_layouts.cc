@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "bio/tables/file_error.h"
-#include "tables/text_file.h"
+#include "tables/cells.h"
 
 namespace bio {
 namespace {
@@ -46,12 +46,10 @@ std::pair<std::string, std::string> splitUnit(const std::string& text) {
 }  // namespace
 
 std::vector<std::string> linesOf(const std::string& file) {
-  std::istringstream stream(readTextFile(file));
+  const std::string text = tables::readTableText(file);
   std::vector<std::string> lines;
-  for (std::string line; std::getline(stream, line);) {
-    if (line.ends_with('\r')) line.pop_back();
-    lines.push_back(std::move(line));
-  }
+  tables::Lines all(text);
+  for (std::string_view line; all.next(line);) lines.emplace_back(line);
   if (lines.empty()) throw FileError(fmt::format("{}: is empty, expected a recording", file));
   return lines;
 }
@@ -93,7 +91,8 @@ std::vector<RawColumn> numberColumns(const std::string& file, const std::vector<
                                      std::size_t firstLine, char separator) {
   std::vector<std::vector<double>> columns;
   std::vector<std::size_t> lengths;  // up to the last value
-  std::size_t width = 0;             // of the shortest line so far
+  tables::NumberReader numbers(separator == ';' || separator == '\t');
+  std::size_t width = 0;  // of the shortest line so far
   for (std::size_t i = firstLine - 1; i < lines.size(); ++i) {
     const std::size_t row = i + 1 - firstLine;
     const std::vector<std::string> cells = cellsOf(lines[i], separator);
@@ -108,9 +107,12 @@ std::vector<RawColumn> numberColumns(const std::string& file, const std::vector<
                         file, i + 1, k + 1, cells[k]));
       }
       double value = 0;
-      if (!parse(cells[k], value) || !std::isfinite(value)) {
-        throw FileError(
-            fmt::format("{}:{}: column {}: '{}' is not a number", file, i + 1, k + 1, cells[k]));
+      const std::string_view rule = numbers.read(cells[k], value);
+      if (!rule.empty() || !std::isfinite(value)) {
+        throw FileError(fmt::format("{}:{}: column {}: '{}' is not a number{}{}", file, i + 1,
+                                    k + 1, cells[k],
+                                    rule.empty() || rule == "must be a number" ? "" : ", ",
+                                    rule == "must be a number" ? "" : rule));
       }
       if (k >= columns.size()) {
         columns.resize(k + 1);
@@ -121,6 +123,12 @@ std::vector<RawColumn> numberColumns(const std::string& file, const std::vector<
       lengths[k] = row + 1;
     }
     width = std::min(width, cells.size());
+  }
+  if (!numbers.undecided().empty()) {
+    throw FileError(fmt::format(
+        "{}: '{}' and all such numbers could have a decimal comma or a comma between thousands, "
+        "must be written with a decimal point or other digits",
+        file, numbers.undecided()));
   }
   std::vector<RawColumn> out;
   for (std::size_t k = 0; k < columns.size(); ++k) {

@@ -29,6 +29,12 @@ std::vector<std::string> cellsOf(const std::string& line, char separator);
 double finiteNumber(const std::string& file, std::size_t line, const std::string& column,
                     const std::string& cell);
 
+/// The project's words for units that instruments write with other letters: µV is uV, ° is deg.
+std::string plainUnit(std::string unit);
+
+/// Takes away values at both ends that are not measured.
+void cutEnds(Channel& channel);
+
 /// Is this a number, all of it?
 bool isNumber(const std::string& cell);
 
@@ -37,7 +43,9 @@ bool isNumber(const std::string& cell);
 std::vector<RawColumn> numberColumns(const std::string& file, const std::vector<std::string>& lines,
                                      std::size_t firstLine, char separator);
 
-/// Reads one format each.
+/// Reads one format each; remarks say what was left out.
+std::vector<RawColumn> readC3dColumns(const std::string& file, std::vector<std::string>& remarks);
+std::vector<RawColumn> readXdfColumns(const std::string& file, std::vector<std::string>& remarks);
 std::vector<RawColumn> readPlainColumns(const std::string& file);
 std::vector<RawColumn> readTrigno(const std::string& file);
 std::vector<RawColumn> readTableColumns(const std::string& file);

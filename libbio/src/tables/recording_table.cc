@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
@@ -36,15 +37,25 @@ double rateOf(const std::string& file, const Eigen::VectorXd& times) {
   return std::abs(rounded / rate - 1) < 1e-4 ? rounded : rate;
 }
 
-// "BIClong_uV" → "uV", "envelope_mV" → "mV"
+// "BIClong_uV" → "uV", "envelope_mV" → "mV", "biceps [mV]" → "mV", "knee (deg)" → "deg"
 std::string unitIn(const std::string& column) {
   constexpr std::array<std::string_view, 6> units = {"V", "mV", "uV", "deg", "rad", "g"};
+  const char last = column.empty() ? ' ' : column.back();
+  if (last == ']' || last == ')') {
+    const auto open = column.rfind(last == ']' ? '[' : '(');
+    if (open == std::string::npos || open == 0) return "";
+    return plainUnit(column.substr(open + 1, column.size() - open - 2));
+  }
   const auto mark = column.rfind('_');
   if (mark == std::string::npos) return "";
-  for (const std::string_view unit : units) {
-    if (column.substr(mark + 1) == unit) return std::string(unit);
-  }
-  return "";
+  const std::string unit = plainUnit(column.substr(mark + 1));
+  return std::find(units.begin(), units.end(), unit) != units.end() ? unit : "";
+}
+
+// An angle of OpenSim, whose unit the header tells: all coordinates but those that translate.
+bool isAngleInDegrees(const Table& table, const std::string& column) {
+  return table.inDegrees && !column.ends_with("_tx") && !column.ends_with("_ty") &&
+         !column.ends_with("_tz");
 }
 
 // Only every k-th row filled: a signal of rate/k. Empty rows at the ends are cut off.
@@ -69,6 +80,13 @@ RawColumn compressed(const Eigen::VectorXd& cells, double rate, double startTime
 
 }  // namespace
 
+std::string plainUnit(std::string unit) {
+  for (const std::string_view micro : {"\xC2\xB5", "\xCE\xBC"}) {
+    if (unit.starts_with(micro)) return "u" + unit.substr(micro.size());
+  }
+  return unit == "\xC2\xB0" || unit == "degrees" ? "deg" : unit;
+}
+
 std::vector<RawColumn> readTableColumns(const std::string& file) {
   const Table table = readTable(file);
   const Eigen::VectorXd times = timesOf(table);
@@ -81,6 +99,7 @@ std::vector<RawColumn> readTableColumns(const std::string& file) {
     column.number = static_cast<int>(k + 1);
     column.header = name;
     column.unit = unitIn(name);
+    if (column.unit.empty() && isAngleInDegrees(table, name)) column.unit = "deg";
     out.push_back(std::move(column));
   }
   return out;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -12,82 +11,29 @@
 #include <string_view>
 
 #include "bio/tables/file_error.h"
+#include "tables/cells.h"
 #include "tables/text_file.h"
 
 namespace bio {
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-  const auto isSpace = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
-  while (!text.empty() && isSpace(text.front())) text.remove_prefix(1);
-  while (!text.empty() && isSpace(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-std::string lowered(std::string_view text) {
-  std::string low(text);
-  std::transform(low.begin(), low.end(), low.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return low;
-}
-
-constexpr std::string_view byteOrderMark = "\xEF\xBB\xBF";
-
-// The lines of a text with their numbers; a line may end in CR LF, the text may begin with BOMs.
-class Lines {
- public:
-  explicit Lines(std::string_view text) : left_(text) {
-    while (left_.starts_with(byteOrderMark)) left_.remove_prefix(byteOrderMark.size());
-  }
-  bool next(std::string_view& line) {
-    if (left_.empty()) return false;
-    const auto end = left_.find('\n');
-    line = left_.substr(0, end);
-    left_ = end == std::string_view::npos ? std::string_view{} : left_.substr(end + 1);
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    ++number_;
-    return true;
-  }
-  int number() const { return number_; }
-
- private:
-  std::string_view left_;
-  int number_ = 0;
-};
-
-enum class Separator { comma, tab, space };
-
-std::vector<std::string_view> splitCells(std::string_view line, Separator separator) {
-  std::vector<std::string_view> cells;
-  if (separator == Separator::space) {
-    for (line = trimmed(line); !line.empty();) {
-      const auto end = std::find_if(line.begin(), line.end(), [](char c) {
-        return std::isspace(static_cast<unsigned char>(c)) != 0;
-      });
-      cells.emplace_back(line.begin(), end);
-      line = trimmed(std::string_view(end, line.end()));
-    }
-    return cells;
-  }
-  const char mark = separator == Separator::comma ? ',' : '\t';
-  for (;;) {
-    const auto end = line.find(mark);
-    std::string_view cell = trimmed(line.substr(0, end));
-    if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') {
-      cell = trimmed(cell.substr(1, cell.size() - 2));
-    }
-    cells.push_back(cell);
-    if (end == std::string_view::npos) return cells;
-    line.remove_prefix(end + 1);
-  }
-}
+using tables::byteOrderMark;
+using tables::Lines;
+using tables::lowered;
+using tables::NumberReader;
+using tables::Separator;
+using tables::splitCells;
+using tables::trimmed;
 
 struct Reader {
   std::string file;
   Lines lines;
   Table table;
+  NumberReader numbers{false};
   int expectedRows = -1;
   int expectedColumns = -1;
+  std::size_t blankNames = 0;  ///< separators without a name behind the last name
+  tables::TimeName time;       ///< unit of the column `time`
 
   [[noreturn]] void fail(const std::string& message) const {
     throw FileError(fmt::format("{}:{}: {}", file, lines.number(), message));
@@ -105,9 +51,13 @@ struct Reader {
   void readHeader();
   void readHeaderLine(std::string_view line, bool isFirst);
   void readNames(std::string_view line, Separator separator);
+  void findTime();
   void readRows(Separator separator);
-  double readCell(std::string_view cell, std::size_t column) const;
-  void checkTime() const;
+  void checkWidth(std::vector<std::string_view>& row, Separator separator) const;
+  void checkHoldsNumbers(const std::vector<std::string_view>& row);
+  double readCell(std::string_view cell, std::size_t column);
+  double timeIn(std::string_view cell, double value, double lastTime,
+                const std::string& name) const;
 };
 
 void Reader::readHeaderLine(std::string_view line, bool isFirst) {
@@ -152,7 +102,11 @@ void Reader::readHeader() {
 void Reader::readNames(std::string_view line, Separator separator) {
   std::set<std::string_view> seen;
   auto names = splitCells(line, separator);
-  if (separator == Separator::tab && names.size() > 1 && names.back().empty()) names.pop_back();
+  // spreadsheets end every row with the separators of their widest
+  while (separator != Separator::space && names.size() > 1 && names.back().empty()) {
+    names.pop_back();
+    ++blankNames;
+  }
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (names[i].empty()) fail(fmt::format("column {} has no name, must have one", i + 1));
     if (!seen.insert(names[i]).second) {
@@ -165,14 +119,35 @@ void Reader::readNames(std::string_view line, Separator separator) {
   }
 }
 
-double Reader::readCell(std::string_view cell, std::size_t column) const {
-  const std::string low = lowered(cell);
-  if (low.empty() || low == "nan") return std::numeric_limits<double>::quiet_NaN();
-  const std::string_view digits = cell.starts_with('+') ? cell.substr(1) : cell;
+// The column of times is called `time` from here on, whatever its unit was.
+void Reader::findTime() {
+  if (hasColumn(table, "time") || hasColumn(table, "time_s")) return;
+  std::string found;
+  for (std::string& column : table.columns) {
+    const tables::TimeName name = tables::timeNameOf(column);
+    if (!name.isTime) continue;
+    if (!name.unknownUnit.empty()) {
+      fail(fmt::format("column '{}': unit '{}', must be s, ms, us or min for a time", column,
+                       name.unknownUnit));
+    }
+    if (!found.empty()) fail(fmt::format("'{}' and '{}' are times, must be one", found, column));
+    found = column;
+    time = name;
+    column = "time";
+  }
+  if (found.empty()) {
+    fail("has no column 'time', must have one, in s or with its unit, 'time [ms]'");
+  }
+}
+
+double Reader::readCell(std::string_view cell, std::size_t column) {
+  if (cell.empty() || (cell.size() == 3 && lowered(cell) == "nan")) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
   double value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc() || end != digits.data() + digits.size()) {
-    fail(fmt::format("column '{}': value = '{}', must be a number", table.columns[column], cell));
+  const std::string_view rule = numbers.read(cell, value);
+  if (!rule.empty()) {
+    fail(fmt::format("column '{}': value = '{}', {}", table.columns[column], cell, rule));
   }
   if (!std::isfinite(value)) {
     fail(fmt::format("column '{}': value = {}, must be finite, or empty for not measured",
@@ -181,41 +156,94 @@ double Reader::readCell(std::string_view cell, std::size_t column) const {
   return value;
 }
 
+// One cell per name; more where the names ended in separators, too, and they are empty.
+void Reader::checkWidth(std::vector<std::string_view>& row, Separator separator) const {
+  const std::size_t width = table.columns.size();
+  const std::size_t blank = std::max<std::size_t>(blankNames, separator == Separator::tab ? 1 : 0);
+  while (row.size() > width && row.size() <= width + blank && row.back().empty()) row.pop_back();
+  if (row.size() > width && row.size() <= width + blankNames) {
+    fail(fmt::format("column {} has values but no name, must have one", row.size()));
+  }
+  if (row.size() == width) return;
+  const bool decimals = separator == Separator::comma && row.size() == 2 * width;
+  fail(fmt::format("row has {} cells, must have {} as there are columns{}", row.size(), width,
+                   decimals ? " (decimal commas need semicolons or tabs between cells)" : ""));
+}
+
+// Many programs write units in a second row.
+void Reader::checkHoldsNumbers(const std::vector<std::string_view>& row) {
+  double ignored = 0;
+  const bool any = std::any_of(row.begin(), row.end(), [&](std::string_view cell) {
+    return cell.empty() || lowered(cell) == "nan" || NumberReader(true).read(cell, ignored).empty();
+  });
+  if (any || row.size() < 2) return;
+  fail(
+      fmt::format("'{}' and every other cell is no number, must be one (a second row of names or "
+                  "units? delete it and write units into the names, 'time [ms]')",
+                  row.front()));
+}
+
+double Reader::timeIn(std::string_view cell, double value, double lastTime,
+                      const std::string& name) const {
+  if (!std::isfinite(value)) fail(fmt::format("{} = '{}', must be a number", name, cell));
+  const double t = value * time.times / time.per;
+  if (!(t > lastTime)) {
+    fail(fmt::format("{} = {} s after {} s, must rise strictly", name, t, lastTime));
+  }
+  return t;
+}
+
 void Reader::readRows(Separator separator) {
   std::vector<double> cells;
-  std::vector<int> rowLines;
   const std::size_t width = table.columns.size();
-  const auto time = std::find_if(table.columns.begin(), table.columns.end(),
-                                 [](const auto& c) { return c == "time" || c == "time_s"; });
-  const auto timeColumn = static_cast<std::size_t>(time - table.columns.begin());
+  const auto timeName = std::find_if(table.columns.begin(), table.columns.end(),
+                                     [](const auto& c) { return c == "time" || c == "time_s"; });
+  const auto timeColumn = static_cast<std::size_t>(timeName - table.columns.begin());
+  numbers = NumberReader(separator == Separator::semicolon || separator == Separator::tab);
   int rows = 0;
+  int undecidedLine = 0;
   double lastTime = -std::numeric_limits<double>::infinity();
+  int emptyLine = 0;  // spreadsheets leave such rows at the end
   for (std::string_view line; lines.next(line);) {
     if (trimmed(line).empty()) continue;
     auto row = splitCells(line, separator);
-    if (separator == Separator::tab && row.size() == width + 1 && row.back().empty())
-      row.pop_back();
-    if (row.size() != width) {
-      fail(fmt::format("row has {} cells, must have {} as there are columns", row.size(), width));
+    checkWidth(row, separator);
+    const bool isEmpty = std::all_of(row.begin(), row.end(), [](auto c) { return c.empty(); });
+    if (isEmpty && timeColumn < width && rows > 0) {
+      if (emptyLine == 0) emptyLine = lines.number();
+      continue;
     }
+    if (emptyLine > 0) {
+      throw FileError(fmt::format("{}:{}: {} = '', must be a number", file, emptyLine, *timeName));
+    }
+    if (rows == 0) checkHoldsNumbers(row);
     for (std::size_t i = 0; i < width; ++i) cells.push_back(readCell(row[i], i));
     if (timeColumn < width) {
-      const double t = cells[cells.size() - width + timeColumn];
-      if (!std::isfinite(t))
-        fail(fmt::format("{} = '{}', must be a number", *time, row[timeColumn]));
-      if (!(t > lastTime)) {
-        fail(fmt::format("{} = {} s after {} s, must rise strictly", *time, t, lastTime));
-      }
-      lastTime = t;
+      double& t = cells[cells.size() - width + timeColumn];
+      lastTime = t = timeIn(row[timeColumn], t, lastTime, *timeName);
     }
+    if (undecidedLine == 0 && !numbers.undecided().empty()) undecidedLine = lines.number();
     ++rows;
   }
   if (rows == 0) fail("holds no rows, must hold at least one");
+  if (!numbers.undecided().empty()) {
+    throw FileError(fmt::format(
+        "{}:{}: '{}' and all such numbers could have a decimal comma or a comma between "
+        "thousands, must be written with a decimal point or other digits",
+        file, undecidedLine, numbers.undecided()));
+  }
   if (expectedRows >= 0 && rows != expectedRows) {
     fail(fmt::format("{} rows, the header promises {}", rows, expectedRows));
   }
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   table.values = Eigen::Map<const RowMajor>(cells.data(), rows, static_cast<Eigen::Index>(width));
+}
+
+// The next line with anything in it.
+std::string_view firstFilled(Lines lines) {
+  std::string_view line;
+  while (lines.next(line) && trimmed(line).empty()) line = {};
+  return line;
 }
 
 bool isCsv(const std::filesystem::path& file) {
@@ -255,8 +283,8 @@ void checkWritable(const Table& table, const std::string& file) {
 }  // namespace
 
 Table readTable(const std::filesystem::path& file, TableKind kind) {
-  const std::string text = readTextFile(file);
-  Reader reader{file.string(), Lines(text), {}};
+  const std::string text = tables::readTableText(file);
+  Reader reader{.file = file.string(), .lines = Lines(text), .table = {}, .time = {}};
   if (trimmed(text).empty()) throw FileError(file.string() + ": is empty, must be a table");
 
   const std::string extension = lowered(file.extension().string());
@@ -264,19 +292,24 @@ Table readTable(const std::filesystem::path& file, TableKind kind) {
                          (extension != ".csv" && text.find("endheader") != std::string::npos);
   if (hasHeader) reader.readHeader();
   std::string_view names;
-  while (reader.lines.next(names) && trimmed(names).empty()) {
+  // Excel's own first line says which separator follows
+  while (reader.lines.next(names) &&
+         (trimmed(names).empty() || (!hasHeader && lowered(names).starts_with("sep=")))) {
+    names = {};
   }
   if (trimmed(names).empty()) reader.fail("holds no column names, must hold a row of them");
-  const Separator separator = !hasHeader && names.find(',') != std::string_view::npos
-                                  ? Separator::comma
-                              : names.find('\t') != std::string_view::npos ? Separator::tab
-                              : hasHeader                                  ? Separator::space
-                                                                           : Separator::comma;
-  reader.readNames(names, separator);
-  if (kind == TableKind::timeSeries && !hasColumn(reader.table, "time") &&
-      !hasColumn(reader.table, "time_s")) {
-    reader.fail("has no column 'time', must have one");
+  Separator separator = Separator::space;
+  if (!hasHeader) {
+    try {
+      separator = tables::separatorOf(names, firstFilled(reader.lines));
+    } catch (const std::invalid_argument& rule) {
+      reader.fail(rule.what());
+    }
+  } else if (names.find('\t') != std::string_view::npos) {
+    separator = Separator::tab;
   }
+  reader.readNames(names, separator);
+  if (kind == TableKind::timeSeries) reader.findTime();
   reader.readRows(separator);
   return std::move(reader.table);
 }

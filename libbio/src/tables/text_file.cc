@@ -6,7 +6,6 @@
 #include <cctype>
 #include <cmath>
 #include <fstream>
-#include <sstream>
 
 #include "bio/tables/file_error.h"
 
@@ -33,10 +32,15 @@ std::string readTextFile(const std::filesystem::path& file) {
                                 std::ldexp(static_cast<double>(size), -30)));
   }
   std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream) throw FileError(fmt::format("{}: cannot be read", file.string()));
-  return std::move(text).str();
+  std::string text(error ? 0 : size, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  // some files do not tell their size
+  for (char c = 0; stream.get(c);) text.push_back(c);
+  if (stream.bad() || !stream.eof()) {
+    throw FileError(fmt::format("{}: cannot be read", file.string()));
+  }
+  return text;
 }
 
 void writeTextFile(const std::filesystem::path& file, const std::string& text) {

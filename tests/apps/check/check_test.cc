@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "libbio/tables/binary_samples.h"
 #include "support/run_program.h"
 #include "support/scratch_folder.h"
 
@@ -27,6 +28,29 @@ TEST(CheckCommand, AGoodTrialIsStatusZero) {
   const ProgramResult result = runFisherHill({"check", scratch.file("good.csv", goodTrial)});
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.err, "");
+}
+
+TEST(CheckCommand, TellsWhatRecordingsHold) {
+  const ScratchFolder scratch;
+  support::XdfSample xdf;
+  xdf.streamHeader(1, "EMG", 1, 100, "int16", support::XdfSample::label("BIC", "uV"));
+  const std::string one = support::XdfSample::int16({1}), two = support::XdfSample::int16({2});
+  xdf.chunk(3, support::XdfSample::samples(1, {5, 5.01}, {one, two}));
+  const std::string trc =
+      "PathFileType\t4\nDataRate\tNumFrames\tNumMarkers\tUnits\n50\t1\t1\tmm\n"
+      "Frame#\tTime\tHIP\n\n1\t0\t1\t2\t3\n";
+  const ProgramResult result =
+      runFisherHill({"check", scratch.file("a.c3d", support::C3dSample{}.write()),
+                     scratch.file("b.xdf", xdf.bytes), scratch.file("c.trc", trc), "--json"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  const auto held = nlohmann::json::parse(result.out)["recordings"];
+  EXPECT_THAT(held[0]["markers"], ElementsAre("HEAD", "ELBOW"));
+  EXPECT_EQ(held[0]["channels"][1]["name"], "TRI");
+  EXPECT_EQ(held[1]["channels"][0]["unit"], "uV");
+  EXPECT_EQ(held[2]["frame_rate_Hz"], 50);
+  const ProgramResult broken = runFisherHill({"check", scratch.file("d.c3d", "\x02\x50")});
+  EXPECT_EQ(broken.status, 1);
+  EXPECT_THAT(broken.out, HasSubstr("d.c3d: is no C3D file"));
 }
 
 TEST(CheckCommand, JsonIsTheSummaryAlone) {
@@ -122,7 +146,8 @@ TEST(CheckCommand, MatchesATrialsColumnsWithTheModel) {
   const std::string good = scratch.file("good.csv", "time,BIClong,elbow_flexion_deg\n" + rows);
   const ProgramResult fits = runFisherHill({"check", good, "models/elbow8.osim"});
   EXPECT_EQ(fits.status, 0) << fits.out;
-  EXPECT_THAT(fits.out, HasSubstr("'TRIlong' has no column, its excitation is 0.01 (and 6 similar findings"));
+  EXPECT_THAT(fits.out,
+              HasSubstr("'TRIlong' has no column, its excitation is 0.01 (and 6 similar findings"));
 
   const std::string bad = scratch.file("bad.csv", "time,BIClong,GLUTmax\n" + rows);
   const ProgramResult differs = runFisherHill({"check", bad, "models/elbow8.osim"});

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "libbio/tables/binary_samples.h"
 #include "support/run_program.h"
 #include "support/scratch_folder.h"
 
@@ -73,6 +74,37 @@ TEST(EmgCommand, TellsBadInputInOneLineAndLeavesNothingBehind) {
   fails({"emg", word, "--config", good, "--out", out}, "word.txt:2: column 2: 'x' is not a number");
   fails({"emg", raw, "--out", out}, "--config");
   fails({"emg", raw, "--config", (scratch / "none.toml").string(), "--out", out}, "none.toml");
+}
+
+// A C3D file, and a table of semicolons and decimal commas on a clock of its own.
+TEST(EmgCommand, JoinsRecordingsOfTwoClocks) {
+  const ScratchFolder scratch;
+  support::C3dSample sample;
+  sample.frames = 100;  // 400 samples at 400 Hz
+  std::string table = "Time [ms];knee [deg]\n";
+  for (int i = 0; i < 120; ++i) {
+    table += std::to_string(5000 + 10 * i) + ";" + std::to_string(i) + ",5\n";
+  }
+  const std::string out = (scratch / "out").string();
+  const ProgramResult result = runFisherHill(
+      {"emg", scratch.file("emg.c3d", sample.write()), scratch.file("knee.csv", table), "--config",
+       scratch.file("c.toml",
+                    "[bandpass]\nlow_Hz = 10\nhigh_Hz = 190\n"
+                    "[[recording]]\noffset_s = -5.1\n"
+                    "[[electrode]]\nchannel = 'BIC'\nmuscles = ['BIClong']\n"
+                    "[[column]]\nchannel = 'knee [deg]'\nname = 'knee_deg'\nscale = -2\n"),
+       "--out", out});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = nlohmann::json::parse(support::contentOf(out + "/summary.json"));
+  EXPECT_EQ(json["format"], "c3d");
+  EXPECT_EQ(json["further_recordings"][0]["offset_s"], -5.1);
+  EXPECT_EQ(json["inputs"].size(), 3u);
+  const std::vector<std::string> lines =
+      support::linesOf(support::contentOf(out + "/excitations.sto"));
+  const auto names = std::find(lines.begin(), lines.end(), "time\tBIClong\tknee_deg");
+  ASSERT_NE(names, lines.end());
+  // at 0 s the knee's own time is 5.1 s: 10.5 degrees, turned round and doubled
+  EXPECT_TRUE((names + 1)->ends_with("\t-21")) << *(names + 1);
 }
 
 TEST(EmgCommand, RunsOnTheGoniometerRecordingWithTheShippedConfiguration) {

@@ -163,7 +163,14 @@ TEST_F(Recordings, NamesFileLineAndColumnOfWhatItCannotRead) {
   fails(file("blank.txt", "\n \n"), layout, "only empty lines");
   fails(file("word.txt", "1\t2\n3\tx\n"), layout, "word.txt:2: column 2: 'x' is not a number");
   fails(file("nan.txt", "1\t2\nnan\t2\n"), layout, "nan.txt:2: column 1: 'nan'");
-  fails(file("comma.txt", "1\t2\n1,5\t2\n"), layout, "comma.txt:2: column 1: '1,5'");
+  fails(file("comma.txt", "1 2\n1,5 2\n"), layout, "comma.txt:2: column 1: '1,5'");
+  fails(file("mixed.txt", "1,5\t2\n1.5\t2\n"), layout,
+        "mixed.txt:2: column 1: '1.5' is not a number, must have a decimal comma");
+  fails(file("thousands.txt", "1,500\t2\n1,750\t2\n"), layout,
+        "'1,500' and all such numbers could have a decimal comma or a comma between thousands");
+  EXPECT_EQ(
+      bio::readRecording(file("decimal.txt", "1,5;2\n1,25;2\n"), layout).channels[0].values[1],
+      1.25);
   fails(file("short.txt", "1\t2\n\t3\n"), layout, "column 1: has 1 values");
   fails(file("ok.txt", "1\t2\n1\t2\n"), {}, "no channel is declared");
   layout.columns = {column(3, "x", 10, "mV")};
@@ -195,9 +202,9 @@ TEST_F(Recordings, NamesTheLineOfABrokenTrignoHeader) {
 TEST(Channels, AreFoundByNameOrTheNamesAreListed) {
   const bio::Recording r{
       "f.csv", bio::RecordingFormat::table, {{"a", "", 1, 0, {}}, {"b", "", 1, 0, {}}}, {}};
-  EXPECT_THAT(
-      [&] { bio::findChannel(r, "c"); },
-      ThrowsMessage<std::invalid_argument>(HasSubstr("f.csv: no channel 'c'; the file has 'a', 'b'")));
+  EXPECT_THAT([&] { bio::findChannel(r, "c"); },
+              ThrowsMessage<std::invalid_argument>(
+                  HasSubstr("f.csv: no channel 'c'; the file has 'a', 'b'")));
 }
 
 }  // namespace

@@ -158,7 +158,8 @@ TEST_F(TableFile, SaysInOneLineWhatIsWrong) {
   EXPECT_EQ(messageOf("a.csv", "time,BRA\n0,1\n,2\n"), "a.csv:3: time = '', must be a number");
   EXPECT_EQ(messageOf("a.csv", "time,BRA\n0,1\nnan,2\n"),
             "a.csv:3: time = 'nan', must be a number");
-  EXPECT_EQ(messageOf("a.csv", "t,BRA\n0,1\n"), "a.csv:1: has no column 'time', must have one");
+  EXPECT_EQ(messageOf("a.csv", "t,BRA\n0,1\n"),
+            "a.csv:1: has no column 'time', must have one, in s or with its unit, 'time [ms]'");
   EXPECT_EQ(messageOf("a.csv", "time,BRA,BRA\n0,1,2\n"),
             "a.csv:1: second column called 'BRA', names must be unique");
   EXPECT_EQ(messageOf("a.csv", "time,,BRA\n0,1,2\n"),
@@ -188,6 +189,73 @@ TEST_F(TableFile, SaysInOneLineWhatIsWrong) {
               testing::ThrowsMessage<FileError>(HasSubstr("none.csv: there is no such file")));
   EXPECT_THAT([&] { readTable(folder_.path()); },
               testing::ThrowsMessage<FileError>(HasSubstr("is a directory, must be a file")));
+}
+
+TEST_F(TableFile, ReadsTablesAsLaboratoriesWriteThem) {
+  for (const char* text :
+       {"time;BRA;note\n0,00;0,1;7\n0,25;0,2;\n",                          // decimal commas
+        "sep=;\r\ntime;BRA;note\r\n0.00;0.1;7\r\n0.25;0.2;\r\n",           // Excel's first line
+        "time\tBRA\tnote\n0,00\t0,1\t7\n0,25\t0,2\t\n",                    // between tabs
+        "\xEF\xBB\xBFTime,BRA,note\n0,0.1,7\n0.25,0.2,\n",                 // byte order mark
+        "TIME,BRA,note\r0,0.1,7\r0.25,0.2,\r",                             // old line ends
+        "time [ms];BRA;note\n0;0,1;7\n250;0,2;\n\n\n",                     // unit, blank lines
+        "Time_ms,BRA,note,,\n0,0.1,7,,\n250,0.2,,,\n,,,,\n,,,,\n",         // blank cells
+        "BRA,time (s),note\n0.1,0,7\n0.2,0.25,\n",                         // any place
+        "\"Time,us\";\"BRA\";\"note\"\n\"0,0\";\"0,1\";7\n250000;0,2;\n",  // quoted commas
+        "X[s],BRA,note\n0,0.1,7\n0.25,0.2,\n"}) {                          // Delsys
+    const Table table = readTable(write("l.csv", text));
+    EXPECT_EQ(timesOf(table)(0), 0) << text;
+    EXPECT_EQ(timesOf(table)(1), 0.25) << text;
+    EXPECT_EQ(table.values.rows(), 2) << text;
+    EXPECT_EQ(table.values(1, columnIndex(table, "BRA")), 0.2) << text;
+    EXPECT_EQ(table.values(0, columnIndex(table, "note")), 7) << text;
+    EXPECT_TRUE(std::isnan(table.values(1, columnIndex(table, "note")))) << text;
+  }
+  // the plain name wins, others stay what they are
+  EXPECT_THAT(readTable(write("t.csv", "Time,time\n5,0\n5,1\n")).columns,
+              ElementsAre("Time", "time"));
+  EXPECT_EQ(readTable(write("m.csv", "time (min),BRA\n0,1\n0.5,1\n")).values(1, 0), 30);
+}
+
+TEST_F(TableFile, SaysWhatToDoWithTablesThatAreOdd) {
+  const auto refused = [&](const std::string& text, const std::string& line) {
+    EXPECT_EQ(messageOf("a.csv", text), "a.csv" + line) << text;
+  };
+  refused(std::string("\xFF\xFEt\0i\0", 6),
+          ": is UTF-16, must be UTF-8 (save it as CSV UTF-8, or: iconv -f UTF-16 -t UTF-8)");
+  refused(std::string("\0t\0i\0m", 6),
+          ": is UTF-16, must be UTF-8 (save it as CSV UTF-8, or: iconv -f UTF-16 -t UTF-8)");
+  refused(std::string("time,B\n0,\0", 10),
+          ": holds bytes that are no text, must be a table in UTF-8");
+  refused(
+      "time,BRA\n0,00,0,1\n",
+      ":2: row has 4 cells, must have 2 as there are columns (decimal commas need semicolons or "
+      "tabs between cells)");
+  refused("time,BRA\n0,\"0,1\"\n",
+          ":2: column 'BRA': value = '0,1', must have a decimal point (decimal commas need "
+          "semicolons or tabs between cells)");
+  refused("time;BRA\n0,5;0.1\n",
+          ":2: column 'BRA': value = '0.1', must have a decimal comma as the cells before");
+  refused("time;BRA\n0.5;0,1\n",
+          ":2: column 'BRA': value = '0,1', must have a decimal point as the cells before");
+  refused("time;F\n0;1.234,5\n",
+          ":2: column 'F': value = '1.234,5', must be a number without thousands separators");
+  refused("time;F\n0;1,234,567\n",
+          ":2: column 'F': value = '1,234,567', must be a number without thousands separators");
+  refused("time;F\n0;7\n1;1,234\n2;12,345\n",
+          ":3: '1,234' and all such numbers could have a decimal comma or a comma between "
+          "thousands, must be written with a decimal point or other digits");
+  refused("time;a,b\n0,1;2\n",
+          ":1: commas, semicolons or tabs could separate the names, must be one of them (quote "
+          "names that hold another)");
+  refused("time [frames],F\n0,1\n",
+          ":1: column 'time [frames]': unit 'frames', must be s, ms, us or min for a time");
+  refused("Time,time_ms\n0,1\n", ":1: 'Time' and 'time_ms' are times, must be one");
+  refused("time,F\ns,N\n0,1\n",
+          ":2: 's' and every other cell is no number, must be one (a second row of names or units? "
+          "delete it and write units into the names, 'time [ms]')");
+  refused("time,F,\n0,1,\n1,1,5\n", ":3: column 3 has values but no name, must have one");
+  refused("time,F\n0,1\n,\n1,1\n", ":3: time = '', must be a number");
 }
 
 }  // namespace

@@ -51,6 +51,9 @@ struct EmgConfig {
   std::optional<double> end;  ///< no row after this [s]
   std::vector<Electrode> electrodes;  ///< at least one
   std::optional<MeasuredOptions> measured;
+  /// Other measured columns of the trial: `coordinate` is the column's name, `degreesPerUnit` and
+  /// `sign` its factor.
+  std::vector<MeasuredOptions> columns = {};
 };
 
 /// Intermediate results of one electrode, at its own sampling rate.
@@ -77,7 +80,9 @@ struct EmgResult {
   std::vector<ElectrodeTrace> electrodes;
   std::optional<MeasuredCoordinate> measured;
   Eigen::VectorXd measured_deg;      ///< at the rows, NaN: not measured; empty without `measured`
+  Eigen::MatrixXd columns;           ///< rows × EmgConfig::columns, NaN: not measured
   std::vector<std::string> remarks;  ///< sentences for the report: processing steps and limitations
+  std::vector<std::string> warnings;  ///< channels that look wrong (channel_review.h)
 };
 
 /// Envelope of one channel through the first stages (up to the low-pass), in the channel's unit.
@@ -85,8 +90,9 @@ struct EmgResult {
 /// above fs/2
 ElectrodeTrace emgEnvelope(const Channel& channel, const EmgConfig& config);
 
-/// The complete processing. The excitation of a muscle is the weighted sum of the excitations of
-/// its electrodes, clipped to 1.
+/// The complete processing. A measured channel that is faster than the rows passes a zero-lag
+/// low-pass of order 6 at 0.4 of their rate, unless its own is lower. The excitation of a muscle is
+/// the weighted sum of the excitations of its electrodes, clipped to 1.
 /// @throws std::invalid_argument naming channel or setting, value, unit and rule
 EmgResult excitationsFromEmg(const Recording& recording, const EmgConfig& config);
 

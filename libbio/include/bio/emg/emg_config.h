@@ -17,15 +17,26 @@ struct FullDeclaration {
   std::optional<double> percentile;  ///< of this recording's own envelope
 };
 
+/// A recording behind the first: another file of the same movement, perhaps with another clock.
+struct FurtherRecording {
+  RecordingLayout layout;
+  std::optional<double> offset;  ///< time of the first = its own + offset [s]; absent: found by …
+  std::string match, with;       ///< … its channel `match` and an earlier recording's `with`
+  std::optional<double> within;  ///< |offset| looked for [s]
+  int line = 0;
+};
+
 /// A configuration of `fisherhill emg` as read from its TOML file; docs/emg.md lists every key.
 struct EmgConfigFile {
   std::string file;
   RecordingLayout layout;
+  std::vector<FurtherRecording> further;
   EmgConfig emg;                         ///< without the settings that depend on the recording
   std::vector<FullDeclaration> full;     ///< one per electrode
   std::vector<int> electrodeLines;       ///< line of each electrode in the file
   std::optional<double> degreesPerUnit;  ///< of the measured channel, if stated
   int measuredLine = 0;                  ///< of [measured], 0: none
+  std::vector<int> columnLines;          ///< of [[column]]
 };
 
 /// @throws FileError "file:line: key = value, rule" for TOML that cannot be parsed, an unknown key,

@@ -20,7 +20,8 @@ struct MeasuredOptions {
   double zero = 0;            ///< reading at 0°, in the channel's unit
   double clipBelow = -std::numeric_limits<double>::infinity();  ///< values ≤ this are not measured
   double clipAbove = std::numeric_limits<double>::infinity();  ///< values ≥ this are not measured
-  std::optional<double> lowPass;  ///< zero-lag Butterworth of order 2, −3 dB at this [Hz]
+  std::optional<double> lowPass;  ///< zero-lag Butterworth, −3 dB at this [Hz]
+  int lowPassOrder = 2;           ///< of one pass
 };
 
 struct MeasuredCoordinate {

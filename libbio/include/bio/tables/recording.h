@@ -26,10 +26,12 @@ double endTime(const Channel& channel);
 ///   trigno   Delsys Trigno export: sensors in line 4, quantities with units in line 6, one rate
 ///   per
 ///            column in line 7, columns of any length below
-///   table    .sto, .mot or .csv with a header row and a column of time [s] (table_file.h)
-enum class RecordingFormat { automatic, columns, trigno, table };
+///   table    .sto, .mot or .csv with a header row and a column of times (table_file.h)
+///   c3d      analog channels of a C3D file (c3d_file.h)
+///   xdf      numeric streams of an XDF file (xdf_file.h)
+enum class RecordingFormat { automatic, columns, trigno, table, c3d, xdf };
 
-/// "automatic", "columns", "trigno" or "table".
+/// The name of the format as above.
 std::string_view nameOf(RecordingFormat format);
 
 /// Declaration of one column by the user; properties stated in the file need not be repeated.
@@ -55,15 +57,17 @@ struct Recording {
   std::vector<std::string> remarks;  ///< data that was left out
 };
 
-/// `trigno` if line 7 is a row of rates in Hz, `columns` if the first line that is not empty
-/// contains only numbers, else `table`.
+/// `xdf` or `c3d` by the first bytes (or the extension), `trigno` if line 7 is a row of rates in
+/// Hz, `columns` if the first line that is not empty contains only numbers, else `table`.
 /// @throws FileError if the file cannot be read or is empty
 RecordingFormat detectFormat(const std::string& file);
 
 /// Reads the channels of a recording. Trigno channels are named by sensor and quantity ("bicep EMG
-/// 1"), table channels by column; the unit of a table column is the text after the last underscore
-/// if that is V, mV, uV, deg, rad or g. A table column with values only in every k-th row has the
-/// rate of the table divided by k.
+/// 1"), table channels by column; the unit of a table column is the text in brackets at the end of
+/// its name, or after the last underscore if that is V, mV, uV, deg, rad or g; with inDegrees=yes
+/// it is deg for any other that is no translation (_tx, _ty, _tz). C3D channels are named by
+/// ANALOG:LABELS, XDF channels by stream and label ("EMG biceps"). A table column with values only
+/// in every k-th row has the rate of the table divided by k.
 /// @throws FileError "file:line: column …" for a cell that is not a number, a rate or unit that is
 ///   missing or contradicts the declaration, a value in a column that ended earlier (a gap must
 ///   have its separators), a missing declared column, a table whose times are not equally spaced (a

@@ -19,13 +19,16 @@ struct Table {
 
 enum class TableKind {
   any,        ///< any columns, at least one row
-  timeSeries  ///< has a column `time` (or `time_s`) [s]: every cell finite, strictly rising
+  timeSeries  ///< has a column of times: every cell finite, strictly rising
 };
 
 /// Reads .sto or .mot (header up to `endheader`, then a row of names; cells between tabs or
-/// spaces), .csv (a row of names; commas) or, with any other extension, the format suggested by the
-/// first line. Empty cells and NaN become NaN. nRows, nColumns, datarows, datacolumns in a header
-/// are checked.
+/// spaces), .csv (a row of names; commas, semicolons or tabs) or, with any other extension, the
+/// format suggested by the first line. Empty cells and NaN become NaN. nRows, nColumns, datarows,
+/// datacolumns in a header are checked. As laboratories and spreadsheets write tables: byte order
+/// marks, quotes, a first line `sep=;`, decimal commas between semicolons or tabs, and empty rows
+/// and columns at the end. In a time series without a column `time` or `time_s`, the one called
+/// `Time`, `time [ms]`, `TIME_ms`, `time (s)` … becomes `time` in seconds.
 /// @throws FileError naming file, line and column
 Table readTable(const std::filesystem::path& file, TableKind kind = TableKind::timeSeries);
 

@@ -1,0 +1,213 @@
+#include "bio/tables/xdf_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tables/recording_layouts.h"
+#include "tables/text_file.h"
+#include "tables/xdf_chunks.h"
+
+namespace bio {
+namespace {
+
+using tables::Bytes;
+using tables::RawXdfStream;
+
+// Straight line through points (x, y): y = mean + slope·(x − centre).
+struct Line {
+  double centre = 0, mean = 0, slope = 0;
+  double at(double x) const { return mean + slope * (x - centre); }
+};
+
+template <class X, class Y>
+Line lineThrough(std::size_t count, X x, Y y) {
+  Line line;
+  const auto n = static_cast<double>(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    line.centre += x(i) / n;
+    line.mean += y(i) / n;
+  }
+  double xx = 0, xy = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    xx += (x(i) - line.centre) * (x(i) - line.centre);
+    xy += (x(i) - line.centre) * (y(i) - line.mean);
+  }
+  line.slope = xx > 0 ? xy / xx : 0;
+  return line;
+}
+
+// Brings the stamps to the recorder's clock.
+void synchronise(const Bytes& bytes, RawXdfStream& stream, std::vector<std::string>& remarks) {
+  if (stream.offsets.empty()) return;
+  const auto at = [&](std::size_t i) { return stream.offsets[i].first; };
+  const auto by = [&](std::size_t i) { return stream.offsets[i].second; };
+  const Line line = lineThrough(stream.offsets.size(), at, by);
+  if (!(std::abs(line.slope) < 0.01)) {
+    bytes.fail(
+        fmt::format("stream '{}': its clock runs off by {:.3g} s per second, must be below "
+                    "0.01",
+                    stream.name, line.slope));
+  }
+  double scatter = 0;
+  for (std::size_t i = 0; i < stream.offsets.size(); ++i) {
+    scatter = std::max(scatter, std::abs(by(i) - line.at(at(i))));
+  }
+  if (scatter > 0.01) {
+    remarks.push_back(
+        fmt::format("Stream '{}': measured offsets of its clock are up to {:.3g} ms "
+                    "off a straight line.",
+                    stream.name, 1000 * scatter));
+  }
+  for (double& stamp : stream.stamps) stamp += line.at(stamp);
+}
+
+// Samples without a leap of their stamps between them.
+struct Segment {
+  std::size_t first = 0, count = 0;
+  double start = 0;     // [s]
+  double interval = 0;  // [s]
+};
+
+std::vector<Segment> segmentsOf(const Bytes& bytes, const RawXdfStream& stream) {
+  const double leap = std::max(1.0, 500 / stream.nominalRate);
+  std::vector<Segment> out;
+  for (std::size_t i = 0; i < stream.stamps.size(); ++i) {
+    const double step = i == 0 ? 0 : stream.stamps[i] - stream.stamps[i - 1];
+    if (step < -leap) {
+      bytes.fail(fmt::format("stream '{}': time stamp {:.6f} s after {:.6f} s, must not go back",
+                             stream.name, stream.stamps[i], stream.stamps[i - 1]));
+    }
+    if (i == 0 || step > leap) out.push_back({.first = i});
+    ++out.back().count;
+  }
+  for (Segment& segment : out) {
+    const Line line = lineThrough(
+        segment.count, [](std::size_t i) { return static_cast<double>(i); },
+        [&](std::size_t i) { return stream.stamps[segment.first + i]; });
+    segment.start = line.at(0);
+    segment.interval = line.slope;
+  }
+  return out;
+}
+
+// Effective rate of all segments together.
+double rateOfStream(const Bytes& bytes, const RawXdfStream& stream,
+                    const std::vector<Segment>& segments) {
+  double intervals = 0, duration = 0;
+  for (const Segment& segment : segments) {
+    const auto n = static_cast<double>(segment.count - 1);
+    intervals += n;
+    duration += n * segment.interval;
+  }
+  const double rate = intervals / duration;
+  if (!(rate > 0 && rate < 1e9)) {
+    bytes.fail(fmt::format("stream '{}': its time stamps do not rise, must rise by about {:g} s",
+                           stream.name, 1 / stream.nominalRate));
+  }
+  return rate;
+}
+
+std::string channelName(const RawXdfStream& stream, std::size_t c) {
+  if (c < stream.labels.size() && !stream.labels[c].empty()) {
+    return stream.name + " " + stream.labels[c];
+  }
+  return stream.channels == 1 ? stream.name : fmt::format("{} {}", stream.name, c + 1);
+}
+
+XdfStream streamOf(const Bytes& bytes, const RawXdfStream& raw, std::vector<std::string>& remarks) {
+  const std::vector<Segment> segments = segmentsOf(bytes, raw);
+  const double rate = rateOfStream(bytes, raw, segments);
+  if (!(std::abs(rate / raw.nominalRate - 1) < 0.05)) {
+    remarks.push_back(
+        fmt::format("Stream '{}': {:.6g} Hz by its time stamps, {:g} Hz by its "
+                    "header; the stamps were used.",
+                    raw.name, rate, raw.nominalRate));
+  }
+  // row of each segment's first sample; missing samples between them
+  std::vector<Eigen::Index> rows;
+  Eigen::Index end = 0;
+  for (const Segment& segment : segments) {
+    const double place = std::round((segment.start - segments.front().start) * rate);
+    const double most = 2 * static_cast<double>(raw.stamps.size()) + 1000;
+    if (!(place <= most)) {
+      bytes.fail(
+          fmt::format("stream '{}': no samples for {:.3g} s, must be missing for at most as "
+                      "long as it has them",
+                      raw.name, (place - static_cast<double>(end)) / rate));
+    }
+    rows.push_back(std::max(end, static_cast<Eigen::Index>(std::max(place, 0.0))));
+    end = rows.back() + static_cast<Eigen::Index>(segment.count);
+  }
+  if (segments.size() > 1) {
+    remarks.push_back(fmt::format("Stream '{}': {} times samples are missing, {} in all.", raw.name,
+                                  segments.size() - 1,
+                                  end - static_cast<Eigen::Index>(raw.stamps.size())));
+  }
+  XdfStream out{raw.name, raw.type, {}};
+  for (std::size_t c = 0; c < raw.channels; ++c) {
+    Channel channel;
+    channel.name = channelName(raw, c);
+    channel.unit = c < raw.units.size() ? plainUnit(raw.units[c]) : "";
+    channel.rate = rate;
+    channel.startTime = segments.front().start;
+    channel.values.setConstant(end, std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t s = 0; s < segments.size(); ++s) {
+      for (std::size_t i = 0; i < segments[s].count; ++i) {
+        const double value = raw.values[(segments[s].first + i) * raw.channels + c];
+        if (!std::isfinite(value)) continue;
+        channel.values[rows[s] + static_cast<Eigen::Index>(i)] = value;
+      }
+    }
+    out.channels.push_back(std::move(channel));
+  }
+  return out;
+}
+
+// Why a stream gives no channels; empty if it does.
+std::string whyLeftOut(const RawXdfStream& stream) {
+  if (stream.width == 0) return "holds texts";
+  if (stream.nominalRate == 0) return "has no steady rate";
+  if (stream.stamps.size() < 2) {
+    return fmt::format("has {} sample{}", stream.stamps.size(), stream.stamps.empty() ? "s" : "");
+  }
+  return "";
+}
+
+}  // namespace
+
+XdfFile readXdf(const std::filesystem::path& file) {
+  return xdfFrom(readTextFile(file), file.string());
+}
+
+XdfFile xdfFrom(std::string_view content, const std::string& name) {
+  const Bytes bytes(name, content);
+  tables::RawXdf raw = tables::readXdfChunks(bytes);
+  XdfFile out;
+  if (raw.unread > 0) {
+    out.remarks.push_back(
+        fmt::format("The recording was cut off: its last {} of {} bytes were not read.", raw.unread,
+                    bytes.size()));
+  }
+  double earliest = std::numeric_limits<double>::infinity();
+  for (RawXdfStream& stream : raw.streams) {
+    if (const std::string why = whyLeftOut(stream); !why.empty()) {
+      out.remarks.push_back(fmt::format("Stream '{}' {} and was not read.", stream.name, why));
+      continue;
+    }
+    synchronise(bytes, stream, out.remarks);
+    out.streams.push_back(streamOf(bytes, stream, out.remarks));
+    earliest = std::min(earliest, out.streams.back().channels.front().startTime);
+  }
+  for (XdfStream& stream : out.streams) {
+    for (Channel& channel : stream.channels) {
+      channel.startTime -= earliest;
+      cutEnds(channel);
+    }
+  }
+  return out;
+}
+
+}  // namespace bio
