@@ -35,6 +35,7 @@ void buildDocument(tinyxml2::XMLDocument& document, const Model& model, Format f
   Element& forces = appendSet(writing, top, "ForceSet", "forceset");
   for (const Muscle& muscle : model.muscles) appendMuscle(writing, forces, muscle);
   appendCoordinateForces(writing, forces);
+  appendBodyForces(writing, forces);
   appendFitted(writing, top);
 }
 

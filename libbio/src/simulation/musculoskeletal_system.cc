@@ -23,6 +23,14 @@ double defaultLength(const Skeleton& skeleton, const Muscle& muscle, const Muscl
   return lengths.along(0).length;
 }
 
+/// What carries the path of an elastic string through the code for muscles' paths.
+Muscle asMuscle(const ElasticPath& elastic) {
+  Muscle carrier;
+  carrier.name = elastic.name;
+  carrier.path = elastic.path;
+  return carrier;
+}
+
 }  // namespace
 
 MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOptions& options)
@@ -47,12 +55,57 @@ void MusculoskeletalSystem::addTreePaths(const Model& model) {
     treePaths_.emplace_back(*tree_, skeleton_, findMuscle(model, muscle.name),
                             muscle.path.compiled());
   }
+  for (const SystemElasticPath& elastic : elasticPaths_) {
+    for (const ElasticPath& given : model.elasticPaths) {
+      if (given.name != elastic.name) continue;
+      treePaths_.emplace_back(*tree_, skeleton_, asMuscle(given), elastic.path.compiled());
+      break;
+    }
+  }
+}
+
+void MusculoskeletalSystem::addSwitches(const MusclePath& path) {
+  for (const PathSwitch& s : path.switches()) {
+    const bool known =
+        std::any_of(switches_.begin(), switches_.end(), [&](const PathSwitch& other) {
+          return other.freeIndex == s.freeIndex && other.value == s.value;
+        });
+    if (!known) switches_.push_back(s);
+  }
+}
+
+void MusculoskeletalSystem::addElasticPaths(const Model& model, const SystemOptions& options,
+                                            const MusculoskeletalSystem* like,
+                                            PostureSamples& postures) {
+  for (const ElasticPath& elastic : model.elasticPaths) {
+    if (!elastic.enabled) continue;
+    const Muscle carrier = asMuscle(elastic);
+    std::optional<MusclePath> path;
+    if (like) {
+      for (const SystemElasticPath& one : like->elasticPaths_) {
+        if (one.name == elastic.name) path = one.path;
+      }
+    } else {
+      try {
+        path.emplace(model, skeleton_, carrier, options.wrapAsCylinder, postures.of(carrier));
+      } catch (const UnsupportedWrap& e) {
+        warnings_.push_back(fmt::format("{}: '{}' is left out", e.what(), elastic.name));
+        continue;
+      }
+      warnings_.insert(warnings_.end(), path->warnings().begin(), path->warnings().end());
+    }
+    if (!path || !path->moves()) continue;
+    addSwitches(*path);
+    elasticPaths_.push_back({elastic.name, ElasticPathLaw(elastic), std::move(*path)});
+  }
 }
 
 MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOptions& options,
                                              const MusculoskeletalSystem* like,
                                              const std::vector<std::string>& shaped)
-    : skeleton_(model, options.skeleton), coordinateForces_(model, skeleton_) {
+    : skeleton_(model, options.skeleton),
+      coordinateForces_(model, skeleton_),
+      bodyForces_(model, skeleton_) {
   if (!like) {
     requireMovedMass(model, skeleton_);
     warnings_ = lockRemarks(model, options.skeleton);
@@ -100,13 +153,7 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
     }
     if (options.tabulatePaths && !like) path.tabulate(skeleton_);
     for (const std::string& note : path.notes()) notes_.push_back(note);
-    for (const PathSwitch& s : path.switches()) {
-      const bool known =
-          std::any_of(switches_.begin(), switches_.end(), [&](const PathSwitch& other) {
-            return other.freeIndex == s.freeIndex && other.value == s.value;
-          });
-      if (!known) switches_.push_back(s);
-    }
+    addSwitches(path);
     try {
       if (muscle.schutte) {
         const SchutteParameters& s = *muscle.schutte;
@@ -128,6 +175,7 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
       throw std::invalid_argument(fmt::format("muscle '{}': {}", muscle.name, e.what()));
     }
   }
+  addElasticPaths(model, options, like, postures);
   addTreePaths(model);
   if (muscles_.empty()) notes_.push_back("no muscle acts on the free coordinates");
 }

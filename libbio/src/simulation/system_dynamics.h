@@ -6,6 +6,7 @@
 
 #include "simulation/coordinate_sums.h"
 #include "simulation/integrators.h"
+#include "simulation/other_forces.h"
 #include "simulation/tree_rates.h"
 
 namespace bio::stepping {
@@ -28,6 +29,7 @@ class SystemDynamics {
         excitation_(excitation),
         externalForce_(external),
         configuration_(arm),
+        others_(arm),
         numCoordinates_(arm.skeleton().numCoordinates()),
         numMuscles_(static_cast<Eigen::Index>(arm.numMuscles())),
         u_(State::Zero(numMuscles_)),
@@ -132,6 +134,9 @@ class SystemDynamics {
     jacobian.block(count(), count(), n, n) = factor_.solve(dForce_dqDot);
   }
 
+  /// The last posture in which a path had no taut string; empty: none.
+  const State& lostAt() const { return lostAt_; }
+
   /// Of the last state that was evaluated.
   const FibreRateDerivatives& rate(std::size_t muscle) const { return rate_[muscle]; }
 
@@ -203,11 +208,17 @@ class SystemDynamics {
     arm_.coordinateForces().template add<N>(q, qDot_, passive_, tau_q_, tau_v_);
     external_.setZero();
     externalForce_.add(t, externalRow_, external_);
+    if (others_.any()) {
+      others_.add(t, configuration_, qDot_, passive_, tau_q_, tau_v_);
+      external_ += others_.load();
+      tau_q_ += others_.load_q();
+    }
     muscle_.setZero();
     for (Eigen::Index i = 0; i < numMuscles_; ++i) {
       const auto si = static_cast<std::size_t>(i);
       const SystemMuscle& muscle = arm_.muscles()[si];
       const LengthJet<N>& path = configuration_.length(si);
+      if (std::isnan(path.length) && q.allFinite()) lostAt_ = q;
       const double activation = muscle.activation.acting(u_[i], y[2 * count() + i]);
       if (muscle.muscle.hasFibreState()) {
         rate_[si] = muscle.muscle.rate(activation, y[2 * count() + numMuscles_ + i], path.length,
@@ -228,9 +239,10 @@ class SystemDynamics {
   const ExcitationSignal& excitation_;
   const ExternalForce& externalForce_;
   SystemConfiguration<N> configuration_;
+  OtherForces<N> others_;
   int numCoordinates_;
   Eigen::Index numMuscles_;
-  State u_;
+  State u_, lostAt_;
   std::vector<FibreRateDerivatives> rate_;  ///< with a rigid tendon the fibre stays as it is
   std::vector<muscles::RigidRate<double>> rigid_;
   std::vector<SchuttePieces> pieces_;  ///< of the last state
