@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -56,6 +57,11 @@ MuscleClassMotion motionOf(const Model& model, const SystemOptions& options,
   start.qDot = trial.qDot;
   result.motion = simulate(arm, *trial.excitation, start, trial.simulation);
   if (result.motion.outcome != Outcome::completed) return result;
+  for (int repeat = 0; repeat < 4; ++repeat) {  // the least time: others use the machine
+    result.motion.wallSeconds =
+        std::min(result.motion.wallSeconds,
+                 simulate(arm, *trial.excitation, start, trial.simulation).wallSeconds);
+  }
   result.energyError = energyError(arm, result.motion);
   if (first) result.difference = sd(arm, result.motion, first->motion);
   const ParameterCatalogue catalogue(model, arm, {trial.q, trial.qDot});
