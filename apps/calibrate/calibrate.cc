@@ -101,6 +101,7 @@ class Calibrate : public Command {
         ->check(CLI::Range(20, 100000))
         ->type_name("N")
         ->group(group);
+    addConvertMusclesOption(options, muscleClass_);
     addSimulationOptions(options, simulation_);
     addPrescribing(options, simulation_);
   }
@@ -120,8 +121,9 @@ class Calibrate : public Command {
     inputsMustDiffer(summary, trials_.size());
     resultsMustNotBeInputs(summary, folder, names);
 
-    const bio::Model model = bio::readOsim(model_);
+    bio::Model model = bio::readOsim(model_);
     for (const std::string& warning : model.warnings) summary.warn(warning);
+    convertMuscles(muscleClass_, model, summary);
     chooseCoordinates(simulation_, model, trials_);
     const bio::TrialSet training(model, armOptions(simulation_), read(trials_, model, summary),
                                  typed.trials);
@@ -177,7 +179,8 @@ class Calibrate : public Command {
  private:
   ExitStatus listAll(const CommandContext& context) {
     Summary summary(context);
-    const bio::Model model = readModel(model_, summary);
+    bio::Model model = readModel(model_, summary);
+    convertMuscles(muscleClass_, model, summary);
     chooseCoordinates(simulation_, model, trials_);
     return listParameters(context, model, movableSystem(model, model_, simulation_, summary));
   }
@@ -290,7 +293,11 @@ class Calibrate : public Command {
     }
     model.credits += model.credits.empty() ? text : ". " + text;
     folder.writeFile("calibrated.osim", [&](const std::filesystem::path& path) {
-      bio::rewriteOsim(model_, model, path);
+      if (muscleClass_.empty()) {
+        bio::rewriteOsim(model_, model, path);
+      } else {  // the original's document holds other classes
+        bio::writeOsim(model, path);
+      }
     });
   }
 
@@ -352,6 +359,7 @@ class Calibrate : public Command {
   }
 
   std::string model_;
+  std::string muscleClass_;  ///< empty: as in the model
   std::vector<std::string> trials_, heldOut_, parameters_, priors_, bounds_, profile_,
       channelNoise_;
   bool ownStart_ = false, noPriors_ = false, list_ = false;

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 
+#include "bio/model/convert_muscles.h"
 #include "bio/model/model_review.h"
 #include "bio/opensim/osim_file.h"
 #include "bio/path/length_jumps.h"
@@ -16,6 +17,7 @@
 #include "bio/tables/trial.h"
 #include "bio/tables/trial_review.h"
 #include "check/recording_contents.h"
+#include "options/trial_input.h"
 #include "output/result.h"
 #include "output/text.h"
 
@@ -161,6 +163,7 @@ class Check : public Command {
         ->required()
         ->check(CLI::ExistingFile)
         ->type_name("");
+    addConvertMusclesOption(options, muscleClass_);
   }
 
   ExitStatus run(const CommandContext& context) override {
@@ -179,7 +182,9 @@ class Check : public Command {
         if (isModel(file) != areModels) continue;
         try {
           if (areModels) {
-            models.push_back(bio::readOsim(file));
+            bio::Model model = bio::readOsim(file);
+            convert(file, model, findings);
+            models.push_back(std::move(model));
             modelFiles.push_back(file);
           }
           const Contents contents = areModels ? checkModel(file, models.back(), findings)
@@ -206,6 +211,14 @@ class Check : public Command {
   }
 
  private:
+  /// Takes the muscles as of another class; what they lose is a warning.
+  void convert(const std::string& file, bio::Model& model, Findings& findings) const {
+    if (muscleClass_.empty()) return;
+    for (const std::string& lost : bio::convertMuscles(model, muscleClass_).lost) {
+      findings.add(file, "warning", fmt::format("muscles as {}: lost is {}", muscleClass_, lost));
+    }
+  }
+
   void tell(const CommandContext& context, const Findings& findings,
             const std::vector<std::string>& limited, Summary& summary, Report& report) const {
     report.title = fmt::format("Check of {}", fmt::join(files_, ", "));
@@ -238,6 +251,7 @@ class Check : public Command {
   }
 
   std::vector<std::string> files_;
+  std::string muscleClass_;  ///< empty: as in the model
 };
 
 }  // namespace

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "bio/analysis/replay.h"
 #include "bio/model/integrator_names.h"
+#include "compare/compare_muscles_report.h"
 #include "compare/compare_report.h"
+#include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/progress_bar.h"
 #include "output/result.h"
@@ -47,16 +50,33 @@ class Compare : public Command {
                     "coordinate; may be repeated")
         ->type_name("NAME=FILE")
         ->allow_extra_args(false);
+    options
+        .add_option("--muscles", classes_,
+                    "compare classes of muscles instead of integrators: of Thelen2003, "
+                    "Millard2012, DeGrooteFregly2016, Schutte1993, RigidTendon; \"all\": all five")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->type_name("CLASSES");
+    options
+        .add_option("--noise", noise_,
+                    "with --muscles: standard deviation of the measured angle [deg] or "
+                    "translation [mm]")
+        ->check(CLI::PositiveNumber)
+        ->type_name("DEGREES")
+        ->capture_default_str();
     options.add_flag("--png", png_, "write the figures of the report as PNG files as well");
+    addExternalLoadsOption(options, externalLoads_);
     addSimulationOptions(options, simulation_);
     addPrescribing(options, simulation_);
   }
 
   ExitStatus run(const CommandContext& context) override {
+    if (!classes_.empty()) return runMuscles(context);
     bio::CompareOptions options = compareOptions();
     OutputFolder folder(context, {"compare.csv"});
     Summary summary(context);
-    const bio::Model model = readModel(model_, summary);
+    bio::Model model = readModel(model_, summary);
+    addExternalLoads(externalLoads_, model, summary);
     chooseCoordinates(simulation_, model, {trial_});
     requireFreeCoordinate(simulation_);
     const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
@@ -101,16 +121,71 @@ class Compare : public Command {
     summary.set("start_from", bio::name(input.from));
     tellCompare(findings, summary);
     const Report report = compareReport(findings);
-    if (png_ && folder.active()) {
-      for (const FigurePicture& picture : figurePictures(report)) {
-        folder.write(picture.file, [&](std::ostream& out) { out << picture.png; });
-      }
-    }
+    writePictures(report, folder);
     deliver(context, summary, report, folder);
     return comparison.reference.confirmed() ? ExitStatus::done : ExitStatus::answerIsNo;
   }
 
  private:
+  /// The model as it is and with its muscles of each class.
+  ExitStatus runMuscles(const CommandContext& context) {
+    if (!integrators_.empty() || !steps_.empty() || !also_.empty()) {
+      throw std::invalid_argument("--muscles excludes --integrators, --steps and --also");
+    }
+    if (!simulation_.integrator.starts_with("vi")) {
+      throw std::invalid_argument(fmt::format(
+          "--integrator {}: must be vi or vi-left with --muscles", simulation_.integrator));
+    }
+    if (classes_.size() == 1 && classes_.front() == "all") {
+      classes_ = {"Schutte1993", "Thelen2003", "Millard2012", "DeGrooteFregly2016", "RigidTendon"};
+    }
+    OutputFolder folder(context, {"muscles.csv", "muscle_bounds.csv"});
+    Summary summary(context);
+    bio::Model model = readModel(model_, summary);
+    addExternalLoads(externalLoads_, model, summary);
+    chooseCoordinates(simulation_, model, {trial_});
+    const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
+    const TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
+    const bio::Coordinate& coordinate = arm.skeleton().coordinates().front();
+    bio::MuscleClassTrial trial;
+    trial.excitation = &input.excitation;
+    trial.q = input.start.q;
+    trial.qDot = input.start.qDot;
+    trial.simulation = simulationOptions(simulation_, input.startTime, input.duration);
+    trial.simulation.externalForce = input.externalForce;
+    trial.coordinate = coordinate.name;
+    trial.times = bio::observedTimes(input.trial, coordinate.name, trial.simulation.step);
+    trial.noise = noise_ * (coordinate.isRotation ? std::numbers::pi / 180 : 1e-3);
+    std::vector<bio::MuscleClassMotion> classes;
+    {
+      ProgressBar bar("compare");
+      trial.progress = [&](double done) { bar.update(done); };
+      classes = bio::compareMuscleClasses(model, armOptions(simulation_), classes_, trial);
+    }
+    if (const auto left = bio::leftRange(arm, classes.front().motion)) summary.warn(left->what);
+    const MuscleFindings findings{model_, trial_, coordinate, classes, trial.noise};
+    folder.write("muscles.csv", [&](std::ostream& out) { writeMuscleClasses(findings, out); });
+    folder.write("muscle_bounds.csv", [&](std::ostream& out) { writeMuscleBounds(findings, out); });
+    summary.setSimulation(simulation_.integrator, trial.simulation.step, input.duration,
+                          classes.front().motion.wallSeconds);
+    summary.set("start_from", bio::name(input.from));
+    tellMuscles(findings, summary);
+    const Report report = musclesReport(findings);
+    writePictures(report, folder);
+    deliver(context, summary, report, folder);
+    const bool isFine = std::all_of(classes.begin(), classes.end(), [](const auto& one) {
+      return one.motion.outcome == bio::Outcome::completed;
+    });
+    return isFine ? ExitStatus::done : ExitStatus::answerIsNo;
+  }
+
+  void writePictures(const Report& report, OutputFolder& folder) const {
+    if (!png_ || !folder.active()) return;
+    for (const FigurePicture& picture : figurePictures(report)) {
+      folder.write(picture.file, [&](std::ostream& out) { out << picture.png; });
+    }
+  }
+
   /// The typed lists; --step joins the steps.
   bio::CompareOptions compareOptions() const {
     bio::CompareOptions options;
@@ -196,6 +271,9 @@ class Compare : public Command {
   std::vector<std::string> integrators_;
   std::vector<std::string> steps_;
   std::vector<std::string> also_;
+  std::vector<std::string> classes_;  ///< of muscles; empty: integrators are compared
+  double noise_ = 1;
+  std::string externalLoads_;  ///< empty: none
   bool png_ = false;
   SimulationOptions simulation_;
 };

@@ -8,7 +8,9 @@
 #include <stdexcept>
 
 #include "bio/analysis/replay.h"
+#include "bio/model/convert_muscles.h"
 #include "bio/model/free_coordinates.h"
+#include "bio/opensim/external_loads.h"
 #include "bio/opensim/osim_file.h"
 #include "bio/skeleton/articulated_tree.h"
 #include "bio/tables/trial_review.h"
@@ -43,6 +45,38 @@ bio::Model readModel(const std::string& file, Summary& summary) {
   bio::Model model = bio::readOsim(file);
   for (const std::string& warning : model.warnings) summary.warn(warning);
   return model;
+}
+
+void addConvertMusclesOption(CLI::App& subcommand, std::string& muscleClass) {
+  subcommand
+      .add_option("--convert-muscles", muscleClass,
+                  "take all muscles as of this class: Thelen2003, Millard2012, "
+                  "DeGrooteFregly2016, Schutte1993 or RigidTendon; what they lose is said")
+      ->type_name("CLASS");
+}
+
+void convertMuscles(const std::string& muscleClass, bio::Model& model, Summary& summary) {
+  if (muscleClass.empty()) return;
+  for (const std::string& lost : bio::convertMuscles(model, muscleClass).lost) {
+    summary.warn(fmt::format("muscles as {}: lost is {}", muscleClass, lost));
+  }
+}
+
+void addExternalLoadsOption(CLI::App& subcommand, std::string& file) {
+  subcommand
+      .add_option("--external-loads", file,
+                  "forces and torques on bodies: OpenSim's ExternalLoads (.xml), whose datafile "
+                  "covers the trial")
+      ->check(CLI::ExistingFile)
+      ->type_name("FILE");
+}
+
+void addExternalLoads(const std::string& file, bio::Model& model, Summary& summary) {
+  if (file.empty()) return;
+  summary.addInput(file);
+  std::vector<std::string> warnings;
+  model.externalLoads = bio::readExternalLoads(file, model, warnings);
+  for (const std::string& warning : warnings) summary.warn(warning);
 }
 
 namespace {
@@ -172,6 +206,7 @@ bio::Trial readTrialFile(const std::string& file, const bio::Model& model,
     throw std::invalid_argument(fmt::format("{}: lasts {} s, --step {} s must not be longer", file,
                                             numberText(duration), numberText(*options.step)));
   }
+  bio::requireLoadsCover(model.externalLoads, trial.times[0], trial.times[0] + duration);
   for (const bio::Remark& remark : bio::reviewTrial(trial, model)) {
     const std::string line = fmt::format("{}: {}: {}", file, remark.subject, remark.message);
     if (remark.weight == bio::Weight::error) throw std::invalid_argument(line);

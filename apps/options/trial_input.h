@@ -20,6 +20,16 @@ void addModelArgument(CLI::App& subcommand, std::string& model);
 void addTrialArgument(CLI::App& subcommand, std::string& trial);
 
 /// @throws what readOsim throws
+/// Adds --convert-muscles.
+void addConvertMusclesOption(CLI::App& subcommand, std::string& muscleClass);
+/// Makes all muscles of the class and warns of what they lose; nothing for an empty name.
+void convertMuscles(const std::string& muscleClass, bio::Model& model, Summary& summary);
+
+/// Adds --external-loads.
+void addExternalLoadsOption(CLI::App& subcommand, std::string& file);
+/// The loads of an ExternalLoads document, added to the model; nothing for an empty name.
+void addExternalLoads(const std::string& file, bio::Model& model, Summary& summary);
+
 bio::Model readModel(const std::string& file, Summary& summary);
 
 /// Chooses the free coordinates if none were typed: bio::freeByDefault with what the trials

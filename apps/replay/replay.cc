@@ -4,7 +4,6 @@
 
 #include "bio/analysis/replay.h"
 #include "bio/discovery/with_experimental_conditions.h"
-#include "bio/model/convert_muscles.h"
 #include "bio/opensim/osim_file.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
@@ -26,12 +25,8 @@ class Replay : public Command {
     addModelArgument(options, model_);
     addTrialArgument(options, trial_);
     addSimulationOptions(options, simulation_);
-    options
-        .add_option("--convert-muscles", muscleClass_,
-                    "simulate all muscles as of this class: Thelen2003, Millard2012, "
-                    "DeGrooteFregly2016, Schutte1993 or RigidTendon; the model is written, too, "
-                    "and what its muscles lost is said")
-        ->type_name("CLASS");
+    addConvertMusclesOption(options, muscleClass_);
+    addExternalLoadsOption(options, externalLoads_);
     addPrescribing(options, simulation_);
     options.add_flag(
         "--reactions", reactions_,
@@ -48,7 +43,12 @@ class Replay : public Command {
     OutputFolder folder(context, files);
     Summary summary(context);
     bio::Model model = readModel(model_, summary);
-    if (!muscleClass_.empty()) convertMuscles(model, folder, summary);
+    convertMuscles(muscleClass_, model, summary);
+    if (!muscleClass_.empty()) {
+      folder.writeFile("model.osim",
+                       [&](const std::filesystem::path& path) { bio::writeOsim(model, path); });
+    }
+    addExternalLoads(externalLoads_, model, summary);
     chooseCoordinates(simulation_, model, {trial_}, reactions_);
     summary.addInput(trial_);
     const bio::Trial trial = readTrialFile(trial_, model, simulation_,
@@ -96,19 +96,11 @@ class Replay : public Command {
   }
 
  private:
-  void convertMuscles(bio::Model& model, OutputFolder& folder, Summary& summary) const {
-    const bio::MuscleConversion conversion = bio::convertMuscles(model, muscleClass_);
-    for (const std::string& lost : conversion.lost) {
-      summary.warn(fmt::format("muscles as {}: lost is {}", muscleClass_, lost));
-    }
-    folder.writeFile("model.osim",
-                     [&](const std::filesystem::path& path) { bio::writeOsim(model, path); });
-  }
-
   std::string model_;
   std::string trial_;
   SimulationOptions simulation_;
-  std::string muscleClass_;  ///< empty: as in the model
+  std::string muscleClass_;    ///< empty: as in the model
+  std::string externalLoads_;  ///< empty: none
   bool reactions_ = false;
   bool strict_ = false;
 };

@@ -146,7 +146,10 @@ Figure energyFigure(const ReplayFindings& f) {
   add("kinetic", kinetic, SeriesStyle::line);
   add("potential (from the start)", potential, SeriesStyle::line);
   add("work of muscles", f.replay.motion.muscleWork, SeriesStyle::line);
-  if (!f.arm.coordinateForces().empty()) {
+  if (!f.replay.motion.externalWork.isZero(0)) {
+    add("work of external forces", f.replay.motion.externalWork, SeriesStyle::line);
+  }
+  if (!f.replay.motion.passiveWork.isZero(0)) {
     add("work of passive forces", f.replay.motion.passiveWork, SeriesStyle::line);
   }
   add("balance", balance, SeriesStyle::dashed);
@@ -241,6 +244,9 @@ void tellReplay(const ReplayFindings& f, Summary& summary) {
                   : 0.0);
   summary.set("halved_steps", motion.halvedSteps);
   summary.set("energy_error_J", bio::energyError(f.arm, motion));
+  summary.set("external_work_J", motion.externalWork.size() > 0
+                                     ? motion.externalWork[motion.externalWork.size() - 1]
+                                     : 0.0);
   std::vector<std::string> muscles;
   for (const bio::SystemMuscle& muscle : f.arm.muscles()) muscles.push_back(muscle.name);
   summary.set("muscles", muscles);

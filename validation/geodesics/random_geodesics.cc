@@ -1,6 +1,7 @@
 // A million random taut strings over ellipsoids, tori and chains of two and three ellipsoids, each
 // walked again by the geodesic equations under a plain Runge–Kutta rule; by how much it misses the
-// end, and by how much its length differs.
+// end, and by how much its length differs; of every tenth also how far first and second derivatives
+// over a random motion of ends and objects are from differences.
 //
 //   random_geodesics [how many of each kind, 250000 by default]
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include <cstdlib>
 
 #include "support/integrated_geodesic.h"
+#include "support/moved_chains.h"
 #include "support/random_chains.h"
 
 namespace {
@@ -16,7 +18,36 @@ namespace {
 struct Tally {
   long drawn = 0, walked = 0, straight = 0, notFound = 0, cutAgain = 0, notShortest = 0, tooFar = 0;
   double largestMiss = 0, largestDifference = 0;
+  long differentiated = 0, tooSteep = 0;
+  double largestSlope = 0, largestBend = 0;  ///< deviations: [m/m]; of the second derivatives' size
 };
+
+// Bounds: 1e-7 and 1e-5. A path that is lost or changes its way within the differences tells
+// nothing.
+void addDerivatives(const support::RandomChain& chain, const bio::ChainMemory& memory,
+                    const bio::ChainPath& path, support::RandomChains& random, Tally& tally) {
+  const bio::ChainScrews motion = support::randomMotion(random);
+  if (!support::isWellInside(path)) return;
+  bool isSmooth = true;
+  const auto solvedAt = [&](double share) {
+    const support::RandomChain shifted = support::moved(chain, motion, share);
+    bio::ChainMemory start = memory;
+    const bio::ChainPath other = bio::solveChain(shifted.P, shifted.Q, shifted.objects, start);
+    isSmooth = isSmooth && other.event == bio::ChainEvent::none && other.passing == path.passing;
+    return other;
+  };
+  const double slope = support::difference([&](double h) { return solvedAt(h).length; }, 1e-5);
+  const auto bend = support::difference(
+      [&](double h) { return support::flat(bio::chainGradient(solvedAt(h))); }, 1e-5);
+  if (!isSmooth) return;
+  ++tally.differentiated;
+  const double slopeError = std::abs(support::along(bio::chainGradient(path), motion) - slope);
+  const auto change = support::flat(bio::ChainChanges(path).gradientChange(motion));
+  const double bendError = (change - bend).norm() / (1 + bend.norm());
+  if (!(slopeError < 1e-7) || !(bendError < 1e-5)) ++tally.tooSteep;
+  tally.largestSlope = std::max(tally.largestSlope, slopeError);
+  tally.largestBend = std::max(tally.largestBend, bendError);
+}
 
 // A walk of 300 steps may be too coarse: it is then repeated with eight times as many.
 void addWalk(const support::RandomChain& chain, const bio::ChainPath& path, Tally& tally) {
@@ -41,6 +72,7 @@ int main(int argc, char** argv) {
   bool good = true;
   for (int kind = 0; kind < 4; ++kind) {
     support::RandomChains random(static_cast<unsigned>(kind) + 1);
+    support::RandomChains motions(static_cast<unsigned>(kind) + 101);
     Tally tally;
     for (; tally.drawn < count; ++tally.drawn) {
       const support::RandomChain chain = random.ofKind(kind);
@@ -55,6 +87,7 @@ int main(int argc, char** argv) {
       } else {
         if (!path.isShortest) ++tally.notShortest;
         addWalk(chain, path, tally);
+        if (tally.drawn % 10 == 0) addDerivatives(chain, memory, path, motions, tally);
       }
     }
     fmt::print(
@@ -63,8 +96,12 @@ int main(int argc, char** argv) {
         "{:.2g}, above 1e-9: {}\n",
         names[kind], tally.drawn, tally.walked, tally.straight, tally.cutAgain, tally.notFound,
         tally.notShortest, tally.largestMiss, tally.largestDifference, tally.tooFar);
+    fmt::print(
+        "{:10}  derivatives of {}: first within {:.2g}, second within {:.2g}; worse than "
+        "1e-7 or 1e-5: {}\n",
+        "", tally.differentiated, tally.largestSlope, tally.largestBend, tally.tooSteep);
     std::fflush(stdout);
-    good = good && tally.tooFar == 0;
+    good = good && tally.tooFar == 0 && tally.tooSteep == 0;
   }
   return good ? 0 : 1;
 }

@@ -37,12 +37,13 @@ ExternalForce externalForceOf(const Trial& trial, const MusculoskeletalSystem& a
       Eigen::MatrixXd::Zero(trial.times.size(), arm.skeleton().numCoordinates());
   for (const AppliedForce& applied : trial.applied) {
     const int index = arm.skeleton().indexOf(applied.coordinate);
+    if (index < 0 && !applied.actuator.empty()) continue;  // on a coordinate that is held
     if (index < 0) {
       throw std::invalid_argument(
           fmt::format("{}: a torque or force acts on '{}', which is not free to move", trial.file,
                       applied.coordinate));
     }
-    values.col(index) = applied.values;
+    values.col(index) += applied.values;
   }
   return {std::vector<double>(trial.times.begin(), trial.times.end()), std::move(values)};
 }

@@ -66,6 +66,7 @@ void readForce(Reading& reading, const Element& element, std::map<std::string, i
   const bool isMuscle = kind.find("Muscle") != std::string_view::npos;
   const bool isKnown = isMuscle || kind == "CoordinateLimitForce" ||
                        kind == "SpringGeneralizedForce" || kind == "ExpressionBasedCoordinateForce";
+  if (!isKnown && readBodyForce(reading, element, names)) return;
   if (!isKnown) {
     if (isEnabled(reading, element)) {
       model.warnings.push_back(fmt::format("{} is not simulated", label(element)));

@@ -131,6 +131,12 @@ void readFrames(Reading& reading, const Element& model) {
       collect(reading, object->FirstChildElement("frames"), ownerPath);
     }
   }
+  for (const Element* force : objectsOf(model, "ForceSet")) {
+    if (!force->Attribute("name")) continue;
+    const std::string ownerPath = std::string("/forceset/") + force->Attribute("name");
+    collect(reading, force->FirstChildElement("components"), ownerPath);
+    collect(reading, force->FirstChildElement("frames"), ownerPath);
+  }
   collect(reading, model.FirstChildElement("components"), "");
   if (const Element* set = model.FirstChildElement("ComponentSet")) {
     collect(reading, set->FirstChildElement("objects"), "/componentset");

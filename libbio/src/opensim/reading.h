@@ -62,6 +62,9 @@ std::string readCoordinateName(const Reading& reading, const Element& object, co
 void readWrapObjects(Reading& reading, const Element& model);
 Path readPath(Reading& reading, const Element& force);
 void readForces(Reading& reading, const Element& model);
+/// PointToPointSpring, BushingForce, Ligament, PathSpring, Blankevoort1991Ligament,
+/// PrescribedForce, CoordinateActuator; false for another class.
+bool readBodyForce(Reading& reading, const Element& element, std::map<std::string, int>& names);
 Muscle readMuscle(Reading& reading, const Element& element);
 
 /// A marker whose body the model does not have is left out, with a remark.

@@ -55,6 +55,7 @@ void buildDocument(tinyxml2::XMLDocument& document, const Model& model, Format f
   for (const Muscle& muscle : model.muscles) appendMuscle(writing, forces, muscle);
   appendCoordinateForces(writing, forces);
   appendMarkers(writing, top);
+  appendBodyForces(writing, forces);
   appendFitted(writing, top);
 }
 

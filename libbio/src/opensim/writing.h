@@ -40,6 +40,7 @@ void appendCoupler(const Writing& writing, Element& parent, const CoordinateCoup
 void appendPath(const Writing& writing, Element& muscle, const Path& path);
 void appendMuscle(const Writing& writing, Element& parent, const Muscle& muscle);
 void appendCoordinateForces(const Writing& writing, Element& parent);
+void appendBodyForces(const Writing& writing, Element& parent);
 /// The element FisherHill; nothing where the model has none.
 void appendFitted(const Writing& writing, Element& model);
 

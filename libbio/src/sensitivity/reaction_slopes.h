@@ -39,10 +39,7 @@ class ReactionSlopes {
     const Vector q = motion.q.col(row), qDot = motion.qDot.col(row);
     y_ << q, qDot, motion.activation.col(row), motion.fibreLength.col(row);
     dynamics_.derivative(motion.time[static_cast<std::size_t>(row)], y_, yDot_);
-    const int n = countOf<N>(arm_);
-    Vector passive = Vector::Zero(n);
-    Matrix tau_q = Matrix::Zero(n, n), tau_v = tau_q;
-    arm_.coordinateForces().template add<N>(q, qDot, passive, tau_q, tau_v);
+    Matrix tau_q = dynamics_.tau_q(), tau_v = dynamics_.tau_v();
     dynamics_.addInertia(tau_q, tau_v);
     tau_.noalias() = tau_q * state.dq;
     tau_.noalias() += tau_v * speed;

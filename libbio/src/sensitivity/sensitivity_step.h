@@ -5,6 +5,7 @@
 #include "sensitivity/parameter_jacobian.h"
 #include "sensitivity/step_tape.h"
 #include "simulation/coordinate_sums.h"
+#include "simulation/other_forces.h"
 
 namespace bio::stepping {
 
@@ -25,6 +26,7 @@ class SensitivityStep {
         options_(options),
         symmetric_(options.integrator == Integrator::variational),
         configuration_(configuration),
+        others_(arm),
         direct_(direct),
         through_(arm.numMuscles()),
         pieces_(arm.numMuscles()) {
@@ -94,6 +96,12 @@ class SensitivityStep {
       const ExternalForce::At external = options_.externalForce.at(tMiddle);
       f += external.value;
       if (timeMoves) force_ += external.slope * middleTime_;
+    }
+    if (others_.any()) {
+      others_.add(tMiddle, configuration_, v, f, f_q, f_v);
+      f += others_.load();
+      f_q += others_.load_q();
+      if (timeMoves) force_ += others_.load_t() * middleTime_;
     }
     state.columns.addNodes(tMiddle, force_);
 
@@ -295,6 +303,7 @@ class SensitivityStep {
   const SimulationOptions& options_;
   bool symmetric_;
   SystemConfiguration<N>& configuration_;
+  OtherForces<N> others_;
   DirectEffects<N>& direct_;
   Matrix givenColumns_;                ///< used where a coordinate is prescribed
   std::vector<double> through_;        ///< (V_L/2J) of each muscle

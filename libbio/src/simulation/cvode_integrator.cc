@@ -186,7 +186,8 @@ class AdaptiveRun {
       if (flag < 0) {
         const std::unique_ptr<char, void (*)(void*)> name(CVodeGetReturnFlagName(flag), std::free);
         return end(Outcome::noSolution, reached_,
-                   fmt::format("no solution at t = {:.6g} s: CVODE says {}", reached_, name.get()));
+                   fmt::format("no solution at t = {:.6g} s: CVODE says {}{}", reached_, name.get(),
+                               whatWasLost()));
       }
       if (flag != CV_ROOT_RETURN) continue;
       beginAnew();
@@ -199,6 +200,13 @@ class AdaptiveRun {
       }
     }
     return true;
+  }
+
+  /// The path for which even short steps failed.
+  std::string whatWasLost() const {
+    const Eigen::VectorXd& at = task_.dynamics.lostAt();
+    if (at.size() == 0) return {};
+    return ": " + describeLostPath(arm_, at);
   }
 
   /// At a switch: from here on the equations are others.

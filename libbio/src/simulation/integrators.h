@@ -99,6 +99,10 @@ struct GeneralisedForce {
 void checkSimulation(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
                      const SystemState& start, const SimulationOptions& options);
 
+/// One line that names the first muscle whose path has no taut string in a posture, why, and the
+/// posture; empty: each path has one.
+std::string describeLostPath(const MusculoskeletalSystem& arm, const Eigen::VectorXd& q);
+
 /// Fills in what follows from the rest of a motion: fibre lengths where the tendon is rigid, and
 /// activations that are the excitation.
 void completeStates(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,

@@ -40,6 +40,14 @@ std::vector<int> indicesOf(const std::vector<std::string>& prescribed, const Ske
   return indices;
 }
 
+/// What carries the path of an elastic string through the code for muscles' paths.
+Muscle asMuscle(const ElasticPath& elastic) {
+  Muscle carrier;
+  carrier.name = elastic.name;
+  carrier.path = elastic.path;
+  return carrier;
+}
+
 }  // namespace
 
 MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOptions& options)
@@ -68,6 +76,49 @@ void MusculoskeletalSystem::addTreePaths(const Model& model) {
     treePaths_.emplace_back(*tree_, skeleton_, findMuscle(model, muscle.name),
                             muscle.path.compiled());
   }
+  for (const SystemElasticPath& elastic : elasticPaths_) {
+    for (const ElasticPath& given : model.elasticPaths) {
+      if (given.name != elastic.name) continue;
+      treePaths_.emplace_back(*tree_, skeleton_, asMuscle(given), elastic.path.compiled());
+      break;
+    }
+  }
+}
+
+void MusculoskeletalSystem::addSwitches(const MusclePath& path) {
+  for (const PathSwitch& s : path.switches()) {
+    const bool known =
+        std::any_of(switches_.begin(), switches_.end(), [&](const PathSwitch& other) {
+          return other.freeIndex == s.freeIndex && other.value == s.value;
+        });
+    if (!known) switches_.push_back(s);
+  }
+}
+
+void MusculoskeletalSystem::addElasticPaths(const Model& model, const SystemOptions& options,
+                                            const MusculoskeletalSystem* like,
+                                            PostureSamples& postures) {
+  for (const ElasticPath& elastic : model.elasticPaths) {
+    if (!elastic.enabled) continue;
+    const Muscle carrier = asMuscle(elastic);
+    std::optional<MusclePath> path;
+    if (like) {
+      for (const SystemElasticPath& one : like->elasticPaths_) {
+        if (one.name == elastic.name) path = one.path;
+      }
+    } else {
+      try {
+        path.emplace(model, skeleton_, carrier, options.wrapAsCylinder, postures.of(carrier));
+      } catch (const UnsupportedWrap& e) {
+        warnings_.push_back(fmt::format("{}: '{}' is left out", e.what(), elastic.name));
+        continue;
+      }
+      warnings_.insert(warnings_.end(), path->warnings().begin(), path->warnings().end());
+    }
+    if (!path || !path->moves()) continue;
+    addSwitches(*path);
+    elasticPaths_.push_back({elastic.name, ElasticPathLaw(elastic), std::move(*path)});
+  }
 }
 
 MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOptions& options,
@@ -75,7 +126,8 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
                                              const std::vector<std::string>& shaped)
     : skeleton_(model, options.skeleton),
       prescribed_(indicesOf(options.prescribed, skeleton_)),
-      coordinateForces_(model, skeleton_) {
+      coordinateForces_(model, skeleton_),
+      bodyForces_(model, skeleton_) {
   if (!like) {
     requireMovedMass(model, skeleton_);
     warnings_ = lockRemarks(model, options.skeleton);
@@ -123,13 +175,7 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
     }
     if (options.tabulatePaths && !like) path.tabulate(skeleton_);
     for (const std::string& note : path.notes()) notes_.push_back(note);
-    for (const PathSwitch& s : path.switches()) {
-      const bool known =
-          std::any_of(switches_.begin(), switches_.end(), [&](const PathSwitch& other) {
-            return other.freeIndex == s.freeIndex && other.value == s.value;
-          });
-      if (!known) switches_.push_back(s);
-    }
+    addSwitches(path);
     try {
       if (muscle.schutte) {
         const SchutteParameters& s = *muscle.schutte;
@@ -151,6 +197,7 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
       throw std::invalid_argument(fmt::format("muscle '{}': {}", muscle.name, e.what()));
     }
   }
+  addElasticPaths(model, options, like, postures);
   addTreePaths(model);
   for (const Marker& marker : model.markers) {
     const BodyPlacement& place = skeleton_.placeOf(marker.body);

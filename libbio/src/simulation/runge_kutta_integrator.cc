@@ -195,9 +195,8 @@ class ExplicitRun {
     return fail(
         t,
         fmt::format("{} with a step of {:.3g} s",
-                    y_.allFinite()
-                        ? fmt::format("the speed exceeds {:.0f} rad/s", largestSpeed)
-                        : std::string("a muscle fibre left its valid domain (not a number)"),
+                    y_.allFinite() ? fmt::format("the speed exceeds {:.0f} rad/s", largestSpeed)
+                                   : whyNotANumber(),
                     options_.step),
         t + h);
   }
@@ -205,6 +204,11 @@ class ExplicitRun {
   const PathSwitch* crossed() const {
     return firstCrossed(arm_.switches(), held_, dynamics_.coordinates(y_),
                         dynamics_.coordinates(end_));
+  }
+
+  std::string whyNotANumber() const {
+    if (dynamics_.lostAt().size() > 0) return describeLostPath(arm_, dynamics_.lostAt());
+    return "a muscle fibre left its valid domain (not a number)";
   }
 
   bool fail(double failedAt, const std::string& how, double at) {

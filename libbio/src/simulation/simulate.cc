@@ -43,6 +43,11 @@ SystemState initialState(const MusculoskeletalSystem& arm, const Eigen::VectorXd
     for (std::size_t i = 0; i < arm.numMuscles(); ++i) {
       const auto si = static_cast<Eigen::Index>(i);
       const double length = configuration.length(i).length;
+      if (std::isnan(length)) {
+        if (const std::string lost = stepping::describeLostPath(arm, q); !lost.empty()) {
+          throw NoStaticEquilibrium(fmt::format("at the start, {} s: {}", time, lost));
+        }
+      }
       if (!std::isfinite(length)) {
         throw NoStaticEquilibrium(
             fmt::format("muscle '{}': muscle–tendon length at the start = {} m, must be finite",
@@ -59,6 +64,24 @@ SystemState initialState(const MusculoskeletalSystem& arm, const Eigen::VectorXd
     }
   });
   return state;
+}
+
+std::string stepping::describeLostPath(const MusculoskeletalSystem& arm, const Eigen::VectorXd& q) {
+  if (!q.allFinite()) return {};
+  return withCoordinates(arm.skeleton(), [&](auto N) -> std::string {
+    SystemConfiguration<decltype(N)::value> configuration(arm);
+    configuration.moveTo(q);
+    for (std::size_t i = 0; i < arm.numPaths(); ++i) {
+      if (!std::isnan(configuration.length(i).length)) continue;
+      const bool isMuscle = i < arm.numMuscles();
+      return fmt::format(
+          "{} '{}': its path has no taut string over its wrap objects at {}",
+          isMuscle ? "muscle" : "elastic path",
+          isMuscle ? arm.muscles()[i].name : arm.elasticPaths()[i - arm.numMuscles()].name,
+          describePosture(arm.skeleton(), q));
+    }
+    return {};
+  });
 }
 
 void stepping::checkSimulation(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,

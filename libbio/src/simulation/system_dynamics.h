@@ -6,6 +6,7 @@
 
 #include "simulation/coordinate_sums.h"
 #include "simulation/integrators.h"
+#include "simulation/other_forces.h"
 #include "simulation/tree_rates.h"
 
 namespace bio::stepping {
@@ -32,6 +33,7 @@ class SystemDynamics {
         externalForce_(external),
         prescribed_(prescribed),
         configuration_(arm),
+        others_(arm),
         numCoordinates_(arm.skeleton().numCoordinates()),
         numMuscles_(static_cast<Eigen::Index>(arm.numMuscles())),
         u_(State::Zero(numMuscles_)),
@@ -154,12 +156,18 @@ class SystemDynamics {
     }
   }
 
+  /// The last posture in which a path had no taut string; empty: none.
+  const State& lostAt() const { return lostAt_; }
+
   /// Of the last state that was evaluated.
   const FibreRateDerivatives& rate(std::size_t muscle) const { return rate_[muscle]; }
   const Vector& acceleration() const { return acceleration_; }
   /// What keeps the prescribed coordinates on their course; 0 for the others.
   const Vector& reaction() const { return reaction_; }
   const Matrix& massMatrix() const { return massMatrix_; }
+  /// Derivatives of all forces but the muscles' and inertia's in the coordinates and speeds.
+  const Matrix& tau_q() const { return tau_q_; }
+  const Matrix& tau_v() const { return tau_v_; }
   /// For M with the rows and columns of prescribed coordinates replaced by those of the unit
   /// matrix.
   const Eigen::LDLT<Matrix>& factor() const { return factor_; }
@@ -267,11 +275,17 @@ class SystemDynamics {
     arm_.coordinateForces().template add<N>(q, qDot_, passive_, tau_q_, tau_v_);
     external_.setZero();
     externalForce_.add(t, externalRow_, external_);
+    if (others_.any()) {
+      others_.add(t, configuration_, qDot_, passive_, tau_q_, tau_v_);
+      external_ += others_.load();
+      tau_q_ += others_.load_q();
+    }
     muscle_.setZero();
     for (Eigen::Index i = 0; i < numMuscles_; ++i) {
       const auto si = static_cast<std::size_t>(i);
       const SystemMuscle& muscle = arm_.muscles()[si];
       const LengthJet<N>& path = configuration_.length(si);
+      if (std::isnan(path.length) && q.allFinite()) lostAt_ = q;
       const double activation = muscle.activation.acting(u_[i], y[2 * count() + i]);
       if (muscle.muscle.hasFibreState()) {
         rate_[si] = muscle.muscle.rate(activation, y[2 * count() + numMuscles_ + i], path.length,
@@ -293,9 +307,10 @@ class SystemDynamics {
   const ExternalForce& externalForce_;
   const PrescribedMotion& prescribed_;
   SystemConfiguration<N> configuration_;
+  OtherForces<N> others_;
   int numCoordinates_;
   Eigen::Index numMuscles_;
-  State u_;
+  State u_, lostAt_;
   std::vector<FibreRateDerivatives> rate_;  ///< with a rigid tendon the fibre stays as it is
   std::vector<muscles::RigidRate<double>> rigid_;
   std::vector<SchuttePieces> pieces_;  ///< of the last state

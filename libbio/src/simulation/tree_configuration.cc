@@ -22,7 +22,7 @@ SystemConfiguration<Eigen::Dynamic>::SystemConfiguration(const MusculoskeletalSy
       energy_(*arm.tree()),
       q_(arm.skeleton().defaultValues()),
       still_(Vector::Zero(q_.size())) {
-  for (std::size_t i = 0; i < arm.numMuscles(); ++i) {
+  for (std::size_t i = 0; i < arm.numPaths(); ++i) {
     work_.push_back(arm.treePath(i).newWork());
     lengths_.push_back(arm.treePath(i).newLength(arm.skeleton().numCoordinates()));
   }
@@ -32,8 +32,8 @@ void SystemConfiguration<Eigen::Dynamic>::moveTo(const Vector& q) {
   moveSkeletonTo(q);
   for (std::size_t i = 0; i < lengths_.size(); ++i) {
     try {
-      arm_->treePath(i).evaluate(arm_->muscles()[i].path.compiled(), holds_ ? held_ : q_, motion_,
-                                 work_[i], lengths_[i]);
+      arm_->treePath(i).evaluate(arm_->path(i).compiled(), holds_ ? held_ : q_, motion_, work_[i],
+                                 lengths_[i]);
     } catch (const std::domain_error&) {  // no taut string: an iteration sees a failed step
       lengths_[i].length = std::numeric_limits<double>::quiet_NaN();
     }

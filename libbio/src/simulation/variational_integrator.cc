@@ -56,9 +56,8 @@ class VariationalRun {
         trajectory.outcome = Outcome::noSolution;
         trajectory.failedAt = t0;
         trajectory.why = fmt::format(
-            "no solution at t = {:.6g} s: the smallest step, {:.3g} s, did not converge (last "
-            "corrections: {})",
-            t0, (t1 - t0) / std::pow(2, options_.maxHalvings), stepper_.describeResidual());
+            "no solution at t = {:.6g} s: the smallest step, {:.3g} s, did not converge ({})", t0,
+            (t1 - t0) / std::pow(2, options_.maxHalvings), stepper_.describeFailure());
         break;
       }
       begin = end;

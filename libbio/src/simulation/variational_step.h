@@ -6,6 +6,7 @@
 
 #include "simulation/coordinate_sums.h"
 #include "simulation/integrators.h"
+#include "simulation/other_forces.h"
 
 namespace bio::stepping {
 
@@ -20,6 +21,7 @@ class VariationalStepper {
       : arm_(arm),
         options_(options),
         configuration_(arm),
+        others_(arm),
         symmetric_(options.integrator == Integrator::variational),
         rate_(arm.numMuscles()),
         pieces_(arm.numMuscles()),
@@ -52,6 +54,7 @@ class VariationalStepper {
     Result result;
     external_.setZero();
     options_.externalForce.add(middle, row_, external_);
+    if (others_.any()) applied_ = external_;
     const double share = symmetric_ ? h / 2 : h;  // of the forces in F⁻
     double previous = 0;                          // largest correction of the iteration before
     // where the configuration was computed, and where it is
@@ -74,7 +77,7 @@ class VariationalStepper {
     for (result.iterations = 1; result.iterations <= options_.maxIterations; ++result.iterations) {
       q_m = (begin.q + end.q) / 2;
       v = (end.q - begin.q) / h;
-      if (result.iterations > 1 && (q_m - at).cwiseAbs().maxCoeff() < near) {
+      if (result.iterations > 1 && !others_.any() && (q_m - at).cwiseAbs().maxCoeff() < near) {
         dq = q_m - place;
         configuration_.shift(dq);
       } else {
@@ -101,8 +104,13 @@ class VariationalStepper {
       tau_q.setZero(countOf<N>(arm_), countOf<N>(arm_));
       tau_v.setZero(countOf<N>(arm_), countOf<N>(arm_));
       arm_.coordinateForces().template add<N>(q_m, v, passive_, tau_q, tau_v);
+      if (others_.any()) {
+        others_.add(middle, configuration_, v, passive_, tau_q, tau_v);
+        external_ = applied_ + others_.load();
+      }
       dPassive = tau_q / 2 + tau_v / h;
       dTau = dPassive;
+      if (others_.any()) dTau += others_.load_q() / 2;
 
       // muscles: forces on the skeleton, and fibre lengths eliminated one by one
       muscle_.setZero();
@@ -141,7 +149,10 @@ class VariationalStepper {
         carried[k] = 0;
       }
       solveSmall(J, carried, dq);
-      if (!dq.allFinite()) return result;
+      if (!dq.allFinite()) {
+        failedPosture_ = q_m;
+        return result;
+      }
 
       // trust limits: a step of the arm or of a fibre that is too bold is shortened as a whole
       double shorten = 1;
@@ -169,6 +180,10 @@ class VariationalStepper {
                       configuration_.length(i));
         }
         dTau -= dPassive;
+        if (others_.any()) {
+          dTau -= others_.load_q() / 2;
+          external_ += others_.load_q() / 2 * dq;
+        }
         muscle_.noalias() += dTau * dq;
         passive_.noalias() += dPassive * dq;
         const auto step = end.q - begin.q;
@@ -181,6 +196,7 @@ class VariationalStepper {
         result.passiveWork = passive_.dot(step);
         result.externalWork = external_.dot(step);
         result.converged = true;
+        failedPosture_.resize(0);
         return result;
       }
       previous = correction;
@@ -198,9 +214,14 @@ class VariationalStepper {
     return correction * ratio * ratio < 0.01 * options_.newtonTolerance;
   }
 
-  /// Residual of the equations at the last iterate, for the message of a failed step.
-  std::string describeResidual() const {
-    std::string text;
+  /// A path that was lost, else the residual of the equations at the last iterate: for the message
+  /// of a failed step.
+  std::string describeFailure() const {
+    if (failedPosture_.size() > 0) {
+      const std::string lost = describeLostPath(arm_, failedPosture_);
+      if (!lost.empty()) return lost;
+    }
+    std::string text = "last corrections: ";
     for (std::size_t i = 0; i < rate_.size(); ++i) {
       text += fmt::format("{}{} {:.2g} m", i ? ", " : "", arm_.muscles()[i].name,
                           residual_[static_cast<Eigen::Index>(i)]);
@@ -247,6 +268,7 @@ class VariationalStepper {
   const MusculoskeletalSystem& arm_;
   const SimulationOptions& options_;
   SystemConfiguration<N> configuration_;
+  OtherForces<N> others_;
   bool symmetric_;
   std::vector<FibreRateDerivatives> rate_;
   std::vector<SchuttePieces> pieces_;  ///< of the last iterate
@@ -254,7 +276,8 @@ class VariationalStepper {
   Eigen::VectorXd residual_;
   Vector muscle_;
   Vector passive_;
-  Vector external_;
+  Vector external_, applied_;      ///< the latter: what a trial applies to coordinates
+  Eigen::VectorXd failedPosture_;  ///< in which the last step failed without a number
   Scratch<N, 9, 8> work_;
   Eigen::PartialPivLU<Matrix> factor_;
   std::size_t row_ = 0;  ///< of the external force

@@ -70,6 +70,17 @@ void addBody(Segment& segment, const Body& body, const Placement<double>& X_SB) 
 
 }  // namespace
 
+std::string describePosture(const Skeleton& skeleton, const Eigen::VectorXd& q) {
+  std::string text;
+  for (Eigen::Index k = 0; k < q.size(); ++k) {
+    const Coordinate& c = skeleton.coordinates()[static_cast<std::size_t>(k)];
+    text += fmt::format("{}{} = {:.6g} {}", k > 0 ? ", " : "", c.name,
+                        c.isRotation ? q[k] * 180 / std::numbers::pi : q[k],
+                        c.isRotation ? "deg" : "m");
+  }
+  return text;
+}
+
 std::vector<std::string> lockRemarks(const Model& model, const SkeletonOptions& options) {
   std::vector<std::string> remarks;
   for (const Joint& joint : model.joints) {

@@ -21,7 +21,8 @@ struct Meaning {
   enum class Kind { time, muscle, coordinate, applied, channel, extra } kind = Kind::extra;
   std::string name;
   bool inDegrees = false;
-  Observable what = {};  ///< of a channel
+  const CoordinateActuator* actuator = nullptr;  // of which the column is the control
+  Observable what = {};                          // of a channel
 };
 
 // "/a/b/c" → "c"
@@ -56,6 +57,10 @@ Meaning meaningOf(const Model& model, const Table& table, const std::string& col
   const std::string name = plainName(column);
   for (const Muscle& muscle : model.muscles) {
     if (muscle.name == name) return {Meaning::Kind::muscle, name, false};
+  }
+  for (const CoordinateActuator& actuator : model.actuators) {
+    if (actuator.name != name) continue;
+    return {Meaning::Kind::applied, actuator.coordinate, false, &actuator};
   }
   const bool suffix = name.ends_with("_deg");
   const std::string bare = suffix ? name.substr(0, name.size() - 4) : name;
@@ -96,6 +101,7 @@ class TrialReader {
     readExperimentalConditions();
     sortColumns();
     takePrescribed();
+    remarkIdleActuators();
     readExcitations();
     return std::move(trial_);
   }
@@ -169,7 +175,8 @@ class TrialReader {
       }
       if (meaning.kind == Meaning::Kind::time) continue;
       const bool isApplied = meaning.kind == Meaning::Kind::applied;
-      const auto [found, isNew] = seen.emplace((isApplied ? "." : "") + meaning.name, column);
+      const auto [found, isNew] = seen.emplace(
+          (isApplied ? "." : "") + (meaning.actuator ? plainName(column) : meaning.name), column);
       if (!isNew) {
         fail(fmt::format("columns '{}' and '{}' both give '{}', must be one", found->second, column,
                          meaning.name));
@@ -255,11 +262,32 @@ class TrialReader {
   }
 
   void readApplied(Eigen::Index column, const Meaning& meaning) {
-    const Eigen::VectorXd values = table_.values.col(column);
+    Eigen::VectorXd values = table_.values.col(column);
     for (Eigen::Index row = 0; row < values.size(); ++row) {
       if (!std::isfinite(values[row])) fail(column, row, "is missing, must be given in every row");
     }
-    trial_.applied.push_back({meaning.name, values});
+    std::string actuator;
+    if (meaning.actuator) {
+      values *= meaning.actuator->enabled ? meaning.actuator->optimalForce : 0;
+      actuator = meaning.actuator->name;
+    }
+    trial_.applied.push_back({meaning.name, values, actuator});
+  }
+
+  // One line for all that no column controls.
+  void remarkIdleActuators() {
+    std::vector<std::string> idle;
+    for (const CoordinateActuator& actuator : model_.actuators) {
+      const bool isDriven =
+          std::any_of(trial_.applied.begin(), trial_.applied.end(),
+                      [&](const AppliedForce& one) { return one.actuator == actuator.name; });
+      if (actuator.enabled && !isDriven) idle.push_back(actuator.name);
+    }
+    if (idle.empty()) return;
+    trial_.warnings.push_back(
+        fmt::format("{}: no column controls the CoordinateActuator{} {}: {} exert{} nothing", file_,
+                    idle.size() > 1 ? "s" : "", fmt::join(idle, ", "),
+                    idle.size() > 1 ? "they" : "it", idle.size() > 1 ? "" : "s"));
   }
 
   void readExcitations() {

@@ -30,6 +30,30 @@ std::string shortTrial(const ScratchFolder& scratch, bool measured = true) {
   return scratch.file(measured ? "trial.csv" : "unmeasured.csv", text.str());
 }
 
+TEST(CompareCommand, SaysWhatTheMusclesClassAloneChanges) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "out").string();
+  const ProgramResult result = runFisherHill({"compare", model, shortTrial(scratch), "--muscles",
+                                              "Schutte1993,Thelen2003,RigidTendon", "--out", out});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto lines = linesOf(support::contentOf(out + "/muscles.csv"));
+  ASSERT_EQ(lines.size(), 5u);
+  EXPECT_THAT(lines[1], testing::StartsWith("as in the model,ok,0,0,"));
+  EXPECT_THAT(lines[2], testing::StartsWith("Schutte1993,ok,0,0,"));  // what it was
+  const auto json = nlohmann::json::parse(support::contentOf(out + "/summary.json"));
+  const auto& classes = json["muscle_classes"];
+  for (const std::size_t i : {2u, 3u}) {
+    const double rms = classes[i]["measured_rms_deg"];
+    EXPECT_GT(rms, 0.01) << i;
+    EXPECT_LT(classes[i]["unexplained_rms_deg"], rms) << i;
+    EXPECT_GT(classes[i]["lost"].size(), 0u);
+  }
+  EXPECT_EQ(linesOf(support::contentOf(out + "/muscle_bounds.csv")).size(), 1u + 3 * 8);
+  const ProgramResult refused =
+      runFisherHill({"compare", model, shortTrial(scratch), "--muscles", "Hill", "--json"});
+  EXPECT_EQ(refused.status, 2);
+}
+
 TEST(CompareCommand, WritesTheTableTheSummaryAndTheReport) {
   const ScratchFolder scratch;
   const std::string trial = shortTrial(scratch);

@@ -121,6 +121,7 @@ const Run runs[] = {
     {"Check", {"check", model, slow}},
     {"CheckOfWhatIsNoModel", {"check", "README.md"}},
     {"Compare", {"compare", model, slow, "--integrators", "vi", "--steps", "0.01"}},
+    {"CompareOfMuscles", {"compare", model, slow, "--muscles", "Thelen2003"}},
     {"Design",
      {"design", model, slow, "--parameters", "TRI.radius", "--candidates", "4", "--generations",
       "1"}},

@@ -255,6 +255,77 @@ struct ExpressionBasedCoordinateForce {
                          const ExpressionBasedCoordinateForce&) = default;
 };
 
+/// Force, point of application and torque on a body, each three numbers of time: OpenSim's
+/// ExternalForce (a table) or PrescribedForce (functions).
+struct BodyLoad {
+  std::string name;
+  std::string body;                   ///< on which it acts, not "ground"
+  std::string forceFrame = "ground";  ///< body in whose axes force and torque are given
+  std::string pointFrame = "ground";  ///< body in whose frame the point is given
+  std::vector<double> times;          ///< [s] strictly rising; empty: `functions` hold
+  /// One row per time: force [N], point [m], torque [N m]; natural cubic splines from four rows,
+  /// straight lines between two or three, one row: constant. 0 before and after.
+  std::vector<std::array<double, 9>> rows;
+  std::vector<Function> functions;  ///< the same nine, of time, if there is no table
+  bool enabled = true;
+  friend bool operator==(const BodyLoad&, const BodyLoad&) = default;
+};
+
+/// A spring between points of two bodies: force stiffness·(d − restLength) that pulls them
+/// together, d their distance.
+struct PointToPointSpring {
+  std::string name;
+  std::array<std::string, 2> body;       ///< "ground" for the ground
+  std::array<Eigen::Vector3d, 2> point;  ///< in the body's frame [m]
+  double stiffness = 0;                  ///< [N/m] ≥ 0
+  double restLength = 0;                 ///< [m] ≥ 0
+  bool enabled = true;
+  friend bool operator==(const PointToPointSpring&, const PointToPointSpring&) = default;
+};
+
+/// A linear bushing between a frame F of the first body and M of the second: with θ the body-fixed
+/// x-y-z angles of M in F and d its place there, generalised forces −K(θ, d) − C(θ̇, ḋ).
+struct BushingForce {
+  std::string name;
+  std::array<std::string, 2> body;
+  std::array<FramePlacement, 2> frame;                               ///< F, M
+  Eigen::Vector3d rotationalStiffness = Eigen::Vector3d::Zero();     ///< [N m/rad] ≥ 0
+  Eigen::Vector3d translationalStiffness = Eigen::Vector3d::Zero();  ///< [N/m] ≥ 0
+  Eigen::Vector3d rotationalDamping = Eigen::Vector3d::Zero();       ///< [N m s/rad] ≥ 0
+  Eigen::Vector3d translationalDamping = Eigen::Vector3d::Zero();    ///< [N s/m] ≥ 0
+  bool enabled = true;
+  friend bool operator==(const BushingForce&, const BushingForce&) = default;
+};
+
+enum class ElasticPathKind {
+  ligament,        ///< scale·curve(L/L₀) where L > L₀
+  spring,          ///< PathSpring: scale·(L − L₀)(1 + damping·L̇) where L > L₀
+  blankevoort1991  ///< scale·(ε²/2ε_t, from ε_t on ε − ε_t/2) + damping·ε̇ while it lengthens
+};
+
+/// A string without state between points of bodies, over wrap objects as a muscle.
+struct ElasticPath {
+  std::string name;
+  ElasticPathKind kind = ElasticPathKind::ligament;
+  Path path;
+  double restLength = 0;        ///< L₀ [m] > 0
+  double scale = 0;             ///< [N] (ligament, Blankevoort), [N/m] (spring) ≥ 0
+  double damping = 0;           ///< [s/m] (spring), [N s] (Blankevoort) ≥ 0
+  double transitionStrain = 0;  ///< ε_t > 0 (Blankevoort)
+  Function curve;               ///< of a ligament
+  bool enabled = true;
+  friend bool operator==(const ElasticPath&, const ElasticPath&) = default;
+};
+
+/// control·optimalForce on a coordinate; the control is a column of the trial.
+struct CoordinateActuator {
+  std::string name;
+  std::string coordinate;
+  double optimalForce = 1;  ///< [N m] or [N] at control 1
+  bool enabled = true;
+  friend bool operator==(const CoordinateActuator&, const CoordinateActuator&) = default;
+};
+
 // What was fitted with the model ------------------------------------------------------------------
 
 /// Initial state of the simulation of one trial, fitted together with the model's parameters.
@@ -298,6 +369,12 @@ struct Model {
   std::vector<SpringGeneralizedForce> springForces;
   std::vector<ExpressionBasedCoordinateForce> expressionForces;
   std::vector<Marker> markers;
+  std::vector<BodyLoad> prescribedForces;  ///< PrescribedForce
+  std::vector<BodyLoad> externalLoads;     ///< of ExternalLoads, which a model file does not hold
+  std::vector<PointToPointSpring> pointSprings;
+  std::vector<BushingForce> bushings;
+  std::vector<ElasticPath> elasticPaths;
+  std::vector<CoordinateActuator> actuators;
   FittedSimulation fitted;
   std::vector<std::string> warnings;  ///< one line each: what was read but is not simulated
   std::vector<std::string> remarks;   ///< one line each: content that was interpreted differently

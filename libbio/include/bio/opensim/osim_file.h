@@ -11,11 +11,13 @@ namespace bio {
 /// Read are: bodies, joints (Weld, Pin, Slider, Universal, Planar, Gimbal, Free, Custom),
 /// coordinates, CoordinateCouplerConstraint, wrap objects, paths of all muscles, parameters of
 /// those of simulatedClasses(), CoordinateLimitForce, SpringGeneralizedForce,
-/// ExpressionBasedCoordinateForce. Offset frames are folded into their bodies. For missing elements
-/// the model's <defaults> apply, then OpenSim's own defaults: mass_center 0, inertia 0, coordinate
-/// 0 in ±10, quadrant all, F0 1000 N, ℓ0 0.1 m, ℓs 0.2 m, pennation 0, damping 0.1, and the curves
-/// of the Schutte class. Masses and sizes of wrap objects must be given. Elements that would act in
-/// OpenSim but are not simulated are listed in Model::warnings.
+/// ExpressionBasedCoordinateForce, PointToPointSpring, BushingForce, Ligament, PathSpring,
+/// Blankevoort1991Ligament, PrescribedForce, CoordinateActuator. Offset frames are folded into
+/// their bodies. For missing elements the model's <defaults> apply, then OpenSim's own defaults:
+/// mass_center 0, inertia 0, coordinate 0 in ±10, quadrant all, F0 1000 N, ℓ0 0.1 m, ℓs 0.2 m,
+/// pennation 0, damping 0.1, and the curves of the Schutte class. Masses and sizes of wrap objects
+/// must be given. Elements that would act in OpenSim but are not simulated are listed in
+/// Model::warnings.
 ///
 /// @throws FileError if the file cannot be read, is not a model, or breaks a rule of model.h
 Model readOsim(const std::filesystem::path& file);

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "bio/path/tree_path.h"
@@ -28,13 +29,17 @@ class PathLengths {
     double curvature;  ///< ∂²ℓ/∂q² [m/rad²]
     bool wrapped;      ///< a moving span touches a wrap object
   };
-  /// Evaluates one path there. @throws std::domain_error if it has no taut string
+  /// Evaluates one path there. @throws std::domain_error if it has no taut string; names muscle and
+  /// posture
   Along along(std::size_t path);
 
  private:
   const Skeleton* skeleton_;
   std::optional<TreePaths> onTree_;
+  Along evaluate(std::size_t path);
   std::vector<const MusclePath*> paths_;
+  std::vector<std::string> names_;
+  Eigen::VectorXd at_;
   Eigen::Matrix<double, 1, 1> q_;
   std::vector<RigidMotion<double, 1>> moved_;
 };

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <limits>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "bio/forces/body_forces.h"
 #include "bio/forces/coordinate_force.h"
 #include "bio/model/model.h"
 #include "bio/muscle/activation_dynamics.h"
@@ -14,6 +17,8 @@
 #include "bio/skeleton/tree_energy.h"
 
 namespace bio {
+
+class PostureSamples;
 
 struct SystemOptions {
   SkeletonOptions skeleton;  ///< free coordinates, and values of the locked ones
@@ -38,6 +43,13 @@ struct SystemMarker {
   std::string name;  ///< BODY.MARKER
   std::size_t segment = 0;
   Eigen::Vector3d p_S;  ///< [m]
+};
+
+/// A string without state, ready to be simulated.
+struct SystemElasticPath {
+  std::string name;
+  ElasticPathLaw law;
+  MusclePath path;
 };
 
 /// A model compiled for simulation: the skeleton with its free coordinates, the muscles that these
@@ -70,10 +82,20 @@ class MusculoskeletalSystem {
   std::size_t numMuscles() const { return muscles_.size(); }
   const std::vector<SystemMarker>& markers() const { return markers_; }
 
+  /// Loads, springs between points, bushings.
+  const BodyForces& bodyForces() const { return bodyForces_; }
+  /// Ligaments and path springs.
+  const std::vector<SystemElasticPath>& elasticPaths() const { return elasticPaths_; }
+  /// The muscles' paths, then the elastic ones.
+  std::size_t numPaths() const { return muscles_.size() + elasticPaths_.size(); }
+  const MusclePath& path(std::size_t i) const {
+    return i < muscles_.size() ? muscles_[i].path : elasticPaths_[i - muscles_.size()].path;
+  }
+
   /// The skeleton's tree with the moving points of the paths; null: Skeleton::tree() is.
   const ArticulatedTree* tree() const { return tree_.get(); }
-  /// Of a muscle, over tree().
-  const TreePath& treePath(std::size_t muscle) const { return treePaths_[muscle]; }
+  /// Of a path, over tree().
+  const TreePath& treePath(std::size_t path) const { return treePaths_[path]; }
 
   /// Coordinate values at which a path gains or loses conditional points, each listed once.
   const std::vector<PathSwitch>& switches() const { return switches_; }
@@ -90,12 +112,17 @@ class MusculoskeletalSystem {
                         const MusculoskeletalSystem* like, const std::vector<std::string>& shaped);
   /// The path that can be reused; null: it must be compiled.
   const MusclePath* pathOf(const std::string& muscle) const;
-  /// The muscles' paths over tree_, where the skeleton has a tree.
+  void addElasticPaths(const Model& model, const SystemOptions& options,
+                       const MusculoskeletalSystem* like, PostureSamples& postures);
+  void addSwitches(const MusclePath& path);
+  /// All paths over tree_, where the skeleton has a tree.
   void addTreePaths(const Model& model);
 
   Skeleton skeleton_;
   std::vector<int> prescribed_;
   CoordinateForces coordinateForces_;
+  BodyForces bodyForces_;
+  std::vector<SystemElasticPath> elasticPaths_;
   std::vector<std::unique_ptr<const SchutteCurves>> curves_;
   std::vector<std::unique_ptr<const muscles::AnyMuscle>> others_;  ///< of classes but Schutte's
   std::vector<SystemMuscle> muscles_;
@@ -116,17 +143,24 @@ class SystemConfiguration {
   using Vector = Eigen::Matrix<double, N, 1>;
 
   explicit SystemConfiguration(const MusculoskeletalSystem& arm)
-      : arm_(&arm), motions_(arm.skeleton().numSegments()), lengths_(arm.numMuscles()) {
+      : arm_(&arm), motions_(arm.skeleton().numSegments()), lengths_(arm.numPaths()) {
     energy_.T_q.setZero();
     energy_.T_vq.setZero();
     energy_.T_qq.setZero();
   }
 
+  /// A path without a taut string there has the length NaN (stepping::describeLostPath names it).
   void moveTo(const Vector& q) {
     moveSkeletonTo(q);
     for (std::size_t i = 0; i < lengths_.size(); ++i) {
-      lengths_[i] =
-          arm_->muscles()[i].path.template length<N>(q, motions_.data(), holds_ ? &held_ : nullptr);
+      try {
+        for (; i < lengths_.size(); ++i) {
+          lengths_[i] =
+              arm_->path(i).template length<N>(q, motions_.data(), holds_ ? &held_ : nullptr);
+        }
+      } catch (const std::domain_error&) {
+        lengths_[i].length = std::numeric_limits<double>::quiet_NaN();
+      }
     }
   }
 
@@ -195,7 +229,8 @@ class SystemConfiguration {
     return e;
   }
 
-  const LengthJet<N>& length(std::size_t muscle) const { return lengths_[muscle]; }
+  /// Of MusculoskeletalSystem::path(i): the muscles come first.
+  const LengthJet<N>& length(std::size_t i) const { return lengths_[i]; }
 
  private:
   const MusculoskeletalSystem* arm_;

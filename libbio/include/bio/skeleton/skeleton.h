@@ -36,6 +36,11 @@ struct SkeletonOptions {
 /// because an angle was given in degrees.
 std::vector<std::string> lockRemarks(const Model& model, const SkeletonOptions& options);
 
+class Skeleton;
+
+/// "elbow_flexion = 34 deg, slide = 0.01 m": the free coordinates' values.
+std::string describePosture(const Skeleton& skeleton, const Eigen::VectorXd& q);
+
 /// Bodies that do not move relative to each other, as one rigid body.
 struct Segment {
   std::string name;  ///< of its first body; "ground" for segment 0

@@ -23,7 +23,8 @@ struct MeasuredMotion {
 /// External load on one coordinate, in every row.
 struct AppliedForce {
   std::string coordinate;
-  Eigen::VectorXd values;  ///< [N·m] or [N], finite; positive pushes the coordinate up
+  Eigen::VectorXd values;     ///< [N·m] or [N], finite; positive pushes the coordinate up
+  std::string actuator = {};  ///< the CoordinateActuator whose control the column is; empty: none
 };
 
 /// The inputs of a simulation and the measurements of a recording.

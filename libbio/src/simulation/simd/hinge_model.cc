@@ -32,6 +32,7 @@ class HingeCompiler {
   std::optional<HingeModel<Single>> compile() {
     const Skeleton& skeleton = arm_->skeleton();
     if (skeleton.numCoordinates() != 1 || !skeleton.hasConstantInertia()) return {};
+    if (!arm_->bodyForces().empty() || !arm_->elasticPaths().empty()) return {};
     skeleton.motions<double, 1>(zero_, moved_.data());
     if (moved_[1].first[0].R.isZero(0)) return {};  // a slider
     const InertiaJet<1> inertia = skeleton.inertia<1>(zero_, moved_.data());

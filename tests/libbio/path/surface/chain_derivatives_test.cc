@@ -5,6 +5,7 @@
 #include "bio/path/surface/chain_change.h"
 #include "bio/path/surface/wrap_cylinder.h"
 #include "bio/path/surface/wrap_sphere.h"
+#include "support/moved_chains.h"
 #include "support/random_chains.h"
 
 namespace bio {
@@ -12,74 +13,14 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using support::along;
+using support::difference;
+using support::flat;
+using support::isWellInside;
+using support::moved;
 using support::RandomChain;
 using support::RandomChains;
-
-ChainScrews randomMotion(RandomChains& random) {
-  ChainScrews motion;
-  motion.P = random.direction();
-  motion.Q = random.direction();
-  for (Screw& screw : motion.objects) {
-    screw.linear = random.direction();
-    screw.angular = 10 * random.direction();
-  }
-  return motion;
-}
-
-// The chain after `share` of a motion.
-RandomChain moved(RandomChain chain, const ChainScrews& motion, double share) {
-  chain.P += share * motion.P;
-  chain.Q += share * motion.Q;
-  for (std::size_t j = 0; j < chain.objects.size(); ++j) {
-    const Screw& screw = motion.objects[j];
-    const double turn = screw.angular.norm();
-    const Matrix3d R =
-        Eigen::AngleAxis<double>(turn * share, screw.angular / turn).toRotationMatrix();
-    ChainObject& object = chain.objects[j];
-    object.R_GS = R * object.R_GS;
-    object.p_GS = R * object.p_GS + share * screw.linear;
-  }
-  return chain;
-}
-
-double along(const ChainScrews& gradient, const ChainScrews& motion) {
-  double sum = gradient.P.dot(motion.P) + gradient.Q.dot(motion.Q);
-  for (std::size_t j = 0; j < maxChain; ++j) {
-    sum += gradient.objects[j].linear.dot(motion.objects[j].linear) +
-           gradient.objects[j].angular.dot(motion.objects[j].angular);
-  }
-  return sum;
-}
-
-// All numbers of a set of screws.
-Eigen::Matrix<double, 6 + 6 * maxChain, 1> flat(const ChainScrews& screws) {
-  Eigen::Matrix<double, 6 + 6 * maxChain, 1> all;
-  all.head<3>() = screws.P;
-  all.segment<3>(3) = screws.Q;
-  for (int j = 0; j < maxChain; ++j) {
-    all.segment<3>(6 + 6 * j) = screws.objects[static_cast<std::size_t>(j)].linear;
-    all.segment<3>(9 + 6 * j) = screws.objects[static_cast<std::size_t>(j)].angular;
-  }
-  return all;
-}
-
-// Not so near lift-off or an end that a difference would see the other side.
-bool isWellInside(const ChainPath& path) {
-  if (path.event != ChainEvent::none || !path.isShortest || path.numContacts == 0) return false;
-  for (int i = 0; i <= path.numContacts; ++i) {
-    const auto si = static_cast<std::size_t>(i);
-    if (path.pieces[si].length < 5e-3) return false;
-    if (i < path.numContacts && path.contacts[si].arc < 2e-3) return false;
-  }
-  return true;
-}
-
-// f along the motion or number, by a five-point difference.
-template <class F>
-auto difference(const F& f, double h) {
-  const auto a = f(h), b = f(-h), c = f(2 * h), d = f(-2 * h);
-  return std::remove_cv_t<decltype(a)>((8 * (a - b) - (c - d)) / (12 * h));
-}
+using support::randomMotion;
 
 struct Sample {
   RandomChain chain;

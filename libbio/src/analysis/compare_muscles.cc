@@ -1,0 +1,112 @@
+#include "bio/analysis/compare_muscles.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "bio/calibration/trial_predictor.h"
+#include "bio/model/convert_muscles.h"
+
+namespace bio {
+namespace {
+
+/// What every class has, in the order of the muscles.
+std::vector<std::size_t> sharedNumbers(const ParameterCatalogue& catalogue,
+                                       const MusculoskeletalSystem& arm) {
+  std::vector<std::size_t> selection;
+  for (const SystemMuscle& muscle : arm.muscles()) {
+    for (const char* number :
+         {"max_isometric_force", "optimal_fiber_length", "tendon_slack_length"}) {
+      selection.push_back(catalogue.find(muscle.name + "." + number));
+    }
+  }
+  return selection;
+}
+
+double rootMeanSquareOf(const Eigen::VectorXd& values) {
+  return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
+}
+
+/// What no change of the parameters explains: Δ − Γ(ΓᵀΓ + σ²Λ)⁻¹ΓᵀΔ, Λ of their priors.
+Eigen::VectorXd unexplainedBy(const Eigen::MatrixXd& gamma, const ParameterInformation& known,
+                              double noise, const Eigen::VectorXd& difference) {
+  // in prior deviations, so that the matrix is of one size
+  Eigen::MatrixXd scaled = gamma;
+  for (Eigen::Index j = 0; j < scaled.cols(); ++j) {
+    const info::Parameter& parameter = known.parameters[static_cast<std::size_t>(j)];
+    scaled.col(j) *= parameter.prior ? parameter.prior->sd : std::abs(parameter.start);
+  }
+  Eigen::MatrixXd normal = scaled.transpose() * scaled;
+  normal.diagonal().array() += noise * noise;
+  return difference - scaled * normal.ldlt().solve(scaled.transpose() * difference);
+}
+
+struct Measured {
+  Eigen::VectorXd outputs;
+  Eigen::MatrixXd gamma;
+};
+
+MuscleClassMotion motionOf(const Model& model, const SystemOptions& options,
+                           const MuscleClassTrial& trial, const MuscleClassMotion* first,
+                           Measured& measured) {
+  MuscleClassMotion result;
+  const MusculoskeletalSystem arm(model, options);
+  SystemState start = initialState(arm, trial.q, *trial.excitation, trial.simulation.startTime);
+  start.qDot = trial.qDot;
+  result.motion = simulate(arm, *trial.excitation, start, trial.simulation);
+  if (result.motion.outcome != Outcome::completed) return result;
+  for (int repeat = 0; repeat < 4; ++repeat) {  // the least time: others use the machine
+    result.motion.wallSeconds =
+        std::min(result.motion.wallSeconds,
+                 simulate(arm, *trial.excitation, start, trial.simulation).wallSeconds);
+  }
+  result.energyError = energyError(arm, result.motion);
+  if (first) result.difference = sd(arm, result.motion, first->motion);
+  const ParameterCatalogue catalogue(model, arm, {trial.q, trial.qDot});
+  const std::vector<std::size_t> selection = sharedNumbers(catalogue, arm);
+  const TrialPredictor predictor(catalogue, options, *trial.excitation, trial.coordinate,
+                                 trial.times, selection, trial.simulation);
+  auto linearised = predictor.withSensitivities(catalogue.values(selection));
+  result.information = informationAbout(catalogue, selection, {linearised.gamma}, trial.noise);
+  measured = {std::move(linearised.outputs), std::move(linearised.gamma)};
+  return result;
+}
+
+}  // namespace
+
+std::vector<MuscleClassMotion> compareMuscleClasses(const Model& model,
+                                                    const SystemOptions& options,
+                                                    const std::vector<std::string>& classes,
+                                                    const MuscleClassTrial& trial) {
+  std::vector<MuscleClassMotion> all;
+  Measured reference;
+  all.push_back(motionOf(model, options, trial, nullptr, reference));
+  all.back().name = "as in the model";
+  if (all.back().motion.outcome != Outcome::completed) {
+    throw std::runtime_error(fmt::format(
+        "the motion of the model as it is does not reach the end: {}", all.back().motion.why));
+  }
+  for (const std::string& name : classes) {
+    if (trial.progress) {
+      trial.progress(static_cast<double>(all.size()) / static_cast<double>(classes.size() + 1));
+    }
+    Model changed = model;
+    std::vector<std::string> lost = convertMuscles(changed, name).lost;
+    Measured measured;
+    MuscleClassMotion one = motionOf(changed, options, trial, &all.front(), measured);
+    one.name = name;
+    one.lost = std::move(lost);
+    if (one.motion.outcome == Outcome::completed) {
+      const Eigen::VectorXd difference = measured.outputs - reference.outputs;
+      one.measured = rootMeanSquareOf(difference);
+      one.unexplained = rootMeanSquareOf(
+          unexplainedBy(reference.gamma, all.front().information, trial.noise, difference));
+    }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+}  // namespace bio

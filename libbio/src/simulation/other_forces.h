@@ -1,0 +1,72 @@
+#pragma once
+
+// Forces of a system that are neither muscles' nor on single coordinates; not public.
+
+#include "simulation/coordinate_sums.h"
+
+namespace bio::stepping {
+
+/// Brings segments to where a configuration has them.
+void moveSegments(const MusculoskeletalSystem& arm, const SystemConfiguration<1>& configuration,
+                  std::vector<MovingSegment>& segments);
+void moveSegments(const MusculoskeletalSystem& arm,
+                  const SystemConfiguration<Eigen::Dynamic>& configuration,
+                  std::vector<MovingSegment>& segments);
+
+/// Loads, springs, bushings and elastic paths of a system, evaluated in one configuration after the
+/// other; holds what that needs.
+template <int N>
+class OtherForces {
+ public:
+  using Vector = Eigen::Matrix<double, N, 1>;
+  using Matrix = Eigen::Matrix<double, N, N>;
+
+  explicit OtherForces(const MusculoskeletalSystem& arm)
+      : arm_(&arm),
+        isAny_(!arm.bodyForces().empty() || !arm.elasticPaths().empty()),
+        segments_(arm.bodyForces().segments()),
+        load_(Vector::Zero(countOf<N>(arm))),
+        load_t_(load_),
+        along_(load_),
+        load_q_(Matrix::Zero(countOf<N>(arm), countOf<N>(arm))) {}
+
+  bool any() const { return isAny_; }
+
+  /// Adds what is passive, with its derivatives over q and v; finds the loads.
+  void add(double t, const SystemConfiguration<N>& configuration, const Vector& v, Vector& passive,
+           Matrix& passive_q, Matrix& passive_v) {
+    load_.setZero();
+    load_t_.setZero();
+    load_q_.setZero();
+    if (!segments_.empty()) {
+      moveSegments(*arm_, configuration, segments_);
+      speeds_ = v;
+      BodyForceSums sums{passive, passive_q, passive_v, load_, load_q_, load_t_};
+      arm_->bodyForces().add(t, segments_, speeds_, sums);
+    }
+    for (std::size_t i = 0; i < arm_->elasticPaths().size(); ++i) {
+      const LengthJet<N>& path = configuration.length(arm_->numMuscles() + i);
+      const PathTension r = arm_->elasticPaths()[i].law.tension(path.length, path.dL_dq.dot(v));
+      addAlong<N>(passive, -r.force, path);
+      along_ = r.dForce_dLength * path.dL_dq;
+      addSecondTimes<N>(along_, r.dForce_dSpeed, path, v);
+      passive_q.noalias() -= path.dL_dq * along_.transpose();
+      addSecond<N>(passive_q, -r.force, path);
+      addOuter<N>(passive_v, -r.dForce_dSpeed, path);
+    }
+  }
+
+  const Vector& load() const { return load_; }      ///< of the last add()
+  const Matrix& load_q() const { return load_q_; }  ///< ∂load/∂q
+  const Vector& load_t() const { return load_t_; }  ///< ∂load/∂t
+
+ private:
+  const MusculoskeletalSystem* arm_;
+  bool isAny_;
+  std::vector<MovingSegment> segments_;
+  Eigen::VectorXd speeds_;
+  Vector load_, load_t_, along_;
+  Matrix load_q_;
+};
+
+}  // namespace bio::stepping
