@@ -65,15 +65,15 @@ void synchronise(const Bytes& bytes, RawXdfStream& stream, std::vector<std::stri
 }
 
 // Samples without a leap of their stamps between them.
-struct Segment {
+struct XdfSegment {
   std::size_t first = 0, count = 0;
   double start = 0;     // [s]
   double interval = 0;  // [s]
 };
 
-std::vector<Segment> segmentsOf(const Bytes& bytes, const RawXdfStream& stream) {
+std::vector<XdfSegment> segmentsOf(const Bytes& bytes, const RawXdfStream& stream) {
   const double leap = std::max(1.0, 500 / stream.nominalRate);
-  std::vector<Segment> out;
+  std::vector<XdfSegment> out;
   for (std::size_t i = 0; i < stream.stamps.size(); ++i) {
     const double step = i == 0 ? 0 : stream.stamps[i] - stream.stamps[i - 1];
     if (step < -leap) {
@@ -83,7 +83,7 @@ std::vector<Segment> segmentsOf(const Bytes& bytes, const RawXdfStream& stream) 
     if (i == 0 || step > leap) out.push_back({.first = i});
     ++out.back().count;
   }
-  for (Segment& segment : out) {
+  for (XdfSegment& segment : out) {
     const Line line = lineThrough(
         segment.count, [](std::size_t i) { return static_cast<double>(i); },
         [&](std::size_t i) { return stream.stamps[segment.first + i]; });
@@ -95,9 +95,9 @@ std::vector<Segment> segmentsOf(const Bytes& bytes, const RawXdfStream& stream) 
 
 // Effective rate of all segments together.
 double rateOfStream(const Bytes& bytes, const RawXdfStream& stream,
-                    const std::vector<Segment>& segments) {
+                    const std::vector<XdfSegment>& segments) {
   double intervals = 0, duration = 0;
-  for (const Segment& segment : segments) {
+  for (const XdfSegment& segment : segments) {
     const auto n = static_cast<double>(segment.count - 1);
     intervals += n;
     duration += n * segment.interval;
@@ -118,7 +118,7 @@ std::string channelName(const RawXdfStream& stream, std::size_t c) {
 }
 
 XdfStream streamOf(const Bytes& bytes, const RawXdfStream& raw, std::vector<std::string>& remarks) {
-  const std::vector<Segment> segments = segmentsOf(bytes, raw);
+  const std::vector<XdfSegment> segments = segmentsOf(bytes, raw);
   const double rate = rateOfStream(bytes, raw, segments);
   if (!(std::abs(rate / raw.nominalRate - 1) < 0.05)) {
     remarks.push_back(
@@ -129,7 +129,7 @@ XdfStream streamOf(const Bytes& bytes, const RawXdfStream& raw, std::vector<std:
   // row of each segment's first sample; missing samples between them
   std::vector<Eigen::Index> rows;
   Eigen::Index end = 0;
-  for (const Segment& segment : segments) {
+  for (const XdfSegment& segment : segments) {
     const double place = std::round((segment.start - segments.front().start) * rate);
     const double most = 2 * static_cast<double>(raw.stamps.size()) + 1000;
     if (!(place <= most)) {
