@@ -36,9 +36,9 @@ C3dParameters::C3dParameters(const Bytes& bytes, std::size_t start) : bytes_(byt
   constexpr std::string_view what = "parameter section";
   std::map<int, std::string> groups;
   std::vector<Entry> entries;
-  // 0 blocks: the section does not say how long it is
-  const std::size_t blocks = bytes_.uint8(start + 2, what);
-  const std::size_t end = blocks > 0 ? start + 512 * blocks : bytes_.size();
+  // The data are behind it. The section tells its length, too, but in some files too little.
+  const std::size_t data = bytes_.uint16(16, "header");
+  const std::size_t end = data > 0 ? (data - 1) * 512 : bytes_.size();
   for (std::size_t at = start + 4;;) {
     // length of the name, negative if locked; number of the group, negative for the group itself
     const int nameLength = std::abs(static_cast<std::int8_t>(bytes_.uint8(at, what)));
