@@ -3,11 +3,6 @@
 namespace bio::stepping {
 namespace {
 
-/// ω of the matrix ω×.
-Eigen::Vector3d axisOf(const Eigen::Matrix3d& cross) {
-  return {cross(2, 1), cross(0, 2), cross(1, 0)};
-}
-
 Vector6 plain(const SpatialVector<double>& S) {
   return Eigen::Map<const Vector6>(S.data());
 }
@@ -23,20 +18,6 @@ Vector6 moved(const Vector6& A, const Vector6& B) {
 }
 
 }  // namespace
-
-// ω× = R′Rᵀ, s = p′ − ω × p, and their derivatives
-void moveSegments(const MusculoskeletalSystem&, const SystemConfiguration<1>& configuration,
-                  std::vector<MovingSegment>& segments) {
-  for (MovingSegment& segment : segments) {
-    const RigidMotion<double, 1>& m = configuration.motions()[segment.segment];
-    segment.X = m.value;
-    const Eigen::Matrix3d cross = m.first[0].R * m.value.R.transpose();
-    const Eigen::Vector3d w = axisOf(cross);
-    const Eigen::Vector3d w_q = axisOf(m.second[0].R * m.value.R.transpose() - cross * cross);
-    segment.S[0] << w, m.first[0].p - w.cross(m.value.p);
-    segment.dS[0] << w_q, m.second[0].p - w_q.cross(m.value.p) - w.cross(m.first[0].p);
-  }
-}
 
 void moveSegments(const MusculoskeletalSystem& arm,
                   const SystemConfiguration<Eigen::Dynamic>& configuration,

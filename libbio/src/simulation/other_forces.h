@@ -6,9 +6,31 @@
 
 namespace bio::stepping {
 
-/// Brings segments to where a configuration has them.
-void moveSegments(const MusculoskeletalSystem& arm, const SystemConfiguration<1>& configuration,
-                  std::vector<MovingSegment>& segments);
+/// Brings segments to where a configuration has them: with ω_i× = ∂_iR Rᵀ and s_i = ∂_ip − ω_i × p
+///     ∂_kω_i× = ∂_ikR Rᵀ − ω_i× ω_k×,   ∂_ks_i = ∂_ikp − ∂_kω_i × p − ω_i × ∂_kp
+template <int N>
+void moveSegments(const MusculoskeletalSystem&, const SystemConfiguration<N>& configuration,
+                  std::vector<MovingSegment>& segments) {
+  const auto axisOf = [](const Eigen::Matrix3d& cross) {
+    return Eigen::Vector3d(cross(2, 1), cross(0, 2), cross(1, 0));
+  };
+  for (MovingSegment& segment : segments) {
+    const RigidMotion<double, N>& m = configuration.motions()[segment.segment];
+    segment.X = m.value;
+    for (std::size_t i = 0; i < N; ++i) {
+      const Eigen::Matrix3d cross = m.first[i].R * m.value.R.transpose();
+      const Eigen::Vector3d w = axisOf(cross);
+      segment.S[i] << w, m.first[i].p - w.cross(m.value.p);
+      for (std::size_t k = 0; k < N; ++k) {
+        const Placement<double>& second =
+            m.second[static_cast<std::size_t>(pairIndex(static_cast<int>(i), static_cast<int>(k)))];
+        const Eigen::Matrix3d cross_k = m.first[k].R * m.value.R.transpose();
+        const Eigen::Vector3d w_k = axisOf(second.R * m.value.R.transpose() - cross * cross_k);
+        segment.dS[i * N + k] << w_k, second.p - w_k.cross(m.value.p) - w.cross(m.first[k].p);
+      }
+    }
+  }
+}
 void moveSegments(const MusculoskeletalSystem& arm,
                   const SystemConfiguration<Eigen::Dynamic>& configuration,
                   std::vector<MovingSegment>& segments);

@@ -453,13 +453,64 @@ TEST_F(OsimRules, DefaultsOfTheModelSpeakWhereAnElementIsSilent) {
   EXPECT_EQ(p.tendonForceLength.x.size(), 17u);  // the class's own curve
 }
 
+// Each with all its properties, as OpenSim 4 writes them; written and read again they are the same.
+TEST_F(OsimRules, ForcesOnBodiesAreReadAndWritten) {
+  const std::string body = read(valid).bodies.front().name;
+  const std::string forces =
+      "<PointToPointSpring "
+      "name=\"band\"><socket_body1>/ground</socket_body1><socket_body2>/bodyset/" +
+      body +
+      "</socket_body2><point1>0.1 0.2 0.3</point1><point2>0 -0.1 "
+      "0</point2><stiffness>40</stiffness>"
+      "<rest_length>0.05</rest_length></PointToPointSpring>"
+      "<BushingForce name=\"sleeve\"><socket_frame1>in_ground</socket_frame1>"
+      "<socket_frame2>/bodyset/" +
+      body +
+      "</socket_frame2><frames><PhysicalOffsetFrame name=\"in_ground\"><socket_parent>/ground"
+      "</socket_parent><translation>0 0.1 0</translation><orientation>0.1 0 0.2</orientation>"
+      "</PhysicalOffsetFrame></frames><rotational_stiffness>1 2 3</rotational_stiffness>"
+      "<translational_damping>4 5 6</translational_damping></BushingForce>"
+      "<PrescribedForce name=\"push\"><socket_frame>/bodyset/" +
+      body +
+      "</socket_frame><forceIsGlobal>false</forceIsGlobal><FunctionSet "
+      "name=\"forceFunctions\"><objects>"
+      "<Constant><value>1</value></Constant><Constant><value>2</value></Constant><LinearFunction>"
+      "<coefficients>3 4</coefficients></LinearFunction></objects></FunctionSet></PrescribedForce>"
+      "<CoordinateActuator name=\"motor\"><coordinate>q</coordinate><optimal_force>7"
+      "</optimal_force></CoordinateActuator>";
+  const Model model = read(replaced(valid, "<ForceSet name=\"forceset\"><objects>",
+                                    "<ForceSet name=\"forceset\"><objects>" + forces));
+  EXPECT_THAT(model.warnings, IsEmpty());
+  ASSERT_EQ(model.pointSprings.size(), 1u);
+  EXPECT_EQ(model.pointSprings[0].body[0], "ground");
+  EXPECT_EQ(model.pointSprings[0].point[1], Eigen::Vector3d(0, -0.1, 0));
+  EXPECT_EQ(model.pointSprings[0].restLength, 0.05);
+  ASSERT_EQ(model.bushings.size(), 1u);
+  EXPECT_EQ(model.bushings[0].body[0], "ground");
+  EXPECT_EQ(model.bushings[0].frame[0].orientation, Eigen::Vector3d(0.1, 0, 0.2));
+  EXPECT_EQ(model.bushings[0].translationalDamping, Eigen::Vector3d(4, 5, 6));
+  ASSERT_EQ(model.prescribedForces.size(), 1u);
+  EXPECT_EQ(model.prescribedForces[0].forceFrame, body);
+  EXPECT_EQ(model.prescribedForces[0].pointFrame, body);
+  EXPECT_EQ(model.prescribedForces[0].functions.size(), 9u);
+  ASSERT_EQ(model.actuators.size(), 1u);
+  EXPECT_EQ(model.actuators[0].optimalForce, 7);
+  const support::ScratchFolder folder;
+  writeOsim(model, folder / "again.osim");
+  const Model again = readOsim(folder / "again.osim");
+  EXPECT_EQ(again.pointSprings, model.pointSprings);
+  EXPECT_EQ(again.bushings, model.bushings);
+  EXPECT_EQ(again.prescribedForces, model.prescribedForces);
+  EXPECT_EQ(again.actuators, model.actuators);
+}
+
 TEST_F(OsimRules, ForcesThatAreNotSimulatedAreNamedUnlessDisabled) {
   const auto with = [](const std::string& flag) {
     return replaced(valid, "<ForceSet name=\"forceset\"><objects>",
-                    "<ForceSet name=\"forceset\"><objects><BushingForce name=\"b\">" + flag +
-                        "</BushingForce>");
+                    "<ForceSet name=\"forceset\"><objects><HuntCrossleyForce name=\"b\">" + flag +
+                        "</HuntCrossleyForce>");
   };
-  EXPECT_THAT(read(with("")).warnings, ElementsAre("BushingForce 'b' is not simulated"));
+  EXPECT_THAT(read(with("")).warnings, ElementsAre("HuntCrossleyForce 'b' is not simulated"));
   EXPECT_THAT(read(with("<appliesForce>false</appliesForce>")).warnings, IsEmpty());
   EXPECT_THAT(read(with("<isDisabled>true</isDisabled>")).warnings, IsEmpty());
 }
