@@ -22,7 +22,10 @@ bio::SystemOptions armOptions(const SimulationOptions& options) {
   bio::SystemOptions arm;
   arm.skeleton.freeCoordinates = options.coordinates;
   arm.prescribed = options.prescribed;
-  for (const auto& [name, value] : options.held) arm.prescribed.push_back(name);
+  for (const auto& [name, value] : options.held) {
+    arm.prescribed.push_back(name);
+    arm.skeleton.lockedValues.erase(name);
+  }
   arm.skeleton.freeCoordinates.insert(arm.skeleton.freeCoordinates.end(), arm.prescribed.begin(),
                                       arm.prescribed.end());
   arm.skeleton.lockedValues = byName(options.locks);

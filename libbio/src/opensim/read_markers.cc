@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "bio/skeleton/skeleton.h"
 #include "opensim/reading.h"
 
 namespace bio::osim {
@@ -31,9 +30,8 @@ void readMarkers(Reading& reading, const Element& model) {
       continue;
     }
     const auto l = readNumbers(reading.source, *element, "location", "m", 3);
-    const Placement<double> X = placementOf(frame.placement);
-    reading.model.markers.push_back(
-        {name, frame.body, X.R * Eigen::Vector3d(l[0], l[1], l[2]) + X.p});
+    const FramePlacement place = compose(frame.placement, {{l[0], l[1], l[2]}, {0, 0, 0}});
+    reading.model.markers.push_back({name, frame.body, place.translation});
   }
 }
 

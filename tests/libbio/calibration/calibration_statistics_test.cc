@@ -1,4 +1,4 @@
-#include "support/calibration_statistics.h"
+#include "libbio/calibration/calibration_statistics.h"
 
 #include <gtest/gtest.h>
 

@@ -470,7 +470,7 @@ TEST_F(OsimRules, ForcesOnBodiesAreReadAndWritten) {
       "</socket_parent><translation>0 0.1 0</translation><orientation>0.1 0 0.2</orientation>"
       "</PhysicalOffsetFrame></frames><rotational_stiffness>1 2 3</rotational_stiffness>"
       "<translational_damping>4 5 6</translational_damping></BushingForce>"
-      "<PrescribedForce name=\"push\"><socket_frame>/bodyset/" +
+      "<PrescribedForce name=\"pull\"><socket_frame>/bodyset/" +
       body +
       "</socket_frame><forceIsGlobal>false</forceIsGlobal><FunctionSet "
       "name=\"forceFunctions\"><objects>"

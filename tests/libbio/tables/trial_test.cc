@@ -151,7 +151,7 @@ TEST_F(TrialFile, ExtraColumnsAreIgnoredOnlyWhenAskedFor) {
   EXPECT_EQ(
       messageOf(text),
       "trial.csv: column 'knee' is neither a muscle nor a coordinate of the model, nor a torque on "
-      "one, and such columns are not ignored");
+      "one, nor anything else that can be measured, and such columns are not ignored");
   try {
     read(text);
     FAIL() << "taken";

@@ -37,7 +37,10 @@ class Dynamometer {
       : study_(study),
         model_(readOsim(std::string(FISHERHILL_SOURCE_DIR) + "/models/elbow8.osim")) {
     driven_ = study.shoulder ? "shoulder_elv" : "elbow_flexion";
-    if (study.shoulder) options_.skeleton.freeCoordinates = {"elbow_flexion"};
+    if (study.shoulder) {  // a spring holds the elbow within its range
+      options_.skeleton.freeCoordinates = {"elbow_flexion"};
+      model_.springForces.push_back({"hold", "elbow_flexion", 8, 1.2, 0.4});
+    }
     options_.skeleton.freeCoordinates.push_back(driven_);
     options_.prescribed = {driven_};
   }
@@ -60,7 +63,7 @@ class Dynamometer {
     if (study_.shoulder) {
       for (const double frequency : {0.5, 0.8}) list.push_back(blank(30, 0, frequency));
     } else {
-      for (const double angle : {40.0, 75.0, 110.0}) list.push_back(blank(angle, 0, 0));
+      for (const double angle : {40.0, 100.0}) list.push_back(blank(angle, 0, 0));
       list.push_back(blank(40, 45, 0));
       list.push_back(blank(110, -45, 0));
     }
