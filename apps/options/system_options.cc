@@ -21,6 +21,7 @@ std::map<std::string, double> byName(const std::vector<Assignment>& assignments)
 bio::SystemOptions armOptions(const SimulationOptions& options) {
   bio::SystemOptions arm;
   arm.skeleton.freeCoordinates = options.coordinates;
+  arm.skeleton.lockedValues = byName(options.locks);
   arm.prescribed = options.prescribed;
   for (const auto& [name, value] : options.held) {
     arm.prescribed.push_back(name);
@@ -28,7 +29,6 @@ bio::SystemOptions armOptions(const SimulationOptions& options) {
   }
   arm.skeleton.freeCoordinates.insert(arm.skeleton.freeCoordinates.end(), arm.prescribed.begin(),
                                       arm.prescribed.end());
-  arm.skeleton.lockedValues = byName(options.locks);
   arm.wrapAsCylinder = options.wrapAsCylinder;
   return arm;
 }
