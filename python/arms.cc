@@ -7,9 +7,9 @@
 #include "bio/analysis/replay.h"
 #include "bio/discovery/with_experimental_conditions.h"
 #include "bio/model/free_coordinates.h"
-#include "bio/skeleton/articulated_tree.h"
 #include "bio/model/integrator_names.h"
 #include "bio/opensim/osim_file.h"
+#include "bio/skeleton/articulated_tree.h"
 #include "bio/tables/trial_table.h"
 #include "docstrings.h"
 #include "interruptible.h"
@@ -201,8 +201,8 @@ bool canBeFree(const bio::Model& model, const std::map<std::string, double>& loc
                const std::set<std::string>& prescribed) {
   if (prescribed.empty()) return true;
   for (const std::string& name : bio::independentCoordinates(model)) {
-    const bool isFixed = lock.contains(name) || prescribed.contains(name) ||
-                         bio::findCoordinate(model, name).locked;
+    const bool isFixed =
+        lock.contains(name) || prescribed.contains(name) || bio::findCoordinate(model, name).locked;
     if (!isFixed) return true;
   }
   return false;

@@ -70,9 +70,10 @@ MeasuredCoordinate measuredCoordinate(const Channel& channel, const MeasuredOpti
         options.coordinate, channel.name, options.clipBelow, options.clipAbove));
   }
   if (options.lowPass) {
-    const Eigen::VectorXd smooth = filterZeroPhase(
-        butterworthLowPass(options.lowPassOrder, *options.lowPass, channel.rate, Passes::forwardAndBackward),
-        bridged(seen));
+    const Eigen::VectorXd smooth =
+        filterZeroPhase(butterworthLowPass(options.lowPassOrder, *options.lowPass, channel.rate,
+                                           Passes::forwardAndBackward),
+                        bridged(seen));
     out.angle_deg = seen.binaryExpr(smooth, [](double raw, double filtered) {
       return std::isnan(raw) ? notMeasured : filtered;
     });

@@ -41,8 +41,8 @@ class TouchedObject {
   /// @param changed  change of the wrench, whose axes stay
   /// @param motion  of the object
   template <class Wrap>
-  void addChangeTo(Wrap& wrap, Eigen::Index column, const ContactShift& shift,
-                   const Screw& changed, const Screw& motion) const {
+  void addChangeTo(Wrap& wrap, Eigen::Index column, const ContactShift& shift, const Screw& changed,
+                   const Screw& motion) const {
     for (int n = 0; n < numNumbers_; ++n) {
       wrap(wrapNumberRow(isGeneral_, n), column) +=
           numberChange(numbers_[static_cast<std::size_t>(n)], shift);
