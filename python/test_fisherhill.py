@@ -50,6 +50,24 @@ class Arms(unittest.TestCase):
         trial = fh.make_trial(self.model, self.columns())
         np.testing.assert_array_equal(fh.replay(self.model, trial).q, fh.replay(self.model, self.trial).q)
 
+    def test_a_prescribed_joint_has_a_reaction_and_a_moment_to_compare_with(self):
+        columns = self.columns()
+        columns["elbow_flexion"] = np.full(len(self.trial.times), 1.0)
+        trial = fh.make_trial(self.model, columns, prescribe=["elbow_flexion"])
+        self.assertEqual(list(trial.prescribed), ["elbow_flexion"])
+        self.assertEqual(trial.measured, {})
+        held = fh.replay(self.model, trial)
+        stub.check(held, "ReplayResult")
+        np.testing.assert_allclose(held.q, 1.0, atol=1e-12)
+        columns["elbow_flexion.moment"] = np.interp(columns["time"], held.time, -held.reaction["elbow_flexion"])
+        measured = fh.make_trial(self.model, columns, prescribe=["elbow_flexion"])
+        self.assertIn("elbow_flexion.moment", measured.channels)
+        again = fh.replay(self.model, measured)
+        self.assertLess(again.channel_rms_error["elbow_flexion.moment"], 1e-6)
+        del columns["elbow_flexion"]
+        locked = fh.replay(self.model, fh.make_trial(self.model, columns, hold={"elbow_flexion": 1.0}))
+        np.testing.assert_allclose(locked.reaction["elbow_flexion"], held.reaction["elbow_flexion"], atol=1e-9)
+
     def test_integrators_agree_on_the_motion(self):
         fine = fh.replay(self.model, self.trial, integrator="cvode").q[-1, 0]
         for integrator, step, bound in (("vi", 0.005, 2e-3), ("rk4", 2e-4, 2e-3)):
