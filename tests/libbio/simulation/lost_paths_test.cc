@@ -61,12 +61,12 @@ TEST(LostPath, EndsAMotionWithMusclePostureAndTime) {
                                   HasSubstr("elbow_flexion = 71.6197 deg")));
     }
     const SystemState start = initialState(arm, good, excitation, 0);
-    for (const Integrator integrator :
-         {Integrator::variational, Integrator::rungeKutta4, Integrator::cvode}) {
+    for (const Integrator integrator : {Integrator::variational, Integrator::rungeKutta4}) {
       SimulationOptions run;
       run.integrator = integrator;
       run.step = integrator == Integrator::rungeKutta4 ? 2e-4 : 0.01;
-      run.duration = 1;
+      run.duration = 0.3;
+      run.maxHalvings = 2;  // a search for a string that does not exist takes long
       const Trajectory motion = simulate(arm, excitation, start, run);
       EXPECT_NE(motion.outcome, Outcome::completed);
       EXPECT_GT(motion.failedAt, 0);
