@@ -194,22 +194,6 @@ bio::SimulationOptions SystemChoice::simulation() const {
   return options;
 }
 
-namespace {
-
-/// Whether freeByDefault() has to find one: always where nothing is prescribed.
-bool canBeFree(const bio::Model& model, const std::map<std::string, double>& lock,
-               const std::set<std::string>& prescribed) {
-  if (prescribed.empty()) return true;
-  for (const std::string& name : bio::independentCoordinates(model)) {
-    const bool isFixed =
-        lock.contains(name) || prescribed.contains(name) || bio::findCoordinate(model, name).locked;
-    if (!isFixed) return true;
-  }
-  return false;
-}
-
-}  // namespace
-
 SystemChoice armChoice(const bio::Model& model, const std::vector<bio::Trial>& trials,
                        const Names& coordinate, const std::map<std::string, double>& lock,
                        const std::string& integrator, std::optional<double> step) {
@@ -223,12 +207,12 @@ SystemChoice armChoice(const bio::Model& model, const std::vector<bio::Trial>& t
   for (const bio::Trial& trial : trials)
     for (const bio::MeasuredMotion& course : trial.prescribed) given.insert(course.coordinate);
   const std::vector<std::string> prescribed(given.begin(), given.end());
-  if (free.empty() && canBeFree(model, lock, given)) {
+  if (free.empty()) {
     std::set<std::string> locked = given, measured;
     for (const auto& [name, value] : lock) locked.insert(name);
     for (const bio::Trial& trial : trials)
       for (const bio::MeasuredMotion& motion : trial.measured) measured.insert(motion.coordinate);
-    free = bio::freeByDefault(model, locked, measured);
+    free = bio::freeByDefault(model, locked, measured, !prescribed.empty());
   }
   return {.coordinates = std::move(free),
           .prescribed = prescribed,

@@ -20,7 +20,7 @@ struct ShownUnit {
 };
 ShownUnit shownUnit(const bio::MeasuredGroup& channel) {
   if (channel.areAngles) return {radian, "deg"};
-  return {1, channel.unit == "N·m" ? "N m" : channel.unit.empty() ? "1" : channel.unit};
+  return {1, unitText(channel.unit)};
 }
 
 std::vector<double> inUnit(const Eigen::VectorXd& values, const ShownUnit& unit) {

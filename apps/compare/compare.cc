@@ -144,6 +144,7 @@ class Compare : public Command {
     bio::Model model = readModel(model_, summary);
     addExternalLoads(externalLoads_, model, summary);
     chooseCoordinates(simulation_, model, {trial_});
+    requireFreeCoordinate(simulation_);
     const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
     const TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
     const bio::Coordinate& coordinate = arm.skeleton().coordinates().front();
@@ -153,6 +154,7 @@ class Compare : public Command {
     trial.qDot = input.start.qDot;
     trial.simulation = simulationOptions(simulation_, input.startTime, input.duration);
     trial.simulation.externalForce = input.externalForce;
+    trial.simulation.prescribed = input.prescribed;
     trial.coordinate = coordinate.name;
     trial.times = bio::observedTimes(input.trial, coordinate.name, trial.simulation.step);
     trial.noise = noise_ * (coordinate.isRotation ? std::numbers::pi / 180 : 1e-3);

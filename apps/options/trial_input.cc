@@ -158,13 +158,8 @@ void chooseCoordinates(SimulationOptions& options, const bio::Model& model,
     options.areChosen = true;
     std::set<std::string> locked(options.prescribed.begin(), options.prescribed.end());
     for (const Assignment& lock : options.locks) locked.insert(lock.name);
-    const std::vector<std::string> all = bio::independentCoordinates(model);
-    const bool canBeFree = std::any_of(all.begin(), all.end(), [&](const std::string& name) {
-      return !locked.contains(name) && !bio::findCoordinate(model, name).locked;
-    });
-    const bool mustBeFree = options.prescribed.empty() && measured.moments.empty() && !allReactions;
-    if (canBeFree || mustBeFree)
-      options.coordinates = bio::freeByDefault(model, locked, measured.coordinates);
+    const bool mayBeNone = !options.prescribed.empty() || !measured.moments.empty() || allReactions;
+    options.coordinates = bio::freeByDefault(model, locked, measured.coordinates, mayBeNone);
   }
   holdLocked(options, model, measured.moments, allReactions);
 }

@@ -81,4 +81,8 @@ std::string shellWord(const std::string& word) {
   return quoted + "'";
 }
 
+std::string unitText(const std::string& unit) {
+  return unit == "N·m" ? "N m" : unit.empty() ? "1" : unit;
+}
+
 }  // namespace app

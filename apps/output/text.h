@@ -28,4 +28,7 @@ std::string shellWord(const std::string& word);
 /// & < > " ' replaced by their HTML entities.
 std::string htmlText(std::string_view text);
 
+/// A unit as figures and sentences show it: "N m" for "N·m", "1" for none.
+std::string unitText(const std::string& unit);
+
 }  // namespace app

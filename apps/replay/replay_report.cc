@@ -52,17 +52,11 @@ Figure motionFigure(const ReplayFindings& f, std::size_t index) {
   return figure;
 }
 
-/// "N·m" reads better as "N m" on an axis; an activation has no unit.
-std::string shownUnit(const bio::Observable& what, const bio::Model& model) {
-  const std::string unit = bio::unitOf(what, model);
-  return unit == "N·m" ? "N m" : unit.empty() ? "1" : unit;
-}
-
 /// Another measured channel than a coordinate, over all rows of the motion.
 Figure channelFigure(const ReplayFindings& f, const bio::MeasuredChannel& channel,
                      const bio::MeasuredError& error) {
   const std::string name = bio::nameOf(channel.what);
-  const std::string unit = shownUnit(channel.what, f.model);
+  const std::string unit = unitText(bio::unitOf(channel.what, f.model));
   const std::vector<double>& time = f.replay.motion.time;
   const bio::ObservedMotion all(
       f.arm, {{channel.what, Eigen::Map<const Eigen::VectorXd>(
@@ -171,7 +165,7 @@ std::string comparison(const ReplayFindings& f) {
         error.count, error.largest * unit.factor, unit.name, error.largestAt);
   }
   for (const bio::ChannelError& one : f.replay.channelErrors) {
-    const std::string unit = shownUnit(one.what, f.model);
+    const std::string unit = unitText(bio::unitOf(one.what, f.model));
     text += fmt::format(
         "{}{} differs from the measurement by {:.3g} {} (RMS over {} samples), at most {:.3g} {} "
         "at {:.3g} s",

@@ -14,7 +14,7 @@
 #include "options/trial_input.h"
 #include "output/progress_bar.h"
 #include "output/result.h"
-#include "output/text.h"
+#include "sensitivity/observed_channels.h"
 #include "sensitivity/sensitivity_report.h"
 
 namespace app {
@@ -116,7 +116,14 @@ class Sensitivity : public Command {
     SensitivityFindings findings{
         model_, trials_, coordinate, first.input.trial, noise_ / shownFactor(coordinate), 0};
     findings.model = &model;
-    readObserved(model, arm, first.times, findings);
+    observed_ = readObserved(observe_, model, arm);
+    findings.observed = inWords(observed_, model);
+    if (!observed_.empty()) {
+      findings.noise = 1;
+    } else if (simulation_.coordinates.empty()) {
+      throw std::invalid_argument(
+          "no coordinate is free to be observed: --observe must name what is measured");
+    }
     for (const Study& study : studies) {
       findings.samples += static_cast<Eigen::Index>(study.times.size() *
                                                     std::max<std::size_t>(1, observed_.size()));
@@ -234,41 +241,6 @@ class Sensitivity : public Command {
     return chosen;
   }
 
-  /// What --observe names; without it the first coordinate is observed, which must be free.
-  void readObserved(const bio::Model& model, const bio::MusculoskeletalSystem& arm,
-                    const std::vector<double>& times, SensitivityFindings& findings) {
-    for (const std::string& text : observe_) {
-      const Assignment one = parseAssignment(text);
-      bio::ChannelCandidate channel{{bio::Observable::Kind::coordinate, one.name, 0}, one.value};
-      const bool isCoordinate = bio::coordinateOrNull(model, one.name) != nullptr;
-      if (!isCoordinate && !bio::readObservable(one.name, model, channel.what)) {
-        throw std::invalid_argument(
-            fmt::format("--observe: '{}' is nothing that can be measured of this model", one.name));
-      }
-      if (!(channel.sd > 0)) {
-        throw std::invalid_argument(
-            fmt::format("--observe: noise of '{}' = {}, must be > 0", one.name, channel.sd));
-      }
-      (void)bio::ObservedMotion(arm, {seriesOf(channel, times)});
-      findings.observed +=
-          fmt::format("{}{} (noise {} {})", findings.observed.empty() ? "" : ", ", one.name,
-                      numberText(channel.sd), bio::unitOf(channel.what, model));
-      observed_.push_back(std::move(channel));
-    }
-    if (!observed_.empty()) {
-      findings.noise = 1;
-    } else if (simulation_.coordinates.empty()) {
-      throw std::invalid_argument(
-          "no coordinate is free to be observed: --observe must name what is measured");
-    }
-  }
-
-  static bio::ObservedSeries seriesOf(const bio::ChannelCandidate& channel,
-                                      const std::vector<double>& times) {
-    return {channel.what, Eigen::Map<const Eigen::VectorXd>(
-                              times.data(), static_cast<Eigen::Index>(times.size()))};
-  }
-
   bio::TrialPredictor experiment(const Study& study,
                                  const std::vector<std::size_t>& selection) const {
     if (observed_.empty()) {
@@ -280,52 +252,35 @@ class Sensitivity : public Command {
               selection,
               options(study)};
     }
-    std::vector<bio::ObservedSeries> series;
-    for (const bio::ChannelCandidate& one : observed_) series.push_back(seriesOf(one, study.times));
-    return {study.catalogue, armOptions(simulation_), study.input.excitation, std::move(series),
-            selection,       options(study)};
-  }
-
-  /// Γ in standard deviations of the noise where channels are observed.
-  void scaleByNoise(const Study& study, Eigen::MatrixXd& gamma) const {
-    const auto n = static_cast<Eigen::Index>(study.times.size());
-    for (std::size_t i = 0; i < observed_.size(); ++i) {
-      gamma.middleRows(static_cast<Eigen::Index>(i) * n, n) /= observed_[i].sd;
-    }
+    return {study.catalogue,
+            armOptions(simulation_),
+            study.input.excitation,
+            seriesOf(observed_, study.times),
+            selection,
+            options(study)};
   }
 
   /// What other channels would add, unless that would take long.
   void addGains(const std::vector<Study>& studies, const bio::MusculoskeletalSystem& arm,
                 const std::vector<std::size_t>& selection, SensitivityFindings& findings) const {
-    std::vector<bio::ChannelCandidate> candidates = bio::usualChannels(arm);
-    std::erase_if(candidates, [&](const bio::ChannelCandidate& one) {
-      const bool isFirst = observed_.empty() &&
-                           one.what.kind == bio::Observable::Kind::coordinate &&
-                           one.what.of == simulation_.coordinates.front();
-      return isFirst || std::any_of(observed_.begin(), observed_.end(),
-                                    [&](const auto& seen) { return seen.what == one.what; });
-    });
-    const double work =
-        std::pow(static_cast<double>(selection.size()), 3) * static_cast<double>(candidates.size());
-    if (work > 2e9) return;
-    std::vector<Eigen::MatrixXd> gammas(candidates.size());
+    const std::vector<bio::ChannelCandidate> candidates = furtherChannels(
+        arm, observed_, simulation_.coordinates.empty() ? "" : simulation_.coordinates.front());
+    if (gainsTakeLong(selection.size(), candidates.size())) return;
+    std::vector<Eigen::MatrixXd> information;
     for (const Study& study : studies) {
-      const auto s =
+      const auto motion =
           bio::simulateWithSensitivities(arm, study.catalogue, study.catalogue.nominal(), selection,
                                          study.input.excitation, {options(study), true, true});
-      for (std::size_t c = 0; c < candidates.size(); ++c) {
-        const Eigen::MatrixXd gamma =
-            bio::ObservedMotion(arm, {seriesOf(candidates[c], study.times)}).linearised(s).gamma;
-        if (gammas[c].size() == 0) {
-          gammas[c] = gamma;
-          continue;
+      const auto more = bio::informationOf(arm, candidates, study.times, motion);
+      for (std::size_t c = 0; c < more.size(); ++c) {
+        if (information.size() == c) {
+          information.push_back(more[c]);
+        } else {
+          information[c] += more[c];
         }
-        Eigen::MatrixXd all(gammas[c].rows() + gamma.rows(), gamma.cols());
-        all << gammas[c], gamma;
-        gammas[c] = std::move(all);
       }
     }
-    findings.gains = bio::channelGains(*findings.information, candidates, gammas);
+    findings.gains = bio::channelGains(*findings.information, candidates, information);
   }
 
   Sweep sweep(const Study& study, std::size_t index) const {
@@ -366,7 +321,7 @@ class Sensitivity : public Command {
             "{}: the simulation does not reach the end of the trial", study.input.trial.file));
       }
       gammas.push_back(linearised.gamma);
-      scaleByNoise(study, gammas.back());
+      scaleByNoise(observed_, gammas.back());
       bar.update(static_cast<double>(gammas.size()) / static_cast<double>(studies.size() + 1));
     }
     findings.information = bio::informationAbout(catalogue, selection, gammas, findings.noise);

@@ -199,7 +199,7 @@ std::string channelWords(const SensitivityFindings& f, const bio::ChannelCandida
   return fmt::format(
       "{} ({})", bio::nameOf(channel.what),
       isAngle ? withUnit(channel.sd * factor, channel.what.kind == Kind::speed ? "deg/s" : "deg")
-              : withUnit(channel.sd, unit == "N·m" ? "N m" : unit));
+              : withUnit(channel.sd, unitText(unit)));
 }
 
 Table gainTable(const SensitivityFindings& f, std::size_t most) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <exception>
+#include <string>
 
 namespace support {
 
@@ -15,6 +16,20 @@ void throwsSaying(F function, const char* words) {
   } catch (const std::exception& e) {
     EXPECT_THAT(e.what(), testing::HasSubstr(words));
   }
+}
+
+/// The one line with which a reader refuses a file by an Error, without the file's folder; empty if
+/// it does not.
+template <class Error, class F>
+std::string refusalIn(const std::string& folder, F read) {
+  try {
+    read();
+  } catch (const Error& e) {
+    const std::string what = e.what();
+    EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+    return what.substr(folder.size() + 1);
+  }
+  return "";
 }
 
 }  // namespace support

@@ -35,8 +35,7 @@ Eigen::VectorXd unexplainedBy(const Eigen::MatrixXd& gamma, const ParameterInfor
   // in prior deviations, so that the matrix is of one size
   Eigen::MatrixXd scaled = gamma;
   for (Eigen::Index j = 0; j < scaled.cols(); ++j) {
-    const info::Parameter& parameter = known.parameters[static_cast<std::size_t>(j)];
-    scaled.col(j) *= parameter.prior ? parameter.prior->sd : std::abs(parameter.start);
+    scaled.col(j) *= known.parameters[static_cast<std::size_t>(j)].prior->sd;
   }
   Eigen::MatrixXd normal = scaled.transpose() * scaled;
   normal.diagonal().array() += noise * noise;

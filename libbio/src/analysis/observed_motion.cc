@@ -88,103 +88,109 @@ ObservedMotion::ObservedMotion(const MusculoskeletalSystem& arm, std::vector<Obs
   }
 }
 
-double ObservedMotion::markerAt(const SystemMarker& marker, int axis, const Eigen::VectorXd& q,
-                                Eigen::RowVectorXd* slope) const {
-  return stepping::withCoordinates(arm_->skeleton(), [&](auto N) {
-    SystemConfiguration<decltype(N)::value> configuration(*arm_);
-    configuration.moveSkeletonTo(q);
-    const auto along = [&](const Placement<double>& X) {
-      return X.R.row(axis).dot(marker.p_S) + X.p[axis];
-    };
-    if (slope) slope->resize(q.size());
-    if constexpr (decltype(N)::value == Eigen::Dynamic) {
-      for (int k = 0; slope && k < slope->size(); ++k) {
-        (*slope)[k] = along(configuration.change(marker.segment, k));
-      }
-      return along(configuration.placement(marker.segment));
-    } else {
-      const auto& X = configuration.motions()[marker.segment];
-      for (int k = 0; slope && k < slope->size(); ++k) {
-        (*slope)[k] = along(X.first[static_cast<std::size_t>(k)]);
-      }
-      return along(X.value);
-    }
-  });
-}
-
 Eigen::VectorXd ObservedMotion::values(const Trajectory& motion) const {
-  SensitivityTrajectory alone;
-  alone.motion = motion;
-  return linearised(alone).values;
+  return evaluate(motion, nullptr).values;
 }
 
 ObservedMotion::Linearised ObservedMotion::linearised(const SensitivityTrajectory& s) const {
-  const Trajectory& motion = s.motion;
-  const Index parameters = s.q.empty() ? 0 : s.q.front().cols();
+  return evaluate(s.motion, &s);
+}
+
+ObservedMotion::Linearised ObservedMotion::evaluate(const Trajectory& motion,
+                                                    const SensitivityTrajectory* s) const {
+  const Index parameters = s ? s->q.front().cols() : 0;
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  Linearised result{Eigen::VectorXd::Constant(size_, nan),
-                    Eigen::MatrixXd::Constant(size_, parameters, nan)};
-  const bool wantsMuscles =
-      std::any_of(series_.begin(), series_.end(),
-                  [](const ObservedSeries& one) { return one.what.kind == Kind::tendonForce; });
-  const MuscleReport muscles = wantsMuscles ? reportMuscles(*arm_, motion) : MuscleReport{};
+  Linearised all{Eigen::VectorXd::Constant(size_, nan),
+                 Eigen::MatrixXd::Constant(size_, parameters, nan)};
+  const bool hasForces = std::any_of(series_.begin(), series_.end(), [](const ObservedSeries& one) {
+    return one.what.kind == Kind::tendonForce;
+  });
+  const MuscleReport muscles = hasForces ? reportMuscles(*arm_, motion) : MuscleReport{};
   Index at = 0;
   for (std::size_t i = 0; i < series_.size(); ++i) {
-    const auto [what, times] = series_[i];
+    const auto& [what, times] = series_[i];
     const int index = sources_[i];
     const auto place = static_cast<std::size_t>(index);
+    if (what.kind == Kind::marker) {
+      addMarker(series_[i], arm_->markers()[place], motion, s, at, all);
+      at += times.size();
+      continue;
+    }
     for (Index k = 0; k < times.size(); ++k, ++at) {
       const auto w = weightsAt(motion.time, times[k]);
       if (!w) continue;
-      const LinearWeights between = linear(motion.time, *w, times[k]);
-      double& value = result.values[at];
-      const auto slopes = [&](const Eigen::RowVectorXd& row) {
-        if (parameters > 0) result.gamma.row(at) = row;
+      const auto cubic = [&](double value, const auto& slopes) {
+        all.values[at] = value;
+        if (s) all.gamma.row(at) = slopes(s->q[place], s->qDot[place]);
       };
-      const bool differentiates = parameters > 0;
+      const auto straight = [&](double sign, const auto& values, const auto& of) {
+        const LinearWeights between = linear(motion.time, *w, times[k]);
+        all.values[at] = sign * between.value(values);
+        if (s) all.gamma.row(at) = sign * between.rows((s->*of)[place]);
+      };
       switch (what.kind) {
         case Kind::coordinate:
-          value = w->value(motion.q.row(index), motion.qDot.row(index));
-          if (differentiates) slopes(w->rows(s.q[place], s.qDot[place]));
+          cubic(w->value(motion.q.row(index), motion.qDot.row(index)),
+                [&](const auto& q, const auto& qDot) { return w->rows(q, qDot); });
           break;
         case Kind::speed:
-          value = w->slope(motion.q.row(index), motion.qDot.row(index));
-          if (differentiates) slopes(w->slopeRows(s.q[place], s.qDot[place]));
+          cubic(w->slope(motion.q.row(index), motion.qDot.row(index)),
+                [&](const auto& q, const auto& qDot) { return w->slopeRows(q, qDot); });
           break;
         case Kind::moment:
-          value = -between.value(motion.reaction.row(index));
-          if (differentiates) slopes(-between.rows(s.reaction[place]));
+          straight(-1, motion.reaction.row(index), &SensitivityTrajectory::reaction);
           break;
         case Kind::fibreLength:
-          value = between.value(motion.fibreLength.row(index));
-          if (differentiates) slopes(between.rows(s.fibreLength[place]));
+          straight(1, motion.fibreLength.row(index), &SensitivityTrajectory::fibreLength);
           break;
         case Kind::tendonForce:
-          value = between.value(muscles.tendonForce.row(index));
-          if (differentiates) slopes(between.rows(s.tendonForce[place]));
+          straight(1, muscles.tendonForce.row(index), &SensitivityTrajectory::tendonForce);
           break;
         case Kind::activation:
-          value = between.value(motion.activation.row(index));
-          if (differentiates) slopes(between.rows(s.activation[place]));
+          straight(1, motion.activation.row(index), &SensitivityTrajectory::activation);
           break;
-        case Kind::marker: {
-          Eigen::VectorXd q(motion.q.rows());
-          for (Index c = 0; c < q.size(); ++c) q[c] = w->value(motion.q.row(c), motion.qDot.row(c));
-          Eigen::RowVectorXd dx;
-          value = markerAt(arm_->markers()[place], what.axis, q, differentiates ? &dx : nullptr);
-          if (!differentiates) break;
-          Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(parameters);
-          for (Index c = 0; c < q.size(); ++c) {
-            const auto sc = static_cast<std::size_t>(c);
-            row += dx[c] * w->rows(s.q[sc], s.qDot[sc]);
-          }
-          slopes(row);
+        case Kind::marker:
           break;
-        }
       }
     }
   }
-  return result;
+  return all;
+}
+
+/// ∂x/∂θ = Σ_c ∂x/∂q_c ∂q_c/∂θ along an axis of the ground, from row `first` on.
+void ObservedMotion::addMarker(const ObservedSeries& series, const SystemMarker& marker,
+                               const Trajectory& motion, const SensitivityTrajectory* s,
+                               Index first, Linearised& all) const {
+  const auto along = [&](const Placement<double>& X) {
+    return X.R.row(series.what.axis).dot(marker.p_S) + X.p[series.what.axis];
+  };
+  stepping::withCoordinates(arm_->skeleton(), [&](auto N) {
+    constexpr int count = decltype(N)::value;
+    SystemConfiguration<count> configuration(*arm_);
+    Eigen::Matrix<double, count, 1> q = arm_->skeleton().defaultValues();
+    for (Index k = 0; k < series.times.size(); ++k) {
+      const auto w = weightsAt(motion.time, series.times[k]);
+      if (!w) continue;
+      for (Index c = 0; c < q.size(); ++c) q[c] = w->value(motion.q.row(c), motion.qDot.row(c));
+      configuration.moveSkeletonTo(q);
+      if constexpr (count == Eigen::Dynamic) {
+        all.values[first + k] = along(configuration.placement(marker.segment));
+      } else {
+        all.values[first + k] = along(configuration.motions()[marker.segment].value);
+      }
+      if (!s) continue;
+      all.gamma.row(first + k).setZero();
+      for (std::size_t c = 0; c < s->q.size(); ++c) {
+        double slope = 0;
+        if constexpr (count == Eigen::Dynamic) {
+          slope = along(configuration.change(marker.segment, static_cast<int>(c)));
+        } else {
+          slope = along(configuration.motions()[marker.segment].first[c]);
+        }
+        all.gamma.row(first + k) += slope * w->rows(s->q[c], s->qDot[c]);
+      }
+    }
+  });
 }
 
 }  // namespace bio

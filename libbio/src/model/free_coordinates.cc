@@ -7,7 +7,7 @@
 namespace bio {
 
 std::vector<std::string> freeByDefault(const Model& model, const std::set<std::string>& locked,
-                                       const std::set<std::string>& measured) {
+                                       const std::set<std::string>& measured, bool mayBeNone) {
   std::vector<std::string> movable, unlocked;
   for (const std::string& name : independentCoordinates(model)) {
     if (locked.contains(name)) continue;
@@ -23,6 +23,7 @@ std::vector<std::string> freeByDefault(const Model& model, const std::set<std::s
   };
   for (const auto& found : {amongMeasured(unlocked), amongMeasured(movable), unlocked})
     if (!found.empty()) return found;
+  if (mayBeNone) return {};
   std::string message = "every coordinate of the model is locked: none can be free";
   for (const std::string& name : locked) message += "; " + name + " is locked by request";
   throw std::invalid_argument(message);

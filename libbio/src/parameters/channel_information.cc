@@ -1,5 +1,7 @@
 #include "bio/parameters/channel_information.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numbers>
 #include <stdexcept>
@@ -60,12 +62,37 @@ std::vector<ChannelCandidate> usualChannels(const MusculoskeletalSystem& arm) {
   return channels;
 }
 
+std::vector<Eigen::MatrixXd> informationOf(const MusculoskeletalSystem& arm,
+                                           const std::vector<ChannelCandidate>& candidates,
+                                           const std::vector<double>& times,
+                                           const SensitivityTrajectory& motion) {
+  const auto n = static_cast<Eigen::Index>(times.size());
+  std::vector<ObservedSeries> series;
+  for (const ChannelCandidate& one : candidates) {
+    if (!(one.sd > 0)) {
+      throw std::invalid_argument(
+          fmt::format("noise of '{}' = {}, must be > 0", nameOf(one.what), one.sd));
+    }
+    series.push_back({one.what, Eigen::VectorXd::Map(times.data(), n)});
+  }
+  const Eigen::MatrixXd gamma = ObservedMotion(arm, std::move(series)).linearised(motion).gamma;
+  std::vector<Eigen::MatrixXd> information;
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    const auto of = gamma.middleRows(static_cast<Eigen::Index>(c) * n, n);
+    information.push_back(of.transpose() * of / (candidates[c].sd * candidates[c].sd));
+  }
+  return information;
+}
+
 std::vector<ChannelGain> channelGains(const ParameterInformation& known,
                                       const std::vector<ChannelCandidate>& candidates,
-                                      const std::vector<Eigen::MatrixXd>& gammas) {
+                                      const std::vector<Eigen::MatrixXd>& information) {
   const auto p = static_cast<Eigen::Index>(known.parameters.size());
-  if (candidates.size() != gammas.size() || known.fisher.rows() != p) {
-    throw std::invalid_argument("channel gains: a Γ for each candidate, an I for each parameter");
+  bool fits = candidates.size() == information.size() && known.fisher.rows() == p;
+  for (const Eigen::MatrixXd& one : information) fits = fits && one.rows() == p && one.cols() == p;
+  if (!fits) {
+    throw std::invalid_argument(
+        "channel gains: must have the information of each candidate about all parameters");
   }
   Eigen::VectorXd sd(p);
   for (Eigen::Index i = 0; i < p; ++i) {
@@ -87,11 +114,7 @@ std::vector<ChannelGain> channelGains(const ParameterInformation& known,
   const Eigen::ArrayXd boundsNow = bounds(now);
   std::vector<ChannelGain> gains;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
-    if (!(candidates[c].sd > 0) || gammas[c].cols() != p) {
-      throw std::invalid_argument("channel gains: noise must be > 0, Γ must fit the parameters");
-    }
-    const Eigen::MatrixXd gamma = gammas[c] / candidates[c].sd;
-    const Eigen::LLT<Eigen::MatrixXd> then = scaled(known.fisher + gamma.transpose() * gamma);
+    const Eigen::LLT<Eigen::MatrixXd> then = scaled(known.fisher + information[c]);
     const Eigen::ArrayXd boundsThen = bounds(then);
     Eigen::Index best = 0;
     (boundsThen / boundsNow).minCoeff(&best);

@@ -104,12 +104,8 @@ class SensitivityRecorder {
   Matrix inverseMass(const Matrix& M) {
     if (arm_.prescribed().empty()) return M.inverse();
     Matrix reduced = M;
-    for (const int k : arm_.prescribed()) {
-      reduced.row(k).setZero();
-      reduced.col(k).setZero();
-      reduced(k, k) = 1;
-      momentum_.row(k).setZero();
-    }
+    decouple(arm_.prescribed(), reduced);
+    for (const int k : arm_.prescribed()) momentum_.row(k).setZero();
     return reduced.inverse();
   }
 

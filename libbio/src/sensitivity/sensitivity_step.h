@@ -152,8 +152,6 @@ class SensitivityStep {
 
     // R: (∂R/∂q′ − …) dq′ = −(all the rest)
     const Matrix J = residual_q / 2 + residual_v / h - share * f_end;
-    // of prescribed coordinates dq′ is known: 0, or what a time that moves makes of it
-    const bool isGiven = !arm_.prescribed().empty();
     const Matrix perJ = inverseOf(J);
     const Matrix atBegin = residual_q / 2 - residual_v / h;
     forward_.noalias() = (-perJ * atBegin) * state.dq;
@@ -166,7 +164,7 @@ class SensitivityStep {
     if (timeMoves) {
       const Vector inTime = -residual_v * v / h - L_q / 2 - share / h * f;
       forward_.noalias() -= (perJ * inTime) * row_;
-      if (isGiven && dt1) addGiven(t1, *dt1);
+      if (dt1 && !arm_.prescribed().empty()) addGiven(t1, *dt1);
     }
 
     // p′
@@ -191,8 +189,9 @@ class SensitivityStep {
   }
 
  private:
-  /// J⁻¹ from residuals to dq′. Where coordinates are prescribed their residuals are not solved:
-  /// their columns are 0, and givenColumns_ carries their dq′ to all others.
+  /// J⁻¹ from residuals to dq′. Of prescribed coordinates dq′ is known: 0, or what a time that
+  /// moves makes of it. Their residuals are not solved, their columns are 0, and givenColumns_
+  /// carries their dq′ to all others.
   Matrix inverseOf(Matrix J) {
     if (arm_.prescribed().empty()) return J.inverse();
     for (const int k : arm_.prescribed()) {

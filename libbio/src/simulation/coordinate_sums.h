@@ -75,6 +75,17 @@ void addSecondTimes(Eigen::Matrix<double, N, 1>& sum, double factor, const Lengt
   }
 }
 
+/// Rows and columns of some coordinates become those of the unit matrix, so that what is solved for
+/// them is given.
+template <class Matrix>
+void decouple(const std::vector<int>& coordinates, Matrix& M) {
+  for (const int k : coordinates) {
+    M.row(k).setZero();
+    M.col(k).setZero();
+    M(k, k) = 1;
+  }
+}
+
 /// force += factor ∂ℓ
 template <int N>
 void addAlong(Eigen::Matrix<double, N, 1>& force, double factor, const LengthJet<N>& path) {

@@ -213,11 +213,7 @@ class SystemDynamics {
     }
     massMatrix_ = M;
     reduced_ = M;
-    for (const int k : arm_.prescribed()) {
-      reduced_.row(k).setZero();
-      reduced_.col(k).setZero();
-      reduced_(k, k) = 1;
-    }
+    decouple(arm_.prescribed(), reduced_);
     factor_.compute(reduced_);
   }
 

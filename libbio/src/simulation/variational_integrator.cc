@@ -191,14 +191,10 @@ class VariationalRun {
     massMatrix_ = configuration_.massMatrix();
     momentum_ = now_.p;
     speed_ = now_.p;
-    options_.prescribed.place(t, placed_ = now_.q, speed_);
+    options_.prescribed.place(t, now_.q, speed_);  // the values stay as they are
     for (const int k : arm_.prescribed()) momentum_ -= massMatrix_.col(k) * speed_[k];
-    for (const int k : arm_.prescribed()) {
-      momentum_[k] = speed_[k];
-      massMatrix_.row(k).setZero();
-      massMatrix_.col(k).setZero();
-      massMatrix_(k, k) = 1;
-    }
+    for (const int k : arm_.prescribed()) momentum_[k] = speed_[k];
+    decouple(arm_.prescribed(), massMatrix_);
     factor_.compute(massMatrix_);
     speed_ = factor_.solve(momentum_);
     return speed_;
@@ -215,7 +211,7 @@ class VariationalRun {
   Ends now_, next_;
   // mean speeds of the last two steps, and their lengths [s]
   Vector velocity_, velocityBefore_;
-  Vector speed_, momentum_, placed_;
+  Vector speed_, momentum_;
   Eigen::Matrix<double, N, N> massMatrix_;
   Eigen::LDLT<Eigen::Matrix<double, N, N>> factor_;
   Eigen::VectorXd fibreVelocity_, fibreVelocityBefore_;

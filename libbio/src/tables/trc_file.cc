@@ -200,7 +200,9 @@ MarkerTrajectories trcFrom(std::string_view text, const std::string& name) {
 }
 
 MarkerTrajectories readMarkers(const std::filesystem::path& file) {
-  return tables::isC3d(readTextFile(file)) ? readC3d(file).markers : readTrc(file);
+  const std::string content = readTextFile(file);
+  return tables::isC3d(content) ? c3dFrom(content, file.string()).markers
+                                : trcFrom(content, file.string());
 }
 
 Eigen::MatrixX3d positionsOf(const MarkerTrajectories& markers, const std::string& name) {

@@ -213,7 +213,8 @@ class TrialReader {
             Eigen::Map<Eigen::VectorXd>(values.data(), count)};
   }
 
-  // A held coordinate may be measured, where it is held.
+  // A held coordinate may be measured, where it is held. A joint that a dynamometer holds gives way
+  // by 0.3 to 0.7° (the recordings of validation/ankle), and a lock is typed to the degree.
   void dropHeld(const std::string& name, double value) {
     const auto at =
         std::find_if(trial_.measured.begin(), trial_.measured.end(),

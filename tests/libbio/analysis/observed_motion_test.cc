@@ -156,9 +156,9 @@ TEST(ChannelGains, TheChannelThatTellsMostComesFirstAndNoneTakesAway) {
       {{Kind::activation, "BRA", 0}, 0.05},  // does not depend on forces
       {{Kind::tendonForce, "BRA", 0}, 1},
       {{Kind::tendonForce, "BIClong", 0}, 100}};
-  std::vector<Eigen::MatrixXd> gammas;
-  for (const ChannelCandidate& one : candidates) gammas.push_back(gammaOf(one.what));
-  const std::vector<ChannelGain> gains = channelGains(known, candidates, gammas);
+  const std::vector<double> times(o.times.begin(), o.times.end());
+  const std::vector<Eigen::MatrixXd> information = informationOf(system, candidates, times, s);
+  const std::vector<ChannelGain> gains = channelGains(known, candidates, information);
   ASSERT_EQ(gains.size(), 3u);
   EXPECT_EQ(nameOf(gains[0].channel.what), "BRA.tendon_force");
   EXPECT_EQ(gains[0].parameter, "BRA.max_isometric_force");
@@ -166,7 +166,8 @@ TEST(ChannelGains, TheChannelThatTellsMostComesFirstAndNoneTakesAway) {
   EXPECT_NEAR(gains[2].information, 0, 1e-9);
   EXPECT_NEAR(gains[2].after, gains[2].before, 1e-9 * gains[2].before);
   // the bound with it is that of the joint information
-  Eigen::MatrixXd both = known.fisher + gammas[1].transpose() * gammas[1];
+  const Eigen::MatrixXd gamma = gammaOf(candidates[1].what);
+  Eigen::MatrixXd both = known.fisher + gamma.transpose() * gamma;
   for (Eigen::Index i = 0; i < 2; ++i) {
     both(i, i) += 1 / std::pow(known.parameters[static_cast<std::size_t>(i)].prior->sd, 2);
   }

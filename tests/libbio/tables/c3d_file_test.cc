@@ -9,6 +9,7 @@
 #include "bio/tables/file_error.h"
 #include "bio/tables/recording.h"
 #include "support/scratch_folder.h"
+#include "support/throws_saying.h"
 
 namespace bio {
 namespace {
@@ -25,14 +26,8 @@ class C3d : public testing::Test {
   }
   // The one line that refuses the bytes, without the folder; empty if they are read.
   std::string refusalOf(const std::string& bytes) const {
-    try {
-      readC3d(folder_.file("a.c3d", bytes));
-    } catch (const FileError& error) {
-      const std::string what = error.what();
-      EXPECT_EQ(what.find('\n'), std::string::npos) << what;
-      return what.substr(folder_.path().string().size() + 1);
-    }
-    return "";
+    return support::refusalIn<FileError>(folder_.path().string(),
+                                         [&] { readC3d(folder_.file("a.c3d", bytes)); });
   }
   support::ScratchFolder folder_;
 };

@@ -6,6 +6,7 @@
 #include "bio/tables/marker_trajectories.h"
 #include "bio/tables/recording.h"
 #include "support/scratch_folder.h"
+#include "support/throws_saying.h"
 
 namespace bio {
 namespace {
@@ -19,14 +20,7 @@ class Trc : public testing::Test {
     return readMarkers(folder_.file("a.trc", text));
   }
   std::string refusalOf(const std::string& text) const {
-    try {
-      read(text);
-    } catch (const FileError& error) {
-      const std::string what = error.what();
-      EXPECT_EQ(what.find('\n'), std::string::npos) << what;
-      return what.substr(folder_.path().string().size() + 1);
-    }
-    return "";
+    return support::refusalIn<FileError>(folder_.path().string(), [&] { read(text); });
   }
   // The text with one part exchanged.
   static std::string with(std::string text, const std::string& part, const std::string& instead) {

@@ -9,6 +9,7 @@
 #include "binary_samples.h"
 #include "bio/tables/file_error.h"
 #include "support/scratch_folder.h"
+#include "support/throws_saying.h"
 
 namespace bio {
 namespace {
@@ -23,14 +24,7 @@ class Xdf : public testing::Test {
  protected:
   XdfFile read(const std::string& bytes) const { return readXdf(folder_.file("a.xdf", bytes)); }
   std::string refusalOf(const std::string& bytes) const {
-    try {
-      read(bytes);
-    } catch (const FileError& error) {
-      const std::string what = error.what();
-      EXPECT_EQ(what.find('\n'), std::string::npos) << what;
-      return what.substr(folder_.path().string().size() + 1);
-    }
-    return "";
+    return support::refusalIn<FileError>(folder_.path().string(), [&] { read(bytes); });
   }
   support::ScratchFolder folder_;
 };

@@ -43,9 +43,10 @@ class ObservedMotion {
   Linearised linearised(const SensitivityTrajectory& motion) const;
 
  private:
-  /// Position of a marker along `axis`, and its derivatives in the coordinates if asked for.
-  double markerAt(const SystemMarker& marker, int axis, const Eigen::VectorXd& q,
-                  Eigen::RowVectorXd* slope) const;
+  /// @param s  of the motion; null: values only
+  Linearised evaluate(const Trajectory& motion, const SensitivityTrajectory* s) const;
+  void addMarker(const ObservedSeries& series, const SystemMarker& marker, const Trajectory& motion,
+                 const SensitivityTrajectory* s, Eigen::Index first, Linearised& all) const;
 
   const MusculoskeletalSystem* arm_;
   std::vector<ObservedSeries> series_;

@@ -14,8 +14,11 @@ namespace bio {
 /// only one coordinate can be free it is that one, measured or not.
 /// @param locked    coordinates that the user locks; left out
 /// @param measured  names of the measured coordinates; may be empty
-/// @throws std::invalid_argument if all coordinates are locked; names those of `locked`
+/// @param mayBeNone  whether none is an answer: something else moves, or is held
+/// @throws std::invalid_argument if all coordinates are locked, unless none is an answer; names
+///   those of `locked`
 std::vector<std::string> freeByDefault(const Model& model, const std::set<std::string>& locked,
-                                       const std::set<std::string>& measured);
+                                       const std::set<std::string>& measured,
+                                       bool mayBeNone = false);
 
 }  // namespace bio

@@ -29,13 +29,21 @@ struct ChannelGain {
   double before = 0, after = 0;  ///< its joint bounds, without and with the channel
 };
 
+/// Fisher information ΓᵀΓ/σ² of each candidate, sampled at these times [s] of a motion.
+/// @param motion with sensitivities of muscles and reactions
+/// @throws std::invalid_argument what ObservedMotion throws, or a noise that is not > 0
+std::vector<Eigen::MatrixXd> informationOf(const MusculoskeletalSystem& arm,
+                                           const std::vector<ChannelCandidate>& candidates,
+                                           const std::vector<double>& times,
+                                           const SensitivityTrajectory& motion);
+
 /// Of each candidate alone beside what is measured, the one that tells most first.
 /// @param known       with the Fisher information I of what is measured and the priors Λ
-/// @param candidates  as many as gammas
-/// @param gammas      dy/dθ of each candidate: samples × parameters
-/// @throws std::invalid_argument if sizes differ or a noise is not > 0
+/// @param candidates  as many as `information`
+/// @param information of each candidate, of all motions together
+/// @throws std::invalid_argument if sizes differ
 std::vector<ChannelGain> channelGains(const ParameterInformation& known,
                                       const std::vector<ChannelCandidate>& candidates,
-                                      const std::vector<Eigen::MatrixXd>& gammas);
+                                      const std::vector<Eigen::MatrixXd>& information);
 
 }  // namespace bio
