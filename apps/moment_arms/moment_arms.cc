@@ -7,7 +7,8 @@
 
 #include "bio/analysis/path_postures.h"
 #include "bio/analysis/replay.h"
-#include "bio/path/length_jumps.h"
+#include "moment_arms/fit_command.h"
+#include "moment_arms/path_differences.h"
 #include "options/number_rules.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
@@ -44,13 +45,18 @@ class MomentArms : public Command {
         "which are free; other columns are ignored");
     postures->check(CLI::ExistingFile)->type_name("FILE");
     for (const char* other : {"--from", "--to", "--points"}) postures->excludes(other);
+    addFitOptions(options, fit_);
     addModelOptions(options, model_options_);
     postures->excludes("--coordinate");
   }
 
   ExitStatus run(const CommandContext& context) override {
-    OutputFolder folder(context, {"moment_arms.csv"});
     Summary summary(context);
+    if (fit_.isGiven()) {
+      const bio::Model given = readModel(model_, summary);
+      return runFit(context, summary, model_, given, model_options_, fit_);
+    }
+    OutputFolder folder(context, {"moment_arms.csv"});
     const bio::Model model = readModel(model_, summary);
     if (!postures_.empty()) return runPostures(context, folder, summary, model);
     chooseCoordinates(model_options_, model, {});
@@ -69,10 +75,11 @@ class MomentArms : public Command {
     const bio::PathSample sample =
         bio::samplePaths(model, skeleton, model_options_.wrapAsCylinder, shown * unit);
     for (const std::string& warning : sample.warnings) summary.warn(warning);
-    for (const bio::LengthJump& jump : bio::lengthJumps(
-             model, skeleton, model_options_.wrapAsCylinder, first * unit, last * unit)) {
-      summary.warn(describe(jump));
-    }
+    const std::vector<std::string>& asCylinder = model_options_.wrapAsCylinder;
+    const auto jumps = bio::lengthJumps(model, skeleton, asCylinder, first * unit, last * unit);
+    for (const bio::LengthJump& jump : jumps) summary.warn(describe(jump));
+    const auto departures =
+        bio::openSimDepartures(model, skeleton, asCylinder, first * unit, last * unit);
     require(!sample.muscles.empty(),
             fmt::format("{}: coordinate '{}' changes the length of no muscle", model_,
                         coordinate.name));
@@ -92,7 +99,15 @@ class MomentArms : public Command {
                                    {"moment_arm_max_m", column.maxCoeff()}};
     }
     summary.set("ranges", ranges);
-    deliver(context, summary, reportOn(sample, shown, coordinate, unitName), folder);
+    summary.set("jumps", jumpsAsJson(jumps));
+    summary.set("opensim", departuresAsJson(departures));
+    Report report = reportOn(sample, shown, coordinate, unitName);
+    if (!jumps.empty()) report.details.push_back(jumpTable(jumps));
+    if (!departures.empty()) {
+      report.verdict += " " + departureWords(departures) + ".";
+      report.details.push_back(departureTable(departures));
+    }
+    deliver(context, summary, report, folder);
     return ExitStatus::done;
   }
 
@@ -221,6 +236,7 @@ class MomentArms : public Command {
   std::optional<double> to_;
   int points_ = 131;
   std::string postures_;
+  FitRequest fit_;
   SimulationOptions model_options_;
 };
 

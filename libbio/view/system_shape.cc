@@ -140,6 +140,13 @@ SystemPoser::SystemPoser(const Model& model, const SkeletonOptions& options,
       warnings_.push_back(fmt::format("{}: the muscle is left out", error.what()));
       continue;
     }
+    if (paths_.back().isFunction()) {
+      paths_.pop_back();
+      warnings_.push_back(fmt::format(
+          "muscle '{}' is not drawn: its path is a function of coordinates, without points",
+          muscle.name));
+      continue;
+    }
     const std::vector<std::string>& said = paths_.back().warnings();
     warnings_.insert(warnings_.end(), said.begin(), said.end());
     names_.push_back(muscle.name);

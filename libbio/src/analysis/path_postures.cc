@@ -37,22 +37,44 @@ std::vector<MusclePath> compileAll(const Model& model, const Skeleton& skeleton,
   return paths;
 }
 
-}  // namespace
+/// A table of texts.
+struct Cells {
+  std::vector<std::string> names;
+  std::size_t header = 0;  // its line
+  std::vector<std::vector<std::string>> rows;
+  std::vector<std::size_t> lines;
+};
 
-PostureTable readPostures(const std::filesystem::path& file, const Model& model) {
+Cells readCells(const std::filesystem::path& file) {
   std::vector<std::string> lines;
   std::istringstream text(readTextFile(file));
   for (std::string line; std::getline(text, line);) lines.push_back(std::move(line));
-  const auto fail = [&](std::size_t line, const std::string& message) {
-    throw FileError(fmt::format("{}:{}: {}", file.string(), line + 1, message));
-  };
   const auto isBlank = [](const std::string& line) {
     return line.find_first_not_of(" \t\r") == std::string::npos;
   };
-  std::size_t header = 0;
-  while (header < lines.size() && isBlank(lines[header])) ++header;
-  if (header == lines.size()) throw FileError(fmt::format("{}: no header line", file.string()));
-  const std::vector<std::string> names = cellsOf(lines[header], ',');
+  Cells cells;
+  while (cells.header < lines.size() && isBlank(lines[cells.header])) ++cells.header;
+  if (cells.header == lines.size()) {
+    throw FileError(fmt::format("{}: no header line", file.string()));
+  }
+  cells.names = cellsOf(lines[cells.header], ',');
+  for (std::size_t k = cells.header + 1; k < lines.size(); ++k) {
+    if (isBlank(lines[k])) continue;
+    cells.rows.push_back(cellsOf(lines[k], ','));
+    cells.lines.push_back(k);
+    if (cells.rows.back().size() != cells.names.size()) {
+      throw FileError(fmt::format("{}:{}: {} cells, must be {}", file.string(), k + 1,
+                                  cells.rows.back().size(), cells.names.size()));
+    }
+  }
+  return cells;
+}
+
+PostureTable postureTable(const Cells& cells, const std::string& file, const Model& model) {
+  const auto fail = [&](std::size_t line, const std::string& message) {
+    throw FileError(fmt::format("{}:{}: {}", file, line + 1, message));
+  };
+  const std::vector<std::string>& names = cells.names;
   PostureTable table;
   std::vector<std::size_t> columns;
   for (std::size_t c = 0; c < names.size(); ++c) {
@@ -62,33 +84,76 @@ PostureTable readPostures(const std::filesystem::path& file, const Model& model)
     }
     if (std::find(table.coordinates.begin(), table.coordinates.end(), names[c]) !=
         table.coordinates.end()) {
-      fail(header, fmt::format("column '{}' is given twice", names[c]));
+      fail(cells.header, fmt::format("column '{}' is given twice", names[c]));
     }
     table.coordinates.push_back(names[c]);
     columns.push_back(c);
   }
-  if (columns.empty()) fail(header, "no column is named like a coordinate of the model");
-
-  std::vector<std::vector<double>> rows;
-  for (std::size_t k = header + 1; k < lines.size(); ++k) {
-    if (isBlank(lines[k])) continue;
-    const std::vector<std::string> cells = cellsOf(lines[k], ',');
-    if (cells.size() != names.size()) {
-      fail(k, fmt::format("{} cells, must be {}", cells.size(), names.size()));
-    }
-    std::vector<double> row;
-    for (const std::size_t c : columns) {
-      row.push_back(finiteNumber(file.string(), k + 1, names[c], cells[c]));
-    }
-    rows.push_back(std::move(row));
-  }
-  if (rows.empty()) throw FileError(fmt::format("{}: no row", file.string()));
-  table.values.resize(static_cast<Eigen::Index>(rows.size()),
+  if (columns.empty()) fail(cells.header, "no column is named like a coordinate of the model");
+  if (cells.rows.empty()) throw FileError(fmt::format("{}: no row", file));
+  table.values.resize(static_cast<Eigen::Index>(cells.rows.size()),
                       static_cast<Eigen::Index>(columns.size()));
-  for (Eigen::Index k = 0; k < table.values.rows(); ++k) {
-    for (Eigen::Index c = 0; c < table.values.cols(); ++c) {
-      table.values(k, c) = rows[static_cast<std::size_t>(k)][static_cast<std::size_t>(c)];
+  for (std::size_t k = 0; k < cells.rows.size(); ++k) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const std::size_t c = columns[i];
+      table.values(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) =
+          finiteNumber(file, cells.lines[k] + 1, names[c], cells.rows[k][c]);
     }
+  }
+  return table;
+}
+
+}  // namespace
+
+PostureTable readPostures(const std::filesystem::path& file, const Model& model) {
+  return postureTable(readCells(file), file.string(), model);
+}
+
+LengthTable readLengths(const std::filesystem::path& file, const Model& model) {
+  const Cells cells = readCells(file);
+  LengthTable table;
+  table.postures = postureTable(cells, file.string(), model);
+  const auto columnOf = [&](const std::string& name) {
+    return std::find(cells.names.begin(), cells.names.end(), name) - cells.names.begin();
+  };
+  const auto numColumns = static_cast<std::ptrdiff_t>(cells.names.size());
+  const auto read = [&](std::ptrdiff_t column) {
+    const auto c = static_cast<std::size_t>(column);
+    Eigen::VectorXd values(table.postures.values.rows());
+    for (std::size_t k = 0; k < cells.rows.size(); ++k) {
+      const std::string& cell = cells.rows[k][c];
+      const bool isMissing = cell.empty() || cell == "nan" || cell == "NaN";
+      values[static_cast<Eigen::Index>(k)] =
+          isMissing ? std::numeric_limits<double>::quiet_NaN()
+                    : finiteNumber(file.string(), cells.lines[k] + 1, cells.names[c], cell);
+    }
+    return values;
+  };
+  for (const Muscle& muscle : model.muscles) {
+    const std::ptrdiff_t length = columnOf(muscle.name + ".length_m");
+    if (length == numColumns) continue;
+    table.muscles.push_back(muscle.name);
+    table.length.conservativeResize(table.postures.values.rows(),
+                                    static_cast<Eigen::Index>(table.muscles.size()));
+    table.length.rightCols(1) = read(length);
+    Eigen::MatrixXd slope(table.postures.values.rows(), 0);
+    for (const std::string& coordinate : table.postures.coordinates) {
+      const std::ptrdiff_t column = columnOf(muscle.name + ".dlength_d." + coordinate);
+      if (column == numColumns) break;
+      slope.conservativeResize(Eigen::NoChange, slope.cols() + 1);
+      slope.rightCols(1) = read(column);
+    }
+    const bool isWhole =
+        slope.cols() == static_cast<Eigen::Index>(table.postures.coordinates.size()) &&
+        !slope.hasNaN();
+    table.slope.push_back(isWhole ? slope : Eigen::MatrixXd());
+    std::erase_if(table.postures.ignored,
+                  [&](const std::string& name) { return name.starts_with(muscle.name + "."); });
+  }
+  if (table.muscles.empty()) {
+    throw FileError(
+        fmt::format("{}:{}: no column is named MUSCLE.length_m with a muscle of the model",
+                    file.string(), cells.header + 1));
   }
   return table;
 }
@@ -103,6 +168,7 @@ PathPostures pathsAt(const Model& model, const PostureTable& postures,
   const Skeleton skeleton(model, options);
   PathPostures result;
   result.coordinates = postures.coordinates;
+  result.notes = adviceOnCylinders(wrapAsCylinder);
   const std::vector<MusclePath> paths = compileAll(model, skeleton, wrapAsCylinder, result);
   TreePaths lengths(skeleton);
   for (std::size_t i = 0; i < paths.size(); ++i) {

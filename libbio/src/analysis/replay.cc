@@ -346,6 +346,7 @@ PathSample samplePaths(const Model& model, const Skeleton& skeleton,
   PostureSamples postures(model, skeleton);
   PathSample sample;
   sample.value = values;
+  sample.notes = adviceOnCylinders(wrapAsCylinder);
   for (const Muscle& muscle : model.muscles) {
     if (!muscle.enabled) continue;
     std::optional<MusclePath> compiled;

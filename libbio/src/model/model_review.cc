@@ -139,7 +139,7 @@ void Reviewer::reviewMuscle(const Muscle& muscle) {
     }
   }
   const std::vector<PathPoint>& points = muscle.path.points;
-  const bool atOnePlace = std::all_of(points.begin(), points.end(), [&](const PathPoint& p) {
+  const bool atOnePlace = !points.empty() && std::all_of(points.begin(), points.end(), [&](const PathPoint& p) {
     return !p.motion && p.body == points.front().body &&
            (p.location - points.front().location).norm() < shortestPath;
   });

@@ -207,6 +207,13 @@ PathWrap readWrap(const Reading& reading, const Element& element, std::size_t po
   return wrap;
 }
 
+// `<CLASS name="path">`, or `<CLASS>` in `<path>`.
+const Element* pathElement(const Element& force, const char* kind) {
+  if (const Element* direct = force.FirstChildElement(kind)) return direct;
+  const Element* path = force.FirstChildElement("path");
+  return path ? path->FirstChildElement(kind) : nullptr;
+}
+
 }  // namespace
 
 void readWrapObjects(Reading& reading, const Element& model) {
@@ -224,8 +231,13 @@ void readWrapObjects(Reading& reading, const Element& model) {
 }
 
 Path readPath(Reading& reading, const Element& force) {
-  const Element* geometry = force.FirstChildElement("GeometryPath");
-  if (!geometry) fail(reading.source, force, "GeometryPath is missing, must be given");
+  const Element* geometry = pathElement(force, "GeometryPath");
+  if (!geometry) {
+    if (const Element* function = pathElement(force, "FunctionBasedPath")) {
+      return readFunctionPath(reading, force, *function);
+    }
+    fail(reading.source, force, "GeometryPath or FunctionBasedPath is missing, must be given");
+  }
   Path path;
   for (const Element* point : objectsOf(*geometry, "PathPointSet")) {
     path.points.push_back(readPoint(reading, *point));

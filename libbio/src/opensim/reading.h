@@ -60,7 +60,9 @@ std::string readCoordinateName(const Reading& reading, const Element& object, co
 // Forces
 
 void readWrapObjects(Reading& reading, const Element& model);
+/// A GeometryPath or a FunctionBasedPath.
 Path readPath(Reading& reading, const Element& force);
+Path readFunctionPath(Reading& reading, const Element& force, const Element& path);
 void readForces(Reading& reading, const Element& model);
 /// PointToPointSpring, BushingForce, Ligament, PathSpring, Blankevoort1991Ligament,
 /// PrescribedForce, CoordinateActuator; false for another class.

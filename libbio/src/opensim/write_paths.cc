@@ -80,6 +80,25 @@ void appendPoint(const Writing& writing, Element& parent, const PathPoint& point
   }
 }
 
+// The name of the element is that of the property, which is how OpenSim finds it.
+void appendFunctionPath(const Writing& writing, Element& muscle, const PathFunction& function) {
+  Element& element = append(muscle, "FunctionBasedPath", "path");
+  std::string coordinates;
+  for (const std::string& name : function.coordinates) {
+    coordinates += (coordinates.empty() ? "" : " ") + coordinatePath(writing.model, name);
+  }
+  appendText(element, "coordinate_paths", coordinates);
+  Element& length = append(element, "length_function");
+  if (const auto* plain = std::get_if<Function>(&function.length)) {
+    return appendFunction(length, *plain, "");
+  }
+  const auto& polynomial = std::get<MultivariatePolynomial>(function.length);
+  Element& written = append(length, "MultivariatePolynomialFunction");
+  appendNumbers(written, "coefficients", polynomial.coefficients);
+  appendText(written, "dimension", std::to_string(polynomial.dimension));
+  appendText(written, "order", std::to_string(polynomial.order));
+}
+
 }  // namespace
 
 void appendWrapObjects(const Writing& writing, Element& body, const std::string& name) {
@@ -90,6 +109,7 @@ void appendWrapObjects(const Writing& writing, Element& body, const std::string&
 }
 
 void appendPath(const Writing& writing, Element& muscle, const Path& path) {
+  if (path.function) return appendFunctionPath(writing, muscle, *path.function);
   Element& geometry =
       append(muscle, "GeometryPath", writing.format == Format::opensim4 ? "geometrypath" : "");
   Element& points = appendSet(writing, geometry, "PathPointSet", "");

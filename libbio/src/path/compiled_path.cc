@@ -37,6 +37,11 @@ class Compiler {
         postures_(postures) {}
 
   CompiledPath compile() {
+    if (muscle_.path.function) {
+      path_.function.emplace(*muscle_.path.function, skeleton_);
+      path_.variants.emplace_back();
+      return std::move(path_);
+    }
     for (std::size_t i = 0; i < muscle_.path.points.size(); ++i) addNode(i);
     for (std::size_t i = 0; i < muscle_.path.wraps.size(); ++i) addWrap(i);
     const std::size_t numVariants = std::size_t{1} << path_.conditions.size();
@@ -412,6 +417,17 @@ class Compiler {
 };
 
 }  // namespace
+
+std::vector<std::string> adviceOnCylinders(const std::vector<std::string>& wrapAsCylinder) {
+  std::vector<std::string> advice;
+  for (const std::string& name : wrapAsCylinder) {
+    advice.push_back(fmt::format(
+        "wrap object '{}' is taken for a cylinder, as asked; without --wrap-as-cylinder "
+        "its paths are exact taut strings over the ellipsoid",
+        name));
+  }
+  return advice;
+}
 
 CompiledPath compilePath(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
                          const std::vector<std::string>& wrapAsCylinder,

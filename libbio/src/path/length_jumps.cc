@@ -16,14 +16,19 @@ namespace bio {
 namespace {
 
 constexpr int jumpCells = 720;
-constexpr double leastJump = 1e-5;    // [m]
-constexpr double suspectJump = 1e-6;  // a kink at lift-off is less than a tenth of it in a cell
+constexpr double leastJump = 1e-5;     // [m]
+constexpr double suspectJump = 1e-6;   // a kink at lift-off is less than a tenth of it in a cell
+constexpr double leastArmJump = 1e-3;  // [m/rad]
 
 /// The length of one muscle along the first coordinate.
 class LengthAlong {
  public:
   LengthAlong(const Skeleton& skeleton, const Muscle& muscle, const MusclePath& path)
-      : path_(path), lengths_(skeleton), q_(skeleton.defaultValues()) {
+      : path_(path),
+        lengths_(skeleton),
+        q_(skeleton.defaultValues()),
+        rangeMin_(skeleton.coordinates().front().rangeMin),
+        rangeMax_(skeleton.coordinates().front().rangeMax) {
     lengths_.add(muscle, path);
   }
 
@@ -53,7 +58,11 @@ class LengthAlong {
     At left = at(from);
     for (int cell = 1; cell <= jumpCells; ++cell) {
       const At right = at(from + (to - from) * cell / jumpCells);
-      if (surprise(left, right) > suspectJump) narrow(left, right, named, jumps);
+      if (surprise(left, right) > suspectJump) {
+        narrow(left, right, named, jumps);
+      } else if (std::abs(right.slope - left.slope) > leastArmJump / 2) {
+        narrowArm(left, right, named, jumps);
+      }
       left = right;
     }
   }
@@ -65,10 +74,33 @@ class LengthAlong {
       const At middle = at(low.value + (high.value - low.value) / 2);
       (surprise(low, middle) > surprise(middle, high) ? high : low) = middle;
     }
-    if (!(std::abs(high.length - low.length) >= leastJump)) return;
+    if (!(std::abs(high.length - low.length) >= leastJump)) {
+      if (std::abs(high.slope - low.slope) >= leastArmJump) add(low, high, named, jumps);
+      return;
+    }
+    add(low, high, named, jumps);
+  }
+
+  // The same for the slope alone.
+  void narrowArm(At low, At high, const LengthJump& named, std::vector<LengthJump>& jumps) {
+    while (high.value - low.value > 1e-10 && std::abs(high.slope - low.slope) >= leastArmJump / 2) {
+      const At middle = at(low.value + (high.value - low.value) / 2);
+      const bool isBelow = std::abs(middle.slope - low.slope) > std::abs(high.slope - middle.slope);
+      (isBelow ? high : low) = middle;
+    }
+    if (std::abs(high.slope - low.slope) >= leastArmJump) add(low, high, named, jumps);
+  }
+
+  void add(const At& low, const At& high, const LengthJump& named, std::vector<LengthJump>& jumps) {
     LengthJump jump = named;
     jump.value = low.value + (high.value - low.value) / 2;
     jump.size = high.length - low.length;
+    jump.arm = low.slope - high.slope;
+    const bool isArmOnly = std::abs(jump.size) < leastJump;
+    if (isArmOnly &&
+        (std::abs(jump.value - rangeMin_) < 1e-6 || std::abs(jump.value - rangeMax_) < 1e-6)) {
+      return;
+    }
     for (const PathSwitch& s : path_.switches()) {
       jump.conditional = jump.conditional ||
                          (s.freeIndex == 0 && s.distance(low.value) * s.distance(high.value) <= 0);
@@ -79,6 +111,7 @@ class LengthAlong {
   const MusclePath& path_;
   PathLengths lengths_;
   Eigen::VectorXd q_;
+  double rangeMin_, rangeMax_;
 };
 
 }  // namespace
@@ -133,9 +166,18 @@ std::string describe(const LengthJump& jump) {
   const double value = jump.turns ? jump.value * 180 / std::numbers::pi : jump.value;
   // a border of a condition is a little beyond its round value
   const double shown = std::abs(value) < 5e-3 ? 0 : value;
-  return fmt::format("the length of {} jumps by {:.3g} mm at {} = {:.4g} {} ({})", jump.muscle,
-                     1000 * std::abs(jump.size), jump.coordinate, shown, jump.turns ? "deg" : "m",
-                     jump.conditional ? "a conditional point" : "its way round a wrap object");
+  const bool isArmOnly = std::abs(jump.size) < leastJump;
+  std::string text = fmt::format("the {} of {} jumps by {:.3g} mm at {} = {:.4g} {} ({})",
+                                 isArmOnly ? "moment arm" : "length", jump.muscle,
+                                 1000 * std::abs(isArmOnly ? jump.arm : jump.size), jump.coordinate,
+                                 shown, jump.turns ? "deg" : "m",
+                                 jump.conditional ? "a conditional point"
+                                 : isArmOnly      ? "a path point or its way round a wrap object"
+                                                  : "its way round a wrap object");
+  if (!isArmOnly && std::abs(jump.arm) >= leastArmJump) {
+    text += fmt::format(" and its moment arm by {:.3g} mm", 1000 * std::abs(jump.arm));
+  }
+  return text;
 }
 
 }  // namespace bio

@@ -67,6 +67,7 @@ MusclePath::MusclePath(const Model& model, const Skeleton& skeleton, const Muscl
 }
 
 bool MusclePath::moves() const {
+  if (compiled_.function) return !compiled_.function->support().empty();
   return std::any_of(compiled_.variants.begin(), compiled_.variants.end(),
                      [](const PathVariant& variant) { return !variant.moving.empty(); });
 }
@@ -106,6 +107,7 @@ std::vector<std::size_t> MusclePath::touchedWraps(const Posture& posture) const 
 /// @param used  becomes the bits of the surfaces that are touched
 std::vector<Eigen::Vector3d> MusclePath::trace(const Posture& posture, double step,
                                                unsigned& used) const {
+  if (compiled_.function) return {};
   const auto& q = posture.q;
   const PathVariant& variant = activeVariant(
       compiled_, Eigen::Map<const Eigen::VectorXd>(q.data(), static_cast<Eigen::Index>(q.size())));

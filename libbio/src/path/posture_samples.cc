@@ -94,6 +94,7 @@ std::vector<Posture> samplePostures(const Skeleton& skeleton, const std::vector<
 }
 
 std::vector<int> pathSupport(const Model& model, const Skeleton& skeleton, const Muscle& muscle) {
+  if (muscle.path.function) return LengthFunction(*muscle.path.function, skeleton).support();
   const ArticulatedTree& tree = *skeleton.tree();
   std::set<int> support, segments;
   const auto follow = [&](const std::string& coordinate) {
@@ -120,6 +121,7 @@ std::vector<int> pathSupport(const Model& model, const Skeleton& skeleton, const
 }
 
 const std::vector<Posture>& PostureSamples::of(const Muscle& muscle) {
+  if (muscle.path.function) return lists_[{-1}];  // no posture is asked for
   const bool few = skeleton_->numCoordinates() <= 4;
   const std::vector<int> varying =
       few ? std::vector<int>{} : pathSupport(*model_, *skeleton_, muscle);

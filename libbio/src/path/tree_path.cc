@@ -125,6 +125,8 @@ TreePath::TreePath(ArticulatedTree& tree, const Skeleton& skeleton, const Muscle
     }
     variants_.push_back(std::move(pieces));
   }
+  if (path.function)
+    support.insert(path.function->support().begin(), path.function->support().end());
   support_.assign(support.begin(), support.end());
   for (auto& pieces : variants_) {
     for (Piece& piece : pieces) {
@@ -199,9 +201,21 @@ detail::SpanOverSurface detail::spanOverSurface(const CompiledPath& path,
   return found;
 }
 
-void TreePath::evaluate(const CompiledPath& path, const Eigen::VectorXd& conditionsAt,
-                        const TreeMotion<double>& motion, SupportedLength<double>& work,
-                        LengthJet<Eigen::Dynamic>& out) const {
+void TreePath::evaluate(const CompiledPath& path, const Eigen::VectorXd& q,
+                        const Eigen::VectorXd& conditionsAt, const TreeMotion<double>& motion,
+                        SupportedLength<double>& work, LengthJet<Eigen::Dynamic>& out) const {
+  if (path.function) {
+    const LengthFunction::Value at = path.function->at(q.data());
+    out.length = at.length;
+    out.wrapped = false;
+    for (std::size_t i = 0; i < support_.size(); ++i) {
+      out.dL_dq[support_[i]] = at.first[i];
+      for (std::size_t j = 0; j < support_.size(); ++j) {
+        out.second(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = at.second[i][j];
+      }
+    }
+    return;
+  }
   const PathVariant& variant = activeVariant(path, conditionsAt);
   const auto index = static_cast<std::size_t>(&variant - path.variants.data());
   work.length = variant.fixedLength;
@@ -250,7 +264,8 @@ void TreePaths::moveTo(const Eigen::VectorXd& q) {
 }
 
 const LengthJet<Eigen::Dynamic>& TreePaths::length(std::size_t index) {
-  paths_[index].evaluate(compiled_[index]->compiled(), q_, *motion_, work_[index], lengths_[index]);
+  paths_[index].evaluate(compiled_[index]->compiled(), q_, q_, *motion_, work_[index],
+                         lengths_[index]);
   return lengths_[index];
 }
 

@@ -131,6 +131,7 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
   if (!like) {
     requireMovedMass(model, skeleton_);
     warnings_ = lockRemarks(model, options.skeleton);
+    notes_ = adviceOnCylinders(options.wrapAsCylinder);
   }
   PostureSamples postures(model, skeleton_);
   for (const Muscle& muscle : model.muscles) {

@@ -32,8 +32,8 @@ void SystemConfiguration<Eigen::Dynamic>::moveTo(const Vector& q) {
   moveSkeletonTo(q);
   for (std::size_t i = 0; i < lengths_.size(); ++i) {
     try {
-      arm_->treePath(i).evaluate(arm_->path(i).compiled(), holds_ ? held_ : q_, motion_, work_[i],
-                                 lengths_[i]);
+      arm_->treePath(i).evaluate(arm_->path(i).compiled(), q_, holds_ ? held_ : q_, motion_,
+                                 work_[i], lengths_[i]);
     } catch (const std::domain_error&) {  // no taut string: an iteration sees a failed step
       lengths_[i].length = std::numeric_limits<double>::quiet_NaN();
     }

@@ -27,5 +27,24 @@ TEST(ManyCoordinates, SensitivitiesMatchDifferencesOnAnArmOfSeven) {
   EXPECT_LT(d.worst, 1e-5) << d.of;
 }
 
+TEST(ManyCoordinates, SensitivitiesOverLengthFunctionsMatchDifferences) {
+  for (const auto& free : {ArmOfSeven::coordinates(), std::vector<std::string>{"elbow_flexion"}}) {
+    const ArmOfSeven c(0.2, free, false, ArmOfSeven::modelWithFunctions());
+    const auto n = static_cast<Eigen::Index>(free.size());
+    const ParameterCatalogue catalogue(c.model, c.arm,
+                                       {c.start.q, Eigen::VectorXd::LinSpaced(n, -0.6, 0.7)});
+    const auto wanted =
+        catalogue.select({"BIClong.max_isometric_force", "BRD.tendon_slack_length",
+                          "BRD.optimal_fiber_length", "TRI.radius", "hand.mass", "initial.*"});
+    SimulationOptions options;
+    options.duration = 0.12;
+    const fixtures::DiscoveryProblem d = fixtures::compareWithDifferences(
+        c.arm, c.options, c.excitation, catalogue, wanted, options);
+    fixtures::tell(d);
+    EXPECT_GT(d.compared, 30);
+    EXPECT_LT(d.worst, 1e-5) << d.of;
+  }
+}
+
 }  // namespace
 }  // namespace bio

@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "bio/analysis/fit_paths.h"
 #include "bio/simulation/simulate.h"
 #include "support/elbow_model.h"
 
@@ -22,6 +23,13 @@ struct ArmOfSeven {
     hold("deviation", 3, 0.1, 0.05);
     hold("flexion", 3, -0.1, 0.05);
     return model;
+  }
+  /// Polynomials of up to five coordinates in place of the paths of a long and a short flexor.
+  static Model modelWithFunctions() {
+    const Model model = heldModel();
+    SkeletonOptions all;
+    all.freeCoordinates = coordinates();
+    return withFittedPaths(model, fitPaths(model, all, {}, {"BRD", "BIClong"}, {0.02, 4}));
   }
   static std::vector<std::string> coordinates() {
     return {"elbow_flexion", "shoulder_elv", "elv_angle", "shoulder_rot",

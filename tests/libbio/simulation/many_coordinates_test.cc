@@ -54,6 +54,23 @@ TEST(ManyCoordinates, IntegratorsAgreeOnAnArmOfSeven) {
   EXPECT_LT(apart(played(c, stepsOf(Integrator::variational, 1e-3, 1)), reference), 1e-4);
 }
 
+// Where some of a function's coordinates are locked, too.
+TEST(ManyCoordinates, IntegratorsAgreeOverLengthFunctions) {
+  const Model model = ArmOfSeven::modelWithFunctions();
+  ASSERT_TRUE(findMuscle(model, "BRD").path.function);
+  ASSERT_TRUE(findMuscle(model, "BIClong").path.function);
+  for (const auto& free : {ArmOfSeven::coordinates(), std::vector<std::string>{"elbow_flexion"},
+                           std::vector<std::string>{"elbow_flexion", "pro_sup"}}) {
+    const ArmOfSeven c(0.3, free, false, model);
+    const Trajectory reference = tightCvode(c, 0.05, 0.3);
+    EXPECT_LT(apart(played(c, stepsOf(Integrator::rungeKutta4, 1e-4, 0.3)), reference), 1e-6);
+    EXPECT_LT(apart(played(c, stepsOf(Integrator::variational, 1e-3, 0.3)), reference), 1e-4);
+    EXPECT_LT(energyError(c.arm, played(c, stepsOf(Integrator::rungeKutta4, 1e-4, 0.3))), 1e-6);
+    const ArmOfSeven byPoints(0.3, free);
+    EXPECT_LT(apart(tightCvode(byPoints, 0.05, 0.3), reference), 0.05);
+  }
+}
+
 /// The five muscles with which this motion is smooth: with biceps or anconeus, too, it meets
 /// corners between the ends of steps, and the errors are no clean power of the step.
 Model smoothlyMoved() {

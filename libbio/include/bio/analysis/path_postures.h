@@ -22,6 +22,21 @@ struct PostureTable {
 ///   that is not a finite number, a row with too few or too many cells, no row
 PostureTable readPostures(const std::filesystem::path& file, const Model& model);
 
+/// Muscle–tendon lengths that another program computed in postures of a model.
+struct LengthTable {
+  PostureTable postures;
+  std::vector<std::string> muscles;
+  Eigen::MatrixXd length;  ///< rows = postures, columns = muscles [m]; NaN: not given
+  /// Of each muscle ∂ℓ/∂q, postures × coordinates [m/rad]; without rows where a column lacks.
+  std::vector<Eigen::MatrixXd> slope;
+};
+
+/// Reads a table like those of `moment-arms --postures`: columns COORDINATE [rad] or [m],
+/// MUSCLE.length_m [m] and, if there, MUSCLE.dlength_d.COORDINATE. Others are ignored, without
+/// being listed if they begin with a muscle's name.
+/// @throws FileError what readPostures throws; a length that is no number, no column with lengths
+LengthTable readLengths(const std::filesystem::path& file, const Model& model);
+
 /// Muscle–tendon lengths in given postures.
 struct PathPostures {
   std::vector<std::string> coordinates;

@@ -172,9 +172,36 @@ struct PathWrap {
   friend bool operator==(const PathWrap&, const PathWrap&) = default;
 };
 
+/// Σ_k c_k Π_i x_i^(e_ki) over all exponents with Σ_i e_ki ≤ order, in the order of OpenSim's
+/// MultivariatePolynomialFunction: those of the last argument rise first. For x, y of order 2:
+///     1, y, y², x, xy, x²
+/// (a PolynomialFunction of one argument has the opposite order.)
+struct MultivariatePolynomial {
+  /// OpenSim's limit.
+  static constexpr int maxDimension = 6;
+  int dimension = 1;                 ///< number of arguments, 1 to maxDimension
+  int order = 0;                     ///< largest sum of exponents ≥ 0
+  std::vector<double> coefficients;  ///< as many as numTerms(dimension, order)
+  /// (order + dimension)! / (order! dimension!); none if that exceeds 10⁶.
+  static std::optional<std::size_t> numTerms(int dimension, int order);
+  /// @throws std::invalid_argument a dimension, an order or a number of coefficients that cannot
+  ///   be, a coefficient that is not finite
+  void requireRules() const;
+  friend bool operator==(const MultivariatePolynomial&, const MultivariatePolynomial&) = default;
+};
+
+/// A length as a function of coordinates in place of points: OpenSim's FunctionBasedPath.
+struct PathFunction {
+  std::vector<std::string> coordinates;  ///< the arguments, each once
+  /// [m]; a Function has one argument
+  std::variant<MultivariatePolynomial, Function> length;
+  friend bool operator==(const PathFunction&, const PathFunction&) = default;
+};
+
 struct Path {
-  std::vector<PathPoint> points;  ///< at least 2
-  std::vector<PathWrap> wraps;    ///< a span uses the first one that it penetrates
+  std::vector<PathPoint> points;              ///< at least 2, none if there is a function
+  std::vector<PathWrap> wraps;                ///< a span uses the first one that it penetrates
+  std::optional<PathFunction> function = {};  ///< instead of points and wraps
   friend bool operator==(const Path&, const Path&) = default;
 };
 

@@ -10,6 +10,7 @@
 
 #include "bio/model/model.h"
 #include "bio/muscle/curves/curves.h"
+#include "bio/path/length_function.h"
 #include "bio/path/path_chain.h"
 #include "bio/path/span.h"
 #include "bio/path/surface/wrap_rule.h"
@@ -89,6 +90,8 @@ struct CompiledPath {
   std::vector<PathSurface> surfaces;
   std::vector<PathChain> chains;
   std::vector<PathVariant> variants;  ///< by the bits of the active conditions
+  /// Instead of all of these; then there is one variant, without spans.
+  std::optional<LengthFunction> function;
   std::vector<std::string> notes;
   std::vector<std::string> warnings;  ///< what a path does that its author will not expect
 };
@@ -110,6 +113,9 @@ ChainPlacements placementsOf(const CompiledPath& path, const PathChain& chain,
 class UnsupportedWrap : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
+
+/// One line for each ellipsoid that is taken for a cylinder: that this is no longer needed.
+std::vector<std::string> adviceOnCylinders(const std::vector<std::string>& wrapAsCylinder);
 
 /// The skeleton in one configuration.
 struct Posture {

@@ -51,6 +51,8 @@ struct PathSwitch {
 /// once, at construction (wrap_rule.h), from the default posture and the coordinates' ranges.
 /// Between switches of conditional points the length is C¹ as long as a chain keeps its way.
 ///
+/// A path may also be a function of coordinates (length_function.h), in place of points and spans.
+///
 /// Departures from OpenSim: paths over wrap objects are exact geodesics; over spheres and cylinders
 /// they never change sides, but slip off a cylinder where they would wrap the long way round
 /// (wrap_rule.h); and an object that no span touches within the coordinates' ranges, and in whose
@@ -75,6 +77,8 @@ class MusclePath {
   const std::vector<std::string>& notes() const { return compiled_.notes; }
   /// One line each: spans over which no taut string is found in some postures.
   const std::vector<std::string>& warnings() const { return compiled_.warnings; }
+  /// Whether the length is a function of coordinates: then there is nothing to draw.
+  bool isFunction() const { return compiled_.function.has_value(); }
   /// Coordinate values at which conditional points switch.
   std::vector<PathSwitch> switches() const;
   /// The data used for evaluation.
@@ -102,7 +106,7 @@ class MusclePath {
                          const RigidMotion<T, N>* moved) const;
 
   /// The path in ground as a polyline, for pictures: every active point, and on wrap objects points
-  /// at most `step` [rad] apart along the arc.
+  /// at most `step` [rad] apart along the arc. Empty for a function of coordinates.
   template <int N>
   std::vector<Eigen::Vector3d> pathPoints(const Eigen::Matrix<double, N, 1>& q,
                                           const RigidMotion<double, N>* moved,

@@ -372,6 +372,23 @@ void addPathSpan(LengthJet<N, T>& jet, const CompiledPath& path, const PathSpan&
   addStraight(jet, P, Q);
 }
 
+template <int N>
+LengthJet<N> functionLength(const LengthFunction& function, const Eigen::Matrix<double, N, 1>& q) {
+  const LengthFunction::Value at = function.at(q.data());
+  LengthJet<N> jet;
+  jet.length = at.length;
+  jet.dL_dq.setZero();
+  jet.d2L_dq2.setZero();
+  const std::vector<int>& support = function.support();
+  for (std::size_t i = 0; i < support.size(); ++i) {
+    jet.dL_dq[support[i]] = at.first[i];
+    for (std::size_t j = 0; j < support.size(); ++j) {
+      jet.d2L_dq2(support[i], support[j]) = at.second[i][j];
+    }
+  }
+  return jet;
+}
+
 template <int N, class T>
 LengthJet<N, T> noLength() {
   LengthJet<N, T> jet;
@@ -397,6 +414,7 @@ LengthJet<N> MusclePath::length(const Eigen::Matrix<double, N, 1>& q,
       return jet;
     }
   }
+  if (compiled_.function) return detail::functionLength<N>(*compiled_.function, q);
   const PathVariant& variant = activeVariant(compiled_, conditionsAt ? *conditionsAt : q);
   LengthJet<N> jet = detail::noLength<N, double>();
   jet.length = variant.fixedLength;
@@ -415,6 +433,11 @@ template <class T, int N>
 LengthJet<N, T> MusclePath::length(const PathParameters<T>& parameters,
                                    const Eigen::Matrix<T, N, 1>& q,
                                    const RigidMotion<T, N>* moved) const {
+  if (compiled_.function) {
+    if constexpr (std::is_same_v<T, double>)
+      return detail::functionLength<N>(*compiled_.function, q);
+    throw std::logic_error("a length function is evaluated for numbers of type double only");
+  }
   const PathVariant& variant = activeVariant(compiled_, q);
   LengthJet<N, T> jet = detail::noLength<N, T>();
   const auto endOf = [&](const PathNode& node) {

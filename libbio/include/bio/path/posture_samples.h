@@ -23,7 +23,7 @@ std::vector<int> pathSupport(const Model& model, const Skeleton& skeleton, const
 
 /// The postures for compiling the paths of a skeleton, each list made once:
 /// samplePostures(skeleton) for up to four coordinates, otherwise those of the coordinates that
-/// move a path.
+/// move a path; none for a path that is a function of coordinates.
 class PostureSamples {
  public:
   /// Both must outlive this object.

@@ -93,10 +93,11 @@ class TreePath {
   LengthJet<Eigen::Dynamic> newLength(int numCoordinates) const;
 
   /// Overwrites `out`; allocates nothing.
+  /// @param q  the configuration, and `motion` the tree placed there
   /// @param conditionsAt  the configuration whose conditional points are active
-  void evaluate(const CompiledPath& path, const Eigen::VectorXd& conditionsAt,
-                const TreeMotion<double>& motion, SupportedLength<double>& work,
-                LengthJet<Eigen::Dynamic>& out) const;
+  void evaluate(const CompiledPath& path, const Eigen::VectorXd& q,
+                const Eigen::VectorXd& conditionsAt, const TreeMotion<double>& motion,
+                SupportedLength<double>& work, LengthJet<Eigen::Dynamic>& out) const;
 
   /// The moving spans of a variant of the compiled path.
   const std::vector<Piece>& pieces(std::size_t variant) const { return variants_[variant]; }

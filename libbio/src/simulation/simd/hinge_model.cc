@@ -66,6 +66,7 @@ class HingeCompiler {
     if (muscle.hasPassiveCurve) muscle.passive.of[0] = &*m.curves().passiveForce;
 
     const CompiledPath& path = given.path.compiled();
+    if (path.function) return false;
     muscle.firstCondition = static_cast<int>(out_.conditions.size());
     muscle.numConditions = static_cast<int>(path.conditions.size());
     muscle.firstVariant = static_cast<int>(out_.variants.size());
