@@ -29,7 +29,7 @@ py::object estimateOf(const bio::CalibratedParameter& one) {
 }
 
 /// [rad]; NaN without trials.
-double rmse(const std::optional<bio::TrialSet>& set, const Eigen::MatrixXd& predicted) {
+double rmse(const bio::TrialSet* set, const Eigen::MatrixXd& predicted) {
   return set && predicted.size() > 0 ? std::sqrt(set->meanSquare(predicted)) : NAN;
 }
 
@@ -56,33 +56,35 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
   options.loss = lossOf(loss);
   options.starts = starts;
   options.seed = seed;
-  std::optional<bio::TrialSet> training, heldOut;
-  bio::Calibration found;
+  bio::SteppedCalibration stepped;
   interruptible([&](const std::atomic<bool>& goOn) {
-    training.emplace(model, choice.armOptions(), trials, options.trials);
-    if (!holdOut.empty()) {
-      bio::TrialSetOptions others = options.trials;
-      others.ownStart = false;
-      heldOut.emplace(model, choice.armOptions(), holdOut, others);
-    }
     options.progress = [&](double) { return goOn.load(); };
-    found = bio::calibrate(*training, heldOut ? &*heldOut : nullptr, options);
+    stepped = bio::calibrateAtShorterSteps(
+        model, choice.armOptions(), trials, holdOut, options,
+        step ? std::numeric_limits<double>::infinity() : bio::shortestCalibrationStep);
   });
+  const bio::Calibration& found = stepped.calibration;
   if (!found.failure.empty()) throw std::runtime_error(found.failure);
   std::optional<bio::CalibratedModel> calibrated;
   if (found.calibrated) {
-    calibrated = bio::calibratedModel(*training, heldOut ? &*heldOut : nullptr, choice.armOptions(),
-                                      options.trials.simulation, found);
+    calibrated = bio::calibratedModel(*stepped.training, stepped.heldOut.get(), choice.armOptions(),
+                                      stepped.options.trials.simulation, found);
+  }
+  py::list minima;
+  for (const bio::OtherMinimum& one : found.otherMinima) {
+    minima.append(
+        results("values"_a = one.values, "nats"_a = one.difference, "nats_of_data"_a = one.ofData));
   }
   py::dict estimates;
   for (const auto& one : found.parameters) estimates[one.asked.name.c_str()] = estimateOf(one);
   return results("estimates"_a = estimates, "correlation"_a = found.correlation,
+                 "other_minima"_a = minima, "step"_a = stepped.options.trials.simulation.step,
                  "converged"_a = found.converged, "why"_a = info::describe(found.why),
                  "iterations"_a = found.iterations, "noise"_a = found.noise.sd,
                  "effective_noise"_a = found.noise.effective,
-                 "rmse_before"_a = rmse(training, found.before),
+                 "rmse_before"_a = rmse(stepped.training.get(), found.before),
                  "rmse_after"_a = calibrated ? calibrated->rms(false) : NAN,
-                 "rmse_held_out_before"_a = rmse(heldOut, found.heldOutBefore),
+                 "rmse_held_out_before"_a = rmse(stepped.heldOut.get(), found.heldOutBefore),
                  "rmse_held_out"_a = calibrated ? calibrated->rms(true) : NAN,
                  "model"_a = calibrated ? py::cast(calibrated->model) : py::none());
 }

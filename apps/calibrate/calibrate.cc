@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 
 #include "bio/analysis/replay.h"
+#include "bio/calibration/calibrate_at_shorter_steps.h"
 #include "bio/opensim/osim_file.h"
 #include "bio/tables/trial_review.h"
 #include "calibrate/calibrate_report.h"
@@ -27,6 +29,8 @@
 
 namespace app {
 namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 class Calibrate : public Command {
  public:
@@ -62,7 +66,8 @@ class Calibrate : public Command {
         ->type_name("TRIAL");
     options
         .add_flag("--own-start", ownStart_,
-                  "estimate the initial angle and speed of each trial as well")
+                  "estimate the initial angle and speed of each trial as well, of a held-out trial "
+                  "with the parameters fixed")
         ->group(group);
     options.add_flag("--no-priors", noPriors_, "estimate without priors; bounds still apply")
         ->group(group);
@@ -129,37 +134,37 @@ class Calibrate : public Command {
                                  typed.trials);
     for (const std::string& warning : training.arm().warnings()) summary.warn(warning);
     boundsMustBePossible(training, typed);
-    std::optional<bio::TrialSet> heldOut;
-    if (!heldOut_.empty()) {
-      bio::TrialSetOptions others = typed.trials;
-      others.ownStart = false;
-      heldOut.emplace(model, armOptions(simulation_), read(heldOut_, model, summary), others);
-    }
+    const std::vector<bio::Trial> heldOut = read(heldOut_, model, summary);
 
     bio::CalibrationOptions options = typed;
-    bio::Calibration calibration;
+    bio::SteppedCalibration found;
     const auto begin = std::chrono::steady_clock::now();
     {
-      ProgressBar bar("calibrate");
+      ProgressBar bar("calibrate", context.quiet);
       options.progress = [&](double share) {
         bar.update(share);
         return true;
       };
-      calibration = bio::calibrate(training, heldOut ? &*heldOut : nullptr, options);
+      found = bio::calibrateAtShorterSteps(
+          model, armOptions(simulation_), training.trials(), heldOut, options,
+          simulation_.step ? infinity : bio::shortestCalibrationStep);
     }
     summary.setSimulation(
-        simulation_.integrator, simulation_.stepOrDefault(), longestDuration(training.trials()),
+        simulation_.integrator, found.options.trials.simulation.step,
+        longestDuration(training.trials()),
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     std::optional<bio::CalibratedModel> calibrated;
+    const bio::Calibration& calibration = found.calibration;
     if (calibration.calibrated) {
       calibrated =
-          bio::calibratedModel(training, heldOut ? &*heldOut : nullptr, armOptions(simulation_),
-                               options.trials.simulation, calibration);
+          bio::calibratedModel(*found.training, found.heldOut.get(), armOptions(simulation_),
+                               found.options.trials.simulation, calibration);
     }
-    const CalibrateFindings findings{model_,  training,    heldOut ? &*heldOut : nullptr,
-                                     options, calibration, calibrated ? &*calibrated : nullptr};
+    const CalibrateFindings findings{
+        model_,        *found.training, found.heldOut.get(),
+        found.options, calibration,     calibrated ? &*calibrated : nullptr};
     tellCalibrate(findings, summary);
-    warnOfSteps(model, training, typed.trials, calibration, summary);
+    tellSteps(typed.trials.simulation.step, found, summary);
     if (calibrated) {
       writeDriven(*calibrated, summary, folder);
       writeModel(findings, calibrated->model, summary, folder);
@@ -257,26 +262,30 @@ class Calibrate : public Command {
     return trials;
   }
 
-  /// Steps that are too long look like an error of the model: the trials whose motion changes when
-  /// they are halved are named.
-  void warnOfSteps(const bio::Model& model, const bio::TrialSet& training,
-                   bio::TrialSetOptions halved, const bio::Calibration& c, Summary& summary) const {
-    if (!c.calibrated) return;
-    halved.simulation.step /= 2;
-    const bio::TrialSet finer(model, armOptions(simulation_), training.trials(), halved);
-    Eigen::VectorXd theta(static_cast<Eigen::Index>(c.parameters.size()));
-    for (std::size_t i = 0; i < c.parameters.size(); ++i) {
-      theta[static_cast<Eigen::Index>(i)] = c.parameters[i].value;
+  /// Steps that are too long look like an error of the model.
+  static void tellSteps(double asked, const bio::SteppedCalibration& found, Summary& summary) {
+    const double step = found.options.trials.simulation.step;
+    if (step < asked) {
+      summary.warn(fmt::format(
+          "the step was shortened from {} s to {} s: at longer steps halving them changes the "
+          "simulated angles or the estimates noticeably",
+          numberText(asked), numberText(step)));
     }
-    const auto changes = finer.largestDifferences(finer.predictor().outputs(theta), c.after);
+    const double noise = found.calibration.noise.sd;
+    const auto& changes = found.change.ofTrials;
     for (std::size_t i = 0; i < changes.size(); ++i) {
-      if (!(changes[i] > 0.2 * c.noise.sd)) continue;
+      if (!(changes[i] > 0.2 * noise)) continue;
       summary.warn(
           fmt::format("{}: halving the step of {} s changes the simulated angles by up to {:.2g} "
                       "deg, {:.2g} standard deviations of the noise: use a shorter --step",
-                      training.trials()[i].file, numberText(2 * halved.simulation.step),
-                      changes[i] * radian, changes[i] / c.noise.sd));
+                      found.training->trials()[i].file, numberText(step), changes[i] * radian,
+                      changes[i] / noise));
     }
+    if (!(found.change.ofEstimates > 0.25)) return;
+    summary.warn(fmt::format(
+        "halving the step of {} s would change an estimate by {:.2g} of its standard deviations: "
+        "use a shorter --step",
+        numberText(step), found.change.ofEstimates));
   }
 
   void writeModel(const CalibrateFindings& f, bio::Model model, const Summary& summary,

@@ -73,6 +73,34 @@ Json channelsJson(const CalibrateFindings& f) {
   return channels;
 }
 
+/// What other starts found that fits nearly as well: a warning each, and their values.
+Json otherMinima(const bio::Calibration& c, Summary& summary) {
+  Json list = Json::array();
+  for (const bio::OtherMinimum& one : c.otherMinima) {
+    Json values = Json::object();
+    std::string words;
+    for (std::size_t i = 0; i < c.parameters.size(); ++i) {
+      const bio::CalibratedParameter& parameter = c.parameters[i];
+      if (parameter.ofTrial) continue;
+      const double value = one.values[static_cast<Eigen::Index>(i)];
+      values[parameter.asked.name] = value;
+      const double sd = parameter.sd > 0 ? parameter.sd : parameter.known;
+      if (std::abs(value - parameter.value) < 3 * sd) continue;
+      words +=
+          fmt::format("{}{} = {} instead of {}", words.empty() ? "" : ", ", parameter.asked.name,
+                      numberText(value, 4), withUnit(parameter.value, parameter.asked.unit, 4));
+    }
+    list.push_back({{"nats", one.difference}, {"nats_of_data", one.ofData}, {"values", values}});
+    const std::string how =
+        one.difference <= 4.6
+            ? fmt::format("is {:.2g} % as likely as the estimate", 100 * std::exp(-one.difference))
+            : std::string("fits the data about as well, and only the priors are against it");
+    summary.warn(
+        fmt::format("another minimum {}, and the intervals do not hold it: {}", how, words));
+  }
+  return list;
+}
+
 }  // namespace
 
 std::string estimateWords(const bio::CalibratedParameter& one) {
@@ -137,6 +165,7 @@ void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
   if (c.starts.size() > 1) {
     summary.set("starts", c.starts.size());
     summary.set("starts_that_agree", c.agreeingStarts);
+    summary.set("other_minima", otherMinima(c, summary));
   }
   if (f.options.bootstrap > 0) summary.set("bootstrap_converged", c.bootstrapConverged);
   Json correlation = Json::array();

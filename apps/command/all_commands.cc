@@ -12,6 +12,7 @@
 #include "replay/replay.h"
 #include "robot/robot.h"
 #include "sensitivity/sensitivity.h"
+#include "study/study.h"
 
 namespace app {
 
@@ -30,6 +31,7 @@ std::vector<std::unique_ptr<Command>> allCommands() {
   commands.push_back(replayCommand());
   commands.push_back(robotCommand());
   commands.push_back(sensitivityCommand());
+  commands.push_back(studyCommand(threadPool));
   return commands;
 }
 

@@ -198,7 +198,10 @@ void addUnknown(const DiscoverFindings& f, ordered_json& json) {
                        {"stable", verdict.unknown->stable},
                        {"evidence_nats", orNull(verdict.unknown->evidence)},
                        {"explained", orNull(verdict.unknown->explained)},
-                       {"peak_Hz", orNull(verdict.unknown->peakFrequency)}};
+                       {"peak_Hz", orNull(verdict.unknown->peakFrequency)},
+                       {"same_in_every_trial", orNull(verdict.unknown->tie.share)},
+                       {"step_at_s", orNull(verdict.unknown->tie.stepAt)},
+                       {"step_explains", orNull(verdict.unknown->tie.stepShare)}};
     if (f.wording.forceUnit == "N·m") {
       json["unknown"]["rms_Nm"] = orNull(verdict.unknown->forceSize);
     } else {

@@ -19,7 +19,7 @@ FollowUps followUpsOfModels(const std::string& loadColumn) {
           {{"payload", "mass", "const", "handforce"},
            "Let the limb hang and swing passively with relaxed muscles: a mass adds weight and "
            "inertia, a force adds no inertia."},
-          {{"gain_", "Fmax_", "lopt_", "lslack_", "crosstalk", "offset_"},
+          {{"gain_", "Fmax_", "lopt_", "lslack_", "crosstalk", "saturated_", "offset_"},
            "Record one isolated contraction of each muscle, and one against a load cell at a "
            "fixed angle."},
           {{"stiffness", "tilt", "limit", "wrap_", "gain", "bias", "Fmax_"},

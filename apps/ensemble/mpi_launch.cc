@@ -24,15 +24,17 @@ const char* rankTold() {
 
 void becomeRankUnderMpi(int argc, char** argv) {
   const char* rank = rankTold();
-  if (!rank || argc < 2 || std::string_view(argv[1]) != "ensemble") return;
+  if (!rank || argc < 2) return;
+  const std::string_view command = argv[1];
+  if (command != "ensemble" && command != "study") return;
   const std::filesystem::path program =
       std::filesystem::read_symlink("/proc/self/exe").parent_path() / "fisherhill-mpi";
   execv(program.c_str(), argv);
   if (std::string_view(rank) == "0") {
     fmt::print(stderr,
-               "fisherhill ensemble: {} cannot be started ({}); it is built if MPI is installed "
+               "fisherhill {}: {} cannot be started ({}); it is built if MPI is installed "
                "and FISHERHILL_MPI=ON\n",
-               program.string(), std::strerror(errno));
+               command, program.string(), std::strerror(errno));
   }
   std::_Exit(2);
 }

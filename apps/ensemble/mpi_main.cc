@@ -8,6 +8,7 @@
 #include "ensemble/ensemble.h"
 #include "ensemble/mpi_pool.h"
 #include "output/standard_streams.h"
+#include "study/study.h"
 
 namespace {
 
@@ -54,7 +55,7 @@ class ReportingPool : public app::WorkerPool {
 
 }  // namespace
 
-// `mpirun … fisherhill ensemble …` becomes as many of these.
+// `mpirun … fisherhill ensemble …`, or study, becomes as many of these.
 int main(int argc, char** argv) {
   app::openStandardStreams();
   int provided = 0, rank = 0;
@@ -64,8 +65,11 @@ int main(int argc, char** argv) {
   if (rank > 0) silence = std::make_unique<Silence>();
   bool atWork = false;
   std::vector<std::unique_ptr<app::Command>> commands;
-  commands.push_back(app::ensembleCommand(
-      [&] { return std::make_unique<ReportingPool>(app::mpiPool(), silence.get(), atWork); }));
+  const auto pool = [&] {
+    return std::make_unique<ReportingPool>(app::mpiPool(), silence.get(), atWork);
+  };
+  commands.push_back(app::ensembleCommand(pool));
+  commands.push_back(app::studyCommand(pool));
   const int status = app::runProgram({argv, argv + argc}, std::move(commands));
   // one that fails at work takes the others with it: what is finished is in the file
   if (rank > 0 && atWork && status != 0) MPI_Abort(MPI_COMM_WORLD, status);

@@ -32,8 +32,8 @@ std::string progressLine(const std::string& label, double fraction, double elaps
                      100 * fraction, left);
 }
 
-ProgressBar::ProgressBar(std::string label)
-    : label_(std::move(label)), visible_(isatty(STDERR_FILENO) == 1) {}
+ProgressBar::ProgressBar(std::string label, bool quiet)
+    : label_(std::move(label)), visible_(!quiet && isatty(STDERR_FILENO) == 1) {}
 
 ProgressBar::~ProgressBar() {
   if (visible_ && drawn_ != start_) tell("\r\033[K");

@@ -11,7 +11,8 @@ namespace app {
 ///     replay [##########..........]  50 %  12 s left
 class ProgressBar {
  public:
-  explicit ProgressBar(std::string label);
+  /// @param quiet never draw
+  explicit ProgressBar(std::string label, bool quiet = false);
   /// Clears the bar's line.
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;

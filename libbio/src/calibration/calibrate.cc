@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "calibration/channel_noise.h"
+#include "calibration/held_out_starts.h"
 #include "calibration/nudged_starts.h"
 #include "info/estimation/monte_carlo.h"
 #include "info/estimation/residuals.h"
@@ -25,6 +26,8 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 /// Noise and estimate follow each other until σ changes by less than this share.
 constexpr double noiseSettled = 0.01;
 constexpr int noiseRounds = 12;
+/// Nats above the least cost: of another minimum that is looked at, and of one that is told.
+constexpr double worthRefining = 20, worthTelling = 4.6, possibleByData = 1.92;
 
 void check(const CalibrationOptions& options) {
   if (options.noise && !(*options.noise > 0 && std::isfinite(*options.noise))) {
@@ -53,7 +56,7 @@ class Calibrator {
         measured_(training.measured()),
         channels_(training, options) {
     check(options);
-    if (heldOut_ && heldOut_->parameters().size() != training.numCommon()) {
+    if (heldOut_ && heldOut_->numCommon() != training.numCommon()) {
       throw std::invalid_argument("held-out trials must have the same common parameters");
     }
     for (const std::size_t index : training.selection()) {
@@ -84,6 +87,14 @@ class Calibrator {
         asked_[i].start = std::clamp(prior.mean, asked_[i].lower, asked_[i].upper);
       }
     }
+    if (options_.from) {
+      if (options_.from->size() != static_cast<Index>(asked_.size())) {
+        throw std::invalid_argument(
+            fmt::format("start of {} numbers, must be {}", options_.from->size(), asked_.size()));
+      }
+      for (std::size_t i = 0; i < asked_.size(); ++i)
+        asked_[i].start = (*options_.from)[static_cast<Index>(i)];
+    }
     info::checkParameters(asked_);
     for (const std::string& name : options_.profile) profiled_.push_back(indexOf(name, "profile"));
     result_.why = info::Termination::stopped;
@@ -93,7 +104,9 @@ class Calibrator {
     const VectorXd asIs = valuesOf(training_.parameters()), start = valuesOf(asked_);
     result_.before = predictor_.outputs(asIs);
     if (heldOut_) {
-      result_.heldOutBefore = heldOut_->predictor().outputs(asIs.head(common()));
+      VectorXd values = valuesOf(heldOut_->parameters());
+      values.head(common()) = asIs.head(common());
+      result_.heldOutBefore = heldOut_->predictor().outputs(values);
     }
     atStart_ = start == asIs ? result_.before : predictor_.outputs(start);
     if (!atStart_.allFinite() && options_.starts == 1) {
@@ -218,7 +231,9 @@ class Calibrator {
       return progress(fitShare * done);
     };
     const auto p = static_cast<Index>(asked_.size());
-    const std::vector<VectorXd> led = ledFrom(valuesOf(asked_), estimate);
+    result_.noiseFloor = measuredSd(training_);
+    const std::vector<VectorXd> led =
+        options_.from ? std::vector<VectorXd>() : ledFrom(valuesOf(asked_), estimate);
     const MatrixXd guess = best(led);
     std::vector<ResidualNoise> first = channels_.of(guess, 0);
     for (ResidualNoise& one : first) one.effective = one.sd;  // white until there is a fit
@@ -248,22 +263,77 @@ class Calibrator {
       result_.evaluations += estimate_.evaluations;
       if (isSettled) break;
     }
+    if (result_.complete) otherMinima(estimate);
     result_.why = estimate_.why;
     result_.converged = estimate_.converged;
     result_.after = predictor_.outputs(estimate_.parameters);
     result_.reducedChiSquare = chiSquare();
     if (heldOut_) {
-      result_.heldOutAfter = heldOut_->predictor().outputs(estimate_.parameters.head(common()));
+      result_.heldOutValues =
+          valuesOfHeldOut(*heldOut_, estimate_.parameters.head(common()), training_,
+                          result_.channelNoise, options_, estimateOptions());
+      result_.heldOutAfter = heldOut_->predictor().outputs(result_.heldOutValues);
     }
     result_.calibrated =
         training_.catalogue().at(training_.selection(), estimate_.parameters.head(common()));
   }
 
+  /// What the other starts found, at the noise that was estimated. One that is better becomes the
+  /// estimate.
+  void otherMinima(const info::EstimateOptions& options) {
+    if (result_.starts.size() < 2) return;
+    const info::LeastSquares least = problem(result_.noise.effective);
+    std::vector<info::Estimate> ends;
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const info::StartOutcome& outcome : result_.starts)
+      lowest = std::min(lowest, outcome.cost);
+    for (const info::StartOutcome& outcome : result_.starts) {
+      if (!outcome.converged || outcome.cost > lowest + worthRefining) continue;
+      if (isNear(outcome.parameters, estimate_)) continue;
+      const auto seen = [&](const info::Estimate& end) { return isNear(outcome.parameters, end); };
+      if (std::any_of(ends.begin(), ends.end(), seen)) continue;
+      info::Estimate end = info::estimate(least, outcome.parameters, options);
+      result_.iterations += end.iterations;
+      result_.evaluations += end.evaluations;
+      if (!end.converged || isNear(end.parameters, estimate_)) continue;
+      if (end.cost < estimate_.cost) std::swap(end, estimate_);
+      ends.push_back(std::move(end));
+    }
+    std::sort(ends.begin(), ends.end(),
+              [](const auto& a, const auto& b) { return a.cost < b.cost; });
+    for (const info::Estimate& end : ends) {
+      const double difference = end.cost - estimate_.cost;
+      const double ofData =
+          difference - priorCost(end.parameters) + priorCost(estimate_.parameters);
+      if (difference <= worthTelling || ofData <= possibleByData)
+        result_.otherMinima.push_back({end.parameters, difference, ofData});
+    }
+  }
+
+  /// ½Σ((θ − μ)/d)²
+  double priorCost(const VectorXd& theta) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < asked_.size(); ++i) {
+      if (const auto& prior = asked_[i].prior)
+        sum += std::pow((theta[static_cast<Index>(i)] - prior->mean) / prior->sd, 2) / 2;
+    }
+    return sum;
+  }
+
+  /// Within three standard deviations of an estimate, all parameters of the model together.
+  bool isNear(const VectorXd& theta, const info::Estimate& other) const {
+    const VectorXd apart = (theta - other.parameters).head(common());
+    const MatrixXd covariance = other.covariance.topLeftCorner(common(), common());
+    for (Index i = 0; i < apart.size(); ++i) {
+      const double sd = std::sqrt(std::max(covariance(i, i), 0.0));
+      if (std::abs(apart[i]) > std::max(3 * sd, 1e-3 * known_[i])) return false;
+    }
+    return true;
+  }
+
   /// Where further starts end that are led by held models; none where nothing is to be led.
   std::vector<VectorXd> ledFrom(const VectorXd& start, const info::EstimateOptions& estimate) {
-    const double floor = measuredSd(training_);
-    result_.noiseFloor = floor;
-    const double sd = std::max(options_.noise.value_or(floor), 1e-4);
+    const double sd = std::max(options_.noise.value_or(result_.noiseFloor), 1e-4);
     const std::vector<info::Parameter> parameters = problem(sd).parameters();
     std::vector<VectorXd> starts = startsOnBothSides(training_, parameters, start);
     // what is held near its course, and measured in one unit, is led there
@@ -444,6 +514,12 @@ class Calibrator {
 };
 
 }  // namespace
+
+VectorXd Calibration::values() const {
+  VectorXd theta(static_cast<Index>(parameters.size()));
+  for (Index i = 0; i < theta.size(); ++i) theta[i] = parameters[static_cast<std::size_t>(i)].value;
+  return theta;
+}
 
 Calibration calibrate(const TrialSet& training, const TrialSet* heldOut,
                       const CalibrationOptions& options) {

@@ -18,13 +18,6 @@ bool isOfEmg(const Calibration& calibration) {
   return false;
 }
 
-Eigen::VectorXd estimateOf(const Calibration& calibration) {
-  Eigen::VectorXd theta(static_cast<Index>(calibration.parameters.size()));
-  for (Index i = 0; i < theta.size(); ++i)
-    theta[i] = calibration.parameters[static_cast<std::size_t>(i)].value;
-  return theta;
-}
-
 /// Root mean square error of all measured angles of a trial.
 void compareWithReplay(const MusculoskeletalSystem& arm, const Trial& trial,
                        const SimulationOptions& simulation, const StartPoint& start,
@@ -68,7 +61,7 @@ CalibratedModel calibratedModel(const TrialSet& training, const TrialSet* heldOu
                                 const Calibration& calibration) {
   if (!calibration.calibrated) throw std::invalid_argument("the calibration has no estimate");
   CalibratedModel result{calibration.calibrated->model, {}};
-  const Eigen::VectorXd theta = estimateOf(calibration);
+  const Eigen::VectorXd theta = calibration.values();
   const bool isDriven = isOfEmg(calibration);
   result.model.fitted = {simulation.step, {}};
   const MusculoskeletalSystem calibrated(result.model, arm);
@@ -79,8 +72,7 @@ CalibratedModel calibratedModel(const TrialSet& training, const TrialSet* heldOu
     for (std::size_t i = 0; i < set->trials().size(); ++i) {
       CalibratedTrial one{i, isHeldOut, {}, {}};
       Trial trial = set->trials()[i];
-      const StartPoint start =
-          set->startAt(i, isHeldOut ? theta.head(static_cast<Index>(training.numCommon())) : theta);
+      const StartPoint start = set->startAt(i, isHeldOut ? calibration.heldOutValues : theta);
       for (std::size_t c = 0; c < free.size(); ++c) {
         if (calibrated.isPrescribed(static_cast<int>(c))) continue;
         const auto k = static_cast<Index>(c);

@@ -41,6 +41,19 @@ ExternalForce onOne(const std::vector<double>& nodes, const VectorXd& values, in
   return {nodes, all};
 }
 
+/// Muscles whose record has a flat top in a trial that hides 1 % of its height or more.
+std::vector<std::string> withFlatTops(const std::vector<Trial>& trials) {
+  std::vector<std::string> muscles;
+  for (const Trial& trial : trials) {
+    for (std::size_t i = 0; i < trial.muscles.size(); ++i) {
+      const Eigen::RowVectorXd record = trial.excitations.col(static_cast<Index>(i)).transpose();
+      if (flatTops(trial.times, record).maxCoeff() > 0.01 * record.maxCoeff())
+        muscles.push_back(trial.muscles[i]);
+    }
+  }
+  return muscles;
+}
+
 /// There will be thousands of simulations.
 SystemOptions withTables(SystemOptions arm) {
   arm.tabulatePaths = true;
@@ -79,6 +92,7 @@ MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemO
     firstEnd = std::min(firstEnd, trial.times[trial.times.size() - 1]);
   }
   encompassing_.trialsLast(lastStart, firstEnd);
+  encompassing_.forget(unsaturated(encompassing_, withFlatTops(trials)));
   quantities_ = encompassing_.quantities();
   for (Trial& trial : trials) {
     OfTrial one{withProxies(std::move(trial), encompassing_), {}, {}, {}, {}, {}, {}, {}, 0, 0};

@@ -48,6 +48,12 @@ void check(const std::vector<std::string>& muscles, const EmgMapping& mapping) {
           "EMG offset of '{}' = {}: must be finite, of a muscle that moves", muscle, offset));
     }
   }
+  for (const auto& [muscle, size] : mapping.saturation) {
+    if (!known(muscle) || !std::isfinite(size)) {
+      throw std::invalid_argument(fmt::format(
+          "EMG saturation of '{}' = {}: must be finite, of a muscle that moves", muscle, size));
+    }
+  }
   for (const EmgMapping::Crosstalk& c : mapping.crosstalk) {
     if (!known(c.from) || !known(c.to) || !std::isfinite(c.share)) {
       throw std::invalid_argument(
@@ -76,6 +82,11 @@ double gainOf(const EmgMapping& mapping, const std::string& muscle) {
   return at == mapping.gain.end() ? 1.0 : at->second;
 }
 
+Eigen::VectorXd timesOf(const ExcitationSignal& trial) {
+  return Eigen::VectorXd::Map(trial.times().data(),
+                              static_cast<Eigen::Index>(trial.times().size()));
+}
+
 /// The trial's rows; rows = muscles.
 Eigen::MatrixXd rowsOf(const ExcitationSignal& trial) {
   Eigen::MatrixXd rows(trial.numMuscles(), static_cast<Eigen::Index>(trial.times().size()));
@@ -86,21 +97,33 @@ Eigen::MatrixXd rowsOf(const ExcitationSignal& trial) {
   return rows;
 }
 
-/// z: the rows without offset and crosstalk; not below 0, but for rows that have neither.
+Eigen::Index indexOf(const std::vector<std::string>& muscles, const std::string& name) {
+  return std::find(muscles.begin(), muscles.end(), name) - muscles.begin();
+}
+
+/// The rows without offset and crosstalk; not below 0, but for rows that have neither.
 Eigen::MatrixXd cleaned(const Eigen::MatrixXd& rows, const std::vector<std::string>& muscles,
                         const EmgMapping& mapping) {
   if (mapping.offset.empty() && mapping.crosstalk.empty()) return rows;
   Eigen::MatrixXd clean = rows;
-  const auto indexOf = [&](const std::string& name) {
-    return std::find(muscles.begin(), muscles.end(), name) - muscles.begin();
-  };
   for (const auto& [muscle, offset] : mapping.offset) {
-    clean.row(indexOf(muscle)).array() -= offset;
+    clean.row(indexOf(muscles, muscle)).array() -= offset;
   }
   for (const EmgMapping::Crosstalk& c : mapping.crosstalk) {
-    clean.row(indexOf(c.to)) -= c.share * rows.row(indexOf(c.from));
+    clean.row(indexOf(muscles, c.to)) -= c.share * rows.row(indexOf(muscles, c.from));
   }
   return clean.cwiseMax(0.0);
+}
+
+/// z, from that: with what saturated records lack.
+void addLacking(const Eigen::VectorXd& times, const Eigen::MatrixXd& recorded,
+                const std::vector<std::string>& muscles, const EmgMapping& mapping,
+                Eigen::MatrixXd& clean) {
+  for (const auto& [muscle, size] : mapping.saturation) {
+    if (size == 0) continue;
+    const Eigen::Index i = indexOf(muscles, muscle);
+    clean.row(i) += size * flatTops(times, recorded.row(i));
+  }
 }
 
 /// ∂S/∂x
@@ -122,12 +145,38 @@ Eigen::ArrayXd freshness(const EmgMapping& mapping, const Eigen::RowVectorXd& wo
   return (-work.transpose().array() / mapping.fatigueTime).exp();
 }
 
-Eigen::VectorXd timesOf(const ExcitationSignal& trial) {
-  return Eigen::VectorXd::Map(trial.times().data(),
-                              static_cast<Eigen::Index>(trial.times().size()));
-}
-
 }  // namespace
+
+Eigen::RowVectorXd flatTops(const Eigen::VectorXd& times, const Eigen::RowVectorXd& record) {
+  const Eigen::Index n = record.size();
+  Eigen::RowVectorXd lacking = Eigen::RowVectorXd::Zero(n);
+  const double top = n > 0 ? record.maxCoeff() : 0;
+  if (!(top > 0)) return lacking;
+  const auto isTop = [&](Eigen::Index k) { return record[k] >= (1 - 1e-9) * top; };
+  const auto slope = [&](Eigen::Index k) {
+    return (record[k + 1] - record[k]) / (times[k + 1] - times[k]);
+  };
+  for (Eigen::Index first = 0, end; first < n; first = end) {
+    end = first + 1;
+    if (!isTop(first)) continue;
+    while (end < n && isTop(end)) ++end;
+    const Eigen::Index last = end - 1;
+    const bool begins = first > 0, ends = end < n;
+    if (last - first < 4 || (!begins && !ends)) continue;
+    // between two rows the record reaches its top on the way: the slope is that of the rows before
+    const double a = begins ? slope(std::max<Eigen::Index>(first - 2, 0)) : 0;
+    const double b = ends ? -slope(std::min(end, n - 2)) : 0;
+    const double duration = times[last] - times[first];
+    for (Eigen::Index k = first; k <= last; ++k) {
+      const double tau = (times[k] - times[first]) / duration, left = 1 - tau;
+      double h = a * tau * left * left + b * tau * tau * left;
+      if (!ends) h = a * tau * (1 - tau / 2);
+      if (!begins) h = b * left * (1 - left / 2);
+      lacking[k] = std::max(0.0, duration * h);
+    }
+  }
+  return lacking;
+}
 
 Eigen::RowVectorXd EmgDerivatives::tired(Eigen::Index muscle,
                                          const Eigen::RowVectorXd& change) const {
@@ -142,9 +191,12 @@ ExcitationSignal drivenExcitation(const ExcitationSignal& trial,
   check(muscles, mapping);
   const bool changesNothing = mapping.gain.empty() && mapping.delay == 0 &&
                               mapping.nonlinearity == 0 && mapping.offset.empty() &&
-                              mapping.crosstalk.empty() && mapping.fatigue == 0;
+                              mapping.crosstalk.empty() && mapping.saturation.empty() &&
+                              mapping.fatigue == 0;
   if (changesNothing) return trial;
-  Eigen::MatrixXd rows = cleaned(rowsOf(trial), muscles, mapping);
+  const Eigen::MatrixXd recorded = rowsOf(trial);
+  Eigen::MatrixXd rows = cleaned(recorded, muscles, mapping);
+  addLacking(timesOf(trial), recorded, muscles, mapping, rows);
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
     const double gain = gainOf(mapping, muscles[static_cast<std::size_t>(i)]);
     for (Eigen::Index k = 0; k < rows.cols(); ++k) {
@@ -165,7 +217,8 @@ EmgDerivatives emgDerivatives(const ExcitationSignal& trial,
                               const std::vector<std::string>& muscles, const EmgMapping& mapping) {
   check(muscles, mapping);
   const Eigen::MatrixXd recorded = rowsOf(trial);
-  const Eigen::MatrixXd rows = cleaned(recorded, muscles, mapping);
+  Eigen::MatrixXd rows = cleaned(recorded, muscles, mapping);
+  addLacking(timesOf(trial), recorded, muscles, mapping, rows);
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(rows.rows(), rows.cols());
   EmgDerivatives derivatives{none, none, none, recorded, none, none, timesOf(trial), {}, {}};
   const double phi = mapping.fatigue, T = mapping.fatigueTime;

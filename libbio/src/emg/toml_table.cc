@@ -131,6 +131,20 @@ std::optional<std::vector<double>> TomlTable::numbers(const std::string& key) {
   return out;
 }
 
+std::vector<std::string> TomlTable::texts(const std::string& key) {
+  const toml::value* value = find(key);
+  if (value == nullptr) return {};
+  if (value->is_string()) return {value->as_string().str};
+  const char* rule = "must be a text in quotes or a list of them";
+  if (!value->is_array()) fail(key, rule);
+  std::vector<std::string> out;
+  for (const toml::value& item : value->as_array()) {
+    if (!item.is_string()) fail(key, rule);
+    out.push_back(item.as_string().str);
+  }
+  return out;
+}
+
 std::optional<std::string> TomlTable::word(const std::string& key,
                                            const std::vector<std::string>& words) {
   std::optional<std::string> value = text(key);

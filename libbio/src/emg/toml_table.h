@@ -33,6 +33,8 @@ class TomlTable {
     if (value && !within(*value)) fail(key, rule);
     return value;
   }
+  /// A list of texts, or one text; empty if the key is absent.
+  std::vector<std::string> texts(const std::string& key);
   /// One of these words.
   std::optional<std::string> word(const std::string& key, const std::vector<std::string>& words);
   /// { name = number, … } in the order of the file, or [ "name", … ] with 1 for each.

@@ -301,6 +301,9 @@ void setTarget(ParameterCatalogue::Setting& setting, const ParameterTarget& targ
       case EmgTarget::What::offset:
         mapping.offset[emg->muscle] = value;
         break;
+      case EmgTarget::What::saturation:
+        mapping.saturation[emg->muscle] = value;
+        break;
       case EmgTarget::What::crosstalk: {
         const auto at =
             std::find_if(mapping.crosstalk.begin(), mapping.crosstalk.end(),

@@ -43,6 +43,9 @@ ExcitationSensitivity::ExcitationSensitivity(const MusculoskeletalSystem& arm,
     if (i == d.gain.rows()) continue;
     if (target.what == EmgTarget::What::gain) enter(i, d.tired(i, d.gain.row(i)));
     if (target.what == EmgTarget::What::offset) enter(i, d.tired(i, -d.signal.row(i)));
+    if (target.what == EmgTarget::What::saturation) {
+      enter(i, d.tired(i, d.signal.row(i).cwiseProduct(flatTops(d.times, d.rows.row(i)))));
+    }
     if (target.what == EmgTarget::What::crosstalk) {
       enter(i, d.tired(i, -d.signal.row(i).cwiseProduct(d.rows.row(index(target.from)))));
     }

@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace info::discover {
 namespace {
 
 constexpr double kWorthSaying = 0.005;  // smallest σ_d that the sentence mentions
+constexpr double kTied = 0.8;           // share of a force's power that is the same in all trials
+constexpr double kStep = 0.8;           // share of its variance between two levels
 
 class VerdictSentence {
  public:
@@ -68,7 +72,7 @@ class VerdictSentence {
         return "The model lacks an effect that is not in the catalogue." +
                (names.empty() ? std::string()
                               : " The closest match is " + names + atBounds() + ".") +
-               cause() + nonparametric() +
+               cause() + tie() + nonparametric() +
                (verdict_.formula && verdict_.formula->wins
                     ? " The force " + verdict_.formula->text + " explains the residual."
                     : "");
@@ -96,6 +100,19 @@ class VerdictSentence {
                "moment arms.";
     }
     return "";
+  }
+
+  std::string tie() const {
+    if (!verdict_.unknown || verdict_.unknown->tie.share < kTied) return "";
+    const TimeTie& tie = verdict_.unknown->tie;
+    std::string words = fmt::format(
+        " The missing force is tied to time: {:.0f} % of its power is the same in every trial",
+        100 * tie.share);
+    if (tie.stepShare < kStep) return words + ".";
+    const char* how = std::abs(tie.after) > 3 * std::abs(tie.before)   ? "begins"
+                      : std::abs(tie.before) > 3 * std::abs(tie.after) ? "ends"
+                                                                       : "changes";
+    return words + fmt::format("; it {} at {:.1f} s.", how, tie.stepAt);
   }
 
   std::string nonparametric() const {

@@ -88,7 +88,7 @@ TEST(CalibrateCommand, ReplayOfTheCalibratedModelGivesItsFigures) {
     // as the fit itself has it
     const auto speed = json["estimates"]["initial.elbow_flexion.speed"]["value"].get<double>();
     EXPECT_NEAR(json["trials"][0]["start"][0]["speed"].get<double>(), speed, 1e-12);
-    EXPECT_EQ(json["trials"][1]["start"][0]["speed"], 0);
+    EXPECT_NE(json["trials"][1]["start"][0]["speed"], 0);  // its own
     return json["trials"];
   };
   const std::string plain = (scratch / "plain").string(), driven = (scratch / "driven").string();

@@ -165,6 +165,19 @@ TEST(SummarySchemaOfRender, HoldsWhatIsWritten) {
 }
 #endif
 
+TEST(SummarySchemaOfStudy, HoldsWhatIsWritten) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "out").string();
+  const std::string source = FISHERHILL_SOURCE_DIR;
+  scratch.file("study.toml", "parameters = [\"hand.mass\"]\n[[subject]]\nname = \"a\"\nmodel = \"" +
+                                 source + "/models/elbow8.osim\"\ntrain = \"" + source +
+                                 "/emg_data/curl_fast.sto\"\n");
+  const ProgramResult result =
+      runFisherHill({"study", "run", (scratch / "study.toml").string(), "--out", out});
+  ASSERT_LE(result.status, 1) << result.err;
+  EXPECT_EQ(summarySchema().errorsOf(json::parse(contentOf(out + "/summary.json"))), "");
+}
+
 TEST(SummarySchemas, DescribeEverySubcommand) {
   const json& schemas = summarySchema().text()["definitions"];
   const json& known = schemas["common"]["properties"]["subcommand"]["enum"];

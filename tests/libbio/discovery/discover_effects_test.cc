@@ -221,6 +221,40 @@ TEST(Effects, DerivativesMatchDifferencesOfWholeSimulations) {
   }
 }
 
+TEST(Effects, ARecordWithAFlatTopMayBeSaturated) {
+  const ShippedElbow elbow("elbow8", "curl_fast");
+  Trial trial = cut(elbow.trial, 0.8);
+  const Index biceps = static_cast<Index>(
+      std::find(trial.muscles.begin(), trial.muscles.end(), "BIClong") - trial.muscles.begin());
+  const double top = 0.6 * trial.excitations.col(biceps).maxCoeff();
+  trial.excitations.col(biceps) = trial.excitations.col(biceps).cwiseMin(top);
+  const MusculoskeletalProblem data(elbow.model, ShippedElbow::options(), "elbow_flexion", {trial},
+                                    Case::exact());
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < data.candidates().size(); ++i) {
+    if (data.candidates()[i].id.starts_with("saturated_")) found.push_back(i);
+  }
+  ASSERT_EQ(found.size(), 1u);  // its group has another head, which goes on
+  const Candidate& candidate = data.candidates()[found.front()];
+  EXPECT_EQ(candidate.id, "saturated_BIClong");
+  VectorXd values(static_cast<Index>(data.quantities().size()));
+  for (Index i = 0; i < values.size(); ++i)
+    values[i] = data.quantities()[static_cast<std::size_t>(i)].nominal;
+  const auto at = static_cast<Index>(candidate.quantities.front());
+  const VectorXd nominal = data.outputs(0, values, {});
+  const auto moved = [&](double by) {
+    VectorXd there = values;
+    there[at] += by;
+    return data.outputs(0, there, {});
+  };
+  EXPECT_GT((moved(0.7) - nominal).cwiseAbs().maxCoeff(), 0.01);
+  for (const double size : {0.0, 0.7}) {  // absent and present
+    values[at] = size;
+    const auto slopes = data.predict(0, values, {}, {static_cast<std::size_t>(at)}, false);
+    EXPECT_LT(problem(slopes.gamma.col(0), moved, 1), 2e-4) << size;
+  }
+}
+
 TEST(Effects, ThatDissipateTakeEnergyOut) {
   const Case c(0.9);
   for (const char* id : {"visc", "coulomb", "stribeck", "drag", "powerdamp"}) {

@@ -58,6 +58,59 @@ TEST(EmgMapping, DerivativesMatchDifferencesOnBothSidesOfTheSeries) {
   }
 }
 
+/// sin(πt) over 1 s at 100 Hz, cut off at a level.
+Eigen::RowVectorXd clippedWave(double level, Eigen::VectorXd& times) {
+  times = Eigen::VectorXd::LinSpaced(101, 0, 1);
+  return (M_PI * times.array()).sin().min(level).matrix().transpose();
+}
+
+TEST(EmgMapping, AFlatTopLacksNearlyWhatWasCutOffAWave) {
+  Eigen::VectorXd times;
+  for (const double level : {0.5, 0.7, 0.9}) {
+    const Eigen::RowVectorXd lacking = flatTops(times, clippedWave(level, times));
+    EXPECT_NEAR(lacking.maxCoeff(), 1 - level, 0.15 * (1 - level)) << level;
+    EXPECT_EQ(lacking[10], 0);
+    EXPECT_NEAR(lacking[50 - 7], lacking[50 + 7], 1e-12);  // as the wave
+  }
+}
+
+TEST(EmgMapping, AFlatTopAtAnEndGoesOnWithItsOneSlope) {
+  Eigen::VectorXd times;
+  const Eigen::RowVectorXd wave = clippedWave(0.7, times);
+  const Eigen::RowVectorXd first = flatTops(times.tail(51), wave.tail(51));
+  const Eigen::RowVectorXd second = flatTops(times.head(51), wave.head(51));
+  EXPECT_NEAR((first - second.reverse()).cwiseAbs().maxCoeff(), 0, 1e-12);
+  EXPECT_NEAR(second[50], 0.3, 0.06);
+}
+
+TEST(EmgMapping, RecordsThatDoNotSaturateLackNothing) {
+  Eigen::VectorXd times;
+  EXPECT_EQ(flatTops(times, clippedWave(1.5, times)).maxCoeff(), 0);
+  EXPECT_EQ(flatTops(times, Eigen::RowVectorXd::Constant(101, 0.2)).maxCoeff(), 0);
+  EXPECT_EQ(flatTops(times, Eigen::RowVectorXd::Zero(101)).maxCoeff(), 0);
+  EXPECT_EQ(flatTops({}, {}).size(), 0);
+}
+
+TEST(EmgMapping, ASaturatedRecordIsFilledUpWithDerivatives) {
+  Eigen::VectorXd times;
+  Eigen::MatrixXd u(101, 2);
+  u.col(0) = clippedWave(0.6, times).transpose();
+  u.col(1).setConstant(0.1);
+  const ExcitationSignal record({times.data(), times.data() + times.size()}, u);
+  const auto filled = [&](double size) {
+    return drivenExcitation(record, muscles, {.gain = {{"A", 0.8}}, .saturation = {{"A", size}}});
+  };
+  EXPECT_NEAR(at(filled(1), 0.5)[0], 0.8, 0.05);
+  EXPECT_EQ(at(filled(1), 0.1), at(filled(0), 0.1));
+  const EmgDerivatives d =
+      emgDerivatives(record, muscles, {.gain = {{"A", 0.8}}, .saturation = {{"A", 0.5}}});
+  const double h = 1e-5;
+  for (const int k : {10, 41, 50, 55}) {
+    const double slope = (at(filled(0.5 + h), times[k]) - at(filled(0.5 - h), times[k]))[0];
+    EXPECT_NEAR(d.signal(0, k) * flatTops(times, d.rows.row(0))[k], slope / (2 * h), 1e-9) << k;
+  }
+}
+
 TEST(EmgMapping, FatigueTakesTheShareThatTheWorkDoneHasUsedUp) {
   EmgMapping mapping;
   mapping.fatigue = 0.4;

@@ -31,6 +31,37 @@ LinearDisagreement withForce(std::uint64_t seed, const Force& force) {
   return data;
 }
 
+TEST(TimeTie, OfAForceThatBeginsInEveryTrialIsAStep) {
+  std::vector<std::vector<double>> times(2);
+  std::vector<VectorXd> forces(2);
+  for (int trial = 0; trial < 2; ++trial) {
+    for (int k = 0; k <= 40; ++k) times[trial].push_back(0.03 * trial + 0.1 * k);
+    forces[trial] = VectorXd::NullaryExpr(41, [&](Index k) {
+      const double own = 0.1 * std::sin((1 + trial) * 2.3 * static_cast<double>(k));
+      return own + (times[trial][static_cast<std::size_t>(k)] > 2.5 ? 1.3 : 0.0);
+    });
+  }
+  const TimeTie tie = timeTie(times, forces);
+  EXPECT_GT(tie.share, 0.95);
+  EXPECT_NEAR(tie.stepAt, 2.5, 0.1);
+  EXPECT_GT(tie.stepShare, 0.95);
+  EXPECT_NEAR(tie.before, 0, 0.05);
+  EXPECT_NEAR(tie.after, 1.3, 0.05);
+}
+
+TEST(TimeTie, OfForcesOfTheirOwnIsWeak) {
+  std::vector<double> times;
+  std::vector<VectorXd> forces;
+  for (int k = 0; k <= 100; ++k) times.push_back(0.05 * k);
+  for (const double rate : {2.0, 3.1, 4.7})
+    forces.push_back(
+        VectorXd::NullaryExpr(101, [&](Index k) { return std::sin(rate * 0.05 * double(k)); }));
+  const TimeTie tie = timeTie({times, times, times}, forces);
+  EXPECT_LT(tie.share, 0.6);
+  EXPECT_LT(tie.stepShare, 0.8);
+  EXPECT_EQ(timeTie({times}, {forces[0]}).share, 0);
+}
+
 Unknown describedIn(const LinearDisagreement& data, double latent) {
   const Likelihood likelihood(data, {0, 1}, nominalValues(data), kTime);
   const Fit fit = likelihood.fit(makeHypothesis(data, {}, {0, 1}), {kOutput, latent, kTime},

@@ -31,6 +31,9 @@ struct CalibrationOptions {
   double confidence = 0.95;          ///< of all intervals, in (0, 1)
   std::vector<std::string> profile;  ///< parameters whose profile likelihood is computed
   int bootstrap = 0;                 ///< replicates; 0: none
+  /// Start of the search, in place of the model's values: all estimated numbers, in their order.
+  /// No other starts are led then.
+  std::optional<Eigen::VectorXd> from = {};
   /// Called from any thread with the fraction of the work done, 0 to 1; returning false stops.
   std::function<bool(double)> progress = {};
 };
@@ -62,6 +65,15 @@ struct ResidualNoise {
   std::vector<double> autocorrelation;  ///< of the residuals, at lags 0, 1, … samples
 };
 
+/// Another minimum of the cost, three standard deviations from the estimate or more, which the data
+/// and priors leave possible (Δ ≤ 4.6 nats: e^{−Δ} ≥ 1 % as likely, its width taken to be the same)
+/// or the data alone (1.92 nats: inside a 95 % interval of their likelihood).
+struct OtherMinimum {
+  Eigen::VectorXd values;  ///< of all estimated numbers
+  double difference = 0;   ///< Δ of the cost [nats]
+  double ofData = 0;       ///< of it without the priors [nats]; < 0: it fits better
+};
+
 struct Calibration {
   std::string failure;  ///< why no estimate is possible; all other members are then empty
   std::vector<CalibratedParameter> parameters;
@@ -71,17 +83,21 @@ struct Calibration {
   int iterations = 0, evaluations = 0;
   std::vector<info::StartOutcome> starts;
   int agreeingStarts = 0;
+  std::vector<OtherMinimum> otherMinima;  ///< that other starts found; the likeliest first
   int bootstrapConverged = 0;
   bool complete = true;                     ///< false if the progress callback stopped it
   ResidualNoise noise;                      ///< of the first of the set's channels
   std::vector<ResidualNoise> channelNoise;  ///< of all of them, in that order
-  double noiseFloor = 0;  ///< noise from third differences of the measured angles [rad]
+  double noiseFloor = 0;           ///< noise from third differences of the measured angles [rad]
+  Eigen::VectorXd values() const;  ///< of all estimated numbers
   /// Whether the residuals exceed the scatter of neighbouring samples by half: then other
   /// parameters or effects are wrong, too.
   bool leavesMoreThanNoise() const { return noiseFloor > 0 && noise.sd > 1.5 * noiseFloor; }
   double reducedChiSquare = 0;    ///< of single samples; near 1 if the noise was given correctly
   Eigen::MatrixXd before, after;  ///< of the calibration trials, 1 × samples
   Eigen::MatrixXd heldOutBefore, heldOutAfter;  ///< of the others
+  /// All numbers of the held-out trials: those estimated, and their own starts, if they have such.
+  Eigen::VectorXd heldOutValues;
   /// The model, the EMG mapping and the first trial's initial state at the estimate.
   std::optional<ParameterCatalogue::Setting> calibrated;
 };
@@ -102,7 +118,9 @@ struct Calibration {
 /// Intervals, with priors included, are given for parameters that the data determine
 /// (determinacy.h); for the others the reason is given in words. A parameter at a bound is held
 /// there for the intervals of the others; one without effect on any angle and without prior keeps
-/// the model's value. Held-out trials are simulated from their own first measured value, at rest.
+/// the model's value. Held-out trials are simulated from their own first measured value, at rest;
+/// if their set has own starts (TrialSetOptions::ownStart), these are estimated from each of them
+/// with the parameters fixed.
 ///
 /// @throws std::invalid_argument what TrialSet throws, and for an option out of range, a prior or
 ///   bound of a parameter that is not estimated, bounds that do not enclose the start

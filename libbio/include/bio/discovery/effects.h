@@ -38,6 +38,7 @@ struct EffectEntry {
 /// | delay, shape, crosstalk_A_B, gain_i, offset_i | EmgMapping | |
 /// | mass, tau, Fmax_i, lopt_i, lslack_i, tendon, wrap_i | factors and shifts of parameters | |
 /// | swap_A_B | channels of two muscles exchanged: EmgMapping | share, 1 where they are |
+/// | saturated_i | the record of a muscle or group saturates (flatTops): EmgMapping | s, 1 goes on smoothly |
 /// | bias, gain, clock, clock_rate, lag, drift | SensorLaw | |
 // clang-format on
 const std::vector<EffectEntry>& effectEntries();
@@ -50,6 +51,11 @@ void addNuisances(EncompassingModel& model);
 /// Adds a candidate "formula", a force outside the catalogue, c·(e_1 + r_2·e_2 + …); in a model an
 /// ExpressionBasedCoordinateForce. Its quantities are c, r_2, ….
 void addFormula(EncompassingModel& model, const std::vector<info::discover::FormulaTerm>& terms);
+
+/// Ids of the candidates saturated_i that cannot be: those of muscles whose record has no flat top.
+/// @param flat  muscles whose record has one
+std::vector<std::string> unsaturated(const EncompassingModel& model,
+                                     const std::vector<std::string>& flat);
 
 /// addNuisances, and every entry but those whose ids are in `without`.
 /// @param without  ids of entries or of candidates, or their long names (effect_names.h)

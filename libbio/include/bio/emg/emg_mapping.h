@@ -10,9 +10,10 @@ namespace bio {
 
 /// Maps the excitations of a trial to those that drive the muscles:
 ///     u_i(t) = min(1, g_i·S(z_i(t − d))),   S(x) = (e^{Ax} − 1)/(e^A − 1), S = x for A = 0
-///     z_i = max(0, x_i − o_i − Σ_j c_ji·x_j)
+///     z_i = max(0, x_i − o_i − Σ_j c_ji·x_j) + s_i·h_i
 /// and fatigue reduces this the longer a muscle has been active:
 ///     u_i ← u_i·[1 − φ(1 − e^{−I_i/T})],   I_i = ∫u_i dt from the first row, u_i as above
+/// where h_i is what a saturated record lacks (flatTops) and s_i its size.
 /// (S: Lloyd & Besier 2003, eq. 3, as in emg_stages.h). It is applied to the rows of the trial; u
 /// is linear between them. The default is the identity.
 struct EmgMapping {
@@ -28,13 +29,22 @@ struct EmgMapping {
   double nonlinearity = 0;                    ///< A [1], −6 to 6
   std::map<std::string, double> offset = {};  ///< o [1] by muscle; 0 where it has none
   std::vector<Crosstalk> crosstalk = {};
+  std::map<std::string, double> saturation = {};  ///< s [1] by muscle; 0 where it has none
   double fatigue = 0;      ///< φ [1], −1 to 1; below 0 the excitation increases
   double fatigueTime = 1;  ///< T [s] > 0 of full excitation
 };
 
+/// What a record that saturates lacks: 0 but on its flat tops, five or more rows in turn at
+/// the record's maximum. There the record goes on with the slopes a [1/s] before and b behind it,
+///     h = D·[a·τ(1 − τ)² + b·τ²(1 − τ)],  τ = (t − t₀)/D,
+/// D its duration; with one slope, where it begins or ends the record, D·a·τ(1 − τ/2). 0 where the
+/// record is flat from beginning to end.
+Eigen::RowVectorXd flatTops(const Eigen::VectorXd& times, const Eigen::RowVectorXd& record);
+
 /// @param muscles  the signal's, in order
 /// @throws std::invalid_argument for a gain < 0, a delay that is not finite, A outside −6 … 6, φ
-///   outside −1 … 1, T not above 0, or a gain, offset or crosstalk of an unknown muscle
+///   outside −1 … 1, T not above 0, or a gain, offset, crosstalk or saturation of an unknown
+///   muscle
 ExcitationSignal drivenExcitation(const ExcitationSignal& trial,
                                   const std::vector<std::string>& muscles,
                                   const EmgMapping& mapping);
@@ -44,9 +54,9 @@ ExcitationSignal drivenExcitation(const ExcitationSignal& trial,
 struct EmgDerivatives {
   Eigen::MatrixXd gain;
   Eigen::MatrixXd nonlinearity;
-  Eigen::MatrixXd signal;   ///< ∂u/∂z: −1 times it is ∂u/∂o, −x_j times it ∂u/∂c_ji
-  Eigen::MatrixXd rows;     ///< x: the trial's own
-  Eigen::MatrixXd fatigue;  ///< ∂u/∂φ
+  Eigen::MatrixXd signal;  ///< ∂u/∂z: −1 times it is ∂u/∂o, −x_j ∂u/∂c_ji, h_i ∂u/∂s_i
+  Eigen::MatrixXd rows;         ///< x: the trial's own
+  Eigen::MatrixXd fatigue;      ///< ∂u/∂φ
   Eigen::MatrixXd fatigueTime;  ///< ∂u/∂T [1/s]
 
   /// Maps a change of u_i before fatigue, at the rows, to the change of u_i:

@@ -64,8 +64,17 @@ struct GravityTarget {
   friend bool operator==(const GravityTarget&, const GravityTarget&) = default;
 };
 struct EmgTarget {
-  enum class What { gain, delay, nonlinearity, offset, crosstalk, fatigue, fatigueTime } what;
-  std::string muscle;     ///< of a gain, an offset, a crosstalk's receiver
+  enum class What {
+    gain,
+    delay,
+    nonlinearity,
+    offset,
+    crosstalk,
+    saturation,
+    fatigue,
+    fatigueTime
+  } what;
+  std::string muscle;     ///< of a gain, an offset, a saturation, a crosstalk's receiver
   std::string from = {};  ///< of a crosstalk
   friend bool operator==(const EmgTarget&, const EmgTarget&) = default;
 };

@@ -33,6 +33,7 @@ const std::vector<EffectEntry>& effectEntries() {
       {"shape", addShape},
       {"crosstalk", addCrosstalk},
       {"swaps", addExchangedChannels},
+      {"saturation", addSaturation},
       {"electrodes", addElectrodeGains},
       {"baselines", addBaselines},
       {"mass", addMassError},

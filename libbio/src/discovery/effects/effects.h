@@ -30,6 +30,7 @@ void addShape(EncompassingModel& model);
 void addFatigue(EncompassingModel& model);
 void addCrosstalk(EncompassingModel& model);
 void addExchangedChannels(EncompassingModel& model);
+void addSaturation(EncompassingModel& model);
 void addElectrodeGains(EncompassingModel& model);
 void addBaselines(EncompassingModel& model);
 void addMassError(EncompassingModel& model);

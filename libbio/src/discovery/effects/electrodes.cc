@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "discovery/effects/effects.h"
 
 // What stands between the recorded EMG and the excitation. Priors: electromechanical delays of
@@ -78,6 +80,10 @@ void addExchangedChannels(EncompassingModel& model) {
 
 namespace {
 
+std::string saturationId(const std::string& name) {
+  return "saturated_" + name;
+}
+
 /// Calls use(name, muscles) for every muscle, and every group of several.
 template <class Use>
 void forMusclesAndGroups(const EncompassingModel& model, const Use& use) {
@@ -90,6 +96,35 @@ void forMusclesAndGroups(const EncompassingModel& model, const Use& use) {
 }
 
 }  // namespace
+
+void addSaturation(EncompassingModel& model) {
+  forMusclesAndGroups(model, [&](const std::string& name, const std::vector<std::string>& muscles) {
+    std::vector<Meaning::Part> parts;
+    for (const std::string& muscle : muscles) {
+      parts.push_back({model.number(EmgTarget{What::saturation, muscle}, 0)});
+    }
+    const std::string id = saturationId(name);
+    const std::size_t s =
+        model.add(amplitude(id + ".size", "", 0, 5, 1), {Meaning::Kind::shift, parts});
+    model.add(candidate(model, id, fmt::format("saturated EMG of {}", name),
+                        fmt::format("The recording of {} saturates: its flat tops hide how much "
+                                    "stronger the muscle was.",
+                                    name),
+                        EffectKind::input, {s}, {{1}, {0.3}}));
+  });
+}
+
+std::vector<std::string> unsaturated(const EncompassingModel& model,
+                                     const std::vector<std::string>& flat) {
+  std::vector<std::string> ids;
+  forMusclesAndGroups(model, [&](const std::string& name, const std::vector<std::string>& muscles) {
+    const bool isFlat = std::all_of(muscles.begin(), muscles.end(), [&](const std::string& one) {
+      return std::find(flat.begin(), flat.end(), one) != flat.end();
+    });
+    if (!isFlat) ids.push_back(saturationId(name));
+  });
+  return ids;
+}
 
 void addElectrodeGains(EncompassingModel& model) {
   forMusclesAndGroups(model, [&](const std::string& name, const std::vector<std::string>& muscles) {

@@ -18,8 +18,8 @@ namespace {
 
 using Follows = NonparametricForce::Follows;
 
-constexpr double kSize = 0.3;  // prior sd of each term, in units of the latent force's scale
-constexpr int kDegree = 5;     // of the polynomial in the angle
+constexpr double kSize = 0.3;   // prior sd of each term, in units of the latent force's scale
+constexpr int kDegree = 5;      // of the polynomial in the angle
 constexpr double kGrip = 0.05;  // speed scale of dry friction, as in the catalogues
 constexpr int kPoints = 61;     // points of the plotted curve
 

@@ -60,6 +60,13 @@ void spectrum(const Likelihood& likelihood, const Fit& fit, Unknown& unknown) {
 Unknown describeUnknown(const Likelihood& likelihood, const Fit& fit) {
   Unknown unknown;
   spectrum(likelihood, fit, unknown);
+  std::vector<std::vector<double>> times;
+  std::vector<VectorXd> forces;
+  for (std::size_t t = 0; t < likelihood.trials().size(); ++t) {
+    times.push_back(likelihood.data().latentTimes(likelihood.trials()[t]));
+    forces.push_back(likelihood.force(t, fit));
+  }
+  unknown.tie = timeTie(times, forces);
   findFormula(likelihood, fit, unknown);
   return unknown;
 }

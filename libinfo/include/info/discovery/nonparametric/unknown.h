@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "info/discovery/likelihood/joint_fit.h"
+#include "info/discovery/nonparametric/time_tie.h"
 
 namespace info::discover {
 
@@ -32,12 +33,13 @@ struct SymbolicTerm {
 struct Unknown {
   double peakFrequency = 0;  ///< [Hz] peak of the latent force's spectrum, relative to its prior
   double peakShare = 0;      ///< fraction of its power within ±0.5 Hz of the peak
-  double forceSize = 0;             ///< root mean square [unit of the generalised force]
+  double forceSize = 0;      ///< root mean square [unit of the generalised force]
+  TimeTie tie;               ///< of the force to the time since the trials' zero
   std::vector<SymbolicTerm> terms;  ///< best subset, at most three terms, the most certain first
   double evidence = 0;   ///< log Bayes factor of the terms against the latent force alone [nats]
   double explained = 0;  ///< fraction of the latent force's power that they explain
   bool stable = false;   ///< every term selected in 90 % of the bootstraps
-  std::string formula;              ///< e.g. "−0.42·q̇|q̇| + 0.1·q"
+  std::string formula;   ///< e.g. "−0.42·q̇|q̇| + 0.1·q"
 };
 
 /// @param fit of the base model with a latent force of the estimated size

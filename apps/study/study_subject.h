@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bio/tables/study_file.h"
+#include "command/command_context.h"
+
+namespace app {
+
+/// Whether an estimated number is the start of one trial: "trial2.initial.NAME", "initial.NAME".
+bool isOfATrial(const std::string& parameter);
+
+/// Columns of study.csv.
+const std::vector<std::string>& studyColumns();
+
+/// Carries one subject through emg, calibrate with its held-out test, and discover, whose results
+/// go into folders of these names in `folder`; what is there is made anew. A command that fails is
+/// the subject's status and message.
+/// @return cells of the subject's row, separated by commas
+/// @throws Interrupted after Ctrl-C
+std::string studySubject(const bio::StudyFile& study, const bio::StudySubject& subject,
+                         const std::filesystem::path& folder, const CommandContext& context);
+
+}  // namespace app

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "bio/calibration/calibrate.h"
+
+namespace bio {
+
+/// What halving the step of the simulations would change at the estimate.
+struct StepChange {
+  std::vector<double> ofTrials;  ///< largest change of the simulated angles of each trial [rad]
+  /// Largest change of an estimate, in its standard deviations: of θ by (I + Λ)⁻¹ΓᵀΔy/σ² to first
+  /// order, parameters at a bound held. 0 where no estimate has a standard deviation.
+  double ofEstimates = 0;
+  /// Whether a change of angles exceeds 0.2 standard deviations of the noise, or that of an
+  /// estimate 0.25 of its own: then the step passes for an error of the model.
+  bool matters(double noise) const;
+};
+
+/// A calibration with the trials that it was made of.
+struct SteppedCalibration {
+  CalibrationOptions options;                         ///< with the step of the estimate
+  std::unique_ptr<const TrialSet> training, heldOut;  ///< at that step; heldOut may be null
+  Calibration calibration;
+  StepChange change;  ///< empty if there is no estimate
+};
+
+/// calibrate(), again at half the step, from the estimate found, as long as halving the step of
+/// vi or vi-left matters and the step is not below `shortest` then. Held-out trials have starts of
+/// their own if the others have (TrialSetOptions::ownStart).
+/// @param shortest [s] > 0; infinity: at the given step only
+/// @throws std::invalid_argument what TrialSet and calibrate throw
+SteppedCalibration calibrateAtShorterSteps(const Model& model, const SystemOptions& arm,
+                                           const std::vector<Trial>& training,
+                                           const std::vector<Trial>& heldOut,
+                                           const CalibrationOptions& options, double shortest);
+
+/// [s], a default for `shortest`
+inline constexpr double shortestCalibrationStep = 0.001;
+
+}  // namespace bio
