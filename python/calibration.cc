@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "arms.h"
+#include "bio/calibration/calibrate_at_shorter_steps.h"
 #include "bio/calibration/calibrated_model.h"
 #include "docstrings.h"
 #include "interruptible.h"
