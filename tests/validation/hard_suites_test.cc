@@ -254,6 +254,19 @@ TEST_F(Violated, TheEmgIsNoisyOrSlow) {
   EXPECT_LT(trial.recorded[139][3], 0.112);
 }
 
+TEST(HardSuites, NamingALagOfTheSensorIsRightWhereItLags) {
+  Outcome o;
+  o.name = "s1", o.suite = "violated", o.hides = "null", o.hasVerdict = true, o.verdict = "named";
+  o.claims = o.confident = true;
+  o.named = {"lag"};
+  for (const auto& [violation, wrong] : {std::pair{"lag", 0}, std::pair{"gaps", 1}}) {
+    o.violation = violation;
+    const auto rows = hardRows({o});
+    EXPECT_EQ(rows.front().alarms, wrong) << violation;
+    EXPECT_EQ(rows.front().confidentlyWrong, wrong) << violation;
+  }
+}
+
 TEST(HardSuites, AreCountedByThemselves) {
   const auto outcome = [](const std::string& suite, const std::string& kind, bool claims,
                           bool confident) {

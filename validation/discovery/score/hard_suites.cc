@@ -2,23 +2,37 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <map>
 
 namespace hidden {
 namespace {
 
+/// A lag or a drift is in the catalogue itself: to name it, beside what is hidden or alone, is
+/// right.
+bool namesTheViolation(const Outcome& o) {
+  if (o.violation != "lag" && o.violation != "drift") return false;
+  const auto isThere = [&](const std::string& id) {
+    return id == o.violation || std::find(o.truth.begin(), o.truth.end(), id) != o.truth.end();
+  };
+  return !o.named.empty() && std::all_of(o.named.begin(), o.named.end(), isThere);
+}
+
 void count(HardRow& row, const Outcome& o) {
   ++row.sets;
-  const bool alarm = o.hides == "null" && (o.claims || !o.hasVerdict);
-  const bool structure = o.hides == "parameter" && (o.namesStructure || !o.hasVerdict);
+  const bool isRight = namesTheViolation(o);
+  const bool alarm = o.hides == "null" && !isRight && (o.claims || !o.hasVerdict);
+  const bool structure = o.hides == "parameter" && !isRight && (o.namesStructure || !o.hasVerdict);
   row.nothing += o.hides == "null";
   row.alarms += alarm;
   row.parameters += o.hides == "parameter";
   row.structures += structure;
   row.effects += o.hides != "null";
   row.right += o.hides != "null" && o.firstIsRight;
-  row.confidentlyWrong += o.confidentlyWrong();
-  if (alarm || structure || o.confidentlyWrong()) row.wrong.push_back(describe(o));
+  const bool confidentlyWrong = o.confidentlyWrong() && !isRight;
+  row.confidentlyWrong += confidentlyWrong;
+  if (alarm || structure || confidentlyWrong) row.wrong.push_back(describe(o));
 }
 
 std::string share(int k, int n) {
