@@ -1,7 +1,7 @@
 // What all sensitivities of the main job cost, beside the job itself.
 #include <benchmark/benchmark.h>
 
-#include "bio/sensitivity/coupled_sensitivity.h"
+#include "bio/sensitivity/cost_gradient.h"
 #include "support/shipped_elbow.h"
 
 namespace {
@@ -50,6 +50,25 @@ BENCHMARK_CAPTURE(sensitivities, of_the_motion_to_muscles,
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(sensitivities, of_the_motion_to_one, {"TRI.radius"}, false)
     ->Unit(benchmark::kMillisecond);
+
+/// A least-squares cost of the angle at every row and its gradient in the parameters that match.
+void gradient(benchmark::State& state, const std::vector<std::string>& patterns) {
+  const ShippedElbow elbow;
+  const auto setting = elbow.catalogue.nominal();
+  const auto wanted = elbow.catalogue.select(patterns);
+  const Eigen::VectorXd times = Eigen::VectorXd::LinSpaced(451, 0, 4.5);
+  const bio::MotionCost cost = bio::leastSquaresCost(
+      elbow.arm, {{{bio::Observable::Kind::coordinate, "elbow_flexion", 0}, times}},
+      Eigen::VectorXd::Constant(times.size(), 1), Eigen::VectorXd::Constant(times.size(), 0.02));
+  for (auto _ : state) {
+    const bio::CostGradient g = bio::simulateWithGradient(
+        elbow.arm, elbow.catalogue, setting, wanted, elbow.excitation, options(), cost);
+    benchmark::DoNotOptimize(g.gradient.data());
+  }
+  state.counters["parameters"] = static_cast<double>(wanted.size());
+}
+BENCHMARK_CAPTURE(gradient, of_a_cost_in_all, {"all"})->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(gradient, of_a_cost_in_one, {"TRI.radius"})->Unit(benchmark::kMillisecond);
 
 void compileArm(benchmark::State& state) {
   const ShippedElbow elbow;

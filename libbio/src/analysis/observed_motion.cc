@@ -193,4 +193,73 @@ void ObservedMotion::addMarker(const ObservedSeries& series, const SystemMarker&
   });
 }
 
+void ObservedMotion::requireAdjoint() const {
+  for (const ObservedSeries& one : series_) {
+    const Kind kind = one.what.kind;
+    if (kind != Kind::coordinate && kind != Kind::speed && kind != Kind::marker) {
+      throw std::invalid_argument(fmt::format(
+          "gradient of a cost: '{}' has no adjoint, only coordinates, speeds and markers have",
+          nameOf(one.what)));
+    }
+  }
+}
+
+void ObservedMotion::pullBack(const Trajectory& motion, const Eigen::VectorXd& lambda,
+                              Eigen::MatrixXd& q, Eigen::MatrixXd& qDot) const {
+  requireAdjoint();
+  if (lambda.size() != size_) {
+    throw std::invalid_argument(
+        fmt::format("{} slopes for {} observed samples, must be as many", lambda.size(), size_));
+  }
+  q.setZero(motion.q.rows(), motion.q.cols());
+  qDot = q;
+  Index at = 0;
+  for (std::size_t i = 0; i < series_.size(); ++i) {
+    const auto& [what, times] = series_[i];
+    const int index = sources_[i];
+    if (what.kind == Kind::marker) {
+      pullMarkerBack(series_[i], arm_->markers()[static_cast<std::size_t>(index)], motion,
+                     lambda.segment(at, times.size()), q, qDot);
+    }
+    for (Index k = 0; k < times.size() && what.kind != Kind::marker; ++k) {
+      const auto w = weightsAt(motion.time, times[k]);
+      if (!w) continue;
+      if (what.kind == Kind::coordinate) w->addValue(lambda[at + k], q.row(index), qDot.row(index));
+      if (what.kind == Kind::speed) w->addSlope(lambda[at + k], q.row(index), qDot.row(index));
+    }
+    at += times.size();
+  }
+}
+
+void ObservedMotion::pullMarkerBack(const ObservedSeries& series, const SystemMarker& marker,
+                                    const Trajectory& motion,
+                                    const Eigen::Ref<const Eigen::VectorXd>& lambda,
+                                    Eigen::MatrixXd& q, Eigen::MatrixXd& qDot) const {
+  const auto along = [&](const Placement<double>& X) {
+    return X.R.row(series.what.axis).dot(marker.p_S) + X.p[series.what.axis];
+  };
+  stepping::withCoordinates(arm_->skeleton(), [&](auto N) {
+    constexpr int count = decltype(N)::value;
+    SystemConfiguration<count> configuration(*arm_);
+    Eigen::Matrix<double, count, 1> posture = arm_->skeleton().defaultValues();
+    for (Index k = 0; k < series.times.size(); ++k) {
+      const auto w = weightsAt(motion.time, series.times[k]);
+      if (!w) continue;
+      for (Index c = 0; c < posture.size(); ++c) {
+        posture[c] = w->value(motion.q.row(c), motion.qDot.row(c));
+      }
+      configuration.moveSkeletonTo(posture);
+      for (Index c = 0; c < posture.size(); ++c) {
+        double slope = 0;
+        if constexpr (count == Eigen::Dynamic) {
+          slope = along(configuration.change(marker.segment, static_cast<int>(c)));
+        } else {
+          slope = along(configuration.motions()[marker.segment].first[static_cast<std::size_t>(c)]);
+        }
+        w->addValue(lambda[k] * slope, q.row(c), qDot.row(c));
+      }
+    }
+  });
+}
+
 }  // namespace bio

@@ -111,6 +111,14 @@ TrialPredictor::Linearised TrialPredictor::withSensitivities(const Eigen::Vector
   }
 }
 
+CostGradient TrialPredictor::leastSquares(const Eigen::VectorXd& theta,
+                                          const Eigen::VectorXd& measured,
+                                          const Eigen::VectorXd& sd) const {
+  const Held held = heldAt(catalogue_->at(selection_, theta));
+  return simulateWithGradient(held.arm, *catalogue_, held.setting, selection_, trial_, held.options,
+                              leastSquaresCost(held.arm, series_, measured, sd));
+}
+
 info::Predictor TrialPredictor::predictor() const {
   info::Predictor predictor;
   predictor.outputs = [this](const Eigen::VectorXd& theta) -> Eigen::MatrixXd {

@@ -175,6 +175,43 @@ Eigen::MatrixXd TrialSet::measured() const {
   return values;
 }
 
+TrialSet::Cost TrialSet::leastSquares(const Eigen::VectorXd& theta,
+                                      const std::vector<double>& sd) const {
+  if (sd.size() != channels_.size()) {
+    throw std::invalid_argument(fmt::format("{} standard deviations for {} measured channels",
+                                            sd.size(), channels_.size()));
+  }
+  if (theta.size() != static_cast<Index>(parameters_.size())) {
+    throw std::invalid_argument(fmt::format("{} values for {} parameters, must be as many",
+                                            theta.size(), parameters_.size()));
+  }
+  const Eigen::VectorXd values = measured().transpose();
+  Eigen::VectorXd sds(values.size());
+  Index at = 0;
+  for (const MeasuredSeries& series : series_) {
+    sds.segment(at, series.values.size()).setConstant(sd[series.channel]);
+    at += series.values.size();
+  }
+  Cost cost;
+  cost.trials.resize(trials_.size());
+  info::parallelFor(static_cast<int>(trials_.size()), threads_, [&](int i) {
+    const auto t = static_cast<std::size_t>(i);
+    const Index first = begin_[t], count = begin_[t + 1] - begin_[t];
+    cost.trials[t] = experiments_[t].leastSquares(thetaOf(t, theta), values.segment(first, count),
+                                                  sds.segment(first, count));
+  });
+  cost.gradient.setZero(theta.size());
+  const auto common = static_cast<Index>(selection_.size());
+  const auto own = static_cast<Index>(own_.size());
+  for (Index i = 0; i < std::ssize(cost.trials); ++i) {
+    const CostGradient& trial = cost.trials[static_cast<std::size_t>(i)];
+    cost.value += trial.cost;
+    cost.gradient.head(common) += trial.gradient.head(common);
+    cost.gradient.segment(common + i * own, own) += trial.gradient.tail(own);
+  }
+  return cost;
+}
+
 std::vector<TrialPredictor> TrialSet::nudged(double frequency) const {
   std::vector<TrialPredictor> held = experiments_;
   for (const MeasuredSeries& one : series_) {

@@ -21,8 +21,8 @@ PointMotionJet<double, N> endInGround(const CompiledPath& path, const PathNode& 
 /// Adds what a point's location does through covector c in ground with slopes c_k:
 /// R_SBᵀXᵀc, and R_SBᵀ(X_kᵀc + Xᵀc_k).
 template <int N, class Out>
-void addPoint(const PathNode& node, const RigidMotion<double, N>* moved, const Vector3d& c,
-              const std::array<Vector3d, N>& c_k, Out& out) {
+[[gnu::flatten]] void addPoint(const PathNode& node, const RigidMotion<double, N>* moved,
+                               const Vector3d& c, const std::array<Vector3d, N>& c_k, Out& out) {
   const RigidMotion<double, N>& X = moved[node.segment];
   out.col(0) += node.X_SB.R.transpose() * (X.value.R.transpose() * c);
   for (std::size_t k = 0; k < N; ++k) {

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "sensitivity/parameter_directions.h"
 #include "sensitivity/sensitivity_pass.h"
 
 namespace bio {
@@ -49,14 +50,8 @@ SensitivityTrajectory simulateWithSensitivities(const MusculoskeletalSystem& arm
                                                 const std::vector<std::size_t>& wanted,
                                                 const ExcitationSignal& trial,
                                                 const SensitivityOptions& options) {
-  std::vector<ParameterDirection> directions;
-  for (const std::size_t index : wanted) {
-    ParameterDirection& direction = directions.emplace_back();
-    for (const ParameterTarget& target : catalogue.parameters().at(index).targets) {
-      direction.push_back({target, 1, setting.values[static_cast<Eigen::Index>(index)]});
-    }
-  }
-  return simulateWithSensitivities(arm, setting, directions, trial, options);
+  return simulateWithSensitivities(arm, setting, stepping::directionsOf(catalogue, setting, wanted),
+                                   trial, options);
 }
 
 SensitivityTrajectory simulateWithSensitivities(const MusculoskeletalSystem& arm,

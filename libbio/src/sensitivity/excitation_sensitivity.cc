@@ -6,20 +6,12 @@ namespace bio::stepping {
 
 using Eigen::Index;
 
-ExcitationSensitivity::ExcitationSensitivity(const MusculoskeletalSystem& arm,
-                                             const ParameterEffects& effects,
-                                             const ExcitationSignal& trial,
-                                             const ExcitationSignal& driven,
-                                             const EmgMapping& mapping)
-    : arm_(arm),
-      effects_(effects),
-      driven_(driven),
-      emg_(arm.numMuscles()),
-      from_(static_cast<Index>(arm.numMuscles())),
-      to_(from_),
-      now_(from_) {
-  findColumns();
-  if (effects.emg.empty()) return;
+std::vector<std::vector<RowsOfColumn>> excitationRows(const MusculoskeletalSystem& arm,
+                                                      const ParameterEffects& effects,
+                                                      const ExcitationSignal& trial,
+                                                      const EmgMapping& mapping) {
+  std::vector<std::vector<RowsOfColumn>> all(arm.numMuscles());
+  if (effects.emg.empty()) return all;
   const std::vector<std::string> muscles = muscleNames(arm);
   const EmgDerivatives d = emgDerivatives(trial, muscles, mapping);
   for (const auto& effect : effects.emg) {
@@ -28,7 +20,7 @@ ExcitationSensitivity::ExcitationSensitivity(const MusculoskeletalSystem& arm,
     };
     const EmgTarget& target = effect.target;
     const auto enter = [&](Index muscle, const Eigen::RowVectorXd& rows) {
-      emg_[static_cast<std::size_t>(muscle)].push_back({effect.column, effect.weight * rows});
+      all[static_cast<std::size_t>(muscle)].push_back({effect.column, effect.weight * rows});
     };
     const auto enterAll = [&](const Eigen::MatrixXd& rows) {
       for (Index i = 0; i < rows.rows(); ++i) enter(i, rows.row(i));
@@ -50,6 +42,22 @@ ExcitationSensitivity::ExcitationSensitivity(const MusculoskeletalSystem& arm,
       enter(i, d.tired(i, -d.signal.row(i).cwiseProduct(d.rows.row(index(target.from)))));
     }
   }
+  return all;
+}
+
+ExcitationSensitivity::ExcitationSensitivity(const MusculoskeletalSystem& arm,
+                                             const ParameterEffects& effects,
+                                             const ExcitationSignal& trial,
+                                             const ExcitationSignal& driven,
+                                             const EmgMapping& mapping)
+    : arm_(arm),
+      effects_(effects),
+      driven_(driven),
+      emg_(excitationRows(arm, effects, trial, mapping)),
+      from_(static_cast<Index>(arm.numMuscles())),
+      to_(from_),
+      now_(from_) {
+  findColumns();
 }
 
 void ExcitationSensitivity::findColumns() {

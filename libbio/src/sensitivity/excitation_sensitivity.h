@@ -7,6 +7,17 @@
 
 namespace bio::stepping {
 
+/// What a column adds to the excitation of a muscle, at the rows of the trial.
+struct RowsOfColumn {
+  Eigen::Index column;
+  Eigen::RowVectorXd rows;
+};
+/// Those of every muscle: of all parameters of the mapping but the delay, which moves rows.
+std::vector<std::vector<RowsOfColumn>> excitationRows(const MusculoskeletalSystem& arm,
+                                                      const ParameterEffects& effects,
+                                                      const ExcitationSignal& trial,
+                                                      const EmgMapping& mapping);
+
 /// Follows the recursion by which the variational integrator advances activations: straight pieces
 /// of excitation from row to row of the trial, cut at the times of the steps.
 class ExcitationSensitivity {
@@ -47,11 +58,6 @@ class ExcitationSensitivity {
   const MusculoskeletalSystem& arm_;
   const ParameterEffects& effects_;
   const ExcitationSignal& driven_;
-  /// What a column adds to the excitation of a muscle, at the rows of the trial.
-  struct RowsOfColumn {
-    Eigen::Index column;
-    Eigen::RowVectorXd rows;
-  };
   Eigen::Index placeOf(Eigen::Index column) const;
   void findColumns();
 

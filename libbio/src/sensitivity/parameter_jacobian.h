@@ -43,12 +43,8 @@ class DirectEffects {
     for (Rows* rows : {&inertia_, &slope_}) columns.widen(*rows);
   }
 
-  /// Calls use(effect, row of the gradient) for each geometric parameter of a muscle; the segments
-  /// must be where q puts them.
-  template <class Use>
-  void forGeometry(std::size_t m, const Vector& q, const Use& use) {
-    const auto& effects = effects_.muscles[m];
-    if (!effects.hasGeometry()) return;
+  /// All geometric derivatives of a muscle's path; the segments must be where q puts them.
+  const PathGradient<N>& geometry(std::size_t m, const Vector& q) {
     PathGradient<N>& gradient = workspaces_[m];
     if constexpr (N == Eigen::Dynamic) {
       gradients_[m].evaluate(q, arm_.treePath(m), *arm_.tree(), configuration_.motion(),
@@ -56,6 +52,16 @@ class DirectEffects {
     } else {
       gradients_[m].template evaluate<N>(q, configuration_.motions().data(), gradient);
     }
+    return gradient;
+  }
+
+  /// Calls use(effect, row of the gradient) for each geometric parameter of a muscle; the segments
+  /// must be where q puts them.
+  template <class Use>
+  void forGeometry(std::size_t m, const Vector& q, const Use& use) {
+    const auto& effects = effects_.muscles[m];
+    if (!effects.hasGeometry()) return;
+    const PathGradient<N>& gradient = geometry(m, q);
     for (const QuantityEffect& effect : effects.points) {
       use(effect,
           gradient.points[effect.quantity / 3].row(static_cast<Index>(effect.quantity % 3)));

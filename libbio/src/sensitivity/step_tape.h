@@ -33,9 +33,11 @@ class StepTape {
     bool endsRow = false;
   };
 
-  void begin(Values q, Values fibreLength, Values activation) {
+  /// @param steps  about as many parts follow
+  void begin(Values q, Values fibreLength, Values activation, std::size_t steps = 0) {
     numCoordinates_ = q.size();
     numMuscles_ = fibreLength.size();
+    states_.reserve((steps + 1) * static_cast<std::size_t>(numCoordinates_ + 3 * numMuscles_));
     append(q, fibreLength, activation, activation);
   }
   std::size_t addRow(double value) { return addTime({Time::Law::row, value, nullptr, 0, 0}); }

@@ -26,10 +26,26 @@ struct MotionWeights {
     return value0 * q.row(row) + value1 * q.row(row + 1) + speed0 * qDot.row(row) +
            speed1 * qDot.row(row + 1);
   }
+  /// Transposed: adds λ ∂value/∂(values, speeds).
+  template <class Values, class Speeds>
+  void addValue(double lambda, Values&& q, Speeds&& qDot) const {
+    q(row) += lambda * value0;
+    q(row + 1) += lambda * value1;
+    qDot(row) += lambda * speed0;
+    qDot(row + 1) += lambda * speed1;
+  }
   template <class Values, class Speeds>
   auto slope(const Values& q, const Speeds& qDot) const {
     return slopeOfValue0 * q(row) + slopeOfValue1 * q(row + 1) + slopeOfSpeed0 * qDot(row) +
            slopeOfSpeed1 * qDot(row + 1);
+  }
+  /// Adds λ ∂slope/∂(values, speeds).
+  template <class Values, class Speeds>
+  void addSlope(double lambda, Values&& q, Speeds&& qDot) const {
+    q(row) += lambda * slopeOfValue0;
+    q(row + 1) += lambda * slopeOfValue1;
+    qDot(row) += lambda * slopeOfSpeed0;
+    qDot(row + 1) += lambda * slopeOfSpeed1;
   }
   template <class Values, class Speeds>
   Eigen::RowVectorXd slopeRows(const Values& q, const Speeds& qDot) const {

@@ -40,7 +40,7 @@ class VariationalRun {
     length_ = lengthBefore_ = options.step;
     next_ = now_;
     recorder_.add(options.startTime, now_.q, velocity_, activation_, now_.fibreLength, 0, 0, 0);
-    if (tape_) tape_->begin(now_.q, now_.fibreLength, activation_);
+    if (tape_) tape_->begin(now_.q, now_.fibreLength, activation_, numRows(options_));
   }
 
   Trajectory run() {

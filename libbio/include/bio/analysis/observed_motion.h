@@ -42,11 +42,22 @@ class ObservedMotion {
   /// @param motion with what needsMuscles() and needsReactions() ask for
   Linearised linearised(const SensitivityTrajectory& motion) const;
 
+  /// Transposed: with λ = ∂J/∂(values), sets ∂J/∂q and ∂J/∂q̇ at the rows of the motion, free
+  /// coordinates × rows. Coordinates, speeds and markers only.
+  /// @throws std::invalid_argument as requireAdjoint(); λ not of size()
+  void pullBack(const Trajectory& motion, const Eigen::VectorXd& lambda, Eigen::MatrixXd& q,
+                Eigen::MatrixXd& qDot) const;
+  /// @throws std::invalid_argument names the first observable that pullBack() does not have
+  void requireAdjoint() const;
+
  private:
   /// @param s  of the motion; null: values only
   Linearised evaluate(const Trajectory& motion, const SensitivityTrajectory* s) const;
   void addMarker(const ObservedSeries& series, const SystemMarker& marker, const Trajectory& motion,
                  const SensitivityTrajectory* s, Eigen::Index first, Linearised& all) const;
+  void pullMarkerBack(const ObservedSeries& series, const SystemMarker& marker,
+                      const Trajectory& motion, const Eigen::Ref<const Eigen::VectorXd>& lambda,
+                      Eigen::MatrixXd& q, Eigen::MatrixXd& qDot) const;
 
   const MusculoskeletalSystem* arm_;
   std::vector<ObservedSeries> series_;

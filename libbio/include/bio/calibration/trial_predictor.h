@@ -6,7 +6,7 @@
 
 #include "bio/analysis/observed_motion.h"
 #include "bio/calibration/nudge.h"
-#include "bio/sensitivity/coupled_sensitivity.h"
+#include "bio/sensitivity/cost_gradient.h"
 #include "bio/tables/trial.h"
 #include "info/estimation/least_squares.h"
 
@@ -54,6 +54,12 @@ class TrialPredictor {
     Eigen::MatrixXd gamma;    ///< Γ = dy/dθ: samples × parameters
   };
   Linearised withSensitivities(const Eigen::VectorXd& theta) const;
+
+  /// J = ½ Σ ((y_i − m_i)/σ_i)² over size() samples, and dJ/dθ by one sweep back, for a few
+  /// simulations however many parameters there are; NaN if the motion ends too early.
+  /// @throws what leastSquaresCost() and simulateWithGradient() throw
+  CostGradient leastSquares(const Eigen::VectorXd& theta, const Eigen::VectorXd& measured,
+                            const Eigen::VectorXd& sd) const;
 
   /// For info::LeastSquares; one output. This experiment must outlive it.
   info::Predictor predictor() const;

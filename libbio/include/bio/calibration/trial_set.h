@@ -78,6 +78,17 @@ class TrialSet {
 
   /// 1 × samples
   Eigen::MatrixXd measured() const;
+  /// J(θ) = ½ Σ ((y_i(θ) − m_i)/σ_i)² over all samples, and dJ/dθ by one sweep back per trial.
+  struct Cost {
+    double value = 0;                  ///< NaN if a motion ends too early
+    Eigen::VectorXd gradient;          ///< dJ/dθ, as parameters()
+    std::vector<CostGradient> trials;  ///< of each trial alone
+  };
+  /// @param sd  σ > 0 of each channel, in its unit
+  /// @throws std::invalid_argument as leastSquaresCost() does, and for another number of σ than
+  /// channels()
+  Cost leastSquares(const Eigen::VectorXd& theta, const std::vector<double>& sd) const;
+
   /// 1 × samples; NaN after the end of a failed simulation. The set must outlive it.
   info::Predictor predictor() const { return predictor(experiments_); }
   /// The experiments with every measured coordinate held near its measured course (nudge.h). A

@@ -1,0 +1,111 @@
+#include "bio/sensitivity/cost_gradient.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "sensitivity/adjoint_pass.h"
+#include "sensitivity/parameter_directions.h"
+
+namespace bio {
+namespace {
+
+void checkSlopes(const CostOfMotion& slopes, const Trajectory& motion) {
+  for (const Eigen::MatrixXd* one : {&slopes.q, &slopes.qDot}) {
+    if (one->rows() != motion.q.rows() || one->cols() != motion.q.cols()) {
+      throw std::invalid_argument(
+          fmt::format("slopes of the cost: {} × {}, must be as the motion, {} × {}", one->rows(),
+                      one->cols(), motion.q.rows(), motion.q.cols()));
+    }
+  }
+}
+
+CostGradient unknownGradient(CostGradient result, Eigen::Index parameters,
+                             const ExcitationSignal& driven) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  result.cost = nan;
+  result.gradient.setConstant(parameters, nan);
+  result.startCoordinate.setConstant(result.motion.q.rows(), nan);
+  result.startSpeed = result.startCoordinate;
+  result.excitation.setConstant(driven.numMuscles(),
+                                static_cast<Eigen::Index>(driven.times().size()), nan);
+  return result;
+}
+
+}  // namespace
+
+MotionCost leastSquaresCost(const MusculoskeletalSystem& arm, std::vector<ObservedSeries> series,
+                            Eigen::VectorXd measured, Eigen::VectorXd sd) {
+  const ObservedMotion observed(arm, std::move(series));
+  observed.requireAdjoint();
+  if (measured.size() != observed.size() || sd.size() != observed.size()) {
+    throw std::invalid_argument(
+        fmt::format("least squares: {} measured values and {} standard deviations for {} samples, "
+                    "must be as many",
+                    measured.size(), sd.size(), observed.size()));
+  }
+  if (!measured.allFinite()) {
+    throw std::invalid_argument("least squares: a measured value is not finite");
+  }
+  if (!((sd.array() > 0).all() && sd.allFinite())) {
+    throw std::invalid_argument("least squares: every standard deviation must be > 0");
+  }
+  return [=](const Trajectory& motion) {
+    const Eigen::VectorXd weighted = (observed.values(motion) - measured).cwiseQuotient(sd);
+    CostOfMotion cost;
+    cost.value = weighted.squaredNorm() / 2;
+    if (std::isfinite(cost.value)) {
+      observed.pullBack(motion, weighted.cwiseQuotient(sd), cost.q, cost.qDot);
+    }
+    return cost;
+  };
+}
+
+CostGradient simulateWithGradient(const MusculoskeletalSystem& arm,
+                                  const ParameterCatalogue& catalogue,
+                                  const ParameterCatalogue::Setting& setting,
+                                  const std::vector<std::size_t>& wanted,
+                                  const ExcitationSignal& trial, const SimulationOptions& options,
+                                  const MotionCost& cost) {
+  return simulateWithGradient(arm, setting, stepping::directionsOf(catalogue, setting, wanted),
+                              trial, options, cost);
+}
+
+CostGradient simulateWithGradient(const MusculoskeletalSystem& arm,
+                                  const ParameterCatalogue::Setting& setting,
+                                  const std::vector<ParameterDirection>& wanted,
+                                  const ExcitationSignal& trial, const SimulationOptions& options,
+                                  const MotionCost& cost) {
+  if (options.integrator != Integrator::variational &&
+      options.integrator != Integrator::variationalLeft) {
+    throw std::invalid_argument("gradient of a cost: integrator must be vi or vi-left");
+  }
+  const ExcitationSignal driven = drivenExcitation(trial, muscleNames(arm), setting.mapping);
+  const SystemState start = startOf(arm, setting, driven, options.startTime);
+  stepping::checkSimulation(arm, driven, start, options);
+  stepping::StepTape tape;
+  CostGradient result;
+  result.motion = stepping::simulateVariational(arm, driven, start, options, &tape);
+  stepping::completeStates(arm, driven, result.motion);
+  stepping::addReactions(arm, driven, options, result.motion);
+  const stepping::StopWatch watch;
+  const CostOfMotion slopes = cost(result.motion);
+  result.cost = slopes.value;
+  const auto parameters = static_cast<Eigen::Index>(wanted.size());
+  if (!std::isfinite(slopes.value)) {
+    return unknownGradient(std::move(result), parameters, driven);
+  }
+  checkSlopes(slopes, result.motion);
+  const stepping::ParameterEffects effects(arm, setting, wanted);
+  stepping::withCoordinates(arm.skeleton(), [&](auto N) {
+    stepping::AdjointPass<decltype(N)::value> pass(arm, effects, setting, driven, parameters,
+                                                   options);
+    pass.run(start, tape, trial, setting.mapping, slopes, result);
+  });
+  result.wallSeconds = watch.seconds();
+  return result;
+}
+
+}  // namespace bio
