@@ -1,8 +1,12 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <numbers>
+#include <variant>
 
 #include "arms.h"
 #include "bio/analysis/replay.h"
-#include "bio/calibration/trial_predictor.h"
+#include "bio/calibration/trial_set.h"
 #include "bio/parameters/parameter_information.h"
 #include "docstrings.h"
 #include "interruptible.h"
@@ -65,6 +69,69 @@ py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& t
                  "correlation"_a = information.correlation, "sentences"_a = information.sentences);
 }
 
+/// One σ for all channels with the unit of the first, or one for each by name.
+using Noise = std::variant<double, std::map<std::string, double>>;
+
+std::vector<double> noiseOf(const bio::TrialSet& set, const Noise& noise) {
+  std::vector<double> sd;
+  const auto* named = std::get_if<std::map<std::string, double>>(&noise);
+  if (!named && set.channels().size() > 1) {
+    std::vector<std::string> names;
+    for (const auto& channel : set.channels()) names.push_back("'" + channel.name + "'");
+    throw std::invalid_argument(
+        fmt::format("noise: must be given for each of {}", fmt::join(names, ", ")));
+  }
+  for (const auto& channel : set.channels()) {
+    if (named && !named->contains(channel.name)) {
+      throw std::invalid_argument(fmt::format("noise: must be given for '{}'", channel.name));
+    }
+    sd.push_back(named ? named->at(channel.name) : std::get<double>(noise));
+  }
+  return sd;
+}
+
+py::object costGradient(const bio::Model& model, const std::vector<bio::Trial>& trials,
+                        const std::vector<std::string>& parameters,
+                        const std::optional<Eigen::VectorXd>& values, const Noise& noise,
+                        bool priors, bool ownStart, int threads, const Names& freeCoordinates,
+                        const std::map<std::string, double>& lock, const std::string& integrator,
+                        std::optional<double> step) {
+  const SystemChoice choice = armChoice(model, trials, freeCoordinates, lock, integrator, step);
+  for (const bio::Trial& trial : trials) mustBeOfTheModelAsItIs(trial);
+  bio::TrialSetOptions options;
+  options.parameters = parameters;
+  options.ownStart = ownStart;
+  options.simulation = choice.simulation();
+  options.simulation.duration = 1;
+  options.threads = threads;
+  std::vector<std::string> names, units;
+  Eigen::VectorXd at, atModel, known;
+  bio::TrialSet::Cost cost;
+  interruptible([&](const std::atomic<bool>&) {
+    const bio::TrialSet set(model, choice.armOptions(), trials, options);
+    known = set.known();
+    atModel.resize(known.size());
+    for (const info::Parameter& one : set.parameters()) {
+      atModel[std::ssize(names)] = one.start;
+      names.push_back(one.name);
+      units.push_back(one.unit);
+    }
+    at = values.value_or(atModel);
+    cost = set.leastSquares(at, noiseOf(set, noise));
+  });
+  if (priors) {
+    const Eigen::VectorXd off = (at - atModel).cwiseQuotient(known);
+    cost.value += off.squaredNorm() / 2;
+    cost.gradient += off.cwiseQuotient(known);
+  }
+  std::vector<Eigen::MatrixXd> excitations;
+  for (const bio::CostGradient& trial : cost.trials) {
+    excitations.push_back(trial.excitation.transpose());
+  }
+  return results("names"_a = names, "units"_a = units, "values"_a = at, "cost"_a = cost.value,
+                 "gradient"_a = cost.gradient, "excitation_gradient"_a = excitations);
+}
+
 py::list listParameters(const bio::Model& model, const Names& coordinate,
                         const std::map<std::string, double>& lock, const std::string& integrator,
                         std::optional<double> step) {
@@ -87,6 +154,10 @@ void defineSensitivity(py::module_& module) {
                    "model"_a, py::kw_only());
   defineWithChoice(module, "sensitivity", &sensitivity, docstrings::sensitivity, "model"_a,
                    "trials"_a, "parameters"_a, py::kw_only(), "noise"_a = std::numbers::pi / 180);
+  defineWithChoice(module, "cost_gradient", &costGradient, docstrings::cost_gradient, "model"_a,
+                   "trials"_a, "parameters"_a, "values"_a = py::none(), py::kw_only(),
+                   "noise"_a = Noise(std::numbers::pi / 180), "priors"_a = false,
+                   "own_start"_a = false, "threads"_a = 1);
 }
 
 }  // namespace python

@@ -90,6 +90,31 @@ class Arms(unittest.TestCase):
         self.assertAlmostEqual(found.fisher[0, 0], np.sum(found.gamma[0] ** 2) / DEGREE**2, delta=1e-6 * found.fisher[0, 0])
         self.assertAlmostEqual(found.bound_alone[0] ** -2, found.fisher[0, 0], delta=1e-6 * found.fisher[0, 0])
 
+    def test_cost_gradient_is_that_of_the_sensitivities_and_of_two_costs(self):
+        names = ["hand.mass", "TRI.radius", "BRA.max_isometric_force", "emg.delay"]
+        found = fh.cost_gradient(self.model, [self.trial], names, noise=2 * DEGREE)
+        stub.check(found, "CostGradientResult")
+        self.assertEqual(found.names, names)
+        forward = fh.sensitivity(self.model, [self.trial], names)
+        measured = np.interp(forward.times[0], self.columns()["time"], self.columns()["elbow_flexion"])
+        residual = (forward.outputs[0] - measured) / (2 * DEGREE) ** 2
+        self.assertAlmostEqual(found.cost, residual @ (forward.outputs[0] - measured) / 2, delta=1e-6 * found.cost)
+        np.testing.assert_allclose(found.gradient, forward.gamma[0].T @ residual, rtol=1e-6)
+
+        h = 1e-4 * found.values[0]
+        costs = [fh.cost_gradient(self.model, [self.trial], names, found.values + d * np.eye(4)[0],
+                                  noise=2 * DEGREE).cost for d in (-h, h)]
+        self.assertAlmostEqual(found.gradient[0], (costs[1] - costs[0]) / (2 * h), delta=1e-4 * abs(found.gradient[0]))
+
+        moved = found.values * 1.01
+        plain, known = (fh.cost_gradient(self.model, [self.trial], names, moved, priors=p) for p in (False, True))
+        sd = np.array([p.deviation for p in fh.list_parameters(self.model) if p.name in names])
+        order = [p.name for p in fh.list_parameters(self.model) if p.name in names]
+        off = (moved - found.values) / sd[[order.index(n) for n in names]]
+        self.assertAlmostEqual(known.cost - plain.cost, off @ off / 2, delta=1e-9 * known.cost)
+        with self.assertRaisesRegex(ValueError, "values for 4 parameters"):
+            fh.cost_gradient(self.model, [self.trial], names, [1.0])
+
     def test_calibrate_finds_the_mass_that_made_the_data(self):
         motion = fh.replay(self.model, self.trial)
         heavy = fh.calibrate(self.model, [self.trial], ["hand.mass"], prior={"hand.mass": (0.6, 1e-9)}).model

@@ -24,6 +24,7 @@ __all__ = [
     "System",
     "Trial",
     "calibrate",
+    "cost_gradient",
     "cramer_rao_bound",
     "discover",
     "estimate",
@@ -445,6 +446,87 @@ def sensitivity(
     ValueError
         For no trial, an unknown parameter (with the nearest names), a trial with known_mass_in_hand or
         known_arm_turn, or a simulation that does not reach the end of a trial.
+    """
+
+@type_check_only
+class CostGradientResult:
+    names: list[str]
+    units: list[str]
+    values: _Array
+    cost: float
+    gradient: _Array
+    excitation_gradient: list[_Array]
+
+def cost_gradient(
+    model: Model,
+    trials: Sequence[Trial],
+    parameters: Sequence[str],
+    values: ArrayLike | None = None,
+    *,
+    noise: float | dict[str, float] = 0.017453292519943295,
+    priors: bool = False,
+    own_start: bool = False,
+    threads: int = 1,
+    coordinate: str | Sequence[str] = [],
+    lock: dict[str, float] = {},
+    integrator: _Integrator = "vi",
+    step: float | None = None,
+) -> CostGradientResult:
+    """The misfit of simulated and measured motions, and its exact gradient in any number of parameters.
+
+    cost = 1/2 sum(((simulated - measured) / noise)**2) over all measured samples of all trials: the
+    negative log-likelihood of Gaussian noise, up to a constant. One sweep back in time gives the
+    gradient for the price of about four simulations, however many parameters there are, so that
+    gradient-based optimisers can be given hundreds, e.g.::
+
+        def misfit(values):
+            at = fisherhill.cost_gradient(model, trials, names, values, priors=True)
+            return at.cost, at.gradient
+
+        start = fisherhill.cost_gradient(model, trials, names).values
+        scipy.optimize.minimize(misfit, start, jac=True)
+
+    Parameters
+    ----------
+    model : Model
+    trials : list of Trial
+        At least one, each with a measured coordinate, speed or marker.
+    parameters : list of str
+        Names, which may contain *, or ['all']; list_parameters lists them.
+    values : array, parameters, optional
+        Where to evaluate; default: the model's values.
+    noise : float or dict of float
+        Standard deviation of the measured values [their unit] > 0; if more than angles was measured,
+        of each column by its name, 'angles' for all angles together. Default: 1 degree.
+    priors : bool
+        True: cost also contains 1/2 sum(((values - model's values) / prior deviation)**2), so that its
+        minimum is the most probable set of values.
+    own_start : bool
+        True: initial values and speeds of each trial are parameters, too, behind the others.
+    threads : int
+        Trials simulated at once; 0: as many as there are processors.
+    coordinate, lock, integrator, step
+        As in replay, but the integrator must be 'vi' or 'vi-left', and the default step is 0.01 s.
+
+    Returns
+    -------
+    names, units : list of str
+        Of the parameters.
+    values : array, parameters
+        Where the gradient was taken.
+    cost : float
+        NaN if a simulation ends before the last measured sample.
+    gradient : array, parameters
+        Derivatives of the cost [1 / unit of the parameter]; NaN where the cost is.
+    excitation_gradient : list of arrays, rows x muscles
+        For each trial, derivatives of the misfit in the excitation of each muscle at each row.
+
+    Raises
+    ------
+    ValueError
+        For no trial, an unknown parameter (with the nearest names), another number of values than of
+        parameters, noise that is not > 0 or missing, measured moments, forces, lengths or activations,
+        or a trial with known_mass_in_hand or known_arm_turn.
     """
 
 # Calibration --------------------------------------------------------------------------------------
