@@ -9,15 +9,12 @@
 //   through an object        it is below that of the taut string over one of the objects alone
 //   sum of chords            OpenSim adds chords of about 1 mm, and ours added so is not longer
 //   tangent cylinder         OpenSim takes a torus for the cylinder that touches its ring
-// Other rows are printed. Where a path goes over ellipsoids one at a time, OpenSim's rule as
-// bio/path/surface/opensim_ellipsoid.h restates it is checked, too: its lengths against the table.
-// Ends with 1 if those are more than 2 % of all rows, if any of a path that
-// touches nothing or a sphere is off by 2e-6 m, if a path has no length, or if less than 90 % of
-// the restated lengths are within 1e-5 m; with 77 if a file is not there.
+// Other rows are printed. Ends with 1 if those are more than 2 % of all rows, if any of a path that
+// touches nothing or a sphere is off by 2e-6 m, or if a path has no length; with 77 if a file is
+// not there.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <exception>
 #include <filesystem>
@@ -28,9 +25,7 @@
 #include <vector>
 
 #include "bio/opensim/osim_file.h"
-#include "bio/path/opensim_difference.h"
 #include "bio/path/path_length.h"
-#include "bio/path/posture_samples.h"
 
 namespace {
 
@@ -184,12 +179,6 @@ class Comparison {
     for (const auto& [why, count] : explained_) fmt::print("{}: {} rows\n", why, count);
     fmt::print("not explained: {} of {} rows\nfailed: {}\n", unexplained_, rows, failed_);
     fmt::print("nothing or a sphere, off by 2e-6 m and not explained: {}\n", wrong_);
-    fmt::print(
-        "OpenSim's rule restated, over ellipsoids one at a time: {} rows; within 1e-6 m {}, 1e-5 m "
-        "{}, 1e-4 m {}; farthest {:.6f} mm; taut strings are within 1e-5 m in {}\n",
-        restated_.rows, restated_.within[0], restated_.within[1], restated_.within[2],
-        1000 * restated_.most, restated_.tautWithin);
-    holds = holds && restated_.within[1] >= 0.9 * restated_.rows;
     holds = holds && wrong_ == 0 && unexplained_ <= 0.02 * rows && rows > 0;
     return holds;
   }
@@ -276,7 +265,6 @@ class Comparison {
       ++wrong_;
       tell(row, muscle, touched, deviation, "");
     }
-    compareRestated<N>(row, muscle, path, skeleton, at, deviation);
     if (!(deviation > 1e-6)) return;
     ++d.longer;
     const std::string why = explanation<N>(muscle, path, skeleton, at, theirs, kind);
@@ -287,28 +275,6 @@ class Comparison {
     ++unexplained_;
     if (isExact && deviation > 2e-6) ++wrong_;
     tell(row, muscle, touched, deviation, ": not explained");
-  }
-
-  // @param deviation  of the taut string
-  template <int N>
-  void compareRestated(std::size_t row, const bio::Muscle& muscle, const bio::MusclePath& path,
-                       const bio::Skeleton& skeleton, const MovedSkeleton<N>& at,
-                       double deviation) {
-    const bio::Posture posture = bio::postureOf(skeleton, {at.q.data(), at.q.data() + N});
-    const bio::OpenSimDifference restated =
-        bio::openSimDifference(path, posture, bio::ArcLength::chords);
-    if (restated.over.empty() || restated.hasOthers) return;
-    const double off = std::abs(deviation + restated.length);
-    ++restated_.rows;
-    for (std::size_t i = 0; i < 3; ++i) {
-      restated_.within[i] += off <= std::pow(10.0, static_cast<double>(i) - 6) ? 1 : 0;
-    }
-    restated_.tautWithin += std::abs(deviation) <= 1e-5 ? 1 : 0;
-    restated_.most = std::max(restated_.most, off);
-    if (off > 1e-5) {
-      fmt::print("row {}: {}: restated {:+.4f} mm off, the taut string {:+.4f} mm\n", row,
-                 muscle.name, 1000 * (deviation + restated.length), 1000 * deviation);
-    }
   }
 
   // Why OpenSim's path is shorter than a taut string; empty: unknown.
@@ -345,11 +311,6 @@ class Comparison {
   std::vector<std::string> coordinates_;
   std::map<std::string, Deviations> classes_;
   std::map<std::string, int> explained_;
-  struct Restated {
-    int rows = 0, tautWithin = 0;
-    std::array<int, 3> within{};
-    double most = 0;
-  } restated_;
   int failed_ = 0, unexplained_ = 0, wrong_ = 0;
 };
 

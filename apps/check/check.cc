@@ -12,7 +12,6 @@
 #include "bio/model/model_review.h"
 #include "bio/opensim/osim_file.h"
 #include "bio/path/length_jumps.h"
-#include "bio/path/opensim_difference.h"
 #include "bio/tables/file_error.h"
 #include "bio/tables/table_file.h"
 #include "bio/tables/trial.h"
@@ -95,10 +94,6 @@ Contents checkModel(const std::string& file, const bio::Model& model, Findings& 
   for (const bio::Remark& remark : bio::reviewModel(model)) findings.add(file, remark);
   for (const bio::LengthJump& jump : bio::lengthJumps(model)) {
     findings.add(file, "unusual", fmt::format("muscle '{}': {}", jump.muscle, describe(jump)));
-  }
-  for (const bio::OpenSimDeparture& departure : bio::openSimDepartures(model)) {
-    findings.add(file, "unusual",
-                 fmt::format("muscle '{}': {}", departure.muscle, describe(departure)));
   }
   std::size_t coordinates = 0;
   for (const bio::Joint& joint : model.joints) coordinates += joint.coordinates.size();

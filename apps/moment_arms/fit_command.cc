@@ -174,7 +174,13 @@ ExitStatus runFit(const CommandContext& context, Summary& summary, const std::st
   summary.set("tolerance_mm", request.tolerance);
   summary.set("written", written);
   nlohmann::ordered_json all = nlohmann::ordered_json::object();
-  for (const bio::MuscleFit& one : fits) all[one.muscle] = asJson(one);
+  std::vector<std::string> muscles;
+  for (const bio::MuscleFit& one : fits) {
+    muscles.push_back(one.muscle);
+    all[one.muscle] = asJson(one);
+  }
+  summary.set("muscles", muscles);
+  summary.set("notes", nlohmann::ordered_json::array());
   summary.set("fits", all);
   deliver(context, summary, reportOnFit(file, fits, request), folder);
   return written > 0 ? ExitStatus::done : ExitStatus::answerIsNo;

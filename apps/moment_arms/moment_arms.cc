@@ -8,7 +8,7 @@
 #include "bio/analysis/path_postures.h"
 #include "bio/analysis/replay.h"
 #include "moment_arms/fit_command.h"
-#include "moment_arms/path_differences.h"
+#include "moment_arms/path_jumps.h"
 #include "options/number_rules.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
@@ -78,8 +78,6 @@ class MomentArms : public Command {
     const std::vector<std::string>& asCylinder = model_options_.wrapAsCylinder;
     const auto jumps = bio::lengthJumps(model, skeleton, asCylinder, first * unit, last * unit);
     for (const bio::LengthJump& jump : jumps) summary.warn(describe(jump));
-    const auto departures =
-        bio::openSimDepartures(model, skeleton, asCylinder, first * unit, last * unit);
     require(!sample.muscles.empty(),
             fmt::format("{}: coordinate '{}' changes the length of no muscle", model_,
                         coordinate.name));
@@ -100,13 +98,8 @@ class MomentArms : public Command {
     }
     summary.set("ranges", ranges);
     summary.set("jumps", jumpsAsJson(jumps));
-    summary.set("opensim", departuresAsJson(departures));
     Report report = reportOn(sample, shown, coordinate, unitName);
     if (!jumps.empty()) report.details.push_back(jumpTable(jumps));
-    if (!departures.empty()) {
-      report.verdict += " " + departureWords(departures) + ".";
-      report.details.push_back(departureTable(departures));
-    }
     deliver(context, summary, report, folder);
     return ExitStatus::done;
   }

@@ -79,6 +79,7 @@ SteppedCalibration calibrateAtShorterSteps(const Model& model, const SystemOptio
     if (!isFirst) {
       found.starts = std::move(result.calibration.starts);
       found.agreeingStarts = result.calibration.agreeingStarts;
+      found.otherMinima = std::move(result.calibration.otherMinima);
       found.iterations += result.calibration.iterations;
       found.evaluations += result.calibration.evaluations;
     }

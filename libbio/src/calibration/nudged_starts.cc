@@ -1,6 +1,7 @@
 #include "calibration/nudged_starts.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "info/discovery/judgement/output_sd.h"
 #include "info/estimation/least_squares.h"
@@ -59,7 +60,10 @@ std::vector<VectorXd> startsOnBothSides(const TrialSet& trials,
     if (!std::holds_alternative<WrapTarget>(target) && !std::holds_alternative<PointTarget>(target))
       continue;
     ++sides;
-    for (const double side : {-aside, aside}) {
+    // a point mirrored at its joint's axis may fit as well
+    const bool isPoint = std::holds_alternative<PointTarget>(target);
+    for (const double side : {-aside, aside, -2 * aside, 2 * aside}) {
+      if (!isPoint && std::abs(side) > aside) continue;
       VectorXd other = start;
       const auto k = static_cast<Index>(i);
       other[k] =

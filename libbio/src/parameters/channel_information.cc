@@ -99,8 +99,8 @@ std::vector<ChannelGain> channelGains(const ParameterInformation& known,
     sd[i] = known.parameters[static_cast<std::size_t>(i)].prior->sd;
   }
   // in units of prior deviations: I + Λ becomes S I S + 1
-  const auto scaled = [&](const Eigen::MatrixXd& information) -> Eigen::LLT<Eigen::MatrixXd> {
-    Eigen::MatrixXd A = sd.asDiagonal() * information * sd.asDiagonal();
+  const auto scaled = [&](const Eigen::MatrixXd& one) -> Eigen::LLT<Eigen::MatrixXd> {
+    Eigen::MatrixXd A = sd.asDiagonal() * one * sd.asDiagonal();
     A.diagonal().array() += 1;
     return A.llt();
   };

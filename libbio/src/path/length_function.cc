@@ -26,11 +26,7 @@ void nestedHorner(std::size_t k, std::size_t dimension, int order, const double*
     out.second[k][k] = 2 * halfCurvature;
     return;
   }
-  out.value = 0;
-  for (std::size_t i = k; i < dimension; ++i) {
-    out.first[i] = 0;
-    for (std::size_t j = k; j < dimension; ++j) out.second[i][j] = 0;
-  }
+  out = {};
   PolynomialValue inner;
   for (int e = order; e >= 0; --e) {
     nestedHorner(k + 1, dimension, order - e, x, end, inner);

@@ -133,6 +133,7 @@ const Run runs[] = {
     {"EnsembleWithSobolIndices",
      {"ensemble", model, slow, "--parameters", "TRI.radius,hand.mass", "--draws", "4", "--sobol"}},
     {"MomentArms", {"moment-arms", model, "--points", "21"}},
+    {"MomentArmsFitted", {"moment-arms", model, "--fit"}},
     {"MomentArmsInPostures", {"moment-arms", model, "--postures", "models/elbow8_postures.csv"}},
     {"MuscleStates", {"muscle-states", "models/muscle_states.csv"}},
     {"Replay", {"replay", model, slow}},
