@@ -549,6 +549,7 @@ class OtherMinimum:
     nats: float
     nats_of_data: float
 
+@type_check_only
 class CalibrationResult:
     estimates: dict[str, ParameterEstimate]
     correlation: _Array
