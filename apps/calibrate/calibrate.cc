@@ -274,14 +274,14 @@ class Calibrate : public Command {
     const double noise = found.calibration.noise.sd;
     const auto& changes = found.change.ofTrials;
     for (std::size_t i = 0; i < changes.size(); ++i) {
-      if (!(changes[i] > 0.2 * noise)) continue;
+      if (!found.change.mattersToTrial(i, noise)) continue;
       summary.warn(
           fmt::format("{}: halving the step of {} s changes the simulated angles by up to {:.2g} "
                       "deg, {:.2g} standard deviations of the noise: use a shorter --step",
                       found.training->trials()[i].file, numberText(step), changes[i] * radian,
                       changes[i] / noise));
     }
-    if (!(found.change.ofEstimates > 0.25)) return;
+    if (!found.change.mattersToEstimates()) return;
     summary.warn(fmt::format(
         "halving the step of {} s would change an estimate by {:.2g} of its standard deviations: "
         "use a shorter --step",

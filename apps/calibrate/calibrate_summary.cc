@@ -92,7 +92,7 @@ Json otherMinima(const bio::Calibration& c, Summary& summary) {
     }
     list.push_back({{"nats", one.difference}, {"nats_of_data", one.ofData}, {"values", values}});
     const std::string how =
-        one.difference <= 4.6
+        one.isLikely()
             ? fmt::format("is {:.2g} % as likely as the estimate", 100 * std::exp(-one.difference))
             : std::string("fits the data about as well, and only the priors are against it");
     summary.warn(

@@ -7,13 +7,14 @@
 #include <limits>
 #include <stdexcept>
 
+#include "calibration/asked_parameters.h"
 #include "calibration/channel_noise.h"
 #include "calibration/held_out_starts.h"
+#include "calibration/judgement.h"
 #include "calibration/nudged_starts.h"
+#include "calibration/other_minima.h"
 #include "info/estimation/monte_carlo.h"
 #include "info/estimation/residuals.h"
-#include "info/information/fisher.h"
-#include "info/information/symmetric_eigen.h"
 
 namespace bio {
 namespace {
@@ -22,12 +23,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 /// Noise and estimate follow each other until σ changes by less than this share.
 constexpr double noiseSettled = 0.01;
 constexpr int noiseRounds = 12;
-/// Nats above the least cost: of another minimum that is looked at, and of one that is told.
-constexpr double worthRefining = 20, worthTelling = 4.6, possibleByData = 1.92;
 
 void check(const CalibrationOptions& options) {
   if (options.noise && !(*options.noise > 0 && std::isfinite(*options.noise))) {
@@ -50,53 +48,16 @@ class Calibrator {
       : training_(training),
         heldOut_(heldOut),
         options_(options),
-        asked_(training.parameters()),
-        known_(training.known()),
         predictor_(training.predictor()),
         measured_(training.measured()),
         channels_(training, options) {
     check(options);
-    if (heldOut_ && heldOut_->numCommon() != training.numCommon()) {
-      throw std::invalid_argument("held-out trials must have the same common parameters");
+    AskedParameters asked = askedParameters(training, heldOut, options);
+    asked_ = std::move(asked.parameters);
+    known_ = std::move(asked.known);
+    for (const std::string& name : options_.profile) {
+      profiled_.push_back(placeOfParameter(training, name, "profile"));
     }
-    for (const std::size_t index : training.selection()) {
-      const ModelParameter& one = training.catalogue().parameters()[index];
-      if (heldOut_ && std::holds_alternative<InitialTarget>(one.targets.front())) {
-        throw std::invalid_argument(fmt::format(
-            "parameter '{}' belongs to one trial and cannot be transferred to held-out trials",
-            one.name));
-      }
-    }
-    for (std::size_t i = 0; i < training_.numCommon() && options_.priors; ++i) {
-      asked_[i].prior = info::GaussianPrior{asked_[i].start, known_[static_cast<Index>(i)]};
-    }
-    for (const auto& [name, bounds] : options_.bounds) {
-      info::Parameter& parameter = asked_[indexOf(name, "bounds")];
-      std::tie(parameter.lower, parameter.upper) = bounds;
-      const std::size_t common = indexOf(name, "bounds");
-      if (common >= training.numCommon()) continue;  // a trial's own
-      training.catalogue().requireBelowLimit(training.selection()[common], parameter.upper,
-                                             "upper bound of ");
-    }
-    for (const auto& [name, prior] : options_.prior) {
-      const std::size_t i = indexOf(name, "prior");
-      asked_[i].prior = prior;
-      known_[static_cast<Index>(i)] = prior.sd;
-      // a prior given by the user replaces the model's value as the start
-      if (asked_[i].lower <= asked_[i].upper && std::isfinite(prior.mean)) {
-        asked_[i].start = std::clamp(prior.mean, asked_[i].lower, asked_[i].upper);
-      }
-    }
-    if (options_.from) {
-      if (options_.from->size() != static_cast<Index>(asked_.size())) {
-        throw std::invalid_argument(
-            fmt::format("start of {} numbers, must be {}", options_.from->size(), asked_.size()));
-      }
-      for (std::size_t i = 0; i < asked_.size(); ++i)
-        asked_[i].start = (*options_.from)[static_cast<Index>(i)];
-    }
-    info::checkParameters(asked_);
-    for (const std::string& name : options_.profile) profiled_.push_back(indexOf(name, "profile"));
     result_.why = info::Termination::stopped;
   }
 
@@ -122,6 +83,8 @@ class Calibrator {
       return result_;
     }
     judge();
+    if (options_.isFinal && result_.complete && !options_.isFinal(result_))
+      return std::move(result_);
     if (result_.complete) profiles();
     if (result_.complete && options_.bootstrap > 0) resample();
     return std::move(result_);
@@ -136,16 +99,6 @@ class Calibrator {
       values[i] = parameters[static_cast<std::size_t>(i)].start;
     }
     return values;
-  }
-
-  std::size_t indexOf(const std::string& name, const char* what) const {
-    const std::string full =
-        training_.catalogue().parameters()[training_.catalogue().find(name)].name;
-    for (std::size_t i = 0; i < training_.numCommon(); ++i) {
-      if (asked_[i].name == full) return i;
-    }
-    throw std::invalid_argument(
-        fmt::format("{} of '{}': is not among the parameters to estimate", what, name));
   }
 
   std::string failureAt(const VectorXd& theta) const {
@@ -263,7 +216,7 @@ class Calibrator {
       result_.evaluations += estimate_.evaluations;
       if (isSettled) break;
     }
-    if (result_.complete) otherMinima(estimate);
+    if (result_.complete) lookForOtherMinima(estimate);
     result_.why = estimate_.why;
     result_.converged = estimate_.converged;
     result_.after = predictor_.outputs(estimate_.parameters);
@@ -278,57 +231,14 @@ class Calibrator {
         training_.catalogue().at(training_.selection(), estimate_.parameters.head(common()));
   }
 
-  /// What the other starts found, at the noise that was estimated. One that is better becomes the
-  /// estimate.
-  void otherMinima(const info::EstimateOptions& options) {
-    if (result_.starts.size() < 2) return;
-    const info::LeastSquares least = problem(result_.noise.effective);
-    std::vector<info::Estimate> ends;
-    double lowest = std::numeric_limits<double>::infinity();
-    for (const info::StartOutcome& outcome : result_.starts)
-      lowest = std::min(lowest, outcome.cost);
-    for (const info::StartOutcome& outcome : result_.starts) {
-      if (!outcome.converged || outcome.cost > lowest + worthRefining) continue;
-      if (isNear(outcome.parameters, estimate_)) continue;
-      const auto seen = [&](const info::Estimate& end) { return isNear(outcome.parameters, end); };
-      if (std::any_of(ends.begin(), ends.end(), seen)) continue;
-      info::Estimate end = info::estimate(least, outcome.parameters, options);
-      result_.iterations += end.iterations;
-      result_.evaluations += end.evaluations;
-      if (!end.converged || isNear(end.parameters, estimate_)) continue;
-      if (end.cost < estimate_.cost) std::swap(end, estimate_);
-      ends.push_back(std::move(end));
-    }
-    std::sort(ends.begin(), ends.end(),
-              [](const auto& a, const auto& b) { return a.cost < b.cost; });
-    for (const info::Estimate& end : ends) {
-      const double difference = end.cost - estimate_.cost;
-      const double ofData =
-          difference - priorCost(end.parameters) + priorCost(estimate_.parameters);
-      if (difference <= worthTelling || ofData <= possibleByData)
-        result_.otherMinima.push_back({end.parameters, difference, ofData});
-    }
-  }
-
-  /// ½Σ((θ − μ)/d)²
-  double priorCost(const VectorXd& theta) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < asked_.size(); ++i) {
-      if (const auto& prior = asked_[i].prior)
-        sum += std::pow((theta[static_cast<Index>(i)] - prior->mean) / prior->sd, 2) / 2;
-    }
-    return sum;
-  }
-
-  /// Within three standard deviations of an estimate, all parameters of the model together.
-  bool isNear(const VectorXd& theta, const info::Estimate& other) const {
-    const VectorXd apart = (theta - other.parameters).head(common());
-    const MatrixXd covariance = other.covariance.topLeftCorner(common(), common());
-    for (Index i = 0; i < apart.size(); ++i) {
-      const double sd = std::sqrt(std::max(covariance(i, i), 0.0));
-      if (std::abs(apart[i]) > std::max(3 * sd, 1e-3 * known_[i])) return false;
-    }
-    return true;
+  /// One that is better becomes the estimate.
+  void lookForOtherMinima(const info::EstimateOptions& options) {
+    OtherMinima found = otherMinima(problem(result_.noise.effective), result_.starts, known_,
+                                    common(), estimate_, options);
+    result_.iterations += found.iterations;
+    result_.evaluations += found.evaluations;
+    estimate_ = std::move(found.best);
+    result_.otherMinima = std::move(found.others);
   }
 
   /// Where further starts end that are led by held models; none where nothing is to be led.
@@ -364,98 +274,10 @@ class Calibrator {
             ? 1.0
             : info::varianceFactor(options_.loss, white * std::sqrt(result_.noise.correlationTime));
     const MatrixXd data = at.gamma.transpose() * at.gamma / (sigma * sigma * widening);
-    std::vector<Index> free;
-    std::vector<info::Parameter> freeParameters;
-    const auto p = static_cast<Index>(asked_.size());
-    for (Index i = 0; i < p; ++i) {
-      if (!isAtBound(i)) {
-        free.push_back(i);
-        freeParameters.push_back(asked_[static_cast<std::size_t>(i)]);
-      }
-    }
-    result_.correlation = MatrixXd::Identity(p, p);
-    std::vector<info::Determinacy> told;
-    VectorXd sd(static_cast<Index>(free.size()));
-    if (!free.empty()) {
-      MatrixXd own = data(free, free);
-      MatrixXd all = own;
-      for (std::size_t k = 0; k < free.size(); ++k) {
-        const auto& prior = freeParameters[k].prior;
-        if (!prior) continue;
-        const double weight = 1 / (prior->sd * prior->sd);
-        const auto i = static_cast<Index>(k);
-        all(i, i) += weight;
-        if (free[k] >= common()) own(i, i) += weight;  // what is known of a start was measured
-      }
-      const VectorXd known = known_(free);
-      told =
-          info::determinacy(own, freeParameters, known,
-                            training_.hasOnlyAngles() ? "the measured angles" : "the measurements");
-      const MatrixXd covariance = scaledInverse(all, known);
-      sd = covariance.diagonal().cwiseSqrt();
-      result_.correlation(free, free) = covariance.array() / (sd * sd.transpose()).array();
-    }
-    for (Index i = 0; i < p; ++i) {
-      const auto place = std::find(free.begin(), free.end(), i);
-      const auto k = static_cast<std::size_t>(place - free.begin());
-      result_.parameters.push_back(
-          place == free.end() ? atBound(i) : described(i, told[k], sd[static_cast<Index>(k)]));
-    }
-  }
-
-  bool isAtBound(Index i) const {
-    const info::Parameter& parameter = asked_[static_cast<std::size_t>(i)];
-    const double value = estimate_.parameters[i];
-    return value <= parameter.lower || value >= parameter.upper;
-  }
-
-  /// The inverse of a matrix of information; where it is singular, as large as rounding allows.
-  static MatrixXd scaledInverse(const MatrixXd& information, const VectorXd& scale) {
-    const auto eigen = info::symmetricEigen(scale.asDiagonal() * information * scale.asDiagonal());
-    const double floor =
-        std::max(1e-14 * eigen.values.maxCoeff(), std::numeric_limits<double>::min());
-    const MatrixXd inverse = eigen.vectors *
-                             eigen.values.cwiseMax(floor).cwiseInverse().asDiagonal() *
-                             eigen.vectors.transpose();
-    return scale.asDiagonal() * inverse * scale.asDiagonal();
-  }
-
-  CalibratedParameter blank(Index i) const {
-    CalibratedParameter one{};
-    one.asked = asked_[static_cast<std::size_t>(i)];
-    one.model = training_.parameters()[static_cast<std::size_t>(i)].start;
-    one.known = known_[i];
-    one.ofTrial = i >= common();
-    one.value = estimate_.parameters[i];
-    one.sd = one.lower = one.upper = unknown;
-    one.bootstrapSd = one.bootstrapLower = one.bootstrapUpper = unknown;
-    return one;
-  }
-
-  CalibratedParameter atBound(Index i) const {
-    CalibratedParameter one = blank(i);
-    one.atBound = true;
-    one.determinacy = {unknown, unknown, false, ""};
-    const bool low = one.value <= one.asked.lower;
-    const std::string unit = one.asked.unit.empty() ? "" : " " + one.asked.unit;
-    one.why = fmt::format(
-        "{} is at its {} bound ({:.4g}{}): the data favour {} values, so no confidence interval is "
-        "reported",
-        one.asked.name, low ? "lower" : "upper", one.value, unit, low ? "smaller" : "larger");
-    return one;
-  }
-
-  CalibratedParameter described(Index i, const info::Determinacy& told, double sd) const {
-    CalibratedParameter one = blank(i);
-    one.determinacy = told;
-    one.identifiable = told.identifiable;
-    one.why = told.why;
-    if (!one.identifiable) return one;
-    const double z = info::normalQuantile(options_.confidence);
-    one.sd = sd;
-    one.lower = std::max(one.asked.lower, one.value - z * sd);
-    one.upper = std::min(one.asked.upper, one.value + z * sd);
-    return one;
+    Judgement judgement =
+        judged({asked_, known_}, training_, estimate_.parameters, data, options_.confidence);
+    result_.parameters = std::move(judgement.parameters);
+    result_.correlation = std::move(judgement.correlation);
   }
 
   void profiles() {

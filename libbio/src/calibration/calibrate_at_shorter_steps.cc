@@ -56,9 +56,19 @@ StepChange changeOfHalving(const Model& model, const SystemOptions& arm, const T
 
 }  // namespace
 
+bool StepChange::mattersToTrial(std::size_t trial, double noise) const {
+  return ofTrials[trial] > 0.2 * noise;
+}
+
+bool StepChange::mattersToEstimates() const {
+  return ofEstimates > 0.25;
+}
+
 bool StepChange::matters(double noise) const {
-  const double largest = ofTrials.empty() ? 0 : *std::max_element(ofTrials.begin(), ofTrials.end());
-  return largest > 0.2 * noise || ofEstimates > 0.25;
+  for (std::size_t i = 0; i < ofTrials.size(); ++i) {
+    if (mattersToTrial(i, noise)) return true;
+  }
+  return mattersToEstimates();
 }
 
 SteppedCalibration calibrateAtShorterSteps(const Model& model, const SystemOptions& arm,
@@ -75,7 +85,16 @@ SteppedCalibration calibrateAtShorterSteps(const Model& model, const SystemOptio
     result.training = std::make_unique<const TrialSet>(model, arm, training, trials);
     if (!heldOut.empty())
       result.heldOut = std::make_unique<const TrialSet>(model, arm, heldOut, trials);
+    const double half = trials.simulation.step / 2;
+    bool isFinal = true;
+    result.options.isFinal = [&](const Calibration& now) {
+      if (!now.calibrated) return true;
+      result.change = changeOfHalving(model, arm, *result.training, result.options, now);
+      isFinal = !mayShorten || half < shortest || !result.change.matters(now.noise.sd);
+      return isFinal;
+    };
     Calibration found = calibrate(*result.training, result.heldOut.get(), result.options);
+    result.options.isFinal = options.isFinal;
     if (!isFirst) {
       found.starts = std::move(result.calibration.starts);
       found.agreeingStarts = result.calibration.agreeingStarts;
@@ -84,13 +103,9 @@ SteppedCalibration calibrateAtShorterSteps(const Model& model, const SystemOptio
       found.evaluations += result.calibration.evaluations;
     }
     result.calibration = std::move(found);
-    const Calibration& now = result.calibration;
-    if (!now.calibrated || !now.complete) return result;
-    result.change = changeOfHalving(model, arm, *result.training, result.options, now);
-    const double half = trials.simulation.step / 2;
-    if (!mayShorten || half < shortest || !result.change.matters(now.noise.sd)) return result;
+    if (isFinal || !result.calibration.complete) return result;
     result.options.trials.simulation.step = half;
-    result.options.from = now.values();
+    result.options.from = result.calibration.values();
   }
 }
 

@@ -15,6 +15,8 @@
 
 namespace bio {
 
+struct Calibration;
+
 struct CalibrationOptions {
   TrialSetOptions trials;
   bool priors = true;  ///< true: default priors about the model's values; false: bounds only
@@ -36,6 +38,9 @@ struct CalibrationOptions {
   std::optional<Eigen::VectorXd> from = {};
   /// Called from any thread with the fraction of the work done, 0 to 1; returning false stops.
   std::function<bool(double)> progress = {};
+  /// Called with an estimate and its intervals; returning false ends without profiles and
+  /// replicates. Empty: true.
+  std::function<bool(const Calibration&)> isFinal = {};
 };
 
 struct CalibratedParameter {
@@ -69,9 +74,11 @@ struct ResidualNoise {
 /// and priors leave possible (Δ ≤ 4.6 nats: e^{−Δ} ≥ 1 % as likely, its width taken to be the same)
 /// or the data alone (1.92 nats: inside a 95 % interval of their likelihood).
 struct OtherMinimum {
-  Eigen::VectorXd values;  ///< of all estimated numbers
-  double difference = 0;   ///< Δ of the cost [nats]
-  double ofData = 0;       ///< of it without the priors [nats]; < 0: it fits better
+  Eigen::VectorXd values;         ///< of all estimated numbers
+  double difference = 0;          ///< Δ of the cost [nats]
+  double ofData = 0;              ///< of it without the priors [nats]; < 0: it fits better
+  bool isLikely() const;          ///< Δ ≤ 4.6 nats
+  bool isPossibleByData() const;  ///< Δ of the data ≤ 1.92 nats
 };
 
 struct Calibration {

@@ -13,8 +13,11 @@ struct StepChange {
   /// Largest change of an estimate, in its standard deviations: of θ by (I + Λ)⁻¹ΓᵀΔy/σ² to first
   /// order, parameters at a bound held. 0 where no estimate has a standard deviation.
   double ofEstimates = 0;
-  /// Whether a change of angles exceeds 0.2 standard deviations of the noise, or that of an
-  /// estimate 0.25 of its own: then the step passes for an error of the model.
+  /// Whether the change of a trial's angles exceeds 0.2 standard deviations of the noise [rad].
+  bool mattersToTrial(std::size_t trial, double noise) const;
+  /// Whether that of an estimate exceeds 0.25 of its standard deviation.
+  bool mattersToEstimates() const;
+  /// Either: then the step passes for an error of the model.
   bool matters(double noise) const;
 };
 

@@ -1,0 +1,90 @@
+#include "calibration/asked_parameters.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <tuple>
+
+namespace bio {
+namespace {
+
+using Eigen::Index;
+
+void requireTransferable(const TrialSet& training, const TrialSet& heldOut) {
+  if (heldOut.numCommon() != training.numCommon()) {
+    throw std::invalid_argument("held-out trials must have the same common parameters");
+  }
+  for (const std::size_t index : training.selection()) {
+    const ModelParameter& one = training.catalogue().parameters()[index];
+    if (std::holds_alternative<InitialTarget>(one.targets.front())) {
+      throw std::invalid_argument(fmt::format(
+          "parameter '{}' belongs to one trial and cannot be transferred to held-out trials",
+          one.name));
+    }
+  }
+}
+
+void setBounds(const TrialSet& training, const CalibrationOptions& options,
+               std::vector<info::Parameter>& parameters) {
+  for (const auto& [name, bounds] : options.bounds) {
+    const std::size_t i = placeOfParameter(training, name, "bounds");
+    std::tie(parameters[i].lower, parameters[i].upper) = bounds;
+    training.catalogue().requireBelowLimit(training.selection()[i], parameters[i].upper,
+                                           "upper bound of ");
+  }
+}
+
+void setPriors(const TrialSet& training, const CalibrationOptions& options,
+               AskedParameters& asked) {
+  for (std::size_t i = 0; i < training.numCommon() && options.priors; ++i) {
+    asked.parameters[i].prior =
+        info::GaussianPrior{asked.parameters[i].start, asked.known[static_cast<Index>(i)]};
+  }
+  for (const auto& [name, prior] : options.prior) {
+    const std::size_t i = placeOfParameter(training, name, "prior");
+    info::Parameter& parameter = asked.parameters[i];
+    parameter.prior = prior;
+    asked.known[static_cast<Index>(i)] = prior.sd;
+    // a prior given by the user replaces the model's value as the start
+    if (parameter.lower <= parameter.upper && std::isfinite(prior.mean)) {
+      parameter.start = std::clamp(prior.mean, parameter.lower, parameter.upper);
+    }
+  }
+}
+
+}  // namespace
+
+std::size_t placeOfParameter(const TrialSet& training, const std::string& name, const char* what) {
+  const ParameterCatalogue& catalogue = training.catalogue();
+  const std::size_t wanted = catalogue.find(name);
+  const auto& selection = training.selection();
+  const auto at = std::find(selection.begin(), selection.end(), wanted);
+  if (at == selection.end()) {
+    throw std::invalid_argument(fmt::format("{} of '{}': is not among the parameters to estimate",
+                                            what, catalogue.parameters()[wanted].name));
+  }
+  return static_cast<std::size_t>(at - selection.begin());
+}
+
+AskedParameters askedParameters(const TrialSet& training, const TrialSet* heldOut,
+                                const CalibrationOptions& options) {
+  if (heldOut) requireTransferable(training, *heldOut);
+  AskedParameters asked{training.parameters(), training.known()};
+  // bounds first: a prior's mean becomes the start within them
+  setBounds(training, options, asked.parameters);
+  setPriors(training, options, asked);
+  if (options.from) {
+    if (options.from->size() != static_cast<Index>(asked.parameters.size())) {
+      throw std::invalid_argument(fmt::format("start of {} numbers, must be {}",
+                                              options.from->size(), asked.parameters.size()));
+    }
+    for (std::size_t i = 0; i < asked.parameters.size(); ++i)
+      asked.parameters[i].start = (*options.from)[static_cast<Index>(i)];
+  }
+  info::checkParameters(asked.parameters);
+  return asked;
+}
+
+}  // namespace bio
