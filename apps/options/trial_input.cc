@@ -49,9 +49,11 @@ bio::Model readModel(const std::string& file, Summary& summary) {
 
 void addConvertMusclesOption(CLI::App& subcommand, std::string& muscleClass) {
   subcommand
-      .add_option("--convert-muscles", muscleClass,
-                  "take all muscles as of this class: Thelen2003, Millard2012, "
-                  "DeGrooteFregly2016, Schutte1993 or RigidTendon; what they lose is said")
+      .add_option(
+          "--convert-muscles", muscleClass,
+          "take all muscles as of this class: Thelen2003, Millard2012, "
+          "DeGrooteFregly2016, Schutte1993, RigidTendon (Millard2012 with a rigid tendon) or "
+          "RigidTendonMuscle (OpenSim's class); what they lose is said")
       ->type_name("CLASS");
 }
 

@@ -132,6 +132,12 @@ class Converter {
         [&]<class Parameters>(Parameters& p) {
           switches = p;
           Numbers numbers;
+          if constexpr (requires { p.curves; }) {
+            if (const auto length = whereUnit(p.curves.passiveForceLength)) {
+              numbers["FmaxMuscleStrain"] = *length - 1;
+            }
+            lose("the curves of RigidTendonMuscle");
+          }
           const Parameters defaults;
           for (std::size_t i = 0; i < Parameters::count; ++i) {
             const double value = Parameters::at(p, i);
@@ -166,7 +172,8 @@ class Converter {
     const bool isThelen = numberNamed(any, "KshapeActive") != nullptr;
     std::visit(
         [&](auto& p) {
-          if (isRigid_) p.ignoreTendonCompliance = true;
+          if (isRigid_ || target_ == "RigidTendonMuscle") p.ignoreTendonCompliance = true;
+          if (target_ == "RigidTendonMuscle") p.ignoreActivationDynamics = true;
           if (!isThelen) return;
           if (p.ignoreTendonCompliance) lose("ignore_tendon_compliance");
           if (p.ignoreActivationDynamics) lose("ignore_activation_dynamics");
@@ -228,7 +235,7 @@ std::string wholeName(const std::string& className) {
   }
   throw std::invalid_argument(
       fmt::format("muscle class '{}' is not known, must be one of Thelen2003, Millard2012, "
-                  "DeGrooteFregly2016, Schutte1993, RigidTendon",
+                  "DeGrooteFregly2016, Schutte1993, RigidTendon, RigidTendonMuscle",
                   className));
 }
 

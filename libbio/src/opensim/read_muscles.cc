@@ -101,14 +101,15 @@ bool areGiven(const Source& source, const Element& element,
   return given != 0;
 }
 
-void readOptional(const Source&, const Element&, muscles::Thelen2003Parameters<double>&) {}
-void readOptional(const Source& source, const Element& element,
+void readOptional(Reading&, const Element&, muscles::Thelen2003Parameters<double>&) {}
+void readOptional(Reading& reading, const Element& element,
                   muscles::DeGrooteFregly2016Parameters<double>& p) {
   p.ignorePassiveFibreForce =
-      readFlag(source, element, "ignore_passive_fiber_force", p.ignorePassiveFibreForce);
+      readFlag(reading.source, element, "ignore_passive_fiber_force", p.ignorePassiveFibreForce);
 }
-void readOptional(const Source& source, const Element& element,
+void readOptional(Reading& reading, const Element& element,
                   muscles::Millard2012Parameters<double>& p) {
+  const Source& source = reading.source;
   p.passiveShapeIsGiven = areGiven(
       source, element,
       {"FiberForceLengthCurve/stiffness_at_low_force",
@@ -119,8 +120,23 @@ void readOptional(const Source& source, const Element& element,
        "TendonForceLengthCurve/norm_force_at_toe_end", "TendonForceLengthCurve/curviness"});
 }
 
+// The class has neither, whatever the switches of Muscle say in its file.
+void readOptional(Reading& reading, const Element& element,
+                  muscles::RigidTendonParameters<double>& p) {
+  p.ignoreTendonCompliance = p.ignoreActivationDynamics = true;
+  const auto readInto = [&](const char* name, SplineFunction& curve) {
+    if (const Element* given = findCurve(reading.source, element, name)) {
+      curve = readCurve(reading, *given);
+    }
+  };
+  readInto("active_force_length_curve", p.curves.activeForceLength);
+  readInto("passive_force_length_curve", p.curves.passiveForceLength);
+  readInto("force_velocity_curve", p.curves.forceVelocity);
+}
+
 // Every number by the class's own table; where the file is silent OpenSim's default stands.
-muscles::AnyParameters readHill(const Source& source, const Element& element) {
+muscles::AnyParameters readHill(Reading& reading, const Element& element) {
+  const Source& source = reading.source;
   muscles::AnyParameters any = muscles::MuscleClasses::defaultsOf(element.Name());
   std::visit(
       [&]<class Parameters>(Parameters& p) {
@@ -130,7 +146,7 @@ muscles::AnyParameters readHill(const Source& source, const Element& element) {
             readFlag(source, element, "ignore_activation_dynamics", p.ignoreActivationDynamics);
         p.minControl = readNumber(source, element, "min_control", "", Rule::finite, p.minControl);
         p.maxControl = readNumber(source, element, "max_control", "", Rule::finite, p.maxControl);
-        readOptional(source, element, p);
+        readOptional(reading, element, p);
         for (std::size_t i = 0; i < Parameters::count; ++i) {
           if (!p.isGiven(i)) continue;
           const auto& property = Parameters::properties[i];
@@ -165,7 +181,7 @@ Muscle readMuscle(Reading& reading, const Element& element) {
   if (muscle.className.starts_with("Schutte1993Muscle")) {
     muscle.schutte = readSchutte(reading, element);
   } else if (muscles::MuscleClasses::has(muscle.className)) {
-    muscle.hill = readHill(reading.source, element);
+    muscle.hill = readHill(reading, element);
   }
   return muscle;
 }

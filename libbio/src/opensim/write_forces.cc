@@ -39,6 +39,12 @@ void appendOptional(Element& element, const muscles::DeGrooteFregly2016Parameter
   appendFlag(element, "ignore_passive_fiber_force", p.ignorePassiveFibreForce);
 }
 
+void appendOptional(Element& element, const muscles::RigidTendonParameters<double>& p) {
+  appendSpline(element, p.curves.activeForceLength, "active_force_length_curve");
+  appendSpline(element, p.curves.passiveForceLength, "passive_force_length_curve");
+  appendSpline(element, p.curves.forceVelocity, "force_velocity_curve");
+}
+
 // Every number by the class's own table, those of a sub-object together in it.
 void appendHill(Element& element, const muscles::AnyParameters& any) {
   std::visit(

@@ -267,7 +267,7 @@ TEST_F(Told, ASeedThatIsTooLargeIsRefused) {
 
 TEST_F(Told, CheckSaysThatAModelWithoutSimulatedMusclesIsOfNoUseForSimulations) {
   const std::string file = scratch.file(
-      "other.osim", with(sourceText(model), "Schutte1993Muscle_Deprecated", "RigidTendonMuscle"));
+      "other.osim", with(sourceText(model), "Schutte1993Muscle_Deprecated", "MeyerFregly2016Muscle"));
   const ProgramResult result = runFisherHill({"check", file});
   EXPECT_THAT(result.out, Not(HasSubstr("Every file can be used")));
   EXPECT_THAT(result.out,

@@ -16,6 +16,7 @@ using support::MuscleState;
 static_assert(HillShape<Thelen2003<double>>);
 static_assert(HillShape<Millard2012<double>>);
 static_assert(HillShape<DeGrooteFregly2016<double>>);
+static_assert(HillShape<RigidTendon<double>>);
 
 template <class Class>
 class MuscleLaw : public testing::Test {

@@ -138,7 +138,8 @@ TEST(CostGradient, IsTheForwardOneWhereStepsAreHalvedAndSplit) {
 }
 
 TEST(CostGradient, IsTheForwardOneForEveryClassOfMuscle) {
-  for (const char* name : {"Thelen2003", "Millard2012", "DeGrooteFregly2016", "RigidTendon"}) {
+  for (const char* name :
+       {"Thelen2003", "Millard2012", "DeGrooteFregly2016", "RigidTendon", "RigidTendonMuscle"}) {
     SCOPED_TRACE(name);
     Model model = readOsim(ShippedElbow::root() + "/models/elbow8.osim");
     convertMuscles(model, name);

@@ -19,7 +19,8 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-constexpr std::array classes{"Thelen2003", "Millard2012", "DeGrooteFregly2016", "RigidTendon"};
+constexpr std::array classes{"Thelen2003", "Millard2012", "DeGrooteFregly2016", "RigidTendon",
+                             "RigidTendonMuscle"};
 
 /// The shipped elbow with muscles of another class.
 struct ElbowOfClass {

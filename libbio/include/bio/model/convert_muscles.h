@@ -14,8 +14,8 @@ struct MuscleConversion {
 };
 
 /// Makes every muscle that can be simulated one of the named class: Thelen2003, Millard2012,
-/// DeGrooteFregly2016 or Schutte1993, or OpenSim's whole name of one of them; RigidTendon is
-/// Millard2012 with ignore_tendon_compliance.
+/// DeGrooteFregly2016 or Schutte1993, or OpenSim's whole name of one of them or RigidTendonMuscle;
+/// RigidTendon is Millard2012 with ignore_tendon_compliance.
 ///
 /// What both classes have is carried: the five common numbers, switches and control limits; the
 /// strains of tendon and passive fibre at F0, fibre damping, least activation and time constants

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "bio/model/function.h"
 #include "bio/muscle/muscle_variant.h"
 
 /// A musculoskeletal model as plain data: the content of an .osim file. SI units and radians
@@ -19,48 +20,6 @@ struct FramePlacement {
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();  ///< [m]
   Eigen::Vector3d orientation = Eigen::Vector3d::Zero();  ///< body-fixed x-y-z angles [rad]
   friend bool operator==(const FramePlacement&, const FramePlacement&) = default;
-};
-
-// Functions of one variable, as files give them ---------------------------------------------------
-
-struct ConstantFunction {
-  double value = 0;
-  friend bool operator==(const ConstantFunction&, const ConstantFunction&) = default;
-};
-/// slope·x + intercept
-struct LinearFunction {
-  double slope = 1;
-  double intercept = 0;
-  friend bool operator==(const LinearFunction&, const LinearFunction&) = default;
-};
-/// Interpolating cubic spline with Forsythe–Malcolm–Moler ends, linear outside (curves.h).
-struct SplineFunction {
-  std::vector<double> x;  ///< strictly rising, at least 2
-  std::vector<double> y;
-  friend bool operator==(const SplineFunction&, const SplineFunction&) = default;
-};
-/// Straight lines between the points, extended outside.
-struct PiecewiseLinearFunction {
-  std::vector<double> x;  ///< strictly rising, at least 2
-  std::vector<double> y;
-  friend bool operator==(const PiecewiseLinearFunction&, const PiecewiseLinearFunction&) = default;
-};
-/// Σ_i c_i x^(n−i): highest power first, as OpenSim writes it.
-struct PolynomialFunction {
-  std::vector<double> coefficients;
-  friend bool operator==(const PolynomialFunction&, const PolynomialFunction&) = default;
-};
-
-/// scale · shape(x), x held within low … high; nested MultiplierFunctions are multiplied out into
-/// `scale`.
-struct Function {
-  double scale = 1;
-  std::variant<ConstantFunction, LinearFunction, SplineFunction, PiecewiseLinearFunction,
-               PolynomialFunction>
-      shape;
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-  friend bool operator==(const Function&, const Function&) = default;
 };
 
 // Skeleton ----------------------------------------------------------------------------------------

@@ -38,10 +38,16 @@ template <class T>
 struct RigidRate {
   T tendonForce;     ///< F_T [N]
   T fibreLength;     ///< ℓ = √((L − ℓs)² + w²) [m]
-  T fibreVelocity;   ///< ℓ̇ = L̇ cos α [m/s]
+  T fibreVelocity;   ///< ℓ̇ = L̇ cos α [m/s]; L̇ of a class whose fibreMovesAsPath
   T dF_dActivation;  ///< [N]
   T dF_dPathLength;  ///< [N/m]
   T dF_dPathSpeed;   ///< [N s/m] ≥ 0
+};
+
+/// Whether the fibre of a class with a rigid tendon has the velocity of the path.
+template <class Shape>
+inline constexpr bool fibreMovesAsPath = requires {
+  requires Shape::fibreMovesAsPath;
 };
 
 /// The structure that all Hill muscles share: a fibre of constant thickness with activation, force–
@@ -194,7 +200,8 @@ class HillMuscle {
   }
 
   /// The force with a rigid tendon,
-  ///     F = F0 [a f_l f_v + f_PE + B v] cos α,  v = L̇ cos α/(V ℓ0),
+  ///     F = F0 [a f_l f_v + f_PE + B v] cos α,  v = L̇ cos α/(V ℓ0), L̇/(V ℓ0) of a class whose
+  ///     fibreMovesAsPath,
   /// cut at 0 from below where the class does so. 0 for L ≤ ℓs, with ℓ = w.
   template <class U>
   RigidRate<Joint<T, U>> rigidRate(const U& activation, const U& pathLength,
@@ -208,7 +215,10 @@ class HillMuscle {
     const R perLength = 1.0 / r.fibreLength;
     const R cosine = along * perLength;
     const R cosine_L = thickness_ * thickness_ * perLength * perLength * perLength;
-    r.fibreVelocity = pathSpeed * cosine;
+    // ℓ̇ = L̇ s with the share s that follows the path
+    const R share = fibreMovesAsPath<Shape> ? R(1.0) : cosine;
+    const R share_L = fibreMovesAsPath<Shape> ? R(0.0) : cosine_L;
+    r.fibreVelocity = pathSpeed * share;
     const R v = r.fibreVelocity / speedScale_;
     const R l = r.fibreLength * perFibre_;
     const CurvePoint<R> active = shape_.activeForce(l);
@@ -221,10 +231,10 @@ class HillMuscle {
     if (Shape::rigidForceIsCut && plainValue(force) < 0) return r;
     const R force_v = A * f_v.slope + shape_.damping();
     const R force_L = (a * active.slope * f_v.value + passive.slope) * perFibre_ * cosine +
-                      force_v * pathSpeed * cosine_L / speedScale_;
+                      force_v * pathSpeed * share_L / speedScale_;
     r.tendonForce = force_ * force * cosine;
     r.dF_dPathLength = force_ * (force_L * cosine + force * cosine_L);
-    r.dF_dPathSpeed = force_ * force_v * cosine * cosine / speedScale_;
+    r.dF_dPathSpeed = force_ * force_v * share * cosine / speedScale_;
     if (isActing(plainValue(activation))) {
       r.dF_dActivation = force_ * (active.value * f_v.value + A * f_v.byActivation) * cosine;
     }

@@ -231,7 +231,7 @@ PerNumber<Shape> rigidForceInNumbers(const HillMuscle<Shape>& muscle, double act
   const double cosine_w = -along * w / (length * length * length);
   const double force_w =
       (f.act * f.active.slope * f_v.value + f.passive.slope) * muscle.perFibre() * w / length +
-      force_v * pathSpeed * cosine_w / muscle.speedScale();
+      force_v * pathSpeed * (fibreMovesAsPath<Shape> ? 0 : cosine_w) / muscle.speedScale();
   const double byThickness = p.maxIsometricForce * (force_w * cosine + force * cosine_w);
   r[common::maxIsometricForce] += force * cosine;
   r[common::optimalFibreLength] +=

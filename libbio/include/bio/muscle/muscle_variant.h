@@ -8,6 +8,7 @@
 #include "bio/muscle/degroote_fregly2016.h"
 #include "bio/muscle/hill_muscle.h"
 #include "bio/muscle/millard2012.h"
+#include "bio/muscle/rigid_tendon.h"
 #include "bio/muscle/thelen2003.h"
 
 namespace bio::muscles {
@@ -45,7 +46,7 @@ struct ClassList {
 };
 
 /// The muscle classes that there are: a new one is its file and a name here.
-using MuscleClasses = ClassList<Thelen2003, Millard2012, DeGrooteFregly2016>;
+using MuscleClasses = ClassList<Thelen2003, Millard2012, DeGrooteFregly2016, RigidTendon>;
 
 using AnyParameters = MuscleClasses::Parameters;
 using AnyMuscle = MuscleClasses::Muscle;

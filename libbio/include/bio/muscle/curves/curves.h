@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "bio/model/model.h"
+#include "bio/model/function.h"
 #include "info/autodiff/dual.h"
 
 namespace bio {
