@@ -13,7 +13,7 @@
 #include "bio/sensitivity/coupled_sensitivity.h"
 #include "bio/tables/trial_review.h"
 #include "discovery/initial_speed.h"
-#include "simulation/motion_weights.h"
+#include "discovery/look_at.h"
 
 namespace bio::discover {
 
@@ -24,14 +24,6 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-/// Where the coordinate is looked at: before the start it goes on with its first speed.
-std::optional<MotionWeights> lookAt(const std::vector<double>& time, double t) {
-  if (time.size() >= 2 && t < time.front()) {
-    return MotionWeights{0, 1, 0, t - time.front(), 0, 0, 0, 1, 0};
-  }
-  return weightsAt(time, t);
-}
 
 /// A force on one coordinate, straight between nodes.
 ExternalForce onOne(const std::vector<double>& nodes, const VectorXd& values, int freeIndex,
@@ -85,7 +77,6 @@ MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemO
   if (integrator != Integrator::variational && integrator != Integrator::variationalLeft) {
     throw std::invalid_argument("sensitivities: integrator must be vi or vi-left");
   }
-  const Coordinate& observed = encompassing_.coordinate();
   double lastStart = -HUGE_VAL, firstEnd = HUGE_VAL;
   for (const Trial& trial : trials) {
     lastStart = std::max(lastStart, trial.times[0]);
@@ -94,57 +85,60 @@ MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemO
   encompassing_.trialsLast(lastStart, firstEnd);
   encompassing_.forget(unsaturated(encompassing_, withFlatTops(trials)));
   quantities_ = encompassing_.quantities();
-  for (Trial& trial : trials) {
-    OfTrial one{withProxies(std::move(trial), encompassing_), {}, {}, {}, {}, {}, {}, {}, 0, 0};
-    for (const MeasuredMotion& motion : one.trial.measured) {
-      if (motion.coordinate != coordinate) continue;
-      if (options_.usableSeries) requireUsable(one.trial.file, motion);
-      one.times.assign(motion.times.begin(), motion.times.end());
-      one.measured = motion.values;
-    }
-    if (one.times.empty()) {
-      throw std::invalid_argument(
-          fmt::format("{}: no measured value of '{}'", one.trial.file, coordinate));
-    }
-    one.excitation = excitationOf(one.trial, encompassing_.arm());
-    one.external = externalForceOf(one.trial, encompassing_.arm());
-    one.known = experimentalConditionsOf(one.trial, encompassing_);
-    const double first = one.trial.times[0], last = one.times.back();
-    const double intervals =
-        std::max(1.0, std::ceil((last - first) / options_.latentSpacing - 1e-9));
-    for (int k = 0; k <= static_cast<int>(intervals); ++k) {
-      one.nodes.push_back(first + k * options_.latentSpacing);
-    }
-    one.heldMass = weightOfHeldMass(encompassing_, one.times, one.measured, one.nodes);
-    const int index = static_cast<int>(trials_.size());
-    const double start = one.measured[0];
-    const auto own = [&](const char* what, const char* unit, double nominal, double lower,
-                         double upper, double sd) {
-      Quantity quantity{fmt::format("trial{}.initial.{}{}", index + 1, coordinate, what),
-                        unit,
-                        nominal,
-                        std::min(lower, nominal),
-                        std::max(upper, nominal),
-                        sd,
-                        false};
-      quantity.trial = index;
-      nuisances_.push_back(quantities_.size());
-      quantities_.push_back(std::move(quantity));
-      return quantities_.size() - 1;
-    };
-    const bool turns = observed.isRotation;
-    one.angle =
-        own("", turns ? "rad" : "m", start, observed.rangeMin, observed.rangeMax, options_.startSd);
-    one.speed =
-        own(".speed", turns ? "rad/s" : "m/s", 0, turns ? -10.0 : -2.0, turns ? 10.0 : 2.0,
-            std::max(options_.speedSd, std::abs(initialSpeedShown(one.times, one.measured))));
-    trials_.push_back(std::move(one));
-  }
+  for (Trial& trial : trials) addTrial(withProxies(std::move(trial), encompassing_));
   latentLag_ = activationLag();
+  separateWhatTrialsTellApart();
+}
+
+void MusculoskeletalProblem::addTrial(Trial trial) {
+  const Coordinate& observed = encompassing_.coordinate();
+  OfTrial one{std::move(trial), {}, {}, {}, {}, {}, {}, {}, 0, 0};
+  for (const MeasuredMotion& motion : one.trial.measured) {
+    if (motion.coordinate != observed.name) continue;
+    if (options_.usableSeries) requireUsable(one.trial.file, motion);
+    one.times.assign(motion.times.begin(), motion.times.end());
+    one.measured = motion.values;
+  }
+  if (one.times.empty()) {
+    throw std::invalid_argument(
+        fmt::format("{}: no measured value of '{}'", one.trial.file, observed.name));
+  }
+  one.excitation = excitationOf(one.trial, encompassing_.arm());
+  one.external = externalForceOf(one.trial, encompassing_.arm());
+  one.known = experimentalConditionsOf(one.trial, encompassing_);
+  const double first = one.trial.times[0], last = one.times.back();
+  const double intervals = std::max(1.0, std::ceil((last - first) / options_.latentSpacing - 1e-9));
+  for (int k = 0; k <= static_cast<int>(intervals); ++k) {
+    one.nodes.push_back(first + k * options_.latentSpacing);
+  }
+  one.heldMass = weightOfHeldMass(encompassing_, one.times, one.measured, one.nodes);
+  const bool turns = observed.isRotation;
+  one.angle = addOwnQuantity("", {"", turns ? "rad" : "m", one.measured[0], observed.rangeMin,
+                                  observed.rangeMax, options_.startSd, false});
+  const double shown = std::abs(initialSpeedShown(one.times, one.measured));
+  one.speed =
+      addOwnQuantity(".speed", {"", turns ? "rad/s" : "m/s", 0, turns ? -10.0 : -2.0,
+                                turns ? 10.0 : 2.0, std::max(options_.speedSd, shown), false});
+  trials_.push_back(std::move(one));
+}
+
+std::size_t MusculoskeletalProblem::addOwnQuantity(const char* what, Quantity quantity) {
+  quantity.trial = static_cast<int>(trials_.size());
+  quantity.name = fmt::format("trial{}.initial.{}{}", quantity.trial + 1,
+                              encompassing_.coordinate().name, what);
+  quantity.lower = std::min(quantity.lower, quantity.nominal);
+  quantity.upper = std::max(quantity.upper, quantity.nominal);
+  nuisances_.push_back(quantities_.size());
+  quantities_.push_back(std::move(quantity));
+  return quantities_.size() - 1;
+}
+
+void MusculoskeletalProblem::separateWhatTrialsTellApart() {
   // the arm answers a push at once, but late muscles late; a clock that is off shifts both
   const bool isPushed = std::any_of(trials_.begin(), trials_.end(), [&](const OfTrial& one) {
     return std::any_of(one.trial.applied.begin(), one.trial.applied.end(), [&](const auto& push) {
-      return push.coordinate == coordinate && push.values.maxCoeff() > push.values.minCoeff();
+      return push.coordinate == encompassing_.coordinate().name &&
+             push.values.maxCoeff() > push.values.minCoeff();
     });
   });
   if (isPushed) encompassing_.separate("delay", "clock");
@@ -332,123 +326,6 @@ MusculoskeletalProblem::Prediction MusculoskeletalProblem::predict(
     int trial, const VectorXd& values, const VectorXd& latent,
     const std::vector<std::size_t>& wanted, bool latentToo) const {
   return predictWith(nullptr, trial, values, latent, wanted, latentToo);
-}
-
-MusculoskeletalProblem::Prediction MusculoskeletalProblem::predictWith(
-    const Nudge* nudge, int trial, const VectorXd& values, const VectorXd& latent,
-    const std::vector<std::size_t>& wanted, bool latentToo) const {
-  const OfTrial& one = of(trial);
-  const auto K = static_cast<Index>(one.times.size());
-  const auto numNodes = static_cast<Index>(latentToo ? one.nodes.size() : 0);
-  Prediction result{
-      VectorXd::Constant(K, nan), MatrixXd::Constant(K, static_cast<Index>(wanted.size()), nan),
-      MatrixXd::Constant(latentToo ? K : 0, numNodes, nan),
-      MatrixXd::Constant(numNodes, 1, options_.latentFloor), VectorXd::Constant(K, nan)};
-  ParameterCatalogue::Setting setting = settingAt(one, values, wanted);
-  const SensorLaw sensor = encompassing_.sensorAt(values);
-  const auto own = encompassing_.quantities().size();
-  const double begin = one.trial.times[0];
-  const VectorXd modelValues = values.head(static_cast<Index>(own)) + one.known;
-  const auto kindOf = [&](std::size_t quantity) {
-    return quantity < own ? std::optional(encompassing_.kindOf(quantity)) : std::nullopt;
-  };
-
-  // forces that change in time follow those at the nodes
-  const MatrixXd timedNodes = timedDirections(one, values, wanted);
-  const bool timed = timedNodes.size() > 0;
-
-  // columns of the simulation: the clock, and starts of other trials, have none
-  std::vector<ParameterDirection> directions;
-  std::vector<Index> column(wanted.size(), -1);
-  for (std::size_t j = 0; j < wanted.size(); ++j) {
-    ParameterDirection direction;
-    const int c = encompassing_.freeIndex();
-    if (wanted[j] < own) direction = encompassing_.direction(modelValues, wanted[j]);
-    const auto kind = kindOf(wanted[j]);
-    if (wanted[j] == one.angle || kind == Meaning::Kind::bias || kind == Meaning::Kind::gain)
-      direction = {{InitialTarget{c, false}}};
-    if (wanted[j] == one.speed) direction = {{InitialTarget{c, true}}};
-    if (direction.empty()) continue;
-    column[j] = static_cast<Index>(directions.size());
-    directions.push_back(std::move(direction));
-  }
-
-  SensitivityOptions options;
-  SensitivityTrajectory s;
-  try {
-    options.simulation = simulationOf(one, withTimedForces(one, values, latent), sensor);
-    if (nudge) apply(*nudge, setting.model, options.simulation.externalForce);
-    if (latentToo || timed) options.externalNodes = {encompassing_.freeIndex(), one.nodes};
-    const MusculoskeletalSystem arm = encompassing_.armOf(setting);
-    s = simulateWithSensitivities(arm, setting, directions, excitationFor(one, arm), options);
-    if (latentToo) {
-      Trajectory atNodes;  // the nearest rows
-      const auto rows = static_cast<Index>(s.motion.time.size());
-      atNodes.q.resize(s.motion.q.rows(), numNodes);
-      atNodes.fibreLength.resize(s.motion.fibreLength.rows(), numNodes);
-      for (Index k = 0; k < numNodes; ++k) {
-        const double at = one.nodes[static_cast<std::size_t>(k)] - s.motion.time.front();
-        const Index row = std::clamp<Index>(
-            static_cast<Index>(std::lround(at / options.simulation.step)), 0, rows - 1);
-        atNodes.q.col(k) = s.motion.q.col(row);
-        atNodes.fibreLength.col(k) = s.motion.fibreLength.col(row);
-      }
-      const MuscleReport muscles = reportMuscles(arm, atNodes, encompassing_.freeIndex());
-      result.latentScale.resize(numNodes, muscles.momentArm.rows() + 1);
-      result.latentScale << muscles.momentArm.cwiseProduct(muscles.tendonForce).transpose(),
-          VectorXd::Constant(numNodes, options_.latentFloor);
-    }
-  } catch (const std::exception&) {
-    return result;  // outside the model's domain
-  }
-
-  const auto c = static_cast<std::size_t>(encompassing_.freeIndex());
-  const Lagged course = lagged(s.motion.time, s.motion.q.row(encompassing_.freeIndex()),
-                               s.motion.qDot.row(encompassing_.freeIndex()), sensor.lag);
-  const auto q = course.value.row(0), qDot = course.speed.row(0);
-  if (sensor.lag > 0) {
-    const auto behind = [&](SensitivityMatrix& of, SensitivityMatrix& rate) {
-      const Lagged late = lagged(s.motion.time, of.transpose(), rate.transpose(), sensor.lag);
-      of = late.value.transpose();
-      rate = late.speed.transpose();
-    };
-    behind(s.q[c], s.qDot[c]);
-    if (numNodes > 0 || timed) behind(s.qOfNodes[c], s.qDotOfNodes[c]);
-  }
-  const double factor = 1 + sensor.gain;
-  const double firstAngle = setting.start.q[encompassing_.freeIndex()];
-  for (Index i = 0; i < K; ++i) {
-    const double t = one.times[static_cast<std::size_t>(i)];
-    const auto w = lookAt(s.motion.time, sensor.measuredAt(t, begin));
-    if (!w) continue;
-    const double value = w->value(q, qDot), slope = w->slope(q, qDot);
-    result.outputs[i] = factor * value + sensor.bias + sensor.drift * (t - begin);
-    result.speeds[i] = factor * slope;
-    const Eigen::RowVectorXd along = factor * w->rows(s.q[c], s.qDot[c]);
-    for (std::size_t j = 0; j < wanted.size(); ++j) {
-      double& entry = result.gamma(i, static_cast<Index>(j));
-      entry = column[j] >= 0 ? along[column[j]] : 0;
-      // what the sensor shows of the first angle stays where it is
-      const auto kind = kindOf(wanted[j]);
-      if (wanted[j] == one.angle) entry /= factor;
-      if (kind == Meaning::Kind::bias) entry = 1 - entry / factor;
-      if (kind == Meaning::Kind::gain) entry = value - entry * firstAngle / factor;
-      if (kind == Meaning::Kind::clock) entry = -factor * slope;
-      if (kind == Meaning::Kind::rate) entry = factor * slope * (t - begin);
-      if (kind == Meaning::Kind::lag) {
-        entry = factor * w->value(course.inLag.row(0), course.inLagSpeed.row(0));
-      }
-      if (kind == Meaning::Kind::drift) entry = t - begin;
-      if (kind == Meaning::Kind::timed) {
-        entry = factor *
-                w->rows(s.qOfNodes[c], s.qDotOfNodes[c]).dot(timedNodes.col(static_cast<Index>(j)));
-      }
-    }
-    if (numNodes > 0) {
-      result.latentGamma.row(i) = factor * w->rows(s.qOfNodes[c], s.qDotOfNodes[c]);
-    }
-  }
-  return result;
 }
 
 MatrixXd MusculoskeletalProblem::inputs(int trial) const {

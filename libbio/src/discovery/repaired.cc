@@ -32,7 +32,8 @@ VectorXd ownValues(const MusculoskeletalProblem& data, const VectorXd& values) {
 bool concernsTrials(const Augmented& added) {
   const EmgMapping& m = added.mapping;
   return !added.muscles.empty() || !m.gain.empty() || m.delay != 0 || m.nonlinearity != 0 ||
-         !m.offset.empty() || !m.crosstalk.empty() || !m.saturation.empty() || m.fatigue != 0 || !added.sensor.isTrue();
+         !m.offset.empty() || !m.crosstalk.empty() || !m.saturation.empty() || m.fatigue != 0 ||
+         !added.sensor.isTrue();
 }
 
 /// The trial with forces that begin or end, as if they were known from outside.

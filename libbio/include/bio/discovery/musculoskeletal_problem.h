@@ -121,6 +121,11 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   Eigen::MatrixXd timedDirections(const OfTrial& one, const Eigen::VectorXd& values,
                                   const std::vector<std::size_t>& wanted) const;
   double activationLag() const;
+  void addTrial(Trial trial);
+  /// A number of the initial state of the trial that is being added; its place.
+  std::size_t addOwnQuantity(const char* what, Quantity quantity);
+  /// Equivalent candidates that these trials distinguish.
+  void separateWhatTrialsTellApart();
   const OfTrial& of(int trial) const { return trials_.at(static_cast<std::size_t>(trial)); }
   ParameterCatalogue::Setting settingAt(const OfTrial& one, const Eigen::VectorXd& values,
                                         const std::vector<std::size_t>& wanted) const;
@@ -132,6 +137,13 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   Eigen::VectorXd outputsOf(const OfTrial& one, const Eigen::VectorXd& values,
                             const Eigen::VectorXd& latent, double stepFactor,
                             const Nudge* nudge) const;
+  /// What of a simulation the wanted quantities follow.
+  struct Columns;
+  Columns columnsOf(const OfTrial& one, const Eigen::VectorXd& values,
+                    const std::vector<std::size_t>& wanted) const;
+  /// Scales of the latent force at the nodes: the muscles' moments, and the floor.
+  Eigen::MatrixXd latentScale(const OfTrial& one, const MusculoskeletalSystem& arm,
+                              const Trajectory& motion) const;
   Prediction predictWith(const Nudge* nudge, int trial, const Eigen::VectorXd& values,
                          const Eigen::VectorXd& latent, const std::vector<std::size_t>& wanted,
                          bool latentToo) const;
