@@ -137,6 +137,9 @@ class ExperimentDesign {
   double penalty(const SensitivityTrajectory& s, double price) const;
   Eigen::VectorXd surpriseOf(const SensitivityTrajectory& s) const;
   bool keepsRange(double lowest, double highest, double fastest) const;
+  class Runs;
+  /// Of the trial's own inputs and random ones about them.
+  Eigen::VectorXd bestCandidate(const DesignSearchSettings& settings, Runs& runs) const;
 
   const MusculoskeletalSystem* arm_;
   const ParameterCatalogue* catalogue_;
