@@ -14,6 +14,7 @@
 #include "options/trial_input.h"
 #include "output/progress_bar.h"
 #include "output/result.h"
+#include "sensitivity/nonlocal_analysis.h"
 #include "sensitivity/observed_channels.h"
 #include "sensitivity/sensitivity_report.h"
 
@@ -140,14 +141,23 @@ class Sensitivity : public Command {
 
     if (swept) findings.sweeps.push_back(sweep(first, *swept));
     if (!selection.empty()) analyse(studies, arm, selection, findings);
-    if (held) findings.profile = profile(studies, selection, *held);
-    if (!global_.empty()) findings.global = ensembles(studies, selection, context, summary);
+    if (held) {
+      const double noise = noise_ / shownFactor(firstCoordinate(studies));
+      findings.profile = likelihoodProfile(experiments(studies, selection), first.catalogue,
+                                           selection, *held, noise);
+    }
+    if (!global_.empty()) {
+      findings.global =
+          globalSensitivity(experiments(studies, selection), first.catalogue, selection,
+                            {global_, samples_, shownFactor(firstCoordinate(studies))}, context);
+      tellUndefined(findings.global, summary);
+    }
 
     if (const auto left = bio::leftRange(
             arm, findings.local ? findings.local->motion : findings.sweeps.front().nominal)) {
       summary.warn(left->what);
     }
-    write(findings, folder);
+    writeTables(findings, folder);
     summary.setSimulation(simulation_.integrator, simulation_.stepOrDefault(), first.input.duration,
                           findings.local ? findings.local->motion.wallSeconds
                                          : findings.sweeps.front().nominal.wallSeconds);
@@ -341,104 +351,24 @@ class Sensitivity : public Command {
     findings.costRatio = with / alone;
   }
 
-  /// How much worse the best fit to the model's own motion becomes as the parameter is held
-  /// elsewhere, within three joint bounds.
-  ProfileFinding profile(const std::vector<Study>& studies,
-                         const std::vector<std::size_t>& selection, Eigen::Index held) const {
-    const double noise = noise_ / shownFactor(firstCoordinate(studies));
-    std::vector<bio::TrialPredictor> experiments;
-    Eigen::Index samples = 0;
-    for (const Study& study : studies) {
-      experiments.push_back(experiment(study, selection));
-      samples += static_cast<Eigen::Index>(study.times.size());
-    }
-    const info::Predictor predictor = bio::joined(experiments);
-    const bio::ParameterCatalogue& catalogue = studies.front().catalogue;
-    const auto parameters = catalogue.asEstimated(selection, true);
-    const Eigen::VectorXd theta = catalogue.values(selection);
-    const info::LeastSquares problem(
-        predictor,
-        {predictor.outputs(theta),
-         info::OutputCovariance(Eigen::MatrixXd::Constant(1, 1, noise * noise))},
-        parameters);
-    info::EstimateOptions estimateOptions;
-    estimateOptions.maxIterations = 30;
-    estimateOptions.decrementTolerance = 1e-6;
-    const info::Estimate estimated = info::estimate(problem, estimateOptions);
-    const info::Parameter& parameter = parameters[static_cast<std::size_t>(held)];
-    const double wide = 3 * std::sqrt(std::max(estimated.covariance(held, held), 0.0));
-    std::vector<double> values;
-    for (int k = -6; k <= 6; ++k) {
-      const double value = theta[held] + wide * k / 6;
-      if (value >= parameter.lower && value <= parameter.upper) values.push_back(value);
-    }
-    ProgressBar bar("profile");
-    return {parameter, info::profileLikelihood(problem, estimated, held, values, estimateOptions)};
-  }
-
   const bio::Coordinate& firstCoordinate(const std::vector<Study>& studies) const {
     return bio::findCoordinate(studies.front().catalogue.model(), simulation_.coordinates.front());
   }
 
-  /// Each parameter even over its value ± √3 prior deviations, within its bounds.
-  GlobalFinding ensembles(const std::vector<Study>& studies,
-                          const std::vector<std::size_t>& selection, const CommandContext& context,
-                          Summary& summary) const {
-    std::vector<bio::TrialPredictor> experiments;
-    for (const Study& study : studies) experiments.push_back(experiment(study, selection));
-    const info::Predictor predictor = bio::joined(experiments);
-    const auto parameters = studies.front().catalogue.asEstimated(selection, true);
-    const double shown = shownFactor(firstCoordinate(studies));
-    const info::CubeModel model = [&](const Eigen::VectorXd& unit) -> Eigen::VectorXd {
-      Eigen::VectorXd theta(unit.size());
-      for (Eigen::Index i = 0; i < unit.size(); ++i) {
-        const info::Parameter& p = parameters[static_cast<std::size_t>(i)];
-        const double wide = std::sqrt(3.0) * p.prior->sd;
-        const double low = std::max(p.lower, p.start - wide);
-        const double high = std::min(p.upper, p.start + wide);
-        theta[i] = low + unit[i] * (high - low);
-      }
-      return shown * predictor.outputs(theta).row(0).transpose();
-    };
-    info::EnsembleOptions ensemble;
-    ensemble.samples = samples_;
-    ensemble.seed = context.seed;
-    ensemble.threads = context.threads;
-    GlobalFinding finding;
-    const auto count = static_cast<int>(selection.size());
-    ProgressBar bar("global");
-    ensemble.progress = [&](int done, int runs) {
-      bar.update(static_cast<double>(done) / runs);
-      return true;
-    };
-    if (global_ != "sobol") finding.morris = info::morris(model, count, ensemble);
-    if (global_ != "morris") finding.sobol = info::sobol(model, count, ensemble);
-    const int undefined = (finding.morris ? finding.morris->undefined : 0) +
-                          (finding.sobol ? finding.sobol->undefined : 0);
-    if (undefined > 0) {
-      summary.warn(fmt::format(
-          "{} runs of the global sensitivity analysis did not reach the end and were left out",
-          undefined));
-    }
-    return finding;
+  std::vector<bio::TrialPredictor> experiments(const std::vector<Study>& studies,
+                                               const std::vector<std::size_t>& selection) const {
+    std::vector<bio::TrialPredictor> all;
+    for (const Study& study : studies) all.push_back(experiment(study, selection));
+    return all;
   }
 
-  void write(const SensitivityFindings& findings, OutputFolder& folder) const {
-    if (findings.information) {
-      folder.write("sensitivity.csv",
-                   [&](std::ostream& out) { writeSensitivities(findings, out); });
-      folder.write("fisher.csv", [&](std::ostream& out) { writeFisher(findings, out); });
-    }
-    for (const Sweep& one : findings.sweeps) {
-      folder.write("sweep.csv",
-                   [&](std::ostream& out) { writeSweep(one, findings.coordinate, out); });
-    }
-    if (findings.profile) {
-      folder.write("profile.csv", [&](std::ostream& out) { writeProfile(*findings.profile, out); });
-    }
-    if (!global_.empty()) {
-      folder.write("global.csv", [&](std::ostream& out) { writeGlobal(findings, out); });
-    }
+  static void tellUndefined(const GlobalFinding& finding, Summary& summary) {
+    const int undefined = (finding.morris ? finding.morris->undefined : 0) +
+                          (finding.sobol ? finding.sobol->undefined : 0);
+    if (undefined == 0) return;
+    summary.warn(fmt::format(
+        "{} runs of the global sensitivity analysis did not reach the end and were left out",
+        undefined));
   }
 
   std::string model_;

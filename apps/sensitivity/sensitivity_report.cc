@@ -13,16 +13,6 @@
 namespace app {
 namespace {
 
-/// Columns by falling influence on the motion.
-std::vector<std::size_t> ranking(const Eigen::VectorXd& score) {
-  std::vector<std::size_t> order(static_cast<std::size_t>(score.size()));
-  std::iota(order.begin(), order.end(), 0u);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return score[static_cast<Eigen::Index>(a)] > score[static_cast<Eigen::Index>(b)];
-  });
-  return order;
-}
-
 /// Prior deviation over the joint bound: how much narrower the data make what is known.
 Eigen::VectorXd informationGain(const bio::ParameterInformation& known) {
   Eigen::VectorXd gain(known.boundAlone.size());
@@ -30,10 +20,6 @@ Eigen::VectorXd informationGain(const bio::ParameterInformation& known) {
     gain[i] = known.parameters[static_cast<std::size_t>(i)].prior->sd / known.boundJoint[i];
   }
   return gain;
-}
-
-std::string cell(double value) {
-  return std::isfinite(value) ? fmt::format("{:.9g}", value) : std::string();
 }
 
 std::vector<double> scaled(const Eigen::VectorXd& values, double factor) {
@@ -267,78 +253,20 @@ std::string SensitivityFindings::shownUnit() const {
   return observed.empty() ? app::shownUnit(coordinate) : "standard deviations of the noise";
 }
 
+std::vector<std::size_t> ranking(const Eigen::VectorXd& score) {
+  std::vector<std::size_t> order(static_cast<std::size_t>(score.size()));
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return score[static_cast<Eigen::Index>(a)] > score[static_cast<Eigen::Index>(b)];
+  });
+  return order;
+}
+
 double shownFactor(const bio::Coordinate& coordinate) {
   return coordinate.isRotation ? 180 / std::numbers::pi : 1e3;
 }
 const char* shownUnit(const bio::Coordinate& coordinate) {
   return coordinate.isRotation ? "deg" : "mm";
-}
-
-void writeSensitivities(const SensitivityFindings& f, std::ostream& out) {
-  const bio::ParameterInformation& known = *f.information;
-  out << "parameter,unit,value,normalised_sensitivity,bound_alone,bound_joint,identifiable\n";
-  for (const std::size_t i : ranking(known.normalisedSensitivity)) {
-    const auto k = static_cast<Eigen::Index>(i);
-    const info::Parameter& p = known.parameters[i];
-    out << fmt::format("{},{},{},{},{},{},{}\n", p.name, p.unit, cell(p.start),
-                       cell(known.normalisedSensitivity[k] * f.shownFactor()),
-                       cell(known.boundAlone[k]), cell(known.boundJoint[k]),
-                       known.identifiable[i] ? "true" : "false");
-  }
-}
-
-void writeFisher(const SensitivityFindings& f, std::ostream& out) {
-  out << "parameter";
-  for (const std::string& name : f.parameters) out << ',' << name;
-  out << '\n';
-  const Eigen::MatrixXd& fisher = f.information->fisher;
-  for (Eigen::Index i = 0; i < fisher.rows(); ++i) {
-    out << f.parameters[static_cast<std::size_t>(i)];
-    for (Eigen::Index j = 0; j < fisher.cols(); ++j) out << ',' << cell(fisher(i, j));
-    out << '\n';
-  }
-}
-
-void writeSweep(const Sweep& sweep, const bio::Coordinate& coordinate, std::ostream& out) {
-  const double factor = shownFactor(coordinate);
-  out << fmt::format("time,{}_{}", coordinate.name, shownUnit(coordinate));
-  for (const SweepRun& run : sweep.runs) {
-    out << fmt::format(",{}={:.9g}", sweep.parameter.name, run.value);
-  }
-  out << '\n';
-  for (std::size_t k = 0; k < sweep.nominal.time.size(); ++k) {
-    const auto row = static_cast<Eigen::Index>(k);
-    out << cell(sweep.nominal.time[k]) << ',' << cell(sweep.nominal.q(0, row) * factor);
-    for (const SweepRun& run : sweep.runs) {
-      out << ',' << (row < run.motion.q.cols() ? cell(run.motion.q(0, row) * factor) : "");
-    }
-    out << '\n';
-  }
-}
-
-void writeProfile(const ProfileFinding& finding, std::ostream& out) {
-  out << "value,cost,threshold,converged\n";
-  for (const info::ProfilePoint& point : finding.profile.points) {
-    out << fmt::format("{},{},{},{}\n", cell(point.value), cell(point.cost),
-                       cell(finding.profile.threshold), point.converged ? "true" : "false");
-  }
-}
-
-void writeGlobal(const SensitivityFindings& f, std::ostream& out) {
-  out << "parameter,morris_mean_absolute,morris_deviation,sobol_first,sobol_first_sd,sobol_total,"
-         "sobol_total_sd\n";
-  for (std::size_t i = 0; i < f.parameters.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    out << f.parameters[i];
-    const auto& morris = f.global.morris;
-    const auto& sobol = f.global.sobol;
-    out << ',' << (morris ? cell(morris->meanAbsolute[k]) : "") << ','
-        << (morris ? cell(morris->sd[k]) : "");
-    out << ',' << (sobol ? cell(sobol->first[k]) : "") << ','
-        << (sobol ? cell(sobol->firstDeviation[k]) : "") << ','
-        << (sobol ? cell(sobol->total[k]) : "") << ',' << (sobol ? cell(sobol->totalSd[k]) : "")
-        << '\n';
-  }
 }
 
 void tellSensitivity(const SensitivityFindings& f, Summary& summary) {

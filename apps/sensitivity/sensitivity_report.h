@@ -10,6 +10,7 @@
 #include "bio/tables/trial.h"
 #include "info/estimation/profile_likelihood.h"
 #include "info/probability/global_sensitivity.h"
+#include "output/result.h"
 #include "report/report.h"
 
 namespace app {
@@ -70,6 +71,9 @@ struct SensitivityFindings {
 double shownFactor(const bio::Coordinate& coordinate);
 const char* shownUnit(const bio::Coordinate& coordinate);
 
+/// Indices by falling score.
+std::vector<std::size_t> ranking(const Eigen::VectorXd& score);
+
 /// sensitivity.csv, most influential first; an empty cell means no information.
 void writeSensitivities(const SensitivityFindings& findings, std::ostream& out);
 /// fisher.csv: the matrix with its names.
@@ -79,6 +83,9 @@ void writeSweep(const Sweep& sweep, const bio::Coordinate& coordinate, std::ostr
 /// profile.csv and global.csv
 void writeProfile(const ProfileFinding& finding, std::ostream& out);
 void writeGlobal(const SensitivityFindings& findings, std::ostream& out);
+
+/// All of these that there is something for.
+void writeTables(const SensitivityFindings& findings, OutputFolder& folder);
 
 /// Sets the values of summary.json: parameters, cost_ratio, …
 void tellSensitivity(const SensitivityFindings& findings, Summary& summary);

@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "sensitivity/sensitivity_report.h"
+
+namespace app {
+namespace {
+
+std::string tableCell(double value) {
+  return std::isfinite(value) ? fmt::format("{:.9g}", value) : std::string();
+}
+
+}  // namespace
+
+void writeSensitivities(const SensitivityFindings& f, std::ostream& out) {
+  const bio::ParameterInformation& known = *f.information;
+  out << "parameter,unit,value,normalised_sensitivity,bound_alone,bound_joint,identifiable\n";
+  for (const std::size_t i : ranking(known.normalisedSensitivity)) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const info::Parameter& p = known.parameters[i];
+    out << fmt::format("{},{},{},{},{},{},{}\n", p.name, p.unit, tableCell(p.start),
+                       tableCell(known.normalisedSensitivity[k] * f.shownFactor()),
+                       tableCell(known.boundAlone[k]), tableCell(known.boundJoint[k]),
+                       known.identifiable[i] ? "true" : "false");
+  }
+}
+
+void writeFisher(const SensitivityFindings& f, std::ostream& out) {
+  out << "parameter";
+  for (const std::string& name : f.parameters) out << ',' << name;
+  out << '\n';
+  const Eigen::MatrixXd& fisher = f.information->fisher;
+  for (Eigen::Index i = 0; i < fisher.rows(); ++i) {
+    out << f.parameters[static_cast<std::size_t>(i)];
+    for (Eigen::Index j = 0; j < fisher.cols(); ++j) out << ',' << tableCell(fisher(i, j));
+    out << '\n';
+  }
+}
+
+void writeSweep(const Sweep& sweep, const bio::Coordinate& coordinate, std::ostream& out) {
+  const double factor = shownFactor(coordinate);
+  out << fmt::format("time,{}_{}", coordinate.name, shownUnit(coordinate));
+  for (const SweepRun& run : sweep.runs) {
+    out << fmt::format(",{}={:.9g}", sweep.parameter.name, run.value);
+  }
+  out << '\n';
+  for (std::size_t k = 0; k < sweep.nominal.time.size(); ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    out << tableCell(sweep.nominal.time[k]) << ',' << tableCell(sweep.nominal.q(0, row) * factor);
+    for (const SweepRun& run : sweep.runs) {
+      out << ',' << (row < run.motion.q.cols() ? tableCell(run.motion.q(0, row) * factor) : "");
+    }
+    out << '\n';
+  }
+}
+
+void writeProfile(const ProfileFinding& finding, std::ostream& out) {
+  out << "value,cost,threshold,converged\n";
+  for (const info::ProfilePoint& point : finding.profile.points) {
+    out << fmt::format("{},{},{},{}\n", tableCell(point.value), tableCell(point.cost),
+                       tableCell(finding.profile.threshold), point.converged ? "true" : "false");
+  }
+}
+
+void writeGlobal(const SensitivityFindings& f, std::ostream& out) {
+  out << "parameter,morris_mean_absolute,morris_deviation,sobol_first,sobol_first_sd,sobol_total,"
+         "sobol_total_sd\n";
+  for (std::size_t i = 0; i < f.parameters.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    out << f.parameters[i];
+    const auto& morris = f.global.morris;
+    const auto& sobol = f.global.sobol;
+    out << ',' << (morris ? tableCell(morris->meanAbsolute[k]) : "") << ','
+        << (morris ? tableCell(morris->sd[k]) : "");
+    out << ',' << (sobol ? tableCell(sobol->first[k]) : "") << ','
+        << (sobol ? tableCell(sobol->firstDeviation[k]) : "") << ','
+        << (sobol ? tableCell(sobol->total[k]) : "") << ','
+        << (sobol ? tableCell(sobol->totalSd[k]) : "") << '\n';
+  }
+}
+
+void writeTables(const SensitivityFindings& findings, OutputFolder& folder) {
+  if (findings.information) {
+    folder.write("sensitivity.csv", [&](std::ostream& out) { writeSensitivities(findings, out); });
+    folder.write("fisher.csv", [&](std::ostream& out) { writeFisher(findings, out); });
+  }
+  for (const Sweep& one : findings.sweeps) {
+    folder.write("sweep.csv",
+                 [&](std::ostream& out) { writeSweep(one, findings.coordinate, out); });
+  }
+  if (findings.profile) {
+    folder.write("profile.csv", [&](std::ostream& out) { writeProfile(*findings.profile, out); });
+  }
+  if (findings.global.morris || findings.global.sobol) {
+    folder.write("global.csv", [&](std::ostream& out) { writeGlobal(findings, out); });
+  }
+}
+
+}  // namespace app
