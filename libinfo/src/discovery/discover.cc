@@ -11,6 +11,7 @@
 #include "discovery/nonparametric/nonparametric_force.h"
 #include "discovery/nonparametric/race_formula.h"
 #include "discovery/search/select.h"
+#include "discovery/verdict_estimates.h"
 #include "discovery/verdict_sentence.h"
 #include "info/discovery/judgement/decide.h"
 #include "info/discovery/judgement/expected_error.h"
@@ -22,26 +23,6 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 namespace {
-
-std::vector<Estimate> estimatesOf(const Fit& fit, const std::vector<std::size_t>& wanted,
-                                  const DiscoveryProblem& data) {
-  std::vector<Estimate> result;
-  for (const std::size_t q : wanted) {
-    const int i = fit.hypothesis.indexOf(q);
-    if (i < 0) continue;
-    const auto at = static_cast<std::size_t>(i);
-    Estimate e{q, fit.values[static_cast<Index>(q)], fit.sd(at), 0, false};
-    // the prior z-score refers to the quantity's own prior, not to that of a candidate
-    FreeQuantity own = fit.hypothesis.free[at];
-    own.sd = data.quantities()[q].sd;
-    e.surprise = own.coordinate(e.value);
-    const Quantity& quantity = data.quantities()[q];
-    const double margin = 1e-6 * (quantity.upper - quantity.lower);
-    e.atBound = e.value - quantity.lower < margin || quantity.upper - e.value < margin;
-    result.push_back(e);
-  }
-  return result;
-}
 
 // The state of run() from stage to stage.
 class Work {
@@ -409,18 +390,6 @@ Verdict run(const DiscoveryProblem& data, const Options& options, WarmStart* dra
   if (noise.usesAll()) return Work(data, options, std::move(noise)).run(draft);
   const SelectedSamples selected(data, noise.kept);
   return Work(selected, options, std::move(noise)).run(draft);
-}
-
-VectorXd predictedSd(const DiscoveryProblem& data, const Verdict& verdict, int trial) {
-  std::vector<std::size_t> amplitudes;
-  VectorXd sd(static_cast<Index>(verdict.effects.size()));
-  for (const NamedEffect& effect : verdict.effects) {
-    sd[static_cast<Index>(amplitudes.size())] = effect.estimates.front().sd;
-    amplitudes.push_back(effect.estimates.front().quantity);
-  }
-  const auto at = data.predict(trial, verdict.values, {}, amplitudes, false);
-  const VectorXd spread = (at.gamma * sd.asDiagonal()).rowwise().squaredNorm();
-  return (spread.array() + verdict.outputSd * verdict.outputSd).sqrt();
 }
 
 }  // namespace info::discover
