@@ -10,24 +10,93 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// The end of a span in ground, and whether q moves it.
-template <int N>
-PointMotionJet<double, N> endInGround(const CompiledPath& path, const PathNode& node,
-                                      const Eigen::Matrix<double, N, 1>& q,
-                                      const RigidMotion<double, N>* moved) {
-  return detail::nodeJet<double, N>(path, node, node.p_S, q, moved);
+Vector3d times(const Matrix3d& R, const Vector3d& v) {
+  return R.lazyProduct(v);
 }
+Vector3d back(const Matrix3d& R, const Vector3d& v) {
+  return R.transpose().lazyProduct(v);
+}
+
+/// An end of a span with its first derivatives.
+template <int N>
+struct EndMotion {
+  Vector3d value;
+  std::array<Vector3d, N> first;
+};
+
+template <int N>
+EndMotion<N> endInGround(const CompiledPath& path, const PathNode& node,
+                         const Eigen::Matrix<double, N, 1>& q,
+                         const RigidMotion<double, N>* moved) {
+  if (node.motion >= 0) {
+    const auto jet = detail::nodeJet<double, N>(path, node, node.p_S, q, moved);
+    return {jet.value, jet.first};
+  }
+  EndMotion<N> end;
+  const RigidMotion<double, N>& X = moved[node.segment];
+  end.value = times(X.value.R, node.p_S) + X.value.p;
+  for (std::size_t k = 0; k < N; ++k) {
+    end.first[k] = times(X.first[k].R, node.p_S) + X.first[k].p;
+  }
+  return end;
+}
+
+/// How the end tangents of a wrapped span change as its ends move; of a cylinder by three dyads.
+struct TouchedSpan {
+  SpanToSecondOrder<double> whole;
+  CylinderDyads<double> dyads;
+  bool isSphere;
+
+  TouchedSpan(const PathSurface& surface, const SpanSurface& way, const Vector3d& P,
+              const Vector3d& Q)
+      : isSphere(surface.isSphere) {
+    if (isSphere) {
+      whole = wrapSphereToSecondOrder(surface.radius, way.way, P, Q);
+    } else {
+      dyads = wrapCylinderDyads(surface.radius, way.side, P, Q);
+    }
+  }
+  /// Of a cylinder in closed form: L_r = β s/L, and with r the tangents turn about the ends.
+  RadiusDerivatives inRadius(const PathSurface& surface, const SpanSurface& way, const Vector3d& P,
+                             const Vector3d& Q) const {
+    if (isSphere) return bio::inRadius(surface, way, P, Q);
+    const double up = dyads.span.dL_dQ.z(), around = dyads.span.dL_dQ.head<2>().norm();
+    const double sigma = way.side == Side::counterclockwise ? 1 : -1;
+    const double stretch = dyads.angle * up * dyads.perLength;
+    return {dyads.angle * around, stretch * dyads.mP + sigma * dyads.bendP * dyads.nP,
+            stretch * dyads.mQ + sigma * dyads.bendQ * dyads.nQ};
+  }
+  const Span<double>& span() const { return isSphere ? whole.span : dyads.span; }
+  void change(const Vector3d& dP, const Vector3d& dQ, Vector3d& gP, Vector3d& gQ) const {
+    if (isSphere) {
+      gP = times(whole.hessian.d2L_dPdP, dP) + times(whole.hessian.d2L_dPdQ, dQ);
+      gQ = back(whole.hessian.d2L_dPdQ, dP) + times(whole.hessian.d2L_dQdQ, dQ);
+      return;
+    }
+    const double m = (dyads.mP.dot(dP) + dyads.mQ.dot(dQ)) * dyads.perLength;
+    gP = dyads.bendP * dyads.nP.dot(dP) * dyads.nP + m * dyads.mP;
+    gQ = dyads.bendQ * dyads.nQ.dot(dQ) * dyads.nQ + m * dyads.mQ;
+  }
+};
 
 /// Adds what a point's location does through covector c in ground with slopes c_k:
 /// R_SBᵀXᵀc, and R_SBᵀ(X_kᵀc + Xᵀc_k).
 template <int N, class Out>
-[[gnu::flatten]] void addPoint(const PathNode& node, const RigidMotion<double, N>* moved,
-                               const Vector3d& c, const std::array<Vector3d, N>& c_k, Out& out) {
+void addPoint(const PathNode& node, const RigidMotion<double, N>* moved, const Vector3d& c,
+              const std::array<Vector3d, N>& c_k, Out& out) {
+  const Matrix3d& R_SB = node.X_SB.R;
+  if (node.segment == 0) {
+    out.col(0) += back(R_SB, c);
+    for (std::size_t k = 0; k < N; ++k) {
+      out.col(static_cast<Eigen::Index>(k) + 1) += back(R_SB, c_k[k]);
+    }
+    return;
+  }
   const RigidMotion<double, N>& X = moved[node.segment];
-  out.col(0) += node.X_SB.R.transpose() * (X.value.R.transpose() * c);
+  out.col(0) += back(R_SB, back(X.value.R, c));
   for (std::size_t k = 0; k < N; ++k) {
-    out.col(static_cast<Eigen::Index>(k) + 1) +=
-        node.X_SB.R.transpose() * (X.first[k].R.transpose() * c + X.value.R.transpose() * c_k[k]);
+    const Vector3d inSegment = back(X.first[k].R, c) + back(X.value.R, c_k[k]);
+    out.col(static_cast<Eigen::Index>(k) + 1) += back(R_SB, inSegment);
   }
 }
 
@@ -96,8 +165,8 @@ void PathGradients::addSpan(const PathSpan& span, const Eigen::Matrix<double, N,
   if (span.chain >= 0) return addChain<N>(span, q, moved, usedSurfaces, out);
   const PathNode& a = path_->nodes[span.a];
   const PathNode& b = path_->nodes[span.b];
-  const PointMotionJet<double, N> P_G = endInGround<N>(*path_, a, q, moved);
-  const PointMotionJet<double, N> Q_G = endInGround<N>(*path_, b, q, moved);
+  const EndMotion<N> P_G = endInGround<N>(*path_, a, q, moved);
+  const EndMotion<N> Q_G = endInGround<N>(*path_, b, q, moved);
   std::array<Vector3d, N> atP, atQ;  // slopes of the end covectors in ground
 
   for (const SpanSurface& way : span.surfaces) {
@@ -105,52 +174,55 @@ void PathGradients::addSpan(const PathSpan& span, const Eigen::Matrix<double, N,
     if ((usedSurfaces & bit) != 0) continue;
     const PathSurface& surface = path_->surfaces[way.surface];
     const RigidMotion<double, N>& X = moved[surface.segment];
-    const auto seen = [&](const PointMotionJet<double, N>& x) {
-      detail::SpanEnd<double, N> end;
-      end.jet = detail::seenFrom(X, x);
-      return detail::intoFrame(surface.X_SC, end).jet;
-    };
-    const PointMotionJet<double, N> P = seen(P_G);
-    const PointMotionJet<double, N> Q = seen(Q_G);
-    if (surfaceIsOutOfPlay(surface, surface.radius, way, P.value, Q.value)) {
+    const Matrix3d R_GC = X.value.R.lazyProduct(surface.X_SC.R);
+    const Vector3d p_SC = back(surface.X_SC.R, surface.X_SC.p);
+    const Vector3d dP = P_G.value - X.value.p, dQ = Q_G.value - X.value.p;
+    const Vector3d P = back(R_GC, dP) - p_SC, Q = back(R_GC, dQ) - p_SC;
+    if (surfaceIsOutOfPlay(surface, surface.radius, way, P, Q)) {
       if (isFixed) break;  // the first object has it
       continue;
     }
-    const SpanToSecondOrder<double> s =
-        surface.isSphere ? wrapSphereToSecondOrder(surface.radius, way.way, P.value, Q.value)
-                         : wrapCylinderToSecondOrder(surface.radius, way.side, P.value, Q.value);
-    if (!s.span.touches) {
+    const TouchedSpan s(surface, way, P, Q);
+    if (!s.span().touches) {
       if (isFixed) break;
       continue;
     }
     usedSurfaces |= bit;
-    const Vector3d& cP = s.span.dL_dP;
-    const Vector3d& cQ = s.span.dL_dQ;
-    const RadiusDerivatives r = inRadius(surface, way, P.value, Q.value);
+    const Vector3d& cP = s.span().dL_dP;
+    const Vector3d& cQ = s.span().dL_dQ;
+    const RadiusDerivatives r = s.inRadius(surface, way, P, Q);
     const SurfaceFrame& frame = frames_[way.surface];
     auto& wrap = out.wraps[surface.wrap];
-    const Matrix3d intoBody = frame.R_SB.transpose() * surface.X_SC.R;
-    const Matrix3d intoGround = X.value.R * surface.X_SC.R;
+    const Matrix3d intoBody = frame.R_SB.transpose().lazyProduct(surface.X_SC.R);
     wrap(0, 0) += r.length;
-    wrap.template block<3, 1>(1, 0) -= intoBody * (cP + cQ);
-    const Vector3d moment = P.value.cross(cP) + Q.value.cross(cQ);
-    wrap.template block<3, 1>(4, 0) -= frame.turnAxes.transpose() * moment;
+    wrap.template block<3, 1>(1, 0) -= times(intoBody, cP + cQ);
+    const Vector3d moment = P.cross(cP) + Q.cross(cQ);
+    wrap.template block<3, 1>(4, 0) -= back(frame.turnAxes, moment);
     for (std::size_t k = 0; k < N; ++k) {
       const auto column = static_cast<Eigen::Index>(k) + 1;
-      const Vector3d gP = s.hessian.d2L_dPdP * P.first[k] + s.hessian.d2L_dPdQ * Q.first[k];
-      const Vector3d gQ =
-          s.hessian.d2L_dPdQ.transpose() * P.first[k] + s.hessian.d2L_dQdQ * Q.first[k];
-      wrap(0, column) += r.dL_dP.dot(P.first[k]) + r.dL_dQ.dot(Q.first[k]);
-      wrap.template block<3, 1>(1, column) -= intoBody * (gP + gQ);
-      const Vector3d moment_k =
-          P.value.cross(gP) + P.first[k].cross(cP) + Q.value.cross(gQ) + Q.first[k].cross(cQ);
-      wrap.template block<3, 1>(4, column) -= frame.turnAxes.transpose() * moment_k;
-      const Matrix3d turned = X.first[k].R * surface.X_SC.R;
-      atP[k] = intoGround * gP + turned * cP;
-      atQ[k] = intoGround * gQ + turned * cQ;
+      Matrix3d turned;  // ∂_kR_GC
+      Vector3d P_k = back(R_GC, P_G.first[k] - X.first[k].p);
+      Vector3d Q_k = back(R_GC, Q_G.first[k] - X.first[k].p);
+      if (surface.segment != 0) {
+        turned = X.first[k].R.lazyProduct(surface.X_SC.R);
+        P_k += back(turned, dP);
+        Q_k += back(turned, dQ);
+      }
+      Vector3d gP, gQ;
+      s.change(P_k, Q_k, gP, gQ);
+      wrap(0, column) += r.dL_dP.dot(P_k) + r.dL_dQ.dot(Q_k);
+      wrap.template block<3, 1>(1, column) -= times(intoBody, gP + gQ);
+      const Vector3d moment_k = P.cross(gP) + P_k.cross(cP) + Q.cross(gQ) + Q_k.cross(cQ);
+      wrap.template block<3, 1>(4, column) -= back(frame.turnAxes, moment_k);
+      atP[k] = times(R_GC, gP);
+      atQ[k] = times(R_GC, gQ);
+      if (surface.segment != 0) {
+        atP[k] += times(turned, cP);
+        atQ[k] += times(turned, cQ);
+      }
     }
-    addPoint<N>(a, moved, intoGround * cP, atP, out.points[a.point]);
-    addPoint<N>(b, moved, intoGround * cQ, atQ, out.points[b.point]);
+    addPoint<N>(a, moved, times(R_GC, cP), atP, out.points[a.point]);
+    addPoint<N>(b, moved, times(R_GC, cQ), atQ, out.points[b.point]);
     return;
   }
 
@@ -177,8 +249,8 @@ void PathGradients::addChain(const PathSpan& span, const Eigen::Matrix<double, N
   const PathNode& a = path_->nodes[span.a];
   const PathNode& b = path_->nodes[span.b];
   detail::SpanEnd<double, N> P, Q;
-  P.jet = endInGround<N>(*path_, a, q, moved);
-  Q.jet = endInGround<N>(*path_, b, q, moved);
+  P.jet = detail::nodeJet<double, N>(*path_, a, a.p_S, q, moved);
+  Q.jet = detail::nodeJet<double, N>(*path_, b, b.p_S, q, moved);
   const ChainPlacements X_GC = detail::chainInGround<N>(*path_, chain, moved);
   const PlacedChain placed = placeChain(*path_, chain, X_GC);
   const ChainPath taut =

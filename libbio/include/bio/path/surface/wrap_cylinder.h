@@ -113,6 +113,7 @@ struct CylinderDyads {
   Vec3<T> nP, nQ;  ///< across the tangents, in the plane
   Vec3<T> mP, mQ;
   T bendP, bendQ, perLength;  ///< [1/m]
+  T angle;                    ///< β [rad]
 };
 
 template <class T>
@@ -138,6 +139,7 @@ CylinderDyads<T> wrapCylinderDyads(const T& radius, Side side, const Vec3<T>& p_
   result.mQ = Vec3<T>(T(up * g.eQ[0]), T(up * g.eQ[1]), T(-around));
   result.bendP = around / g.tangentP;
   result.bendQ = around / g.tangentQ;
+  result.angle = g.angle;
   return result;
 }
 
