@@ -22,7 +22,7 @@ struct Balance {
 };
 
 Balance balanceOf(const SchutteMuscle<double>& muscle, double activation, double fibreLength,
-                  double muscleTendonLength) {
+                  double muscleTendonLength, SchuttePieces& last) {
   const SchutteQuantities<double>& p = muscle.quantities();
   const SchutteCurves& curves = muscle.curves();
   Balance b;
@@ -39,13 +39,13 @@ Balance balanceOf(const SchutteMuscle<double>& muscle, double activation, double
   // tendon: F̂_T(ε)
   const double strain = (muscleTendonLength - d) * muscle.perTendon() - 1;
   if (!(strain < 0)) {
-    const CurveValue y = curves.tendonForce.evaluate(strain);
+    const CurveValue y = curves.tendonForce.evaluate(strain, last.tendonForce);
     b.tendon = y.value;
     b.tendonSlope = y.slope;
   }
   const double perStrain = b.tendonSlope * muscle.perTendon();
-  const double w_l0 = std::sin(p.pennation);
-  const double w_pennation = p.optimalFibreLength * std::cos(p.pennation);
+  const double w_l0 = w * muscle.perFibre();
+  const double w_pennation = std::sqrt(p.optimalFibreLength * p.optimalFibreLength - w * w);
   const double tendon_w = -perStrain * d_w;
   b.dTendon[at(MuscleQuantity::optimalFibreLength)] = tendon_w * w_l0;
   b.dTendon[at(MuscleQuantity::pennation)] = tendon_w * w_pennation;
@@ -57,14 +57,14 @@ Balance balanceOf(const SchutteMuscle<double>& muscle, double activation, double
   const double l_l0 = -l * muscle.perFibre();
   double passive = 0, passiveSlope = 0;
   if (curves.passiveForce) {
-    const CurveValue y = curves.passiveForce->evaluate(l);
+    const CurveValue y = curves.passiveForce->evaluate(l, last.passiveForce);
     passive = y.value;
     passiveSlope = y.slope;
   } else {
     passive = std::exp(8 * l - 12);
     passiveSlope = 8 * passive;
   }
-  const CurveValue active = curves.activeForce.evaluate(l);
+  const CurveValue active = curves.activeForce.evaluate(l, last.activeForce);
   const double floor = muscle.options().activationFloor;
   const bool floored = activation < floor;
   const double act = floored ? floor : activation;
@@ -122,8 +122,16 @@ VelocityGradient velocityOf(double P, double A, double B) {
 FibreParameterDerivatives fibreParameterDerivatives(const SchutteMuscle<double>& muscle,
                                                     double activation, double fibreLength,
                                                     double muscleTendonLength) {
+  SchuttePieces last;
+  return fibreParameterDerivatives(muscle, activation, fibreLength, muscleTendonLength, last);
+}
+
+FibreParameterDerivatives fibreParameterDerivatives(const SchutteMuscle<double>& muscle,
+                                                    double activation, double fibreLength,
+                                                    double muscleTendonLength,
+                                                    SchuttePieces& last) {
   const SchutteQuantities<double>& p = muscle.quantities();
-  const Balance b = balanceOf(muscle, activation, fibreLength, muscleTendonLength);
+  const Balance b = balanceOf(muscle, activation, fibreLength, muscleTendonLength, last);
   const VelocityGradient u = velocityOf(b.P, b.A, p.damping);
   const double speed = muscle.speedScale();
   FibreParameterDerivatives result;
@@ -156,7 +164,8 @@ EquilibriumDerivatives equilibriumDerivatives(const SchutteMuscle<double>& muscl
         across * p.optimalFibreLength * std::cos(p.pennation);
     return result;
   }
-  const Balance b = balanceOf(muscle, activation, rest.fibreLength, muscleTendonLength);
+  SchuttePieces last;
+  const Balance b = balanceOf(muscle, activation, rest.fibreLength, muscleTendonLength, last);
   const double perSlope = -1 / (b.P_l - b.A_l);
   result.dl_dActivation = -b.A_act * perSlope;
   result.dl_dMuscleTendonLength = b.P_m * perSlope;

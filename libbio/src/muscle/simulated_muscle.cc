@@ -171,11 +171,11 @@ SimulatedMuscle::RestSlopes SimulatedMuscle::restSlopes(double activation, doubl
 }
 
 SimulatedMuscle::InNumbers SimulatedMuscle::inNumbers(double activation, double fibreLength,
-                                                      double pathLength,
-                                                      double fibreVelocity) const {
+                                                      double pathLength, double fibreVelocity,
+                                                      SchuttePieces& last) const {
   if (schutte_) {
     const FibreParameterDerivatives d =
-        fibreParameterDerivatives(*schutte_, activation, fibreLength, pathLength);
+        fibreParameterDerivatives(*schutte_, activation, fibreLength, pathLength, last);
     return {padded(d.dV), padded(d.dF)};
   }
   return std::visit(

@@ -120,7 +120,7 @@ class AdjointStep {
     const SimulatedMuscle& muscle = arm_.muscles()[m].muscle;
     if (sums_.hasNumbers(m)) {
       const SimulatedMuscle::InNumbers d =
-          muscle.inNumbers(here.activation, here.l_m, path.length, here.l_v);
+          muscle.inNumbers(here.activation, here.l_m, path.length, here.l_v, step_.pieces(m));
       sums_.addNumbers(m, toRate, d.dV);
       sums_.addNumbers(m, -along, d.dF);
       if (here.isHeld) sums_.addNumbers(m, toTrial, muscle.shortestInNumbers());

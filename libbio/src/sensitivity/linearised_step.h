@@ -68,6 +68,8 @@ class LinearisedStep {
   const Vector& q_m() const { return q_m_; }
   const Vector& v() const { return v_; }
   const OfMuscle& muscle(std::size_t m) const { return muscles_[m]; }
+  /// Of the muscle's curves, where the middle is.
+  SchuttePieces& pieces(std::size_t m) { return pieces_[m]; }
   const OtherForces<N>& others() const { return others_; }
   /// Of the external force at the middle; without meaning if there is none.
   const Eigen::VectorXd& externalSlope() const { return externalSlope_; }

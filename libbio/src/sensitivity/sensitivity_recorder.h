@@ -118,7 +118,7 @@ class SensitivityRecorder {
     const double activation = result_.motion.activation(si, row_);
     SchuttePieces unknown;
     const FibreRateDerivatives r = muscle.rate(activation, l, path.length, unknown);
-    const SimulatedMuscle::InNumbers d = muscle.inNumbers(activation, l, path.length, 0);
+    const SimulatedMuscle::InNumbers d = muscle.inNumbers(activation, l, path.length, 0, unknown);
     result_.fibreLength[i].row(row_) = state.fibre.row(si).head(parameters);
     state.activation.record(si, result_.activation[i].row(row_));
     auto force = result_.tendonForce[i].row(row_);

@@ -149,8 +149,8 @@ class SensitivityStep {
     const LengthJet<N>& path = configuration_.length(m);
     const auto& effects = direct_.effects().muscles[m];
     if (!effects.fibre.empty()) {
-      const SimulatedMuscle::InNumbers d =
-          arm_.muscles()[m].muscle.inNumbers(here.activation, here.l_m, path.length, here.l_v);
+      const SimulatedMuscle::InNumbers d = arm_.muscles()[m].muscle.inNumbers(
+          here.activation, here.l_m, path.length, here.l_v, step_.pieces(m));
       for (const QuantityEffect& effect : effects.fibre) {
         trial[effect.column] += effect.factor * here.perJ * d.dV[effect.quantity];
         force_.col(effect.column) -= effect.factor * d.dF[effect.quantity] * path.dL_dq;

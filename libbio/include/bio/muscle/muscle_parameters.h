@@ -43,6 +43,10 @@ struct FibreParameterDerivatives {
 FibreParameterDerivatives fibreParameterDerivatives(const SchutteMuscle<double>& muscle,
                                                     double activation, double fibreLength,
                                                     double muscleTendonLength);
+/// The same without a search in the curves where `last` is from a state nearby; it is updated.
+FibreParameterDerivatives fibreParameterDerivatives(const SchutteMuscle<double>& muscle,
+                                                    double activation, double fibreLength,
+                                                    double muscleTendonLength, SchuttePieces& last);
 
 /// Derivatives of the fibre length in static equilibrium.
 struct EquilibriumDerivatives {

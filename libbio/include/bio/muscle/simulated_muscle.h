@@ -87,8 +87,9 @@ class SimulatedMuscle {
     PerMuscleNumber dV{};  ///< [m/s per unit]
     PerMuscleNumber dF{};  ///< [N per unit]
   };
+  /// @param last  as of rate()
   InNumbers inNumbers(double activation, double fibreLength, double pathLength,
-                      double fibreVelocity) const;
+                      double fibreVelocity, SchuttePieces& last) const;
   /// Of shortestFibre() [m per unit].
   PerMuscleNumber shortestInNumbers() const;
   PerMuscleNumber rigidInNumbers(double activation, double pathLength, double pathSpeed) const;
