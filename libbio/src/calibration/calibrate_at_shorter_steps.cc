@@ -73,8 +73,11 @@ SteppedCalibration calibrateAtShorterSteps(const Model& model, const SystemOptio
   for (bool isFirst = true;; isFirst = false) {
     const TrialSetOptions& trials = result.options.trials;
     result.training = std::make_unique<const TrialSet>(model, arm, training, trials);
-    if (!heldOut.empty())
-      result.heldOut = std::make_unique<const TrialSet>(model, arm, heldOut, trials);
+    if (!heldOut.empty()) {
+      TrialSetOptions tested = trials;
+      tested.latent = false;  // a prediction knows only what is expected
+      result.heldOut = std::make_unique<const TrialSet>(model, arm, heldOut, tested);
+    }
     Calibration found = calibrate(*result.training, result.heldOut.get(), result.options);
     if (!isFirst) {
       found.starts = std::move(result.calibration.starts);
