@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "calibrate/calibrate_tables.h"
+#include "calibrate/held_out_prediction.h"
 #include "calibrate/latent_excitations.h"
 #include "output/angle_unit.h"
 #include "output/text.h"
@@ -346,6 +347,7 @@ Report calibrateReport(const CalibrateFindings& f) {
   }
   if (f.heldOut) {
     report.details.push_back(Section{"Held-out trials"});
+    report.details.push_back(predictionTable(f));
     for (std::size_t i = 0; i < f.heldOut->series().size(); ++i) {
       report.details.push_back(overlay(*f.heldOut, i, c.heldOutBefore, c.heldOutAfter, "held out"));
     }

@@ -374,6 +374,7 @@ class Calibrator {
       }
     }
     result_.correlation = MatrixXd::Identity(p, p);
+    MatrixXd ofAll = MatrixXd::Zero(p, p);  // covariance; 0 at a bound
     std::vector<info::Determinacy> told;
     VectorXd sd(static_cast<Index>(free.size()));
     if (!free.empty()) {
@@ -393,6 +394,7 @@ class Calibrator {
                             training_.hasOnlyAngles() ? "the measured angles" : "the measurements");
       const MatrixXd covariance = scaledInverse(all, known);
       sd = covariance.diagonal().cwiseSqrt();
+      ofAll(free, free) = covariance;
       result_.correlation(free, free) = covariance.array() / (sd * sd.transpose()).array();
     }
     for (Index i = 0; i < p; ++i) {
@@ -400,6 +402,10 @@ class Calibrator {
       const auto k = static_cast<std::size_t>(place - free.begin());
       result_.parameters.push_back(
           place == free.end() ? atBound(i) : described(i, told[k], sd[static_cast<Index>(k)]));
+    }
+    if (heldOut_) {
+      result_.heldOutSd =
+          predictionSd(*heldOut_, result_.heldOutValues, ofAll.topLeftCorner(common(), common()));
     }
   }
 

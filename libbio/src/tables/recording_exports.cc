@@ -119,6 +119,10 @@ class ExportReader {
     }
   }
 
+  bool isNumber(std::string_view cell) const {
+    double value = 0;
+    return tables::NumberReader(names_.separator != Separator::comma).read(cell, value).empty();
+  }
   double number(std::size_t line, std::size_t column, std::string_view cell) {
     double value = 0;
     const std::string_view rule = numbers_.read(cell, value);
@@ -226,7 +230,7 @@ std::vector<RawColumn> readNoraxon(const std::string& file, std::vector<std::str
       if (k == time && cell.empty()) reader.fail(at, k, "is empty, must be in every row");
       // a column of texts says so in its first cell
       const bool isText = k != time && !column.anyNumber && !cell.empty() &&
-                          !isNumber(std::string(cell)) && splitAtComma(names[k]).second.empty();
+                          !reader.isNumber(cell) && splitAtComma(names[k]).second.empty();
       column.anyText = column.anyText || isText;
       if (cell.empty() || column.anyText) {
         column.values.push_back(noValue);

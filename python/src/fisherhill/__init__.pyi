@@ -194,7 +194,8 @@ def make_trial(
         {column: values}, named as in a file, all of one length: 'time' [s]; muscles (excitation, 0 to
         1); 'elbow_flexion' [rad] or 'elbow_flexion_deg', NaN where it was not measured;
         'elbow_flexion.torque' [N m], an external load; 'elbow_flexion.moment' [N m], what the limb
-        exerts on a device there; 'BRA.fiber_length' [m] and others that a file may have.
+        exerts on a device there; 'BRA.fiber_length' [m], 'BRA.pennation' [rad] and others that a
+        file may have.
     name : str
         Name of the trial in messages.
     ignore_extra : bool
