@@ -579,6 +579,7 @@ def calibrate(
     bounds: dict[str, tuple[float, float]] = {},
     loss: Literal["gaussian", "huber", "student"] = "gaussian",
     own_start: bool = False,
+    latent: dict[str, tuple[float, float]] = {},
     starts: int = 1,
     seed: int = 1,
     threads: int = 1,
@@ -611,6 +612,10 @@ def calibrate(
     own_start : bool
         True: estimate the initial angle and speed of each trial as well, of a held-out trial with
         the parameters fixed.
+    latent : dict
+        {muscle: (sd, seconds)}: excitations of muscles without an electrode are estimated about
+        the trials' columns, sd being the prior of the log-odds at knots at most so far apart;
+        instead of what the trials' headers say. Held-out trials are predicted without.
     starts : int
         Number of optimiser starts; the first is the model's own values.
     seed : int

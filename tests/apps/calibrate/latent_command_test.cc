@@ -17,7 +17,8 @@ using testing::HasSubstr;
 
 /// The shipped configuration without the electrode of BRD.
 std::string configWithout(const std::string& instead) {
-  std::string text = support::contentOf("emg_data/configs/shipped_raw.toml");
+  std::string text =
+      support::contentOf(std::string(FISHERHILL_SOURCE_DIR) + "/emg_data/configs/shipped_raw.toml");
   const auto begin = text.find("[[electrode]]\nchannel = \"BRD_uV\"");
   text.erase(begin, text.find("[measured]") - begin);
   text.insert(text.find("rate_Hz = 200"), "end_s = 1.2\n");
