@@ -9,7 +9,7 @@
 namespace app {
 namespace {
 
-std::vector<double> listOf(const Eigen::VectorXd& values) {
+std::vector<double> knotValues(const Eigen::VectorXd& values) {
   return {values.begin(), values.end()};
 }
 
@@ -64,9 +64,9 @@ void tellLatent(const CalibrateFindings& f, Summary& summary) {
                     {"muscle", one.declared.muscle},
                     {"prior_sd_log_odds", one.declared.sd},
                     {"knots_s", one.knots},
-                    {"expected", listOf(one.expected)},
-                    {"estimate", listOf(one.fitted)},
-                    {"prior_z", listOf(one.z)},
+                    {"expected", knotValues(one.expected)},
+                    {"estimate", knotValues(one.fitted)},
+                    {"prior_z", knotValues(one.z)},
                     {"rms_prior_z", one.rms()},
                     {"largest_prior_z", one.largest()}});
     if (one.largest() > 3) {
@@ -92,9 +92,9 @@ void addLatent(const CalibrateFindings& f, Report& report) {
                   .caption = "At the knots of the latent excitation."};
     figure.series.push_back({.name = "expected",
                              .x = one.knots,
-                             .y = listOf(one.expected),
+                             .y = knotValues(one.expected),
                              .style = SeriesStyle::dashed});
-    figure.series.push_back({.name = "estimated", .x = one.knots, .y = listOf(one.fitted)});
+    figure.series.push_back({.name = "estimated", .x = one.knots, .y = knotValues(one.fitted)});
     report.details.emplace_back(std::move(figure));
   }
 }
