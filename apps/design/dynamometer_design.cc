@@ -217,7 +217,7 @@ class Planner {
     simulation.prescribed = bio::prescribedMotionOf(trial, arm_);
     const bio::TrialPredictor predictor(
         catalogue_, armOptions(simulation_), bio::excitationOf(trial, arm_),
-        {{{bio::Observable::ExperimentKind::moment, coordinate_.name, 0}, trial.times}}, selection_,
+        {{{bio::Observable::Kind::moment, coordinate_.name, 0}, trial.times}}, selection_,
         simulation);
     const Eigen::MatrixXd gamma = predictor.withSensitivities(catalogue_.values(selection_)).gamma;
     if (!gamma.allFinite()) return;
