@@ -129,7 +129,8 @@ class Design : public Command {
   ExitStatus run(const CommandContext& context) override {
     check();
     if (!dynamometer_.coordinate.empty()) {
-      return designOnDynamometer(context, model_, parameters_, dynamometer_, rate_Hz_, simulation_);
+      return designOnDynamometer(context, model_, parameters_, nuisance_, dynamometer_, rate_Hz_,
+                                 simulation_);
     }
     if (!separate_.empty()) return separate(context);
     OutputFolder folder(context, {"design.sto"});
@@ -242,8 +243,11 @@ class Design : public Command {
     if (trial_.empty() == dynamometer_.coordinate.empty()) {
       throw std::invalid_argument("either TRIAL or --dynamometer is required, and not both");
     }
-    if (!separate_.empty() && trial_.empty()) {
-      throw std::invalid_argument("--separate cannot be combined with --dynamometer");
+    if (trial_.empty() && (!separate_.empty() || priors_ || !givenPriors_.empty() ||
+                           monteCarlo_ > 0 || !excite_.empty() || !range_.empty())) {
+      throw std::invalid_argument(
+          "--separate, --priors, --prior, --monte-carlo, --excite and --range cannot be combined "
+          "with --dynamometer");
     }
     if (parameters_.empty() == separate_.empty()) {
       throw std::invalid_argument(

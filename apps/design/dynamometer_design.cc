@@ -106,7 +106,8 @@ class Planner {
  public:
   Planner(const CommandContext& context, const bio::Model& model,
           const bio::MusculoskeletalSystem& arm, const DynamometerOptions& options, double rate,
-          const SimulationOptions& simulation, const std::vector<std::string>& parameters)
+          const SimulationOptions& simulation, const std::vector<std::string>& parameters,
+          const std::vector<std::string>& nuisance)
       : context_(context),
         model_(model),
         arm_(arm),
@@ -115,7 +116,15 @@ class Planner {
         simulation_(simulation),
         coordinate_(arm.skeleton().coordinates().front()),
         catalogue_(model, arm, {arm.skeleton().defaultValues(), {}}),
-        selection_(catalogue_.select(parameters)) {}
+        selection_(catalogue_.select(parameters)) {
+    asked_ = selection_.size();
+    if (nuisance.empty()) return;
+    for (const std::size_t index : catalogue_.select(nuisance)) {
+      if (std::find(selection_.begin(), selection_.end(), index) == selection_.end()) {
+        selection_.push_back(index);
+      }
+    }
+  }
 
   const bio::Coordinate& coordinate() const { return coordinate_; }
 
@@ -129,10 +138,10 @@ class Planner {
     plan.failed = static_cast<std::size_t>(std::count_if(all.begin(), all.end(), isDead));
     std::erase_if(all, isDead);
     if (all.empty()) throw std::runtime_error("none of the experiments can be simulated");
-    for (const std::size_t index : selection_) {
-      plan.parameters.push_back(catalogue_.parameters()[index]);
+    for (std::size_t i = 0; i < asked_; ++i) {
+      plan.parameters.push_back(catalogue_.parameters()[selection_[i]]);
     }
-    choose(all, plan);
+    choose(std::move(all), plan);
     return plan;
   }
 
@@ -224,37 +233,41 @@ class Planner {
     one.fisher = gamma.transpose() * gamma / (options_.momentNoise * options_.momentNoise);
   }
 
-  /// One after the other, each the one that adds most to what the ones before tell.
-  void choose(const std::vector<DynamometerExperiment>& all, DynamometerPlan& plan) const {
+  /// One after the other, each the one that adds most to what the ones before tell; none twice,
+  /// since its error of the model would be the same again.
+  void choose(std::vector<DynamometerExperiment> all, DynamometerPlan& plan) const {
     const auto p = static_cast<Index>(selection_.size());
+    const auto asked = static_cast<Index>(plan.parameters.size());
     Eigen::VectorXd sd(p);
-    for (Index i = 0; i < p; ++i) sd[i] = plan.parameters[static_cast<std::size_t>(i)].sd;
-    // in units of prior deviations I + Λ is S I S + 1
-    const auto scaled = [&](const Eigen::MatrixXd& fisher) -> Eigen::LLT<Eigen::MatrixXd> {
+    for (Index i = 0; i < p; ++i) {
+      sd[i] = catalogue_.parameters()[selection_[static_cast<std::size_t>(i)]].sd;
+    }
+    // in units of prior deviations I + Λ is S I S + 1; covariance of what is asked for
+    const auto covariance = [&](const Eigen::MatrixXd& fisher) -> Eigen::MatrixXd {
       Eigen::MatrixXd A = sd.asDiagonal() * fisher * sd.asDiagonal();
       A.diagonal().array() += 1;
-      return A.llt();
+      return A.llt().solve(Eigen::MatrixXd::Identity(p, p)).topLeftCorner(asked, asked);
     };
     const auto logDeterminant = [&](const Eigen::MatrixXd& fisher) {
-      return 2 * scaled(fisher).matrixLLT().diagonal().array().log().sum();
+      return 2 * covariance(fisher).llt().matrixLLT().diagonal().array().log().sum();
     };
     Eigen::MatrixXd known = Eigen::MatrixXd::Zero(p, p);
-    for (int n = 0; n < options_.count; ++n) {
+    for (int n = 0; n < options_.count && !all.empty(); ++n) {
       const double now = logDeterminant(known);
-      std::size_t best = 0;
+      auto best = all.begin();
       double most = -1;
-      for (std::size_t i = 0; i < all.size(); ++i) {
-        const double gain = (logDeterminant(known + all[i].fisher) - now) / 2;
+      for (auto one = all.begin(); one != all.end(); ++one) {
+        const double gain = (now - logDeterminant(known + one->fisher)) / 2;
         if (gain <= most) continue;
         most = gain;
-        best = i;
+        best = one;
       }
-      known += all[best].fisher;
-      plan.chosen.push_back(all[best]);
+      known += best->fisher;
       plan.information.push_back(most);
-      plan.bounds.emplace_back(
-          sd.array() *
-          scaled(known).solve(Eigen::MatrixXd::Identity(p, p)).diagonal().array().sqrt());
+      plan.bounds.emplace_back(sd.head(asked).array() *
+                               covariance(known).diagonal().array().sqrt());
+      plan.chosen.push_back(std::move(*best));
+      all.erase(best);
     }
   }
 
@@ -266,7 +279,8 @@ class Planner {
   const SimulationOptions& simulation_;
   const bio::Coordinate& coordinate_;
   bio::ParameterCatalogue catalogue_;
-  std::vector<std::size_t> selection_;
+  std::vector<std::size_t> selection_;  ///< what is asked for, then nuisance parameters
+  std::size_t asked_ = 0;
 };
 
 }  // namespace
@@ -307,6 +321,7 @@ void addDynamometerOptions(CLI::App& options, DynamometerOptions& dynamometer) {
 
 ExitStatus designOnDynamometer(const CommandContext& context, const std::string& modelFile,
                                const std::vector<std::string>& parameters,
+                               const std::vector<std::string>& nuisance,
                                const DynamometerOptions& options, double rate,
                                const SimulationOptions& typed) {
   if (!(options.momentNoise > 0 && std::isfinite(options.momentNoise))) {
@@ -321,7 +336,7 @@ ExitStatus designOnDynamometer(const CommandContext& context, const std::string&
   SimulationOptions simulation = typed;
   simulation.prescribed = {options.coordinate};
   const bio::MusculoskeletalSystem arm = movableSystem(model, modelFile, simulation, summary);
-  Planner planner(context, model, arm, options, rate, simulation, parameters);
+  Planner planner(context, model, arm, options, rate, simulation, parameters, nuisance);
   const bool turns = planner.coordinate().isRotation;
   const DynamometerPlan plan = planner.plan();
   for (std::size_t n = 0; n < plan.chosen.size(); ++n) {

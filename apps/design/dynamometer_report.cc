@@ -94,7 +94,8 @@ Report dynamometerReport(const DynamometerPlan& plan, const DynamometerOptions& 
   report.details.emplace_back(std::move(table));
   report.details.emplace_back(Paragraph{fmt::format(
       "Bounds are the Cramér–Rao bounds of all that was done up to there, with the parameters' "
-      "default priors and a noise of {:g} N m (independent samples) of the moment. % MVC is the "
+      "default priors (as of --nuisance), if nothing else is unknown, and a noise of {:g} N m "
+      "(independent samples) of the moment. % MVC is the "
       "excitation: EMG over that of a maximum contraction. The antagonists are taken to rest; "
       "record them, too. experiment_N.csv are the experiments as trials: to be filled with what "
       "was recorded, {}.moment above all.",

@@ -3,6 +3,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "support/run_program.h"
 #include "support/scratch_folder.h"
@@ -92,9 +93,21 @@ TEST(DesignCommand, RanksExperimentsOfADynamometer) {
     EXPECT_EQ(summary["bound_after"][name], before);
     EXPECT_LT(before, 0.5 * summary["bound_before"][name].get<double>()) << name;
   }
-  // one of each group: a flexor and an extensor are asked for
-  EXPECT_NE(summary["experiments"][0]["muscles"], summary["experiments"][1]["muscles"]);
+  // none twice
+  EXPECT_NE(summary["experiments"][0]["instruction"], summary["experiments"][1]["instruction"]);
   EXPECT_THAT(summary["experiments"][0]["instruction"].get<std::string>(), HasSubstr("50 % MVC"));
+  // where excitations are uncertain, each group has to show what it can do
+  const ProgramResult unsure = support::runFisherHill(
+      {"design", "models/elbow8.osim", "--dynamometer", "elbow_flexion", "--parameters",
+       "BIClong.max_isometric_force,TRIlong.max_isometric_force", "--nuisance", "emg.*.gain",
+       "--angles", "40deg,100deg", "--speeds", "60deg", "--efforts", "50", "--experiments", "4",
+       "--step", "0.01", "--json"});
+  ASSERT_EQ(unsure.status, 0) << unsure.err;
+  const auto wide = nlohmann::json::parse(unsure.out);
+  std::set<std::string> groups;
+  for (const auto& one : wide["experiments"]) groups.insert(one["muscles"]);
+  EXPECT_TRUE(groups.contains("flexors") && groups.contains("extensors"));
+  EXPECT_GT(wide["bound_after"]["TRIlong.max_isometric_force"], summary["bound_after"][names[1]]);
   const std::string told = (scratch / "told").string();
   const ProgramResult sensitivity = support::runFisherHill(
       {"sensitivity", "models/elbow8.osim", out + "/experiment_1.csv", "--prescribe",
@@ -119,6 +132,7 @@ TEST(DesignCommand, RefusesExperimentsThatADynamometerCannotDo) {
   };
   refused({}, "either TRIAL or --dynamometer is required");
   refused({"emg_data/curl_slow.sto", "--dynamometer", "elbow_flexion"}, "and not both");
+  refused({"--dynamometer", "elbow_flexion", "--priors"}, "cannot be combined with --dynamometer");
   refused({"--dynamometer", "knee"}, "knee");
   refused({"--dynamometer", "elbow_flexion", "--angles", "400deg"}, "is outside the range");
   refused({"--dynamometer", "elbow_flexion", "--angles", "x"}, "--angles: ");

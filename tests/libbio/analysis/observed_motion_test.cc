@@ -101,7 +101,7 @@ TEST(ObservedMotion, PennationFollowsFromTheFibreLength) {
   const Observed o({"elbow_flexion"});
   const std::string root = std::string(FISHERHILL_SOURCE_DIR) + "/models/elbow8";
   for (const char* file : {"", "_Thelen2003", "_Millard2012", "_DeGrooteFregly2016"}) {
-    Observed other = o;
+    Observed other({"elbow_flexion"});
     other.model = readOsim(root + file + ".osim");
     other.options = {{{"elbow_flexion"}, {}}, {}, {}};
     const MusculoskeletalSystem system(other.model, other.options);
