@@ -35,19 +35,32 @@ double rmse(const bio::TrialSet* set, const Eigen::MatrixXd& predicted) {
   return set && predicted.size() > 0 ? std::sqrt(set->meanSquare(predicted)) : NAN;
 }
 
+/// Latent excitations {muscle: (sd, distance of knots [s])} instead of what the trials say, if any.
+std::vector<bio::Trial> declaring(std::vector<bio::Trial> trials, const Pairs& latent) {
+  for (bio::Trial& trial : trials) {
+    if (!latent.empty()) trial.latent.clear();
+    for (const auto& [muscle, values] : latent) {
+      trial.latent.push_back({muscle, values.first, values.second});
+    }
+  }
+  return trials;
+}
+
 py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& trials,
                      const std::vector<std::string>& parameters,
                      const std::vector<bio::Trial>& holdOut, std::optional<double> noise,
                      bool priors, const Pairs& prior, const Pairs& bounds, const std::string& loss,
-                     bool ownStart, int starts, std::uint64_t seed, int threads,
-                     const Names& coordinate, const std::map<std::string, double>& lock,
-                     const std::string& integrator, std::optional<double> step) {
+                     bool ownStart, const Pairs& latent, int starts, std::uint64_t seed,
+                     int threads, const Names& coordinate,
+                     const std::map<std::string, double>& lock, const std::string& integrator,
+                     std::optional<double> step) {
   const SystemChoice choice = armChoice(model, trials, coordinate, lock, integrator, step);
   for (const auto* set : {&trials, &holdOut})
     for (const bio::Trial& trial : *set) mustBeOfTheModelAsItIs(trial);
   bio::CalibrationOptions options;
   options.trials.parameters = parameters;
   options.trials.ownStart = ownStart;
+  options.trials.latent = true;
   options.trials.simulation = choice.simulation();
   options.trials.simulation.duration = 1;
   options.trials.threads = threads;
@@ -62,7 +75,7 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
   interruptible([&](const std::atomic<bool>& goOn) {
     options.progress = [&](double) { return goOn.load(); };
     stepped = bio::calibrateAtShorterSteps(
-        model, choice.armOptions(), trials, holdOut, options,
+        model, choice.armOptions(), declaring(trials, latent), holdOut, options,
         step ? std::numeric_limits<double>::infinity() : bio::shortestCalibrationStep);
   });
   const bio::Calibration& found = stepped.calibration;
@@ -98,7 +111,7 @@ void defineCalibration(py::module_& module) {
                    "parameters"_a, py::kw_only(), "hold_out"_a = std::vector<bio::Trial>(),
                    "noise"_a = py::none(), "priors"_a = true, "prior"_a = Pairs(),
                    "bounds"_a = Pairs(), "loss"_a = "gaussian", "own_start"_a = false,
-                   "starts"_a = 1, "seed"_a = 1, "threads"_a = 1);
+                   "latent"_a = Pairs(), "starts"_a = 1, "seed"_a = 1, "threads"_a = 1);
 }
 
 }  // namespace python

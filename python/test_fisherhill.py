@@ -132,6 +132,11 @@ class Arms(unittest.TestCase):
         self.assertLess(abs(fh.replay(found.model, made).q[-1, 0] - truth.q[-1, 0]), 1e-3)
         self.assertNotEqual(motion.q[-1, 0], truth.q[-1, 0])
 
+    def test_calibrate_pulls_a_muscle_without_an_electrode(self):
+        found = fh.calibrate(self.model, [self.trial], ["hand.mass"], noise=0.5 * DEGREE, latent={"BRD": (0.5, 5)}, step=0.01)
+        self.assertIn("emg.BRD.latent2", found.estimates)
+        self.assertNotEqual(found.estimates["emg.BRD.latent1"].value, 0)
+
     def test_discover_names_the_damping_that_is_hidden(self):
         trial = fh.load_trial(HIDDEN, self.model)
         found = fh.discover(self.model, [trial], noise=0.5 * DEGREE, max_effects=1)

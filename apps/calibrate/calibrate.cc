@@ -69,6 +69,11 @@ class Calibrate : public Command {
                   "estimate the initial angle and speed of each trial as well, of a held-out trial "
                   "with the parameters fixed")
         ->group(group);
+    list("--latent", latent_,
+         "muscle without an electrode, whose excitation is estimated about the trial's column: "
+         "standard deviation of its log-odds, and largest distance of knots [s]; instead of what "
+         "the trials say; may be repeated")
+        ->type_name("MUSCLE=SD:SECONDS");
     options.add_flag("--no-priors", noPriors_, "estimate without priors; bounds still apply")
         ->group(group);
     list("--prior", priors_,
@@ -201,6 +206,7 @@ class Calibrate : public Command {
     }
     options.trials.parameters = parameters_;
     options.trials.ownStart = ownStart_;
+    options.trials.latent = true;
     options.trials.initial = byName(simulation_.initial);
     options.trials.simulation = simulationOptions(simulation_, 0, 1);
     options.trials.threads = context.threads;
@@ -253,6 +259,12 @@ class Calibrate : public Command {
     for (const std::string& file : files) {
       trials.push_back(readTrialFile(file, model, simulation_, {.channels = true}));
       for (const std::string& warning : trials.back().warnings) summary.warn(warning);
+      if (!latent_.empty()) {
+        trials.back().latent.clear();
+        for (const NamedPair& one : parsePairs(latent_, "--latent")) {
+          trials.back().latent.push_back({one.name, one.first, one.second});
+        }
+      }
       for (const bio::MeasuredMotion& motion : trials.back().measured) {
         const std::string why = bio::whyNotUsable(motion);
         if (!why.empty())
@@ -369,7 +381,7 @@ class Calibrate : public Command {
 
   std::string model_;
   std::string muscleClass_;  ///< empty: as in the model
-  std::vector<std::string> trials_, heldOut_, parameters_, priors_, bounds_, profile_,
+  std::vector<std::string> trials_, heldOut_, parameters_, priors_, bounds_, profile_, latent_,
       channelNoise_;
   bool ownStart_ = false, noPriors_ = false, list_ = false;
   std::optional<double> noise_;

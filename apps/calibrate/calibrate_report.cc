@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibrate/calibrate_tables.h"
+#include "calibrate/held_out_prediction.h"
+#include "calibrate/latent_excitations.h"
 #include "output/angle_unit.h"
 #include "output/text.h"
 #include "report/interval_drawing.h"
@@ -138,6 +141,7 @@ Table estimateTable(const CalibrateFindings& f) {
   if (!f.options.profile.empty()) table.columns.push_back("profile interval");
   if (bootstrapped) table.columns.push_back("bootstrap interval");
   for (const bio::CalibratedParameter& one : f.calibration.parameters) {
+    if (isKnot(one)) continue;
     const auto& prior = one.asked.prior;
     std::vector<std::string> row = {
         one.asked.name,
@@ -168,6 +172,7 @@ VectorDrawing intervals(const CalibrateFindings& f) {
   const double z = info::normalQuantile(f.options.confidence);
   std::vector<IntervalRow> rows;
   for (const bio::CalibratedParameter& one : f.calibration.parameters) {
+    if (isKnot(one)) continue;
     const auto scaled = [&](double value) { return (value - one.model) / one.known; };
     IntervalRow row{.name = one.asked.name, .estimate = scaled(one.value)};
     if (const auto& prior = one.asked.prior) {
@@ -182,24 +187,6 @@ VectorDrawing intervals(const CalibrateFindings& f) {
           fmt::format("Bars are {:g} % confidence intervals. An estimate without a bar is not "
                       "identifiable or is at its bound.",
                       f.options.confidence * 100)};
-}
-
-Table correlationTable(const CalibrateFindings& f) {
-  Table table{"Correlations of the estimates", {""}, {}};
-  const auto& parameters = f.calibration.parameters;
-  for (const auto& one : parameters) table.columns.push_back(one.asked.name);
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    std::vector<std::string> row = {parameters[i].asked.name};
-    for (std::size_t j = 0; j < parameters.size(); ++j) {
-      row.push_back(
-          parameters[i].atBound || parameters[j].atBound
-              ? "–"
-              : fmt::format("{:.3f}", f.calibration.correlation(static_cast<Eigen::Index>(i),
-                                                                static_cast<Eigen::Index>(j))));
-    }
-    table.rows.push_back(std::move(row));
-  }
-  return table;
 }
 
 Figure profileFigure(const bio::CalibratedParameter& one) {
@@ -219,16 +206,6 @@ Figure profileFigure(const bio::CalibratedParameter& one) {
   }
   figure.series = {std::move(curve), std::move(threshold)};
   return figure;
-}
-
-Table startTable(const CalibrateFindings& f) {
-  Table table{"Starts", {"start", "cost [nats]", "ended"}, {}};
-  for (std::size_t i = 0; i < f.calibration.starts.size(); ++i) {
-    const info::StartOutcome& one = f.calibration.starts[i];
-    table.rows.push_back(
-        {i == 0 ? "model" : fmt::format("{}", i + 1), numberText(one.cost, 7), one.why});
-  }
-  return table;
 }
 
 /// What remains is more than noise; empty where it is not.
@@ -360,15 +337,17 @@ Report calibrateReport(const CalibrateFindings& f) {
   report.details.push_back(Section{"Estimates"});
   report.details.push_back(estimateTable(f));
   for (const bio::CalibratedParameter& one : c.parameters) {
-    if (!one.why.empty()) report.details.push_back(Paragraph{one.why + "."});
+    if (!one.why.empty() && !isKnot(one)) report.details.push_back(Paragraph{one.why + "."});
   }
   report.details.emplace_back(intervals(f));
+  addLatent(f, report);
   if (c.parameters.size() > 1) report.details.push_back(correlationTable(f));
   for (const bio::CalibratedParameter& one : c.parameters) {
     if (one.profile) report.details.push_back(profileFigure(one));
   }
   if (f.heldOut) {
     report.details.push_back(Section{"Held-out trials"});
+    report.details.push_back(predictionTable(f));
     for (std::size_t i = 0; i < f.heldOut->series().size(); ++i) {
       report.details.push_back(overlay(*f.heldOut, i, c.heldOutBefore, c.heldOutAfter, "held out"));
     }

@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "calibrate/calibrate_report.h"
+#include "calibrate/held_out_prediction.h"
+#include "calibrate/latent_excitations.h"
 #include "output/angle_unit.h"
 #include "output/json_text.h"
 #include "output/text.h"
@@ -146,6 +148,8 @@ void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
     if (!one.why.empty() && !one.ofTrial) summary.warn(one.why);
   }
   summary.set("estimates", estimates);
+  tellLatent(f, summary);
+  tellPredictions(f, summary);
   const bool firstAreAngles = f.training.channels().front().areAngles;
   summary.set("noise_deg", firstAreAngles ? Json(c.noise.sd * radian) : Json(nullptr));
   summary.set("noise_is", f.options.noise ? "given" : "from the residuals");

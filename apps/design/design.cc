@@ -12,6 +12,7 @@
 #include "bio/calibration/trial_predictor.h"
 #include "bio/design/separating_design.h"
 #include "design/design_report.h"
+#include "design/dynamometer_design.h"
 #include "design/separating_report.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
@@ -43,8 +44,8 @@ class Design : public Command {
     addModelArgument(options, model_);
     options
         .add_option("TRIAL", trial_,
-                    "baseline trial to improve on: excitations, duration, initial state")
-        ->required()
+                    "baseline trial to improve on: excitations, duration, initial state; required "
+                    "unless --dynamometer is given")
         ->check(CLI::ExistingFile)
         ->type_name("");
     const auto names = [&](const std::string& name, std::vector<std::string>& target,
@@ -121,11 +122,16 @@ class Design : public Command {
     count("--monte-carlo", monteCarlo_,
           "number of simulated and estimated repetitions of the designed experiment, to confirm "
           "the bounds");
+    addDynamometerOptions(options, dynamometer_);
     addSimulationOptions(options, simulation_);
   }
 
   ExitStatus run(const CommandContext& context) override {
     check();
+    if (!dynamometer_.coordinate.empty()) {
+      return designOnDynamometer(context, model_, parameters_, nuisance_, dynamometer_, rate_Hz_,
+                                 simulation_);
+    }
     if (!separate_.empty()) return separate(context);
     OutputFolder folder(context, {"design.sto"});
     Summary summary(context);
@@ -234,6 +240,15 @@ class Design : public Command {
   }
 
   void check() const {
+    if (trial_.empty() == dynamometer_.coordinate.empty()) {
+      throw std::invalid_argument("either TRIAL or --dynamometer is required, and not both");
+    }
+    if (trial_.empty() && (!separate_.empty() || priors_ || !givenPriors_.empty() ||
+                           monteCarlo_ > 0 || !excite_.empty() || !range_.empty())) {
+      throw std::invalid_argument(
+          "--separate, --priors, --prior, --monte-carlo, --excite and --range cannot be combined "
+          "with --dynamometer");
+    }
     if (parameters_.empty() == separate_.empty()) {
       throw std::invalid_argument(
           "either --parameters or --separate is required, and not both (see --help)");
@@ -392,6 +407,7 @@ class Design : public Command {
   bio::DesignLimits limits_ = {};
   bio::DesignSearchSettings settings_ = {};
   int monteCarlo_ = 0;
+  DynamometerOptions dynamometer_;
   SimulationOptions simulation_;
 };
 

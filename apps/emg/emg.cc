@@ -8,6 +8,7 @@
 #include "bio/emg/emg.h"
 #include "bio/emg/emg_config.h"
 #include "bio/emg/emg_recordings.h"
+#include "bio/opensim/osim_file.h"
 #include "bio/tables/recording.h"
 #include "bio/tables/table_file.h"
 #include "output/result.h"
@@ -89,7 +90,27 @@ Figure measuredFigure(const bio::MeasuredCoordinate& measured) {
   return figure;
 }
 
-bio::Table trialOf(const bio::EmgResult& result, const std::vector<bio::MeasuredOptions>& columns) {
+// What the trial says of muscles without an electrode that a calibration may correct.
+std::string latentOf(const bio::EmgConfig& config) {
+  std::vector<bio::LatentDeclaration> declared;
+  for (const bio::UnrecordedMuscle& one : config.unrecorded) {
+    if (one.latent) declared.push_back(*one.latent);
+  }
+  return bio::latentHeader(declared);
+}
+
+// BODY.MARKER of the model that [markers] names.
+std::vector<std::string> markersOf(const bio::EmgConfigFile& file) {
+  std::vector<std::string> names;
+  if (!file.markers || file.markers->model.empty()) return names;
+  for (const bio::Marker& marker : bio::readOsim(file.markers->model).markers) {
+    names.push_back(marker.body + "." + marker.name);
+  }
+  return names;
+}
+
+bio::Table trialOf(const bio::EmgResult& result, const bio::EmgConfig& config) {
+  const std::vector<bio::MeasuredOptions>& columns = config.columns;
   bio::Table table;
   table.name = "excitations";
   table.columns = {"time"};
@@ -106,6 +127,9 @@ bio::Table trialOf(const bio::EmgResult& result, const std::vector<bio::Measured
   for (std::size_t k = 0; k < columns.size(); ++k) {
     table.columns.push_back(columns[k].coordinate);
   }
+  if (const std::string latent = latentOf(config); !latent.empty()) {
+    table.metadata["latent_excitation"] = latent;
+  }
   table.values.rightCols(result.columns.cols()) = result.columns;
   return table;
 }
@@ -120,7 +144,8 @@ class Emg : public Command {
   void addOptions(CLI::App& options) override {
     options
         .add_option("RAW", recordings_,
-                    "raw recording: text columns, Trigno export, .sto, .mot, .csv, .c3d or .xdf; "
+                    "raw recording: text columns, Trigno export, .sto, .mot, .csv, .c3d, .xdf or "
+                    ".trc; "
                     "further recordings of the same movement ([[recording]])")
         ->required()
         ->check(CLI::ExistingFile)
@@ -142,14 +167,16 @@ class Emg : public Command {
     for (const bio::FullDeclaration& full : file.full) {
       if (!full.mvcFile.empty()) summary.addInput(full.mvcFile);
     }
+    if (file.markers && !file.markers->model.empty()) summary.addInput(file.markers->model);
     const bio::JoinedRecordings joined = bio::readRecordings(file, recordings_);
-    const bio::EmgConfig config = bio::emgConfigFor(file, joined.recording);
+    const bio::EmgConfig config = bio::emgConfigFor(file, joined.recording, markersOf(file));
     const bio::EmgResult result = bio::excitationsFromEmg(joined.recording, config);
     for (const std::string& warning : result.warnings) summary.warn(warning);
     folder.writeFile("excitations.sto", [&](const std::filesystem::path& path) {
-      bio::writeTable(trialOf(result, config.columns), path);
+      bio::writeTable(trialOf(result, config), path);
     });
     tell(joined, result, summary);
+    tellUnrecorded(config, summary);
     deliver(context, summary, reportOn(result), folder);
     return ExitStatus::done;
   }
@@ -179,6 +206,20 @@ class Emg : public Command {
       summary.set("measured_fraction_missing", result.measured->notMeasured);
     }
     summary.set("remarks", result.remarks);
+  }
+
+  static void tellUnrecorded(const bio::EmgConfig& config, Summary& summary) {
+    if (config.unrecorded.empty()) return;
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const bio::UnrecordedMuscle& one : config.unrecorded) {
+      nlohmann::ordered_json json = {{"muscle", one.muscle}, {"excitation", sourceOf(one)}};
+      if (one.latent) {
+        json["latent_sd"] = one.latent->sd;
+        json["knots_s"] = one.latent->spacing;
+      }
+      list.push_back(json);
+    }
+    summary.set("muscles_without_electrode", list);
   }
 
   static nlohmann::ordered_json placedIn(const bio::JoinedRecordings& joined) {

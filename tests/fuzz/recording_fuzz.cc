@@ -8,7 +8,8 @@ namespace {
 // Nothing declared, or the first two columns as a file without a header needs them.
 bio::RecordingLayout layoutOf(std::uint8_t choice) {
   using enum bio::RecordingFormat;
-  constexpr std::array formats = {automatic, columns, trigno, table};
+  constexpr std::array formats = {automatic, columns, trigno,    table,
+                                  emgworks,  noraxon, automatic, automatic};
   bio::RecordingLayout layout;
   layout.format = formats[choice % formats.size()];
   if (choice & 0x80) {

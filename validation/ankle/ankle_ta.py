@@ -103,6 +103,12 @@ def main():
     for name, one in summary["estimates"].items():
         sd = "no interval" if one["sd"] is None else f"± {one['sd']:.3g}"
         print(f"  {name} = {one['value']:.4g} {sd} {one['unit']} (was {one['model']:.4g})")
+    for one in summary["held_out_predictions"]:
+        low, high = one["interval"]
+        print(f"  {one['file'].split('/')[-1]}, peak of {one['channel']}: measured {one['peak_measured']:.4g} {one['unit']}, predicted "
+              f"{one['peak_predicted']:.4g}, 95 % interval {low:.4g} to {high:.4g} (sd of estimates {one['sd_of_estimates']:.2g}, "
+              f"of a sample {one['noise']:.2g}): {'holds it' if one['holds_peak'] else 'does not hold it'}; "
+              f"{100 * one['share_of_samples_held']:.0f} % of the samples lie in their intervals")
     shape = summary["estimates"]["emg.nonlinearity"]["value"]
     for name in TRAINING + HELD_OUT + STRETCHED:
         trial = drive(files[name], shape, trials / f"{name}_driven.csv")

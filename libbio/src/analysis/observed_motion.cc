@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -47,6 +48,7 @@ int sourceOf(const MusculoskeletalSystem& arm, const Observable& what) {
       if (index < 0) refuse("the model has no such marker");
       break;
     case Kind::fibreLength:
+    case Kind::pennation:
     case Kind::tendonForce:
     case Kind::activation:
       index = placeIn(arm.muscles(), what.of);
@@ -74,6 +76,25 @@ LinearWeights linear(const std::vector<double>& time, const MotionWeights& w, do
   return {w.row, std::clamp((t - time[k]) / (time[k + 1] - time[k]), 0.0, 1.0)};
 }
 
+/// sin α = w/ℓ, dα = (dw − sin α dℓ)/(ℓ cos α). A slack muscle with a rigid tendon has ℓ = w for
+/// whatever parameters, so that α stays a right angle.
+void pennationAt(const SimulatedMuscle& muscle, std::size_t place, const LinearWeights& between,
+                 const Trajectory& motion, const SensitivityTrajectory* s, Index at,
+                 ObservedMotion::Linearised& all) {
+  const double l = between.value(motion.fibreLength.row(static_cast<Index>(place)));
+  const double w = muscle.thickness();
+  const double sine = std::min(1.0, w / l);
+  all.values[at] = std::asin(sine);
+  if (!s) return;
+  const double cosine = std::sqrt(1 - sine * sine);
+  if (!(cosine > 1e-9)) {
+    all.gamma.row(at).setZero();
+    return;
+  }
+  all.gamma.row(at) =
+      (s->thickness[place] - sine * between.rows(s->fibreLength[place])) / (l * cosine);
+}
+
 }  // namespace
 
 ObservedMotion::ObservedMotion(const MusculoskeletalSystem& arm, std::vector<ObservedSeries> series)
@@ -83,8 +104,8 @@ ObservedMotion::ObservedMotion(const MusculoskeletalSystem& arm, std::vector<Obs
     size_ += one.times.size();
     const Kind kind = one.what.kind;
     needsReactions_ = needsReactions_ || kind == Kind::moment;
-    needsMuscles_ = needsMuscles_ || kind == Kind::fibreLength || kind == Kind::tendonForce ||
-                    kind == Kind::activation;
+    needsMuscles_ = needsMuscles_ || kind == Kind::fibreLength || kind == Kind::pennation ||
+                    kind == Kind::tendonForce || kind == Kind::activation;
   }
 }
 
@@ -142,6 +163,10 @@ ObservedMotion::Linearised ObservedMotion::evaluate(const Trajectory& motion,
           break;
         case Kind::fibreLength:
           straight(1, motion.fibreLength.row(index), &SensitivityTrajectory::fibreLength);
+          break;
+        case Kind::pennation:
+          pennationAt(arm_->muscles()[place].muscle, place, linear(motion.time, *w, times[k]),
+                      motion, s, at, all);
           break;
         case Kind::tendonForce:
           straight(1, muscles.tendonForce.row(index), &SensitivityTrajectory::tendonForce);

@@ -278,6 +278,10 @@ class Calibrator {
         judged({asked_, known_}, training_, estimate_.parameters, data, options_.confidence);
     result_.parameters = std::move(judgement.parameters);
     result_.correlation = std::move(judgement.correlation);
+    if (heldOut_) {
+      result_.heldOutSd = predictionSd(*heldOut_, result_.heldOutValues,
+                                       judgement.covariance.topLeftCorner(common(), common()));
+    }
   }
 
   void profiles() {

@@ -83,8 +83,11 @@ SteppedCalibration calibrateAtShorterSteps(const Model& model, const SystemOptio
   for (bool isFirst = true;; isFirst = false) {
     const TrialSetOptions& trials = result.options.trials;
     result.training = std::make_unique<const TrialSet>(model, arm, training, trials);
-    if (!heldOut.empty())
-      result.heldOut = std::make_unique<const TrialSet>(model, arm, heldOut, trials);
+    if (!heldOut.empty()) {
+      TrialSetOptions tested = trials;
+      tested.latent = false;  // a prediction knows only what is expected
+      result.heldOut = std::make_unique<const TrialSet>(model, arm, heldOut, tested);
+    }
     const double half = trials.simulation.step / 2;
     bool isFinal = true;
     result.options.isFinal = [&](const Calibration& now) {

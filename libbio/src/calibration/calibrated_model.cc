@@ -14,7 +14,8 @@ using Eigen::Index;
 
 bool isOfEmg(const Calibration& calibration) {
   for (const CalibratedParameter& one : calibration.parameters)
-    if (one.asked.name.starts_with("emg.")) return true;
+    if (one.asked.name.starts_with("emg.") || one.asked.name.find(".latent") != std::string::npos)
+      return true;
   return false;
 }
 
@@ -83,7 +84,8 @@ CalibratedModel calibratedModel(const TrialSet& training, const TrialSet* heldOu
                                           one.starts.end());
       }
       if (isDriven) {
-        one.driven = drivenTable(trial, set->arm(), calibration.calibrated->mapping);
+        one.driven = drivenTable(trial, set->arm(),
+                                 set->mappingAt(i, isHeldOut ? calibration.heldOutValues : theta));
         TrialOptions options;
         for (const MeasuredMotion& course : trial.prescribed) {
           if (course.times.size() > 1) options.prescribed.push_back(course.coordinate);

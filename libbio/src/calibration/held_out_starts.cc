@@ -49,4 +49,10 @@ VectorXd valuesOfHeldOut(const TrialSet& heldOut, const VectorXd& common, const 
   }
 }
 
+VectorXd predictionSd(const TrialSet& heldOut, const VectorXd& values, const MatrixXd& covariance) {
+  const MatrixXd gamma =
+      heldOut.predictor().withSensitivities(values).gamma.leftCols(covariance.cols());
+  return (gamma * covariance).cwiseProduct(gamma).rowwise().sum().cwiseMax(0).cwiseSqrt();
+}
+
 }  // namespace bio

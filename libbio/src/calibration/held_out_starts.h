@@ -18,4 +18,9 @@ Eigen::VectorXd valuesOfHeldOut(const TrialSet& heldOut, const Eigen::VectorXd& 
                                 const CalibrationOptions& options,
                                 const info::EstimateOptions& estimate);
 
+/// √diag(Γ Σ Γᵀ) of their samples at all values of theirs.
+/// @param covariance  Σ of the common parameters
+Eigen::VectorXd predictionSd(const TrialSet& heldOut, const Eigen::VectorXd& values,
+                             const Eigen::MatrixXd& covariance);
+
 }  // namespace bio

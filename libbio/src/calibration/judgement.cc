@@ -37,7 +37,7 @@ class Judge {
 
   Judgement of(const MatrixXd& data) const {
     const Index count = estimate_.size();
-    Judgement result{{}, MatrixXd::Identity(count, count)};
+    Judgement result{{}, MatrixXd::Identity(count, count), MatrixXd::Zero(count, count)};
     std::vector<Index> free;
     for (Index i = 0; i < count; ++i) {
       if (!isAtBound(i)) free.push_back(i);
@@ -61,6 +61,7 @@ class Judge {
                             training_.hasOnlyAngles() ? "the measured angles" : "the measurements");
       const MatrixXd covariance = scaledInverse(all, known);
       sd = covariance.diagonal().cwiseSqrt();
+      result.covariance(free, free) = covariance;
       result.correlation(free, free) = covariance.array() / (sd * sd.transpose()).array();
     }
     for (Index i = 0; i < count; ++i) {

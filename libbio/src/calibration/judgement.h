@@ -12,6 +12,7 @@ namespace bio {
 struct Judgement {
   std::vector<CalibratedParameter> parameters;
   Eigen::MatrixXd correlation;  ///< of all estimates; 0 for a parameter at a bound
+  Eigen::MatrixXd covariance;   ///< likewise
 };
 
 /// @param estimate   θ

@@ -20,6 +20,34 @@ bool isStart(const ModelParameter& parameter) {
   return std::holds_alternative<InitialTarget>(parameter.targets.front());
 }
 
+bool isLatent(const ModelParameter& parameter) {
+  const auto* emg = std::get_if<EmgTarget>(&parameter.targets.front());
+  return emg && emg->what == EmgTarget::What::latent;
+}
+
+EmgMapping latentMapping(const Trial& trial, const MusculoskeletalSystem& arm) {
+  EmgMapping mapping;
+  const std::vector<std::string> muscles = muscleNames(arm);
+  for (const LatentDeclaration& one : trial.latent) {
+    if (std::find(muscles.begin(), muscles.end(), one.muscle) == muscles.end()) {
+      throw std::invalid_argument(fmt::format(
+          "{}: latent excitation of '{}': no free or prescribed coordinate moves this muscle",
+          trial.file, one.muscle));
+    }
+    try {
+      const bool isNew =
+          mapping.latent
+              .emplace(one.muscle,
+                       latentExcitation(one, trial.times[0], trial.times[trial.times.size() - 1]))
+              .second;
+      if (!isNew) throw std::invalid_argument("latent excitation of '" + one.muscle + "': twice");
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("{}: {}", trial.file, error.what()));
+    }
+  }
+  return mapping;
+}
+
 }  // namespace
 
 std::vector<std::size_t> selectDistinct(const ParameterCatalogue& catalogue,
@@ -48,13 +76,12 @@ TrialSet::TrialSet(const Model& model, const SystemOptions& arm, std::vector<Tri
           trial.file + ": has an external torque, which calibration does not take into account");
     }
     beginnings_.push_back(beginningOf(trial, model, *arm_, options.initial));
-    catalogues_.push_back(
-        std::make_unique<const ParameterCatalogue>(model, *arm_, beginnings_.back().point));
+    catalogues_.push_back(std::make_unique<const ParameterCatalogue>(
+        model, *arm_, beginnings_.back().point,
+        options.latent ? latentMapping(trial, *arm_) : EmgMapping{}));
   }
   collectParameters(options);
   collectSeries(model);
-  std::vector<std::size_t> all = selection_;
-  all.insert(all.end(), own_.begin(), own_.end());
   for (std::size_t i = 0; i < trials_.size(); ++i) {
     const Trial& trial = trials_[i];
     SimulationOptions simulation = options.simulation;
@@ -74,7 +101,7 @@ TrialSet::TrialSet(const Model& model, const SystemOptions& arm, std::vector<Tri
       throw std::invalid_argument(fmt::format("{}: {}", trial.file, error.what()));
     }
     experiments_.emplace_back(*catalogues_[i], arm, excitationOf(trial, *arm_), std::move(observed),
-                              all, simulation);
+                              selectionOf(i), simulation);
     begin_.push_back(begin_.back() + experiments_.back().size());
   }
 }
@@ -118,9 +145,14 @@ void TrialSet::collectSeries(const Model& model) {
 
 void TrialSet::collectParameters(const TrialSetOptions& options) {
   const ParameterCatalogue& catalogue = *catalogues_.front();
-  if (!options.parameters.empty() || !options.ownStart) {
+  const bool anyLatent =
+      options.latent &&
+      std::any_of(trials_.begin(), trials_.end(), [](const Trial& t) { return !t.latent.empty(); });
+  if (!options.parameters.empty() || !(options.ownStart || anyLatent)) {
     selection_ = selectDistinct(catalogue, options.parameters);
   }
+  // those belong to single trials, and are estimated anyway
+  std::erase_if(selection_, [&](std::size_t i) { return isLatent(catalogue.parameters()[i]); });
   for (const std::size_t index : selection_) {
     const ModelParameter& parameter = catalogue.parameters()[index];
     if (isStart(parameter) && (trials_.size() > 1 || options.ownStart)) {
@@ -128,39 +160,75 @@ void TrialSet::collectParameters(const TrialSetOptions& options) {
           "parameter '{}' differs between trials and cannot be common to all", parameter.name));
     }
   }
-  if (options.ownStart) {
-    for (std::size_t i = 0; i < catalogue.parameters().size(); ++i) {
-      const ModelParameter& parameter = catalogue.parameters()[i];
-      if (isStart(parameter) && !parameter.isGroup) own_.push_back(i);
-    }
-  }
   parameters_ = catalogue.asEstimated(selection_, false);
-  std::vector<double> known;
-  for (const std::size_t index : selection_) {
-    known.push_back(catalogue.parameters()[index].sd);
+  collectOwn(options);
+  known_.resize(static_cast<Index>(parameters_.size()));
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    known_[static_cast<Index>(i)] =
+        i < selection_.size() ? catalogue.parameters()[selection_[i]].sd : parameters_[i].prior->sd;
   }
-  for (std::size_t i = 0; i < trials_.size() && !own_.empty(); ++i) {
-    for (info::Parameter parameter : catalogues_[i]->asEstimated(own_, true)) {
+}
+
+void TrialSet::collectOwn(const TrialSetOptions& options) {
+  own_.resize(trials_.size());
+  for (std::size_t i = 0; i < trials_.size(); ++i) {
+    const auto& all = catalogues_[i]->parameters();
+    ownBegin_.push_back(static_cast<Index>(parameters_.size()));
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      if (all[k].isGroup) continue;
+      if ((options.ownStart && isStart(all[k])) || isLatent(all[k])) own_[i].push_back(k);
+    }
+    addLatent(i, parameters_.size());
+    for (info::Parameter parameter : catalogues_[i]->asEstimated(own_[i], true)) {
       if (trials_.size() > 1) parameter.name = fmt::format("trial{}.{}", i + 1, parameter.name);
-      known.push_back(parameter.prior->sd);
       parameters_.push_back(std::move(parameter));
     }
   }
-  known_ = Eigen::VectorXd::Map(known.data(), static_cast<Index>(known.size()));
+}
+
+void TrialSet::addLatent(std::size_t trial, std::size_t first) {
+  const auto& all = catalogues_[trial]->parameters();
+  const EmgMapping mapping = catalogues_[trial]->nominal().mapping;
+  const Trial& of = trials_[trial];
+  for (std::size_t k = 0; k < own_[trial].size(); ++k) {
+    const ModelParameter& one = all[own_[trial][k]];
+    if (!isLatent(one)) continue;
+    const EmgTarget& target = std::get<EmgTarget>(one.targets.front());
+    if (target.knot != 0) continue;
+    const auto declared =
+        std::find_if(of.latent.begin(), of.latent.end(),
+                     [&](const LatentDeclaration& d) { return d.muscle == target.muscle; });
+    const auto column = std::find(of.muscles.begin(), of.muscles.end(), target.muscle);
+    const std::vector<double>& knots = mapping.latent.at(target.muscle).knots;
+    Eigen::VectorXd atKnots(static_cast<Index>(knots.size()));
+    for (Index j = 0; j < atKnots.size(); ++j) {
+      atKnots[j] =
+          excitationAt(of, column - of.muscles.begin(), knots[static_cast<std::size_t>(j)]);
+    }
+    latent_.push_back({trial, *declared, knots, std::move(atKnots), first + k});
+  }
+}
+
+std::vector<std::size_t> TrialSet::selectionOf(std::size_t trial) const {
+  std::vector<std::size_t> all = selection_;
+  all.insert(all.end(), own_.at(trial).begin(), own_.at(trial).end());
+  return all;
 }
 
 Eigen::VectorXd TrialSet::thetaOf(std::size_t trial, const Eigen::VectorXd& theta) const {
   const auto common = static_cast<Index>(selection_.size());
-  const auto own = static_cast<Index>(own_.size());
+  const auto own = static_cast<Index>(own_[trial].size());
   Eigen::VectorXd part(common + own);
-  part << theta.head(common), theta.segment(common + static_cast<Index>(trial) * own, own);
+  part << theta.head(common), theta.segment(ownBegin_[trial], own);
   return part;
 }
 
 StartPoint TrialSet::startAt(std::size_t trial, const Eigen::VectorXd& theta) const {
-  std::vector<std::size_t> all = selection_;
-  all.insert(all.end(), own_.begin(), own_.end());
-  return catalogues_.at(trial)->at(all, thetaOf(trial, theta)).start;
+  return catalogues_.at(trial)->at(selectionOf(trial), thetaOf(trial, theta)).start;
+}
+
+EmgMapping TrialSet::mappingAt(std::size_t trial, const Eigen::VectorXd& theta) const {
+  return catalogues_.at(trial)->at(selectionOf(trial), thetaOf(trial, theta)).mapping;
 }
 
 Eigen::MatrixXd TrialSet::measured() const {
@@ -202,12 +270,12 @@ TrialSet::Cost TrialSet::leastSquares(const Eigen::VectorXd& theta,
   });
   cost.gradient.setZero(theta.size());
   const auto common = static_cast<Index>(selection_.size());
-  const auto own = static_cast<Index>(own_.size());
-  for (Index i = 0; i < std::ssize(cost.trials); ++i) {
-    const CostGradient& trial = cost.trials[static_cast<std::size_t>(i)];
+  for (std::size_t i = 0; i < cost.trials.size(); ++i) {
+    const CostGradient& trial = cost.trials[i];
+    const auto own = static_cast<Index>(own_[i].size());
     cost.value += trial.cost;
     cost.gradient.head(common) += trial.gradient.head(common);
-    cost.gradient.segment(common + i * own, own) += trial.gradient.tail(own);
+    cost.gradient.segment(ownBegin_[i], own) += trial.gradient.tail(own);
   }
   return cost;
 }
@@ -237,14 +305,14 @@ info::Predictor TrialSet::predictor(const std::vector<TrialPredictor>& experimen
     info::Prediction all{Eigen::MatrixXd(1, begin_.back()),
                          Eigen::MatrixXd::Zero(begin_.back(), theta.size())};
     const auto common = static_cast<Index>(selection_.size());
-    const auto own = static_cast<Index>(own_.size());
     info::parallelFor(static_cast<int>(trials_.size()), threads_, [&](int i) {
       const auto t = static_cast<std::size_t>(i);
       const Index first = begin_[t], count = begin_[t + 1] - begin_[t];
+      const auto own = static_cast<Index>(own_[t].size());
       const TrialPredictor::Linearised part = experiments[t].withSensitivities(thetaOf(t, theta));
       all.outputs.middleCols(first, count) = part.outputs.transpose();
       all.gamma.block(first, 0, count, common) = part.gamma.leftCols(common);
-      all.gamma.block(first, common + i * own, count, own) = part.gamma.rightCols(own);
+      all.gamma.block(first, ownBegin_[t], count, own) = part.gamma.rightCols(own);
     });
     return all;
   };

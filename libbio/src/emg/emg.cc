@@ -42,6 +42,32 @@ void check(const EmgConfig& config) {
   }
 }
 
+void checkUnrecorded(const EmgConfig& config) {
+  std::vector<std::string> taken;
+  for (const Electrode& electrode : config.electrodes) {
+    for (const auto& [muscle, weight] : electrode.muscles) taken.push_back(muscle);
+  }
+  for (const UnrecordedMuscle& one : config.unrecorded) {
+    require(std::find(taken.begin(), taken.end(), one.muscle) == taken.end(),
+            fmt::format("muscle '{}': has an electrode or is given twice, must be once without one",
+                        one.muscle));
+    taken.push_back(one.muscle);
+    require(one.factor > 0 && one.factor <= 1,
+            fmt::format("muscle '{}': factor {}, must be > 0 and ≤ 1", one.muscle, one.factor));
+    require(one.constant >= 0 && one.constant <= 1,
+            fmt::format("muscle '{}': constant {}, must be 0 to 1", one.muscle, one.constant));
+    for (const auto& [channel, weight] : one.synergy) {
+      const bool isKnown = std::any_of(config.electrodes.begin(), config.electrodes.end(),
+                                       [&](const Electrode& e) { return e.channel == channel; });
+      require(isKnown, fmt::format("muscle '{}': no electrode has the channel '{}', must be one",
+                                   one.muscle, channel));
+      require(weight > 0 && std::isfinite(weight),
+              fmt::format("muscle '{}', electrode '{}': weight {}, must be > 0", one.muscle,
+                          channel, weight));
+    }
+  }
+}
+
 // What counts as 1.
 void setFull(const Electrode& electrode, ElectrodeTrace& trace) {
   if (const auto* mvc = std::get_if<MvcValue>(&electrode.full)) {
@@ -113,6 +139,24 @@ Eigen::MatrixXd columnsAt(const Recording& recording, const EmgConfig& config,
   return out;
 }
 
+// Columns of the muscles without an electrode.
+void addUnrecorded(const EmgConfig& config, const Eigen::MatrixXd& byElectrode, EmgResult& out) {
+  for (const UnrecordedMuscle& one : config.unrecorded) {
+    Eigen::VectorXd rows = Eigen::VectorXd::Constant(out.time.size(), one.constant);
+    double sum = 0;
+    for (const auto& [channel, weight] : one.synergy) sum += weight;
+    if (sum > 0) rows.setZero();
+    for (const auto& [channel, weight] : one.synergy) {
+      const auto at = std::find_if(config.electrodes.begin(), config.electrodes.end(),
+                                   [&](const Electrode& e) { return e.channel == channel; });
+      rows += one.factor * weight / sum * byElectrode.col(at - config.electrodes.begin());
+    }
+    out.muscles.push_back(one.muscle);
+    out.excitations.conservativeResize(Eigen::NoChange, out.excitations.cols() + 1);
+    out.excitations.rightCols<1>() = rows.cwiseMin(1.0);  // rounding
+  }
+}
+
 std::vector<std::string> warningsOn(const Recording& recording, const EmgConfig& config) {
   std::vector<ReviewedChannel> channels;
   const ChannelUse use =
@@ -160,6 +204,7 @@ ElectrodeTrace emgEnvelope(const Channel& channel, const EmgConfig& config) {
 
 EmgResult excitationsFromEmg(const Recording& recording, const EmgConfig& config) {
   check(config);
+  checkUnrecorded(config);
   EmgResult out;
   // each electrode by itself, at its own rate
   for (const Electrode& electrode : config.electrodes) {
@@ -181,10 +226,12 @@ EmgResult excitationsFromEmg(const Recording& recording, const EmgConfig& config
   out.time = rowTimes(out.electrodes, config);
   out.excitations =
       Eigen::MatrixXd::Zero(out.time.size(), static_cast<Eigen::Index>(out.muscles.size()));
+  Eigen::MatrixXd byElectrode(out.time.size(), static_cast<Eigen::Index>(out.electrodes.size()));
   for (std::size_t i = 0; i < out.electrodes.size(); ++i) {
     const ElectrodeTrace& trace = out.electrodes[i];
     const Eigen::VectorXd rows = sampledAt(trace.excitation, trace.rate, trace.startTime,
                                            (out.time.array() - config.delay).matrix());
+    byElectrode.col(static_cast<Eigen::Index>(i)) = rows;
     for (const auto& [muscle, weight] : config.electrodes[i].muscles) {
       const auto column = std::find(out.muscles.begin(), out.muscles.end(), muscle);
       out.excitations.col(column - out.muscles.begin()) += weight * rows;
@@ -193,6 +240,7 @@ EmgResult excitationsFromEmg(const Recording& recording, const EmgConfig& config
   // 1 is exact for a weight of 1; rounding of a sum of weights must not count
   out.fractionSumAbove = (out.excitations.array() > 1 + 1e-12).cast<double>().mean();
   out.excitations = out.excitations.cwiseMin(1.0);
+  addUnrecorded(config, byElectrode, out);
   if (config.measured) {
     const Channel& channel = findChannel(recording, config.measured->channel);
     out.measured = measuredCoordinate(

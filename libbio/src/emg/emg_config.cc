@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "bio/tables/file_error.h"
+#include "emg/emg_config_parts.h"
 #include "emg/toml_table.h"
 
 namespace bio {
@@ -22,16 +23,20 @@ int orderOf(TomlTable& table, int standard) {
 }
 
 RecordingFormat formatOf(const std::string& word) {
-  for (const auto format : {RecordingFormat::columns, RecordingFormat::trigno,
-                            RecordingFormat::table, RecordingFormat::c3d, RecordingFormat::xdf}) {
+  for (const auto format :
+       {RecordingFormat::columns, RecordingFormat::trigno, RecordingFormat::table,
+        RecordingFormat::c3d, RecordingFormat::xdf, RecordingFormat::trc, RecordingFormat::emgworks,
+        RecordingFormat::noraxon}) {
     if (word == nameOf(format)) return format;
   }
   return RecordingFormat::automatic;
 }
 
 RecordingFormat readFormat(TomlTable& table) {
-  return formatOf(
-      table.word("format", {"automatic", "columns", "trigno", "table", "c3d", "xdf"}).value_or(""));
+  return formatOf(table
+                      .word("format", {"automatic", "columns", "trigno", "table", "c3d", "xdf",
+                                       "trc", "emgworks", "noraxon"})
+                      .value_or(""));
 }
 
 std::vector<ColumnDeclaration> readChannels(TomlTable& owner) {
@@ -277,11 +282,14 @@ EmgConfigFile readEmgConfig(const std::string& file) {
   readExcitation(root, out.emg);
   readMeasured(root, out);
   readColumns(root, out);
+  readUnrecorded(root, out);
+  readMarkers(root, out);
   root.finish();
   return out;
 }
 
-EmgConfig emgConfigFor(const EmgConfigFile& config, const Recording& recording) {
+EmgConfig emgConfigFor(const EmgConfigFile& config, const Recording& recording,
+                       const std::vector<std::string>& markers) {
   EmgConfig out = config.emg;
   for (std::size_t i = 0; i < out.electrodes.size(); ++i) {
     const FullDeclaration& full = config.full[i];
@@ -303,6 +311,7 @@ EmgConfig emgConfigFor(const EmgConfigFile& config, const Recording& recording) 
   for (std::size_t k = 0; k < out.columns.size(); ++k) {
     channelAt(config, config.columnLines[k], recording, out.columns[k].channel);
   }
+  addMarkerColumns(config, recording, markers, out);
   if (out.measured) {
     const Channel& channel =
         channelAt(config, config.measuredLine, recording, out.measured->channel);

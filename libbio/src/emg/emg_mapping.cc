@@ -54,6 +54,14 @@ void check(const std::vector<std::string>& muscles, const EmgMapping& mapping) {
           "EMG saturation of '{}' = {}: must be finite, of a muscle that moves", muscle, size));
     }
   }
+  for (const auto& [muscle, latent] : mapping.latent) {
+    if (!known(muscle) || mapping.saturation.count(muscle) > 0) {
+      throw std::invalid_argument(
+          fmt::format("latent excitation of '{}': must be of a muscle that moves, and of one whose "
+                      "record does not saturate",
+                      muscle));
+    }
+  }
   for (const EmgMapping::Crosstalk& c : mapping.crosstalk) {
     if (!known(c.from) || !known(c.to) || !std::isfinite(c.share)) {
       throw std::invalid_argument(
@@ -99,6 +107,17 @@ Eigen::MatrixXd rowsOf(const ExcitationSignal& trial) {
 
 Eigen::Index indexOf(const std::vector<std::string>& muscles, const std::string& name) {
   return std::find(muscles.begin(), muscles.end(), name) - muscles.begin();
+}
+
+/// x: the trial's rows, where there is a latent excitation with that.
+Eigen::MatrixXd recordedOf(const ExcitationSignal& trial, const std::vector<std::string>& muscles,
+                           const EmgMapping& mapping) {
+  Eigen::MatrixXd rows = rowsOf(trial);
+  for (const auto& [muscle, latent] : mapping.latent) {
+    const Eigen::Index i = indexOf(muscles, muscle);
+    rows.row(i) = withLatent(timesOf(trial), rows.row(i), latent);
+  }
+  return rows;
 }
 
 /// The rows without offset and crosstalk; not below 0, but for rows that have neither.
@@ -192,9 +211,9 @@ ExcitationSignal drivenExcitation(const ExcitationSignal& trial,
   const bool changesNothing = mapping.gain.empty() && mapping.delay == 0 &&
                               mapping.nonlinearity == 0 && mapping.offset.empty() &&
                               mapping.crosstalk.empty() && mapping.saturation.empty() &&
-                              mapping.fatigue == 0;
+                              mapping.fatigue == 0 && mapping.latent.empty();
   if (changesNothing) return trial;
-  const Eigen::MatrixXd recorded = rowsOf(trial);
+  const Eigen::MatrixXd recorded = recordedOf(trial, muscles, mapping);
   Eigen::MatrixXd rows = cleaned(recorded, muscles, mapping);
   addLacking(timesOf(trial), recorded, muscles, mapping, rows);
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
@@ -216,7 +235,7 @@ ExcitationSignal drivenExcitation(const ExcitationSignal& trial,
 EmgDerivatives emgDerivatives(const ExcitationSignal& trial,
                               const std::vector<std::string>& muscles, const EmgMapping& mapping) {
   check(muscles, mapping);
-  const Eigen::MatrixXd recorded = rowsOf(trial);
+  const Eigen::MatrixXd recorded = recordedOf(trial, muscles, mapping);
   Eigen::MatrixXd rows = cleaned(recorded, muscles, mapping);
   addLacking(timesOf(trial), recorded, muscles, mapping, rows);
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(rows.rows(), rows.cols());

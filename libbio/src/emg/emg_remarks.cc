@@ -72,7 +72,36 @@ void addLimits(const EmgConfig& config, const EmgResult& result, std::vector<std
   }
 }
 
+void addUnrecorded(const EmgConfig& config, std::vector<std::string>& out) {
+  for (const UnrecordedMuscle& one : config.unrecorded) {
+    std::string text =
+        fmt::format("{} has no electrode: its excitation is {}", one.muscle, sourceOf(one));
+    if (one.latent) {
+      text += fmt::format(
+          ", which a calibration may correct at knots every {:g} s at most, the log-odds by {:g} "
+          "(standard deviation)",
+          one.latent->spacing, one.latent->sd);
+    }
+    out.push_back(text + ".");
+  }
+}
+
 }  // namespace
+
+std::string sourceOf(const UnrecordedMuscle& muscle) {
+  if (muscle.synergy.empty()) return fmt::format("a constant {:g}", muscle.constant);
+  const std::string times = muscle.factor == 1 ? "" : fmt::format("{:g} of ", muscle.factor);
+  if (muscle.synergy.size() == 1) {
+    return fmt::format("{}that of electrode '{}'", times, muscle.synergy.front().first);
+  }
+  double sum = 0;
+  for (const auto& [channel, weight] : muscle.synergy) sum += weight;
+  std::vector<std::string> parts;
+  for (const auto& [channel, weight] : muscle.synergy) {
+    parts.push_back(fmt::format("{:.3g} of '{}'", weight / sum, channel));
+  }
+  return fmt::format("{}the mean of {}", times, listed(parts));
+}
 
 std::vector<std::string> remarksOn(const Recording& recording, const EmgConfig& config,
                                    const EmgResult& result) {
@@ -101,6 +130,7 @@ std::vector<std::string> remarksOn(const Recording& recording, const EmgConfig& 
           0.4 * config.outputRate, config.outputRate));
     }
   }
+  addUnrecorded(config, out);
   addLimits(config, result, out);
   out.insert(out.end(), recording.remarks.begin(), recording.remarks.end());
   return out;

@@ -178,6 +178,20 @@ std::vector<std::pair<std::string, double>> TomlTable::weights(const std::string
   return out;
 }
 
+std::vector<std::pair<std::string, std::string>> TomlTable::names(const std::string& key) {
+  const toml::value* value = find(key);
+  if (value == nullptr) return {};
+  const char* rule = "must be { name = \"name\", … }";
+  if (!value->is_table()) fail(key, rule);
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const auto& [name, other] : value->as_table()) {
+    if (!other.is_string()) fail(key, rule);
+    out.emplace_back(name, other.as_string().str);
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
 TomlTable TomlTable::table(const std::string& key) {
   const toml::value* value = find(key);
   const std::string name = fmt::format("[{}] ", key);

@@ -39,6 +39,8 @@ class TomlTable {
   std::optional<std::string> word(const std::string& key, const std::vector<std::string>& words);
   /// { name = number, … } in the order of the file, or [ "name", … ] with 1 for each.
   std::vector<std::pair<std::string, double>> weights(const std::string& key);
+  /// { name = "name", … } in the order of the names; empty if the key is absent.
+  std::vector<std::pair<std::string, std::string>> names(const std::string& key);
 
   /// An empty table if the key is absent. @throws FileError if it is no table
   TomlTable table(const std::string& key);

@@ -1,6 +1,7 @@
 #include "bio/muscle/simulated_muscle.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "bio/muscle/fibre_rest.h"
 #include "bio/muscle/muscle_sensitivity.h"
@@ -63,6 +64,19 @@ SimulatedMuscle::SimulatedMuscle(const muscles::AnyMuscle& other) : other_(&othe
 double SimulatedMuscle::thickness() const {
   if (schutte_) return schutte_->thickness();
   return std::visit([](const auto& muscle) -> double { return muscle.thickness(); }, *other_);
+}
+
+PerMuscleNumber SimulatedMuscle::thicknessInNumbers() const {
+  using muscles::common::optimalFibreLength;
+  constexpr std::size_t pennation = muscles::common::pennation;
+  // the places of both are those of Schutte's class
+  static_assert(optimalFibreLength == static_cast<std::size_t>(MuscleQuantity::optimalFibreLength));
+  static_assert(pennation == static_cast<std::size_t>(MuscleQuantity::pennation));
+  PerMuscleNumber d{};
+  const double w = thickness(), l0 = 1 / perFibre_;
+  d[optimalFibreLength] = w / l0;
+  d[pennation] = std::sqrt(std::max(0.0, l0 * l0 - w * w));
+  return d;
 }
 
 double SimulatedMuscle::shortestFibre() const {

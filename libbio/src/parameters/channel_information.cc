@@ -23,6 +23,8 @@ double usualSd(Kind kind, bool turns) {
       return turns ? 0.5 : 2;
     case Kind::fibreLength:
       return 1e-3;
+    case Kind::pennation:
+      return 1 * radiansPerDegree;
     case Kind::tendonForce:
       return 10;
     case Kind::activation:
@@ -51,7 +53,8 @@ std::vector<ChannelCandidate> usualChannels(const MusculoskeletalSystem& arm) {
     }
   }
   for (const SystemMuscle& muscle : arm.muscles()) {
-    for (const Kind kind : {Kind::fibreLength, Kind::tendonForce, Kind::activation}) {
+    for (const Kind kind :
+         {Kind::fibreLength, Kind::pennation, Kind::tendonForce, Kind::activation}) {
       add(kind, muscle.name, false);
     }
   }

@@ -88,6 +88,7 @@ class Collector {
     addEmg();
     addStart();
     addGroups();
+    addLatent();  // last: their number differs between trials
     return std::move(parameters_);
   }
 
@@ -313,6 +314,18 @@ class Collector {
         {EmgTarget{EmgTarget::What::delay, ""}});
     add("emg.nonlinearity", "", "shape A of the EMG–excitation relation; 0: linear",
         mapping_.nonlinearity, {-3, 0, 1}, {EmgTarget{EmgTarget::What::nonlinearity, ""}});
+  }
+
+  void addLatent() {
+    constexpr double most = 10;
+    for (const auto& [muscle, latent] : mapping_.latent) {
+      for (std::size_t k = 0; k < latent.knots.size(); ++k) {
+        add(fmt::format("emg.{}.latent{}", muscle, k + 1), "",
+            fmt::format("correction of the excitation's log-odds at {:.4g} s", latent.knots[k]),
+            latent.values[static_cast<Eigen::Index>(k)], {-most, most, latent.sd},
+            {EmgTarget{EmgTarget::What::latent, muscle, "", k}});
+      }
+    }
   }
 
   void addStart() {

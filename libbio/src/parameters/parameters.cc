@@ -304,6 +304,9 @@ void setTarget(ParameterCatalogue::Setting& setting, const ParameterTarget& targ
       case EmgTarget::What::saturation:
         mapping.saturation[emg->muscle] = value;
         break;
+      case EmgTarget::What::latent:
+        mapping.latent.at(emg->muscle).values[static_cast<Eigen::Index>(emg->knot)] = value;
+        break;
       case EmgTarget::What::crosstalk: {
         const auto at =
             std::find_if(mapping.crosstalk.begin(), mapping.crosstalk.end(),

@@ -33,6 +33,16 @@ std::vector<std::vector<RowsOfColumn>> excitationRows(const MusculoskeletalSyste
     if (target.what == EmgTarget::What::fatigueTime) enterAll(d.fatigueTime);
     const Index i = index(target.muscle);
     if (i == d.gain.rows()) continue;
+    if (target.what == EmgTarget::What::latent) {
+      const LatentExcitation& latent = mapping.latent.at(target.muscle);
+      const Eigen::RowVectorXd dx = latentSlope(d.times, d.rows.row(i), latent, target.knot);
+      enter(i, d.tired(i, d.signal.row(i).cwiseProduct(dx)));
+      for (const EmgMapping::Crosstalk& c : mapping.crosstalk) {
+        if (c.from != target.muscle) continue;
+        const Index to = index(c.to);
+        enter(to, d.tired(to, -c.share * d.signal.row(to).cwiseProduct(dx)));
+      }
+    }
     if (target.what == EmgTarget::What::gain) enter(i, d.tired(i, d.gain.row(i)));
     if (target.what == EmgTarget::What::offset) enter(i, d.tired(i, -d.signal.row(i)));
     if (target.what == EmgTarget::What::saturation) {

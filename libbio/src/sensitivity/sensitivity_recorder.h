@@ -38,6 +38,7 @@ class SensitivityRecorder {
     result.qDot = room(n);
     if (muscles_) {
       result.fibreLength = result.activation = result.tendonForce = room(arm.numMuscles());
+      recordThickness(columns.numParameters());
     }
     const auto numNodes = static_cast<Index>(columns.nodes().times.size());
     if (numNodes > 0) {
@@ -76,6 +77,16 @@ class SensitivityRecorder {
   }
 
  private:
+  void recordThickness(Index parameters) {
+    for (std::size_t i = 0; i < arm_.numMuscles(); ++i) {
+      const PerMuscleNumber d = arm_.muscles()[i].muscle.thicknessInNumbers();
+      RowVector& row = result_.thickness.emplace_back(RowVector::Zero(parameters));
+      for (const QuantityEffect& effect : direct_.effects().muscles[i].fibre) {
+        row[effect.column] += effect.factor * d[effect.quantity];
+      }
+    }
+  }
+
   /// q̇ = M⁻¹p
   void addCoordinates(const Vector& qDot, const State& state) {
     const EnergyDerivatives<N>& energy = configuration_.energy(qDot);

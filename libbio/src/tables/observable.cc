@@ -12,7 +12,8 @@ struct Ending {
 };
 constexpr std::array<Ending, 2> coordinateEndings = {
     {{".speed", Observable::Kind::speed}, {".moment", Observable::Kind::moment}}};
-constexpr std::array<Ending, 3> muscleEndings = {{{".fiber_length", Observable::Kind::fibreLength},
+constexpr std::array<Ending, 4> muscleEndings = {{{".fiber_length", Observable::Kind::fibreLength},
+                                                  {".pennation", Observable::Kind::pennation},
                                                   {".tendon_force", Observable::Kind::tendonForce},
                                                   {".activation", Observable::Kind::activation}}};
 constexpr std::array<const char*, 3> axisEndings = {".x", ".y", ".z"};
@@ -52,6 +53,8 @@ std::string unitOf(const Observable& observable, const Model& model) {
     case Kind::marker:
     case Kind::fibreLength:
       return "m";
+    case Kind::pennation:
+      return "rad";
     case Kind::tendonForce:
       return "N";
     case Kind::activation:

@@ -23,17 +23,24 @@ std::vector<RawColumn> readColumns(const std::string& file, RecordingFormat form
       return readC3dColumns(file, remarks);
     case RecordingFormat::xdf:
       return readXdfColumns(file, remarks);
+    case RecordingFormat::trc:
+      return readTrcColumns(file, remarks);
     case RecordingFormat::columns:
       return readPlainColumns(file);
     case RecordingFormat::trigno:
       return readTrigno(file);
+    case RecordingFormat::emgworks:
+      return readEmgworks(file);
+    case RecordingFormat::noraxon:
+      return readNoraxon(file, remarks);
     default:
       return readTableColumns(file);
   }
 }
 
 bool isBinary(RecordingFormat format) {
-  return format == RecordingFormat::c3d || format == RecordingFormat::xdf;
+  return format == RecordingFormat::c3d || format == RecordingFormat::xdf ||
+         format == RecordingFormat::trc;
 }
 
 std::string calledIn(const RawColumn& column) {
@@ -124,6 +131,12 @@ std::string_view nameOf(RecordingFormat format) {
       return "c3d";
     case RecordingFormat::xdf:
       return "xdf";
+    case RecordingFormat::trc:
+      return "trc";
+    case RecordingFormat::emgworks:
+      return "emgworks";
+    case RecordingFormat::noraxon:
+      return "noraxon";
     default:
       return "automatic";
   }
@@ -134,9 +147,7 @@ RecordingFormat detectFormat(const std::string& file) {
     const std::string bytes = readTextFile(file);
     if (file.ends_with(".xdf") || tables::isXdf(bytes)) return RecordingFormat::xdf;
     if (file.ends_with(".c3d") || tables::isC3d(bytes)) return RecordingFormat::c3d;
-    if (bytes.starts_with("PathFileType")) {
-      throw FileError(fmt::format("{}: holds markers (TRC), must hold signals", file));
-    }
+    if (bytes.starts_with("PathFileType")) return RecordingFormat::trc;
   }
   const std::vector<std::string> lines = linesOf(file);
   // line 7 of a Trigno export: nothing but rates
@@ -145,6 +156,8 @@ RecordingFormat detectFormat(const std::string& file) {
     const auto isRate = [](const std::string& cell) { return cell.ends_with("Hz"); };
     if (std::all_of(rates.begin(), rates.end(), isRate)) return RecordingFormat::trigno;
   }
+  if (emgworksNames(lines) > 0) return RecordingFormat::emgworks;
+  if (noraxonNames(lines) > 0) return RecordingFormat::noraxon;
   // first line with anything in it: nothing but numbers
   for (const std::string& line : lines) {
     std::string cells = line;
@@ -193,9 +206,9 @@ Recording readRecording(const std::string& file, const RecordingLayout& layout) 
   }
   if (out.channels.empty() && isBinary(out.format)) {
     throw FileError(fmt::format("{}: holds no {}, a recording needs some", file,
-                                out.format == RecordingFormat::c3d
-                                    ? "analog channels"
-                                    : "stream of numbers at a steady rate"));
+                                out.format == RecordingFormat::xdf
+                                    ? "stream of numbers at a steady rate"
+                                    : "analog channels or points that were seen"));
   }
   if (out.channels.empty()) {
     throw FileError(

@@ -1,6 +1,10 @@
+#include <fmt/format.h>
+
+#include <array>
 #include <cmath>
 
 #include "bio/tables/c3d_file.h"
+#include "bio/tables/marker_trajectories.h"
 #include "bio/tables/xdf_file.h"
 #include "tables/recording_layouts.h"
 
@@ -20,6 +24,28 @@ void append(std::vector<Channel>& channels, std::vector<RawColumn>& out) {
   }
 }
 
+// Three columns of every point that was seen.
+void appendPoints(const MarkerTrajectories& markers, std::vector<std::string>& remarks,
+                  std::vector<RawColumn>& out) {
+  remarks.insert(remarks.end(), markers.remarks.begin(), markers.remarks.end());
+  std::vector<Channel> channels;
+  for (std::size_t k = 0; k < markers.names.size(); ++k) {
+    const auto first = static_cast<Eigen::Index>(3 * k);
+    constexpr std::array<const char*, 3> endings = {".x", ".y", ".z"};
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      Channel channel{markers.names[k] + endings[static_cast<std::size_t>(axis)], "m", markers.rate,
+                      markers.times[0], markers.positions.col(first + axis)};
+      cutEnds(channel);
+      if (channel.values.size() > 1) channels.push_back(std::move(channel));
+    }
+    if (channels.empty() || channels.back().name != markers.names[k] + ".z") {
+      remarks.push_back(
+          fmt::format("Point '{}' was never seen, or once, and was not read.", markers.names[k]));
+    }
+  }
+  append(channels, out);
+}
+
 }  // namespace
 
 void cutEnds(Channel& channel) {
@@ -35,6 +61,13 @@ std::vector<RawColumn> readC3dColumns(const std::string& file, std::vector<std::
   remarks.insert(remarks.end(), c3d.remarks.begin(), c3d.remarks.end());
   std::vector<RawColumn> out;
   append(c3d.analog, out);
+  appendPoints(c3d.markers, remarks, out);
+  return out;
+}
+
+std::vector<RawColumn> readTrcColumns(const std::string& file, std::vector<std::string>& remarks) {
+  std::vector<RawColumn> out;
+  appendPoints(readTrc(file), remarks, out);
   return out;
 }
 

@@ -43,11 +43,25 @@ bool isNumber(const std::string& cell);
 std::vector<RawColumn> numberColumns(const std::string& file, const std::vector<std::string>& lines,
                                      std::size_t firstLine, char separator);
 
+/// Rows per second at such times. @throws FileError unless they are equally spaced
+double rateOf(const std::string& file, const Eigen::VectorXd& times);
+
+/// A column of a table at `rate`. Only every k-th row filled: a signal of rate/k. Empty rows at the
+/// ends are cut off.
+RawColumn compressed(const Eigen::VectorXd& cells, double rate, double startTime);
+
+/// The line of names, counted from 1, of an EMGworks or a Noraxon export; 0: it is none.
+std::size_t emgworksNames(const std::vector<std::string>& lines);
+std::size_t noraxonNames(const std::vector<std::string>& lines);
+
 /// Reads one format each; remarks say what was left out.
 std::vector<RawColumn> readC3dColumns(const std::string& file, std::vector<std::string>& remarks);
+std::vector<RawColumn> readTrcColumns(const std::string& file, std::vector<std::string>& remarks);
 std::vector<RawColumn> readXdfColumns(const std::string& file, std::vector<std::string>& remarks);
 std::vector<RawColumn> readPlainColumns(const std::string& file);
 std::vector<RawColumn> readTrigno(const std::string& file);
+std::vector<RawColumn> readEmgworks(const std::string& file);
+std::vector<RawColumn> readNoraxon(const std::string& file, std::vector<std::string>& remarks);
 std::vector<RawColumn> readTableColumns(const std::string& file);
 
 }  // namespace bio

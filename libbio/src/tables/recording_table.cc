@@ -11,9 +11,8 @@
 #include "tables/recording_layouts.h"
 
 namespace bio {
-namespace {
 
-// Rows per second. Printed times are rounded, so single intervals may differ; a missing or doubled
+// Printed times are rounded, so single intervals may differ; a missing or doubled
 // row moves all that follow by a whole interval against equal spacing between the first and the
 // last.
 double rateOf(const std::string& file, const Eigen::VectorXd& times) {
@@ -37,6 +36,8 @@ double rateOf(const std::string& file, const Eigen::VectorXd& times) {
   return std::abs(rounded / rate - 1) < 1e-4 ? rounded : rate;
 }
 
+namespace {
+
 // "BIClong_uV" → "uV", "envelope_mV" → "mV", "biceps [mV]" → "mV", "knee (deg)" → "deg"
 std::string unitIn(const std::string& column) {
   constexpr std::array<std::string_view, 6> units = {"V", "mV", "uV", "deg", "rad", "g"};
@@ -58,7 +59,8 @@ bool isAngleInDegrees(const Table& table, const std::string& column) {
          !column.ends_with("_tz");
 }
 
-// Only every k-th row filled: a signal of rate/k. Empty rows at the ends are cut off.
+}  // namespace
+
 RawColumn compressed(const Eigen::VectorXd& cells, double rate, double startTime) {
   Eigen::Index first = -1;
   Eigen::Index last = -1;
@@ -77,8 +79,6 @@ RawColumn compressed(const Eigen::VectorXd& cells, double rate, double startTime
   out.values = cells(Eigen::seq(first, last, stride));
   return out;
 }
-
-}  // namespace
 
 std::string plainUnit(std::string unit) {
   for (const std::string_view micro : {"\xC2\xB5", "\xCE\xBC"}) {

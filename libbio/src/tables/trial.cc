@@ -43,12 +43,13 @@ std::string plainName(const std::string& column) {
 Meaning channelOf(const Model& model, const Table& table, const std::string& bare, bool suffix) {
   Meaning meaning;
   if (!readObservable(bare, model, meaning.what)) return {};
-  const bool isAngularSpeed = meaning.what.kind == Observable::Kind::speed &&
-                              findCoordinate(model, meaning.what.of).isRotation;
-  if (suffix && !isAngularSpeed) return {};
+  const bool isAngle = meaning.what.kind == Observable::Kind::pennation ||
+                       (meaning.what.kind == Observable::Kind::speed &&
+                        findCoordinate(model, meaning.what.of).isRotation);
+  if (suffix && !isAngle) return {};
   meaning.kind = Meaning::Kind::channel;
   meaning.name = bare;
-  meaning.inDegrees = isAngularSpeed && (suffix || table.inDegrees);
+  meaning.inDegrees = isAngle && (suffix || table.inDegrees);
   return meaning;
 }
 
@@ -135,12 +136,29 @@ class TrialReader {
                          fmt::join(knownLines(), " or "), meantInstead(key, knownLines())));
       }
     }
-    meant.push_back("inDegrees");
+    const auto latent = table_.metadata.find("latent_excitation");
+    if (latent != table_.metadata.end()) readLatent(latent->second);
+    meant.insert(meant.end(), {"inDegrees", "latent_excitation"});
     for (const auto& [key, value] : table_.metadata) {
       const std::string nearest = nearestName(key, meant);
       if (nearest.empty() || nearest == key) continue;
       trial_.warnings.push_back(
           fmt::format("{}: header: '{}' is unknown, did you mean '{}'?", file_, key, nearest));
+    }
+  }
+
+  void readLatent(const std::string& text) {
+    try {
+      trial_.latent = latentInHeader(text);
+    } catch (const std::invalid_argument& error) {
+      fail(fmt::format("header: {}", error.what()));
+    }
+    for (const LatentDeclaration& one : trial_.latent) {
+      const bool isKnown = std::any_of(model_.muscles.begin(), model_.muscles.end(),
+                                       [&](const Muscle& m) { return m.name == one.muscle; });
+      if (isKnown) continue;
+      fail(fmt::format("header: latent_excitation: the model has no muscle '{}'{}", one.muscle,
+                       meantInstead(one.muscle, names())));
     }
   }
 

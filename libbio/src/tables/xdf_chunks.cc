@@ -120,7 +120,7 @@ class ChunkReader {
     if (!std::isfinite(at) || !std::isfinite(by)) {
       fail(chunk, fmt::format("clock offset {} s at {} s, must be finite", by, at));
     }
-    stream.offsets.emplace_back(at, by);
+    stream.offsets.push_back({at, by, stream.stamps.size()});
   }
 
   const Bytes& bytes_;

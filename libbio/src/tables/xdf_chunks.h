@@ -9,6 +9,12 @@
 
 namespace bio::tables {
 
+/// A measured offset of a stream's clock: time of the recorder = stamp + by.
+struct XdfClockOffset {
+  double at = 0, by = 0;    ///< [s]
+  std::size_t samples = 0;  ///< of the stream that stand before it in the file
+};
+
 /// A stream as its chunks hold it.
 struct RawXdfStream {
   std::string name, type;
@@ -16,10 +22,10 @@ struct RawXdfStream {
   double nominalRate = 0;  ///< [Hz]; 0: irregular
   std::size_t width = 0;   ///< bytes of a value; 0: texts
   bool floats = false;
-  std::vector<std::string> labels, units;          ///< of the channels; can be fewer
-  std::vector<double> stamps;                      ///< [s], one per sample
-  std::vector<double> values;                      ///< sample after sample
-  std::vector<std::pair<double, double>> offsets;  ///< of the clock: at [s], by [s]
+  std::vector<std::string> labels, units;  ///< of the channels; can be fewer
+  std::vector<double> stamps;              ///< [s], one per sample
+  std::vector<double> values;              ///< sample after sample
+  std::vector<XdfClockOffset> offsets;
 };
 
 struct RawXdf {

@@ -16,6 +16,8 @@ namespace {
 using tables::Bytes;
 using tables::RawXdfStream;
 
+constexpr double leastClockJump = 1;  // [s], that no drift between two measurements explains
+
 // Straight line through points (x, y): y = mean + slope·(x − centre).
 struct Line {
   double centre = 0, mean = 0, slope = 0;
@@ -39,21 +41,79 @@ Line lineThrough(std::size_t count, X x, Y y) {
   return line;
 }
 
+// Offsets and samples between two restarts of a stream's clock.
+struct XdfClock {
+  std::size_t firstOffset = 0, endOffset = 0;
+  std::size_t firstSample = 0, endSample = 0;
+};
+
+// Where the stamps leap against a leap of the offsets by `jump` [s], near the samples that stand
+// before and behind it in the file.
+std::size_t restartIn(const Bytes& bytes, const RawXdfStream& stream, std::size_t from,
+                      std::size_t to, double jump) {
+  std::size_t best = 0;
+  double largest = leastClockJump / 2;
+  for (std::size_t i = std::max<std::size_t>(from, 1); i < to; ++i) {
+    const double step = stream.stamps[i] - stream.stamps[i - 1];
+    if ((step > 0) == (jump > 0) || std::abs(step) <= largest) continue;
+    largest = std::abs(step);
+    best = i;
+  }
+  if (best == 0) {
+    bytes.fail(
+        fmt::format("stream '{}': the offset of its clock leaps by {:.6g} s where its time "
+                    "stamps do not, must leap with them",
+                    stream.name, jump));
+  }
+  return best;
+}
+
+// A clock that was set or restarted gives offsets that leap by more than any drift.
+std::vector<XdfClock> clocksOf(const Bytes& bytes, const RawXdfStream& stream) {
+  const auto& offsets = stream.offsets;
+  std::vector<XdfClock> clocks = {{0, offsets.size(), 0, stream.stamps.size()}};
+  for (std::size_t k = 1; k < offsets.size(); ++k) {
+    const double jump = offsets[k].by - offsets[k - 1].by;
+    if (std::abs(jump) < leastClockJump) continue;
+    const std::size_t from =
+        std::max(clocks.back().firstSample, k > 1 ? offsets[k - 2].samples : 0);
+    const std::size_t to = k + 1 < offsets.size() ? offsets[k + 1].samples : stream.stamps.size();
+    const std::size_t at = restartIn(bytes, stream, from, to, jump);
+    clocks.back().endOffset = k;
+    clocks.back().endSample = at;
+    clocks.push_back({k, offsets.size(), at, stream.stamps.size()});
+  }
+  return clocks;
+}
+
 // Brings the stamps to the recorder's clock.
 void synchronise(const Bytes& bytes, RawXdfStream& stream, std::vector<std::string>& remarks) {
   if (stream.offsets.empty()) return;
-  const auto at = [&](std::size_t i) { return stream.offsets[i].first; };
-  const auto by = [&](std::size_t i) { return stream.offsets[i].second; };
-  const Line line = lineThrough(stream.offsets.size(), at, by);
-  if (!(std::abs(line.slope) < 0.01)) {
-    bytes.fail(
-        fmt::format("stream '{}': its clock runs off by {:.3g} s per second, must be below "
-                    "0.01",
-                    stream.name, line.slope));
-  }
   double scatter = 0;
-  for (std::size_t i = 0; i < stream.offsets.size(); ++i) {
-    scatter = std::max(scatter, std::abs(by(i) - line.at(at(i))));
+  const std::vector<XdfClock> clocks = clocksOf(bytes, stream);
+  for (const XdfClock& clock : clocks) {
+    const auto at = [&](std::size_t i) { return stream.offsets[clock.firstOffset + i].at; };
+    const auto by = [&](std::size_t i) { return stream.offsets[clock.firstOffset + i].by; };
+    const std::size_t count = clock.endOffset - clock.firstOffset;
+    const Line line = lineThrough(count, at, by);
+    if (!(std::abs(line.slope) < 0.01)) {
+      bytes.fail(
+          fmt::format("stream '{}': its clock runs off by {:.3g} s per second, must be below "
+                      "0.01",
+                      stream.name, line.slope));
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      scatter = std::max(scatter, std::abs(by(i) - line.at(at(i))));
+    }
+    for (std::size_t i = clock.firstSample; i < clock.endSample; ++i) {
+      stream.stamps[i] += line.at(stream.stamps[i]);
+    }
+  }
+  if (clocks.size() > 1) {
+    remarks.push_back(fmt::format(
+        "Stream '{}': its clock was set or restarted {} time{}; each part was brought to the "
+        "recorder's clock by its own offsets.",
+        stream.name, clocks.size() - 1, clocks.size() > 2 ? "s" : ""));
   }
   if (scatter > 0.01) {
     remarks.push_back(
@@ -61,7 +121,6 @@ void synchronise(const Bytes& bytes, RawXdfStream& stream, std::vector<std::stri
                     "off a straight line.",
                     stream.name, 1000 * scatter));
   }
-  for (double& stamp : stream.stamps) stamp += line.at(stamp);
 }
 
 // Samples without a leap of their stamps between them.

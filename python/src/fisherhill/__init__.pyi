@@ -194,7 +194,8 @@ def make_trial(
         {column: values}, named as in a file, all of one length: 'time' [s]; muscles (excitation, 0 to
         1); 'elbow_flexion' [rad] or 'elbow_flexion_deg', NaN where it was not measured;
         'elbow_flexion.torque' [N m], an external load; 'elbow_flexion.moment' [N m], what the limb
-        exerts on a device there; 'BRA.fiber_length' [m] and others that a file may have.
+        exerts on a device there; 'BRA.fiber_length' [m], 'BRA.pennation' [rad] and others that a
+        file may have.
     name : str
         Name of the trial in messages.
     ignore_extra : bool
@@ -578,6 +579,7 @@ def calibrate(
     bounds: dict[str, tuple[float, float]] = {},
     loss: Literal["gaussian", "huber", "student"] = "gaussian",
     own_start: bool = False,
+    latent: dict[str, tuple[float, float]] = {},
     starts: int = 1,
     seed: int = 1,
     threads: int = 1,
@@ -610,6 +612,10 @@ def calibrate(
     own_start : bool
         True: estimate the initial angle and speed of each trial as well, of a held-out trial with
         the parameters fixed.
+    latent : dict
+        {muscle: (sd, seconds)}: excitations of muscles without an electrode are estimated about
+        the trials' columns, sd being the prior of the log-odds at knots at most so far apart;
+        instead of what the trials' headers say. Held-out trials are predicted without.
     starts : int
         Number of optimiser starts; the first is the model's own values.
     seed : int

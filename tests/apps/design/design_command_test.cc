@@ -3,6 +3,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "support/run_program.h"
 #include "support/scratch_folder.h"
@@ -68,6 +69,76 @@ TEST(DesignCommand, SaysNoWhenNothingBetterIsFound) {
   const ProgramResult result = design(out, {"--range", "60deg,61deg"});
   EXPECT_EQ(result.status, 1) << result.out << result.err;
   EXPECT_THAT(result.out, HasSubstr("No experiment was found"));
+}
+
+// Bounds after the first experiment are those that sensitivity has for its trial.
+TEST(DesignCommand, RanksExperimentsOfADynamometer) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "design").string();
+  const std::vector<std::string> names = {"BRA.max_isometric_force", "TRIlong.max_isometric_force"};
+  const ProgramResult result = support::runFisherHill(
+      {"design", "models/elbow8.osim", "--dynamometer", "elbow_flexion", "--parameters",
+       names[0] + "," + names[1], "--angles", "40deg,100deg", "--speeds", "60deg", "--efforts",
+       "50", "--experiments", "3", "--step", "0.01", "--out", out});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json summary = summaryIn(out);
+  EXPECT_EQ(summary["candidates"], 2 * 2 + 2 * (1 + 2));
+  ASSERT_EQ(summary["experiments"].size(), 3u);
+  for (const std::string& name : names) {
+    double before = summary["bound_before"][name];
+    for (const auto& one : summary["experiments"]) {
+      EXPECT_LE(one["bounds"][name], before * (1 + 1e-12));
+      before = one["bounds"][name];
+    }
+    EXPECT_EQ(summary["bound_after"][name], before);
+    EXPECT_LT(before, 0.5 * summary["bound_before"][name].get<double>()) << name;
+  }
+  // none twice
+  EXPECT_NE(summary["experiments"][0]["instruction"], summary["experiments"][1]["instruction"]);
+  EXPECT_THAT(summary["experiments"][0]["instruction"].get<std::string>(), HasSubstr("50 % MVC"));
+  // where excitations are uncertain, each group has to show what it can do
+  const ProgramResult unsure = support::runFisherHill(
+      {"design", "models/elbow8.osim", "--dynamometer", "elbow_flexion", "--parameters",
+       "BIClong.max_isometric_force,TRIlong.max_isometric_force", "--nuisance", "emg.*.gain",
+       "--angles", "40deg,100deg", "--speeds", "60deg", "--efforts", "50", "--experiments", "4",
+       "--step", "0.01", "--json"});
+  ASSERT_EQ(unsure.status, 0) << unsure.err;
+  const auto wide = nlohmann::json::parse(unsure.out);
+  std::set<std::string> groups;
+  for (const auto& one : wide["experiments"]) groups.insert(one["muscles"]);
+  EXPECT_TRUE(groups.contains("flexors") && groups.contains("extensors"));
+  EXPECT_GT(wide["bound_after"]["TRIlong.max_isometric_force"], summary["bound_after"][names[1]]);
+  const std::string told = (scratch / "told").string();
+  const ProgramResult sensitivity = support::runFisherHill(
+      {"sensitivity", "models/elbow8.osim", out + "/experiment_1.csv", "--prescribe",
+       "elbow_flexion", "--parameters", names[0] + "," + names[1], "--observe",
+       "elbow_flexion.moment=0.5", "--step", "0.01", "--out", told});
+  ASSERT_EQ(sensitivity.status, 0) << sensitivity.err;
+  for (const auto& one : summaryIn(told)["parameters"]) {
+    const std::string name = one["name"];
+    const double bound = summary["experiments"][0]["bounds"][name];
+    EXPECT_NEAR(one["bound_joint"].get<double>() / bound, 1, 0.01) << name;
+  }
+}
+
+TEST(DesignCommand, RefusesExperimentsThatADynamometerCannotDo) {
+  const auto refused = [](std::vector<std::string> more, const char* words) {
+    std::vector<std::string> command = {"design", "models/elbow8.osim", "--parameters",
+                                        "BRA.max_isometric_force"};
+    command.insert(command.end(), more.begin(), more.end());
+    const ProgramResult result = support::runFisherHill(command);
+    EXPECT_EQ(result.status, 2) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(words));
+  };
+  refused({}, "either TRIAL or --dynamometer is required");
+  refused({"emg_data/curl_slow.sto", "--dynamometer", "elbow_flexion"}, "and not both");
+  refused({"--dynamometer", "elbow_flexion", "--priors"}, "cannot be combined with --dynamometer");
+  refused({"--dynamometer", "knee"}, "knee");
+  refused({"--dynamometer", "elbow_flexion", "--angles", "400deg"}, "is outside the range");
+  refused({"--dynamometer", "elbow_flexion", "--angles", "x"}, "--angles: ");
+  refused({"--dynamometer", "elbow_flexion", "--speeds", "-1deg"}, "--speeds: -1deg, must be > 0");
+  refused({"--dynamometer", "elbow_flexion", "--efforts", "120"}, "at most 100");
+  refused({"--dynamometer", "elbow_flexion", "--moment-noise", "0"}, "must be > 0");
 }
 
 TEST(DesignCommand, TellsTwoEffectsApart) {

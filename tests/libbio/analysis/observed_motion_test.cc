@@ -4,7 +4,9 @@
 
 #include <cmath>
 
+#include "bio/analysis/replay.h"
 #include "bio/calibration/trial_predictor.h"
+#include "bio/opensim/osim_file.h"
 #include "bio/parameters/channel_information.h"
 #include "libbio/simulation/arm_of_seven.h"
 #include "support/throws_saying.h"
@@ -88,9 +90,59 @@ TEST(ObservedMotion, SensitivitiesOfEveryChannelMatchDifferences) {
        {Kind::marker, "hand.knuckle", 1},
        {Kind::marker, "hand.knuckle", 2},
        {Kind::fibreLength, "BRA", 0},
+       {Kind::pennation, "BIClong", 0},
        {Kind::tendonForce, "BRD", 0},
        {Kind::activation, "BIClong", 0}},
       {"BIClong.max_isometric_force", "BRD.tendon_slack_length", "hand.mass", "emg.BIClong.gain"});
+}
+
+// sin α = ℓ0 sin α0/ℓ, in every class; BRA has α0 = 0.
+TEST(ObservedMotion, PennationFollowsFromTheFibreLength) {
+  const Observed o({"elbow_flexion"});
+  const std::string root = std::string(FISHERHILL_SOURCE_DIR) + "/models/elbow8";
+  for (const char* file : {"", "_Thelen2003", "_Millard2012", "_DeGrooteFregly2016"}) {
+    Observed other({"elbow_flexion"});
+    other.model = readOsim(root + file + ".osim");
+    other.options = {{{"elbow_flexion"}, {}}, {}, {}};
+    const MusculoskeletalSystem system(other.model, other.options);
+    const Trial trial =
+        readTrial(std::string(FISHERHILL_SOURCE_DIR) + "/emg_data/curl_slow.sto", other.model);
+    const ExcitationSignal excitation = excitationOf(trial, system);
+    const ParameterCatalogue catalogue(other.model, system,
+                                       {Eigen::VectorXd::Constant(1, 0.6), {}});
+    const bool isSchutte = std::string(file).empty();
+    const std::string l0 = "TRIlat.optimal_fiber_length",
+                      a0 = isSchutte ? "TRIlat.pennation_angle"
+                                     : "TRIlat.pennation_angle_at_optimal";
+    const auto selection = catalogue.select({l0, a0, "TRIlat.max_isometric_force", "hand.mass"});
+    const TrialPredictor predictor(catalogue, other.options, excitation,
+                                   {{{Kind::pennation, "TRIlat", 0}, other.times},
+                                    {{Kind::fibreLength, "TRIlat", 0}, other.times}},
+                                   selection, other.simulation);
+    Eigen::VectorXd theta = catalogue.values(selection);
+    theta[1] = 0.3;
+    const auto at = predictor.withSensitivities(theta);
+    const Eigen::Index n = other.times.size();
+    for (Eigen::Index k = 0; k < n; ++k) {
+      EXPECT_NEAR(std::sin(at.outputs[k]), theta[0] * std::sin(0.3) / at.outputs[n + k], 1e-12);
+    }
+    for (Eigen::Index j = 0; j < theta.size(); ++j) {
+      const double h = 1e-4 * catalogue.parameters()[selection[static_cast<std::size_t>(j)]].sd;
+      Eigen::VectorXd up = theta, down = theta;
+      up[j] += h;
+      down[j] -= h;
+      const Eigen::VectorXd difference =
+          (predictor.outputs(up) - predictor.outputs(down)).head(n) / (2 * h);
+      const Eigen::VectorXd exact = at.gamma.col(j).head(n);
+      EXPECT_LT((exact - difference).cwiseAbs().maxCoeff(),
+                3e-5 * exact.cwiseAbs().maxCoeff() + 1e-10 / h)
+          << file << " " << j;
+    }
+  }
+  EXPECT_EQ(nameOf({Kind::pennation, "BRA", 0}), "BRA.pennation");
+  Observable found;
+  EXPECT_TRUE(readObservable("BRA.pennation", o.model, found));
+  EXPECT_EQ(unitOf(found, o.model), "rad");
 }
 
 TEST(ObservedMotion, AHingeHasTheSameChannels) {

@@ -61,6 +61,69 @@ TEST(TrialSet, SensitivitiesAreDerivativesOfTheOutputs) {
   EXPECT_TRUE((at.gamma.col(5).head(first).array() == 0).all());
 }
 
+// Trials of different length have different knots; one trial has none.
+TEST(TrialSet, KnotsOfLatentExcitationsBelongToTheirTrials) {
+  std::vector<Trial> list = {subject().trial("curl_slow", 1.0, {}, 30),
+                             subject().trial("curl_slow", 0.4, {}, 30),
+                             subject().trial("curl_fast", 0.6, {}, 50)};
+  list[0].latent = {{"BRA", 0.8, 0.5}};
+  list[2].latent = {{"BRA", 0.8, 0.2}, {"BRD", 1.5, 0.6}};
+  TrialSetOptions options;
+  options.parameters = {"hand.mass", "emg.*"};
+  options.ownStart = true;
+  options.latent = true;
+  options.simulation.newtonTolerance = 1e-12;
+  const TrialSet trials(subject().model, SyntheticElbow::options(), list, options);
+  const auto common = static_cast<Eigen::Index>(trials.numCommon());
+  ASSERT_EQ(common, 1 + 8 + 2);  // mass, gains, delay and shape
+  ASSERT_EQ(trials.numParameters(), trials.numCommon() + (2 + 3) + 2 + (2 + 4 + 2));
+  const auto& parameters = trials.parameters();
+  EXPECT_EQ(parameters[13].name, "trial1.emg.BRA.latent1");
+  EXPECT_EQ(parameters.back().name, "trial3.emg.BRD.latent2");
+  EXPECT_EQ(parameters[13].prior->sd, 0.8);
+  ASSERT_EQ(trials.latent().size(), 3u);
+  EXPECT_EQ(trials.latent()[0].first, 13u);
+  EXPECT_EQ(trials.latent()[2].first, parameters.size() - 2);
+  EXPECT_NEAR(trials.latent()[0].atKnots[1],
+              excitationAt(list[0], 2, 0.5 * (list[0].times[0] + 1.0)), 0.3);
+  Eigen::VectorXd theta(static_cast<Eigen::Index>(parameters.size()));
+  for (Eigen::Index i = 0; i < theta.size(); ++i) {
+    theta[i] = parameters[static_cast<std::size_t>(i)].start;
+    if (i >= common) theta[i] += 0.02 * static_cast<double>(i % 5);
+  }
+  theta[common - 1] = -0.5;  // the shape: at 0 it is at its bound
+  EXPECT_EQ(trials.mappingAt(2, theta).latent.at("BRD").values[1], theta[theta.size() - 1]);
+  EXPECT_TRUE(trials.mappingAt(1, theta).latent.empty());
+  const info::Predictor predictor = trials.predictor();
+  const info::Prediction at = predictor.withSensitivities(theta);
+  const auto cost = trials.leastSquares(theta, {0.01});
+  for (Eigen::Index i = common; i < theta.size(); ++i) {
+    const double h = 1e-4;
+    Eigen::VectorXd up = theta, down = theta;
+    up[i] += h;
+    down[i] -= h;
+    const Eigen::VectorXd difference =
+        ((predictor.outputs(up) - predictor.outputs(down)) / (2 * h)).transpose();
+    EXPECT_LT((at.gamma.col(i) - difference).cwiseAbs().maxCoeff(),
+              1e-4 * difference.cwiseAbs().maxCoeff() + 1e-9)
+        << parameters[static_cast<std::size_t>(i)].name;
+  }
+  // the adjoint sums up the same
+  const Eigen::VectorXd gradient =
+      at.gamma.transpose() * (at.outputs - trials.measured()).transpose() / 1e-4;
+  EXPECT_LT((cost.gradient - gradient).cwiseAbs().maxCoeff(),
+            1e-7 * gradient.cwiseAbs().maxCoeff());
+  // unless they are asked for, the trials stand as they are
+  options.latent = false;
+  const TrialSet plain(subject().model, SyntheticElbow::options(), list, options);
+  EXPECT_EQ(plain.numParameters(), plain.numCommon() + 6);
+  list[0].latent = {{"DELT", 1, 0.5}};
+  options.latent = true;
+  EXPECT_THAT([&] { TrialSet(subject().model, SyntheticElbow::options(), list, options); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("curl_slow.sto: latent excitation of "
+                                                             "'DELT'")));
+}
+
 // The same comparison as `fisherhill replay` makes.
 TEST(TrialSet, MeasuresErrorsAsReplayDoes) {
   const Trial trial = subject().trial("curl_slow", 1.0, {{"hand.mass", 0.8}}, 30, 3);

@@ -271,6 +271,85 @@ TEST_F(EmgConfigs, NameFileLineKeyAndRuleOfWhatIsWrong) {
   fails("[input]\nsignal = \"envelope\"\n[notch]\nlines_Hz = [50]\n", "3: notch = ");
 }
 
+TEST_F(EmgConfigs, SayWhatMusclesWithoutAnElectrodeGet) {
+  const std::string muscle = least + "[[unrecorded]]\nmuscle = \"BRA\"\n";
+  const bio::EmgConfigFile c = read(muscle +
+                                    "synergy = { biceps = 2 }\nfactor = 0.5\nlatent_sd = 0.7\n"
+                                    "[[unrecorded]]\nmuscle = \"SUP\"\nconstant = 0.1\n");
+  ASSERT_EQ(c.emg.unrecorded.size(), 2u);
+  EXPECT_EQ(c.emg.unrecorded[0].factor, 0.5);
+  EXPECT_EQ(c.emg.unrecorded[0].synergy[0].second, 2);
+  EXPECT_EQ(c.emg.unrecorded[0].latent, (bio::LatentDeclaration{"BRA", 0.7, 0.25}));
+  EXPECT_EQ(c.emg.unrecorded[1].constant, 0.1);
+  EXPECT_FALSE(c.emg.unrecorded[1].latent);
+  fails(muscle, "7: [[unrecorded]] muscle = \"BRA\", needs one of electrode, synergy and constant");
+  fails(muscle + "constant = 0.1\nelectrode = \"biceps\"\n",
+        "7: [[unrecorded]] muscle = \"BRA\", needs one of");
+  fails(muscle + "electrode = \"x\"\n",
+        "8: [[unrecorded]] electrode = \"x\", no [[electrode]] has");
+  fails(muscle + "synergy = { biceps = 0 }\n", "8: [[unrecorded]] synergy = ");
+  fails(muscle + "constant = 2\n", "8: [[unrecorded]] constant = 2, must be 0 to 1");
+  fails(muscle + "constant = 0.1\nfactor = 0.5\n", "9: [[unrecorded]] factor = 0.5, has no effect");
+  fails(muscle + "constant = 0.1\nknots_s = 1\n", "9: [[unrecorded]] knots_s = 1, needs latent_sd");
+  fails(muscle + "constant = 0.1\nlatent_sd = 0\n", "9: [[unrecorded]] latent_sd = 0, must be > 0");
+  fails(least + "[[unrecorded]]\nmuscle = \"BRD\"\nconstant = 0\n",
+        "7: [[unrecorded]] muscle = \"BRD\", has the electrode 'biceps'");
+  fails(least + "[[unrecorded]]\nmuscle = \"a;b\"\nconstant = 0\n", "must be a name without");
+  fails(muscle + "constant = 0\n[[unrecorded]]\nmuscle = \"BRA\"\nconstant = 0\n",
+        "is given twice");
+}
+
+TEST_F(EmgConfigs, TurnPointsIntoMarkersOfTheModel) {
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(200, 0, 2);
+  bio::Recording points = recording("mV");
+  points.channels.insert(
+      points.channels.end(),
+      {{"WRI.x", "m", 50, 0, x}, {"WRI.y", "m", 50, 0, x}, {"WRI.z", "m", 50, 0, x}});
+  const std::string markers = least + "[markers]\n";
+  // laboratory z is up
+  const bio::EmgConfig c = bio::emgConfigFor(
+      read(markers + "names = { WRI = \"hand.wrist\" }\naxes = \"x z -y\"\norigin_m = [1, 2, 3]\n"
+                     "lowpass_Hz = 6\n"),
+      points);
+  ASSERT_EQ(c.columns.size(), 3u);
+  EXPECT_EQ(c.columns[1].channel, "WRI.z");
+  EXPECT_EQ(c.columns[1].coordinate, "hand.wrist.y");
+  EXPECT_EQ(c.columns[1].zero, 3);
+  EXPECT_EQ(c.columns[2].channel, "WRI.y");
+  EXPECT_EQ(c.columns[2].sign, -1);
+  EXPECT_EQ(c.columns[2].zero, 2);
+  EXPECT_EQ(c.columns[0].lowPass, 6);
+  // by the model's names
+  const std::string model = markers + "model = \"m.osim\"\n";
+  const std::vector<std::string> known = {"hand.WRI", "hand.thumb"};
+  EXPECT_EQ(bio::emgConfigFor(read(model), points, known).columns[0].coordinate, "hand.WRI.x");
+  EXPECT_EQ(bio::emgConfigFor(read(model + "names = { WRI = \"thumb\" }\n"), points, known)
+                .columns[0]
+                .coordinate,
+            "hand.thumb.x");
+  EXPECT_THAT(read(model).markers->model, testing::EndsWith("/m.osim"));
+  const auto fails2 = [&](const std::string& text, const std::string& message) {
+    const bio::EmgConfigFile config = read(text);
+    EXPECT_THAT([&] { bio::emgConfigFor(config, points, known); },
+                ThrowsMessage<bio::FileError>(HasSubstr("c.toml:6: [markers] " + message)));
+  };
+  fails2(markers + "names = { ELB = \"hand.x\" }\n", "names: no recording has a point 'ELB'");
+  fails2(model + "names = { WRI = \"toe\" }\n",
+         "names: the model has no marker 'toe'; it has hand");
+  points.channels.resize(2);
+  fails2(model, "no point is called as a marker of the model (hand.WRI, hand.thumb): needs names");
+  fails(markers, "6: [markers] needs a key 'names'");
+  fails(markers + "names = { WRI = \"wrist\" }\n", "7: [markers] names = ");
+  fails(markers + "names = [\"a\"]\n", "7: [markers] names = ");
+  fails(markers + "names = { A = \"h.w\", B = \"h.w\" }\n", "are both 'h.w'");
+  for (const char* axes : {"x y", "x y z x", "x x z", "x y up", "- y z", ""}) {
+    fails(model + "axes = \"" + axes + "\"\n",
+          "8: [markers] axes = \"" + std::string(axes) + "\", must be three of x, y and z");
+  }
+  fails(model + "axes = \"x z y\"\n", "8: [markers] axes = \"x z y\", must be a turn");
+  fails(model + "origin_m = [1, 2]\n", "8: [markers] origin_m = [1,2], must be three numbers");
+}
+
 TEST_F(EmgConfigs, CompareUnitsWithTheRecording) {
   const std::string mvc = least + "mvc = 1.5\nunit = \"mV\"\n";
   const auto given =

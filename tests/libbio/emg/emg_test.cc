@@ -54,6 +54,34 @@ bio::EmgConfig envelopeConfig() {
   return out;
 }
 
+// u of one electrode and 1 − u of the other.
+TEST(Emg, GivesMusclesWithoutAnElectrodeWhatIsAskedFor) {
+  bio::EmgConfig config = envelopeConfig();
+  config.electrodes.push_back({"f", bio::MvcValue{1.0, "given"}, {{"TRIlat", 1.0}}});
+  config.unrecorded = {{"BRD", {{"e", 1}}, 0.5, 0, {}},
+                       {"ANC", {{"e", 1}, {"f", 3}}, 1, 0, {}},
+                       {"SUP", {}, 1, 0.05, bio::LatentDeclaration{"SUP", 0.7, 0.5}}};
+  bio::Channel other = smooth("f");
+  other.values = (1 - other.values.array()).matrix();
+  const bio::EmgResult r = bio::excitationsFromEmg(recording({smooth("e"), other}), config);
+  EXPECT_THAT(r.muscles, testing::ElementsAre("BRA", "TRIlat", "BRD", "ANC", "SUP"));
+  const auto u = r.excitations.col(0).array();
+  EXPECT_LT((r.excitations.col(2).array() - 0.5 * u).abs().maxCoeff(), 1e-15);
+  EXPECT_LT((r.excitations.col(3).array() - (0.25 * u + 0.75 * (1 - u))).abs().maxCoeff(), 1e-12);
+  EXPECT_TRUE((r.excitations.col(4).array() == 0.05).all());
+  EXPECT_THAT(r.remarks, Contains(HasSubstr("BRD has no electrode: its excitation is 0.5 of that "
+                                            "of electrode 'e'.")));
+  EXPECT_THAT(r.remarks, Contains(HasSubstr("the mean of 0.25 of 'e' and 0.75 of 'f'.")));
+  EXPECT_THAT(r.remarks, Contains(HasSubstr("a constant 0.05, which a calibration may correct at "
+                                            "knots every 0.5 s at most, the log-odds by 0.7")));
+  config.unrecorded[0].muscle = "BRA";
+  EXPECT_THAT(
+      [&] {
+        bio::excitationsFromEmg(recording({smooth("e"), other}), config);
+      },
+      ThrowsMessage<std::invalid_argument>(HasSubstr("'BRA': has an electrode")));
+}
+
 TEST(Emg, RecoversTheEffortFromNoiseUnderALineAndAnOffset) {
   bio::EmgConfig config;
   config.notch.lines = {50};

@@ -118,6 +118,18 @@ TEST(CoupledSensitivity, MatchesDifferencesForEmgThatIsDelayedAndShaped) {
   EXPECT_LT(d.worst, 1e-5) << d.of;
 }
 
+// Also through the delay, the shape and fatigue of what is recorded.
+TEST(CoupledSensitivity, MatchesDifferencesForALatentExcitation) {
+  EmgMapping mapping{{{"BRA", 1.1}}, 0.0123, -0.8};
+  mapping.fatigue = 0.2;
+  mapping.latent["BRA"] = {{0, 0.21, 0.4, 0.6}, Eigen::Vector4d(0.3, -0.5, 0.2, 0.4), 1};
+  const ShippedElbow elbow("elbow8", "curl_slow", mapping);
+  const auto wanted = elbow.catalogue.select({"emg.BRA.latent*", "emg.BRA.gain", "hand.mass"});
+  ASSERT_EQ(wanted.size(), 6u);
+  const DiscoveryProblem d = compare(elbow, wanted, forSeconds(0.6));
+  EXPECT_LT(d.worst, 1e-5) << d.of;
+}
+
 TEST(CoupledSensitivity, AGroupIsTheSumOfItsMembers) {
   const ShippedElbow elbow;
   std::vector<std::size_t> wanted = elbow.catalogue.select({"*.time_scale"});

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -69,6 +70,9 @@ struct C3dSample {
   float rate = 100;
   std::vector<Parameter> more;       // behind the usual ones
   std::vector<std::string> without;  // names of usual ones that are left out
+  /// Instead of the usual positions, in floats, and which are seen.
+  std::function<double(unsigned frame, unsigned point, unsigned axis)> position = {};
+  std::function<bool(unsigned frame, unsigned point)> isSeen = {};
 
   /// Numbers as they stand in the file: coordinate `axis` of a point, sample of a channel.
   static int pointNumber(unsigned frame, unsigned point, unsigned axis) {
@@ -134,8 +138,14 @@ struct C3dSample {
   }
   void writeFrame(BinaryWriter& out, unsigned f) const {
     for (unsigned p = 0; p < points; ++p) {
-      for (unsigned axis = 0; axis < 3; ++axis) value(out, pointNumber(f, p, axis), 0.5F);
-      value(out, seen(f, p) ? 0x0302 : -1, 1);
+      for (unsigned axis = 0; axis < 3; ++axis) {
+        if (position) {
+          out.f32(static_cast<float>(position(f, p, axis)));
+        } else {
+          value(out, pointNumber(f, p, axis), 0.5F);
+        }
+      }
+      value(out, (isSeen ? isSeen(f, p) : seen(f, p)) ? 0x0302 : -1, 1);
     }
     for (unsigned s = 0; s < samplesPerFrame; ++s) {
       for (unsigned c = 0; c < channels; ++c) value(out, analogNumber(f, s, c), 1);

@@ -146,21 +146,30 @@ TEST_F(C3d, UnitsAreMetres) {
   EXPECT_THAT(read(silent).markers.remarks, ElementsAre(HasSubstr("taken for millimetres")));
 }
 
-TEST_F(C3d, IsARecordingOfItsAnalogChannels) {
+TEST_F(C3d, IsARecordingOfItsAnalogChannelsAndPoints) {
   const std::string file = folder_.file("a.c3d", C3dSample{}.write());
   const Recording recording = readRecording(file);
   EXPECT_EQ(recording.format, RecordingFormat::c3d);
   EXPECT_EQ(findChannel(recording, "TRI").rate, 400);
   EXPECT_EQ(findChannel(recording, "TRI").unit, "V");
   // whatever the file is called
-  EXPECT_EQ(readRecording(folder_.file("a.bin", C3dSample{}.write())).channels.size(), 2);
+  EXPECT_EQ(readRecording(folder_.file("a.bin", C3dSample{}.write())).channels.size(), 2 + 2 * 3);
+  const Channel& elbow = findChannel(recording, "ELBOW.y");
+  EXPECT_EQ(elbow.unit, "m");
+  EXPECT_EQ(elbow.rate, 100);
+  ASSERT_EQ(elbow.values.size(), 5);
+  EXPECT_TRUE(std::isnan(elbow.values[2]));  // not seen
+  EXPECT_NEAR(elbow.values[4], 1e-4 * C3dSample::pointNumber(4, 1, 1), 1e-12);
   EXPECT_EQ(readMarkers(folder_ / "a.bin").names.size(), 2);
   C3dSample markers;
   markers.channels = 0;
   markers.samplesPerFrame = 0;
   markers.without = {"ANALOG:OFFSET"};
-  EXPECT_THAT([&] { readRecording(folder_.file("c.c3d", markers.write())); },
-              testing::ThrowsMessage<FileError>(HasSubstr("c.c3d: holds no analog channels")));
+  EXPECT_EQ(readRecording(folder_.file("c.c3d", markers.write())).channels.size(), 6);
+  markers.points = 0;
+  markers.without.insert(markers.without.end(), {"POINT:LABELS"});
+  EXPECT_THAT([&] { readRecording(folder_.file("d.c3d", markers.write())); },
+              testing::ThrowsMessage<FileError>(HasSubstr("d.c3d: holds no analog channels or")));
   // channels of one name are told apart by their numbers
   C3dSample twice;
   twice.without = {"ANALOG:LABELS"};

@@ -96,9 +96,14 @@ TEST_F(Trc, RefusesBrokenFilesInOneLine) {
   refused("\t1000\t", "\t1.000,5\t", "must be a number without thousands separators");
 }
 
-TEST_F(Trc, IsNoRecording) {
-  EXPECT_THAT([&] { readRecording(folder_.file("a.trc", walk)); },
-              testing::ThrowsMessage<FileError>(HasSubstr("holds markers (TRC)")));
+TEST_F(Trc, IsARecordingOfItsPoints) {
+  const Recording recording = readRecording(folder_.file("a.trc", walk));
+  EXPECT_EQ(recording.format, RecordingFormat::trc);
+  ASSERT_EQ(recording.channels.size(), 3u);
+  EXPECT_THAT(recording.remarks, ElementsAre(HasSubstr("Point 'ELBOW' was never seen, or once")));
+  const Channel& head = findChannel(recording, "HEAD.x");
+  EXPECT_EQ(head.unit, "m");
+  EXPECT_EQ(head.startTime, readTrc(folder_ / "a.trc").times[0]);
 }
 
 // Lines that end early cannot ask for more cells than the file's size lets expect.

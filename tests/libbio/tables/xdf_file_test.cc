@@ -96,6 +96,38 @@ TEST_F(Xdf, LeapsOfTimeAreGaps) {
   EXPECT_THAT(file.remarks, ElementsAre(HasSubstr("1 times samples are missing, 600 in all")));
 }
 
+// The computer of a stream restarts: its clock begins anew, 3000 s lower, after 2 s without
+// samples.
+TEST_F(Xdf, AClockThatRestartsIsFollowedByItsOwnOffsets) {
+  for (const double restarted : {50.0, 9000.0}) {
+    XdfSample xdf;
+    xdf.streamHeader(1, "EMG", 2, 100, "int16");
+    xdf.streamHeader(2, "Goniometer", 1, 50, "float32");
+    const auto offsets = [&](double begin, double by) {
+      for (int i = 0; i < 4; ++i) xdf.offset(1, begin + 2 * i, by + 1e-4 * i);
+    };
+    offsets(3000, 100);
+    addEmg(xdf, 1, 800, 3000, 100);
+    // 10 s after the first sample on the recorder's clock
+    offsets(restarted, 3110 - restarted);
+    addEmg(xdf, 1, 800, restarted, 100);
+    for (int i = 0; i < 900; ++i) {
+      xdf.chunk(3, XdfSample::samples(2, {3100 + i / 50.0}, {XdfSample::float32({1})}));
+    }
+    const XdfFile file = read(xdf.bytes);
+    const Channel& emg = file.streams[0].channels[0];
+    ASSERT_EQ(emg.values.size(), 1800) << restarted;
+    EXPECT_NEAR(emg.rate, 100, 0.01);
+    EXPECT_NEAR(emg.startTime, 0, 1e-3);
+    EXPECT_EQ(emg.values[799], 794);
+    EXPECT_TRUE(std::isnan(emg.values[800]) && std::isnan(emg.values[999]));
+    EXPECT_EQ(emg.values[1000], -5);
+    EXPECT_THAT(
+        file.remarks,
+        testing::Contains(HasSubstr("Stream 'EMG': its clock was set or restarted 1 time;")));
+  }
+}
+
 TEST_F(Xdf, JitterOfStampsIsEvenedOut) {
   XdfSample xdf;
   xdf.streamHeader(1, "EMG", 1, 100, "float32");
@@ -189,9 +221,16 @@ TEST_F(Xdf, RefusesBrokenFilesInOneLine) {
        [&](XdfSample& xdf) {
          xdf.chunk(3, XdfSample::samples(1, {1, 1.01}, {two, two}));
          xdf.offset(1, 1, 0);
-         xdf.offset(1, 2, 1);
+         xdf.offset(1, 2, 0.5);
        },
-       "its clock runs off by 1 s per second"},
+       "its clock runs off by 0.5 s per second"},
+      {"clock set without its stamps",
+       [&](XdfSample& xdf) {
+         xdf.offset(1, 1, 0);
+         xdf.chunk(3, XdfSample::samples(1, {1, 1.01, 1.02}, {two, two, two}));
+         xdf.offset(1, 2, 500);
+       },
+       "stream 'EMG': the offset of its clock leaps by 500 s where its time stamps do not"},
       {"backwards", samples({100, 50}, {two, two}), "must not go back"},
       {"standing", samples({100, 100}, {two, two}), "its time stamps do not rise"},
       {"a long break", samples({1, 1.01, 1e9}, {two, two, two}), "no samples for 1e+09 s"},

@@ -18,8 +18,8 @@ struct ObservedSeries {
 ///
 /// Coordinates, their speeds and markers follow from the cubic of Hermite between rows of the
 /// motion, whose error falls with the fourth (speeds: third) power of the step; moments, fibre
-/// lengths, tendon forces and activations are linear between rows, with an error that falls with
-/// the square of the step like that of the integrator.
+/// lengths, pennation, tendon forces and activations are linear between rows, with an error that
+/// falls with the square of the step like that of the integrator.
 class ObservedMotion {
  public:
   /// @throws std::invalid_argument for a coordinate that is not free, a moment at a coordinate that

@@ -103,6 +103,9 @@ struct Calibration {
   double reducedChiSquare = 0;    ///< of single samples; near 1 if the noise was given correctly
   Eigen::MatrixXd before, after;  ///< of the calibration trials, 1 × samples
   Eigen::MatrixXd heldOutBefore, heldOutAfter;  ///< of the others
+  /// Standard deviation of heldOutAfter from that of the common estimates, √(Γ Σ Γᵀ); priors are in
+  /// Σ, noise is not.
+  Eigen::VectorXd heldOutSd;
   /// All numbers of the held-out trials: those estimated, and their own starts, if they have such.
   Eigen::VectorXd heldOutValues;
   /// The model, the EMG mapping and the first trial's initial state at the estimate.

@@ -31,7 +31,8 @@ struct SteppedCalibration {
 
 /// calibrate(), again at half the step, from the estimate found, as long as halving the step of
 /// vi or vi-left matters and the step is not below `shortest` then. Held-out trials have starts of
-/// their own if the others have (TrialSetOptions::ownStart).
+/// their own if the others have (TrialSetOptions::ownStart); their latent excitations are what the
+/// trials say.
 /// @param shortest [s] > 0; infinity: at the given step only
 /// @throws std::invalid_argument what TrialSet and calibrate throw
 SteppedCalibration calibrateAtShorterSteps(const Model& model, const SystemOptions& arm,

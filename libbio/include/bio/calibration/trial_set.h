@@ -16,6 +16,9 @@ struct TrialSetOptions {
   /// Names or patterns as ParameterCatalogue::select takes them: the same value in every trial.
   std::vector<std::string> parameters;
   bool ownStart = false;  ///< estimate the initial values and speeds of each trial as well
+  /// Estimate the latent excitations that each trial declares (Trial::latent) as well; if not, they
+  /// are what the trial says.
+  bool latent = false;
   std::map<std::string, double> initial;  ///< start values [rad] or [m], as startCoordinates takes
   SimulationOptions simulation;           ///< start and duration are those of each trial
   int threads = 1;                        ///< trials simulated at once
@@ -38,7 +41,8 @@ struct MeasuredGroup {
 };
 
 /// Several trials of one model as one experiment: θ = (parameters of the model, common to all;
-/// then, if asked for, start and start speed of each trial's free coordinates), outputs = all that
+/// then of each trial, if asked for, start and start speed of its free coordinates and the knots of
+/// its latent excitations, all with priors), outputs = all that
 /// was measured in all trials, concatenated, in its units. Each trial is simulated over all its
 /// rows from the initial state of beginningOf().
 class TrialSet {
@@ -67,11 +71,23 @@ class TrialSet {
 
   /// Initial state of a trial at θ.
   StartPoint startAt(std::size_t trial, const Eigen::VectorXd& theta) const;
+  /// Relation between the EMG of a trial and its excitations at θ.
+  EmgMapping mappingAt(std::size_t trial, const Eigen::VectorXd& theta) const;
+
+  /// A latent excitation of a trial and where its knots stand in parameters().
+  struct Latent {
+    std::size_t trial;
+    LatentDeclaration declared;
+    std::vector<double> knots;  ///< [s]
+    Eigen::VectorXd atKnots;    ///< the trial's course: mean of the prior
+    std::size_t first;          ///< of parameters(); the others follow
+  };
+  const std::vector<Latent>& latent() const { return latent_; }
 
   std::size_t numParameters() const { return parameters_.size(); }
-  /// Number of common parameters; the others are initial states of trials.
+  /// Number of common parameters; the others belong to single trials.
   std::size_t numCommon() const { return selection_.size(); }
-  /// θ of the model and the trials, with the catalogue's bounds; initial states have a prior.
+  /// θ of the model and the trials, with the catalogue's bounds; those of trials have a prior.
   const std::vector<info::Parameter>& parameters() const { return parameters_; }
   /// Prior standard deviation of each, in its unit.
   const Eigen::VectorXd& known() const { return known_; }
@@ -111,6 +127,9 @@ class TrialSet {
   void collectSeries(const Model& model);
   std::size_t channelOf(const Observable& what, const Model& model);
   void collectParameters(const TrialSetOptions& options);
+  void collectOwn(const TrialSetOptions& options);
+  void addLatent(std::size_t trial, std::size_t first);
+  std::vector<std::size_t> selectionOf(std::size_t trial) const;
   Eigen::VectorXd thetaOf(std::size_t trial, const Eigen::VectorXd& theta) const;
 
   std::vector<Trial> trials_;
@@ -119,7 +138,11 @@ class TrialSet {
   std::unique_ptr<const MusculoskeletalSystem> arm_;
   std::vector<std::unique_ptr<const ParameterCatalogue>> catalogues_;  ///< one per trial
   std::vector<std::size_t> selection_;
-  std::vector<std::size_t> own_;  ///< indices of the initial states; empty unless estimated
+  /// Of each trial, indices of its initial state and latent excitations that are estimated, and
+  /// where they begin in parameters_.
+  std::vector<std::vector<std::size_t>> own_;
+  std::vector<Eigen::Index> ownBegin_;
+  std::vector<Latent> latent_;
   std::vector<info::Parameter> parameters_;
   Eigen::VectorXd known_;
   std::vector<MeasuredSeries> series_;

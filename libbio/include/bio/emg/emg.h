@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bio/emg/emg_stages.h"
+#include "bio/emg/latent_excitation.h"
 #include "bio/emg/measured_coordinate.h"
 #include "bio/tables/recording.h"
 
@@ -37,6 +38,18 @@ struct Electrode {
   std::vector<std::pair<std::string, double>> muscles;  ///< name and weight, 0 < weight ≤ 1
 };
 
+/// What a muscle without an electrode gets in place of its own signal.
+struct UnrecordedMuscle {
+  std::string muscle;
+  /// Electrodes by their channels, with weights w > 0: the weighted mean of their excitations,
+  ///     factor·Σ w_e u_e/Σ w_e
+  /// One electrode alone is shared. Empty: constant.
+  std::vector<std::pair<std::string, double>> synergy;
+  double factor = 1;                        ///< 0 < factor ≤ 1
+  double constant = 0;                      ///< excitation, 0 to 1
+  std::optional<LatentDeclaration> latent;  ///< how far calibration may pull it
+};
+
 /// Processing of raw EMG to excitation; the stages are applied in the order of the members.
 struct EmgConfig {
   EmgSignal signal = EmgSignal::raw;
@@ -50,6 +63,7 @@ struct EmgConfig {
       start;                  ///< first row [s]; absent: the first sample common to all electrodes
   std::optional<double> end;  ///< no row after this [s]
   std::vector<Electrode> electrodes;  ///< at least one
+  std::vector<UnrecordedMuscle> unrecorded = {};
   std::optional<MeasuredOptions> measured;
   /// Other measured columns of the trial: `coordinate` is the column's name, `degreesPerUnit` and
   /// `sign` its factor.
@@ -74,7 +88,7 @@ struct ElectrodeTrace {
 
 struct EmgResult {
   Eigen::VectorXd time;              ///< rows [s], equally spaced
-  std::vector<std::string> muscles;  ///< in the order of their first electrode
+  std::vector<std::string> muscles;  ///< in the order of their first electrode; then those without
   Eigen::MatrixXd excitations;       ///< rows × muscles, 0 to 1
   double fractionSumAbove = 0;       ///< of all values: weighted sums > 1, clipped
   std::vector<ElectrodeTrace> electrodes;
@@ -84,6 +98,9 @@ struct EmgResult {
   std::vector<std::string> remarks;  ///< sentences for the report: processing steps and limitations
   std::vector<std::string> warnings;  ///< channels that look wrong (channel_review.h)
 };
+
+/// "0.7 of electrode 'biceps'", "the mean of …", "a constant 0.05"
+std::string sourceOf(const UnrecordedMuscle& muscle);
 
 /// Envelope of one channel through the first stages (up to the low-pass), in the channel's unit.
 /// @throws std::invalid_argument for gaps, a signal shorter than one period of the cut-off, edges

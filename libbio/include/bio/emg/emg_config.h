@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +28,21 @@ struct FurtherRecording {
   int line = 0;
 };
 
+/// How points of a C3D or TRC file become columns of markers.
+struct MarkerDeclaration {
+  std::string model;  ///< its markers are looked for; path as it can be opened
+  std::map<std::string, std::string> names;  ///< BODY.MARKER, or with a model MARKER, by the
+                                             ///< file's name; empty: all of the model's names
+  struct Axis {
+    int laboratory;  ///< 0 x, 1 y, 2 z
+    double sign;     ///< +1 or −1
+  };
+  std::array<Axis, 3> axes = {{{0, 1}, {1, 1}, {2, 1}}};  ///< of the model's x, y, z
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();       ///< the model's, in the laboratory [m]
+  std::optional<double> lowPass;                          ///< [Hz]
+  int line = 0;
+};
+
 /// A configuration of `fisherhill emg` as read from its TOML file; docs/emg.md lists every key.
 struct EmgConfigFile {
   std::string file;
@@ -37,6 +54,7 @@ struct EmgConfigFile {
   std::optional<double> degreesPerUnit;  ///< of the measured channel, if stated
   int measuredLine = 0;                  ///< of [measured], 0: none
   std::vector<int> columnLines;          ///< of [[column]]
+  std::optional<MarkerDeclaration> markers;
 };
 
 /// @throws FileError "file:line: key = value, rule" for TOML that cannot be parsed, an unknown key,
@@ -45,7 +63,11 @@ EmgConfigFile readEmgConfig(const std::string& file);
 
 /// The configuration for one recording: channels found, units compared, maximum contractions read
 /// from their own files (the maximum of their envelope through the same filters).
-/// @throws FileError "file:line: …" for a missing channel or a unit that does not match
-EmgConfig emgConfigFor(const EmgConfigFile& config, const Recording& recording);
+/// A marker of the model becomes three columns BODY.MARKER.x, .y and .z of points in the recording,
+/// turned into the model's axes.
+/// @param markers  BODY.MARKER of the model that [markers] names, if it does
+/// @throws FileError "file:line: …" for a missing channel or marker or a unit that does not match
+EmgConfig emgConfigFor(const EmgConfigFile& config, const Recording& recording,
+                       const std::vector<std::string>& markers = {});
 
 }  // namespace bio

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bio/emg/latent_excitation.h"
 #include "bio/muscle/activation/excitation.h"
 
 namespace bio {
@@ -13,7 +14,8 @@ namespace bio {
 ///     z_i = max(0, x_i − o_i − Σ_j c_ji·x_j) + s_i·h_i
 /// and fatigue reduces this the longer a muscle has been active:
 ///     u_i ← u_i·[1 − φ(1 − e^{−I_i/T})],   I_i = ∫u_i dt from the first row, u_i as above
-/// where h_i is what a saturated record lacks (flatTops) and s_i its size.
+/// where h_i is what a saturated record lacks (flatTops) and s_i its size. Before all that the x_i
+/// of a muscle with a latent excitation is the trial's course corrected by it.
 /// (S: Lloyd & Besier 2003, eq. 3, as in emg_stages.h). It is applied to the rows of the trial; u
 /// is linear between them. The default is the identity.
 struct EmgMapping {
@@ -32,6 +34,8 @@ struct EmgMapping {
   std::map<std::string, double> saturation = {};  ///< s [1] by muscle; 0 where it has none
   double fatigue = 0;      ///< φ [1], −1 to 1; below 0 the excitation increases
   double fatigueTime = 1;  ///< T [s] > 0 of full excitation
+  /// By muscle, which then has no saturation.
+  std::map<std::string, LatentExcitation> latent = {};
 };
 
 /// What a record that saturates lacks: 0 but on its flat tops, five or more rows in turn at
@@ -43,8 +47,8 @@ Eigen::RowVectorXd flatTops(const Eigen::VectorXd& times, const Eigen::RowVector
 
 /// @param muscles  the signal's, in order
 /// @throws std::invalid_argument for a gain < 0, a delay that is not finite, A outside −6 … 6, φ
-///   outside −1 … 1, T not above 0, or a gain, offset, crosstalk or saturation of an unknown
-///   muscle
+///   outside −1 … 1, T not above 0, a gain, offset, crosstalk, saturation or latent excitation of
+///   an unknown muscle, or the last two of one
 ExcitationSignal drivenExcitation(const ExcitationSignal& trial,
                                   const std::vector<std::string>& muscles,
                                   const EmgMapping& mapping);
@@ -55,7 +59,7 @@ struct EmgDerivatives {
   Eigen::MatrixXd gain;
   Eigen::MatrixXd nonlinearity;
   Eigen::MatrixXd signal;  ///< ∂u/∂z: −1 times it is ∂u/∂o, −x_j ∂u/∂c_ji, h_i ∂u/∂s_i
-  Eigen::MatrixXd rows;         ///< x: the trial's own
+  Eigen::MatrixXd rows;         ///< x: the trial's own, or with the latent excitation
   Eigen::MatrixXd fatigue;      ///< ∂u/∂φ
   Eigen::MatrixXd fatigueTime;  ///< ∂u/∂T [1/s]
 

@@ -36,6 +36,8 @@ class SimulatedMuscle {
   double perFibre() const { return perFibre_; }          ///< 1/ℓ0 [1/m]
   double thickness() const;                              ///< w [m]
   bool hasFibreState() const { return hasFibreState_; }  ///< false: rigid tendon
+  /// Of w = ℓ0 sin α0 [m per unit].
+  PerMuscleNumber thicknessInNumbers() const;
 
   /// Length at which the class holds a fibre with an elastic tendon [m]: there it shortens no
   /// further, ℓ̇ = max(V, 0), and what pulls on it shortens the tendon. 0: never.

@@ -72,10 +72,13 @@ struct EmgTarget {
     crosstalk,
     saturation,
     fatigue,
-    fatigueTime
+    fatigueTime,
+    latent
   } what;
-  std::string muscle;     ///< of a gain, an offset, a saturation, a crosstalk's receiver
+  std::string muscle;  ///< of a gain, an offset, a saturation, a latent excitation, a crosstalk's
+                       ///< receiver
   std::string from = {};  ///< of a crosstalk
+  std::size_t knot = 0;   ///< of a latent excitation
   friend bool operator==(const EmgTarget&, const EmgTarget&) = default;
 };
 struct InitialTarget {
@@ -118,6 +121,8 @@ struct StartPoint {
 /// TRI.rotation.x), bodies by name (hand.mass, hand.mass_center.x, hand.inertia.xx), passive forces
 /// by name (elbow_flexion_ligaments.upper_stiffness). emg.BRA.gain, emg.delay, emg.nonlinearity;
 /// initial.elbow_flexion, initial.elbow_flexion.speed. Groups: activation.time_scale, emg.gain, …
+/// Behind them, for each muscle of EmgMapping::latent, emg.BRA.latent1, … of its knots, which
+/// belong to one trial.
 ///
 /// Bounds and prior standard deviations are generic defaults; positive quantities stay positive,
 /// and a radius stays half a per cent below the smallest one for which a point of a path over the

@@ -18,6 +18,8 @@ struct SensitivityTrajectory {
   std::vector<SensitivityMatrix> q;            ///< dq/dθ of each free coordinate
   std::vector<SensitivityMatrix> qDot;         ///< dq̇/dθ of each free coordinate
   std::vector<SensitivityMatrix> fibreLength;  ///< of each muscle; empty unless asked for
+  /// dw/dθ of each muscle's thickness w = ℓ0 sin α0, the same at all times; empty unless asked for.
+  std::vector<Eigen::RowVectorXd> thickness;
   std::vector<SensitivityMatrix> activation;   ///< of each muscle; empty unless asked for
   std::vector<SensitivityMatrix> tendonForce;  ///< of each muscle; empty unless asked for
   /// Of the reaction at each free coordinate; empty for those that are not prescribed, and unless

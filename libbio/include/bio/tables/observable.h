@@ -16,10 +16,21 @@ namespace bio {
 ///                     the coordinate; the weight and inertia of all that moves are part of it
 ///                                                          [N·m] or [N]
 ///     BODY.MARKER.x   position of a marker in the ground   [m]
-///     MUSCLE.fiber_length, MUSCLE.tendon_force, MUSCLE.activation
-///                                                          [m], [N], 0 to 1
+///     MUSCLE.fiber_length, MUSCLE.pennation, MUSCLE.tendon_force, MUSCLE.activation
+///                                                          [m], [rad], [N], 0 to 1
+///
+/// Pennation is the angle α between fibres and tendon, sin α = ℓ0 sin α0/ℓ, in every class.
 struct Observable {
-  enum class Kind { coordinate, speed, moment, marker, fibreLength, tendonForce, activation };
+  enum class Kind {
+    coordinate,
+    speed,
+    moment,
+    marker,
+    fibreLength,
+    pennation,
+    tendonForce,
+    activation
+  };
   Kind kind = Kind::coordinate;
   std::string of;  ///< coordinate, muscle, or BODY.MARKER
   int axis = 0;    ///< of a marker: 0 x, 1 y, 2 z of the ground

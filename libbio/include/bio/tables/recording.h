@@ -26,10 +26,17 @@ double endTime(const Channel& channel);
 ///   trigno   Delsys Trigno export: sensors in line 4, quantities with units in line 6, one rate
 ///   per
 ///            column in line 7, columns of any length below
+///   emgworks Delsys EMGworks export: `X[s]` in front of every signal, each with times of its own,
+///            which end when it ends; lines before the names are skipped
+///   noraxon  Noraxon MR3 or MyoResearch export: a column of times, `NAME, UNIT`, columns of texts;
+///            lines before the names are skipped
 ///   table    .sto, .mot or .csv with a header row and a column of times (table_file.h)
-///   c3d      analog channels of a C3D file (c3d_file.h)
+///   c3d      analog channels of a C3D file, then its points (c3d_file.h)
 ///   xdf      numeric streams of an XDF file (xdf_file.h)
-enum class RecordingFormat { automatic, columns, trigno, table, c3d, xdf };
+///   trc      points of a TRC file (marker_trajectories.h)
+/// Points become channels NAME.x, NAME.y and NAME.z [m] in the laboratory's axes; those that were
+/// never seen are left out.
+enum class RecordingFormat { automatic, columns, trigno, table, c3d, xdf, trc, emgworks, noraxon };
 
 /// The name of the format as above.
 std::string_view nameOf(RecordingFormat format);
@@ -57,8 +64,9 @@ struct Recording {
   std::vector<std::string> remarks;  ///< data that was left out
 };
 
-/// `xdf` or `c3d` by the first bytes (or the extension), `trigno` if line 7 is a row of rates in
-/// Hz, `columns` if the first line that is not empty contains only numbers, else `table`.
+/// `xdf`, `c3d` or `trc` by the first bytes (or the extension), `trigno` if line 7 is a row of
+/// rates in Hz, `emgworks` or `noraxon` if a line of names is like theirs, `columns` if the first
+/// line that is not empty contains only numbers, else `table`.
 /// @throws FileError if the file cannot be read or is empty
 RecordingFormat detectFormat(const std::string& file);
 

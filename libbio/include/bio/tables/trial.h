@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bio/emg/latent_excitation.h"
 #include "bio/model/model.h"
 #include "bio/tables/experimental_conditions.h"
 #include "bio/tables/observable.h"
@@ -41,6 +42,9 @@ struct Trial {
                                            ///< constant
   std::vector<MeasuredChannel> channels;   ///< all else that was measured
   ExperimentalConditions known;
+  /// Muscles without an electrode, whose column is only what is expected: calibration may correct
+  /// it (header line `latent_excitation`, latent_excitation.h).
+  std::vector<LatentDeclaration> latent;
   std::vector<std::string> warnings;  ///< one line each
 
   /// [s]
@@ -63,10 +67,10 @@ struct TrialOptions {
 /// driven muscle (0 to 1 in every row), and a column per measured coordinate – an angle is in
 /// degrees when the header says inDegrees=yes or the name ends in `_deg`, else in radians. A column
 /// `elbow_flexion.torque` [N·m] (for a translation: `.force` [N]) is an external load. Other
-/// measured columns are named as Observable says; a speed is in degrees per second when the header
-/// says inDegrees=yes or the name ends in `_deg`. Header lines give Trial::known (known_changes.h);
-/// another line that begins with known_ is an error, and one that nearly matches inDegrees or such
-/// a line gets a warning. OpenSim's paths count as names:
+/// measured columns are named as Observable says; a speed is in degrees per second and a pennation
+/// in degrees when the header says inDegrees=yes or the name ends in `_deg`. Header lines give
+/// Trial::known (known_changes.h); another line that begins with known_ is an error, and one that
+/// nearly matches inDegrees or such a line gets a warning. OpenSim's paths count as names:
 /// `/forceset/BRA/activation` is not an excitation, `/forceset/BRA` and
 /// `/jointset/elbow/elbow_flexion/value` are understood. Empty cells and NaN: not measured. A
 /// muscle without a column gets the baseline, with a warning.

@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "design/dynamometer_design.h"
+#include "output/angle_unit.h"
+#include "output/text.h"
+
+namespace app {
+namespace {
+
+using Eigen::Index;
+using ExperimentKind = DynamometerExperiment::Kind;
+
+const char* wordOf(ExperimentKind kind) {
+  return kind == ExperimentKind::isometric ? "isometric"
+         : kind == ExperimentKind::passive ? "passive"
+                                           : "isokinetic";
+}
+
+}  // namespace
+
+std::string instructionOf(const DynamometerExperiment& one, bool turns) {
+  const double unit = turns ? radian : 1000;
+  const char* name = turns ? "deg" : "mm";
+  const std::string contract = fmt::format("{}: rise to {:.0f} % MVC in {:g} s", one.group,
+                                           100 * one.effort, contraction::ramp);
+  if (one.kind == ExperimentKind::isometric) {
+    return fmt::format("hold at {:.0f} {}; rest {:g} s, {}, keep it for {:g} s, relax",
+                       one.from * unit, name, contraction::rest, contract, contraction::hold);
+  }
+  const std::string turn =
+      fmt::format("turn from {:.0f} to {:.0f} {} at {:.0f} {}/s", one.from * unit, one.to * unit,
+                  name, one.speed * unit, name);
+  if (one.kind == ExperimentKind::passive) return turn + "; relax all the time";
+  return fmt::format("{}; rest {:g} s, {}, then turn and keep it to the end", turn,
+                     contraction::rest, contract);
+}
+
+void tellDynamometer(const DynamometerPlan& plan, bool turns, Summary& summary) {
+  const double unit = turns ? radian : 1;
+  nlohmann::ordered_json before = nlohmann::ordered_json::object(), now = before;
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
+    before[plan.parameters[i].name] = plan.parameters[i].sd;
+    now[plan.parameters[i].name] = plan.bounds.back()[static_cast<Index>(i)];
+  }
+  for (std::size_t n = 0; n < plan.chosen.size(); ++n) {
+    const DynamometerExperiment& one = plan.chosen[n];
+    nlohmann::ordered_json bounds = nlohmann::ordered_json::object();
+    for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
+      bounds[plan.parameters[i].name] = plan.bounds[n][static_cast<Index>(i)];
+    }
+    const char* of = turns ? "_deg" : "_m";
+    list.push_back({{"kind", wordOf(one.kind)},
+                    {fmt::format("from{}", of), one.from * unit},
+                    {fmt::format("to{}", of), one.to * unit},
+                    {fmt::format("speed{}_per_s", of), one.speed * unit},
+                    {"muscles", one.group},
+                    {"effort_percent", 100 * one.effort},
+                    {"instruction", instructionOf(one, turns)},
+                    {"information_nats", plan.information[n]},
+                    {"bounds", bounds}});
+  }
+  summary.set("bound_before", before);
+  summary.set("bound_after", now);
+  summary.set("experiments", list);
+  summary.set("candidates", plan.candidates);
+  summary.set("candidates_not_simulated", plan.failed);
+}
+
+Report dynamometerReport(const DynamometerPlan& plan, const DynamometerOptions& options,
+                         bool turns) {
+  Report report;
+  report.title = fmt::format("Experiments on a dynamometer: {}", options.coordinate);
+  std::vector<std::string> changes;
+  for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
+    const bio::ModelParameter& one = plan.parameters[i];
+    changes.push_back(
+        fmt::format("{} from ± {} to ± {}", one.name, numberText(one.sd, 3),
+                    withUnit(plan.bounds.back()[static_cast<Index>(i)], one.unit, 3)));
+  }
+  report.verdict = fmt::format("{} experiments of {} are expected to bring {}.", plan.chosen.size(),
+                               plan.candidates, fmt::join(changes, ", "));
+  Table table{"In this order", {"", "instruction", "adds [nats]"}, {}};
+  for (const bio::ModelParameter& one : plan.parameters) {
+    table.columns.push_back(fmt::format("± {} [{}]", one.name, unitText(one.unit)));
+  }
+  for (std::size_t n = 0; n < plan.chosen.size(); ++n) {
+    std::vector<std::string> row = {fmt::format("{}", n + 1), instructionOf(plan.chosen[n], turns),
+                                    numberText(plan.information[n], 3)};
+    for (const double bound : plan.bounds[n]) row.push_back(numberText(bound, 3));
+    table.rows.push_back(std::move(row));
+  }
+  report.details.emplace_back(std::move(table));
+  report.details.emplace_back(Paragraph{fmt::format(
+      "Bounds are the Cramér–Rao bounds of all that was done up to there, with the parameters' "
+      "default priors (as of --nuisance), if nothing else is unknown, and a noise of {:g} N m "
+      "(independent samples) of the moment. % MVC is the "
+      "excitation: EMG over that of a maximum contraction. The antagonists are taken to rest; "
+      "record them, too. experiment_N.csv are the experiments as trials: to be filled with what "
+      "was recorded, {}.moment above all.",
+      options.momentNoise, options.coordinate)});
+  return report;
+}
+
+}  // namespace app
