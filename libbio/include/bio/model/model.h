@@ -50,13 +50,21 @@ struct PolynomialFunction {
   std::vector<double> coefficients;
   friend bool operator==(const PolynomialFunction&, const PolynomialFunction&) = default;
 };
+/// amplitude·sin(omega·x + phase) + offset
+struct SineFunction {
+  double amplitude = 1;
+  double omega = 1;  ///< [rad per unit of x]
+  double phase = 0;  ///< [rad]
+  double offset = 0;
+  friend bool operator==(const SineFunction&, const SineFunction&) = default;
+};
 
 /// scale · shape(x), x held within low … high; nested MultiplierFunctions are multiplied out into
 /// `scale`.
 struct Function {
   double scale = 1;
   std::variant<ConstantFunction, LinearFunction, SplineFunction, PiecewiseLinearFunction,
-               PolynomialFunction>
+               PolynomialFunction, SineFunction>
       shape;
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
@@ -83,6 +91,10 @@ struct Coordinate {
   double rangeMax = 0;      ///< [rad] or [m], ≥ rangeMin
   bool locked = false;
   bool clamped = false;
+  bool prescribed = false;  ///< it moves on prescribedFunction, unless it is locked
+  /// Of time [s], in radians or metres; none: not prescribed, or of a class that is not known.
+  std::optional<Function> prescribedFunction = {};
+  bool isPrescribed() const { return prescribed && !locked; }
   friend bool operator==(const Coordinate&, const Coordinate&) = default;
 };
 
