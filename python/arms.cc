@@ -206,6 +206,10 @@ SystemChoice armChoice(const bio::Model& model, const std::vector<bio::Trial>& t
   std::set<std::string> given;
   for (const bio::Trial& trial : trials)
     for (const bio::MeasuredMotion& course : trial.prescribed) given.insert(course.coordinate);
+  std::set<std::string> otherwise = given;
+  otherwise.insert(free.begin(), free.end());
+  for (const auto& [name, value] : lock) otherwise.insert(name);
+  for (const std::string& name : bio::prescribedByModel(model, otherwise)) given.insert(name);
   const std::vector<std::string> prescribed(given.begin(), given.end());
   if (free.empty()) {
     std::set<std::string> locked = given, measured;

@@ -17,7 +17,7 @@ namespace python {
 /// The options that most functions of arms have.
 struct SystemChoice {
   std::vector<std::string> coordinates;  ///< free
-  std::vector<std::string> prescribed;   ///< those of the trials
+  std::vector<std::string> prescribed;   ///< those of the trials, and of the model
   std::map<std::string, double> locks;   ///< [rad] or [m]
   std::string integrator = "vi";
   std::optional<double> step;  ///< [s]; none: the integrator's default

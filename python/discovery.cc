@@ -146,6 +146,11 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
                     const Names& coordinate, const std::map<std::string, double>& lock,
                     const std::string& integrator, std::optional<double> firstStep) {
   const SystemChoice choice = armChoice(model, trials, coordinate, lock, integrator, firstStep);
+  if (!choice.prescribed.empty()) {
+    throw std::invalid_argument(
+        fmt::format("'{}' is prescribed, which discover does not take: lock it or make it free",
+                    choice.prescribed.front()));
+  }
   if (choice.coordinates.size() != 1) {
     throw std::invalid_argument("coordinate: several are free, must be one for discover");
   }

@@ -20,6 +20,9 @@ py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& t
                        const std::string& integrator, std::optional<double> step) {
   const SystemChoice choice = armChoice(model, trials, freeCoordinates, lock, integrator, step);
   if (trials.empty()) throw std::invalid_argument("trials: empty, must have at least one");
+  if (choice.coordinates.empty()) {
+    throw std::invalid_argument("no coordinate is free to be observed: all are prescribed");
+  }
   std::vector<Eigen::MatrixXd> gammas;
   std::vector<Eigen::VectorXd> outputs, times;
   bio::ParameterInformation information;

@@ -68,6 +68,31 @@ class Arms(unittest.TestCase):
         locked = fh.replay(self.model, fh.make_trial(self.model, columns, hold={"elbow_flexion": 1.0}))
         np.testing.assert_allclose(locked.reaction["elbow_flexion"], held.reaction["elbow_flexion"], atol=1e-9)
 
+    def test_a_motion_that_the_model_prescribes_is_that_of_a_column(self):
+        with open(ELBOW, encoding="utf-8") as file:
+            text = file.read()
+        at = text.index("<default_value>", text.index('<Coordinate name="elbow_flexion">'))
+        sine = (
+            "<prescribed>true</prescribed><prescribed_function><Sine><amplitude>0.3</amplitude>"
+            "<omega>4</omega><phase>0</phase><offset>1</offset></Sine></prescribed_function>"
+        )
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "swinging.osim")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(text[:at] + sine + text[at:])
+            model = fh.load_model(path)
+        columns = self.columns()
+        del columns["elbow_flexion"]
+        own = fh.replay(model, fh.make_trial(model, columns))
+        np.testing.assert_allclose(own.q[:, 0], 1 + 0.3 * np.sin(4 * own.time), atol=1e-12)
+        columns["elbow_flexion"] = 1 + 0.3 * np.sin(4 * self.trial.times)
+        given = fh.replay(self.model, fh.make_trial(self.model, columns, prescribe=["elbow_flexion"]))
+        np.testing.assert_allclose(own.reaction["elbow_flexion"], given.reaction["elbow_flexion"], atol=0.02)
+        free = fh.replay(model, fh.make_trial(model, columns), coordinate="elbow_flexion")
+        self.assertEqual(free.reaction, {})
+        with self.assertRaisesRegex(ValueError, "which discover does not take"):
+            fh.discover(model, [fh.make_trial(model, columns)])
+
     def test_integrators_agree_on_the_motion(self):
         fine = fh.replay(self.model, self.trial, integrator="cvode").q[-1, 0]
         for integrator, step, bound in (("vi", 0.005, 2e-3), ("rk4", 2e-4, 2e-3)):

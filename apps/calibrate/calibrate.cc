@@ -239,6 +239,7 @@ class Calibrate : public Command {
     return one.lower >= 0 &&
            (std::holds_alternative<bio::MuscleTarget>(one.targets.front()) ||
             std::holds_alternative<bio::MuscleNumberTarget>(one.targets.front()) ||
+            std::holds_alternative<bio::ForceNumberTarget>(one.targets.front()) ||
             one.unit == "kg" || one.name.ends_with(".radius"));
   }
 

@@ -96,12 +96,21 @@ Contents checkModel(const std::string& file, const bio::Model& model, Findings& 
     findings.add(file, "unusual", fmt::format("muscle '{}': {}", jump.muscle, describe(jump)));
   }
   std::size_t coordinates = 0;
-  for (const bio::Joint& joint : model.joints) coordinates += joint.coordinates.size();
-  return {Section{file},
-          Paragraph{fmt::format("Model “{}”: {} bodies, {} joints with {} coordinates, {} muscles, "
-                                "{} wrap objects.",
-                                model.name, model.bodies.size(), model.joints.size(), coordinates,
-                                model.muscles.size(), model.wrapObjects.size())}};
+  std::vector<std::string> prescribed;
+  for (const bio::Joint& joint : model.joints) {
+    coordinates += joint.coordinates.size();
+    for (const bio::Coordinate& coordinate : joint.coordinates) {
+      if (coordinate.isPrescribed()) prescribed.push_back(coordinate.name);
+    }
+  }
+  std::string text = fmt::format(
+      "Model “{}”: {} bodies, {} joints with {} coordinates, {} muscles, {} wrap objects.",
+      model.name, model.bodies.size(), model.joints.size(), coordinates, model.muscles.size(),
+      model.wrapObjects.size());
+  if (!prescribed.empty()) {
+    text += fmt::format(" Prescribed by functions of time: {}.", fmt::join(prescribed, ", "));
+  }
+  return {Section{file}, Paragraph{std::move(text)}};
 }
 
 /// Reads the trial as one of each model, so that columns are matched with muscles and coordinates.

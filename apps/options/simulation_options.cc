@@ -80,7 +80,8 @@ void addPrescribing(CLI::App& subcommand, SimulationOptions& options) {
   subcommand
       .add_option("--prescribe", options.prescribed,
                   "coordinate that moves as its column in the trial says, as on a dynamometer; "
-                  "what holds it there is NAME.reaction; may be repeated")
+                  "what holds it there is NAME.reaction; may be repeated; default: those that the "
+                  "model prescribes move on its functions of time")
       ->type_name("NAME")
       ->allow_extra_args(false)
       ->delimiter(',')

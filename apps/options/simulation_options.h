@@ -14,12 +14,14 @@ namespace app {
 /// The options that every subcommand with a simulation has, as they were typed; names are checked
 /// against the model later.
 struct SimulationOptions {
-  std::string integrator = "vi";          ///< vi, vi-left, rk4 or cvode
-  std::optional<double> step;             ///< Δt [s] > 0; see stepOrDefault
-  std::vector<std::string> coordinates;   ///< the free ones; empty: chooseCoordinates() chooses
-  bool areChosen = false;                 ///< `coordinates` were chosen, not typed
-  std::vector<std::string> prescribed;    ///< coordinates whose motion is that of the trial
-  bool takesPrescribed = false;           ///< the command has these options
+  std::string integrator = "vi";         ///< vi, vi-left, rk4 or cvode
+  std::optional<double> step;            ///< Δt [s] > 0; see stepOrDefault
+  std::vector<std::string> coordinates;  ///< the free ones; empty: chooseCoordinates() chooses
+  bool areChosen = false;                ///< `coordinates` were chosen, not typed
+  std::vector<std::string> prescribed;   ///< coordinates whose motion is that of the trial
+  bool takesPrescribed = false;          ///< the command has these options
+  /// Coordinates that move on the model's own functions of time; chooseCoordinates() fills them in.
+  std::vector<std::string> prescribedByModel;
   std::optional<double> prescribeCutoff;  ///< smooths that motion [Hz] > 0
   /// Locked coordinates whose reaction is wanted, with their values [rad] or [m];
   /// chooseCoordinates() fills them in.

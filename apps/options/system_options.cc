@@ -23,6 +23,8 @@ bio::SystemOptions armOptions(const SimulationOptions& options) {
   arm.skeleton.freeCoordinates = options.coordinates;
   arm.skeleton.lockedValues = byName(options.locks);
   arm.prescribed = options.prescribed;
+  arm.prescribed.insert(arm.prescribed.end(), options.prescribedByModel.begin(),
+                        options.prescribedByModel.end());
   for (const auto& [name, value] : options.held) {
     arm.prescribed.push_back(name);
     arm.skeleton.lockedValues.erase(name);

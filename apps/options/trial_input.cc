@@ -126,12 +126,31 @@ void checkPrescribed(const SimulationOptions& options, const bio::Model& model) 
   }
 }
 
+/// What moves on the model's own functions of time, which not every command takes.
+void takePrescribedByModel(SimulationOptions& options, const bio::Model& model, bool simulates) {
+  std::set<std::string> otherwise(options.prescribed.begin(), options.prescribed.end());
+  otherwise.insert(options.coordinates.begin(), options.coordinates.end());
+  for (const Assignment& lock : options.locks) otherwise.insert(lock.name);
+  if (options.takesPrescribed) {
+    options.prescribedByModel = bio::prescribedByModel(model, otherwise);
+    return;
+  }
+  if (!simulates) return;
+  for (const std::string& name : bio::independentCoordinates(model)) {
+    if (!bio::findCoordinate(model, name).isPrescribed() || otherwise.contains(name)) continue;
+    throw std::invalid_argument(
+        fmt::format("the model prescribes the motion of '{0}', which this command does not take: "
+                    "'{0}' must be locked (--lock {0}=…) or free (--coordinate {0})",
+                    name));
+  }
+}
+
 /// The locked coordinates at which a moment is measured, or all of them.
 void holdLocked(SimulationOptions& options, const bio::Model& model,
                 const std::set<std::string>& moments, bool all) {
   const std::map<std::string, double> locks = byName(options.locks);
   for (const std::string& name : bio::independentCoordinates(model)) {
-    if (contains(options.prescribed, name)) continue;
+    if (contains(options.prescribed, name) || contains(options.prescribedByModel, name)) continue;
     const bool isMeasured = moments.contains(name);
     if (contains(options.coordinates, name)) {
       if (!isMeasured) continue;
@@ -152,6 +171,7 @@ void holdLocked(SimulationOptions& options, const bio::Model& model,
 void chooseCoordinates(SimulationOptions& options, const bio::Model& model,
                        const std::vector<std::string>& trials, bool allReactions) {
   checkPrescribed(options, model);
+  takePrescribedByModel(options, model, !trials.empty());
   const bool isTyped = !options.coordinates.empty();
   if (isTyped && (trials.empty() || !options.takesPrescribed) && !allReactions) return;
   MeasuredNames measured = measuredIn(trials, model, options);
@@ -160,7 +180,9 @@ void chooseCoordinates(SimulationOptions& options, const bio::Model& model,
     options.areChosen = true;
     std::set<std::string> locked(options.prescribed.begin(), options.prescribed.end());
     for (const Assignment& lock : options.locks) locked.insert(lock.name);
-    const bool mayBeNone = !options.prescribed.empty() || !measured.moments.empty() || allReactions;
+    locked.insert(options.prescribedByModel.begin(), options.prescribedByModel.end());
+    const bool mayBeNone = !options.prescribed.empty() || !options.prescribedByModel.empty() ||
+                           !measured.moments.empty() || allReactions;
     options.coordinates = bio::freeByDefault(model, locked, measured.coordinates, mayBeNone);
   }
   holdLocked(options, model, measured.moments, allReactions);

@@ -33,11 +33,12 @@ void addExternalLoads(const std::string& file, bio::Model& model, Summary& summa
 bio::Model readModel(const std::string& file, Summary& summary);
 
 /// Chooses the free coordinates if none were typed: bio::freeByDefault with what the trials
-/// measure, without those that are prescribed; locked coordinates at which a trial measures the
-/// moment are held.
+/// measure, without those that are prescribed, by the trials or by the model; locked coordinates at
+/// which a trial measures the moment are held.
 /// @param allReactions  every coordinate that is locked is held
 /// @throws what readTrial and freeByDefault throw; std::invalid_argument for a prescribed
-///   coordinate that is also free or locked, or a moment measured at a free one
+///   coordinate that is also free or locked, a moment measured at a free one, or one that the model
+///   prescribes where the command takes none
 void chooseCoordinates(SimulationOptions& options, const bio::Model& model,
                        const std::vector<std::string>& trials, bool allReactions = false);
 

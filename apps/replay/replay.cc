@@ -55,8 +55,9 @@ class Replay : public Command {
                                            {.experimentalConditions = true, .channels = true});
     for (const std::string& warning : trial.warnings) summary.warn(warning);
     if (trial.known.any()) {
+      const auto& free = simulation_.coordinates;
       model = bio::discover::withExperimentalConditions(model, armOptions(simulation_),
-                                                        simulation_.coordinates.front(), trial);
+                                                        free.empty() ? "" : free.front(), trial);
     }
     const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
     bio::TrialReplay replay;

@@ -1,5 +1,6 @@
 #include "bio/analysis/driven_trial.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -30,6 +31,15 @@ std::vector<Course> coursesOf(const Trial& trial) {
   return courses;
 }
 
+/// Between rows; `times` rise and hold t.
+double linearAt(const Eigen::VectorXd& times, const Eigen::VectorXd& values, double t) {
+  const auto above = std::upper_bound(times.begin(), times.end(), t) - times.begin();
+  if (above == 0) return values[0];
+  if (above == times.size()) return values[above - 1];
+  const double w = (t - times[above - 1]) / (times[above] - times[above - 1]);
+  return (1 - w) * values[above - 1] + w * values[above];
+}
+
 }  // namespace
 
 Table drivenTable(const Trial& trial, const MusculoskeletalSystem& arm, const EmgMapping& mapping) {
@@ -52,16 +62,15 @@ Table drivenTable(const Trial& trial, const MusculoskeletalSystem& arm, const Em
   const auto applied = static_cast<Eigen::Index>(trial.applied.size());
   table.values = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(times.size()),
                                            1 + n + measured + applied, std::nan(""));
-  const ExternalForce external = externalForceOf(trial, arm);
   Eigen::Index row = 0;
   std::size_t hint = 0;
   for (const double t : times) {
     table.values(row, 0) = t;
     driven.at(t, hint, table.values.row(row).segment(1, n).transpose());
     for (Eigen::Index k = 0; k < applied; ++k) {
-      const auto& coordinate = trial.applied[static_cast<std::size_t>(k)].coordinate;
+      const AppliedForce& push = trial.applied[static_cast<std::size_t>(k)];
       table.values(row, 1 + n + measured + k) =
-          external.at(t).value[arm.skeleton().indexOf(coordinate)];
+          linearAt(trial.times, push.actuator.empty() ? push.values : push.control, t);
     }
     ++row;
   }
@@ -75,6 +84,10 @@ Table drivenTable(const Trial& trial, const MusculoskeletalSystem& arm, const Em
   }
   for (const AppliedForce& push : trial.applied) {
     const int index = arm.skeleton().indexOf(push.coordinate);
+    if (!push.actuator.empty()) {
+      table.columns.push_back(push.actuator);
+      continue;
+    }
     const bool turns = arm.skeleton().coordinates()[static_cast<std::size_t>(index)].isRotation;
     table.columns.push_back(push.coordinate + (turns ? ".torque" : ".force"));
   }

@@ -49,6 +49,10 @@ PrescribedMotion prescribedMotionOf(const Trial& trial, const MusculoskeletalSys
     const auto at =
         std::find_if(trial.prescribed.begin(), trial.prescribed.end(),
                      [&](const MeasuredMotion& course) { return course.coordinate == name; });
+    if (const Function* own = arm.courseOf(k); own && at == trial.prescribed.end()) {
+      motion.add(k, *own);
+      continue;
+    }
     if (at == trial.prescribed.end()) {
       throw std::invalid_argument(
           fmt::format("{}: no motion of the prescribed coordinate '{}'", trial.file, name));

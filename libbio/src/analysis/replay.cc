@@ -35,6 +35,8 @@ ExternalForce externalForceOf(const Trial& trial, const MusculoskeletalSystem& a
   if (trial.applied.empty()) return {};
   Eigen::MatrixXd values =
       Eigen::MatrixXd::Zero(trial.times.size(), arm.skeleton().numCoordinates());
+  const std::vector<double> times(trial.times.begin(), trial.times.end());
+  std::vector<ExternalForce::Control> controls;
   for (const AppliedForce& applied : trial.applied) {
     const int index = arm.skeleton().indexOf(applied.coordinate);
     if (index < 0 && !applied.actuator.empty()) continue;  // on a coordinate that is held
@@ -44,8 +46,10 @@ ExternalForce externalForceOf(const Trial& trial, const MusculoskeletalSystem& a
                       applied.coordinate));
     }
     values.col(index) += applied.values;
+    if (applied.actuator.empty()) continue;
+    controls.push_back({applied.actuator, index, applied.optimalForce, times, applied.control});
   }
-  return {std::vector<double>(trial.times.begin(), trial.times.end()), std::move(values)};
+  return {times, std::move(values), std::move(controls)};
 }
 
 Eigen::VectorXd startCoordinates(const Trial& trial, const MusculoskeletalSystem& arm,

@@ -31,6 +31,7 @@ void compareWithReplay(const MusculoskeletalSystem& arm, const Trial& trial,
     one.channels = replay.channelErrors;
     for (const auto& [name, error] : replay.errors) {
       const auto i = static_cast<std::size_t>(arm.skeleton().indexOf(name));
+      if (arm.isPrescribed(static_cast<int>(i))) continue;
       if (!arm.skeleton().coordinates()[i].isRotation) {
         one.channels.push_back({{Observable::Kind::coordinate, name, 0}, error});
         continue;

@@ -71,10 +71,6 @@ TrialSet::TrialSet(const Model& model, const SystemOptions& arm, std::vector<Tri
   if (trials_.empty()) throw std::invalid_argument("no trial is given");
   if (arm_->numMuscles() == 0) throw std::invalid_argument("no muscle moves a free coordinate");
   for (const Trial& trial : trials_) {
-    if (!trial.applied.empty()) {
-      throw std::invalid_argument(
-          trial.file + ": has an external torque, which calibration does not take into account");
-    }
     beginnings_.push_back(beginningOf(trial, model, *arm_, options.initial));
     catalogues_.push_back(std::make_unique<const ParameterCatalogue>(
         model, *arm_, beginnings_.back().point,
@@ -87,6 +83,7 @@ TrialSet::TrialSet(const Model& model, const SystemOptions& arm, std::vector<Tri
     SimulationOptions simulation = options.simulation;
     simulation.startTime = trial.times[0];
     simulation.duration = trial.duration();
+    simulation.externalForce = externalForceOf(trial, *arm_);
     simulation.prescribed = prescribedMotionOf(trial, *arm_);
     simulation.progress = {};
     std::vector<ObservedSeries> observed;
@@ -126,7 +123,7 @@ void TrialSet::collectSeries(const Model& model) {
     const std::size_t before = series_.size();
     for (const MeasuredMotion& measured : trials_[i].measured) {
       const int index = arm_->skeleton().indexOf(measured.coordinate);
-      if (index < 0 || measured.times.size() == 0) continue;
+      if (index < 0 || arm_->isPrescribed(index) || measured.times.size() == 0) continue;
       add(i, {Observable::Kind::coordinate, measured.coordinate, 0}, measured.times,
           measured.values);
     }

@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+
+#include "forces/bushing_deflection.h"
 
 namespace bio {
 namespace {
@@ -141,9 +142,10 @@ BodyForces::BodyForces(const Model& model, const Skeleton& skeleton) {
                         placeOf(point.segment, n), force.X_SB, point.X_SB, std::move(course)});
     }
   }
-  for (const PointToPointSpring& spring : model.pointSprings) {
+  for (std::size_t index = 0; index < model.pointSprings.size(); ++index) {
+    const PointToPointSpring& spring = model.pointSprings[index];
     if (!spring.enabled) continue;
-    Spring compiled{{}, {}, spring.stiffness, spring.restLength};
+    Spring compiled{index, {}, {}, spring.stiffness, spring.restLength};
     std::array<std::size_t, 2> segments{};
     for (std::size_t i = 0; i < 2; ++i) {
       const BodyPlacement& on = place("PointToPointSpring", spring.name, spring.body[i]);
@@ -154,9 +156,11 @@ BodyForces::BodyForces(const Model& model, const Skeleton& skeleton) {
     for (std::size_t i = 0; i < 2; ++i) compiled.segment[i] = placeOf(segments[i], n);
     springs_.push_back(compiled);
   }
-  for (const BushingForce& bushing : model.bushings) {
+  for (std::size_t index = 0; index < model.bushings.size(); ++index) {
+    const BushingForce& bushing = model.bushings[index];
     if (!bushing.enabled) continue;
     Bushing compiled;
+    compiled.index = index;
     std::array<std::size_t, 2> segments{};
     for (std::size_t i = 0; i < 2; ++i) {
       const BodyPlacement& on = place("BushingForce", bushing.name, bushing.body[i]);
@@ -242,37 +246,17 @@ void BodyForces::addSpring(const Spring& spring, const std::vector<MovingSegment
   addWrench(a, -wrench(x_a.cross(F), F), slopeAt(a, x_a, -1), sums.passive, sums.passive_q);
 }
 
-// With E the rates of the angles' axes in F, ω_F = E θ̇, moment and force in F are E⁻ᵀf_θ and f_d.
+// Moment and force in F are E⁻ᵀf_θ and f_d.
 void BodyForces::addBushing(const Bushing& bushing, const std::vector<MovingSegment>& segments,
                             const Eigen::VectorXd& v, BodyForceSums& sums) const {
   const MovingSegment& a = segments[bushing.segment[0]];
   const MovingSegment& b = segments[bushing.segment[1]];
-  const Placement<double> X_F = a.X * bushing.frame[0], X_M = b.X * bushing.frame[1];
-  const Matrix3d R = X_F.R.transpose() * X_M.R;
-  const Vector3d p = X_M.p;
-  Vector6 deflection;
-  deflection << std::atan2(-R(1, 2), R(2, 2)), std::asin(std::clamp(R(0, 2), -1.0, 1.0)),
-      std::atan2(-R(0, 1), R(0, 0)), X_F.R.transpose() * (p - X_F.p);
-  const Eigen::AngleAxisd first(deflection[0], Vector3d::UnitX());
-  Matrix3d E;
-  E.col(0) = Vector3d::UnitX();
-  E.col(1) = first * Vector3d::UnitY();
-  E.col(2) = R.col(2);
-  const Matrix3d perE = E.inverse();
-  // ∂_k of the deflection, and of its rate at constant speeds
+  const BushingDeflection deflection(a.X * bushing.frame[0], b.X * bushing.frame[1]);
+  const Placement<double>& X_F = deflection.X_F;
+  const Vector3d& p = deflection.p;
+  const Matrix3d &E = deflection.E, &perE = deflection.perE;
   const std::size_t n = a.S.size();
-  const auto relative = [&](const Vector6& onA, const Vector6& onB) {  // of M's origin in F
-    Vector6 r;
-    const Vector6 apart = onB - onA;
-    r << X_F.R.transpose() * apart.head<3>(),
-        X_F.R.transpose() * (apart.tail<3>() + apart.head<3>().cross(p));
-    return r;
-  };
-  const auto slopeOf = [&](std::size_t k) {
-    Vector6 d = relative(a.S[k], b.S[k]);
-    d.head<3>() = perE * d.head<3>();
-    return d;
-  };
+  const auto slopeOf = [&](std::size_t k) { return deflection.slope(a.S[k], b.S[k]); };
   Vector6 rate = Vector6::Zero(), V_a = rate, V_b = rate;
   for (std::size_t j = 0; j < n; ++j) {
     const double v_j = v[static_cast<Eigen::Index>(j)];
@@ -287,7 +271,7 @@ void BodyForces::addBushing(const Bushing& bushing, const std::vector<MovingSegm
     return change;
   };
   const Vector6 f =
-      -(bushing.stiffness.cwiseProduct(deflection) + bushing.damping.cwiseProduct(rate));
+      -(bushing.stiffness.cwiseProduct(deflection.value) + bushing.damping.cwiseProduct(rate));
   const Vector3d moment = perE.transpose() * f.head<3>();
   const Vector3d M = X_F.R * moment, F = X_F.R * f.tail<3>();
   const auto slope = [&](std::size_t k) {
@@ -301,7 +285,7 @@ void BodyForces::addBushing(const Bushing& bushing, const std::vector<MovingSegm
       dV_a += v_j * a.dS[j * n + k];
       dV_b += v_j * b.dS[j * n + k];
     }
-    Vector6 rate_k = relative(dV_a, dV_b);
+    Vector6 rate_k = deflection.relative(dV_a, dV_b);
     const Vector3d turning = (V_b - V_a).head<3>();
     const Vector3d shifting = (V_b - V_a).tail<3>() + turning.cross(p);
     rate_k.head<3>() += X_F.R.transpose() * turning.cross(w);

@@ -9,8 +9,9 @@
 
 namespace bio {
 
-ExternalForce::ExternalForce(std::vector<double> times, Eigen::MatrixXd values)
-    : times_(std::move(times)), values_(values.transpose()) {
+ExternalForce::ExternalForce(std::vector<double> times, Eigen::MatrixXd values,
+                             std::vector<Control> controls)
+    : times_(std::move(times)), values_(values.transpose()), controls_(std::move(controls)) {
   if (times_.empty() || static_cast<Eigen::Index>(times_.size()) != values_.cols()) {
     throw std::invalid_argument(
         fmt::format("external force: {} times and {} rows, must agree and be ≥ 1", times_.size(),
@@ -43,6 +44,37 @@ ExternalForce::At ExternalForce::at(double t) const {
   return result;
 }
 
+double ExternalForce::Control::at(double t) const {
+  if (times.empty() || t < times.front() || t > times.back()) return 0;
+  const auto above = std::upper_bound(times.begin(), times.end(), t) - times.begin();
+  if (above == std::ssize(times)) return values[above - 1];
+  const auto k = static_cast<std::size_t>(above);
+  const double w = (t - times[k - 1]) / (times[k] - times[k - 1]);
+  return (1 - w) * values[above - 1] + w * values[above];
+}
+
+double ExternalForce::controlAt(const std::string& actuator, double t) const {
+  double control = 0;
+  for (const Control& one : controls_) {
+    if (one.actuator == actuator) control += one.at(t);
+  }
+  return control;
+}
+
+ExternalForce ExternalForce::withOptimalForces(const std::map<std::string, double>& forces) const {
+  ExternalForce result = *this;
+  for (std::size_t i = 0; i < controls_.size(); ++i) {
+    const Control& control = controls_[i];
+    const auto at = forces.find(control.actuator);
+    if (at == forces.end() || at->second == control.optimalForce) continue;
+    Eigen::MatrixXd change = Eigen::MatrixXd::Zero(control.values.size(), numCoordinates());
+    change.col(control.coordinate) = (at->second - control.optimalForce) * control.values;
+    result = sum(result, {control.times, std::move(change)});
+    result.controls_[i].optimalForce = at->second;
+  }
+  return result;
+}
+
 ExternalForce sum(const ExternalForce& one, const ExternalForce& other) {
   if (one.empty()) return other;
   if (other.empty()) return one;
@@ -54,7 +86,9 @@ ExternalForce sum(const ExternalForce& one, const ExternalForce& other) {
     values.row(static_cast<Eigen::Index>(k)) =
         (one.at(times[k]).value + other.at(times[k]).value).transpose();
   }
-  return {std::move(times), values};
+  std::vector<ExternalForce::Control> controls = one.controls();
+  controls.insert(controls.end(), other.controls().begin(), other.controls().end());
+  return {std::move(times), values, std::move(controls)};
 }
 
 }  // namespace bio

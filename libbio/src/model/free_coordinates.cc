@@ -1,5 +1,7 @@
 #include "bio/model/free_coordinates.h"
 
+#include <fmt/format.h>
+
 #include <stdexcept>
 
 #include "bio/skeleton/articulated_tree.h"
@@ -27,6 +29,23 @@ std::vector<std::string> freeByDefault(const Model& model, const std::set<std::s
   std::string message = "every coordinate of the model is locked: none can be free";
   for (const std::string& name : locked) message += "; " + name + " is locked by request";
   throw std::invalid_argument(message);
+}
+
+std::vector<std::string> prescribedByModel(const Model& model,
+                                           const std::set<std::string>& otherwise) {
+  std::vector<std::string> names;
+  for (const std::string& name : independentCoordinates(model)) {
+    const Coordinate& coordinate = findCoordinate(model, name);
+    if (!coordinate.isPrescribed() || otherwise.contains(name)) continue;
+    if (!coordinate.prescribedFunction) {
+      throw std::invalid_argument(
+          fmt::format("coordinate '{}': the model prescribes its motion by a function of a class "
+                      "that is not known, so it must be prescribed by the trial, locked or free",
+                      name));
+    }
+    names.push_back(name);
+  }
+  return names;
 }
 
 }  // namespace bio

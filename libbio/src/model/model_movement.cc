@@ -33,7 +33,7 @@ std::vector<Remark> reviewModel(const Model& model) {
   std::vector<Remark> remarks = reviewNumbers(model);
   for (const Joint& joint : model.joints) {
     for (const Coordinate& coordinate : joint.coordinates) {
-      if (!mayBeFree(model, coordinate)) continue;
+      if (coordinate.prescribed || !mayBeFree(model, coordinate)) continue;
       const std::string why = whyNotFree(model, coordinate);
       if (!why.empty()) remarks.push_back({"model", why, Weight::warning});
     }

@@ -8,6 +8,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "bio/muscle/curves/curves.h"
 #include "model/plausible.h"
 #include "skeleton/principal_moments.h"
 
@@ -25,6 +26,7 @@ struct Reviewer {
 
   void reviewBody(const Body& body);
   void reviewEndOfChain();
+  void reviewCourse(const std::string& subject, const Coordinate& coordinate);
   void reviewCoordinate(const Coordinate& coordinate);
   void reviewAxes(const Joint& joint);
   void reviewWrap(const WrapObject& wrap);
@@ -84,6 +86,28 @@ void Reviewer::reviewEndOfChain() {
   }
 }
 
+void Reviewer::reviewCourse(const std::string& subject, const Coordinate& coordinate) {
+  if (coordinate.prescribed && coordinate.locked) {
+    say(subject, "is prescribed and locked: it is locked, as in OpenSim");
+  }
+  if (!coordinate.isPrescribed() || !coordinate.prescribedFunction) return;
+  const Function& course = *coordinate.prescribedFunction;
+  if (std::holds_alternative<PiecewiseLinearFunction>(course.shape)) {
+    say(subject,
+        "its prescribed_function has corners, where the speed jumps: its reaction lacks the blows");
+  }
+  try {
+    const double first = FunctionEvaluator(course).evaluate(0).value;
+    if (coordinate.isRotation && std::abs(first) > degreesBeyond) {
+      say(subject, "its prescribed_function is {:.4g} rad at 0 s, usually within ±4π: degrees?",
+          first);
+    }
+  } catch (const std::invalid_argument& error) {
+    say(subject, "its prescribed_function: {}", error.what());
+    remarks.back().weight = Weight::error;
+  }
+}
+
 void Reviewer::reviewCoordinate(const Coordinate& coordinate) {
   const std::string subject = fmt::format("coordinate '{}'", coordinate.name);
   const double encompassing =
@@ -101,7 +125,8 @@ void Reviewer::reviewCoordinate(const Coordinate& coordinate) {
     say(subject, "default = {}, outside its range {} to {}", coordinate.defaultValue,
         coordinate.rangeMin, coordinate.rangeMax);
   }
-  if (coordinate.clamped && !coordinate.locked) {
+  reviewCourse(subject, coordinate);
+  if (coordinate.clamped && !coordinate.isPrescribed() && !coordinate.locked) {
     say(subject, "is clamped, but the simulation does not stop it at the ends of its range");
   }
 }
@@ -139,10 +164,11 @@ void Reviewer::reviewMuscle(const Muscle& muscle) {
     }
   }
   const std::vector<PathPoint>& points = muscle.path.points;
-  const bool atOnePlace = !points.empty() && std::all_of(points.begin(), points.end(), [&](const PathPoint& p) {
-    return !p.motion && p.body == points.front().body &&
-           (p.location - points.front().location).norm() < shortestPath;
-  });
+  const bool atOnePlace =
+      !points.empty() && std::all_of(points.begin(), points.end(), [&](const PathPoint& p) {
+        return !p.motion && p.body == points.front().body &&
+               (p.location - points.front().location).norm() < shortestPath;
+      });
   if (atOnePlace) say(subject, "all its points coincide: its path has no length");
   if (muscle.schutte) {
     reviewParameters(subject, *muscle.schutte);

@@ -74,6 +74,15 @@ void writeOsim(const Model& model, const std::filesystem::path& file) {
                       muscle.name, muscle.className, simulatedClasses()));
     }
   }
+  for (const Joint& joint : model.joints) {
+    for (const Coordinate& coordinate : joint.coordinates) {
+      if (!coordinate.prescribed || coordinate.prescribedFunction) continue;
+      throw std::invalid_argument(
+          fmt::format("coordinate '{}': its prescribed_function is of a class that is not known "
+                      "and cannot be written to a fresh document",
+                      coordinate.name));
+    }
+  }
   tinyxml2::XMLDocument document;
   osim::buildDocument(document, model, osim::Format::opensim4);
   const std::string text = print(document);

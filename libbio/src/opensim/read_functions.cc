@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <string_view>
 
 #include "opensim/reading.h"
@@ -89,6 +91,13 @@ Function readFunction(Reading& reading, const Element& function) {
     if (coefficients.empty()) fail(source, function, "coefficients are missing, must be given");
     return {1, PolynomialFunction{std::move(coefficients)}};
   }
+  if (kind == "Sine") {
+    const auto number = [&](const char* property, double fallback) {
+      return readNumber(source, function, property, "", Rule::finite, fallback);
+    };
+    return {1, SineFunction{number("amplitude", 1), number("omega", 1), number("phase", 0),
+                            number("offset", 0)}};
+  }
   if (kind == "MultiplierFunction") {
     const Element* inner = findFunction(function, "function");
     if (!inner) fail(source, function, "function is missing, must be given");
@@ -99,8 +108,19 @@ Function readFunction(Reading& reading, const Element& function) {
   fail(source, function,
        fmt::format("function of class {}, must be one of Constant, "
                    "LinearFunction, SimmSpline, PiecewiseLinearFunction, "
-                   "PolynomialFunction, MultiplierFunction",
+                   "PolynomialFunction, Sine, MultiplierFunction",
                    kind));
+}
+
+bool isReadableFunction(const Element& function) {
+  static constexpr std::array kinds{
+      "Constant",       "LinearFunction",          "SimmSpline",         "NaturalCubicSpline",
+      "natCubicSpline", "PiecewiseLinearFunction", "PolynomialFunction", "Sine"};
+  const std::string_view kind = function.Name();
+  if (kind != "MultiplierFunction")
+    return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+  const Element* inner = findFunction(function, "function");
+  return !inner || isReadableFunction(*inner);
 }
 
 }  // namespace bio::osim

@@ -28,6 +28,26 @@ std::array<TransformAxis, 6> plainAxes() {
   return axes;
 }
 
+// As in OpenSim, a coordinate without a function is free.
+void readPrescribed(Reading& reading, const Element& element, Coordinate& coordinate) {
+  if (!readFlag(reading.source, element, "prescribed", false)) return;
+  const Element* function = findFunction(element, "prescribed_function");
+  if (!function) {
+    reading.model.warnings.push_back(fmt::format(
+        "{}: is prescribed, but has no prescribed_function: it is not prescribed", label(element)));
+    return;
+  }
+  coordinate.prescribed = true;
+  if (isReadableFunction(*function)) {
+    coordinate.prescribedFunction = readFunction(reading, *function);
+    return;
+  }
+  reading.model.warnings.push_back(
+      fmt::format("{}: its prescribed_function is a {}, which is not known: simulations need "
+                  "--prescribe, --lock or --coordinate for it",
+                  label(element), function->Name()));
+}
+
 Coordinate readCoordinate(Reading& reading, const Element& element) {
   const Source& source = reading.source;
   Coordinate coordinate;
@@ -42,10 +62,7 @@ Coordinate readCoordinate(Reading& reading, const Element& element) {
   coordinate.rangeMax = range[1];
   coordinate.locked = readFlag(source, element, "locked", false);
   coordinate.clamped = readFlag(source, element, "clamped", false);
-  if (readFlag(source, element, "prescribed", false)) {
-    reading.model.warnings.push_back(
-        fmt::format("{}: its prescribed motion is not simulated", label(element)));
-  }
+  readPrescribed(reading, element, coordinate);
   return coordinate;
 }
 

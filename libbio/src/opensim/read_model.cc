@@ -47,6 +47,17 @@ void checkUnits(Reading& reading, const Element& model) {
   }
 }
 
+// A coupler says how its dependent coordinate moves.
+void warnOfPrescribedAndCoupled(Reading& reading) {
+  for (const CoordinateCoupler& coupler : reading.model.couplers) {
+    const Coordinate* dependent = coordinateOrNull(reading.model, coupler.dependent);
+    if (!dependent || !dependent->isPrescribed()) continue;
+    reading.model.warnings.push_back(
+        fmt::format("coordinate '{}' is prescribed and follows '{}' (coupler '{}'): it follows",
+                    coupler.dependent, coupler.independent, coupler.name));
+  }
+}
+
 }  // namespace
 
 Model readModel(const tinyxml2::XMLDocument& document, const std::string& file) {
@@ -72,6 +83,7 @@ Model readModel(const tinyxml2::XMLDocument& document, const std::string& file) 
   readFrames(reading, model);
   readJoints(reading, model);
   readConstraints(reading, model);
+  warnOfPrescribedAndCoupled(reading);
   readWrapObjects(reading, model);
   readForces(reading, model);
   readMarkers(reading, model);

@@ -38,8 +38,11 @@ FramePlacement compose(const FramePlacement& a, const FramePlacement& b);
 /// `<Class name="property">…`; null if absent.
 const Element* findFunction(const Element& object, const char* property);
 /// Constant, LinearFunction, SimmSpline, NaturalCubicSpline (with a warning),
-/// PiecewiseLinearFunction, PolynomialFunction, MultiplierFunction; FileError for other classes.
+/// PiecewiseLinearFunction, PolynomialFunction, Sine, MultiplierFunction; FileError for other
+/// classes.
 Function readFunction(Reading& reading, const Element& function);
+/// Whether it is of one of these classes.
+bool isReadableFunction(const Element& function);
 /// A SimmSpline's points; a knot that repeats the one before it is dropped with a remark.
 SplineFunction readSpline(Reading& reading, const Element& function);
 

@@ -23,6 +23,9 @@ void appendCoordinate(const Writing& writing, Element& parent, const Coordinate&
   appendNumbers(element, "range", std::vector<double>{coordinate.rangeMin, coordinate.rangeMax});
   appendFlag(element, "clamped", coordinate.clamped);
   appendFlag(element, "locked", coordinate.locked);
+  if (!coordinate.prescribed || !coordinate.prescribedFunction) return;
+  appendFlag(element, "prescribed", coordinate.prescribed);
+  appendFunction(append(element, "prescribed_function"), *coordinate.prescribedFunction, "");
 }
 
 void appendOffsetFrame(Element& parent, const std::string& body, const FramePlacement& placement) {

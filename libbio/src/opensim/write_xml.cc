@@ -72,6 +72,13 @@ void appendFunction(Element& parent, const Function& function, std::string_view 
     void operator()(const PolynomialFunction& f) const {
       appendNumbers(append(parent, "PolynomialFunction", name), "coefficients", f.coefficients);
     }
+    void operator()(const SineFunction& f) const {
+      Element& element = append(parent, "Sine", name);
+      appendNumber(element, "amplitude", f.amplitude);
+      appendNumber(element, "omega", f.omega);
+      appendNumber(element, "phase", f.phase);
+      appendNumber(element, "offset", f.offset);
+    }
   };
   std::visit(Appender{parent, name}, function.shape);
 }

@@ -12,6 +12,7 @@
 #include "bio/path/posture_samples.h"
 #include "bio/path/radius_limit.h"
 #include "parameters/hill_prior.h"
+#include "parameters/muscle_rules.h"
 
 namespace bio {
 namespace {
@@ -30,43 +31,6 @@ DefaultPrior around(double value, double lower, double upper, double sd) {
 DefaultPrior position(double value, double sd = 0.005) {
   return {value - 0.03, value + 0.03, sd};
 }
-
-struct MuscleRule {
-  MuscleQuantity quantity;
-  const char* name;
-  const char* unit;
-  const char* meaning;
-  double SchutteParameters::*member;  ///< null: a scale of a curve
-  double lower, upper, sd;            ///< fractions of the value
-};
-constexpr MuscleRule muscleRules[] = {
-    {MuscleQuantity::maxIsometricForce, "max_isometric_force", "N", "maximum isometric force F0",
-     &SchutteParameters::maxIsometricForce, 0.1, 10, 0.3},
-    {MuscleQuantity::optimalFibreLength, "optimal_fiber_length", "m", "optimal fibre length ℓ0",
-     &SchutteParameters::optimalFibreLength, 0.5, 2, 0.1},
-    {MuscleQuantity::tendonSlackLength, "tendon_slack_length", "m", "tendon slack length ℓs",
-     &SchutteParameters::tendonSlackLength, 0.5, 2, 0.05},
-    {MuscleQuantity::pennation, "pennation_angle", "rad", "pennation at optimal fibre length",
-     &SchutteParameters::pennation, 0, 0, 0},
-    {MuscleQuantity::damping, "damping", "", "damping of the fibre in F0·t_s/ℓ0",
-     &SchutteParameters::damping, 0.1, 10, 0.5},
-    {MuscleQuantity::timeScale, "time_scale", "s", "time scale of activation and fibre velocity",
-     &SchutteParameters::timeScale, 0.2, 5, 0.2},
-    {MuscleQuantity::activation1, "activation1", "",
-     "rate of rising activation per excitation, in 1/time_scale", &SchutteParameters::activation1,
-     0.1, 10, 0.3},
-    {MuscleQuantity::activation2, "activation2", "",
-     "rate of activation without excitation, in 1/time_scale", &SchutteParameters::activation2, 0.1,
-     10, 0.3},
-    {MuscleQuantity::tendonStrainScale, "tendon_strain_scale", "",
-     "stretches the tendon's force curve in strain; 1: as in the model", nullptr, 0.2, 5, 0.2},
-    {MuscleQuantity::activeForceScale, "active_force_scale", "",
-     "scales the active force–length curve; 1: as in the model", nullptr, 0.2, 5, 0.1},
-    {MuscleQuantity::activeForceWidth, "active_force_width", "",
-     "widens the active force–length curve about 1; 1: as in the model", nullptr, 0.5, 2, 0.1},
-    {MuscleQuantity::passiveForceScale, "passive_force_scale", "",
-     "scales the passive force curve; 1: as in the model", nullptr, 0.05, 20, 0.3},
-};
 
 const char* axisName(int axis) {
   constexpr const char* names[] = {"x", "y", "z"};
@@ -300,6 +264,37 @@ class Collector {
       for (int k = 0; k < 3; ++k) {
         addForce(force.name, springRules[k], *springForceValue(force, k), SpringForceTarget{i, k});
       }
+    }
+    using Of = ForceNumberTarget::Of;
+    for (std::size_t i = 0; i < model_.pointSprings.size(); ++i) {
+      if (arm_.bodyForces().hasSpring(i)) {
+        addNumbersOf(Of::pointSpring, i, model_.pointSprings[i].name);
+      }
+    }
+    for (std::size_t i = 0; i < model_.bushings.size(); ++i) {
+      if (arm_.bodyForces().hasBushing(i)) addNumbersOf(Of::bushing, i, model_.bushings[i].name);
+    }
+    addNamed(Of::elasticPath, model_.elasticPaths, arm_.elasticPaths());
+    addNamed(Of::actuator, model_.actuators, arm_.actuators());
+  }
+
+  // Of those of the model that the system has.
+  template <class Given, class Acting>
+  void addNamed(ForceNumberTarget::Of of, const Given& given, const Acting& acting) {
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      const bool acts = std::any_of(acting.begin(), acting.end(),
+                                    [&](const auto& one) { return one.name == given[i].name; });
+      if (acts) addNumbersOf(of, i, given[i].name);
+    }
+  }
+
+  void addNumbersOf(ForceNumberTarget::Of of, std::size_t index, const std::string& force) {
+    for (int k = 0; k < numForceNumbers(of); ++k) {
+      const ForceNumberTarget target{of, index, k};
+      const ForceNumberRule rule = forceNumberRule(model_, target);
+      if (rule.name.empty()) continue;
+      add(force + "." + rule.name, rule.unit, rule.meaning, forceNumber(model_, target),
+          {rule.lower, rule.upper, rule.sd}, {target});
     }
   }
 

@@ -18,4 +18,20 @@ SchutteNumber schutteNumber(MuscleQuantity quantity);
 double* limitForceValue(CoordinateLimitForce& force, int component);
 double* springForceValue(SpringGeneralizedForce& force, int component);
 
+/// The number of a force on bodies or of an actuator.
+double* forceNumber(Model& model, const ForceNumberTarget& target);
+double forceNumber(const Model& model, const ForceNumberTarget& target);
+
+/// A name of OpenSim's, with unit and what is taken for granted about it.
+struct ForceNumberRule {
+  std::string name;  ///< empty: a law of this kind has no such number
+  const char* unit;
+  const char* meaning;
+  double lower, upper, sd;
+};
+/// Of the component-th number of a force, in the order of ForceNumberTarget.
+ForceNumberRule forceNumberRule(const Model& model, const ForceNumberTarget& target);
+/// How many numbers it has.
+int numForceNumbers(ForceNumberTarget::Of of);
+
 }  // namespace bio

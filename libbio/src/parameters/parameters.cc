@@ -36,6 +36,7 @@ void shiftFunction(Function& function, double shift) {
       if (f.coefficients.empty()) f.coefficients.push_back(0);
       f.coefficients.back() += by;
     }
+    void operator()(SineFunction& f) const { f.offset += by; }
   };
   std::visit(Shift{by}, function.shape);
 }
@@ -110,6 +111,7 @@ struct SetInModel {
   void operator()(const SpringForceTarget& target) const {
     *springForceValue(model.springForces[target.force], target.component) = value;
   }
+  void operator()(const ForceNumberTarget& target) const { *forceNumber(model, target) = value; }
   void operator()(const ExpressionTarget& target) const {
     model.expressionForces[target.force].constants[target.constant].value = value;
   }

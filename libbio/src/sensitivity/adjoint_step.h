@@ -75,7 +75,8 @@ class AdjointStep {
       toSlope_ = step_.h() / 2 * (mu_ + state.p);
       toMomentum_ = state.p - mu_;
       sums_.addInertia(step_.v(), toMomentum_, toSlope_);
-      sums_.addPassiveForces(step_.q_m(), step_.v(), toForce_);
+      sums_.addOtherForces(step_.middle(), step_.q_m(), step_.v(), options_.externalForce,
+                           toForce_);
     }
     state.p = mu_;
     for (std::size_t m = 0; m < arm_.numMuscles(); ++m) {

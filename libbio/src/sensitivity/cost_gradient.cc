@@ -76,8 +76,10 @@ CostGradient simulateWithGradient(const MusculoskeletalSystem& arm,
 CostGradient simulateWithGradient(const MusculoskeletalSystem& arm,
                                   const ParameterCatalogue::Setting& setting,
                                   const std::vector<ParameterDirection>& wanted,
-                                  const ExcitationSignal& trial, const SimulationOptions& options,
+                                  const ExcitationSignal& trial, const SimulationOptions& given,
                                   const MotionCost& cost) {
+  SimulationOptions own;
+  const SimulationOptions& options = stepping::withOwnForces(arm, given, own);
   if (options.integrator != Integrator::variational &&
       options.integrator != Integrator::variationalLeft) {
     throw std::invalid_argument("gradient of a cost: integrator must be vi or vi-left");

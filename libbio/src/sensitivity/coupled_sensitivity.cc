@@ -58,7 +58,14 @@ SensitivityTrajectory simulateWithSensitivities(const MusculoskeletalSystem& arm
                                                 const ParameterCatalogue::Setting& setting,
                                                 const std::vector<ParameterDirection>& wanted,
                                                 const ExcitationSignal& trial,
-                                                const SensitivityOptions& options) {
+                                                const SensitivityOptions& given) {
+  SensitivityOptions own;
+  const bool isChanged = stepping::changesForces(arm, given.simulation);
+  if (isChanged) {
+    own = given;
+    stepping::withOwnForces(arm, given.simulation, own.simulation);
+  }
+  const SensitivityOptions& options = isChanged ? own : given;
   const Integrator integrator = options.simulation.integrator;
   if (integrator != Integrator::variational && integrator != Integrator::variationalLeft) {
     throw std::invalid_argument("sensitivities: integrator must be vi or vi-left");

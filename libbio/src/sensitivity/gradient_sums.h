@@ -67,8 +67,12 @@ class GradientSums {
     if (changesInertia_) inertia_.add(v, a, b);
   }
 
-  /// Adds λ·∂_θτ of the forces on single coordinates.
-  void addPassiveForces(const Vector& q, const Vector& v, const Vector& lambda) {
+  /// Adds λ·∂_θτ of all that is neither a muscle's nor inertia's, at time t in the configuration.
+  void addOtherForces(double t, const Vector& q, const Vector& v, const ExternalForce& external,
+                      const Vector& lambda) {
+    direct_.forForceNumbers(t, v, external, [&](const QuantityEffect& effect, const auto& slope) {
+      columns_[effect.column] += effect.factor * slope.dot(lambda);
+    });
     const auto add = [&](const auto& law, double derivative) {
       columns_[law.effect.column] += law.effect.factor * derivative * lambda[law.coordinate];
     };

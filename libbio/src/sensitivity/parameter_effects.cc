@@ -93,6 +93,9 @@ ParameterEffects::ParameterEffects(const MusculoskeletalSystem& arm,
            arm.skeleton().indexOf(law.coordinate),
            {static_cast<std::size_t>(target.component), column, weight}});
     }
+    void operator()(const ForceNumberTarget& target) const {
+      effects.addForce(arm, model, target, column, weight);
+    }
     void operator()(const ExpressionTarget& target) const {
       const ExpressionBasedCoordinateForce& law = model.expressionForces[target.force];
       effects.expressions.push_back({CoordinateExpression(law),
@@ -159,6 +162,41 @@ void ParameterEffects::addBody(const MusculoskeletalSystem& arm, const Body& bod
     return;
   }
   segments.push_back({place.segment, std::move(change), column});
+}
+
+void ParameterEffects::addForce(const MusculoskeletalSystem& arm, const Model& model,
+                                const ForceNumberTarget& target, Eigen::Index column,
+                                double weight) {
+  using Of = ForceNumberTarget::Of;
+  std::size_t place = target.force;
+  bool acts = false;
+  const auto find = [&](const auto& acting, const std::string& name) {
+    place = 0;
+    while (place < acting.size() && acting[place].name != name) ++place;
+    acts = place < acting.size();
+  };
+  switch (target.of) {
+    case Of::pointSpring:
+      acts = arm.bodyForces().hasSpring(place);
+      break;
+    case Of::bushing:
+      acts = arm.bodyForces().hasBushing(place);
+      break;
+    case Of::elasticPath:
+      find(arm.elasticPaths(), model.elasticPaths[target.force].name);
+      break;
+    case Of::actuator:
+      find(arm.actuators(), model.actuators[target.force].name);
+      break;
+  }
+  if (!acts) return;
+  const QuantityEffect effect{static_cast<std::size_t>(target.component), column, weight};
+  for (OfForce& force : forces) {
+    if (force.of != target.of || force.place != place) continue;
+    force.numbers.push_back(effect);
+    return;
+  }
+  forces.push_back({target.of, place, {effect}});
 }
 
 }  // namespace bio::stepping

@@ -49,6 +49,12 @@ class ParameterEffects {
     int coordinate;
     QuantityEffect effect;  ///< quantity: constant
   };
+  /// A force on bodies or an actuator, with the numbers wanted of it.
+  struct OfForce {
+    ForceNumberTarget::Of of;
+    std::size_t place;  ///< springs and bushings: in the model's list; others: in the system's
+    std::vector<QuantityEffect> numbers;  ///< quantity: component
+  };
   struct OfStart {
     int coordinate;
     bool isSpeed;
@@ -68,11 +74,14 @@ class ParameterEffects {
   std::vector<OfLimitForce> limitForces;
   std::vector<OfSpringForce> springForces;
   std::vector<OfExpression> expressions;
+  std::vector<OfForce> forces;
   std::vector<OfStart> start;
   std::vector<OfEmg> emg;  ///< all but the delay
   std::vector<QuantityEffect> delay;
 
  private:
+  void addForce(const MusculoskeletalSystem& arm, const Model& model,
+                const ForceNumberTarget& target, Eigen::Index column, double weight);
   void addBody(const MusculoskeletalSystem& arm, const Body& body, int component,
                Eigen::Index column, double weight);
 };

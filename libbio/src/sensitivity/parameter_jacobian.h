@@ -3,6 +3,7 @@
 // Where parameters enter the equations of one configuration; not public.
 
 #include "bio/skeleton/skeleton_motion.h"
+#include "sensitivity/force_slopes.h"
 #include "sensitivity/parameter_effects.h"
 #include "sensitivity/sensitivity_state.h"
 #include "sensitivity/tree_inertia_effects.h"
@@ -22,7 +23,7 @@ class DirectEffects {
 
   DirectEffects(const MusculoskeletalSystem& arm, const ParameterEffects& effects,
                 const Model& model, const SystemConfiguration<N>& configuration, Index columns)
-      : arm_(arm), effects_(effects), configuration_(configuration) {
+      : arm_(arm), effects_(effects), configuration_(configuration), forceSlopes_(arm, effects) {
     inertia_.setZero(countOf<N>(arm), columns);
     slope_.setZero(countOf<N>(arm), columns);
     for (std::size_t m = 0; m < arm.numMuscles(); ++m) {
@@ -70,6 +71,22 @@ class DirectEffects {
       use(effect, gradient.wraps[effect.quantity / numWrapRows].row(
                       static_cast<Index>(effect.quantity % numWrapRows)));
     }
+  }
+
+  /// Of springs, bushings, elastic paths and actuators: use(effect, ∂τ/∂number) at time t, in the
+  /// configuration.
+  template <class Use>
+  void forForceNumbers(double t, const Vector& v, const ExternalForce& external, const Use& use) {
+    forceSlopes_.forEach(t, configuration_, v, external, use);
+  }
+
+  /// All that is neither a muscle's nor inertia's, at time t in the configuration.
+  void addOtherForces(double t, const Vector& q, const Vector& v, const ExternalForce& external,
+                      Rows& force) {
+    addPassiveForces(q, v, force);
+    forForceNumbers(t, v, external, [&](const QuantityEffect& effect, const auto& slope) {
+      force.col(effect.column) += effect.factor * slope;
+    });
   }
 
   void addPassiveForces(const Vector& q, const Vector& v, Rows& force) const {
@@ -149,6 +166,7 @@ class DirectEffects {
   const MusculoskeletalSystem& arm_;
   const ParameterEffects& effects_;
   const SystemConfiguration<N>& configuration_;
+  ForceSlopes<N> forceSlopes_;
   std::vector<PathGradients> gradients_;
   std::vector<PathGradient<N>> workspaces_;
   std::vector<SupportedLength<double>> treeWork_;

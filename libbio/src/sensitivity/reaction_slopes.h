@@ -27,6 +27,7 @@ class ReactionSlopes {
         dynamics_(arm, driven, simulation.externalForce, simulation.prescribed),
         configuration_(configuration),
         direct_(direct),
+        external_(simulation.externalForce),
         y_(dynamics_.size()),
         yDot_(dynamics_.size()) {}
 
@@ -43,7 +44,7 @@ class ReactionSlopes {
     dynamics_.addInertia(tau_q, tau_v);
     tau_.noalias() = tau_q * state.dq;
     tau_.noalias() += tau_v * speed;
-    direct_.addPassiveForces(q, qDot, tau_);
+    direct_.addOtherForces(motion.time[static_cast<std::size_t>(row)], q, qDot, external_, tau_);
     for (std::size_t i = 0; i < arm_.numMuscles(); ++i) {
       addMuscle(i, q, result.tendonForce[i].row(row), state);
     }
@@ -109,6 +110,7 @@ class ReactionSlopes {
   SystemDynamics<N> dynamics_;
   SystemConfiguration<N>& configuration_;
   DirectEffects<N>& direct_;
+  const ExternalForce& external_;
   Eigen::VectorXd y_, yDot_;
   Rows tau_;
 };

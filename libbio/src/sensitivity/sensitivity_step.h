@@ -58,7 +58,7 @@ class SensitivityStep {
 
     // what of df does not go through dq′
     force_.setZero();
-    direct_.addPassiveForces(step_.q_m(), step_.v(), force_);
+    direct_.addOtherForces(step_.middle(), step_.q_m(), step_.v(), options_.externalForce, force_);
     if (timeMoves && !options_.externalForce.empty()) {
       force_ += step_.externalSlope() * middleTime_;
     }

@@ -113,6 +113,13 @@ void completeStates(const MusculoskeletalSystem& arm, const ExcitationSignal& ex
 void addReactions(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
                   const SimulationOptions& options, Trajectory& motion);
 
+/// The options with the system's optimal forces in the external force; `own` holds them where that
+/// differs.
+const SimulationOptions& withOwnForces(const MusculoskeletalSystem& arm,
+                                       const SimulationOptions& options, SimulationOptions& own);
+/// Whether it does.
+bool changesForces(const MusculoskeletalSystem& arm, const SimulationOptions& options);
+
 class StepTape;
 
 /// @param tape takes down every part of a step that was accepted, for sensitivities; may be null

@@ -62,6 +62,11 @@ bool MusculoskeletalSystem::isPrescribed(int coordinate) const {
   return std::binary_search(prescribed_.begin(), prescribed_.end(), coordinate);
 }
 
+const Function* MusculoskeletalSystem::courseOf(int coordinate) const {
+  const auto at = courses_.find(coordinate);
+  return at == courses_.end() ? nullptr : &at->second;
+}
+
 const MusclePath* MusculoskeletalSystem::pathOf(const std::string& muscle) const {
   for (const SystemMuscle& one : muscles_) {
     if (one.name == muscle) return &one.path;
@@ -128,6 +133,17 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
       prescribed_(indicesOf(options.prescribed, skeleton_)),
       coordinateForces_(model, skeleton_),
       bodyForces_(model, skeleton_) {
+  for (const int k : prescribed_) {
+    const Coordinate& coordinate = skeleton_.coordinates()[static_cast<std::size_t>(k)];
+    if (coordinate.prescribed && coordinate.prescribedFunction) {
+      courses_.emplace(k, *coordinate.prescribedFunction);
+    }
+  }
+  for (const CoordinateActuator& actuator : model.actuators) {
+    if (actuator.enabled && skeleton_.indexOf(actuator.coordinate) >= 0) {
+      actuators_.push_back(actuator);
+    }
+  }
   if (!like) {
     requireMovedMass(model, skeleton_);
     warnings_ = lockRemarks(model, options.skeleton);

@@ -135,9 +135,35 @@ void stepping::checkSimulation(const MusculoskeletalSystem& arm, const Excitatio
           "other");
 }
 
+bool stepping::changesForces(const MusculoskeletalSystem& arm, const SimulationOptions& options) {
+  for (const ExternalForce::Control& control : options.externalForce.controls()) {
+    for (const CoordinateActuator& actuator : arm.actuators()) {
+      if (actuator.name == control.actuator && actuator.optimalForce != control.optimalForce) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+const SimulationOptions& stepping::withOwnForces(const MusculoskeletalSystem& arm,
+                                                 const SimulationOptions& options,
+                                                 SimulationOptions& own) {
+  if (!changesForces(arm, options)) return options;
+  std::map<std::string, double> forces;
+  for (const CoordinateActuator& actuator : arm.actuators()) {
+    forces[actuator.name] = actuator.optimalForce;
+  }
+  own = options;
+  own.externalForce = options.externalForce.withOptimalForces(forces);
+  return own;
+}
+
 Trajectory simulate(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
-                    const SystemState& start, const SimulationOptions& options) {
-  stepping::checkSimulation(arm, excitation, start, options);
+                    const SystemState& start, const SimulationOptions& given) {
+  stepping::checkSimulation(arm, excitation, start, given);
+  SimulationOptions own;
+  const SimulationOptions& options = stepping::withOwnForces(arm, given, own);
   const auto run = [&] {
     switch (options.integrator) {
       case Integrator::variational:

@@ -139,7 +139,8 @@ std::vector<Trajectory> simulateTogether(std::span<const LaneJob> jobs,
   std::vector<bool> waiting(jobs.size(), true);
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     stepping::checkSimulation(*jobs[i].arm, *jobs[i].excitation, *jobs[i].start, options);
-    if (known) arms[i] = lanes::hingeModel(*jobs[i].arm);
+    if (known && !stepping::changesForces(*jobs[i].arm, options))
+      arms[i] = lanes::hingeModel(*jobs[i].arm);
   }
   const Solve solve = solver(instructions);
   std::vector<std::unique_ptr<SharedCourse>> courses;

@@ -171,7 +171,7 @@ int ArticulatedTree::addMovingPoint(const std::string& body, const PointMotion& 
 
 bool ArticulatedTree::hasConstantInertia() const {
   return numMassSegments_ == 2 && segments_[1].firstMobility == segments_[1].lastMobility &&
-         mobilities_.front().hasFixedScrew;
+         mobilities_.front().hasFixedScrew && motions_.front().isIdentity;
 }
 
 const BodyPlacement& ArticulatedTree::placeOf(const std::string& body) const {

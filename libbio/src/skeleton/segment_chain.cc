@@ -37,8 +37,12 @@ int slotOf(const std::vector<int>& support, int coordinate) {
 SegmentChain::SegmentChain(const ArticulatedTree& tree, int from, int to) {
   const std::vector<int> a = wayTo(tree, from), b = wayTo(tree, to);
   const auto apart = std::mismatch(a.begin(), a.end(), b.begin(), b.end());
-  for (auto m = a.end(); m != apart.first;) steps_.push_back({*--m, 0, -1.0});
-  for (auto m = apart.second; m != b.end(); ++m) steps_.push_back({*m, 0, 1.0});
+  const auto append = [&](int m, double sign) {
+    const bool bends = !tree.mobilities()[static_cast<std::size_t>(m)].hasFixedScrew;
+    steps_.push_back({m, 0, sign, bends});
+  };
+  for (auto m = a.end(); m != apart.first;) append(*--m, -1);
+  for (auto m = apart.second; m != b.end(); ++m) append(*m, 1);
   const auto coordinateOf = [&](const Step& step) {
     return tree.mobilities()[static_cast<std::size_t>(step.mobility)].coordinate;
   };

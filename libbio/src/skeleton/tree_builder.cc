@@ -88,6 +88,7 @@ void TreeBuilder::append(Pending& pending, const std::string& where, bool turns,
   motion.coupling = source.coupling;
   motion.amount = amount;
   motion.isIdentity = source.coupling.isIdentity() && amount.isIdentity();
+  if (source.coupling.isIdentity()) motion.line = amount.line();
   motion.before = pending.placement;
   pending.placement = Placement<double>{};
   if (turns) {
@@ -116,7 +117,7 @@ int TreeBuilder::addSegment(const std::string& name, std::size_t parent, const P
       mobility.segment = index;
       mobility.parent = before;
       mobility.firstMotion = static_cast<int>(tree_.motions_.size());
-      mobility.hasFixedScrew = pending.motions[f].isIdentity;
+      mobility.hasFixedScrew = pending.motions[f].line.has_value();
       before = static_cast<int>(tree_.mobilities_.size());
       tree_.mobilities_.push_back(mobility);
     }

@@ -285,12 +285,13 @@ class TrialReader {
     for (Eigen::Index row = 0; row < values.size(); ++row) {
       if (!std::isfinite(values[row])) fail(column, row, "is missing, must be given in every row");
     }
-    std::string actuator;
-    if (meaning.actuator) {
-      values *= meaning.actuator->enabled ? meaning.actuator->optimalForce : 0;
-      actuator = meaning.actuator->name;
+    if (!meaning.actuator) {
+      trial_.applied.push_back({meaning.name, std::move(values)});
+      return;
     }
-    trial_.applied.push_back({meaning.name, values, actuator});
+    const double optimal = meaning.actuator->enabled ? meaning.actuator->optimalForce : 0;
+    trial_.applied.push_back(
+        {meaning.name, optimal * values, meaning.actuator->name, values, optimal});
   }
 
   // One line for all that no column controls.

@@ -160,7 +160,8 @@ def load_trial(
         True: ignore columns that match nothing in the model, with a warning.
     prescribe : list of str
         Coordinates that move as their columns say, as on a dynamometer, in all functions that take
-        the trial.
+        the trial. Those that the model prescribes move on its functions of time without this, unless
+        they are named free or locked.
     hold : dict
         {coordinate: value [rad] or [m]} at which a device holds it, so that its moment is known.
 

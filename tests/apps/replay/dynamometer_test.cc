@@ -139,6 +139,120 @@ TEST(Dynamometer, ALockedJointHasAMomentToo) {
   EXPECT_NEAR(columnOf(out + "/forces.sto", "ankle_angle.reaction").back(), reaction.back(), 1e-9);
 }
 
+/// The ankle's model with a motion of its own.
+std::string prescribingModel(const ScratchFolder& scratch, const std::string& function,
+                             const std::string& name = "prescribing.osim") {
+  std::string text = contentOf(ankle);
+  const std::string at = "<default_value>0</default_value>";
+  text.replace(text.find(at), at.size(),
+               at + "<prescribed>true</prescribed><prescribed_function>" + function +
+                   "</prescribed_function>");
+  return scratch.file(name, text);
+}
+
+const std::string turning =
+    fmt::format("<LinearFunction><coefficients>{:.17g} {:.17g}</coefficients></LinearFunction>",
+                std::numbers::pi / 12, -std::numbers::pi / 6);
+
+TEST(Dynamometer, TheModelsOwnFunctionIsAPrescribedMotion) {
+  const ScratchFolder scratch;
+  const std::string trial = (scratch / "trial.csv").string();
+  writeTrial(trial, {});
+  const auto run = [&](const std::string& model, const std::string& out,
+                       const std::vector<std::string>& more) {
+    std::vector<std::string> words{"replay", model, trial, "--out", (scratch / out).string()};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProgramResult result = runFisherHill(words);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return nlohmann::json::parse(contentOf((scratch / out / "summary.json").string()));
+  };
+  const auto reactionOf = [&](const std::string& out) {
+    return columnOf((scratch / out / "forces.sto").string(), "ankle_angle.reaction");
+  };
+  const auto angleOf = [&](const std::string& out) {
+    return columnOf((scratch / out / "states.sto").string(), "/jointset/ankle/ankle_angle/value");
+  };
+  run(ankle, "column", {"--prescribe", "ankle_angle"});
+  const std::string model = prescribingModel(scratch, turning);
+  const auto summary = run(model, "function", {});
+  EXPECT_EQ(summary["prescribed"][0], "ankle_angle");
+  const auto wanted = reactionOf("column"), found = reactionOf("function");
+  ASSERT_EQ(found.size(), wanted.size());
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    EXPECT_NEAR(found[k], wanted[k], 1e-6);
+    EXPECT_NEAR(angleOf("function")[k], angleOf("column")[k], 1e-6);
+  }
+
+  // a column overrides it, and so does another role
+  const std::string still =
+      prescribingModel(scratch, "<Constant><value>0</value></Constant>", "still.osim");
+  EXPECT_NEAR(angleOf("function").back(), -7.5 * std::numbers::pi / 180, 1e-6);
+  run(still, "still", {});
+  EXPECT_NEAR(angleOf("still").back(), 0, 1e-12);
+  run(still, "overridden", {"--prescribe", "ankle_angle"});
+  EXPECT_NEAR(reactionOf("overridden").back(), wanted.back(), 1e-9);
+  {
+    std::ofstream file(trial);
+    file << "time,TA\n0,0.1\n1,0.1\n";
+  }
+  run(model, "locked", {"--lock", "ankle_angle=-20deg", "--reactions"});
+  EXPECT_NEAR(angleOf("locked").back(), -20 * std::numbers::pi / 180, 1e-12);
+  EXPECT_FALSE(run(model, "free", {"--coordinate", "ankle_angle"}).contains("prescribed"));
+  EXPECT_GT(std::abs(angleOf("free").back() + 0.2618), 0.05);
+}
+
+TEST(Dynamometer, CalibrationKeepsTheModelsOwnFunction) {
+  const ScratchFolder scratch;
+  const std::string trial = (scratch / "trial.csv").string(), out = (scratch / "out").string();
+  const std::string model = prescribingModel(scratch, turning);
+  writeTrial(trial, {});
+  ProgramResult result = runFisherHill({"replay", model, trial, "--out", out});
+  ASSERT_EQ(result.status, 0) << result.err;
+  std::vector<double> moment = columnOf(out + "/forces.sto", "ankle_angle.reaction");
+  for (double& value : moment) value = -value;
+  writeTrial(trial, moment);
+  const std::string fitted = (scratch / "fitted").string();
+  result = runFisherHill({"calibrate", model, trial, "--parameters", "TA.max_isometric_force",
+                          "--prior", "TA.max_isometric_force=900:500", "--noise",
+                          "ankle_angle.moment=0.5", "--out", fitted});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = nlohmann::json::parse(contentOf(fitted + "/summary.json"));
+  EXPECT_NEAR(json["estimates"]["TA.max_isometric_force"]["value"].get<double>(), 1227, 1);
+  const std::string written = contentOf(fitted + "/calibrated.osim");
+  EXPECT_THAT(written, HasSubstr("<prescribed>true</prescribed>"));
+  EXPECT_THAT(written, HasSubstr(fmt::format("{:.17g}", std::numbers::pi / 12)));
+}
+
+TEST(Dynamometer, WhatCannotFollowTheModelsFunctionSaysSo) {
+  const ScratchFolder scratch;
+  const std::string trial = (scratch / "trial.csv").string();
+  {
+    std::ofstream file(trial);
+    file << "time,TA,ankle_angle\n0,0.1,0\n0.5,0.1,0\n1,0.1,0\n";
+  }
+  const auto refused = [&](const std::vector<std::string>& words, const std::string& why) {
+    const ProgramResult result = runFisherHill(words);
+    EXPECT_EQ(result.status, 2) << result.out;
+    EXPECT_THAT(result.err, HasSubstr(why));
+  };
+  const std::string known = prescribingModel(scratch, turning);
+  refused({"discover", known, trial, "--out", (scratch / "d").string()},
+          "the model prescribes the motion of 'ankle_angle'");
+  refused({"design", known, trial, "--parameters", "TA.max_isometric_force", "--out",
+           (scratch / "e").string()},
+          "the model prescribes the motion of 'ankle_angle'");
+  const std::string unknown = prescribingModel(
+      scratch, "<GCVSpline><x>0 1 2</x><y>0 0 0</y></GCVSpline>", "unknown.osim");
+  refused({"replay", unknown, trial, "--out", (scratch / "r").string()},
+          "by a function of a class that is not known");
+  const ProgramResult given = runFisherHill({"replay", unknown, trial, "--prescribe", "ankle_angle",
+                                             "--out", (scratch / "g").string()});
+  EXPECT_EQ(given.status, 0) << given.err;
+  EXPECT_THAT(given.err, HasSubstr("its prescribed_function is a GCVSpline"));
+  const ProgramResult checked = runFisherHill({"check", unknown, known});
+  EXPECT_THAT(checked.out + checked.err, HasSubstr("its prescribed_function is a GCVSpline"));
+}
+
 TEST(Dynamometer, WrongUseIsToldInOneLine) {
   const ScratchFolder scratch;
   const std::string trial = (scratch / "trial.csv").string();

@@ -6,7 +6,7 @@
 
 #include "bio/simulation/simulate_batch.h"
 #include "bio/skeleton/simbody_tree.h"
-#include "libbio/simulation/arm_of_seven.h"
+#include "libbio/forces/arm_with_forces.h"
 #include "simulation/other_forces.h"
 #include "simulation/system_dynamics.h"
 #include "support/sensitivity_differences.h"
@@ -19,77 +19,11 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 using fixtures::ArmOfSeven;
-
-/// Numbers of time that are no spline's knots by accident.
-BodyLoad load(const std::string& name, const std::string& body, const std::string& forceFrame,
-              const std::string& pointFrame, const Vector3d& point) {
-  BodyLoad result;
-  result.name = name;
-  result.body = body;
-  result.forceFrame = forceFrame;
-  result.pointFrame = pointFrame;
-  for (int k = 0; k < 12; ++k) {
-    const double t = 0.1 * k;
-    result.times.push_back(t);
-    result.rows.push_back({4 * std::sin(3 * t), 3 - 2 * t, std::cos(5 * t), point[0] + 0.01 * t,
-                           point[1], point[2] - 0.01 * t, 0.3, -0.4 * std::sin(2 * t), 0.2 * t});
-  }
-  return result;
-}
-
-Model withLoads() {
-  Model model = ArmOfSeven::heldModel();
-  model.externalLoads = {load("push", "hand", "ground", "ground", {0.1, -0.3, 0.2}),
-                         load("strap", "radius", "humerus", "radius", {0.01, -0.1, 0.02}),
-                         load("rod", "ulna", "hand", "humerus", {0.02, -0.3, 0})};
-  return model;
-}
-
-Model withSprings() {
-  Model model = ArmOfSeven::heldModel();
-  model.pointSprings = {
-      {"band", {"ground", "hand"}, {Vector3d(0.3, -0.1, 0.1), Vector3d(0, -0.05, 0.01)}, 40, 0.1},
-      {"cord", {"humerus", "radius"}, {Vector3d(0.03, -0.1, 0), Vector3d(0, -0.15, 0)}, 25, 0}};
-  BushingForce sleeve;
-  sleeve.name = "sleeve";
-  sleeve.body = {"humerus", "ulna"};
-  sleeve.frame[0] = {{0.01, -0.28, 0}, {0.1, -0.2, 0.3}};
-  sleeve.frame[1] = {{0, 0.01, 0.005}, {-0.2, 0.1, 0.4}};
-  sleeve.rotationalStiffness = {0.5, 0.8, 1.1};
-  sleeve.translationalStiffness = {200, 300, 250};
-  sleeve.rotationalDamping = {0.02, 0.03, 0.04};
-  sleeve.translationalDamping = {3, 2, 1};
-  model.bushings = {sleeve};
-  return model;
-}
-
-Model withElasticPaths() {
-  Model model = ArmOfSeven::heldModel();
-  const Path brachialis = findMuscle(model, "BRA").path;
-  const Path triceps = findMuscle(model, "TRIlong").path;  // over its cylinder
-  const auto elastic = [](const std::string& name, ElasticPathKind kind, const Path& path) {
-    ElasticPath made;
-    made.name = name;
-    made.kind = kind;
-    made.path = path;
-    return made;
-  };
-  ElasticPath ligament = elastic("ligament", ElasticPathKind::ligament, brachialis);
-  ligament.restLength = 0.1;
-  ligament.scale = 20;
-  ligament.curve = Function{1, SplineFunction{{0.9, 1, 1.2, 1.5, 2}, {-0.1, 0, 0.3, 1, 2.5}}};
-  ElasticPath spring = elastic("spring", ElasticPathKind::spring, triceps);
-  spring.restLength = 0.2;
-  spring.scale = 90;
-  spring.damping = 0.1;
-  ElasticPath strap = elastic("strap", ElasticPathKind::blankevoort1991, brachialis);
-  strap.restLength = 0.11;
-  strap.scale = 30;
-  strap.transitionStrain = 0.06;
-  strap.damping = 2;
-  model.elasticPaths = {ligament, spring, strap};
-  return model;
-}
+using fixtures::load;
+using fixtures::withAll;
+using fixtures::withElasticPaths;
+using fixtures::withLoads;
+using fixtures::withSprings;
 
 struct Found {
   VectorXd passive, load;
@@ -259,6 +193,37 @@ TEST(BodyForces, ElasticPathsPullAlongTheirLengths) {
   }
 }
 
+TEST(BodyForces, ElasticPathsHaveDerivativesInTheirNumbers) {
+  constexpr double ElasticPath::*members[] = {&ElasticPath::restLength, &ElasticPath::scale,
+                                              &ElasticPath::damping,
+                                              &ElasticPath::transitionStrain};
+  for (const ElasticPath& path : withElasticPaths().elasticPaths) {
+    const int known = path.kind == ElasticPathKind::ligament ? 2
+                      : path.kind == ElasticPathKind::spring ? 3
+                                                             : 4;
+    for (const double length : {0.09, 0.1105, 0.113, 0.1165, 0.124, 0.23, 0.3}) {
+      for (const double speed : {0.3, -0.3}) {
+        const auto exact = ElasticPathLaw(path).inNumbers(length, speed);
+        for (int k = 0; k < 4; ++k) {
+          const auto force = [&](double change) {
+            ElasticPath moved = path;
+            moved.*members[k] += change;
+            return ElasticPathLaw(moved).tension(length, speed).force;
+          };
+          const double d = exact[static_cast<std::size_t>(k)];
+          const double h = 1e-7;
+          if (k >= known) {
+            EXPECT_EQ(d, 0) << path.name << " " << k;
+          } else {
+            EXPECT_NEAR(d, (force(h) - force(-h)) / (2 * h), 1e-5 * (1 + std::abs(d)))
+                << path.name << " " << k << " at " << length;
+          }
+        }
+      }
+    }
+  }
+}
+
 TEST(BodyForces, HaveExactDerivativesInAllCoordinatesAndSpeeds) {
   for (const auto& free : frees) {
     for (const Model& model : {withLoads(), withSprings(), withElasticPaths()}) {
@@ -288,14 +253,6 @@ TEST(BodyForces, HaveExactDerivativesInAllCoordinatesAndSpeeds) {
       });
     }
   }
-}
-
-Model withAll() {
-  Model model = withLoads();
-  model.pointSprings = withSprings().pointSprings;
-  model.bushings = withSprings().bushings;
-  model.elasticPaths = withElasticPaths().elasticPaths;
-  return model;
 }
 
 // Errors of the scheme, and of its energy balance, fall with the square of the step.

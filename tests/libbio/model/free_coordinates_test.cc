@@ -56,5 +56,24 @@ TEST(FreeByDefault, RefusesAModelThatLocksAll) {
       "elbow_flexion is locked by request");
 }
 
+TEST(PrescribedByModel, AreThoseThatItPrescribesAndDoesNotLock) {
+  Model model = elbowWithUnlocked({"elbow_flexion", "shoulder_elv"});
+  EXPECT_THAT(prescribedByModel(model, {}), testing::IsEmpty());
+  for (Joint& joint : model.joints) {
+    for (Coordinate& one : joint.coordinates) {
+      if (one.name != "shoulder_elv" && one.name != "pro_sup") continue;
+      one.prescribed = true;
+      one.prescribedFunction = Function{1, SineFunction{}};
+    }
+  }
+  EXPECT_THAT(prescribedByModel(model, {}), ElementsAre("shoulder_elv"));  // pro_sup is locked
+  EXPECT_THAT(prescribedByModel(model, {"shoulder_elv"}), testing::IsEmpty());
+  for (Joint& joint : model.joints) {
+    for (Coordinate& one : joint.coordinates) one.prescribedFunction = {};
+  }
+  support::throwsSaying([&] { prescribedByModel(model, {}); }, "class that is not known");
+  EXPECT_THAT(prescribedByModel(model, {"shoulder_elv"}), testing::IsEmpty());
+}
+
 }  // namespace
 }  // namespace bio

@@ -185,12 +185,11 @@ TEST_F(OsimRules, Joints) {
       messageAfter("<coefficients>1 0<", "<coefficients>1 0 3<"),
       "m.osim:18: LinearFunction 'function' of CustomJoint 'elbow': coefficients has 3 numbers, "
       "must have 2");
-  const std::string sine =
-      replaced(valid, "<LinearFunction name=\"function\">", "<Sine name=\"function\">");
-  EXPECT_THAT(
-      messageOf(replaced(sine, "</LinearFunction>", "</Sine>")),
-      HasSubstr("m.osim:18: Sine 'function' of CustomJoint 'elbow': function of class Sine, "
-                "must be one of"));
+  const std::string step =
+      replaced(valid, "<LinearFunction name=\"function\">", "<StepFunction name=\"function\">");
+  EXPECT_THAT(messageOf(replaced(step, "</LinearFunction>", "</StepFunction>")),
+              HasSubstr("m.osim:18: StepFunction 'function' of CustomJoint 'elbow': function of "
+                        "class StepFunction, must be one of"));
   EXPECT_EQ(messageAfter("</Coordinate>", "</Coordinate><Coordinate name=\"idle\"/>"),
             "m.osim:15: CustomJoint 'elbow': coordinate 'idle' drives none of the joint's axes");
   EXPECT_EQ(
@@ -504,6 +503,47 @@ TEST_F(OsimRules, ForcesOnBodiesAreReadAndWritten) {
   EXPECT_EQ(again.actuators, model.actuators);
 }
 
+// Written and read again, a prescribed motion is the same, in all classes of functions.
+TEST_F(OsimRules, PrescribedFunctionsAreReadAndWritten) {
+  const auto with = [](const std::string& function, const std::string& flag = "true") {
+    return replaced(valid, "<range>0 2",
+                    "<prescribed>" + flag + "</prescribed><prescribed_function>" + function +
+                        "</prescribed_function><range>0 2");
+  };
+  const std::string points = "<x>0 0.5 1 2</x><y>0 0.3 0.2 1</y>";
+  const support::ScratchFolder folder;
+  for (const std::string& function :
+       {std::string("<Constant><value>0.4</value></Constant>"),
+        std::string("<LinearFunction><coefficients>2 0.1</coefficients></LinearFunction>"),
+        "<SimmSpline>" + points + "</SimmSpline>",
+        "<PiecewiseLinearFunction>" + points + "</PiecewiseLinearFunction>",
+        std::string("<PolynomialFunction><coefficients>1 2 3</coefficients></PolynomialFunction>"),
+        std::string("<Sine><amplitude>0.3</amplitude><omega>6.28</omega><phase>0.1</phase><offset>"
+                    "0.8</offset></Sine>"),
+        "<MultiplierFunction><function><SimmSpline>" + points +
+            "</SimmSpline></function><scale>0.5</scale></MultiplierFunction>"}) {
+    const Model model = read(with(function));
+    EXPECT_THAT(model.warnings, IsEmpty()) << function;
+    const Coordinate& q = findCoordinate(model, "q");
+    EXPECT_TRUE(q.isPrescribed());
+    ASSERT_TRUE(q.prescribedFunction) << function;
+    writeOsim(model, folder / "again.osim");
+    EXPECT_EQ(findCoordinate(readOsim(folder / "again.osim"), "q"), q) << function;
+  }
+  const auto sine = std::get<SineFunction>(
+      findCoordinate(read(with("<Sine><omega>3</omega></Sine>")), "q").prescribedFunction->shape);
+  EXPECT_EQ(sine, (SineFunction{1, 3, 0, 0}));
+  EXPECT_FALSE(findCoordinate(read(with("<Sine/>", "false")), "q").isPrescribed());
+
+  // what is not known is said, kept in its file, and cannot be written elsewhere
+  const Model unknown = read(with("<GCVSpline>" + points + "</GCVSpline>"));
+  EXPECT_THAT(unknown.warnings, ElementsAre(HasSubstr("its prescribed_function is a GCVSpline")));
+  EXPECT_TRUE(findCoordinate(unknown, "q").isPrescribed());
+  EXPECT_FALSE(findCoordinate(unknown, "q").prescribedFunction);
+  EXPECT_THAT([&] { writeOsim(unknown, folder / "again.osim"); },
+              testing::ThrowsMessage<std::invalid_argument>(HasSubstr("prescribed_function")));
+}
+
 TEST_F(OsimRules, ForcesThatAreNotSimulatedAreNamedUnlessDisabled) {
   const auto with = [](const std::string& flag) {
     return replaced(valid, "<ForceSet name=\"forceset\"><objects>",
@@ -521,8 +561,8 @@ TEST_F(OsimRules, OtherUnitsPrescribedMotionAndNaturalSplinesAreNamed) {
       ElementsAre("length_units = 'mm' is ignored: lengths are read as metres"));
   EXPECT_THAT(
       read(replaced(valid, "<range>0 2", "<prescribed>true</prescribed><range>0 2")).warnings,
-      ElementsAre("Coordinate 'q' of CustomJoint 'elbow': its prescribed motion is not "
-                  "simulated"));
+      ElementsAre("Coordinate 'q' of CustomJoint 'elbow': is prescribed, but has no "
+                  "prescribed_function: it is not prescribed"));
   std::string natural = replaced(valid, "<SimmSpline name", "<NaturalCubicSpline name");
   natural = replaced(natural, "</SimmSpline>", "</NaturalCubicSpline>");
   EXPECT_THAT(read(natural).warnings, ElementsAre(HasSubstr("end conditions of a SimmSpline")));
@@ -707,7 +747,7 @@ TEST_F(OsimRules, FunctionsOfALength) {
   EXPECT_THAT(complaint(replaced(line, "<order>1", "<order>1.5")),
               HasSubstr("order = 1.5, must be a whole number"));
   EXPECT_THAT(complaint(polynomialText("1 x", 1, 1)), HasSubstr("coefficients"));
-  EXPECT_THAT(complaint("<Sine/>"), HasSubstr("function of class Sine"));
+  EXPECT_THAT(complaint("<StepFunction/>"), HasSubstr("function of class StepFunction"));
   EXPECT_THAT(messageOf(withFunction("")),
               HasSubstr("GeometryPath or FunctionBasedPath is missing"));
   const Model unused = read(withFunction(

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "bio/model/convert_muscles.h"
-#include "libbio/simulation/arm_of_seven.h"
+#include "libbio/forces/arm_with_forces.h"
 #include "sensitivity/step_tape.h"
 #include "support/shipped_elbow.h"
 #include "support/throws_saying.h"
@@ -175,6 +175,19 @@ TEST(CostGradient, IsTheForwardOneBesideASwungShoulder) {
   options.prescribed.place(0, start.q, start.qDot);
   const ParameterCatalogue catalogue(c.model, arm, start);
   EXPECT_LT(offForward(arm, catalogue, catalogue.select({"all"}), c.excitation, options), 1e-9);
+}
+
+TEST(CostGradient, IsTheForwardOneForNumbersOfForcesOnBodies) {
+  for (const auto& free : {std::vector<std::string>{"elbow_flexion"}, ArmOfSeven::coordinates()}) {
+    const ArmOfSeven c(0.2, free, false, fixtures::withMotor(fixtures::withAll()));
+    const ParameterCatalogue catalogue(c.model, c.arm, {c.start.q, {}});
+    SimulationOptions options = forSeconds(0.15);
+    options.externalForce = fixtures::motorForce(c.arm.skeleton().numCoordinates());
+    const auto wanted = catalogue.select(
+        {"band.*", "cord.*", "sleeve.*", "ligament.*", "spring.*", "strap.*", "motor.*"});
+    EXPECT_EQ(wanted.size(), 26u);
+    EXPECT_LT(offForward(c.arm, catalogue, wanted, c.excitation, options), 1e-9);
+  }
 }
 
 // Whole simulations: of a model changed and compiled anew, from another start, with another sample

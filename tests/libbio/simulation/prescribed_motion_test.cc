@@ -126,6 +126,50 @@ TEST(PrescribedMotion, AllIntegratorsAgreeOnMotionAndReaction) {
   EXPECT_NEAR(std::log2(ofReaction[0] / ofReaction[2]) / 2, 2.0, 0.3);
 }
 
+/// The swing as a function of time.
+Function swingFunction() {
+  return {1, SineFunction{0.3, 2 * std::numbers::pi, 0, 0.8}};
+}
+
+TEST(PrescribedMotion, AFunctionMovesAsItsSamplesDo) {
+  SwungShoulder s(0.5);
+  s.options.prescribed = {};
+  addSwing(s.options.prescribed, 1, 0.5, 1e-3);
+  const Trajectory sampled = s.played(Integrator::variational, 0.0025);
+  s.options.prescribed = {};
+  s.options.prescribed.add(1, swingFunction());
+  const Trajectory exact = s.played(Integrator::variational, 0.0025);
+  std::printf("  apart by %.3g rad, reactions by %.3g N m\n", apart(sampled.q, exact.q),
+              apart(sampled.reaction, exact.reaction));
+  EXPECT_LT(apart(sampled.q, exact.q), 1e-8);
+  EXPECT_LT(apart(sampled.reaction, exact.reaction), 1e-4);
+  const Trajectory reference = s.played(Integrator::cvode, 0.05);
+  const auto error = [&](double step) {
+    return apart(s.played(Integrator::variational, step).q, reference.q);
+  };
+  EXPECT_NEAR(std::log2(error(0.0025) / error(0.000625)) / 2, 2.0, 0.2);
+}
+
+TEST(PrescribedMotion, AFunctionsLastKnotBelongsToItsCurve) {
+  const std::vector<double> times = {0, 0.1, 0.2, 0.3, 0.5};
+  const std::vector<double> values = {0, 0.3, 0.5, 0.4, -0.2};
+  PrescribedMotion samples, function;
+  samples.add(0, times, values);
+  function.add(0, Function{1, SplineFunction{times, values}});
+  Eigen::Matrix<double, 1, 1> q, v, a, q2, v2, a2;
+  for (const double t : {0.0, 0.15, 0.3, 0.5}) {
+    samples.place(t, q, v, a);
+    function.place(t, q2, v2, a2);
+    EXPECT_EQ(q, q2);
+    EXPECT_EQ(v, v2);
+    EXPECT_EQ(a, a2);
+  }
+  function.place(0.6, q2, v2, a2);  // straight on
+  EXPECT_EQ(a2[0], 0);
+  EXPECT_NEAR(q2[0], -0.2 + 0.1 * v[0], 1e-12);
+  EXPECT_THROW(function.add(0, Function{}), std::invalid_argument);
+}
+
 /// The second way: the reaction as a force from outside on a shoulder that is free makes it swing,
 /// and the elbow move, in the same way.
 TEST(PrescribedMotion, TheReactionAsAForceMakesTheSameMotion) {

@@ -22,7 +22,8 @@ ExcitationSignal excitationOf(const Trial& trial, const MusculoskeletalSystem& a
 /// @throws std::invalid_argument if it acts on a coordinate that is not free
 ExternalForce externalForceOf(const Trial& trial, const MusculoskeletalSystem& arm);
 
-/// The motion of the system's prescribed coordinates in a trial.
+/// The motion of the system's prescribed coordinates in a trial: what that gives, else the model's
+/// own functions of time.
 /// @throws std::invalid_argument if the trial lacks one of them
 PrescribedMotion prescribedMotionOf(const Trial& trial, const MusculoskeletalSystem& arm);
 

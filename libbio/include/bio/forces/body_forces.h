@@ -81,6 +81,16 @@ class BodyForces {
   void add(double t, const std::vector<MovingSegment>& segments, const Eigen::VectorXd& v,
            BodyForceSums& sums) const;
 
+  /// Whether a spring or a bushing of the model, by its place in its list, is among them.
+  bool hasSpring(std::size_t index) const;
+  bool hasBushing(std::size_t index) const;
+  /// ∂τ/∂θ, one row per free coordinate: in stiffness and rest length of a spring; in rotational
+  /// and translational stiffness, rotational and translational damping (x, y, z each) of a bushing.
+  void springInNumbers(std::size_t index, const std::vector<MovingSegment>& segments,
+                       Eigen::MatrixXd& tau) const;
+  void bushingInNumbers(std::size_t index, const std::vector<MovingSegment>& segments,
+                        const Eigen::VectorXd& v, Eigen::MatrixXd& tau) const;
+
  private:
   struct Load {
     std::size_t on, forceFrame, pointFrame;  ///< places in segments_
@@ -88,11 +98,13 @@ class BodyForces {
     LoadCourse course;
   };
   struct Spring {
+    std::size_t index;  ///< in the model's list
     std::array<std::size_t, 2> segment;
     std::array<Eigen::Vector3d, 2> point;  ///< in the segment
     double stiffness, restLength;
   };
   struct Bushing {
+    std::size_t index;  ///< in the model's list
     std::array<std::size_t, 2> segment;
     std::array<Placement<double>, 2> frame;  ///< in the segment
     Vector6 stiffness, damping;
@@ -126,6 +138,8 @@ class ElasticPathLaw {
   /// @param length L [m]
   /// @param speed  L̇ [m/s]
   PathTension tension(double length, double speed) const;
+  /// ∂F/∂θ there, in this order: rest length, scale, damping, transition strain.
+  std::array<double, 4> inNumbers(double length, double speed) const;
 
  private:
   ElasticPathKind kind_;

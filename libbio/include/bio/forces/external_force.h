@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,26 @@ class ExternalForce {
   /// @param times   [s], strictly rising, at least one
   /// @param values  rows = times, columns = free coordinates [N·m] or [N], finite; positive pushes
   ///   the coordinate up
+  /// What a CoordinateActuator adds: a control, linear between its times and 0 outside them, of
+  /// which optimalForce·control is part of the values.
+  struct Control {
+    std::string actuator;
+    int coordinate = 0;         ///< free index
+    double optimalForce = 1;    ///< [N·m] or [N]
+    std::vector<double> times;  ///< [s] strictly rising
+    Eigen::VectorXd values;     ///< as many
+    double at(double t) const;
+  };
+  /// @param controls  whose forces are part of the values
   /// @throws std::invalid_argument sizes that differ, times not rising, a value that is not finite
-  ExternalForce(std::vector<double> times, Eigen::MatrixXd values);
+  ExternalForce(std::vector<double> times, Eigen::MatrixXd values,
+                std::vector<Control> controls = {});
+
+  const std::vector<Control>& controls() const { return controls_; }
+  /// Of an actuator at time t; 0 if there is none of that name.
+  double controlAt(const std::string& actuator, double t) const;
+  /// The same controls with other optimal forces [N·m] or [N], by actuator; those not named stay.
+  ExternalForce withOptimalForces(const std::map<std::string, double>& forces) const;
 
   bool empty() const { return times_.empty(); }
   int numCoordinates() const { return static_cast<int>(values_.rows()); }
@@ -49,6 +68,7 @@ class ExternalForce {
  private:
   std::vector<double> times_;
   Eigen::MatrixXd values_;  ///< one column per row of the table: contiguous in time
+  std::vector<Control> controls_;
 };
 
 /// The sum of both forces, with rows at the times of either; both act on the same coordinates.

@@ -21,4 +21,11 @@ std::vector<std::string> freeByDefault(const Model& model, const std::set<std::s
                                        const std::set<std::string>& measured,
                                        bool mayBeNone = false);
 
+/// The coordinates that move on the model's own functions of time, in its order: prescribed, not
+/// locked there, of their own.
+/// @param otherwise  coordinates with another role by request; left out
+/// @throws std::invalid_argument if the function of one is of a class that is not known
+std::vector<std::string> prescribedByModel(const Model& model,
+                                           const std::set<std::string>& otherwise);
+
 }  // namespace bio

@@ -35,12 +35,21 @@ struct PolynomialFunction {
   friend bool operator==(const PolynomialFunction&, const PolynomialFunction&) = default;
 };
 
+/// amplitude·sin(omega·x + phase) + offset
+struct SineFunction {
+  double amplitude = 1;
+  double omega = 1;  ///< [rad per unit of x]
+  double phase = 0;  ///< [rad]
+  double offset = 0;
+  friend bool operator==(const SineFunction&, const SineFunction&) = default;
+};
+
 /// scale · shape(x), x held within low … high; nested MultiplierFunctions are multiplied out into
 /// `scale`.
 struct Function {
   double scale = 1;
   std::variant<ConstantFunction, LinearFunction, SplineFunction, PiecewiseLinearFunction,
-               PolynomialFunction>
+               PolynomialFunction, SineFunction>
       shape;
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();

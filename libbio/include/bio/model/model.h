@@ -42,6 +42,10 @@ struct Coordinate {
   double rangeMax = 0;      ///< [rad] or [m], ≥ rangeMin
   bool locked = false;
   bool clamped = false;
+  bool prescribed = false;  ///< it moves on prescribedFunction, unless it is locked
+  /// Of time [s], in radians or metres; none: not prescribed, or of a class that is not known.
+  std::optional<Function> prescribedFunction = {};
+  bool isPrescribed() const { return prescribed && !locked; }
   friend bool operator==(const Coordinate&, const Coordinate&) = default;
 };
 

@@ -54,6 +54,18 @@ struct SpringForceTarget {
   int component;  ///< 0–2 in that order
   friend bool operator==(const SpringForceTarget&, const SpringForceTarget&) = default;
 };
+/// A number of a force on bodies or of an actuator.
+struct ForceNumberTarget {
+  enum class Of {
+    pointSpring,  ///< stiffness, rest length
+    bushing,      ///< rotational and translational stiffness, rotational and translational damping
+    elasticPath,  ///< rest length, scale, damping, transition strain
+    actuator      ///< optimal force
+  } of;
+  std::size_t force;
+  int component;  ///< in that order; x, y, z of a bushing's each
+  friend bool operator==(const ForceNumberTarget&, const ForceNumberTarget&) = default;
+};
 /// A constant of an expression.
 struct ExpressionTarget {
   std::size_t force, constant;
@@ -86,9 +98,10 @@ struct InitialTarget {
   bool isSpeed;
   friend bool operator==(const InitialTarget&, const InitialTarget&) = default;
 };
-using ParameterTarget = std::variant<MuscleTarget, PointTarget, WrapTarget, BodyTarget,
-                                     LimitForceTarget, SpringForceTarget, ExpressionTarget,
-                                     GravityTarget, EmgTarget, InitialTarget, MuscleNumberTarget>;
+using ParameterTarget =
+    std::variant<MuscleTarget, PointTarget, WrapTarget, BodyTarget, LimitForceTarget,
+                 SpringForceTarget, ExpressionTarget, GravityTarget, EmgTarget, InitialTarget,
+                 MuscleNumberTarget, ForceNumberTarget>;
 
 /// A parameter of the model, of the relation between EMG and excitation, or of the initial state,
 /// with its name.
@@ -119,7 +132,9 @@ struct StartPoint {
 /// classes FmaxTendonStrain, TendonForceLengthCurve/strain_at_one_norm_force, …), points by their
 /// index (TRIlong.point2.x), wrap objects by name (TRI.radius, TRI.translation.x,
 /// TRI.rotation.x), bodies by name (hand.mass, hand.mass_center.x, hand.inertia.xx), passive forces
-/// by name (elbow_flexion_ligaments.upper_stiffness). emg.BRA.gain, emg.delay, emg.nonlinearity;
+/// and actuators by name with OpenSim's names of their numbers
+/// (elbow_flexion_ligaments.upper_stiffness, acl.slack_length, brace.rotational_stiffness.z,
+/// motor.optimal_force). emg.BRA.gain, emg.delay, emg.nonlinearity;
 /// initial.elbow_flexion, initial.elbow_flexion.speed. Groups: activation.time_scale, emg.gain, …
 /// Behind them, for each muscle of EmgMapping::latent, emg.BRA.latent1, … of its knots, which
 /// belong to one trial.

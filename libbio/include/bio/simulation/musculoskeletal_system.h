@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -26,7 +27,8 @@ struct SystemOptions {
       wrapAsCylinder;          ///< ellipsoids with two equal semi-axes to treat as cylinders
   SchutteOptions muscle;       ///< of Schutte's class: activation floor, negative forces
   bool tabulatePaths = false;  ///< MusclePath::tabulate; worthwhile after a few simulations
-  /// Those of the free coordinates whose motion is given (SimulationOptions::prescribed).
+  /// Those of the free coordinates whose motion is given (SimulationOptions::prescribed): by a
+  /// trial, or by the model's own function of time (courseOf()).
   std::vector<std::string> prescribed = {};
 };
 
@@ -76,6 +78,8 @@ class MusculoskeletalSystem {
   /// Free indices of the prescribed coordinates, rising.
   const std::vector<int>& prescribed() const { return prescribed_; }
   bool isPrescribed(int coordinate) const;
+  /// The model's own function of time of a prescribed coordinate; null: it has none.
+  const Function* courseOf(int coordinate) const;
 
   const CoordinateForces& coordinateForces() const { return coordinateForces_; }
   const std::vector<SystemMuscle>& muscles() const { return muscles_; }
@@ -86,6 +90,8 @@ class MusculoskeletalSystem {
   const BodyForces& bodyForces() const { return bodyForces_; }
   /// Ligaments and path springs.
   const std::vector<SystemElasticPath>& elasticPaths() const { return elasticPaths_; }
+  /// Those that act on a free coordinate.
+  const std::vector<CoordinateActuator>& actuators() const { return actuators_; }
   /// The muscles' paths, then the elastic ones.
   std::size_t numPaths() const { return muscles_.size() + elasticPaths_.size(); }
   const MusclePath& path(std::size_t i) const {
@@ -120,9 +126,11 @@ class MusculoskeletalSystem {
 
   Skeleton skeleton_;
   std::vector<int> prescribed_;
+  std::map<int, Function> courses_;  ///< the model's, by free index
   CoordinateForces coordinateForces_;
   BodyForces bodyForces_;
   std::vector<SystemElasticPath> elasticPaths_;
+  std::vector<CoordinateActuator> actuators_;
   std::vector<std::unique_ptr<const SchutteCurves>> curves_;
   std::vector<std::unique_ptr<const muscles::AnyMuscle>> others_;  ///< of classes but Schutte's
   std::vector<SystemMuscle> muscles_;

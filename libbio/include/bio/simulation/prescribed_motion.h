@@ -11,7 +11,8 @@ namespace bio {
 /// while the elbow is simulated, or a joint that a dynamometer holds or turns.
 ///
 /// A course goes through its samples as a C² cubic spline (curves.h), so that speed and
-/// acceleration are continuous; a single sample is a constant.
+/// acceleration are continuous; a single sample is a constant. Or it is a function of time, of
+/// which a model file holds one (Coordinate::prescribedFunction).
 class PrescribedMotion {
  public:
   /// No prescribed coordinate.
@@ -23,11 +24,17 @@ class PrescribedMotion {
   /// @throws std::invalid_argument sizes that differ, times not rising, a value that is not finite
   void add(int coordinate, const std::vector<double>& times, const std::vector<double>& values);
 
+  /// A function of time [s], given for all times; with its own continuity: at the corners of
+  /// straight lines the speed jumps.
+  /// @throws std::invalid_argument what FunctionEvaluator throws, a coordinate prescribed twice
+  void add(int coordinate, const Function& function);
+
   bool empty() const { return courses_.empty(); }
 
   struct Course {
     int coordinate;
-    double first, last;  ///< times between which it is given; a constant: everywhere [s]
+    double first, last;  ///< times between which it is given; a function: everywhere [s]
+    double lastKnot;     ///< of a curve of pieces; else infinite [s]
     FunctionEvaluator curve;
   };
   const std::vector<Course>& courses() const { return courses_; }
@@ -59,6 +66,7 @@ class PrescribedMotion {
 
  private:
   static CurveValue at(const Course& course, double t);
+  void requireNew(int coordinate) const;
 
   std::vector<Course> courses_;
 };

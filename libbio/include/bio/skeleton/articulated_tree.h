@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,8 +41,9 @@ struct ElementaryMotion {
   bool turns = true;
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< unit; z for a turn
   FunctionEvaluator coupling{identityFunction()};
-  FunctionEvaluator amount{identityFunction()};  ///< [rad] or [m]
-  bool isIdentity = true;                        ///< amount(coupling(q)) = q
+  FunctionEvaluator amount{identityFunction()};      ///< [rad] or [m]
+  bool isIdentity = true;                            ///< amount(coupling(q)) = q
+  std::optional<FunctionEvaluator::Line> line = {};  ///< amount, if it is one of q itself
 };
 
 /// All turns and shifts in a row by one coordinate: a joint of one degree of freedom whose screw
@@ -52,7 +54,7 @@ struct Mobility {
   int parent = -1;     ///< mobility before it on the way from the ground, −1: none
   int firstMotion = 0;
   int numMotions = 0;
-  bool hasFixedScrew = false;  ///< one turn or shift by q itself: ∂S/∂q = 0
+  bool hasFixedScrew = false;  ///< one turn or shift by a line of q: ∂S/∂q = 0
 };
 
 /// What a posture q makes of a tree; all vectors in the ground, about its origin. Made once with

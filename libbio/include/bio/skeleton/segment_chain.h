@@ -23,6 +23,7 @@ class SegmentChain {
     int mobility;
     int slot;     ///< which of support() moves it
     double sign;  ///< σ
+    bool bends;   ///< D ≠ 0 somewhere
   };
 
   /// The tree is not kept. @throws std::invalid_argument a segment that the tree does not have
@@ -66,6 +67,7 @@ void addSecondsAlong(const SegmentChain& chain, const TreeMotion<T>& motion, con
       second(a, b) += value;
       if (k != j) second(b, a) += value;
     }
+    if (!steps[j].bends) continue;
     const auto& D = motion.screw1[static_cast<std::size_t>(steps[j].mobility)];
     second(a, a) += f.dot(velocityAt(D, x)) * steps[j].sign;
   }

@@ -28,6 +28,13 @@ AmountJet<T> amountJet(const FunctionEvaluator& function, const T& x) {
   }
 }
 
+/// φ(q) that is a line.
+template <class T>
+AmountJet<T> amountAlong(const FunctionEvaluator::Line& line, const T& q) {
+  return {T(line.scale) * (T(line.value) + q * T(line.slope)), T(line.scale * line.slope), T(0.0),
+          T(0.0)};
+}
+
 /// φ = amount(coupling(q)) by the chain rule to third order.
 template <class T>
 AmountJet<T> amountOf(const ElementaryMotion& motion, const T& q) {
@@ -106,7 +113,13 @@ void ArticulatedTree::place(const T* q, TreeMotion<T>& out) const {
       const T& q_k = q[mobility->coordinate];
       if (mobility->hasFixedScrew) {
         detail::placeBefore(*motion, X);
-        out.screw[at] = detail::applyMotion(*motion, q_k, X);
+        if (motion->isIdentity) {
+          out.screw[at] = detail::applyMotion(*motion, q_k, X);
+        } else {
+          const detail::AmountJet<T> phi = detail::amountAlong(*motion->line, q_k);
+          const SpatialVector<T> S = detail::applyMotion(*motion, phi.value, X);
+          for (int i = 0; i < 6; ++i) out.screw[at][i] = phi.slope * S[i];
+        }
         ++motion;
         continue;
       }
@@ -115,8 +128,17 @@ void ArticulatedTree::place(const T* q, TreeMotion<T>& out) const {
         detail::placeBefore(*motion, X);
         const detail::AmountJet<T> phi = motion->isIdentity
                                              ? detail::AmountJet<T>{q_k, T(1.0), T(0.0), T(0.0)}
-                                             : detail::amountOf(*motion, q_k);
+                                         : motion->line ? detail::amountAlong(*motion->line, q_k)
+                                                        : detail::amountOf(*motion, q_k);
         const SpatialVector<T> S_f = detail::applyMotion(*motion, phi.value, X);
+        if (f == 0) {  // nothing carries it
+          for (int i = 0; i < 6; ++i) {
+            D1[i] += phi.third * S_f[i];
+            D[i] += phi.curvature * S_f[i];
+            S[i] += phi.slope * S_f[i];
+          }
+          continue;
+        }
         // S_f is carried by the motions before it: S_f′ = S × S_f, S_f″ = D × S_f + S × (S × S_f)
         const SpatialVector<T> first = crossMotion(S, S_f);
         const SpatialVector<T> second = crossMotion(D, S_f) + crossMotion(S, first);

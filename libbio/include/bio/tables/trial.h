@@ -26,6 +26,8 @@ struct AppliedForce {
   std::string coordinate;
   Eigen::VectorXd values;     ///< [N·m] or [N], finite; positive pushes the coordinate up
   std::string actuator = {};  ///< the CoordinateActuator whose control the column is; empty: none
+  Eigen::VectorXd control = {};  ///< of that actuator, in every row
+  double optimalForce = 0;       ///< with which it makes `values`; 0 if it is switched off
 };
 
 /// The inputs of a simulation and the measurements of a recording.

@@ -136,9 +136,10 @@ PiecewiseCubic polyline(const PiecewiseLinearFunction& function) {
   return throughPoints(points, std::vector<double>(points.x.size(), 0.0));
 }
 
-std::variant<PiecewiseCubic, PolynomialFunction> compileShape(const Function& function) {
+std::variant<PiecewiseCubic, PolynomialFunction, SineFunction> compileShape(
+    const Function& function) {
   struct Compile {
-    using Result = std::variant<PiecewiseCubic, PolynomialFunction>;
+    using Result = std::variant<PiecewiseCubic, PolynomialFunction, SineFunction>;
     Result operator()(const ConstantFunction& f) const {
       return PiecewiseCubic({}, {{0, f.value, 0, 0, 0}});
     }
@@ -148,6 +149,7 @@ std::variant<PiecewiseCubic, PolynomialFunction> compileShape(const Function& fu
     Result operator()(const SplineFunction& f) const { return spline(f); }
     Result operator()(const PiecewiseLinearFunction& f) const { return polyline(f); }
     Result operator()(const PolynomialFunction& f) const { return f; }
+    Result operator()(const SineFunction& f) const { return f; }
   };
   return std::visit(Compile{}, function.shape);
 }
@@ -212,6 +214,14 @@ bool FunctionEvaluator::isIdentity() const {
   return s.start == 0 && s.value == 0 && scale_ * s.slope == 1 && s.quadratic == 0 && s.cubic == 0;
 }
 
+std::optional<FunctionEvaluator::Line> FunctionEvaluator::line() const {
+  const auto* curve = std::get_if<PiecewiseCubic>(&shape_);
+  if (!curve || !curve->knots().empty()) return {};
+  const PiecewiseCubic::Segment& s = curve->segments().front();
+  if (s.start != 0 || s.quadratic != 0 || s.cubic != 0) return {};
+  return Line{scale_, s.value, s.slope};
+}
+
 CurveValue FunctionEvaluator::evaluate(double x) const {
   if (const auto* curve = std::get_if<PiecewiseCubic>(&shape_)) {
     const CurveValue y = curve->evaluate(x);
@@ -219,6 +229,11 @@ CurveValue FunctionEvaluator::evaluate(double x) const {
   }
   if (x < low_ || x > high_) {
     return {this->value(std::clamp(x, low_, high_)), 0, 0, 0};
+  }
+  if (const auto* sine = std::get_if<SineFunction>(&shape_)) {
+    const double w = sine->omega, angle = w * x + sine->phase;
+    const double by = scale_ * sine->amplitude, s = std::sin(angle), c = std::cos(angle);
+    return {by * s + scale_ * sine->offset, by * w * c, -by * w * w * s, -by * w * w * w * c};
   }
   // Horner's scheme for the polynomial and its first three derivatives.
   double value = 0, slope = 0, halfCurvature = 0, sixthThird = 0;

@@ -220,6 +220,11 @@ TEST(FunctionEvaluator, EvaluatesEveryKindWithItsScale) {
   EXPECT_NEAR(spline.value, 3 * x * x * x, 1e-13);
   EXPECT_NEAR(spline.slope, 9 * x * x, 1e-12);
   EXPECT_NEAR(spline.curvature, 18 * x, 1e-12);
+  const CurveValue sine = at(2, SineFunction{0.5, 3, 0.2, 1});
+  EXPECT_NEAR(sine.value, 2 * (0.5 * std::sin(3 * x + 0.2) + 1), 1e-14);
+  EXPECT_NEAR(sine.slope, 3 * std::cos(3 * x + 0.2), 1e-14);
+  EXPECT_NEAR(sine.curvature, -9 * std::sin(3 * x + 0.2), 1e-14);
+  EXPECT_NEAR(sine.third, -27 * std::cos(3 * x + 0.2), 1e-13);
   const CurveValue polyline = at(3, PiecewiseLinearFunction{{0, 1}, {0, 2}});
   EXPECT_NEAR(polyline.value, 6 * x, 1e-14);
   EXPECT_NEAR(polyline.slope, 6, 1e-14);
@@ -229,6 +234,7 @@ TEST(FunctionEvaluator, GivesTheSameThroughTheScalarType) {
   using First = info::Dual<1>;
   for (const Function& f : {Function{2, ConstantFunction{3}}, Function{-1, LinearFunction{2, 1}},
                             Function{2, PolynomialFunction{{1, -2, 0.5, 4, -1}}},
+                            Function{2, SineFunction{0.5, 3, 0.2, 1}},
                             Function{0.5, SplineFunction{{0, 1, 2, 4, 5}, {0, 1, 8, 64, 2}}},
                             Function{1.5, PiecewiseLinearFunction{{0, 1, 2}, {0, 2, 1}}}}) {
     const FunctionEvaluator evaluator(f);
@@ -245,6 +251,7 @@ TEST(FunctionEvaluator, HoldsItsArgumentWithinLowAndHigh) {
   using First = info::Dual<1>;
   const std::vector<Function> functions{{0.5, SplineFunction{{0, 1, 2, 4, 5}, {0, 1, 8, 64, 2}}},
                                         {2, LinearFunction{3, 1}},
+                                        {1, SineFunction{0.5, 3, 0.2, 1}},
                                         {1, PolynomialFunction{{1, -2, 0.5, 4, -1}}}};
   for (const Function& free : functions) {
     for (const auto& [low, high] : {std::pair{0.5, 4.5}, {1.2, 1.8}, {-1.0, 2.0}}) {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -132,14 +134,25 @@ class FunctionEvaluator {
 
   /// Whether it was constructed as f(x) = x.
   bool isIdentity() const;
+  /// scale·(value + slope·x)
+  struct Line {
+    double scale = 1, value = 0, slope = 1;
+  };
+  /// What it is, if it is a line for all x.
+  std::optional<Line> line() const;
 
   template <class T>
   T value(const T& x) const {
     if (const auto* curve = std::get_if<PiecewiseCubic>(&shape_)) {
       return T(scale_) * curve->value(x);
     }
-    T sum(0.0);
     const T within = plainValue(x) < low_ ? T(low_) : plainValue(x) > high_ ? T(high_) : x;
+    if (const auto* sine = std::get_if<SineFunction>(&shape_)) {
+      using std::sin;
+      const T angle = T(sine->omega) * within + T(sine->phase);
+      return T(scale_) * (T(sine->amplitude) * sin(angle) + T(sine->offset));
+    }
+    T sum(0.0);
     for (const double c : std::get<PolynomialFunction>(shape_).coefficients) {
       const T shifted = sum * within;
       sum = shifted + T(c);
@@ -149,8 +162,9 @@ class FunctionEvaluator {
 
  private:
   double scale_;
-  std::variant<PiecewiseCubic, PolynomialFunction> shape_;  ///< a piecewise cubic is held itself
-  double low_, high_;                                       ///< hold a polynomial
+  /// A piecewise cubic is held itself.
+  std::variant<PiecewiseCubic, PolynomialFunction, SineFunction> shape_;
+  double low_, high_;  ///< hold the others
 };
 
 }  // namespace bio
