@@ -111,24 +111,31 @@ Placement<double> placementOf(const FramePlacement& frame) {
   return X;
 }
 
-Skeleton::Skeleton(const Model& model, const SkeletonOptions& options) : gravity_(model.gravity) {
-  // which coordinates are free, coupled or constant
-  std::map<std::string, const CoordinateCoupler*> couplers;
+namespace {
+
+using Couplers = std::map<std::string, const CoordinateCoupler*>;
+
+Couplers couplersOf(const Model& model) {
+  Couplers couplers;
   for (const CoordinateCoupler& coupler : model.couplers) couplers[coupler.dependent] = &coupler;
-  if (options.freeCoordinates.empty()) {
-    throw std::invalid_argument("0 free coordinates, must be 1 or more");
-  }
-  for (const std::string& name : options.freeCoordinates) {
-    coordinates_.push_back(findCoordinate(model, name));
-    if (couplers.count(name)) {
+  return couplers;
+}
+
+/// Each coordinate has one role at most, and those that follow others have none.
+void checkRoles(const Model& model, const SkeletonOptions& options, const Couplers& couplers) {
+  const std::vector<std::string>& free = options.freeCoordinates;
+  if (free.empty()) throw std::invalid_argument("0 free coordinates, must be 1 or more");
+  for (const std::string& name : free) {
+    findCoordinate(model, name);
+    if (const auto coupler = couplers.find(name); coupler != couplers.end()) {
       throw std::invalid_argument(
           fmt::format("coordinate '{}' follows '{}' (coupler '{}') and cannot be free", name,
-                      couplers[name]->independent, couplers[name]->name));
+                      coupler->second->independent, coupler->second->name));
     }
     if (options.lockedValues.count(name)) {
       throw std::invalid_argument(fmt::format("coordinate '{}' is free and locked", name));
     }
-    if (std::count(options.freeCoordinates.begin(), options.freeCoordinates.end(), name) > 1) {
+    if (std::count(free.begin(), free.end(), name) > 1) {
       throw std::invalid_argument(fmt::format("coordinate '{}' is named free twice", name));
     }
   }
@@ -138,25 +145,10 @@ Skeleton::Skeleton(const Model& model, const SkeletonOptions& options) : gravity
       throw std::invalid_argument(
           fmt::format("locked coordinate '{}' = {}, must be finite", name, value));
     }
-    if (couplers.count(name)) {
+    if (const auto coupler = couplers.find(name); coupler != couplers.end()) {
       throw std::invalid_argument(
           fmt::format("coordinate '{}' follows '{}' (coupler '{}'): lock that one instead", name,
-                      couplers[name]->independent, couplers[name]->name));
-    }
-  }
-  for (const Joint& joint : model.joints) {
-    for (const Coordinate& coordinate : joint.coordinates) {
-      CoordinateSource source;
-      const auto free = std::find(options.freeCoordinates.begin(), options.freeCoordinates.end(),
-                                  coordinate.name);
-      const auto locked = options.lockedValues.find(coordinate.name);
-      if (free != options.freeCoordinates.end()) {
-        source.freeIndex = static_cast<int>(free - options.freeCoordinates.begin());
-      } else {
-        source.value =
-            locked != options.lockedValues.end() ? locked->second : coordinate.defaultValue;
-      }
-      sources_[coordinate.name] = source;
+                      coupler->second->independent, coupler->second->name));
     }
   }
   for (const CoordinateCoupler& coupler : model.couplers) {
@@ -165,6 +157,75 @@ Skeleton::Skeleton(const Model& model, const SkeletonOptions& options) : gravity
           fmt::format("coupler '{}': its independent coordinate '{}' is itself coupled",
                       coupler.name, coupler.independent));
     }
+  }
+}
+
+Skeleton::CoordinateSource uncoupled(const Coordinate& coordinate, const SkeletonOptions& options) {
+  Skeleton::CoordinateSource source;
+  const std::vector<std::string>& names = options.freeCoordinates;
+  const auto free = std::find(names.begin(), names.end(), coordinate.name);
+  const auto locked = options.lockedValues.find(coordinate.name);
+  if (free != names.end()) {
+    source.freeIndex = static_cast<int>(free - names.begin());
+  } else {
+    source.value = locked != options.lockedValues.end() ? locked->second : coordinate.defaultValue;
+  }
+  return source;
+}
+
+Eigen::Vector3d unitAxis(const Joint& joint, const Eigen::Vector3d& axis) {
+  const double norm = axis.norm();
+  if (!(norm > 0)) {
+    throw std::invalid_argument(
+        fmt::format("joint '{}': an axis has length {}, must be > 0", joint.name, norm));
+  }
+  return axis / norm;
+}
+
+/// The joints of a tree, those nearer the ground first.
+std::vector<const Joint*> outwards(const Model& model) {
+  std::vector<const Joint*> order, waiting;
+  std::set<std::string> placed{"ground"};
+  for (const Joint& joint : model.joints) waiting.push_back(&joint);
+  while (!waiting.empty()) {
+    std::vector<const Joint*> later;
+    for (const Joint* joint : waiting) {
+      if (!placed.count(joint->parentBody)) {
+        later.push_back(joint);
+        continue;
+      }
+      if (!placed.insert(joint->childBody).second) {
+        throw std::invalid_argument(fmt::format(
+            "joint '{}': body '{}' has two joints towards the ground, the model must be a tree",
+            joint->name, joint->childBody));
+      }
+      order.push_back(joint);
+    }
+    if (later.size() == waiting.size()) {
+      throw std::invalid_argument(
+          fmt::format("joint '{}': body '{}' is not connected to the ground", later.front()->name,
+                      later.front()->parentBody));
+    }
+    waiting = later;
+  }
+  return order;
+}
+
+}  // namespace
+
+Skeleton::Skeleton(const Model& model, const SkeletonOptions& options) : gravity_(model.gravity) {
+  // which coordinates are free, coupled or constant
+  const Couplers couplers = couplersOf(model);
+  checkRoles(model, options, couplers);
+  for (const std::string& name : options.freeCoordinates) {
+    coordinates_.push_back(findCoordinate(model, name));
+  }
+  for (const Joint& joint : model.joints) {
+    for (const Coordinate& coordinate : joint.coordinates) {
+      sources_[coordinate.name] = uncoupled(coordinate, options);
+    }
+  }
+  for (const CoordinateCoupler& coupler : model.couplers) {
     const CoordinateSource& independent = sourceOf(coupler.independent);
     sourceOf(coupler.dependent);
     CoordinateSource source;
@@ -178,69 +239,40 @@ Skeleton::Skeleton(const Model& model, const SkeletonOptions& options) : gravity
   segments_.push_back(Segment{"ground"});
   segmentMotions_.emplace_back();
   places_["ground"] = BodyPlacement{};
-  std::vector<const Joint*> waiting;
-  for (const Joint& joint : model.joints) waiting.push_back(&joint);
-  while (!waiting.empty()) {
-    std::vector<const Joint*> later;
-    for (const Joint* joint : waiting) {
-      const auto parent = places_.find(joint->parentBody);
-      if (parent == places_.end()) {
-        later.push_back(joint);
+  for (const Joint* joint : outwards(model)) {
+    const BodyPlacement parent = places_.at(joint->parentBody);
+    SegmentMotion motion;
+    motion.parent = parent.segment;
+    Placement<double> pending = parent.X_SB * placementOf(joint->parentFrame);
+    for (const auto& [turns, transform] : elementaryMotions(*joint)) {
+      CoordinateSource source;
+      if (!transform.coordinate.empty()) source = sourceOf(transform.coordinate);
+      FunctionEvaluator amount(transform.function);
+      if (source.freeIndex < 0) {
+        const double value = amount.evaluate(source.value).value;
+        if (value == 0) continue;
+        pending = pending * elementary(turns, unitAxis(*joint, transform.axis), value);
         continue;
       }
-      if (places_.count(joint->childBody)) {
-        throw std::invalid_argument(fmt::format(
-            "joint '{}': body '{}' has two joints towards the ground, the model must be a tree",
-            joint->name, joint->childBody));
-      }
-      SegmentMotion motion;
-      motion.parent = parent->second.segment;
-      Placement<double> pending = parent->second.X_SB * placementOf(joint->parentFrame);
-      for (const auto& [turns, transform] : elementaryMotions(*joint)) {
-        const double norm = transform.axis.norm();
-        CoordinateSource source;
-        if (!transform.coordinate.empty()) source = sourceOf(transform.coordinate);
-        FunctionEvaluator amount(transform.function);
-        if (source.freeIndex < 0) {
-          const double value = amount.evaluate(source.value).value;
-          if (value == 0) continue;
-          if (!(norm > 0)) {
-            throw std::invalid_argument(
-                fmt::format("joint '{}': an axis has length {}, must be > 0", joint->name, norm));
-          }
-          pending = pending * elementary(turns, transform.axis / norm, value);
-          continue;
-        }
-        if (!(norm > 0)) {
-          throw std::invalid_argument(
-              fmt::format("joint '{}': an axis has length {}, must be > 0", joint->name, norm));
-        }
-        Factor factor;
-        factor.before = pending;
-        factor.turns = turns;
-        factor.axis = transform.axis / norm;
-        factor.freeIndex = source.freeIndex;
-        factor.coupling = source.coupling;
-        factor.amount = amount;
-        factor.isIdentity = isIdentity(transform.function) && !couplers.count(transform.coordinate);
-        motion.factors.push_back(factor);
-        pending = Placement<double>{};
-      }
-      const Placement<double> X_SC = pending * inverse(placementOf(joint->childFrame));
-      if (motion.factors.empty()) {
-        places_[joint->childBody] = BodyPlacement{motion.parent, X_SC};
-      } else {
-        places_[joint->childBody] = BodyPlacement{segments_.size(), X_SC};
-        segments_.push_back(Segment{joint->childBody});
-        segmentMotions_.push_back(motion);
-      }
+      Factor factor;
+      factor.before = pending;
+      factor.turns = turns;
+      factor.axis = unitAxis(*joint, transform.axis);
+      factor.freeIndex = source.freeIndex;
+      factor.coupling = source.coupling;
+      factor.amount = amount;
+      factor.isIdentity = isIdentity(transform.function) && !couplers.count(transform.coordinate);
+      motion.factors.push_back(factor);
+      pending = Placement<double>{};
     }
-    if (later.size() == waiting.size()) {
-      throw std::invalid_argument(
-          fmt::format("joint '{}': body '{}' is not connected to the ground", later.front()->name,
-                      later.front()->parentBody));
+    const Placement<double> X_SC = pending * inverse(placementOf(joint->childFrame));
+    if (motion.factors.empty()) {
+      places_[joint->childBody] = BodyPlacement{motion.parent, X_SC};
+    } else {
+      places_[joint->childBody] = BodyPlacement{segments_.size(), X_SC};
+      segments_.push_back(Segment{joint->childBody});
+      segmentMotions_.push_back(motion);
     }
-    waiting = later;
   }
   for (const Body& body : model.bodies) {
     const auto place = places_.find(body.name);
