@@ -7,119 +7,117 @@
 
 namespace bio::stepping {
 
+/// Enters one step of a direction where its target is touched.
+struct ParameterEffects::Enter {
+  ParameterEffects& effects;
+  const MusculoskeletalSystem& arm;
+  const Model& model;
+  double value, weight;
+  Eigen::Index column;
+
+  void operator()(const MuscleTarget& target) const {
+    const std::size_t i = indexOf(model.muscles[target.muscle].name);
+    if (i == arm.numMuscles()) return;
+    OfMuscle& muscle = effects.muscles[i];
+    const auto quantity = static_cast<std::size_t>(target.quantity);
+    if (target.quantity == MuscleQuantity::activation1) {
+      muscle.activation.push_back({1, column, weight});
+    } else if (target.quantity == MuscleQuantity::activation2) {
+      muscle.activation.push_back({2, column, weight});
+    } else {
+      // a scale multiplies the curve that the catalogue's model has; the arm's is scaled already
+      const bool isScale = quantity >= static_cast<std::size_t>(MuscleQuantity::tendonStrainScale);
+      muscle.fibre.push_back({quantity, column, isScale ? weight / value : weight});
+      if (target.quantity == MuscleQuantity::timeScale) {
+        muscle.activation.push_back({0, column, weight});
+      }
+    }
+  }
+  void operator()(const MuscleNumberTarget& target) const {
+    const Muscle& given = model.muscles[target.muscle];
+    const std::size_t i = indexOf(given.name);
+    if (i == arm.numMuscles()) return;
+    OfMuscle& muscle = effects.muscles[i];
+    muscle.fibre.push_back({target.place, column, weight});
+    const std::string_view name =
+        std::visit([&](const auto& p) { return p.properties[target.place].name; }, *given.hill);
+    const auto own = arm.muscles()[i].activation.names();
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      if (own[k] == name) muscle.activation.push_back({k, column, weight});
+    }
+  }
+  void operator()(const PointTarget& target) const {
+    const std::size_t i = indexOf(model.muscles[target.muscle].name);
+    if (i == arm.numMuscles()) return;
+    effects.muscles[i].points.push_back(
+        {3 * target.point + static_cast<std::size_t>(target.axis), column, weight});
+  }
+  void operator()(const WrapTarget& target) const {
+    const std::string& name = model.wrapObjects[target.wrap].name;
+    for (const Muscle& muscle : model.muscles) {
+      const std::size_t i = indexOf(muscle.name);
+      if (i == arm.numMuscles()) continue;
+      for (std::size_t place = 0; place < muscle.path.wraps.size(); ++place) {
+        if (muscle.path.wraps[place].wrapObject != name) continue;
+        effects.muscles[i].wraps.push_back(
+            {numWrapRows * place + static_cast<std::size_t>(target.component), column, weight});
+      }
+    }
+  }
+  void operator()(const BodyTarget& target) const {
+    effects.addBody(arm, model.bodies[target.body], target.component, column, weight);
+  }
+  void operator()(const LimitForceTarget& target) const {
+    const CoordinateLimitForce& law = model.limitForces[target.force];
+    effects.limitForces.push_back({law,
+                                   arm.skeleton().indexOf(law.coordinate),
+                                   {static_cast<std::size_t>(target.component), column, weight}});
+  }
+  void operator()(const SpringForceTarget& target) const {
+    const SpringGeneralizedForce& law = model.springForces[target.force];
+    effects.springForces.push_back({law,
+                                    arm.skeleton().indexOf(law.coordinate),
+                                    {static_cast<std::size_t>(target.component), column, weight}});
+  }
+  void operator()(const ForceNumberTarget& target) const {
+    effects.addForce(arm, model, target, column, weight);
+  }
+  void operator()(const ExpressionTarget& target) const {
+    const ExpressionBasedCoordinateForce& law = model.expressionForces[target.force];
+    effects.expressions.push_back({CoordinateExpression(law),
+                                   arm.skeleton().indexOf(law.coordinate),
+                                   {target.constant, column, weight}});
+  }
+  void operator()(const GravityTarget& target) const {
+    effects.gravity.push_back({static_cast<std::size_t>(target.axis), column, weight});
+  }
+  void operator()(const EmgTarget& target) const {
+    if (target.what == EmgTarget::What::delay) {
+      effects.delay.push_back({0, column, weight});
+    } else {
+      effects.emg.push_back({target, column, weight});
+    }
+  }
+  void operator()(const InitialTarget& target) const {
+    effects.start.push_back({target.coordinate, target.isSpeed, column, weight});
+  }
+
+  /// numMuscles() where the system lacks the muscle.
+  std::size_t indexOf(const std::string& name) const {
+    std::size_t i = 0;
+    while (i < arm.numMuscles() && arm.muscles()[i].name != name) ++i;
+    return i;
+  }
+};
+
 ParameterEffects::ParameterEffects(const MusculoskeletalSystem& arm,
                                    const ParameterCatalogue::Setting& setting,
                                    const std::vector<ParameterDirection>& wanted)
     : muscles(arm.numMuscles()) {
-  const Model& model = setting.model;
-  const auto armIndex = [&](const std::string& name) {
-    std::size_t i = 0;
-    while (i < arm.numMuscles() && arm.muscles()[i].name != name) ++i;
-    return i;
-  };
   Eigen::Index column = 0;
-
-  struct Enter {
-    ParameterEffects& effects;
-    const MusculoskeletalSystem& arm;
-    const Model& model;
-    decltype(armIndex)& indexOf;
-    double value, weight;
-    Eigen::Index column;
-
-    void operator()(const MuscleTarget& target) const {
-      const std::size_t i = indexOf(model.muscles[target.muscle].name);
-      if (i == arm.numMuscles()) return;
-      OfMuscle& muscle = effects.muscles[i];
-      const auto quantity = static_cast<std::size_t>(target.quantity);
-      if (target.quantity == MuscleQuantity::activation1) {
-        muscle.activation.push_back({1, column, weight});
-      } else if (target.quantity == MuscleQuantity::activation2) {
-        muscle.activation.push_back({2, column, weight});
-      } else {
-        // a scale multiplies the curve that the catalogue's model has; the arm's is scaled already
-        const bool isScale =
-            quantity >= static_cast<std::size_t>(MuscleQuantity::tendonStrainScale);
-        muscle.fibre.push_back({quantity, column, isScale ? weight / value : weight});
-        if (target.quantity == MuscleQuantity::timeScale) {
-          muscle.activation.push_back({0, column, weight});
-        }
-      }
-    }
-    void operator()(const MuscleNumberTarget& target) const {
-      const Muscle& given = model.muscles[target.muscle];
-      const std::size_t i = indexOf(given.name);
-      if (i == arm.numMuscles()) return;
-      OfMuscle& muscle = effects.muscles[i];
-      muscle.fibre.push_back({target.place, column, weight});
-      const std::string_view name =
-          std::visit([&](const auto& p) { return p.properties[target.place].name; }, *given.hill);
-      const auto own = arm.muscles()[i].activation.names();
-      for (std::size_t k = 0; k < own.size(); ++k) {
-        if (own[k] == name) muscle.activation.push_back({k, column, weight});
-      }
-    }
-    void operator()(const PointTarget& target) const {
-      const std::size_t i = indexOf(model.muscles[target.muscle].name);
-      if (i == arm.numMuscles()) return;
-      effects.muscles[i].points.push_back(
-          {3 * target.point + static_cast<std::size_t>(target.axis), column, weight});
-    }
-    void operator()(const WrapTarget& target) const {
-      const std::string& name = model.wrapObjects[target.wrap].name;
-      for (const Muscle& muscle : model.muscles) {
-        const std::size_t i = indexOf(muscle.name);
-        if (i == arm.numMuscles()) continue;
-        for (std::size_t place = 0; place < muscle.path.wraps.size(); ++place) {
-          if (muscle.path.wraps[place].wrapObject != name) continue;
-          effects.muscles[i].wraps.push_back(
-              {numWrapRows * place + static_cast<std::size_t>(target.component), column, weight});
-        }
-      }
-    }
-    void operator()(const BodyTarget& target) const {
-      effects.addBody(arm, model.bodies[target.body], target.component, column, weight);
-    }
-    void operator()(const LimitForceTarget& target) const {
-      const CoordinateLimitForce& law = model.limitForces[target.force];
-      effects.limitForces.push_back({law,
-                                     arm.skeleton().indexOf(law.coordinate),
-                                     {static_cast<std::size_t>(target.component), column, weight}});
-    }
-    void operator()(const SpringForceTarget& target) const {
-      const SpringGeneralizedForce& law = model.springForces[target.force];
-      effects.springForces.push_back(
-          {law,
-           arm.skeleton().indexOf(law.coordinate),
-           {static_cast<std::size_t>(target.component), column, weight}});
-    }
-    void operator()(const ForceNumberTarget& target) const {
-      effects.addForce(arm, model, target, column, weight);
-    }
-    void operator()(const ExpressionTarget& target) const {
-      const ExpressionBasedCoordinateForce& law = model.expressionForces[target.force];
-      effects.expressions.push_back({CoordinateExpression(law),
-                                     arm.skeleton().indexOf(law.coordinate),
-                                     {target.constant, column, weight}});
-    }
-    void operator()(const GravityTarget& target) const {
-      effects.gravity.push_back({static_cast<std::size_t>(target.axis), column, weight});
-    }
-    void operator()(const EmgTarget& target) const {
-      if (target.what == EmgTarget::What::delay) {
-        effects.delay.push_back({0, column, weight});
-      } else {
-        effects.emg.push_back({target, column, weight});
-      }
-    }
-    void operator()(const InitialTarget& target) const {
-      effects.start.push_back({target.coordinate, target.isSpeed, column, weight});
-    }
-  };
-
   for (const ParameterDirection& direction : wanted) {
     for (const TargetStep& step : direction) {
-      std::visit(Enter{*this, arm, model, armIndex, step.value, step.weight, column}, step.target);
+      std::visit(Enter{*this, arm, setting.model, step.value, step.weight, column}, step.target);
     }
     ++column;
   }
