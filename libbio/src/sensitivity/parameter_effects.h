@@ -80,6 +80,7 @@ class ParameterEffects {
   std::vector<QuantityEffect> delay;
 
  private:
+  struct Enter;
   void addForce(const MusculoskeletalSystem& arm, const Model& model,
                 const ForceNumberTarget& target, Eigen::Index column, double weight);
   void addBody(const MusculoskeletalSystem& arm, const Body& body, int component,
