@@ -112,33 +112,7 @@ class VariationalStepper {
       dTau = dPassive;
       if (others_.any()) dTau += others_.load_q() / 2;
 
-      // muscles: forces on the skeleton, and fibre lengths eliminated one by one
-      muscle_.setZero();
-      eliminated.setZero(countOf<N>(arm_), countOf<N>(arm_));
-      carried.setZero(countOf<N>(arm_));
-      for (std::size_t i = 0; i < rate_.size(); ++i) {
-        const auto si = static_cast<Eigen::Index>(i);
-        const LengthJet<N>& path = configuration_.length(i);
-        const double l_m = (begin.fibreLength[si] + end.fibreLength[si]) / 2;
-        const SimulatedMuscle& muscle = arm_.muscles()[i].muscle;
-        if (!muscle.hasFibreState()) {
-          addRigid(i, activation[si], path, v, h, dTau);
-          continue;
-        }
-        rate_[i] =
-            muscle.rateNear(activation[si], l_m, path.length,
-                            (end.fibreLength[si] - begin.fibreLength[si]) / h, h, pieces_[i]);
-        const FibreRateDerivatives& r = rate_[i];
-        addAlong<N>(muscle_, -r.tendonForce, path);
-        addOuter<N>(dTau, -(r.dF_dMuscleTendonLength / 2), path);
-        addSecond<N>(dTau, -(r.tendonForce / 2), path);
-        residual_[si] = (end.fibreLength[si] - begin.fibreLength[si]) / h - r.fibreVelocity;
-        inverse_[si] = 1 / (1 / h - r.dV_dFibreLength / 2);
-        // G_i C_i/J_i with C = −½ V_L ∂ℓ, G = share·½ F_ℓ ∂ℓ
-        const double G = share / 2 * r.dF_dFibreLength;
-        addOuter<N>(eliminated, -(G * inverse_[si] * r.dV_dMuscleTendonLength / 2), path);
-        addAlong<N>(carried, G * inverse_[si] * residual_[si], path);
-      }
+      addMuscles(begin, end, activation, {v, h, share}, dTau, eliminated, carried);
 
       R = Mv - h / 2 * L_q - share * (muscle_ + passive_ + external_) - begin.p;
       J = dMv - h / 2 * dL_q - share * dTau - eliminated;
@@ -158,43 +132,14 @@ class VariationalStepper {
       double shorten = 1;
       double size = dq.cwiseAbs().maxCoeff();
       if (size > largestTurn) shorten = largestTurn / size;
-      double fibreSize = 0;
-      for (std::size_t i = 0; i < rate_.size(); ++i) {
-        const auto si = static_cast<Eigen::Index>(i);
-        const LengthJet<N>& path = configuration_.length(i);
-        const double C_dq = -rate_[i].dV_dMuscleTendonLength / 2 * path.dL_dq.dot(dq);
-        residual_[si] = -(residual_[si] + C_dq) * inverse_[si];  // now δℓ
-        fibreSize =
-            std::max(fibreSize, std::abs(residual_[si]) * arm_.muscles()[i].muscle.perFibre());
-      }
+      const double fibreSize = correctFibres(dq);
       if (!(fibreSize < 1e6)) return result;
       if (fibreSize * shorten > largestFibreStep) shorten = largestFibreStep / fibreSize;
       end.q += shorten * dq;
       end.fibreLength += shorten * residual_;
       const double correction = std::max(size, fibreSize);
       if (isLast(correction, shorten == 1 ? previous : 0)) {
-        // L_q, forces and M v belong to the last iterate but one; to first order in the correction
-        for (std::size_t i = 0; i < rate_.size(); ++i) {
-          addAlong<N>(muscle_,
-                      -(rate_[i].dF_dFibreLength / 2 * residual_[static_cast<Eigen::Index>(i)]),
-                      configuration_.length(i));
-        }
-        dTau -= dPassive;
-        if (others_.any()) {
-          dTau -= others_.load_q() / 2;
-          external_ += others_.load_q() / 2 * dq;
-        }
-        muscle_.noalias() += dTau * dq;
-        passive_.noalias() += dPassive * dq;
-        const auto step = end.q - begin.q;
-        R.noalias() = dL_q * dq;
-        L_q += R;
-        R.noalias() = dMv * dq;
-        end.p = Mv + R + h / 2 * L_q;
-        if (symmetric_) end.p += share * (muscle_ + passive_ + external_);
-        result.muscleWork = muscle_.dot(step);
-        result.passiveWork = passive_.dot(step);
-        result.externalWork = external_.dot(step);
+        finish(begin, h, share, {Mv, dq, dMv, dL_q, dPassive}, L_q, dTau, R, end, result);
         result.converged = true;
         failedPosture_.resize(0);
         return result;
@@ -236,6 +181,86 @@ class VariationalStepper {
   static constexpr double worthwhile = 1e-4;        ///< corrections above are always followed
   static constexpr double largestTurn = 0.3;        ///< [rad] per iteration
   static constexpr double largestFibreStep = 0.25;  ///< of ℓ0 per iteration
+
+  /// Forces of the muscles on the skeleton, and fibre lengths eliminated one by one.
+  struct Moving {
+    const Vector& v;
+    double h, share;
+  };
+  void addMuscles(const Ends& begin, const Ends& end, const Eigen::VectorXd& activation,
+                  const Moving& step, Matrix& dTau, Matrix& eliminated, Vector& carried) {
+    const auto& [v, h, share] = step;
+    muscle_.setZero();
+    eliminated.setZero(countOf<N>(arm_), countOf<N>(arm_));
+    carried.setZero(countOf<N>(arm_));
+    for (std::size_t i = 0; i < rate_.size(); ++i) {
+      const auto si = static_cast<Eigen::Index>(i);
+      const LengthJet<N>& path = configuration_.length(i);
+      const double l_m = (begin.fibreLength[si] + end.fibreLength[si]) / 2;
+      const SimulatedMuscle& muscle = arm_.muscles()[i].muscle;
+      if (!muscle.hasFibreState()) {
+        addRigid(i, activation[si], path, v, h, dTau);
+        continue;
+      }
+      rate_[i] = muscle.rateNear(activation[si], l_m, path.length,
+                                 (end.fibreLength[si] - begin.fibreLength[si]) / h, h, pieces_[i]);
+      const FibreRateDerivatives& r = rate_[i];
+      addAlong<N>(muscle_, -r.tendonForce, path);
+      addOuter<N>(dTau, -(r.dF_dMuscleTendonLength / 2), path);
+      addSecond<N>(dTau, -(r.tendonForce / 2), path);
+      residual_[si] = (end.fibreLength[si] - begin.fibreLength[si]) / h - r.fibreVelocity;
+      inverse_[si] = 1 / (1 / h - r.dV_dFibreLength / 2);
+      // G_i C_i/J_i with C = −½ V_L ∂ℓ, G = share·½ F_ℓ ∂ℓ
+      const double G = share / 2 * r.dF_dFibreLength;
+      addOuter<N>(eliminated, -(G * inverse_[si] * r.dV_dMuscleTendonLength / 2), path);
+      addAlong<N>(carried, G * inverse_[si] * residual_[si], path);
+    }
+  }
+
+  /// Makes fibres' corrections of their residuals; the largest, of ℓ0.
+  double correctFibres(const Vector& dq) {
+    double largest = 0;
+    for (std::size_t i = 0; i < rate_.size(); ++i) {
+      const auto si = static_cast<Eigen::Index>(i);
+      const LengthJet<N>& path = configuration_.length(i);
+      const double C_dq = -rate_[i].dV_dMuscleTendonLength / 2 * path.dL_dq.dot(dq);
+      residual_[si] = -(residual_[si] + C_dq) * inverse_[si];
+      largest = std::max(largest, std::abs(residual_[si]) * arm_.muscles()[i].muscle.perFibre());
+    }
+    return largest;
+  }
+
+  /// The momentum at the end, and the work of the forces.
+  struct LastIterate {
+    const Vector &Mv, &dq;
+    const Matrix &dMv, &dL_q, &dPassive;
+  };
+  void finish(const Ends& begin, double h, double share, const LastIterate& last, Vector& L_q,
+              Matrix& dTau, Vector& R, Ends& end, Result& result) {
+    const auto& [Mv, dq, dMv, dL_q, dPassive] = last;
+    // L_q, forces and M v belong to the last iterate but one; to first order in the correction
+    for (std::size_t i = 0; i < rate_.size(); ++i) {
+      addAlong<N>(muscle_,
+                  -(rate_[i].dF_dFibreLength / 2 * residual_[static_cast<Eigen::Index>(i)]),
+                  configuration_.length(i));
+    }
+    dTau -= dPassive;
+    if (others_.any()) {
+      dTau -= others_.load_q() / 2;
+      external_ += others_.load_q() / 2 * dq;
+    }
+    muscle_.noalias() += dTau * dq;
+    passive_.noalias() += dPassive * dq;
+    const auto step = end.q - begin.q;
+    R.noalias() = dL_q * dq;
+    L_q += R;
+    R.noalias() = dMv * dq;
+    end.p = Mv + R + h / 2 * L_q;
+    if (symmetric_) end.p += share * (muscle_ + passive_ + external_);
+    result.muscleWork = muscle_.dot(step);
+    result.passiveWork = passive_.dot(step);
+    result.externalWork = external_.dot(step);
+  }
 
   /// The force of a muscle with a rigid tendon and its derivatives in the end configuration; its
   /// fibre has no equation and stays as it is.

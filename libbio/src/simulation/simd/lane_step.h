@@ -17,6 +17,18 @@ inline Mask isLast(const Real& correction, const Real& previous, double toleranc
                                      (correction * ratio * ratio < 0.01 * tolerance));
 }
 
+/// Makes fibres' corrections of their residuals; the largest, of ℓ0.
+inline Real correctFibres(const LaneModel<Lanes>& arm, LaneStep& step, const Real& dq) {
+  Real largest = same(0);
+  for (int i = 0; i < arm.numMuscles; ++i) {
+    MuscleStep& kept = step.muscles[i];
+    const Real C_dq = -kept.dV_dMuscleTendonLength / 2 * kept.momentArm * dq;
+    kept.residual = -(kept.residual + C_dq) * kept.inverse;  // now δℓ
+    largest = larger(largest, absolute(kept.residual) * arm.muscles[i].perFibre);
+  }
+  return largest;
+}
+
 /// See VariationalStepper::solve, whose comments are not repeated.
 inline void solve(const LaneModel<Lanes>& arm, LaneStep& step) {
   constexpr double largestTurn = 0.3;
@@ -72,13 +84,7 @@ inline void solve(const LaneModel<Lanes>& arm, LaneStep& step) {
     const Real J = dMv - h / 2 * dL_q - share * dTau - eliminated;
     const Real dq = (carried - R) / J;
     const Real size = absolute(dq);
-    Real fibreSize = none;
-    for (int i = 0; i < arm.numMuscles; ++i) {
-      MuscleStep& kept = step.muscles[i];
-      const Real C_dq = -kept.dV_dMuscleTendonLength / 2 * kept.momentArm * dq;
-      kept.residual = -(kept.residual + C_dq) * kept.inverse;  // now δℓ
-      fibreSize = larger(fibreSize, absolute(kept.residual) * arm.muscles[i].perFibre);
-    }
+    const Real fibreSize = correctFibres(arm, step, dq);
     // what is not a number, or wild, is given up
     running &= (size < 1e6) & (fibreSize < 1e6);
 
