@@ -10,7 +10,9 @@ namespace {
 const std::string root = FISHERHILL_SOURCE_DIR;
 
 struct Job {
-  bio::Model model = bio::readOsim(root + "/models/elbow8.osim");
+  explicit Job(const std::string& file = "elbow8.osim")
+      : model(bio::readOsim(root + "/models/" + file)) {}
+  bio::Model model;
   bio::MusculoskeletalSystem arm{model, {{{"elbow_flexion"}, {}}, {}, {}}};
   bio::Trial trial = bio::readTrial(root + "/emg_data/curl_slow.sto", model);
   bio::ExcitationSignal excitation = bio::excitationOf(trial, arm);
@@ -40,6 +42,23 @@ BENCHMARK_CAPTURE(replay, variational_left_10ms, bio::Integrator::variationalLef
 BENCHMARK_CAPTURE(replay, runge_kutta_4e4, bio::Integrator::rungeKutta4, 4e-4)
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(replay, cvode, bio::Integrator::cvode, 0.01)->Unit(benchmark::kMillisecond);
+
+/// The same by muscles of other classes.
+void ofClass(benchmark::State& state, const std::string& file) {
+  const Job job(file);
+  bio::SimulationOptions options;
+  options.duration = 4.5;
+  for (auto _ : state) {
+    const bio::Trajectory motion = bio::simulate(job.arm, job.excitation, job.start, options);
+    benchmark::DoNotOptimize(motion.q.data());
+    state.counters["newton_per_step"] =
+        static_cast<double>(motion.newtonIterations) / static_cast<double>(motion.steps);
+  }
+}
+BENCHMARK_CAPTURE(ofClass, Thelen, "elbow8_Thelen2003.osim")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(ofClass, Millard, "elbow8_Millard2012.osim")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(ofClass, DeGroote, "elbow8_DeGrooteFregly2016.osim")
+    ->Unit(benchmark::kMillisecond);
 
 /// All that a configuration needs: placements, inertia, eight path lengths with Hessians.
 void configuration(benchmark::State& state) {

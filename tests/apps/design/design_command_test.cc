@@ -14,7 +14,7 @@ using support::ProgramResult;
 using support::ScratchFolder;
 using testing::HasSubstr;
 
-nlohmann::json summaryIn(const std::string& folder) {
+nlohmann::json designSummary(const std::string& folder) {
   std::ifstream file(folder + "/summary.json");
   return nlohmann::json::parse(file);
 }
@@ -42,7 +42,7 @@ TEST(DesignCommand, WritesATrialThatReplaysAsPredicted) {
   const std::string out = (scratch / "design").string();
   const ProgramResult result = design(out);
   ASSERT_EQ(result.status, 0) << result.err;
-  const nlohmann::json summary = summaryIn(out);
+  const nlohmann::json summary = designSummary(out);
   const double before = summary["bound_before"]["TRI.radius"];
   const double after = summary["bound_after"]["TRI.radius"];
   EXPECT_GT(before, 0);
@@ -56,8 +56,8 @@ TEST(DesignCommand, WritesATrialThatReplaysAsPredicted) {
   const ProgramResult replay = support::runFisherHill(
       {"replay", "models/elbow8.osim", out + "/design.sto", "--out", played});
   ASSERT_EQ(replay.status, 0) << replay.err;
-  EXPECT_LT(summaryIn(played)["rms_error_deg"], 1e-6);
-  EXPECT_LT(summaryIn(played)["energy_error_J"], 0.1);
+  EXPECT_LT(designSummary(played)["rms_error_deg"], 1e-6);
+  EXPECT_LT(designSummary(played)["energy_error_J"], 0.1);
   const ProgramResult checked =
       support::runFisherHill({"check", "models/elbow8.osim", out + "/design.sto"});
   EXPECT_EQ(checked.status, 0) << checked.out;
@@ -81,7 +81,7 @@ TEST(DesignCommand, RanksExperimentsOfADynamometer) {
        names[0] + "," + names[1], "--angles", "40deg,100deg", "--speeds", "60deg", "--efforts",
        "50", "--experiments", "3", "--step", "0.01", "--out", out});
   ASSERT_EQ(result.status, 0) << result.err;
-  const nlohmann::json summary = summaryIn(out);
+  const nlohmann::json summary = designSummary(out);
   EXPECT_EQ(summary["candidates"], 2 * 2 + 2 * (1 + 2));
   ASSERT_EQ(summary["experiments"].size(), 3u);
   for (const std::string& name : names) {
@@ -114,7 +114,7 @@ TEST(DesignCommand, RanksExperimentsOfADynamometer) {
        "elbow_flexion", "--parameters", names[0] + "," + names[1], "--observe",
        "elbow_flexion.moment=0.5", "--step", "0.01", "--out", told});
   ASSERT_EQ(sensitivity.status, 0) << sensitivity.err;
-  for (const auto& one : summaryIn(told)["parameters"]) {
+  for (const auto& one : designSummary(told)["parameters"]) {
     const std::string name = one["name"];
     const double bound = summary["experiments"][0]["bounds"][name];
     EXPECT_NEAR(one["bound_joint"].get<double>() / bound, 1, 0.01) << name;
@@ -148,7 +148,7 @@ TEST(DesignCommand, TellsTwoEffectsApart) {
       {"design", "models/elbow8.osim", "emg_data/curl_slow.sto", "--separate", "delay,clock",
        "--size", "delay=0.03", "--candidates", "8", "--generations", "1", "--out", out});
   ASSERT_EQ(result.status, 0) << result.err;
-  const nlohmann::json summary = summaryIn(out);
+  const nlohmann::json summary = designSummary(out);
   EXPECT_EQ(summary["separates"], nlohmann::json({"delay", "clock"}));
   EXPECT_EQ(summary["size"]["delay"], 0.03);
   for (const char* id : {"delay", "clock"}) {
@@ -162,7 +162,7 @@ TEST(DesignCommand, TellsTwoEffectsApart) {
   const ProgramResult replay = support::runFisherHill(
       {"replay", "models/elbow8.osim", out + "/design.sto", "--out", played});
   ASSERT_EQ(replay.status, 0) << replay.err;
-  EXPECT_LT(summaryIn(played)["rms_error_deg"], 0.01);  // cubics between rows
+  EXPECT_LT(designSummary(played)["rms_error_deg"], 0.01);  // cubics between rows
 }
 
 }  // namespace
