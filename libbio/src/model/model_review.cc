@@ -94,7 +94,8 @@ void Reviewer::reviewCourse(const std::string& subject, const Coordinate& coordi
   const Function& course = *coordinate.prescribedFunction;
   if (std::holds_alternative<PiecewiseLinearFunction>(course.shape)) {
     say(subject,
-        "its prescribed_function has corners, where the speed jumps: its reaction lacks the blows");
+        "its prescribed_function has corners, where the speed jumps: the reaction does not show "
+        "these impacts");
   }
   try {
     const double first = FunctionEvaluator(course).evaluate(0).value;

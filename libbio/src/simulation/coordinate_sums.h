@@ -58,6 +58,33 @@ void addSecond(Eigen::Matrix<double, N, N>& sum, double factor, const LengthJet<
   }
 }
 
+/// sum += outer ∂ℓ ∂ℓᵀ + second ∂²ℓ, other += factor ∂ℓ ∂ℓᵀ, in one pass
+template <int N>
+void addStiffness(Eigen::Matrix<double, N, N>& sum, double outer, double second,
+                  Eigen::Matrix<double, N, N>& other, double factor, const LengthJet<N>& path) {
+  if constexpr (N == Eigen::Dynamic) {
+    const auto n = static_cast<Eigen::Index>(path.support.size());
+    const int* support = path.support.data();
+    const double* d = path.dL_dq.data();
+    for (Eigen::Index b = 0; b < n; ++b) {
+      const int j = support[b];
+      const double scaled = outer * d[j], scaledOther = factor * d[j];
+      const double* bend = path.second.col(b).data();
+      double* into = sum.col(j).data();
+      double* intoOther = other.col(j).data();
+      for (Eigen::Index a = 0; a < n; ++a) {
+        const int i = support[a];
+        into[i] = into[i] + scaled * d[i] + second * bend[a];
+        intoOther[i] += scaledOther * d[i];
+      }
+    }
+  } else {
+    addOuter<N>(sum, outer, path);
+    addSecond<N>(sum, second, path);
+    addOuter<N>(other, factor, path);
+  }
+}
+
 /// sum += factor ∂²ℓ v
 template <int N>
 void addSecondTimes(Eigen::Matrix<double, N, 1>& sum, double factor, const LengthJet<N>& path,

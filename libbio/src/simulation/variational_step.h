@@ -206,13 +206,12 @@ class VariationalStepper {
                                  (end.fibreLength[si] - begin.fibreLength[si]) / h, h, pieces_[i]);
       const FibreRateDerivatives& r = rate_[i];
       addAlong<N>(muscle_, -r.tendonForce, path);
-      addOuter<N>(dTau, -(r.dF_dMuscleTendonLength / 2), path);
-      addSecond<N>(dTau, -(r.tendonForce / 2), path);
       residual_[si] = (end.fibreLength[si] - begin.fibreLength[si]) / h - r.fibreVelocity;
       inverse_[si] = 1 / (1 / h - r.dV_dFibreLength / 2);
       // G_i C_i/J_i with C = −½ V_L ∂ℓ, G = share·½ F_ℓ ∂ℓ
       const double G = share / 2 * r.dF_dFibreLength;
-      addOuter<N>(eliminated, -(G * inverse_[si] * r.dV_dMuscleTendonLength / 2), path);
+      addStiffness<N>(dTau, -(r.dF_dMuscleTendonLength / 2), -(r.tendonForce / 2), eliminated,
+                      -(G * inverse_[si] * r.dV_dMuscleTendonLength / 2), path);
       addAlong<N>(carried, G * inverse_[si] * residual_[si], path);
     }
   }

@@ -38,6 +38,7 @@ AmountJet<T> amountAlong(const FunctionEvaluator::Line& line, const T& q) {
 /// φ = amount(coupling(q)) by the chain rule to third order.
 template <class T>
 AmountJet<T> amountOf(const ElementaryMotion& motion, const T& q) {
+  if (motion.coupling.isIdentity()) return amountJet(motion.amount, q);
   const AmountJet<T> i = amountJet(motion.coupling, q);
   const AmountJet<T> o = amountJet(motion.amount, i.value);
   const T square = i.slope * i.slope;
@@ -124,6 +125,7 @@ void ArticulatedTree::place(const T* q, TreeMotion<T>& out) const {
         continue;
       }
       SpatialVector<T> S = SpatialVector<T>::Zero(), D = S, D1 = S;
+      bool hasTurned = false;
       for (int f = 0; f < mobility->numMotions; ++f, ++motion) {
         detail::placeBefore(*motion, X);
         const detail::AmountJet<T> phi = motion->isIdentity
@@ -131,14 +133,17 @@ void ArticulatedTree::place(const T* q, TreeMotion<T>& out) const {
                                          : motion->line ? detail::amountAlong(*motion->line, q_k)
                                                         : detail::amountOf(*motion, q_k);
         const SpatialVector<T> S_f = detail::applyMotion(*motion, phi.value, X);
-        if (f == 0) {  // nothing carries it
-          for (int i = 0; i < 6; ++i) {
+        // what comes first, and shifts after shifts, nothing turns
+        if (!(motion->turns ? f > 0 : hasTurned)) {
+          hasTurned = motion->turns;
+          for (int i = motion->turns ? 0 : 3; i < 6; ++i) {
             D1[i] += phi.third * S_f[i];
             D[i] += phi.curvature * S_f[i];
             S[i] += phi.slope * S_f[i];
           }
           continue;
         }
+        hasTurned = hasTurned || motion->turns;
         // S_f is carried by the motions before it: S_f′ = S × S_f, S_f″ = D × S_f + S × (S × S_f)
         const SpatialVector<T> first = crossMotion(S, S_f);
         const SpatialVector<T> second = crossMotion(D, S_f) + crossMotion(S, first);
