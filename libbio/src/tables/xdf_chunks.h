@@ -26,6 +26,7 @@ struct RawXdfStream {
   std::vector<double> stamps;              ///< [s], one per sample
   std::vector<double> values;              ///< sample after sample
   std::vector<XdfClockOffset> offsets;
+  std::vector<std::size_t> restarts;  ///< samples at which its clock begins anew; once synchronised
 };
 
 struct RawXdf {

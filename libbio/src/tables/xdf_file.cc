@@ -16,6 +16,7 @@ namespace {
 using tables::Bytes;
 using tables::RawXdfStream;
 
+constexpr std::size_t mostRestarts = 100;
 constexpr double leastClockJump = 1;  // [s], that no drift between two measurements explains
 
 // Straight line through points (x, y): y = mean + slope·(x − centre).
@@ -75,10 +76,19 @@ std::vector<XdfClock> clocksOf(const Bytes& bytes, const RawXdfStream& stream) {
   for (std::size_t k = 1; k < offsets.size(); ++k) {
     const double jump = offsets[k].by - offsets[k - 1].by;
     if (std::abs(jump) < leastClockJump) continue;
-    const std::size_t from =
-        std::max(clocks.back().firstSample, k > 1 ? offsets[k - 2].samples : 0);
-    const std::size_t to = k + 1 < offsets.size() ? offsets[k + 1].samples : stream.stamps.size();
+    // the file's order of samples and offsets is not exact: one offset more at both sides
+    std::size_t from = clocks.back().firstSample, to = stream.stamps.size();
+    for (std::size_t i = 0; i < k; ++i) {
+      if (offsets[i].samples < offsets[k - 1].samples) from = std::max(from, offsets[i].samples);
+    }
+    for (std::size_t i = offsets.size(); i-- > k;) {
+      if (offsets[i].samples > offsets[k].samples) to = offsets[i].samples;
+    }
     const std::size_t at = restartIn(bytes, stream, from, to, jump);
+    if (clocks.size() > mostRestarts) {
+      bytes.fail(fmt::format("stream '{}': the offset of its clock leaps more than {} times",
+                             stream.name, mostRestarts));
+    }
     clocks.back().endOffset = k;
     clocks.back().endSample = at;
     clocks.push_back({k, offsets.size(), at, stream.stamps.size()});
@@ -109,6 +119,7 @@ void synchronise(const Bytes& bytes, RawXdfStream& stream, std::vector<std::stri
       stream.stamps[i] += line.at(stream.stamps[i]);
     }
   }
+  for (std::size_t c = 1; c < clocks.size(); ++c) stream.restarts.push_back(clocks[c].firstSample);
   if (clocks.size() > 1) {
     remarks.push_back(fmt::format(
         "Stream '{}': its clock was set or restarted {} time{}; each part was brought to the "
@@ -139,7 +150,9 @@ std::vector<XdfSegment> segmentsOf(const Bytes& bytes, const RawXdfStream& strea
       bytes.fail(fmt::format("stream '{}': time stamp {:.6f} s after {:.6f} s, must not go back",
                              stream.name, stream.stamps[i], stream.stamps[i - 1]));
     }
-    if (i == 0 || step > leap) out.push_back({.first = i});
+    const bool restarts =
+        std::find(stream.restarts.begin(), stream.restarts.end(), i) != stream.restarts.end();
+    if (i == 0 || step > leap || restarts) out.push_back({.first = i});
     ++out.back().count;
   }
   for (XdfSegment& segment : out) {

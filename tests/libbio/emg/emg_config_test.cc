@@ -294,9 +294,10 @@ TEST_F(EmgConfigs, SayWhatMusclesWithoutAnElectrodeGet) {
   fails(muscle + "constant = 0.1\nlatent_sd = 0\n", "9: [[unrecorded]] latent_sd = 0, must be > 0");
   fails(least + "[[unrecorded]]\nmuscle = \"BRD\"\nconstant = 0\n",
         "7: [[unrecorded]] muscle = \"BRD\", has the electrode 'biceps'");
-  fails(least + "[[unrecorded]]\nmuscle = \"a;b\"\nconstant = 0\n", "must be a name without");
+  fails(least + "[[unrecorded]]\nmuscle = \"a;b\"\nconstant = 0\n",
+        "7: [[unrecorded]] muscle = \"a;b\", must be a name without");
   fails(muscle + "constant = 0\n[[unrecorded]]\nmuscle = \"BRA\"\nconstant = 0\n",
-        "is given twice");
+        "10: [[unrecorded]] muscle = \"BRA\", is given twice");
 }
 
 TEST_F(EmgConfigs, TurnPointsIntoMarkersOfTheModel) {
@@ -341,7 +342,8 @@ TEST_F(EmgConfigs, TurnPointsIntoMarkersOfTheModel) {
   fails(markers, "6: [markers] needs a key 'names'");
   fails(markers + "names = { WRI = \"wrist\" }\n", "7: [markers] names = ");
   fails(markers + "names = [\"a\"]\n", "7: [markers] names = ");
-  fails(markers + "names = { A = \"h.w\", B = \"h.w\" }\n", "are both 'h.w'");
+  fails(markers + "names = { A = \"h.w\", B = \"h.w\" }\n",
+        "7: [markers] names = …, 'A' and 'B' are both 'h.w'");
   for (const char* axes : {"x y", "x y z x", "x x z", "x y up", "- y z", ""}) {
     fails(model + "axes = \"" + axes + "\"\n",
           "8: [markers] axes = \"" + std::string(axes) + "\", must be three of x, y and z");

@@ -74,7 +74,8 @@ TEST_F(Exports, BrokenEmgworksFilesAreToldInOneLine) {
   refused("0.0005,-0.25", "0.0005,x",
           "a.csv:5: column 2 'Biceps: EMG 1 [V]': 'x' must be a number");
   refused("0.0005,", ",", "a.csv:5: column 2 'Biceps: EMG 1 [V]': has a value but no time");
-  refused("0.001,0.125,0.102", "0.001,0.125,", "column 3");
+  refused("0.0005,-0.25,0.101", "0.0005,-0.25,",
+          "a.csv:5: column 4 'Biceps: Acc 1.X [g]': has a value but no time");
   refused("0.001,0.125", "0.0013,0.125", "intervals away from equal spacing");
   refused("0.002,2,,", "0.002,2,,,7", "a.csv:8: has 5 cells, must have at most 4");
   refused("0.002,2", "0.002,inf", "must be finite");

@@ -107,6 +107,43 @@ TEST_F(TrialFile, AKnownMassIsReadOrRefused) {
   }
 }
 
+TEST_F(TrialFile, TheHeaderNamesMusclesWithoutAnElectrode) {
+  const auto text = [](const std::string& line) {
+    return "t\nlatent_excitation=" + line + "\nendheader\ntime\tBRA\tTRIlong\n0\t0\t0\n1\t0\t0\n";
+  };
+  EXPECT_THAT(read(text("BRA 1 0.25; TRIlong 0.5 1"), {}, "t.sto").latent,
+              ElementsAre(LatentDeclaration{"BRA", 1, 0.25}, LatentDeclaration{"TRIlong", 0.5, 1}));
+  EXPECT_THAT(read("time,TRIlong,BRA\n0,0.2,0.5\n1,0.4,1\n").latent, SizeIs(0));
+  for (const auto& [line, message] :
+       {std::pair{"BRA 1", "header: latent_excitation = 'BRA 1', must be MUSCLE SD KNOTS_S"},
+        {"BRa 1 1", "header: latent_excitation: the model has no muscle 'BRa'"},
+        {"BRA -1 1", "sd = -1, must be > 0"},
+        {"BRA 1 1; BRA 1 1", "'BRA' is given twice"}}) {
+    try {
+      read(text(line), {}, "t.sto");
+      ADD_FAILURE() << line << " was read";
+    } catch (const FileError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(message));
+    }
+  }
+}
+
+TEST_F(TrialFile, PennationIsAnAngle) {
+  const Trial trial =
+      read("time,BRA,TRIlong,BRA.pennation_deg,TRIlong.pennation\n0,0,0,18,\n1,0,0,,0.25\n");
+  ASSERT_THAT(trial.channels, SizeIs(2));
+  EXPECT_EQ(trial.channels[0].what, (Observable{Observable::Kind::pennation, "BRA", 0}));
+  EXPECT_NEAR(trial.channels[0].values[0], 18 * degree, 1e-15);
+  EXPECT_EQ(trial.channels[1].values[0], 0.25);
+  EXPECT_EQ(trial.channels[1].times[0], 1);
+  const Trial inDegrees = read(
+      "t\ninDegrees=yes\nendheader\ntime\tBRA\tTRIlong\tBRA.pennation\n0\t0\t0\t18\n1\t0\t0\t19\n",
+      {}, "t.sto");
+  EXPECT_NEAR(inDegrees.channels[0].values[1], 19 * degree, 1e-15);
+  EXPECT_THAT(messageOf("time,BRA,TRIlong,BRA.fiber_length_deg\n0,0,0,18\n1,0,0,18\n"),
+              HasSubstr("column 'BRA.fiber_length_deg' is neither"));
+}
+
 TEST_F(TrialFile, ExcitationIsLinearBetweenRowsAndConstantOutside) {
   const Trial trial = read("time,TRIlong,BRA\n0,0.2,0.5\n2,0.4,1\n3,0.4,0\n");
   EXPECT_DOUBLE_EQ(excitationAt(trial, 0, 0.5), 0.625);
