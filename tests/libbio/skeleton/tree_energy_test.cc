@@ -225,6 +225,27 @@ TEST(TreeEnergy, MixedDerivativesAreLinearInTheRates) {
 }
 
 // A free body in space: shifting or turning the whole tree changes no kinetic energy.
+/// What does not depend on the rates is the same number at rest, where a shorter way leads to it.
+TEST(TreeEnergy, AtRestIsTheMassMatrixAndGravity) {
+  for (const Model& model : {fixtures::bodyOfThirtySeven(), fixtures::threeLinkArm()}) {
+    const ArticulatedTree tree(model, allFree(model));
+    auto motion = tree.newMotion<double>();
+    Vector q = tree.defaultValues();
+    q.array() += 0.2;
+    tree.place(q.data(), motion);
+    TreeEnergy<dynamic> still(tree), moving(tree);
+    const Vector v = Vector::LinSpaced(q.size(), -1, 2), none = Vector::Zero(q.size());
+    const auto& a = still.evaluate(motion, none.data());
+    const auto& b = moving.evaluate(motion, v.data());
+    EXPECT_TRUE(a.T_vv == b.T_vv);
+    EXPECT_TRUE(a.V_q == b.V_q);
+    EXPECT_TRUE(a.V_qq == b.V_qq);
+    EXPECT_EQ(a.potential, b.potential);
+    EXPECT_EQ(a.kinetic, 0);
+    EXPECT_TRUE(a.T_v.isZero(0) && a.T_q.isZero(0) && a.T_vq.isZero(0) && a.T_qq.isZero(0));
+  }
+}
+
 TEST(TreeEnergy, ShiftingTheWholeTreeChangesNoKineticEnergy) {
   const Model model = fixtures::bodyOfThirtySeven();
   const ArticulatedTree tree(model, allFree(model));

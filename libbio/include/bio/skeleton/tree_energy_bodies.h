@@ -1,12 +1,77 @@
 #pragma once
 
 // Template bodies of tree_energy.h.
+#include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 #include "bio/skeleton/tree_energy.h"
 
 namespace bio {
+
+namespace detail {
+
+/// Whether all rates are 0; of dual numbers the derivatives need not be.
+template <class T>
+bool areAtRest(const T* v, int n) {
+  if constexpr (std::is_same_v<T, double>) {
+    return std::all_of(v, v + n, [](double rate) { return rate == 0; });
+  } else {
+    return false;
+  }
+}
+
+/// TreeEnergy at rest: momenta and b are 0, and with them all derivatives of T but M.
+/// @param inertia     one per segment with mass, overwritten
+/// @param count       mobilities that move mass
+/// @param out         0
+template <int N, class T>
+void energyAtRest(const ArticulatedTree& tree, const TreeMotion<T>& motion,
+                  std::vector<SpatialInertia<T>>& inertia, std::size_t count,
+                  EnergyDerivatives<N, T>& out) {
+  const Eigen::Vector3d& g = tree.gravity();
+  const Mobility* mobilities = tree.mobilities().data();
+  T potential(0.0);
+  for (std::size_t s = 1; s < inertia.size(); ++s) {
+    const TreeSegment& segment = tree.segments()[s];
+    inertia[s] =
+        inertiaInGround(motion.segments[s], segment.mass, segment.massCenter, segment.inertia);
+    const auto& massMoment = inertia[s].massMoment;
+    potential -= g[0] * massMoment[0] + g[1] * massMoment[1] + g[2] * massMoment[2];
+  }
+  out.potential = potential;
+  for (std::size_t s = inertia.size(); s-- > 1;) {
+    const auto parent = static_cast<std::size_t>(tree.segments()[s].parent);
+    if (parent != 0) inertia[parent] += inertia[s];
+  }
+  for (std::size_t j = 0; j < count; ++j) {
+    const Mobility& mobility = mobilities[j];
+    const int c = mobility.coordinate;
+    const SpatialInertia<T>& I = inertia[static_cast<std::size_t>(mobility.segment)];
+    const SpatialVector<T> F = I * motion.screw[j];
+    const T d[3] = {F[3], F[4], F[5]};
+    const T gd[3] = {g[1] * d[2] - g[2] * d[1], g[2] * d[0] - g[0] * d[2],
+                     g[0] * d[1] - g[1] * d[0]};
+    out.V_q[c] -= g[0] * d[0] + g[1] * d[1] + g[2] * d[2];
+    if (!mobility.hasFixedScrew) {
+      const SpatialVector<T> moved = I * motion.screw1[j];
+      out.V_qq(c, c) -= g[0] * moved[3] + g[1] * moved[4] + g[2] * moved[5];
+    }
+    for (int k = static_cast<int>(j); k >= 0; k = mobilities[k].parent) {
+      const SpatialVector<T>& S = motion.screw[static_cast<std::size_t>(k)];
+      const T SF = dot(S, F), V_qq = S[0] * gd[0] + S[1] * gd[1] + S[2] * gd[2];
+      const int e = mobilities[k].coordinate;
+      out.T_vv(e, c) += SF;
+      out.V_qq(e, c) += V_qq;
+      if (k == static_cast<int>(j)) continue;
+      out.T_vv(c, e) += SF;
+      out.V_qq(c, e) += V_qq;
+    }
+  }
+}
+
+}  // namespace detail
 
 template <int N, class T>
 TreeEnergy<N, T>::TreeEnergy(const ArticulatedTree& tree) : tree_(&tree) {
@@ -41,6 +106,8 @@ const EnergyDerivatives<N, T>& TreeEnergy<N, T>::evaluate(const TreeMotion<T>& m
   setZero();
   if (tree_->hasConstantInertia()) {
     constantInertia(motion, v);
+  } else if (detail::areAtRest(v, tree_->numCoordinates())) {
+    detail::energyAtRest(*tree_, motion, inertia_, inner_.size(), out_);
   } else {
     outward(motion, v);
     inward();
