@@ -67,14 +67,14 @@ double secondsAlone(const bio::Model& model, const std::string& coordinate,
   const bio::ParameterCatalogue catalogue(model, system, {system.skeleton().defaultValues(), {}});
   bio::SimulationOptions simulation;
   simulation.duration = 1;
-  const auto selection = catalogue.select(names);
-  const Iteration one{{catalogue,
-                       options,
-                       excitation(system.numMuscles()),
-                       {{{Kind::coordinate, coordinate, 0}, times}},
-                       selection,
-                       simulation},
-                      catalogue.values(selection)};
+  std::vector<std::size_t> selection;  // those of muscles that cross this joint
+  for (const std::string& name : names) {
+    if (catalogue.has(name)) selection.push_back(catalogue.find(name));
+  }
+  const std::vector<bio::ObservedSeries> measured = {{{Kind::coordinate, coordinate, 0}, times}};
+  const Iteration one{
+      {catalogue, options, excitation(system.numMuscles()), measured, selection, simulation},
+      catalogue.values(selection)};
   std::vector<double> seconds;
   for (int i = 0; i < rounds; ++i) seconds.push_back(one.seconds());
   return medianOf(seconds);

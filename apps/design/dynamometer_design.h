@@ -59,8 +59,9 @@ Report dynamometerReport(const DynamometerPlan& plan, const DynamometerOptions& 
 
 void addDynamometerOptions(CLI::App& options, DynamometerOptions& dynamometer);
 
-/// Ranks all experiments of the lists by what the measured moment tells of the parameters, one after
-/// the other, each once. Nuisance parameters are unknown as well; all have their default priors.
+/// Ranks all experiments of the lists by what the measured moment tells of the parameters, one
+/// after the other, each once. Nuisance parameters are unknown as well; all have their default
+/// priors.
 /// @throws std::invalid_argument for an option out of its range
 ExitStatus designOnDynamometer(const CommandContext& context, const std::string& modelFile,
                                const std::vector<std::string>& parameters,

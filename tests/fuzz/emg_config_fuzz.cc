@@ -5,13 +5,16 @@
 
 namespace {
 
-// A second and a half of two channels, as their file would be read.
+// A second and a half of two channels and a point, as their file would be read.
 bio::Recording recording() {
   bio::Recording out;
   out.file = "recording.csv";
   for (const auto& [name, unit] : {std::pair("BIClong_uV", "uV"), std::pair("elbow_deg", "deg")}) {
     const auto wave = [](Eigen::Index i) { return std::sin(0.9 * static_cast<double>(i * i)); };
     out.channels.push_back({name, unit, 200, 0, Eigen::VectorXd::NullaryExpr(300, wave)});
+  }
+  for (const char* axis : {"P.x", "P.y", "P.z"}) {
+    out.channels.push_back({axis, "m", 50, 0, Eigen::VectorXd::LinSpaced(75, 0, 1)});
   }
   return out;
 }

@@ -57,8 +57,9 @@ void checkUnrecorded(const EmgConfig& config) {
     require(one.constant >= 0 && one.constant <= 1,
             fmt::format("muscle '{}': constant {}, must be 0 to 1", one.muscle, one.constant));
     for (const auto& [channel, weight] : one.synergy) {
-      const bool isKnown = std::any_of(config.electrodes.begin(), config.electrodes.end(),
-                                       [&](const Electrode& e) { return e.channel == channel; });
+      const bool isKnown =
+          std::any_of(config.electrodes.begin(), config.electrodes.end(),
+                      [&, &name = channel](const Electrode& e) { return e.channel == name; });
       require(isKnown, fmt::format("muscle '{}': no electrode has the channel '{}', must be one",
                                    one.muscle, channel));
       require(weight > 0 && std::isfinite(weight),
@@ -147,8 +148,9 @@ void addUnrecorded(const EmgConfig& config, const Eigen::MatrixXd& byElectrode, 
     for (const auto& [channel, weight] : one.synergy) sum += weight;
     if (sum > 0) rows.setZero();
     for (const auto& [channel, weight] : one.synergy) {
-      const auto at = std::find_if(config.electrodes.begin(), config.electrodes.end(),
-                                   [&](const Electrode& e) { return e.channel == channel; });
+      const auto at =
+          std::find_if(config.electrodes.begin(), config.electrodes.end(),
+                       [&, &name = channel](const Electrode& e) { return e.channel == name; });
       rows += one.factor * weight / sum * byElectrode.col(at - config.electrodes.begin());
     }
     out.muscles.push_back(one.muscle);

@@ -28,8 +28,9 @@ void readSource(TomlTable& table, const EmgConfigFile& out, UnrecordedMuscle& on
   }
   for (const auto& [channel, weight] : one.synergy) {
     if (!above0(weight)) table.fail(source, fmt::format("weight of '{}' must be > 0", channel));
-    const bool isKnown = std::any_of(out.emg.electrodes.begin(), out.emg.electrodes.end(),
-                                     [&](const Electrode& e) { return e.channel == channel; });
+    const bool isKnown =
+        std::any_of(out.emg.electrodes.begin(), out.emg.electrodes.end(),
+                    [&, &name = channel](const Electrode& e) { return e.channel == name; });
     if (!isKnown) {
       table.fail(source, fmt::format("no [[electrode]] has the channel '{}'", channel));
     }
