@@ -43,6 +43,10 @@ PredictedSeries predictionOf(const CalibrateFindings& f, const bio::MeasuredSeri
   one.sdOfEstimates = sd[ofPredicted];
   one.lower = one.predictedPeak - half[ofPredicted];
   one.upper = one.predictedPeak + half[ofPredicted];
+  if (std::isnan(one.noise)) {
+    one.shareHeld = std::nan("");
+    return one;
+  }
   one.holdsPeak = one.lower <= one.measuredPeak && one.measuredPeak <= one.upper;
   one.shareHeld = ((measured - predicted).array().abs() <= half).cast<double>().mean();
   return one;
@@ -74,8 +78,9 @@ void tellPredictions(const CalibrateFindings& f, Summary& summary) {
                     {"sd_of_estimates", orNull(one.sdOfEstimates)},
                     {"noise", orNull(one.noise)},
                     {"interval", {orNull(one.lower), orNull(one.upper)}},
-                    {"holds_peak", one.holdsPeak},
-                    {"share_of_samples_held", one.shareHeld}});
+                    {"holds_peak", nullptr},
+                    {"share_of_samples_held", orNull(one.shareHeld)}});
+    if (one.holdsPeak) list.back()["holds_peak"] = *one.holdsPeak;
   }
   summary.set("held_out_predictions", list);
 }
@@ -92,8 +97,12 @@ Table predictionTable(const CalibrateFindings& f) {
     table.rows.push_back(
         {one.file, one.channel, withUnit(one.measuredPeak, one.unit, 4),
          withUnit(one.predictedPeak, one.unit, 4),
-         fmt::format("{} … {}", numberText(one.lower, 4), numberText(one.upper, 4)),
-         one.holdsPeak ? "yes" : "no", fmt::format("{:.0f} %", 100 * one.shareHeld)});
+         one.holdsPeak ? fmt::format("{} … {}", numberText(one.lower, 4), numberText(one.upper, 4))
+                       : std::string("unknown noise"),
+         !one.holdsPeak   ? "–"
+         : *one.holdsPeak ? "yes"
+                          : "no",
+         one.holdsPeak ? fmt::format("{:.0f} %", 100 * one.shareHeld) : std::string("–")});
   }
   return table;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "calibrate/calibrate_report.h"
 
 namespace app {
@@ -12,7 +14,8 @@ struct PredictedSeries {
   double sdOfEstimates = 0;  ///< of the predicted peak
   double noise = 0;          ///< of one sample: of the residuals of the calibration trials
   double lower = 0, upper = 0;
-  bool holdsPeak = false;
+  /// Empty and NaN where the noise is unknown, because no calibration trial has the channel.
+  std::optional<bool> holdsPeak = {};
   double shareHeld = 0;  ///< of all samples that lie within the interval of their own prediction
 };
 

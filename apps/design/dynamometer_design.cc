@@ -40,6 +40,17 @@ double quantityOf(const std::string& text, bool turns, const char* option) {
   }
 }
 
+/// Whether a turn of this length is long enough for its speed to be reached, and ends soon.
+bool turnFits(double length, double speed) {
+  return length >= speed * speedUp && length <= speed * longest;
+}
+
+/// Sorted, each once.
+void makeDistinct(std::vector<double>& values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
 Choices choicesOf(const DynamometerOptions& options, const bio::Coordinate& coordinate) {
   Choices choices;
   const bool turns = coordinate.isRotation;
@@ -59,25 +70,37 @@ Choices choicesOf(const DynamometerOptions& options, const bio::Coordinate& coor
       choices.angles.push_back(coordinate.rangeMin + width * (0.1 + 0.8 * k / 3));
     }
   }
-  std::sort(choices.angles.begin(), choices.angles.end());
+  makeDistinct(choices.angles);
+  const double width = choices.angles.back() - choices.angles.front();
   for (const std::string& text : options.speeds) {
     choices.speeds.push_back(quantityOf(text, turns, "--speeds"));
     if (!(choices.speeds.back() > 0)) {
       throw std::invalid_argument(fmt::format("--speeds: {}, must be > 0", text));
     }
+    if (!turnFits(width, choices.speeds.back())) {
+      throw std::invalid_argument(fmt::format(
+          "--speeds: {}: turns go from the first to the last of --angles and take from {} to {} s, "
+          "these would take {:.3g} s",
+          text, speedUp, longest, width / choices.speeds.back()));
+    }
   }
   if (choices.speeds.empty()) {
     for (const double speed : {30.0, 120.0}) {
-      choices.speeds.push_back(turns ? speed / radian : speed / 1000);
+      const double given = turns ? speed / radian : speed / 1000;
+      if (turnFits(width, given)) choices.speeds.push_back(given);
     }
   }
   for (const double percent : options.efforts) {
-    if (!(percent > 0 && percent <= 100)) {
+    if (!(percent > 100 * baseline && percent <= 100)) {
       throw std::invalid_argument(
-          fmt::format("--efforts: {} % MVC, must be > 0 and at most 100", percent));
+          fmt::format("--efforts: {} % MVC, must be > {:g}, which muscles at rest have, and at "
+                      "most 100",
+                      percent, 100 * baseline));
     }
     choices.efforts.push_back(percent / 100);
   }
+  makeDistinct(choices.speeds);
+  makeDistinct(choices.efforts);
   return choices;
 }
 
@@ -87,8 +110,8 @@ double pulseAt(double t, double begin, double end) {
                     1.0);
 }
 
-/// Where a turn of this length [rad] is, t [s] after its begin: the speed rises and falls as a
-/// squared sine.
+/// Where a turn of this length [rad] that fits is, t [s] after its begin: the speed rises and falls
+/// as a squared sine.
 double turnedAt(double t, double length, double speed) {
   const double whole = length / speed + speedUp;  // [s]
   const auto risen = [](double s) {               // ∫ sin²(π s/2) of 0 … 1
@@ -159,7 +182,6 @@ class Planner {
     }
     const double low = choices.angles.front(), high = choices.angles.back();
     for (const double speed : choices.speeds) {
-      if (!(high > low) || (high - low) / speed > longest) continue;
       for (const auto& [from, to] : {std::pair{low, high}, std::pair{high, low}}) {
         all.push_back({ExperimentKind::passive, from, to, speed, "", 0, {}, {}});
         for (const bio::MuscleGroup& group : groups) {
@@ -283,28 +305,50 @@ class Planner {
   std::size_t asked_ = 0;
 };
 
+/// What moves beside the dynamometer's coordinate, or what else is said of that.
+void checkRoles(const DynamometerOptions& options, const SimulationOptions& simulation,
+                const bio::Model& model) {
+  if (!simulation.coordinates.empty()) {
+    throw std::invalid_argument(
+        "--coordinate cannot be combined with --dynamometer: nothing moves freely there");
+  }
+  for (const Assignment& lock : simulation.locks) {
+    if (lock.name != options.coordinate) continue;
+    throw std::invalid_argument(fmt::format(
+        "--lock {}: is held and turned by the dynamometer, must not be locked", lock.name));
+  }
+  SimulationOptions others = simulation;
+  others.prescribed = {options.coordinate};
+  refusePrescribedByModel(others, model);
+}
+
 }  // namespace
 
 void addDynamometerOptions(CLI::App& options, DynamometerOptions& dynamometer) {
   const std::string group = "Dynamometer";
-  options
-      .add_option("--dynamometer", dynamometer.coordinate,
-                  "instead of TRIAL: a dynamometer holds or turns this coordinate and measures its "
-                  "moment; rank isometric, isokinetic and passive experiments by what they tell of "
-                  "--parameters, with default priors")
-      ->type_name("NAME")
-      ->group(group);
+  CLI::Option* const asked =
+      options
+          .add_option(
+              "--dynamometer", dynamometer.coordinate,
+              "instead of TRIAL: a dynamometer holds or turns this coordinate and measures its "
+              "moment; rank isometric, isokinetic and passive experiments by what they tell of "
+              "--parameters, with default priors")
+          ->type_name("NAME")
+          ->group(group);
   const auto list = [&](const char* name, auto& target, const char* text, const char* type) {
     options.add_option(name, target, text)
         ->delimiter(',')
         ->allow_extra_args(false)
         ->type_name(type)
+        ->needs(asked)
         ->group(group);
   };
   list("--angles", dynamometer.angles,
        "positions to hold; turns go between the first and the last; default: four in the range",
        "20deg,60deg,…");
-  list("--speeds", dynamometer.speeds, "speeds of turns, per second; default: 30deg,120deg",
+  list("--speeds", dynamometer.speeds,
+       "speeds of turns, per second; default: 30deg,120deg, as far as they "
+       "fit between the angles",
        "30deg,120deg,…");
   list("--efforts", dynamometer.efforts, "contractions of flexors and of extensors [% MVC]",
        "30,60,…");
@@ -312,10 +356,12 @@ void addDynamometerOptions(CLI::App& options, DynamometerOptions& dynamometer) {
       ->check(CLI::Range(1, 100))
       ->capture_default_str()
       ->type_name("N")
+      ->needs(asked)
       ->group(group);
   options.add_option("--moment-noise", dynamometer.momentNoise, "noise of a sample of the moment")
       ->capture_default_str()
       ->type_name("NM")
+      ->needs(asked)
       ->group(group);
 }
 
@@ -333,6 +379,7 @@ ExitStatus designOnDynamometer(const CommandContext& context, const std::string&
   OutputFolder folder(context, names);
   Summary summary(context);
   const bio::Model model = readModel(modelFile, summary);
+  checkRoles(options, typed, model);
   SimulationOptions simulation = typed;
   simulation.prescribed = {options.coordinate};
   const bio::MusculoskeletalSystem arm = movableSystem(model, modelFile, simulation, summary);

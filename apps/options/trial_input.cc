@@ -126,22 +126,20 @@ void checkPrescribed(const SimulationOptions& options, const bio::Model& model) 
   }
 }
 
+/// The coordinates that have a role from the command line.
+std::set<std::string> roledByOptions(const SimulationOptions& options) {
+  std::set<std::string> names(options.prescribed.begin(), options.prescribed.end());
+  names.insert(options.coordinates.begin(), options.coordinates.end());
+  for (const Assignment& lock : options.locks) names.insert(lock.name);
+  return names;
+}
+
 /// What moves on the model's own functions of time, which not every command takes.
 void takePrescribedByModel(SimulationOptions& options, const bio::Model& model, bool simulates) {
-  std::set<std::string> otherwise(options.prescribed.begin(), options.prescribed.end());
-  otherwise.insert(options.coordinates.begin(), options.coordinates.end());
-  for (const Assignment& lock : options.locks) otherwise.insert(lock.name);
   if (options.takesPrescribed) {
-    options.prescribedByModel = bio::prescribedByModel(model, otherwise);
-    return;
-  }
-  if (!simulates) return;
-  for (const std::string& name : bio::independentCoordinates(model)) {
-    if (!bio::findCoordinate(model, name).isPrescribed() || otherwise.contains(name)) continue;
-    throw std::invalid_argument(
-        fmt::format("the model prescribes the motion of '{0}', which this command does not take: "
-                    "'{0}' must be locked (--lock {0}=…) or free (--coordinate {0})",
-                    name));
+    options.prescribedByModel = bio::prescribedByModel(model, roledByOptions(options));
+  } else if (simulates) {
+    refusePrescribedByModel(options, model);
   }
 }
 
@@ -167,6 +165,17 @@ void holdLocked(SimulationOptions& options, const bio::Model& model,
 }
 
 }  // namespace
+
+void refusePrescribedByModel(const SimulationOptions& options, const bio::Model& model) {
+  const std::set<std::string> otherwise = roledByOptions(options);
+  for (const std::string& name : bio::independentCoordinates(model)) {
+    if (!bio::findCoordinate(model, name).isPrescribed() || otherwise.contains(name)) continue;
+    throw std::invalid_argument(
+        fmt::format("the model prescribes the motion of '{0}', which this command does not take: "
+                    "'{0}' must be locked (--lock {0}=…) or free (--coordinate {0})",
+                    name));
+  }
+}
 
 void chooseCoordinates(SimulationOptions& options, const bio::Model& model,
                        const std::vector<std::string>& trials, bool allReactions) {

@@ -32,6 +32,10 @@ void addExternalLoads(const std::string& file, bio::Model& model, Summary& summa
 
 bio::Model readModel(const std::string& file, Summary& summary);
 
+/// Throws std::invalid_argument for a coordinate that the model prescribes and no option locks,
+/// frees or prescribes: for commands that take none.
+void refusePrescribedByModel(const SimulationOptions& options, const bio::Model& model);
+
 /// Chooses the free coordinates if none were typed: bio::freeByDefault with what the trials
 /// measure, without those that are prescribed, by the trials or by the model; locked coordinates at
 /// which a trial measures the moment are held.

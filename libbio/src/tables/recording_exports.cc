@@ -198,11 +198,12 @@ std::vector<RawColumn> readEmgworks(const std::string& file) {
     if (timeOf[k] == k || (reader.names()[k].empty() && columns[k].empty())) continue;
     RawColumn column;
     const auto [name, unit] = splitBrackets(reader.names()[k]);
-    const std::vector<double>& times = columns[timeOf[k]];
-    if (times.size() > 1) {
-      column.rate =
-          rateOf(fmt::format("{}: column {} '{}'", file, timeOf[k] + 1, name), vectorOf(times));
-      column.startTime = times.front();
+    if (columns[timeOf[k]].size() > 1) {
+      const tables::TimeName unitOfTime = tables::timeNameOf(reader.names()[timeOf[k]]);
+      const Eigen::VectorXd times =
+          vectorOf(columns[timeOf[k]]) * (unitOfTime.times / unitOfTime.per);
+      column.rate = rateOf(fmt::format("{}: column {} '{}'", file, timeOf[k] + 1, name), times);
+      column.startTime = times[0];
     }
     column.number = static_cast<int>(k + 1);
     column.header = name;

@@ -138,6 +138,14 @@ TEST(DesignCommand, RefusesExperimentsThatADynamometerCannotDo) {
   refused({"--dynamometer", "elbow_flexion", "--angles", "x"}, "--angles: ");
   refused({"--dynamometer", "elbow_flexion", "--speeds", "-1deg"}, "--speeds: -1deg, must be > 0");
   refused({"--dynamometer", "elbow_flexion", "--efforts", "120"}, "at most 100");
+  refused({"--dynamometer", "elbow_flexion", "--efforts", "0.5"}, "must be > 1");
+  refused({"--dynamometer", "elbow_flexion", "--speeds", "1deg"}, "these would take");
+  refused({"--dynamometer", "elbow_flexion", "--angles", "60deg,62deg", "--speeds", "120deg"},
+          "these would take 0.0167 s");
+  refused({"--dynamometer", "elbow_flexion", "--coordinate", "elbow_flexion"}, "--coordinate");
+  refused({"--dynamometer", "elbow_flexion", "--lock", "elbow_flexion=60deg"},
+          "must not be locked");
+  refused({"emg_data/curl_slow.sto", "--angles", "60deg"}, "--dynamometer");
   refused({"--dynamometer", "elbow_flexion", "--moment-noise", "0"}, "must be > 0");
 }
 

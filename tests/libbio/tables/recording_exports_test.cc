@@ -64,6 +64,22 @@ TEST_F(Exports, EmgworksGivesEverySignalItsTimes) {
   EXPECT_EQ(findChannel(read(german), "Biceps: EMG 1").values[1], -0.25);
 }
 
+TEST_F(Exports, EmgworksTimesMayBeMilliseconds) {
+  const Recording seconds = read(emgworks);
+  std::string text;
+  for (std::size_t at = 0; at < emgworks.size(); ++at) {
+    const bool isUnit = emgworks.compare(at, 4, "X[s]") == 0;
+    text += isUnit ? "X[ms]" : emgworks.substr(at, 1);
+    if (isUnit) at += 3;
+  }
+  const Recording milliseconds = read(text);
+  for (std::size_t k = 0; k < seconds.channels.size(); ++k) {
+    EXPECT_NEAR(milliseconds.channels[k].rate, 1000 * seconds.channels[k].rate,
+                1e-9 * milliseconds.channels[k].rate);
+    EXPECT_NEAR(milliseconds.channels[k].startTime, seconds.channels[k].startTime / 1000, 1e-12);
+  }
+}
+
 TEST_F(Exports, BrokenEmgworksFilesAreToldInOneLine) {
   const auto refused = [&](const std::string& part, const std::string& instead,
                            const std::string& message) {
