@@ -20,8 +20,9 @@ struct Job {
       bio::initialState(arm, bio::startCoordinates(trial, arm, {}), excitation, 0);
 };
 
-void replay(benchmark::State& state, bio::Integrator integrator, double step) {
-  const Job job;
+void replay(benchmark::State& state, bio::Integrator integrator, double step,
+            const std::string& file = "elbow8.osim") {
+  const Job job(file);
   bio::SimulationOptions options;
   options.integrator = integrator;
   options.step = step;
@@ -45,15 +46,7 @@ BENCHMARK_CAPTURE(replay, cvode, bio::Integrator::cvode, 0.01)->Unit(benchmark::
 
 /// The same by muscles of other classes.
 void ofClass(benchmark::State& state, const std::string& file) {
-  const Job job(file);
-  bio::SimulationOptions options;
-  options.duration = 4.5;
-  for (auto _ : state) {
-    const bio::Trajectory motion = bio::simulate(job.arm, job.excitation, job.start, options);
-    benchmark::DoNotOptimize(motion.q.data());
-    state.counters["newton_per_step"] =
-        static_cast<double>(motion.newtonIterations) / static_cast<double>(motion.steps);
-  }
+  replay(state, bio::Integrator::variational, 0.01, file);
 }
 BENCHMARK_CAPTURE(ofClass, Thelen, "elbow8_Thelen2003.osim")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(ofClass, Millard, "elbow8_Millard2012.osim")->Unit(benchmark::kMillisecond);

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "output/text.h"
 
 namespace app {
@@ -19,32 +17,7 @@ bool isKnot(const bio::CalibratedParameter& parameter) {
   return parameter.ofTrial && parameter.asked.name.find(".latent") != std::string::npos;
 }
 
-double PulledExcitation::rms() const {
-  return std::sqrt(z.squaredNorm() / static_cast<double>(z.size()));
-}
-
-std::vector<PulledExcitation> pulledExcitations(const CalibrateFindings& f) {
-  std::vector<PulledExcitation> all;
-  if (f.calibration.parameters.empty()) return all;
-  const Eigen::VectorXd theta = f.calibration.values();
-  for (const bio::TrialSet::Latent& one : f.training.latent()) {
-    const auto n = static_cast<Eigen::Index>(one.knots.size());
-    bio::LatentExcitation latent{one.knots, theta.segment(static_cast<Eigen::Index>(one.first), n),
-                                 one.declared.sd};
-    const auto times = Eigen::VectorXd::Map(one.knots.data(), n);
-    PulledExcitation pulled{f.training.trials()[one.trial].file,
-                            one.declared,
-                            one.knots,
-                            one.atKnots,
-                            {},
-                            latent.values / latent.sd};
-    pulled.fitted = bio::withLatent(times, one.atKnots.transpose(), latent).transpose();
-    all.push_back(std::move(pulled));
-  }
-  return all;
-}
-
-std::string inWords(const PulledExcitation& one) {
+std::string inWords(const bio::PulledExcitation& one) {
   Eigen::Index at = 0;
   one.z.cwiseAbs().maxCoeff(&at);
   return fmt::format(
@@ -56,10 +29,10 @@ std::string inWords(const PulledExcitation& one) {
 }
 
 void tellLatent(const CalibrateFindings& f, Summary& summary) {
-  const std::vector<PulledExcitation> all = pulledExcitations(f);
+  const std::vector<bio::PulledExcitation> all = bio::pulledExcitations(f.training, f.calibration);
   if (all.empty()) return;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const PulledExcitation& one : all) {
+  for (const bio::PulledExcitation& one : all) {
     list.push_back({{"file", one.file},
                     {"muscle", one.declared.muscle},
                     {"prior_sd_log_odds", one.declared.sd},
@@ -77,13 +50,13 @@ void tellLatent(const CalibrateFindings& f, Summary& summary) {
 }
 
 void addLatent(const CalibrateFindings& f, Report& report) {
-  const std::vector<PulledExcitation> all = pulledExcitations(f);
+  const std::vector<bio::PulledExcitation> all = bio::pulledExcitations(f.training, f.calibration);
   if (all.empty()) return;
   report.details.emplace_back(Section{"Muscles without an electrode"});
   report.details.emplace_back(
       Paragraph{"Their excitation was estimated with the parameters, about what the trial gives "
                 "(mean of the prior); held-out trials are predicted with that alone."});
-  for (const PulledExcitation& one : all) {
+  for (const bio::PulledExcitation& one : all) {
     report.details.emplace_back(Paragraph{inWords(one) + "."});
     Figure figure{.title = fmt::format("{} in {}", one.declared.muscle, one.file),
                   .xLabel = "Time [s]",

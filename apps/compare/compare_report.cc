@@ -129,9 +129,7 @@ void addAlso(const CompareFindings& f, Report& report) {
 }  // namespace
 
 void writeCells(const bio::Comparison& comparison, std::ostream& out) {
-  const auto cell = [](double value) {
-    return std::isfinite(value) ? fmt::format("{:.9g}", value) : std::string();
-  };
+  const auto cell = [](double value) { return cellText(value, 9); };
   out << "integrator,step_s,status,failed_at_s,rms_deg,max_deg,wall_ms,newton_per_step,"
          "energy_error_J\n";
   for (const bio::CompareCell& one : comparison.cells) {

@@ -9,7 +9,8 @@ namespace app {
 namespace {
 
 using Eigen::Index;
-using ExperimentKind = DynamometerExperiment::Kind;
+using ExperimentKind = bio::DynamometerExperiment::Kind;
+namespace course = bio::dynamometer;
 
 const char* wordOf(ExperimentKind kind) {
   return kind == ExperimentKind::isometric ? "isometric"
@@ -19,24 +20,24 @@ const char* wordOf(ExperimentKind kind) {
 
 }  // namespace
 
-std::string instructionOf(const DynamometerExperiment& one, bool turns) {
+std::string instructionOf(const bio::DynamometerExperiment& one, bool turns) {
   const double unit = turns ? radian : 1000;
   const char* name = turns ? "deg" : "mm";
-  const std::string contract = fmt::format("{}: rise to {:.0f} % MVC in {:g} s", one.group,
-                                           100 * one.effort, contraction::ramp);
+  const std::string contract =
+      fmt::format("{}: rise to {:.0f} % MVC in {:g} s", one.group, 100 * one.effort, course::ramp);
   if (one.kind == ExperimentKind::isometric) {
     return fmt::format("hold at {:.0f} {}; rest {:g} s, {}, keep it for {:g} s, relax",
-                       one.from * unit, name, contraction::rest, contract, contraction::hold);
+                       one.from * unit, name, course::rest, contract, course::hold);
   }
   const std::string turn =
       fmt::format("turn from {:.0f} to {:.0f} {} at {:.0f} {}/s", one.from * unit, one.to * unit,
                   name, one.speed * unit, name);
   if (one.kind == ExperimentKind::passive) return turn + "; relax all the time";
-  return fmt::format("{}; rest {:g} s, {}, then turn and keep it to the end", turn,
-                     contraction::rest, contract);
+  return fmt::format("{}; rest {:g} s, {}, then turn and keep it to the end", turn, course::rest,
+                     contract);
 }
 
-void tellDynamometer(const DynamometerPlan& plan, bool turns, Summary& summary) {
+void tellDynamometer(const bio::DynamometerPlan& plan, bool turns, Summary& summary) {
   const double unit = turns ? radian : 1;
   nlohmann::ordered_json before = nlohmann::ordered_json::object(), now = before;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
@@ -45,7 +46,7 @@ void tellDynamometer(const DynamometerPlan& plan, bool turns, Summary& summary) 
     now[plan.parameters[i].name] = plan.bounds.back()[static_cast<Index>(i)];
   }
   for (std::size_t n = 0; n < plan.chosen.size(); ++n) {
-    const DynamometerExperiment& one = plan.chosen[n];
+    const bio::DynamometerExperiment& one = plan.chosen[n];
     nlohmann::ordered_json bounds = nlohmann::ordered_json::object();
     for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
       bounds[plan.parameters[i].name] = plan.bounds[n][static_cast<Index>(i)];
@@ -68,7 +69,7 @@ void tellDynamometer(const DynamometerPlan& plan, bool turns, Summary& summary) 
   summary.set("candidates_not_simulated", plan.failed);
 }
 
-Report dynamometerReport(const DynamometerPlan& plan, const DynamometerOptions& options,
+Report dynamometerReport(const bio::DynamometerPlan& plan, const DynamometerOptions& options,
                          bool turns) {
   Report report;
   report.title = fmt::format("Experiments on a dynamometer: {}", options.coordinate);
@@ -94,12 +95,12 @@ Report dynamometerReport(const DynamometerPlan& plan, const DynamometerOptions& 
   report.details.emplace_back(std::move(table));
   report.details.emplace_back(Paragraph{fmt::format(
       "Bounds are the Cramér–Rao bounds of all that was done up to there, with the parameters' "
-      "default priors (as of --nuisance), if nothing else is unknown, and a noise of {:g} N m "
+      "default priors (as of --nuisance), if nothing else is unknown, and a noise of {:g} {} "
       "(independent samples) of the moment. % MVC is the "
       "excitation: EMG over that of a maximum contraction. The antagonists are taken to rest; "
       "record them, too. experiment_N.csv are the experiments as trials: to be filled with what "
       "was recorded, {}.moment above all.",
-      options.momentNoise, options.coordinate)});
+      options.momentNoise, turns ? "N m" : "N", options.coordinate)});
   return report;
 }
 

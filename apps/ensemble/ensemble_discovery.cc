@@ -101,10 +101,6 @@ Json discoverySettings(const ModelDiscoveryRequest& each, const Summary& summary
   return json;
 }
 
-std::string numberCell(const Json& value) {
-  return value.is_number() ? fmt::format("{:.6g}", value.get<double>()) : std::string();
-}
-
 std::string verdictRow(const DataSet& set, const Json& verdict) {
   std::vector<std::string> ids;
   for (const Json& effect : verdict.at("effects")) ids.push_back(effect.at("id"));

@@ -13,7 +13,7 @@ namespace app {
 namespace {
 
 std::string csvCell(double value) {
-  return std::isfinite(value) ? fmt::format("{:.9g}", value) : std::string();
+  return cellText(value, 9);
 }
 
 std::vector<double> finiteOf(const std::vector<double>& values) {

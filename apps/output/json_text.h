@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -15,6 +17,11 @@ inline std::string jsonText(const nlohmann::ordered_json& json, int indent = -1)
 /// The number; null where it is infinite or NaN, for which JSON has no word.
 inline nlohmann::ordered_json orNull(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+}
+
+/// For a cell of a table; empty for what is not a number.
+inline std::string numberCell(const nlohmann::ordered_json& value) {
+  return value.is_number() ? fmt::format("{:.6g}", value.get<double>()) : std::string();
 }
 
 }  // namespace app

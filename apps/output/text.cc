@@ -31,6 +31,10 @@ std::string cellText(double value) {
   return std::isfinite(value) ? fmt::format("{:.17g}", value) : std::string();
 }
 
+std::string cellText(double value, int digits) {
+  return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : std::string();
+}
+
 std::string withUnit(double value, const std::string& unit, int digits) {
   return numberText(value, digits) + (unit.empty() ? "" : " " + unit);
 }

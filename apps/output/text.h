@@ -15,6 +15,8 @@ std::string numberText(double value, int digits = 4);
 
 /// The number with all its digits, for a cell of a table; empty when it is not finite.
 std::string cellText(double value);
+/// The same with at most `digits` significant digits.
+std::string cellText(double value, int digits);
 
 /// "0.016 m", or "0.016" for a pure number.
 std::string withUnit(double value, const std::string& unit, int digits = 4);

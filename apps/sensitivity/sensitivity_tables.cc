@@ -1,14 +1,13 @@
 #include <fmt/format.h>
 
-#include <cmath>
-
+#include "output/text.h"
 #include "sensitivity/sensitivity_report.h"
 
 namespace app {
 namespace {
 
-std::string tableCell(double value) {
-  return std::isfinite(value) ? fmt::format("{:.9g}", value) : std::string();
+std::string cell(double value) {
+  return cellText(value, 9);
 }
 
 }  // namespace
@@ -19,9 +18,9 @@ void writeSensitivities(const SensitivityFindings& f, std::ostream& out) {
   for (const std::size_t i : ranking(known.normalisedSensitivity)) {
     const auto k = static_cast<Eigen::Index>(i);
     const info::Parameter& p = known.parameters[i];
-    out << fmt::format("{},{},{},{},{},{},{}\n", p.name, p.unit, tableCell(p.start),
-                       tableCell(known.normalisedSensitivity[k] * f.shownFactor()),
-                       tableCell(known.boundAlone[k]), tableCell(known.boundJoint[k]),
+    out << fmt::format("{},{},{},{},{},{},{}\n", p.name, p.unit, cell(p.start),
+                       cell(known.normalisedSensitivity[k] * f.shownFactor()),
+                       cell(known.boundAlone[k]), cell(known.boundJoint[k]),
                        known.identifiable[i] ? "true" : "false");
   }
 }
@@ -33,7 +32,7 @@ void writeFisher(const SensitivityFindings& f, std::ostream& out) {
   const Eigen::MatrixXd& fisher = f.information->fisher;
   for (Eigen::Index i = 0; i < fisher.rows(); ++i) {
     out << f.parameters[static_cast<std::size_t>(i)];
-    for (Eigen::Index j = 0; j < fisher.cols(); ++j) out << ',' << tableCell(fisher(i, j));
+    for (Eigen::Index j = 0; j < fisher.cols(); ++j) out << ',' << cell(fisher(i, j));
     out << '\n';
   }
 }
@@ -47,9 +46,9 @@ void writeSweep(const Sweep& sweep, const bio::Coordinate& coordinate, std::ostr
   out << '\n';
   for (std::size_t k = 0; k < sweep.nominal.time.size(); ++k) {
     const auto row = static_cast<Eigen::Index>(k);
-    out << tableCell(sweep.nominal.time[k]) << ',' << tableCell(sweep.nominal.q(0, row) * factor);
+    out << cell(sweep.nominal.time[k]) << ',' << cell(sweep.nominal.q(0, row) * factor);
     for (const SweepRun& run : sweep.runs) {
-      out << ',' << (row < run.motion.q.cols() ? tableCell(run.motion.q(0, row) * factor) : "");
+      out << ',' << (row < run.motion.q.cols() ? cell(run.motion.q(0, row) * factor) : "");
     }
     out << '\n';
   }
@@ -58,8 +57,8 @@ void writeSweep(const Sweep& sweep, const bio::Coordinate& coordinate, std::ostr
 void writeProfile(const ProfileFinding& finding, std::ostream& out) {
   out << "value,cost,threshold,converged\n";
   for (const info::ProfilePoint& point : finding.profile.points) {
-    out << fmt::format("{},{},{},{}\n", tableCell(point.value), tableCell(point.cost),
-                       tableCell(finding.profile.threshold), point.converged ? "true" : "false");
+    out << fmt::format("{},{},{},{}\n", cell(point.value), cell(point.cost),
+                       cell(finding.profile.threshold), point.converged ? "true" : "false");
   }
 }
 
@@ -71,12 +70,12 @@ void writeGlobal(const SensitivityFindings& f, std::ostream& out) {
     out << f.parameters[i];
     const auto& morris = f.global.morris;
     const auto& sobol = f.global.sobol;
-    out << ',' << (morris ? tableCell(morris->meanAbsolute[k]) : "") << ','
-        << (morris ? tableCell(morris->sd[k]) : "");
-    out << ',' << (sobol ? tableCell(sobol->first[k]) : "") << ','
-        << (sobol ? tableCell(sobol->firstDeviation[k]) : "") << ','
-        << (sobol ? tableCell(sobol->total[k]) : "") << ','
-        << (sobol ? tableCell(sobol->totalSd[k]) : "") << '\n';
+    out << ',' << (morris ? cell(morris->meanAbsolute[k]) : "") << ','
+        << (morris ? cell(morris->sd[k]) : "");
+    out << ',' << (sobol ? cell(sobol->first[k]) : "") << ','
+        << (sobol ? cell(sobol->firstDeviation[k]) : "") << ','
+        << (sobol ? cell(sobol->total[k]) : "") << ',' << (sobol ? cell(sobol->totalSd[k]) : "")
+        << '\n';
   }
 }
 

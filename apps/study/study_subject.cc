@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "command/command_line.h"
+#include "output/json_text.h"
 #include "output/text.h"
 
 namespace app {
@@ -25,10 +26,6 @@ struct StageFailure {
 Json readJson(const fs::path& file) {
   std::ifstream in(file);
   return Json::parse(in);
-}
-
-std::string numberCell(const Json& value) {
-  return value.is_number() ? fmt::format("{:.6g}", value.get<double>()) : std::string();
 }
 
 /// Without what would end a cell.
@@ -185,7 +182,8 @@ class SubjectRun {
 }  // namespace
 
 bool isOfATrial(const std::string& parameter) {
-  return parameter.starts_with("initial.") || parameter.find(".initial.") != std::string::npos;
+  const auto has = [&](const char* part) { return parameter.find(part) != std::string::npos; };
+  return parameter.starts_with("initial.") || has(".initial.") || has(".latent");
 }
 
 const std::vector<std::string>& studyColumns() {

@@ -9,7 +9,8 @@
 
 namespace app {
 
-/// Whether an estimated number is the start of one trial: "trial2.initial.NAME", "initial.NAME".
+/// Whether an estimated number belongs to one trial: its start, "trial2.initial.NAME" or
+/// "initial.NAME", or a knot of a latent excitation.
 bool isOfATrial(const std::string& parameter);
 
 /// Columns of study.csv.

@@ -1,11 +1,11 @@
 #include "bio/analysis/driven_trial.h"
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "bio/analysis/replay.h"
 #include "bio/sensitivity/coupled_sensitivity.h"
+#include "forces/linear_course.h"
 
 namespace bio {
 namespace {
@@ -29,15 +29,6 @@ std::vector<Course> coursesOf(const Trial& trial) {
     courses.push_back({nameOf(channel.what), &channel.times, &channel.values});
   }
   return courses;
-}
-
-/// Between rows; `times` rise and hold t.
-double linearAt(const Eigen::VectorXd& times, const Eigen::VectorXd& values, double t) {
-  const auto above = std::upper_bound(times.begin(), times.end(), t) - times.begin();
-  if (above == 0) return values[0];
-  if (above == times.size()) return values[above - 1];
-  const double w = (t - times[above - 1]) / (times[above] - times[above - 1]);
-  return (1 - w) * values[above - 1] + w * values[above];
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ SteppedCalibration calibrateAtShorterSteps(const Model& model, const SystemOptio
       if (!now.calibrated) return true;
       result.change = changeOfHalving(model, arm, *result.training, result.options, now);
       isFinal = !mayShorten || half < shortest || !result.change.matters(now.noise.sd);
-      return isFinal;
+      return isFinal && (!options.isFinal || options.isFinal(now));
     };
     Calibration found = calibrate(*result.training, result.heldOut.get(), result.options);
     result.options.isFinal = options.isFinal;

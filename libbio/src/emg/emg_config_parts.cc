@@ -91,8 +91,14 @@ bool isMeasured(const Recording& recording, const std::string& point) {
 std::string fullName(const EmgConfigFile& config, const std::vector<std::string>& markers,
                      const std::string& name) {
   if (config.markers->model.empty()) return name;
+  std::vector<std::string> meant;
   for (const std::string& one : markers) {
-    if (one == name || one.ends_with("." + name)) return one;
+    if (one == name) return one;
+    if (one.ends_with("." + name)) meant.push_back(one);
+  }
+  if (meant.size() == 1) return meant.front();
+  if (!meant.empty()) {
+    failAt(config, fmt::format("names: '{}' may be {}", name, fmt::join(meant, " or ")));
   }
   failAt(config, fmt::format("names: the model has no marker '{}'; it has {}", name,
                              fmt::join(markers, ", ")));
@@ -206,7 +212,8 @@ void addMarkerColumns(const EmgConfigFile& config, const Recording& recording,
       column.lowPass = declared.lowPass;
       for (const MeasuredOptions& other : out.columns) {
         if (other.coordinate != column.coordinate) continue;
-        failAt(config, fmt::format("'{}' is given twice, also by [[column]]", other.coordinate));
+        failAt(config,
+               fmt::format("'{}' is given twice, by two names or a [[column]]", other.coordinate));
       }
       out.columns.push_back(std::move(column));
     }

@@ -7,6 +7,8 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "forces/linear_course.h"
+
 namespace bio {
 
 ExternalForce::ExternalForce(std::vector<double> times, Eigen::MatrixXd values,
@@ -46,11 +48,7 @@ ExternalForce::At ExternalForce::at(double t) const {
 
 double ExternalForce::Control::at(double t) const {
   if (times.empty() || t < times.front() || t > times.back()) return 0;
-  const auto above = std::upper_bound(times.begin(), times.end(), t) - times.begin();
-  if (above == std::ssize(times)) return values[above - 1];
-  const auto k = static_cast<std::size_t>(above);
-  const double w = (t - times[k - 1]) / (times[k] - times[k - 1]);
-  return (1 - w) * values[above - 1] + w * values[above];
+  return linearAt(times, values, t);
 }
 
 double ExternalForce::controlAt(const std::string& actuator, double t) const {

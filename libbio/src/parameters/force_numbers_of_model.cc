@@ -22,9 +22,8 @@ ForceNumberRule positive(std::string name, const char* unit, const char* meaning
   return {std::move(name), unit, meaning, lower * value, 10 * spread, 0.5 * spread};
 }
 
-/// A length at which a string or spring begins to pull.
-ForceNumberRule slackLength(std::string name, double value) {
-  constexpr const char* meaning = "length at which it begins to pull";
+/// A length without force.
+ForceNumberRule restingLength(std::string name, const char* meaning, double value) {
   if (value > 0) return {std::move(name), "m", meaning, 0.5 * value, 2 * value, 0.05 * value};
   return {std::move(name), "m", meaning, 0, 0.1, 0.01};
 }
@@ -62,7 +61,8 @@ ForceNumberRule elasticRule(const ElasticPath& path, int component) {
   const bool isSpring = path.kind == ElasticPathKind::spring;
   switch (component) {
     case 0:
-      return slackLength(isBlankevoort ? "slack_length" : "resting_length", value);
+      return restingLength(isBlankevoort ? "slack_length" : "resting_length",
+                           "length at which it begins to pull", value);
     case 1:
       if (isBlankevoort) {
         return positive("linear_stiffness", "N", "force per strain", value, 1e-6, 0.1);
@@ -115,7 +115,9 @@ ForceNumberRule forceNumberRule(const Model& model, const ForceNumberTarget& tar
   switch (target.of) {
     case Of::pointSpring: {
       const PointToPointSpring& spring = model.pointSprings[target.force];
-      if (target.component == 1) return slackLength("rest_length", spring.restLength);
+      if (target.component == 1) {
+        return restingLength("rest_length", "length without force", spring.restLength);
+      }
       return positive("stiffness", "N/m", "stiffness of the spring", spring.stiffness, 1e-6);
     }
     case Of::bushing: {

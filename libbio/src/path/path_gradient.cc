@@ -56,15 +56,9 @@ struct TouchedSpan {
       dyads = wrapCylinderDyads(surface.radius, way.side, P, Q);
     }
   }
-  /// Of a cylinder in closed form: L_r = β s/L, and with r the tangents turn about the ends.
   RadiusDerivatives inRadius(const PathSurface& surface, const SpanSurface& way, const Vector3d& P,
                              const Vector3d& Q) const {
-    if (isSphere) return bio::inRadius(surface, way, P, Q);
-    const double up = dyads.span.dL_dQ.z(), around = dyads.span.dL_dQ.head<2>().norm();
-    const double sigma = way.side == Side::counterclockwise ? 1 : -1;
-    const double stretch = dyads.angle * up * dyads.perLength;
-    return {dyads.angle * around, stretch * dyads.mP + sigma * dyads.bendP * dyads.nP,
-            stretch * dyads.mQ + sigma * dyads.bendQ * dyads.nQ};
+    return isSphere ? bio::inRadius(surface, way, P, Q) : bio::inRadius(dyads, way.side);
   }
   const Span<double>& span() const { return isSphere ? whole.span : dyads.span; }
   void change(const Vector3d& dP, const Vector3d& dQ, Vector3d& gP, Vector3d& gQ) const {

@@ -4,8 +4,19 @@
 
 namespace bio {
 
+RadiusDerivatives inRadius(const CylinderDyads<double>& span, Side side) {
+  const double up = span.span.dL_dQ.z(), around = span.span.dL_dQ.head<2>().norm();
+  const double sigma = side == Side::counterclockwise ? 1 : -1;
+  const double stretch = span.angle * up * span.perLength;
+  return {span.angle * around, stretch * span.mP + sigma * span.bendP * span.nP,
+          stretch * span.mQ + sigma * span.bendQ * span.nQ};
+}
+
 RadiusDerivatives inRadius(const PathSurface& surface, const SpanSurface& way,
                            const Eigen::Vector3d& P, const Eigen::Vector3d& Q) {
+  if (!surface.isSphere) {
+    return inRadius(wrapCylinderDyads(surface.radius, way.side, P, Q), way.side);
+  }
   using D = info::Dual<1>;
   const D radius(surface.radius, 1, 0);
   const auto constant = [](const Eigen::Vector3d& v) {
@@ -16,8 +27,7 @@ RadiusDerivatives inRadius(const PathSurface& surface, const SpanSurface& way,
     from[i].derivatives().setZero();
     to[i].derivatives().setZero();
   }
-  const Span<D> span = surface.isSphere ? wrapSphere<D>(radius, way.way, from, to)
-                                        : wrapCylinder<D>(radius, way.side, from, to);
+  const Span<D> span = wrapSphere<D>(radius, way.way, from, to);
   const auto slope = [](const Vec3<D>& v) {
     return Eigen::Vector3d(v.x().derivatives()[0], v.y().derivatives()[0], v.z().derivatives()[0]);
   };

@@ -182,11 +182,11 @@ class VariationalStepper {
   static constexpr double largestTurn = 0.3;        ///< [rad] per iteration
   static constexpr double largestFibreStep = 0.25;  ///< of ℓ0 per iteration
 
-  /// Forces of the muscles on the skeleton, and fibre lengths eliminated one by one.
   struct Moving {
     const Vector& v;
     double h, share;
   };
+  /// Forces of the muscles on the skeleton, and fibre lengths eliminated one by one.
   void addMuscles(const Ends& begin, const Ends& end, const Eigen::VectorXd& activation,
                   const Moving& step, Matrix& dTau, Matrix& eliminated, Vector& carried) {
     const auto& [v, h, share] = step;
@@ -229,11 +229,11 @@ class VariationalStepper {
     return largest;
   }
 
-  /// The momentum at the end, and the work of the forces.
   struct LastIterate {
     const Vector &Mv, &dq;
     const Matrix &dMv, &dL_q, &dPassive;
   };
+  /// The momentum at the end, and the work of the forces.
   void finish(const Ends& begin, double h, double share, const LastIterate& last, Vector& L_q,
               Matrix& dTau, Vector& R, Ends& end, Result& result) {
     const auto& [Mv, dq, dMv, dL_q, dPassive] = last;

@@ -38,7 +38,7 @@ std::vector<RawColumn> readColumns(const std::string& file, RecordingFormat form
   }
 }
 
-bool isBinary(RecordingFormat format) {
+bool namesItsChannels(RecordingFormat format) {
   return format == RecordingFormat::c3d || format == RecordingFormat::xdf ||
          format == RecordingFormat::trc;
 }
@@ -204,7 +204,7 @@ Recording readRecording(const std::string& file, const RecordingLayout& layout) 
       }
     }
   }
-  if (out.channels.empty() && isBinary(out.format)) {
+  if (out.channels.empty() && namesItsChannels(out.format)) {
     throw FileError(fmt::format("{}: holds no {}, a recording needs some", file,
                                 out.format == RecordingFormat::xdf
                                     ? "stream of numbers at a steady rate"

@@ -76,6 +76,13 @@ std::vector<XdfClock> clocksOf(const Bytes& bytes, const RawXdfStream& stream) {
   for (std::size_t k = 1; k < offsets.size(); ++k) {
     const double jump = offsets[k].by - offsets[k - 1].by;
     if (std::abs(jump) < leastClockJump) continue;
+    // a single measurement that its neighbours contradict was delayed: it is scatter, no restart
+    const bool isStray =
+        k + 1 < offsets.size() && std::abs(offsets[k + 1].by - offsets[k - 1].by) < leastClockJump;
+    if (isStray) {
+      ++k;
+      continue;
+    }
     // the file's order of samples and offsets is not exact: one offset more at both sides
     std::size_t from = clocks.back().firstSample, to = stream.stamps.size();
     for (std::size_t i = 0; i < k; ++i) {

@@ -96,6 +96,18 @@ TEST_F(Xdf, LeapsOfTimeAreGaps) {
   EXPECT_THAT(file.remarks, ElementsAre(HasSubstr("1 times samples are missing, 600 in all")));
 }
 
+TEST_F(Xdf, ASingleStrayOffsetIsNoRestart) {
+  XdfSample xdf;
+  xdf.streamHeader(1, "EMG", 2, 100, "int16");
+  for (int i = 0; i <= 400; ++i) xdf.offset(1, 1000 + i, i == 200 ? 103 : 100);
+  addEmg(xdf, 1, 800, 1000, 100);
+  const XdfFile file = read(xdf.bytes);
+  const Channel& emg = file.streams[0].channels[0];
+  EXPECT_EQ(emg.values.size(), 800);
+  EXPECT_NEAR(emg.rate, 100, 1e-3);
+  EXPECT_THAT(file.remarks, ElementsAre(HasSubstr("off a straight line")));
+}
+
 // The computer of a stream restarts: its clock begins anew, 3000 s lower, after 2 s without
 // samples.
 TEST_F(Xdf, AClockThatRestartsIsFollowedByItsOwnOffsets) {

@@ -13,9 +13,6 @@ class ExternalForce {
  public:
   /// No force: no rows, no coordinates.
   ExternalForce() = default;
-  /// @param times   [s], strictly rising, at least one
-  /// @param values  rows = times, columns = free coordinates [N·m] or [N], finite; positive pushes
-  ///   the coordinate up
   /// What a CoordinateActuator adds: a control, linear between its times and 0 outside them, of
   /// which optimalForce·control is part of the values.
   struct Control {
@@ -26,6 +23,9 @@ class ExternalForce {
     Eigen::VectorXd values;     ///< as many
     double at(double t) const;
   };
+  /// @param times   [s], strictly rising, at least one
+  /// @param values  rows = times, columns = free coordinates [N·m] or [N], finite; positive pushes
+  ///   the coordinate up
   /// @param controls  whose forces are part of the values
   /// @throws std::invalid_argument sizes that differ, times not rising, a value that is not finite
   ExternalForce(std::vector<double> times, Eigen::MatrixXd values,
