@@ -155,6 +155,24 @@ void addInnovations(const info::discover::Verdict& verdict, ordered_json& json) 
   }
 }
 
+/// The effects looked for in the held-out trials alone.
+ordered_json replicationJson(const DiscoverFindings& f) {
+  const info::discover::Replication& found = *f.verdict.replication;
+  return {{"replicated", found.replicated},
+          {"log_bayes_factor", orNull(found.logBayesFactor)},
+          {"parameters", parametersJson(f, found.estimates)}};
+}
+
+ordered_json positionBreakJson(const DiscoverFindings& f) {
+  const info::discover::PositionBreak& found = *f.written->positionBreak;
+  return {{"position" + f.wording.gapEnd, orNull(f.wording.unit * found.position)},
+          {"side", found.above ? "above" : "below"},
+          {"force_before", orNull(found.before)},
+          {"force_beyond", orNull(found.beyond)},
+          {"z", orNull(found.z)},
+          {"trials_are_cut", f.written->trialsAreCut}};
+}
+
 void addPlannedExperiments(const DiscoverFindings& f, ordered_json& json) {
   for (const bio::discover::PredictedExperiment& one : f.predictedExperiments) {
     ordered_json nats = ordered_json::object();
@@ -271,6 +289,7 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   json["gap"] = {{"train", excessErrorJson(f, verdict.gap)},
                  {"held_out", verdict.heldOut ? excessErrorJson(f, *verdict.heldOut) : nullptr}};
   json["held_out_fitted"] = verdict.heldOutFitted;
+  if (verdict.replication) json["replication"] = replicationJson(f);
   if (f.written) {
     const bool isCorrected = !f.written->trials.empty() && f.written->trials.front().driven;
     json["rmse_after_is_of"] =
@@ -280,6 +299,7 @@ ordered_json verdictJson(const DiscoverFindings& f) {
     json["model"] =
         f.written->model.empty() ? ordered_json(nullptr) : ordered_json(f.written->model);
     json["trials"] = trialsJson(f);
+    if (f.written->positionBreak) json["position_break"] = positionBreakJson(f);
   }
   json["step_s"] = orNull(f.step);
   json["fitted_parameters"] = fittedJson(f.fitted);

@@ -44,6 +44,8 @@ class DiscoveryWriter {
     written_.trials = result_.trials;
     written_.shown = result_.shown;
     written_.sizes = result_.sizes;
+    written_.positionBreak = result_.positionBreak;
+    written_.trialsAreCut = result_.trialsAreCut;
     if (result_.found.verdict.base.size() == 0)
       return std::move(written_);  // stopped before there was a model
     if (result_.repaired) writeModels(*result_.repaired);
@@ -106,10 +108,11 @@ class DiscoveryWriter {
     for (const RepairedTrial& one : written_.trials) {
       const std::string& file = files_[static_cast<std::size_t>(one.index)];
       const std::string& replayed = written_.replayFiles[static_cast<std::size_t>(one.index)];
-      written_.commands.emplace_back(
-          file + ", original model",
-          fmt::format("fisherhill replay {} {}{}", shellWord(request_.model), shellWord(file),
-                      optionsOf(typed, true)));
+      if (!written_.trialsAreCut)
+        written_.commands.emplace_back(
+            file + ", original model",
+            fmt::format("fisherhill replay {} {}{}", shellWord(request_.model), shellWord(file),
+                        optionsOf(typed, true)));
       if (written_.model.empty()) continue;
       const std::string model =
           folder_.active() ? folder_.path(written_.model).string() : written_.model;

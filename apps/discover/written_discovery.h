@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,7 +19,9 @@ struct WrittenDiscovery {
   std::vector<bio::discover::RepairedTrial> trials;
   std::vector<std::string> replayFiles;  ///< file to replay instead of each trial, as typed
   int shown = 0;  ///< index of the trial that `sizes` refer to, a held-out one if there is one
-  std::vector<bio::discover::EffectSize> sizes;  ///< of Verdict::effects
+  std::vector<bio::discover::EffectSize> sizes;                ///< of Verdict::effects
+  std::optional<info::discover::PositionBreak> positionBreak;  ///< as DiscoveryResult
+  bool trialsAreCut = false;
   std::vector<std::pair<std::string, std::string>>
       commands;  ///< quantity, and the command that reproduces it
 };
@@ -34,8 +37,9 @@ struct DiscoveryToWrite {
 };
 
 /// Writes with_effect.osim (or refitted.osim if no effect is missing), effect_only.osim and, if the
-/// effect concerns the EMG, the sensor or a switched-off muscle, the corrected trials driven_N.sto
-/// and driven_held_out_N.sto. The results are the same without a folder.
+/// effect concerns the EMG, the sensor or a switched-off muscle, or if the trials were cut, the
+/// corrected or cut trials driven_N.sto and driven_held_out_N.sto. The results are the same without
+/// a folder.
 WrittenDiscovery writeDiscovery(const DiscoveryToWrite& discovery, Summary& summary,
                                 OutputFolder& folder);
 

@@ -170,8 +170,8 @@ Repaired repairedModel(const MusculoskeletalProblem& data, const Verdict& verdic
   const std::string credits = creditsOf(data, verdict, provenance, effects);
   model.credits += model.credits.empty() ? credits : ". " + credits;
   model.fitted = {data.options().simulation.step, {}};
-  const bool isDriven =
-      concernsTrials(result.added) || data.timedForce(0, verdict.values).size() > 0;
+  const bool isDriven = data.options().trialsAreCut || concernsTrials(result.added) ||
+                        data.timedForce(0, verdict.values).size() > 0;
   const MusculoskeletalSystem arm(model, withoutTables(data));
   for (RepairedTrial& one : result.trials) {
     Trial trial = data.trial(one.index);

@@ -1,5 +1,11 @@
 #include "bio/discovery/workflow.h"
 
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "discovery/first_part.h"
+
 namespace bio::discover {
 namespace {
 
@@ -8,21 +14,75 @@ using info::discover::Stage;
 using info::discover::SteppedVerdict;
 using info::discover::Verdict;
 
-SteppedVerdict search(const DiscoveryRequest& request, DiscoveryResult& result) {
+SteppedVerdict search(const DiscoveryRequest& request, const std::vector<Trial>& trials,
+                      DiscoveryResult& result) {
   MusculoskeletalProblemOptions problem = request.problem;
+  problem.trialsAreCut = result.trialsAreCut;
   info::discover::Options options = request.search;
   options.heldOut.clear();
   for (std::size_t i = request.trials.size() - request.numHeldOut; i < request.trials.size(); ++i)
     options.heldOut.push_back(static_cast<int>(i));
   const auto attempt = [&](double step) {
     problem.simulation.step = step;
-    result.data = std::make_unique<MusculoskeletalProblem>(
-        request.model, request.arm, request.coordinate, request.trials, problem);
+    result.data = std::make_unique<MusculoskeletalProblem>(request.model, request.arm,
+                                                           request.coordinate, trials, problem);
     return info::discover::Attempt{*result.data, options};
   };
   return info::discover::runAtShorterSteps(
       attempt, request.step.value_or(problem.simulation.step),
       request.step ? std::numeric_limits<double>::infinity() : shortestSearchStep);
+}
+
+std::string sentenceOf(const info::discover::PositionBreak& found, const Coordinate& coordinate,
+                       bool trialsAreCut) {
+  const double unit = coordinate.isRotation ? 180 / std::numbers::pi : 1e3;
+  const std::string where = fmt::format("{} = {:.0f} {}", coordinate.name, unit * found.position,
+                                        coordinate.isRotation ? "deg" : "mm");
+  return fmt::format(
+      " {} {} the model lacks a {} of {:.2g} {} at once, as where a muscle's path jumps{}",
+      found.above ? "Above" : "Below", where, coordinate.isRotation ? "torque" : "force",
+      found.beyond - found.before, coordinate.isRotation ? "N m" : "N",
+      trialsAreCut ? "; the trials were used up to where they first pass it." : ".");
+}
+
+/// The trials up to a break; empty if one of them is too short then.
+std::vector<Trial> partsBefore(const DiscoveryRequest& request,
+                               const info::discover::PositionBreak& found) {
+  const double end = found.position + (found.above ? -1 : 1) * found.margin;
+  std::vector<Trial> parts;
+  for (const Trial& trial : request.trials) {
+    auto part = firstPart(trial, request.coordinate, end, found.above);
+    if (!part) return {};
+    parts.push_back(std::move(*part));
+  }
+  return parts;
+}
+
+/// An unknown effect may be a model that fails in a part of the range only.
+void searchBeforeBreak(const DiscoveryRequest& request, DiscoveryResult& result) {
+  Verdict& verdict = result.found.verdict;
+  if (verdict.finding != Finding::unknown || verdict.reached != Stage::finished) return;
+  result.positionBreak =
+      info::discover::positionBreak(*result.data, result.found.options, verdict.outputSd);
+  if (!result.positionBreak) return;
+  if (const std::vector<Trial> parts = partsBefore(request, *result.positionBreak);
+      !parts.empty()) {
+    DiscoveryResult second;
+    second.trialsAreCut = true;
+    second.found = search(request, parts, second);
+    Verdict& other = second.found.verdict;
+    if (mayBeAdded(other)) {
+      other.vetoed = true;
+      other.probability = 0;
+      other.fits += verdict.fits;
+      second.found.wallSeconds += result.found.wallSeconds;
+      second.found.processorSeconds += result.found.processorSeconds;
+      second.positionBreak = result.positionBreak;
+      result = std::move(second);
+    }
+  }
+  result.found.verdict.sentence += sentenceOf(
+      *result.positionBreak, result.data->encompassing().coordinate(), result.trialsAreCut);
 }
 
 /// The model that the verdict means, and the replays of the trials with it.
@@ -60,7 +120,8 @@ void repair(const DiscoveryRequest& request, DiscoveryResult& result) {
 
 DiscoveryResult discover(const DiscoveryRequest& request) {
   DiscoveryResult result;
-  result.found = search(request, result);
+  result.found = search(request, request.trials, result);
+  searchBeforeBreak(request, result);
   Verdict& verdict = result.found.verdict;
   const MusculoskeletalProblem& data = *result.data;
   repair(request, result);
@@ -73,8 +134,8 @@ DiscoveryResult discover(const DiscoveryRequest& request) {
   if (verdict.reached == Stage::finished) {
     MusculoskeletalProblemOptions options = request.problem;
     options.simulation.step = data.options().simulation.step;
-    result.experiments = predictExperiments(request.model, request.arm, request.trials.front(),
-                                            options, data, verdict);
+    result.experiments =
+        predictExperiments(request.model, request.arm, data.trial(0), options, data, verdict);
   }
   return result;
 }

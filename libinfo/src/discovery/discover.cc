@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "discovery/judgement/held_out_trials.h"
+#include "discovery/judgement/replication.h"
 #include "discovery/likelihood/selected_samples.h"
 #include "discovery/nonparametric/nonparametric_force.h"
 #include "discovery/nonparametric/race_formula.h"
@@ -344,6 +345,12 @@ class Work {
     // simulation must be no worse either
     judgement.heldOutWorse =
         !chosen_.empty() && with.score < without.score - 3 && with.error > 0.95 * without.error;
+    if (!chosen_.empty() && (judgement.strangeAfter || judgement.heldOutWorse)) {
+      verdict_.replication =
+          replicate(data_, options_, verdict_.outputSd, after,
+                    [this](const std::string& doing) { report(stage_, fraction_, doing); });
+      judgement.replicated = verdict_.replication && verdict_.replication->replicated;
+    }
   }
 
   // Sets the initial states of the held-out trials.

@@ -33,6 +33,19 @@ class VerdictSentence {
         *verdict_.heldOut->probability);
   }
 
+  // That the held-out trials show the same effects, though not with the same parameters.
+  std::string replicated() const {
+    if (!verdict_.replication || !verdict_.replication->replicated) return "";
+    std::string words;
+    for (const Estimate& e : verdict_.replication->estimates) {
+      const Quantity& quantity = data_.quantities()[e.quantity];
+      words += fmt::format("{}{} = {:.3g} ± {:.1g}{}{}", words.empty() ? "" : ", ", quantity.name,
+                           e.value, e.sd, quantity.unit.empty() ? "" : " ", quantity.unit);
+    }
+    return " The held-out trials, fitted by themselves, show the same (" + words +
+           "), but not the parameters of the other trials.";
+  }
+
   // The samples that were not used, and the reason.
   std::string samples() const {
     const RecordedNoise& noise = verdict_.noise;
@@ -67,7 +80,7 @@ class VerdictSentence {
                (verdict_.vetoed && !verdict_.after.sized
                     ? "; the size of the residual does not match the noise."
                     : ".") +
-               scatter() + farOff();
+               scatter() + replicated() + farOff();
       case Finding::unknown:
         return "The model lacks an effect that is not in the catalogue." +
                (names.empty() ? std::string()

@@ -780,6 +780,9 @@ class DiscoveryResult:
     gap: ExcessError
     gap_held_out: ExcessError | None
     held_out_fitted: bool
+    replicated: bool | None
+    position_break: float | None
+    trials_are_cut: bool
     undetectable_below: dict[str, float]
     planned_experiments: list[PlannedExperiment]
     unknown: UnknownForce | None
@@ -878,6 +881,14 @@ def discover(
             there is no excess error.
     held_out_fitted : bool
         True: the effect was found only when the held-out trials were fitted as well.
+    replicated : bool or None
+        Whether held-out trials that are not as predicted show the same effects when fitted by
+        themselves; None if this was not asked.
+    position_break : float or None
+        Position [rad] or [m] at which the base model lacks a force at once; None if there is none,
+        or if the effect is known without.
+    trials_are_cut : bool
+        True: only what comes before `position_break` in each trial was used.
     undetectable_below : dict
         {id: smallest detectable amplitude}; inf: the data cannot show the effect.
     planned_experiments : list

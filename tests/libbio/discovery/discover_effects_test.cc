@@ -113,7 +113,8 @@ TEST(Effects, AreAllThereWithTheirWords) {
                          "Fmax_TRIlong", "lopt_BIC",  "lslack_BRD", "wrap_TRI",
                          "wrap_BIC_BRD", "bias",      "gain",       "clock",
                          "clock_rate",   "lag",       "drift",      "swap_BRA_BRD",
-                         "torque_from",  "mass_from", "mass_until", "torque_until"}) {
+                         "torque_from",  "mass_from", "mass_until", "torque_until",
+                         "limit_exp"}) {
     EXPECT_TRUE(ids.contains(id)) << id;
   }
   // what is equivalent to something is equivalent to something there is

@@ -1,11 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <numbers>
 #include <random>
 
-#include "bio/discovery/musculoskeletal_problem.h"
+#include "bio/analysis/driven_trial.h"
+#include "bio/discovery/workflow.h"
 #include "info/discovery/discover.h"
 #include "support/shipped_elbow.h"
 
@@ -85,6 +87,63 @@ TEST(Discover, NamesViscousDampingOfTheEightMuscleElbow) {
   EXPECT_EQ(data.candidates()[found.candidate].id, "visc");
   EXPECT_EQ(verdict.effects.size(), 1u);
   EXPECT_NEAR(found.estimates.front().value, 0.3, 4 * found.estimates.front().sd);
+}
+
+// Two channels exchanged, and a torque that is in no catalogue above 108 degrees.
+TEST(Discover, UsesWhatComesBeforeAPositionAtWhichTheModelFails) {
+  const ShippedElbow elbow;
+  Model person = elbow.model;
+  person.expressionForces.push_back(
+      {"law", "elbow_flexion", "-0.4*(1+tanh((q-1.885)/0.01))", true, {}});
+  const MusculoskeletalSystem arm(person, ShippedElbow::options());
+  std::mt19937_64 random(8);
+  std::normal_distribution<double> normal;
+  std::vector<Trial> trials;
+  for (const double effort : {1.0, 0.9, 1.1}) {
+    Trial trial = elbow.trial;
+    trial.file = "curl_slow with other efforts";
+    trial.excitations *= effort;
+    SimulationOptions options;
+    options.integrator = Integrator::cvode;
+    const TrialReplay replay =
+        replayTrial(arm, trial, options, beginningOf(trial, person, arm, {}));
+    ASSERT_EQ(replay.motion.outcome, Outcome::completed) << replay.motion.why;
+    MeasuredMotion& measured = trial.measured.front();
+    const auto n = static_cast<Index>(replay.motion.time.size());
+    measured.times = VectorXd::Map(replay.motion.time.data(), n);
+    measured.values = replay.motion.q.row(0).transpose();
+    for (double& angle : measured.values) angle += 0.3 * degree * normal(random);
+    const auto place = [&](const char* name) {
+      return std::find(trial.muscles.begin(), trial.muscles.end(), name) - trial.muscles.begin();
+    };
+    trial.excitations.col(place("BRA")).swap(trial.excitations.col(place("TRIlong")));
+    trials.push_back(std::move(trial));
+  }
+  DiscoveryRequest request{
+      elbow.model, ShippedElbow::options(), "elbow_flexion", trials, 1, {}, {}, {}, {}};
+  request.search.maxEffects = 1;
+  request.search.latentTolerance = 0.02;  // the torque is no noise of the inputs
+  // what could imitate such a torque, and what takes time
+  request.problem.without = {"visc",      "coulomb",   "stribeck",  "drag",       "powerdamp",
+                             "stiffness", "limit",     "limit_exp", "payload",    "tilt",
+                             "const",     "handforce", "spring",    "timed",      "fatigue",
+                             "wraps",     "muscles",   "crosstalk", "electrodes", "baselines",
+                             "mass",      "tau",       "tendon"};
+  const DiscoveryResult result = discover(request);
+  const auto& verdict = result.found.verdict;
+  EXPECT_EQ(verdict.finding, info::discover::Finding::named) << verdict.sentence;
+  ASSERT_TRUE(result.positionBreak) << verdict.sentence;
+  ASSERT_TRUE(result.trialsAreCut) << verdict.sentence;
+  EXPECT_NEAR(result.positionBreak->position / degree, 108, 5);
+  ASSERT_EQ(verdict.effects.size(), 1u);
+  EXPECT_EQ(result.data->candidates()[verdict.effects.front().candidate].id, "swap_TRIlong_BRA");
+  EXPECT_TRUE(verdict.vetoed);
+  EXPECT_NE(verdict.sentence.find("Above elbow_flexion = "), std::string::npos) << verdict.sentence;
+  ASSERT_EQ(result.trials.size(), 3u);
+  for (const RepairedTrial& one : result.trials) {
+    ASSERT_TRUE(one.driven);
+    EXPECT_NEAR(one.after, one.fitted, 0.01 * degree);
+  }
 }
 
 }  // namespace

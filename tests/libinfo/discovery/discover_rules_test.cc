@@ -61,6 +61,25 @@ TEST(Decide, SaysParameterWhenOneIsOffByMoreThanItsTolerance) {
             Finding::parameter);
 }
 
+TEST(Decide, KeepsANameThatHeldOutTrialsShowWithOtherParameters) {
+  Judgement j = raced({{{0}, 30.0}, {{1}, 20.0}}, {0});
+  for (bool Judgement::*against : {&Judgement::strangeAfter, &Judgement::heldOutWorse}) {
+    j.*against = true;
+    j.replicated = false;
+    EXPECT_EQ(decide(catalogue(), j, {}).finding, Finding::unknown);
+    j.replicated = true;
+    const Decision d = decide(catalogue(), j, {});
+    EXPECT_EQ(d.finding, Finding::named);
+    EXPECT_FALSE(d.proxy);
+    EXPECT_TRUE(d.vetoed);
+    EXPECT_EQ(d.probability, 0);
+    j.*against = false;
+  }
+  j.after.white = false;  // no excuse for this
+  j.strangeAfter = true;
+  EXPECT_EQ(decide(catalogue(), j, {}).finding, Finding::unknown);
+}
+
 TEST(Decide, SaysUnknownWhenALawFitsOnlyAtTheEdgeOfItsShape) {
   std::vector<Candidate> all = catalogue();
   all[0].quantities = {0, 4};

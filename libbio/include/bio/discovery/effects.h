@@ -27,6 +27,7 @@ struct EffectEntry {
 /// | powerdamp | −b·w·(w² + 0.01²)^{(n−1)/2} | b |
 /// | stiffness | −k(q − q_r) | k N·m/rad |
 /// | limit | OpenSim's CoordinateLimitForce, one stiffness for both ends | K N·m/rad |
+/// | limit_exp | c·[e^{−k(q−r+h)} − e^{k(q−r−h)}], h half the coordinate's range | c N·m |
 /// | payload | a point at the mass centre of the farthest body | m kg |
 /// | tilt | gravity's moment is that of q + δ | δ rad |
 /// | const | +c | c N·m |

@@ -18,6 +18,7 @@ struct MusculoskeletalProblemOptions {
   double startSd = 0.035;            ///< prior sd of each trial's initial angle [rad] > 0
   double speedSd = 0.1;              ///< prior sd of each trial's initial speed [rad/s] > 0, of one
                                      ///< that starts in motion: as large as that speed
+  bool trialsAreCut = false;         ///< they are parts of those in the files
   bool usableSeries = true;          ///< refuse measured series that requireUsable refuses
   std::vector<std::string> without;  ///< ids of effects to exclude from the catalogue
   std::vector<info::discover::FormulaTerm> formula;  ///< of a candidate "formula"; empty: none

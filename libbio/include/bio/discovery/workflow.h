@@ -10,6 +10,7 @@
 #include "bio/discovery/musculoskeletal_problem.h"
 #include "bio/discovery/predicted_experiments.h"
 #include "bio/discovery/repaired.h"
+#include "info/discovery/judgement/position_break.h"
 #include "info/discovery/search/shorter_steps.h"
 
 namespace bio::discover {
@@ -32,6 +33,12 @@ struct DiscoveryResult {
   std::unique_ptr<MusculoskeletalProblem> data;
   info::discover::SteppedVerdict found;
 
+  /// Where the model fails at once, if the search of whole trials ended with an unknown effect.
+  std::optional<info::discover::PositionBreak> positionBreak;
+  /// The search was repeated with the trials up to where they first pass that position, and its
+  /// verdict has a name: it is the one in `found`. Its trials are in `data`.
+  bool trialsAreCut = false;
+
   /// The model with all fitted values, if the search has a model: with the effects found, with the
   /// formula of an unknown effect, or, if nothing is missing, with refitted parameters only.
   std::optional<Repaired> repaired;
@@ -46,7 +53,9 @@ struct DiscoveryResult {
 
 /// Searches for effects that a model lacks, repairs the model and replays every trial with it.
 ///
-/// The search is info::discover::runAtShorterSteps on a MusculoskeletalProblem; repairedModel gives
+/// The search is info::discover::runAtShorterSteps on a MusculoskeletalProblem. If it ends with an
+/// unknown effect and the model fails at a position at once (positionBreak), it is repeated with
+/// what of the trials comes before it; a name found there has no probability. repairedModel gives
 /// the model, whose errors replace those of the fit in the verdict (takeReplays). A search that was
 /// stopped has neither model nor experiments.
 /// @throws what MusculoskeletalProblem, runAtShorterSteps and repairedModel throw

@@ -21,6 +21,7 @@ const std::vector<EffectEntry>& effectEntries() {
       {"powerdamp", addPowerDamping},
       {"stiffness", addStiffness},
       {"limit", addLimits},
+      {"limit_exp", addExponentialLimits},
       {"payload", addPayload},
       {"tilt", addTilt},
       {"const", addConstantTorque},

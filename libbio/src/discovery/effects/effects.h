@@ -18,6 +18,7 @@ void addQuadraticDrag(EncompassingModel& model);
 void addPowerDamping(EncompassingModel& model);
 void addStiffness(EncompassingModel& model);
 void addLimits(EncompassingModel& model);
+void addExponentialLimits(EncompassingModel& model);
 void addPayload(EncompassingModel& model);
 void addTilt(EncompassingModel& model);
 void addConstantTorque(EncompassingModel& model);

@@ -1,9 +1,12 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "discovery/effects/effects.h"
 
 // Forces that depend on the position alone. Priors: passive elbows (AIST database after Engin &
-// Chen 1987; MacKay et al. 1986), 0.5 to 3 N·m/rad in the middle, stiffer towards the ends.
+// Chen 1987; MacKay et al. 1986), 0.5 to 3 N·m/rad in the middle, stiffer towards the ends; there
+// the double exponential of Audu and Davy (1985) is usual, with rates of 2 to 20 per radian.
 
 namespace bio::discover {
 namespace {
@@ -76,6 +79,26 @@ void addLimits(EncompassingModel& model) {
       model, "limit", "passive joint limits",
       "Passive tissue increasingly resists motion towards both ends of the joint's range.",
       info::discover::EffectKind::structure, {K, upper, lower, transition}, starts));
+}
+
+void addExponentialLimits(EncompassingModel& model) {
+  if (const std::string limit = limitOf(model); !limit.empty()) {
+    return model.addPresent("limit_exp", limit);
+  }
+  const Coordinate& q = model.coordinate();
+  const double span = q.rangeMax - q.rangeMin, middle = model.middle();
+  addExpression(model,
+                {"limit_exp",
+                 "exponential passive joint limits",
+                 "Passive tissue resists motion with a torque that grows exponentially towards "
+                 "both ends of the joint's range.",
+                 fmt::format("c*(exp(-k*(q-r+{0}))-exp(k*(q-r-{0})))", 0.5 * span),
+                 {"c", "k", "r"},
+                 {amplitude("limit_exp.torque", "N m half a range from rest", 0, 200, 5),
+                  shape("limit_exp.rate", "1/rad", 6, 2, 25, 3),
+                  shape("limit_exp.rest", "rad", middle, middle - 0.3 * span, middle + 0.3 * span,
+                        0.15 * span)},
+                 {{1, 6, middle}, {2, 4, middle}, {2, 10, middle}}});
 }
 
 }  // namespace bio::discover

@@ -57,9 +57,9 @@ struct Options {
   double numericalTolerance = 0.2;
   bool judgeSamples = true;  ///< exclude outliers, and samples with correlated noise
   bool symbolic = true;      ///< search a formula if no effect of the catalogue fits
-  /// runAtShorterSteps: if nothing was found and errors as large as those of the held-out trials
-  /// are less probable than this, the search is repeated with the held-out trials fitted as well;
-  /// 0: never
+  /// runAtShorterSteps: if the fitted trials show nothing and errors as large as those of the
+  /// held-out trials are less probable than this, the search is repeated with the held-out trials
+  /// fitted as well; 0: never
   double secondLook = 0.05;
   /// If errors as large as those of the held-out trials are less probable than this, the verdict
   /// says so and gives no probability of an effect.
@@ -146,6 +146,16 @@ struct NonparametricForce {
   Eigen::VectorXd sd;      ///< of that
 };
 
+/// The effects of a verdict looked for in the held-out trials alone, with all nuisance parameters
+/// fitted anew (docs/decisions/067-replication.md).
+struct Replication {
+  double logBayesFactor = 0;        ///< log Bayes factor [nats] there against the base model
+  std::vector<Estimate> estimates;  ///< of the effects' quantities there
+  /// Each effect has the evidence there that it needed in the fitted trials, and its amplitudes
+  /// agree within 2 standard deviations of their difference.
+  bool replicated = false;
+};
+
 /// The result of a search. Everything up to `reached` is filled in; for a search that was stopped
 /// after the fit of the base model also the localisation and the finalists so far.
 struct Verdict {
@@ -154,8 +164,9 @@ struct Verdict {
   std::string sentence;              ///< the finding as a sentence
   std::vector<NamedEffect> effects;  ///< in the order they were found; for unknown: the proxy
   double probability = 0;            ///< of all effects together; 0 if none is given
-  /// Effects are named, but without a probability: the innovations have the wrong size, or the
-  /// errors of the held-out trials are improbably large (Options::farOff).
+  /// Effects are named, but without a probability: the innovations have the wrong size, the errors
+  /// of the held-out trials are improbably large (Options::farOff), or these trials show the
+  /// effects only with parameters of their own (Replication).
   bool vetoed = false;
   bool proxy = false;  ///< finding unknown: `effects` is only a proxy for the missing effect
   /// Nothing was found without the held-out trials, although their errors were too large. All
@@ -184,6 +195,8 @@ struct Verdict {
   ExcessError gap;  ///< on the trials that were fitted
   std::optional<ExcessError> heldOut;
   std::optional<HeldOutAdequacy> heldOutBefore, heldOutAfter;
+  /// If effects were chosen, but the held-out trials are not as expected with them.
+  std::optional<Replication> replication;
   std::optional<Unknown> unknown;
   /// If all terms of its formula are functions of the state and the problem offers it (withFormula)
   std::optional<RacedFormula> formula;

@@ -88,9 +88,10 @@ Decision decide(const std::vector<Candidate>& candidates, const Judgement& judge
     decision.probability *= named.probability;
   }
   const Adequacy& after = judgement.after;
+  const bool contradicted = judgement.heldOutWorse || judgement.strangeAfter;
   if (!after.white || !after.independent || !after.causeless ||
-      judgement.latentAfter > options.latentTolerance || judgement.heldOutWorse ||
-      judgement.strangeAfter || stretched || judgement.nonparametricWins) {
+      judgement.latentAfter > options.latentTolerance || (contradicted && !judgement.replicated) ||
+      stretched || judgement.nonparametricWins) {
     decision.finding = Finding::unknown;
     decision.proxy = true;
     decision.probability = 0;
@@ -98,7 +99,7 @@ Decision decide(const std::vector<Candidate>& candidates, const Judgement& judge
     return decision;
   }
   decision.finding = !alone ? Finding::ambiguous : parameters ? Finding::parameter : Finding::named;
-  if (!after.sized || judgement.heldOutFarOff) {
+  if (!after.sized || judgement.heldOutFarOff || contradicted) {
     decision.vetoed = true;
     decision.probability = 0;
   }

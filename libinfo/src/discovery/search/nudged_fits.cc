@@ -14,9 +14,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-// of nudgeStages: strong enough for stability, weak enough for missing effects to show
-constexpr std::size_t kHeldStage = 2;
-
 // Fits that start with nudging: the stage at which their evidence is compared, by how many nats one
 // may be behind the best there, and how many are fitted to convergence.
 constexpr std::size_t kHalfWay = 3;
@@ -41,6 +38,23 @@ std::optional<Search::Led> Search::ledFrom(const Effects& effects, VectorXd star
   }
   led.values = std::move(start);
   return led;
+}
+
+std::optional<Fit> Search::tracked(const Effects& effects, VectorXd start) {
+  if (nudgedLikelihoods_.empty()) return {};
+  const Hypothesis hypothesis = makeHypothesis(data_, effects, trials_);
+  std::optional<Fit> last;
+  std::vector<VectorXd> eta;
+  for (const Likelihood& nudged : nudgedLikelihoods_) {
+    auto fit = nudged.tryFit(hypothesis, {output_, kFirstSize, options_.latentTime}, start, eta,
+                             {kShort, 0.1});
+    ++fits_;
+    if (!fit) continue;
+    start = fit->values;
+    eta = fit->eta;
+    last = std::move(fit);
+  }
+  return last;
 }
 
 void Search::raceLed(const Effects& base, const std::vector<std::size_t>& candidates) {
@@ -136,53 +150,6 @@ std::vector<Screened> Search::screenHeld(const Effects& effects) {
   std::sort(result.begin(), result.end(),
             [](const Screened& a, const Screened& b) { return a.gain > b.gain; });
   return result;
-}
-
-// The amplitude on its grid, then by golden section next to the best value, with the nuisance
-// parameters fitted at each; a joint fit would be led to another minimum by the nuisance
-// parameters.
-Search::GridStart Search::searchGrid(std::size_t candidate, const Fit& base) const {
-  const Likelihood& held = nudgedLikelihoods_[kHeldStage];
-  const auto amplitude = static_cast<Index>(data_.candidates()[candidate].quantities[0]);
-  GridStart best;
-  const auto at = [&](double x) {
-    VectorXd values = base.values;
-    values[amplitude] = x;
-    const auto fit = held.tryFit(base.hypothesis, base.noise, values, {}, {2, 0.3});
-    const double gain = fit ? fit->logEvidence - base.logEvidence : -HUGE_VAL;
-    if (gain > best.gain) best = {fit->values, gain};
-    return gain;
-  };
-  std::vector<double> grid = {data_.quantities()[static_cast<std::size_t>(amplitude)].nominal};
-  for (const VectorXd& start : data_.candidates()[candidate].starts) grid.push_back(start[0]);
-  std::sort(grid.begin(), grid.end());
-  std::size_t top = 0;
-  double most = -HUGE_VAL;
-  for (std::size_t k = 0; k < grid.size(); ++k)
-    if (const double gain = at(grid[k]); gain > most) {
-      most = gain;
-      top = k;
-    }
-  double low = grid[top > 0 ? top - 1 : 0], high = grid[std::min(top + 1, grid.size() - 1)];
-  constexpr double kGolden = 0.381966;
-  double left = low + kGolden * (high - low), right = high - kGolden * (high - low);
-  double ofLeft = at(left), ofRight = at(right);
-  for (int k = 0; k < 5; ++k) {
-    if (ofLeft > ofRight) {
-      high = right;
-      right = left;
-      ofRight = ofLeft;
-      left = low + kGolden * (high - low);
-      ofLeft = at(left);
-    } else {
-      low = left;
-      left = right;
-      ofLeft = ofRight;
-      right = high - kGolden * (high - low);
-      ofRight = at(right);
-    }
-  }
-  return best;
 }
 
 }  // namespace info::discover

@@ -17,6 +17,9 @@ void Search::raceOne(const Effects& base, std::size_t candidate) {
   report_(describe(data_, effects));
   improve(effects, bestStart(base, candidate, near, raceSize), raceSize, &near,
           bestScore() - kGivenUp);
+  if (base.empty() && isGrid(data_.candidates()[candidate]) && exceedsNoise(near))
+    if (const auto fit = searchForcedGrid(candidate))
+      improve(effects, fit->values, fit->noise.latent, &*fit, bestScore() - kGivenUp);
   // a hypothesis that contains the base cannot be much worse: a wrong minimum; repeat from the base
   // itself
   if (at(effects).score < at(base).score - options_.evidence)

@@ -17,6 +17,8 @@ namespace {
 
 // with so large a latent force the base model is too far from the data for linear steps
 constexpr double kPoor = 0.2;
+// Candidates with several minima that are raced first, whatever a linear step promises.
+constexpr std::size_t kGrids = 3;
 
 }  // namespace
 
@@ -144,6 +146,10 @@ std::vector<std::size_t> Search::shortlist(const Effects& effects, int most) {
     for (const Screened& s : filter)
       if (kinds.insert(data_.candidates()[s.candidate].kind).second) add(s);
   }
+  // a linear step sees only the nearest of several minima
+  std::size_t grids = 0;
+  for (const Screened& s : filter)
+    if (effects.empty() && isGrid(data_.candidates()[s.candidate]) && grids++ < kGrids) add(s);
   const std::vector<std::size_t> touched = list;
   for (const std::size_t c : touched)
     for (const std::string& id : data_.candidates()[c].equivalents)

@@ -129,6 +129,8 @@ void Search::calibrate() {
   for (const double size : {kWidest, kRaceSize})
     if (!at({}).works() || at({}).fit.noise.latent > kFirstSize)
       improve({}, nominalValues(data_), size);
+  if (const auto led = tracked({}, nominalValues(data_)))
+    improve({}, led->values, kFirstSize, &*led);
   mustWork();
   // evaluate the scale of the latent force along the measured motion, then repeat from both ends
   const Fit first = at({}).fit;
@@ -138,7 +140,7 @@ void Search::calibrate() {
   report_("base model");
   improve({}, first.values, kRaceSize);
   // there it may follow the data only because of its latent force
-  if (!at({}).works()) improve({}, first.values, first.noise.latent, &first);
+  if (first.noise.latent > 0) improve({}, first.values, first.noise.latent, &first);
   mustWork();
   const std::uint64_t starts = nudgedLikelihoods_.empty() ? kStarts : kStartsBesidesLed;
   for (std::uint64_t start = 0; start < starts; ++start) {

@@ -88,6 +88,11 @@ class Search {
   /// The fit without latent force, computed on demand; from the nominal values if the model cannot
   /// be simulated without that force at the values of its fit.
   const Fit& simulation(const Effects& effects);
+  /// A fit with latent force of a nudged model, the nudging reduced from stage to stage while the
+  /// latent force takes its place: the simulation stays near the data from the beginning, also past
+  /// places where a path jumps, which no step of a fit would cross. Empty if nudging is not
+  /// available.
+  std::optional<Fit> tracked(const Effects& effects, Eigen::VectorXd start);
   /// Fits `base` + a candidate, unless already fitted.
   void raceOne(const Effects& base, std::size_t candidate);
   /// The same for each candidate; then repeats them, and `base`, from the leader's nuisance
@@ -167,6 +172,9 @@ class Search {
     double gain = -HUGE_VAL;  ///< log Bayes factor [nats] against the base, both nudged
   };
   GridStart searchGrid(std::size_t candidate, const Fit& base) const;
+  /// The best fit beside the base model with a latent force and the amplitude held on its grid;
+  /// empty if none is better than without the candidate.
+  std::optional<Fit> searchForcedGrid(std::size_t candidate);
   std::map<std::size_t, GridStart> gridStarts_;  ///< best start of each candidate with a grid
   Eigen::VectorXd scaleValues_;
   std::map<Effects, Entry> entries_;

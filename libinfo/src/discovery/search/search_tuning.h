@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 // Constants of the search for effects.
@@ -26,6 +27,9 @@ inline constexpr double kDraftError = 3;
 // minimum.
 inline constexpr int kIterations = 25, kShort = 8;
 inline constexpr double kGivenUp = 60;
+
+// Of nudgeStages: strong enough for stability, weak enough for missing effects to show.
+inline constexpr std::size_t kHeldStage = 2;
 
 // Likelihood::marginal gains a few nats, and more for hypotheses that damp the model; hypotheses
 // further behind are skipped. The second: gain [nats] of a fit from which the step is repeated.

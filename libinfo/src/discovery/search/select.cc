@@ -9,6 +9,9 @@ constexpr std::size_t kFromNominal = 4;  // single effects that are fitted once 
 // Number of alternatives that are fitted in the place of each of several effects. It is large
 // because linear predictions may rank the true one low.
 constexpr int kRivals = 7;
+// More single effects that are fitted if nothing was found although, without the latent force, a
+// linear step of theirs promises evidence.
+constexpr std::size_t kMore = 8;
 constexpr std::size_t kPartners = 2;  // alternatives of each of two effects that are tried together
 
 class Selection {
@@ -35,7 +38,7 @@ class Selection {
       chosen_ = best();
       while (swapOne() || swapTwo()) {
       }
-      if (chosen_ == before && !replaceOne(list) &&
+      if (chosen_ == before && !replaceOne(list) && !raceMore() &&
           !(chosen_.empty() && latentForceRemains() && simplify()))
         break;
     }
@@ -58,6 +61,21 @@ class Selection {
   bool onlyParameter() const {
     return chosen_.size() == 1 &&
            search_.data().candidates()[chosen_.front()].kind == EffectKind::parameter;
+  }
+
+  // A small latent force may hide an effect from the screening.
+  bool raceMore() {
+    if (!chosen_.empty()) return false;
+    std::vector<std::size_t> list;
+    for (const Screened& s : search_.screen({}, true))
+      if (s.gain > options_.evidence && list.size() < kMore &&
+          search_.entries().count({s.candidate}) == 0)
+        list.push_back(s.candidate);
+    if (list.empty()) return false;
+    search_.race({}, list);
+    search_.enforceNesting();
+    chosen_ = best();
+    return !chosen_.empty();
   }
 
   // Before a second effect is accepted, single effects are fitted from other starts: from a base

@@ -28,9 +28,16 @@ SteppedVerdict runOnce(const MakeAttempt& attempt, double step, double shortest)
   }
 }
 
+// The fitted trials by themselves show nothing.
+bool hasNothing(const Verdict& verdict, const Options& options) {
+  return verdict.finding == Finding::none ||
+         (verdict.finding == Finding::unknown && verdict.effects.empty() &&
+          verdict.before.adequate() && verdict.latentSizeBefore <= options.latentTolerance);
+}
+
 bool isWorthASecondLook(const Verdict& verdict, const Options& options) {
-  return verdict.reached == Stage::finished && verdict.finding == Finding::none &&
-         verdict.heldOut && verdict.heldOut->probability &&
+  return verdict.reached == Stage::finished && hasNothing(verdict, options) && verdict.heldOut &&
+         verdict.heldOut->probability &&
          *verdict.heldOut->probability < options.secondLook;
 }
 
@@ -65,6 +72,10 @@ SteppedVerdict runTwiceIfNeeded(const MakeAttempt& attempt, double step, double 
   const int fits = first.verdict.fits + second.verdict.fits;
   if (hasAName(second.verdict)) {
     second.verdict.heldOutFitted = true;
+    if (first.verdict.finding == Finding::unknown) {  // nor does anything else support it
+      second.verdict.vetoed = true;
+      second.verdict.probability = 0;
+    }
     second.verdict.sentence += " It was found only when the held-out trials were fitted as well.";
     second.verdict.fits = fits;
     return second;

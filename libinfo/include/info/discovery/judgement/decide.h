@@ -17,6 +17,7 @@ struct Judgement {
   /// effects
   bool strangeBefore = false, strangeAfter = false;
   bool heldOutWorse = false;       ///< held-out trials are evidence against the chosen effects
+  bool replicated = false;         ///< but they show the same effects: Replication::replicated
   bool heldOutFarOff = false;      ///< their simulation errors are improbable: Options::farOff
   bool nonparametricWins = false;  ///< NonparametricForce::wins
 };
@@ -34,15 +35,16 @@ struct Decision {
 ///   standard deviations, else `none`.
 /// - Nothing chosen, base inadequate: `unknown`.
 /// - Chosen, but the residuals are not white or follow a Cause, the latent force is too large, or
-///   held-out trials are not as expected or are evidence against it: `unknown`, the chosen effects
-///   are a proxy.
+///   held-out trials are not as expected or are evidence against it and do not show the same
+///   effects by themselves: `unknown`, the chosen effects are a proxy.
 /// - Chosen, but one of them, without equivalents, has a shape parameter at a bound: the same,
 ///   since the true force has another form.
 /// - Chosen, but a non-parametric force explains more: the same.
 /// - Chosen: each forms a class with its declared equivalents and with all alternatives whose log
 ///   evidence is at most `classWidth` lower. If every class has one member: `named`, or `parameter`
 ///   if all are errors of parameters; otherwise `ambiguous`. No probability is given if the
-///   innovations have the wrong size or the errors of held-out trials are improbably large. The
+///   innovations have the wrong size, the errors of held-out trials are improbably large, or the
+///   effects were only replicated there. The
 ///   probability of an effect is its share of exp(log Z) among the alternatives that were fitted in
 ///   its place; declared equivalents at most `classWidth` behind count as much as the leader.
 Decision decide(const std::vector<Candidate>& candidates, const Judgement& judgement,

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <optional>
+
+#include "bio/tables/trial.h"
+
+// Not public.
+
+namespace bio::discover {
+
+/// The rows of a trial before a coordinate is first measured beyond a position.
+/// @param above beyond it: larger values
+/// @return the trial itself if it stays on the near side; empty if less than a second is left
+std::optional<Trial> firstPart(const Trial& trial, const std::string& coordinate, double position,
+                               bool above);
+
+}  // namespace bio::discover

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "info/discovery/discover.h"
+
+namespace info::discover {
+
+/// A position of the first output beyond which the base model lacks a force at once, as where a
+/// muscle's path jumps or the limb meets something (docs/decisions/068-position-breaks.md).
+struct PositionBreak {
+  double position = 0;  ///< [unit of the output]
+  bool above = true;    ///< beyond it: larger positions; false: smaller ones
+  double before = 0;    ///< mean of the latent force next to it on the near side [N·m] or [N]
+  double beyond = 0;    ///< on the far side
+  double z = 0;         ///< their difference in standard errors
+  double margin = 0;    ///< how uncertain the position is, roughly [unit of the output]
+};
+
+/// Compares the latent forces of the base model on both sides of every position that the fitted
+/// trials visit, each side a tenth of their range wide.
+/// @param outputSd σ_y
+/// @return the position with the largest |z|, if that is at least 5 and no more than 40 % of the
+///   time is spent beyond; empty also if DiscoveryProblem::nudged is not available
+/// @throws what Likelihood throws
+std::optional<PositionBreak> positionBreak(const DiscoveryProblem& data, const Options& options,
+                                           double outputSd);
+
+}  // namespace info::discover
