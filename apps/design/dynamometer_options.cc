@@ -85,14 +85,16 @@ class DynamometerLists {
       if (!isGiven || isUsed) return;
       throw std::invalid_argument(fmt::format("{} requires {} among --kinds", option, kinds));
     };
-    using enum ExperimentKind;
-    refuse(!options_.speeds.empty(), any({isokinetic, passive}), "--speeds",
-           "isokinetic or passive");
-    refuse(!options_.efforts.empty(), any({isometric, isokinetic, release, isotonic}), "--efforts",
-           "one with contractions");
-    refuse(!options_.releases.empty(), any({release}), "--releases", "release");
-    refuse(!options_.releaseSpeed.empty(), any({release}), "--release-speed", "release");
-    refuse(!options_.loads.empty(), any({isotonic}), "--loads", "isotonic");
+    refuse(!options_.speeds.empty(), any({ExperimentKind::isokinetic, ExperimentKind::passive}),
+           "--speeds", "isokinetic or passive");
+    refuse(!options_.efforts.empty(),
+           any({ExperimentKind::isometric, ExperimentKind::isokinetic, ExperimentKind::release,
+                ExperimentKind::isotonic}),
+           "--efforts", "one with contractions");
+    refuse(!options_.releases.empty(), any({ExperimentKind::release}), "--releases", "release");
+    refuse(!options_.releaseSpeed.empty(), any({ExperimentKind::release}), "--release-speed",
+           "release");
+    refuse(!options_.loads.empty(), any({ExperimentKind::isotonic}), "--loads", "isotonic");
   }
 
   void addPositions() {
