@@ -35,12 +35,12 @@ struct LatentStudy {
 
 /// What one way to calibrate finds.
 struct LatentOutcome {
-  int converged = 0;
-  Eigen::ArrayXd bias;      ///< of the mean, in its own standard errors
-  Eigen::ArrayXd rms;       ///< of the errors, in the parameter's unit
-  Eigen::ArrayXd sd;        ///< that the calibrations claim: root mean square
-  Eigen::ArrayXd told;      ///< share of repetitions with an interval
-  Eigen::ArrayXd coverage;  ///< share of those intervals (95 %) that hold the truth
+  int converged = 0, failed = 0;  ///< failed: without an estimate, and not counted below
+  Eigen::ArrayXd bias;            ///< of the mean, in its own standard errors
+  Eigen::ArrayXd rms;             ///< of the errors, in the parameter's unit
+  Eigen::ArrayXd sd;              ///< that the calibrations claim: root mean square
+  Eigen::ArrayXd told;            ///< share of repetitions with an interval
+  Eigen::ArrayXd coverage;        ///< share of those intervals (95 %) that hold the truth
 };
 struct LatentStatistics {
   int repetitions = 0;
@@ -124,11 +124,13 @@ inline LatentStatistics repeatLatentCalibration(int repetitions, const LatentStu
   for (const bool latent : {true, false}) {
     Eigen::ArrayXXd errors = Eigen::ArrayXXd::Zero(p, repetitions), sds = errors, told = errors,
                     covered = errors;
-    Eigen::ArrayXd converged = Eigen::ArrayXd::Zero(repetitions);
+    Eigen::ArrayXd converged = Eigen::ArrayXd::Zero(repetitions), estimated = converged;
     info::parallelFor(repetitions, 0, [&](int i) {
       const Calibration found =
           elbow.calibrated(elbow.recorded(static_cast<std::uint64_t>(i)), latent);
       converged[i] = found.converged;
+      estimated[i] = found.failure.empty();
+      if (!found.failure.empty()) return;
       for (Eigen::Index k = 0; k < p; ++k) {
         const CalibratedParameter& one = found.parameters.at(static_cast<std::size_t>(k));
         errors(k, i) = one.value - theta[k];
@@ -140,17 +142,19 @@ inline LatentStatistics repeatLatentCalibration(int repetitions, const LatentStu
     });
     LatentOutcome& outcome = latent ? result.latent : result.shared;
     outcome.converged = static_cast<int>(converged.sum());
-    const Eigen::ArrayXd mean = errors.rowwise().mean();
-    const Eigen::ArrayXd variance =
-        (errors.colwise() - mean).square().rowwise().sum() / (repetitions - 1);
-    outcome.bias = mean / (variance / repetitions).sqrt();
-    outcome.rms = errors.square().rowwise().mean().sqrt();
+    const double n = estimated.sum();
+    outcome.failed = repetitions - static_cast<int>(n);
+    const Eigen::ArrayXd mean = errors.rowwise().sum() / n;
+    outcome.rms = (errors.square().rowwise().sum() / n).sqrt();
+    const Eigen::ArrayXd variance = (outcome.rms.square() - mean.square()) * n / (n - 1);
+    outcome.bias = mean / (variance / n).sqrt();
     const Eigen::ArrayXd count = told.rowwise().sum();
-    outcome.told = count / repetitions;
+    outcome.told = count / n;
     outcome.sd = (sds.square().rowwise().sum() / count).sqrt();
     outcome.coverage = covered.rowwise().sum() / count;
-    fmt::print("{}: {} repetitions, {} converged\n", latent ? "latent" : "shared electrode",
-               repetitions, outcome.converged);
+    fmt::print("{}: {} repetitions, {} converged, {} failed\n",
+               latent ? "latent" : "shared electrode", repetitions, outcome.converged,
+               outcome.failed);
     for (Eigen::Index k = 0; k < p; ++k) {
       const auto [low, high] = wilson(outcome.coverage[k], count[k]);
       fmt::print(
