@@ -152,7 +152,9 @@ TEST_P(FirstExperiment, HasTheBoundsThatSensitivityFinds) {
   if (!isFree) command.insert(command.end(), {"--prescribe", "elbow_flexion"});
   const ProgramResult sensitivity = support::runFisherHill(command);
   ASSERT_EQ(sensitivity.status, 0) << sensitivity.err;
-  for (const auto& one : designSummary(told)["parameters"]) {
+  const nlohmann::json found = designSummary(told);
+  ASSERT_EQ(found["parameters"].size(), 2u);
+  for (const auto& one : found["parameters"]) {
     const double bound = first["bounds"][one["name"].get<std::string>()];
     EXPECT_NEAR(one["bound_joint"].get<double>() / bound, 1, 1e-9) << one["name"];
   }
