@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "bio/analysis/replay.h"
-#include "bio/calibration/calibrate_at_shorter_steps.h"
 #include "bio/opensim/osim_file.h"
 #include "bio/tables/trial_review.h"
+#include "calibrate/calibrate_remarks.h"
 #include "calibrate/calibrate_report.h"
 #include "calibrate/fitted_table.h"
 #include "info/version.h"
@@ -140,6 +140,7 @@ class Calibrate : public Command {
     for (const std::string& warning : training.arm().warnings()) summary.warn(warning);
     boundsMustBePossible(training, typed);
     const std::vector<bio::Trial> heldOut = read(heldOut_, model, summary);
+    tellNotFitted(training, heldOut, summary);
 
     bio::CalibrationOptions options = typed;
     bio::SteppedCalibration found;
@@ -246,6 +247,7 @@ class Calibrate : public Command {
   static void boundsMustBePossible(const bio::TrialSet& training,
                                    const bio::CalibrationOptions& options) {
     for (const auto& [name, bounds] : options.bounds) {
+      if (bio::namesKnot(name)) continue;  // refused with the reason
       const bio::ModelParameter& one =
           training.catalogue().parameters()[training.catalogue().find(name)];
       if (bounds.first >= 0 || !cannotBeNegative(one)) continue;
@@ -273,32 +275,6 @@ class Calibrate : public Command {
       }
     }
     return trials;
-  }
-
-  /// Steps that are too long look like an error of the model.
-  static void tellSteps(double asked, const bio::SteppedCalibration& found, Summary& summary) {
-    const double step = found.options.trials.simulation.step;
-    if (step < asked) {
-      summary.warn(fmt::format(
-          "the step was shortened from {} s to {} s: at longer steps halving them changes the "
-          "simulated angles or the estimates noticeably",
-          numberText(asked), numberText(step)));
-    }
-    const double noise = found.calibration.noise.sd;
-    const auto& changes = found.change.ofTrials;
-    for (std::size_t i = 0; i < changes.size(); ++i) {
-      if (!found.change.mattersToTrial(i, noise)) continue;
-      summary.warn(
-          fmt::format("{}: halving the step of {} s changes the simulated angles by up to {:.2g} "
-                      "deg, {:.2g} standard deviations of the noise: use a shorter --step",
-                      found.training->trials()[i].file, numberText(step), changes[i] * radian,
-                      changes[i] / noise));
-    }
-    if (!found.change.mattersToEstimates()) return;
-    summary.warn(fmt::format(
-        "halving the step of {} s would change an estimate by {:.2g} of its standard deviations: "
-        "use a shorter --step",
-        numberText(step), found.change.ofEstimates));
   }
 
   void writeModel(const CalibrateFindings& f, bio::Model model, const Summary& summary,

@@ -32,7 +32,7 @@ void tellCalibrate(const CalibrateFindings& findings, Summary& summary);
 /// autocorrelation.
 Report calibrateReport(const CalibrateFindings& findings);
 
-/// Rows of parameters.csv.
+/// Rows of parameters.csv: all estimates but the knots of latent excitations.
 std::vector<info::discover::FittedNumber> fittedNumbers(const bio::Calibration& calibration);
 
 /// "TRI.radius = 0.0158 ± 0.0002 m (was 0.016)", or why there is no interval: one parameter in

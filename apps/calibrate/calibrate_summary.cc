@@ -75,6 +75,21 @@ Json channelsJson(const CalibrateFindings& f) {
   return channels;
 }
 
+/// Of the estimates, without knots of latent excitations.
+Json correlationJson(const bio::Calibration& c) {
+  std::vector<Eigen::Index> kept;
+  for (std::size_t i = 0; i < c.parameters.size(); ++i) {
+    if (!isKnot(c.parameters[i])) kept.push_back(static_cast<Eigen::Index>(i));
+  }
+  Json rows = Json::array();
+  for (const Eigen::Index i : kept) {
+    Json row = Json::array();
+    for (const Eigen::Index k : kept) row.push_back(c.correlation(i, k));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
 /// What other starts found that fits nearly as well: a warning each, and their values.
 Json otherMinima(const bio::Calibration& c, Summary& summary) {
   Json list = Json::array();
@@ -119,6 +134,7 @@ std::vector<info::discover::FittedNumber> fittedNumbers(const bio::Calibration& 
   std::vector<info::discover::FittedNumber> numbers;
   for (std::size_t i = 0; i < calibration.parameters.size(); ++i) {
     const bio::CalibratedParameter& one = calibration.parameters[i];
+    if (isKnot(one)) continue;
     const auto& prior = one.asked.prior;
     numbers.push_back({i, one.asked.name, one.asked.unit, one.model, one.value, one.sd,
                        prior ? prior->sd : std::nan(""),
@@ -144,6 +160,7 @@ void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
   if (!f.training.hasOnlyAngles()) summary.set("channels", channelsJson(f));
   Json estimates = Json::object();
   for (const bio::CalibratedParameter& one : c.parameters) {
+    if (isKnot(one)) continue;  // of latent_excitations
     estimates[one.asked.name] = estimateJson(f, one);
     if (!one.why.empty() && !one.ofTrial) summary.warn(one.why);
   }
@@ -172,11 +189,7 @@ void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
     summary.set("other_minima", otherMinima(c, summary));
   }
   if (f.options.bootstrap > 0) summary.set("bootstrap_converged", c.bootstrapConverged);
-  Json correlation = Json::array();
-  for (const auto& row : c.correlation.rowwise()) {
-    correlation.push_back(std::vector<double>(row.begin(), row.end()));
-  }
-  summary.set("correlation", correlation);
+  summary.set("correlation", correlationJson(c));
 }
 
 }  // namespace app

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "output/json_text.h"
 #include "output/text.h"
 
 namespace app {
@@ -33,12 +34,15 @@ void tellLatent(const CalibrateFindings& f, Summary& summary) {
   if (all.empty()) return;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const bio::PulledExcitation& one : all) {
+    nlohmann::ordered_json sds = nlohmann::ordered_json::array();
+    for (const double sd : one.sd) sds.push_back(orNull(sd));
     list.push_back({{"file", one.file},
                     {"muscle", one.declared.muscle},
                     {"prior_sd_log_odds", one.declared.sd},
                     {"knots_s", one.knots},
                     {"expected", knotValues(one.expected)},
                     {"estimate", knotValues(one.fitted)},
+                    {"sd_log_odds", sds},
                     {"prior_z", knotValues(one.z)},
                     {"rms_prior_z", one.rms()},
                     {"largest_prior_z", one.largest()}});

@@ -1,6 +1,7 @@
 #include "check/recording_contents.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -37,6 +38,7 @@ void addMarkers(const bio::MarkerTrajectories& markers, RecordingContents& out) 
       fmt::format("{} markers in {} frames from {} s to {} s.", markers.names.size(), frames,
                   numberText(markers.times[0]), numberText(markers.times[frames - 1]))});
   Table table{"Markers", {"marker", "not seen", "first place [m]"}, {}};
+  std::vector<std::string> unseen;
   for (std::size_t k = 0; k < markers.names.size(); ++k) {
     const Eigen::MatrixX3d places = positionsOf(markers, markers.names[k]);
     const Eigen::Index missing = places.col(0).array().isNaN().count();
@@ -46,10 +48,12 @@ void addMarkers(const bio::MarkerTrajectories& markers, RecordingContents& out) 
       first = fmt::format("{} {} {}", numberText(places(i, 0)), numberText(places(i, 1)),
                           numberText(places(i, 2)));
     }
-    if (missing == frames) {
-      out.remarks.push_back(fmt::format("marker '{}' is never seen", markers.names[k]));
-    }
+    if (missing == frames) unseen.push_back(markers.names[k]);
     table.rows.push_back({markers.names[k], std::to_string(missing), first});
+  }
+  if (!unseen.empty()) {
+    out.remarks.push_back(fmt::format("{} of {} markers are never seen: {}", unseen.size(),
+                                      markers.names.size(), fmt::join(unseen, ", ")));
   }
   out.parts.emplace_back(std::move(table));
 }

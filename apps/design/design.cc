@@ -11,8 +11,8 @@
 #include "bio/analysis/replay.h"
 #include "bio/calibration/trial_predictor.h"
 #include "bio/design/separating_design.h"
+#include "design/design_options.h"
 #include "design/design_report.h"
-#include "design/dynamometer_design.h"
 #include "design/separating_report.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
@@ -40,127 +40,43 @@ class Design : public Command {
             "--out out/design"};
   }
 
-  void addOptions(CLI::App& options) override {
-    addModelArgument(options, model_);
-    options
-        .add_option("TRIAL", trial_,
-                    "baseline trial to improve on: excitations, duration, initial state; required "
-                    "unless --dynamometer is given")
-        ->check(CLI::ExistingFile)
-        ->type_name("");
-    const auto names = [&](const std::string& name, std::vector<std::string>& target,
-                           const std::string& description) {
-      return options.add_option(name, target, description)
-          ->delimiter(',')
-          ->allow_extra_args(false)
-          ->type_name("NAMES");
-    };
-    names("--parameters", parameters_,
-          "parameters of interest; sensitivity --list-parameters lists the choices");
-    names(
-        "--separate", separate_,
-        "instead of --parameters: two effects of discover's catalogue, by id; find the experiment "
-        "that best discriminates between them, given the default uncertainty of every parameter");
-    options
-        .add_option("--size", sizes_,
-                    "with --separate: assumed size of an effect, in its unit; default: its prior "
-                    "standard deviation")
-        ->type_name("ID=SIZE")
-        ->allow_extra_args(false);
-    names(
-        "--nuisance", nuisance_,
-        "further unknown parameters, with their default priors; the bounds take them into account");
-    options.add_flag("--priors", priors_, "use the default priors for the --parameters as well");
-    options
-        .add_option("--prior", givenPriors_,
-                    "prior standard deviation of a parameter, in its unit; may be repeated")
-        ->type_name("NAME=DEVIATION")
-        ->allow_extra_args(false);
-    options
-        .add_option("--criterion", criterion_,
-                    "design criterion, parameters scaled by their default prior standard "
-                    "deviations; E: minimise the largest variance of any combination; A: the sum "
-                    "of variances; D: the volume of the confidence ellipsoid")
-        ->check(CLI::IsMember({"E", "A", "D"}))
-        ->capture_default_str();
-    const auto number = [&](const std::string& name, double& target, const std::string& unit,
-                            const std::string& description) {
-      options.add_option(name, target, description)->type_name(unit)->capture_default_str();
-    };
-    number("--noise", noise_deg_, "DEGREES", "standard deviation of the measured angle");
-    number("--rate", rate_Hz_, "HZ", "measurement rate");
-    number("--torque", limits_.torque, "NM", "largest external torque; 0: none");
-    number("--torque-rate", limits_.torqueRate, "NM/S", "how fast it may change");
-    names("--excite", excite_,
-          "muscles whose excitations are designed: flexors, extensors, or names; BRA+BRD share one "
-          "excitation")
-        ->type_name("GROUPS");
-    number("--excitation-max", limits_.largestExcitation, "0-1", "largest excitation of a group");
-    number("--excitation-rate", limits_.excitationRate, "1/S", "how fast it may change");
-    options
-        .add_option("--range", range_,
-                    "range to which the coordinate is limited, as 10deg,120deg; default: its range "
-                    "in the model")
-        ->delimiter(',')
-        ->expected(2)
-        ->type_name("LOW,HIGH");
-    number("--speed", speed_deg_, "DEG/S", "largest speed of the coordinate");
-    number("--surprise", limits_.surprise, "K",
-           "respect the range even if the parameters are K prior standard deviations off");
-    number("--knots", knots_, "SECONDS",
-           "interval between the knots of the piecewise linear inputs");
-    const auto count = [&](const std::string& name, int& target, const std::string& description) {
-      options.add_option(name, target, description)
-          ->check(CLI::Range(0, 1000000))
-          ->type_name("N")
-          ->capture_default_str();
-    };
-    count("--candidates", settings_.candidates, "number of random initial designs");
-    count("--generations", settings_.generations,
-          "generations of the evolution strategy that starts from the best of them");
-    count("--iterations", settings_.iterations, "iterations of the final gradient search");
-    count("--monte-carlo", monteCarlo_,
-          "number of simulated and estimated repetitions of the designed experiment, to confirm "
-          "the bounds");
-    addDynamometerOptions(options, dynamometer_);
-    addSimulationOptions(options, simulation_);
-  }
+  void addOptions(CLI::App& options) override { addDesignOptions(options, typed_); }
 
   ExitStatus run(const CommandContext& context) override {
-    check();
-    if (!dynamometer_.coordinate.empty()) {
-      return designOnDynamometer(context, model_, parameters_, nuisance_, dynamometer_, rate_Hz_,
-                                 simulation_);
+    checkDesignOptions(typed_);
+    if (!typed_.dynamometer.coordinate.empty()) {
+      return designOnDynamometer(context, typed_);
     }
-    if (!separate_.empty()) return separate(context);
+    if (!typed_.separate.empty()) return separate(context);
     OutputFolder folder(context, {"design.sto"});
     Summary summary(context);
-    const bio::Model model = readModel(model_, summary);
-    chooseCoordinates(simulation_, model, {trial_});
-    const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
-    const TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
+    const bio::Model model = readModel(typed_.model, summary);
+    chooseCoordinates(typed_.simulation, model, {typed_.trial});
+    const bio::MusculoskeletalSystem arm =
+        movableSystem(model, typed_.model, typed_.simulation, summary);
+    const TrialInput input = readTrialInput(typed_.trial, model, arm, typed_.simulation, summary);
     const bio::ParameterCatalogue catalogue(model, arm, {input.start.q, {}});
     const bio::Coordinate& coordinate = rotationOf(arm);
     const bio::SimulationOptions simulation =
-        simulationOptions(simulation_, input.startTime, input.duration);
+        simulationOptions(typed_.simulation, input.startTime, input.duration);
     const bio::ExperimentDesign design(arm, catalogue, catalogue.nominal(), input.trial, simulation,
                                        question(catalogue, coordinate), limits(coordinate),
-                                       groups(arm, input.start.q), knots_);
+                                       groups(arm, input.start.q), typed_.knots);
     bio::DesignResult result;
-    search(context, [&] { result = design.search(settings_); });
+    search(context, [&] { result = design.search(typed_.settings); });
     folder.writeFile("design.sto", [&](const std::filesystem::path& path) {
       bio::writeTable(bio::designTable(arm, result.after, coordinate.name), path);
     });
-    DesignFindings findings{model_, trial_, design, result, coordinate, {}, {}};
+    DesignFindings findings{typed_.model, typed_.trial, design, result, coordinate, {}, {}};
     for (const auto* list : {&design.question().parameters, &design.question().nuisance}) {
       for (const std::size_t index : *list) {
         findings.parameters.push_back(catalogue.parameters()[index]);
       }
     }
-    if (monteCarlo_ > 0 && !result.stopped) {
+    if (typed_.monteCarlo > 0 && !result.stopped) {
       findings.monteCarlo = simulated(context, catalogue, simulation, design, result.after);
     }
-    summary.setSimulation(simulation_.integrator, simulation.step, input.duration,
+    summary.setSimulation(typed_.simulation.integrator, simulation.step, input.duration,
                           result.after.motion.wallSeconds);
     tellDesign(findings, summary);
     deliver(context, summary, designReport(findings), folder);
@@ -172,9 +88,9 @@ class Design : public Command {
   template <class Search>
   void search(const CommandContext& context, const Search& run) {
     ProgressBar bar("design");
-    settings_.seed = context.seed;
-    settings_.threads = context.threads;
-    settings_.progress = [&](double done) {
+    typed_.settings.seed = context.seed;
+    typed_.settings.threads = context.threads;
+    typed_.settings.progress = [&](double done) {
       if (interruptionRequested()) return false;
       bar.update(done);
       return true;
@@ -185,18 +101,19 @@ class Design : public Command {
   ExitStatus separate(const CommandContext& context) {
     OutputFolder folder(context, {"design.sto"});
     Summary summary(context);
-    const bio::Model model = readModel(model_, summary);
-    chooseCoordinates(simulation_, model, {trial_});
-    const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
-    summary.addInput(trial_);
+    const bio::Model model = readModel(typed_.model, summary);
+    chooseCoordinates(typed_.simulation, model, {typed_.trial});
+    const bio::MusculoskeletalSystem arm =
+        movableSystem(model, typed_.model, typed_.simulation, summary);
+    summary.addInput(typed_.trial);
     const bio::Trial trial =
-        readTrialFile(trial_, model, simulation_, {.experimentalConditions = true});
+        readTrialFile(typed_.trial, model, typed_.simulation, {.experimentalConditions = true});
     for (const std::string& warning : trial.warnings) summary.warn(warning);
     const bio::Coordinate& coordinate = rotationOf(arm);
     bio::discover::SeparationQuestion question;
-    question.first = separate_[0];
-    question.second = separate_[1];
-    for (const std::string& text : sizes_) {
+    question.first = typed_.separate[0];
+    question.second = typed_.separate[1];
+    for (const std::string& text : typed_.sizes) {
       const Assignment size = parseAssignment(text);
       if (size.name != question.first && size.name != question.second) {
         throw std::invalid_argument(
@@ -205,25 +122,25 @@ class Design : public Command {
       if (size.value == 0) throw std::invalid_argument("--size: " + text + ", must not be 0");
       (size.name == question.first ? question.firstSize : question.secondSize) = size.value;
     }
-    question.start = bio::startCoordinates(trial, arm, byName(simulation_.initial))[0];
-    question.noise = noise_deg_ * degree;
-    question.period = 1 / rate_Hz_;
+    question.start = bio::startCoordinates(trial, arm, byName(typed_.simulation.initial))[0];
+    question.noise = typed_.noise_deg * degree;
+    question.period = 1 / typed_.rate_Hz;
     const double duration = trial.duration();
     bio::discover::MusculoskeletalProblemOptions options;
-    options.simulation = simulationOptions(simulation_, trial.times[0], duration);
+    options.simulation = simulationOptions(typed_.simulation, trial.times[0], duration);
     const bio::discover::SeparatingDesign design(
-        model, armOptions(simulation_), coordinate.name, trial, options, question,
-        limits(coordinate), groups(arm, arm.skeleton().defaultValues()), knots_);
+        model, armOptions(typed_.simulation), coordinate.name, trial, options, question,
+        limits(coordinate), groups(arm, arm.skeleton().defaultValues()), typed_.knots);
     bio::discover::SeparatingResult result;
     const auto begin = std::chrono::steady_clock::now();
-    search(context, [&] { result = design.search(settings_); });
+    search(context, [&] { result = design.search(typed_.settings); });
     const double wall =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    const SeparatingFindings findings{model_, trial_, design, result, coordinate};
+    const SeparatingFindings findings{typed_.model, typed_.trial, design, result, coordinate};
     folder.writeFile("design.sto", [&](const std::filesystem::path& path) {
       bio::writeTable(separatingTable(findings), path);
     });
-    summary.setSimulation(simulation_.integrator, options.simulation.step, duration, wall);
+    summary.setSimulation(typed_.simulation.integrator, options.simulation.step, duration, wall);
     tellSeparation(findings, summary);
     deliver(context, summary, separatingReport(findings), folder);
     if (result.stopped) throw Interrupted{};
@@ -239,92 +156,31 @@ class Design : public Command {
     return coordinate;
   }
 
-  void check() const {
-    if (trial_.empty() == dynamometer_.coordinate.empty()) {
-      throw std::invalid_argument("either TRIAL or --dynamometer is required, and not both");
-    }
-    if (trial_.empty() && (!separate_.empty() || priors_ || !givenPriors_.empty() ||
-                           monteCarlo_ > 0 || !excite_.empty() || !range_.empty())) {
-      throw std::invalid_argument(
-          "--separate, --priors, --prior, --monte-carlo, --excite and --range cannot be combined "
-          "with --dynamometer");
-    }
-    if (parameters_.empty() == separate_.empty()) {
-      throw std::invalid_argument(
-          "either --parameters or --separate is required, and not both (see --help)");
-    }
-    if (!separate_.empty() && separate_.size() != 2) {
-      throw std::invalid_argument(
-          fmt::format("--separate: {} effects, must be two", separate_.size()));
-    }
-    if (!sizes_.empty() && separate_.empty()) {
-      throw std::invalid_argument("--size requires --separate");
-    }
-    if (!separate_.empty() &&
-        (!nuisance_.empty() || priors_ || !givenPriors_.empty() || monteCarlo_ > 0)) {
-      throw std::invalid_argument(
-          "--nuisance, --priors, --prior and --monte-carlo cannot be combined with --separate");
-    }
-    const auto positive = [](const char* name, double value, const char* unit) {
-      if (!(value > 0 && std::isfinite(value))) {
-        throw std::invalid_argument(fmt::format("{}: {} {}, must be > 0", name, value, unit));
-      }
-    };
-    positive("--noise", noise_deg_, "deg");
-    positive("--rate", rate_Hz_, "Hz");
-    positive("--torque-rate", limits_.torqueRate, "N·m/s");
-    positive("--excitation-rate", limits_.excitationRate, "1/s");
-    positive("--speed", speed_deg_, "deg/s");
-    positive("--knots", knots_, "s");
-    if (!(limits_.torque >= 0 && std::isfinite(limits_.torque))) {
-      throw std::invalid_argument(fmt::format("--torque: {} N·m, must be ≥ 0", limits_.torque));
-    }
-    if (!(limits_.surprise >= 0 && std::isfinite(limits_.surprise))) {
-      throw std::invalid_argument(fmt::format("--surprise: {}, must be ≥ 0", limits_.surprise));
-    }
-    if (!(limits_.largestExcitation > limits_.leastExcitation && limits_.largestExcitation <= 1)) {
-      throw std::invalid_argument(
-          fmt::format("--excitation-max: {}, must be above {} and at most 1",
-                      limits_.largestExcitation, limits_.leastExcitation));
-    }
-    if (limits_.torque == 0 && excite_.empty()) {
-      throw std::invalid_argument("--torque 0 without --excite leaves nothing to change");
-    }
-    if (!simulation_.integrator.starts_with("vi")) {
-      throw std::invalid_argument(
-          fmt::format("--integrator {}: must be vi or vi-left, which alone have sensitivities",
-                      simulation_.integrator));
-    }
-    if (monteCarlo_ > 0 && !nuisance_.empty()) {
-      throw std::invalid_argument("--monte-carlo cannot be combined with --nuisance");
-    }
-  }
-
   bio::DesignQuestion question(const bio::ParameterCatalogue& catalogue,
                                const bio::Coordinate& coordinate) const {
     bio::DesignQuestion q;
     q.coordinate = coordinate.name;
-    q.noise = noise_deg_ * degree;
-    q.period = 1 / rate_Hz_;
-    q.parameters = catalogue.select(parameters_);
-    if (!nuisance_.empty()) q.nuisance = catalogue.select(nuisance_);
+    q.noise = typed_.noise_deg * degree;
+    q.period = 1 / typed_.rate_Hz;
+    q.parameters = catalogue.select(typed_.parameters);
+    if (!typed_.nuisance.empty()) q.nuisance = catalogue.select(typed_.nuisance);
     // a pattern among the nuisance parameters may take in what is asked for
     std::erase_if(q.nuisance, [&](std::size_t index) {
       return std::find(q.parameters.begin(), q.parameters.end(), index) != q.parameters.end();
     });
-    q.criterion = criterion_ == "A"   ? info::Optimality::a
-                  : criterion_ == "D" ? info::Optimality::d
-                                      : info::Optimality::e;
+    q.criterion = typed_.criterion == "A"   ? info::Optimality::a
+                  : typed_.criterion == "D" ? info::Optimality::d
+                                            : info::Optimality::e;
     std::vector<std::size_t> all = q.parameters;
     all.insert(all.end(), q.nuisance.begin(), q.nuisance.end());
     q.priorSd = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(all.size()),
                                           std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < all.size(); ++i) {
-      if (priors_ || i >= q.parameters.size()) {
+      if (typed_.priors || i >= q.parameters.size()) {
         q.priorSd[static_cast<Eigen::Index>(i)] = catalogue.parameters()[all[i]].sd;
       }
     }
-    for (const std::string& text : givenPriors_) {
+    for (const std::string& text : typed_.givenPriors) {
       const Assignment prior = parseAssignment(text);
       const auto at = std::find(all.begin(), all.end(), catalogue.find(prior.name));
       if (at == all.end()) {
@@ -341,20 +197,20 @@ class Design : public Command {
   }
 
   bio::DesignLimits limits(const bio::Coordinate& coordinate) const {
-    bio::DesignLimits result = limits_;
+    bio::DesignLimits result = typed_.limits;
     result.lower = coordinate.rangeMin;
     result.upper = coordinate.rangeMax;
-    result.speed = speed_deg_ * degree;
-    if (!range_.empty()) {
+    result.speed = typed_.speed_deg * degree;
+    if (!typed_.range.empty()) {
       try {
-        result.lower = parseAngle(range_[0]);
-        result.upper = parseAngle(range_[1]);
+        result.lower = parseAngle(typed_.range[0]);
+        result.upper = parseAngle(typed_.range[1]);
       } catch (const std::invalid_argument& error) {
         throw std::invalid_argument(fmt::format("--range: {}", error.what()));
       }
       if (!(result.lower < result.upper)) {
         throw std::invalid_argument(
-            fmt::format("--range: {} to {}, must rise", range_[0], range_[1]));
+            fmt::format("--range: {} to {}, must rise", typed_.range[0], typed_.range[1]));
       }
     }
     return result;
@@ -363,7 +219,7 @@ class Design : public Command {
   std::vector<bio::MuscleGroup> groups(const bio::MusculoskeletalSystem& arm,
                                        const Eigen::VectorXd& q) const {
     std::vector<bio::MuscleGroup> result;
-    for (const std::string& text : excite_) {
+    for (const std::string& text : typed_.excite) {
       const auto named = bio::flexorsAndExtensors(arm, q);
       const auto at = std::find_if(named.begin(), named.end(), [&](const bio::MuscleGroup& group) {
         return group.name == text;
@@ -381,10 +237,10 @@ class Design : public Command {
     const bio::DesignQuestion& q = design.question();
     simulation.externalForce = after.torque;
     const bio::TrialPredictor experiment(
-        catalogue, armOptions(simulation_), after.excitation, q.coordinate,
+        catalogue, armOptions(typed_.simulation), after.excitation, q.coordinate,
         {after.measuredTimes.begin(), after.measuredTimes.end()}, q.parameters, simulation);
     info::MonteCarloOptions options;
-    options.trials = monteCarlo_;
+    options.trials = typed_.monteCarlo;
     options.seed = context.seed;
     options.threads = context.threads;
     options.startSpread = 0.0005;
@@ -400,15 +256,7 @@ class Design : public Command {
         catalogue.asEstimated(q.parameters, false), options);
   }
 
-  std::string model_, trial_, criterion_ = "E";
-  std::vector<std::string> parameters_, nuisance_, givenPriors_, excite_, range_, separate_, sizes_;
-  bool priors_ = false;
-  double noise_deg_ = 0.5, rate_Hz_ = 100, speed_deg_ = 500, knots_ = 0.3;
-  bio::DesignLimits limits_ = {};
-  bio::DesignSearchSettings settings_ = {};
-  int monteCarlo_ = 0;
-  DynamometerOptions dynamometer_;
-  SimulationOptions simulation_;
+  DesignOptions typed_;
 };
 
 }  // namespace

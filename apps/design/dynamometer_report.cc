@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "design/dynamometer_design.h"
 #include "output/angle_unit.h"
 #include "output/text.h"
@@ -12,10 +15,17 @@ using Eigen::Index;
 using ExperimentKind = bio::DynamometerExperiment::Kind;
 namespace course = bio::dynamometer;
 
-const char* wordOf(ExperimentKind kind) {
-  return kind == ExperimentKind::isometric ? "isometric"
-         : kind == ExperimentKind::passive ? "passive"
-                                           : "isokinetic";
+bool measuresAngles(const bio::DynamometerPlan& plan) {
+  return std::any_of(plan.chosen.begin(), plan.chosen.end(),
+                     [](const bio::DynamometerExperiment& one) { return one.measuresAngle(); });
+}
+
+/// ", of 0.5 deg of the angle", if it is measured.
+std::string angleNoiseOf(const bio::DynamometerPlan& plan, const bio::DynamometerQuestion& question,
+                         bool turns) {
+  if (!measuresAngles(plan)) return "";
+  return turns ? fmt::format(", of {:g} deg of the angle", question.angleNoise * radian)
+               : fmt::format(", of {:g} mm of the shift", question.angleNoise * 1000);
 }
 
 }  // namespace
@@ -25,9 +35,30 @@ std::string instructionOf(const bio::DynamometerExperiment& one, bool turns) {
   const char* name = turns ? "deg" : "mm";
   const std::string contract =
       fmt::format("{}: rise to {:.0f} % MVC in {:g} s", one.group, 100 * one.effort, course::ramp);
-  if (one.kind == ExperimentKind::isometric) {
-    return fmt::format("hold at {:.0f} {}; rest {:g} s, {}, keep it for {:g} s, relax",
-                       one.from * unit, name, course::rest, contract, course::hold);
+  const std::string hold = fmt::format("hold at {:.0f} {}; rest {:g} s, {}", one.from * unit, name,
+                                       course::rest, contract);
+  switch (one.kind) {
+    case ExperimentKind::isometric:
+      return fmt::format("{}, keep it for {:g} s, relax", hold, course::hold);
+    case ExperimentKind::release:
+      return fmt::format(
+          "{}, keep it; after {:g} s turn to {:.0f} {} within {:.2g} s (up to {:.0f} {}/s) and "
+          "hold there, keep it for {:g} s more, relax",
+          hold, course::beforeRelease, one.to * unit, name,
+          course::releaseTime(std::abs(one.to - one.from), one.speed), one.speed * unit, name,
+          course::afterRelease);
+    case ExperimentKind::isotonic: {
+      const Index rows = one.trial.values.rows();
+      return fmt::format(
+          "{}, keep it; when the moment is steady, let the joint go against a constant {:.3g} {} "
+          "that pushes the angle {}, and measure the angle from then on for {:.2g} s, until about "
+          "{:.0f} {}",
+          hold, std::abs(one.torque), turns ? "N m" : "N", one.torque < 0 ? "down" : "up",
+          one.trial.values(rows - 1, 0), one.to * unit, name);
+    }
+    case ExperimentKind::isokinetic:
+    case ExperimentKind::passive:
+      break;
   }
   const std::string turn =
       fmt::format("turn from {:.0f} to {:.0f} {} at {:.0f} {}/s", one.from * unit, one.to * unit,
@@ -58,6 +89,8 @@ void tellDynamometer(const bio::DynamometerPlan& plan, bool turns, Summary& summ
                     {fmt::format("speed{}_per_s", of), one.speed * unit},
                     {"muscles", one.group},
                     {"effort_percent", 100 * one.effort},
+                    {"load_percent", 100 * one.load},
+                    {turns ? "torque_Nm" : "force_N", one.torque},
                     {"instruction", instructionOf(one, turns)},
                     {"information_nats", plan.information[n]},
                     {"bounds", bounds}});
@@ -67,12 +100,13 @@ void tellDynamometer(const bio::DynamometerPlan& plan, bool turns, Summary& summ
   summary.set("experiments", list);
   summary.set("candidates", plan.candidates);
   summary.set("candidates_not_simulated", plan.failed);
+  summary.set("candidates_unsuitable", plan.unsuitable);
 }
 
-Report dynamometerReport(const bio::DynamometerPlan& plan, const DynamometerOptions& options,
+Report dynamometerReport(const bio::DynamometerPlan& plan, const bio::DynamometerQuestion& question,
                          bool turns) {
   Report report;
-  report.title = fmt::format("Experiments on a dynamometer: {}", options.coordinate);
+  report.title = fmt::format("Experiments on a dynamometer: {}", question.coordinate);
   std::vector<std::string> changes;
   for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
     const bio::ModelParameter& one = plan.parameters[i];
@@ -95,12 +129,27 @@ Report dynamometerReport(const bio::DynamometerPlan& plan, const DynamometerOpti
   report.details.emplace_back(std::move(table));
   report.details.emplace_back(Paragraph{fmt::format(
       "Bounds are the Cramér–Rao bounds of all that was done up to there, with the parameters' "
-      "default priors (as of --nuisance), if nothing else is unknown, and a noise of {:g} {} "
-      "(independent samples) of the moment. % MVC is the "
+      "default priors (as of --nuisance), if nothing else is unknown, and a noise (independent "
+      "samples) of {:g} {} of the moment{}. % MVC is the "
       "excitation: EMG over that of a maximum contraction. The antagonists are taken to rest; "
       "record them, too. experiment_N.csv are the experiments as trials: to be filled with what "
       "was recorded, {}.moment above all.",
-      options.momentNoise, turns ? "N m" : "N", options.coordinate)});
+      question.noise, turns ? "N m" : "N", angleNoiseOf(plan, question, turns),
+      question.coordinate)});
+  if (measuresAngles(plan)) {
+    report.details.emplace_back(Paragraph{fmt::format(
+        "The trial of an isotonic contraction begins when the joint is let go, with the torque in "
+        "{0}.{1}. Its column {0}{2} holds the predicted motion: replace it by the recorded one. "
+        "The device's own inertia, if it is not compensated, has to be part of the model.",
+        question.coordinate, turns ? "torque" : "force", turns ? "_deg" : "")});
+  }
+  if (plan.unsuitable > 0) {
+    report.details.emplace_back(Paragraph{fmt::format(
+        "{} of the experiments were left out: quick releases that would leave the coordinate's "
+        "range, isotonic contractions that do not carry the limb, or that would be at the end of "
+        "the range or faster than --speed within {:g} s.",
+        plan.unsuitable, course::shortestIsotonic)});
+  }
   return report;
 }
 

@@ -9,6 +9,7 @@
 #include "bio/emg/emg_config.h"
 #include "bio/emg/emg_recordings.h"
 #include "bio/opensim/osim_file.h"
+#include "bio/tables/file_error.h"
 #include "bio/tables/recording.h"
 #include "bio/tables/table_file.h"
 #include "output/result.h"
@@ -100,11 +101,17 @@ std::string latentOf(const bio::EmgConfig& config) {
 }
 
 // BODY.MARKER of the model that [markers] names.
-std::vector<std::string> markersOf(const bio::EmgConfigFile& file) {
+std::vector<std::string> markersOf(const bio::EmgConfigFile& file, Summary& summary) {
   std::vector<std::string> names;
   if (!file.markers || file.markers->model.empty()) return names;
-  for (const bio::Marker& marker : bio::readOsim(file.markers->model).markers) {
-    names.push_back(marker.body + "." + marker.name);
+  try {
+    summary.addInput(file.markers->model);
+    for (const bio::Marker& marker : bio::readOsim(file.markers->model).markers) {
+      names.push_back(marker.body + "." + marker.name);
+    }
+  } catch (const std::exception& error) {
+    throw bio::FileError(
+        fmt::format("{}:{}: [markers] model: {}", file.file, file.markers->line, error.what()));
   }
   return names;
 }
@@ -167,9 +174,9 @@ class Emg : public Command {
     for (const bio::FullDeclaration& full : file.full) {
       if (!full.mvcFile.empty()) summary.addInput(full.mvcFile);
     }
-    if (file.markers && !file.markers->model.empty()) summary.addInput(file.markers->model);
     const bio::JoinedRecordings joined = bio::readRecordings(file, recordings_);
-    const bio::EmgConfig config = bio::emgConfigFor(file, joined.recording, markersOf(file));
+    const bio::EmgConfig config =
+        bio::emgConfigFor(file, joined.recording, markersOf(file, summary));
     const bio::EmgResult result = bio::excitationsFromEmg(joined.recording, config);
     for (const std::string& warning : result.warnings) summary.warn(warning);
     folder.writeFile("excitations.sto", [&](const std::filesystem::path& path) {

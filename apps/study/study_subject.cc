@@ -183,7 +183,7 @@ class SubjectRun {
 
 bool isOfATrial(const std::string& parameter) {
   const auto has = [&](const char* part) { return parameter.find(part) != std::string::npos; };
-  return parameter.starts_with("initial.") || has(".initial.") || has(".latent");
+  return parameter.starts_with("initial.") || has(".initial.");
 }
 
 const std::vector<std::string>& studyColumns() {

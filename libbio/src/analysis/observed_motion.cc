@@ -129,7 +129,8 @@ ObservedMotion::Linearised ObservedMotion::evaluate(const Trajectory& motion,
   const MuscleReport muscles = hasForces ? reportMuscles(*arm_, motion) : MuscleReport{};
   Index at = 0;
   for (std::size_t i = 0; i < series_.size(); ++i) {
-    const auto& [what, times] = series_[i];
+    const Observable& what = series_[i].what;
+    const Eigen::VectorXd& times = series_[i].times;
     const int index = sources_[i];
     const auto place = static_cast<std::size_t>(index);
     if (what.kind == Kind::marker) {

@@ -57,6 +57,12 @@ void setPriors(const TrialSet& training, const CalibrationOptions& options,
 }  // namespace
 
 std::size_t placeOfParameter(const TrialSet& training, const std::string& name, const char* what) {
+  if (namesKnot(name)) {
+    throw std::invalid_argument(fmt::format(
+        "{} of '{}': knots of latent excitations belong to single trials and have the prior that "
+        "the trial's header (latent_excitation) or --latent MUSCLE=SD:SECONDS gives, and no other",
+        what, name));
+  }
   const ParameterCatalogue& catalogue = training.catalogue();
   const std::size_t wanted = catalogue.find(name);
   const auto& selection = training.selection();

@@ -17,7 +17,9 @@ using Eigen::VectorXd;
 
 ChannelNoise::ChannelNoise(const TrialSet& trials, const CalibrationOptions& options)
     : trials_(trials), options_(options), measured_(trials.measured()) {
-  for (const auto& [name, sd] : options_.channelNoise) {
+  for (const auto& given : options_.channelNoise) {
+    const std::string& name = given.first;
+    const double sd = given.second;
     const auto& channels = trials_.channels();
     const bool isThere = std::any_of(channels.begin(), channels.end(), [&](const auto& one) {
       return one.name == name && !one.areAngles;

@@ -19,8 +19,11 @@ std::vector<PulledExcitation> pulledExcitations(const TrialSet& training,
                             one.declared.sd};
     const auto times = Eigen::VectorXd::Map(one.knots.data(), n);
     PulledExcitation pulled{
-        training.trials()[one.trial].file, one.declared, one.knots, one.atKnots, {},
-        latent.values / latent.sd};
+        training.trials()[one.trial].file, one.declared,      one.knots, one.atKnots, {},
+        latent.values / latent.sd,         Eigen::VectorXd(n)};
+    for (Eigen::Index k = 0; k < n; ++k) {
+      pulled.sd[k] = calibration.parameters[one.first + static_cast<std::size_t>(k)].sd;
+    }
     pulled.fitted = withLatent(times, one.atKnots.transpose(), latent).transpose();
     all.push_back(std::move(pulled));
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 #include <stdexcept>
+#include <string_view>
 
 #include "bio/analysis/replay.h"
 #include "bio/calibration/nudge.h"
@@ -49,6 +50,13 @@ EmgMapping latentMapping(const Trial& trial, const MusculoskeletalSystem& arm) {
 }
 
 }  // namespace
+
+bool namesKnot(const std::string& parameter) {
+  constexpr std::string_view part = ".latent";
+  const std::size_t at = parameter.rfind(part);
+  return at != parameter.npos && parameter.find("emg.") != parameter.npos &&
+         parameter.find_first_not_of("0123456789*", at + part.size()) == parameter.npos;
+}
 
 std::vector<std::size_t> selectDistinct(const ParameterCatalogue& catalogue,
                                         const std::vector<std::string>& names) {
@@ -142,13 +150,20 @@ void TrialSet::collectSeries(const Model& model) {
 
 void TrialSet::collectParameters(const TrialSetOptions& options) {
   const ParameterCatalogue& catalogue = *catalogues_.front();
+  for (const std::string& name : options.parameters) {
+    if (!namesKnot(name)) continue;
+    throw std::invalid_argument(fmt::format(
+        "parameter '{}': knots of latent excitations are estimated without being named, for the "
+        "muscles that the trial's header (latent_excitation) or --latent MUSCLE=SD:SECONDS gives",
+        name));
+  }
   const bool anyLatent =
       options.latent &&
       std::any_of(trials_.begin(), trials_.end(), [](const Trial& t) { return !t.latent.empty(); });
   if (!options.parameters.empty() || !(options.ownStart || anyLatent)) {
     selection_ = selectDistinct(catalogue, options.parameters);
   }
-  // those belong to single trials, and are estimated anyway
+  // "all" takes them in, which belong to single trials and are estimated anyway
   std::erase_if(selection_, [&](std::size_t i) { return isLatent(catalogue.parameters()[i]); });
   for (const std::size_t index : selection_) {
     const ModelParameter& parameter = catalogue.parameters()[index];

@@ -4,46 +4,46 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <limits>
+#include <map>
+#include <memory>
 #include <stdexcept>
 
 #include "bio/analysis/replay.h"
 #include "bio/calibration/trial_predictor.h"
-#include "bio/design/experiment_design.h"
 #include "bio/tables/trial.h"
 #include "bio/tables/trial_table.h"
+#include "design/dynamometer_trials.h"
 #include "info/estimation/monte_carlo.h"
 
 namespace bio {
 namespace {
 
 using Eigen::Index;
-using ExperimentKind = DynamometerExperiment::Kind;
 
-constexpr double degreesPerRadian = 180 / std::numbers::pi;
-
-/// 0 to 1 with a straight rise and fall.
-double contractionAt(double t, double begin, double end) {
-  return std::clamp(std::min((t - begin) / dynamometer::ramp, (end - t) / dynamometer::ramp), 0.0,
-                    1.0);
+/// To three digits, as it is told to the person who sets the dynamometer.
+double roundedTorque(double torque) {
+  if (torque == 0) return 0;
+  const double unit = std::pow(10, std::floor(std::log10(std::abs(torque))) - 2);
+  return std::round(torque / unit) * unit;
 }
 
-/// Where a turn of this length [rad] that fits is, t [s] after its begin: the speed rises and falls
-/// as a squared sine.
-double turnedAt(double t, double length, double speed) {
-  const double whole = length / speed + dynamometer::speedUp;  // [s]
-  const auto risen = [](double s) {                            // ∫ sin²(π s/2) of 0 … 1
-    const double x = std::clamp(s, 0.0, 1.0);
-    return x / 2 - std::sin(std::numbers::pi * x) / (2 * std::numbers::pi);
-  };
-  if (t <= 0) return 0;
-  if (t >= whole) return length;
-  if (t < dynamometer::speedUp)
-    return speed * dynamometer::speedUp * risen(t / dynamometer::speedUp);
-  if (t > whole - dynamometer::speedUp)
-    return length - speed * dynamometer::speedUp * risen((whole - t) / dynamometer::speedUp);
-  return speed * (t - dynamometer::speedUp / 2);
+/// Of one coordinate.
+std::vector<ObservedSeries> measuredSeries(std::initializer_list<Observable::Kind> kinds,
+                                           const std::string& coordinate,
+                                           const Eigen::VectorXd& times) {
+  std::vector<ObservedSeries> series(kinds.size());
+  std::size_t i = 0;
+  for (const Observable::Kind kind : kinds) {
+    series[i].what.kind = kind;
+    series[i].what.of = coordinate;
+    series[i++].times = times;
+  }
+  return series;
 }
+
+/// Why a candidate is not ranked.
+enum class Suitability { suitable, unsuitable, cannotBeSimulated };
 
 class DynamometerPlanner {
  public:
@@ -56,27 +56,48 @@ class DynamometerPlanner {
         simulation_(simulation),
         question_(question),
         coordinate_(findCoordinate(model, question.coordinate)),
-        catalogue_(model, arm, {arm.skeleton().defaultValues(), {}}),
+        trials_(arm, coordinate_, question),
+        held_(startsOf(arm)),
+        catalogue_(held_.begin()->second),
         selection_(catalogue_.select(question.parameters)),
         asked_(selection_.size()) {
-    if (question.nuisance.empty()) return;
-    for (const std::size_t index : catalogue_.select(question.nuisance)) {
-      if (std::find(selection_.begin(), selection_.end(), index) == selection_.end()) {
-        selection_.push_back(index);
+    if (!question.nuisance.empty()) {
+      for (const std::size_t index : catalogue_.select(question.nuisance)) {
+        if (std::find(selection_.begin(), selection_.end(), index) == selection_.end()) {
+          selection_.push_back(index);
+        }
       }
+    }
+    for (const std::size_t index : selection_) {
+      sd_.conservativeResize(sd_.size() + 1);
+      sd_[sd_.size() - 1] = catalogue_.parameters()[index].sd;
     }
   }
 
   DynamometerPlan plan() {
-    std::vector<DynamometerExperiment> all = candidates();
-    info::parallelFor(static_cast<int>(all.size()), question_.threads,
-                      [&](int i) { inform(all[static_cast<std::size_t>(i)]); });
+    DynamometerTrials::List list = trials_.all();
+    std::vector<DynamometerExperiment>& all = list.experiments;
+    if (std::any_of(all.begin(), all.end(), [](const auto& one) { return one.measuresAngle(); })) {
+      letGo();
+    }
+    std::vector<Suitability> suits(all.size());
+    info::parallelFor(static_cast<int>(all.size()), question_.threads, [&](int i) {
+      const auto n = static_cast<std::size_t>(i);
+      suits[n] = all[n].measuresAngle() ? informIsotonic(all[n]) : inform(all[n]);
+    });
     DynamometerPlan plan;
-    plan.candidates = all.size();
-    const auto isDead = [](const DynamometerExperiment& one) { return one.fisher.size() == 0; };
-    plan.failed = static_cast<std::size_t>(std::count_if(all.begin(), all.end(), isDead));
-    std::erase_if(all, isDead);
-    if (all.empty()) throw std::runtime_error("none of the experiments can be simulated");
+    const auto count = [&](Suitability what) {
+      return static_cast<std::size_t>(std::count(suits.begin(), suits.end(), what));
+    };
+    plan.candidates = all.size() + list.outside;
+    plan.failed = count(Suitability::cannotBeSimulated);
+    plan.unsuitable = list.outside + count(Suitability::unsuitable);
+    std::erase_if(all, [](const DynamometerExperiment& one) { return one.fisher.size() == 0; });
+    if (all.empty()) {
+      throw std::runtime_error(plan.failed > 0
+                                   ? "none of the experiments can be simulated"
+                                   : "none of the experiments stays in the coordinate's range");
+    }
     for (std::size_t i = 0; i < asked_; ++i) {
       plan.parameters.push_back(catalogue_.parameters()[selection_[i]]);
     }
@@ -85,103 +106,134 @@ class DynamometerPlanner {
   }
 
  private:
-  std::vector<DynamometerExperiment> candidates() const {
-    std::vector<DynamometerExperiment> all;
-    const auto groups = flexorsAndExtensors(arm_, arm_.skeleton().defaultValues());
-    for (const MuscleGroup& group : groups) {
-      for (const double effort : question_.efforts) {
-        for (const double position : question_.positions) {
-          all.push_back(
-              {ExperimentKind::isometric, position, position, 0, group.name, effort, {}, {}});
-        }
-      }
+  /// Compiles the arm with a free joint, and what starts at each of the positions.
+  void letGo() {
+    freeOptions_ = options_;
+    std::erase(freeOptions_.prescribed, coordinate_.name);
+    try {
+      free_ = std::make_unique<MusculoskeletalSystem>(model_, freeOptions_);
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("isotonic contractions: '{}' must be free: {}",
+                                              coordinate_.name, error.what()));
     }
-    const double low = question_.positions.front(), high = question_.positions.back();
-    for (const double speed : question_.speeds) {
-      for (const auto& [from, to] : {std::pair{low, high}, std::pair{high, low}}) {
-        all.push_back({ExperimentKind::passive, from, to, speed, "", 0, {}, {}});
-        for (const MuscleGroup& group : groups) {
-          for (const double effort : question_.efforts) {
-            all.push_back(
-                {ExperimentKind::isokinetic, from, to, speed, group.name, effort, {}, {}});
-          }
-        }
-      }
-    }
-    for (DynamometerExperiment& one : all) one.trial = trialOf(one, groups);
-    return all;
+    letGo_ = startsOf(*free_);
   }
 
-  Table trialOf(const DynamometerExperiment& one, const std::vector<MuscleGroup>& groups) const {
-    const double length = std::abs(one.to - one.from);
-    const double turning = one.kind == ExperimentKind::isometric
-                               ? dynamometer::hold
-                               : length / one.speed + dynamometer::speedUp;
-    const double begin =
-        dynamometer::rest + dynamometer::ramp + (one.kind == ExperimentKind::isometric ? 0 : 0.2);
-    const double end = begin + turning + (one.kind == ExperimentKind::isometric ? 0 : 0.2);
-    const double duration = end + dynamometer::ramp + dynamometer::after;
-    Table table;
-    table.name = "dynamometer";
-    table.columns = {"time"};
-    for (const SystemMuscle& muscle : arm_.muscles()) table.columns.push_back(muscle.name);
-    table.columns.push_back(coordinate_.name + (coordinate_.isRotation ? "_deg" : ""));
-    const auto rows = static_cast<Index>(std::floor(duration * question_.rate)) + 1;
-    table.values.resize(rows, static_cast<Index>(table.columns.size()));
-    const double unit = coordinate_.isRotation ? degreesPerRadian : 1;
-    for (Index k = 0; k < rows; ++k) {
-      const double t = static_cast<double>(k) / question_.rate;
-      table.values(k, 0) = t;
-      for (Index m = 1; m + 1 < table.values.cols(); ++m) {
-        const std::string& muscle = table.columns[static_cast<std::size_t>(m)];
-        const double effort = contracts(one, groups, muscle) ? one.effort : 0;
-        table.values(k, m) = dynamometer::excitationAtRest +
-                             std::max(0.0, effort - dynamometer::excitationAtRest) *
-                                 contractionAt(t, dynamometer::rest, end + dynamometer::ramp);
-      }
-      const double turned =
-          one.kind == ExperimentKind::isometric ? 0 : turnedAt(t - begin, length, one.speed);
-      table.values(k, table.values.cols() - 1) =
-          unit * (one.from + (one.to > one.from ? turned : -turned));
+  /// What starts at each of the positions.
+  std::map<double, ParameterCatalogue> startsOf(const MusculoskeletalSystem& arm) const {
+    std::map<double, ParameterCatalogue> starts;
+    const int index = arm.skeleton().indexOf(coordinate_.name);
+    for (const double position : question_.positions) {
+      Eigen::VectorXd q = arm.skeleton().defaultValues();
+      q[index] = position;
+      starts.emplace(position, ParameterCatalogue(model_, arm, {q, {}}));
     }
-    return table;
-  }
-
-  static bool contracts(const DynamometerExperiment& one, const std::vector<MuscleGroup>& groups,
-                        const std::string& muscle) {
-    for (const MuscleGroup& group : groups) {
-      if (group.name != one.group) continue;
-      return std::find(group.muscles.begin(), group.muscles.end(), muscle) != group.muscles.end();
-    }
-    return false;
+    return starts;
   }
 
   /// ΓᵀΓ/σ² of the moment.
-  void inform(DynamometerExperiment& one) const {
+  Suitability inform(DynamometerExperiment& one) const {
     const Trial trial =
         trialFrom(one.trial, "dynamometer", model_, {.prescribed = {coordinate_.name}});
     SimulationOptions simulation = simulation_;
     simulation.startTime = trial.times[0];
     simulation.duration = trial.duration();
     simulation.prescribed = prescribedMotionOf(trial, arm_);
-    const TrialPredictor predictor(catalogue_, options_, excitationOf(trial, arm_),
-                                   {{{Observable::Kind::moment, coordinate_.name, 0}, trial.times}},
-                                   selection_, simulation);
+    const TrialPredictor predictor(
+        held_.at(one.from), options_, excitationOf(trial, arm_),
+        measuredSeries({Observable::Kind::moment}, coordinate_.name, trial.times), selection_,
+        simulation);
     const Eigen::MatrixXd gamma = predictor.withSensitivities(catalogue_.values(selection_)).gamma;
-    if (!gamma.allFinite()) return;
+    if (!gamma.allFinite()) return Suitability::cannotBeSimulated;
     one.fisher = gamma.transpose() * gamma / (question_.noise * question_.noise);
+    return Suitability::suitable;
+  }
+
+  /// The generalised force that holds the joint where an isotonic contraction begins; NaN where
+  /// that cannot be simulated.
+  double holdingForce(const DynamometerExperiment& one) const {
+    const Trial trial =
+        trialFrom(one.trial, "dynamometer", model_, {.prescribed = {coordinate_.name}});
+    SimulationOptions simulation = simulation_;
+    simulation.startTime = trial.times[0];
+    simulation.duration = simulation.step;
+    simulation.prescribed.add(arm_.prescribed().front(), {trial.times[0]}, {one.from});
+    try {
+      const Trajectory held = simulateSetting(arm_, held_.at(one.from).nominal(),
+                                              excitationOf(trial, arm_), simulation);
+      return held.reaction(arm_.prescribed().front(), 0);
+    } catch (const std::exception&) {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+
+  /// ΓᵀΓ/σ² of the coordinate; cuts the trial where the joint would leave its range.
+  Suitability informIsotonic(DynamometerExperiment& one) const {
+    const double holding = holdingForce(one);
+    if (!std::isfinite(holding)) return Suitability::cannotBeSimulated;
+    // the muscles have to move the joint in their direction, against the torque
+    if (!(one.group == "flexors" ? holding < 0 : holding > 0)) return Suitability::unsuitable;
+    one.torque = roundedTorque(one.load * holding);
+    Table& table = one.trial;
+    const Index last = table.values.cols() - 1;
+    table.values.col(last - 1).setConstant(one.torque);
+    table.values.col(last).tail(table.values.rows() - 1).setConstant(std::nan(""));
+
+    const ParameterCatalogue& catalogue = letGo_.at(one.from);
+    std::vector<std::size_t> selection;
+    for (const std::size_t index : selection_) {
+      selection.push_back(catalogue.find(catalogue_.parameters()[index].name));
+    }
+    const Trial trial = trialFrom(table, "dynamometer", model_);
+    SimulationOptions simulation = simulation_;
+    simulation.startTime = trial.times[0];
+    simulation.duration = trial.duration();
+    simulation.externalForce = externalForceOf(trial, *free_);
+    const TrialPredictor predictor(
+        catalogue, freeOptions_, excitationOf(trial, *free_),
+        measuredSeries({Observable::Kind::coordinate, Observable::Kind::speed}, coordinate_.name,
+                       trial.times),
+        std::move(selection), simulation);
+    const TrialPredictor::Linearised at =
+        predictor.withSensitivities(predictor.catalogue().values(predictor.selection()));
+    const Index rows = rowsInRange(at, trial.times.size());
+    if (rows == 0) return Suitability::cannotBeSimulated;
+    if (!(trial.times[rows - 1] - trial.times[0] >= dynamometer::shortestIsotonic)) {
+      return Suitability::unsuitable;
+    }
+    table.values.conservativeResize(rows, Eigen::NoChange);
+    table.values.col(last) = trials_.unit() * at.outputs.head(rows);
+    one.to = at.outputs[rows - 1];
+    const Eigen::MatrixXd gamma = at.gamma.topRows(rows);
+    one.fisher = gamma.transpose() * gamma / (question_.angleNoise * question_.angleNoise);
+    return Suitability::suitable;
+  }
+
+  /// How many rows there are before the joint leaves its range or is too fast, had the parameters
+  /// asked for errors of their usual size; 0 if there is no motion.
+  /// @param at  coordinates, then their speeds
+  Index rowsInRange(const TrialPredictor::Linearised& at, Index rows) const {
+    const auto asked = static_cast<Index>(asked_);
+    Index k = 0;
+    for (; k < rows; ++k) {
+      const double q = at.outputs[k], speed = at.outputs[rows + k];
+      const double surprise =
+          question_.surprise *
+          at.gamma.row(k).head(asked).cwiseProduct(sd_.head(asked).transpose()).norm();
+      const bool isFine = q - surprise >= coordinate_.rangeMin &&
+                          q + surprise <= coordinate_.rangeMax &&
+                          std::abs(speed) <= question_.fastest;
+      if (!isFine) break;
+    }
+    return k;
   }
 
   void choose(std::vector<DynamometerExperiment> all, DynamometerPlan& plan) const {
     const auto p = static_cast<Index>(selection_.size());
     const auto asked = static_cast<Index>(plan.parameters.size());
-    Eigen::VectorXd sd(p);
-    for (Index i = 0; i < p; ++i) {
-      sd[i] = catalogue_.parameters()[selection_[static_cast<std::size_t>(i)]].sd;
-    }
     // in units of prior deviations I + Λ is S I S + 1; covariance of what is asked for
     const auto covariance = [&](const Eigen::MatrixXd& fisher) -> Eigen::MatrixXd {
-      Eigen::MatrixXd A = sd.asDiagonal() * fisher * sd.asDiagonal();
+      Eigen::MatrixXd A = sd_.asDiagonal() * fisher * sd_.asDiagonal();
       A.diagonal().array() += 1;
       return A.llt().solve(Eigen::MatrixXd::Identity(p, p)).topLeftCorner(asked, asked);
     };
@@ -201,7 +253,7 @@ class DynamometerPlanner {
       }
       known += best->fisher;
       plan.information.push_back(most);
-      plan.bounds.emplace_back(sd.head(asked).array() *
+      plan.bounds.emplace_back(sd_.head(asked).array() *
                                covariance(known).diagonal().array().sqrt());
       plan.chosen.push_back(std::move(*best));
       all.erase(best);
@@ -214,9 +266,16 @@ class DynamometerPlanner {
   const SimulationOptions& simulation_;
   const DynamometerQuestion& question_;
   const Coordinate& coordinate_;
-  ParameterCatalogue catalogue_;
-  std::vector<std::size_t> selection_;  ///< what is asked for, then nuisance parameters
+  DynamometerTrials trials_;
+  std::map<double, ParameterCatalogue> held_;  ///< by position
+  const ParameterCatalogue& catalogue_;        ///< one of them, for names and values
+  std::vector<std::size_t> selection_;         ///< what is asked for, then nuisance parameters
   std::size_t asked_;
+  Eigen::VectorXd sd_;  ///< of the selection's default priors
+  // where the joint is let go
+  SystemOptions freeOptions_ = {};
+  std::unique_ptr<MusculoskeletalSystem> free_ = nullptr;
+  std::map<double, ParameterCatalogue> letGo_ = {};  ///< by position
 };
 
 void checkQuestion(const DynamometerQuestion& question) {
@@ -235,8 +294,18 @@ void checkQuestion(const DynamometerQuestion& question) {
     require(effort > dynamometer::excitationAtRest && effort <= 1,
             "efforts must be above rest and at most 1");
   }
-  require(question.noise > 0 && question.rate > 0 && question.count > 0,
+  for (const double length : question.releases) {
+    require(length > 0 && question.releaseSpeed > 0 &&
+                dynamometer::releaseIsSampled(length, question.releaseSpeed, question.rate),
+            "releases must be > 0 and last at least 8 samples");
+  }
+  for (const double load : question.loads) {
+    require(load > 0 && load < 1, "loads must be above 0 and below 1");
+  }
+  require(question.noise > 0 && question.angleNoise > 0 && question.rate > 0 && question.count > 0,
           "noise, rate and count must be > 0");
+  require(question.surprise >= 0 && question.fastest > 0,
+          "surprise must be at least 0 and the largest speed > 0");
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ void writeOsim(const Model& model, const std::filesystem::path& file) {
   }
   for (const Joint& joint : model.joints) {
     for (const Coordinate& coordinate : joint.coordinates) {
-      if (!coordinate.prescribed || coordinate.prescribedFunction) continue;
+      if (!coordinate.isPrescribed() || coordinate.prescribedFunction) continue;
       throw std::invalid_argument(
           fmt::format("coordinate '{}': its prescribed_function is of a class that is not known "
                       "and cannot be written to a fresh document",

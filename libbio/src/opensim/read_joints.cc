@@ -42,6 +42,7 @@ void readPrescribed(Reading& reading, const Element& element, Coordinate& coordi
     coordinate.prescribedFunction = readFunction(reading, *function);
     return;
   }
+  if (coordinate.locked) return;  // which comes first
   reading.model.warnings.push_back(
       fmt::format("{}: its prescribed_function is a {}, which is not known: simulations need "
                   "--prescribe, --lock or --coordinate for it",

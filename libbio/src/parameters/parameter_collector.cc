@@ -265,23 +265,25 @@ class Collector {
         addForce(force.name, springRules[k], *springForceValue(force, k), SpringForceTarget{i, k});
       }
     }
-    using Of = ForceNumberTarget::Of;
+    using OfForce = ForceNumberTarget::Of;
     for (std::size_t i = 0; i < model_.pointSprings.size(); ++i) {
       if (arm_.bodyForces().hasSpring(i)) {
-        addNumbersOf(Of::pointSpring, i, model_.pointSprings[i].name);
+        addNumbersOf(OfForce::pointSpring, i, model_.pointSprings[i].name);
       }
     }
     for (std::size_t i = 0; i < model_.bushings.size(); ++i) {
-      if (arm_.bodyForces().hasBushing(i)) addNumbersOf(Of::bushing, i, model_.bushings[i].name);
+      if (arm_.bodyForces().hasBushing(i))
+        addNumbersOf(OfForce::bushing, i, model_.bushings[i].name);
     }
-    addNamed(Of::elasticPath, model_.elasticPaths, arm_.elasticPaths());
-    addNamed(Of::actuator, model_.actuators, arm_.actuators());
+    addNamed(OfForce::elasticPath, model_.elasticPaths, arm_.elasticPaths());
+    addNamed(OfForce::actuator, model_.actuators, arm_.actuators());
   }
 
-  // Of those of the model that the system has.
+  // Of those of the model that the system has. One of the same name may be switched off.
   template <class Given, class Acting>
   void addNamed(ForceNumberTarget::Of of, const Given& given, const Acting& acting) {
     for (std::size_t i = 0; i < given.size(); ++i) {
+      if (!given[i].enabled) continue;
       const bool acts = std::any_of(acting.begin(), acting.end(),
                                     [&](const auto& one) { return one.name == given[i].name; });
       if (acts) addNumbersOf(of, i, given[i].name);

@@ -210,6 +210,10 @@ Recording readRecording(const std::string& file, const RecordingLayout& layout) 
                                     ? "stream of numbers at a steady rate"
                                     : "analog channels or points that were seen"));
   }
+  if (out.channels.empty() && out.format != RecordingFormat::columns) {
+    throw FileError(
+        fmt::format("{}: none of its columns holds a signal, a recording needs some", file));
+  }
   if (out.channels.empty()) {
     throw FileError(
         fmt::format("{}: no channel is declared; a file without a header needs its "

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <cmath>
@@ -29,6 +30,7 @@ void appendPoints(const MarkerTrajectories& markers, std::vector<std::string>& r
                   std::vector<RawColumn>& out) {
   remarks.insert(remarks.end(), markers.remarks.begin(), markers.remarks.end());
   std::vector<Channel> channels;
+  std::vector<std::string> unseen;
   for (std::size_t k = 0; k < markers.names.size(); ++k) {
     const auto first = static_cast<Eigen::Index>(3 * k);
     constexpr std::array<const char*, 3> endings = {".x", ".y", ".z"};
@@ -39,9 +41,13 @@ void appendPoints(const MarkerTrajectories& markers, std::vector<std::string>& r
       if (channel.values.size() > 1) channels.push_back(std::move(channel));
     }
     if (channels.empty() || channels.back().name != markers.names[k] + ".z") {
-      remarks.push_back(
-          fmt::format("Point '{}' was never seen, or once, and was not read.", markers.names[k]));
+      unseen.push_back(markers.names[k]);
     }
+  }
+  if (!unseen.empty()) {
+    remarks.push_back(
+        fmt::format("{} of {} points were never seen, or once, and were not read: {}.",
+                    unseen.size(), markers.names.size(), fmt::join(unseen, ", ")));
   }
   append(channels, out);
 }

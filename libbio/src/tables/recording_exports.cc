@@ -145,8 +145,10 @@ Eigen::VectorXd vectorOf(const std::vector<double>& values) {
 ExportReader exportReader(const std::string& file, const std::vector<std::string>& lines,
                           std::size_t line, std::optional<NamesLine> names, const char* rule) {
   if (line == 0 || !names) throw FileError(fmt::format("{}: has no line of names, {}", file, rule));
-  if (line == lines.size())
-    throw FileError(fmt::format("{}: ends with its names, must hold rows", file));
+  const bool isBlank =
+      std::all_of(lines.begin() + static_cast<std::ptrdiff_t>(line), lines.end(),
+                  [](const std::string& l) { return l.find_first_not_of(" \t,;\r") == l.npos; });
+  if (isBlank) throw FileError(fmt::format("{}: ends with its names, must hold rows", file));
   return {file, line, *std::move(names)};
 }
 

@@ -59,9 +59,11 @@ Meaning meaningOf(const Model& model, const Table& table, const std::string& col
   for (const Muscle& muscle : model.muscles) {
     if (muscle.name == name) return {Meaning::Kind::muscle, name, false};
   }
-  for (const CoordinateActuator& actuator : model.actuators) {
-    if (actuator.name != name) continue;
-    return {Meaning::Kind::applied, actuator.coordinate, false, &actuator};
+  for (const bool enabled : {true, false}) {  // one of the same name may be switched off
+    for (const CoordinateActuator& actuator : model.actuators) {
+      if (actuator.name != name || actuator.enabled != enabled) continue;
+      return {Meaning::Kind::applied, actuator.coordinate, false, &actuator};
+    }
   }
   const bool suffix = name.ends_with("_deg");
   const std::string bare = suffix ? name.substr(0, name.size() - 4) : name;

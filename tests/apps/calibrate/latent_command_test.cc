@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "support/run_program.h"
 #include "support/scratch_folder.h"
@@ -14,6 +15,7 @@ using support::ProgramResult;
 using support::runFisherHill;
 using support::ScratchFolder;
 using testing::HasSubstr;
+using testing::Not;
 
 /// The shipped configuration without the electrode of BRD.
 std::string configWithout(const std::string& instead) {
@@ -66,7 +68,14 @@ TEST(LatentCommand, AMuscleWithoutAnElectrodeIsPulledAndNamed) {
   const std::string report = support::contentOf(fit + "/report.html");
   EXPECT_THAT(report, HasSubstr("Muscles without an electrode"));
   EXPECT_THAT(report, HasSubstr("pulled from what was expected by"));
-  EXPECT_THAT(support::contentOf(fit + "/parameters.csv"), HasSubstr("emg.BRD.latent4"));
+  // knots are in their own place
+  EXPECT_EQ(json["estimates"].size(), 1u);
+  EXPECT_EQ(json["correlation"].size(), 1u);
+  EXPECT_THAT(support::contentOf(fit + "/parameters.csv"), Not(HasSubstr("latent")));
+  ASSERT_EQ(latent["sd_log_odds"].size(), 4u);
+  for (const auto& sd : latent["sd_log_odds"]) {  // null: the data do not determine it
+    EXPECT_TRUE(sd.is_null() || (sd > 0 && sd < 1)) << sd;
+  }
   // what it wrote replays as it was scored
   const ProgramResult replay =
       runFisherHill({"replay", fit + "/calibrated.osim", fit + "/driven_1.sto", "--json"});
@@ -102,6 +111,34 @@ TEST(LatentCommand, TheOptionDoesWithoutTheHeaderAndIsHeldToItsRules) {
   refused("BRD=0:0.5", "sd = 0, must be > 0");
   refused("BRD=1:0", "knots every 0 s, must be > 0");
   refused("BRD=1", "--latent");
+}
+
+// They are estimated anyway, belong to trials, and have the prior that is declared with them.
+TEST(LatentCommand, KnotsCannotBeNamed) {
+  const auto refused = [](std::vector<std::string> more, const std::string& message) {
+    more.insert(more.begin(), {"calibrate", "models/elbow8.osim", "emg_data/curl_fast.sto"});
+    const ProgramResult result = runFisherHill(more);
+    EXPECT_EQ(result.status, 2) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(message));
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  };
+  for (const char* name :
+       {"emg.BRD.latent1", "emg.*.latent*", "hand.mass,trial1.emg.BRD.latent2"}) {
+    for (const bool declared : {true, false}) {
+      std::vector<std::string> more = {"--parameters", name};
+      if (declared) more.insert(more.end(), {"--latent", "BRD=1:0.5"});
+      refused(more, "knots of latent excitations are estimated without being named");
+    }
+  }
+  const std::vector<std::string> with = {"--parameters", "hand.mass", "--latent", "BRD=1:0.5"};
+  for (const auto& [option, value, words] :
+       {std::tuple{"--prior", "emg.BRD.latent1=0:1", "prior of 'emg.BRD.latent1': knots"},
+        std::tuple{"--bounds", "emg.BRD.latent1=-1:1", "bounds of 'emg.BRD.latent1': knots"},
+        std::tuple{"--prior", "emg.ANC.latent1=0:1", "have the prior that the trial's header"}}) {
+    std::vector<std::string> more = with;
+    more.insert(more.end(), {option, value});
+    refused(more, words);
+  }
 }
 
 }  // namespace

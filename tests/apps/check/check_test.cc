@@ -53,6 +53,19 @@ TEST(CheckCommand, TellsWhatRecordingsHold) {
   EXPECT_THAT(broken.out, HasSubstr("d.c3d: is no C3D file"));
 }
 
+// One line for all points that no camera saw, not one for each of them or of their frames.
+TEST(CheckCommand, TellsUnseenPointsInOneLine) {
+  const ScratchFolder scratch;
+  support::C3dSample sample;
+  sample.isSeen = [](unsigned, unsigned) { return false; };
+  const std::string file = scratch.file("a.c3d", sample.write());
+  const ProgramResult result = runFisherHill({"check", file});
+  const std::string told = result.out + result.err;
+  EXPECT_THAT(told, HasSubstr("2 of 2 markers are never seen: HEAD, ELBOW"));
+  const auto seen = told.find("never seen");
+  EXPECT_EQ(told.find("never seen", seen + 1), std::string::npos) << told;
+}
+
 TEST(CheckCommand, JsonIsTheSummaryAlone) {
   const ScratchFolder scratch;
   const std::string file = scratch.file("good.csv", goodTrial);

@@ -198,6 +198,19 @@ TEST(MarkersCommand, PointsOfTrcAndC3dBecomeMarkersThatAreFitted) {
                 "names = { 'S:ULN 1' = 'ulna.shaft', 'S:MCP3' = 'hand.knuckle' }\n");
 }
 
+TEST(MarkersCommand, AModelThatCannotBeReadIsOfTheConfiguration) {
+  const ScratchFolder scratch;
+  const std::string config = scratch.file(
+      "c.toml",
+      "[[electrode]]\nchannel = 'a'\nmuscles = ['BRA']\n\n[markers]\nmodel = 'no.osim'\n");
+  const std::string raw = scratch.file("raw.csv", "time,a_mV\n0,1\n0.001,2\n0.002,1\n");
+  const ProgramResult result =
+      runFisherHill({"emg", raw, "--config", config, "--out", (scratch / "out").string()});
+  EXPECT_EQ(result.status, 2) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("c.toml:5: [markers] model: "));
+  EXPECT_THAT(result.err, HasSubstr("no.osim"));
+}
+
 // Two coordinates, and the names of the model's own markers.
 TEST(MarkersCommand, Arm26IsCalibratedFromItsMarkers) {
   const std::string arm26 =

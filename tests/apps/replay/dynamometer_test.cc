@@ -18,6 +18,7 @@ using support::ProgramResult;
 using support::runFisherHill;
 using support::ScratchFolder;
 using testing::HasSubstr;
+using testing::Not;
 
 const std::string ankle = std::string(FISHERHILL_SOURCE_DIR) + "/models/ankle_ta.osim";
 
@@ -241,16 +242,72 @@ TEST(Dynamometer, WhatCannotFollowTheModelsFunctionSaysSo) {
   refused({"design", known, trial, "--parameters", "TA.max_isometric_force", "--out",
            (scratch / "e").string()},
           "the model prescribes the motion of 'ankle_angle'");
-  const std::string unknown = prescribingModel(
-      scratch, "<GCVSpline><x>0 1 2</x><y>0 0 0</y></GCVSpline>", "unknown.osim");
+  const std::string unknown =
+      prescribingModel(scratch, "<GCVSpline><x>0 1 2</x><y>0 0 0</y></GCVSpline>", "unknown.osim");
   refused({"replay", unknown, trial, "--out", (scratch / "r").string()},
           "by a function of a class that is not known");
-  const ProgramResult given = runFisherHill({"replay", unknown, trial, "--prescribe", "ankle_angle",
-                                             "--out", (scratch / "g").string()});
+  const ProgramResult given = runFisherHill(
+      {"replay", unknown, trial, "--prescribe", "ankle_angle", "--out", (scratch / "g").string()});
   EXPECT_EQ(given.status, 0) << given.err;
   EXPECT_THAT(given.err, HasSubstr("its prescribed_function is a GCVSpline"));
   const ProgramResult checked = runFisherHill({"check", unknown, known});
   EXPECT_THAT(checked.out + checked.err, HasSubstr("its prescribed_function is a GCVSpline"));
+}
+
+// Locked comes first: a function that is not used need not be known, and hinders no writing.
+TEST(Dynamometer, ALockedCoordinateDoesNotNeedItsFunction) {
+  const ScratchFolder scratch;
+  const std::string model =
+      prescribingModel(scratch, "<GCVSpline><x>0 1 2</x><y>0 0 0</y></GCVSpline>", "locked.osim");
+  std::string text = contentOf(model);
+  const std::string at = "<locked>false</locked>";
+  if (text.find(at) == std::string::npos) {
+    text.replace(text.find("<prescribed>true"), 0, "<locked>true</locked>");
+  } else {
+    text.replace(text.find(at), at.size(), "<locked>true</locked>");
+  }
+  const std::string locked = scratch.file("locked.osim", text);
+  const std::string trial = scratch.file(
+      "trial.csv", "time,TA,ankle_angle.moment\n0,0.1,2\n0.5,0.2,3\n1,0.3,4\n1.5,0.3,4\n");
+  const std::string out = (scratch / "out").string();
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{}, {"--convert-muscles", "Thelen2003"}}) {
+    std::vector<std::string> words = {
+        "calibrate", locked, trial,    "--parameters", "TA.max_isometric_force",
+        "--out",     out,    "--force"};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProgramResult result = runFisherHill(words);
+    EXPECT_LE(result.status, 1) << result.err;
+    EXPECT_THAT(result.err, Not(HasSubstr("GCVSpline")));
+    const std::string written = contentOf(out + "/calibrated.osim");
+    EXPECT_EQ(written.find("GCVSpline") != std::string::npos, more.empty());
+    EXPECT_THAT(written, HasSubstr("<locked>true</locked>"));
+  }
+}
+
+// Its angle is not what is fitted, which is said once.
+TEST(Dynamometer, AMeasuredColumnThatTheModelPrescribesIsNotFittedAndSaysSo) {
+  const ScratchFolder scratch;
+  const std::string model = prescribingModel(scratch, turning);
+  const std::string trial = (scratch / "trial.csv").string(),
+                    other = (scratch / "other.csv").string();
+  writeTrial(trial, std::vector<double>(151, 1.0));
+  writeTrial(other, std::vector<double>(151, 2.0));
+  const auto remarks = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {
+        "calibrate", model, trial, "--hold-out", other, "--parameters", "TA.max_isometric_force"};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProgramResult result = runFisherHill(words);
+    EXPECT_LE(result.status, 1) << result.err;
+    return result.err;
+  };
+  const std::string told = remarks({});
+  EXPECT_THAT(told, HasSubstr(trial + ", " + other +
+                              ": the measured 'ankle_angle' is not part of the fit, since the "
+                              "model prescribes the motion of 'ankle_angle'"));
+  const auto first = told.find("not part of the fit");
+  EXPECT_EQ(told.find("not part of the fit", first + 1), std::string::npos) << told;
+  EXPECT_THAT(remarks({"--prescribe", "ankle_angle"}), Not(HasSubstr("not part of the fit")));
 }
 
 TEST(Dynamometer, WrongUseIsToldInOneLine) {

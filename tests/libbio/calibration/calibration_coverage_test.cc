@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "libbio/calibration/calibration_statistics.h"
+#include "libbio/calibration/latent_statistics.h"
 #include "libbio/calibration/torque_statistics.h"
 
 namespace bio::fixtures {
@@ -38,6 +39,20 @@ TEST(CalibrationCoverage, MomentAngleAndFascicleTogetherAttainTheirBound) {
   expectTheBound(all);
   // the bound falls, and the estimates with it
   EXPECT_LT((all.bound / moment.bound).minCoeff(), 0.9);
+}
+
+// What excited a muscle without an electrode is drawn from the declared prior.
+TEST(CalibrationCoverage, LatentExcitationsLeaveHonestIntervals) {
+  const LatentStatistics s = repeatLatentCalibration(200);
+  EXPECT_GE(s.latent.converged, 195);
+  EXPECT_GE(s.latent.told.minCoeff(), 0.99);
+  EXPECT_GE(s.latent.coverage.minCoeff(), 0.91);
+  EXPECT_LE(s.latent.coverage.maxCoeff(), 0.99);
+  EXPECT_LT((s.latent.rms / s.latent.sd).maxCoeff(), 1.2);
+  // the shared electrode taken as it is: large errors, hardly any interval, and those are wrong
+  EXPECT_GT((s.shared.rms / s.latent.rms).minCoeff(), 5);
+  EXPECT_LT(s.shared.told.maxCoeff(), 0.2);
+  EXPECT_LT(s.shared.coverage[0], 0.5);
 }
 
 }  // namespace

@@ -3,11 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include "bio/analysis/replay.h"
+#include "bio/tables/trial_table.h"
+#include "support/numbers.h"
 #include "support/shipped_elbow.h"
 #include "support/throws_saying.h"
 
 namespace bio {
 namespace {
+
+using support::degree;
 
 struct DynamometerElbow {
   static SystemOptions options() {
@@ -44,7 +49,9 @@ TEST(DynamometerPlan, EachExperimentAddsAndNoneIsDoneTwice) {
   before << plan.parameters[0].sd, plan.parameters[1].sd;
   for (std::size_t n = 0; n < 3; ++n) {
     EXPECT_GT(plan.information[n], 0);
-    if (n > 0) EXPECT_LE(plan.information[n], plan.information[n - 1] * (1 + 1e-12));
+    if (n > 0) {
+      EXPECT_LE(plan.information[n], plan.information[n - 1] * (1 + 1e-12));
+    }
     EXPECT_TRUE((plan.bounds[n].array() <= before.array() * (1 + 1e-12)).all());
     before = plan.bounds[n];
     for (std::size_t m = 0; m < n; ++m) {
@@ -66,6 +73,103 @@ TEST(DynamometerPlan, TurnsReachTheirEndWithoutOvershoot) {
   }
 }
 
+DynamometerQuestion onlyOf(DynamometerExperiment::Kind kind) {
+  DynamometerQuestion question = DynamometerElbow::question();
+  question.kinds = {kind};
+  question.releases = {10 * degree};
+  question.releaseSpeed = 125 * degree;  // 0.16 s: eight samples at 50 Hz
+  question.loads = {0.5, 0.9};
+  question.count = 100;
+  return question;
+}
+
+// Flexors shorten when the angle rises, extensors when it falls; the contraction is steady.
+TEST(DynamometerPlan, AReleaseLetsTheContractedMusclesShorten) {
+  const DynamometerElbow elbow;
+  DynamometerQuestion question = onlyOf(DynamometerExperiment::Kind::release);
+  question.positions = {5 * degree, 80 * degree};
+  const DynamometerPlan plan = elbow.plan(question);
+  EXPECT_EQ(plan.candidates, 4);
+  EXPECT_EQ(plan.unsuitable, 1);  // extensors, from 5° to −5°: outside the range
+  ASSERT_EQ(plan.chosen.size(), 3);
+  for (const DynamometerExperiment& one : plan.chosen) {
+    const double rises = one.group == "flexors" ? 1 : -1;
+    EXPECT_NEAR(one.to - one.from, rises * 10 * degree, 1e-12);
+    const Eigen::VectorXd angle = one.trial.values.rightCols<1>() * degree;
+    const Eigen::VectorXd speed =
+        50 * (angle.tail(angle.size() - 1) - angle.head(angle.size() - 1));
+    EXPECT_GE(rises * speed.minCoeff(), rises > 0 ? -1e-12 : 1e-12 - 125 * degree);
+    EXPECT_LE(speed.cwiseAbs().maxCoeff(), 125 * degree);
+    EXPECT_GT(speed.cwiseAbs().maxCoeff(), 0.9 * 125 * degree);
+    EXPECT_NEAR(angle[angle.size() - 1], one.to, 1e-12);
+    for (Eigen::Index k = 0; k + 1 < angle.size(); ++k) {
+      if (std::abs(speed[k]) < 1e-9) continue;  // while it moves, one group contracts fully
+      EXPECT_EQ(one.trial.values.row(k).segment(1, elbow.arm.numMuscles()).maxCoeff(), one.effort);
+    }
+  }
+}
+
+// The joint is let go against part of what holds it: it moves in the muscles' direction, and the
+// trial's own simulation is what the plan predicts.
+TEST(DynamometerPlan, AnIsotonicContractionIsTheMotionOfItsOwnTrial) {
+  const DynamometerElbow elbow;
+  SystemOptions options = DynamometerElbow::options();
+  options.prescribed.clear();
+  const MusculoskeletalSystem free(elbow.model, options);
+  const DynamometerPlan plan = elbow.plan(onlyOf(DynamometerExperiment::Kind::isotonic));
+  EXPECT_EQ(plan.candidates, 8);
+  ASSERT_GE(plan.chosen.size(), 4);
+  EXPECT_EQ(plan.chosen.size() + plan.failed + plan.unsuitable, plan.candidates);
+  for (const DynamometerExperiment& one : plan.chosen) {
+    const double rises = one.group == "flexors" ? 1 : -1;
+    EXPECT_LT(rises * one.torque, 0);
+    EXPECT_GT(rises * (one.to - one.from), 1 * degree);
+    const Trial trial = trialFrom(one.trial, "isotonic", elbow.model);
+    const TrialReplay replay =
+        replayTrial(free, trial, SimulationOptions(), beginningOf(trial, elbow.model, free, {}));
+    ASSERT_EQ(replay.errors.size(), 1);
+    EXPECT_LT(replay.errors[0].second.largest, 1e-9);
+    EXPECT_LE(replay.motion.q.maxCoeff(), 2.268928031);
+    EXPECT_GE(replay.motion.q.minCoeff(), 0);
+    EXPECT_LE(replay.motion.qDot.cwiseAbs().maxCoeff(), 8.7);
+  }
+}
+
+// With the whole torque that holds it, the joint stays: the torque is that of the isometric moment.
+TEST(DynamometerPlan, TheLoadIsAShareOfWhatHoldsTheJoint) {
+  const DynamometerElbow elbow;
+  DynamometerQuestion question = onlyOf(DynamometerExperiment::Kind::isotonic);
+  question.positions = {80 * degree};
+  question.speeds = {};
+  question.loads = {0.999999};
+  for (const DynamometerExperiment& one : elbow.plan(question).chosen) {
+    const Eigen::VectorXd angle = one.trial.values.rightCols<1>() * degree;
+    const Eigen::Index early = std::min<Eigen::Index>(angle.size(), 6);  // 0.1 s
+    EXPECT_LT((angle.head(early).array() - one.from).abs().maxCoeff(), 0.5 * degree) << one.group;
+  }
+}
+
+// The margin for wrong parameters ends trials early.
+TEST(DynamometerPlan, AnIsotonicContractionEndsBeforeTheRangeDoes) {
+  const DynamometerElbow elbow;
+  DynamometerQuestion question = onlyOf(DynamometerExperiment::Kind::isotonic);
+  question.loads = {0.5, 0.6, 0.7, 0.8, 0.9};
+  const auto rows = [&](double surprise) {
+    question.surprise = surprise;
+    Eigen::Index sum = 0;
+    for (const DynamometerExperiment& one : elbow.plan(question).chosen) {
+      sum += one.trial.values.rows();
+      EXPECT_GE(one.trial.values.rows(), 6);  // 0.1 s
+    }
+    return sum;
+  };
+  const Eigen::Index sure = rows(0), careful = rows(20);
+  EXPECT_LT(careful, sure);
+  EXPECT_GT(careful, 0);
+  question.fastest = 0.01;
+  support::throwsSaying([&] { elbow.plan(question); }, "stays in the coordinate's range");
+}
+
 TEST(DynamometerPlan, RefusesListsThatMakeNoSense) {
   const DynamometerElbow elbow;
   const auto refused = [&](auto change, const char* words) {
@@ -80,6 +184,15 @@ TEST(DynamometerPlan, RefusesListsThatMakeNoSense) {
   refused([](auto& q) { q.speeds = {0.02}; }, "fit between the positions");
   refused([](auto& q) { q.efforts = {0.01}; }, "efforts must be above rest");
   refused([](auto& q) { q.noise = 0; }, "must be > 0");
+  refused([](auto& q) { q.angleNoise = 0; }, "must be > 0");
+  refused([](auto& q) { q.loads = {1}; }, "below 1");
+  refused([](auto& q) { q.surprise = -1; }, "surprise");
+  refused(
+      [](auto& q) {
+        q.releases = {10 * degree};
+        q.releaseSpeed = 130 * degree;
+      },
+      "at least 8 samples");
   refused([](auto& q) { q.coordinate = "knee"; }, "knee");
 }
 

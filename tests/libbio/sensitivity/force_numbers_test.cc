@@ -3,6 +3,7 @@
 
 #include "bio/opensim/osim_file.h"
 #include "bio/simulation/simulate_batch.h"
+#include "bio/tables/trial_table.h"
 #include "libbio/forces/arm_with_forces.h"
 #include "support/scratch_folder.h"
 #include "support/sensitivity_differences.h"
@@ -62,6 +63,46 @@ TEST(ForceNumbers, OfWhatDoesNotActAreNotListed) {
   EXPECT_FALSE(catalogue.has("sleeve.rotational_stiffness.x"));  // between bodies that rest
   EXPECT_FALSE(catalogue.has("strap.slack_length"));             // a path that nothing moves
   EXPECT_FALSE(catalogue.has("motor.optimal_force"));            // on a coordinate that is locked
+}
+
+// Of two of one name only the one that is switched on acts, in whatever order.
+TEST(ForceNumbers, OfTwoOfOneNameAreThoseOfTheOneThatActs) {
+  for (const bool offFirst : {true, false}) {
+    Model model = withMotor(withAll());
+    const auto twice = [&](auto& forces, auto change) {
+      auto off = forces.front();
+      off.enabled = false;
+      change(off);
+      forces.insert(offFirst ? forces.begin() : forces.end(), off);
+      return offFirst ? 1u : 0u;
+    };
+    const std::size_t path = twice(model.elasticPaths, [](ElasticPath& p) { p.scale = 777; });
+    const std::size_t motor =
+        twice(model.actuators, [](CoordinateActuator& a) { a.optimalForce = 777; });
+    const std::string name = model.elasticPaths[path].name;
+    const ArmOfSeven c(0.1, ArmOfSeven::coordinates(), false, model);
+    const ParameterCatalogue catalogue(c.model, c.arm, {c.start.q, {}});
+    for (const ModelParameter& one : catalogue.parameters()) {
+      EXPECT_NE(one.value, 777) << one.name;
+      EXPECT_EQ(std::count_if(catalogue.parameters().begin(), catalogue.parameters().end(),
+                              [&](const ModelParameter& p) { return p.name == one.name; }),
+                1)
+          << one.name;
+    }
+    const auto targetOf = [&](const std::string& parameter) {
+      return std::get<ForceNumberTarget>(
+                 catalogue.parameters()[catalogue.find(parameter)].targets.front())
+          .force;
+    };
+    EXPECT_EQ(targetOf("ligament.pcsa_force"), path);
+    EXPECT_EQ(targetOf("motor.optimal_force"), motor);
+    // the column of a trial controls it, too
+    Table table;
+    table.columns = {"time", model.muscles.front().name, "motor"};
+    table.values.resize(2, 3);
+    table.values << 0, 0.1, 2, 1, 0.1, 2;
+    EXPECT_EQ(trialFrom(table, "made", model).applied.front().values[0], 3) << offFirst;
+  }
 }
 
 TEST(ForceNumbers, SetTheModelWhichIsWrittenWithThem) {

@@ -97,6 +97,11 @@ TEST_F(Exports, BrokenEmgworksFilesAreToldInOneLine) {
   refused("0.002,2", "0.002,inf", "must be finite");
   EXPECT_THAT(refusalOf(emgworks.substr(0, emgworks.find("\n0,")), RecordingFormat::emgworks),
               HasSubstr("ends with its names, must hold rows"));
+  for (const char* rows : {"\n\n\n", "\n  \n,,,\n", "\n,,,\r\n,,\r\n"}) {
+    EXPECT_THAT(
+        refusalOf(emgworks.substr(0, emgworks.find("\n0,")) + rows, RecordingFormat::emgworks),
+        HasSubstr("ends with its names, must hold rows"));
+  }
 }
 
 // Made by hand after the layout of the program's exports.

@@ -14,6 +14,7 @@ struct PulledExcitation {
   std::vector<double> knots;         ///< [s]
   Eigen::VectorXd expected, fitted;  ///< excitation at the knots
   Eigen::VectorXd z;                 ///< c_k/sd, of the log-odds
+  Eigen::VectorXd sd;                ///< of c_k given the data; NaN where these do not determine it
   double largest() const { return z.cwiseAbs().maxCoeff(); }
   double rms() const;
 };

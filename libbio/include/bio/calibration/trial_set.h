@@ -47,7 +47,8 @@ struct MeasuredGroup {
 /// rows from the initial state of beginningOf().
 class TrialSet {
  public:
-  /// @throws std::invalid_argument, naming the file where there is one, for no trial, a trial with
+  /// @throws std::invalid_argument, naming the file where there is one, for no trial, a knot of a
+  ///   latent excitation as parameter (these are estimated anyway), a trial with
   ///   an external torque or without a measured channel, a channel that cannot be observed
   ///   (observed_motion.h), an unknown name, one given twice or two
   ///   that set the same value, an initial state as common parameter of several trials, another
@@ -150,6 +151,10 @@ class TrialSet {
   std::vector<Eigen::Index> begin_ = {0};  ///< where the samples of each trial begin, and their end
   std::vector<TrialPredictor> experiments_;  ///< one per trial
 };
+
+/// Whether a name, or a pattern, asks for knots of latent excitations: emg.MUSCLE.latentK, also
+/// with the number of a trial in front.
+bool namesKnot(const std::string& parameter);
 
 /// Indices of the parameters that the names select, each once.
 /// @throws std::invalid_argument as ParameterCatalogue::select does, and for a name given twice
