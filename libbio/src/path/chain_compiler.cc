@@ -263,21 +263,20 @@ class ChainCompiler {
     std::vector<ChainEnds> ends;
     for (const Posture* posture : postures_) {
       here.push_back(at(*posture));
-      ends.push_back(chainEnds(chain_, here.back().X_GC, here.back().P, here.back().Q));
+      ends.push_back(chainEnds(size(), here.back().X_GC, here.back().P, here.back().Q));
     }
-    std::vector<ChainMemory> memories(n);
+    std::vector<Found> found(n);
     std::vector<std::size_t> from(n, n);
     std::vector<double> distance(n, std::numeric_limits<double>::infinity());
     std::vector<bool> done(n, false), isKept(n, false);
     for (std::size_t count = 0, next = first; count < n; ++count) {
       done[next] = true;
-      const ChainMemory* known = from[next] < n ? &memories[from[next]] : nullptr;
-      const Found found = decide(here[next], known);
-      isKept[next] = isFound(found);
+      const ChainMemory* known = from[next] < n ? &found[from[next]].memory : nullptr;
+      found[next] = decide(here[next], known);
+      isKept[next] = isFound(found[next]);
       ++result_.numPostures;
       if (!isKept[next]) ++result_.numNotFound;
-      noteInside(found.taut);
-      memories[next] = found.memory;
+      noteInside(found[next].taut);
       double nearest = std::numeric_limits<double>::infinity();
       std::size_t following = n;
       for (std::size_t i = 0; i < n; ++i) {
@@ -300,14 +299,13 @@ class ChainCompiler {
     if (result_.numNotFound == result_.numPostures) {
       throw UnsupportedWrap("no taut string is found over its wrap objects");
     }
+    std::vector<ChainStarts::Known> kept;
     for (std::size_t i = 0; i < n; ++i) {
-      if (isKept[i]) chain_.starts.push_back(memories[i]);
-    }
-    for (std::size_t k = 0; k < 6 * size(); ++k) {
-      for (std::size_t i = 0; i < n; ++i) {
-        if (isKept[i]) chain_.startEnds.push_back(ends[i][k]);
+      if (isKept[i]) {
+        kept.push_back({here[i].X_GC, here[i].P, here[i].Q, found[i].taut, found[i].memory});
       }
     }
+    chain_.starts = std::make_shared<const ChainStarts>(size(), chain_.inOneSegment, kept);
   }
 
   void noteInside(const ChainPath& taut) {

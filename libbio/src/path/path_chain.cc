@@ -20,21 +20,9 @@ bool isBeyondEnds(const PathSurface& surface, const ChainObject& object,
          std::abs(object.intoFrame(contact.B).z()) > surface.halfLength;
 }
 
-// The kept posture whose ends lie nearest.
-std::size_t nearestStart(const PathChain& chain, const ChainEnds& ends) {
-  const std::size_t numStarts = chain.starts.size();
-  std::array<float, maxChainStarts> distance{};
-  const auto numbers = static_cast<std::size_t>(6 * chain.count);
-  for (std::size_t i = 0; i < numbers; ++i) {
-    const float* column = chain.startEnds.data() + i * numStarts;
-    const float here = ends[i];
-    for (std::size_t s = 0; s < numStarts; ++s) {
-      const float d = column[s] - here;
-      distance[s] += d * d;
-    }
-  }
-  const auto last = distance.begin() + static_cast<std::ptrdiff_t>(numStarts);
-  return static_cast<std::size_t>(std::min_element(distance.begin(), last) - distance.begin());
+// A search that ended where it should from a start that was near.
+bool isPlain(const ChainPath& taut) {
+  return taut.event == ChainEvent::none && taut.isShortest;
 }
 
 }  // namespace
@@ -43,20 +31,6 @@ Surface surfaceOf(const PathSurface& surface, double radius) {
   if (surface.general) return *surface.general;
   if (surface.isSphere) return SphereSurface(radius);
   return CylinderSurface(radius);
-}
-
-ChainEnds chainEnds(const PathChain& chain, const ChainPlacements& X_GC, const Vec3<double>& P,
-                    const Vec3<double>& Q) {
-  ChainEnds ends{};
-  for (std::size_t j = 0; j < static_cast<std::size_t>(chain.count); ++j) {
-    const Vec3<double> p = X_GC[j].R.transpose() * (P - X_GC[j].p);
-    const Vec3<double> q = X_GC[j].R.transpose() * (Q - X_GC[j].p);
-    for (std::size_t i = 0; i < 3; ++i) {
-      ends[6 * j + i] = static_cast<float>(p[static_cast<Eigen::Index>(i)]);
-      ends[6 * j + 3 + i] = static_cast<float>(q[static_cast<Eigen::Index>(i)]);
-    }
-  }
-  return ends;
 }
 
 PlacedChain placeChain(const CompiledPath& path, const PathChain& chain,
@@ -79,14 +53,16 @@ ChainPath tautChain(const CompiledPath& path, const PathChain& chain, const Plac
   for (std::size_t j = 0; j < placed.count; ++j) {
     leftOut |= ((used >> chain.members[j].surface) & 1u) << j;
   }
-  ChainMemory start;
-  if (!chain.starts.empty()) {
-    start = chain.starts[nearestStart(chain, chainEnds(chain, X_GC, P, Q))];
-  }
+  ChainStarts::Start start;
+  if (chain.starts) start = chain.starts->startFor(placed.all(), X_GC, P, Q);
   ChainPath taut;
   for (;;) {
-    ChainMemory memory = start;
+    ChainMemory memory = start.moved;
     taut = solveChain(P, Q, placed.all(), memory, leftOut);
+    if (start.kept != nullptr && !isPlain(taut)) {
+      memory = *start.kept;
+      taut = solveChain(P, Q, placed.all(), memory, leftOut);
+    }
     if (taut.event == ChainEvent::notFound) {
       throw std::domain_error(fmt::format(
           "no taut string is found from ({}, {}, {}) to ({}, {}, {}) m over wrap object {} of its "

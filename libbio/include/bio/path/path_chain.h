@@ -3,19 +3,17 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "bio/path/chain_starts.h"
 #include "bio/path/span.h"
 #include "bio/path/surface/chain.h"
-#include "bio/skeleton/rigid_motion.h"
 
 namespace bio {
 
 struct CompiledPath;
-
-/// How many postures a chain keeps at most.
-inline constexpr std::size_t maxChainStarts = 256;
 
 /// Surfaces that a span of a path passes together, in the order in which it meets them, or one
 /// without a closed form. Their segments may move against each other.
@@ -32,18 +30,8 @@ struct PathChain {
   std::array<Member, maxChain> members;
   bool inOneSegment = true;  ///< all members belong to one segment
 
-  std::vector<ChainMemory> starts;  ///< contacts in some postures
-  std::vector<float> startEnds;     ///< chainEnds of those postures, one number after the other
+  std::shared_ptr<const ChainStarts> starts;  ///< null: the hints alone decide
 };
-
-/// Where a chain's surfaces are in the frame in which its ends are given.
-using ChainPlacements = std::array<Placement<double>, maxChain>;
-
-/// The ends of a chain as each member sees them, P and Q one after the other: what tells one
-/// posture from another. 6 numbers for each member [m].
-using ChainEnds = std::array<float, 6 * maxChain>;
-ChainEnds chainEnds(const PathChain& chain, const ChainPlacements& X_GC, const Vec3<double>& P,
-                    const Vec3<double>& Q);
 
 /// The objects of a chain, placed.
 struct PlacedChain {

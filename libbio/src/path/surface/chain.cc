@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -264,6 +265,31 @@ class Search {
   ChainPath path_;
 };
 
+// A path that rests on a ridge, from where it would slide to either side: the shorter of the two
+// that it slides to, from hints beside it.
+void slideDown(const Vector3d& P, const Vector3d& Q, std::span<const ChainObject> objects,
+               unsigned leftOut, ChainPath& path, ChainMemory& memory) {
+  std::array<ChainObject, maxChain> aside = {
+      ChainObject{SphereSurface(1)}, ChainObject{SphereSurface(1)}, ChainObject{SphereSurface(1)},
+      ChainObject{SphereSurface(1)}};
+  const ChainPath ridge = path;
+  for (const double share : {0.5, -0.5, 1.0, -1.0}) {
+    std::copy(objects.begin(), objects.end(), aside.begin());
+    for (std::size_t i = 0; i < static_cast<std::size_t>(ridge.numContacts); ++i) {
+      const ChainContact& c = ridge.contacts[i];
+      ChainObject& object = aside[static_cast<std::size_t>(c.object)];
+      const double far = share * sizeOf(object.surface);
+      object.hint = object.intoFrame(0.5 * (c.A + c.B) + far * c.atA.b);
+    }
+    Search search(P, Q, {aside.data(), objects.size()}, {}, leftOut);
+    const ChainPath found = search.run();
+    if (found.event == ChainEvent::notFound || !found.isShortest) continue;
+    if (path.isShortest && !(found.length < path.length)) continue;
+    path = found;
+    memory.contacts = search.contacts();
+  }
+}
+
 }  // namespace
 
 ChainPath solveChain(const Vector3d& P, const Vector3d& Q, std::span<const ChainObject> objects,
@@ -278,8 +304,12 @@ ChainPath solveChain(const Vector3d& P, const Vector3d& Q, std::span<const Chain
       hasLeapt(objects, memory.contacts, search.contacts())) {
     path.event = ChainEvent::jumped;
   }
+  const bool isFresh = !memory.known;
   memory.known = path.event != ChainEvent::notFound;
   memory.contacts = search.contacts();
+  if (isFresh && memory.known && !path.isShortest) {
+    slideDown(P, Q, objects, leftOut, path, memory);
+  }
   return path;
 }
 

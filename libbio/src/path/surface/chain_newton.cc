@@ -11,6 +11,8 @@ using Eigen::Vector3d;
 
 constexpr int maxIterations = 60;
 constexpr double goal = 1e-12;
+// a step so small, in curvatures and turns, leaves an error of its square
+constexpr double smallStep = 3e-9;
 
 // The frame at a point of an object, turned into G.
 SurfaceFrame frameInG(const ChainObject& object, const Vector3d& x, const Vector3d& u) {
@@ -193,6 +195,62 @@ ContactGuesses shareOfTheWay(const ContactGuesses& from, const ContactGuesses& t
   return at;
 }
 
+// Whether geodesics are integrated: closed forms cost nothing to be walked again.
+bool isIntegrated(const ChainPath& path, std::span<const ChainObject> objects) {
+  for (std::size_t j = 0; j < static_cast<std::size_t>(path.numContacts); ++j) {
+    const Surface& surface = objects[static_cast<std::size_t>(path.contacts[j].object)].surface;
+    if (std::holds_alternative<EllipsoidSurface>(surface)) return true;
+    if (std::holds_alternative<TorusSurface>(surface)) return true;
+  }
+  return false;
+}
+
+// The largest shift and turn of a step: lengths relative to the curves and pieces that they bend.
+double sizeOfStep(const ChainPath& path, const LinearSystem& step) {
+  double most = 0;
+  for (std::size_t j = 0; j < static_cast<std::size_t>(path.numContacts); ++j) {
+    const ChainContact& c = path.contacts[j];
+    const double* d = step.b + 4 * j;
+    const double perLength = std::max({std::abs(c.atA.normal), std::abs(c.atA.sideways),
+                                       std::abs(c.atB.normal), std::abs(c.atB.sideways),
+                                       1 / path.pieces[j].length, 1 / path.pieces[j + 1].length});
+    const double aside = c.a * d[1] + c.r * d[2];
+    const double turn = c.aSlope * d[1] + c.rSlope * d[2];
+    const double shift = std::abs(d[0]) + std::abs(d[1]) + std::abs(d[3]) + std::abs(aside);
+    most = std::max({most, shift * perLength, std::abs(d[2]), std::abs(turn)});
+    if (!std::isfinite(shift)) return shift;
+  }
+  return most;
+}
+
+// Goes a step of at most smallStep without walking the geodesics again: their ends follow by the
+// Jacobi fields.
+void finishBy(const LinearSystem& step, const Vector3d& P, const Vector3d& Q,
+              std::span<const ChainObject> objects, ContactGuesses& guesses, ChainPath& path) {
+  const auto m = static_cast<std::size_t>(path.numContacts);
+  for (std::size_t j = 0; j < m; ++j) {
+    ChainContact& c = path.contacts[j];
+    const ChainObject& object = objects[static_cast<std::size_t>(c.object)];
+    const double* d = step.b + 4 * j;
+    const double along = d[0] + d[3], aside = c.a * d[1] + c.r * d[2];
+    const double turn = c.aSlope * d[1] + c.rSlope * d[2];
+    c.A += d[0] * c.atA.u + d[1] * c.atA.b;
+    c.B += along * c.atB.u + aside * c.atB.b;
+    c.arc += d[3];
+    ContactGuess& guess = guesses.each[j];
+    guess.x = object.intoFrame(c.A);
+    c.atA = frameInG(object, guess.x, object.R_GS.transpose() * Vector3d(c.atA.u + d[2] * c.atA.b));
+    c.atB = frameInG(object, object.intoFrame(c.B),
+                     object.R_GS.transpose() * Vector3d(c.atB.u + turn * c.atB.b));
+    guess.u = object.R_GS.transpose() * c.atA.u;
+    guess.arc = c.arc;
+  }
+  for (std::size_t j = 0; j <= m; ++j) {
+    path.pieces[j] =
+        pieceBetween(j == 0 ? P : path.contacts[j - 1].B, j == m ? Q : path.contacts[j].A);
+  }
+}
+
 // Every piece runs on in the direction of the geodesics, not against it.
 bool runsOn(const ChainPath& path) {
   for (std::size_t j = 0; j < static_cast<std::size_t>(path.numContacts); ++j) {
@@ -255,7 +313,7 @@ bool solveInPlace(LinearSystem& system) {
 
 bool solveContacts(const Vector3d& P, const Vector3d& Q, std::span<const ChainObject> objects,
                    ContactGuesses& guesses, ChainPath& path) {
-  // the geodesics need no more digits than the next step will leave
+  // the geodesics need no more digits than the next two steps will leave
   constexpr double coarse = 1e-6, fine = 1e-13;
   double tolerance = coarse;
   LinearSystem system;
@@ -272,7 +330,12 @@ bool solveContacts(const Vector3d& P, const Vector3d& Q, std::span<const ChainOb
     assembleMatrix(path, system);
     if (!solveInPlace(system)) return false;
     ++path.iterations;
-    tolerance = error < 1e-3 ? fine : coarse;  // the last step but one starts from fine ones
+    if (tolerance == fine && sizeOfStep(path, system) < smallStep && isIntegrated(path, objects)) {
+      finishBy(system, P, Q, objects, guesses, path);
+      return runsOn(path);
+    }
+    // the last step but one starts from fine ones
+    tolerance = error < 1e-3 ? fine : std::min(coarse, 1e-2 * error * error * error * error);
     const double before = error;
     if (!shorten(P, Q, objects, system, tolerance, guesses, path, error)) {
       // the error does not fall: no solution near, or where rounding ends

@@ -5,25 +5,27 @@
 
 namespace bio::detail {
 
-// Positions x, y, z, a, r and their slopes.
+// Positions x, y, z, a, r, then their slopes.
 inline constexpr int numPositions = 5;
 struct JacobiMotion {
-  double position[numPositions];
-  double slope[numPositions];
+  double number[2 * numPositions];
+  double& position(int i) { return number[i]; }
+  double position(int i) const { return number[i]; }
+  double& slope(int i) { return number[numPositions + i]; }
+  double slope(int i) const { return number[numPositions + i]; }
 };
 
-// The difference of two motions, positions relative to a size, large numbers relative to
-// themselves.
-inline double difference(const JacobiMotion& a, const JacobiMotion& b, double perSize) {
-  double worst = 0;
+// Whether two motions agree, positions relative to a size, large numbers relative to themselves.
+inline bool agree(const JacobiMotion& a, const JacobiMotion& b, double perSize, double tolerance) {
+  bool all = true;
   for (int i = 0; i < numPositions; ++i) {
     const bool isPlain = i == 3;  // a; the others are lengths
-    const double p = std::abs(a.position[i] - b.position[i]) * (isPlain ? 1 : perSize);
-    const double v = std::abs(a.slope[i] - b.slope[i]) * (isPlain ? 1 / perSize : 1);
-    const double large = i < 3 ? 1 : 1 + std::abs(b.slope[i]) * (isPlain ? 1 / perSize : 1);
-    worst = std::max(worst, std::max(p, v / large));
+    const double p = std::abs(a.position(i) - b.position(i)) * (isPlain ? 1 : perSize);
+    const double v = std::abs(a.slope(i) - b.slope(i)) * (isPlain ? 1 / perSize : 1);
+    const double large = i < 3 ? 1 : 1 + std::abs(b.slope(i)) * (isPlain ? 1 / perSize : 1);
+    all = all && p <= tolerance && v <= tolerance * large;
   }
-  return worst;
+  return all;
 }
 
 // One step by a rule whose error is even in the substep: rows of Neville's scheme until two
@@ -49,15 +51,13 @@ bool extrapolate(const Row& row, double perSize, double tolerance, JacobiMotion&
     JacobiMotion left = row(k);
     for (int j = 0; j < k; ++j) {
       const double factor = neville.factor[k][j];
-      for (int i = 0; i < numPositions; ++i) {
-        const double position = left.position[i], slope = left.slope[i];
-        left.position[i] += (position - table[j].position[i]) * factor;
-        left.slope[i] += (slope - table[j].slope[i]) * factor;
-        table[j].position[i] = position;
-        table[j].slope[i] = slope;
+      for (int i = 0; i < 2 * numPositions; ++i) {
+        const double number = left.number[i];
+        left.number[i] += (number - table[j].number[i]) * factor;
+        table[j].number[i] = number;
       }
     }
-    if (k > 0 && difference(left, table[k - 1], perSize) <= tolerance) {
+    if (k > 0 && agree(left, table[k - 1], perSize, tolerance)) {
       result = left;
       return true;
     }

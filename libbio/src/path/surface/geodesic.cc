@@ -13,15 +13,15 @@ using namespace detail;
 using Eigen::Vector3d;
 
 JacobiMotion motionOf(const GeodesicPoint& p) {
-  return {{p.x[0], p.x[1], p.x[2], p.a, p.r}, {p.u[0], p.u[1], p.u[2], p.aSlope, p.rSlope}};
+  return {{p.x[0], p.x[1], p.x[2], p.a, p.r, p.u[0], p.u[1], p.u[2], p.aSlope, p.rSlope}};
 }
 GeodesicPoint pointOf(const JacobiMotion& m) {
-  return {{m.position[0], m.position[1], m.position[2]},
-          {m.slope[0], m.slope[1], m.slope[2]},
-          m.position[3],
-          m.slope[3],
-          m.position[4],
-          m.slope[4]};
+  return {{m.position(0), m.position(1), m.position(2)},
+          {m.slope(0), m.slope(1), m.slope(2)},
+          m.position(3),
+          m.slope(3),
+          m.position(4),
+          m.slope(4)};
 }
 GeodesicPoint geodesicStart(const Vector3d& x, const Vector3d& u) {
   return {x, u, 1, 0, 0, 1};
@@ -41,8 +41,8 @@ void stoermer(const Flow& flow, const JacobiMotion& start, const double* f0, dou
   const Pair square = H * H;
   Pair d[numPositions], f[numPositions], position[numPositions];
   for (int i = 0; i < numPositions; ++i) {
-    d[i] = H * (start.slope[i] + 0.5 * H * f0[i]);
-    position[i] = start.position[i] + d[i];
+    d[i] = H * (start.slope(i) + 0.5 * H * f0[i]);
+    position[i] = start.position(i) + d[i];
   }
   for (int substep = 1;; ++substep) {
     const Pair curvature = flow.accelerate(position, f);
@@ -52,8 +52,8 @@ void stoermer(const Flow& flow, const JacobiMotion& start, const double* f0, dou
       const int lane = substep - (n - 1);
       for (int i = 0; i < numPositions; ++i) {
         const Pair slope = d[i] * perH + 0.5 * H * f[i];
-        rows[lane].position[i] = position[i][lane];
-        rows[lane].slope[i] = slope[lane];
+        rows[lane].position(i) = position[i][lane];
+        rows[lane].slope(i) = slope[lane];
       }
       if (lane == 1) return;
     }
@@ -74,9 +74,9 @@ class FlowStepper {
   bool step(GeodesicPoint& p, double h, double tolerance) const {
     const JacobiMotion start = motionOf(p);
     double f0[numPositions];
-    const double curvature = flow_.accelerate(start.position, f0);
-    f0[3] = -curvature * start.position[3];
-    f0[4] = -curvature * start.position[4];
+    const double curvature = flow_.accelerate(start.number, f0);
+    f0[3] = -curvature * start.position(3);
+    f0[4] = -curvature * start.position(4);
     JacobiMotion end;
     JacobiMotion rows[2];
     const auto row = [&](int k) {
@@ -111,21 +111,21 @@ class DerivativeStepper {
 
  private:
   JacobiMotion rate(const JacobiMotion& m) const {
-    const Vector3d x(m.position[0], m.position[1], m.position[2]);
-    const Vector3d u(m.slope[0], m.slope[1], m.slope[2]);
+    const Vector3d x(m.position(0), m.position(1), m.position(2));
+    const Vector3d u(m.slope(0), m.slope(1), m.slope(2));
     const SurfaceFrame frame = surfaceFrame(surface_, x, u);
     const double curvature = frame.normal * frame.sideways - frame.twist * frame.twist;
     JacobiMotion rate;
-    for (int i = 0; i < numPositions; ++i) rate.position[i] = m.slope[i];
-    for (int i = 0; i < 3; ++i) rate.slope[i] = frame.normal * u.squaredNorm() * frame.n[i];
-    for (int i = 3; i < numPositions; ++i) rate.slope[i] = -curvature * m.position[i];
+    for (int i = 0; i < numPositions; ++i) rate.position(i) = m.slope(i);
+    for (int i = 0; i < 3; ++i) rate.slope(i) = frame.normal * u.squaredNorm() * frame.n[i];
+    for (int i = 3; i < numPositions; ++i) rate.slope(i) = -curvature * m.position(i);
     return rate;
   }
   static JacobiMotion moved(const JacobiMotion& m, const JacobiMotion& rate, double h) {
     JacobiMotion to;
     for (int i = 0; i < numPositions; ++i) {
-      to.position[i] = m.position[i] + h * rate.position[i];
-      to.slope[i] = m.slope[i] + h * rate.slope[i];
+      to.position(i) = m.position(i) + h * rate.position(i);
+      to.slope(i) = m.slope(i) + h * rate.slope(i);
     }
     return to;
   }
@@ -141,8 +141,8 @@ class DerivativeStepper {
     }
     const JacobiMotion after = moved(before, rate(now), H);
     for (int i = 0; i < numPositions; ++i) {
-      now.position[i] = 0.5 * (now.position[i] + after.position[i]);
-      now.slope[i] = 0.5 * (now.slope[i] + after.slope[i]);
+      now.position(i) = 0.5 * (now.position(i) + after.position(i));
+      now.slope(i) = 0.5 * (now.slope(i) + after.slope(i));
     }
     return now;
   }

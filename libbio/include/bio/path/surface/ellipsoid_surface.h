@@ -34,7 +34,7 @@ class EllipsoidSurface {
   ///     x″ = −J/|Ax|⁴ Ax,   K = det A/|Ax|⁴
   class Flow {
    public:
-    static constexpr double reach = 0.7;  ///< steps that extrapolation reaches in, found by trial
+    static constexpr double reach = 1.2;  ///< steps that extrapolation reaches in, found by trial
     Flow(const EllipsoidSurface& surface, const Eigen::Vector3d& x, const Eigen::Vector3d& u)
         : weights_(surface.weights_), determinant_(surface.weights_.prod()) {
       joachimsthal_ = surface.weighted(u).dot(u) * surface.weighted(x).squaredNorm();
