@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string_view>
 
 #include "opensim/reading.h"
@@ -70,6 +71,8 @@ void readBodies(Reading& reading, const Element& model) {
         readNumbers(source, *element, "mass_center", "m", 3, std::vector<double>{0, 0, 0});
     body.massCenter = {c[0], c[1], c[2]};
     body.inertia = readInertia(source, *element);
+    // as in OpenSim, whatever the file says
+    if (!(body.mass > 0)) body.inertia = {};
     collectGeometry(*element, body.geometryFiles);
     reading.model.bodies.push_back(std::move(body));
   }

@@ -29,11 +29,8 @@ namespace {
 class Work {
  public:
   Work(const DiscoveryProblem& data, const Options& options, RecordedNoise noise)
-      : data_(data), options_(options) {
+      : data_(data), options_(options), trials_(fittedTrials(data, options)) {
     verdict_.noise = std::move(noise);
-    for (int t = 0; t < data.numTrials(); ++t)
-      if (std::find(options.heldOut.begin(), options.heldOut.end(), t) == options.heldOut.end())
-        trials_.push_back(t);
   }
 
   Verdict run(WarmStart* draft) {
@@ -385,10 +382,7 @@ class Work {
 }  // namespace
 
 Verdict run(const DiscoveryProblem& data, const Options& options, WarmStart* draft) {
-  std::vector<int> trials;
-  for (int t = 0; t < data.numTrials(); ++t)
-    if (std::find(options.heldOut.begin(), options.heldOut.end(), t) == options.heldOut.end())
-      trials.push_back(t);
+  const std::vector<int> trials = fittedTrials(data, options);
   RecordedNoise noise;
   if (options.judgeSamples)
     noise = recordedNoise(data, trials);

@@ -143,6 +143,13 @@ TEST_F(OsimRules, Bodies) {
             "joint");
 }
 
+TEST_F(OsimRules, ABodyWithoutMassHasNoInertia) {
+  const Model model =
+      read(replaced(valid, "<mass>1</mass>", "<mass>0</mass><inertia>1 1 1 0 0 0</inertia>"));
+  EXPECT_EQ(findBody(model, "lower").inertia, (std::array<double, 6>{}));
+  EXPECT_EQ(findBody(read(valid), "upper").inertia[0], 0.1);
+}
+
 TEST_F(OsimRules, Joints) {
   EXPECT_EQ(
       messageAfter("/bodyset/upper</socket_child", "/bodyset/arm</socket_child"),

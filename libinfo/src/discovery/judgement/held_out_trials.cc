@@ -4,6 +4,14 @@
 
 namespace info::discover {
 
+std::vector<int> fittedTrials(const DiscoveryProblem& data, const Options& options) {
+  std::vector<int> trials;
+  for (int t = 0; t < data.numTrials(); ++t)
+    if (std::find(options.heldOut.begin(), options.heldOut.end(), t) == options.heldOut.end())
+      trials.push_back(t);
+  return trials;
+}
+
 HeldOutTrials heldOutTrials(const DiscoveryProblem& data, const Search& search, const Entry& entry,
                             const Likelihood& all, const Likelihood& held) {
   HeldOutTrials result;

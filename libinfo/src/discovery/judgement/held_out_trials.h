@@ -2,12 +2,16 @@
 
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "discovery/search/search.h"
 
 // Not public.
 
 namespace info::discover {
+
+/// The trials that are not held out.
+std::vector<int> fittedTrials(const DiscoveryProblem& data, const Options& options);
 
 /// The held-out trials under a hypothesis that was fitted to the training trials.
 struct HeldOutTrials {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "discovery/judgement/held_out_trials.h"
 #include "discovery/search/search.h"
 
 namespace info::discover {
@@ -78,10 +79,7 @@ PositionBreak breakAt(const std::vector<Node>& nodes, double position, bool abov
 
 std::optional<PositionBreak> positionBreak(const DiscoveryProblem& data, const Options& options,
                                            double outputSd) {
-  std::vector<int> trials;
-  for (int t = 0; t < data.numTrials(); ++t)
-    if (std::find(options.heldOut.begin(), options.heldOut.end(), t) == options.heldOut.end())
-      trials.push_back(t);
+  const std::vector<int> trials = fittedTrials(data, options);
   Search search(data, trials, options, outputSd, [](const std::string&) {});
   const auto fit = search.tracked({}, nominalValues(data));
   if (!fit) return {};
