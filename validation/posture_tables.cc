@@ -18,45 +18,19 @@
 #include <cmath>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <map>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "bio/opensim/osim_file.h"
 #include "bio/path/path_length.h"
+#include "posture_table.h"
 
 namespace {
 
-struct PostureTable {
-  std::vector<std::string> columns;
-  std::vector<std::vector<std::string>> rows;
-
-  const std::string* find(std::size_t row, const std::string& column) const {
-    const auto at = std::find(columns.begin(), columns.end(), column);
-    if (at == columns.end()) return nullptr;
-    return &rows[row][static_cast<std::size_t>(at - columns.begin())];
-  }
-};
-
-std::vector<std::string> split(const std::string& line, char separator) {
-  std::vector<std::string> parts;
-  std::istringstream in(line);
-  for (std::string part; std::getline(in, part, separator);) parts.push_back(part);
-  return parts;
-}
-
-PostureTable readPostures(const std::string& file) {
-  std::ifstream in(file);
-  if (!in) throw std::runtime_error("cannot read " + file);
-  PostureTable table;
-  std::string line;
-  std::getline(in, line);
-  table.columns = split(line, ',');
-  while (std::getline(in, line)) table.rows.push_back(split(line, ','));
-  return table;
-}
+using validation::PostureTable;
+using validation::readPostures;
+using validation::split;
 
 struct Deviations {
   int rows = 0, longer = 0;

@@ -175,9 +175,13 @@ class Writer {
                     "that only this command makes.",
                     f_.written->model));
     if (f_.written->trials.front().driven) {
-      say("The excitations or the recording were corrected: the driven trials (driven_*.sto) hold "
-          "the excitations that the muscles received and the corrected recording, which shows the "
-          "joint's own angle.");
+      say(f_.written->trialsAreCut
+              ? "The trials were cut where they first pass the position at which the model fails: "
+                "the driven trials (driven_*.sto) end there. They hold the excitations that the "
+                "muscles received and the recording without errors of the sensor."
+              : "The excitations or the recording were corrected: the driven trials (driven_*.sto) "
+                "hold the excitations that the muscles received and the corrected recording, which "
+                "shows the joint's own angle.");
     }
   }
 

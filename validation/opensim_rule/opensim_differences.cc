@@ -14,52 +14,23 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <numbers>
-#include <sstream>
 #include <stdexcept>
 
 #include "bio/opensim/osim_file.h"
-#include "bio/path/length_jumps.h"
 #include "bio/path/path.h"
 #include "bio/path/posture_samples.h"
 #include "bio/path/tree_path.h"
 #include "path_rule.h"
+#include "posture_table.h"
 
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 constexpr double apart = 1e-4;  // [m]
 
-struct Table {
-  std::vector<std::string> columns;
-  std::vector<std::vector<std::string>> rows;
-
-  bool has(const std::string& column) const {
-    return std::find(columns.begin(), columns.end(), column) != columns.end();
-  }
-  double at(std::size_t row, const std::string& column) const {
-    const auto found = std::find(columns.begin(), columns.end(), column);
-    return std::stod(rows[row][static_cast<std::size_t>(found - columns.begin())]);
-  }
-};
-
-Table readTable(const std::string& file) {
-  std::ifstream in(file);
-  Table table;
-  const auto split = [](const std::string& line) {
-    std::vector<std::string> parts;
-    std::istringstream words(line);
-    for (std::string part; std::getline(words, part, ',');) parts.push_back(part);
-    return parts;
-  };
-  std::string line;
-  std::getline(in, line);
-  table.columns = split(line);
-  while (std::getline(in, line)) table.rows.push_back(split(line));
-  return table;
-}
+using validation::PostureTable;
 
 /// Length and slopes of one muscle, ours and by OpenSim's rule.
 class Lengths {
@@ -120,7 +91,7 @@ std::string objectsOf(const bio::Model& model, const bio::Muscle& muscle) {
 
 class Differences {
  public:
-  Differences(const bio::Model& model, Table table)
+  Differences(const bio::Model& model, PostureTable table)
       : model_(model), table_(std::move(table)), skeleton_(model, options()) {}
 
   /// @return the share of OpenSim's lengths that its rule restated meets
@@ -135,13 +106,13 @@ class Differences {
       std::vector<double> errors;
       for (std::size_t row = 0; row < table_.rows.size(); ++row) {
         Eigen::VectorXd q(skeleton_.numCoordinates());
-        for (int i = 0; i < q.size(); ++i) q[i] = table_.at(row, coordinate(i).name);
+        for (int i = 0; i < q.size(); ++i) q[i] = table_.number(row, coordinate(i).name);
         lengths.moveTo(q);
-        const double theirs = table_.at(row, muscle.name + ".length_m");
+        const double theirs = table_.number(row, muscle.name + ".length_m");
         keepLarger(theirs - lengths.ours().length, length);
         for (int i = 0; i < q.size(); ++i) {
           const std::string column = muscle.name + ".dlength_d." + coordinate(i).name;
-          keepLarger(table_.at(row, column) - lengths.ours().dL_dq[i], arm);
+          keepLarger(table_.number(row, column) - lengths.ours().dL_dq[i], arm);
         }
         errors.push_back(std::abs(lengths.theirs() - theirs));
       }
@@ -271,7 +242,7 @@ class Differences {
   }
 
   const bio::Model& model_;
-  Table table_;
+  PostureTable table_;
   bio::Skeleton skeleton_;
 };
 
@@ -289,7 +260,7 @@ int main(int argc, char** argv) {
   }
   try {
     const bio::Model model = bio::readOsim(argv[1]);
-    Differences differences(model, readTable(argv[2]));
+    Differences differences(model, validation::readPostures(argv[2]));
     const double met = differences.byPostures();
     differences.byRanges();
     return met >= 0.8 ? 0 : 1;

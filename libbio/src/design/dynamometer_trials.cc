@@ -150,23 +150,25 @@ Table DynamometerTrials::trialOf(const DynamometerExperiment& one) const {
   table.name = "dynamometer";
   table.columns = {"time"};
   for (const SystemMuscle& muscle : arm_.muscles()) table.columns.push_back(muscle.name);
-  const auto muscles = static_cast<Index>(arm_.numMuscles());
   if (isFree) {
     table.columns.push_back(coordinate_.name + (coordinate_.isRotation ? ".torque" : ".force"));
   }
   table.columns.push_back(coordinateColumn());
   const auto rows = static_cast<Index>(std::floor(duration * question_.rate + 1e-9)) + 1;
   table.values.setZero(rows, static_cast<Index>(table.columns.size()));
+  std::vector<double> raised;  // of each muscle, above rest
+  for (const SystemMuscle& muscle : arm_.muscles()) {
+    const double effort = contracts(one, muscle.name) ? one.effort : 0;
+    raised.push_back(std::max(0.0, effort - dynamometer::excitationAtRest));
+  }
   const double sign = one.to > one.from ? 1 : -1;
   for (Index k = 0; k < rows; ++k) {
     const double t = static_cast<double>(k) / question_.rate;
     const double contraction = isFree ? 1 : contractionAt(t, dynamometer::rest, course.contracted);
     table.values(k, 0) = t;
-    for (Index m = 1; m <= muscles; ++m) {
-      const double effort =
-          contracts(one, table.columns[static_cast<std::size_t>(m)]) ? one.effort : 0;
-      table.values(k, m) = dynamometer::excitationAtRest +
-                           std::max(0.0, effort - dynamometer::excitationAtRest) * contraction;
+    for (std::size_t m = 0; m < raised.size(); ++m) {
+      table.values(k, static_cast<Index>(m) + 1) =
+          dynamometer::excitationAtRest + raised[m] * contraction;
     }
     const double turned =
         one.to == one.from

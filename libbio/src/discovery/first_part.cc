@@ -9,18 +9,37 @@ using Eigen::Index;
 
 constexpr double shortestPart = 1;  // [s]
 
-/// What of a series was measured until `end`.
+Index numUntil(const Eigen::VectorXd& times, double end) {
+  return std::upper_bound(times.begin(), times.end(), end) - times.begin();
+}
+
+/// Leaves out what begins later.
 template <typename Series>
-void cut(Series& series, double end) {
-  Index n = 0;
-  while (n < series.times.size() && series.times[n] <= end) ++n;
-  // a constant has one sample, whatever its time
-  if (n == 0 || series.times.size() == 1) return;
-  series.times.conservativeResize(n);
-  series.values.conservativeResize(n);
+void cut(std::vector<Series>& all, double end) {
+  std::erase_if(all, [&](const Series& one) { return numUntil(one.times, end) == 0; });
+  for (Series& one : all) {
+    const Index n = numUntil(one.times, end);
+    one.times.conservativeResize(n);
+    one.values.conservativeResize(n);
+  }
 }
 
 }  // namespace
+
+Trial partUntil(const Trial& trial, double end) {
+  const Index rows = numUntil(trial.times, end);
+  Trial part = trial;
+  part.sha256.clear();  // it is not what is in the file
+  part.times.conservativeResize(rows);
+  part.excitations.conservativeResize(rows, Eigen::NoChange);
+  for (AppliedForce& one : part.applied) {
+    one.values.conservativeResize(rows);
+    if (one.control.size() > 0) one.control.conservativeResize(rows);
+  }
+  cut(part.measured, end);
+  cut(part.channels, end);
+  return part;
+}
 
 std::optional<Trial> firstPart(const Trial& trial, const std::string& coordinate, double position,
                                bool above) {
@@ -28,29 +47,12 @@ std::optional<Trial> firstPart(const Trial& trial, const std::string& coordinate
       std::find_if(trial.measured.begin(), trial.measured.end(),
                    [&](const MeasuredMotion& one) { return one.coordinate == coordinate; });
   if (motion == trial.measured.end()) return trial;
-  double end = trial.times[trial.times.size() - 1];
-  for (Index i = 0; i < motion->values.size(); ++i) {
-    if (above ? motion->values[i] <= position : motion->values[i] >= position) continue;
-    if (i == 0) return {};
-    end = motion->times[i - 1];
-    break;
-  }
-  if (end == trial.times[trial.times.size() - 1]) return trial;
-  if (end - trial.times[0] < shortestPart) return {};
-  Trial part = trial;
-  const Index rows =
-      std::upper_bound(trial.times.begin(), trial.times.end(), end) - trial.times.begin();
-  part.sha256.clear();  // it is not what is in the file
-  part.times.conservativeResize(rows);
-  part.excitations = trial.excitations.topRows(rows).eval();
-  for (AppliedForce& one : part.applied) {
-    one.values.conservativeResize(rows);
-    if (one.control.size() > 0) one.control.conservativeResize(rows);
-  }
-  for (auto* series : {&part.measured, &part.prescribed})
-    for (MeasuredMotion& one : *series) cut(one, end);
-  for (MeasuredChannel& one : part.channels) cut(one, end);
-  return part;
+  const auto isBeyond = [&](double value) { return above ? value > position : value < position; };
+  const auto passed = std::find_if(motion->values.begin(), motion->values.end(), isBeyond);
+  if (passed == motion->values.end()) return trial;
+  const Index first = passed - motion->values.begin();
+  if (first == 0 || motion->times[first - 1] - trial.times[0] < shortestPart) return {};
+  return partUntil(trial, motion->times[first - 1]);
 }
 
 }  // namespace bio::discover

@@ -19,6 +19,8 @@ SteppedVerdict search(const DiscoveryRequest& request, const std::vector<Trial>&
   MusculoskeletalProblemOptions problem = request.problem;
   problem.trialsAreCut = result.trialsAreCut;
   info::discover::Options options = request.search;
+  if (result.trialsAreCut)
+    options.progress = info::discover::progressOfAnother(std::move(options.progress));
   options.heldOut.clear();
   for (std::size_t i = request.trials.size() - request.numHeldOut; i < request.trials.size(); ++i)
     options.heldOut.push_back(static_cast<int>(i));
@@ -62,8 +64,7 @@ std::vector<Trial> partsBefore(const DiscoveryRequest& request,
 void searchBeforeBreak(const DiscoveryRequest& request, DiscoveryResult& result) {
   Verdict& verdict = result.found.verdict;
   if (verdict.finding != Finding::unknown || verdict.reached != Stage::finished) return;
-  result.positionBreak =
-      info::discover::positionBreak(*result.data, result.found.options, verdict.outputSd);
+  result.positionBreak = info::discover::positionBreak(*result.data, result.found.options, verdict);
   if (!result.positionBreak) return;
   if (const std::vector<Trial> parts = partsBefore(request, *result.positionBreak);
       !parts.empty()) {
@@ -71,15 +72,18 @@ void searchBeforeBreak(const DiscoveryRequest& request, DiscoveryResult& result)
     second.trialsAreCut = true;
     second.found = search(request, parts, second);
     Verdict& other = second.found.verdict;
+    const int fits = verdict.fits + other.fits;
+    const double wall = result.found.wallSeconds + second.found.wallSeconds;
+    const double processor = result.found.processorSeconds + second.found.processorSeconds;
     if (mayBeAdded(other)) {
       other.vetoed = true;
       other.probability = 0;
-      other.fits += verdict.fits;
-      second.found.wallSeconds += result.found.wallSeconds;
-      second.found.processorSeconds += result.found.processorSeconds;
       second.positionBreak = result.positionBreak;
       result = std::move(second);
     }
+    result.found.verdict.fits = fits;
+    result.found.wallSeconds = wall;
+    result.found.processorSeconds = processor;
   }
   result.found.verdict.sentence += sentenceOf(
       *result.positionBreak, result.data->encompassing().coordinate(), result.trialsAreCut);

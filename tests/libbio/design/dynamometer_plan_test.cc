@@ -55,7 +55,9 @@ TEST(DynamometerPlan, EachExperimentAddsAndNoneIsDoneTwice) {
     EXPECT_TRUE((plan.bounds[n].array() <= before.array() * (1 + 1e-12)).all());
     before = plan.bounds[n];
     for (std::size_t m = 0; m < n; ++m) {
-      EXPECT_FALSE(plan.chosen[n].trial.values == plan.chosen[m].trial.values);
+      const Eigen::MatrixXd& one = plan.chosen[n].trial.values;
+      const Eigen::MatrixXd& other = plan.chosen[m].trial.values;
+      EXPECT_FALSE(one.rows() == other.rows() && one == other);
     }
   }
 }

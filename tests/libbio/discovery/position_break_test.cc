@@ -49,7 +49,9 @@ std::vector<Trial> curls(const std::string& law, unsigned seed) {
 std::optional<info::discover::PositionBreak> breakOf(const std::vector<Trial>& trials) {
   const ShippedElbow elbow;
   const MusculoskeletalProblem data(elbow.model, ShippedElbow::options(), "elbow_flexion", trials);
-  return info::discover::positionBreak(data, {}, noise);
+  info::discover::Verdict verdict;
+  verdict.outputSd = noise;
+  return info::discover::positionBreak(data, {}, verdict);
 }
 
 TEST(PositionBreak, IsFoundWhereATorqueSetsInAtOnce) {

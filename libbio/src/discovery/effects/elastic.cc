@@ -5,8 +5,9 @@
 #include "discovery/effects/effects.h"
 
 // Forces that depend on the position alone. Priors: passive elbows (AIST database after Engin &
-// Chen 1987; MacKay et al. 1986), 0.5 to 3 N·m/rad in the middle, stiffer towards the ends; there
-// the double exponential of Audu and Davy (1985) is usual, with rates of 2 to 20 per radian.
+// Chen 1987; MacKay et al. 1986), 0.5 to 3 N·m/rad in the middle, stiffer towards the ends. Of the
+// exponential law (a double exponential, as models of passive joints usually have) the rate's prior
+// is a judgement.
 
 namespace bio::discover {
 namespace {

@@ -136,6 +136,16 @@ std::vector<std::size_t> Search::shortlist(const Effects& effects, int most) {
     if (s.information > 0 && std::find(list.begin(), list.end(), s.candidate) == list.end())
       list.push_back(s.candidate);
   };
+  // a linear step sees only the nearest of several minima
+  const auto addGrids = [&] {
+    std::size_t left = kGrids;
+    for (const Screened& s : filter) {
+      if (left == 0) return;
+      if (!isGrid(data_.candidates()[s.candidate])) continue;
+      add(s);
+      --left;
+    }
+  };
   // candidates are taken from all modes in turn
   for (std::size_t i = 0; i < filter.size(); ++i)
     for (const auto* mode : {&filter, &simulation, &held})
@@ -146,10 +156,7 @@ std::vector<std::size_t> Search::shortlist(const Effects& effects, int most) {
     for (const Screened& s : filter)
       if (kinds.insert(data_.candidates()[s.candidate].kind).second) add(s);
   }
-  // a linear step sees only the nearest of several minima
-  std::size_t grids = 0;
-  for (const Screened& s : filter)
-    if (effects.empty() && isGrid(data_.candidates()[s.candidate]) && grids++ < kGrids) add(s);
+  if (effects.empty()) addGrids();
   const std::vector<std::size_t> touched = list;
   for (const std::size_t c : touched)
     for (const std::string& id : data_.candidates()[c].equivalents)

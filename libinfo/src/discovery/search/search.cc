@@ -139,7 +139,7 @@ void Search::calibrate() {
   entries_.clear();
   report_("base model");
   improve({}, first.values, kRaceSize);
-  // there it may follow the data only because of its latent force
+  // without its latent force it may not follow the data, or not past a jump
   if (first.noise.latent > 0) improve({}, first.values, first.noise.latent, &first);
   mustWork();
   const std::uint64_t starts = nudgedLikelihoods_.empty() ? kStarts : kStartsBesidesLed;

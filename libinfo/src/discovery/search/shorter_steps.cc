@@ -5,6 +5,7 @@
 #include <chrono>
 #include <ctime>
 #include <stdexcept>
+#include <utility>
 
 namespace info::discover {
 
@@ -37,8 +38,7 @@ bool hasNothing(const Verdict& verdict, const Options& options) {
 
 bool isWorthASecondLook(const Verdict& verdict, const Options& options) {
   return verdict.reached == Stage::finished && hasNothing(verdict, options) && verdict.heldOut &&
-         verdict.heldOut->probability &&
-         *verdict.heldOut->probability < options.secondLook;
+         verdict.heldOut->probability && *verdict.heldOut->probability < options.secondLook;
 }
 
 bool hasAName(const Verdict& verdict) {
@@ -62,10 +62,7 @@ SteppedVerdict runTwiceIfNeeded(const MakeAttempt& attempt, double step, double 
     last = at;
     Attempt one = attempt(at);
     one.options.heldOut.clear();
-    if (one.options.progress)
-      one.options.progress = [tell = one.options.progress](const Progress& of) {
-        return tell({of.stage, 0.99 + 0.01 * of.fraction, of.doing});
-      };
+    one.options.progress = progressOfAnother(std::move(one.options.progress));
     return one;
   };
   SteppedVerdict second = runOnce(withAll, first.step, shortest);
@@ -86,6 +83,14 @@ SteppedVerdict runTwiceIfNeeded(const MakeAttempt& attempt, double step, double 
 }
 
 }  // namespace
+
+std::function<bool(const Progress&)> progressOfAnother(
+    std::function<bool(const Progress&)> progress) {
+  if (!progress) return {};
+  return [tell = std::move(progress)](const Progress& of) {
+    return tell({of.stage, 0.99 + 0.01 * of.fraction, of.doing});
+  };
+}
 
 SteppedVerdict runAtShorterSteps(const MakeAttempt& attempt, double step, double shortest) {
   const auto begin = std::chrono::steady_clock::now();

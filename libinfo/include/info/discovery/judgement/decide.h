@@ -44,9 +44,9 @@ struct Decision {
 ///   evidence is at most `classWidth` lower. If every class has one member: `named`, or `parameter`
 ///   if all are errors of parameters; otherwise `ambiguous`. No probability is given if the
 ///   innovations have the wrong size, the errors of held-out trials are improbably large, or the
-///   effects were only replicated there. The
-///   probability of an effect is its share of exp(log Z) among the alternatives that were fitted in
-///   its place; declared equivalents at most `classWidth` behind count as much as the leader.
+///   effects were only replicated there. The probability of an effect is its share of exp(log Z)
+///   among the alternatives that were fitted in its place; declared equivalents at most
+///   `classWidth` behind count as much as the leader.
 Decision decide(const std::vector<Candidate>& candidates, const Judgement& judgement,
                 const Options& options);
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "info/discovery/discover.h"
 
@@ -20,11 +19,11 @@ struct PositionBreak {
 
 /// Compares the latent forces of the base model on both sides of every position that the fitted
 /// trials visit, each side a tenth of their range wide.
-/// @param outputSd σ_y
+/// @param verdict  of a search of these data: its σ_y, and the samples that it used
 /// @return the position with the largest |z|, if that is at least 5 and no more than 40 % of the
 ///   time is spent beyond; empty also if DiscoveryProblem::nudged is not available
 /// @throws what Likelihood throws
 std::optional<PositionBreak> positionBreak(const DiscoveryProblem& data, const Options& options,
-                                           double outputSd);
+                                           const Verdict& verdict);
 
 }  // namespace info::discover

@@ -21,15 +21,20 @@ struct SteppedVerdict {
   double processorSeconds = 0;  ///< of all attempts, which have one thread
 };
 
+/// Progress of a search that follows another: the last hundredth of the whole.
+std::function<bool(const Progress&)> progressOfAnother(
+    std::function<bool(const Progress&)> progress);
+
 /// The error of too long a time step can look like a missing effect. Therefore run() is repeated at
 /// half the step, continuing from the last result, while the finding is `numerical` or the model
 /// cannot be simulated over the trials (std::domain_error), and the step is not below `shortest`.
 /// If contacts begin and end at different times, errors do not vanish with the step: from the
 /// second run on Options::numericalTolerance is doubled.
 ///
-/// If nothing was found although errors as large as those of the held-out trials are improbable
-/// (Options::secondLook), the search is repeated with all trials fitted. An effect found then is
-/// the verdict, with Verdict::heldOutFitted; otherwise the sentence gives the probability of the
+/// If the fitted trials show nothing although errors as large as those of the held-out trials are
+/// improbable (Options::secondLook), the search is repeated with all trials fitted. An effect found
+/// then is the verdict, with Verdict::heldOutFitted, and without a probability if the held-out
+/// trials had made the first finding `unknown`; otherwise the sentence gives the probability of the
 /// errors.
 /// @param attempt returns the model at a step [s], with the same quantities and latent nodes at
 ///   each; valid until the next call
