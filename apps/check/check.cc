@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 
+#include "bio/analysis/opensim_paths.h"
 #include "bio/model/convert_muscles.h"
 #include "bio/model/model_review.h"
 #include "bio/opensim/osim_file.h"
@@ -94,6 +95,9 @@ Contents checkModel(const std::string& file, const bio::Model& model, Findings& 
   for (const bio::Remark& remark : bio::reviewModel(model)) findings.add(file, remark);
   for (const bio::LengthJump& jump : bio::lengthJumps(model)) {
     findings.add(file, "unusual", fmt::format("muscle '{}': {}", jump.muscle, describe(jump)));
+  }
+  for (const bio::OpenSimDifference& one : bio::openSimDifferences(model)) {
+    findings.add(file, "unusual", fmt::format("muscle '{}': {}", one.muscle, describe(one)));
   }
   std::size_t coordinates = 0;
   std::vector<std::string> prescribed;

@@ -1,6 +1,7 @@
 #include "moment_arms/path_jumps.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "output/angle_unit.h"
 #include "output/text.h"
@@ -44,6 +45,56 @@ Table jumpTable(const std::vector<bio::LengthJump>& jumps) {
          fmt::format("{} {}", numberText(shownValue(jump.value, jump.turns)), unitOf(jump.turns)),
          inMillimetres(jump.size), inMillimetres(jump.arm),
          jump.conditional ? "a conditional point" : "the way round a wrap object"});
+  }
+  return table;
+}
+
+nlohmann::ordered_json differencesAsJson(const std::vector<bio::OpenSimDifference>& differences) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const bio::OpenSimDifference& one : differences) {
+    const auto at = [&](double value) { return shownValue(value, one.turns); };
+    const std::string unit = unitOf(one.turns);
+    nlohmann::ordered_json apart = nlohmann::ordered_json::array();
+    for (const auto& range : one.apart) apart.push_back({at(range.from), at(range.to)});
+    nlohmann::ordered_json jumps = nlohmann::ordered_json::array();
+    for (const auto& jump : one.jumps) {
+      jumps.push_back({{"at_" + unit, at(jump.at)}, {"length_mm", 1000 * jump.size}});
+    }
+    all.push_back({{"muscle", one.muscle},
+                   {"coordinate", one.coordinate},
+                   {"ellipsoids", one.ellipsoids},
+                   {"length_mm", 1000 * one.length},
+                   {"length_at_" + unit, at(one.lengthAt)},
+                   {"moment_arm_mm", 1000 * one.arm},
+                   {"moment_arm_at_" + unit, at(one.armAt)},
+                   {"apart_" + unit, apart},
+                   {"opensim_jumps", jumps}});
+  }
+  return all;
+}
+
+Table differenceTable(const std::vector<bio::OpenSimDifference>& differences) {
+  Table table{"OpenSim's path over ellipsoids, less the taut string",
+              {"muscle", "over", "length [mm]", "moment arm [mm]", "0.1 mm or more at",
+               "jumps of OpenSim's length [mm]"},
+              {}};
+  for (const bio::OpenSimDifference& one : differences) {
+    const std::string unit = unitOf(one.turns);
+    const auto at = [&](double value) { return numberText(shownValue(value, one.turns), 3); };
+    const auto largest = [&](double size, double where) {
+      return fmt::format("{} at {} {}", inMillimetres(size), at(where), unit);
+    };
+    std::vector<std::string> apart, jumps;
+    for (const auto& range : one.apart) {
+      apart.push_back(range.from < range.to
+                          ? fmt::format("{} to {} {}", at(range.from), at(range.to), unit)
+                          : fmt::format("{} {}", at(range.from), unit));
+    }
+    for (const auto& jump : one.jumps) jumps.push_back(largest(jump.size, jump.at));
+    table.rows.push_back({one.muscle, fmt::format("{}", fmt::join(one.ellipsoids, ", ")),
+                          largest(one.length, one.lengthAt), largest(one.arm, one.armAt),
+                          fmt::format("{}", fmt::join(apart, ", ")),
+                          jumps.empty() ? "–" : fmt::format("{}", fmt::join(jumps, ", "))});
   }
   return table;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bio/analysis/opensim_paths.h"
 #include "bio/path/length_jumps.h"
 #include "report/report.h"
 
@@ -14,5 +15,12 @@ nlohmann::ordered_json jumpsAsJson(const std::vector<bio::LengthJump>& jumps);
 
 /// The same as a table of a report.
 Table jumpTable(const std::vector<bio::LengthJump>& jumps);
+
+/// Differences from OpenSim's paths over ellipsoids for summary.json; angles in degrees, lengths in
+/// mm.
+nlohmann::ordered_json differencesAsJson(const std::vector<bio::OpenSimDifference>& differences);
+
+/// The same as a table of a report.
+Table differenceTable(const std::vector<bio::OpenSimDifference>& differences);
 
 }  // namespace app

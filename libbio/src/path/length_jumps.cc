@@ -6,11 +6,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <set>
 #include <stdexcept>
 
 #include "bio/path/path_lengths.h"
 #include "bio/path/posture_samples.h"
+#include "path/coordinate_sweeps.h"
 
 namespace bio {
 namespace {
@@ -139,26 +139,11 @@ std::vector<LengthJump> lengthJumps(const Model& model, const Skeleton& skeleton
 }
 
 std::vector<LengthJump> lengthJumps(const Model& model, double beyond) {
-  std::set<std::string> dependent;
-  for (const auto& constraint : model.couplers) dependent.insert(constraint.dependent);
   std::vector<LengthJump> all;
-  for (const Joint& joint : model.joints) {
-    for (const Coordinate& c : joint.coordinates) {
-      if (c.locked || dependent.count(c.name) > 0) continue;
-      const double wide = c.isRotation ? std::numbers::pi : 1.0;
-      const bool isOpen = !(c.rangeMax - c.rangeMin <= 2 * wide);
-      const double lower = isOpen ? c.defaultValue - wide : c.rangeMin;
-      const double upper = isOpen ? c.defaultValue + wide : c.rangeMax;
-      const double more = isOpen ? 0 : beyond * (upper - lower);
-      if (!(upper > lower)) continue;
-      try {
-        const Skeleton skeleton(model, {.freeCoordinates = {c.name}, .lockedValues = {}});
-        const auto found = lengthJumps(model, skeleton, {}, lower - more, upper + more);
-        all.insert(all.end(), found.begin(), found.end());
-      } catch (const std::invalid_argument&) {  // nothing that could be simulated
-      }
-    }
-  }
+  sweepCoordinates(model, beyond, [&](const Skeleton& skeleton, double from, double to) {
+    const auto found = lengthJumps(model, skeleton, {}, from, to);
+    all.insert(all.end(), found.begin(), found.end());
+  });
   return all;
 }
 

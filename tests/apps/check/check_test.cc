@@ -199,6 +199,48 @@ TEST(MomentArmsCommand, WarnsOfLengthsThatJump) {
   EXPECT_THAT(above.out + above.err, Not(HasSubstr("jumps by")));
 }
 
+// The elbow with the triceps' cylinder as an ellipsoid of three different semi-axes.
+std::string elbowWithAnEllipsoid(const ScratchFolder& scratch) {
+  std::string text = support::contentOf(std::string(FISHERHILL_SOURCE_DIR) + "/models/elbow8.osim");
+  const auto replaceFrom = [&](std::size_t from, const std::string& old, const std::string& by) {
+    text.replace(text.find(old, from), old.size(), by);
+  };
+  const std::size_t at = text.find("<WrapCylinder name=\"TRI\">");
+  replaceFrom(at, "<radius>0.016</radius>", "<dimensions>0.016 0.02 0.06</dimensions>");
+  replaceFrom(at, "<length>0.1</length>", "");
+  replaceFrom(at, "</WrapCylinder>", "</WrapEllipsoid>");
+  replaceFrom(at, "<WrapCylinder", "<WrapEllipsoid");
+  return scratch.file("ellipsoid.osim", text);
+}
+
+TEST(CheckCommand, SaysWhereOpenSimsPathsOverEllipsoidsDiffer) {
+  const ScratchFolder scratch;
+  const std::string model = elbowWithAnEllipsoid(scratch);
+  const ProgramResult arms = runFisherHill({"moment-arms", model, "--from", "0", "--to", "130",
+                                            "--json", "--out", (scratch / "out").string()});
+  ASSERT_EQ(arms.status, 0) << arms.err;
+  const auto summary = nlohmann::json::parse(arms.out);
+  const auto& differences = summary["opensim_differences"];
+  ASSERT_EQ(differences.size(), 3u);  // the three heads
+  for (const auto& one : differences) {
+    EXPECT_EQ(one["muscle"].get<std::string>().substr(0, 3), "TRI");
+    EXPECT_EQ(one["ellipsoids"], nlohmann::json({"TRI"}));
+    EXPECT_GT(one["length_mm"], 0.1);  // a plane section is longer than the geodesic
+    EXPECT_GE(one["apart_deg"][0][0], 0);
+  }
+  EXPECT_THAT(
+      summary["warnings"].dump(),
+      HasSubstr("in OpenSim the path of TRIlong over TRI differs from the taut string by up to"));
+  EXPECT_THAT(support::contentOf((scratch / "out/report.html").string()),
+              HasSubstr("OpenSim's path over ellipsoids, less the taut string"));
+  const ProgramResult check = runFisherHill({"check", model});
+  EXPECT_EQ(check.status, 0) << check.err;
+  EXPECT_THAT(check.out, HasSubstr("in OpenSim the path of TRIlong over TRI differs"));
+  const ProgramResult without =
+      runFisherHill({"moment-arms", "models/elbow8.osim", "--from", "0", "--to", "130", "--json"});
+  EXPECT_TRUE(nlohmann::json::parse(without.out)["opensim_differences"].empty());
+}
+
 TEST(CheckCommand, TheShippedModelsHaveNoErrorAndNoWarning) {
   for (const char* model : {"models/elbow8.osim", "models/elbow8_passive.osim"}) {
     const ProgramResult result = runFisherHill({"check", model, "--json"});

@@ -1,17 +1,16 @@
-#include "path_rule.h"
+#include "bio/path/opensim_rule.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "ellipsoid_rule.h"
+#include "path/opensim_rule/ellipsoid_rule.h"
 #include "path/path_reach.h"
 
-namespace validation {
+namespace bio::opensim_rule {
 namespace {
 
-using bio::PathSurface;
 using Eigen::Vector3d;
 
 constexpr int maxRounds = 8;
@@ -108,24 +107,23 @@ Tried overCylinder(const PathSurface& cylinder, const Vector3d& P, const Vector3
   return {outcome, {A, B, std::hypot(r * angle, B.z() - A.z())}};
 }
 
-Tried overSphere(const PathSurface& sphere, const bio::SpanSurface& way, const Vector3d& P,
+Tried overSphere(const PathSurface& sphere, const SpanSurface& way, const Vector3d& P,
                  const Vector3d& Q) {
   const double r = sphere.radius;
   if (P.norm() < r || Q.norm() < r) return {Outcome::inside, {}};
-  const auto contact = bio::wrapSphereContact(r, way.way, P, Q);
+  const auto contact = wrapSphereContact(r, way.way, P, Q);
   if (!(contact.angle > 0)) return {};
-  const bool isCut = bio::closestApproach(sphere, P, Q) < 1;
+  const bool isCut = closestApproach(sphere, P, Q) < 1;
   return {isCut ? Outcome::mandatory : Outcome::wrapped,
           {contact.p_CA, contact.p_CB, r * contact.angle}};
 }
 
 class Path {
  public:
-  Path(const bio::CompiledPath& path, const bio::Posture& posture)
-      : path_(path), posture_(posture) {
+  Path(const CompiledPath& path, const Posture& posture) : path_(path), posture_(posture) {
     const auto q = Eigen::Map<const Eigen::VectorXd>(posture.q.data(),
                                                      static_cast<Eigen::Index>(posture.q.size()));
-    variant_ = &bio::activeVariant(path, q);
+    variant_ = &activeVariant(path, q);
     for (std::size_t i = 0; i < variant_->all.size(); ++i) {
       points_.push_back({position(variant_->all[i].a), i});
     }
@@ -157,25 +155,25 @@ class Path {
 
  private:
   Vector3d position(std::size_t node) const {
-    return bio::nodePosition(path_, path_.nodes[node], posture_);
+    return nodePosition(path_, path_.nodes[node], posture_);
   }
 
-  const bio::SpanSurface* wayOver(std::size_t span, std::size_t surface) const {
+  const SpanSurface* wayOver(std::size_t span, std::size_t surface) const {
     if (span >= variant_->all.size()) return nullptr;
-    for (const bio::SpanSurface& way : variant_->all[span].surfaces) {
+    for (const SpanSurface& way : variant_->all[span].surfaces) {
       if (way.surface == surface) return &way;
     }
     return nullptr;
   }
 
-  Tried tryOver(std::size_t surface, const bio::SpanSurface& way, const Vector3d& P_G,
+  Tried tryOver(std::size_t surface, const SpanSurface& way, const Vector3d& P_G,
                 const Vector3d& Q_G) const {
     const PathSurface& s = path_.surfaces[surface];
-    const Vector3d P = bio::seenFrom(posture_, s.segment, s.X_SC, P_G);
-    const Vector3d Q = bio::seenFrom(posture_, s.segment, s.X_SC, Q_G);
+    const Vector3d P = seenFrom(posture_, s.segment, s.X_SC, P_G);
+    const Vector3d Q = seenFrom(posture_, s.segment, s.X_SC, Q_G);
     Tried tried;
     if (s.general) {
-      const auto& ellipsoid = std::get<bio::EllipsoidSurface>(*s.general);
+      const auto& ellipsoid = std::get<EllipsoidSurface>(*s.general);
       const auto wrap = openSimOverEllipsoid(ellipsoid.semiAxes(), s.quadrant, P, Q);
       const auto isInside = [&](const Vector3d& p) { return ellipsoid.value(p) < -5e-5; };
       if (!wrap) return {isInside(P) || isInside(Q) ? Outcome::inside : Outcome::none, {}};
@@ -183,7 +181,7 @@ class Path {
     } else {
       tried = s.isSphere ? overSphere(s, way, P, Q) : overCylinder(s, P, Q);
     }
-    const bio::Placement<double> X_GC = posture_.placements[s.segment] * s.X_SC;
+    const Placement<double> X_GC = posture_.placements[s.segment] * s.X_SC;
     for (Vector3d* p : {&tried.wrap.first, &tried.wrap.last}) *p = X_GC.R * *p + X_GC.p;
     return tried;
   }
@@ -202,7 +200,7 @@ class Path {
     for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
       const Point &a = points_[i], &b = points_[i + 1];
       if (a.object >= 0 && a.object == b.object) continue;
-      const bio::SpanSurface* way = wayOver(a.span, surface);
+      const SpanSurface* way = wayOver(a.span, surface);
       if (way == nullptr) continue;
       const Tried tried = tryOver(surface, *way, a.p, b.p);
       last = tried.outcome;
@@ -238,21 +236,25 @@ class Path {
     return sum;
   }
 
-  const bio::CompiledPath& path_;
-  const bio::Posture& posture_;
-  const bio::PathVariant* variant_;
+  const CompiledPath& path_;
+  const Posture& posture_;
+  const PathVariant* variant_;
   std::vector<Point> points_;
 };
 
 }  // namespace
+}  // namespace bio::opensim_rule
 
-std::optional<double> openSimLength(const bio::CompiledPath& path, const bio::Posture& posture) {
+namespace bio {
+
+std::optional<double> openSimLength(const CompiledPath& path, const Posture& posture) {
+  if (path.function) return std::nullopt;
   for (const PathSurface& surface : path.surfaces) {
-    if (surface.general && !std::holds_alternative<bio::EllipsoidSurface>(*surface.general)) {
+    if (surface.general && !std::holds_alternative<EllipsoidSurface>(*surface.general)) {
       return std::nullopt;
     }
   }
-  return Path(path, posture).solve();
+  return opensim_rule::Path(path, posture).solve();
 }
 
-}  // namespace validation
+}  // namespace bio

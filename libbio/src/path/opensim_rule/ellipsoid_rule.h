@@ -5,7 +5,7 @@
 
 #include "bio/path/surface/wrap_rule.h"
 
-namespace validation {
+namespace bio::opensim_rule {
 
 /// A path over an object as OpenSim finds it: straight to `first`, `length` over the surface,
 /// straight on from `last`; in the object's frame [m].
@@ -25,7 +25,7 @@ struct OpenSimWrap {
 /// Tangent points are exact here, OpenSim's to 1e-4 of the mean semi-axis. Nothing if the path is
 /// straight: an end inside, ends in one direction, or no cut.
 std::optional<OpenSimWrap> openSimOverEllipsoid(const Eigen::Vector3d& semiAxes,
-                                                bio::WrapQuadrant quadrant,
-                                                const Eigen::Vector3d& P, const Eigen::Vector3d& Q);
+                                                WrapQuadrant quadrant, const Eigen::Vector3d& P,
+                                                const Eigen::Vector3d& Q);
 
-}  // namespace validation
+}  // namespace bio::opensim_rule

@@ -1,10 +1,10 @@
-#include "ellipsoid_rule.h"
+#include "path/opensim_rule/ellipsoid_rule.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace validation {
+namespace bio::opensim_rule {
 namespace {
 
 using Eigen::Vector3d;
@@ -26,29 +26,28 @@ Vector3d closestPoint(const Vector3d& a, const Vector3d& u, int flat = -1) {
       }
     }
   }
-  double low = -1e300, far = 0;
+  double low = -1e300;
   for (int i = 0; i < 3; ++i) {
     if (i == flat) continue;
     low = std::max(low, -a[i] * a[i] + a[i] * std::abs(u[i]));
-    far += a[i] * a[i] * u[i] * u[i];
   }
-  double high = std::max(low, std::sqrt(far));
-  const auto excess = [&](double t) {
-    double sum = -1;
+  // the sum falls and is convex there: Newton's steps from its left never pass the root
+  double t = low;
+  for (int step = 0; step < 100; ++step) {
+    double excess = -1, slope = 0;
     for (int i = 0; i < 3; ++i) {
       if (i == flat) continue;
-      const double x = a[i] * u[i] / (a[i] * a[i] + t);
-      sum += x * x;
+      const double perSum = 1 / (a[i] * a[i] + t);
+      const double x = a[i] * u[i] * perSum;
+      excess += x * x;
+      slope -= 2 * x * x * perSum;
     }
-    return sum;
-  };
-  for (int i = 0; i < 100 && high > low; ++i) {
-    const double t = 0.5 * (low + high);
-    (excess(t) > 0 ? low : high) = t;
+    if (!(excess > 1e-15) || !(slope < 0)) break;
+    t -= excess / slope;
   }
   Vector3d x = u;
   for (int i = 0; i < 3; ++i) {
-    if (i != flat) x[i] = a[i] * a[i] * u[i] / (a[i] * a[i] + high);
+    if (i != flat) x[i] = a[i] * a[i] * u[i] / (a[i] * a[i] + t);
   }
   return x;
 }
@@ -216,9 +215,8 @@ double sumOfChords(const Vector3d& a, const Vector3d& r1, const Vector3d& r2,
 
 }  // namespace
 
-std::optional<OpenSimWrap> openSimOverEllipsoid(const Vector3d& semiAxes,
-                                                bio::WrapQuadrant quadrant, const Vector3d& P,
-                                                const Vector3d& Q) {
+std::optional<OpenSimWrap> openSimOverEllipsoid(const Vector3d& semiAxes, WrapQuadrant quadrant,
+                                                const Vector3d& P, const Vector3d& Q) {
   const double factor = 3 / semiAxes.sum();
   const Vector3d a = factor * semiAxes, p1 = factor * P, p2 = factor * Q;
   const double in1 = p1.cwiseQuotient(a).squaredNorm() - 1;
@@ -256,4 +254,4 @@ std::optional<OpenSimWrap> openSimOverEllipsoid(const Vector3d& semiAxes,
   return wrap;
 }
 
-}  // namespace validation
+}  // namespace bio::opensim_rule

@@ -3,9 +3,10 @@
 // The table is that of posture_tables.cc. For each muscle that may go over an ellipsoid, two
 // tables:
 //   by OpenSim's own postures: the largest differences of length and of moment arms (slopes of the
-//   length), and how near OpenSim's rule restated (path_rule.h) comes to OpenSim's length
-//   by the rule restated, over each coordinate's range, the others at their defaults: the largest
-//   differences, where the lengths are 0.1 mm apart or more, and jumps of OpenSim's length and ours
+//   length), and how near OpenSim's rule restated (bio/path/opensim_rule.h) comes to OpenSim's
+//   length by the rule restated, over each coordinate's range, the others at their defaults: the
+//   largest differences, where the lengths are 0.1 mm apart or more, and jumps of OpenSim's length
+//   and ours
 // Differences are OpenSim's less ours. Ends with 1 if less than four fifths of OpenSim's lengths
 // (those of paths without a torus) are met to 1e-5 m by its rule restated, with 77 if a file is not
 // there.
@@ -19,10 +20,10 @@
 #include <stdexcept>
 
 #include "bio/opensim/osim_file.h"
+#include "bio/path/opensim_rule.h"
 #include "bio/path/path.h"
 #include "bio/path/posture_samples.h"
 #include "bio/path/tree_path.h"
-#include "path_rule.h"
 #include "posture_table.h"
 
 namespace {
@@ -67,7 +68,7 @@ class Lengths {
   double theirsAt(const Eigen::VectorXd& q) const {
     const bio::Posture posture =
         bio::postureOf(skeleton_, std::vector<double>(q.data(), q.data() + q.size()));
-    return validation::openSimLength(path_.compiled(), posture)
+    return bio::openSimLength(path_.compiled(), posture)
         .value_or(std::numeric_limits<double>::quiet_NaN());
   }
   const bio::Skeleton& skeleton_;
