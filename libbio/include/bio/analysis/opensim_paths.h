@@ -45,8 +45,8 @@ std::vector<OpenSimDifference> openSimDifferences(const Model& model, const Skel
 std::vector<OpenSimDifference> openSimDifferences(const Model& model);
 
 /// "in OpenSim the path of TRIlong over TRIlonghh differs from the taut string by up to 4.9 mm, its
-/// moment arm by up to 19.1 mm, along r_shoulder_elev (0.1 mm or more at 46.8 to 144 deg), and
-/// jumps 3 times, by up to 5.02 mm"
+/// moment arm by up to 15.3 mm, along r_shoulder_elev (0.1 mm or more at 48 to 144 deg), and
+/// jumps 3 times, by up to 5.04 mm"
 std::string describe(const OpenSimDifference& difference);
 
 }  // namespace bio
