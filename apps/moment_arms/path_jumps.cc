@@ -74,7 +74,7 @@ nlohmann::ordered_json differencesAsJson(const std::vector<bio::OpenSimDifferenc
 }
 
 Table differenceTable(const std::vector<bio::OpenSimDifference>& differences) {
-  Table table{"OpenSim's path over ellipsoids, less the taut string",
+  Table table{"Paths over ellipsoids: OpenSim less the taut string",
               {"muscle", "over", "length [mm]", "moment arm [mm]", "0.1 mm or more at",
                "jumps of OpenSim's length [mm]"},
               {}};

@@ -199,14 +199,15 @@ TEST(MomentArmsCommand, WarnsOfLengthsThatJump) {
   EXPECT_THAT(above.out + above.err, Not(HasSubstr("jumps by")));
 }
 
-// The elbow with the triceps' cylinder as an ellipsoid of three different semi-axes.
+// The elbow with the triceps' cylinder as an ellipsoid across which it runs askew.
 std::string elbowWithAnEllipsoid(const ScratchFolder& scratch) {
   std::string text = support::contentOf(std::string(FISHERHILL_SOURCE_DIR) + "/models/elbow8.osim");
   const auto replaceFrom = [&](std::size_t from, const std::string& old, const std::string& by) {
     text.replace(text.find(old, from), old.size(), by);
   };
   const std::size_t at = text.find("<WrapCylinder name=\"TRI\">");
-  replaceFrom(at, "<radius>0.016</radius>", "<dimensions>0.016 0.02 0.06</dimensions>");
+  replaceFrom(at, "-0.14015 -0.00628319 0.154985", "0.8 0 0.155");
+  replaceFrom(at, "<radius>0.016</radius>", "<dimensions>0.02 0.012 0.012</dimensions>");
   replaceFrom(at, "<length>0.1</length>", "");
   replaceFrom(at, "</WrapCylinder>", "</WrapEllipsoid>");
   replaceFrom(at, "<WrapCylinder", "<WrapEllipsoid");
@@ -232,7 +233,7 @@ TEST(CheckCommand, SaysWhereOpenSimsPathsOverEllipsoidsDiffer) {
       summary["warnings"].dump(),
       HasSubstr("in OpenSim the path of TRIlong over TRI differs from the taut string by up to"));
   EXPECT_THAT(support::contentOf((scratch / "out/report.html").string()),
-              HasSubstr("OpenSim's path over ellipsoids, less the taut string"));
+              HasSubstr("Paths over ellipsoids: OpenSim less the taut string"));
   const ProgramResult check = runFisherHill({"check", model});
   EXPECT_EQ(check.status, 0) << check.err;
   EXPECT_THAT(check.out, HasSubstr("in OpenSim the path of TRIlong over TRI differs"));
