@@ -13,6 +13,7 @@ import numpy as np
 import fisherhill as fh
 
 import stub
+from test_options import Options  # noqa: F401, run with these
 from test_systems import Systems  # noqa: F401, run with these
 
 ELBOW = "models/elbow8.osim"

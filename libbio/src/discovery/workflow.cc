@@ -95,21 +95,19 @@ void repair(const DiscoveryRequest& request, DiscoveryResult& result) {
     result.repaired = repairedModel(data, of, heldOut, request.step, request.provenance);
     result.trials = result.repaired->trials;
   };
-  const auto effectOnly = [&](const MusculoskeletalProblem& data, const Verdict& of,
-                              const std::vector<info::discover::FormulaTerm>& formula) {
+  const auto effectOnly = [&](const MusculoskeletalProblem& data, const Verdict& of) {
     result.addsEffect = true;
     if (of.effects.empty()) return;
-    result.effectOnly = addEffects(request.model, request.arm, request.coordinate,
-                                   effectsToAdd(data, of), request.provenance, formula);
+    result.effectOnly = addEffects(data.encompassing(), effectsToAdd(data, of), request.provenance);
   };
   if (verdict.finding == Finding::unknown && verdict.formula && verdict.formula->wins) {
     const info::discover::RacedFormula& formula = *verdict.formula;
     const auto& data = dynamic_cast<const MusculoskeletalProblem&>(*formula.data);
     repaired(data, *formula.verdict);
-    effectOnly(data, *formula.verdict, formula.terms);
+    effectOnly(data, *formula.verdict);
   } else if (mayBeAdded(verdict)) {
     repaired(*result.data, verdict);
-    effectOnly(*result.data, verdict, {});
+    effectOnly(*result.data, verdict);
   } else if (verdict.reached == Stage::finished && verdict.finding == Finding::none) {
     repaired(*result.data, verdict);
   } else {

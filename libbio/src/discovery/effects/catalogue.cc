@@ -24,7 +24,6 @@ void addExponentialLimits(EncompassingModel& model);
 void addPayload(EncompassingModel& model);
 void addTilt(EncompassingModel& model);
 void addConstantTorque(EncompassingModel& model);
-void addHandForce(EncompassingModel& model);
 void addElasticBand(EncompassingModel& model);
 void addTimedForces(EncompassingModel& model);
 void addMissingMuscles(EncompassingModel& model);

@@ -11,6 +11,8 @@ namespace bio::discover {
 /// `known.mass` [kg] and `known.turn` [rad], which trials are known to have, where the model can
 /// have them; no candidates. Before all others.
 void addExperimentalConditions(EncompassingModel& model);
+/// An entry of the catalogue that experimental conditions need, too.
+void addHandForce(EncompassingModel& model);
 
 /// A quantity that is 0 while its effect is absent.
 inline info::discover::Quantity amplitude(std::string name, std::string unit, double lower,
