@@ -9,6 +9,7 @@ namespace {
 using osim_rules::OsimRules;
 using osim_rules::replaced;
 using osim_rules::valid;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 

@@ -9,6 +9,7 @@ using osim_rules::replaced;
 using osim_rules::valid;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 const std::string digest = std::string(60, 'a') + "0123";
 
