@@ -6,8 +6,10 @@
 
 #include "bio/analysis/replay.h"
 #include "bio/discovery/with_experimental_conditions.h"
+#include "bio/model/convert_muscles.h"
 #include "bio/model/free_coordinates.h"
 #include "bio/model/integrator_names.h"
+#include "bio/opensim/external_loads.h"
 #include "bio/opensim/osim_file.h"
 #include "bio/skeleton/articulated_tree.h"
 #include "bio/tables/trial_table.h"
@@ -20,7 +22,8 @@ namespace {
 bio::Trial trialOf(const bio::Model& model, const py::dict& columns, const std::string& name,
                    bool ignoreExtra, double knownMassInHand, double knownArmTurn,
                    const std::vector<std::string>& prescribe,
-                   const std::map<std::string, double>& hold) {
+                   const std::map<std::string, double>& hold,
+                   std::optional<double> prescribeCutoff) {
   bio::Table table;
   table.metadata = bio::headerOf({knownMassInHand, knownArmTurn});
   for (const auto& [key, values] : columns) {
@@ -45,19 +48,35 @@ bio::Trial trialOf(const bio::Model& model, const py::dict& columns, const std::
                    name, py::bytes(reinterpret_cast<const char*>(table.values.data()),
                                    sizeof(double) * static_cast<std::size_t>(table.values.size()))))
           .attr("encode")());
+  if (prescribeCutoff) bio::smoothPrescribed(trial, *prescribeCutoff);
   return trial;
 }
 
 bio::Trial loadTrial(const std::string& file, const bio::Model& model, bool ignoreExtra,
                      const std::vector<std::string>& prescribe,
-                     const std::map<std::string, double>& hold) {
+                     const std::map<std::string, double>& hold,
+                     std::optional<double> prescribeCutoff) {
   bio::Trial trial = bio::readTrial(file, model,
                                     {.ignoreExtra = ignoreExtra,
                                      .experimentalConditions = true,
                                      .prescribed = prescribe,
                                      .held = hold});
   trial.sha256 = digestOf(py::module_::import("pathlib").attr("Path")(file).attr("read_bytes")());
+  if (prescribeCutoff) bio::smoothPrescribed(trial, *prescribeCutoff);
   return trial;
+}
+
+/// Copies: a model that others hold stays as it is.
+bio::Model withMuscles(bio::Model model, const std::string& className) {
+  const std::vector<std::string> lost = bio::convertMuscles(model, className).lost;
+  for (const std::string& one : lost)
+    model.warnings.push_back(fmt::format("muscles as {}: lost is {}", className, one));
+  return model;
+}
+
+bio::Model withExternalLoads(bio::Model model, const std::string& file) {
+  model.externalLoads = bio::readExternalLoads(file, model, model.warnings);
+  return model;
 }
 
 py::dict coursesOf(const std::vector<bio::MeasuredMotion>& motions) {
@@ -130,6 +149,7 @@ py::object replay(const bio::Model& given, const bio::Trial& trial,
                   const std::map<std::string, double>& lock, const std::string& integrator,
                   std::optional<double> step) {
   const SystemChoice choice = armChoice(given, {trial}, coordinate, lock, integrator, step);
+  bio::requireLoadsCover(given.externalLoads, trial.times[0], trial.times[0] + trial.duration());
   bio::TrialReplay replayed;
   const bio::Trajectory& motion = replayed.motion;
   bio::MuscleReport muscles;
@@ -260,6 +280,9 @@ void defineSystems(py::module_& module) {
           "write",
           [](const bio::Model& self, const std::string& file) { bio::writeOsim(self, file); },
           "file"_a, docstrings::Model_write)
+      .def("with_muscles", &withMuscles, "muscle_class"_a, docstrings::Model_with_muscles)
+      .def("with_external_loads", &withExternalLoads, "file"_a,
+           docstrings::Model_with_external_loads)
       .def("__repr__", [](const bio::Model& self) {
         return fmt::format("<fisherhill.Model '{}', {} muscles>", self.name,
                            musclesOf(self).size());
@@ -292,11 +315,11 @@ void defineSystems(py::module_& module) {
       docstrings::load_model);
   module.def("load_trial", &loadTrial, "file"_a, "model"_a, py::kw_only(), "ignore_extra"_a = false,
              "prescribe"_a = std::vector<std::string>(), "hold"_a = std::map<std::string, double>(),
-             docstrings::load_trial);
+             "prescribe_cutoff"_a = py::none(), docstrings::load_trial);
   module.def("make_trial", &trialOf, "model"_a, "columns"_a, py::kw_only(), "name"_a = "trial",
              "ignore_extra"_a = false, "known_mass_in_hand"_a = 0.0, "known_arm_turn"_a = 0.0,
              "prescribe"_a = std::vector<std::string>(), "hold"_a = std::map<std::string, double>(),
-             docstrings::make_trial);
+             "prescribe_cutoff"_a = py::none(), docstrings::make_trial);
   defineWithChoice(module, "replay", &replay, docstrings::replay, "model"_a, "trial"_a,
                    py::kw_only(), "initial"_a = std::map<std::string, double>());
 }

@@ -57,6 +57,7 @@ void mustBeOfTheModelAsItIs(const bio::Trial& trial);
 bio::SimulationOptions during(const bio::Trial& trial, bio::SimulationOptions options);
 
 void defineSystems(py::module_& module);
+void definePaths(py::module_& module);
 void defineSensitivity(py::module_& module);
 void defineCalibration(py::module_& module);
 void defineDiscovery(py::module_& module);

@@ -23,11 +23,20 @@ info::RobustLoss lossOf(const std::string& name) {
   return loss;
 }
 
+/// None where it was not asked for, or has no interval.
+py::object intervalOf(double lower, double upper) {
+  if (std::isnan(lower) && std::isnan(upper)) return py::none();
+  return py::make_tuple(lower, upper);
+}
+
 py::object estimateOf(const bio::CalibratedParameter& one) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
   return results("value"_a = one.value, "sd"_a = one.sd, "lower"_a = one.lower,
                  "upper"_a = one.upper, "unit"_a = one.asked.unit, "model"_a = one.model,
-                 "identifiable"_a = one.identifiable, "at_bound"_a = one.atBound,
-                 "why"_a = one.why);
+                 "identifiable"_a = one.identifiable, "at_bound"_a = one.atBound, "why"_a = one.why,
+                 "profile"_a = one.profile ? intervalOf(one.profile->lower, one.profile->upper)
+                                           : intervalOf(none, none),
+                 "bootstrap"_a = intervalOf(one.bootstrapLower, one.bootstrapUpper));
 }
 
 /// [rad]; NaN without trials.
@@ -49,11 +58,12 @@ std::vector<bio::Trial> declaring(std::vector<bio::Trial> trials, const Pairs& l
 py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& trials,
                      const std::vector<std::string>& parameters,
                      const std::vector<bio::Trial>& holdOut, std::optional<double> noise,
-                     bool priors, const Pairs& prior, const Pairs& bounds, const std::string& loss,
+                     const std::map<std::string, double>& channelNoise, bool priors,
+                     const Pairs& prior, const Pairs& bounds, const std::string& loss,
                      bool ownStart, const Pairs& latent, int starts, std::uint64_t seed,
-                     int threads, const Names& coordinate,
-                     const std::map<std::string, double>& lock, const std::string& integrator,
-                     std::optional<double> step) {
+                     int threads, const std::vector<std::string>& profile, int bootstrap,
+                     const Names& coordinate, const std::map<std::string, double>& lock,
+                     const std::string& integrator, std::optional<double> step) {
   const SystemChoice choice = armChoice(model, trials, coordinate, lock, integrator, step);
   for (const auto* set : {&trials, &holdOut})
     for (const bio::Trial& trial : *set) mustBeOfTheModelAsItIs(trial);
@@ -68,6 +78,9 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
   for (const auto& [name, values] : prior) options.prior[name] = {values.first, values.second};
   options.bounds = bounds;
   options.noise = noise;
+  options.channelNoise = channelNoise;
+  options.profile = profile;
+  options.bootstrap = bootstrap;
   options.loss = lossOf(loss);
   options.starts = starts;
   options.seed = seed;
@@ -109,9 +122,11 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
 void defineCalibration(py::module_& module) {
   defineWithChoice(module, "calibrate", &calibrate, docstrings::calibrate, "model"_a, "trials"_a,
                    "parameters"_a, py::kw_only(), "hold_out"_a = std::vector<bio::Trial>(),
-                   "noise"_a = py::none(), "priors"_a = true, "prior"_a = Pairs(),
-                   "bounds"_a = Pairs(), "loss"_a = "gaussian", "own_start"_a = false,
-                   "latent"_a = Pairs(), "starts"_a = 1, "seed"_a = 1, "threads"_a = 1);
+                   "noise"_a = py::none(), "channel_noise"_a = std::map<std::string, double>(),
+                   "priors"_a = true, "prior"_a = Pairs(), "bounds"_a = Pairs(),
+                   "loss"_a = "gaussian", "own_start"_a = false, "latent"_a = Pairs(),
+                   "starts"_a = 1, "seed"_a = 1, "threads"_a = 1,
+                   "profile"_a = std::vector<std::string>(), "bootstrap"_a = 0);
 }
 
 }  // namespace python

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <optional>
 
 #include "arms.h"
@@ -143,8 +144,9 @@ py::list fittedOf(const std::vector<info::discover::FittedNumber>& fitted) {
 py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
                     const std::vector<bio::Trial>& holdOut, std::optional<double> noise,
                     const std::vector<std::string>& without, int maxEffects,
-                    const Names& coordinate, const std::map<std::string, double>& lock,
-                    const std::string& integrator, std::optional<double> firstStep) {
+                    std::optional<double> inputScatter, const Names& coordinate,
+                    const std::map<std::string, double>& lock, const std::string& integrator,
+                    std::optional<double> firstStep) {
   const SystemChoice choice = armChoice(model, trials, coordinate, lock, integrator, firstStep);
   if (!choice.prescribed.empty()) {
     throw std::invalid_argument(
@@ -169,6 +171,12 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
   asked.problem.without = without;
   asked.search.maxEffects = maxEffects;
   asked.search.outputSd = noise;
+  if (inputScatter) {
+    if (!(*inputScatter >= 0) || !std::isfinite(*inputScatter))
+      throw std::invalid_argument(
+          fmt::format("input_scatter: {} must be a number ≥ 0", *inputScatter));
+    asked.search.latentTolerance = *inputScatter;
+  }
   asked.provenance.tool = "fisherhill " + std::string(info::version());
   for (const bio::Trial& trial : asked.trials)
     asked.provenance.data.push_back(fmt::format("{} SHA-256 {}", trial.file, trial.sha256));
@@ -210,7 +218,8 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
 void defineDiscovery(py::module_& module) {
   defineWithChoice(module, "discover", &discover, docstrings::discover, "model"_a, "trials"_a,
                    py::kw_only(), "hold_out"_a = std::vector<bio::Trial>(), "noise"_a = py::none(),
-                   "without"_a = std::vector<std::string>(), "max_effects"_a = 3);
+                   "without"_a = std::vector<std::string>(), "max_effects"_a = 3,
+                   "input_scatter"_a = py::none());
 }
 
 }  // namespace python

@@ -1,5 +1,3 @@
-#include "calibrate/calibrate.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include "calibrate/calibrate_remarks.h"
 #include "calibrate/calibrate_report.h"
 #include "calibrate/fitted_table.h"
+#include "command/command.h"
 #include "info/version.h"
 #include "options/input_rules.h"
 #include "options/named_pairs.h"
@@ -370,6 +369,9 @@ class Calibrate : public Command {
 
 }  // namespace
 
+/// `fisherhill calibrate MODEL TRIAL… --parameters …`: estimates parameters from measured motions;
+/// writes calibrated.osim and, if the relation between EMG and excitation was calibrated, the
+/// trials with the corrected excitations.
 std::unique_ptr<Command> calibrateCommand() {
   return std::make_unique<Calibrate>();
 }

@@ -1,5 +1,3 @@
-#include "check/check.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -18,6 +16,7 @@
 #include "bio/tables/trial.h"
 #include "bio/tables/trial_review.h"
 #include "check/recording_contents.h"
+#include "command/command.h"
 #include "options/trial_input.h"
 #include "output/result.h"
 #include "output/text.h"
@@ -269,6 +268,9 @@ class Check : public Command {
 
 }  // namespace
 
+/// `fisherhill check FILE…`: reads models and trials and lists errors and unusual values. Status 0:
+/// no error (warnings are possible); 1: a file has an error; 2: wrong use, or a file that does not
+/// exist.
 std::unique_ptr<Command> checkCommand() {
   return std::make_unique<Check>();
 }

@@ -1,20 +1,22 @@
-#include "calibrate/calibrate.h"
-#include "check/check.h"
 #include "command/command.h"
-#include "compare/compare.h"
-#include "design/design.h"
-#include "discover/discover.h"
-#include "emg/emg.h"
 #include "ensemble/ensemble.h"
-#include "moment_arms/moment_arms.h"
-#include "muscle_states/muscle_states.h"
 #include "render/render.h"
-#include "replay/replay.h"
-#include "robot/robot.h"
-#include "sensitivity/sensitivity.h"
 #include "study/study.h"
 
 namespace app {
+
+// Each is defined in the folder of its subcommand.
+std::unique_ptr<Command> calibrateCommand();
+std::unique_ptr<Command> checkCommand();
+std::unique_ptr<Command> compareCommand();
+std::unique_ptr<Command> designCommand();
+std::unique_ptr<Command> discoverCommand();
+std::unique_ptr<Command> emgCommand();
+std::unique_ptr<Command> momentArmsCommand();
+std::unique_ptr<Command> muscleStatesCommand();
+std::unique_ptr<Command> replayCommand();
+std::unique_ptr<Command> robotCommand();
+std::unique_ptr<Command> sensitivityCommand();
 
 std::vector<std::unique_ptr<Command>> allCommands() {
   std::vector<std::unique_ptr<Command>> commands;

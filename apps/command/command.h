@@ -27,8 +27,8 @@ class Command {
   virtual ExitStatus run(const CommandContext& context) = 0;
 };
 
-/// Every subcommand, in the order in which --help lists them. A new one is a file with a function
-/// that makes it, and one line here and in all_commands.cc.
+/// Every subcommand, in the order in which --help lists them. A new one is a file in a folder of
+/// its own with a function that makes it, declared and called in all_commands.cc.
 std::vector<std::unique_ptr<Command>> allCommands();
 
 }  // namespace app

@@ -1,5 +1,3 @@
-#include "compare/compare.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 
 #include "bio/analysis/replay.h"
 #include "bio/model/integrator_names.h"
+#include "command/command.h"
 #include "compare/compare_muscles_report.h"
 #include "compare/compare_report.h"
 #include "options/system_options.h"
@@ -282,6 +281,7 @@ class Compare : public Command {
 
 }  // namespace
 
+/// `compare`: integrators at time steps, against a converged reference.
 std::unique_ptr<Command> compareCommand() {
   return std::make_unique<Compare>();
 }

@@ -1,5 +1,3 @@
-#include "design/design.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include "bio/analysis/replay.h"
 #include "bio/calibration/trial_predictor.h"
 #include "bio/design/separating_design.h"
+#include "command/command.h"
 #include "design/design_options.h"
 #include "design/design_report.h"
 #include "design/separating_report.h"
@@ -261,6 +260,8 @@ class Design : public Command {
 
 }  // namespace
 
+/// `fisherhill design MODEL TRIAL`: finds the experiment that is most informative about chosen
+/// parameters.
 std::unique_ptr<Command> designCommand() {
   return std::make_unique<Design>();
 }

@@ -1,7 +1,6 @@
-#include "discover/discover.h"
-
 #include <fmt/format.h>
 
+#include "command/command.h"
 #include "discover/discover_search.h"
 #include "discover/effect_list.h"
 #include "discover/model_discovery.h"
@@ -116,6 +115,8 @@ class Discover : public Command {
 
 }  // namespace
 
+/// `fisherhill discover MODEL TRIAL…`: finds where simulation and data disagree, names the missing
+/// effect and adds it; writes verdict.json and with_effect.osim.
 std::unique_ptr<Command> discoverCommand() {
   return std::make_unique<Discover>();
 }

@@ -3,8 +3,7 @@
 #include <fmt/format.h>
 
 #include "bio/discovery/workflow.h"
-#include "calibrate/fitted_table.h"
-#include "discover/discover_report.h"
+#include "discover/discover_results.h"
 #include "discover/discover_search.h"
 #include "discover/proposed_experiments_text.h"
 #include "discover/suggested_experiments.h"
@@ -14,14 +13,10 @@
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/angle_unit.h"
-#include "output/interruption.h"
-#include "output/json_text.h"
 #include "output/result.h"
 
 namespace app {
 namespace {
-
-using info::discover::Finding;
 
 DiscoverWording wordingOf(const bio::discover::MusculoskeletalProblem& data) {
   const bio::Coordinate& coordinate = data.encompassing().coordinate();
@@ -121,14 +116,8 @@ ModelDiscovery discoverInModel(ModelDiscoveryRequest request, const CommandConte
                                   found.step};
   summary.setSimulation(request.simulation.integrator, found.step, longestDuration(trials),
                         found.wallSeconds);
-  tellFindings(findings, summary);
-  const nlohmann::ordered_json json = verdictJson(findings);
-  folder.write("verdict.json", [&](std::ostream& out) { out << jsonText(json, 2) << '\n'; });
-  if (!result.fitted.empty())
-    folder.write("parameters.csv", [&](std::ostream& out) { writeFitted(result.fitted, out); });
-  deliver(context, summary, discoverReport(findings), folder);
-  if (watch.wasInterrupted()) throw Interrupted{};
-  return {verdict.finding == Finding::numerical ? ExitStatus::answerIsNo : ExitStatus::done, json};
+  const nlohmann::ordered_json json = writeFindings(findings, summary, folder);
+  return {deliverFindings(findings, watch, context, summary, folder), json};
 }
 
 }  // namespace app

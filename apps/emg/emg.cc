@@ -1,5 +1,3 @@
-#include "emg/emg.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -12,6 +10,7 @@
 #include "bio/tables/file_error.h"
 #include "bio/tables/recording.h"
 #include "bio/tables/table_file.h"
+#include "command/command.h"
 #include "output/result.h"
 
 namespace app {
@@ -272,6 +271,8 @@ class Emg : public Command {
 
 }  // namespace
 
+/// `fisherhill emg RAW --config C.toml`: raw EMG to excitations; writes excitations.sto, a trial
+/// ready for replay, with the measured coordinate if the configuration names one.
 std::unique_ptr<Command> emgCommand() {
   return std::make_unique<Emg>();
 }

@@ -1,5 +1,3 @@
-#include "moment_arms/moment_arms.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -7,6 +5,7 @@
 
 #include "bio/analysis/path_postures.h"
 #include "bio/analysis/replay.h"
+#include "command/command.h"
 #include "moment_arms/fit_command.h"
 #include "moment_arms/path_jumps.h"
 #include "options/number_rules.h"
@@ -246,6 +245,7 @@ class MomentArms : public Command {
 
 }  // namespace
 
+/// `moment-arms`: lengths, moment arms and their slopes over a coordinate's range.
 std::unique_ptr<Command> momentArmsCommand() {
   return std::make_unique<MomentArms>();
 }

@@ -1,5 +1,3 @@
-#include "muscle_states/muscle_states.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <ostream>
 
 #include "bio/analysis/muscle_states.h"
+#include "command/command.h"
 #include "output/result.h"
 #include "output/text.h"
 
@@ -75,6 +74,7 @@ class MuscleStates : public Command {
 
 }  // namespace
 
+/// `muscle-states`: what the muscle laws give for rows of class, parameters and state.
 std::unique_ptr<Command> muscleStatesCommand() {
   return std::make_unique<MuscleStates>();
 }

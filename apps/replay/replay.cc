@@ -1,10 +1,9 @@
-#include "replay/replay.h"
-
 #include <fmt/format.h>
 
 #include "bio/analysis/replay.h"
 #include "bio/discovery/with_experimental_conditions.h"
 #include "bio/opensim/osim_file.h"
+#include "command/command.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/progress_bar.h"
@@ -108,6 +107,8 @@ class Replay : public Command {
 
 }  // namespace
 
+/// `replay`: simulates the motion produced by a trial's excitations and compares it with the
+/// measurement.
 std::unique_ptr<Command> replayCommand() {
   return std::make_unique<Replay>();
 }

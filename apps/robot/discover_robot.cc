@@ -6,8 +6,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "calibrate/fitted_table.h"
-#include "discover/discover_report.h"
+#include "discover/discover_results.h"
 #include "discover/discover_search.h"
 #include "discover/suggested_experiments.h"
 #include "info/discovery/search/shorter_steps.h"
@@ -15,7 +14,6 @@
 #include "options/input_rules.h"
 #include "options/number_rules.h"
 #include "output/angle_unit.h"
-#include "output/interruption.h"
 #include "output/json_text.h"
 #include "output/result.h"
 #include "output/text.h"
@@ -25,9 +23,10 @@
 namespace app {
 namespace {
 
-using info::discover::Finding;
 using info::robot::RobotProblem;
 using nlohmann::ordered_json;
+
+constexpr double shortestRobotStep = 1e-3;  // [s]
 
 info::robot::Model plainModel(const std::string& system,
                               const std::vector<info::robot::Trial>& trials) {
@@ -163,15 +162,19 @@ class RobotSearch {
       summary.addInput(request_.with);
     }
     resultsMustNotBeInputs(summary, folder, names);
+    info::robot::DisagreementOptions problem = problemOptions(channels);
+    info::discover::TrialSearch asked{trials.size(), request_.heldOut.size(), request_.step,
+                                      problem.step,  shortestRobotStep,       {}};
+    asked.options = engineOptions(request_.maxEffects, request_.inputScatter);
+    if (!problem.sds.empty()) asked.options.outputSd = problem.sds.front();
     WatchedSearch watch(context_.quiet);
-    const info::discover::SteppedVerdict found = info::discover::runAtShorterSteps(
-        [&](double step) {
-          info::discover::Attempt one = attempt(model, trials, step);
-          one.options.progress = watch.progress();
-          return one;
-        },
-        request_.step.value_or(info::robot::DisagreementOptions{}.step),
-        request_.step ? HUGE_VAL : 1e-3);
+    asked.options.progress = watch.progress();
+    const info::discover::SteppedVerdict found = info::discover::searchTrials(
+        asked, [&](double step) -> const info::discover::DiscoveryProblem& {
+          problem.step = step;
+          data_ = std::make_unique<RobotProblem>(model, trials, problem);
+          return *data_;
+        });
     watch.end();
     const info::discover::Verdict& verdict = found.verdict;
     warnOfOneTrial(summary, request_.trials.size(), request_.heldOut.size());
@@ -205,37 +208,25 @@ class RobotSearch {
     for (std::size_t c = 0; c < channels.size(); ++c)
       summary.set(fmt::format("noise_{}_{}", channels[c].name, wording.outputs[c].unit),
                   wording.unit * data_->sds()[c]);
-    tellFindings(findings, summary);
-    folder.write("verdict.json",
-                 [&](std::ostream& out) { out << jsonText(verdictJson(findings), 2) << '\n'; });
-    if (!fitted.empty())
-      folder.write("parameters.csv", [&](std::ostream& out) { writeFitted(fitted, out); });
+    writeFindings(findings, summary, folder);
     if (info::discover::mayBeAdded(verdict))
       folder.write("with_effect.json", [&](std::ostream& out) {
         out << jsonText(repaired(findings, summary), 2) << '\n';
       });
-    deliver(context_, summary, discoverReport(findings), folder);
-    if (watch.wasInterrupted()) throw Interrupted{};
-    return verdict.finding == Finding::numerical ? ExitStatus::answerIsNo : ExitStatus::done;
+    return deliverFindings(findings, watch, context_, summary, folder);
   }
 
  private:
-  /// The robot at a time step, with the options of the search.
-  info::discover::Attempt attempt(const info::robot::Model& model,
-                                  const std::vector<info::robot::Trial>& trials, double step) {
+  /// What the robot's problem is asked, at its first time step.
+  info::robot::DisagreementOptions problemOptions(
+      const std::vector<info::robot::Channel>& channels) const {
     info::robot::DisagreementOptions asked;
-    asked.step = step;
     asked.without = request_.without;
     for (std::size_t c = 0; c < request_.noise.size(); ++c) {
-      const bool isAngle = c < model.channels.size() && model.channels[c].unit == "rad";
+      const bool isAngle = c < channels.size() && channels[c].unit == "rad";
       asked.sds.push_back(isAngle ? request_.noise[c] * degree : request_.noise[c]);
     }
-    data_ = std::make_unique<RobotProblem>(model, trials, asked);
-    info::discover::Attempt one{*data_, engineOptions(request_.maxEffects, request_.inputScatter)};
-    for (std::size_t i = request_.trials.size(); i < trials.size(); ++i)
-      one.options.heldOut.push_back(static_cast<int>(i));
-    if (!request_.noise.empty()) one.options.outputSd = data_->sds().front();
-    return one;
+    return asked;
   }
 
   /// The effects, and where they come from.

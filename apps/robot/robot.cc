@@ -1,10 +1,9 @@
-#include "robot/robot.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <optional>
 
+#include "command/command.h"
 #include "options/number_rules.h"
 #include "options/quantity.h"
 #include "output/result.h"
@@ -309,6 +308,10 @@ class Robot : public Command {
 
 }  // namespace
 
+/// `fisherhill robot double-pendulum|suspended-mass`: finds the motion that is most informative
+/// about the robot's parameters (robot_optimise.h), or computes the information of a given motion
+/// and the performance of estimators on it. Status 1 if the parameters are not separately
+/// identifiable, or if no better motion was found.
 std::unique_ptr<Command> robotCommand() {
   return std::make_unique<Robot>();
 }

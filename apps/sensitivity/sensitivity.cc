@@ -1,5 +1,3 @@
-#include "sensitivity/sensitivity.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 
 #include "bio/analysis/replay.h"
 #include "bio/calibration/trial_predictor.h"
+#include "command/command.h"
 #include "options/input_rules.h"
 #include "options/parameter_list.h"
 #include "options/system_options.h"
@@ -389,6 +388,8 @@ class Sensitivity : public Command {
 
 }  // namespace
 
+/// `sensitivity`: parameter sweeps, exact sensitivities, information, bounds, identifiability;
+/// profile likelihood; Morris's and Sobol's global sensitivity.
 std::unique_ptr<Command> sensitivityCommand() {
   return std::make_unique<Sensitivity>();
 }

@@ -7,57 +7,11 @@
 #include <fstream>
 #include <numbers>
 
-#include "score/recovery.h"
-#include "score/repaired_table.h"
 #include "support/scratch_folder.h"
+#include "validation/labels_and_verdicts.h"
 
 namespace hidden {
 namespace {
-
-// Values of Newcombe (Statistics in Medicine 17, 1998), Wilson's method without correction.
-TEST(Wilson, AgreesWithPublishedIntervals) {
-  const struct {
-    int k, n;
-    double low, high;
-  } published[] = {
-      {81, 263, 0.2553, 0.3662}, {15, 148, 0.0624, 0.1605}, {0, 20, 0.0, 0.1611},
-      {1, 29, 0.0061, 0.1718},   {20, 20, 0.8389, 1.0},
-  };
-  for (const auto& p : published) {
-    const Interval i = wilson(p.k, p.n);
-    EXPECT_NEAR(i.low, p.low, 5e-5) << p.k << " of " << p.n;
-    EXPECT_NEAR(i.high, p.high, 5e-5) << p.k << " of " << p.n;
-  }
-}
-
-TEST(Wilson, NeedsAProportion) {
-  EXPECT_THROW(wilson(3, 2), std::invalid_argument);
-  EXPECT_THROW(wilson(-1, 2), std::invalid_argument);
-  EXPECT_EQ(wilson(0, 0).high, 1);
-}
-
-Json truthOf(const std::string& id, double value, std::vector<std::string> equivalents = {}) {
-  return {{"id", id},
-          {"readings", Json::array({{{"name", "b"}, {"unit", "N m s"}, {"value", value}}})},
-          {"equivalents", equivalents}};
-}
-
-Json labelOf(const std::string& suite, const Json& effects, double size = 1, double noise = 0) {
-  return {{"suite", suite}, {"size", size}, {"emg_noise", noise}, {"effects", effects}};
-}
-
-Json effectOf(const std::string& id, const std::string& kind, double probability, double value = 0,
-              double sd = 1, const std::string& parameter = "b",
-              const std::string& unit = "N m s") {
-  return {{"id", id},
-          {"kind", kind},
-          {"probability", probability},
-          {"parameters", {{parameter, {{"value", value}, {"sd", sd}, {"unit", unit}}}}}};
-}
-
-Json verdictOf(const std::string& word, const Json& effects, const Json& inClass = Json::array()) {
-  return {{"verdict", word}, {"effects", effects}, {"class", inClass}};
-}
 
 TEST(Judge, ARightNameWithItsAmplitude) {
   Json verdict = verdictOf("named", Json::array({effectOf("visc", "structure", 0.99, 0.34, 0.02)}),
@@ -94,69 +48,6 @@ TEST(Judge, WhatIsSaidToBeTooSmallAndWhatIsOnlyASurrogate) {
   const Json effects = Json::array({effectOf("visc", "structure", 0.99, 0.34, 0.02)});
   EXPECT_TRUE(judge("a", label, verdictOf("named", effects)).firstIsRight);
   EXPECT_FALSE(judge("a", label, verdictOf("unknown", effects)).firstIsRight);
-}
-
-TEST(Recovery, CountsRightNamesByHowVisibleTheEffectIs) {
-  Json verdict = verdictOf("named", Json::array({effectOf("drag", "structure", 0.99, 0.34, 0.02)}));
-  verdict["undetectable_below"] = {{"visc", 0.1}};
-  const auto set = [&](double amplitude, const char* suite = "single") {
-    Json truth = truthOf("visc", amplitude);
-    truth["amplitude"] = -amplitude;
-    return judge("a", labelOf(suite, Json::array({truth})), verdict);
-  };
-  std::vector<Outcome> outcomes = {set(0.12), set(0.149), set(0.16), set(0.3), set(0.3, "out")};
-  outcomes[0].firstIsRight = outcomes[2].firstIsRight = true;
-  EXPECT_NEAR(outcomes[0].visibility.value(), 1.2, 1e-12);
-  const auto bins = hidden::recoveryByDetectability(outcomes);
-  ASSERT_EQ(bins.size(), 6U);
-  EXPECT_EQ(bins[2].from, 1);
-  EXPECT_EQ(bins[2].n, 2);
-  EXPECT_EQ(bins[2].right, 1);
-  EXPECT_EQ(bins[3].n, 1);
-  EXPECT_EQ(bins[4].n, 1);
-  EXPECT_EQ(bins[0].n + bins[1].n + bins[5].n, 0);
-  EXPECT_THAT(hidden::recoveryTable(outcomes),
-              testing::HasSubstr("| 1 to 1.5 | 1 of 2 | 50.0 % |"));
-}
-
-TEST(Recovery, WhatIsNamedIsAsVisibleAsItsOwnDeviationSays) {
-  // truth 0.3, estimate 0.34 ± 0.02, factor 0.6 and estimate 0.5 ± 0.1
-  const auto visibility = [](const Json& effect, const Json& truth) {
-    return judge("a", labelOf("single", Json::array({truth})),
-                 verdictOf("named", Json::array({effect})))
-        .visibility;
-  };
-  EXPECT_NEAR(
-      visibility(effectOf("visc", "structure", 1, 0.34, 0.02), truthOf("visc", 0.3)).value(), 3,
-      1e-12);
-  Json gain = truthOf("gain_TRI", 0.6);
-  gain["readings"][0]["name"] = "factor";
-  EXPECT_NEAR(visibility(effectOf("gain_TRI", "input", 1, 0.5, 0.1, "factor"), gain).value(),
-              0.4 / 0.1 / 5, 1e-12);
-  // a value that was multiplied by 0.8: 0.14 m, 0.028 m of it the change
-  Json centre = truthOf("com_1", 0.112);
-  centre["readings"][0]["name"] = "com_1";
-  centre["unit"] = "change";
-  centre["amplitude"] = -0.2;
-  EXPECT_NEAR(visibility(effectOf("com_1", "parameter", 1, 0.11, 0.002, "com_1"), centre).value(),
-              0.028 / 0.002 / 5, 1e-12);
-  Json silent = verdictOf("none", Json::array());
-  silent["undetectable_below"] = {{"com_1", 0.037}};
-  EXPECT_NEAR(judge("a", labelOf("parameter", Json::array({centre})), silent).visibility.value(),
-              0.028 / 0.037, 1e-12);
-  // an equivalent by its own amplitude
-  EXPECT_NEAR(
-      visibility(effectOf("clock", "sensor", 1, 0.04, 0.002), truthOf("delay", 0.03, {"clock"}))
-          .value(),
-      4, 1e-12);
-}
-
-TEST(Recovery, ErrorIsTheRootMeanSquareOfDeviations) {
-  std::vector<Outcome> outcomes(3);
-  EXPECT_FALSE(hidden::recoveryError(outcomes).has_value());
-  outcomes[0].z = 3;
-  outcomes[2].z = -4;
-  EXPECT_NEAR(hidden::recoveryError(outcomes).value(), std::sqrt(12.5), 1e-12);
 }
 
 TEST(Judge, UnitsAndOtherNamesOfTheSameAmplitude) {
@@ -391,33 +282,6 @@ TEST(Score, ReadsFoldersAndSaysWhichFileIsBroken) {
     EXPECT_THAT(e.what(), testing::HasSubstr("verdict.json"));
   }
   EXPECT_THROW(readOutcomes(folder.path() / "nowhere", folder.path()), std::runtime_error);
-}
-
-TEST(RepairedTable, HasALineForEverySetWithWhatTheRepairedModelIsSaidToLack) {
-  const support::ScratchFolder folder;
-  const auto write = [&](const std::string& name, const Json& json) {
-    const auto file = folder.path() / name;
-    std::filesystem::create_directories(file.parent_path());
-    std::ofstream(file) << json.dump();
-  };
-  Json truth = truthOf("visc", 0.3);
-  truth["amplitude"] = 0.3;
-  truth["unit"] = "N m s";
-  write("labels/x.json", labelOf("single", Json::array({truth})));
-  Json verdict = verdictOf("named", Json::array({effectOf("visc", "structure", 0.99, 0.29, 0.02)}),
-                           Json::array({"visc"}));
-  verdict["gap"] = {{"held_out", {{"gap_closed", 0.985}, {"gap_closed_from_nominal", nullptr}}}};
-  verdict["wall_s"] = 12;
-  write("verdicts/x/verdict.json", verdict);
-  const auto table = [&] {
-    return repairedTable(folder.path() / "labels", folder.path() / "verdicts",
-                         folder.path() / "repaired");
-  };
-  EXPECT_THAT(table(),
-              testing::EndsWith("\n| x | visc 0.3 N m s | named; visc 0.29 ± 0.02 N m s | -0.50 | "
-                                "98.5 % | no gap | no verdict | 12 |\n"));
-  write("repaired/x/verdict.json", verdictOf("none", Json::array()));
-  EXPECT_THAT(table(), testing::HasSubstr("| none | 12 |"));
 }
 
 }  // namespace

@@ -91,10 +91,8 @@ std::string effectCredits(const EncompassingModel& encompassing,
   return credits;
 }
 
-Augmented addEffects(const Model& model, const SystemOptions& arm, const std::string& coordinate,
-                     const std::vector<EffectToAdd>& effects, const EffectProvenance& provenance,
-                     const std::vector<info::discover::FormulaTerm>& formula) {
-  const EncompassingModel encompassing = encompassingModel(model, arm, coordinate, {}, formula);
+Augmented addEffects(const EncompassingModel& encompassing, const std::vector<EffectToAdd>& effects,
+                     const EffectProvenance& provenance) {
   Eigen::VectorXd values = encompassing.nominal();
   for (const EffectToAdd& effect : effects) {
     const auto& candidate = findCandidate(encompassing, effect.id);
@@ -112,6 +110,12 @@ Augmented addEffects(const Model& model, const SystemOptions& arm, const std::st
   std::string& text = result.model.credits;
   text += text.empty() ? credits : ". " + credits;
   return result;
+}
+
+Augmented addEffects(const Model& model, const SystemOptions& arm, const std::string& coordinate,
+                     const std::vector<EffectToAdd>& effects, const EffectProvenance& provenance,
+                     const std::vector<info::discover::FormulaTerm>& formula) {
+  return addEffects(encompassingModel(model, arm, coordinate, {}, formula), effects, provenance);
 }
 
 }  // namespace bio::discover

@@ -21,18 +21,15 @@ SteppedVerdict search(const DiscoveryRequest& request, const std::vector<Trial>&
   info::discover::Options options = request.search;
   if (result.trialsAreCut)
     options.progress = info::discover::progressOfAnother(std::move(options.progress));
-  options.heldOut.clear();
-  for (std::size_t i = request.trials.size() - request.numHeldOut; i < request.trials.size(); ++i)
-    options.heldOut.push_back(static_cast<int>(i));
-  const auto attempt = [&](double step) {
-    problem.simulation.step = step;
-    result.data = std::make_unique<MusculoskeletalProblem>(request.model, request.arm,
-                                                           request.coordinate, trials, problem);
-    return info::discover::Attempt{*result.data, options};
-  };
-  return info::discover::runAtShorterSteps(
-      attempt, request.step.value_or(problem.simulation.step),
-      request.step ? std::numeric_limits<double>::infinity() : shortestSearchStep);
+  const info::discover::TrialSearch asked{request.trials.size(),   request.numHeldOut, request.step,
+                                          problem.simulation.step, shortestSearchStep, options};
+  return info::discover::searchTrials(
+      asked, [&](double step) -> const info::discover::DiscoveryProblem& {
+        problem.simulation.step = step;
+        result.data = std::make_unique<MusculoskeletalProblem>(request.model, request.arm,
+                                                               request.coordinate, trials, problem);
+        return *result.data;
+      });
 }
 
 std::string sentenceOf(const info::discover::PositionBreak& found, const Coordinate& coordinate,
@@ -98,21 +95,19 @@ void repair(const DiscoveryRequest& request, DiscoveryResult& result) {
     result.repaired = repairedModel(data, of, heldOut, request.step, request.provenance);
     result.trials = result.repaired->trials;
   };
-  const auto effectOnly = [&](const MusculoskeletalProblem& data, const Verdict& of,
-                              const std::vector<info::discover::FormulaTerm>& formula) {
+  const auto effectOnly = [&](const MusculoskeletalProblem& data, const Verdict& of) {
     result.addsEffect = true;
     if (of.effects.empty()) return;
-    result.effectOnly = addEffects(request.model, request.arm, request.coordinate,
-                                   effectsToAdd(data, of), request.provenance, formula);
+    result.effectOnly = addEffects(data.encompassing(), effectsToAdd(data, of), request.provenance);
   };
   if (verdict.finding == Finding::unknown && verdict.formula && verdict.formula->wins) {
     const info::discover::RacedFormula& formula = *verdict.formula;
     const auto& data = dynamic_cast<const MusculoskeletalProblem&>(*formula.data);
     repaired(data, *formula.verdict);
-    effectOnly(data, *formula.verdict, formula.terms);
+    effectOnly(data, *formula.verdict);
   } else if (mayBeAdded(verdict)) {
     repaired(*result.data, verdict);
-    effectOnly(*result.data, verdict, {});
+    effectOnly(*result.data, verdict);
   } else if (verdict.reached == Stage::finished && verdict.finding == Finding::none) {
     repaired(*result.data, verdict);
   } else {

@@ -29,11 +29,13 @@ __all__ = [
     "discover",
     "estimate",
     "fisher_information",
+    "fit_paths",
     "identifiability",
     "list_parameters",
     "load_model",
     "load_trial",
     "make_trial",
+    "moment_arms",
     "replay",
     "sensitivity",
 ]
@@ -76,6 +78,45 @@ class Model:
         ------
         ValueError
             If the file cannot be written, or a muscle is not a Schutte muscle.
+        """
+
+    def with_muscles(self, muscle_class: str) -> Model:
+        """The model with all muscles of one class, as --convert-muscles makes it.
+
+        Parameters
+        ----------
+        muscle_class : str
+            'Thelen2003', 'Millard2012', 'DeGrooteFregly2016', 'Schutte1993', 'RigidTendon' (Millard2012
+            with a rigid tendon) or 'RigidTendonMuscle'.
+
+        Returns
+        -------
+        Model
+            Numbers that the class does not have are named in its warnings.
+
+        Raises
+        ------
+        ValueError
+            For another class, or a muscle whose numbers break a rule of it.
+        """
+
+    def with_external_loads(self, file: str) -> Model:
+        """The model with forces and torques on bodies, which replay simulates.
+
+        Parameters
+        ----------
+        file : str
+            OpenSim's ExternalLoads (.xml); its datafile must cover the trials. They are not written
+            into a model file.
+
+        Returns
+        -------
+        Model
+
+        Raises
+        ------
+        ValueError
+            If the file cannot be read or breaks a rule; the line names file and line.
         """
 
 class Trial:
@@ -147,6 +188,7 @@ def load_trial(
     ignore_extra: bool = False,
     prescribe: Sequence[str] = [],
     hold: dict[str, float] = {},
+    prescribe_cutoff: float | None = None,
 ) -> Trial:
     """Reads a trial of the model (.sto, .mot or .csv).
 
@@ -164,6 +206,9 @@ def load_trial(
         they are named free or locked.
     hold : dict
         {coordinate: value [rad] or [m]} at which a device holds it, so that its moment is known.
+    prescribe_cutoff : float, optional
+        Smooth the prescribed motions, so that a sine of this frequency [Hz] > 0 is halved. Default:
+        not smoothed.
 
     Returns
     -------
@@ -185,6 +230,7 @@ def make_trial(
     known_arm_turn: float = 0.0,
     prescribe: Sequence[str] = [],
     hold: dict[str, float] = {},
+    prescribe_cutoff: float | None = None,
 ) -> Trial:
     """Makes a trial from arrays.
 
@@ -206,7 +252,7 @@ def make_trial(
     known_arm_turn : float
         Angle by which the whole limb was turned against the ground [rad], positive as the coordinate
         rises.
-    prescribe, hold
+    prescribe, hold, prescribe_cutoff
         As in load_trial.
 
     Returns
@@ -316,6 +362,119 @@ def replay(
         For an unknown coordinate or integrator, or a step that is not > 0 or longer than the trial.
     RuntimeError
         If a muscle has no static equilibrium at the start.
+    """
+
+# Paths --------------------------------------------------------------------------------------------
+
+@type_check_only
+class MomentArmsResult:
+    muscles: list[str]
+    length: _Array
+    moment_arm: dict[str, _Array]
+    touched: dict[str, list[list[str]]]
+    notes: list[str]
+    warnings: list[str]
+
+def moment_arms(
+    model: Model,
+    postures: dict[str, ArrayLike],
+    *,
+    lock: dict[str, float] = {},
+    wrap_as_cylinder: Sequence[str] = [],
+) -> MomentArmsResult:
+    """Lengths and moment arms of muscles in given postures.
+
+    Parameters
+    ----------
+    model : Model
+    postures : dict
+        {coordinate: values [rad] or [m]}, one for each posture, all of one length. Other coordinates
+        are at their default values.
+    lock : dict
+        {coordinate: value [rad] or [m]} at which other coordinates are instead.
+    wrap_as_cylinder : list of str
+        Wrap ellipsoids with two equal semi-axes to be treated as cylinders.
+
+    Returns
+    -------
+    muscles : list of str
+        Names of the columns: all enabled muscles whose paths can be computed, of any class.
+    length : array, postures x muscles
+        Muscle-tendon lengths [m]; NaN where a path cannot be computed.
+    moment_arm : dict
+        {coordinate: array, postures x muscles}: r = -dL/dq [m], positive where the muscle's force tends
+        to increase the coordinate.
+    touched : dict
+        {muscle: for each posture the wrap objects that its path touches}.
+    notes, warnings : list of str
+        About the paths; muscles or postures that cannot be computed.
+
+    Raises
+    ------
+    ValueError
+        For an unknown coordinate, columns of different lengths, or values that are not finite.
+    """
+
+@type_check_only
+class PathFit:
+    written: bool
+    why_not: str
+    coordinates: list[str]
+    order: int | None
+    length_error: float | None
+    moment_arm_error: float | None
+
+@type_check_only
+class PathFitResult:
+    model: Model
+    fits: dict[str, PathFit]
+
+def fit_paths(
+    model: Model,
+    *,
+    muscles: Sequence[str] = [],
+    tolerance: float = 0.0001,
+    order: int = 9,
+    coordinate: str | Sequence[str] = [],
+    lock: dict[str, float] = {},
+    wrap_as_cylinder: Sequence[str] = [],
+) -> PathFitResult:
+    """Polynomials of the coordinates in place of paths (OpenSim's FunctionBasedPath).
+
+    Parameters
+    ----------
+    model : Model
+    muscles : list of str
+        Default: all that are enabled and moved by the free coordinates.
+    tolerance : float
+        Largest error of a length [m] > 0; a muscle that exceeds it keeps its points.
+    order : int
+        Highest order tried, 1 to 9.
+    coordinate, lock
+        As in replay; fitted over the ranges of the free coordinates.
+    wrap_as_cylinder
+        As in moment_arms.
+
+    Returns
+    -------
+    model : Model
+        With the polynomials that are within the tolerance.
+    fits : dict
+        {muscle: fit}, each with
+
+        written : bool
+        why_not : str
+            Why the muscle keeps its points, else empty.
+        coordinates : list of str
+            Of the polynomial.
+        order : int or None
+        length_error, moment_arm_error : float or None
+            Largest errors over all postures [m].
+
+    Raises
+    ------
+    ValueError
+        For an unknown muscle or coordinate, a tolerance that is not > 0, or another order.
     """
 
 # Parameters and their information -----------------------------------------------------------------
@@ -544,6 +703,8 @@ class ParameterEstimate:
     identifiable: bool
     at_bound: bool
     why: str
+    profile: tuple[float, float] | None
+    bootstrap: tuple[float, float] | None
 
 @type_check_only
 class OtherMinimum:
@@ -575,6 +736,7 @@ def calibrate(
     *,
     hold_out: Sequence[Trial] = [],
     noise: float | None = None,
+    channel_noise: dict[str, float] = {},
     priors: bool = True,
     prior: dict[str, tuple[float, float]] = {},
     bounds: dict[str, tuple[float, float]] = {},
@@ -584,6 +746,8 @@ def calibrate(
     starts: int = 1,
     seed: int = 1,
     threads: int = 1,
+    profile: Sequence[str] = [],
+    bootstrap: int = 0,
     coordinate: str | Sequence[str] = [],
     lock: dict[str, float] = {},
     integrator: _Integrator = "vi",
@@ -602,6 +766,8 @@ def calibrate(
         Trials used only to test the estimates.
     noise : float, optional
         Standard deviation of the measured angles [rad] > 0. Default: estimated from the residuals.
+    channel_noise : dict
+        {column: the same of another measured channel, in its unit}, e.g. 'elbow_flexion.moment'.
     priors : bool
         False: estimate without priors; bounds still apply.
     prior : dict
@@ -623,6 +789,10 @@ def calibrate(
         Seed of the other starts.
     threads : int
         Number of trials simulated at once.
+    profile : list of str
+        Parameters whose profile likelihood is computed.
+    bootstrap : int
+        Number of residual-bootstrap replicates, 0 or at least 20.
     coordinate, lock, integrator, step
         As in replay, but the integrator must be 'vi' or 'vi-left'. Without a step it is 0.01 s, and
         half as long, down to 0.00125 s, as long as halving it changes angles by more than 0.2
@@ -643,6 +813,9 @@ def calibrate(
         at_bound : bool
         why : str
             Why there is no interval, else empty.
+        profile, bootstrap : tuple of float, or None
+            The 95 % interval of the profile likelihood (infinite on a side where it stays below the
+            threshold), and of the bootstrap [unit]; None if it was not asked for or there is none.
     correlation : array, estimates x estimates
     other_minima : list
         Minima that other starts found and that are at least 1 % as likely, or that the data alone
@@ -801,6 +974,7 @@ def discover(
     noise: float | None = None,
     without: Sequence[str] = [],
     max_effects: int = 3,
+    input_scatter: float | None = None,
     coordinate: str | Sequence[str] = [],
     lock: dict[str, float] = {},
     integrator: _Integrator = "vi",
@@ -822,6 +996,9 @@ def discover(
         Ids of effects to exclude from the catalogue.
     max_effects : int
         Largest number of effects in one hypothesis.
+    input_scatter : float, optional
+        Noise of the EMG that is tolerated, as a fraction of each muscle's moment, >= 0; a larger residual
+        counts as a missing effect. Default: 0.075.
     coordinate : str
         The one free coordinate, which is the measured one.
     lock : dict

@@ -8,84 +8,17 @@
 #include <stdexcept>
 #include <vector>
 
+#include "libbio/muscle/elbow_muscles.h"
 #include "support/elbow_curves.h"
 #include "support/finite_difference.h"
 
 namespace bio {
 namespace {
 
-const std::vector<SchutteParameters>& elbowMuscles() {
-  static const std::vector<SchutteParameters> muscles = {
-      support::elbowMuscle(771.8, 0.134, 0.143, 0.20943951),
-      support::elbowMuscle(717.5, 0.1138, 0.098, 0.15707963),
-      support::elbowMuscle(717.5, 0.1138, 0.0908, 0.15707963),
-      support::elbowMuscle(283.2, 0.027, 0.018, 0),
-      support::elbowMuscle(525.1, 0.1157, 0.2723, 0),
-      support::elbowMuscle(316.8, 0.1321, 0.1923, 0),
-      support::elbowMuscle(1177.37, 0.0858, 0.0535, 0),
-      support::elbowMuscle(276, 0.1726, 0.133, 0)};
-  return muscles;
-}
-
-struct State {
-  double activation, fibreLength, muscleTendonLength;
-};
-
-// A state in the working range, off the kinks by chance.
-State randomState(std::mt19937& random, const SchutteParameters& p, double maxStrain = 0.05) {
-  std::uniform_real_distribution<double> unit(0, 1);
-  const double activation = 0.01 + 0.98 * unit(random);
-  const double fibre = p.optimalFibreLength * (0.5 + unit(random));
-  const double thickness = p.optimalFibreLength * std::sin(p.pennation);
-  const double strain = -0.01 + (maxStrain + 0.01) * unit(random);
-  const double length =
-      std::sqrt(fibre * fibre - thickness * thickness) + p.tendonSlackLength * (1 + strain);
-  return {activation, fibre, length};
-}
-
-struct Compiled {
-  SchutteCurves curves;
-  SchutteMuscle<double> muscle;
-  explicit Compiled(const SchutteParameters& p, SchutteOptions options = {})
-      : curves(p), muscle(schutteQuantities(p), curves, options) {}
-};
-
-TEST(ForceVelocity, HasItsKnownValues) {
-  EXPECT_EQ(schutte::forceVelocity(-1.5), 0);
-  EXPECT_EQ(schutte::forceVelocity(-1.0), 0);
-  EXPECT_EQ(schutte::forceVelocity(0.0), 1);
-  EXPECT_NEAR(schutte::forceVelocity(-0.5), 0.15 * 0.5 / 0.65, 1e-15);
-  EXPECT_NEAR(schutte::forceVelocity(1e12), 1.4, 1e-10);
-  EXPECT_NEAR(schutte::forceVelocity(1e-9), 1, 1e-7);
-  // slopes on both sides of the kink: (1+k_v)/k_v and 0.4/σ
-  EXPECT_NEAR((1 - schutte::forceVelocity(-1e-7)) / 1e-7, 1.15 / 0.15, 1e-4);
-  EXPECT_NEAR((schutte::forceVelocity(1e-7) - 1) / 1e-7, 0.4 * 1.15 / (0.13 * 0.15), 1e-3);
-}
-
-TEST(ForceVelocity, InverseGivesTheForceBack) {
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> unit(0, 1);
-  for (int i = 0; i < 20000; ++i) {
-    const double A = i % 10 == 0 ? 0 : std::pow(10.0, -6 + 6 * unit(random));
-    const double B = std::pow(10.0, -4 + 4 * unit(random));
-    const double P = -2 * B + 3 * unit(random);
-    const double v = schutte::velocityFromForce(P, A, B);
-    const double force = A * schutte::forceVelocity(v) + B * v;
-    EXPECT_NEAR(force, P, 1e-12 * (1 + std::abs(P))) << A << ' ' << B << ' ' << v;
-  }
-}
-
-// Just beside v = 0 the textbook root loses all digits; the stable one keeps them.
-TEST(ForceVelocity, InverseHasNoCancellationNearIsometric) {
-  const double A = 0.8, B = 0.017;
-  for (const double step : {1e-6, 1e-9, 1e-12}) {
-    const double P = A - step;
-    const double exactStep = A - P;  // what the double holds
-    const double expected = -exactStep / (A * 1.15 / 0.15 + B);
-    EXPECT_NEAR(schutte::velocityFromForce(P, A, B) / expected, 1, 10 * step + 1e-14);
-  }
-  EXPECT_EQ(schutte::velocityFromForce(A, A, B), 0);
-}
+using elbow_muscles::Compiled;
+using elbow_muscles::elbowMuscles;
+using elbow_muscles::randomState;
+using elbow_muscles::State;
 
 TEST(SchutteMuscle, VelocityAndResidualAreInverses) {
   std::mt19937 random(2);
@@ -337,39 +270,6 @@ TEST(SchutteMuscle, ParameterDerivativesAgreeWithDifferences) {
     EXPECT_NEAR(dual.fibreVelocity.derivatives()[k], dV, 1e-6 * (1 + std::abs(dV))) << i;
     EXPECT_NEAR(dual.tendonForce.derivatives()[k], dF, 1e-6 * (1 + std::abs(dF))) << i;
   }
-}
-
-// What goes into the muscle is stored, lost or made by the contractile element.
-TEST(MuscleForces, PowersBalanceWhereTheMuscleDoes) {
-  std::mt19937 random(5);
-  for (const SchutteParameters& p : elbowMuscles()) {
-    const Compiled c(p, {.clampForce = false});
-    for (int i = 0; i < 100; ++i) {
-      const State s = randomState(random, p);
-      const double v =
-          c.muscle.fibreVelocity(s.activation, s.fibreLength, s.muscleTendonLength).fibreVelocity;
-      const MuscleForces f =
-          muscleForces(c.muscle, s.activation, s.fibreLength, s.muscleTendonLength, v, 0.3);
-      const double sum = f.activePower + f.passivePower + f.dampingPower + f.tendonPower;
-      EXPECT_NEAR(sum, f.muscleTendonPower,
-                  1e-10 * (1 + std::abs(f.activePower)) * p.maxIsometricForce);
-      EXPECT_GE(f.dampingPower, 0);
-      EXPECT_NEAR((f.activeForce + f.passiveForce + f.dampingForce) * std::cos(f.pennation),
-                  f.tendonForce, 1e-11 * p.maxIsometricForce);
-    }
-  }
-}
-
-TEST(MuscleForces, TendonPowerIsTheRateOfStoredEnergy) {
-  const Compiled c(support::tricepsLongHead());
-  const double v = -0.2, vMT = 0.1;
-  const MuscleForces f = muscleForces(c.muscle, 0.3, 0.13, 0.278, v, vMT);
-  const auto strain = [&](double t) {
-    return c.muscle.tendonStrain(0.13 + v * t, 0.278 + vMT * t);
-  };
-  const double rate = support::centralDifference(strain, 0, 1e-5) * 0.143;
-  EXPECT_NEAR(f.tendonPower, f.tendonForce * rate, 1e-6);  // of 454 W
-  EXPECT_NEAR(f.tendonStrain, strain(0), 1e-16);
 }
 
 TEST(StaticEquilibrium, FibreRestsThere) {

@@ -3,21 +3,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "info/discovery/judgement/expected_error.h"
-#include "info/discovery/judgement/output_sd.h"
-#include "info/discovery/likelihood/joint_fit.h"
-#include "info/discovery/likelihood/truncated.h"
-#include "support/linear_problem.h"
+#include "libinfo/discovery/drawn_problem.h"
 
 namespace {
 
-using namespace info::discover;
+using namespace drawn_problem;
 using Eigen::Index;
 using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
-const FitOptions kExact{30, 1e-10};
-constexpr double kOutput = 0.02, kLatent = 0.7, kTime = 0.11;
 
 struct Filtered {
   double logLikelihood = 0;
@@ -63,15 +55,6 @@ Filtered kalman(const LinearDisagreement& data, double pushDeviation) {
     if (t == 0) result.innovations = white;
   }
   return result;
-}
-
-LinearDisagreement drawn(int trials, int samples, double push, std::uint64_t seed = 3) {
-  LinearDisagreement data(trials, samples);
-  VectorXd truth = nominalValues(data);
-  truth[0] = 1.15;
-  truth[1] = push;
-  data.draw(seed, truth, kOutput, kLatent, kTime);
-  return data;
 }
 
 TEST(JointFit, HasTheEvidenceOfAKalmanFilter) {
@@ -381,65 +364,6 @@ TEST_P(Derivatives, AFitStaysWhereTheyAreNumbers) {
     EXPECT_LE(fit.values[0], 1.1);
     EXPECT_TRUE(likelihood.marginal(fit).values.allFinite());
   }
-}
-
-TEST(ExpectedError, IsWhatNewTrialsHaveOnAverage) {
-  constexpr double kLoud = 0.1;
-  for (const double latent : {0.0, kLatent}) {
-    const Noise noise{kLoud, latent, kTime}, still{kLoud, 0, kTime};
-    double expected = 0, found = 0, certain = 0;
-    constexpr int kDraws = 3000;
-    for (int draw = 0; draw < kDraws; ++draw) {
-      LinearDisagreement data(2, 16);
-      info::RandomStream random(91, static_cast<std::uint64_t>(draw));
-      VectorXd truth = nominalValues(data);
-      for (const Index i : {0, 1, 4, 5, 6, 7})
-        truth[i] += data.quantities()[static_cast<std::size_t>(i)].sd * random.normal();
-      data.draw(1000 + static_cast<std::uint64_t>(draw), truth, kLoud, latent, kTime);
-      const Likelihood seen(data, {0}, nominalValues(data), kTime);
-      const Likelihood held(data, {1}, nominalValues(data), kTime);
-      Fit fit = seen.fit(makeHypothesis(data, {0}, {0}), noise, nominalValues(data), {}, kExact);
-      const Fit starts = held.fit(startsOnly(data, {1}), still, fit.values, {}, kExact);
-      expected += std::pow(expectedError(held, starts, fit).rms, 2);
-      found += std::pow(held.simulationError(starts.values), 2);
-      fit.covariance.setZero();
-      certain += std::pow(expectedError(held, starts, fit).rms, 2);
-    }
-    EXPECT_GT(expected / certain, 1.02) << latent;
-    EXPECT_NEAR(found / expected, 1, 0.012) << latent;
-  }
-}
-
-TEST(ExpectedError, NeedsTheStartsOfTheTrialsThatWereHeldOut) {
-  const LinearDisagreement data = drawn(2, 25, 0.4);
-  const Likelihood both(data, {0, 1}, nominalValues(data)), held(data, {1}, nominalValues(data));
-  const Fit fit =
-      both.fit(makeHypothesis(data, {0}, {0, 1}), {kOutput, 0, kTime}, nominalValues(data));
-  EXPECT_THROW(expectedError(held, fit, fit), std::invalid_argument);
-}
-
-TEST(OutputSd, ComesFromThirdDifferences) {
-  LinearDisagreement data(2, 400);
-  VectorXd truth = nominalValues(data);
-  truth[4] = 0.5;
-  data.draw(5, truth, 0.05, 0, kTime);
-  const OutputSd found = estimateOutputSd(data, {0, 1});
-  // the relative error of σ is half of that of σ²
-  EXPECT_NEAR(found.value / 0.05, 1, 3 * 0.5 * found.relativeError);
-  EXPECT_LT(found.relativeError, 0.08);
-}
-
-TEST(Truncated, MassesAgreeWithQuadrature) {
-  EXPECT_NEAR(logNormalWithin(-1, 2), std::log(0.818594614120364), 1e-12);
-  EXPECT_NEAR(logNormalWithin(30, 31), -454.321243956343, 1e-9);
-  EXPECT_EQ(logNormalWithin(1, -1), -HUGE_VAL);
-  EXPECT_EQ(logNormalWithin(HUGE_VAL, -HUGE_VAL), -HUGE_VAL);
-  double sum = 0;
-  for (int i = 0; i < 200000; ++i) {
-    const double x = (i + 0.5) * 1e-5;
-    sum += 1e-5 * std::exp(-3 * x - 0.5 * 4 * x * x);
-  }
-  EXPECT_NEAR(logMassAtBound(3, 4, 2), std::log(sum / std::sqrt(2 * std::numbers::pi)), 1e-8);
 }
 
 TEST(Hypothesis, RefusesWhatBreaksARule) {

@@ -9,7 +9,9 @@
 
 namespace reduced {
 
-constexpr int kMuscles = 4;  ///< biceps, brachialis, brachioradialis, triceps
+constexpr int kMuscles = 4;     ///< biceps, brachialis, brachioradialis, triceps
+constexpr double kTick = 0.01;  ///< between samples [s]
+constexpr double kNode = 0.05;  ///< between nodes of the latent force [s]
 
 /// One recording: excitations and elbow angle at 100 Hz.
 struct Trial {
@@ -19,6 +21,8 @@ struct Trial {
   Eigen::VectorXd angles;     ///< measured [rad], every 0.01 s from firstSample on
   double startAngle = 0, startSpeed = 0;  ///< what is believed of t = 0 [rad], [rad/s]
 };
+
+struct Motion;
 
 /// A reduced elbow: one hinge, gravity, four muscles with rigid tendons whose excitations are
 /// given.
@@ -59,12 +63,10 @@ class Elbow final : public info::discover::DiscoveryProblem {
       const std::vector<std::size_t>& kept) const override;
 
  private:
-  struct Solution;
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
   template <bool derivatives>
-  Solution solve(int trial, double step, const Eigen::VectorXd& values,
-                 const Eigen::VectorXd& latent, const std::vector<std::size_t>& wanted,
-                 bool latentToo) const;
+  Motion solve(int trial, double step, const Eigen::VectorXd& values, const Eigen::VectorXd& latent,
+               const std::vector<std::size_t>& wanted, bool latentToo) const;
 
   std::vector<Trial> trials_;
   double step_;

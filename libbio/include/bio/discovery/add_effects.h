@@ -56,6 +56,9 @@ std::string effectCredits(const EncompassingModel& encompassing,
 ///    visc.viscosity 0.301 ± 0.004 N m s/rad, evidence 412 nats, probability 0.999"
 /// @throws std::invalid_argument what EncompassingModel throws; an id that is not in the
 ///   catalogue of this model, or present in it already; a wrong number of values
+Augmented addEffects(const EncompassingModel& encompassing, const std::vector<EffectToAdd>& effects,
+                     const EffectProvenance& provenance);
+/// The same where the model with every effect, and with `formula`, is not there yet.
 Augmented addEffects(const Model& model, const SystemOptions& arm, const std::string& coordinate,
                      const std::vector<EffectToAdd>& effects, const EffectProvenance& provenance,
                      const std::vector<info::discover::FormulaTerm>& formula = {});

@@ -53,12 +53,12 @@ struct DiscoveryResult {
 
 /// Searches for effects that a model lacks, repairs the model and replays every trial with it.
 ///
-/// The search is info::discover::runAtShorterSteps on a MusculoskeletalProblem. If it ends with an
+/// The search is info::discover::searchTrials on a MusculoskeletalProblem. If it ends with an
 /// unknown effect and the model fails at a position at once (positionBreak), it is repeated with
 /// what of the trials comes before it; a name found there has no probability. repairedModel gives
 /// the model, whose errors replace those of the fit in the verdict (takeReplays). A search that was
 /// stopped has neither model nor experiments.
-/// @throws what MusculoskeletalProblem, runAtShorterSteps and repairedModel throw
+/// @throws what MusculoskeletalProblem, searchTrials and repairedModel throw
 DiscoveryResult discover(const DiscoveryRequest& request);
 
 }  // namespace bio::discover

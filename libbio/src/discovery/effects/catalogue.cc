@@ -12,6 +12,36 @@ namespace bio::discover {
 using Eigen::Index;
 using info::discover::Candidate;
 
+// One line here and one below for each effect, or small family of them, of a file in this folder.
+void addViscousDamping(EncompassingModel& model);
+void addCoulombFriction(EncompassingModel& model);
+void addStribeckFriction(EncompassingModel& model);
+void addQuadraticDrag(EncompassingModel& model);
+void addPowerDamping(EncompassingModel& model);
+void addStiffness(EncompassingModel& model);
+void addLimits(EncompassingModel& model);
+void addExponentialLimits(EncompassingModel& model);
+void addPayload(EncompassingModel& model);
+void addTilt(EncompassingModel& model);
+void addConstantTorque(EncompassingModel& model);
+void addElasticBand(EncompassingModel& model);
+void addTimedForces(EncompassingModel& model);
+void addMissingMuscles(EncompassingModel& model);
+void addDelay(EncompassingModel& model);
+void addShape(EncompassingModel& model);
+void addFatigue(EncompassingModel& model);
+void addCrosstalk(EncompassingModel& model);
+void addExchangedChannels(EncompassingModel& model);
+void addSaturation(EncompassingModel& model);
+void addElectrodeGains(EncompassingModel& model);
+void addBaselines(EncompassingModel& model);
+void addMassError(EncompassingModel& model);
+void addActivationError(EncompassingModel& model);
+void addMuscleErrors(EncompassingModel& model);
+void addTendonCompliance(EncompassingModel& model);
+void addWrapErrors(EncompassingModel& model);
+void addSensorErrors(EncompassingModel& model);
+
 const std::vector<EffectEntry>& effectEntries() {
   static const std::vector<EffectEntry> entries = {
       {"visc", addViscousDamping},

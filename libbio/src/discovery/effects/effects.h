@@ -1,6 +1,6 @@
 #pragma once
 
-// The effects, one function each; not public.
+// What the files of effects share; not public. The effects themselves are listed in catalogue.cc.
 
 #include <optional>
 
@@ -11,35 +11,8 @@ namespace bio::discover {
 /// `known.mass` [kg] and `known.turn` [rad], which trials are known to have, where the model can
 /// have them; no candidates. Before all others.
 void addExperimentalConditions(EncompassingModel& model);
-void addViscousDamping(EncompassingModel& model);
-void addCoulombFriction(EncompassingModel& model);
-void addStribeckFriction(EncompassingModel& model);
-void addQuadraticDrag(EncompassingModel& model);
-void addPowerDamping(EncompassingModel& model);
-void addStiffness(EncompassingModel& model);
-void addLimits(EncompassingModel& model);
-void addExponentialLimits(EncompassingModel& model);
-void addPayload(EncompassingModel& model);
-void addTilt(EncompassingModel& model);
-void addConstantTorque(EncompassingModel& model);
+/// An entry of the catalogue that experimental conditions need, too.
 void addHandForce(EncompassingModel& model);
-void addElasticBand(EncompassingModel& model);
-void addTimedForces(EncompassingModel& model);
-void addMissingMuscles(EncompassingModel& model);
-void addDelay(EncompassingModel& model);
-void addShape(EncompassingModel& model);
-void addFatigue(EncompassingModel& model);
-void addCrosstalk(EncompassingModel& model);
-void addExchangedChannels(EncompassingModel& model);
-void addSaturation(EncompassingModel& model);
-void addElectrodeGains(EncompassingModel& model);
-void addBaselines(EncompassingModel& model);
-void addMassError(EncompassingModel& model);
-void addActivationError(EncompassingModel& model);
-void addMuscleErrors(EncompassingModel& model);
-void addTendonCompliance(EncompassingModel& model);
-void addWrapErrors(EncompassingModel& model);
-void addSensorErrors(EncompassingModel& model);
 
 /// A quantity that is 0 while its effect is absent.
 inline info::discover::Quantity amplitude(std::string name, std::string unit, double lower,

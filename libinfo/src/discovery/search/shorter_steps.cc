@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <ctime>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -100,6 +101,20 @@ SteppedVerdict runAtShorterSteps(const MakeAttempt& attempt, double step, double
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   found.processorSeconds = threadSeconds() - used;
   return found;
+}
+
+SteppedVerdict searchTrials(const TrialSearch& search,
+                            const std::function<const DiscoveryProblem&(double step)>& problemAt) {
+  Options options = search.options;
+  options.heldOut.clear();
+  for (std::size_t i = search.numTrials - search.numHeldOut; i < search.numTrials; ++i)
+    options.heldOut.push_back(static_cast<int>(i));
+  return runAtShorterSteps(
+      [&](double step) {
+        return Attempt{problemAt(step), options};
+      },
+      search.step.value_or(search.firstStep),
+      search.step ? std::numeric_limits<double>::infinity() : search.shortest);
 }
 
 }  // namespace info::discover

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "info/discovery/discover.h"
 
@@ -43,5 +44,18 @@ std::function<bool(const Progress&)> progressOfAnother(
 /// @throws what attempt and run() throw
 SteppedVerdict runAtShorterSteps(const std::function<Attempt(double step)>& attempt, double step,
                                  double shortest);
+
+/// A search over trials of which the last are held out.
+struct TrialSearch {
+  std::size_t numTrials = 0, numHeldOut = 0;
+  std::optional<double> step;          ///< [s] the only one; empty: `firstStep`, halved if need be
+  double firstStep = 0, shortest = 0;  ///< [s]
+  Options options;                     ///< heldOut is set by searchTrials()
+};
+
+/// Search, held-out test, second look and verdict, for any kind of system: runAtShorterSteps.
+/// @param problemAt  the system with all trials at a step [s]; as `attempt` there
+SteppedVerdict searchTrials(const TrialSearch& search,
+                            const std::function<const DiscoveryProblem&(double step)>& problemAt);
 
 }  // namespace info::discover

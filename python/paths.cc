@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "arms.h"
+#include "bio/analysis/fit_paths.h"
+#include "docstrings.h"
+#include "interruptible.h"
+
+namespace python {
+namespace {
+
+/// Columns [rad] or [m] by coordinate, of one length.
+bio::PostureTable posturesOf(const bio::Model& model,
+                             const std::map<std::string, Eigen::VectorXd>& columns) {
+  if (columns.empty()) throw std::invalid_argument("postures: no coordinate is given");
+  bio::PostureTable table;
+  const Eigen::Index rows = columns.begin()->second.size();
+  table.values.resize(rows, static_cast<Eigen::Index>(columns.size()));
+  for (const auto& [name, values] : columns) {
+    bio::findCoordinate(model, name);
+    if (values.size() != rows || rows == 0 || !values.allFinite()) {
+      throw std::invalid_argument(
+          fmt::format("postures: '{}' has {} values, must have as many finite ones as '{}', {}",
+                      name, values.size(), columns.begin()->first, rows));
+    }
+    table.values.col(static_cast<Eigen::Index>(table.coordinates.size())) = values;
+    table.coordinates.push_back(name);
+  }
+  return table;
+}
+
+py::object momentArms(const bio::Model& model,
+                      const std::map<std::string, Eigen::VectorXd>& postures,
+                      const std::map<std::string, double>& lock,
+                      const std::vector<std::string>& wrapAsCylinder) {
+  const bio::PostureTable table = posturesOf(model, postures);
+  bio::PathPostures paths;
+  interruptible(
+      [&](const std::atomic<bool>&) { paths = bio::pathsAt(model, table, lock, wrapAsCylinder); });
+  py::dict arms;
+  for (std::size_t c = 0; c < paths.coordinates.size(); ++c) {
+    Eigen::MatrixXd ofCoordinate(paths.length.rows(), paths.length.cols());
+    for (std::size_t m = 0; m < paths.muscles.size(); ++m) {
+      ofCoordinate.col(static_cast<Eigen::Index>(m)) =
+          -paths.slope[m].col(static_cast<Eigen::Index>(c));
+    }
+    arms[paths.coordinates[c].c_str()] = ofCoordinate;
+  }
+  py::dict touched;
+  for (std::size_t m = 0; m < paths.muscles.size(); ++m) {
+    touched[paths.muscles[m].c_str()] = paths.touched[m];
+  }
+  return results("muscles"_a = paths.muscles, "length"_a = paths.length, "moment_arm"_a = arms,
+                 "touched"_a = touched, "notes"_a = paths.notes, "warnings"_a = paths.warnings);
+}
+
+py::object fitOf(const bio::MuscleFit& one) {
+  std::vector<std::string> coordinates;
+  py::object order = py::none(), error = py::none(), armError = py::none();
+  if (one.fit) {
+    coordinates = one.fit->function.coordinates;
+    order = py::cast(std::get<bio::MultivariatePolynomial>(one.fit->function.length).order);
+    error = py::cast(one.fit->length.largest);
+    armError = py::cast(one.fit->arm.largest);
+  }
+  return results("written"_a = one.whyNot.empty(), "why_not"_a = one.whyNot,
+                 "coordinates"_a = coordinates, "order"_a = order, "length_error"_a = error,
+                 "moment_arm_error"_a = armError);
+}
+
+py::object fitPaths(const bio::Model& model, const std::vector<std::string>& muscles,
+                    double tolerance, int order, const Names& coordinate,
+                    const std::map<std::string, double>& lock,
+                    const std::vector<std::string>& wrapAsCylinder) {
+  const SystemChoice choice = armChoice(model, {}, coordinate, lock, "vi", {});
+  std::vector<bio::MuscleFit> fits;
+  interruptible([&](const std::atomic<bool>&) {
+    fits = bio::fitPaths(model, choice.armOptions().skeleton, wrapAsCylinder, muscles,
+                         {tolerance, order});
+  });
+  if (fits.empty()) {
+    throw std::invalid_argument(
+        fmt::format("no muscle is moved by '{}'",
+                    choice.coordinates.empty() ? std::string() : choice.coordinates[0]));
+  }
+  py::dict all;
+  for (const bio::MuscleFit& one : fits) all[one.muscle.c_str()] = fitOf(one);
+  return results("model"_a = bio::withFittedPaths(model, fits), "fits"_a = all);
+}
+
+}  // namespace
+
+void definePaths(py::module_& module) {
+  module.def("moment_arms", &momentArms, "model"_a, "postures"_a, py::kw_only(),
+             "lock"_a = std::map<std::string, double>(),
+             "wrap_as_cylinder"_a = std::vector<std::string>(), docstrings::moment_arms);
+  module.def("fit_paths", &fitPaths, "model"_a, py::kw_only(),
+             "muscles"_a = std::vector<std::string>(), "tolerance"_a = 1e-4, "order"_a = 9,
+             "coordinate"_a = std::vector<std::string>(),
+             "lock"_a = std::map<std::string, double>(),
+             "wrap_as_cylinder"_a = std::vector<std::string>(), docstrings::fit_paths);
+}
+
+}  // namespace python

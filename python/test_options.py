@@ -1,0 +1,137 @@
+"""Options that the program has as well; test_fisherhill.py runs these, too."""
+
+import os
+import tempfile
+import unittest
+
+import numpy as np
+
+import fisherhill as fh
+
+import stub
+
+ELBOW = "models/elbow8.osim"
+SLOW = "emg_data/curl_slow.sto"
+
+LOADS = """<?xml version="1.0"?>
+<OpenSimDocument Version="40000">
+<ExternalLoads name="loads"><objects>
+<ExternalForce name="cuff"><applied_to_body>ulna</applied_to_body><force_expressed_in_body>humerus</force_expressed_in_body>
+<torque_identifier>m_</torque_identifier></ExternalForce>
+</objects><datafile>cuff.sto</datafile></ExternalLoads></OpenSimDocument>
+"""
+AXIS = np.array([0.04940001, 0.03660001, 0.99810825])  # of the elbow, which the humerus holds
+
+
+class Options(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.model = fh.load_model(ELBOW)
+        cls.trial = fh.load_trial(SLOW, cls.model)
+
+    def test_moment_arms_are_the_slopes_of_lengths(self):
+        angles = np.linspace(0.3, 2.0, 12)
+        h = 1e-4
+        at, below, above = (fh.moment_arms(self.model, {"elbow_flexion": angles + d}) for d in (0, -h, h))
+        stub.check(at, "MomentArmsResult")
+        self.assertEqual(at.muscles, self.model.muscles)
+        slope = (above.length - below.length) / (2 * h)
+        np.testing.assert_allclose(at.moment_arm["elbow_flexion"], -slope, atol=2e-6)
+        # at a node of replay's motion
+        motion = fh.replay(self.model, self.trial)
+        one = fh.moment_arms(self.model, {"elbow_flexion": motion.q[:1, 0]})
+        np.testing.assert_allclose(one.moment_arm["elbow_flexion"][0], motion.moment_arm[0], atol=1e-9)
+        touching = [len(names) > 0 for names in at.touched["TRIlong"]]
+        self.assertIn(True, touching)
+        turned = fh.moment_arms(self.model, {"elbow_flexion": angles}, lock={"pro_sup": 0.5})
+        self.assertGreater(np.abs(turned.length - at.length).max(), 1e-4)
+        for postures in ({}, {"knee": [0.0]}, {"elbow_flexion": [np.nan]}, {"elbow_flexion": [0.0, 1], "pro_sup": [0.0]}):
+            with self.assertRaises(ValueError):
+                fh.moment_arms(self.model, postures)
+
+    def test_fitted_paths_have_the_lengths_of_the_paths(self):
+        found = fh.fit_paths(self.model, muscles=["BRA", "BIClong"], tolerance=2e-4)
+        stub.check(found, "PathFitResult")
+        angles = {"elbow_flexion": np.linspace(0.1, 2.2, 30)}
+        before, after = fh.moment_arms(self.model, angles), fh.moment_arms(found.model, angles)
+        for muscle in ("BRA", "BIClong"):
+            self.assertTrue(found.fits[muscle].written)
+            self.assertLess(found.fits[muscle].length_error, 2e-4)
+            column = before.muscles.index(muscle)
+            error = np.abs(after.length[:, after.muscles.index(muscle)] - before.length[:, column])
+            self.assertGreater(error.max(), 0)
+            self.assertLess(error.max(), 2e-4)
+        kept = fh.fit_paths(self.model, muscles=["TRIlong"], tolerance=1e-9, order=2)
+        self.assertFalse(kept.fits["TRIlong"].written)
+        self.assertNotEqual(kept.fits["TRIlong"].why_not, "")
+        with self.assertRaises(ValueError):
+            fh.fit_paths(self.model, muscles=["GLUTmax"])
+
+    def test_muscles_of_another_class_move_the_arm_otherwise_and_what_is_lost_is_said(self):
+        other = self.model.with_muscles("Thelen2003")
+        self.assertGreater(len(other.warnings), len(self.model.warnings))
+        change = fh.replay(other, self.trial).q - fh.replay(self.model, self.trial).q
+        self.assertGreater(np.abs(change).max(), 1e-3)
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "thelen.osim")
+            other.write(file)
+            np.testing.assert_array_equal(fh.replay(fh.load_model(file), self.trial).q, fh.replay(other, self.trial).q)
+        with self.assertRaisesRegex(ValueError, "Zajac"):
+            self.model.with_muscles("Zajac")
+
+    def test_an_external_torque_about_the_elbow_is_that_of_its_column(self):
+        def columns(**more):
+            t = np.linspace(0, 0.4, 41)
+            return {"time": t, "BIClong": np.full(41, 0.06), "BRA": np.full(41, 0.05), **more}
+
+        with tempfile.TemporaryDirectory() as folder:
+            loads = os.path.join(folder, "loads.xml")
+            with open(loads, "w", encoding="utf-8") as file:
+                file.write(LOADS)
+            with open(os.path.join(folder, "cuff.sto"), "w", encoding="utf-8") as file:
+                file.write("cuff\nversion=1\nnRows=2\nnColumns=7\ninDegrees=no\nendheader\ntime\tf_x\tf_y\tf_z\tm_x\tm_y\tm_z\n")
+                for t in (0.0, 0.4):
+                    file.write("\t".join(f"{x:.17g}" for x in (t, 0, 0, 0, *(0.4 * AXIS))) + "\n")
+            loaded = self.model.with_external_loads(loads)
+        pushed = fh.replay(loaded, fh.make_trial(self.model, columns())).q
+        torque = fh.replay(self.model, fh.make_trial(self.model, columns(**{"elbow_flexion.torque": np.full(41, 0.4)}))).q
+        free = fh.replay(self.model, fh.make_trial(self.model, columns())).q
+        np.testing.assert_allclose(pushed, torque, atol=1e-6)
+        self.assertGreater(np.abs(pushed - free).max(), 0.01)
+        with self.assertRaises(ValueError):  # the loads end at 0.4 s
+            fh.replay(loaded, self.trial)
+
+    def test_a_prescribed_motion_may_be_smoothed(self):
+        given, smooth = (fh.load_trial(SLOW, self.model, prescribe=["elbow_flexion"], prescribe_cutoff=cutoff)
+                         for cutoff in (None, 3))
+        (_, rough), (_, even) = given.prescribed["elbow_flexion"], smooth.prescribed["elbow_flexion"]
+        self.assertLess(np.abs(np.diff(even, 2)).mean(), 0.5 * np.abs(np.diff(rough, 2)).mean())
+        with self.assertRaises(ValueError):
+            fh.load_trial(SLOW, self.model, prescribe=["elbow_flexion"], prescribe_cutoff=-1)
+
+    def test_calibration_has_profiles_and_replicates_where_they_are_asked_for(self):
+        asked = dict(noise=0.03, step=0.01)
+        plain = fh.calibrate(self.model, [self.trial], ["hand.mass"], **asked)
+        self.assertIsNone(plain.estimates["hand.mass"].profile)
+        self.assertIsNone(plain.estimates["hand.mass"].bootstrap)
+        found = fh.calibrate(self.model, [self.trial], ["hand.mass"], profile=["hand.mass"], bootstrap=20, **asked)
+        stub.check(found, "CalibrationResult")
+        one = found.estimates["hand.mass"]
+        self.assertEqual(one.value, plain.estimates["hand.mass"].value)
+        for low, high in (one.profile, one.bootstrap):
+            self.assertLess(low, one.value)
+            self.assertGreater(high, one.value)
+        # a profile of a nearly linear model is the interval of the information
+        self.assertAlmostEqual((one.profile[1] - one.profile[0]) / (one.upper - one.lower), 1, delta=0.1)
+        for wrong in (dict(bootstrap=3), dict(profile=["TRI.radius"]), dict(channel_noise={"elbow_flexion.moment": 1.0})):
+            with self.assertRaises(ValueError):
+                fh.calibrate(self.model, [self.trial], ["hand.mass"], **wrong)
+
+    def test_discovery_refuses_a_scatter_that_is_none(self):
+        for scatter in (-0.1, float("nan")):
+            with self.assertRaisesRegex(ValueError, "input_scatter"):
+                fh.discover(self.model, [self.trial], input_scatter=scatter)
+
+
+if __name__ == "__main__":
+    unittest.main()
