@@ -79,7 +79,7 @@ class SharedCourse {
     }
     return true;
   }
-  const lanes::ActivationCourse& course() const { return course_; }
+  lanes::ActivationCourse& course() { return course_; }
 
  private:
   const LaneJob* job_;
@@ -92,7 +92,7 @@ class LaneGroup {
   struct Member {
     const LaneJob* job;
     const HingeModel<Single>* arm;
-    const lanes::ActivationCourse* course;
+    lanes::ActivationCourse* course;
     Trajectory* result;
   };
 

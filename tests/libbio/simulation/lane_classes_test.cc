@@ -146,6 +146,32 @@ TEST(LaneClasses, MoveAsEachAloneWould) {
   }
 }
 
+// With few iterations allowed. Where a step just fails alone it may just converge in lanes, whose
+// iterates differ by rounding; then the motions differ by what halving a step changes.
+TEST(LaneClasses, HalveStepsAsEachAloneWould) {
+  int halved = 0, otherwise = 0;
+  for (const Kind& kind : kinds()) {
+    SCOPED_TRACE(kind.name);
+    DrawnOf drawn(kind.model, 0.1, 4, 1);
+    drawn.options.maxIterations = 4;
+    drawn.options.newtonTolerance = 1e-12;
+    const auto together = simulateTogether(drawn.jobs, drawn.options);
+    for (std::size_t i = 0; i < together.size(); ++i) {
+      const Trajectory alone = drawn.alone(i);
+      ASSERT_EQ(together[i].time, alone.time);
+      EXPECT_EQ(together[i].outcome, alone.outcome);
+      if (together[i].wallSeconds == 0) halved += static_cast<int>(alone.halvedSteps);
+      const bool alike = together[i].halvedSteps == alone.halvedSteps;
+      otherwise += alike ? 0 : 1;
+      const double most = alike ? 1e-9 : 1e-4;
+      EXPECT_LT((together[i].q - alone.q).cwiseAbs().maxCoeff(), most);
+      EXPECT_LT((together[i].fibreLength - alone.fibreLength).cwiseAbs().maxCoeff(), most);
+    }
+  }
+  EXPECT_GT(halved, 300);
+  EXPECT_LE(otherwise, 5);
+}
+
 TEST(LaneClasses, DependNeitherOnTheGroupNorOnTheProcessor) {
   for (const Kind& kind : kinds()) {
     SCOPED_TRACE(kind.name);
