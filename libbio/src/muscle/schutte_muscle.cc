@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "bio/muscle/bracketed_root.h"
+#include "muscle/schutte_law.h"
 
 namespace bio {
 namespace {
@@ -17,135 +18,6 @@ void requireRule(bool holds, const char* quantity, double value, const char* uni
     throw std::invalid_argument(
         fmt::format("{} is {} {}, must be {}", quantity, value, unit, rule));
   }
-}
-
-// P and A with their derivatives in act, ℓ and ℓ_MT; κ = 1/cos α.
-struct ForceBalance {
-  double tendon = 0, tendonSlope = 0, tendonCurvature = 0;  // F̂_T over ε
-  double kappa = 1, dKappa = 0, d2Kappa = 0;                // over ℓ
-  double P = 0, dP_dl = 0, dP_dm = 0, d2P_dldl = 0, d2P_dldm = 0, d2P_dmdm = 0;
-  double A = 0, dA_da = 0, dA_dl = 0, d2A_dadl = 0, d2A_dldl = 0;
-};
-
-template <bool second>
-inline ForceBalance forceBalance(const SchutteMuscle<double>& muscle, double activation,
-                                 double fibreLength, double muscleTendonLength,
-                                 SchuttePieces& last) {
-  ForceBalance f;
-  const double perFibre = muscle.perFibre();
-  const double perTendon = muscle.perTendon();
-  const SchutteCurves& curves = muscle.curves();
-
-  // Pennation: d = ℓ cos α = √(ℓ² − w²), κ = ℓ/d.
-  const double w2 = muscle.thickness() * muscle.thickness();
-  double d = std::numeric_limits<double>::quiet_NaN();
-  if (fibreLength > muscle.thickness()) d = std::sqrt(fibreLength * fibreLength - w2);
-  const double perD = 1 / d;
-  f.kappa = fibreLength * perD;
-  f.dKappa = -w2 * perD * perD * perD;
-
-  // Tendon.
-  const double strain = (muscleTendonLength - d) * perTendon - 1;
-  if (!(strain < 0)) {
-    const CurveValue tendon = curves.tendonForce.evaluate(strain, last.tendonForce);
-    f.tendon = tendon.value;
-    f.tendonSlope = tendon.slope;
-    f.tendonCurvature = tendon.curvature;
-  }
-
-  // Fibre.
-  const double l = fibreLength * perFibre;
-  CurveValue passive;
-  if (curves.passiveForce) {
-    passive = curves.passiveForce->evaluate(l, last.passiveForce);
-  } else {
-    const double value = std::exp(8 * l - 12);
-    passive = {value, 8 * value, 64 * value, 512 * value};
-  }
-  const CurveValue active = curves.activeForce.evaluate(l, last.activeForce);
-  const bool floored = activation < muscle.options().activationFloor;
-  const double act = floored ? muscle.options().activationFloor : activation;
-  if (!(active.value < 0)) {
-    f.A = act * active.value;
-    f.dA_da = floored ? 0 : active.value;
-    f.dA_dl = act * active.slope * perFibre;
-    if constexpr (second) {
-      f.d2A_dadl = floored ? 0 : active.slope * perFibre;
-      f.d2A_dldl = act * active.curvature * perFibre * perFibre;
-    }
-  }
-
-  // P = F̂_T κ − f_PE, held at 0 where it is clamped.
-  f.P = f.tendon * f.kappa - passive.value;
-  if (muscle.options().clampForce && f.P < 0) {
-    f.P = 0;
-    if constexpr (second) f.d2Kappa = 3 * w2 * fibreLength * perD * perD * perD * perD * perD;
-    return f;
-  }
-  const double slope = f.tendonSlope * perTendon;
-  f.dP_dm = slope * f.kappa;
-  f.dP_dl = -slope * f.kappa * f.kappa + f.tendon * f.dKappa - passive.slope * perFibre;
-  if constexpr (second) {
-    f.d2Kappa = 3 * w2 * fibreLength * perD * perD * perD * perD * perD;
-    const double curvature = f.tendonCurvature * perTendon * perTendon;
-    f.d2P_dmdm = curvature * f.kappa;
-    f.d2P_dldm = -curvature * f.kappa * f.kappa + slope * f.dKappa;
-    f.d2P_dldl = curvature * f.kappa * f.kappa * f.kappa - 3 * slope * f.kappa * f.dKappa +
-                 f.tendon * f.d2Kappa - passive.curvature * perFibre * perFibre;
-  }
-  return f;
-}
-
-// v(P, A), from the quadratic G(v; P, A) = 0 of its regime: v_x = −G_x/G_v.
-struct Velocity {
-  double v, dv_dP, dv_dA;
-  double G_v, G_vA;  // for the second derivatives; G_vP = −1, G_vv = 2B
-  bool linear;       // P < −B: v = P/B
-};
-
-inline Velocity velocity(double P, double A, double B) {
-  using schutte::maxLengtheningForce;
-  using schutte::shapeLengthening;
-  using schutte::shapeShortening;
-  if (P < -B) return {P / B, 1 / B, 0, -B, 0, true};
-  if (P < A) {
-    const double b = P + shapeShortening * (A + B);
-    const double c = shapeShortening * (P - A);
-    const double root = std::sqrt(b * b - 4 * B * c);
-    const double v = b > 0 ? 2 * c / (b + root) : (b - root) / (2 * B);
-    const double perRoot = 1 / root;
-    return {v,
-            (shapeShortening - v) * perRoot,
-            -shapeShortening * (1 + v) * perRoot,
-            -root,
-            -shapeShortening,
-            false};
-  }
-  const double b = P - maxLengtheningForce * A - shapeLengthening * B;
-  const double c = shapeLengthening * (P - A);
-  const double root = std::sqrt(b * b + 4 * B * c);
-  const double v = b > 0 ? (b + root) / (2 * B) : 2 * c / (root - b);
-  const double perRoot = 1 / root;
-  return {v,
-          (v + shapeLengthening) * perRoot,
-          -(maxLengtheningForce * v + shapeLengthening) * perRoot,
-          root,
-          maxLengtheningForce,
-          false};
-}
-
-inline FibreRateDerivatives assemble(const SchutteMuscle<double>& muscle, const ForceBalance& f,
-                                     const Velocity& u) {
-  const double speed = muscle.speedScale();
-  const double force = muscle.quantities().maxIsometricForce;
-  const double stiffness = force * f.tendonSlope * muscle.perTendon();
-  return {.fibreVelocity = speed * u.v,
-          .tendonForce = force * f.tendon,
-          .dV_dActivation = speed * u.dv_dA * f.dA_da,
-          .dV_dFibreLength = speed * (u.dv_dP * f.dP_dl + u.dv_dA * f.dA_dl),
-          .dV_dMuscleTendonLength = speed * u.dv_dP * f.dP_dm,
-          .dF_dFibreLength = -stiffness * f.kappa,
-          .dF_dMuscleTendonLength = stiffness};
 }
 
 // F̂_T − (A + f_PE) cos α: falls through 0 where the fibre rests stably.
@@ -192,22 +64,23 @@ FibreRateDerivatives fibreRateDerivatives(const SchutteMuscle<double>& muscle, d
 FibreRateDerivatives fibreRateDerivatives(const SchutteMuscle<double>& muscle, double activation,
                                           double fibreLength, double muscleTendonLength,
                                           SchuttePieces& last) {
-  const ForceBalance f =
-      forceBalance<false>(muscle, activation, fibreLength, muscleTendonLength, last);
-  return assemble(muscle, f, velocity(f.P, f.A, muscle.quantities().damping));
+  const schutte::ForceBalance<double> f =
+      schutte::forceBalance<false>(muscle, activation, fibreLength, muscleTendonLength, last);
+  return schutte::assemble<FibreRateDerivatives>(
+      muscle, f, schutte::velocity(f.P, f.A, muscle.quantities().damping));
 }
 
 FibreRateHessian fibreRateHessian(const SchutteMuscle<double>& muscle, double activation,
                                   double fibreLength, double muscleTendonLength) {
   SchuttePieces last;
-  const ForceBalance f =
-      forceBalance<true>(muscle, activation, fibreLength, muscleTendonLength, last);
+  const schutte::ForceBalance<double> f =
+      schutte::forceBalance<true>(muscle, activation, fibreLength, muscleTendonLength, last);
   const double B = muscle.quantities().damping;
-  const Velocity u = velocity(f.P, f.A, B);
+  const schutte::Velocity<double> u = schutte::velocity(f.P, f.A, B);
 
   // v_xy = −(G_vv v_x v_y + G_vx v_y + G_vy v_x)/G_v
   double v_PP = 0, v_PA = 0, v_AA = 0;
-  if (!u.linear) {
+  if (!(f.P < -B)) {
     v_PP = -(2 * B * u.dv_dP * u.dv_dP - 2 * u.dv_dP) / u.G_v;
     v_PA = -(2 * B * u.dv_dP * u.dv_dA - u.dv_dA + u.G_vA * u.dv_dP) / u.G_v;
     v_AA = -(2 * B * u.dv_dA * u.dv_dA + 2 * u.G_vA * u.dv_dA) / u.G_v;
@@ -225,7 +98,7 @@ FibreRateHessian fibreRateHessian(const SchutteMuscle<double>& muscle, double ac
   const double F_lm = -curvature * f.kappa;
 
   FibreRateHessian result;
-  result.first = assemble(muscle, f, u);
+  result.first = schutte::assemble<FibreRateDerivatives>(muscle, f, u);
   result.d2V = muscle.speedScale() *
                (v_PP * dP * dP.transpose() + v_AA * dA * dA.transpose() +
                 v_PA * (dP * dA.transpose() + dA * dP.transpose()) + u.dv_dP * d2P + u.dv_dA * d2A);

@@ -108,35 +108,12 @@ FibreRateDerivatives SimulatedMuscle::otherRate(double activation, double fibreL
 FibreRateDerivatives SimulatedMuscle::otherRateNear(double activation, double fibreLength,
                                                     double pathLength, double fibreVelocity,
                                                     double h) const {
-  // an iterate may be shorter than what is allowed, and even than the muscle's thickness
-  const double shortest =
-      mayBeHeld(std::min(fibreLength, fibreLength + h / 2 * fibreVelocity)) ? shortestFibre() : 0;
-  const double length = std::max(fibreLength, shortest * (1 - 1e-9));
-  FibreRateDerivatives near = std::visit(
-      [&](const auto& muscle) -> FibreRateDerivatives {
-        if constexpr (stepsByBalance<decltype(muscle)>) {
-          const muscles::FibreBalance<double> b =
-              muscle.fibreBalance(activation, length, pathLength, fibreVelocity);
-          const double per = -1 / b.dR_dFibreVelocity;
-          return {fibreVelocity + b.residual * per,
-                  b.tendonForce,
-                  b.dR_dActivation * per,
-                  b.dR_dFibreLength * per,
-                  b.dR_dPathLength * per,
-                  b.dF_dFibreLength,
-                  b.dF_dPathLength};
-        } else {
-          return asDerivatives(muscle.fibreRate(activation, length, pathLength));
-        }
+  return std::visit(
+      [&](const auto& muscle) {
+        return asDerivatives(
+            muscle.rateNear(activation, fibreLength, pathLength, fibreVelocity, h));
       },
       *other_);
-  if (length > fibreLength) near.dV_dFibreLength = near.dF_dFibreLength = 0;
-  const double toShortest = (shortest - fibreLength) / h + fibreVelocity / 2;
-  if (shortest > 0 && near.fibreVelocity <= toShortest) {
-    near.fibreVelocity = toShortest;
-    near.dV_dActivation = near.dV_dFibreLength = near.dV_dMuscleTendonLength = 0;
-  }
-  return near;
 }
 
 muscles::RigidRate<double> SimulatedMuscle::rigidRate(double activation, double pathLength,

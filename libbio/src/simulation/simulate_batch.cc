@@ -12,16 +12,54 @@ namespace {
 using lanes::HingeModel;
 using lanes::Lanes;
 using lanes::Single;
-using Solve = void (*)(const lanes::LaneModel<Lanes>&, lanes::LaneStep&);
+using MakeSolver = lanes::LaneSolver* (*)(const lanes::LaneModel<Lanes>&);
 
-Solve solver(LaneInstructions instructions) {
+MakeSolver solverFor(LaneInstructions instructions) {
 #ifdef FISHERHILL_WIDE_LANES
   if (instructions == LaneInstructions::best && __builtin_cpu_supports("avx2")) {
-    return lanes::solveWide;
+    return lanes::wideSolver;
   }
 #endif
   static_cast<void>(instructions);
-  return lanes::solvePlain;
+  return lanes::plainSolver;
+}
+
+// Whether two laws have the same numbers.
+bool haveSameNumbers(const SchutteActivation<double>& a, const SchutteActivation<double>& b) {
+  return a.timeScale == b.timeScale && a.activation1 == b.activation1 &&
+         a.activation2 == b.activation2;
+}
+bool haveSameNumbers(const muscles::FirstOrderActivation<double>& a,
+                     const muscles::FirstOrderActivation<double>& b) {
+  return a.activationTime == b.activationTime && a.deactivationTime == b.deactivationTime &&
+         a.minimum == b.minimum;
+}
+bool haveSameNumbers(const muscles::SmoothActivation<double>& a,
+                     const muscles::SmoothActivation<double>& b) {
+  return a.activationTime == b.activationTime && a.deactivationTime == b.deactivationTime &&
+         a.smoothing == b.smoothing;
+}
+bool haveSameNumbers(const muscles::DirectActivation& a, const muscles::DirectActivation& b) {
+  return a.least == b.least && a.most == b.most;
+}
+
+muscles::AnyActivation activationOf(const muscles::AnyMuscle& muscle) {
+  return std::visit([](const auto& m) { return m.parameters().activation(); }, muscle);
+}
+
+/// Whether activations of two muscles follow one excitation alike.
+bool haveSameActivation(const SystemMuscle& a, const SystemMuscle& b) {
+  if (a.activation.schutte() || b.activation.schutte()) {
+    return a.activation.schutte() && b.activation.schutte() &&
+           haveSameNumbers(*a.activation.schutte(), *b.activation.schutte());
+  }
+  const muscles::AnyActivation other = activationOf(*b.muscle.ifOther());
+  return std::visit(
+      [&]<class Law>(const Law& law) {
+        const Law* same = std::get_if<Law>(&other);
+        return same && haveSameNumbers(law, *same);
+      },
+      activationOf(*a.muscle.ifOther()));
 }
 
 /// Activations of one job, good for all others that have the same laws, excitations and start.
@@ -31,19 +69,17 @@ class SharedCourse {
       : job_(&job), course_(*job.arm, *job.excitation, *job.start, options) {}
 
   bool fits(const LaneJob& other) const {
-    if (job_->excitation != other.excitation || job_->start->activation != other.start->activation)
+    if (job_->excitation != other.excitation ||
+        job_->arm->numMuscles() != other.arm->numMuscles() ||
+        job_->start->activation != other.start->activation) {
       return false;
+    }
     for (std::size_t i = 0; i < job_->arm->numMuscles(); ++i) {
-      // lanes take muscles of Schutte's class alone
-      const auto& a = *job_->arm->muscles()[i].activation.schutte();
-      const auto& b = *other.arm->muscles()[i].activation.schutte();
-      if (a.timeScale != b.timeScale || a.activation1 != b.activation1 ||
-          a.activation2 != b.activation2)
-        return false;
+      if (!haveSameActivation(job_->arm->muscles()[i], other.arm->muscles()[i])) return false;
     }
     return true;
   }
-  const lanes::ActivationCourse& course() const { return course_; }
+  lanes::ActivationCourse& course() { return course_; }
 
  private:
   const LaneJob* job_;
@@ -56,7 +92,7 @@ class LaneGroup {
   struct Member {
     const LaneJob* job;
     const HingeModel<Single>* arm;
-    const lanes::ActivationCourse* course;
+    lanes::ActivationCourse* course;
     Trajectory* result;
   };
 
@@ -77,16 +113,19 @@ class LaneGroup {
     step_.symmetric = options.integrator == Integrator::variational;
   }
 
-  void run(Solve solve) {
-    const lanes::LaneModel<Lanes> arm = arms_.view();
+  void run(MakeSolver makeSolver) {
+    const std::unique_ptr<lanes::LaneSolver> solver(makeSolver(arms_.view()));
     while (ask()) {
-      solve(arm, step_);
+      solver->solve(step_);
       for (std::size_t l = 0; l < drivers_.size(); ++l) {
         if (step_.wanted[static_cast<int>(l)] != 0) drivers_[l]->take(static_cast<int>(l), step_);
       }
     }
     for (std::size_t l = 0; l < drivers_.size(); ++l) {
-      if (drivers_[l]->succeeded()) *members_[l].result = drivers_[l]->finish();
+      if (!drivers_[l]->succeeded()) continue;
+      const Member& member = members_[l];
+      *member.result = drivers_[l]->finish();
+      stepping::completeStates(*member.job->arm, *member.job->excitation, *member.result);
     }
   }
 
@@ -142,7 +181,7 @@ std::vector<Trajectory> simulateTogether(std::span<const LaneJob> jobs,
     if (known && !stepping::changesForces(*jobs[i].arm, options))
       arms[i] = lanes::hingeModel(*jobs[i].arm);
   }
-  const Solve solve = solver(instructions);
+  const MakeSolver makeSolver = solverFor(instructions);
   std::vector<std::unique_ptr<SharedCourse>> courses;
   for (std::size_t first = 0; first < jobs.size(); ++first) {
     if (!waiting[first] || !arms[first]) continue;
@@ -157,7 +196,7 @@ std::vector<Trajectory> simulateTogether(std::span<const LaneJob> jobs,
       places.push_back(i);
     }
     LaneGroup group(members, options);
-    group.run(solve);
+    group.run(makeSolver);
     for (std::size_t m = 0; m < places.size(); ++m) {
       waiting[places[m]] = false;
       if (!group.succeeded(m)) arms[places[m]].reset();

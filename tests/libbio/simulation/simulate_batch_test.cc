@@ -155,8 +155,9 @@ TEST(SimulateTogether, DoesNotDependOnTheProcessorToTheLastBit) {
   for (std::size_t i = 0; i < best.size(); ++i) expectSame(best[i], plain[i]);
 }
 
-// One that fails in the midst of others: it is what simulate() makes of it, the others unchanged.
-TEST(SimulateTogether, LeavesWhatDoesNotConvergeToTheIntegratorThatHalvesSteps) {
+// One whose steps are halved in the midst of others, and one that fails even so: the former moves
+// as it would alone, the latter is what simulate() makes of it, the others unchanged.
+TEST(SimulateTogether, HalvesStepsAndLeavesFailuresToSimulate) {
   const ShippedElbow elbow;
   Drawn drawn(elbow, muscleNumbers, 0.02, 3, 0.5);
   drawn.options.maxIterations = 4;
@@ -165,15 +166,29 @@ TEST(SimulateTogether, LeavesWhatDoesNotConvergeToTheIntegratorThatHalvesSteps) 
   flung.qDot[0] = 40;
   std::vector<LaneJob> jobs = drawn.jobs;
   jobs[1].start = &flung;
-  const auto together = simulateTogether(jobs, drawn.options);
-  const Trajectory alone = simulate(*jobs[1].arm, *jobs[1].excitation, flung, drawn.options);
-  ASSERT_GT(alone.halvedSteps, 0);
-  EXPECT_GT(together[1].wallSeconds, 0);
-  EXPECT_EQ(together[0].wallSeconds, 0);
-  EXPECT_EQ(together[1].outcome, alone.outcome);
-  expectSame(together[1], alone);
-  expectSame(together[0], expected[0]);
-  expectSame(together[2], expected[2]);
+  for (const int halvings : {8, 0}) {
+    drawn.options.maxHalvings = halvings;
+    const auto together = simulateTogether(jobs, drawn.options);
+    const Trajectory alone = simulate(*jobs[1].arm, *jobs[1].excitation, flung, drawn.options);
+    EXPECT_EQ(together[1].outcome, alone.outcome);
+    EXPECT_EQ(together[1].halvedSteps, alone.halvedSteps);
+    EXPECT_EQ(together[1].newtonIterations, alone.newtonIterations);
+    ASSERT_EQ(together[1].time, alone.time);
+    if (halvings > 0) {
+      ASSERT_GT(alone.halvedSteps, 0);
+      EXPECT_EQ(together[1].wallSeconds, 0);
+      EXPECT_LT((together[1].q - alone.q).cwiseAbs().maxCoeff(), 1e-9);
+      EXPECT_LT((together[1].activation - alone.activation).cwiseAbs().maxCoeff(), 1e-12);
+    } else {
+      EXPECT_EQ(alone.outcome, Outcome::noSolution);
+      EXPECT_GT(together[1].wallSeconds, 0);
+      EXPECT_EQ(together[1].why, alone.why);
+      expectSame(together[1], alone);
+    }
+    EXPECT_EQ(together[0].wallSeconds, 0);
+    expectSame(together[0], expected[0]);
+    expectSame(together[2], expected[2]);
+  }
 }
 
 TEST(SimulateTogether, LeavesOtherIntegratorsAndArmsToSimulate) {

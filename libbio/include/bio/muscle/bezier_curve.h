@@ -74,49 +74,87 @@ using PlanePoint = double __attribute__((vector_size(16)));
 /// A section's coefficients in powers of u.
 using PlaneQuintic = std::array<PlanePoint, 6>;
 
+// Evaluation within a section, in numbers N of one state (double) or of several side by side, whose
+// Plane is a pair of them.
+
 /// Third derivative of the polynomial.
-inline PlanePoint quinticThird(const PlaneQuintic& c, double u) {
+template <class Plane, class N>
+[[gnu::always_inline]] inline Plane quinticThird(const std::array<Plane, 6>& c, const N& u) {
   return 6.0 * c[3] + u * (24.0 * c[4] + u * (60.0 * c[5]));
 }
 
 /// A point of a section.
+template <class N>
 struct SectionPoint {
-  double u;
-  double x;
-  CurvePoint<double> y;  ///< y, y′ and y″ over x
+  N u;
+  N x;
+  CurvePoint<N> y;  ///< y, y′ and y″ over x
 };
 /// The point at u + δ from the polynomials at u, with δ so small that δ² is nothing (3e-8).
-inline SectionPoint sectionBeside(const CurvePoint<PlanePoint>& p, const PlanePoint& third,
-                                  double perSpeed, double u, double delta) {
-  const PlanePoint value = p.value + delta * p.slope;
-  const PlanePoint slope = p.slope + delta * p.curvature;
-  const PlanePoint curvature = p.curvature + delta * third;
-  const double per = perSpeed - delta * p.curvature[0] * perSpeed * perSpeed;
-  const double dy = slope[1] * per;
+template <class Plane, class N>
+[[gnu::always_inline]] inline SectionPoint<N> sectionBeside(const CurvePoint<Plane>& p,
+                                                            const Plane& third, const N& perSpeed,
+                                                            const N& u, const N& delta) {
+  const Plane value = p.value + delta * p.slope;
+  const Plane slope = p.slope + delta * p.curvature;
+  const Plane curvature = p.curvature + delta * third;
+  const N per = perSpeed - delta * p.curvature[0] * perSpeed * perSpeed;
+  const N dy = slope[1] * per;
   return {u + delta, value[0], {value[1], dy, (curvature[1] - dy * curvature[0]) * per * per}};
 }
 /// The same to third order, for δ up to about 2e-5.
-inline SectionPoint sectionBeside(const CurvePoint<PlanePoint>& p, const PlanePoint& third,
-                                  double u, double delta) {
-  const PlanePoint bend = p.curvature + (1.0 / 3) * delta * third;
-  const PlanePoint value = p.value + delta * (p.slope + 0.5 * delta * bend);
-  const PlanePoint slope = p.slope + delta * (p.curvature + 0.5 * delta * third);
-  const PlanePoint curvature = p.curvature + delta * third;
-  const double per = 1 / slope[0];
-  const double dy = slope[1] * per;
+template <class Plane, class N>
+[[gnu::always_inline]] inline SectionPoint<N> sectionBeside(const CurvePoint<Plane>& p,
+                                                            const Plane& third, const N& u,
+                                                            const N& delta) {
+  const Plane bend = p.curvature + (1.0 / 3) * delta * third;
+  const Plane value = p.value + delta * (p.slope + 0.5 * delta * bend);
+  const Plane slope = p.slope + delta * (p.curvature + 0.5 * delta * third);
+  const Plane curvature = p.curvature + delta * third;
+  const N per = 1 / slope[0];
+  const N dy = slope[1] * per;
   return {u + delta, value[0], {value[1], dy, (curvature[1] - dy * curvature[0]) * per * per}};
 }
 
+/// The point of a section whose abscissa is x, from a place u nearby; where that is off by 3e-8 or
+/// more, from the place that refine(u) finds to rounding.
+template <class Plane, class N, class Refine>
+[[gnu::always_inline]] inline CurvePoint<N> sectionAtAbscissa(const std::array<Plane, 6>& s, N u,
+                                                              const N& x, const Refine& refine) {
+  using std::abs;
+  CurvePoint<Plane> p = quintic(s, u);
+  N perSpeed = 1 / p.slope[0];
+  N delta = (x - p.value[0]) * perSpeed;
+  const auto near = abs(delta) < 3e-8;
+  if (!everywhere(near)) {
+    u = choose(near, u, refine(u));
+    p = quintic(s, u);
+    perSpeed = 1 / p.slope[0];
+    delta = (x - p.value[0]) * perSpeed;
+  }
+  return sectionBeside(p, quinticThird(s, u), perSpeed, u, delta).y;
+}
+
+/// u a fraction f through a cell of a BezierCurve's table.
+template <class N>
+[[gnu::always_inline]] inline N placeInCell(const std::array<N, 6>& c, const N& f) {
+  const N f2 = f * f;
+  return (c[0] + c[1] * f) + f2 * ((c[2] + c[3] * f) + f2 * (c[4] + c[5] * f));
+}
+
 /// Where y(u) = target near u, `excess` = y(u) − target: δu to third order in excess.
-inline double nearStep(double excess, double perSlope, double curvature, double third) {
-  const double r = excess * perSlope;
-  const double bend = 0.5 * curvature * perSlope;
+template <class N>
+[[gnu::always_inline]] inline N nearStep(const N& excess, const N& perSlope, const N& curvature,
+                                         const N& third) {
+  const N r = excess * perSlope;
+  const N bend = 0.5 * curvature * perSlope;
   return -r * (1 + r * (bend + r * (2 * bend * bend - third * perSlope * (1.0 / 6))));
 }
 
 /// Where on the way to a root a safeguarded step of Halley's method leads: δu for y(u) = target.
-inline double halleyStep(const CurvePoint<double>& y, double target) {
-  const double excess = y.value - target;
+template <class N>
+[[gnu::always_inline]] inline N halleyStep(const CurvePoint<N>& y, const N& target) {
+  const N excess = y.value - target;
   return -excess * y.slope / (y.slope * y.slope - 0.5 * excess * y.curvature);
 }
 
@@ -168,18 +206,8 @@ class BezierCurve {
     if (!isInside(at)) return straight<R>(isBefore(at) ? first_ : last_, x);
     const std::size_t i = sectionAt(at);
     if constexpr (std::is_same_v<R, double>) {
-      const PlaneQuintic& s = plane_[i];
-      double u = nearPlace(i, at);
-      CurvePoint<PlanePoint> p = quintic(s, u);
-      double perSpeed = 1 / p.slope[0];
-      double delta = (at - p.value[0]) * perSpeed;
-      if (!(std::abs(delta) < 3e-8)) {
-        u = bezierPlace(plainX_[i], at, u);
-        p = quintic(s, u);
-        perSpeed = 1 / p.slope[0];
-        delta = (at - p.value[0]) * perSpeed;
-      }
-      return sectionBeside(p, quinticThird(s, u), perSpeed, u, delta).y;
+      return sectionAtAbscissa(plane_[i], nearPlace(i, at), at,
+                               [&](double u) { return bezierPlace(plainX_[i], at, u); });
     }
     R u = R(placeIn(i, at));
     for (int k = 0; k < derivativeOrder<R>; ++k) {
@@ -204,6 +232,31 @@ class BezierCurve {
   const End& first() const { return first_; }
   const End& last() const { return last_; }
 
+  /// A cell of the table: the part of a section for x from `lower` on and below `upper`.
+  struct Cell {
+    double lower, upper;
+    std::size_t section;
+    double start;                        ///< f = (x − start)·per
+    double per;                          ///< [1/x]
+    const std::array<double, 6>* place;  ///< u over f, of placeInCell
+  };
+  /// The one that holds x, for x inside.
+  Cell cellAt(double x) const {
+    const std::size_t i = sectionAt(x);
+    const auto border = [&](int cell) {
+      return cell < cells ? knots_[i] + cell / perCell_[i] : knots_[i + 1];
+    };
+    int cell = std::clamp(static_cast<int>((x - knots_[i]) * perCell_[i]), 0, cells - 1);
+    if (x < border(cell)) --cell;
+    if (!(x < border(cell + 1))) ++cell;
+    return {border(cell),
+            border(cell + 1),
+            i,
+            knots_[i] + cell / perCell_[i],
+            perCell_[i],
+            &table_[i][static_cast<std::size_t>(cell)]};
+  }
+
   /// Whether a section holds x, none of the straight lines.
   bool isInside(double x) const { return x > knots_[0] && x < knots_[n]; }
   bool isBefore(double x) const { return x <= knots_[0]; }
@@ -227,10 +280,7 @@ class BezierCurve {
   double nearPlace(std::size_t i, double x) const {
     const double t = (x - knots_[i]) * perCell_[i];
     const int cell = std::min(static_cast<int>(t), cells - 1);
-    const double f = t - cell;
-    const std::array<double, 6>& c = table_[i][static_cast<std::size_t>(cell)];
-    const double f2 = f * f;
-    return (c[0] + c[1] * f) + f2 * ((c[2] + c[3] * f) + f2 * (c[4] + c[5] * f));
+    return placeInCell(table_[i][static_cast<std::size_t>(cell)], t - cell);
   }
 
   template <class R, class U>

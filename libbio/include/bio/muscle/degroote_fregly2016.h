@@ -114,7 +114,7 @@ class DeGrooteFregly2016 {
   bool dampingActs() const { return true; }
   double minimumActivation() const { return 1e-3; }
   double maximumActivation() const { return std::numeric_limits<double>::infinity(); }
-  double shortestFibre(const T& thickness) const { return plainValue(thickness); }
+  auto shortestFibre(const T& thickness) const { return plainValue(thickness); }
 
   template <class U>
   CurvePoint<Joint<T, U>> tendonForce(const U& strain) const {
@@ -164,7 +164,9 @@ class DeGrooteFregly2016 {
     const R x = R(d2 * v + d3);
     const R root = sqrt(R(x * x + 1.0));
     // asinh x, without cancellation on either side
-    const R area = plainValue(x) < 0 ? R(-log(R(root - x))) : R(log(R(root + x)));
+    const R area = branch(
+        plainValue(x) < 0, [&] { return R(-log(R(root - x))); },
+        [&] { return R(log(R(root + x))); });
     return {d1 * area + d4, d1 * d2 / root, R(0.0)};
   }
 

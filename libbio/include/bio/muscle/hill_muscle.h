@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "bio/muscle/hill_shape.h"
 
@@ -69,18 +70,12 @@ class HillMuscle {
  public:
   using Shape = S;
   using T = typename Shape::Number;
+  using Plain = decltype(plainValue(std::declval<T>()));
   using Parameters = typename Shape::Parameters;
 
   /// Nothing is checked here; Parameters::requireRules() does.
-  explicit HillMuscle(const Parameters& p)
-      : shape_(p),
-        force_(p.maxIsometricForce),
-        perFibre_(1.0 / p.optimalFibreLength),
-        perTendon_(1.0 / p.tendonSlackLength),
-        speedScale_(p.maxContractionVelocity * p.optimalFibreLength) {
-    using std::sin;
-    thickness_ = p.optimalFibreLength * sin(p.pennation);
-  }
+  explicit HillMuscle(const Parameters& p) : shape_(p) { takeNumbers(); }
+  explicit HillMuscle(const Shape& shape) : shape_(shape) { takeNumbers(); }
 
   const Shape& shape() const { return shape_; }
   const Parameters& parameters() const { return shape_.parameters(); }
@@ -92,7 +87,7 @@ class HillMuscle {
   /// Whether the fibre's length is a state: false with a rigid tendon.
   bool hasFibreState() const { return !parameters().ignoreTendonCompliance; }
   /// Below it OpenSim holds the fibre [m], if the class does so.
-  double shortestFibre() const { return shape_.shortestFibre(thickness_); }
+  const Plain& shortestFibre() const { return shortest_; }
   bool isHeldByOpenSim(double fibreLength) const { return fibreLength <= shortestFibre(); }
 
   /// ℓ cos α [m].
@@ -100,10 +95,10 @@ class HillMuscle {
   Joint<T, U> projected(const U& fibreLength) const {
     using R = Joint<T, U>;
     using std::sqrt;
-    if (!(plainValue(fibreLength) > plainValue(thickness_))) {
-      return R(std::numeric_limits<double>::quiet_NaN());
-    }
-    return sqrt(R(fibreLength * fibreLength - thickness_ * thickness_));
+    return branch(
+        plainValue(fibreLength) > plainValue(thickness_),
+        [&] { return R(sqrt(R(fibreLength * fibreLength - thickness_ * thickness_))); },
+        [] { return R(std::numeric_limits<double>::quiet_NaN()); });
   }
   /// ε
   template <class U>
@@ -113,14 +108,19 @@ class HillMuscle {
   /// a as it acts.
   template <class R>
   R acting(const R& activation) const {
-    if (plainValue(activation) < plainValue(shape_.minimumActivation())) {
-      return R(shape_.minimumActivation());
-    }
-    if (plainValue(activation) > shape_.maximumActivation()) return R(shape_.maximumActivation());
-    return activation;
+    const auto plain = plainValue(activation);
+    return branch(
+        plain < plainValue(shape_.minimumActivation()),
+        [&] { return R(shape_.minimumActivation()); },
+        [&] {
+          return branch(
+              plain > shape_.maximumActivation(), [&] { return R(shape_.maximumActivation()); },
+              [&] { return activation; });
+        });
   }
   /// Whether a acts as itself.
-  bool isActing(double activation) const {
+  template <class A>
+  auto isActing(const A& activation) const {
     return activation >= plainValue(shape_.minimumActivation()) &&
            activation <= shape_.maximumActivation();
   }
@@ -151,10 +151,10 @@ class HillMuscle {
     FibreRate<R> rate;
     rate.fibreVelocity = speedScale_ * s.v;
     rate.tendonForce = force_ * tendon.value;
-    rate.dV_dActivation = R(0.0);
-    if (isActing(plainValue(activation))) {
-      rate.dV_dActivation = speedScale_ * (s.byActive * active.value + s.byActivation);
-    }
+    rate.dV_dActivation = branch(
+        isActing(plainValue(activation)),
+        [&] { return R(speedScale_ * (s.byActive * active.value + s.byActivation)); },
+        [] { return R(0.0); });
     rate.dV_dFibreLength = speedScale_ * (s.byForce * P_l + s.byActive * A_l);
     rate.dV_dPathLength = speedScale_ * s.byForce * stiffness * kappa;
     rate.dF_dPathLength = force_ * stiffness;
@@ -186,10 +186,10 @@ class HillMuscle {
     FibreBalance<R> b;
     b.residual = force * cosine - tendon.value;
     b.tendonForce = force_ * tendon.value;
-    b.dR_dActivation = R(0.0);
-    if (isActing(plainValue(activation))) {
-      b.dR_dActivation = (active.value * f_v.value + A * f_v.byActivation) * cosine;
-    }
+    b.dR_dActivation = branch(
+        isActing(plainValue(activation)),
+        [&] { return R((active.value * f_v.value + A * f_v.byActivation) * cosine); },
+        [] { return R(0.0); });
     const R force_l = (a * active.slope * f_v.value + passive.slope) * perFibre_;
     b.dR_dFibreLength = force_l * cosine + force * cosine_l + stiffness * fibreLength * perD;
     b.dR_dPathLength = -stiffness;
@@ -197,6 +197,39 @@ class HillMuscle {
     b.dF_dPathLength = force_ * stiffness;
     b.dF_dFibreLength = -(b.dF_dPathLength * fibreLength * perD);
     return b;
+  }
+
+  /// V near a fibre velocity v for an implicit midpoint step of h [s] that has the fibre move from
+  /// ℓ − h v/2 to ℓ + h v/2, and F_T. Of a class whose step solves the balance of forces
+  /// R(a, ℓ, L, v) = 0 it is the velocity to which Newton's method moves v, v − R/R_v, with
+  /// derivatives −R_x/R_v: exact where R = 0. Where a fibre is held it is the velocity that takes
+  /// it to shortestFibre(), with derivatives 0, if v − V is more than that equation's error: the
+  /// lesser of the two errors vanishes in the end.
+  template <class R>
+  FibreRate<R> rateNear(const R& activation, const R& fibreLength, const R& pathLength,
+                        const R& fibreVelocity, const R& h) const {
+    if constexpr (!holdsFibre<Shape>) {
+      return unheldRateNear(activation, fibreLength, pathLength, fibreVelocity);
+    } else {
+      // no fibre is held at its optimal length or beyond
+      const R end = fibreLength + h / 2 * fibreVelocity;
+      const R shorter = choose(end < fibreLength, end, fibreLength);
+      const R shortest = choose(shorter * perFibre_ >= 1, R(0.0), R(shortest_));
+      // an iterate may be shorter than what is allowed, and even than the muscle's thickness
+      const R least = shortest * (1 - 1e-9);
+      const R length = choose(fibreLength < least, least, fibreLength);
+      FibreRate<R> near = unheldRateNear(activation, length, pathLength, fibreVelocity);
+      const auto tooShort = length > fibreLength;
+      near.dV_dFibreLength = choose(tooShort, R(0.0), near.dV_dFibreLength);
+      near.dF_dFibreLength = choose(tooShort, R(0.0), near.dF_dFibreLength);
+      const R toShortest = (shortest - fibreLength) / h + fibreVelocity / 2;
+      const auto held = shortest > 0 && near.fibreVelocity <= toShortest;
+      near.fibreVelocity = choose(held, toShortest, near.fibreVelocity);
+      near.dV_dActivation = choose(held, R(0.0), near.dV_dActivation);
+      near.dV_dFibreLength = choose(held, R(0.0), near.dV_dFibreLength);
+      near.dV_dPathLength = choose(held, R(0.0), near.dV_dPathLength);
+      return near;
+    }
   }
 
   /// The force with a rigid tendon,
@@ -207,10 +240,49 @@ class HillMuscle {
   RigidRate<Joint<T, U>> rigidRate(const U& activation, const U& pathLength,
                                    const U& pathSpeed) const {
     using R = Joint<T, U>;
-    using std::sqrt;
     const R along = pathLength - parameters().tendonSlackLength;
-    RigidRate<R> r{R(0.0), R(thickness_), R(0.0), R(0.0), R(0.0), R(0.0)};
-    if (plainValue(along) <= 0) return r;
+    return branch(
+        plainValue(along) <= 0,
+        [&] { return RigidRate<R>{R(0.0), R(thickness_), R(0.0), R(0.0), R(0.0), R(0.0)}; },
+        [&] { return tautRate<R>(R(activation), along, R(pathSpeed)); });
+  }
+
+ private:
+  void takeNumbers() {
+    using std::sin;
+    const Parameters& p = parameters();
+    force_ = p.maxIsometricForce;
+    perFibre_ = 1.0 / p.optimalFibreLength;
+    perTendon_ = 1.0 / p.tendonSlackLength;
+    speedScale_ = p.maxContractionVelocity * p.optimalFibreLength;
+    thickness_ = p.optimalFibreLength * sin(p.pennation);
+    shortest_ = shape_.shortestFibre(thickness_);
+  }
+
+  /// V(a, ℓ, L) by the class's own equation near a velocity v: see rateNear.
+  template <class R>
+  FibreRate<R> unheldRateNear(const R& activation, const R& fibreLength, const R& pathLength,
+                              const R& fibreVelocity) const {
+    if constexpr (Shape::stepsByBalance) {
+      const FibreBalance<R> b = fibreBalance(activation, fibreLength, pathLength, fibreVelocity);
+      const R per = -1.0 / b.dR_dFibreVelocity;
+      return {fibreVelocity + b.residual * per,
+              b.tendonForce,
+              b.dR_dActivation * per,
+              b.dR_dFibreLength * per,
+              b.dR_dPathLength * per,
+              b.dF_dFibreLength,
+              b.dF_dPathLength};
+    } else {
+      return fibreRate(activation, fibreLength, pathLength);
+    }
+  }
+
+  /// rigidRate for L > ℓs.
+  template <class R>
+  RigidRate<R> tautRate(const R& activation, const R& along, const R& pathSpeed) const {
+    using std::sqrt;
+    RigidRate<R> r{R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)};
     r.fibreLength = sqrt(R(along * along + thickness_ * thickness_));
     const R perLength = 1.0 / r.fibreLength;
     const R cosine = along * perLength;
@@ -223,27 +295,33 @@ class HillMuscle {
     const R l = r.fibreLength * perFibre_;
     const CurvePoint<R> active = shape_.activeForce(l);
     const CurvePoint<R> passive = shape_.passiveForce(l);
-    const R a = acting(R(activation));
+    const R a = acting(activation);
     const ForceVelocity<R> f_v = shape_.forceVelocity(v, a);
 
     const R A = a * active.value;
     const R force = A * f_v.value + passive.value + shape_.damping() * v;
-    if (Shape::rigidForceIsCut && plainValue(force) < 0) return r;
-    const R force_v = A * f_v.slope + shape_.damping();
-    const R force_L = (a * active.slope * f_v.value + passive.slope) * perFibre_ * cosine +
-                      force_v * pathSpeed * share_L / speedScale_;
-    r.tendonForce = force_ * force * cosine;
-    r.dF_dPathLength = force_ * (force_L * cosine + force * cosine_L);
-    r.dF_dPathSpeed = force_ * force_v * share * cosine / speedScale_;
-    if (isActing(plainValue(activation))) {
-      r.dF_dActivation = force_ * (active.value * f_v.value + A * f_v.byActivation) * cosine;
-    }
-    return r;
+    return branch(
+        Shape::rigidForceIsCut && plainValue(force) < 0, [&] { return r; },
+        [&] {
+          const R force_v = A * f_v.slope + shape_.damping();
+          const R force_L = (a * active.slope * f_v.value + passive.slope) * perFibre_ * cosine +
+                            force_v * pathSpeed * share_L / speedScale_;
+          r.tendonForce = force_ * force * cosine;
+          r.dF_dPathLength = force_ * (force_L * cosine + force * cosine_L);
+          r.dF_dPathSpeed = force_ * force_v * share * cosine / speedScale_;
+          r.dF_dActivation = branch(
+              isActing(plainValue(activation)),
+              [&] {
+                return R(force_ * (active.value * f_v.value + A * f_v.byActivation) * cosine);
+              },
+              [] { return R(0.0); });
+          return r;
+        });
   }
 
- private:
   Shape shape_;
   T force_, perFibre_, perTendon_, speedScale_, thickness_;
+  Plain shortest_;
 };
 
 }  // namespace bio::muscles

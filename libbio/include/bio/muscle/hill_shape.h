@@ -69,4 +69,9 @@ concept HillShape = requires(const S& s, const typename S::Number& x, double d) 
   { S::stepsByBalance } -> std::convertible_to<bool>;
 };
 
+/// Whether fibres of the class are held at shortestFibre(): of those with a largest pennation.
+template <class Shape>
+inline constexpr bool holdsFibre =
+    placeOf<typename Shape::Parameters>("maximum_pennation_angle") < Shape::Parameters::count;
+
 }  // namespace bio::muscles

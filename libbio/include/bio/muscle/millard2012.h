@@ -200,15 +200,36 @@ class Millard2012 {
         speed_(forceVelocity_),
         inOwn_(p) {}
 
+  /// The curves where they are there already, and B.
+  struct Curves {
+    T damping;
+    BezierCurve<T, 2> tendon;
+    BezierCurve<T, 5> active;
+    BezierCurve<T, 2> passive;
+    BezierCurve<T, 4> forceVelocity;
+    MillardSpeed<T> speed;
+  };
+  Millard2012(const Parameters& p, const Curves& curves)
+      : p_(p),
+        damping_(curves.damping),
+        tendon_(curves.tendon),
+        active_(curves.active),
+        passive_(curves.passive),
+        forceVelocity_(curves.forceVelocity),
+        speed_(curves.speed),
+        inOwn_(p) {}
+
   const Parameters& parameters() const { return p_; }
   const T& damping() const { return damping_; }
   bool dampingActs() const { return p_.isDamped(); }
   const T& minimumActivation() const { return p_.minimumActivation; }
   double maximumActivation() const { return 1; }
   /// The larger of x₀ ℓ0 and w/sin α_max.
-  double shortestFibre(const T& thickness) const {
-    return std::max(plainValue(p_.minActiveLength) * plainValue(p_.optimalFibreLength),
-                    plainValue(thickness) / std::sin(plainValue(p_.maximumPennation)));
+  auto shortestFibre(const T& thickness) const {
+    using std::sin;
+    const auto active = plainValue(p_.minActiveLength) * plainValue(p_.optimalFibreLength);
+    const auto pennate = plainValue(thickness) / sin(plainValue(p_.maximumPennation));
+    return choose(active < pennate, pennate, active);
   }
 
   template <class U>
@@ -239,6 +260,13 @@ class Millard2012 {
   Own passiveForceInOwn(double l) const;
   Own forceVelocityInOwn(double v, double a) const;
   Own speedInOwn(double P, double A, double a) const;
+
+  // what numbers of several states side by side look up state by state
+  const BezierCurve<T, 2>& tendonCurve() const { return tendon_; }
+  const BezierCurve<T, 5>& activeCurve() const { return active_; }
+  const BezierCurve<T, 2>& passiveCurve() const { return passive_; }
+  const BezierCurve<T, 4>& forceVelocityCurve() const { return forceVelocity_; }
+  const MillardSpeed<T>& speedSolver() const { return speed_; }
 
  private:
   struct None {

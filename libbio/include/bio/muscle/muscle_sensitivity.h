@@ -23,11 +23,6 @@ inline constexpr std::size_t numNumbers = Shape::Parameters::count + scales::cou
 template <class Shape>
 using PerNumber = std::array<double, numNumbers<Shape>>;
 
-/// Whether fibres of the class are held at shortestFibre(): of those with a largest pennation.
-template <class Shape>
-inline constexpr bool holdsFibre =
-    placeOf<typename Shape::Parameters>("maximum_pennation_angle") < Shape::Parameters::count;
-
 /// ∂/∂θ of shortestFibre() of a class that holds its fibres: of the shortest active fibre where the
 /// class has one and that is longer, else of w/sin α_max.
 template <class Shape>

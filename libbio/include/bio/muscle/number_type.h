@@ -22,6 +22,25 @@ inline constexpr int derivativeOrder = 0;
 template <int C, class T>
 inline constexpr int derivativeOrder<info::Dual<C, T>> = 1 + derivativeOrder<T>;
 
+// The branches of laws, written so that one text serves numbers of one state and numbers that hold
+// several states side by side (simulation/simd), whose conditions hold for some of them. Those have
+// functions of the same names, which join what the branches give.
+
+/// yes() where the condition holds, no() elsewhere; each is evaluated only if it is needed.
+template <class Yes, class No>
+[[gnu::always_inline]] inline auto branch(bool condition, const Yes& yes, const No& no) {
+  return condition ? yes() : no();
+}
+/// Of two values that are there anyway.
+template <class T>
+[[gnu::always_inline]] inline T choose(bool condition, const T& yes, const T& no) {
+  return condition ? yes : no;
+}
+/// Whether the condition holds for all states.
+inline bool everywhere(bool condition) {
+  return condition;
+}
+
 /// A function's value with its first two derivatives in its argument.
 template <class T>
 struct CurvePoint {

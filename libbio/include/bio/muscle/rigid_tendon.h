@@ -20,10 +20,28 @@ struct RigidTendonCurves {
 /// Those that OpenSim's class has where a file gives none.
 const RigidTendonCurves& openSimRigidTendonCurves();
 
+/// How the class holds its curves, by number type.
+template <class T>
+struct RigidTendonForm {
+  using Curves = RigidTendonCurves;
+  using Spline = CubicSpline;
+  static const Curves& defaults() { return openSimRigidTendonCurves(); }
+};
+
+/// The value and slopes of a spline in another number type.
+template <class R, class U>
+CurvePoint<R> splinePoint(const CubicSpline& curve, const U& x) {
+  const PiecewiseCubic::Segment& s = curve.segmentAt(plainValue(x));
+  const R t = R(x) - s.start;
+  return {s.value + t * (s.slope + t * (s.quadratic + t * s.cubic)),
+          s.slope + t * (2.0 * s.quadratic + t * (3.0 * s.cubic)),
+          2.0 * s.quadratic + t * (6.0 * s.cubic)};
+}
+
 /// The numbers of a RigidTendonMuscle: those of every muscle, and three curves.
 template <class T>
 struct RigidTendonParameters : HillParameters<T>, MuscleSwitches {
-  RigidTendonCurves curves = openSimRigidTendonCurves();
+  typename RigidTendonForm<T>::Curves curves = RigidTendonForm<T>::defaults();
 
   /// The tendon is always rigid, and activation always the control.
   RigidTendonParameters() { ignoreTendonCompliance = ignoreActivationDynamics = true; }
@@ -64,6 +82,7 @@ class RigidTendon {
  public:
   using Number = T;
   using Parameters = RigidTendonParameters<T>;
+  using Spline = typename RigidTendonForm<T>::Spline;
   static constexpr const char* className = "RigidTendonMuscle";
   static constexpr std::size_t numOwn = 0;
   static constexpr std::size_t dampingPlace = Parameters::count;            ///< none
@@ -79,6 +98,9 @@ class RigidTendon {
         velocity_(p.curves.forceVelocity) {}
 
   const Parameters& parameters() const { return p_; }
+  const Spline& activeSpline() const { return active_; }
+  const Spline& passiveSpline() const { return passive_; }
+  const Spline& velocitySpline() const { return velocity_; }
   double damping() const { return 0; }
   bool dampingActs() const { return false; }
   T minimumActivation() const { return T(-std::numeric_limits<double>::infinity()); }
@@ -92,20 +114,31 @@ class RigidTendon {
   }
   template <class U>
   CurvePoint<Joint<T, U>> activeForce(const U& l) const {
-    return pointOf<Joint<T, U>>(active_, l);
+    return splinePoint<Joint<T, U>>(active_, l);
   }
   template <class U>
   CurvePoint<Joint<T, U>> passiveForce(const U& l) const {
     using R = Joint<T, U>;
-    const CurvePoint<R> point = pointOf<R>(passive_, l);
-    if (plainValue(point.value) < 0) return {R(0.0), R(0.0), R(0.0)};
-    if (plainValue(point.value) > 10) return {R(10.0), R(0.0), R(0.0)};
-    return point;
+    using Point = CurvePoint<R>;
+    const Point point = splinePoint<R>(passive_, l);
+    return branch(
+        plainValue(point.value) < 0,
+        [] {
+          return Point{R(0.0), R(0.0), R(0.0)};
+        },
+        [&] {
+          return branch(
+              plainValue(point.value) > 10,
+              [] {
+                return Point{R(10.0), R(0.0), R(0.0)};
+              },
+              [&] { return point; });
+        });
   }
   template <class U>
   ForceVelocity<Joint<T, U>> forceVelocity(const U& v, const U&) const {
     using R = Joint<T, U>;
-    const CurvePoint<R> point = pointOf<R>(velocity_, v);
+    const CurvePoint<R> point = splinePoint<R>(velocity_, v);
     return {point.value, point.slope, R(0.0)};
   }
   /// NaN: the force follows the speed, not the other way round.
@@ -123,17 +156,8 @@ class RigidTendon {
   Own speedInOwn(double, double, double) const { return {}; }
 
  private:
-  template <class R, class U>
-  static CurvePoint<R> pointOf(const CubicSpline& curve, const U& x) {
-    const PiecewiseCubic::Segment& s = curve.segmentAt(plainValue(x));
-    const R t = R(x) - s.start;
-    return {s.value + t * (s.slope + t * (s.quadratic + t * s.cubic)),
-            s.slope + t * (2.0 * s.quadratic + t * (3.0 * s.cubic)),
-            2.0 * s.quadratic + t * (6.0 * s.cubic)};
-  }
-
   Parameters p_;
-  CubicSpline active_, passive_, velocity_;
+  Spline active_, passive_, velocity_;
 };
 
 template <>

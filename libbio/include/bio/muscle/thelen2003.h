@@ -122,21 +122,33 @@ class Thelen2003 {
   const T& minimumActivation() const { return p_.minimumActivation; }
   double maximumActivation() const { return 1; }
   /// w/sin α_max
-  double shortestFibre(const T& thickness) const {
-    return plainValue(thickness) / std::sin(plainValue(p_.maximumPennation));
+  auto shortestFibre(const T& thickness) const {
+    using std::sin;
+    return plainValue(thickness) / sin(plainValue(p_.maximumPennation));
   }
 
   template <class U>
   CurvePoint<Joint<T, U>> tendonForce(const U& strain) const {
     using R = Joint<T, U>;
     using std::exp;
-    if (plainValue(strain) <= 0) return {R(0.0), R(0.0), R(0.0)};
-    if (plainValue(strain) > plainValue(toeStrain_)) {
-      return {0.33 + linearSlope_ * (strain - toeStrain_), R(linearSlope_), R(0.0)};
-    }
-    const R power = toeScale * exp(R(perToe_ * strain));
-    const R slope = perToe_ * power;
-    return {power - toeScale, slope, perToe_ * slope};
+    using Point = CurvePoint<R>;
+    return branch(
+        plainValue(strain) <= 0,
+        [] {
+          return Point{R(0.0), R(0.0), R(0.0)};
+        },
+        [&] {
+          return branch(
+              plainValue(strain) > plainValue(toeStrain_),
+              [&] {
+                return Point{0.33 + linearSlope_ * (strain - toeStrain_), R(linearSlope_), R(0.0)};
+              },
+              [&] {
+                const R power = toeScale * exp(R(perToe_ * strain));
+                const R slope = perToe_ * power;
+                return Point{power - toeScale, slope, perToe_ * slope};
+              });
+        });
   }
 
   template <class U>
@@ -153,10 +165,17 @@ class Thelen2003 {
   CurvePoint<Joint<T, U>> passiveForce(const U& l) const {
     using R = Joint<T, U>;
     using std::exp;
-    if (plainValue(l) <= 1) return {R(0.0), R(0.0), R(0.0)};
-    const R power = passiveScale_ * exp(R(passiveRate_ * (l - 1.0)));
-    const R slope = passiveRate_ * power;
-    return {power - passiveScale_, slope, passiveRate_ * slope};
+    using Point = CurvePoint<R>;
+    return branch(
+        plainValue(l) <= 1,
+        [] {
+          return Point{R(0.0), R(0.0), R(0.0)};
+        },
+        [&] {
+          const R power = passiveScale_ * exp(R(passiveRate_ * (l - 1.0)));
+          const R slope = passiveRate_ * power;
+          return Point{power - passiveScale_, slope, passiveRate_ * slope};
+        });
   }
 
   /// v(P; A, a), A > 0.
@@ -213,57 +232,74 @@ class Thelen2003 {
   template <class R, class N>
   static FibreSpeed<R> speedOf(const Numbers<N>& n, const Branches<N>& b, const R& P, const R& A,
                                const R& a) {
+    using Speed = FibreSpeed<R>;
     const R c = 0.25 + 0.75 * a;
-    if (plainValue(P) > 0 && plainValue(P) <= plainValue(A)) {
+    const auto shortening = [&] {
       const R per = 1.0 / (A + P * b.perShape);
       const R share = (P - A) * per;
       const R slope = c * (1.0 + b.perShape) * per * per;
-      return {c * share, slope * A, -(slope * P), 0.75 * share};
-    }
-    if (plainValue(P) <= 0) {
+      return Speed{c * share, slope * A, -(slope * P), 0.75 * share};
+    };
+    const auto beyondShortening = [&] {
       const R perA = 1.0 / A;
       const R slope = (1.0 + b.perShape) * perA;
       const R share = slope * P - 1.0;
-      return {c * share, c * slope, -(c * slope * P * perA), 0.75 * share};
-    }
-    if (plainValue(P) < plainValue(b.end) * plainValue(A)) {
+      return Speed{c * share, c * slope, -(c * slope * P * perA), 0.75 * share};
+    };
+    const auto lengthening = [&] {
       const R per = 1.0 / (A * n.lengthening - P);
       const R share = (P - A) * per / b.m;
       const R slope = c * (n.lengthening - 1.0) / b.m * per * per;
-      return {c * share, slope * A, -(slope * P), 0.75 * share};
-    }
-    const R perA = 1.0 / A;
-    const R slope = b.endSlope * perA;
-    const R share = b.endSpeed + slope * P - b.endSlope * b.end;
-    return {c * share, c * slope, -(c * slope * P * perA), 0.75 * share};
+      return Speed{c * share, slope * A, -(slope * P), 0.75 * share};
+    };
+    const auto beyondLengthening = [&] {
+      const R perA = 1.0 / A;
+      const R slope = b.endSlope * perA;
+      const R share = b.endSpeed + slope * P - b.endSlope * b.end;
+      return Speed{c * share, c * slope, -(c * slope * P * perA), 0.75 * share};
+    };
+    return branch(plainValue(P) > 0 && plainValue(P) <= plainValue(A), shortening, [&] {
+      return branch(plainValue(P) <= 0, beyondShortening, [&] {
+        return branch(plainValue(P) < plainValue(b.end) * plainValue(A), lengthening,
+                      beyondLengthening);
+      });
+    });
   }
 
   template <class R, class N>
   static ForceVelocity<R> forceOf(const Numbers<N>& n, const Branches<N>& b, const R& v,
                                   const R& a) {
     const R c = 0.25 + 0.75 * a;
-    const double plain = plainValue(v);
+    const auto plain = plainValue(v);
     // everything depends on x = v/c: ∂f_v/∂a = −¾ f_v′(x) x/c
     const R perC = 1.0 / c;
     const R x = v * perC;
-    R value, slope;  // slope over x
-    if (plain < -plainValue(c)) {
-      slope = R(1.0 / (1.0 + b.perShape));
-      value = (x + 1.0) * slope;
-    } else if (plain <= 0) {
+    struct Point {
+      R value, slope;  // slope over x
+    };
+    const auto beyondShortening = [&] {
+      const R slope = R(1.0 / (1.0 + b.perShape));
+      return Point{(x + 1.0) * slope, slope};
+    };
+    const auto shortening = [&] {
       const R per = 1.0 / (1.0 - x * b.perShape);
-      value = (1.0 + x) * per;
-      slope = (1.0 + b.perShape) * per * per;
-    } else if (plainValue(x) < plainValue(b.endSpeed)) {
+      return Point{(1.0 + x) * per, (1.0 + b.perShape) * per * per};
+    };
+    const auto lengthening = [&] {
       const R per = 1.0 / (1.0 + b.m * x);
-      value = (1.0 + b.m * x * n.lengthening) * per;
-      slope = b.m * (n.lengthening - 1.0) * per * per;
-    } else {
-      slope = R(1.0 / b.endSlope);
-      value = b.end + (x - b.endSpeed) * slope;
-    }
-    slope = slope * perC;
-    return {value, slope, -0.75 * x * slope};
+      return Point{(1.0 + b.m * x * n.lengthening) * per, b.m * (n.lengthening - 1.0) * per * per};
+    };
+    const auto beyondLengthening = [&] {
+      const R slope = R(1.0 / b.endSlope);
+      return Point{b.end + (x - b.endSpeed) * slope, slope};
+    };
+    const Point f = branch(plain < -plainValue(c), beyondShortening, [&] {
+      return branch(plain <= 0, shortening, [&] {
+        return branch(plainValue(x) < plainValue(b.endSpeed), lengthening, beyondLengthening);
+      });
+    });
+    const R slope = f.slope * perC;
+    return {f.value, slope, -0.75 * x * slope};
   }
 
   Parameters p_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bio/path/path_length.h"
+#include "simulation/simd/lane_law.h"
 
 namespace bio::lanes {
 namespace {
@@ -49,22 +50,10 @@ class HingeCompiler {
 
  private:
   bool add(const SystemMuscle& given) {
-    if (!given.muscle.ifSchutte()) return false;  // no kernel in lanes
-    const SchutteMuscle<double>& m = *given.muscle.ifSchutte();
     LaneMuscle<Single> muscle{};
-    muscle.force = m.quantities().maxIsometricForce;
-    muscle.perFibre = m.perFibre();
-    muscle.perTendon = m.perTendon();
-    muscle.speedScale = m.speedScale();
-    muscle.thickness = m.thickness();
-    muscle.damping = m.quantities().damping;
-    muscle.activationFloor = m.options().activationFloor;
-    muscle.clampsForce = m.options().clampForce;
-    muscle.hasPassiveCurve = m.curves().passiveForce.has_value();
-    muscle.tendon.of[0] = &m.curves().tendonForce;
-    muscle.active.of[0] = &m.curves().activeForce;
-    if (muscle.hasPassiveCurve) muscle.passive.of[0] = &*m.curves().passiveForce;
-
+    muscle.of[0] = &given.muscle;
+    muscle.hasFibreState = given.muscle.hasFibreState();
+    muscle.perFibre = given.muscle.perFibre();
     const CompiledPath& path = given.path.compiled();
     if (path.function) return false;
     muscle.firstCondition = static_cast<int>(out_.conditions.size());
@@ -133,23 +122,9 @@ class HingeCompiler {
 // Every number of a list's element into a lane
 // -----------------------------------------------------
 
-void put(Curve<Lanes>& to, int lane, const Curve<Single>& from) {
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  to.lower[lane] = to.upper[lane] = none;  // no piece yet
-  to.of[lane] = from.of[0];
-}
-
 void put(LaneMuscle<Lanes>& to, int lane, const LaneMuscle<Single>& from) {
-  to.force[lane] = from.force;
+  to.of[lane] = from.of[0];
   to.perFibre[lane] = from.perFibre;
-  to.perTendon[lane] = from.perTendon;
-  to.speedScale[lane] = from.speedScale;
-  to.thickness[lane] = from.thickness;
-  to.damping[lane] = from.damping;
-  to.activationFloor[lane] = from.activationFloor;
-  put(to.tendon, lane, from.tendon);
-  put(to.active, lane, from.active);
-  put(to.passive, lane, from.passive);
 }
 
 void put(Condition<Lanes>& to, int lane, const Condition<Single>& from) {
@@ -203,8 +178,8 @@ bool sameStructure(const HingeModel<Single>& a, const HingeModel<Single>& b) {
   return a.hasForces == b.hasForces && a.conditions.size() == b.conditions.size() &&
          match(a.muscles, b.muscles,
                [](const LaneMuscle<Single>& x, const LaneMuscle<Single>& y) {
-                 return x.clampsForce == y.clampsForce && x.hasPassiveCurve == y.hasPassiveCurve &&
-                        x.numConditions == y.numConditions && x.firstVariant == y.firstVariant;
+                 return sameForm(*x.of[0], *y.of[0]) && x.numConditions == y.numConditions &&
+                        x.firstVariant == y.firstVariant;
                }) &&
          match(a.variants, b.variants,
                [](const Variant<Single>& x, const Variant<Single>& y) {
@@ -224,8 +199,7 @@ HingeModel<Lanes> lanesFor(const HingeModel<Single>& arm) {
   lanes.hasForces = arm.hasForces;
   for (const LaneMuscle<Single>& m : arm.muscles) {
     LaneMuscle<Lanes> muscle{};
-    muscle.clampsForce = m.clampsForce;
-    muscle.hasPassiveCurve = m.hasPassiveCurve;
+    muscle.hasFibreState = m.hasFibreState;
     muscle.firstCondition = m.firstCondition;
     muscle.numConditions = m.numConditions;
     muscle.firstVariant = m.firstVariant;

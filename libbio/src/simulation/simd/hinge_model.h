@@ -39,8 +39,8 @@ struct HingeModel {
 };
 
 /// An arm with one segment that turns about one hinge, in the form of the lanes: every point and
-/// what is seen of it from a cylinder is middle + along·cos q + across·sin q. Curves and passive
-/// forces are those of `arm`, which must outlive it; they are set in lane 0.
+/// what is seen of it from a cylinder is middle + along·cos q + across·sin q. Muscles' laws and
+/// passive forces are those of `arm`, which must outlive it; they are set in lane 0.
 /// Nothing if the arm has more coordinates, a slider, path points that move in their bodies,
 /// conditions on a coupled coordinate, or paths over spheres.
 std::optional<HingeModel<Single>> hingeModel(const MusculoskeletalSystem& arm);

@@ -9,24 +9,29 @@ using Eigen::Index;
 ActivationCourse::ActivationCourse(const MusculoskeletalSystem& arm,
                                    const ExcitationSignal& excitation, const SystemState& start,
                                    const SimulationOptions& options)
-    : middle(start.activation.size(), static_cast<Index>(stepping::numRows(options))), end(middle) {
-  stepping::ActivationPlayer player(arm, excitation, options.startTime);
-  Eigen::VectorXd activation = start.activation;
-  end.col(0) = middle.col(0) = activation;
-  for (Index k = 1; k < end.cols(); ++k) {
-    const double t0 = stepping::rowTime(options, static_cast<std::size_t>(k) - 1);
-    const double t1 = stepping::rowTime(options, static_cast<std::size_t>(k));
+    : options_(&options),
+      player_(arm, excitation, options.startTime),
+      middle_(start.activation.size(), static_cast<Index>(stepping::numRows(options))),
+      end_(middle_),
+      activation_(start.activation) {
+  end_.col(0) = middle_.col(0) = activation_;
+}
+
+void ActivationCourse::reach(Index k) {
+  for (; reached_ < k; ++reached_) {
+    const double t0 = stepping::rowTime(*options_, static_cast<std::size_t>(reached_));
+    const double t1 = stepping::rowTime(*options_, static_cast<std::size_t>(reached_) + 1);
     const double half = t0 + (t1 - t0) / 2;
-    player.advance(t0, half, activation);
-    middle.col(k) = activation;
-    player.advance(half, t1, activation);
-    end.col(k) = activation;
+    player_.advance(t0, half, activation_);
+    middle_.col(reached_ + 1) = activation_;
+    player_.advance(half, t1, activation_);
+    end_.col(reached_ + 1) = activation_;
   }
 }
 
 LaneDriver::LaneDriver(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
                        const SystemState& start, const SimulationOptions& options,
-                       const ActivationCourse& course, double mass)
+                       ActivationCourse& course, double mass)
     : arm_(&arm),
       options_(&options),
       course_(&course),
@@ -36,7 +41,7 @@ LaneDriver::LaneDriver(const MusculoskeletalSystem& arm, const ExcitationSignal&
       rows_(stepping::numRows(options)),
       t0_(stepping::rowTime(options, 0)),
       t1_(t0_),
-      tEnd_(stepping::rowTime(options, 1)),
+      targets_{{stepping::rowTime(options, 1), 0}},
       q_(start.q[0]),
       p_(mass * start.qDot[0]),
       velocity_(start.qDot[0]),
@@ -56,21 +61,25 @@ LaneDriver::LaneDriver(const MusculoskeletalSystem& arm, const ExcitationSignal&
 
 bool LaneDriver::ask(int lane, LaneStep& step) {
   if (phase_ == Phase::finished || phase_ == Phase::failed) return false;
-  if (phase_ != Phase::meetSwitch) t1_ = tEnd_;
-  if (phase_ == Phase::wholeStep) kept_ = activation_;
-  chooseActivation();
+  if (phase_ != Phase::meetSwitch) t1_ = targets_.back().time;
+  if (!fromRest_) {
+    if (phase_ == Phase::wholeStep) kept_ = activation_;
+    chooseActivation();
+  }
   // the parabola through the last three ends
   const double h = t1_ - t0_;
   const double bend = h * (h + length_) / (length_ + lengthBefore_);
+  const double now = fromRest_ ? 0 : h + bend;
+  const double before = fromRest_ ? 0 : bend;
   step.length[lane] = h;
   step.q[lane] = q_;
   step.p[lane] = p_;
-  step.qEnd[lane] = q_ + (h + bend) * velocity_ - bend * velocityBefore_;
+  step.qEnd[lane] = q_ + now * velocity_ - before * velocityBefore_;
   for (Index i = 0; i < fibre_.size(); ++i) {
     MuscleStep& muscle = step.muscles[i];
     muscle.fibreLength[lane] = fibre_[i];
     muscle.fibreLengthEnd[lane] =
-        fibre_[i] + (h + bend) * fibreVelocity_[i] - bend * fibreVelocityBefore_[i];
+        fibre_[i] + now * fibreVelocity_[i] - before * fibreVelocityBefore_[i];
     muscle.activation[lane] = middle_[i];
   }
   if (!options_->externalForce.empty()) {
@@ -84,8 +93,8 @@ bool LaneDriver::ask(int lane, LaneStep& step) {
 
 void LaneDriver::chooseActivation() {
   if (!within_) {
-    middle_ = course_->middle.col(static_cast<Index>(row_));
-    activation_ = course_->end.col(static_cast<Index>(row_));
+    middle_ = course_->middle(static_cast<Index>(row_));
+    activation_ = course_->end(static_cast<Index>(row_));
     return;
   }
   const double half = t0_ + (t1_ - t0_) / 2;
@@ -97,10 +106,15 @@ void LaneDriver::chooseActivation() {
 void LaneDriver::take(int lane, const LaneStep& step) {
   recorder_.trajectory().newtonIterations += step.iterations[lane];
   constexpr double furthest = 1e5;  // of what sines are accurate for [rad]
-  if (step.converged[lane] == 0 || !(std::abs(step.qEnd[lane]) < furthest)) {
+  if (step.converged[lane] == 0) {
+    meetFailure();
+    return;
+  }
+  if (!(std::abs(step.qEnd[lane]) < furthest)) {
     phase_ = Phase::failed;
     return;
   }
+  fromRest_ = false;
   qEnd_ = step.qEnd[lane];
   pEnd_ = step.pEnd[lane];
   for (Index i = 0; i < fibre_.size(); ++i) fibreEnd_[i] = step.muscles[i].fibreLengthEnd[lane];
@@ -124,22 +138,50 @@ void LaneDriver::take(int lane, const LaneStep& step) {
       meetSwitch();
       return;
     case stepping::SwitchSearch::Found::givenUp:
-      phase_ = Phase::jumpSwitch;
-      activation_ = kept_;
-      player_.restart(t0_);
+      jumpSwitch();
   }
+}
+
+/// Activations are played from the begin of the step.
+void LaneDriver::returnToBegin() {
+  within_ = true;
+  activation_ = kept_;
+  player_.restart(t0_);
 }
 
 /// The next step goes to where the switch is looked for.
 void LaneDriver::meetSwitch() {
   phase_ = Phase::meetSwitch;
-  within_ = true;
-  t1_ = t0_ + search_.fraction() * (tEnd_ - t0_);
-  activation_ = kept_;
-  player_.restart(t0_);
+  t1_ = t0_ + search_.fraction() * (targets_.back().time - t0_);
+  returnToBegin();
 }
 
-void LaneDriver::accept(bool endsRow) {
+/// The next step is the whole one, which was solved before.
+void LaneDriver::jumpSwitch() {
+  phase_ = Phase::jumpSwitch;
+  returnToBegin();
+}
+
+/// A step that fails is tried again from rest, then in halves.
+void LaneDriver::meetFailure() {
+  fromRest_ = !fromRest_;
+  if (fromRest_) return;
+  if (phase_ == Phase::meetSwitch) {
+    jumpSwitch();
+    return;
+  }
+  Target& target = targets_.back();
+  if (phase_ == Phase::jumpSwitch || target.halvings >= options_->maxHalvings) {
+    phase_ = Phase::failed;
+    return;
+  }
+  if (target.halvings == 0) ++recorder_.trajectory().halvedSteps;
+  const Target half{t0_ + (target.time - t0_) / 2, ++target.halvings};
+  targets_.push_back(half);
+  returnToBegin();
+}
+
+void LaneDriver::accept(bool endsTarget) {
   const double h = t1_ - t0_;
   velocityBefore_ = velocity_;
   velocity_ = (qEnd_ - q_) / h;
@@ -153,14 +195,16 @@ void LaneDriver::accept(bool endsRow) {
   for (int i = 0; i < 3; ++i) sums_[i] += works_[i];
   t0_ = t1_;
   phase_ = Phase::wholeStep;
-  if (!endsRow) return;
+  if (!endsTarget) return;
+  targets_.pop_back();
+  if (!targets_.empty()) return;
   using Number = Eigen::Matrix<double, 1, 1>;
   recorder_.add(t1_, Number(q_), Number(p_ / mass_), activation_, fibre_, sums_[0], sums_[1],
                 sums_[2]);
   ++recorder_.trajectory().steps;
   within_ = false;  // the course goes on; it differs by 2e-13 where the excitation changes
   if (++row_ < rows_) {
-    tEnd_ = stepping::rowTime(*options_, row_);
+    targets_.push_back({stepping::rowTime(*options_, row_), 0});
   } else {
     phase_ = Phase::finished;
   }

@@ -11,22 +11,41 @@ namespace bio::lanes {
 
 /// Activations of all muscles at the middle and the end of every step of a simulation: they follow
 /// from the excitations alone.
-struct ActivationCourse {
-  Eigen::MatrixXd middle, end;  ///< one column per step; the first of `end` is the start
-
+class ActivationCourse {
+ public:
+  /// All must outlive the course.
   ActivationCourse(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
                    const SystemState& start, const SimulationOptions& options);
+
+  /// Of the step that ends row k ≥ 1. Rows are computed when they are first asked for.
+  auto middle(Eigen::Index k) {
+    reach(k);
+    return middle_.col(k);
+  }
+  auto end(Eigen::Index k) {
+    reach(k);
+    return end_.col(k);
+  }
+
+ private:
+  void reach(Eigen::Index k);
+
+  const SimulationOptions* options_;
+  stepping::ActivationPlayer player_;
+  Eigen::MatrixXd middle_, end_;  ///< one column per step; the first is the start
+  Eigen::VectorXd activation_;    ///< at the end of the last row reached
+  Eigen::Index reached_ = 0;
 };
 
 /// One simulation of those that are advanced together: asks for steps and takes their ends. Does
-/// between steps what VariationalRun does, and gives up where that would halve a step.
+/// between steps what VariationalRun does, and gives up where the smallest step fails.
 class LaneDriver {
  public:
   /// All must outlive the driver.
   /// @param course  of this arm, excitation and start
   LaneDriver(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
-             const SystemState& start, const SimulationOptions& options,
-             const ActivationCourse& course, double mass);
+             const SystemState& start, const SimulationOptions& options, ActivationCourse& course,
+             double mass);
 
   /// Writes the next step into a lane; false if there is none.
   bool ask(int lane, LaneStep& step);
@@ -39,26 +58,36 @@ class LaneDriver {
 
  private:
   enum class Phase {
-    wholeStep,   ///< to the end of a row
+    wholeStep,   ///< to the end of a row or of a part of it
     meetSwitch,  ///< to where a conditional path point comes or goes
-    jumpSwitch,  ///< to the end of a row, since the switch could not be met
+    jumpSwitch,  ///< to the same end, since the switch could not be met
     finished,
     failed
   };
+  /// Where a step is to end: that of the row, and inside of it those of halved steps.
+  struct Target {
+    double time;  ///< [s]
+    int halvings;
+  };
   void chooseActivation();
+  void returnToBegin();
   void meetSwitch();
-  void accept(bool endsRow);
+  void jumpSwitch();
+  void meetFailure();
+  void accept(bool endsTarget);
 
   const MusculoskeletalSystem* arm_;
   const SimulationOptions* options_;
-  const ActivationCourse* course_;
+  ActivationCourse* course_;
   bool within_ = false;  ///< the step begins or ends within a row
   stepping::ActivationPlayer player_;
   stepping::Recorder recorder_;
   double mass_;
   Phase phase_ = Phase::wholeStep;
   std::size_t row_ = 1, rows_;
-  double t0_, t1_, tEnd_;  ///< of the step asked for; of the row [s]
+  double t0_, t1_;               ///< of the step asked for [s]
+  std::vector<Target> targets_;  ///< the next one last
+  bool fromRest_ = false;        ///< the first guess is the begin: the parabola's step has failed
   double q_, p_;
   double velocity_, velocityBefore_, length_, lengthBefore_;
   Eigen::VectorXd fibre_, fibreVelocity_, fibreVelocityBefore_;

@@ -1,31 +1,11 @@
 #include "simulation/simd/lane_model.h"
 
-#include <cmath>
-
 #include "bio/forces/coordinate_force.h"
-#include "bio/muscle/curves/curves.h"
 #include "bio/path/surface/wrap_rule.h"
 
 namespace bio::lanes {
 
-void movePieces(Curve<Lanes>& curve, const Real& x) {
-  for (int l = 0; l < width; ++l) {
-    if (x[l] >= curve.lower[l] && x[l] < curve.upper[l]) continue;
-    const PiecewiseCubic::Piece piece = curve.of[l]->pieceAt(x[l]);
-    curve.lower[l] = piece.lower;
-    curve.upper[l] = piece.upper;
-    curve.start[l] = piece.segment->start;
-    curve.value[l] = piece.segment->value;
-    curve.slope[l] = piece.segment->slope;
-    curve.quadratic[l] = piece.segment->quadratic;
-    curve.cubic[l] = piece.segment->cubic;
-  }
-}
-
-void exponentialPassiveForce(const Real& l, Real& value, Real& slope) {
-  for (int lane = 0; lane < width; ++lane) value[lane] = std::exp(8 * l[lane] - 12);
-  slope = 8 * value;
-}
+LaneSolver::~LaneSolver() = default;
 
 bool touchesWithin(const Cylinder<Lanes>& cylinder, const Real (&P)[3], const Real (&Q)[3],
                    int lane) {

@@ -8,18 +8,10 @@
 namespace bio {
 class CoordinateForces;
 class PiecewiseCubic;
+class SimulatedMuscle;
 }  // namespace bio
 
 namespace bio::lanes {
-
-/// A curve, and the piece of it that holds each lane's x: lower ≤ x < upper.
-template <class Of>
-struct Curve {
-  using T = typename Of::Number;
-  T lower, upper;
-  T start, value, slope, quadratic, cubic;  ///< of PiecewiseCubic::Segment
-  const PiecewiseCubic* of[width];
-};
 
 /// A point that turns with the hinge, seen from a frame: middle + along cos q + across sin q [m].
 template <class Of>
@@ -65,13 +57,12 @@ struct Condition {
   T lower, upper;
 };
 
-/// See SchutteMuscle.
 template <class Of>
 struct LaneMuscle {
   using T = typename Of::Number;
-  T force, perFibre, perTendon, speedScale, thickness, damping, activationFloor;
-  bool clampsForce, hasPassiveCurve;
-  Curve<Of> tendon, active, passive;
+  const SimulatedMuscle* of[width];  ///< its law (lane_law.h)
+  bool hasFibreState;
+  T perFibre;  ///< 1/ℓ0 [1/m]
   int firstCondition, numConditions;
   int firstVariant;  ///< one per set of conditions that hold, by their bits
 };
@@ -126,19 +117,23 @@ struct LaneStep {
   MuscleStep* muscles;                         ///< all of the arm
 };
 
-/// Newton's iteration of VariationalStepper for every lane that is wanted. One per instruction set,
-/// all with the same results: they round alike, since nothing is fused.
-void solvePlain(const LaneModel<Lanes>& arm, LaneStep& step);
-void solveWide(const LaneModel<Lanes>& arm, LaneStep& step);
+/// The solver of steps of some arms.
+class LaneSolver {
+ public:
+  LaneSolver() = default;
+  virtual ~LaneSolver();
+  LaneSolver(const LaneSolver&) = delete;
+  LaneSolver& operator=(const LaneSolver&) = delete;
+  /// Newton's iteration of VariationalStepper for every lane that is wanted.
+  virtual void solve(LaneStep& step) = 0;
+};
+/// Made with `new`; what the model points to must outlive it. One per instruction set, all with the
+/// same results: they round alike, since nothing is fused.
+LaneSolver* plainSolver(const LaneModel<Lanes>& arm);
+LaneSolver* wideSolver(const LaneModel<Lanes>& arm);
 
-// What the step asks for rarely, or from laws without lanes
+// What the step asks for rarely
 // -----------------------------------------
-
-/// Finds the pieces that hold x again where a lane has left its own.
-void movePieces(Curve<Lanes>& curve, const Real& x);
-
-/// exp(8l − 12), its slope beside it.
-void exponentialPassiveForce(const Real& l, Real& value, Real& slope);
 
 /// Whether the way between the ends over a cylinder of finite length touches it within its ends.
 bool touchesWithin(const Cylinder<Lanes>& cylinder, const Real (&P)[3], const Real (&Q)[3],

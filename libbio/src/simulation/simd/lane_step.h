@@ -2,7 +2,7 @@
 
 // The step of lane_model.h, for the one file per instruction set that compiles it.
 
-#include "simulation/simd/lane_fibre.h"
+#include "simulation/simd/lane_muscle.h"
 #include "simulation/simd/lane_path.h"
 
 namespace bio::lanes {
@@ -17,20 +17,96 @@ inline Mask isLast(const Real& correction, const Real& previous, double toleranc
                                      (correction * ratio * ratio < 0.01 * tolerance));
 }
 
+/// The step's solver for some arms, with their muscles' laws.
+class StepSolver final : public LaneSolver {
+ public:
+  explicit StepSolver(const LaneModel<Lanes>& arm)
+      : arm_(arm), laws_(new AnyLaneMuscle[static_cast<std::size_t>(arm.numMuscles)]) {
+    LawNumbers law;
+    for (int i = 0; i < arm.numMuscles; ++i) {
+      gather(arm.muscles[i].of, law);
+      laws_[i].set(law);
+    }
+  }
+  ~StepSolver() override { delete[] laws_; }
+
+  void solve(LaneStep& step) override;
+
+ private:
+  struct Moving {
+    const Real &q, &v, &perStep, &share;
+    const SineCosine& turn;
+  };
+  struct MuscleSums {
+    Real force, dTau, eliminated, carried;
+  };
+  void addMuscles(LaneStep& step, const Moving& moving, MuscleSums& sums);
+  void addRigid(const AnyLaneMuscle& law, MuscleStep& kept, const PathJet& path,
+                const Moving& moving, MuscleSums& sums);
+  Real correctFibres(LaneStep& step, const Real& dq);
+
+  LaneModel<Lanes> arm_;
+  AnyLaneMuscle* laws_;
+};
+
+/// Forces of the muscles, and fibre lengths eliminated one by one.
+inline void StepSolver::addMuscles(LaneStep& step, const Moving& moving, MuscleSums& sums) {
+  const Real& h = step.length;
+  for (int i = 0; i < arm_.numMuscles; ++i) {
+    const LaneMuscle<Lanes>& muscle = arm_.muscles[i];
+    MuscleStep& kept = step.muscles[i];
+    const PathJet path = muscleTendonLength(arm_, muscle, moving.q, moving.turn);
+    kept.momentArm = path.slope;
+    if (!muscle.hasFibreState) {
+      addRigid(laws_[i], kept, path, moving, sums);
+      continue;
+    }
+    const Real l_m = (kept.fibreLength + kept.fibreLengthEnd) / 2;
+    const Real v = (kept.fibreLengthEnd - kept.fibreLength) / h;
+    Rate r;
+    laws_[i].rate({kept.activation, l_m, path.length, v, h}, r);
+    sums.force -= r.tendonForce.v * path.slope;
+    sums.dTau -= r.dF_dMuscleTendonLength.v / 2 * path.slope * path.slope;
+    sums.dTau -= r.tendonForce.v / 2 * path.curvature;
+    kept.residual = v - r.fibreVelocity.v;
+    kept.inverse = 1 / (moving.perStep - r.dV_dFibreLength.v / 2);
+    const Real G = moving.share / 2 * r.dF_dFibreLength.v * kept.inverse * path.slope;
+    sums.eliminated -= G * r.dV_dMuscleTendonLength.v / 2 * path.slope;
+    sums.carried += G * kept.residual;
+    kept.dV_dMuscleTendonLength = r.dV_dMuscleTendonLength.v;
+    kept.dF_dFibreLength = r.dF_dFibreLength.v;
+  }
+}
+
+/// The force of a muscle with a rigid tendon, whose fibre has no equation and stays as it is.
+inline void StepSolver::addRigid(const AnyLaneMuscle& law, MuscleStep& kept, const PathJet& path,
+                                 const Moving& moving, MuscleSums& sums) {
+  RigidForce r;
+  law.force({kept.activation, kept.fibreLength, path.length, path.slope * moving.v, 0.0}, r);
+  const Real F_q = (r.dF_dPathLength.v / 2 + r.dF_dPathSpeed.v * moving.perStep) * path.slope +
+                   r.dF_dPathSpeed.v / 2 * path.curvature * moving.v;
+  sums.force -= r.tendonForce.v * path.slope;
+  sums.dTau -= path.slope * F_q;
+  sums.dTau -= r.tendonForce.v / 2 * path.curvature;
+  kept.residual = kept.inverse = same(0);
+  kept.dV_dMuscleTendonLength = kept.dF_dFibreLength = same(0);
+}
+
 /// Makes fibres' corrections of their residuals; the largest, of ℓ0.
-inline Real correctFibres(const LaneModel<Lanes>& arm, LaneStep& step, const Real& dq) {
+inline Real StepSolver::correctFibres(LaneStep& step, const Real& dq) {
   Real largest = same(0);
-  for (int i = 0; i < arm.numMuscles; ++i) {
+  for (int i = 0; i < arm_.numMuscles; ++i) {
     MuscleStep& kept = step.muscles[i];
     const Real C_dq = -kept.dV_dMuscleTendonLength / 2 * kept.momentArm * dq;
     kept.residual = -(kept.residual + C_dq) * kept.inverse;  // now δℓ
-    largest = larger(largest, absolute(kept.residual) * arm.muscles[i].perFibre);
+    largest = larger(largest, absolute(kept.residual) * arm_.muscles[i].perFibre);
   }
   return largest;
 }
 
 /// See VariationalStepper::solve, whose comments are not repeated.
-inline void solve(const LaneModel<Lanes>& arm, LaneStep& step) {
+inline void StepSolver::solve(LaneStep& step) {
+  const LaneModel<Lanes>& arm = arm_;
   constexpr double largestTurn = 0.3;
   constexpr double largestFibreStep = 0.25;
   const Real none = same(0);
@@ -55,36 +131,16 @@ inline void solve(const LaneModel<Lanes>& arm, LaneStep& step) {
     PassiveForce passive{none, none, none};
     if (arm.hasForces) passiveForce(arm, running, q_m, v, passive);
     const Real dPassive = passive.dForce_dq / 2 + passive.dForce_dqDot / h;
-    Real dTau = dPassive;
-
-    // muscles, fibre lengths eliminated one by one
-    Real force = none;
-    Real eliminated = none;
-    Real carried = none;
-    for (int i = 0; i < arm.numMuscles; ++i) {
-      LaneMuscle<Lanes>& muscle = arm.muscles[i];
-      MuscleStep& kept = step.muscles[i];
-      const PathJet path = muscleTendonLength(arm, muscle, q_m, turn);
-      const Real l_m = (kept.fibreLength + kept.fibreLengthEnd) / 2;
-      const Rate r = fibreRate(muscle, kept.activation, l_m, path.length);
-      force -= r.tendonForce * path.slope;
-      dTau -= r.dF_dMuscleTendonLength / 2 * path.slope * path.slope;
-      dTau -= r.tendonForce / 2 * path.curvature;
-      kept.residual = (kept.fibreLengthEnd - kept.fibreLength) / h - r.fibreVelocity;
-      kept.inverse = 1 / (perStep - r.dV_dFibreLength / 2);
-      const Real G = share / 2 * r.dF_dFibreLength * kept.inverse * path.slope;
-      eliminated -= G * r.dV_dMuscleTendonLength / 2 * path.slope;
-      carried += G * kept.residual;
-      kept.momentArm = path.slope;
-      kept.dV_dMuscleTendonLength = r.dV_dMuscleTendonLength;
-      kept.dF_dFibreLength = r.dF_dFibreLength;
-    }
+    MuscleSums sums{none, dPassive, none, none};
+    addMuscles(step, {q_m, v, perStep, share, turn}, sums);
+    Real& force = sums.force;
+    const Real& dTau = sums.dTau;
 
     const Real R = Mv - h / 2 * L_q - share * (force + passive.force + step.external) - step.p;
-    const Real J = dMv - h / 2 * dL_q - share * dTau - eliminated;
-    const Real dq = (carried - R) / J;
+    const Real J = dMv - h / 2 * dL_q - share * dTau - sums.eliminated;
+    const Real dq = (sums.carried - R) / J;
     const Real size = absolute(dq);
-    const Real fibreSize = correctFibres(arm, step, dq);
+    const Real fibreSize = correctFibres(step, dq);
     // what is not a number, or wild, is given up
     running &= (size < 1e6) & (fibreSize < 1e6);
 

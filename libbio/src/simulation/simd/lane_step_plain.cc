@@ -2,8 +2,8 @@
 
 namespace bio::lanes {
 
-void solvePlain(const LaneModel<Lanes>& arm, LaneStep& step) {
-  solve(arm, step);
+LaneSolver* plainSolver(const LaneModel<Lanes>& arm) {
+  return new StepSolver(arm);
 }
 
 }  // namespace bio::lanes

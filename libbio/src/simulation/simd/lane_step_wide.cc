@@ -2,8 +2,8 @@
 
 namespace bio::lanes {
 
-void solveWide(const LaneModel<Lanes>& arm, LaneStep& step) {
-  solve(arm, step);
+LaneSolver* wideSolver(const LaneModel<Lanes>& arm) {
+  return new StepSolver(arm);
 }
 
 }  // namespace bio::lanes
