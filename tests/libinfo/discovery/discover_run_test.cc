@@ -362,4 +362,38 @@ TEST(RunAtShorterSteps, GoesOnWhereTheModelCannotBeSimulatedAtALongStep) {
   EXPECT_THROW(runAtShorterSteps(attempt, 0.04, 0.03), std::domain_error);
 }
 
+TEST(SearchTrials, HoldsOutTheLastTrialsAndTakesTheOneStepThatIsGiven) {
+  std::optional<Coarse> data;
+  std::vector<double> steps;
+  const auto problemAt = [&](double step) -> const DiscoveryProblem& {
+    steps.push_back(step);
+    data.emplace(drawn(5, 2, 1.1), 1000 * step * step);
+    return *data;
+  };
+  TrialSearch search{2, 1, {}, 0.02, 0.003, optionsOfDrawn()};
+  search.options.heldOut = {0};  // is set anew
+  const SteppedVerdict found = searchTrials(search, problemAt);
+  EXPECT_EQ(found.options.heldOut, std::vector<int>{1});
+  EXPECT_TRUE(found.verdict.heldOut);
+  EXPECT_EQ(steps.front(), 0.02);
+  const auto same = runAtShorterSteps(
+      [&](double step) {
+        Options options = optionsOfDrawn();
+        options.heldOut = {1};
+        return Attempt{problemAt(step), options};
+      },
+      0.02, 0.003);
+  EXPECT_EQ(found.verdict.sentence, same.verdict.sentence);
+  EXPECT_EQ(found.verdict.values, same.verdict.values);
+  EXPECT_EQ(found.step, same.step);
+
+  steps.clear();
+  search.step = 0.04;  // too long, but asked for
+  search.numHeldOut = 0;
+  const SteppedVerdict given = searchTrials(search, problemAt);
+  EXPECT_EQ(steps, std::vector<double>{0.04});
+  EXPECT_EQ(given.verdict.finding, Finding::numerical);
+  EXPECT_TRUE(given.options.heldOut.empty());
+}
+
 }  // namespace
