@@ -115,10 +115,13 @@ class LaneGroup {
 
   void run(MakeSolver makeSolver) {
     const std::unique_ptr<lanes::LaneSolver> solver(makeSolver(arms_.view()));
-    while (ask()) {
+    for (int l = 0; l < lanes::width; ++l) ask(l);
+    while (isWanted()) {
       solver->solve(step_);
-      for (std::size_t l = 0; l < drivers_.size(); ++l) {
-        if (step_.wanted[static_cast<int>(l)] != 0) drivers_[l]->take(static_cast<int>(l), step_);
+      for (int l = 0; l < lanes::width; ++l) {
+        if (step_.done[l] == 0) continue;
+        drivers_[static_cast<std::size_t>(l)]->take(l, step_);
+        ask(l);
       }
     }
     for (std::size_t l = 0; l < drivers_.size(); ++l) {
@@ -132,14 +135,17 @@ class LaneGroup {
   bool succeeded(std::size_t member) const { return drivers_[member]->succeeded(); }
 
  private:
-  bool ask() {
+  void ask(int lane) {
+    const bool more = hasJob(lane) && drivers_[static_cast<std::size_t>(lane)]->ask(lane, step_);
+    step_.wanted[lane] = more ? -1 : 0;
+    step_.iterations[lane] = 0;
+    step_.previous[lane] = 0;
+    if (!more) rest(lane);
+  }
+
+  bool isWanted() const {
     bool wanted = false;
-    for (int l = 0; l < lanes::width; ++l) {
-      const bool more = hasJob(l) && drivers_[static_cast<std::size_t>(l)]->ask(l, step_);
-      step_.wanted[l] = more ? -1 : 0;
-      wanted = wanted || more;
-      if (!more) rest(l);
-    }
+    for (int l = 0; l < lanes::width; ++l) wanted = wanted || step_.wanted[l] != 0;
     return wanted;
   }
 

@@ -115,10 +115,9 @@ inline void StepSolver::solve(LaneStep& step) {
   const Real perStep = 1 / h;
   const Real share = step.symmetric ? h / 2 : h;
   const Real dMv = arm.mass * perStep;
-  Real previous = none;
   Mask running = step.wanted;
   step.converged = running ^ running;
-  for (int iteration = 1; iteration <= step.maxIterations; ++iteration) {
+  while (all(running == step.wanted)) {
     const Real q_m = (step.q + step.qEnd) / 2;
     const Real v = (step.qEnd - step.q) / h;
     const SineCosine turn = sineCosine(q_m);
@@ -153,16 +152,13 @@ inline void StepSolver::solve(LaneStep& step) {
           choose(running, kept.fibreLengthEnd + shorten * kept.residual, kept.fibreLengthEnd);
     }
     const Real correction = larger(size, fibreSize);
-    const Mask last =
-        running & isLast(correction, choose(shorten == 1, previous, none), step.newtonTolerance);
-    previous = correction;
+    const Mask last = running & isLast(correction, choose(shorten == 1, step.previous, none),
+                                       step.newtonTolerance);
+    step.previous = correction;
     for (int l = 0; l < width; ++l) {
-      if (running[l]) step.iterations[l] = iteration;
+      if (step.wanted[l] != 0 && ++step.iterations[l] >= step.maxIterations) running[l] = 0;
     }
-    if (!any(last)) {
-      if (!any(running)) return;
-      continue;
-    }
+    if (!any(last)) continue;
 
     // ends of the lanes that have come to theirs, to first order in the last correction
     for (int i = 0; i < arm.numMuscles; ++i) {
@@ -178,10 +174,10 @@ inline void StepSolver::solve(LaneStep& step) {
     step.muscleWork = choose(last, force * moved, step.muscleWork);
     step.passiveWork = choose(last, passiveEnd * moved, step.passiveWork);
     step.externalWork = choose(last, step.external * moved, step.externalWork);
-    step.converged |= last;
+    step.converged = last;
     running &= ~last;
-    if (!any(running)) return;
   }
+  step.done = step.wanted & ~running;
 }
 
 }  // namespace
