@@ -109,9 +109,10 @@ struct LaneStep {
   bool symmetric;  ///< forces on both ends of the step
   // the first guess, then the end; garbage where it did not converge
   Real qEnd;
-  // of the iteration, all 0 before its first
+  // of the iteration, before its first 0, 0 and NaN
   int iterations[width];
   Real previous;  ///< largest correction of the one before
+  Real place;     ///< q where paths' conditions were last looked at
   // out
   Mask done;  ///< wanted, and now finished or given up
   Mask converged;

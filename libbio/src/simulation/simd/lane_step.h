@@ -34,7 +34,7 @@ class StepSolver final : public LaneSolver {
 
  private:
   struct Moving {
-    const Real &q, &v, &perStep, &share;
+    const Real &v, &perStep, &share;
     const SineCosine& turn;
   };
   struct MuscleSums {
@@ -55,7 +55,7 @@ inline void StepSolver::addMuscles(LaneStep& step, const Moving& moving, MuscleS
   for (int i = 0; i < arm_.numMuscles; ++i) {
     const LaneMuscle<Lanes>& muscle = arm_.muscles[i];
     MuscleStep& kept = step.muscles[i];
-    const PathJet path = muscleTendonLength(arm_, muscle, moving.q, moving.turn);
+    const PathJet path = muscleTendonLength(arm_, muscle, step.place, moving.turn);
     kept.momentArm = path.slope;
     if (!muscle.hasFibreState) {
       addRigid(laws_[i], kept, path, moving, sums);
@@ -109,6 +109,7 @@ inline void StepSolver::solve(LaneStep& step) {
   const LaneModel<Lanes>& arm = arm_;
   constexpr double largestTurn = 0.3;
   constexpr double largestFibreStep = 0.25;
+  constexpr double near = 7e-6;
   const Real none = same(0);
   const Real one = same(1);
   const Real& h = step.length;
@@ -121,6 +122,9 @@ inline void StepSolver::solve(LaneStep& step) {
     const Real q_m = (step.q + step.qEnd) / 2;
     const Real v = (step.qEnd - step.q) / h;
     const SineCosine turn = sineCosine(q_m);
+    // the last small changes leave the points of paths as they are, or an iteration that ends at
+    // a conditional one would go to and fro
+    step.place = choose(absolute(q_m - step.place) < near, step.place, q_m);
 
     // skeleton and gravity
     const Real Mv = arm.mass * v;
@@ -131,7 +135,7 @@ inline void StepSolver::solve(LaneStep& step) {
     if (arm.hasForces) passiveForce(arm, running, q_m, v, passive);
     const Real dPassive = passive.dForce_dq / 2 + passive.dForce_dqDot / h;
     MuscleSums sums{none, dPassive, none, none};
-    addMuscles(step, {q_m, v, perStep, share, turn}, sums);
+    addMuscles(step, {v, perStep, share, turn}, sums);
     Real& force = sums.force;
     const Real& dTau = sums.dTau;
 
