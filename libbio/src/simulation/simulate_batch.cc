@@ -1,5 +1,7 @@
 #include "bio/simulation/simulate_batch.h"
 
+#include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -86,7 +88,7 @@ class SharedCourse {
   lanes::ActivationCourse course_;
 };
 
-/// Some jobs of one structure, at most as many as there are lanes, to their ends.
+/// Jobs of one structure, to their ends: a lane whose job has ended takes the next one.
 class LaneGroup {
  public:
   struct Member {
@@ -94,18 +96,15 @@ class LaneGroup {
     const HingeModel<Single>* arm;
     lanes::ActivationCourse* course;
     Trajectory* result;
+    bool succeeded = false;
   };
 
-  LaneGroup(const std::vector<Member>& members, const SimulationOptions& options)
-      : members_(members), arms_(lanes::lanesFor(*members.front().arm)) {
-    for (int l = 0; l < lanes::width; ++l) {
-      // lanes without a job hold the first one's numbers
-      setLane(arms_, l, *members[hasJob(l) ? static_cast<std::size_t>(l) : 0].arm);
-    }
-    for (const Member& m : members) {
-      drivers_.push_back(std::make_unique<lanes::LaneDriver>(
-          *m.job->arm, *m.job->excitation, *m.job->start, options, *m.course, m.arm->mass));
-    }
+  LaneGroup(std::vector<Member> members, const SimulationOptions& options)
+      : members_(std::move(members)),
+        options_(&options),
+        arms_(lanes::lanesFor(*members_.front().arm)) {
+    // lanes without a job hold the first one's numbers
+    for (int l = 0; l < lanes::width; ++l) setLane(arms_, l, *members_.front().arm);
     muscles_.resize(arms_.muscles.size());
     step_.muscles = muscles_.data();
     step_.newtonTolerance = options.newtonTolerance;
@@ -114,41 +113,78 @@ class LaneGroup {
   }
 
   void run(MakeSolver makeSolver) {
-    const std::unique_ptr<lanes::LaneSolver> solver(makeSolver(arms_.view()));
-    while (ask()) {
+    for (Lane& lane : lanes_) begin(lane);
+    std::unique_ptr<lanes::LaneSolver> solver;
+    while (isWanted()) {
+      if (armsChanged_) solver.reset(makeSolver(arms_.view()));
+      armsChanged_ = false;
       solver->solve(step_);
-      for (std::size_t l = 0; l < drivers_.size(); ++l) {
-        if (step_.wanted[static_cast<int>(l)] != 0) drivers_[l]->take(static_cast<int>(l), step_);
+      for (Lane& lane : lanes_) {
+        const int l = indexOf(lane);
+        if (step_.done[l] == 0) continue;
+        lane.driver->take(l, step_);
+        if (ask(lane)) continue;
+        end(lane);
+        begin(lane);
       }
-    }
-    for (std::size_t l = 0; l < drivers_.size(); ++l) {
-      if (!drivers_[l]->succeeded()) continue;
-      const Member& member = members_[l];
-      *member.result = drivers_[l]->finish();
-      stepping::completeStates(*member.job->arm, *member.job->excitation, *member.result);
     }
   }
 
-  bool succeeded(std::size_t member) const { return drivers_[member]->succeeded(); }
+  const std::vector<Member>& members() const { return members_; }
 
  private:
-  bool ask() {
-    bool wanted = false;
-    for (int l = 0; l < lanes::width; ++l) {
-      const bool more = hasJob(l) && drivers_[static_cast<std::size_t>(l)]->ask(l, step_);
-      step_.wanted[l] = more ? -1 : 0;
-      wanted = wanted || more;
-      if (!more) rest(l);
+  struct Lane {
+    Member* member = nullptr;
+    std::optional<lanes::LaneDriver> driver;
+  };
+
+  int indexOf(const Lane& lane) const { return static_cast<int>(&lane - lanes_.data()); }
+
+  /// The next job, if there is one.
+  void begin(Lane& lane) {
+    if (next_ == members_.size()) {
+      step_.wanted[indexOf(lane)] = 0;
+      rest(indexOf(lane));
+      return;
     }
+    lane.member = &members_[next_++];
+    const Member& m = *lane.member;
+    setLane(arms_, indexOf(lane), *m.arm);
+    armsChanged_ = true;
+    lane.driver.emplace(*m.job->arm, *m.job->excitation, *m.job->start, *options_, *m.course,
+                        m.arm->mass);
+    ask(lane);
+  }
+
+  void end(Lane& lane) {
+    Member& member = *lane.member;
+    member.succeeded = lane.driver->succeeded();
+    if (!member.succeeded) return;
+    *member.result = lane.driver->finish();
+    stepping::completeStates(*member.job->arm, *member.job->excitation, *member.result);
+  }
+
+  /// The lane's next step; false if its job has none.
+  bool ask(Lane& lane) {
+    const int l = indexOf(lane);
+    const bool more = lane.driver->ask(l, step_);
+    step_.wanted[l] = more ? -1 : 0;
+    step_.iterations[l] = 0;
+    step_.previous[l] = 0;
+    step_.place[l] = std::numeric_limits<double>::quiet_NaN();
+    return more;
+  }
+
+  bool isWanted() const {
+    bool wanted = false;
+    for (int l = 0; l < lanes::width; ++l) wanted = wanted || step_.wanted[l] != 0;
     return wanted;
   }
 
-  bool hasJob(int lane) const { return static_cast<std::size_t>(lane) < members_.size(); }
-
-  /// A lane without a step repeats the numbers of a valid lane, since NaN or infinity would slow
-  /// the batch; its result is ignored.
+  /// A lane without a job repeats the begin of its last step, or of the first lane's, since NaN or
+  /// infinity would slow the batch; its result is ignored.
   void rest(int lane) {
-    const int from = hasJob(lane) ? lane : 0;
+    const int from = lanes_[static_cast<std::size_t>(lane)].member ? lane : 0;
     step_.length[lane] = step_.length[from];
     step_.qEnd[lane] = step_.q[lane] = step_.q[from];
     step_.p[lane] = step_.p[from];
@@ -159,8 +195,11 @@ class LaneGroup {
   }
 
   std::vector<Member> members_;
+  const SimulationOptions* options_;
+  std::size_t next_ = 0;
   HingeModel<Lanes> arms_;
-  std::vector<std::unique_ptr<lanes::LaneDriver>> drivers_;
+  bool armsChanged_ = true;
+  std::array<Lane, lanes::width> lanes_;
   std::vector<lanes::MuscleStep> muscles_;
   lanes::LaneStep step_{};
 };
@@ -187,7 +226,7 @@ std::vector<Trajectory> simulateTogether(std::span<const LaneJob> jobs,
     if (!waiting[first] || !arms[first]) continue;
     std::vector<LaneGroup::Member> members;
     std::vector<std::size_t> places;
-    for (std::size_t i = first; i < jobs.size() && members.size() < lanes::width; ++i) {
+    for (std::size_t i = first; i < jobs.size(); ++i) {
       if (!waiting[i] || !arms[i] || !lanes::sameStructure(*arms[first], *arms[i])) continue;
       if (courses.empty() || !courses.back()->fits(jobs[i])) {
         courses.push_back(std::make_unique<SharedCourse>(jobs[i], options));
@@ -195,11 +234,11 @@ std::vector<Trajectory> simulateTogether(std::span<const LaneJob> jobs,
       members.push_back({&jobs[i], &*arms[i], &courses.back()->course(), &results[i]});
       places.push_back(i);
     }
-    LaneGroup group(members, options);
+    LaneGroup group(std::move(members), options);
     group.run(makeSolver);
     for (std::size_t m = 0; m < places.size(); ++m) {
       waiting[places[m]] = false;
-      if (!group.succeeded(m)) arms[places[m]].reset();
+      if (!group.members()[m].succeeded) arms[places[m]].reset();
     }
   }
   for (std::size_t i = 0; i < jobs.size(); ++i) {

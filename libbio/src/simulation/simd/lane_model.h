@@ -100,7 +100,7 @@ struct MuscleStep {
 /// A step of every lane: what is given, what comes out.
 struct LaneStep {
   // given
-  Mask wanted;
+  Mask wanted;    ///< stays so until it is done
   Real length;    ///< h [s]
   Real q, p;      ///< at the begin
   Real external;  ///< force at the middle of the step [N m]
@@ -109,10 +109,14 @@ struct LaneStep {
   bool symmetric;  ///< forces on both ends of the step
   // the first guess, then the end; garbage where it did not converge
   Real qEnd;
-  // out
-  Real pEnd;
-  Mask converged;
+  // of the iteration, before its first 0, 0 and NaN
   int iterations[width];
+  Real previous;  ///< largest correction of the one before
+  Real place;     ///< q where paths' conditions were last looked at
+  // out
+  Mask done;  ///< wanted, and now finished or given up
+  Mask converged;
+  Real pEnd;
   Real muscleWork, passiveWork, externalWork;  ///< [J]
   MuscleStep* muscles;                         ///< all of the arm
 };
@@ -124,7 +128,8 @@ class LaneSolver {
   virtual ~LaneSolver();
   LaneSolver(const LaneSolver&) = delete;
   LaneSolver& operator=(const LaneSolver&) = delete;
-  /// Newton's iteration of VariationalStepper for every lane that is wanted.
+  /// Newton's iteration of VariationalStepper for every lane that is wanted, until one of them is
+  /// done; the others go on in the next call.
   virtual void solve(LaneStep& step) = 0;
 };
 /// Made with `new`; what the model points to must outlive it. One per instruction set, all with the

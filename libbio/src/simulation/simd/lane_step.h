@@ -34,7 +34,7 @@ class StepSolver final : public LaneSolver {
 
  private:
   struct Moving {
-    const Real &q, &v, &perStep, &share;
+    const Real &v, &perStep, &share;
     const SineCosine& turn;
   };
   struct MuscleSums {
@@ -55,7 +55,7 @@ inline void StepSolver::addMuscles(LaneStep& step, const Moving& moving, MuscleS
   for (int i = 0; i < arm_.numMuscles; ++i) {
     const LaneMuscle<Lanes>& muscle = arm_.muscles[i];
     MuscleStep& kept = step.muscles[i];
-    const PathJet path = muscleTendonLength(arm_, muscle, moving.q, moving.turn);
+    const PathJet path = muscleTendonLength(arm_, muscle, step.place, moving.turn);
     kept.momentArm = path.slope;
     if (!muscle.hasFibreState) {
       addRigid(laws_[i], kept, path, moving, sums);
@@ -109,19 +109,22 @@ inline void StepSolver::solve(LaneStep& step) {
   const LaneModel<Lanes>& arm = arm_;
   constexpr double largestTurn = 0.3;
   constexpr double largestFibreStep = 0.25;
+  constexpr double near = 7e-6;
   const Real none = same(0);
   const Real one = same(1);
   const Real& h = step.length;
   const Real perStep = 1 / h;
   const Real share = step.symmetric ? h / 2 : h;
   const Real dMv = arm.mass * perStep;
-  Real previous = none;
   Mask running = step.wanted;
   step.converged = running ^ running;
-  for (int iteration = 1; iteration <= step.maxIterations; ++iteration) {
+  while (all(running == step.wanted)) {
     const Real q_m = (step.q + step.qEnd) / 2;
     const Real v = (step.qEnd - step.q) / h;
     const SineCosine turn = sineCosine(q_m);
+    // the last small changes leave the points of paths as they are, or an iteration that ends at
+    // a conditional one would go to and fro
+    step.place = choose(absolute(q_m - step.place) < near, step.place, q_m);
 
     // skeleton and gravity
     const Real Mv = arm.mass * v;
@@ -132,7 +135,7 @@ inline void StepSolver::solve(LaneStep& step) {
     if (arm.hasForces) passiveForce(arm, running, q_m, v, passive);
     const Real dPassive = passive.dForce_dq / 2 + passive.dForce_dqDot / h;
     MuscleSums sums{none, dPassive, none, none};
-    addMuscles(step, {q_m, v, perStep, share, turn}, sums);
+    addMuscles(step, {v, perStep, share, turn}, sums);
     Real& force = sums.force;
     const Real& dTau = sums.dTau;
 
@@ -153,16 +156,13 @@ inline void StepSolver::solve(LaneStep& step) {
           choose(running, kept.fibreLengthEnd + shorten * kept.residual, kept.fibreLengthEnd);
     }
     const Real correction = larger(size, fibreSize);
-    const Mask last =
-        running & isLast(correction, choose(shorten == 1, previous, none), step.newtonTolerance);
-    previous = correction;
+    const Mask last = running & isLast(correction, choose(shorten == 1, step.previous, none),
+                                       step.newtonTolerance);
+    step.previous = correction;
     for (int l = 0; l < width; ++l) {
-      if (running[l]) step.iterations[l] = iteration;
+      if (step.wanted[l] != 0 && ++step.iterations[l] >= step.maxIterations) running[l] = 0;
     }
-    if (!any(last)) {
-      if (!any(running)) return;
-      continue;
-    }
+    if (!any(last)) continue;
 
     // ends of the lanes that have come to theirs, to first order in the last correction
     for (int i = 0; i < arm.numMuscles; ++i) {
@@ -178,10 +178,10 @@ inline void StepSolver::solve(LaneStep& step) {
     step.muscleWork = choose(last, force * moved, step.muscleWork);
     step.passiveWork = choose(last, passiveEnd * moved, step.passiveWork);
     step.externalWork = choose(last, step.external * moved, step.externalWork);
-    step.converged |= last;
+    step.converged = last;
     running &= ~last;
-    if (!any(running)) return;
   }
+  step.done = step.wanted & ~running;
 }
 
 }  // namespace
