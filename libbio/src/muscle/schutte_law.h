@@ -32,6 +32,38 @@ struct ForceBalance {
   N d2Kappa, d2P_dldl, d2P_dldm, d2P_dmdm, d2A_dadl, d2A_dldl;
 };
 
+/// A = act·f_l with its derivatives; act is the activation, not below its floor.
+template <class N>
+struct ActiveForce {
+  N A, byActivation, byLength, both, twiceByLength;
+};
+
+/// @param active  the curve f_l there, over ℓ/ℓ0
+template <bool second, class Muscle, class N, class Jet>
+[[gnu::always_inline]] inline ActiveForce<N> activeForce(const Muscle& muscle, const N& activation,
+                                                         const Jet& active) {
+  const N none(0.0);
+  const N perFibre = muscle.perFibre();
+  const N least(muscle.options().activationFloor);
+  const auto floored = activation < least;
+  const N act = choose(floored, least, activation);
+  using Active = ActiveForce<N>;
+  return branch(
+      active.value < 0.0,
+      [&] {
+        return Active{none, none, none, none, none};
+      },
+      [&] {
+        Active some{act * active.value, choose(floored, none, N(active.value)),
+                    act * active.slope * perFibre, none, none};
+        if constexpr (second) {
+          some.both = choose(floored, none, N(active.slope * perFibre));
+          some.twiceByLength = act * active.curvature * perFibre * perFibre;
+        }
+        return some;
+      });
+}
+
 template <bool second, class Muscle, class Pieces, class N>
 [[gnu::always_inline]] inline ForceBalance<N> forceBalance(const Muscle& muscle,
                                                            const N& activation,
@@ -81,26 +113,7 @@ template <bool second, class Muscle, class Pieces, class N>
     passive = {value, 8.0 * value, 64.0 * value};
   }
   const auto active = curves.activeForce.evaluate(l, last.activeForce);
-  const N least(muscle.options().activationFloor);
-  const auto floored = activation < least;
-  const N act = choose(floored, least, activation);
-  struct Active {
-    N A, byActivation, byLength, both, twiceByLength;
-  };
-  const Active a = branch(
-      active.value < 0.0,
-      [&] {
-        return Active{none, none, none, none, none};
-      },
-      [&] {
-        Active some{act * active.value, choose(floored, none, N(active.value)),
-                    act * active.slope * perFibre, none, none};
-        if constexpr (second) {
-          some.both = choose(floored, none, N(active.slope * perFibre));
-          some.twiceByLength = act * active.curvature * perFibre * perFibre;
-        }
-        return some;
-      });
+  const ActiveForce<N> a = activeForce<second>(muscle, activation, active);
   f.A = a.A;
   f.dA_da = a.byActivation;
   f.dA_dl = a.byLength;
