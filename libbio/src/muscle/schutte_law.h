@@ -32,6 +32,43 @@ struct ForceBalance {
   N d2Kappa, d2P_dldl, d2P_dldm, d2P_dmdm, d2A_dadl, d2A_dldl;
 };
 
+/// P with its derivatives in ℓ and ℓ_MT.
+template <class N>
+struct Pull {
+  N P, byLength, byPath, byLengths, byBoth, byPaths;
+};
+
+/// P = F̂_T κ − f_PE, held at 0 where it is clamped; `f` as far as it is known.
+template <bool second, class Muscle, class N>
+[[gnu::always_inline]] inline Pull<N> pullOf(const Muscle& muscle, const ForceBalance<N>& f,
+                                             const CurveJet<N>& passive) {
+  const N none(0.0);
+  const N perFibre = muscle.perFibre();
+  const N perTendon = muscle.perTendon();
+  const N P = f.tendon * f.kappa - passive.value;
+  return branch(
+      muscle.options().clampForce && P < 0.0,
+      [&] { return Pull<N>{none, none, none, none, none, none}; },
+      [&] {
+        const N slope = f.tendonSlope * perTendon;
+        Pull<N> some{P,
+                     -slope * f.kappa * f.kappa + f.tendon * f.dKappa - passive.slope * perFibre,
+                     slope * f.kappa,
+                     none,
+                     none,
+                     none};
+        if constexpr (second) {
+          const N curvature = f.tendonCurvature * perTendon * perTendon;
+          some.byPaths = curvature * f.kappa;
+          some.byBoth = -curvature * f.kappa * f.kappa + slope * f.dKappa;
+          some.byLengths = curvature * f.kappa * f.kappa * f.kappa -
+                           3 * slope * f.kappa * f.dKappa + f.tendon * f.d2Kappa -
+                           passive.curvature * perFibre * perFibre;
+        }
+        return some;
+      });
+}
+
 template <bool second, class Muscle, class Pieces, class N>
 [[gnu::always_inline]] inline ForceBalance<N> forceBalance(const Muscle& muscle,
                                                            const N& activation,
@@ -108,32 +145,7 @@ template <bool second, class Muscle, class Pieces, class N>
   f.d2A_dldl = a.twiceByLength;
   if constexpr (second) f.d2Kappa = 3 * w2 * fibreLength * perD * perD * perD * perD * perD;
 
-  // P = F̂_T κ − f_PE, held at 0 where it is clamped.
-  struct Pull {
-    N P, byLength, byPath, byLengths, byBoth, byPaths;
-  };
-  const N P = f.tendon * f.kappa - passive.value;
-  const Pull p = branch(
-      muscle.options().clampForce && P < 0.0,
-      [&] { return Pull{none, none, none, none, none, none}; },
-      [&] {
-        const N slope = f.tendonSlope * perTendon;
-        Pull some{P,
-                  -slope * f.kappa * f.kappa + f.tendon * f.dKappa - passive.slope * perFibre,
-                  slope * f.kappa,
-                  none,
-                  none,
-                  none};
-        if constexpr (second) {
-          const N curvature = f.tendonCurvature * perTendon * perTendon;
-          some.byPaths = curvature * f.kappa;
-          some.byBoth = -curvature * f.kappa * f.kappa + slope * f.dKappa;
-          some.byLengths = curvature * f.kappa * f.kappa * f.kappa -
-                           3 * slope * f.kappa * f.dKappa + f.tendon * f.d2Kappa -
-                           passive.curvature * perFibre * perFibre;
-        }
-        return some;
-      });
+  const Pull<N> p = pullOf<second>(muscle, f, passive);
   f.P = p.P;
   f.dP_dl = p.byLength;
   f.dP_dm = p.byPath;
