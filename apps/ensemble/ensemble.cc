@@ -289,7 +289,7 @@ class Ensemble : public Command {
   /// unit cube, which comes from the number's own random stream, or from Saltelli's scheme.
   RowWork rowsOf(const EnsembleStudy& study, std::uint64_t seed) const {
     RowWork work;
-    work.together = 16;  // four times four lanes
+    work.together = 64;  // lanes want several possible draws
     work.rows = [this, &study, seed](std::span<const std::uint64_t> numbers) {
       std::vector<Eigen::VectorXd> thetas;
       for (const std::uint64_t number : numbers) thetas.push_back(draw(study, number, seed));

@@ -32,33 +32,38 @@ struct ForceBalance {
   N d2Kappa, d2P_dldl, d2P_dldm, d2P_dmdm, d2A_dadl, d2A_dldl;
 };
 
-/// A = act·f_l with its derivatives; act is the activation, not below its floor.
+/// P with its derivatives in ℓ and ℓ_MT.
 template <class N>
-struct ActiveForce {
-  N A, byActivation, byLength, both, twiceByLength;
+struct Pull {
+  N P, byLength, byPath, byLengths, byBoth, byPaths;
 };
 
-/// @param active  the curve f_l there, over ℓ/ℓ0
-template <bool second, class Muscle, class N, class Jet>
-[[gnu::always_inline]] inline ActiveForce<N> activeForce(const Muscle& muscle, const N& activation,
-                                                         const Jet& active) {
+/// P = F̂_T κ − f_PE, held at 0 where it is clamped; `f` as far as it is known.
+template <bool second, class Muscle, class N>
+[[gnu::always_inline]] inline Pull<N> pullOf(const Muscle& muscle, const ForceBalance<N>& f,
+                                             const CurveJet<N>& passive) {
   const N none(0.0);
   const N perFibre = muscle.perFibre();
-  const N least(muscle.options().activationFloor);
-  const auto floored = activation < least;
-  const N act = choose(floored, least, activation);
-  using Active = ActiveForce<N>;
+  const N perTendon = muscle.perTendon();
+  const N P = f.tendon * f.kappa - passive.value;
   return branch(
-      active.value < 0.0,
+      muscle.options().clampForce && P < 0.0,
+      [&] { return Pull<N>{none, none, none, none, none, none}; },
       [&] {
-        return Active{none, none, none, none, none};
-      },
-      [&] {
-        Active some{act * active.value, choose(floored, none, N(active.value)),
-                    act * active.slope * perFibre, none, none};
+        const N slope = f.tendonSlope * perTendon;
+        Pull<N> some{P,
+                     -slope * f.kappa * f.kappa + f.tendon * f.dKappa - passive.slope * perFibre,
+                     slope * f.kappa,
+                     none,
+                     none,
+                     none};
         if constexpr (second) {
-          some.both = choose(floored, none, N(active.slope * perFibre));
-          some.twiceByLength = act * active.curvature * perFibre * perFibre;
+          const N curvature = f.tendonCurvature * perTendon * perTendon;
+          some.byPaths = curvature * f.kappa;
+          some.byBoth = -curvature * f.kappa * f.kappa + slope * f.dKappa;
+          some.byLengths = curvature * f.kappa * f.kappa * f.kappa -
+                           3 * slope * f.kappa * f.dKappa + f.tendon * f.d2Kappa -
+                           passive.curvature * perFibre * perFibre;
         }
         return some;
       });
@@ -113,7 +118,26 @@ template <bool second, class Muscle, class Pieces, class N>
     passive = {value, 8.0 * value, 64.0 * value};
   }
   const auto active = curves.activeForce.evaluate(l, last.activeForce);
-  const ActiveForce<N> a = activeForce<second>(muscle, activation, active);
+  const N least(muscle.options().activationFloor);
+  const auto floored = activation < least;
+  const N act = choose(floored, least, activation);
+  struct Active {
+    N A, byActivation, byLength, both, twiceByLength;
+  };
+  const Active a = branch(
+      active.value < 0.0,
+      [&] {
+        return Active{none, none, none, none, none};
+      },
+      [&] {
+        Active some{act * active.value, choose(floored, none, N(active.value)),
+                    act * active.slope * perFibre, none, none};
+        if constexpr (second) {
+          some.both = choose(floored, none, N(active.slope * perFibre));
+          some.twiceByLength = act * active.curvature * perFibre * perFibre;
+        }
+        return some;
+      });
   f.A = a.A;
   f.dA_da = a.byActivation;
   f.dA_dl = a.byLength;
@@ -121,32 +145,7 @@ template <bool second, class Muscle, class Pieces, class N>
   f.d2A_dldl = a.twiceByLength;
   if constexpr (second) f.d2Kappa = 3 * w2 * fibreLength * perD * perD * perD * perD * perD;
 
-  // P = F̂_T κ − f_PE, held at 0 where it is clamped.
-  struct Pull {
-    N P, byLength, byPath, byLengths, byBoth, byPaths;
-  };
-  const N P = f.tendon * f.kappa - passive.value;
-  const Pull p = branch(
-      muscle.options().clampForce && P < 0.0,
-      [&] { return Pull{none, none, none, none, none, none}; },
-      [&] {
-        const N slope = f.tendonSlope * perTendon;
-        Pull some{P,
-                  -slope * f.kappa * f.kappa + f.tendon * f.dKappa - passive.slope * perFibre,
-                  slope * f.kappa,
-                  none,
-                  none,
-                  none};
-        if constexpr (second) {
-          const N curvature = f.tendonCurvature * perTendon * perTendon;
-          some.byPaths = curvature * f.kappa;
-          some.byBoth = -curvature * f.kappa * f.kappa + slope * f.dKappa;
-          some.byLengths = curvature * f.kappa * f.kappa * f.kappa -
-                           3 * slope * f.kappa * f.dKappa + f.tendon * f.d2Kappa -
-                           passive.curvature * perFibre * perFibre;
-        }
-        return some;
-      });
+  const Pull<N> p = pullOf<second>(muscle, f, passive);
   f.P = p.P;
   f.dP_dl = p.byLength;
   f.dP_dm = p.byPath;

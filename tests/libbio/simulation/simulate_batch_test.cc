@@ -159,7 +159,7 @@ TEST(SimulateTogether, DoesNotDependOnTheProcessorToTheLastBit) {
 // as it would alone, the latter is what simulate() makes of it, the others unchanged.
 TEST(SimulateTogether, HalvesStepsAndLeavesFailuresToSimulate) {
   const ShippedElbow elbow;
-  Drawn drawn(elbow, muscleNumbers, 0.02, 3, 0.5);
+  Drawn drawn(elbow, muscleNumbers, 0.02, 3, 0.12);  // of twelve steps, fewer than it may halve
   drawn.options.maxIterations = 4;
   const auto expected = simulateTogether(drawn.jobs, drawn.options);
   SystemState flung = *drawn.jobs[1].start;

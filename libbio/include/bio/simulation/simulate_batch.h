@@ -25,13 +25,15 @@ enum class LaneInstructions {
 ///
 /// The scheme is that of simulate() and its tolerances are the same; paths and gravity are taken at
 /// every iterate in closed form in sin q and cos q, where simulate() uses Taylor's polynomials for
-/// the last small changes. Motions agree to 1e-9 rad. A trajectory depends bitwise on its own job
-/// only, not on the other jobs or their order.
+/// the last small changes. Muscles of all classes; motions agree to 1e-9 rad where the iterations
+/// of a step are as many, else to its tolerance. A trajectory depends bitwise on its own job only,
+/// not on the other jobs or their order.
 ///
 /// Jobs that the SIMD kernel does not support are simulated one by one with simulate(): integrators
 /// other than the two variational ones, progress calls, several free coordinates, sliders, paths
-/// over spheres, points that move in their bodies; also, from its beginning, a job with a step that
-/// does not converge. Trajectory::wallSeconds is 0 for jobs of the SIMD kernel.
+/// over spheres, points that move in their bodies; also, from its beginning, a job that halves more
+/// than sixteen steps or finds no solution. Trajectory::wallSeconds is 0 for jobs of the SIMD
+/// kernel.
 ///
 /// @throws what simulate() throws
 std::vector<Trajectory> simulateTogether(std::span<const LaneJob> jobs,

@@ -175,7 +175,12 @@ void LaneDriver::meetFailure() {
     phase_ = Phase::failed;
     return;
   }
-  if (target.halvings == 0) ++recorder_.trajectory().halvedSteps;
+  // one that halves on and on would keep a whole set of lanes for itself
+  constexpr int mostHalvedSteps = 16;
+  if (target.halvings == 0 && ++recorder_.trajectory().halvedSteps > mostHalvedSteps) {
+    phase_ = Phase::failed;
+    return;
+  }
   const Target half{t0_ + (target.time - t0_) / 2, ++target.halvings};
   targets_.push_back(half);
   returnToBegin();

@@ -38,7 +38,8 @@ class ActivationCourse {
 };
 
 /// One simulation of those that are advanced together: asks for steps and takes their ends. Does
-/// between steps what VariationalRun does, and gives up where the smallest step fails.
+/// between steps what VariationalRun does, and gives up where the smallest step fails or many are
+/// halved.
 class LaneDriver {
  public:
   /// All must outlive the driver.
