@@ -320,6 +320,7 @@ void defineSystems(py::module_& module) {
              "ignore_extra"_a = false, "known_mass_in_hand"_a = 0.0, "known_arm_turn"_a = 0.0,
              "prescribe"_a = std::vector<std::string>(), "hold"_a = std::map<std::string, double>(),
              "prescribe_cutoff"_a = py::none(), docstrings::make_trial);
+  defineReviews(module, model, trial);
   defineWithChoice(module, "replay", &replay, docstrings::replay, "model"_a, "trial"_a,
                    py::kw_only(), "initial"_a = std::map<std::string, double>());
 }

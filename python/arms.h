@@ -57,6 +57,10 @@ void mustBeOfTheModelAsItIs(const bio::Trial& trial);
 bio::SimulationOptions during(const bio::Trial& trial, bio::SimulationOptions options);
 
 void defineSystems(py::module_& module);
+/// Also defines what the classes say of themselves.
+void defineReviews(py::module_& module, py::class_<bio::Model>& model,
+                   py::class_<bio::Trial>& trial);
+void defineEmg(py::module_& module);
 void definePaths(py::module_& module);
 void defineSensitivity(py::module_& module);
 void defineCalibration(py::module_& module);

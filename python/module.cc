@@ -51,6 +51,7 @@ PYBIND11_MODULE(_fisherhill, module) {
   module.attr("__version__") = info::version();
   pybind11::register_exception_translator(&python::translate);
   python::defineSystems(module);
+  python::defineEmg(module);
   python::definePaths(module);
   python::defineSensitivity(module);
   python::defineCalibration(module);

@@ -132,6 +132,68 @@ class Options(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, "input_scatter"):
                 fh.discover(self.model, [self.trial], input_scatter=scatter)
 
+    def test_reviews_say_what_is_unusual(self):
+        self.assertRegex(self.model.remarks[0], "TRIlong.*twice")
+        for one in self.model.review() + self.trial.review(self.model):
+            stub.check(one, "Remark")
+        # the same excitations with the angle in degrees under the name of the one in radians
+        columns = {"time": self.trial.times, "elbow_flexion": np.full(len(self.trial.times), 40.0)}
+        columns |= dict(zip(self.trial.muscles, self.trial.excitations.T))
+        remarks = fh.make_trial(self.model, columns).review(self.model)
+        errors = [one for one in remarks if one.weight == "error"]
+        self.assertTrue(any("elbow_flexion" in one.subject + one.message for one in errors), remarks)
+        with self.assertRaises(TypeError):
+            self.trial.review()
+
+    def test_jumps_are_where_lengths_jump(self):
+        jumps = fh.length_jumps(self.model)
+        self.assertGreater(len(jumps), 0)
+        for one in jumps:
+            stub.check(one, "LengthJump")
+            at = fh.moment_arms(self.model, {one.coordinate: one.value + np.array([-1e-6, 1e-6])})
+            k = at.muscles.index(one.muscle)
+            self.assertAlmostEqual(at.length[1, k] - at.length[0, k], one.length, delta=1e-6)
+            arms = at.moment_arm[one.coordinate][:, k]
+            self.assertAlmostEqual(arms[1] - arms[0], one.moment_arm, delta=1e-4)
+        self.assertEqual(fh.opensim_differences(self.model), [])  # it has no ellipsoid
+
+    def test_muscle_states_have_a_row_for_each_of_the_file(self):
+        file = "models/muscle_states.csv"
+        found = fh.muscle_states(file)
+        stub.check(found, "MuscleStatesResult")
+        with open(file) as text:
+            lines = text.read()
+        rows = [line.split(",") for line in lines.splitlines()[1:]]
+        self.assertEqual(found.muscle_class, [row[0] for row in rows])
+        for column in (found.fibre_velocity, found.tendon_force, found.static_fibre_length, found.static_tendon_force):
+            self.assertEqual(column.shape, (len(rows),))
+        self.assertTrue((found.tendon_force >= 0).all())
+        with self.assertRaisesRegex(ValueError, "class"):
+            with tempfile.NamedTemporaryFile("w", suffix=".csv") as other:
+                other.write(lines.replace("Thelen2003Muscle", "Nobody"))
+                other.flush()
+                fh.muscle_states(other.name)
+
+    def test_raw_emg_becomes_a_trial(self):
+        found = fh.emg("emg_data/curl_slow_raw.csv", "emg_data/configs/shipped_raw.toml")
+        stub.check(found, "EmgResult")
+        trial = fh.make_trial(self.model, found.columns)
+        np.testing.assert_array_equal(trial.times, found.columns["time"])
+        for k, name in enumerate(trial.muscles):
+            if name in found.muscles:
+                np.testing.assert_array_equal(trial.excitations[:, k], found.columns[name])
+        # the shipped trial is what the recording was made from
+        np.testing.assert_allclose(found.columns["elbow_flexion_deg"][0], 30.32, atol=1e-9)
+        for name in found.muscles:
+            truth = self.trial.excitations[:, self.trial.muscles.index(name)]
+            self.assertLess(np.sqrt(np.mean((found.columns[name] - truth) ** 2)), 0.12 * truth.max(), name)
+        for electrode in found.electrodes.values():
+            self.assertEqual(electrode.envelope.shape, electrode.excitation.shape)
+            self.assertGreater(electrode.full, 0)
+        self.assertEqual((found.offsets, found.latent_excitation), ({}, ""))
+        with self.assertRaisesRegex(ValueError, "recordings"):
+            fh.emg([], "emg_data/configs/shipped_raw.toml")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -27,15 +27,19 @@ __all__ = [
     "cost_gradient",
     "cramer_rao_bound",
     "discover",
+    "emg",
     "estimate",
     "fisher_information",
     "fit_paths",
     "identifiability",
+    "length_jumps",
     "list_parameters",
     "load_model",
     "load_trial",
     "make_trial",
     "moment_arms",
+    "muscle_states",
+    "opensim_differences",
     "replay",
     "sensitivity",
 ]
@@ -46,6 +50,12 @@ _Array: TypeAlias = NDArray[np.float64]
 _Integrator: TypeAlias = Literal["vi", "vi-left", "rk4", "cvode"]
 
 # Models and trials --------------------------------------------------------------------------------
+
+@type_check_only
+class Remark:
+    weight: Literal["error", "warning", "unusual"]
+    subject: str
+    message: str
 
 class Model:
     """A musculoskeletal model, made by load_model, calibrate or discover."""
@@ -65,6 +75,26 @@ class Model:
     @property
     def warnings(self) -> list[str]:
         """What the file contains but is not simulated, one line each."""
+
+    @property
+    def remarks(self) -> list[str]:
+        """What the file contains but is interpreted differently, one line each."""
+
+    def review(self) -> list[Remark]:
+        """Unusual numbers of the model, as check lists them beside warnings and remarks.
+
+        Returns
+        -------
+        list
+            Each with
+
+            weight : str
+                'error' (simulations refuse it), 'warning' (probably another unit) or 'unusual'.
+            subject : str
+                What it is about, e.g. "coordinate 'elbow_flexion'".
+            message : str
+                Quantity, value with its unit, and the usual range.
+        """
 
     def write(self, file: str) -> None:
         """Writes the model as an OpenSim 4 file (.osim).
@@ -163,6 +193,20 @@ class Trial:
     @property
     def warnings(self) -> list[str]:
         """Remarks on the columns, one line each."""
+
+    def review(self, model: Model) -> list[Remark]:
+        """Unusual numbers of the trial, as check lists them beside warnings.
+
+        Parameters
+        ----------
+        model : Model
+            The one that the trial was read for; ranges of coordinates are its ranges.
+
+        Returns
+        -------
+        list
+            As of Model.review.
+        """
 
 def load_model(file: str) -> Model:
     """Reads an OpenSim 3 or 4 model (.osim).
@@ -263,6 +307,124 @@ def make_trial(
     ------
     ValueError
         If columns differ in length or break a rule of a file's columns.
+    """
+
+# Recordings ---------------------------------------------------------------------------------------
+
+@type_check_only
+class EmgElectrode:
+    unit: str
+    rate: float
+    start_time: float
+    filtered: _Array
+    envelope: _Array
+    full: float
+    full_source: str
+    fraction_below: float
+    fraction_above: float
+    excitation: _Array
+
+@type_check_only
+class EmgResult:
+    columns: dict[str, _Array]
+    muscles: list[str]
+    electrodes: dict[str, EmgElectrode]
+    fraction_of_sums_clipped: float
+    offsets: dict[str, float]
+    latent_excitation: str
+    remarks: list[str]
+    warnings: list[str]
+
+def emg(recordings: str | Sequence[str], config: str) -> EmgResult:
+    """Converts raw EMG recordings of one movement into the columns of a trial.
+
+    make_trial(model, emg(recordings, config).columns) is the trial.
+
+    Parameters
+    ----------
+    recordings : str or list of str
+        File, or several of the same movement: text columns, Trigno export, .sto, .mot, .csv, .c3d,
+        .xdf or .trc.
+    config : str
+        File (.toml) of channels, filters, electrodes and muscles (docs/emg.md).
+
+    Returns
+    -------
+    columns : dict
+        {column: values}, equally spaced rows: 'time' [s]; muscles (excitation, 0 to 1); the measured
+        coordinate, e.g. 'elbow_flexion_deg' [deg], and other columns of the configuration, NaN where
+        they were not measured.
+    muscles : list of str
+        The columns that are excitations.
+    electrodes : dict
+        {channel: electrode}, each at its own rate, with
+
+        unit : str
+            Of the signal.
+        rate, start_time : float
+            [Hz], [s]
+        filtered, envelope : array, samples
+            Before rectification (empty for envelopes), and after the low-pass [unit].
+        full : float
+            Envelope that corresponds to excitation 1 [unit].
+        full_source : str
+            Where that number comes from.
+        fraction_below, fraction_above : float
+            Of the samples, below 0 and above 1, which were clipped.
+        excitation : array, samples
+            0 to 1, not yet delayed.
+    fraction_of_sums_clipped : float
+        Of all excitations: weighted sums of electrodes above 1.
+    offsets : dict
+        {file: offset [s]} of further recordings: time of the first = its own + offset.
+    latent_excitation : str
+        The header line of that name of a trial's file, if calibrate may correct muscles without an
+        electrode, else empty; make_trial has no headers.
+    remarks, warnings : list of str
+        Processing steps and limitations; channels that look wrong.
+
+    Raises
+    ------
+    ValueError
+        If a file cannot be read, a channel is missing or has gaps, or a setting breaks a rule; the
+        line names file and key, or channel.
+    """
+
+# Muscles ------------------------------------------------------------------------------------------
+
+@type_check_only
+class MuscleStatesResult:
+    muscle_class: list[str]
+    fibre_velocity: _Array
+    tendon_force: _Array
+    static_fibre_length: _Array
+    static_tendon_force: _Array
+
+def muscle_states(file: str) -> MuscleStatesResult:
+    """Evaluates muscle laws for given states, class by class.
+
+    Parameters
+    ----------
+    file : str
+        Table (.csv) with class, max_isometric_force [N], optimal_fiber_length [m],
+        tendon_slack_length [m], pennation [rad], max_contraction_velocity [optimal lengths/s],
+        activation, fiber_length [m], path_length [m] and path_speed [m/s]; models/muscle_states.csv
+        is one.
+
+    Returns
+    -------
+    muscle_class : list of str
+        Of each row, as the file has it.
+    fibre_velocity, tendon_force : array, rows
+        [m/s], [N]
+    static_fibre_length, static_tendon_force : array, rows
+        At rest at this activation and path length [m], [N]; NaN where no length balances the tendon.
+
+    Raises
+    ------
+    ValueError
+        For a missing column, a cell that is no number, an unknown class or column, or a number that
+        breaks a rule of the class.
     """
 
 # Replay -------------------------------------------------------------------------------------------
@@ -413,6 +575,81 @@ def moment_arms(
     ------
     ValueError
         For an unknown coordinate, columns of different lengths, or values that are not finite.
+    """
+
+@type_check_only
+class LengthJump:
+    muscle: str
+    coordinate: str
+    value: float
+    length: float
+    moment_arm: float
+    conditional: bool
+    text: str
+
+def length_jumps(model: Model) -> list[LengthJump]:
+    """Where lengths and moment arms of muscles jump, along each coordinate that is not locked or coupled.
+
+    Other coordinates are at their default values; 720 steps over the range and 0.3 rad or m beyond.
+
+    Parameters
+    ----------
+    model : Model
+
+    Returns
+    -------
+    list
+        Jumps of lengths by 1e-5 m or more, and of moment arms by 1e-3 m or more, each with
+
+        muscle, coordinate : str
+        value : float
+            Of the coordinate [rad] or [m].
+        length, moment_arm : float
+            Just above it less just below it [m].
+        conditional : bool
+            True: a conditional point switches there; else the side of a wrap object changes.
+        text : str
+            The same as a sentence.
+    """
+
+@type_check_only
+class OpenSimDifference:
+    muscle: str
+    coordinate: str
+    ellipsoids: list[str]
+    length: float
+    length_at: float
+    moment_arm: float
+    moment_arm_at: float
+    apart: list[tuple[float, float]]
+    jumps: list[tuple[float, float]]
+    text: str
+
+def opensim_differences(model: Model) -> list[OpenSimDifference]:
+    """Where OpenSim's paths over ellipsoids differ from taut strings, by OpenSim's rule restated.
+
+    Parameters
+    ----------
+    model : Model
+
+    Returns
+    -------
+    list
+        Muscles whose lengths differ by 1e-4 m or more somewhere along a coordinate, each with
+
+        muscle, coordinate : str
+        ellipsoids : list of str
+            Of the path.
+        length, moment_arm : float
+            Largest differences, OpenSim's less the taut string's [m].
+        length_at, moment_arm_at : float
+            Of the coordinate there [rad] or [m].
+        apart : list of tuple
+            (from, to) of the coordinate, where lengths differ by 1e-4 m or more [rad] or [m].
+        jumps : list of tuple
+            (value of the coordinate [rad] or [m], jump of OpenSim's length [m]).
+        text : str
+            The same as a sentence.
     """
 
 @type_check_only

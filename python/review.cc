@@ -1,0 +1,102 @@
+#include "bio/model/model_review.h"
+
+#include "arms.h"
+#include "bio/analysis/muscle_states.h"
+#include "bio/analysis/opensim_paths.h"
+#include "bio/path/length_jumps.h"
+#include "bio/tables/trial_review.h"
+#include "docstrings.h"
+#include "interruptible.h"
+
+namespace python {
+namespace {
+
+const char* nameOf(bio::Weight weight) {
+  switch (weight) {
+    case bio::Weight::error:
+      return "error";
+    case bio::Weight::warning:
+      return "warning";
+    case bio::Weight::unusual:
+      break;
+  }
+  return "unusual";
+}
+
+py::list listOf(const std::vector<bio::Remark>& remarks) {
+  py::list list;
+  for (const bio::Remark& one : remarks) {
+    list.append(results("weight"_a = nameOf(one.weight), "subject"_a = one.subject,
+                        "message"_a = one.message));
+  }
+  return list;
+}
+
+py::list lengthJumps(const bio::Model& model) {
+  std::vector<bio::LengthJump> jumps;
+  interruptible([&](const std::atomic<bool>&) { jumps = bio::lengthJumps(model); });
+  py::list list;
+  for (const bio::LengthJump& one : jumps) {
+    list.append(results("muscle"_a = one.muscle, "coordinate"_a = one.coordinate,
+                        "value"_a = one.value, "length"_a = one.size, "moment_arm"_a = one.arm,
+                        "conditional"_a = one.conditional, "text"_a = bio::describe(one)));
+  }
+  return list;
+}
+
+py::list openSimDifferences(const bio::Model& model) {
+  std::vector<bio::OpenSimDifference> differences;
+  interruptible([&](const std::atomic<bool>&) { differences = bio::openSimDifferences(model); });
+  py::list list;
+  for (const bio::OpenSimDifference& one : differences) {
+    std::vector<std::pair<double, double>> apart, jumps;
+    for (const auto& range : one.apart) apart.emplace_back(range.from, range.to);
+    for (const auto& jump : one.jumps) jumps.emplace_back(jump.at, jump.size);
+    list.append(results("muscle"_a = one.muscle, "coordinate"_a = one.coordinate,
+                        "ellipsoids"_a = one.ellipsoids, "length"_a = one.length,
+                        "length_at"_a = one.lengthAt, "moment_arm"_a = one.arm,
+                        "moment_arm_at"_a = one.armAt, "apart"_a = apart, "jumps"_a = jumps,
+                        "text"_a = bio::describe(one)));
+  }
+  return list;
+}
+
+py::object muscleStates(const std::string& file) {
+  const std::vector<bio::MuscleState> states = bio::muscleStates(file);
+  const auto column = [&](double bio::MuscleState::*member) {
+    Eigen::VectorXd values(std::ssize(states));
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      values[static_cast<Eigen::Index>(i)] = states[i].*member;
+    }
+    return values;
+  };
+  std::vector<std::string> classes;
+  for (const bio::MuscleState& one : states) classes.push_back(one.className);
+  return results("muscle_class"_a = classes,
+                 "fibre_velocity"_a = column(&bio::MuscleState::fibreVelocity),
+                 "tendon_force"_a = column(&bio::MuscleState::tendonForce),
+                 "static_fibre_length"_a = column(&bio::MuscleState::staticFibreLength),
+                 "static_tendon_force"_a = column(&bio::MuscleState::staticTendonForce));
+}
+
+}  // namespace
+
+void defineReviews(py::module_& module, py::class_<bio::Model>& model,
+                   py::class_<bio::Trial>& trial) {
+  model.def_readonly("remarks", &bio::Model::remarks, docstrings::Model_remarks)
+      .def(
+          "review", [](const bio::Model& self) { return listOf(bio::reviewModel(self)); },
+          docstrings::Model_review);
+  trial.def(
+      "review",
+      [](const bio::Trial& self, const bio::Model& of) {
+        return listOf(bio::reviewTrial(self, of));
+      },
+      "model"_a, docstrings::Trial_review);
+  module.def("length_jumps", &lengthJumps, "model"_a, docstrings::length_jumps);
+  module.def("opensim_differences", &openSimDifferences, "model"_a,
+             docstrings::opensim_differences);
+  module.def("muscle_states", &muscleStates, "file"_a, docstrings::muscle_states);
+}
+
+}  // namespace python
