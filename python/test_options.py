@@ -157,6 +157,27 @@ class Options(unittest.TestCase):
             self.assertAlmostEqual(arms[1] - arms[0], one.moment_arm, delta=1e-4)
         self.assertEqual(fh.opensim_differences(self.model), [])  # it has no ellipsoid
 
+    def test_differences_from_opensim_over_an_ellipsoid(self):
+        with open("models/elbow8.osim") as text:
+            before, cylinder = text.read().split('<WrapCylinder name="TRI">')
+        cylinder, after = cylinder.split("</WrapCylinder>", 1)
+        for old, new in (("-0.14015 -0.00628319 0.154985", "0.8 0 0.155"), ("<length>0.1</length>", ""),
+                         ("<radius>0.016</radius>", "<dimensions>0.02 0.012 0.012</dimensions>")):
+            self.assertIn(old, cylinder)
+            cylinder = cylinder.replace(old, new)
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "ellipsoid.osim")
+            with open(file, "w") as text:
+                text.write(f'{before}<WrapEllipsoid name="TRI">{cylinder}</WrapEllipsoid>{after}')
+            found = fh.opensim_differences(fh.load_model(file))
+        self.assertEqual([one.muscle for one in found], ["TRIlong", "TRIlat", "TRImed"])
+        for one in found:
+            stub.check(one, "OpenSimDifference")
+            self.assertEqual(one.ellipsoids, ["TRI"])
+            self.assertGreater(one.length, 1e-3)
+            self.assertTrue(one.apart[0][0] <= one.length_at <= one.apart[0][1])
+            self.assertIn("over TRI differs from the taut string", one.text)
+
     def test_muscle_states_have_a_row_for_each_of_the_file(self):
         file = "models/muscle_states.csv"
         found = fh.muscle_states(file)
