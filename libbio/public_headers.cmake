@@ -44,6 +44,7 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/emg/emg_config.h
   include/bio/emg/emg_mapping.h
   include/bio/emg/emg_recordings.h
+  include/bio/emg/emg_trial.h
   include/bio/emg/emg_stages.h
   include/bio/emg/filter.h
   include/bio/emg/latent_excitation.h

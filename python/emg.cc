@@ -3,40 +3,12 @@
 #include "arms.h"
 #include "bio/emg/emg_config.h"
 #include "bio/emg/emg_recordings.h"
-#include "bio/opensim/osim_file.h"
+#include "bio/emg/emg_trial.h"
 #include "docstrings.h"
 #include "interruptible.h"
 
 namespace python {
 namespace {
-
-/// BODY.MARKER of the model that [markers] names.
-std::vector<std::string> markersOf(const bio::EmgConfigFile& file) {
-  std::vector<std::string> names;
-  if (!file.markers || file.markers->model.empty()) return names;
-  for (const bio::Marker& marker : bio::readOsim(file.markers->model).markers) {
-    names.push_back(marker.body + "." + marker.name);
-  }
-  return names;
-}
-
-/// As make_trial takes them.
-py::dict columnsOf(const bio::EmgResult& result, const bio::EmgConfig& config) {
-  py::dict columns;
-  columns["time"] = result.time;
-  for (std::size_t k = 0; k < result.muscles.size(); ++k) {
-    columns[result.muscles[k].c_str()] =
-        Eigen::VectorXd(result.excitations.col(static_cast<Eigen::Index>(k)));
-  }
-  if (result.measured) {
-    columns[(result.measured->coordinate + "_deg").c_str()] = result.measured_deg;
-  }
-  for (std::size_t k = 0; k < config.columns.size(); ++k) {
-    columns[config.columns[k].coordinate.c_str()] =
-        Eigen::VectorXd(result.columns.col(static_cast<Eigen::Index>(k)));
-  }
-  return columns;
-}
 
 py::dict electrodesOf(const bio::EmgResult& result) {
   py::dict electrodes;
@@ -56,25 +28,27 @@ py::object emg(const Names& recordings, const std::string& config) {
       one ? std::vector<std::string>{*one} : std::get<std::vector<std::string>>(recordings);
   if (files.empty()) throw std::invalid_argument("recordings: empty, must have at least one");
   bio::JoinedRecordings joined;
-  bio::EmgConfig of;
   bio::EmgResult result;
+  bio::Table trial;
   interruptible([&](const std::atomic<bool>&) {
     const bio::EmgConfigFile file = bio::readEmgConfig(config);
     joined = bio::readRecordings(file, files);
-    of = bio::emgConfigFor(file, joined.recording, markersOf(file));
+    const bio::EmgConfig of = bio::emgConfigFor(file, joined.recording, bio::markerNames(file));
     result = bio::excitationsFromEmg(joined.recording, of);
+    trial = bio::excitationTable(result, of);
   });
   py::dict offsets;
   for (const auto& placed : joined.placed) offsets[placed.file.c_str()] = placed.offset;
-  std::vector<bio::LatentDeclaration> latent;
-  for (const bio::UnrecordedMuscle& muscle : of.unrecorded) {
-    if (muscle.latent) latent.push_back(*muscle.latent);
+  py::dict columns;  // as make_trial takes them
+  for (std::size_t k = 0; k < trial.columns.size(); ++k) {
+    columns[trial.columns[k].c_str()] =
+        Eigen::VectorXd(trial.values.col(static_cast<Eigen::Index>(k)));
   }
-  return results("columns"_a = columnsOf(result, of), "muscles"_a = result.muscles,
+  return results("columns"_a = columns, "muscles"_a = result.muscles,
                  "electrodes"_a = electrodesOf(result),
                  "fraction_of_sums_clipped"_a = result.fractionSumAbove, "offsets"_a = offsets,
-                 "latent_excitation"_a = bio::latentHeader(latent), "remarks"_a = result.remarks,
-                 "warnings"_a = result.warnings);
+                 "latent_excitation"_a = trial.metadata["latent_excitation"],
+                 "remarks"_a = result.remarks, "warnings"_a = result.warnings);
 }
 
 }  // namespace

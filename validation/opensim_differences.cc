@@ -1,12 +1,10 @@
 // Where OpenSim's path over an ellipsoid differs from the taut string, muscle by muscle:
 //     opensim_differences MODEL.osim POSTURES.csv
-// The table is that of posture_tables.cc. For each muscle that may go over an ellipsoid, two
-// tables:
-//   by OpenSim's own postures: the largest differences of length and of moment arms (slopes of the
-//   length), and how near OpenSim's rule restated (bio/path/opensim_rule.h) comes to OpenSim's
-//   length by the rule restated, over each coordinate's range, the others at their defaults: the
-//   largest differences, where the lengths are 0.1 mm apart or more, and jumps of OpenSim's length
-//   and ours
+// The table is that of posture_tables.cc. Two tables of the muscles that may go over an ellipsoid.
+// By OpenSim's own postures: the largest differences of length and of moment arms (slopes of the
+// length), and how near OpenSim's rule restated (bio/path/opensim_rule.h) comes to its length.
+// Over each coordinate's range, the others at their defaults: what bio/analysis/opensim_paths.h
+// finds by that rule, beside our own jumps.
 // Differences are OpenSim's less ours. Ends with 1 if less than four fifths of OpenSim's lengths
 // (those of paths without a torus) are met to 1e-5 m by its rule restated, with 77 if a file is not
 // there.
@@ -19,7 +17,9 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "bio/analysis/opensim_paths.h"
 #include "bio/opensim/osim_file.h"
+#include "bio/path/length_jumps.h"
 #include "bio/path/opensim_rule.h"
 #include "bio/path/path.h"
 #include "bio/path/posture_samples.h"
@@ -29,7 +29,6 @@
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-constexpr double apart = 1e-4;  // [m]
 
 using validation::PostureTable;
 
@@ -51,26 +50,14 @@ class Lengths {
   /// @throws std::domain_error if there is no taut string
   const bio::LengthJet<Eigen::Dynamic>& ours() { return taut_.length(0); }
   /// NaN if the path has a torus.
-  double theirs() const { return theirsAt(q_); }
-  /// NaN at a jump.
-  double theirSlope(int coordinate) const {
-    constexpr double h = 1e-5, corner = 5e-3;  // [rad], [m/rad]
-    Eigen::VectorXd above = q_, below = q_;
-    above[coordinate] += h;
-    below[coordinate] -= h;
-    const double here = theirs();
-    const double ahead = (theirsAt(above) - here) / h, behind = (here - theirsAt(below)) / h;
-    return std::abs(ahead - behind) < corner ? (ahead + behind) / 2
-                                             : std::numeric_limits<double>::quiet_NaN();
-  }
-
- private:
-  double theirsAt(const Eigen::VectorXd& q) const {
+  double theirs() const {
     const bio::Posture posture =
-        bio::postureOf(skeleton_, std::vector<double>(q.data(), q.data() + q.size()));
+        bio::postureOf(skeleton_, std::vector<double>(q_.data(), q_.data() + q_.size()));
     return bio::openSimLength(path_.compiled(), posture)
         .value_or(std::numeric_limits<double>::quiet_NaN());
   }
+
+ private:
   const bio::Skeleton& skeleton_;
   bio::MusclePath path_;
   bio::TreePaths taut_;
@@ -132,15 +119,26 @@ class Differences {
     return all > 0 ? static_cast<double>(met) / all : 0;
   }
 
-  void byRanges() {
+  void byRanges() const {
     fmt::print(
         "\n| muscle | coordinate | length, by the rule restated [mm] | moment arm [mm] | 0.1 mm "
         "apart [deg] | OpenSim's jumps [mm] | ours [mm] |\n|---|---|---|---|---|---|---|\n");
-    forEach([&](const bio::Muscle& muscle, Lengths& lengths) {
-      if (std::isnan(lengths.theirs())) return;
-      for (const int i : bio::pathSupport(model_, skeleton_, muscle))
-        alongRange(muscle, lengths, i);
-    });
+    const auto ours = bio::lengthJumps(model_, 0);
+    for (const bio::OpenSimDifference& one : bio::openSimDifferences(model_)) {
+      std::string apart, jumps, ourJumps;
+      for (const auto& range : one.apart) {
+        apart += fmt::format("{}{:.0f} to {:.0f}", apart.empty() ? "" : ", ", range.from / degree,
+                             range.to / degree);
+      }
+      for (const auto& jump : one.jumps) addJump(jumps, jump.size, jump.at);
+      for (const bio::LengthJump& jump : ours) {
+        if (jump.muscle != one.muscle || jump.coordinate != one.coordinate) continue;
+        addJump(ourJumps, jump.size, jump.value);
+      }
+      fmt::print("| {} | {} | {:+.3f} | {:+.2f} | {} | {} | {} |\n", one.muscle, one.coordinate,
+                 1000 * one.length, 1000 * one.arm, apart, jumps.empty() ? "–" : jumps,
+                 ourJumps.empty() ? "–" : ourJumps);
+    }
   }
 
  private:
@@ -167,79 +165,8 @@ class Differences {
     }
   }
 
-  // Where a length jumps between two values that its slope does not join.
-  struct Sample {
-    double at, theirs, ours, slope;
-  };
-  Sample sample(Lengths& lengths, int i, double value) const {
-    Eigen::VectorXd q = skeleton_.defaultValues();
-    q[i] = value;
-    lengths.moveTo(q);
-    try {
-      const auto& ours = lengths.ours();
-      return {value, lengths.theirs(), ours.length, ours.dL_dq[i]};
-    } catch (const std::domain_error&) {  // no taut string
-      constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-      return {value, nan, nan, nan};
-    }
-  }
-  template <class Of>
-  std::string jumps(Lengths& lengths, int i, const std::vector<Sample>& samples,
-                    const Of& of) const {
-    std::string found;
-    for (std::size_t k = 1; k < samples.size(); ++k) {
-      Sample low = samples[k - 1], high = samples[k];
-      const auto rise = [&](const Sample& a, const Sample& b) {
-        return std::abs(of(b) - of(a) - 0.5 * (a.slope + b.slope) * (b.at - a.at));
-      };
-      if (!(rise(low, high) > 0.2 * apart)) continue;
-      while (high.at - low.at > 1e-7) {
-        const Sample middle = sample(lengths, i, 0.5 * (low.at + high.at));
-        (rise(low, middle) > rise(middle, high) ? high : low) = middle;
-      }
-      const double size = of(high) - of(low);
-      if (std::abs(size) < 0.2 * apart) continue;
-      found += fmt::format("{}{:+.2f} at {:.1f}°", found.empty() ? "" : ", ", 1000 * size,
-                           low.at / degree);
-    }
-    return found.empty() ? "–" : found;
-  }
-
-  void alongRange(const bio::Muscle& muscle, Lengths& lengths, int i) const {
-    const bio::Coordinate& c = coordinate(i);
-    const int n =
-        std::max(1, static_cast<int>(std::ceil((c.rangeMax - c.rangeMin) / (0.2 * degree))));
-    std::vector<Sample> samples;
-    double length = 0, arm = 0, from = 0, to = 0;
-    bool isApart = false;
-    std::string ranges;
-    const auto close = [&] {
-      if (isApart) {
-        ranges += fmt::format("{}{:.0f} to {:.0f}", ranges.empty() ? "" : ", ", from / degree,
-                              to / degree);
-      }
-      isApart = false;
-    };
-    for (int k = 0; k <= n; ++k) {
-      samples.push_back(sample(lengths, i, c.rangeMin + (c.rangeMax - c.rangeMin) * k / n));
-      const Sample& s = samples.back();
-      keepLarger(s.theirs - s.ours, length);
-      keepLarger(s.slope - lengths.theirSlope(i), arm);
-      if (!(std::abs(s.theirs - s.ours) >= apart)) {
-        close();
-        continue;
-      }
-      if (!isApart) from = s.at;
-      to = s.at;
-      isApart = true;
-    }
-    close();
-    if (std::abs(length) < 1e-5) return;
-    fmt::print("| {} | {} | {:+.3f} | {:+.2f} | {} | {} | {} |\n", muscle.name, c.name,
-               1000 * length, 1000 * arm, ranges.empty() ? "–" : ranges,
-               jumps(lengths, i, samples, [](const Sample& s) { return s.theirs; }),
-               jumps(lengths, i, samples, [](const Sample& s) { return s.ours; }));
-    std::fflush(stdout);
+  static void addJump(std::string& list, double size, double at) {
+    list += fmt::format("{}{:+.2f} at {:.1f}°", list.empty() ? "" : ", ", 1000 * size, at / degree);
   }
 
   const bio::Model& model_;

@@ -6,8 +6,7 @@
 #include "bio/emg/emg.h"
 #include "bio/emg/emg_config.h"
 #include "bio/emg/emg_recordings.h"
-#include "bio/opensim/osim_file.h"
-#include "bio/tables/file_error.h"
+#include "bio/emg/emg_trial.h"
 #include "bio/tables/recording.h"
 #include "bio/tables/table_file.h"
 #include "command/command.h"
@@ -90,56 +89,6 @@ Figure measuredFigure(const bio::MeasuredCoordinate& measured) {
   return figure;
 }
 
-// What the trial says of muscles without an electrode that a calibration may correct.
-std::string latentOf(const bio::EmgConfig& config) {
-  std::vector<bio::LatentDeclaration> declared;
-  for (const bio::UnrecordedMuscle& one : config.unrecorded) {
-    if (one.latent) declared.push_back(*one.latent);
-  }
-  return bio::latentHeader(declared);
-}
-
-// BODY.MARKER of the model that [markers] names.
-std::vector<std::string> markersOf(const bio::EmgConfigFile& file, Summary& summary) {
-  std::vector<std::string> names;
-  if (!file.markers || file.markers->model.empty()) return names;
-  try {
-    summary.addInput(file.markers->model);
-    for (const bio::Marker& marker : bio::readOsim(file.markers->model).markers) {
-      names.push_back(marker.body + "." + marker.name);
-    }
-  } catch (const std::exception& error) {
-    throw bio::FileError(
-        fmt::format("{}:{}: [markers] model: {}", file.file, file.markers->line, error.what()));
-  }
-  return names;
-}
-
-bio::Table trialOf(const bio::EmgResult& result, const bio::EmgConfig& config) {
-  const std::vector<bio::MeasuredOptions>& columns = config.columns;
-  bio::Table table;
-  table.name = "excitations";
-  table.columns = {"time"};
-  table.columns.insert(table.columns.end(), result.muscles.begin(), result.muscles.end());
-  const Eigen::Index muscles = result.excitations.cols();
-  table.values.resize(result.time.size(),
-                      1 + muscles + (result.measured ? 1 : 0) + result.columns.cols());
-  table.values.col(0) = result.time;
-  table.values.middleCols(1, muscles) = result.excitations;
-  if (result.measured) {
-    table.columns.push_back(result.measured->coordinate + "_deg");
-    table.values.col(1 + muscles) = result.measured_deg;
-  }
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    table.columns.push_back(columns[k].coordinate);
-  }
-  if (const std::string latent = latentOf(config); !latent.empty()) {
-    table.metadata["latent_excitation"] = latent;
-  }
-  table.values.rightCols(result.columns.cols()) = result.columns;
-  return table;
-}
-
 class Emg : public Command {
  public:
   About about() const override {
@@ -174,12 +123,13 @@ class Emg : public Command {
       if (!full.mvcFile.empty()) summary.addInput(full.mvcFile);
     }
     const bio::JoinedRecordings joined = bio::readRecordings(file, recordings_);
-    const bio::EmgConfig config =
-        bio::emgConfigFor(file, joined.recording, markersOf(file, summary));
+    const std::vector<std::string> markers = bio::markerNames(file);
+    if (file.markers && !file.markers->model.empty()) summary.addInput(file.markers->model);
+    const bio::EmgConfig config = bio::emgConfigFor(file, joined.recording, markers);
     const bio::EmgResult result = bio::excitationsFromEmg(joined.recording, config);
     for (const std::string& warning : result.warnings) summary.warn(warning);
     folder.writeFile("excitations.sto", [&](const std::filesystem::path& path) {
-      bio::writeTable(trialOf(result, config), path);
+      bio::writeTable(bio::excitationTable(result, config), path);
     });
     tell(joined, result, summary);
     tellUnrecorded(config, summary);

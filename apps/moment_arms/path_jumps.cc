@@ -75,7 +75,8 @@ nlohmann::ordered_json differencesAsJson(const std::vector<bio::OpenSimDifferenc
 
 Table differenceTable(const std::vector<bio::OpenSimDifference>& differences) {
   Table table{"Paths over ellipsoids: OpenSim less the taut string",
-              {"muscle", "over", "length [mm]", "moment arm [mm]", "0.1 mm or more at",
+              {"muscle", "over", "length [mm]", "moment arm [mm]",
+               fmt::format("{} mm or more at", numberText(1000 * bio::leastOpenSimDifference)),
                "jumps of OpenSim's length [mm]"},
               {}};
   for (const bio::OpenSimDifference& one : differences) {

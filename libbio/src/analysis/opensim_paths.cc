@@ -31,42 +31,60 @@ class BothLengths {
   }
 
   struct At {
-    double value, ours, slope, theirs;
+    double value, ours, slope, theirs, theirSlope;
     double difference() const { return theirs - ours; }
   };
   At at(double value) {
     q_[0] = value;
     taut_.moveTo(q_);
+    const double length = theirs(value);
     try {
       const PathLengths::Along along = taut_.along(0);
-      return {value, along.length, along.slope, theirs(value)};
+      // where the lengths are the same their slopes hardly differ
+      const bool isSame = std::abs(length - along.length) < 1e-7;
+      return {value, along.length, along.slope, length,
+              isSame ? along.slope : theirSlope(value, length)};
     } catch (const std::domain_error&) {  // no taut string
-      return {value, nan, nan, nan};
+      return {value, nan, nan, length, theirSlope(value, length)};
     }
   }
+  /// What OpenSim's length does between two values beyond the trapezium of its slopes [m]; next to
+  /// a jump, where it has none, of ours, or of none.
+  static double surprise(const At& a, const At& b) {
+    const auto slope = [](const At& x) {
+      if (std::isfinite(x.theirSlope)) return x.theirSlope;
+      return std::isfinite(x.slope) ? x.slope : 0.0;
+    };
+    return std::abs(b.theirs - a.theirs - (slope(a) + slope(b)) / 2 * (b.value - a.value));
+  }
+
+ private:
   double theirs(double value) const {
     std::vector<double> q(q_.begin(), q_.end());
     q[0] = value;
     return openSimLength(path_.compiled(), postureOf(skeleton_, q)).value_or(nan);
   }
-  /// NaN at a jump.
-  double theirSlope(const At& here) const {
+  /// By differences; NaN at a jump or a corner.
+  double theirSlope(double value, double length) const {
     constexpr double h = 1e-5, corner = 5e-3;  // [rad], [m/rad]
-    const double ahead = (theirs(here.value + h) - here.theirs) / h;
-    const double behind = (here.theirs - theirs(here.value - h)) / h;
+    const double ahead = (theirs(value + h) - length) / h;
+    const double behind = (length - theirs(value - h)) / h;
     return std::abs(ahead - behind) < corner ? (ahead + behind) / 2 : nan;
   }
-  /// What OpenSim's length does between two values beyond the trapezium of our slopes [m].
-  static double surprise(const At& a, const At& b) {
-    return std::abs(b.theirs - a.theirs - (a.slope + b.slope) / 2 * (b.value - a.value));
-  }
 
- private:
   const Skeleton& skeleton_;
   const MusclePath& path_;
   PathLengths taut_;
   Eigen::VectorXd q_;
 };
+
+/// Whether the model has an ellipsoid for the muscle's path: what can be seen without compiling it.
+bool mayTouchEllipsoid(const Model& model, const Muscle& muscle) {
+  const auto& wraps = muscle.path.wraps;
+  return std::any_of(wraps.begin(), wraps.end(), [&](const PathWrap& wrap) {
+    return findWrapObject(model, wrap.wrapObject).shape == WrapShape::ellipsoid;
+  });
+}
 
 /// Names of a path's ellipsoids; empty if it has a torus, whose rule is not restated.
 std::vector<std::string> ellipsoidsOf(const Muscle& muscle, const MusclePath& path) {
@@ -79,42 +97,45 @@ std::vector<std::string> ellipsoidsOf(const Muscle& muscle, const MusclePath& pa
   return {names.begin(), names.end()};
 }
 
-void addJumps(BothLengths& lengths, BothLengths::At low, BothLengths::At high,
-              std::vector<OpenSimDifference::Jump>& jumps) {
+/// Keeps the largest differences.
+void keepLarger(const BothLengths::At& here, OpenSimDifference& found) {
+  if (std::abs(here.difference()) > std::abs(found.length)) {
+    found.length = here.difference();
+    found.lengthAt = here.value;
+  }
+  const double arm = here.slope - here.theirSlope;  // −∂ℓ/∂q
+  if (std::abs(arm) > std::abs(found.arm)) {
+    found.arm = arm;
+    found.armAt = here.value;
+  }
+}
+
+void addJump(BothLengths& lengths, BothLengths::At low, BothLengths::At high,
+             OpenSimDifference& found) {
   while (high.value - low.value > 1e-7) {
     const auto middle = lengths.at(low.value + (high.value - low.value) / 2);
     const bool isBelow = BothLengths::surprise(low, middle) > BothLengths::surprise(middle, high);
     (isBelow ? high : low) = middle;
   }
   const double size = high.theirs - low.theirs;
-  if (std::abs(size) >= leastOpenSimJump) jumps.push_back({low.value, size});
+  if (!(std::abs(size) >= leastOpenSimJump)) return;
+  found.jumps.push_back({low.value, size});
+  keepLarger(low, found);
+  keepLarger(high, found);
 }
 
 void compareAlong(BothLengths& lengths, double from, double to, OpenSimDifference& found) {
-  const auto last = [&] { return found.apart.empty() ? nullptr : &found.apart.back(); };
   bool wasApart = false;
   BothLengths::At left{};
   for (int cell = 0; cell <= openSimCells; ++cell) {
     const auto here = lengths.at(from + (to - from) * cell / openSimCells);
-    const double difference = here.difference();
-    if (std::abs(difference) > std::abs(found.length)) {
-      found.length = difference;
-      found.lengthAt = here.value;
-    }
-    // −∂ℓ/∂q, OpenSim's less ours; where the lengths are the same their slopes hardly differ
-    if (std::abs(difference) > 1e-7) {
-      const double arm = here.slope - lengths.theirSlope(here);
-      if (std::abs(arm) > std::abs(found.arm)) {
-        found.arm = arm;
-        found.armAt = here.value;
-      }
-    }
-    const bool isApart = std::abs(difference) >= leastOpenSimDifference;
-    if (isApart && wasApart) last()->to = here.value;
+    keepLarger(here, found);
+    const bool isApart = std::abs(here.difference()) >= leastOpenSimDifference;
+    if (isApart && wasApart) found.apart.back().to = here.value;
     if (isApart && !wasApart) found.apart.push_back({here.value, here.value});
     wasApart = isApart;
     if (cell > 0 && BothLengths::surprise(left, here) > 2 * leastOpenSimJump) {
-      addJumps(lengths, left, here, found.jumps);
+      addJump(lengths, left, here, found);
     }
     left = here;
   }
@@ -133,7 +154,7 @@ std::vector<OpenSimDifference> openSimDifferences(const Model& model, const Skel
   PostureSamples postures(model, skeleton);
   const Coordinate& coordinate = skeleton.coordinates().front();
   for (const Muscle& muscle : model.muscles) {
-    if (!muscle.enabled) continue;
+    if (!muscle.enabled || !mayTouchEllipsoid(model, muscle)) continue;
     try {
       const MusclePath path(model, skeleton, muscle, wrapAsCylinder, postures.of(muscle));
       OpenSimDifference found;

@@ -61,15 +61,21 @@ TEST(OpenSimPaths, OverABallAreTautButForTheirChords) {
   EXPECT_TRUE(openSimDifferences(arm.model).empty());
 }
 
-// A plane section is no shorter than the geodesic on the same side.
-TEST(OpenSimPaths, OverALyingEllipsoidAreLonger) {
+/// The elbow with an ellipsoid, askew to the triceps, in place of its cylinder.
+Model elbowOver(const Eigen::Vector3d& semiAxes) {
   Model model = fixtures::elbowModel();
   for (WrapObject& wrap : model.wrapObjects) {
     if (wrap.name != "TRI") continue;
     wrap.shape = WrapShape::ellipsoid;
-    wrap.semiAxes = {0.02, 0.012, 0.012};
+    wrap.semiAxes = semiAxes;
     wrap.frame.orientation = {0.8, 0, 0.155};
   }
+  return model;
+}
+
+// A plane section is no shorter than the geodesic on the same side.
+TEST(OpenSimPaths, OverALyingEllipsoidAreLonger) {
+  const Model model = elbowOver({0.02, 0.012, 0.012});
   const auto found = openSimDifferences(model);
   ASSERT_EQ(found.size(), 3u);  // the heads of the triceps
   for (const OpenSimDifference& one : found) {
@@ -98,6 +104,27 @@ TEST(OpenSimPaths, OverALyingEllipsoidAreLonger) {
     const double slope = (difference(one.armAt + 1e-4) - difference(one.armAt - 1e-4)) / 2e-4;
     EXPECT_NEAR(one.arm, -slope, 1e-4);
     EXPECT_THAT(describe(one), testing::HasSubstr(one.muscle + " over TRI differs from the taut"));
+  }
+}
+
+// OpenSim's length jumps where its path takes hold of the ellipsoid; just before it is ours.
+TEST(OpenSimPaths, JumpWhereOpenSimTakesHold) {
+  const Model model = elbowOver({0.03, 0.016, 0.016});
+  const Skeleton skeleton(model, {.freeCoordinates = {"elbow_flexion"}, .lockedValues = {}});
+  const auto found = openSimDifferences(model);
+  ASSERT_EQ(found.size(), 3u);
+  for (const OpenSimDifference& one : found) {
+    ASSERT_EQ(one.jumps.size(), 1u);
+    const auto muscle = std::find_if(model.muscles.begin(), model.muscles.end(),
+                                     [&](const Muscle& m) { return m.name == one.muscle; });
+    const MusclePath path(model, skeleton, *muscle, {});
+    const auto theirs = [&](double q) {
+      return openSimLength(path.compiled(), postureOf(skeleton, {q})).value();
+    };
+    const auto [at, size] = one.jumps[0];
+    EXPECT_NEAR(size, theirs(at + 2e-7) - theirs(at - 2e-7), 1e-7);
+    EXPECT_GT(std::abs(size), 1e-4);
+    EXPECT_NEAR(one.apart[0].from, at, 0.02);  // within a step of the search
   }
 }
 

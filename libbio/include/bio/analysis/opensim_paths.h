@@ -44,9 +44,9 @@ std::vector<OpenSimDifference> openSimDifferences(const Model& model, const Skel
 /// a range of more than 2π rad or 2 m is reduced to that width about the default.
 std::vector<OpenSimDifference> openSimDifferences(const Model& model);
 
-/// "in OpenSim the path of TRIlong over TRIlonghh differs from the taut string by up to 4.9 mm, its
+/// "in OpenSim the path of TRIlong over TRIlonghh differs from the taut string by up to 5.04 mm, its
 /// moment arm by up to 15.3 mm, along r_shoulder_elev (0.1 mm or more at 48 to 144 deg), and
-/// jumps 3 times, by up to 5.04 mm"
+/// jumps 4 times, by up to 5.04 mm"
 std::string describe(const OpenSimDifference& difference);
 
 }  // namespace bio

@@ -133,7 +133,8 @@ template <class Shape>
 // Schutte's class has no rigid tendon.
 inline void evaluateForce(const LaneSchutte&, const MuscleState&, RigidForce&) {}
 
-/// A muscle of any class.
+/// A muscle of any class. By hand, since a std::variant brings functions that the linker shares
+/// between files, and these may be compiled for AVX2.
 class AnyLaneMuscle {
  public:
   AnyLaneMuscle() = default;
