@@ -35,6 +35,7 @@ Json estimateJson(const CalibrateFindings& f, const bio::CalibratedParameter& on
   if (one.asked.prior) {
     json["prior"] = {{"mean", one.asked.prior->mean}, {"sd", one.asked.prior->sd}};
   }
+  if (one.byLikelihood) json["interval_is"] = "profile likelihood";
   if (!one.why.empty()) json["why"] = one.why;
   if (one.profile && one.identifiable) {
     json["profile_interval"] =
@@ -101,8 +102,8 @@ Json otherMinima(const bio::Calibration& c, Summary& summary) {
       if (parameter.ofTrial) continue;
       const double value = one.values[static_cast<Eigen::Index>(i)];
       values[parameter.asked.name] = value;
-      const double sd = parameter.sd > 0 ? parameter.sd : parameter.known;
-      if (std::abs(value - parameter.value) < 3 * sd) continue;
+      const double sd = one.sd[static_cast<Eigen::Index>(i)];
+      if (std::abs(value - parameter.value) < 3 * (sd > 0 ? sd : parameter.known)) continue;
       words +=
           fmt::format("{}{} = {} instead of {}", words.empty() ? "" : ", ", parameter.asked.name,
                       numberText(value, 4), withUnit(parameter.value, parameter.asked.unit, 4));
@@ -112,8 +113,7 @@ Json otherMinima(const bio::Calibration& c, Summary& summary) {
         one.isLikely()
             ? fmt::format("is {:.2g} % as likely as the estimate", 100 * std::exp(-one.difference))
             : std::string("fits the data about as well, and only the priors are against it");
-    summary.warn(
-        fmt::format("another minimum {}, and the intervals do not hold it: {}", how, words));
+    summary.warn(fmt::format("another minimum {}: {}; intervals enclose both", how, words));
   }
   return list;
 }
@@ -122,6 +122,11 @@ Json otherMinima(const bio::Calibration& c, Summary& summary) {
 
 std::string estimateWords(const bio::CalibratedParameter& one) {
   const std::string was = fmt::format("was {}", numberText(one.model, 6));
+  if (std::isnan(one.sd) && !std::isnan(one.lower)) {
+    return fmt::format("{} = {}, or another value between {} and {} ({})", one.asked.name,
+                       withUnit(one.value, one.asked.unit, 6), numberText(one.lower, 4),
+                       withUnit(one.upper, one.asked.unit, 4), was);
+  }
   if (std::isnan(one.sd)) {
     return fmt::format("{} = {} ({}; no interval: {})", one.asked.name,
                        withUnit(one.value, one.asked.unit, 6), was, one.why);
@@ -162,7 +167,8 @@ void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
   for (const bio::CalibratedParameter& one : c.parameters) {
     if (isKnot(one)) continue;  // of latent_excitations
     estimates[one.asked.name] = estimateJson(f, one);
-    if (!one.why.empty() && !one.ofTrial) summary.warn(one.why);
+    // of another minimum other_minima warns
+    if (!one.why.empty() && !one.ofTrial && std::isnan(one.lower)) summary.warn(one.why);
   }
   summary.set("estimates", estimates);
   tellLatent(f, summary);

@@ -9,8 +9,10 @@
 
 #include "calibration/asked_parameters.h"
 #include "calibration/channel_noise.h"
+#include "calibration/checked_intervals.h"
 #include "calibration/held_out_starts.h"
 #include "calibration/judgement.h"
+#include "calibration/like_paths.h"
 #include "calibration/nudged_starts.h"
 #include "calibration/other_minima.h"
 #include "info/estimation/monte_carlo.h"
@@ -85,6 +87,7 @@ class Calibrator {
     judge();
     if (options_.isFinal && result_.complete && !options_.isFinal(result_))
       return std::move(result_);
+    if (result_.complete) refineIntervals();
     if (result_.complete) profiles();
     if (result_.complete && options_.bootstrap > 0) resample();
     return std::move(result_);
@@ -217,6 +220,10 @@ class Calibrator {
       if (isSettled) break;
     }
     if (result_.complete) lookForOtherMinima(estimate);
+    if (result_.complete) {
+      estimate_ =
+          betterBeside(problem(result_.noise.effective), std::move(estimate_), common(), estimate);
+    }
     result_.why = estimate_.why;
     result_.converged = estimate_.converged;
     result_.after = predictor_.outputs(estimate_.parameters);
@@ -233,17 +240,37 @@ class Calibrator {
 
   /// One that is better becomes the estimate.
   void lookForOtherMinima(const info::EstimateOptions& options) {
-    OtherMinima found = otherMinima(problem(result_.noise.effective), result_.starts, known_,
-                                    common(), estimate_, options);
+    const info::LeastSquares least = problem(result_.noise.effective);
+    std::vector<info::StartOutcome> ends = result_.starts;
+    std::vector<VectorXd> further = options_.candidates;
+    if (!options_.from) {
+      further = startsAtLikePaths(training_, least.parameters(), estimate_.parameters);
+      if (training_.hasOnlyAngles()) {
+        const auto led = ledStarts(training_, least.parameters(), further, noiseSd(), options);
+        further.insert(further.end(), led.begin(), led.end());
+      }
+    }
+    for (const VectorXd& start : further) {
+      if (!std::isfinite(least.cost(start))) continue;
+      const info::Estimate end = info::estimate(least, start, options);
+      result_.iterations += end.iterations;
+      result_.evaluations += end.evaluations;
+      ends.push_back({start, end.parameters, end.cost, end.converged, info::describe(end.why)});
+    }
+    OtherMinima found = otherMinima(least, ends, known_, common(), estimate_, options);
     result_.iterations += found.iterations;
     result_.evaluations += found.evaluations;
     estimate_ = std::move(found.best);
     result_.otherMinima = std::move(found.others);
+    result_.candidates = std::move(found.candidates);
   }
+
+  /// Of an angle, for searches that have no estimate of it yet [rad].
+  double noiseSd() const { return std::max(options_.noise.value_or(result_.noiseFloor), 1e-4); }
 
   /// Where further starts end that are led by held models; none where nothing is to be led.
   std::vector<VectorXd> ledFrom(const VectorXd& start, const info::EstimateOptions& estimate) {
-    const double sd = std::max(options_.noise.value_or(result_.noiseFloor), 1e-4);
+    const double sd = noiseSd();
     const std::vector<info::Parameter> parameters = problem(sd).parameters();
     std::vector<VectorXd> starts = startsOnBothSides(training_, parameters, start);
     // what is held near its course, and measured in one unit, is led there
@@ -277,11 +304,21 @@ class Calibrator {
     Judgement judgement =
         judged({asked_, known_}, training_, estimate_.parameters, data, options_.confidence);
     result_.parameters = std::move(judgement.parameters);
+    covariance_ = judgement.covariance;
     result_.correlation = std::move(judgement.correlation);
     if (heldOut_) {
       result_.heldOutSd = predictionSd(*heldOut_, result_.heldOutValues,
                                        judgement.covariance.topLeftCorner(common(), common()));
     }
+  }
+
+  /// By the cost itself, and by the other minima.
+  void refineIntervals() {
+    if (options_.loss.kind == info::RobustLoss::Kind::gaussian) {  // else a nat is none of the cost
+      checkIntervals(problem(result_.noise.effective), estimate_, covariance_, common(),
+                     estimateOptions(), result_.parameters);
+    }
+    encloseMinima(result_.otherMinima, common(), options_.confidence, result_.parameters);
   }
 
   void profiles() {
@@ -336,6 +373,7 @@ class Calibrator {
   std::vector<std::size_t> profiled_;
   std::vector<std::size_t> held_;
   info::Estimate estimate_;
+  MatrixXd covariance_;  ///< at the estimate, of all numbers
   Calibration result_;
 };
 

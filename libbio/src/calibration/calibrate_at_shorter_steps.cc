@@ -101,7 +101,6 @@ SteppedCalibration calibrateAtShorterSteps(const Model& model, const SystemOptio
     if (!isFirst) {
       found.starts = std::move(result.calibration.starts);
       found.agreeingStarts = result.calibration.agreeingStarts;
-      found.otherMinima = std::move(result.calibration.otherMinima);
       found.iterations += result.calibration.iterations;
       found.evaluations += result.calibration.evaluations;
     }
@@ -109,6 +108,7 @@ SteppedCalibration calibrateAtShorterSteps(const Model& model, const SystemOptio
     if (isFinal || !result.calibration.complete) return result;
     result.options.trials.simulation.step = half;
     result.options.from = result.calibration.values();
+    result.options.candidates = std::move(result.calibration.candidates);
   }
 }
 

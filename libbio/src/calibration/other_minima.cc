@@ -55,7 +55,7 @@ OtherMinima otherMinima(const info::LeastSquares& least,
                         const info::EstimateOptions& options) {
   OtherMinima result;
   result.best = std::move(estimate);
-  if (starts.size() < 2) return result;
+  if (starts.empty()) return result;
   const double lowest = lowestCost(starts);
   std::vector<info::Estimate> ends;
   for (const info::StartOutcome& start : starts) {
@@ -73,7 +73,10 @@ OtherMinima otherMinima(const info::LeastSquares& least,
   }
   std::sort(ends.begin(), ends.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
   for (const info::Estimate& end : ends) {
-    OtherMinimum other{end.parameters, end.cost - result.best.cost, 0};
+    if (end.cost > result.best.cost + worthRefining) break;
+    result.candidates.push_back(end.parameters);
+    OtherMinimum other{end.parameters, end.covariance.diagonal().cwiseMax(0).cwiseSqrt(),
+                       end.cost - result.best.cost, 0};
     other.ofData = other.difference - priorCost(end.parameters, least.parameters()) +
                    priorCost(result.best.parameters, least.parameters());
     if (other.isLikely() || other.isPossibleByData()) result.others.push_back(std::move(other));

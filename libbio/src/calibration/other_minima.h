@@ -13,6 +13,7 @@ namespace bio {
 struct OtherMinima {
   info::Estimate best;               ///< the given estimate, or a better one
   std::vector<OtherMinimum> others;  ///< likely, or possible by the data; the likeliest first
+  std::vector<Eigen::VectorXd> candidates;  ///< all ends, at most 20 nats above the best
   int iterations = 0, evaluations = 0;
 };
 

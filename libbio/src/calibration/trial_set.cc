@@ -75,6 +75,7 @@ TrialSet::TrialSet(const Model& model, const SystemOptions& arm, std::vector<Tri
                    const TrialSetOptions& options)
     : trials_(std::move(trials)),
       threads_(options.threads),
+      options_(arm),
       arm_(std::make_unique<const MusculoskeletalSystem>(model, arm)) {
   if (trials_.empty()) throw std::invalid_argument("no trial is given");
   if (arm_->numMuscles() == 0) throw std::invalid_argument("no muscle moves a free coordinate");

@@ -1042,7 +1042,9 @@ def calibrate(
 
         value, sd, lower, upper : float
             Estimate, standard deviation and 95 % interval [unit]; the last three are NaN without an
-            interval.
+            interval. Where the misfit contradicts the Fisher matrix at the ends of its interval,
+            these are the ends of the profile likelihood. An interval that encloses another minimum
+            has no sd.
         unit : str
         model : float
             Value in the given model [unit].
@@ -1057,7 +1059,7 @@ def calibrate(
     other_minima : list
         Minima that other starts found and that are at least 1 % as likely, or that the data alone
         leave possible: values in the order of the estimates, nats, the cost above that of the
-        estimate, and nats_of_data, the same without the priors. The intervals do not hold them.
+        estimate, and nats_of_data, the same without the priors. The intervals enclose them.
     step : float
         Time step of the estimate [s].
     converged : bool

@@ -36,6 +36,8 @@ struct CalibrationOptions {
   /// Start of the search, in place of the model's values: all estimated numbers, in their order.
   /// No other starts are led then.
   std::optional<Eigen::VectorXd> from = {};
+  /// With `from`: where else minima are looked for, as Calibration::candidates has them.
+  std::vector<Eigen::VectorXd> candidates = {};
   /// Called from any thread with the fraction of the work done, 0 to 1; returning false stops.
   std::function<bool(double)> progress = {};
   /// Called with an estimate and its intervals; returning false ends without profiles and
@@ -52,8 +54,11 @@ struct CalibratedParameter {
   bool identifiable = false;
   bool atBound = false;
   /// Standard deviation and interval from the Fisher matrix at the estimate, priors included; NaN
-  /// if not identifiable or at a bound.
+  /// if not identifiable or at a bound. Where the cost at the ends of the interval contradicts it,
+  /// the ends are those of the profile likelihood. With another minimum the interval encloses both,
+  /// and there is no standard deviation.
   double sd, lower, upper;
+  bool byLikelihood = false;      ///< the interval is that of the profile likelihood
   info::Determinacy determinacy;  ///< identifiability from the data alone
   std::string why;                ///< reason why there is no interval; else empty
   std::optional<info::ProfileInterval> profile;
@@ -75,6 +80,7 @@ struct ResidualNoise {
 /// or the data alone (1.92 nats: inside a 95 % interval of their likelihood).
 struct OtherMinimum {
   Eigen::VectorXd values;         ///< of all estimated numbers
+  Eigen::VectorXd sd = {};        ///< their standard deviations there
   double difference = 0;          ///< Δ of the cost [nats]
   double ofData = 0;              ///< of it without the priors [nats]; < 0: it fits better
   bool isLikely() const;          ///< Δ ≤ 4.6 nats
@@ -91,6 +97,8 @@ struct Calibration {
   std::vector<info::StartOutcome> starts;
   int agreeingStarts = 0;
   std::vector<OtherMinimum> otherMinima;  ///< that other starts found; the likeliest first
+  /// Ends of searches up to 20 nats above the estimate, to go on from with other steps or noise.
+  std::vector<Eigen::VectorXd> candidates;
   int bootstrapConverged = 0;
   bool complete = true;                     ///< false if the progress callback stopped it
   ResidualNoise noise;                      ///< of the first of the set's channels
@@ -126,11 +134,15 @@ struct Calibration {
 /// without τ a thousand of them would count as a thousand measurements.
 ///
 /// Intervals, with priors included, are given for parameters that the data determine
-/// (determinacy.h); for the others the reason is given in words. A parameter at a bound is held
-/// there for the intervals of the others; one without effect on any angle and without prior keeps
-/// the model's value. Held-out trials are simulated from their own first measured value, at rest;
-/// if their set has own starts (TrialSetOptions::ownStart), these are estimated from each of them
-/// with the parameters fixed.
+/// (determinacy.h); for the others the reason is given in words. The Fisher matrix claims that the
+/// cost rises by z²/2 nats at the ends of an interval. If it rises by less than 0.7 or more
+/// than 1.4 of that at either end, the interval is that of the profile likelihood; where the search
+/// has not converged either, e.g. since paths jump, there is none. An interval encloses other
+/// minima (OtherMinimum), which are looked for from all starts and from mirrored path points. A
+/// parameter at a bound is held there for the intervals of the others; one without effect on any
+/// angle and without prior keeps the model's value. Held-out trials are simulated from their own
+/// first measured value, at rest; if their set has own starts (TrialSetOptions::ownStart), these
+/// are estimated from each of them with the parameters fixed.
 ///
 /// @throws std::invalid_argument what TrialSet throws, and for an option out of range, a prior or
 ///   bound of a parameter that is not estimated, bounds that do not enclose the start

@@ -57,6 +57,8 @@ class TrialSet {
            const TrialSetOptions& options);
 
   const MusculoskeletalSystem& arm() const { return *arm_; }
+  /// With which it was made of the model.
+  const SystemOptions& options() const { return options_; }
   const std::vector<Trial>& trials() const { return trials_; }
   /// Initial state of each trial before the estimation.
   const std::vector<TrialBeginning>& beginnings() const { return beginnings_; }
@@ -136,6 +138,7 @@ class TrialSet {
   std::vector<Trial> trials_;
   std::vector<TrialBeginning> beginnings_;
   int threads_;
+  SystemOptions options_;
   std::unique_ptr<const MusculoskeletalSystem> arm_;
   std::vector<std::unique_ptr<const ParameterCatalogue>> catalogues_;  ///< one per trial
   std::vector<std::size_t> selection_;
