@@ -146,6 +146,7 @@ py::object ensemble(const bio::Model& model, const bio::Trial& trial,
   if (choice.coordinates.empty()) {
     throw std::invalid_argument("no coordinate is free to be observed: all are prescribed");
   }
+  if (threads < 0) throw std::invalid_argument(fmt::format("threads = {}, must be ≥ 0", threads));
   mustBeOfTheModelAsItIs(trial);
   bio::requireLoadsCover(model.externalLoads, trial.times[0], trial.times[0] + trial.duration());
   bio::TrialEnsembleOptions options;

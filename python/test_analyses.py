@@ -130,7 +130,8 @@ class Ensemble(AgainstProgram):
     def test_rules(self):
         for words, more in (
             ("no parameter is called 'TRI.radios'", {"parameters": ["TRI.radios"]}),
-            ("draws = 0, must be ≥ 1", {"draws": 0}),
+            ("draws = 0, must be 1 to 10000000", {"draws": 0}),
+            ("threads = -1, must be ≥ 0", {"threads": -1}),
             ("band_points = 1", {"band_points": 1}),
             ("distribution 'cauchy'", {"distribution": "cauchy"}),
             ("output 'speed'", {"output": "speed"}),
@@ -145,7 +146,7 @@ class Ensemble(AgainstProgram):
     def test_control_c_ends_it(self):
         threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
         with self.assertRaises(KeyboardInterrupt):
-            fh.ensemble(self.model, self.trial, draws=1000000)
+            fh.ensemble(self.model, self.trial, draws=100000)
 
 
 class Compare(AgainstProgram):

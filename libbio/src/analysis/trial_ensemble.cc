@@ -59,9 +59,11 @@ TrialEnsemble::TrialEnsemble(const Model& model, const MusculoskeletalSystem& sy
 void TrialEnsemble::check(const Trial& trial, const TrialEnsembleOptions& asked) const {
   const std::string& prefix = asked.laws.optionPrefix;
   const auto refuse = [](const std::string& why) { throw std::invalid_argument(why); };
-  if (asked.draws < 1) refuse(fmt::format("{}draws = {}, must be ≥ 1", prefix, asked.draws));
-  if (asked.bandPoints < 2) {
-    refuse(fmt::format("{}band_points = {}, must be ≥ 2", prefix, asked.bandPoints));
+  if (asked.draws < 1 || asked.draws > 10000000) {
+    refuse(fmt::format("{}draws = {}, must be 1 to 10000000", prefix, asked.draws));
+  }
+  if (asked.bandPoints < 2 || asked.bandPoints > 1000) {
+    refuse(fmt::format("{}band_points = {}, must be 2 to 1000", prefix, asked.bandPoints));
   }
   (void)ensembleOutputNamed(asked.output);
   if (!asked.sobol) return;

@@ -78,13 +78,13 @@ TEST(TrialEnsemble, RefusesInOneLine) {
   };
   TrialEnsembleOptions options = drawing({"hand.mass"});
   options.draws = 0;
-  refused(options, "draws = 0, must be ≥ 1");
+  refused(options, "draws = 0, must be 1 to 10000000");
   options.draws = 1;
   options.sobol = true;
   refused(options, "sobol: draws must be at least 2");
   options.draws = 2;
   options.bandPoints = 1;
-  refused(options, "band_points = 1, must be ≥ 2");
+  refused(options, "band_points = 1, must be 2 to 1000");
   options.bandPoints = 2;
   options.output = "speed";
   refused(options, "output 'speed', must be rms_error");

@@ -15,10 +15,10 @@ namespace bio {
 
 struct TrialEnsembleOptions {
   LawRequest laws;               ///< its optionPrefix is that of all messages
-  int draws = 1000;              ///< of parameters ≥ 1; with sobol: base points ≥ 2
+  int draws = 1000;              ///< of parameters, 1 to 10⁷; with sobol: base points ≥ 2
   bool sobol = false;            ///< draws are the points of Saltelli's scheme, for Sobol's indices
   std::string output = "final";  ///< whose variance sobol decomposes (ensembleOutputs())
-  int bandPoints = 46;           ///< times of the percentile band ≥ 2
+  int bandPoints = 46;           ///< times of the percentile band, 2 to 1000
   /// Integrator and step; times, external force and prescribed motion are those of the trial.
   SimulationOptions simulation = {};
 };
