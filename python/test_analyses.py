@@ -246,6 +246,10 @@ class Study(AgainstProgram):
 
     def test_effects_and_subjects_that_fail_are_those_of_the_program(self):
         file = os.path.join(self.scratch, "study.toml")
+        times, angle = self.trial.measured["elbow_flexion"]
+        columns = {"time": times, "BRA": np.full(len(times), 0.1), "elbow_flexion": angle / DEGREE}
+        with open(os.path.join(self.scratch, "degrees.csv"), "w", encoding="utf-8") as out:
+            csv.writer(out).writerows([list(columns), *np.transpose(list(columns.values()))])
         model, trials = os.path.abspath(ELBOW), os.path.abspath("emg_data")
         with open(file, "w", encoding="utf-8") as out:
             out.write(f"""discover = true
@@ -261,9 +265,14 @@ train = "{trials}/hidden_a/train_1.sto"
 name = "broken"
 model = "{model}"
 train = "study.toml"
+[[subject]]
+name = "degrees"
+model = "{model}"
+train = "degrees.csv"
 """)
         rows = fh.study(file)
-        self.assertEqual([row.status for row in rows], ["ok", "failed"])
+        self.assertEqual([row.status for row in rows], ["ok", "failed", "failed"])
+        self.assertRegex(rows[2].message, "discover: .*degrees.csv: measured 'elbow_flexion': .* rad, must be within")
         self.assertTrue(rows[0].effects)
         self.assertIsNone(rows[0].calibration)
         self.is_that_of(rows, program(self.scratch, "study", "run", file))

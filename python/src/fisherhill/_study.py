@@ -33,7 +33,7 @@ def _angle(text):
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise ValueError(f"'{text}' is not an angle: write 34deg, or 0.59 for radians")
+        raise ValueError(f"lock: '{text}' is not an angle: write 34deg, or 0.59 for radians")
     return value
 
 
@@ -42,9 +42,9 @@ def _locks(texts):
     for text in texts:
         name, equals, value = text.partition("=")
         if not name or not equals:
-            raise ValueError(f"'{text}' is not NAME=VALUE")
+            raise ValueError(f"lock: '{text}' is not NAME=VALUE")
         if name in locks:
-            raise ValueError(f"'{name}' is given twice")
+            raise ValueError(f"lock: '{name}' is given twice")
         locks[name] = _angle(value)
     return locks
 
@@ -83,6 +83,14 @@ def _held(model, train, locks):
     return {name: value for name, value in locks.items() if f"{name}.moment" in measured}
 
 
+def _trial(file, model, held):
+    trial = fh.load_trial(file, model, hold=held)
+    for remark in trial.review(model):
+        if remark.weight == "error":
+            raise ValueError(f"{file}: {remark.subject}: {remark.message}")
+    return trial
+
+
 def _inputs(study, subject, files, moments):
     """Model, trials and the options that calibrate and discover share.
 
@@ -92,7 +100,7 @@ def _inputs(study, subject, files, moments):
     model = fh.load_model(subject.model)
     locks = _locks(study.lock)
     held = _held(model, files[0], locks) if moments else {}
-    train, held_out = ([fh.load_trial(file, model, hold=held) for file in some] for some in files)
+    train, held_out = ([_trial(file, model, held) for file in some] for some in files)
     shared = {
         "hold_out": held_out,
         "noise": study.noise,
