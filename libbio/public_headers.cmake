@@ -5,12 +5,15 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/analysis/compare_muscles.h
   include/bio/analysis/driven_trial.h
   include/bio/analysis/ensemble.h
+  include/bio/analysis/ensemble_statistics.h
   include/bio/analysis/fit_paths.h
   include/bio/analysis/muscle_states.h
   include/bio/analysis/observed_motion.h
   include/bio/analysis/opensim_paths.h
+  include/bio/analysis/parameter_laws.h
   include/bio/analysis/path_postures.h
   include/bio/analysis/replay.h
+  include/bio/analysis/trial_ensemble.h
   include/bio/calibration/calibrate.h
   include/bio/calibration/calibrate_at_shorter_steps.h
   include/bio/calibration/calibrated_model.h

@@ -62,8 +62,11 @@ void defineReviews(py::module_& module, py::class_<bio::Model>& model,
                    py::class_<bio::Trial>& trial);
 void defineEmg(py::module_& module);
 void definePaths(py::module_& module);
+void defineComparisons(py::module_& module);
+void defineEnsemble(py::module_& module);
 void defineSensitivity(py::module_& module);
 void defineCalibration(py::module_& module);
 void defineDiscovery(py::module_& module);
+void defineStudies(py::module_& module);
 
 }  // namespace python

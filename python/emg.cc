@@ -22,7 +22,7 @@ py::dict electrodesOf(const bio::EmgResult& result) {
   return electrodes;
 }
 
-py::object emg(const Names& recordings, const std::string& config) {
+py::object emg(const Names& recordings, const std::string& config, const std::string& write) {
   const auto* one = std::get_if<std::string>(&recordings);
   const std::vector<std::string> files =
       one ? std::vector<std::string>{*one} : std::get<std::vector<std::string>>(recordings);
@@ -36,6 +36,7 @@ py::object emg(const Names& recordings, const std::string& config) {
     const bio::EmgConfig of = bio::emgConfigFor(file, joined.recording, bio::markerNames(file));
     result = bio::excitationsFromEmg(joined.recording, of);
     trial = bio::excitationTable(result, of);
+    if (!write.empty()) bio::writeTable(trial, write);
   });
   py::dict offsets;
   for (const auto& placed : joined.placed) offsets[placed.file.c_str()] = placed.offset;
@@ -54,7 +55,8 @@ py::object emg(const Names& recordings, const std::string& config) {
 }  // namespace
 
 void defineEmg(py::module_& module) {
-  module.def("emg", &emg, "recordings"_a, "config"_a, docstrings::emg);
+  module.def("emg", &emg, "recordings"_a, "config"_a, py::kw_only(), "write"_a = "",
+             docstrings::emg);
 }
 
 }  // namespace python

@@ -54,8 +54,11 @@ PYBIND11_MODULE(_fisherhill, module) {
   python::defineEmg(module);
   python::definePaths(module);
   python::defineSensitivity(module);
+  python::defineComparisons(module);
+  python::defineEnsemble(module);
   python::defineCalibration(module);
   python::defineDiscovery(module);
+  python::defineStudies(module);
   python::defineSystem(module);
   python::defineEstimation(module);
 }

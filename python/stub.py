@@ -1,6 +1,7 @@
 """The type stub beside the imported package, for tests: its signatures, its docstrings, and what results must hold."""
 
 import ast
+import inspect
 import pathlib
 import types
 
@@ -49,7 +50,13 @@ def parameters(node):
 
 
 def compiled(function):
-    """The same of a compiled function, from the line that pybind11 writes, and the docstring below that line."""
+    """The same of a compiled function, from the line that pybind11 writes, and the docstring below that line; or of one
+    of the package's Python files."""
+    if inspect.isfunction(function):
+        signature = inspect.signature(function).parameters.values()
+        return [
+            (one.name, one.kind is one.KEYWORD_ONLY, () if one.default is one.empty else one.default) for one in signature
+        ], function.__doc__.strip()
     line, _, text = function.__doc__.partition("\n")
     return parameters(ast.parse(f"def {line}: ...").body[0]), text.strip()
 

@@ -6,14 +6,14 @@
 #include <chrono>
 #include <cmath>
 
-#include "bio/analysis/replay.h"
+#include "bio/analysis/ensemble_statistics.h"
+#include "bio/analysis/trial_ensemble.h"
 #include "discover/discover_search.h"
 #include "ensemble/ensemble_discovery.h"
 #include "ensemble/ensemble_draws.h"
 #include "ensemble/ensemble_report.h"
 #include "ensemble/missing_rows.h"
 #include "ensemble/parameter_laws.h"
-#include "info/probability/random_stream.h"
 #include "info/version.h"
 #include "options/input_rules.h"
 #include "options/number_rules.h"
@@ -27,15 +27,19 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Everything that the rows are a function of, beside their numbers.
+/// What the rows are a function of, beside their numbers, and how they are written.
 struct EnsembleStudy {
-  TrialInput input;
-  bio::ParameterCatalogue catalogue;
-  DrawnLaws laws;
-  std::unique_ptr<bio::SystemBatch> ensemble;
-  std::unique_ptr<DrawTable> table;
-  bio::Coordinate coordinate;
-  std::optional<bio::MeasuredMotion> measured;
+  EnsembleStudy(const bio::Model& model, const bio::MusculoskeletalSystem& arm,
+                const bio::SystemOptions& system, const TrialInput& input,
+                const bio::TrialEnsembleOptions& options)
+      : duration(input.duration),
+        ensemble(model, arm, system, input.trial, {input.start.q, input.start.qDot}, options),
+        table(ensemble.laws().parameters, ensemble.course(), shownFactor(ensemble.coordinate()),
+              shownUnit(ensemble.coordinate())) {}
+
+  double duration;  ///< of the trial [s]
+  bio::TrialEnsemble ensemble;
+  DrawTable table;
 };
 
 class Ensemble : public Command {
@@ -166,11 +170,12 @@ class Ensemble : public Command {
     const EnsembleStudy& study = *made;
     resultsMustNotBeInputs(summary, folder, files);
     RowFile file(folder.path(unfinishedRows), settings(study, summary, context.seed),
-                 study.table->columns(), context.force);
+                 study.table.columns(), context.force);
     if (const std::string damage = damageIn(file); !damage.empty()) summary.warn(damage);
     const auto begin = std::chrono::steady_clock::now();
-    const std::size_t computed = computeMissing(
-        *pool, threads, file, total(study), rowsOf(study, context.seed), context, "simulations");
+    const std::size_t computed =
+        computeMissing(*pool, threads, file, study.ensemble.count(), rowsOf(study, context.seed),
+                       context, "simulations");
     const double wall =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
@@ -181,7 +186,7 @@ class Ensemble : public Command {
     if (findings.sobol) {
       folder.write("sobol.csv", [&](std::ostream& out) { writeSobol(findings, out); });
     }
-    summary.setSimulation(simulation_.integrator, simulation_.stepOrDefault(), study.input.duration,
+    summary.setSimulation(simulation_.integrator, simulation_.stepOrDefault(), study.duration,
                           wall);
     summary.set("computed", computed);
     summary.set("ranks", pool->ranks());
@@ -195,10 +200,6 @@ class Ensemble : public Command {
   void checkChoice(const CommandContext& context) const {
     if (discover_.empty()) {
       if (trial_.empty()) throw std::invalid_argument("TRIAL is required (see --help)");
-      if (!laws_.covarianceFile.empty() && (sobol_ || laws_.distribution != "normal")) {
-        throw std::invalid_argument(fmt::format("--covariance cannot be combined with --{}",
-                                                sobol_ ? "sobol" : "distribution uniform"));
-      }
       for (const char* option : {"--noise-deg", "--max-effects", "--input-scatter"}) {
         if (app_->get_option(option)->count() == 0) continue;
         throw std::invalid_argument(fmt::format("{} requires --discover", option));
@@ -214,109 +215,60 @@ class Ensemble : public Command {
     if (!context.out) throw std::invalid_argument("--discover requires --out");
   }
 
-  /// By pointer, since the ensemble points into it.
+  /// By pointer, since the rows' work refers to it.
   std::unique_ptr<const EnsembleStudy> prepare(Summary& summary) {
     const bio::Model model = readModel(model_, summary);
     chooseCoordinates(simulation_, model, {trial_});
     requireFreeCoordinate(simulation_);
     const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
-    TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
-    bio::ParameterCatalogue catalogue(model, arm, {input.start.q, input.start.qDot});
-    auto made = std::make_unique<EnsembleStudy>(
-        EnsembleStudy{std::move(input), std::move(catalogue), {}, {}, {}, {}, {}});
-    EnsembleStudy& study = *made;
-    study.coordinate = arm.skeleton().coordinates().front();
-    for (const bio::MeasuredMotion& motion : study.input.trial.measured) {
-      if (motion.coordinate == study.coordinate.name) study.measured = motion;
+    const TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
+    bio::TrialEnsembleOptions options{.laws = lawRequest(laws_),
+                                      .draws = draws_,
+                                      .sobol = sobol_,
+                                      .output = output_,
+                                      .bandPoints = bandPoints_};
+    options.simulation = simulationOptions(simulation_, input.startTime, input.duration);
+    if (options.laws.covariance) summary.addInput(laws_.covarianceFile);
+    auto made =
+        std::make_unique<const EnsembleStudy>(model, arm, armOptions(simulation_), input, options);
+    if (const std::string& remark = made->ensemble.nominalRemark(); !remark.empty()) {
+      summary.warn(remark);
     }
-    study.laws = drawnLaws(study.catalogue, laws_);
-    if (study.laws.together) summary.addInput(laws_.covarianceFile);
-    const std::vector<std::size_t>& selection = study.laws.selection;
-    if (sobol_ && selection.size() > 32) {
-      throw std::invalid_argument(fmt::format(
-          "--sobol: {} parameters, at most 32; choose them with --parameters", selection.size()));
-    }
-    if (sobol_ && draws_ < 2) throw std::invalid_argument("--sobol: --draws must be at least 2");
-    if (sobol_ && output_ == "rms_error" && !study.measured) {
-      throw std::invalid_argument(
-          fmt::format("--output rms_error: {} has no measured {}", trial_, study.coordinate.name));
-    }
-    std::vector<double> course;
-    for (int i = 0; i < bandPoints_; ++i) {
-      course.push_back(study.input.startTime + study.input.duration * i / (bandPoints_ - 1));
-    }
-    bio::SimulationOptions options =
-        simulationOptions(simulation_, study.input.startTime, study.input.duration);
-    options.externalForce = study.input.externalForce;
-    options.prescribed = study.input.prescribed;
-    study.ensemble = std::make_unique<bio::SystemBatch>(
-        study.catalogue, armOptions(simulation_), study.input.excitation, study.coordinate.name,
-        study.measured, course, selection, options);
-    if (const auto left = bio::leftRange(
-            arm, bio::simulate(arm, study.input.excitation, study.input.start, options))) {
-      summary.warn("with the model's own parameters, " + left->what);
-    }
-    study.table = std::make_unique<DrawTable>(
-        study.laws.parameters, course, shownFactor(study.coordinate), shownUnit(study.coordinate));
     return made;
   }
 
   /// Tells how many draws leave the coordinate's range by more than a tenth of it.
   static void warnOfRange(const EnsembleStudy& study, const EnsembleFindings& f, Summary& summary) {
-    const bio::Coordinate& c = study.coordinate;
-    const double shown = study.table->shown();
-    const double margin = std::max(0.1 * (c.rangeMax - c.rangeMin) * shown, 1.0);
+    const bio::Coordinate& c = study.ensemble.coordinate();
+    const double shown = study.table.shown();
     std::uint64_t left = 0;
-    for (std::uint64_t i = 0; i < f.count; ++i) {
-      // the smallest and the largest value; NaN where there is none
-      const bool isBelow = f.outputs[3][i] < c.rangeMin * shown - margin;
-      if (isBelow || f.outputs[4][i] > c.rangeMax * shown + margin) ++left;
+    for (std::uint64_t i = 0; i < f.count; ++i) {  // the smallest and the largest value
+      left += bio::leavesRange(c, f.outputs[3][i] / shown, f.outputs[4][i] / shown) ? 1 : 0;
     }
     if (left == 0) return;
     summary.warn(fmt::format(
         "in {} of {} simulations {} leaves its range, {:.4g} to {:.4g} {}, by "
         "more than a tenth of it",
-        left, f.count, c.name, c.rangeMin * shown, c.rangeMax * shown, study.table->unit()));
+        left, f.count, c.name, c.rangeMin * shown, c.rangeMax * shown, study.table.unit()));
   }
 
-  /// How many rows there are to be.
-  std::uint64_t total(const EnsembleStudy& study) const {
-    const auto n = static_cast<std::uint64_t>(draws_);
-    return sobol_ ? n * (study.laws.parameters.size() + 2) : n;
-  }
-
-  /// A row is a function of seed and number alone: its parameters are quantiles of a point of the
-  /// unit cube, which comes from the number's own random stream, or from Saltelli's scheme.
-  RowWork rowsOf(const EnsembleStudy& study, std::uint64_t seed) const {
+  /// A row is a function of seed and number alone.
+  static RowWork rowsOf(const EnsembleStudy& study, std::uint64_t seed) {
     RowWork work;
     work.together = 64;  // lanes want several possible draws
-    work.rows = [this, &study, seed](std::span<const std::uint64_t> numbers) {
+    work.rows = [&study, seed](std::span<const std::uint64_t> numbers) {
       std::vector<Eigen::VectorXd> thetas;
-      for (const std::uint64_t number : numbers) thetas.push_back(draw(study, number, seed));
-      const std::vector<bio::EnsembleRun> runs = study.ensemble->run(thetas);
+      for (const std::uint64_t number : numbers) {
+        thetas.push_back(study.ensemble.draw(number, seed));
+      }
+      const std::vector<bio::EnsembleRun> runs = study.ensemble.run(thetas);
       std::vector<std::string> rows;
       for (std::size_t i = 0; i < runs.size(); ++i) {
-        rows.push_back(study.table->row(runs[i], thetas[i]));
+        rows.push_back(study.table.row(runs[i], thetas[i]));
       }
       return rows;
     };
     return work;
-  }
-
-  Eigen::VectorXd draw(const EnsembleStudy& study, std::uint64_t number, std::uint64_t seed) const {
-    const auto p = static_cast<int>(study.laws.parameters.size());
-    Eigen::VectorXd theta(p);
-    if (sobol_) {
-      theta = info::sobolPoint(number, p, seed);
-    } else {
-      info::RandomStream random(seed, number);
-      for (double& u : theta) u = random.uniform();
-      if (study.laws.together) theta = study.laws.together->shares(theta);
-    }
-    for (Eigen::Index i = 0; i < p; ++i) {
-      theta[i] = study.laws.parameters[static_cast<std::size_t>(i)].law.quantile(theta[i]);
-    }
-    return theta;
   }
 
   /// All that the rows depend on; how many there are is not among it.
@@ -331,9 +283,9 @@ class Ensemble : public Command {
     json["distribution"] = laws_.distribution;
     json["band_points"] = bandPoints_;
     json["simulation"] = settingsOf(simulation_);
-    if (study.laws.together) json["covariance_sha256"] = summary.inputs()[2].sha256;
+    if (study.ensemble.laws().together) json["covariance_sha256"] = summary.inputs()[2].sha256;
     json["parameters"] = Json::array();
-    for (const DrawnParameter& one : study.laws.parameters) {
+    for (const bio::DrawnParameter& one : study.ensemble.laws().parameters) {
       json["parameters"].push_back(
           {one.name, one.law.mean, one.law.sd, one.law.lower, one.law.upper});
     }
@@ -345,26 +297,18 @@ class Ensemble : public Command {
     EnsembleFindings findings{
         model_,
         trial_,
-        study.coordinate.name,
-        *study.table,
-        study.laws.parameters,
-        study.ensemble->nominal(),
-        total(study),
-        [&](std::uint64_t number) { return study.table->parse(number, file.row(number)); },
-        study.measured};
+        study.ensemble.coordinate().name,
+        study.table,
+        study.ensemble.laws().parameters,
+        study.ensemble.nominal(),
+        study.ensemble.count(),
+        [&](std::uint64_t number) { return study.table.parse(number, file.row(number)); },
+        study.ensemble.measured()};
     collect(findings);
     if (!sobol_) return findings;
-    const auto names = DrawTable::outputNames();
-    const auto output =
-        static_cast<std::size_t>(std::find(names.begin(), names.end(), output_) - names.begin());
-    std::vector<Eigen::VectorXd> values;
-    for (const double y : findings.outputs[output]) {
-      values.push_back(std::isfinite(y) ? Eigen::VectorXd::Constant(1, y) : Eigen::VectorXd());
-    }
-    const auto p = static_cast<int>(study.laws.parameters.size());
-    constexpr int replicates = 500;
-    findings.sobol = SobolFinding{output_, info::sobolIndices(values, p),
-                                  info::bootstrapSobol(values, p, replicates, seed), draws_};
+    const std::vector<double>& values = findings.outputs[bio::ensembleOutputNamed(output_)];
+    const auto p = static_cast<int>(study.ensemble.laws().parameters.size());
+    findings.sobol = SobolOfOutput{output_, bio::sobolOf(values, p, seed), draws_};
     return findings;
   }
 
@@ -372,7 +316,7 @@ class Ensemble : public Command {
   CLI::App* app_ = nullptr;
   std::string model_, trial_;
   int draws_ = 1000;
-  LawRequest laws_;
+  TypedLaws laws_;
   int bandPoints_ = 46;
   bool sobol_ = false;
   std::string output_ = "final";

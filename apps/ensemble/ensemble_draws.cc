@@ -20,34 +20,24 @@ void addNumber(std::string& row, double value, const char* format = "{:.9g}") {
 
 }  // namespace
 
-const std::vector<EnsembleOutput>& DrawTable::outputs() {
-  static const std::vector<EnsembleOutput> list = {
-      {"rms_error", "RMS error", [](const bio::EnsembleRun& r) { return r.rmsError; }},
-      {"rms_from_nominal", "RMS difference from nominal",
-       [](const bio::EnsembleRun& r) { return r.rmsFromNominal; }},
-      {"final", "final value", [](const bio::EnsembleRun& r) { return r.last; }},
-      {"min", "smallest value", [](const bio::EnsembleRun& r) { return r.lowest; }},
-      {"max", "largest value", [](const bio::EnsembleRun& r) { return r.highest; }}};
-  return list;
-}
-
 std::vector<std::string> DrawTable::outputNames() {
   std::vector<std::string> names;
-  for (const EnsembleOutput& output : outputs()) names.push_back(output.name);
+  for (const bio::EnsembleOutput& output : bio::ensembleOutputs()) names.push_back(output.name);
   return names;
 }
 
-DrawTable::DrawTable(const std::vector<DrawnParameter>& parameters,
+DrawTable::DrawTable(const std::vector<bio::DrawnParameter>& parameters,
                      const std::vector<double>& course, double shown, const std::string& shownUnit)
     : course_(course), shown_(shown), unit_(shownUnit) {
-  for (const DrawnParameter& one : parameters) {
+  for (const bio::DrawnParameter& one : parameters) {
     parameters_.push_back(one.unit.empty() ? one.name : fmt::format("{} [{}]", one.name, one.unit));
   }
 }
 
 std::vector<std::string> DrawTable::columns() const {
   std::vector<std::string> names = {"draw", "outcome", "failed_at_s"};
-  for (const EnsembleOutput& output : outputs()) names.push_back(columnOf(output));
+  for (const bio::EnsembleOutput& output : bio::ensembleOutputs())
+    names.push_back(columnOf(output));
   names.insert(names.end(), parameters_.begin(), parameters_.end());
   for (const double t : course_) names.push_back(fmt::format("at {:.6g} s", t));
   return names;
@@ -56,7 +46,8 @@ std::vector<std::string> DrawTable::columns() const {
 std::string DrawTable::row(const bio::EnsembleRun& run, const Eigen::VectorXd& theta) const {
   std::string row = run.outcome;
   addNumber(row, run.failedAt);
-  for (const EnsembleOutput& output : outputs()) addNumber(row, shown_ * output.of(run));
+  for (const bio::EnsembleOutput& output : bio::ensembleOutputs())
+    addNumber(row, shown_ * output.of(run));
   for (const double value : theta) addNumber(row, value, "{}");
   for (const double value : run.atCourse) addNumber(row, shown_ * value, "{:.7g}");
   return row;
@@ -78,7 +69,7 @@ DrawTable::Row DrawTable::parse(std::uint64_t number, const std::string& text) c
     return value;
   };
   row.failedAt = next();
-  for (std::size_t i = 0; i < outputs().size(); ++i) row.outputs.push_back(next());
+  for (std::size_t i = 0; i < bio::ensembleOutputs().size(); ++i) row.outputs.push_back(next());
   for (std::size_t i = 0; i < parameters_.size(); ++i) row.parameters.push_back(next());
   std::size_t length = 0;
   for (std::size_t i = 0; i < at; ++i) length += cells[i].size() + 1;

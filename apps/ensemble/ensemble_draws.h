@@ -3,24 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "bio/analysis/ensemble.h"
-#include "info/probability/marginal.h"
+#include "bio/analysis/ensemble_statistics.h"
+#include "bio/analysis/parameter_laws.h"
 
 namespace app {
-
-/// A drawn parameter and its distribution.
-struct DrawnParameter {
-  std::string name, unit;
-  double value;  ///< in the model [unit]
-  info::Marginal law;
-};
-
-/// A scalar output of every run of an ensemble, in shown units.
-struct EnsembleOutput {
-  std::string name;   ///< "rms_error", as --output has it
-  std::string words;  ///< "RMS error"
-  double (*of)(const bio::EnsembleRun&);
-};
 
 /// Writes and reads the rows from which draws.csv and band.csv are made. A row has the outcome of a
 /// run, its outputs, its parameters and the course of the coordinate, in degrees or millimetres. A
@@ -29,10 +15,9 @@ class DrawTable {
  public:
   /// @param shown factor from the coordinate's unit to degrees or millimetres
   /// @param shownUnit  "deg" or "mm"
-  DrawTable(const std::vector<DrawnParameter>& parameters, const std::vector<double>& course,
+  DrawTable(const std::vector<bio::DrawnParameter>& parameters, const std::vector<double>& course,
             double shown, const std::string& shownUnit);
 
-  static const std::vector<EnsembleOutput>& outputs();
   /// Names of the outputs, for --output.
   static std::vector<std::string> outputNames();
 
@@ -40,7 +25,9 @@ class DrawTable {
   std::vector<std::string> columns() const;
   /// Number of them that draws.csv has: all but the course.
   std::size_t shortColumns() const { return columns().size() - course_.size(); }
-  std::string columnOf(const EnsembleOutput& output) const { return output.name + "_" + unit_; }
+  std::string columnOf(const bio::EnsembleOutput& output) const {
+    return output.name + "_" + unit_;
+  }
 
   /// All cells but the number.
   std::string row(const bio::EnsembleRun& run, const Eigen::VectorXd& theta) const;
@@ -49,7 +36,7 @@ class DrawTable {
   struct Row {
     std::string outcome;
     double failedAt = 0;
-    std::vector<double> outputs = {};  ///< in the order of outputs()
+    std::vector<double> outputs = {};  ///< in the order of bio::ensembleOutputs()
     std::vector<double> parameters = {};
     std::vector<double> course = {};
     std::string head = {};  ///< the cells for draws.csv

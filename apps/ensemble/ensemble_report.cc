@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "info/probability/quantile.h"
 #include "output/text.h"
 
 namespace app {
@@ -16,32 +15,24 @@ std::string csvCell(double value) {
   return cellText(value, 9);
 }
 
-std::vector<double> finiteOf(const std::vector<double>& values) {
-  std::vector<double> kept;
-  for (const double x : values) {
-    if (std::isfinite(x)) kept.push_back(x);
-  }
-  return kept;
-}
-
 /// What a pass over the rows may keep of the motions' courses [bytes]; one column at least.
 constexpr std::uint64_t mostKept = std::uint64_t{64} << 20;
 
 std::string verdictOf(const EnsembleFindings& f) {
   const auto ok = f.outcomes.find("ok");
   const std::uint64_t finished = ok == f.outcomes.end() ? 0 : ok->second;
-  const Spread last = spreadOf(finiteOf(f.outputs[2]));
+  const bio::Spread last = bio::spreadOf(f.outputs[2]);
   std::string text = fmt::format(
       "{} of {} simulations with {} drawn parameters reached the end. Median of the final {}: {} "
       "{}; 90 % lie between {} and {} {}.",
       finished, f.count, f.parameters.size(), f.coordinate, numberText(last.p50), f.table.unit(),
       numberText(last.p5), numberText(last.p95), f.table.unit());
-  if (f.sobol && f.sobol->indices.variance > 0) {
+  if (f.sobol && f.sobol->found.indices.variance > 0) {
     Eigen::Index most = 0;
-    f.sobol->indices.total.maxCoeff(&most);
+    f.sobol->found.indices.total.maxCoeff(&most);
     text += fmt::format(" {} contributes most to the variance of {} (total Sobol index {}).",
                         f.parameters[static_cast<std::size_t>(most)].name, f.sobol->output,
-                        numberText(f.sobol->indices.total[most], 2));
+                        numberText(f.sobol->found.indices.total[most], 2));
   }
   return text;
 }
@@ -72,9 +63,9 @@ Table outputTable(const EnsembleFindings& f) {
   Table table{.title = "Outputs",
               .columns = {fmt::format("output [{}]", unit), "nominal", "mean", "standard deviation",
                           "5 %", "median", "95 %"}};
-  for (std::size_t i = 0; i < DrawTable::outputs().size(); ++i) {
-    const EnsembleOutput& output = DrawTable::outputs()[i];
-    const Spread s = spreadOf(finiteOf(f.outputs[i]));
+  for (std::size_t i = 0; i < bio::ensembleOutputs().size(); ++i) {
+    const bio::EnsembleOutput& output = bio::ensembleOutputs()[i];
+    const bio::Spread s = bio::spreadOf(f.outputs[i]);
     table.rows.push_back({output.words, numberText(f.table.shown() * output.of(f.nominal)),
                           numberText(s.mean), numberText(s.sd), numberText(s.p5), numberText(s.p50),
                           numberText(s.p95)});
@@ -94,7 +85,7 @@ Table parameterTable(const EnsembleFindings& f) {
   Table table{
       .title = "Distributions of the parameters",
       .columns = {"parameter", "unit", "model value", "mean", "standard deviation", "from", "to"}};
-  for (const DrawnParameter& one : f.parameters) {
+  for (const bio::DrawnParameter& one : f.parameters) {
     table.rows.push_back({one.name, one.unit.empty() ? "1" : one.unit, numberText(one.value),
                           numberText(one.law.mean), numberText(one.law.sd),
                           numberText(one.law.quantile(0)), numberText(one.law.quantile(1))});
@@ -103,8 +94,8 @@ Table parameterTable(const EnsembleFindings& f) {
 }
 
 Table sobolTable(const EnsembleFindings& f) {
-  const SobolFinding& s = *f.sobol;
-  Table table{.title = fmt::format("Sobol's indices of {}", s.output),
+  const bio::SobolFinding& s = f.sobol->found;
+  Table table{.title = fmt::format("Sobol's indices of {}", f.sobol->output),
               .columns = {"parameter", "first order", "95 % interval", "total", "95 % interval"}};
   for (std::size_t i = 0; i < f.parameters.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
@@ -120,21 +111,10 @@ Table sobolTable(const EnsembleFindings& f) {
 
 }  // namespace
 
-Spread spreadOf(const std::vector<double>& values) {
-  const auto n = static_cast<double>(values.size());
-  double mean = 0, squares = 0;
-  for (const double x : values) mean += x / n;
-  for (const double x : values) squares += (x - mean) * (x - mean);
-  if (values.empty()) mean = std::nan("");
-  return {mean, values.size() > 1 ? std::sqrt(squares / (n - 1)) : std::nan(""),
-          info::quantileOf(values, 0.05), info::quantileOf(values, 0.5),
-          info::quantileOf(values, 0.95)};
-}
-
 void collect(EnsembleFindings& f) {
   Band& band = f.band;
   band.time = f.table.course();
-  f.outputs.assign(DrawTable::outputs().size(), {});
+  f.outputs.assign(bio::ensembleOutputs().size(), {});
   const std::uint64_t each = std::max<std::uint64_t>(f.count, 1) * sizeof(double);
   const std::size_t together = std::max<std::uint64_t>(1, mostKept / each);
   for (std::size_t begin = 0; begin < band.time.size(); begin += together) {
@@ -151,7 +131,7 @@ void collect(EnsembleFindings& f) {
       }
     }
     for (std::size_t i = begin; i < end; ++i) {
-      const Spread s = spreadOf(columns[i - begin]);
+      const bio::Spread s = bio::spreadOf(columns[i - begin]);
       band.nominal.push_back(f.table.shown() * f.nominal.atCourse[static_cast<Eigen::Index>(i)]);
       band.mean.push_back(s.mean);
       band.p5.push_back(s.p5);
@@ -185,11 +165,11 @@ void writeBand(const EnsembleFindings& f, std::ostream& out) {
 }
 
 void writeSobol(const EnsembleFindings& f, std::ostream& out) {
-  const SobolFinding& s = *f.sobol;
+  const bio::SobolFinding& s = f.sobol->found;
   out << "output,parameter,first,first_low,first_high,total,total_low,total_high\n";
   for (std::size_t i = 0; i < f.parameters.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    out << s.output << ',' << f.parameters[i].name;
+    out << f.sobol->output << ',' << f.parameters[i].name;
     for (const double x :
          {s.indices.first[at], s.intervals.first(at, 0), s.intervals.first(at, 1),
           s.indices.total[at], s.intervals.total(at, 0), s.intervals.total(at, 1)}) {
@@ -205,7 +185,7 @@ void tellEnsemble(const EnsembleFindings& f, Summary& summary) {
   for (const auto& [outcome, count] : f.outcomes) ended[outcome] = count;
   summary.set("outcomes", ended);
   nlohmann::ordered_json laws = nlohmann::ordered_json::array();
-  for (const DrawnParameter& one : f.parameters) {
+  for (const bio::DrawnParameter& one : f.parameters) {
     laws.push_back({{"name", one.name},
                     {"unit", one.unit},
                     {"mean", one.law.mean},
@@ -214,9 +194,9 @@ void tellEnsemble(const EnsembleFindings& f, Summary& summary) {
                     {"to", one.law.quantile(1)}});
   }
   summary.set("parameters", laws);
-  for (std::size_t i = 0; i < DrawTable::outputs().size(); ++i) {
-    const EnsembleOutput& output = DrawTable::outputs()[i];
-    const Spread s = spreadOf(finiteOf(f.outputs[i]));
+  for (std::size_t i = 0; i < bio::ensembleOutputs().size(); ++i) {
+    const bio::EnsembleOutput& output = bio::ensembleOutputs()[i];
+    const bio::Spread s = bio::spreadOf(f.outputs[i]);
     summary.set(f.table.columnOf(output), {{"nominal", f.table.shown() * output.of(f.nominal)},
                                            {"mean", s.mean},
                                            {"sd", s.sd},
@@ -225,7 +205,7 @@ void tellEnsemble(const EnsembleFindings& f, Summary& summary) {
                                            {"p95", s.p95}});
   }
   if (!f.sobol) return;
-  const SobolFinding& s = *f.sobol;
+  const bio::SobolFinding& s = f.sobol->found;
   nlohmann::ordered_json indices = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < f.parameters.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
@@ -235,8 +215,8 @@ void tellEnsemble(const EnsembleFindings& f, Summary& summary) {
                        {"total", s.indices.total[at]},
                        {"total_interval", {s.intervals.total(at, 0), s.intervals.total(at, 1)}}});
   }
-  summary.set("sobol", {{"output", s.output},
-                        {"base_points", s.basePoints},
+  summary.set("sobol", {{"output", f.sobol->output},
+                        {"base_points", f.sobol->basePoints},
                         {"variance", s.indices.variance},
                         {"undefined", s.indices.undefined},
                         {"indices", indices}});

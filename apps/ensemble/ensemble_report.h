@@ -8,16 +8,14 @@
 #include <vector>
 
 #include "ensemble/ensemble_draws.h"
-#include "info/probability/global_sensitivity.h"
 #include "report/report.h"
 
 namespace app {
 
 /// Sobol's indices of one output.
-struct SobolFinding {
+struct SobolOfOutput {
   std::string output;  ///< "final"
-  info::SobolResult indices;
-  info::SobolIntervals intervals;
+  bio::SobolFinding found;
   int basePoints;
 };
 
@@ -31,7 +29,7 @@ struct EnsembleFindings {
   std::string modelFile, trialFile;
   std::string coordinate;
   const DrawTable& table;
-  const std::vector<DrawnParameter>& parameters;
+  const std::vector<bio::DrawnParameter>& parameters;
   const bio::EnsembleRun& nominal;
   std::uint64_t count;                               ///< of rows
   std::function<DrawTable::Row(std::uint64_t)> row;  ///< by number, below `count`
@@ -39,14 +37,8 @@ struct EnsembleFindings {
   std::map<std::string, std::uint64_t> outcomes = {};  ///< number of simulations by outcome
   std::vector<std::vector<double>> outputs = {};       ///< by output, then by row; NaN: none
   Band band = {};
-  std::optional<SobolFinding> sobol = {};
+  std::optional<SobolOfOutput> sobol = {};
 };
-
-/// Statistics of one output over the runs that reached the end.
-struct Spread {
-  double mean, sd, p5, p50, p95;
-};
-Spread spreadOf(const std::vector<double>& values);
 
 /// Fills outcomes, outputs and the band from the rows.
 void collect(EnsembleFindings& findings);

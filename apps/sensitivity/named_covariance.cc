@@ -60,35 +60,7 @@ double numberIn(const std::string& cell, const std::string& column, const CellRe
   throw reader.failure(fmt::format("column {}: '{}' must be a finite number", column, cell));
 }
 
-/// What belongs to a covariance beside being positive definite.
-void check(const NamedCovariance& c, const std::filesystem::path& file) {
-  const Eigen::VectorXd variances = c.values.diagonal();
-  for (Eigen::Index i = 0; i < variances.size(); ++i) {
-    const std::string& name = c.names[static_cast<std::size_t>(i)];
-    if (!(variances[i] > 0)) {
-      throw std::invalid_argument(fmt::format("{}: the variance of {} is {}, must be > 0",
-                                              file.string(), name, variances[i]));
-    }
-    for (Eigen::Index j = 0; j < i; ++j) {
-      const double apart = std::abs(c.values(i, j) - c.values(j, i));
-      if (apart <= 1e-6 * std::sqrt(variances[i] * variances[j])) continue;
-      const std::string& other = c.names[static_cast<std::size_t>(j)];
-      throw std::invalid_argument(
-          fmt::format("{}: the covariance of {} and {} is {} in one place and {} in the other, "
-                      "must be symmetric",
-                      file.string(), name, other, c.values(i, j), c.values(j, i)));
-    }
-  }
-}
-
 }  // namespace
-
-Eigen::MatrixXd NamedCovariance::correlation() const {
-  const Eigen::VectorXd scale = values.diagonal().cwiseSqrt().cwiseInverse();
-  Eigen::MatrixXd r = scale.asDiagonal() * (values + values.transpose()) * scale.asDiagonal() / 2;
-  r.diagonal().setOnes();
-  return r;
-}
 
 NamedCovariance readCovariance(const std::filesystem::path& file) {
   CellReader reader(file);
@@ -130,7 +102,11 @@ NamedCovariance readCovariance(const std::filesystem::path& file) {
     }
   }
   if (row != n) throw reader.failure(fmt::format("{} rows for {} names, must be as many", row, n));
-  check(covariance, file);
+  try {
+    bio::requireCovariance(covariance);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("{}: {}", file.string(), error.what()));
+  }
   return covariance;
 }
 

@@ -4,7 +4,7 @@ Everything is in SI units and radians; arrays have one row per time.
 
 Errors: values and files that break a rule raise ValueError, and a computation that cannot be
 carried out raises RuntimeError, each with one line that says which quantity and which rule. An
-argument of a wrong type or name raises TypeError. replay, sensitivity, calibrate and discover can be
+argument of a wrong type or name raises TypeError. Long computations can be
 interrupted by Ctrl-C (KeyboardInterrupt), and other threads run meanwhile.
 
 What functions return is a types.SimpleNamespace; its members are those of the classes below that
@@ -24,10 +24,13 @@ __all__ = [
     "System",
     "Trial",
     "calibrate",
+    "compare",
+    "compare_muscles",
     "cost_gradient",
     "cramer_rao_bound",
     "discover",
     "emg",
+    "ensemble",
     "estimate",
     "fisher_information",
     "fit_paths",
@@ -40,8 +43,10 @@ __all__ = [
     "moment_arms",
     "muscle_states",
     "opensim_differences",
+    "read_study",
     "replay",
     "sensitivity",
+    "study",
 ]
 
 __version__: str
@@ -335,10 +340,11 @@ class EmgResult:
     remarks: list[str]
     warnings: list[str]
 
-def emg(recordings: str | Sequence[str], config: str) -> EmgResult:
+def emg(recordings: str | Sequence[str], config: str, *, write: str = "") -> EmgResult:
     """Converts raw EMG recordings of one movement into the columns of a trial.
 
-    make_trial(model, emg(recordings, config).columns) is the trial.
+    make_trial(model, emg(recordings, config).columns) is the trial, without latent_excitation;
+    load_trial of the written file has that, too.
 
     Parameters
     ----------
@@ -347,6 +353,8 @@ def emg(recordings: str | Sequence[str], config: str) -> EmgResult:
         .xdf or .trc.
     config : str
         File (.toml) of channels, filters, electrodes and muscles (docs/emg.md).
+    write : str
+        File (.sto) to which the trial is written, as the program writes it; empty: none.
 
     Returns
     -------
@@ -927,6 +935,428 @@ def cost_gradient(
         or a trial with known_mass_in_hand or known_arm_turn.
     """
 
+# Ensembles ----------------------------------------------------------------------------------------
+
+@type_check_only
+class ParameterLaw:
+    name: str
+    unit: str
+    value: float
+    mean: float
+    sd: float
+    lower: float
+    upper: float
+
+@type_check_only
+class OutputSpread:
+    nominal: float
+    mean: float
+    sd: float
+    p5: float
+    p50: float
+    p95: float
+
+@type_check_only
+class PercentileBand:
+    nominal: _Array
+    mean: _Array
+    p5: _Array
+    p50: _Array
+    p95: _Array
+
+@type_check_only
+class SobolIndices:
+    first: _Array
+    first_interval: _Array
+    total: _Array
+    total_interval: _Array
+    variance: float
+    undefined: int
+
+@type_check_only
+class EnsembleResult:
+    coordinate: str
+    laws: list[ParameterLaw]
+    parameters: _Array
+    outcome: list[Literal["ok", "unstable", "no solution", "impossible"]]
+    failed_at: _Array
+    outputs: dict[str, _Array]
+    spread: dict[str, OutputSpread]
+    time: _Array
+    course: _Array
+    band: PercentileBand
+    sobol: SobolIndices | None
+    left_range: int
+    warnings: list[str]
+
+def ensemble(
+    model: Model,
+    trial: Trial,
+    *,
+    parameters: Sequence[str] = [],
+    draws: int = 1000,
+    seed: int = 1,
+    distribution: Literal["normal", "uniform"] = "normal",
+    spread: float = 1.0,
+    prior: dict[str, tuple[float, float]] = {},
+    bounds: dict[str, tuple[float, float]] = {},
+    covariance: tuple[Sequence[str], ArrayLike] | None = None,
+    sobol: bool = False,
+    output: Literal["rms_error", "rms_from_nominal", "final", "min", "max"] = "final",
+    band_points: int = 46,
+    threads: int = 1,
+    initial: dict[str, float] = {},
+    coordinate: str | Sequence[str] = [],
+    lock: dict[str, float] = {},
+    integrator: _Integrator = "vi",
+    step: float | None = None,
+) -> EnsembleResult:
+    """Simulates a trial with many random draws of the parameters.
+
+    Run i is a function of seed and i alone: the same as in the program's draws.csv, for any number of
+    draws and threads.
+
+    Parameters
+    ----------
+    model : Model
+    trial : Trial
+    parameters : list of str
+        To draw: names, which may contain *, or ['all']; list_parameters lists them. Default: those of
+        the covariance, else all.
+    draws : int
+        Number of simulations >= 1; with sobol number n of base points >= 2, of which each is
+        parameters + 2 simulations.
+    seed : int
+    distribution : {'normal', 'uniform'}
+        Normal, or constant over the mean +- sqrt(3) standard deviations; both within the bounds.
+    spread : float
+        Factor by which every standard deviation is multiplied > 0.
+    prior : dict
+        {parameter: (mean, standard deviation)} instead of the model's value and the default.
+    bounds : dict
+        {parameter: (lower, upper)} instead of the defaults.
+    covariance : (names, array), optional
+        Names of normally distributed parameters, and their covariance, names x names [product of the
+        two units]. Means are the model's values. Not with sobol.
+    sobol : bool
+        True: simulate the points of Saltelli's scheme and compute Sobol's indices.
+    output : {'rms_error', 'rms_from_nominal', 'final', 'min', 'max'}
+        The output whose variance sobol decomposes.
+    band_points : int
+        Number of times in the percentile band >= 2.
+    threads : int
+        Simulations at once; 0: as many as there are processors.
+    initial : dict
+        {coordinate: initial value [rad] or [m]}, at rest. Default: as in replay.
+    coordinate : str or list of str
+        The free coordinate, or several, of which the first is observed. Default: as in replay.
+    lock, integrator, step
+        As in replay, but the default step is 0.01 s (rk4: 0.0002 s).
+
+    Returns
+    -------
+    coordinate : str
+        The observed one.
+    laws : list
+        Distribution of each drawn parameter, with
+
+        name, unit : str
+        value : float
+            In the model.
+        mean, sd, lower, upper : float
+            Of the distribution, sd before truncation at the bounds.
+    parameters : array, runs x parameters
+        As drawn.
+    outcome : list of str
+        Of each run: 'ok', 'unstable', 'no solution', or 'impossible' (no model or no initial state
+        exists for these parameters).
+    failed_at : array, runs
+        Time at which the run ended early [s]; NaN if it did not, or never began.
+    outputs : dict
+        {output: array, runs} [rad] or [m], NaN unless the run reached the end: 'rms_error' against the
+        measurement (NaN without one), 'rms_from_nominal' (RMS difference from the run with the model's
+        own parameters), 'final', 'min' and 'max' (last, smallest and largest value).
+    spread : dict
+        {output: statistics over the runs that reached the end}, each with nominal, mean, sd (sample
+        standard deviation), p5, p50, p95 (percentiles).
+    time : array, times
+        Equally spaced over the trial [s].
+    course : array, runs x times
+        The coordinate [rad] or [m]; NaN unless the run reached the end.
+    band : SimpleNamespace
+        nominal, mean, p5, p50, p95 : array, times
+            The model's own motion; mean and percentiles over the runs that reached the end.
+    sobol : SimpleNamespace or None
+        first, total : array, parameters
+            Fractions of the output's variance: of the parameter alone, and with all its interactions
+            (Saltelli et al. 2010; Jansen 1999).
+        first_interval, total_interval : array, parameters x 2
+            95 % intervals by resampling the base points.
+        variance : float
+            Of the output [rad^2] or [m^2].
+        undefined : int
+            Runs that did not reach the end; their points are left out.
+    left_range : int
+        Runs in which the coordinate leaves its range by more than a tenth of it.
+    warnings : list of str
+        Whether the model's own motion leaves the range in which the model is valid.
+
+    Raises
+    ------
+    ValueError
+        For an unknown parameter (with the nearest names), a prior or bounds of one that is not drawn, a
+        distribution or covariance that breaks a rule, more than 32 parameters with sobol, an output
+        'rms_error' without a measurement, a trial with known_mass_in_hand or known_arm_turn, or a
+        model whose own motion does not reach the end of the trial.
+    """
+
+# Comparisons --------------------------------------------------------------------------------------
+
+@type_check_only
+class ConvergedReference:
+    status: Literal["confirmed", "disputed", "failed"]
+    why: str
+    time: _Array
+    q: _Array
+    relative_tolerance: float
+    looser_tolerance: float
+    disagreement_rms: float
+    disagreement_max: float
+    interpolation_rms: float
+    second_step: float
+    second_rms: float
+
+@type_check_only
+class IntegratorRun:
+    integrator: Literal["vi", "vi-left", "rk4", "cvode"]
+    step: float
+    outcome: Literal["ok", "unstable", "no solution"]
+    why: str
+    failed_at: float
+    rms_error: float
+    max_error: float
+    max_error_at: float
+    wall: float
+    newton_per_step: float
+    halved_steps: int
+    energy_error: float
+    time: _Array
+    q: _Array
+
+@type_check_only
+class StepLimit:
+    stable: float
+    failing: float
+    why: str
+
+@type_check_only
+class ObservedOrder:
+    order: float
+    steps: _Array
+    errors: _Array
+
+@type_check_only
+class CompareResult:
+    coordinates: list[str]
+    reference: ConvergedReference
+    runs: list[IntegratorRun]
+    largest_stable_step: dict[str, StepLimit]
+    observed_order: dict[str, ObservedOrder]
+    stable_means_rms_below: float
+    warnings: list[str]
+
+def compare(
+    model: Model,
+    trial: Trial,
+    *,
+    integrators: Sequence[_Integrator] = ["rk4", "vi", "vi-left", "cvode"],
+    steps: Sequence[float] = [0.0002, 0.0003, 0.0005, 0.0008, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05],
+    timings: int = 5,
+    initial: dict[str, float] = {},
+    coordinate: str | Sequence[str] = [],
+    lock: dict[str, float] = {},
+) -> CompareResult:
+    """Compares integrators over time steps: error against a converged motion, run time, stability.
+
+    Parameters
+    ----------
+    model : Model
+    trial : Trial
+    integrators : list of {'vi', 'vi-left', 'rk4', 'cvode'}
+        Each once; replay explains them.
+    steps : list of float
+        Time steps [s] > 0, rising; for 'cvode' the interval of its output.
+    timings : int
+        Least number of runs of each integrator and step, whose median time is reported >= 1.
+    initial : dict
+        {coordinate: initial value [rad] or [m]}, at rest. Default: as in replay.
+    coordinate : str or list of str
+        The free coordinate, or several; one must be a rotation. Default: as in replay.
+    lock : dict
+        As in replay.
+
+    Returns
+    -------
+    coordinates : list of str
+        Columns of q.
+    reference : SimpleNamespace
+        Motion of CVODE with a tight tolerance, with
+
+        status : str
+            'confirmed' by 'vi' at a small step, 'disputed' by it, or 'failed': there are no runs.
+        why : str
+            It is disputed or failed, else empty.
+        time, q : array, times; array, times x coordinates
+            [s], [rad] or [m].
+        relative_tolerance, looser_tolerance : float
+            Of this motion, and of the one it is checked with.
+        disagreement_rms, disagreement_max : float
+            Between these two [rad].
+        interpolation_rms : float
+            Error of interpolating it between rows [rad].
+        second_step, second_rms : float
+            Step of 'vi' [s], and its difference [rad].
+    runs : list
+        By integrator, then by step; each with
+
+        integrator : str
+        step : float
+            [s]
+        outcome, why : str
+            'ok', 'unstable' or 'no solution'; the reason, else empty.
+        failed_at : float
+            [s]; NaN if it reached the end.
+        rms_error, max_error, max_error_at : float
+            From the reference over all free rotations: RMS and largest [rad], and when [s]. NaN, like
+            wall and energy_error, if it did not reach the end.
+        wall : float
+            Median run time [s].
+        newton_per_step : float
+            Iterations; 0 for rk4.
+        halved_steps : int
+            Steps that did not converge in one piece.
+        energy_error : float
+            Largest [J].
+        time, q : array, times; array, times x coordinates
+            As far as it came.
+    largest_stable_step : dict
+        {integrator: limit} of all but cvode, each with
+
+        stable : float
+            Largest step found at which the run reaches the end with an RMS error below
+            stable_means_rms_below [s]; NaN if none.
+        failing : float
+            Smallest found at which it does not [s]; NaN if a quarter of the trial is still stable.
+        why : str
+            It fails there.
+    observed_order : dict
+        {integrator: order} of the same: order p of an error proportional to step**p (NaN with fewer than
+        three usable steps), and steps [s] and errors [rad] of the fit.
+    stable_means_rms_below : float
+        [rad]
+    warnings : list of str
+        About the model; whether the motion leaves the range in which it is valid.
+
+    Raises
+    ------
+    ValueError
+        For an unknown integrator or one listed twice, steps that do not rise, no free rotation, or a
+        trial with known_mass_in_hand or known_arm_turn.
+    """
+
+@type_check_only
+class MuscleBound:
+    value: float
+    unit: str
+    sd: float
+
+@type_check_only
+class MuscleClassMotion:
+    name: str
+    outcome: Literal["ok", "unstable", "no solution"]
+    why: str
+    lost: list[str]
+    rms: float
+    max: float
+    max_at: float
+    measured_rms: float
+    unexplained_rms: float
+    determined_combinations: int
+    bounds: dict[str, MuscleBound]
+    wall: float
+    energy_error: float
+    time: _Array
+    q: _Array
+
+def compare_muscles(
+    model: Model,
+    trial: Trial,
+    *,
+    classes: Sequence[str] = ["Schutte1993", "Thelen2003", "Millard2012", "DeGrooteFregly2016", "RigidTendon"],
+    noise: float = 0.017453292519943295,
+    initial: dict[str, float] = {},
+    coordinate: str | Sequence[str] = [],
+    lock: dict[str, float] = {},
+    integrator: _Integrator = "vi",
+    step: float | None = None,
+) -> list[MuscleClassMotion]:
+    """What the class of a model's muscles changes in a motion, all their shared numbers being equal.
+
+    Parameters
+    ----------
+    model : Model
+    trial : Trial
+    classes : list of str
+        As with_muscles takes them.
+    noise : float
+        Standard deviation of the measured coordinate [rad] or [m] > 0; default: 1 degree.
+    initial : dict
+        {coordinate: initial value [rad] or [m]}, at rest. Default: as in replay.
+    coordinate : str or list of str
+        The free coordinate, or several, of which the first is the measured one.
+    lock, integrator, step
+        As in replay, but the integrator must be 'vi' or 'vi-left', and the default step is 0.01 s.
+
+    Returns
+    -------
+    list
+        The model as it is, then with all muscles of each class, each with
+
+        name : str
+            'as in the model', or the class.
+        outcome, why : str
+            'ok', 'unstable' or 'no solution'; the reason, else empty.
+        lost : list of str
+            Numbers that the class does not have.
+        rms, max, max_at : float
+            Difference from the first over all free rotations: RMS and largest [rad], and when [s]. NaN,
+            like what follows, if the motion does not reach the end.
+        measured_rms : float
+            RMS difference of the measured coordinate from the first at the measured times [rad] or [m].
+        unexplained_rms : float
+            What is left of it if the first model's muscle parameters are changed to explain it (linear
+            least squares with their priors) [rad] or [m]. Small: data cannot tell the classes apart.
+        determined_combinations : int
+            Independent combinations of parameters whose uncertainty the data at least halve.
+        bounds : dict
+            {parameter: bound} of maximal force, optimal fibre length and tendon slack length of every
+            muscle: value, unit, and sd, the Cramér–Rao standard deviation with all estimated together.
+        wall : float
+            Least run time of five [s].
+        energy_error : float
+            Largest [J].
+        time, q : array, times; array, times x coordinates
+            As far as it came.
+
+    Raises
+    ------
+    ValueError
+        For an unknown class or integrator, noise that is not > 0, or a trial with known_mass_in_hand or
+        known_arm_turn.
+    RuntimeError
+        If the motion of the model as it is does not reach the end.
+    """
+
 # Calibration --------------------------------------------------------------------------------------
 
 @type_check_only
@@ -1381,6 +1811,144 @@ def discover(
     ValueError
         For several free coordinates, a trial in which the coordinate was not measured, an unknown id,
         or an option out of range.
+    """
+
+# Studies ------------------------------------------------------------------------------------------
+
+@type_check_only
+class StudyRecording:
+    file: str
+    config: str
+    held_out: bool
+
+@type_check_only
+class StudySubject:
+    name: str
+    model: str
+    train: list[str]
+    hold_out: list[str]
+    recordings: list[StudyRecording]
+
+@type_check_only
+class StudyFile:
+    title: str
+    parameters: list[str]
+    own_start: bool
+    priors: bool
+    noise: float | None
+    starts: int
+    discover: bool
+    max_effects: int
+    without: list[str]
+    coordinates: list[str]
+    lock: list[str]
+    step: float | None
+    subjects: list[StudySubject]
+
+def read_study(file: str) -> StudyFile:
+    """Reads a study: subjects with their models and trials, and what is to be estimated from them.
+
+    Parameters
+    ----------
+    file : str
+        (.toml); docs/study.md lists every key. Paths in it are relative to its folder.
+
+    Returns
+    -------
+    title : str
+    parameters : list of str
+        To estimate; empty: nothing is calibrated.
+    own_start, priors : bool
+    noise : float or None
+        Of the measured angle [rad]; None: from the data.
+    starts : int
+    discover : bool
+        Whether a missing effect is looked for.
+    max_effects : int
+    without, coordinates, lock : list of str
+        As the program takes them, e.g. lock 'shoulder_elv=30deg'.
+    step : float or None
+        [s]
+    subjects : list
+        Each with
+
+        name, model : str
+        train, hold_out : list of str
+            Trials.
+        recordings : list
+            Of raw EMG, of which trials are made: file, config, and held_out.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read, or for an unknown key or a value that breaks a rule; the line names
+        file, line and key.
+    """
+
+@type_check_only
+class StudyRow:
+    subject: str
+    status: Literal["ok", "failed", "not converged", "no solution"]
+    rmse_before: float
+    rmse_after: float
+    rmse_held_out_before: float
+    rmse_held_out: float
+    noise: float
+    identifiable: int
+    parameters: int
+    verdict: str
+    effects: list[str]
+    probability: float
+    sentence: str
+    message: str
+    calibration: CalibrationResult | None
+    discovery: DiscoveryResult | None
+
+def study(file: str, *, seed: int = 1, threads: int = 1) -> list[StudyRow]:
+    """Carries every subject of a study through emg, calibrate with its held-out test, and discover.
+
+    What cannot be carried out for a subject is the status and message of its row and does not stop
+    the others. One subject is computed after the other.
+
+    Parameters
+    ----------
+    file : str
+        As in read_study.
+    seed : int
+        Of calibrate.
+    threads : int
+        Of calibrate.
+
+    Returns
+    -------
+    list
+        A row for every subject, in the order of the file, each with
+
+        subject : str
+        status : str
+            'ok', 'failed', or of calibrate 'not converged' or 'no solution'.
+        rmse_before, rmse_after, rmse_held_out_before, rmse_held_out : float
+            RMS error of the training and held-out trials with the given and the calibrated model [rad];
+            NaN without.
+        noise : float
+            Of the measured angle [rad]; NaN without a calibration.
+        identifiable, parameters : int
+            Of how many of the estimated parameters the data at least halve the uncertainty.
+        verdict, sentence : str
+            Of discover; empty without.
+        effects : list of str
+            Ids of the effects that it names.
+        probability : float
+            Of the first; NaN without.
+        message : str
+            What failed, or why the calibration did not converge; else empty.
+        calibration, discovery : SimpleNamespace or None
+            What calibrate and discover returned.
+
+    Raises
+    ------
+    ValueError
+        As read_study does.
     """
 
 # Systems defined in Python ------------------------------------------------------------------------

@@ -1,0 +1,96 @@
+#include "bio/analysis/trial_ensemble.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "bio/analysis/ensemble_statistics.h"
+#include "bio/analysis/replay.h"
+#include "bio/simulation/simulate.h"
+#include "info/probability/global_sensitivity.h"
+#include "info/probability/random_stream.h"
+
+namespace bio {
+namespace {
+
+const Coordinate& observedCoordinate(const MusculoskeletalSystem& system) {
+  if (system.skeleton().coordinates().empty()) {
+    throw std::invalid_argument("no coordinate is free, must have one");
+  }
+  return system.skeleton().coordinates().front();
+}
+
+std::optional<MeasuredMotion> measurementOf(const Trial& trial, const std::string& coordinate) {
+  std::optional<MeasuredMotion> measured;
+  for (const MeasuredMotion& motion : trial.measured) {
+    if (motion.coordinate == coordinate) measured = motion;
+  }
+  return measured;
+}
+
+}  // namespace
+
+TrialEnsemble::TrialEnsemble(const Model& model, const MusculoskeletalSystem& system,
+                             const SystemOptions& options, const Trial& trial,
+                             const StartPoint& start, const TrialEnsembleOptions& asked)
+    : coordinate_(observedCoordinate(system)),
+      measured_(measurementOf(trial, coordinate_.name)),
+      catalogue_(model, system, start),
+      laws_(parameterLaws(catalogue_, asked.laws)),
+      sobol_(asked.sobol),
+      draws_(asked.draws) {
+  check(trial, asked);
+  SimulationOptions simulation = asked.simulation;
+  simulation.startTime = trial.times[0];
+  simulation.duration = trial.duration();
+  simulation.externalForce = externalForceOf(trial, system);
+  simulation.prescribed = prescribedMotionOf(trial, system);
+  const ExcitationSignal excitation = excitationOf(trial, system);
+  batch_ = std::make_unique<const SystemBatch>(
+      catalogue_, options, excitation, coordinate_.name, measured_,
+      bandTimes(simulation.startTime, simulation.duration, asked.bandPoints), laws_.selection,
+      simulation);
+  SystemState state = initialState(system, start.q, excitation, simulation.startTime);
+  state.qDot = start.qDot;
+  if (const auto left = leftRange(system, simulate(system, excitation, state, simulation)))
+    remark_ = "with the model's own parameters, " + left->what;
+}
+
+void TrialEnsemble::check(const Trial& trial, const TrialEnsembleOptions& asked) const {
+  const std::string& prefix = asked.laws.optionPrefix;
+  const auto refuse = [](const std::string& why) { throw std::invalid_argument(why); };
+  if (asked.draws < 1 || asked.draws > 10000000) {
+    refuse(fmt::format("{}draws = {}, must be 1 to 10000000", prefix, asked.draws));
+  }
+  if (asked.bandPoints < 2 || asked.bandPoints > 1000) {
+    refuse(fmt::format("{}band_points = {}, must be 2 to 1000", prefix, asked.bandPoints));
+  }
+  (void)ensembleOutputNamed(asked.output);
+  if (!asked.sobol) return;
+  if (laws_.together) refuse(fmt::format("{0}covariance cannot be combined with {0}sobol", prefix));
+  if (laws_.selection.size() > 32) {
+    refuse(fmt::format("{0}sobol: {1} parameters, at most 32; choose them with {0}parameters",
+                       prefix, laws_.selection.size()));
+  }
+  if (asked.draws < 2) refuse(fmt::format("{0}sobol: {0}draws must be at least 2", prefix));
+  if (asked.output == "rms_error" && !measured_) {
+    refuse(fmt::format("{}output rms_error: {} has no measured {}", prefix, trial.file,
+                       coordinate_.name));
+  }
+}
+
+std::uint64_t TrialEnsemble::count() const {
+  const auto n = static_cast<std::uint64_t>(draws_);
+  return sobol_ ? n * (laws_.parameters.size() + 2) : n;
+}
+
+Eigen::VectorXd TrialEnsemble::draw(std::uint64_t number, std::uint64_t seed) const {
+  const auto p = static_cast<int>(laws_.parameters.size());
+  if (sobol_) return laws_.at(info::sobolPoint(number, p, seed));
+  info::RandomStream random(seed, number);
+  Eigen::VectorXd unit(p);
+  for (double& u : unit) u = random.uniform();
+  return laws_.at(std::move(unit));
+}
+
+}  // namespace bio

@@ -1,0 +1,210 @@
+#include "bio/analysis/compare.h"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "arms.h"
+#include "bio/analysis/compare_muscles.h"
+#include "bio/analysis/replay.h"
+#include "bio/model/integrator_names.h"
+#include "bio/opensim/external_loads.h"
+#include "docstrings.h"
+#include "interruptible.h"
+
+namespace python {
+namespace {
+
+/// Ends a comparison early; interruptible() drops it.
+struct Stopped : std::exception {};
+
+/// A progress callback that ends the work after Ctrl-C.
+auto stoppable(const std::atomic<bool>& goOn) {
+  return [&goOn](double) {
+    if (!goOn) throw Stopped();
+  };
+}
+
+/// The system and what a trial makes of it.
+struct PreparedTrial {
+  bio::MusculoskeletalSystem system;
+  bio::ExcitationSignal excitation;
+  bio::StartPoint start;
+  bio::SimulationOptions simulation;
+};
+
+PreparedTrial prepared(const bio::Model& model, const bio::Trial& trial, const SystemChoice& choice,
+                       const std::map<std::string, double>& initial) {
+  if (choice.coordinates.empty()) {
+    throw std::invalid_argument("no coordinate is free to be compared: all are prescribed");
+  }
+  mustBeOfTheModelAsItIs(trial);
+  bio::requireLoadsCover(model.externalLoads, trial.times[0], trial.times[0] + trial.duration());
+  bio::MusculoskeletalSystem system(model, choice.armOptions());
+  bio::SimulationOptions simulation = during(trial, choice.simulation());
+  simulation.externalForce = bio::externalForceOf(trial, system);
+  simulation.prescribed = bio::prescribedMotionOf(trial, system);
+  bio::ExcitationSignal excitation = bio::excitationOf(trial, system);
+  bio::StartPoint start = bio::beginningOf(trial, model, system, initial).point;
+  return {std::move(system), std::move(excitation), std::move(start), std::move(simulation)};
+}
+
+py::array_t<double> arrayOf(const std::vector<double>& values) {
+  return py::array_t<double>(py::cast(values));
+}
+
+py::object referenceOf(const bio::ConvergedReference& reference) {
+  const char* status = !reference.completed()  ? "failed"
+                       : reference.confirmed() ? "confirmed"
+                                               : "disputed";
+  return results("status"_a = status,
+                 "why"_a = reference.completed() ? reference.whyDisputed : reference.motion.why,
+                 "time"_a = arrayOf(reference.motion.time),
+                 "q"_a = reference.motion.q.transpose().eval(),
+                 "relative_tolerance"_a = reference.relativeTolerance,
+                 "looser_tolerance"_a = reference.looserTolerance,
+                 "disagreement_rms"_a = reference.problem.rms,
+                 "disagreement_max"_a = reference.problem.largest,
+                 "interpolation_rms"_a = reference.interpolationError,
+                 "second_step"_a = reference.secondStep, "second_rms"_a = reference.second.rms);
+}
+
+py::object cellOf(const bio::CompareCell& cell) {
+  return results("integrator"_a = bio::name(cell.integrator), "step"_a = cell.step,
+                 "outcome"_a = bio::name(cell.outcome), "why"_a = cell.why,
+                 "failed_at"_a = cell.failedAt, "rms_error"_a = cell.error.rms,
+                 "max_error"_a = cell.error.largest, "max_error_at"_a = cell.error.largestAt,
+                 "wall"_a = cell.wallSeconds, "newton_per_step"_a = cell.newtonPerStep,
+                 "halved_steps"_a = cell.halvedSteps, "energy_error"_a = cell.energyError,
+                 "time"_a = arrayOf(cell.time), "q"_a = cell.q.transpose().eval());
+}
+
+py::object comparisonOf(const bio::Comparison& comparison, const bio::MusculoskeletalSystem& system,
+                        const bio::CompareOptions& options) {
+  py::list cells;
+  for (const bio::CompareCell& cell : comparison.cells) cells.append(cellOf(cell));
+  py::dict limits, orders;
+  for (const bio::StepLimit& limit : comparison.limits) {
+    limits[bio::name(limit.integrator)] =
+        results("stable"_a = limit.stable, "failing"_a = limit.failing, "why"_a = limit.why);
+  }
+  for (const bio::ObservedOrder& order : comparison.orders) {
+    orders[bio::name(order.integrator)] =
+        results("order"_a = order.order, "steps"_a = arrayOf(order.steps),
+                "errors"_a = arrayOf(order.errors));
+  }
+  std::vector<std::string> coordinates, warnings = system.warnings();
+  for (const auto& one : system.skeleton().coordinates()) coordinates.push_back(one.name);
+  if (const auto left = bio::leftRange(system, comparison.reference.motion)) {
+    warnings.push_back(left->what);
+  }
+  return results("coordinates"_a = coordinates, "reference"_a = referenceOf(comparison.reference),
+                 "runs"_a = cells, "largest_stable_step"_a = limits, "observed_order"_a = orders,
+                 "stable_means_rms_below"_a = options.usefulError, "warnings"_a = warnings);
+}
+
+py::object compare(const bio::Model& model, const bio::Trial& trial,
+                   const std::vector<std::string>& integrators, const std::vector<double>& steps,
+                   int timings, const std::map<std::string, double>& initial,
+                   const Names& coordinate, const std::map<std::string, double>& lock) {
+  const SystemChoice choice = armChoice(model, {trial}, coordinate, lock, "vi", {});
+  bio::CompareOptions options;
+  options.integrators.clear();
+  for (const std::string& name : integrators) {
+    const auto found = bio::integratorNamed(name);
+    if (!found) {
+      throw std::invalid_argument(
+          fmt::format("integrators: '{}', must be rk4, vi, vi-left or cvode", name));
+    }
+    options.integrators.push_back(*found);
+  }
+  options.steps = steps;
+  options.timings = timings;
+  std::optional<PreparedTrial> at;
+  bio::Comparison comparison;
+  interruptible([&](const std::atomic<bool>& goOn) {
+    at.emplace(prepared(model, trial, choice, initial));
+    options.startTime = at->simulation.startTime;
+    options.duration = at->simulation.duration;
+    options.externalForce = at->simulation.externalForce;
+    options.prescribed = at->simulation.prescribed;
+    options.progress = stoppable(goOn);
+    bio::SystemState start =
+        bio::initialState(at->system, at->start.q, at->excitation, options.startTime);
+    start.qDot = at->start.qDot;
+    comparison = bio::compareIntegrators(at->system, at->excitation, start, options);
+  });
+  return comparisonOf(comparison, at->system, options);
+}
+
+py::object classOf(const bio::MuscleClassMotion& one) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const bool isThere = one.motion.outcome == bio::Outcome::completed;
+  py::dict bounds;
+  for (std::size_t i = 0; i < one.information.parameters.size(); ++i) {
+    const info::Parameter& p = one.information.parameters[i];
+    bounds[p.name.c_str()] =
+        results("value"_a = p.start, "unit"_a = p.unit,
+                "sd"_a = one.information.boundJoint[static_cast<Eigen::Index>(i)]);
+  }
+  return results("name"_a = one.name, "outcome"_a = bio::name(one.motion.outcome),
+                 "why"_a = one.motion.why, "lost"_a = one.lost,
+                 "rms"_a = isThere ? one.difference.rms : nan,
+                 "max"_a = isThere ? one.difference.largest : nan,
+                 "max_at"_a = isThere ? one.difference.largestAt : nan,
+                 "measured_rms"_a = isThere ? one.measured : nan,
+                 "unexplained_rms"_a = isThere ? one.unexplained : nan,
+                 "determined_combinations"_a = one.information.determinedCombinations,
+                 "bounds"_a = bounds, "wall"_a = isThere ? one.motion.wallSeconds : nan,
+                 "energy_error"_a = isThere ? one.energyError : nan,
+                 "time"_a = arrayOf(one.motion.time), "q"_a = one.motion.q.transpose().eval());
+}
+
+py::list compareMuscles(const bio::Model& model, const bio::Trial& trial,
+                        const std::vector<std::string>& classes, double noise,
+                        const std::map<std::string, double>& initial, const Names& coordinate,
+                        const std::map<std::string, double>& lock, const std::string& integrator,
+                        std::optional<double> step) {
+  const SystemChoice choice = armChoice(model, {trial}, coordinate, lock, integrator, step);
+  if (!integrator.starts_with("vi")) {
+    throw std::invalid_argument(fmt::format(
+        "integrator '{}', must be vi or vi-left, which have sensitivities", integrator));
+  }
+  std::vector<bio::MuscleClassMotion> found;
+  interruptible([&](const std::atomic<bool>& goOn) {
+    const PreparedTrial at = prepared(model, trial, choice, initial);
+    const std::string& measured = choice.coordinates.front();
+    found =
+        bio::compareMuscleClasses(model, choice.armOptions(), classes,
+                                  {.excitation = &at.excitation,
+                                   .q = at.start.q,
+                                   .qDot = at.start.qDot,
+                                   .simulation = at.simulation,
+                                   .coordinate = measured,
+                                   .times = bio::observedTimes(trial, measured, at.simulation.step),
+                                   .noise = noise,
+                                   .progress = stoppable(goOn)});
+  });
+  py::list list;
+  for (const bio::MuscleClassMotion& one : found) list.append(classOf(one));
+  return list;
+}
+
+}  // namespace
+
+void defineComparisons(py::module_& module) {
+  module.def("compare", &compare, docstrings::compare, "model"_a, "trial"_a, py::kw_only(),
+             "integrators"_a = std::vector<std::string>{"rk4", "vi", "vi-left", "cvode"},
+             "steps"_a = bio::CompareOptions().steps, "timings"_a = 5,
+             "initial"_a = std::map<std::string, double>(),
+             "coordinate"_a = std::vector<std::string>(),
+             "lock"_a = std::map<std::string, double>());
+  defineWithChoice(
+      module, "compare_muscles", &compareMuscles, docstrings::compare_muscles, "model"_a, "trial"_a,
+      py::kw_only(),
+      "classes"_a = std::vector<std::string>{"Schutte1993", "Thelen2003", "Millard2012",
+                                             "DeGrooteFregly2016", "RigidTendon"},
+      "noise"_a = std::numbers::pi / 180, "initial"_a = std::map<std::string, double>());
+}
+
+}  // namespace python

@@ -1,0 +1,192 @@
+#include "bio/analysis/ensemble.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "arms.h"
+#include "bio/analysis/ensemble_statistics.h"
+#include "bio/analysis/trial_ensemble.h"
+#include "bio/opensim/external_loads.h"
+#include "docstrings.h"
+#include "info/estimation/monte_carlo.h"
+#include "interruptible.h"
+
+namespace python {
+namespace {
+
+/// Names and the covariance of what they name.
+using Covariance = std::pair<std::vector<std::string>, Eigen::MatrixXd>;
+
+info::Marginal::Shape shapeOf(const std::string& distribution) {
+  if (distribution == "normal") return info::Marginal::Shape::normal;
+  if (distribution == "uniform") return info::Marginal::Shape::even;
+  throw std::invalid_argument(
+      fmt::format("distribution '{}', must be normal or uniform", distribution));
+}
+
+/// All runs, as rows.
+struct EnsembleRows {
+  Eigen::MatrixXd parameters;  ///< runs × parameters
+  std::vector<bio::EnsembleRun> runs;
+};
+
+EnsembleRows rowsOf(const bio::TrialEnsemble& ensemble, std::uint64_t seed, int threads,
+                    const std::atomic<bool>& goOn) {
+  constexpr int together = 32;
+  const auto count = static_cast<int>(ensemble.count());
+  EnsembleRows rows;
+  rows.parameters.resize(count, std::ssize(ensemble.laws().parameters));
+  rows.runs.resize(static_cast<std::size_t>(count));
+  info::parallelFor((count + together - 1) / together, threads, [&](int part) {
+    if (!goOn) return;
+    std::vector<Eigen::VectorXd> thetas;
+    const int begin = part * together;
+    for (int i = begin; i < std::min(begin + together, count); ++i) {
+      thetas.push_back(ensemble.draw(static_cast<std::uint64_t>(i), seed));
+      rows.parameters.row(i) = thetas.back();
+    }
+    std::vector<bio::EnsembleRun> runs = ensemble.run(thetas);
+    std::move(runs.begin(), runs.end(), rows.runs.begin() + begin);
+  });
+  return rows;
+}
+
+py::object spreadOf(const std::vector<double>& values, double nominal) {
+  const bio::Spread s = bio::spreadOf(values);
+  return results("nominal"_a = nominal, "mean"_a = s.mean, "sd"_a = s.sd, "p5"_a = s.p5,
+                 "p50"_a = s.p50, "p95"_a = s.p95);
+}
+
+/// Percentiles over the runs at each time.
+py::object bandOf(const Eigen::MatrixXd& courses, const bio::EnsembleRun& nominal) {
+  const Eigen::Index n = courses.cols();
+  Eigen::VectorXd mean(n), p5(n), p50(n), p95(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const bio::Spread s = bio::spreadOf({courses.col(k).begin(), courses.col(k).end()});
+    mean[k] = s.mean;
+    p5[k] = s.p5;
+    p50[k] = s.p50;
+    p95[k] = s.p95;
+  }
+  return results("nominal"_a = nominal.atCourse, "mean"_a = mean, "p5"_a = p5, "p50"_a = p50,
+                 "p95"_a = p95);
+}
+
+py::object sobolOf(const std::optional<bio::SobolFinding>& sobol) {
+  if (!sobol) return py::none();
+  const info::SobolResult& indices = sobol->indices;
+  return results(
+      "first"_a = indices.first, "first_interval"_a = Eigen::MatrixXd(sobol->intervals.first),
+      "total"_a = indices.total, "total_interval"_a = Eigen::MatrixXd(sobol->intervals.total),
+      "variance"_a = indices.variance, "undefined"_a = indices.undefined);
+}
+
+py::list lawsOf(const bio::ParameterLaws& laws) {
+  py::list list;
+  for (const bio::DrawnParameter& one : laws.parameters) {
+    list.append(results("name"_a = one.name, "unit"_a = one.unit, "value"_a = one.value,
+                        "mean"_a = one.law.mean, "sd"_a = one.law.sd,
+                        "lower"_a = one.law.quantile(0), "upper"_a = one.law.quantile(1)));
+  }
+  return list;
+}
+
+/// One number of each run, e.g. a scalar output.
+template <class Number>
+std::vector<double> ofEachRun(const std::vector<bio::EnsembleRun>& runs, Number number) {
+  std::vector<double> values;
+  for (const bio::EnsembleRun& run : runs) values.push_back(number(run));
+  return values;
+}
+
+Eigen::VectorXd arrayOf(const std::vector<double>& values) {
+  return Eigen::VectorXd::Map(values.data(), std::ssize(values));
+}
+
+py::object resultOf(const bio::TrialEnsemble& ensemble, const EnsembleRows& rows,
+                    const std::optional<bio::SobolFinding>& sobol) {
+  const auto n = static_cast<Eigen::Index>(rows.runs.size());
+  Eigen::MatrixXd courses(n, std::ssize(ensemble.course()));
+  std::vector<std::string> outcomes;
+  int left = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const bio::EnsembleRun& run = rows.runs[static_cast<std::size_t>(i)];
+    courses.row(i) = run.atCourse;
+    outcomes.push_back(run.outcome);
+    left += bio::leavesRange(ensemble.coordinate(), run.lowest, run.highest) ? 1 : 0;
+  }
+  py::dict outputs, spreads;
+  for (const bio::EnsembleOutput& output : bio::ensembleOutputs()) {
+    const std::vector<double> values = ofEachRun(rows.runs, output.of);
+    outputs[output.name.c_str()] = arrayOf(values);
+    spreads[output.name.c_str()] = spreadOf(values, output.of(ensemble.nominal()));
+  }
+  std::vector<std::string> warnings;
+  if (!ensemble.nominalRemark().empty()) warnings.push_back(ensemble.nominalRemark());
+  const std::vector<double> failed =
+      ofEachRun(rows.runs, [](const bio::EnsembleRun& run) { return run.failedAt; });
+  return results("coordinate"_a = ensemble.coordinate().name, "laws"_a = lawsOf(ensemble.laws()),
+                 "parameters"_a = rows.parameters, "outcome"_a = outcomes,
+                 "failed_at"_a = arrayOf(failed), "outputs"_a = outputs, "spread"_a = spreads,
+                 "time"_a = arrayOf(ensemble.course()), "course"_a = courses,
+                 "band"_a = bandOf(courses, ensemble.nominal()), "sobol"_a = sobolOf(sobol),
+                 "left_range"_a = left, "warnings"_a = warnings);
+}
+
+py::object ensemble(const bio::Model& model, const bio::Trial& trial,
+                    const std::vector<std::string>& parameters, int draws, std::uint64_t seed,
+                    const std::string& distribution, double spread, const Pairs& prior,
+                    const Pairs& bounds, const std::optional<Covariance>& covariance, bool sobol,
+                    const std::string& output, int bandPoints, int threads,
+                    const std::map<std::string, double>& initial, const Names& coordinate,
+                    const std::map<std::string, double>& lock, const std::string& integrator,
+                    std::optional<double> step) {
+  const SystemChoice choice = armChoice(model, {trial}, coordinate, lock, integrator, step);
+  if (choice.coordinates.empty()) {
+    throw std::invalid_argument("no coordinate is free to be observed: all are prescribed");
+  }
+  if (threads < 0) throw std::invalid_argument(fmt::format("threads = {}, must be ≥ 0", threads));
+  mustBeOfTheModelAsItIs(trial);
+  bio::requireLoadsCover(model.externalLoads, trial.times[0], trial.times[0] + trial.duration());
+  bio::TrialEnsembleOptions options;
+  options.laws = {.names = parameters,
+                  .shape = shapeOf(distribution),
+                  .spread = spread,
+                  .priors = prior,
+                  .bounds = bounds};
+  if (covariance) options.laws.covariance = {covariance->first, covariance->second};
+  options.draws = draws;
+  options.sobol = sobol;
+  options.output = output;
+  options.bandPoints = bandPoints;
+  options.simulation = during(trial, choice.simulation());
+  std::unique_ptr<const bio::TrialEnsemble> made;
+  EnsembleRows rows;
+  std::optional<bio::SobolFinding> indices;
+  interruptible([&](const std::atomic<bool>& goOn) {
+    const bio::MusculoskeletalSystem system(model, choice.armOptions());
+    made = std::make_unique<const bio::TrialEnsemble>(
+        model, system, choice.armOptions(), trial,
+        bio::beginningOf(trial, model, system, initial).point, options);
+    rows = rowsOf(*made, seed, threads, goOn);
+    if (!sobol || !goOn) return;
+    const auto of = bio::ensembleOutputs()[bio::ensembleOutputNamed(output)].of;
+    indices = bio::sobolOf(ofEachRun(rows.runs, of),
+                           static_cast<int>(made->laws().parameters.size()), seed);
+  });
+  return resultOf(*made, rows, indices);
+}
+
+}  // namespace
+
+void defineEnsemble(py::module_& module) {
+  defineWithChoice(module, "ensemble", &ensemble, docstrings::ensemble, "model"_a, "trial"_a,
+                   py::kw_only(), "parameters"_a = std::vector<std::string>(), "draws"_a = 1000,
+                   "seed"_a = 1, "distribution"_a = "normal", "spread"_a = 1.0, "prior"_a = Pairs(),
+                   "bounds"_a = Pairs(), "covariance"_a = py::none(), "sobol"_a = false,
+                   "output"_a = "final", "band_points"_a = 46, "threads"_a = 1,
+                   "initial"_a = std::map<std::string, double>());
+}
+
+}  // namespace python
