@@ -123,7 +123,7 @@ class StudyCommand : public Command {
     for (std::size_t i = 0; i < study.subjects.size(); ++i) {
       findings.rows.push_back(cellsOf(file.row(i)));
       const bio::StudySubject& subject = study.subjects[i];
-      const bool isThere = !cellOf(findings.rows.back(), "rmse_train_deg").empty();
+      const bool isThere = !cellOf(findings.rows.back(), "identifiable").empty();
       if (isThere)
         readEstimates(subject.name, folderOf(context, subject) / "calibrate" / "parameters.csv",
                       findings.estimates);
