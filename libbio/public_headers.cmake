@@ -11,6 +11,7 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/analysis/opensim_paths.h
   include/bio/analysis/path_postures.h
   include/bio/analysis/replay.h
+  include/bio/analysis/sensitivity_study.h
   include/bio/calibration/calibrate.h
   include/bio/calibration/calibrate_at_shorter_steps.h
   include/bio/calibration/calibrated_model.h

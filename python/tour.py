@@ -34,6 +34,9 @@ told = fh.sensitivity(model, [trial], names, noise=1 / degrees)
 for name, value, unit, bound, known in zip(told.names, told.values, told.units, told.bound_joint, told.identifiable):
     print(f"{name:26} {value:9.4g} {unit:3} ± {bound:.2g}  {'identifiable' if known else 'not identifiable'}")
 assert told.fisher.shape == (3, 3)
+more = fh.sensitivity(model, [trial], names, noise=1 / degrees, further_channels=True).further_channels[0]
+print(f"measured beside the angle, {more.channel} (± {more.noise} {more.unit}) would tell most:",
+      f"{more.parameter} to ± {more.bound_after:.2g} instead of ± {more.bound_before:.2g}")
 
 # %% [markdown]
 # ## Let the data say what they are, and test on another trial

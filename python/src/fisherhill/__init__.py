@@ -13,6 +13,7 @@ from ._fisherhill import (
     estimate,
     fisher_information,
     fit_paths,
+    global_sensitivity,
     identifiability,
     length_jumps,
     list_parameters,
@@ -22,6 +23,8 @@ from ._fisherhill import (
     moment_arms,
     muscle_states,
     opensim_differences,
+    parameter_sweep,
+    profile_likelihood,
     replay,
     sensitivity,
 )
@@ -38,6 +41,7 @@ __all__ = [
     "estimate",
     "fisher_information",
     "fit_paths",
+    "global_sensitivity",
     "identifiability",
     "length_jumps",
     "list_parameters",
@@ -47,6 +51,8 @@ __all__ = [
     "moment_arms",
     "muscle_states",
     "opensim_differences",
+    "parameter_sweep",
+    "profile_likelihood",
     "replay",
     "sensitivity",
 ]

@@ -4,8 +4,8 @@ Everything is in SI units and radians; arrays have one row per time.
 
 Errors: values and files that break a rule raise ValueError, and a computation that cannot be
 carried out raises RuntimeError, each with one line that says which quantity and which rule. An
-argument of a wrong type or name raises TypeError. replay, sensitivity, calibrate and discover can be
-interrupted by Ctrl-C (KeyboardInterrupt), and other threads run meanwhile.
+argument of a wrong type or name raises TypeError. Whatever simulates can be interrupted by Ctrl-C
+(KeyboardInterrupt), and other threads run meanwhile.
 
 What functions return is a types.SimpleNamespace; its members are those of the classes below that
 are marked `type_check_only`, which exist for type checkers alone.
@@ -31,6 +31,7 @@ __all__ = [
     "estimate",
     "fisher_information",
     "fit_paths",
+    "global_sensitivity",
     "identifiability",
     "length_jumps",
     "list_parameters",
@@ -40,6 +41,8 @@ __all__ = [
     "moment_arms",
     "muscle_states",
     "opensim_differences",
+    "parameter_sweep",
+    "profile_likelihood",
     "replay",
     "sensitivity",
 ]
@@ -770,10 +773,22 @@ def list_parameters(
     """
 
 @type_check_only
+class FurtherChannel:
+    channel: str
+    noise: float
+    unit: str
+    information: float
+    parameter: str
+    bound_before: float
+    bound_after: float
+
+@type_check_only
 class SensitivityResult:
     names: list[str]
     units: list[str]
     values: _Array
+    prior_sd: _Array
+    observed: list[str]
     times: list[_Array]
     outputs: list[_Array]
     gamma: list[_Array]
@@ -783,7 +798,9 @@ class SensitivityResult:
     bound_joint: _Array
     identifiable: list[bool]
     correlation: _Array
+    determined_combinations: int
     sentences: list[str]
+    further_channels: list[FurtherChannel]
 
 def sensitivity(
     model: Model,
@@ -791,12 +808,15 @@ def sensitivity(
     parameters: Sequence[str],
     *,
     noise: float = 0.017453292519943295,
+    observe: dict[str, float] = {},
+    further_channels: bool = False,
+    initial: dict[str, float] = {},
     coordinate: str | Sequence[str] = [],
     lock: dict[str, float] = {},
     integrator: _Integrator = "vi",
     step: float | None = None,
 ) -> SensitivityResult:
-    """Exact sensitivities of the coordinate to parameters, and the information of a measurement.
+    """Exact sensitivities of what is measured to parameters, and the information of a measurement.
 
     Parameters
     ----------
@@ -808,6 +828,17 @@ def sensitivity(
         Names, which may contain *, or ['all']; list_parameters lists them.
     noise : float
         Standard deviation of the measured coordinate [rad] or [m] > 0; default: 1 degree.
+    observe : dict
+        {channel: standard deviation of its noise > 0} of what is measured instead of the coordinate, at
+        the same times; channels are named as columns of a trial: 'elbow_flexion' [rad],
+        'elbow_flexion.speed' [rad/s], 'elbow_flexion.moment' [N m] of a prescribed coordinate,
+        'BRA.fiber_length' [m], 'BRA.tendon_force' [N], 'BRA.activation' (0 to 1),
+        'BODY.MARKER.x' [m].
+    further_channels : bool
+        True: also tells what each further channel would add.
+    initial : dict
+        {coordinate: initial value [rad] or [m]}, at rest. Default: the fitted or first measured value,
+        else the model's default value.
     coordinate : str or list of str
         The free coordinate, or several, of which the first is the measured one.
     lock, integrator, step
@@ -817,18 +848,21 @@ def sensitivity(
     -------
     names, units : list of str
         Of the parameters.
-    values : array, parameters
-        In the model.
+    values, prior_sd : array, parameters
+        In the model, and default prior standard deviations [unit of the parameter].
+    observed : list of str
+        The channels in the order of the rows: those of observe by name, else the coordinate.
     times : list of arrays
         Sample times of each trial [s].
     outputs : list of arrays
-        Simulated coordinate of each trial [rad] or [m].
+        What would be measured of each trial in its unit, channel after channel.
     gamma : list of arrays, samples x parameters
-        Sensitivities of each trial [unit of the coordinate / unit of the parameter].
+        Sensitivities of each trial [unit of the channel / unit of the parameter], channel after channel.
     fisher : array, parameters x parameters
         Fisher information of all trials together, without priors.
     normalised_sensitivity : array, parameters
-        RMS change of the coordinate per prior standard deviation [rad] or [m].
+        RMS change of the coordinate per prior standard deviation [rad] or [m]; with observe, in
+        standard deviations of the noise.
     bound_alone, bound_joint : array, parameters
         Cramér–Rao standard deviations with the other parameters known (inf without information), and
         with all estimated together with their priors.
@@ -836,14 +870,251 @@ def sensitivity(
         True: the data at least halve the prior standard deviation.
     correlation : array, parameters x parameters
         Of estimates with the joint bound.
+    determined_combinations : int
+        Independent combinations whose uncertainty the data at least halve.
     sentences : list of str
         Which parameters are not separately identifiable.
+    further_channels : list
+        Empty unless asked for; else for each channel that is not observed, the most informative first,
+
+        channel : str
+        noise : float
+            That is usual in a laboratory [unit].
+        unit : str
+        information : float
+            Half the logarithm of det(I + priors) with the channel over that without it [nats].
+        parameter : str
+            The one whose joint bound falls most.
+        bound_before, bound_after : float
+            Its joint bound without and with the channel.
 
     Raises
     ------
     ValueError
-        For no trial, an unknown parameter (with the nearest names), a trial with known_mass_in_hand or
-        known_arm_turn, or a simulation that does not reach the end of a trial.
+        For no trial, an unknown parameter (with the nearest names), a channel that cannot be measured of
+        the model, a noise that is not > 0, a trial with known_mass_in_hand or known_arm_turn, or a
+        simulation that does not reach the end of a trial.
+    """
+
+@type_check_only
+class ParameterSweepResult:
+    parameter: str
+    unit: str
+    model_value: float
+    time: _Array
+    nominal: _Array
+    values: _Array
+    motions: list[_Array]
+    outcome: list[Literal["ok", "unstable", "no solution"]]
+    rms_change: _Array
+    max_change: _Array
+
+def parameter_sweep(
+    model: Model,
+    trial: Trial,
+    parameter: str,
+    values: Sequence[float],
+    *,
+    initial: dict[str, float] = {},
+    coordinate: str | Sequence[str] = [],
+    lock: dict[str, float] = {},
+    integrator: _Integrator = "vi",
+    step: float | None = None,
+) -> ParameterSweepResult:
+    """The motion of a trial for several values of a parameter, all others as in the model.
+
+    Parameters
+    ----------
+    model : Model
+    trial : Trial
+    parameter : str
+        A name of list_parameters.
+    values : list of float
+        Within the bounds of the parameter [its unit].
+    initial, coordinate, lock, integrator, step
+        As in sensitivity, with every integrator of replay.
+
+    Returns
+    -------
+    parameter, unit : str
+    model_value : float
+        [unit]
+    time : array, times
+        [s]
+    nominal : array, times
+        The first coordinate with the model's own value [rad] or [m].
+    values : array, values
+    motions : list of arrays
+        The first coordinate for each value [rad] or [m]; shorter than time if the motion ended early.
+    outcome : list of str
+        As in replay.
+    rms_change, max_change : array, values
+        RMS and largest difference from nominal [rad] or [m].
+
+    Raises
+    ------
+    ValueError
+        For an unknown parameter, a value outside its bounds, or what sensitivity raises.
+    """
+
+@type_check_only
+class ProfileLikelihoodResult:
+    parameter: str
+    unit: str
+    values: _Array
+    costs: _Array
+    threshold: float
+    bounded_below: bool
+    bounded_above: bool
+    names: list[str]
+    parameters: _Array
+    converged: list[bool]
+
+def profile_likelihood(
+    model: Model,
+    trials: Sequence[Trial],
+    parameters: Sequence[str],
+    profile: str,
+    *,
+    noise: float = 0.017453292519943295,
+    initial: dict[str, float] = {},
+    coordinate: str | Sequence[str] = [],
+    lock: dict[str, float] = {},
+    integrator: _Integrator = "vi",
+    step: float | None = None,
+) -> ProfileLikelihoodResult:
+    """How much worse the best fit to the model's own motion becomes as a parameter is held elsewhere.
+
+    The parameter is held at up to thirteen values within three joint Cramér–Rao bounds of the model's
+    and within its own bounds; the others are estimated, each with its default prior.
+
+    Parameters
+    ----------
+    model : Model
+    trials : list of Trial
+        At least one.
+    parameters : list of str
+        Names, which may contain *.
+    profile : str
+        The one that is held.
+    noise : float
+        Standard deviation of the measured coordinate [rad] or [m] > 0; default: 1 degree.
+    initial, coordinate, lock, integrator, step
+        As in sensitivity.
+
+    Returns
+    -------
+    parameter, unit : str
+        Of the one that is held.
+    values : array, points
+        At which it is held [unit].
+    costs : array, points
+        Least cost, half the sum of the squared residuals and of the squared deviations from the priors,
+        each over its standard deviation.
+    threshold : float
+        Cost below which a value is in the confidence region of 95 %.
+    bounded_below, bounded_above : bool
+        Whether the cost is above the threshold at the first and at the last of the values.
+    names : list of str
+        Of all parameters.
+    parameters : array, points x parameters
+        Where the least cost is attained.
+    converged : list of bool
+
+    Raises
+    ------
+    ValueError
+        If profile is not one of the parameters, and what sensitivity raises.
+    """
+
+@type_check_only
+class MorrisResult:
+    mean_absolute: _Array
+    sd: _Array
+    runs: int
+    undefined: int
+
+@type_check_only
+class SobolResult:
+    first: _Array
+    first_sd: _Array
+    total: _Array
+    total_sd: _Array
+    variance: float
+    runs: int
+    undefined: int
+
+@type_check_only
+class GlobalSensitivityResult:
+    names: list[str]
+    morris: MorrisResult | None
+    sobol: SobolResult | None
+
+def global_sensitivity(
+    model: Model,
+    trials: Sequence[Trial],
+    parameters: Sequence[str],
+    *,
+    method: Literal["morris", "sobol", "both"] = "both",
+    samples: int = 64,
+    seed: int = 1,
+    threads: int = 1,
+    initial: dict[str, float] = {},
+    coordinate: str | Sequence[str] = [],
+    lock: dict[str, float] = {},
+    integrator: _Integrator = "vi",
+    step: float | None = None,
+) -> GlobalSensitivityResult:
+    """Sensitivity of the motion over the whole prior range of the parameters.
+
+    Each parameter is even over its value ± sqrt(3) default prior standard deviations, within its
+    bounds; the outputs are the coordinate at the times at which it was measured.
+
+    Parameters
+    ----------
+    model : Model
+    trials : list of Trial
+        At least one.
+    parameters : list of str
+        1 to 32 names, which may contain *.
+    method : {'morris', 'sobol', 'both'}
+        Morris's screening (1991, with the mean absolute effect of Campolongo et al. 2007), Sobol's
+        indices (Saltelli et al. 2010, total: Jansen), or both.
+    samples : int
+        Trajectories of Morris's method, or base points of Sobol's >= 2; samples (parameters + 1) or
+        samples (parameters + 2) simulations.
+    seed : int
+        The same seed gives the same numbers with any number of threads.
+    threads : int
+        0: all cores.
+    initial, coordinate, lock, integrator, step
+        As in sensitivity.
+
+    Returns
+    -------
+    names : list of str
+        Of the parameters.
+    morris : None or, if it was asked for,
+
+        mean_absolute, sd : array, parameters
+            Mean absolute elementary effect, and standard deviation of the signed ones, over the whole
+            range of a parameter [rad] or [m]; a large sd means nonlinear or interacting effects.
+        runs, undefined : int
+            Simulations, and those that did not reach the end and were left out.
+    sobol : None or, if it was asked for,
+
+        first, total : array, parameters
+            Fractions of the variance that a parameter explains alone, and takes part in.
+        first_sd, total_sd : array, parameters
+            Standard errors over the base points.
+        variance : float
+            Summed over the outputs [rad2] or [m2].
+        runs, undefined : int
+
+    Raises
+    ------
+    ValueError
+        For more than 32 parameters, fewer than two samples, and what sensitivity raises.
     """
 
 @type_check_only

@@ -142,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(
         {"ProfileOfAnother",
          {"sensitivity", model, "$/good.csv", "--parameters", "TRI.radius", "--profile",
           "hand.mass", "--out", "$/out"},
-         "hand.mass is not one of the --parameters"},
+         "hand.mass is not one of the parameters"},
         {"GlobalOverAll",
          {"sensitivity", model, "$/good.csv", "--parameters", "*", "--global", "sobol"},
          "285 parameters, at most 32"},
