@@ -22,7 +22,9 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/calibration/trial_predictor.h
   include/bio/calibration/trial_set.h
   include/bio/design/design_inputs.h
+  include/bio/design/design_setup.h
   include/bio/design/dynamometer_plan.h
+  include/bio/design/dynamometer_question.h
   include/bio/design/experiment_design.h
   include/bio/design/separating_design.h
   include/bio/discovery/add_effects.h

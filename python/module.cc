@@ -56,6 +56,8 @@ PYBIND11_MODULE(_fisherhill, module) {
   python::defineSensitivity(module);
   python::defineCalibration(module);
   python::defineDiscovery(module);
+  python::defineDesign(module);
+  python::defineDynamometer(module);
   python::defineSystem(module);
   python::defineEstimation(module);
 }

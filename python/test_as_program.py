@@ -8,8 +8,11 @@ import json
 import math
 import os
 import pathlib
+import signal
 import subprocess
 import tempfile
+import threading
+import time
 import unittest
 
 import numpy as np
@@ -175,6 +178,165 @@ class Sensitivity(AsTheProgram):
             with self.subTest(words), self.assertRaisesRegex(ValueError, words) as raised:
                 call()
             self.assertEqual(str(raised.exception).count("\n"), 0)
+
+
+class Design(AsTheProgram):
+    SEARCH = {"candidates": 6, "generations": 1, "seed": 3, "threads": 2}
+    WORDS = ("--candidates", "6", "--generations", "1")
+
+    def same_trial(self, found, out):
+        """What is returned is what is written: to the digits of the file, and as a trial."""
+        its = fh.load_trial(str(out / "design.sto"), self.model)
+        self.assertEqual(found.trial.muscles, its.muscles)
+        np.testing.assert_allclose(found.trial.times, its.times, rtol=1e-12)
+        np.testing.assert_allclose(found.trial.excitations, its.excitations, rtol=1e-9)
+        again = fh.make_trial(self.model, found.columns)
+        np.testing.assert_array_equal(again.excitations, found.trial.excitations)
+        for one, step in ((found.trial, 0.01), (again, 0.01)):
+            motion = fh.replay(self.model, one, step=step)
+            self.assertLess(motion.rms_error["elbow_flexion"], 1e-4)  # cubics between rows
+
+    def same_limits(self, found, summary):
+        for mine, its, unit in ((found.lowest, "lowest_deg", DEGREE), (found.highest, "highest_deg", DEGREE),
+                                (found.largest_speed, "largest_speed_deg_per_s", DEGREE),
+                                (found.largest_torque, "largest_torque_Nm", 1)):
+            self.assertAlmostEqual(mine / unit, summary[its], 9)
+        self.assertEqual(found.simulations, summary["simulations"])
+        self.assertEqual(found.impossible_simulations, summary["impossible_simulations"])
+        self.assertEqual(found.improved, summary["improved"])
+
+    def test_of_parameters(self):
+        summary, out = self.run_program("design", ELBOW, SLOW, "--parameters", "TRI.radius,hand.mass", *self.WORDS,
+                                        "--iterations", "1", "--monte-carlo", "3", "--prior", "hand.mass=0.3")
+        found = fh.design(self.model, self.slow, ["TRI.radius", "hand.mass"], prior={"hand.mass": 0.3}, iterations=1,
+                          monte_carlo=3, **self.SEARCH)
+        stub.check(found, "DesignResult")
+        for k, name in enumerate(found.names):
+            self.assertEqual(found.bound_before[k], summary["bound_before"][name])
+            self.assertEqual(found.bound_after[k], summary["bound_after"][name])
+            self.assertEqual(found.monte_carlo.mean[k], summary["monte_carlo_mean"][name])
+            self.assertEqual(found.monte_carlo.sd[k], summary["monte_carlo_sd"][name])
+        self.assertEqual(found.monte_carlo.converged, summary["monte_carlo_converged"])
+        np.testing.assert_array_equal(found.prior_sd, [math.inf, 0.3])
+        self.assertTrue(found.improved)
+        self.assertLess(found.bound_after[0], found.bound_before[0])
+        self.assertLess(found.costs[-1], found.costs[0])
+        self.assertEqual(len(found.costs), len(found.found_at) + 1)
+        self.same_limits(found, summary)
+        self.same_trial(found, out)
+        self.assertEqual(max(abs(found.columns["elbow_flexion.torque"])), found.largest_torque)
+        self.assertEqual(found.bound_over_time.shape, found.times.shape)
+        # without a prior, the last bound over time is that of sensitivity
+        alone = fh.design(self.model, self.slow, ["TRI.radius"], iterations=0, **self.SEARCH)
+        told = fh.sensitivity(self.model, [alone.trial], ["TRI.radius"], noise=0.5 * DEGREE)
+        self.assertAlmostEqual(told.bound_alone[0] / alone.bound_after[0], 1, 2)  # the torque is written on knots
+        self.assertAlmostEqual(alone.bound_over_time[-1] / alone.bound_after[0], 1, 9)
+        self.assertIsNone(alone.monte_carlo)
+
+    def test_of_excitations_with_nuisance_parameters(self):
+        summary, _ = self.run_program(
+            "design", ELBOW, SLOW, "--parameters", "TRI.radius", "--nuisance", "*.radius,hand.mass", "--criterion", "A",
+            "--torque", "0", "--excite", "extensors,BRA+BRD", "--range", "1deg,128deg", "--candidates", "20", "--generations", "3",
+            "--iterations", "0")
+        found = fh.design(self.model, self.slow, ["TRI.radius"], nuisance=["*.radius", "hand.mass"], criterion="A", torque=0,
+                          excite=["extensors", "BRA+BRD"], range=(DEGREE, 128 * DEGREE), iterations=0,
+                          **(self.SEARCH | {"candidates": 20, "generations": 3}))
+        stub.check(found, "DesignResult")
+        self.assertEqual(found.of_interest, [True] + [False] * (len(found.names) - 1))
+        self.assertEqual(found.bound_after[0], summary["bound_after"]["TRI.radius"])
+        self.assertEqual(found.simulations, summary["simulations"])
+        self.assertEqual(found.largest_torque, 0)
+        self.assertEqual(found.largest_excitation_rate, summary["largest_excitation_rate_per_s"])
+
+    def test_of_two_effects(self):
+        summary, out = self.run_program("design", ELBOW, SLOW, "--separate", "delay,clock", "--size", "delay=0.03", *self.WORDS)
+        found = fh.separate(self.model, self.slow, "delay", "clock", size={"delay": 0.03}, **self.SEARCH)
+        stub.check(found, "SeparateResult")
+        for mine, its in ((found.effects, "separates"), (found.size, "size"), (found.unit, "unit"),
+                          (found.nats_before, "nats_before"), (found.nats_after, "nats_after"),
+                          (found.bound_before, "bound_before"), (found.bound_after, "bound_after")):
+            self.assertEqual(mine, summary[its], its)
+        self.assertEqual(found.nats[0], min(found.nats_before.values()))
+        self.assertEqual(found.nats[-1], min(found.nats_after.values()))
+        self.same_limits(found, summary)
+        self.same_trial(found, out)
+
+    def test_of_a_dynamometer(self):
+        names = ["TRI.radius", "BRA.max_isometric_force"]
+        summary, out = self.run_program("design", ELBOW, "--dynamometer", "elbow_flexion", "--parameters", ",".join(names),
+                                        "--nuisance", "hand.mass", "--loads", "60", "--efforts", "40,80", "--experiments", "12")
+        found = fh.design_on_dynamometer(self.model, "elbow_flexion", names, nuisance=["hand.mass"], loads=[0.6],
+                                         efforts=[0.4, 0.8], experiments=12, threads=2)
+        stub.check(found, "DynamometerDesignResult")
+        for mine, its in ((found.candidates, "candidates"), (found.candidates_not_simulated, "candidates_not_simulated"),
+                          (found.candidates_unsuitable, "candidates_unsuitable"),
+                          (dict(zip(found.names, found.bound_before)), "bound_before"),
+                          (dict(zip(found.names, found.bound_after)), "bound_after")):
+            self.assertEqual(mine, summary[its], its)
+        self.assertGreater(len({one.kind for one in found.experiments}), 1)
+        for k, (mine, its) in enumerate(zip(found.experiments, summary["experiments"], strict=True)):
+            self.assertEqual([mine.kind, mine.muscles, mine.torque, mine.instruction, mine.information],
+                             [its[name] for name in ("kind", "muscles", "torque_Nm", "instruction", "information_nats")])
+            self.assertEqual(dict(zip(found.names, mine.bounds)), its["bounds"])
+            for value, name in ((mine.start, "from_deg"), (mine.end, "to_deg"), (mine.speed, "speed_deg_per_s")):
+                self.assertAlmostEqual(value / DEGREE, its[name], 9)
+            self.assertAlmostEqual(100 * mine.load, its["load_percent"], 12)
+            rows = self.rows(out / f"experiment_{k + 1}.csv")
+            self.assertEqual(set(rows[0]), set(mine.columns))
+            np.testing.assert_allclose(self.column(rows, "BRA"), mine.columns["BRA"], rtol=1e-9)
+            self.assertEqual(list(mine.trial.prescribed), [] if mine.kind == "isotonic" else ["elbow_flexion"])
+
+    def test_the_first_bound_of_a_dynamometer_is_that_of_sensitivity(self):
+        for kind in ("isometric", "isotonic"):
+            found = fh.design_on_dynamometer(self.model, "elbow_flexion", ["BRA.max_isometric_force"], kinds=[kind], experiments=1)
+            first = found.experiments[0]
+            observe = {"elbow_flexion": 0.5 * DEGREE} if kind == "isotonic" else {"elbow_flexion.moment": 0.5}
+            told = fh.sensitivity(self.model, [first.trial], found.names, observe=observe)
+            self.assertAlmostEqual(told.bound_joint[0] / first.bounds[0], 1, 9)
+
+    def test_wrong_questions_are_one_line(self):
+        slow, one = self.slow, ["TRI.radius"]
+        dynamometer = lambda **given: fh.design_on_dynamometer(self.model, "elbow_flexion", one, **given)
+        held = fh.load_trial(SLOW, self.model, prescribe=["elbow_flexion"])
+        for call, words in (
+            (lambda: fh.design(self.model, slow, one, rate=0), "rate = 0.*must be > 0"),
+            (lambda: fh.design(self.model, slow, one, noise=-1), "noise = -1.*must be > 0"),
+            (lambda: fh.design(self.model, slow, one, criterion="T"), "criterion 'T', must be E, A or D"),
+            (lambda: fh.design(self.model, slow, one, prior={"hand.mass": 1}), "prior: hand.mass is neither"),
+            (lambda: fh.design(self.model, slow, one, range=(2, 1)), "range: 2 to 1 rad, must rise"),
+            (lambda: fh.design(self.model, slow, one, excite=["GLUT"]), "'GLUT' must be a muscle"),
+            (lambda: fh.design(self.model, slow, one, torque=0), "input"),
+            (lambda: fh.design(self.model, slow, one, excite=["BRA"], excitation_max=2), "within 0 to 1"),
+            (lambda: fh.design(self.model, slow, one, nuisance=["hand.mass"], monte_carlo=2), "monte_carlo"),
+            (lambda: fh.design(self.model, slow, one, integrator="rk4"), "integrator|variational"),
+            (lambda: fh.design(self.model, slow, one, candidates=-1), "must be ≥ 0"),
+            (lambda: fh.design(self.model, held, one, candidates=1), "'elbow_flexion' is prescribed"),
+            (lambda: fh.separate(self.model, slow, "delay", "delay"), "given twice"),
+            (lambda: fh.separate(self.model, slow, "delay", "ghost"), "ghost"),
+            (lambda: fh.separate(self.model, slow, "delay", "clock", size={"drag": 1}), "'drag' is not one of the two"),
+            (lambda: dynamometer(angles=[7]), "angles: 7 rad .* is outside the range"),
+            (lambda: dynamometer(efforts=[40]), "efforts: 4000 % MVC"),
+            (lambda: dynamometer(kinds=["isotnic"]), "'isotnic', must be isometric"),
+            (lambda: dynamometer(kinds=["passive"], loads=[0.5]), "loads: must have isotonic"),
+            (lambda: dynamometer(moment_noise=0), "must be > 0"),
+            (lambda: dynamometer(lock={"elbow_flexion": 1}), "must not be locked"),
+            (lambda: fh.design_on_dynamometer(self.model, "knee", one), "knee"),
+        ):
+            with self.subTest(words), self.assertRaisesRegex(ValueError, words) as raised:
+                call()
+            self.assertEqual(str(raised.exception).count("\n"), 0)
+
+    def test_ctrl_c_ends_a_search(self):
+        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
+        for call in (lambda: fh.design(self.model, self.slow, ["all"], candidates=100000),
+                     lambda: fh.separate(self.model, self.slow, "delay", "clock", candidates=100000),
+                     lambda: fh.design_on_dynamometer(self.model, "elbow_flexion", ["all"],
+                                                      angles=list(np.linspace(0.3, 2, 40)))):
+            threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+            begin = time.monotonic()
+            with self.assertRaises(KeyboardInterrupt):
+                call()
+            self.assertLess(time.monotonic() - begin, 20)
 
 
 del AsTheProgram  # has no tests of its own

@@ -39,6 +39,15 @@ print(f"measured beside the angle, {more.channel} (± {more.noise} {more.unit}) 
       f"{more.parameter} to ± {more.bound_after:.2g} instead of ± {more.bound_before:.2g}")
 
 # %% [markdown]
+# ## What should a dynamometer do to tell more?
+
+# %%
+plan = fh.design_on_dynamometer(model, "elbow_flexion", ["BRA.max_isometric_force"], experiments=2, threads=2)
+for one in plan.experiments:
+    print(f"{one.kind}, then ± {one.bounds[0]:.2g} N: {one.instruction}")
+assert plan.bound_after[0] < plan.bound_before[0]
+
+# %% [markdown]
 # ## Let the data say what they are, and test on another trial
 
 # %%

@@ -8,6 +8,8 @@ from ._fisherhill import (
     calibrate,
     cost_gradient,
     cramer_rao_bound,
+    design,
+    design_on_dynamometer,
     discover,
     emg,
     estimate,
@@ -27,6 +29,7 @@ from ._fisherhill import (
     profile_likelihood,
     replay,
     sensitivity,
+    separate,
 )
 
 __all__ = [
@@ -36,6 +39,8 @@ __all__ = [
     "calibrate",
     "cost_gradient",
     "cramer_rao_bound",
+    "design",
+    "design_on_dynamometer",
     "discover",
     "emg",
     "estimate",
@@ -55,4 +60,5 @@ __all__ = [
     "profile_likelihood",
     "replay",
     "sensitivity",
+    "separate",
 ]

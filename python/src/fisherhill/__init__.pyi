@@ -26,6 +26,8 @@ __all__ = [
     "calibrate",
     "cost_gradient",
     "cramer_rao_bound",
+    "design",
+    "design_on_dynamometer",
     "discover",
     "emg",
     "estimate",
@@ -45,6 +47,7 @@ __all__ = [
     "profile_likelihood",
     "replay",
     "sensitivity",
+    "separate",
 ]
 
 __version__: str
@@ -1351,6 +1354,429 @@ def calibrate(
         known_mass_in_hand or known_arm_turn, or an option out of range.
     RuntimeError
         If no estimate is possible, with the reason.
+    """
+
+# Design of experiments ----------------------------------------------------------------------------
+
+@type_check_only
+class DesignMonteCarlo:
+    mean: _Array
+    sd: _Array
+    bound: _Array
+    converged: int
+    trials: int
+
+@type_check_only
+class DesignResult:
+    improved: bool
+    names: list[str]
+    units: list[str]
+    values: _Array
+    of_interest: list[bool]
+    prior_sd: _Array
+    bound_before: _Array
+    bound_after: _Array
+    columns: dict[str, _Array]
+    trial: Trial
+    times: _Array
+    predicted: _Array
+    predicted_before: _Array
+    surprise: _Array
+    bound_over_time: _Array
+    bound_over_time_before: _Array
+    lowest: float
+    highest: float
+    surprised_lowest: float
+    surprised_highest: float
+    largest_speed: float
+    largest_torque: float
+    largest_torque_rate: float
+    largest_excitation_rate: float
+    costs: _Array
+    found_at: list[int]
+    simulations: int
+    impossible_simulations: int
+    monte_carlo: DesignMonteCarlo | None
+
+def design(
+    model: Model,
+    trial: Trial,
+    parameters: Sequence[str],
+    *,
+    nuisance: Sequence[str] = [],
+    priors: bool = False,
+    prior: dict[str, float] = {},
+    criterion: Literal["E", "A", "D"] = "E",
+    noise: float = 0.008726646259971648,
+    rate: float = 100.0,
+    torque: float = 10.0,
+    torque_rate: float = 50.0,
+    excite: Sequence[str] = [],
+    excitation_max: float = 0.5,
+    excitation_rate: float = 2.0,
+    range: tuple[float, float] | None = None,
+    speed: float = 8.726646259971648,
+    surprise: float = 0.5,
+    knots: float = 0.3,
+    candidates: int = 100,
+    generations: int = 100,
+    iterations: int = 10,
+    monte_carlo: int = 0,
+    seed: int = 1,
+    threads: int = 1,
+    initial: dict[str, float] = {},
+    coordinate: str | Sequence[str] = [],
+    lock: dict[str, float] = {},
+    integrator: _Integrator = "vi",
+    step: float | None = None,
+) -> DesignResult:
+    """Finds the excitations and the external torque that are most informative about parameters.
+
+    Inputs are piecewise linear between knots, within limits of size and rate. With I the information
+    about the parameters of interest, the nuisance parameters unknown, in units of the default prior
+    standard deviations, the search makes least
+
+        E: -ln(least eigenvalue of I)    A: ln(trace of the inverse of I)    D: -ln det I
+
+    and keeps to the range and the speed of the coordinate.
+
+    Parameters
+    ----------
+    model : Model
+    trial : Trial
+        The baseline to improve on: excitations, duration, initial state.
+    parameters, nuisance : list of str
+        Parameters of interest, and further unknown ones, with their default priors; names may contain *.
+    priors : bool
+        True: default priors for the parameters of interest as well.
+    prior : dict
+        {parameter: prior standard deviation [its unit] > 0} instead of the default.
+    criterion : {'E', 'A', 'D'}
+    noise : float
+        Standard deviation of the measured coordinate [rad] or [m] > 0; default: 0.5 degrees.
+    rate : float
+        Measurements per second [Hz] > 0.
+    torque, torque_rate : float
+        Largest external torque on the coordinate [N m] >= 0 (0: none), and its rate [N m/s] > 0.
+    excite : list of str
+        Muscles whose excitations are designed: 'flexors', 'extensors', or names; 'BRA+BRD' share one.
+    excitation_max, excitation_rate : float
+        Largest excitation of them (0.01 to 1), and its rate [1/s] > 0.
+    range : (float, float), optional
+        To which the coordinate is limited [rad] or [m]; default: its range in the model.
+    speed : float
+        Largest speed of the coordinate [rad/s] or [m/s] > 0; default: 500 degrees per second.
+    surprise : float
+        The range is respected even if the parameters are so many prior standard deviations off.
+    knots : float
+        Interval between the knots [s] > 0.
+    candidates, generations, iterations : int
+        Random initial designs, generations of the evolution strategy from the best of them, iterations
+        of the final gradient search.
+    monte_carlo : int
+        Simulated and estimated repetitions of the designed experiment, to confirm the bounds; needs no
+        nuisance parameters.
+    seed, threads : int
+        The same seed gives the same numbers with any number of threads; 0 threads: all cores.
+    initial, coordinate, lock, integrator, step
+        As in sensitivity. The first free coordinate is measured and driven.
+
+    Returns
+    -------
+    improved : bool
+        False: no experiment within the limits is better than trial, which is then what is returned.
+    names, units : list of str
+        Of the parameters of interest, then of the nuisance parameters.
+    values, prior_sd : array, parameters
+        In the model, and prior standard deviations [unit], inf without a prior.
+    of_interest : list of bool
+    bound_before, bound_after : array, parameters
+        Cramér-Rao standard deviations in the baseline and in the designed experiment [unit].
+    columns : dict
+        {name: array, times} of the designed experiment, as make_trial takes them: time, excitations,
+        the torque, and the predicted coordinate where it is measured, else nan.
+    trial : Trial
+        The same.
+    times, predicted, predicted_before, surprise : array, measurements
+        Measured times [s]; the coordinate as predicted, in the baseline, and how far off it is with
+        parameters off by surprise [rad] or [m].
+    bound_over_time, bound_over_time_before : array, measurements
+        Bound on the first parameter from the measurements up to each time [unit]; nan: none.
+    lowest, highest, surprised_lowest, surprised_highest : float
+        Of the coordinate, and with parameters off [rad] or [m].
+    largest_speed : float
+        [rad/s] or [m/s]
+    largest_torque, largest_torque_rate, largest_excitation_rate : float
+        [N m], [N m/s], [1/s]
+    costs : array
+        The criterion of the baseline, then of each better experiment within the limits.
+    found_at : list of int
+        Simulations until each of these was found.
+    simulations, impossible_simulations : int
+        Simulations with sensitivities, and those that did not reach the end.
+    monte_carlo : None or, if it was asked for,
+
+        mean, sd, bound : array, parameters of interest
+            Of the estimates, and the Cramér-Rao bound [unit].
+        converged, trials : int
+
+    Raises
+    ------
+    ValueError
+        For an unknown parameter or muscle, a limit out of its range, nothing to change, an integrator
+        without sensitivities, a trial with prescribed coordinates, known_mass_in_hand or known_arm_turn.
+    RuntimeError
+        If the baseline does not reach its end.
+    """
+
+@type_check_only
+class SeparateResult:
+    improved: bool
+    effects: list[str]
+    size: dict[str, float]
+    unit: dict[str, str]
+    nats_before: dict[str, float]
+    nats_after: dict[str, float]
+    bound_before: dict[str, float]
+    bound_after: dict[str, float]
+    columns: dict[str, _Array]
+    trial: Trial
+    times: _Array
+    predicted: _Array
+    predicted_with: dict[str, _Array]
+    lowest: float
+    highest: float
+    largest_speed: float
+    largest_torque: float
+    largest_torque_rate: float
+    largest_excitation_rate: float
+    nats: _Array
+    found_at: list[int]
+    simulations: int
+    impossible_simulations: int
+
+def separate(
+    model: Model,
+    trial: Trial,
+    first: str,
+    second: str,
+    *,
+    size: dict[str, float] = {},
+    noise: float = 0.008726646259971648,
+    rate: float = 100.0,
+    torque: float = 10.0,
+    torque_rate: float = 50.0,
+    excite: Sequence[str] = [],
+    excitation_max: float = 0.5,
+    excitation_rate: float = 2.0,
+    range: tuple[float, float] | None = None,
+    speed: float = 8.726646259971648,
+    knots: float = 0.3,
+    candidates: int = 100,
+    generations: int = 100,
+    seed: int = 1,
+    threads: int = 1,
+    initial: dict[str, float] = {},
+    coordinate: str | Sequence[str] = [],
+    lock: dict[str, float] = {},
+    integrator: _Integrator = "vi",
+    step: float | None = None,
+) -> SeparateResult:
+    """Finds the experiment that best discriminates two effects of discover's catalogue.
+
+    It makes the smaller of both expected log Bayes factors largest, with every parameter of the model
+    uncertain by its default prior. The motions without an effect and with either keep to the range and
+    the speed of the coordinate.
+
+    Parameters
+    ----------
+    model : Model
+    trial : Trial
+        The baseline to improve on.
+    first, second : str
+        Effects, by id or long name.
+    size : dict
+        {effect: assumed size in its unit}; default: its prior standard deviation.
+    noise, rate, torque, torque_rate, excite, excitation_max, excitation_rate, range, speed, knots
+        As in design.
+    candidates, generations, seed, threads
+        As in design; there is no gradient search.
+    initial, coordinate, lock, integrator, step
+        As in design.
+
+    Returns
+    -------
+    improved : bool
+        False: no experiment within the limits is better than trial, which is then what is returned.
+    effects : list of str
+        Both ids.
+    size, unit : dict
+        Assumed size of each, and its unit.
+    nats_before, nats_after : dict
+        Expected log Bayes factor over the other effect if it is the one that is present, in the baseline
+        and in the designed experiment.
+    bound_before, bound_after : dict
+        Expected standard deviation of its size [unit].
+    columns, trial
+        The designed experiment, as of design; the coordinate is that of the model without an effect.
+    times, predicted : array, measurements
+        Measured times [s], and the coordinate without an effect [rad] or [m].
+    predicted_with : dict
+        {effect: array, measurements} with each effect [rad] or [m].
+    lowest, highest, largest_speed : float
+        Of all three motions [rad], [rad/s], or [m], [m/s].
+    largest_torque, largest_torque_rate, largest_excitation_rate : float
+        [N m], [N m/s], [1/s]
+    nats : array
+        Smaller log Bayes factor in the baseline, then in each better experiment within the limits.
+    found_at : list of int
+        Experiments simulated until each of these was found.
+    simulations, impossible_simulations : int
+        Experiments that were simulated, and those that did not reach the end.
+
+    Raises
+    ------
+    ValueError
+        For an unknown effect, one that the model has, a size out of its bounds, and what design raises.
+    """
+
+@type_check_only
+class DynamometerExperiment:
+    kind: Literal["isometric", "isokinetic", "passive", "release", "isotonic"]
+    start: float
+    end: float
+    speed: float
+    muscles: str
+    effort: float
+    load: float
+    torque: float
+    instruction: str
+    information: float
+    bounds: _Array
+    columns: dict[str, _Array]
+    trial: Trial
+
+@type_check_only
+class DynamometerDesignResult:
+    names: list[str]
+    units: list[str]
+    bound_before: _Array
+    bound_after: _Array
+    experiments: list[DynamometerExperiment]
+    candidates: int
+    candidates_not_simulated: int
+    candidates_unsuitable: int
+
+def design_on_dynamometer(
+    model: Model,
+    coordinate: str,
+    parameters: Sequence[str],
+    *,
+    nuisance: Sequence[str] = [],
+    kinds: Sequence[Literal["isometric", "isokinetic", "passive", "release", "isotonic"]] = [],
+    angles: Sequence[float] = [],
+    speeds: Sequence[float] = [],
+    efforts: Sequence[float] = [],
+    releases: Sequence[float] = [],
+    release_speed: float | None = None,
+    loads: Sequence[float] = [],
+    experiments: int = 4,
+    moment_noise: float = 0.5,
+    noise: float = 0.008726646259971648,
+    rate: float = 100.0,
+    speed: float = 8.726646259971648,
+    surprise: float = 0.5,
+    threads: int = 1,
+    lock: dict[str, float] = {},
+    integrator: _Integrator = "vi",
+    step: float | None = None,
+) -> DynamometerDesignResult:
+    """Ranks what a dynamometer can do by what it tells of parameters.
+
+    A dynamometer holds or turns the coordinate and measures its moment, or lets it go against a torque
+    and measures its angle; flexors and extensors contract in turn. One experiment after the other is
+    chosen, each the one that adds most to what those before tell, none twice.
+
+    Parameters
+    ----------
+    model : Model
+    coordinate : str
+        Held and turned; all others are locked.
+    parameters, nuisance : list of str
+        Parameters of interest, and further unknown ones; names may contain *. All have their default
+        priors.
+    kinds : list of {'isometric', 'isokinetic', 'passive', 'release', 'isotonic'}
+        Experiments that it can do; default: all.
+    angles : list of float
+        To hold [rad] or [m]; turns go between the first and the last. Default: four in the range.
+    speeds : list of float
+        Of turns [rad/s] or [m/s]; default: 30 and 120 degrees (or mm) per second, as far as they fit.
+    efforts : list of float
+        Contractions as shares of the maximum voluntary one (0.01 to 1); default: 0.3, 0.6, 1.
+    releases : list of float
+        How far muscles shorten in a quick release [rad] or [m]; default: 10 degrees (or mm).
+    release_speed : float, optional
+        Largest speed of a release [rad/s] or [m/s]; default: 200 degrees (or mm) per second, less where
+        rate (eight samples in a release) or speed require it.
+    loads : list of float
+        Torque of isotonic contractions over what holds the contracted limb (0 to 1); default: 0.5, 0.8.
+    experiments : int
+        How many are wanted.
+    moment_noise : float
+        Standard deviation of a sample of the moment [N m] or [N] > 0.
+    noise : float
+        Of a sample of the angle, in isotonic contractions [rad] or [m] > 0; default: 0.5 degrees.
+    rate : float
+        Samples per second [Hz] > 0.
+    speed, surprise : float
+        As in design, of isotonic contractions; speed limits turns and releases as well.
+    threads : int
+        0: all cores.
+    lock, integrator, step
+        As in sensitivity.
+
+    Returns
+    -------
+    names, units : list of str
+        Of the parameters of interest.
+    bound_before, bound_after : array, parameters
+        Default prior standard deviations, and Cramér-Rao bounds after all experiments [unit].
+    experiments : list
+        In the order in which they are chosen:
+
+        kind : str
+        start, end : float
+            Coordinate at begin and end; of an isotonic contraction the end as predicted [rad] or [m].
+        speed : float
+            Of the turn, of a release the largest [rad/s] or [m/s]; 0: held, or free.
+        muscles : str
+            'flexors', 'extensors', or empty: all relaxed.
+        effort, load : float
+            Their excitation, and the share of the holding torque (isotonic), 0 to 1.
+        torque : float
+            On the coordinate, in its direction (isotonic) [N m] or [N].
+        instruction : str
+            To the person on the dynamometer.
+        information : float
+            That it adds [nats].
+        bounds : array, parameters
+            After it and those before it [unit].
+        columns : dict
+            {name: array, times} as make_trial takes them, with prescribe=[coordinate] unless isotonic;
+            what is measured is to be filled in (isotonic: replaces the predicted coordinate).
+        trial : Trial
+            The same.
+    candidates, candidates_not_simulated, candidates_unsuitable : int
+        Experiments considered; those that cannot be simulated; those that would leave the range, are too
+        fast, or do not carry the limb.
+
+    Raises
+    ------
+    ValueError
+        For an unknown coordinate, parameter or kind, a value out of its range, or a list for kinds that
+        are left out.
+    RuntimeError
+        If none of the experiments can be simulated.
     """
 
 # Discovery ----------------------------------------------------------------------------------------
