@@ -123,8 +123,9 @@ py::object design(const bio::Model& model, const bio::Trial& trial,
                   const std::string& integrator, std::optional<double> step) {
   const SystemChoice choice = freeChoice(model, trial, coordinate, lock, integrator, step);
   mustBeOfTheModelAsItIs(trial);
-  if (monteCarlo > 0 && !nuisance.empty()) {
-    throw std::invalid_argument("monte_carlo: must be 0 with nuisance parameters");
+  if (monteCarlo < 0 || (monteCarlo > 0 && !nuisance.empty())) {
+    throw std::invalid_argument(
+        fmt::format("monte_carlo = {}, must be ≥ 0, and 0 with nuisance parameters", monteCarlo));
   }
   const SearchInputs inputs{torque,         torqueRate, excite, excitationMax,
                             excitationRate, range,      speed};

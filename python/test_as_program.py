@@ -168,6 +168,8 @@ class Sensitivity(AsTheProgram):
             (lambda: fh.sensitivity(self.model, [self.slow], one, observe={"BRA.length": 1}), "observe: 'BRA.length'"),
             (lambda: fh.sensitivity(self.model, [self.slow], one, observe={"elbow_flexion": 0}), "observe: noise of"),
             (lambda: fh.sensitivity(self.model, [self.slow], one, observe={"elbow_flexion.moment": 1}), "moment"),
+            (lambda: fh.sensitivity(self.model, [self.slow], one, observe={"BRA.activation": math.inf}), "must be > 0 and finite"),
+            (lambda: fh.profile_likelihood(self.model, [self.slow], one, one[0], noise=0), "noise = 0.*, must be > 0"),
             (lambda: fh.parameter_sweep(self.model, self.slow, one[0], [0.2]), "values: TRI.radius = 0.2 m, must be"),
             (lambda: fh.profile_likelihood(self.model, [self.slow], one, "hand.mass"), "profile: hand.mass is not one"),
             (lambda: fh.global_sensitivity(self.model, [self.slow], ["all"]), "must be at most 32"),
@@ -300,6 +302,11 @@ class Design(AsTheProgram):
         held = fh.load_trial(SLOW, self.model, prescribe=["elbow_flexion"])
         for call, words in (
             (lambda: fh.design(self.model, slow, one, rate=0), "rate = 0.*must be > 0"),
+            (lambda: fh.design(self.model, slow, one, rate=1e12), "period .* must be a millionth"),
+            (lambda: fh.design(self.model, slow, one, monte_carlo=-1), "monte_carlo = -1"),
+            (lambda: fh.separate(self.model, slow, "delay", "clock", rate=1e12), "period .* must be a millionth"),
+            (lambda: dynamometer(rate=1e12), "rate must be at most 1e5"),
+            (lambda: fh.design_on_dynamometer(self.model, "elbow_flexion", []), "no parameter is given"),
             (lambda: fh.design(self.model, slow, one, noise=-1), "noise = -1.*must be > 0"),
             (lambda: fh.design(self.model, slow, one, criterion="T"), "criterion 'T', must be E, A or D"),
             (lambda: fh.design(self.model, slow, one, prior={"hand.mass": 1}), "prior: hand.mass is neither"),

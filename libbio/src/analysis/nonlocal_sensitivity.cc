@@ -47,6 +47,9 @@ ProfileFinding likelihoodProfile(const std::vector<StudiedTrial>& trials,
   const auto parameters = catalogue.asEstimated(question.selection, true);
   const Eigen::VectorXd theta = catalogue.values(question.selection);
   const double noise = question.noise;
+  if (!(noise > 0 && std::isfinite(noise))) {
+    throw std::invalid_argument(fmt::format("noise = {}, must be > 0 and finite", noise));
+  }
   const info::LeastSquares problem(
       predictor,
       {predictor.outputs(theta),

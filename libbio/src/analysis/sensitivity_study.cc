@@ -61,9 +61,9 @@ std::vector<ChannelCandidate> observedChannels(
       throw std::invalid_argument(
           fmt::format("observe: '{}' is nothing that can be measured of this model", name));
     }
-    if (!(sd > 0)) {
+    if (!(sd > 0 && std::isfinite(sd))) {
       throw std::invalid_argument(
-          fmt::format("observe: noise of '{}' = {}, must be > 0", name, sd));
+          fmt::format("observe: noise of '{}' = {}, must be > 0 and finite", name, sd));
     }
     channels.push_back(std::move(channel));
   }

@@ -30,9 +30,10 @@ constexpr double worthless = std::numeric_limits<double>::infinity();
 
 std::vector<double> measuredTimes(const Trial& trial, double period) {
   const double first = trial.times[0], duration = trial.times[trial.times.size() - 1] - first;
-  require(period > 0 && period <= duration,
-          fmt::format("period of the measurements = {} s, must be > 0 and at most the duration",
-                      period));
+  require(period >= 1e-6 * duration && period <= duration,
+          fmt::format(
+              "period of the measurements = {} s, must be a millionth of the duration to all of it",
+              period));
   std::vector<double> times;
   for (int k = 0; k <= static_cast<int>(std::floor(duration / period + 1e-6)); ++k) {
     times.push_back(first + k * period);
