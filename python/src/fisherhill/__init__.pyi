@@ -4,7 +4,7 @@ Everything is in SI units and radians; arrays have one row per time.
 
 Errors: values and files that break a rule raise ValueError, and a computation that cannot be
 carried out raises RuntimeError, each with one line that says which quantity and which rule. An
-argument of a wrong type or name raises TypeError. Whatever simulates can be interrupted by Ctrl-C
+argument of a wrong type or name raises TypeError. What simulates trials can be interrupted by Ctrl-C
 (KeyboardInterrupt), and other threads run meanwhile.
 
 What functions return is a types.SimpleNamespace; its members are those of the classes below that
