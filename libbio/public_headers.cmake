@@ -14,6 +14,7 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/analysis/path_postures.h
   include/bio/analysis/replay.h
   include/bio/analysis/trial_ensemble.h
+  include/bio/analysis/sensitivity_study.h
   include/bio/calibration/calibrate.h
   include/bio/calibration/calibrate_at_shorter_steps.h
   include/bio/calibration/calibrated_model.h
@@ -24,7 +25,9 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/calibration/trial_predictor.h
   include/bio/calibration/trial_set.h
   include/bio/design/design_inputs.h
+  include/bio/design/design_setup.h
   include/bio/design/dynamometer_plan.h
+  include/bio/design/dynamometer_question.h
   include/bio/design/experiment_design.h
   include/bio/design/separating_design.h
   include/bio/discovery/add_effects.h

@@ -19,11 +19,11 @@
 namespace python {
 namespace {
 
-bio::Trial trialOf(const bio::Model& model, const py::dict& columns, const std::string& name,
-                   bool ignoreExtra, double knownMassInHand, double knownArmTurn,
-                   const std::vector<std::string>& prescribe,
-                   const std::map<std::string, double>& hold,
-                   std::optional<double> prescribeCutoff) {
+bio::Trial trialOfColumns(const bio::Model& model, const py::dict& columns, const std::string& name,
+                          bool ignoreExtra, double knownMassInHand, double knownArmTurn,
+                          const std::vector<std::string>& prescribe,
+                          const std::map<std::string, double>& hold,
+                          std::optional<double> prescribeCutoff) {
   bio::Table table;
   table.metadata = bio::headerOf({knownMassInHand, knownArmTurn});
   for (const auto& [key, values] : columns) {
@@ -38,16 +38,11 @@ bio::Trial trialOf(const bio::Model& model, const py::dict& columns, const std::
     }
     table.values.col(index) = column;
   }
-  bio::Trial trial = bio::trialFrom(table, name, model,
-                                    {.ignoreExtra = ignoreExtra,
-                                     .experimentalConditions = true,
-                                     .prescribed = prescribe,
-                                     .held = hold});
-  trial.sha256 = digestOf(
-      py::repr(py::make_tuple(
-                   name, py::bytes(reinterpret_cast<const char*>(table.values.data()),
-                                   sizeof(double) * static_cast<std::size_t>(table.values.size()))))
-          .attr("encode")());
+  bio::Trial trial = trialOf(table, name, model,
+                             {.ignoreExtra = ignoreExtra,
+                              .experimentalConditions = true,
+                              .prescribed = prescribe,
+                              .held = hold});
   if (prescribeCutoff) bio::smoothPrescribed(trial, *prescribeCutoff);
   return trial;
 }
@@ -245,6 +240,26 @@ SystemChoice armChoice(const bio::Model& model, const std::vector<bio::Trial>& t
           .step = step};
 }
 
+bio::Trial trialOf(const bio::Table& table, const std::string& name, const bio::Model& model,
+                   const bio::TrialOptions& options) {
+  bio::Trial trial = bio::trialFrom(table, name, model, options);
+  trial.sha256 = digestOf(
+      py::repr(py::make_tuple(
+                   name, py::bytes(reinterpret_cast<const char*>(table.values.data()),
+                                   sizeof(double) * static_cast<std::size_t>(table.values.size()))))
+          .attr("encode")());
+  return trial;
+}
+
+py::dict columnsOf(const bio::Table& table) {
+  py::dict columns;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    columns[table.columns[i].c_str()] =
+        Eigen::VectorXd(table.values.col(static_cast<Eigen::Index>(i)));
+  }
+  return columns;
+}
+
 std::string digestOf(const py::object& bytes) {
   return py::module_::import("hashlib")
       .attr("sha256")(bytes)
@@ -316,10 +331,11 @@ void defineSystems(py::module_& module) {
   module.def("load_trial", &loadTrial, "file"_a, "model"_a, py::kw_only(), "ignore_extra"_a = false,
              "prescribe"_a = std::vector<std::string>(), "hold"_a = std::map<std::string, double>(),
              "prescribe_cutoff"_a = py::none(), docstrings::load_trial);
-  module.def("make_trial", &trialOf, "model"_a, "columns"_a, py::kw_only(), "name"_a = "trial",
-             "ignore_extra"_a = false, "known_mass_in_hand"_a = 0.0, "known_arm_turn"_a = 0.0,
-             "prescribe"_a = std::vector<std::string>(), "hold"_a = std::map<std::string, double>(),
-             "prescribe_cutoff"_a = py::none(), docstrings::make_trial);
+  module.def("make_trial", &trialOfColumns, "model"_a, "columns"_a, py::kw_only(),
+             "name"_a = "trial", "ignore_extra"_a = false, "known_mass_in_hand"_a = 0.0,
+             "known_arm_turn"_a = 0.0, "prescribe"_a = std::vector<std::string>(),
+             "hold"_a = std::map<std::string, double>(), "prescribe_cutoff"_a = py::none(),
+             docstrings::make_trial);
   defineReviews(module, model, trial);
   defineWithChoice(module, "replay", &replay, docstrings::replay, "model"_a, "trial"_a,
                    py::kw_only(), "initial"_a = std::map<std::string, double>());

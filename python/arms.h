@@ -9,6 +9,7 @@
 #include "bio/model/model.h"
 #include "bio/simulation/musculoskeletal_system.h"
 #include "bio/simulation/simulate.h"
+#include "bio/tables/table_file.h"
 #include "bio/tables/trial.h"
 #include "namespace.h"
 
@@ -49,6 +50,12 @@ void defineWithChoice(py::module_& module, const char* name, Function function,
 /// SHA-256 of a bytes object, by which models know trials that they were fitted to.
 std::string digestOf(const py::object& bytes);
 
+/// bio::trialFrom, known by its numbers as trials of files are by theirs.
+bio::Trial trialOf(const bio::Table& table, const std::string& name, const bio::Model& model,
+                   const bio::TrialOptions& options);
+/// The table as make_trial takes it.
+py::dict columnsOf(const bio::Table& table);
+
 /// For what simulates the model as it is.
 /// @throws std::invalid_argument for a trial that was recorded with something changed on purpose
 void mustBeOfTheModelAsItIs(const bio::Trial& trial);
@@ -68,5 +75,7 @@ void defineSensitivity(py::module_& module);
 void defineCalibration(py::module_& module);
 void defineDiscovery(py::module_& module);
 void defineStudies(py::module_& module);
+void defineDesign(py::module_& module);
+void defineDynamometer(py::module_& module);
 
 }  // namespace python

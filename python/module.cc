@@ -59,6 +59,8 @@ PYBIND11_MODULE(_fisherhill, module) {
   python::defineCalibration(module);
   python::defineDiscovery(module);
   python::defineStudies(module);
+  python::defineDesign(module);
+  python::defineDynamometer(module);
   python::defineSystem(module);
   python::defineEstimation(module);
 }

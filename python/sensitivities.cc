@@ -1,75 +1,248 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <memory>
 #include <numbers>
 #include <variant>
 
 #include "arms.h"
 #include "bio/analysis/replay.h"
+#include "bio/analysis/sensitivity_study.h"
 #include "bio/calibration/trial_set.h"
-#include "bio/parameters/parameter_information.h"
+#include "bio/model/integrator_names.h"
 #include "docstrings.h"
 #include "interruptible.h"
 
 namespace python {
 namespace {
 
+/// What the functions below begin with.
+struct Studies {
+  SystemChoice choice;
+  std::unique_ptr<bio::MusculoskeletalSystem> arm = {};
+  std::vector<bio::StudiedTrial> trials = {};
+  bio::SensitivityQuestion question = {};
+
+  const bio::ParameterCatalogue& catalogue() const { return trials.front().catalogue; }
+};
+
+/// The four arguments that choose a system, as defineWithChoice() has them, and the start.
+struct Choosing {
+  std::map<std::string, double> initial;
+  Names coordinate;
+  std::map<std::string, double> lock;
+  std::string integrator;
+  std::optional<double> step;
+};
+
+Studies begun(const bio::Model& model, const std::vector<bio::Trial>& trials,
+              const Choosing& chosen) {
+  Studies studies{
+      armChoice(model, trials, chosen.coordinate, chosen.lock, chosen.integrator, chosen.step)};
+  if (trials.empty()) throw std::invalid_argument("trials: empty, must have at least one");
+  for (const bio::Trial& trial : trials) mustBeOfTheModelAsItIs(trial);
+  return studies;
+}
+
+/// Systems are made here: within interruptible().
+void prepare(Studies& studies, const bio::Model& model, const std::vector<bio::Trial>& trials,
+             const Choosing& chosen, const std::atomic<bool>& goOn) {
+  const SystemChoice& choice = studies.choice;
+  studies.arm = std::make_unique<bio::MusculoskeletalSystem>(model, choice.armOptions());
+  for (const bio::Trial& trial : trials) {
+    bio::SimulationOptions simulation = during(trial, choice.simulation());
+    simulation.progress = [&](double) { return goOn.load(); };
+    studies.trials.push_back(bio::studiedTrial(
+        trial, model, *studies.arm,
+        bio::beginningOf(trial, model, *studies.arm, chosen.initial).point, simulation));
+  }
+  studies.question.system = choice.armOptions();
+  if (!choice.coordinates.empty()) studies.question.coordinate = choice.coordinates.front();
+}
+
+void mustHaveFreeCoordinate(const Studies& studies, const char* otherwise) {
+  if (!studies.choice.coordinates.empty()) return;
+  throw std::invalid_argument(
+      fmt::format("no coordinate is free to be observed: all are prescribed{}", otherwise));
+}
+
+py::list gainsOf(const std::vector<bio::ChannelGain>& gains, const bio::Model& model) {
+  py::list list;
+  for (const bio::ChannelGain& one : gains) {
+    list.append(results("channel"_a = bio::nameOf(one.channel.what), "noise"_a = one.channel.sd,
+                        "unit"_a = bio::unitOf(one.channel.what, model),
+                        "information"_a = one.information, "parameter"_a = one.parameter,
+                        "bound_before"_a = one.before, "bound_after"_a = one.after));
+  }
+  return list;
+}
+
 py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& trials,
                        const std::vector<std::string>& parameters, double noise,
-                       const Names& freeCoordinates, const std::map<std::string, double>& lock,
-                       const std::string& integrator, std::optional<double> step) {
-  const SystemChoice choice = armChoice(model, trials, freeCoordinates, lock, integrator, step);
-  if (trials.empty()) throw std::invalid_argument("trials: empty, must have at least one");
-  if (choice.coordinates.empty()) {
-    throw std::invalid_argument("no coordinate is free to be observed: all are prescribed");
-  }
-  std::vector<Eigen::MatrixXd> gammas;
-  std::vector<Eigen::VectorXd> outputs, times;
-  bio::ParameterInformation information;
-  Eigen::VectorXd values;
+                       const std::map<std::string, double>& observe, bool furtherChannels,
+                       const std::map<std::string, double>& initial, const Names& coordinate,
+                       const std::map<std::string, double>& lock, const std::string& integrator,
+                       std::optional<double> step) {
+  const Choosing chosen{initial, coordinate, lock, integrator, step};
+  Studies studies = begun(model, trials, chosen);
+  if (observe.empty()) mustHaveFreeCoordinate(studies, ", observe must name what is measured");
+  bio::LocalSensitivity found;
+  std::vector<bio::ChannelGain> gains;
   interruptible([&](const std::atomic<bool>& goOn) {
-    const bio::MusculoskeletalSystem arm(model, choice.armOptions());
-    const std::string coordinate = choice.coordinates.front();
-    std::vector<std::size_t> selection;
-    for (const bio::Trial& trial : trials) {
-      mustBeOfTheModelAsItIs(trial);
-      bio::SimulationOptions options = during(trial, choice.simulation());
-      options.externalForce = bio::externalForceOf(trial, arm);
-      options.prescribed = bio::prescribedMotionOf(trial, arm);
-      options.progress = [&](double) { return goOn.load(); };
-      const bio::ParameterCatalogue catalogue(model, arm,
-                                              {bio::startCoordinates(trial, arm, {}), {}});
-      selection = catalogue.select(parameters);
-      values = catalogue.values(selection);
-      const std::vector<double> observed = bio::observedTimes(trial, coordinate, options.step);
-      times.push_back(Eigen::VectorXd::Map(observed.data(), std::ssize(observed)));
-      const bio::TrialPredictor experiment(catalogue, choice.armOptions(),
-                                           bio::excitationOf(trial, arm), coordinate, observed,
-                                           selection, options);
-      auto at = experiment.withSensitivities(values);
-      if (!goOn) return;
-      if (!at.outputs.allFinite()) {
-        throw std::invalid_argument(trial.file +
-                                    ": the simulation does not reach the end of the trial");
-      }
-      outputs.push_back(std::move(at.outputs));
-      gammas.push_back(std::move(at.gamma));
-      if (gammas.size() == trials.size()) {
-        information = bio::informationAbout(catalogue, selection, gammas, noise);
-      }
+    prepare(studies, model, trials, chosen, goOn);
+    bio::SensitivityQuestion& question = studies.question;
+    question.noise = noise;
+    question.observed =
+        bio::observedChannels({observe.begin(), observe.end()}, model, *studies.arm);
+    question.selection = studies.catalogue().select(parameters);
+    found = bio::localSensitivity(studies.trials, question);
+    if (furtherChannels) {
+      gains = bio::furtherGains(studies.trials, *studies.arm, question, found.information);
     }
   });
-  std::vector<std::string> names, units;
-  for (const info::Parameter& one : information.parameters) {
+  const bio::ParameterInformation& known = found.information;
+  std::vector<std::string> names, units, observed;
+  Eigen::VectorXd priorSd(std::ssize(known.parameters));
+  for (const info::Parameter& one : known.parameters) {
+    priorSd[std::ssize(names)] = one.prior->sd;
     names.push_back(one.name);
     units.push_back(one.unit);
   }
-  return results("names"_a = names, "units"_a = units, "values"_a = values, "times"_a = times,
-                 "outputs"_a = outputs, "gamma"_a = gammas, "fisher"_a = information.fisher,
-                 "normalised_sensitivity"_a = information.normalisedSensitivity,
-                 "bound_alone"_a = information.boundAlone, "bound_joint"_a = information.boundJoint,
-                 "identifiable"_a = information.identifiable,
-                 "correlation"_a = information.correlation, "sentences"_a = information.sentences);
+  for (const auto& one : studies.question.observed) observed.push_back(bio::nameOf(one.what));
+  if (observed.empty()) observed.push_back(studies.question.coordinate);
+  std::vector<Eigen::VectorXd> outputs, times;
+  std::vector<Eigen::MatrixXd> gammas;
+  for (std::size_t i = 0; i < found.trials.size(); ++i) {
+    const std::vector<double>& at = studies.trials[i].times;
+    times.push_back(Eigen::VectorXd::Map(at.data(), std::ssize(at)));
+    outputs.push_back(std::move(found.trials[i].outputs));
+    gammas.push_back(std::move(found.trials[i].gamma));
+  }
+  return results("names"_a = names, "units"_a = units,
+                 "values"_a = studies.catalogue().values(studies.question.selection),
+                 "prior_sd"_a = priorSd, "observed"_a = observed, "times"_a = times,
+                 "outputs"_a = outputs, "gamma"_a = gammas, "fisher"_a = known.fisher,
+                 "normalised_sensitivity"_a = known.normalisedSensitivity,
+                 "bound_alone"_a = known.boundAlone, "bound_joint"_a = known.boundJoint,
+                 "identifiable"_a = known.identifiable, "correlation"_a = known.correlation,
+                 "determined_combinations"_a = static_cast<int>(known.determinedCombinations),
+                 "sentences"_a = known.sentences, "further_channels"_a = gainsOf(gains, model));
+}
+
+py::object parameterSweep(const bio::Model& model, const bio::Trial& trial,
+                          const std::string& parameter, const std::vector<double>& values,
+                          const std::map<std::string, double>& initial, const Names& coordinate,
+                          const std::map<std::string, double>& lock, const std::string& integrator,
+                          std::optional<double> step) {
+  const Choosing chosen{initial, coordinate, lock, integrator, step};
+  Studies studies = begun(model, {trial}, chosen);
+  mustHaveFreeCoordinate(studies, "");
+  std::optional<bio::Sweep> found;
+  interruptible([&](const std::atomic<bool>& goOn) {
+    prepare(studies, model, {trial}, chosen, goOn);
+    found = bio::parameterSweep(studies.trials.front(), studies.question.system,
+                                studies.catalogue().find(parameter), values);
+  });
+  std::vector<Eigen::VectorXd> motions;
+  std::vector<std::string> outcomes;
+  Eigen::VectorXd rms(std::ssize(found->runs)), largest(std::ssize(found->runs));
+  for (const bio::SweepRun& one : found->runs) {
+    rms[std::ssize(motions)] = one.rms;
+    largest[std::ssize(motions)] = one.largest;
+    motions.emplace_back(one.motion.q.row(0).transpose());
+    outcomes.emplace_back(bio::name(one.motion.outcome));
+  }
+  const bio::Trajectory& nominal = found->nominal;
+  return results(
+      "parameter"_a = found->parameter.name, "unit"_a = found->parameter.unit,
+      "model_value"_a = found->parameter.value,
+      "time"_a =
+          Eigen::VectorXd(Eigen::VectorXd::Map(nominal.time.data(), std::ssize(nominal.time))),
+      "nominal"_a = Eigen::VectorXd(nominal.q.row(0).transpose()),
+      "values"_a = Eigen::VectorXd(Eigen::VectorXd::Map(values.data(), std::ssize(values))),
+      "motions"_a = motions, "outcome"_a = outcomes, "rms_change"_a = rms,
+      "max_change"_a = largest);
+}
+
+py::object profileLikelihood(const bio::Model& model, const std::vector<bio::Trial>& trials,
+                             const std::vector<std::string>& parameters, const std::string& profile,
+                             double noise, const std::map<std::string, double>& initial,
+                             const Names& coordinate, const std::map<std::string, double>& lock,
+                             const std::string& integrator, std::optional<double> step) {
+  const Choosing chosen{initial, coordinate, lock, integrator, step};
+  Studies studies = begun(model, trials, chosen);
+  mustHaveFreeCoordinate(studies, "");
+  std::vector<std::string> names;
+  bio::ProfileFinding found;
+  interruptible([&](const std::atomic<bool>& goOn) {
+    prepare(studies, model, trials, chosen, goOn);
+    bio::SensitivityQuestion& question = studies.question;
+    question.noise = noise;
+    question.selection = studies.catalogue().select(parameters);
+    for (const std::size_t index : question.selection) {
+      names.push_back(studies.catalogue().parameters()[index].name);
+    }
+    found = bio::likelihoodProfile(
+        studies.trials, question,
+        bio::indexInSelection(question.selection, studies.catalogue(), profile),
+        [&] { return goOn.load(); });
+  });
+  const auto& points = found.profile.points;
+  Eigen::VectorXd values(std::ssize(points)), costs(std::ssize(points));
+  Eigen::MatrixXd best(std::ssize(points), std::ssize(names));
+  std::vector<bool> converged;
+  for (const info::ProfilePoint& one : points) {
+    const auto k = std::ssize(converged);
+    values[k] = one.value;
+    costs[k] = one.cost;
+    best.row(k) = one.parameters.transpose();
+    converged.push_back(one.converged);
+  }
+  return results("parameter"_a = found.parameter.name, "unit"_a = found.parameter.unit,
+                 "values"_a = values, "costs"_a = costs, "threshold"_a = found.profile.threshold,
+                 "bounded_below"_a = found.boundedBelow(), "bounded_above"_a = found.boundedAbove(),
+                 "names"_a = names, "parameters"_a = best, "converged"_a = converged);
+}
+
+py::object globalSensitivity(const bio::Model& model, const std::vector<bio::Trial>& trials,
+                             const std::vector<std::string>& parameters, const std::string& method,
+                             int samples, std::uint64_t seed, int threads,
+                             const std::map<std::string, double>& initial, const Names& coordinate,
+                             const std::map<std::string, double>& lock,
+                             const std::string& integrator, std::optional<double> step) {
+  if (method != "morris" && method != "sobol" && method != "both") {
+    throw std::invalid_argument(fmt::format("method '{}', must be morris, sobol or both", method));
+  }
+  const Choosing chosen{initial, coordinate, lock, integrator, step};
+  Studies studies = begun(model, trials, chosen);
+  mustHaveFreeCoordinate(studies, "");
+  bio::GlobalQuestion global{.morris = method != "sobol", .sobol = method != "morris"};
+  global.ensemble.samples = samples;
+  global.ensemble.seed = seed;
+  global.ensemble.threads = threads;
+  std::vector<std::string> names;
+  bio::GlobalFinding found;
+  interruptible([&](const std::atomic<bool>& goOn) {
+    prepare(studies, model, trials, chosen, goOn);
+    studies.question.selection = studies.catalogue().select(parameters);
+    for (const std::size_t index : studies.question.selection) {
+      names.push_back(studies.catalogue().parameters()[index].name);
+    }
+    global.ensemble.progress = [&](int, int) { return goOn.load(); };
+    found = bio::globalSensitivity(studies.trials, studies.question, global);
+  });
+  py::object morris = py::none(), sobol = py::none();
+  if (found.morris) {
+    morris = results("mean_absolute"_a = found.morris->meanAbsolute, "sd"_a = found.morris->sd,
+                     "runs"_a = found.morris->runs, "undefined"_a = found.morris->undefined);
+  }
+  if (found.sobol) {
+    sobol = results("first"_a = found.sobol->first, "first_sd"_a = found.sobol->firstDeviation,
+                    "total"_a = found.sobol->total, "total_sd"_a = found.sobol->totalSd,
+                    "variance"_a = found.sobol->variance, "runs"_a = found.sobol->runs,
+                    "undefined"_a = found.sobol->undefined);
+  }
+  return results("names"_a = names, "morris"_a = morris, "sobol"_a = sobol);
 }
 
 /// One σ for all channels with the unit of the first, or one for each by name.
@@ -156,7 +329,20 @@ void defineSensitivity(py::module_& module) {
   defineWithChoice(module, "list_parameters", &listParameters, docstrings::list_parameters,
                    "model"_a, py::kw_only());
   defineWithChoice(module, "sensitivity", &sensitivity, docstrings::sensitivity, "model"_a,
-                   "trials"_a, "parameters"_a, py::kw_only(), "noise"_a = std::numbers::pi / 180);
+                   "trials"_a, "parameters"_a, py::kw_only(), "noise"_a = std::numbers::pi / 180,
+                   "observe"_a = std::map<std::string, double>(), "further_channels"_a = false,
+                   "initial"_a = std::map<std::string, double>());
+  defineWithChoice(module, "parameter_sweep", &parameterSweep, docstrings::parameter_sweep,
+                   "model"_a, "trial"_a, "parameter"_a, "values"_a, py::kw_only(),
+                   "initial"_a = std::map<std::string, double>());
+  defineWithChoice(module, "profile_likelihood", &profileLikelihood, docstrings::profile_likelihood,
+                   "model"_a, "trials"_a, "parameters"_a, "profile"_a, py::kw_only(),
+                   "noise"_a = std::numbers::pi / 180,
+                   "initial"_a = std::map<std::string, double>());
+  defineWithChoice(module, "global_sensitivity", &globalSensitivity, docstrings::global_sensitivity,
+                   "model"_a, "trials"_a, "parameters"_a, py::kw_only(), "method"_a = "both",
+                   "samples"_a = 64, "seed"_a = 1, "threads"_a = 1,
+                   "initial"_a = std::map<std::string, double>());
   defineWithChoice(module, "cost_gradient", &costGradient, docstrings::cost_gradient, "model"_a,
                    "trials"_a, "parameters"_a, "values"_a = py::none(), py::kw_only(),
                    "noise"_a = Noise(std::numbers::pi / 180), "priors"_a = false,

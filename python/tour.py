@@ -34,6 +34,18 @@ told = fh.sensitivity(model, [trial], names, noise=1 / degrees)
 for name, value, unit, bound, known in zip(told.names, told.values, told.units, told.bound_joint, told.identifiable):
     print(f"{name:26} {value:9.4g} {unit:3} ± {bound:.2g}  {'identifiable' if known else 'not identifiable'}")
 assert told.fisher.shape == (3, 3)
+more = fh.sensitivity(model, [trial], names, noise=1 / degrees, further_channels=True).further_channels[0]
+print(f"measured beside the angle, {more.channel} (± {more.noise} {more.unit}) would tell most:",
+      f"{more.parameter} to ± {more.bound_after:.2g} instead of ± {more.bound_before:.2g}")
+
+# %% [markdown]
+# ## What should a dynamometer do to tell more?
+
+# %%
+plan = fh.design_on_dynamometer(model, "elbow_flexion", ["BRA.max_isometric_force"], experiments=2, threads=2)
+for one in plan.experiments:
+    print(f"{one.kind}, then ± {one.bounds[0]:.2g} N: {one.instruction}")
+assert plan.bound_after[0] < plan.bound_before[0]
 
 # %% [markdown]
 # ## Let the data say what they are, and test on another trial

@@ -1,13 +1,10 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <limits>
-#include <sstream>
+#include <optional>
 
 #include "bio/analysis/replay.h"
-#include "bio/calibration/trial_predictor.h"
+#include "bio/design/design_setup.h"
 #include "bio/design/separating_design.h"
 #include "command/command.h"
 #include "design/design_options.h"
@@ -22,14 +19,6 @@
 
 namespace app {
 namespace {
-
-/// "a+b" → a, b
-std::vector<std::string> joinedByPlus(const std::string& text) {
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, '+');) parts.push_back(part);
-  return parts;
-}
 
 class Design : public Command {
  public:
@@ -60,7 +49,8 @@ class Design : public Command {
         simulationOptions(typed_.simulation, input.startTime, input.duration);
     const bio::ExperimentDesign design(arm, catalogue, catalogue.nominal(), input.trial, simulation,
                                        question(catalogue, coordinate), limits(coordinate),
-                                       groups(arm, input.start.q), typed_.knots);
+                                       bio::muscleGroups(arm, input.start.q, typed_.excite),
+                                       typed_.knots);
     bio::DesignResult result;
     search(context, [&] { result = design.search(typed_.settings); });
     folder.writeFile("design.sto", [&](const std::filesystem::path& path) {
@@ -112,15 +102,7 @@ class Design : public Command {
     bio::discover::SeparationQuestion question;
     question.first = typed_.separate[0];
     question.second = typed_.separate[1];
-    for (const std::string& text : typed_.sizes) {
-      const Assignment size = parseAssignment(text);
-      if (size.name != question.first && size.name != question.second) {
-        throw std::invalid_argument(
-            fmt::format("--size: '{}' is not one of --separate", size.name));
-      }
-      if (size.value == 0) throw std::invalid_argument("--size: " + text + ", must not be 0");
-      (size.name == question.first ? question.firstSize : question.secondSize) = size.value;
-    }
+    question = bio::discover::withSizes(question, byName(assignments(typed_.sizes)));
     question.start = bio::startCoordinates(trial, arm, byName(typed_.simulation.initial))[0];
     question.noise = typed_.noise_deg * degree;
     question.period = 1 / typed_.rate_Hz;
@@ -129,7 +111,8 @@ class Design : public Command {
     options.simulation = simulationOptions(typed_.simulation, trial.times[0], duration);
     const bio::discover::SeparatingDesign design(
         model, armOptions(typed_.simulation), coordinate.name, trial, options, question,
-        limits(coordinate), groups(arm, arm.skeleton().defaultValues()), typed_.knots);
+        limits(coordinate), bio::muscleGroups(arm, arm.skeleton().defaultValues(), typed_.excite),
+        typed_.knots);
     bio::discover::SeparatingResult result;
     const auto begin = std::chrono::steady_clock::now();
     search(context, [&] { result = design.search(typed_.settings); });
@@ -137,13 +120,19 @@ class Design : public Command {
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     const SeparatingFindings findings{typed_.model, typed_.trial, design, result, coordinate};
     folder.writeFile("design.sto", [&](const std::filesystem::path& path) {
-      bio::writeTable(separatingTable(findings), path);
+      bio::writeTable(bio::discover::separatingTable(design, result.after), path);
     });
     summary.setSimulation(typed_.simulation.integrator, options.simulation.step, duration, wall);
     tellSeparation(findings, summary);
     deliver(context, summary, separatingReport(findings), folder);
     if (result.stopped) throw Interrupted{};
     return result.improved ? ExitStatus::done : ExitStatus::answerIsNo;
+  }
+
+  static std::vector<Assignment> assignments(const std::vector<std::string>& texts) {
+    std::vector<Assignment> all;
+    for (const std::string& text : texts) all.push_back(parseAssignment(text));
+    return all;
   }
 
   static const bio::Coordinate& rotationOf(const bio::MusculoskeletalSystem& arm) {
@@ -157,102 +146,47 @@ class Design : public Command {
 
   bio::DesignQuestion question(const bio::ParameterCatalogue& catalogue,
                                const bio::Coordinate& coordinate) const {
-    bio::DesignQuestion q;
-    q.coordinate = coordinate.name;
-    q.noise = typed_.noise_deg * degree;
-    q.period = 1 / typed_.rate_Hz;
-    q.parameters = catalogue.select(typed_.parameters);
-    if (!typed_.nuisance.empty()) q.nuisance = catalogue.select(typed_.nuisance);
-    // a pattern among the nuisance parameters may take in what is asked for
-    std::erase_if(q.nuisance, [&](std::size_t index) {
-      return std::find(q.parameters.begin(), q.parameters.end(), index) != q.parameters.end();
-    });
-    q.criterion = typed_.criterion == "A"   ? info::Optimality::a
-                  : typed_.criterion == "D" ? info::Optimality::d
-                                            : info::Optimality::e;
-    std::vector<std::size_t> all = q.parameters;
-    all.insert(all.end(), q.nuisance.begin(), q.nuisance.end());
-    q.priorSd = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(all.size()),
-                                          std::numeric_limits<double>::infinity());
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      if (typed_.priors || i >= q.parameters.size()) {
-        q.priorSd[static_cast<Eigen::Index>(i)] = catalogue.parameters()[all[i]].sd;
-      }
-    }
-    for (const std::string& text : typed_.givenPriors) {
-      const Assignment prior = parseAssignment(text);
-      const auto at = std::find(all.begin(), all.end(), catalogue.find(prior.name));
-      if (at == all.end()) {
-        throw std::invalid_argument(
-            fmt::format("--prior: {} is in neither --parameters nor --nuisance", prior.name));
-      }
-      if (!(prior.value > 0)) {
-        throw std::invalid_argument(
-            fmt::format("--prior: {} = {}, must be > 0", prior.name, prior.value));
-      }
-      q.priorSd[at - all.begin()] = prior.value;
-    }
-    return q;
+    bio::DesignQuestion question;
+    question.coordinate = coordinate.name;
+    question.noise = typed_.noise_deg * degree;
+    question.period = 1 / typed_.rate_Hz;
+    question.criterion = bio::optimalityNamed(typed_.criterion);
+    return bio::designQuestion(catalogue,
+                               {typed_.parameters, typed_.nuisance, typed_.priors,
+                                byName(assignments(typed_.givenPriors))},
+                               std::move(question));
   }
 
   bio::DesignLimits limits(const bio::Coordinate& coordinate) const {
-    bio::DesignLimits result = typed_.limits;
-    result.lower = coordinate.rangeMin;
-    result.upper = coordinate.rangeMax;
-    result.speed = typed_.speed_deg * degree;
+    bio::DesignLimits limits = typed_.limits;
+    limits.speed = typed_.speed_deg * degree;
+    std::optional<std::pair<double, double>> range;
     if (!typed_.range.empty()) {
       try {
-        result.lower = parseAngle(typed_.range[0]);
-        result.upper = parseAngle(typed_.range[1]);
+        range = {parseAngle(typed_.range[0]), parseAngle(typed_.range[1])};
       } catch (const std::invalid_argument& error) {
         throw std::invalid_argument(fmt::format("--range: {}", error.what()));
       }
-      if (!(result.lower < result.upper)) {
-        throw std::invalid_argument(
-            fmt::format("--range: {} to {}, must rise", typed_.range[0], typed_.range[1]));
-      }
     }
-    return result;
-  }
-
-  std::vector<bio::MuscleGroup> groups(const bio::MusculoskeletalSystem& arm,
-                                       const Eigen::VectorXd& q) const {
-    std::vector<bio::MuscleGroup> result;
-    for (const std::string& text : typed_.excite) {
-      const auto named = bio::flexorsAndExtensors(arm, q);
-      const auto at = std::find_if(named.begin(), named.end(), [&](const bio::MuscleGroup& group) {
-        return group.name == text;
-      });
-      result.push_back(at != named.end() ? *at : bio::MuscleGroup{text, joinedByPlus(text)});
-    }
-    return result;
+    return bio::withinRange(limits, coordinate, range);
   }
 
   info::MonteCarloResult simulated(const CommandContext& context,
                                    const bio::ParameterCatalogue& catalogue,
-                                   bio::SimulationOptions simulation,
+                                   const bio::SimulationOptions& simulation,
                                    const bio::ExperimentDesign& design,
                                    const bio::DesignedExperiment& after) const {
-    const bio::DesignQuestion& q = design.question();
-    simulation.externalForce = after.torque;
-    const bio::TrialPredictor experiment(
-        catalogue, armOptions(typed_.simulation), after.excitation, q.coordinate,
-        {after.measuredTimes.begin(), after.measuredTimes.end()}, q.parameters, simulation);
     info::MonteCarloOptions options;
     options.trials = typed_.monteCarlo;
     options.seed = context.seed;
     options.threads = context.threads;
-    options.startSpread = 0.0005;
-    options.estimate.decrementTolerance = 1e-6;
     ProgressBar bar("monte carlo");
     options.progress = [&](int done, int trials) {
       bar.update(static_cast<double>(done) / trials);
       return true;
     };
-    return info::monteCarlo(
-        experiment.predictor(), catalogue.values(q.parameters),
-        info::OutputCovariance(Eigen::MatrixXd::Constant(1, 1, q.noise * q.noise)),
-        catalogue.asEstimated(q.parameters, false), options);
+    return bio::simulatedRepetitions(design, after, catalogue, armOptions(typed_.simulation),
+                                     simulation, options);
   }
 
   DesignOptions typed_;

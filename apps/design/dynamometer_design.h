@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bio/design/dynamometer_plan.h"
+#include "bio/design/dynamometer_question.h"
 #include "command/command.h"
 #include "output/summary.h"
 #include "report/report.h"
@@ -30,11 +30,6 @@ struct DynamometerOptions {
 /// Whether such experiments are asked for.
 bool considers(const DynamometerOptions& options, bio::DynamometerExperiment::Kind kind);
 
-const char* wordOf(bio::DynamometerExperiment::Kind kind);
-
-/// "Hold at 60 deg; 2 s of rest, then …": to the person on the dynamometer.
-std::string instructionOf(const bio::DynamometerExperiment& experiment, bool turns);
-
 void tellDynamometer(const bio::DynamometerPlan& plan, bool turns, Summary& summary);
 /// @param question  that was asked
 Report dynamometerReport(const bio::DynamometerPlan& plan, const bio::DynamometerQuestion& question,
@@ -42,8 +37,8 @@ Report dynamometerReport(const bio::DynamometerPlan& plan, const bio::Dynamomete
 
 void addDynamometerOptions(CLI::App& options, DynamometerOptions& dynamometer);
 
-/// The lists of the options in radians (or metres) and shares.
-/// @throws std::invalid_argument for an option out of its range, or one that none of the kinds uses
+/// bio::withDefaults of the lists of the options.
+/// @throws what that throws; std::invalid_argument for text that is no quantity
 bio::DynamometerQuestion dynamometerQuestion(const DesignOptions& typed,
                                              const bio::Coordinate& coordinate);
 

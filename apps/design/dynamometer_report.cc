@@ -12,7 +12,6 @@ namespace app {
 namespace {
 
 using Eigen::Index;
-using ExperimentKind = bio::DynamometerExperiment::Kind;
 namespace course = bio::dynamometer;
 
 bool measuresAngles(const bio::DynamometerPlan& plan) {
@@ -30,44 +29,6 @@ std::string angleNoiseOf(const bio::DynamometerPlan& plan, const bio::Dynamomete
 
 }  // namespace
 
-std::string instructionOf(const bio::DynamometerExperiment& one, bool turns) {
-  const double unit = turns ? radian : 1000;
-  const char* name = turns ? "deg" : "mm";
-  const std::string contract =
-      fmt::format("{}: rise to {:.0f} % MVC in {:g} s", one.group, 100 * one.effort, course::ramp);
-  const std::string hold = fmt::format("hold at {:.0f} {}; rest {:g} s, {}", one.from * unit, name,
-                                       course::rest, contract);
-  switch (one.kind) {
-    case ExperimentKind::isometric:
-      return fmt::format("{}, keep it for {:g} s, relax", hold, course::hold);
-    case ExperimentKind::release:
-      return fmt::format(
-          "{}, keep it; after {:g} s turn to {:.0f} {} within {:.2g} s (up to {:.0f} {}/s) and "
-          "hold there, keep it for {:g} s more, relax",
-          hold, course::beforeRelease, one.to * unit, name,
-          course::releaseTime(std::abs(one.to - one.from), one.speed), one.speed * unit, name,
-          course::afterRelease);
-    case ExperimentKind::isotonic: {
-      const Index rows = one.trial.values.rows();
-      return fmt::format(
-          "{}, keep it; when the moment is steady, let the joint go against a constant {:.3g} {} "
-          "that pushes the angle {}, and measure the angle from then on for {:.2g} s, until about "
-          "{:.0f} {}",
-          hold, std::abs(one.torque), turns ? "N m" : "N", one.torque < 0 ? "down" : "up",
-          one.trial.values(rows - 1, 0), one.to * unit, name);
-    }
-    case ExperimentKind::isokinetic:
-    case ExperimentKind::passive:
-      break;
-  }
-  const std::string turn =
-      fmt::format("turn from {:.0f} to {:.0f} {} at {:.0f} {}/s", one.from * unit, one.to * unit,
-                  name, one.speed * unit, name);
-  if (one.kind == ExperimentKind::passive) return turn + "; relax all the time";
-  return fmt::format("{}; rest {:g} s, {}, then turn and keep it to the end", turn, course::rest,
-                     contract);
-}
-
 void tellDynamometer(const bio::DynamometerPlan& plan, bool turns, Summary& summary) {
   const double unit = turns ? radian : 1;
   nlohmann::ordered_json before = nlohmann::ordered_json::object(), now = before;
@@ -83,7 +44,7 @@ void tellDynamometer(const bio::DynamometerPlan& plan, bool turns, Summary& summ
       bounds[plan.parameters[i].name] = plan.bounds[n][static_cast<Index>(i)];
     }
     const char* of = turns ? "_deg" : "_m";
-    list.push_back({{"kind", wordOf(one.kind)},
+    list.push_back({{"kind", bio::name(one.kind)},
                     {fmt::format("from{}", of), one.from * unit},
                     {fmt::format("to{}", of), one.to * unit},
                     {fmt::format("speed{}_per_s", of), one.speed * unit},
@@ -91,7 +52,7 @@ void tellDynamometer(const bio::DynamometerPlan& plan, bool turns, Summary& summ
                     {"effort_percent", 100 * one.effort},
                     {"load_percent", 100 * one.load},
                     {turns ? "torque_Nm" : "force_N", one.torque},
-                    {"instruction", instructionOf(one, turns)},
+                    {"instruction", bio::instructionOf(one, turns)},
                     {"information_nats", plan.information[n]},
                     {"bounds", bounds}});
   }
@@ -121,7 +82,8 @@ Report dynamometerReport(const bio::DynamometerPlan& plan, const bio::Dynamomete
     table.columns.push_back(fmt::format("± {} [{}]", one.name, unitText(one.unit)));
   }
   for (std::size_t n = 0; n < plan.chosen.size(); ++n) {
-    std::vector<std::string> row = {fmt::format("{}", n + 1), instructionOf(plan.chosen[n], turns),
+    std::vector<std::string> row = {fmt::format("{}", n + 1),
+                                    bio::instructionOf(plan.chosen[n], turns),
                                     numberText(plan.information[n], 3)};
     for (const double bound : plan.bounds[n]) row.push_back(numberText(bound, 3));
     table.rows.push_back(std::move(row));

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "output/angle_unit.h"
 #include "output/json_text.h"
@@ -233,36 +232,6 @@ Report separatingReport(const SeparatingFindings& f) {
                             "After recording the experiment, run `fisherhill discover` on it.",
                             f.result.runs, f.result.impossible)});
   return report;
-}
-
-bio::Table separatingTable(const SeparatingFindings& f) {
-  const bio::Trial& trial = f.result.after.trial;
-  const auto muscles = static_cast<Index>(trial.muscles.size());
-  const auto forces = static_cast<Index>(trial.applied.size());
-  bio::Table table;
-  table.name = "designed experiment";
-  table.metadata["predicted"] = f.coordinate.name + " is predicted, not measured";
-  table.metadata.merge(bio::headerOf(trial.known));
-  table.columns = {"time"};
-  table.columns.insert(table.columns.end(), trial.muscles.begin(), trial.muscles.end());
-  for (const bio::AppliedForce& force : trial.applied) {
-    table.columns.push_back(force.coordinate + ".torque");
-  }
-  table.columns.push_back(f.coordinate.name);
-  table.values = Eigen::MatrixXd::Constant(trial.times.size(), muscles + forces + 2,
-                                           std::numeric_limits<double>::quiet_NaN());
-  table.values.col(0) = trial.times;
-  table.values.middleCols(1, muscles) = trial.excitations;
-  for (Index i = 0; i < forces; ++i) {
-    table.values.col(1 + muscles + i) = trial.applied[static_cast<std::size_t>(i)].values;
-  }
-  Index row = 0;
-  const bio::MeasuredMotion& motion = trial.measured.front();
-  for (Index i = 0; i < motion.times.size(); ++i) {
-    while (row + 1 < trial.times.size() && trial.times[row] < motion.times[i] - 1e-9) ++row;
-    table.values(row, table.values.cols() - 1) = motion.values[i];
-  }
-  return table;
 }
 
 }  // namespace app

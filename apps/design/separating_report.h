@@ -21,8 +21,4 @@ void tellSeparation(const SeparatingFindings& findings, Summary& summary);
 
 Report separatingReport(const SeparatingFindings& findings);
 
-/// The designed experiment as a trial for replay, with the base model's motion at the sample times
-/// of the coordinate.
-bio::Table separatingTable(const SeparatingFindings& findings);
-
 }  // namespace app

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "bio/analysis/replay.h"
-#include "bio/calibration/trial_predictor.h"
+#include "bio/analysis/sensitivity_study.h"
 #include "command/command.h"
 #include "options/input_rules.h"
 #include "options/parameter_list.h"
@@ -13,19 +12,13 @@
 #include "options/trial_input.h"
 #include "output/progress_bar.h"
 #include "output/result.h"
-#include "sensitivity/nonlocal_analysis.h"
 #include "sensitivity/observed_channels.h"
 #include "sensitivity/sensitivity_report.h"
 
 namespace app {
 namespace {
 
-/// A trial with the parameters' catalogue for its start, and when its coordinate was measured.
-struct Study {
-  TrialInput input;
-  bio::ParameterCatalogue catalogue;
-  std::vector<double> times;  ///< [s]
-};
+using bio::StudiedTrial;
 
 class Sensitivity : public Command {
  public:
@@ -101,54 +94,55 @@ class Sensitivity : public Command {
     const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
     if (list_) return listParameters(context, model, arm);
 
-    std::vector<Study> studies;
+    std::vector<StudiedTrial> trials;
+    std::vector<bio::Trial> recorded;
     for (const std::string& file : trials_) {
       TrialInput input =
           readTrialInput(file, model, arm, simulation_, summary, {.channels = !observe_.empty()});
-      bio::ParameterCatalogue catalogue(model, arm, {input.start.q, input.start.qDot});
-      std::vector<double> times = bio::observedTimes(
-          input.trial, arm.skeleton().coordinates().front().name, simulation_.stepOrDefault());
-      studies.push_back({std::move(input), std::move(catalogue), std::move(times)});
+      trials.push_back(
+          bio::studiedTrial(input.trial, model, arm, {input.start.q, input.start.qDot},
+                            simulationOptions(simulation_, input.startTime, input.duration)));
+      recorded.push_back(std::move(input.trial));
     }
     inputsMustDiffer(summary, trials_.size());
-    const Study& first = studies.front();
+    const StudiedTrial& first = trials.front();
     const bio::Coordinate& coordinate = arm.skeleton().coordinates().front();
-    SensitivityFindings findings{
-        model_, trials_, coordinate, first.input.trial, noise_ / shownFactor(coordinate), 0};
+    bio::SensitivityQuestion question{armOptions(simulation_), "",
+                                      noise_ / shownFactor(coordinate)};
+    if (!simulation_.coordinates.empty()) question.coordinate = simulation_.coordinates.front();
+    SensitivityFindings findings{model_, trials_, coordinate, recorded.front(), question.noise, 0};
     findings.model = &model;
-    observed_ = readObserved(observe_, model, arm);
-    findings.observed = inWords(observed_, model);
-    if (!observed_.empty()) {
+    question.observed = readObserved(observe_, model, arm);
+    findings.observed = inWords(question.observed, model);
+    if (!question.observed.empty()) {
       findings.noise = 1;
     } else if (simulation_.coordinates.empty()) {
       throw std::invalid_argument(
           "no coordinate is free to be observed: --observe must name what is measured");
     }
-    for (const Study& study : studies) {
-      findings.samples += static_cast<Eigen::Index>(study.times.size() *
-                                                    std::max<std::size_t>(1, observed_.size()));
+    for (const StudiedTrial& trial : trials) {
+      findings.samples += static_cast<Eigen::Index>(
+          trial.times.size() * std::max<std::size_t>(1, question.observed.size()));
     }
     // every name is looked up before anything long begins
     const auto swept = swept_.empty() ? std::optional<std::size_t>() : first.catalogue.find(swept_);
-    if (swept) checkValues(first.catalogue.parameters()[*swept]);
-    const auto selection = selected(first.catalogue, swept);
-    const auto held = profiledIndex(first.catalogue, selection);
-    if (!global_.empty() && selection.size() > 32) {
-      throw std::invalid_argument(fmt::format(
-          "--global: {} parameters, at most 32; choose them with --parameters", selection.size()));
+    if (swept) bio::requireWithinBounds(first.catalogue.parameters()[*swept], values_);
+    question.selection = selected(first.catalogue, swept);
+    const auto held = profiledIndex(first.catalogue, question.selection);
+    if (!global_.empty() && question.selection.size() > bio::mostGlobalParameters) {
+      throw std::invalid_argument(
+          fmt::format("--global: {} parameters, at most {}; choose them with --parameters",
+                      question.selection.size(), bio::mostGlobalParameters));
     }
 
-    if (swept) findings.sweeps.push_back(sweep(first, *swept));
-    if (!selection.empty()) analyse(studies, arm, selection, findings);
+    if (swept) findings.sweeps.push_back(sweep(first, question, *swept));
+    if (!question.selection.empty()) analyse(trials, arm, question, findings);
     if (held) {
-      const double noise = noise_ / shownFactor(firstCoordinate(studies));
-      findings.profile = likelihoodProfile(experiments(studies, selection), first.catalogue,
-                                           selection, *held, noise);
+      ProgressBar bar("profile");
+      findings.profile = bio::likelihoodProfile(trials, question, *held);
     }
     if (!global_.empty()) {
-      findings.global =
-          globalSensitivity(experiments(studies, selection), first.catalogue, selection,
-                            {global_, samples_, shownFactor(firstCoordinate(studies))}, context);
+      findings.global = globalSensitivity(trials, question, shownFactor(coordinate), context);
       tellUndefined(findings.global, summary);
     }
 
@@ -157,14 +151,15 @@ class Sensitivity : public Command {
       summary.warn(left->what);
     }
     writeTables(findings, folder);
-    summary.setSimulation(simulation_.integrator, simulation_.stepOrDefault(), first.input.duration,
+    summary.setSimulation(simulation_.integrator, simulation_.stepOrDefault(),
+                          first.simulation.duration,
                           findings.local ? findings.local->motion.wallSeconds
                                          : findings.sweeps.front().nominal.wallSeconds);
     tellSensitivity(findings, summary);
     deliver(context, summary, sensitivityReport(findings), folder);
     bool complete = true;
-    for (const Sweep& one : findings.sweeps) {
-      for (const SweepRun& sweepRun : one.runs) {
+    for (const bio::Sweep& one : findings.sweeps) {
+      for (const bio::SweepRun& sweepRun : one.runs) {
         complete = complete && sweepRun.motion.outcome == bio::Outcome::completed;
       }
     }
@@ -209,17 +204,6 @@ class Sensitivity : public Command {
     return names;
   }
 
-  void checkValues(const bio::ModelParameter& parameter) const {
-    for (const double value : values_) {
-      if (value >= parameter.lower && value <= parameter.upper) continue;
-      throw std::invalid_argument(
-          fmt::format("--values: {} = {} {}, must be {:.4g} to {:.4g} {}{}{}", parameter.name,
-                      value, parameter.unit, parameter.lower, parameter.upper, parameter.unit,
-                      value >= parameter.limit ? ": " : "",
-                      value >= parameter.limit ? parameter.whyLimited : ""));
-    }
-  }
-
   std::vector<std::size_t> selected(const bio::ParameterCatalogue& catalogue,
                                     std::optional<std::size_t> swept) const {
     std::vector<std::string> names = names_;
@@ -233,114 +217,37 @@ class Sensitivity : public Command {
   std::optional<Eigen::Index> profiledIndex(const bio::ParameterCatalogue& catalogue,
                                             const std::vector<std::size_t>& selection) const {
     if (profile_.empty()) return {};
-    const std::size_t index = catalogue.find(profile_);
-    const auto at = std::find(selection.begin(), selection.end(), index);
-    if (at == selection.end()) {
-      throw std::invalid_argument(
-          fmt::format("--profile: {} is not one of the --parameters", profile_));
-    }
-    return at - selection.begin();
+    return bio::indexInSelection(selection, catalogue, profile_);
   }
 
-  bio::SimulationOptions options(const Study& study) const {
-    bio::SimulationOptions chosen =
-        simulationOptions(simulation_, study.input.startTime, study.input.duration);
-    chosen.externalForce = study.input.externalForce;
-    chosen.prescribed = study.input.prescribed;
-    return chosen;
-  }
-
-  bio::TrialPredictor experiment(const Study& study,
-                                 const std::vector<std::size_t>& selection) const {
-    if (observed_.empty()) {
-      return {study.catalogue,
-              armOptions(simulation_),
-              study.input.excitation,
-              simulation_.coordinates.front(),
-              study.times,
-              selection,
-              options(study)};
-    }
-    return {study.catalogue,
-            armOptions(simulation_),
-            study.input.excitation,
-            seriesOf(observed_, study.times),
-            selection,
-            options(study)};
-  }
-
-  /// What other channels would add, unless that would take long.
-  void addGains(const std::vector<Study>& studies, const bio::MusculoskeletalSystem& arm,
-                const std::vector<std::size_t>& selection, SensitivityFindings& findings) const {
-    const std::vector<bio::ChannelCandidate> candidates = furtherChannels(
-        arm, observed_, simulation_.coordinates.empty() ? "" : simulation_.coordinates.front());
-    if (gainsTakeLong(selection.size(), candidates.size())) return;
-    std::vector<Eigen::MatrixXd> information;
-    for (const Study& study : studies) {
-      const auto motion =
-          bio::simulateWithSensitivities(arm, study.catalogue, study.catalogue.nominal(), selection,
-                                         study.input.excitation, {options(study), true, true});
-      const auto more = bio::informationOf(arm, candidates, study.times, motion);
-      for (std::size_t c = 0; c < more.size(); ++c) {
-        if (information.size() == c) {
-          information.push_back(more[c]);
-        } else {
-          information[c] += more[c];
-        }
-      }
-    }
-    findings.gains = bio::channelGains(*findings.information, candidates, information);
-  }
-
-  Sweep sweep(const Study& study, std::size_t index) const {
+  bio::Sweep sweep(const StudiedTrial& trial, const bio::SensitivityQuestion& question,
+                   std::size_t index) const {
     ProgressBar bar("sweep");
-    const auto simulated = [&](double value) {
-      const auto setting = study.catalogue.at({index}, Eigen::VectorXd::Constant(1, value));
-      const bio::MusculoskeletalSystem arm(setting.model, armOptions(simulation_));
-      return bio::simulateSetting(arm, setting, study.input.excitation, options(study));
-    };
-    const bio::ModelParameter& parameter = study.catalogue.parameters()[index];
-    Sweep result{parameter, simulated(parameter.value), {}};
-    for (const double value : values_) {
-      bar.update(static_cast<double>(result.runs.size()) / static_cast<double>(values_.size()));
-      SweepRun one{value, simulated(value), 0, 0};
-      const Eigen::Index rows = std::min(one.motion.q.cols(), result.nominal.q.cols());
-      const Eigen::RowVectorXd change =
-          one.motion.q.row(0).head(rows) - result.nominal.q.row(0).head(rows);
-      one.rms = std::sqrt(change.squaredNorm() / static_cast<double>(rows));
-      one.largest = change.cwiseAbs().maxCoeff();
-      result.runs.push_back(std::move(one));
-    }
-    return result;
+    return bio::parameterSweep(trial, question.system, index, values_,
+                               [&](double done) { bar.update(done); });
   }
 
-  void analyse(const std::vector<Study>& studies, const bio::MusculoskeletalSystem& arm,
-               const std::vector<std::size_t>& selection, SensitivityFindings& findings) const {
+  void analyse(const std::vector<StudiedTrial>& trials, const bio::MusculoskeletalSystem& arm,
+               const bio::SensitivityQuestion& question, SensitivityFindings& findings) const {
     ProgressBar bar("sensitivity");
-    const bio::ParameterCatalogue& catalogue = studies.front().catalogue;
-    for (const std::size_t index : selection) {
-      findings.parameters.push_back(catalogue.parameters()[index].name);
+    const StudiedTrial& first = trials.front();
+    for (const std::size_t index : question.selection) {
+      findings.parameters.push_back(first.catalogue.parameters()[index].name);
     }
-    std::vector<Eigen::MatrixXd> gammas;
-    for (const Study& study : studies) {
-      const auto linearised =
-          experiment(study, selection).withSensitivities(study.catalogue.values(selection));
-      if (!linearised.outputs.allFinite()) {
-        throw std::invalid_argument(fmt::format(
-            "{}: the simulation does not reach the end of the trial", study.input.trial.file));
-      }
-      gammas.push_back(linearised.gamma);
-      scaleByNoise(observed_, gammas.back());
-      bar.update(static_cast<double>(gammas.size()) / static_cast<double>(studies.size() + 1));
+    const auto most = static_cast<double>(trials.size());
+    findings.information = bio::localSensitivity(trials, question, [&](double done) {
+                             bar.update(done * most / (most + 1));
+                           }).information;
+    const std::size_t further = bio::furtherChannels(arm, question).size();
+    if (!bio::gainsTakeLong(question.selection.size(), further)) {
+      findings.gains = bio::furtherGains(trials, arm, question, *findings.information);
     }
-    findings.information = bio::informationAbout(catalogue, selection, gammas, findings.noise);
-    addGains(studies, arm, selection, findings);
     // what all sensitivities cost beside the motion: the best of five, since others use the machine
-    const Study& first = studies.front();
     double alone = 0, with = 0;
     for (int repeat = 0; repeat < 5; ++repeat) {
-      auto local = bio::simulateWithSensitivities(arm, catalogue, catalogue.nominal(), selection,
-                                                  first.input.excitation, {options(first), false});
+      auto local = bio::simulateWithSensitivities(arm, first.catalogue, first.catalogue.nominal(),
+                                                  question.selection, first.excitation,
+                                                  {first.simulation, false});
       const double motion = local.motion.wallSeconds;
       alone = repeat == 0 ? motion : std::min(alone, motion);
       const double sum = motion + local.wallSeconds;
@@ -350,20 +257,23 @@ class Sensitivity : public Command {
     findings.costRatio = with / alone;
   }
 
-  const bio::Coordinate& firstCoordinate(const std::vector<Study>& studies) const {
-    return bio::findCoordinate(studies.front().catalogue.model(), simulation_.coordinates.front());
+  bio::GlobalFinding globalSensitivity(const std::vector<StudiedTrial>& trials,
+                                       const bio::SensitivityQuestion& question, double shown,
+                                       const CommandContext& context) const {
+    ProgressBar bar("global");
+    bio::GlobalQuestion global{global_ != "sobol", global_ != "morris", shown};
+    global.ensemble.samples = samples_;
+    global.ensemble.seed = context.seed;
+    global.ensemble.threads = context.threads;
+    global.ensemble.progress = [&](int done, int runs) {
+      bar.update(static_cast<double>(done) / runs);
+      return true;
+    };
+    return bio::globalSensitivity(trials, question, global);
   }
 
-  std::vector<bio::TrialPredictor> experiments(const std::vector<Study>& studies,
-                                               const std::vector<std::size_t>& selection) const {
-    std::vector<bio::TrialPredictor> all;
-    for (const Study& study : studies) all.push_back(experiment(study, selection));
-    return all;
-  }
-
-  static void tellUndefined(const GlobalFinding& finding, Summary& summary) {
-    const int undefined = (finding.morris ? finding.morris->undefined : 0) +
-                          (finding.sobol ? finding.sobol->undefined : 0);
+  static void tellUndefined(const bio::GlobalFinding& finding, Summary& summary) {
+    const int undefined = finding.undefined();
     if (undefined == 0) return;
     summary.warn(fmt::format(
         "{} runs of the global sensitivity analysis did not reach the end and were left out",
@@ -379,7 +289,6 @@ class Sensitivity : public Command {
   std::vector<std::string> names_;
   double noise_ = 1;
   std::vector<std::string> observe_;
-  std::vector<bio::ChannelCandidate> observed_;
   std::string profile_;
   std::string global_;
   int samples_ = 64;

@@ -27,7 +27,7 @@ std::vector<double> scaled(const Eigen::VectorXd& values, double factor) {
   return {result.begin(), result.end()};
 }
 
-Figure sweepFigure(const SensitivityFindings& f, const Sweep& sweep) {
+Figure sweepFigure(const SensitivityFindings& f, const bio::Sweep& sweep) {
   const double factor = shownFactor(f.coordinate);
   const std::string& unit = sweep.parameter.unit;
   Figure figure{.title = fmt::format("{} for {} values of {}", f.coordinate.name, sweep.runs.size(),
@@ -43,7 +43,7 @@ Figure sweepFigure(const SensitivityFindings& f, const Sweep& sweep) {
                              .style = style});
   };
   add("model", sweep.nominal, SeriesStyle::dashed);
-  for (const SweepRun& run : sweep.runs) {
+  for (const bio::SweepRun& run : sweep.runs) {
     if (figure.series.size() < 7) add(withUnit(run.value, unit), run.motion, SeriesStyle::line);
   }
   for (const bio::MeasuredMotion& measured : f.trial.measured) {
@@ -56,13 +56,13 @@ Figure sweepFigure(const SensitivityFindings& f, const Sweep& sweep) {
   return figure;
 }
 
-Table sweepTable(const SensitivityFindings& f, const Sweep& sweep) {
+Table sweepTable(const SensitivityFindings& f, const bio::Sweep& sweep) {
   const char* unit = shownUnit(f.coordinate);
   Table table{.title = "Change in the motion",
               .columns = {fmt::format("{} [{}]", sweep.parameter.name,
                                       sweep.parameter.unit.empty() ? "1" : sweep.parameter.unit),
                           fmt::format("rms [{}]", unit), fmt::format("largest [{}]", unit)}};
-  for (const SweepRun& run : sweep.runs) {
+  for (const bio::SweepRun& run : sweep.runs) {
     const bool done = run.motion.outcome == bio::Outcome::completed;
     table.rows.push_back(
         {numberText(run.value), numberText(run.rms * shownFactor(f.coordinate)),
@@ -115,7 +115,7 @@ Table rankingTable(const SensitivityFindings& f, const std::string& title,
   return table;
 }
 
-Figure profileFigure(const ProfileFinding& finding) {
+Figure profileFigure(const bio::ProfileFinding& finding) {
   Figure figure{.title = fmt::format("Profile likelihood of {}", finding.parameter.name),
                 .xLabel = info::label(finding.parameter),
                 .yLabel = "Smallest cost [nats]",
@@ -213,11 +213,11 @@ std::string gainSentence(const SensitivityFindings& f) {
 
 std::string verdictOf(const SensitivityFindings& f) {
   std::string text;
-  for (const Sweep& sweep : f.sweeps) {
+  for (const bio::Sweep& sweep : f.sweeps) {
     if (sweep.runs.empty()) continue;
     const auto most = std::max_element(
         sweep.runs.begin(), sweep.runs.end(),
-        [](const SweepRun& a, const SweepRun& b) { return a.largest < b.largest; });
+        [](const bio::SweepRun& a, const bio::SweepRun& b) { return a.largest < b.largest; });
     text +=
         fmt::format("{} = {} instead of {} changes {} by up to {} {}. ", sweep.parameter.name,
                     withUnit(most->value, sweep.parameter.unit), numberText(sweep.parameter.value),
@@ -275,9 +275,9 @@ void tellSensitivity(const SensitivityFindings& f, Summary& summary) {
   summary.set("status", "ok");
   summary.set("samples", f.samples);
   if (f.observed.empty()) summary.set("noise_" + unit, f.noise * factor);
-  for (const Sweep& sweep : f.sweeps) {
+  for (const bio::Sweep& sweep : f.sweeps) {
     auto runs = nlohmann::ordered_json::array();
-    for (const SweepRun& run : sweep.runs) {
+    for (const bio::SweepRun& run : sweep.runs) {
       runs.push_back({{"value", run.value},
                       {"rms_change_" + unit, run.rms * factor},
                       {"max_change_" + unit, run.largest * factor},
@@ -326,12 +326,9 @@ void tellSensitivity(const SensitivityFindings& f, Summary& summary) {
   summary.set("not_told_apart", known.sentences);
   summary.set("cost_ratio", f.costRatio);
   if (f.profile) {
-    const auto& points = f.profile->profile.points;
-    const bool above = !points.empty() && points.back().cost > f.profile->profile.threshold;
-    const bool below = !points.empty() && points.front().cost > f.profile->profile.threshold;
     summary.set("profile", {{"parameter", f.profile->parameter.name},
-                            {"bounded_below", below},
-                            {"bounded_above", above}});
+                            {"bounded_below", f.profile->boundedBelow()},
+                            {"bounded_above", f.profile->boundedAbove()}});
   }
   if (f.global.morris) summary.set("morris_runs", f.global.morris->runs);
   if (f.global.sobol) summary.set("sobol_runs", f.global.sobol->runs);

@@ -5,40 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "bio/parameters/channel_information.h"
-#include "bio/parameters/parameter_information.h"
-#include "bio/tables/trial.h"
-#include "info/estimation/profile_likelihood.h"
-#include "info/probability/global_sensitivity.h"
+#include "bio/analysis/sensitivity_study.h"
 #include "output/result.h"
 #include "report/report.h"
 
 namespace app {
-
-/// One value of a swept parameter.
-struct SweepRun {
-  double value;
-  bio::Trajectory motion;
-  double rms = 0;      ///< RMS difference from the model's own motion [rad] or [m]
-  double largest = 0;  ///< largest difference [rad] or [m]
-};
-struct Sweep {
-  bio::ModelParameter parameter;
-  bio::Trajectory nominal;
-  std::vector<SweepRun> runs;
-};
-
-/// Profile likelihood of a parameter.
-struct ProfileFinding {
-  info::Parameter parameter;
-  info::Profile profile;
-};
-
-/// Global sensitivity of the same parameters.
-struct GlobalFinding {
-  std::optional<info::MorrisResult> morris;
-  std::optional<info::SobolResult> sobol;
-};
 
 /// The findings of `sensitivity`.
 struct SensitivityFindings {
@@ -49,7 +20,7 @@ struct SensitivityFindings {
   double noise;                       ///< [rad] or [m]; 1 where something else is observed
   Eigen::Index samples;               ///< of all trials
   const bio::Model* model = nullptr;
-  std::vector<Sweep> sweeps = {};
+  std::vector<bio::Sweep> sweeps = {};
   std::vector<std::string> parameters = {};  ///< of the local analysis, in the order of its columns
   std::optional<bio::ParameterInformation> information = {};
   std::optional<bio::SensitivityTrajectory> local = {};  ///< of the first trial
@@ -59,8 +30,8 @@ struct SensitivityFindings {
   std::string observed = {};
   /// What other channels would add, the most first; empty: not computed.
   std::vector<bio::ChannelGain> gains = {};
-  std::optional<ProfileFinding> profile = {};
-  GlobalFinding global = {};
+  std::optional<bio::ProfileFinding> profile = {};
+  bio::GlobalFinding global = {};
 
   /// Unit in which the sensitivities to the observation are shown, and its factor.
   double shownFactor() const;
@@ -79,9 +50,9 @@ void writeSensitivities(const SensitivityFindings& findings, std::ostream& out);
 /// fisher.csv: the matrix with its names.
 void writeFisher(const SensitivityFindings& findings, std::ostream& out);
 /// sweep.csv: time, the model's motion, and that of each value.
-void writeSweep(const Sweep& sweep, const bio::Coordinate& coordinate, std::ostream& out);
+void writeSweep(const bio::Sweep& sweep, const bio::Coordinate& coordinate, std::ostream& out);
 /// profile.csv and global.csv
-void writeProfile(const ProfileFinding& finding, std::ostream& out);
+void writeProfile(const bio::ProfileFinding& finding, std::ostream& out);
 void writeGlobal(const SensitivityFindings& findings, std::ostream& out);
 
 /// All of these that there is something for.

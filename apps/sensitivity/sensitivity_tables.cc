@@ -37,24 +37,24 @@ void writeFisher(const SensitivityFindings& f, std::ostream& out) {
   }
 }
 
-void writeSweep(const Sweep& sweep, const bio::Coordinate& coordinate, std::ostream& out) {
+void writeSweep(const bio::Sweep& sweep, const bio::Coordinate& coordinate, std::ostream& out) {
   const double factor = shownFactor(coordinate);
   out << fmt::format("time,{}_{}", coordinate.name, shownUnit(coordinate));
-  for (const SweepRun& run : sweep.runs) {
+  for (const bio::SweepRun& run : sweep.runs) {
     out << fmt::format(",{}={:.9g}", sweep.parameter.name, run.value);
   }
   out << '\n';
   for (std::size_t k = 0; k < sweep.nominal.time.size(); ++k) {
     const auto row = static_cast<Eigen::Index>(k);
     out << cell(sweep.nominal.time[k]) << ',' << cell(sweep.nominal.q(0, row) * factor);
-    for (const SweepRun& run : sweep.runs) {
+    for (const bio::SweepRun& run : sweep.runs) {
       out << ',' << (row < run.motion.q.cols() ? cell(run.motion.q(0, row) * factor) : "");
     }
     out << '\n';
   }
 }
 
-void writeProfile(const ProfileFinding& finding, std::ostream& out) {
+void writeProfile(const bio::ProfileFinding& finding, std::ostream& out) {
   out << "value,cost,threshold,converged\n";
   for (const info::ProfilePoint& point : finding.profile.points) {
     out << fmt::format("{},{},{},{}\n", cell(point.value), cell(point.cost),
@@ -84,7 +84,7 @@ void writeTables(const SensitivityFindings& findings, OutputFolder& folder) {
     folder.write("sensitivity.csv", [&](std::ostream& out) { writeSensitivities(findings, out); });
     folder.write("fisher.csv", [&](std::ostream& out) { writeFisher(findings, out); });
   }
-  for (const Sweep& one : findings.sweeps) {
+  for (const bio::Sweep& one : findings.sweeps) {
     folder.write("sweep.csv",
                  [&](std::ostream& out) { writeSweep(one, findings.coordinate, out); });
   }

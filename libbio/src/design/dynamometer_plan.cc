@@ -282,6 +282,12 @@ void checkQuestion(const DynamometerQuestion& question) {
   const auto require = [](bool holds, const char* rule) {
     if (!holds) throw std::invalid_argument(fmt::format("dynamometer: {}", rule));
   };
+  require(!question.parameters.empty(), "no parameter is given");
+  require(question.noise > 0 && question.angleNoise > 0 && question.rate > 0 && question.count > 0,
+          "noise, rate and count must be > 0");
+  require(question.rate <= 1e5, "rate must be at most 1e5 samples per second");
+  require(question.surprise >= 0 && question.fastest > 0,
+          "surprise must be at least 0 and the largest speed > 0");
   const auto& at = question.positions;
   require(
       !at.empty() && std::adjacent_find(at.begin(), at.end(), std::greater_equal<>()) == at.end(),
@@ -302,10 +308,6 @@ void checkQuestion(const DynamometerQuestion& question) {
   for (const double load : question.loads) {
     require(load > 0 && load < 1, "loads must be above 0 and below 1");
   }
-  require(question.noise > 0 && question.angleNoise > 0 && question.rate > 0 && question.count > 0,
-          "noise, rate and count must be > 0");
-  require(question.surprise >= 0 && question.fastest > 0,
-          "surprise must be at least 0 and the largest speed > 0");
 }
 
 }  // namespace

@@ -32,9 +32,10 @@ std::vector<double> equalTimes(double start, double duration, double interval) {
 
 std::vector<double> measurements(const DesignQuestion& question,
                                  const SimulationOptions& simulation) {
-  require(question.period > 0 && question.period <= simulation.duration,
-          fmt::format("period of the measurements = {} s, must be > 0 and at most the duration",
-                      question.period));
+  require(question.period >= 1e-6 * simulation.duration && question.period <= simulation.duration,
+          fmt::format(
+              "period of the measurements = {} s, must be a millionth of the duration to all of it",
+              question.period));
   return equalTimes(simulation.startTime, simulation.duration, question.period);
 }
 

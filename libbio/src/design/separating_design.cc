@@ -30,9 +30,10 @@ constexpr double worthless = std::numeric_limits<double>::infinity();
 
 std::vector<double> measuredTimes(const Trial& trial, double period) {
   const double first = trial.times[0], duration = trial.times[trial.times.size() - 1] - first;
-  require(period > 0 && period <= duration,
-          fmt::format("period of the measurements = {} s, must be > 0 and at most the duration",
-                      period));
+  require(period >= 1e-6 * duration && period <= duration,
+          fmt::format(
+              "period of the measurements = {} s, must be a millionth of the duration to all of it",
+              period));
   std::vector<double> times;
   for (int k = 0; k <= static_cast<int>(std::floor(duration / period + 1e-6)); ++k) {
     times.push_back(first + k * period);
@@ -224,6 +225,48 @@ SeparatingResult SeparatingDesign::search(const DesignSearchSettings& settings) 
   }
   result.stopped = stop;
   return result;
+}
+
+SeparationQuestion withSizes(SeparationQuestion question,
+                             const std::map<std::string, double>& sizes) {
+  for (const auto& [name, size] : sizes) {
+    const bool isFirst = effectId(name) == effectId(question.first);
+    require(isFirst || effectId(name) == effectId(question.second),
+            fmt::format("size: '{}' is not one of the two effects", name));
+    require(size != 0, fmt::format("size: {} = 0, must not be 0", name));
+    (isFirst ? question.firstSize : question.secondSize) = size;
+  }
+  return question;
+}
+
+Table separatingTable(const SeparatingDesign& design, const SeparatingExperiment& experiment) {
+  const Trial& trial = experiment.trial;
+  const auto muscles = static_cast<Index>(trial.muscles.size());
+  const auto forces = static_cast<Index>(trial.applied.size());
+  Table table;
+  table.name = "designed experiment";
+  table.metadata["predicted"] = design.coordinate() + " is predicted, not measured";
+  table.metadata.merge(headerOf(trial.known));
+  table.columns = {"time"};
+  table.columns.insert(table.columns.end(), trial.muscles.begin(), trial.muscles.end());
+  for (const AppliedForce& force : trial.applied) {
+    table.columns.push_back(force.coordinate + ".torque");
+  }
+  table.columns.push_back(design.coordinate());
+  table.values = Eigen::MatrixXd::Constant(trial.times.size(), muscles + forces + 2,
+                                           std::numeric_limits<double>::quiet_NaN());
+  table.values.col(0) = trial.times;
+  table.values.middleCols(1, muscles) = trial.excitations;
+  for (Index i = 0; i < forces; ++i) {
+    table.values.col(1 + muscles + i) = trial.applied[static_cast<std::size_t>(i)].values;
+  }
+  Index row = 0;
+  const MeasuredMotion& motion = trial.measured.front();
+  for (Index i = 0; i < motion.times.size(); ++i) {
+    while (row + 1 < trial.times.size() && trial.times[row] < motion.times[i] - 1e-9) ++row;
+    table.values(row, table.values.cols() - 1) = motion.values[i];
+  }
+  return table;
 }
 
 }  // namespace bio::discover

@@ -4,8 +4,8 @@ Everything is in SI units and radians; arrays have one row per time.
 
 Errors: values and files that break a rule raise ValueError, and a computation that cannot be
 carried out raises RuntimeError, each with one line that says which quantity and which rule. An
-argument of a wrong type or name raises TypeError. Long computations can be
-interrupted by Ctrl-C (KeyboardInterrupt), and other threads run meanwhile.
+argument of a wrong type or name raises TypeError. Long computations can be interrupted by Ctrl-C
+(KeyboardInterrupt), and other threads run meanwhile.
 
 What functions return is a types.SimpleNamespace; its members are those of the classes below that
 are marked `type_check_only`, which exist for type checkers alone.
@@ -28,12 +28,15 @@ __all__ = [
     "compare_muscles",
     "cost_gradient",
     "cramer_rao_bound",
+    "design",
+    "design_on_dynamometer",
     "discover",
     "emg",
     "ensemble",
     "estimate",
     "fisher_information",
     "fit_paths",
+    "global_sensitivity",
     "identifiability",
     "length_jumps",
     "list_parameters",
@@ -43,9 +46,12 @@ __all__ = [
     "moment_arms",
     "muscle_states",
     "opensim_differences",
+    "parameter_sweep",
+    "profile_likelihood",
     "read_study",
     "replay",
     "sensitivity",
+    "separate",
     "study",
 ]
 
@@ -778,10 +784,22 @@ def list_parameters(
     """
 
 @type_check_only
+class FurtherChannel:
+    channel: str
+    noise: float
+    unit: str
+    information: float
+    parameter: str
+    bound_before: float
+    bound_after: float
+
+@type_check_only
 class SensitivityResult:
     names: list[str]
     units: list[str]
     values: _Array
+    prior_sd: _Array
+    observed: list[str]
     times: list[_Array]
     outputs: list[_Array]
     gamma: list[_Array]
@@ -791,7 +809,9 @@ class SensitivityResult:
     bound_joint: _Array
     identifiable: list[bool]
     correlation: _Array
+    determined_combinations: int
     sentences: list[str]
+    further_channels: list[FurtherChannel]
 
 def sensitivity(
     model: Model,
@@ -799,12 +819,15 @@ def sensitivity(
     parameters: Sequence[str],
     *,
     noise: float = 0.017453292519943295,
+    observe: dict[str, float] = {},
+    further_channels: bool = False,
+    initial: dict[str, float] = {},
     coordinate: str | Sequence[str] = [],
     lock: dict[str, float] = {},
     integrator: _Integrator = "vi",
     step: float | None = None,
 ) -> SensitivityResult:
-    """Exact sensitivities of the coordinate to parameters, and the information of a measurement.
+    """Exact sensitivities of what is measured to parameters, and the information of a measurement.
 
     Parameters
     ----------
@@ -816,6 +839,17 @@ def sensitivity(
         Names, which may contain *, or ['all']; list_parameters lists them.
     noise : float
         Standard deviation of the measured coordinate [rad] or [m] > 0; default: 1 degree.
+    observe : dict
+        {channel: standard deviation of its noise > 0} of what is measured instead of the coordinate, at
+        the same times; channels are named as columns of a trial: 'elbow_flexion' [rad],
+        'elbow_flexion.speed' [rad/s], 'elbow_flexion.moment' [N m] of a prescribed coordinate,
+        'BRA.fiber_length' [m], 'BRA.tendon_force' [N], 'BRA.activation' (0 to 1),
+        'BODY.MARKER.x' [m].
+    further_channels : bool
+        True: also tells what each further channel would add.
+    initial : dict
+        {coordinate: initial value [rad] or [m]}, at rest. Default: the fitted or first measured value,
+        else the model's default value.
     coordinate : str or list of str
         The free coordinate, or several, of which the first is the measured one.
     lock, integrator, step
@@ -825,18 +859,21 @@ def sensitivity(
     -------
     names, units : list of str
         Of the parameters.
-    values : array, parameters
-        In the model.
+    values, prior_sd : array, parameters
+        In the model, and default prior standard deviations [unit of the parameter].
+    observed : list of str
+        The channels in the order of the rows: those of observe by name, else the coordinate.
     times : list of arrays
         Sample times of each trial [s].
     outputs : list of arrays
-        Simulated coordinate of each trial [rad] or [m].
+        What would be measured of each trial in its unit, channel after channel.
     gamma : list of arrays, samples x parameters
-        Sensitivities of each trial [unit of the coordinate / unit of the parameter].
+        Sensitivities of each trial [unit of the channel / unit of the parameter], channel after channel.
     fisher : array, parameters x parameters
         Fisher information of all trials together, without priors.
     normalised_sensitivity : array, parameters
-        RMS change of the coordinate per prior standard deviation [rad] or [m].
+        RMS change of the coordinate per prior standard deviation [rad] or [m]; with observe, in
+        standard deviations of the noise.
     bound_alone, bound_joint : array, parameters
         Cramér–Rao standard deviations with the other parameters known (inf without information), and
         with all estimated together with their priors.
@@ -844,14 +881,251 @@ def sensitivity(
         True: the data at least halve the prior standard deviation.
     correlation : array, parameters x parameters
         Of estimates with the joint bound.
+    determined_combinations : int
+        Independent combinations whose uncertainty the data at least halve.
     sentences : list of str
         Which parameters are not separately identifiable.
+    further_channels : list
+        Empty unless asked for; else for each channel that is not observed, the most informative first,
+
+        channel : str
+        noise : float
+            That is usual in a laboratory [unit].
+        unit : str
+        information : float
+            Half the logarithm of det(I + priors) with the channel over that without it [nats].
+        parameter : str
+            The one whose joint bound falls most.
+        bound_before, bound_after : float
+            Its joint bound without and with the channel.
 
     Raises
     ------
     ValueError
-        For no trial, an unknown parameter (with the nearest names), a trial with known_mass_in_hand or
-        known_arm_turn, or a simulation that does not reach the end of a trial.
+        For no trial, an unknown parameter (with the nearest names), a channel that cannot be measured of
+        the model, a noise that is not > 0, a trial with known_mass_in_hand or known_arm_turn, or a
+        simulation that does not reach the end of a trial.
+    """
+
+@type_check_only
+class ParameterSweepResult:
+    parameter: str
+    unit: str
+    model_value: float
+    time: _Array
+    nominal: _Array
+    values: _Array
+    motions: list[_Array]
+    outcome: list[Literal["ok", "unstable", "no solution"]]
+    rms_change: _Array
+    max_change: _Array
+
+def parameter_sweep(
+    model: Model,
+    trial: Trial,
+    parameter: str,
+    values: Sequence[float],
+    *,
+    initial: dict[str, float] = {},
+    coordinate: str | Sequence[str] = [],
+    lock: dict[str, float] = {},
+    integrator: _Integrator = "vi",
+    step: float | None = None,
+) -> ParameterSweepResult:
+    """The motion of a trial for several values of a parameter, all others as in the model.
+
+    Parameters
+    ----------
+    model : Model
+    trial : Trial
+    parameter : str
+        A name of list_parameters.
+    values : list of float
+        Within the bounds of the parameter [its unit].
+    initial, coordinate, lock, integrator, step
+        As in sensitivity, with every integrator of replay.
+
+    Returns
+    -------
+    parameter, unit : str
+    model_value : float
+        [unit]
+    time : array, times
+        [s]
+    nominal : array, times
+        The first coordinate with the model's own value [rad] or [m].
+    values : array, values
+    motions : list of arrays
+        The first coordinate for each value [rad] or [m]; shorter than time if the motion ended early.
+    outcome : list of str
+        As in replay.
+    rms_change, max_change : array, values
+        RMS and largest difference from nominal [rad] or [m].
+
+    Raises
+    ------
+    ValueError
+        For an unknown parameter, a value outside its bounds, or what sensitivity raises.
+    """
+
+@type_check_only
+class ProfileLikelihoodResult:
+    parameter: str
+    unit: str
+    values: _Array
+    costs: _Array
+    threshold: float
+    bounded_below: bool
+    bounded_above: bool
+    names: list[str]
+    parameters: _Array
+    converged: list[bool]
+
+def profile_likelihood(
+    model: Model,
+    trials: Sequence[Trial],
+    parameters: Sequence[str],
+    profile: str,
+    *,
+    noise: float = 0.017453292519943295,
+    initial: dict[str, float] = {},
+    coordinate: str | Sequence[str] = [],
+    lock: dict[str, float] = {},
+    integrator: _Integrator = "vi",
+    step: float | None = None,
+) -> ProfileLikelihoodResult:
+    """How much worse the best fit to the model's own motion becomes as a parameter is held elsewhere.
+
+    The parameter is held at up to thirteen values within three joint Cramér–Rao bounds of the model's
+    and within its own bounds; the others are estimated, each with its default prior.
+
+    Parameters
+    ----------
+    model : Model
+    trials : list of Trial
+        At least one.
+    parameters : list of str
+        Names, which may contain *.
+    profile : str
+        The one that is held.
+    noise : float
+        Standard deviation of the measured coordinate [rad] or [m] > 0; default: 1 degree.
+    initial, coordinate, lock, integrator, step
+        As in sensitivity.
+
+    Returns
+    -------
+    parameter, unit : str
+        Of the one that is held.
+    values : array, points
+        At which it is held [unit].
+    costs : array, points
+        Least cost, half the sum of the squared residuals and of the squared deviations from the priors,
+        each over its standard deviation.
+    threshold : float
+        Cost below which a value is in the confidence region of 95 %.
+    bounded_below, bounded_above : bool
+        Whether the cost is above the threshold at the first and at the last of the values.
+    names : list of str
+        Of all parameters.
+    parameters : array, points x parameters
+        Where the least cost is attained.
+    converged : list of bool
+
+    Raises
+    ------
+    ValueError
+        If profile is not one of the parameters, and what sensitivity raises.
+    """
+
+@type_check_only
+class MorrisResult:
+    mean_absolute: _Array
+    sd: _Array
+    runs: int
+    undefined: int
+
+@type_check_only
+class SobolResult:
+    first: _Array
+    first_sd: _Array
+    total: _Array
+    total_sd: _Array
+    variance: float
+    runs: int
+    undefined: int
+
+@type_check_only
+class GlobalSensitivityResult:
+    names: list[str]
+    morris: MorrisResult | None
+    sobol: SobolResult | None
+
+def global_sensitivity(
+    model: Model,
+    trials: Sequence[Trial],
+    parameters: Sequence[str],
+    *,
+    method: Literal["morris", "sobol", "both"] = "both",
+    samples: int = 64,
+    seed: int = 1,
+    threads: int = 1,
+    initial: dict[str, float] = {},
+    coordinate: str | Sequence[str] = [],
+    lock: dict[str, float] = {},
+    integrator: _Integrator = "vi",
+    step: float | None = None,
+) -> GlobalSensitivityResult:
+    """Sensitivity of the motion over the whole prior range of the parameters.
+
+    Each parameter is even over its value ± sqrt(3) default prior standard deviations, within its
+    bounds; the outputs are the coordinate at the times at which it was measured.
+
+    Parameters
+    ----------
+    model : Model
+    trials : list of Trial
+        At least one.
+    parameters : list of str
+        1 to 32 names, which may contain *.
+    method : {'morris', 'sobol', 'both'}
+        Morris's screening (1991, with the mean absolute effect of Campolongo et al. 2007), Sobol's
+        indices (Saltelli et al. 2010, total: Jansen), or both.
+    samples : int
+        Trajectories of Morris's method, or base points of Sobol's >= 2; samples (parameters + 1) or
+        samples (parameters + 2) simulations.
+    seed : int
+        The same seed gives the same numbers with any number of threads.
+    threads : int
+        0: all cores.
+    initial, coordinate, lock, integrator, step
+        As in sensitivity.
+
+    Returns
+    -------
+    names : list of str
+        Of the parameters.
+    morris : None or, if it was asked for,
+
+        mean_absolute, sd : array, parameters
+            Mean absolute elementary effect, and standard deviation of the signed ones, over the whole
+            range of a parameter [rad] or [m]; a large sd means nonlinear or interacting effects.
+        runs, undefined : int
+            Simulations, and those that did not reach the end and were left out.
+    sobol : None or, if it was asked for,
+
+        first, total : array, parameters
+            Fractions of the variance that a parameter explains alone, and takes part in.
+        first_sd, total_sd : array, parameters
+            Standard errors over the base points.
+        variance : float
+            Summed over the outputs [rad2] or [m2].
+        runs, undefined : int
+
+    Raises
+    ------
+    ValueError
+        For more than 32 parameters, fewer than two samples, and what sensitivity raises.
     """
 
 @type_check_only
@@ -1512,6 +1786,429 @@ def calibrate(
         known_mass_in_hand or known_arm_turn, or an option out of range.
     RuntimeError
         If no estimate is possible, with the reason.
+    """
+
+# Design of experiments ----------------------------------------------------------------------------
+
+@type_check_only
+class DesignMonteCarlo:
+    mean: _Array
+    sd: _Array
+    bound: _Array
+    converged: int
+    trials: int
+
+@type_check_only
+class DesignResult:
+    improved: bool
+    names: list[str]
+    units: list[str]
+    values: _Array
+    of_interest: list[bool]
+    prior_sd: _Array
+    bound_before: _Array
+    bound_after: _Array
+    columns: dict[str, _Array]
+    trial: Trial
+    times: _Array
+    predicted: _Array
+    predicted_before: _Array
+    surprise: _Array
+    bound_over_time: _Array
+    bound_over_time_before: _Array
+    lowest: float
+    highest: float
+    surprised_lowest: float
+    surprised_highest: float
+    largest_speed: float
+    largest_torque: float
+    largest_torque_rate: float
+    largest_excitation_rate: float
+    costs: _Array
+    found_at: list[int]
+    simulations: int
+    impossible_simulations: int
+    monte_carlo: DesignMonteCarlo | None
+
+def design(
+    model: Model,
+    trial: Trial,
+    parameters: Sequence[str],
+    *,
+    nuisance: Sequence[str] = [],
+    priors: bool = False,
+    prior: dict[str, float] = {},
+    criterion: Literal["E", "A", "D"] = "E",
+    noise: float = 0.008726646259971648,
+    rate: float = 100.0,
+    torque: float = 10.0,
+    torque_rate: float = 50.0,
+    excite: Sequence[str] = [],
+    excitation_max: float = 0.5,
+    excitation_rate: float = 2.0,
+    range: tuple[float, float] | None = None,
+    speed: float = 8.726646259971648,
+    surprise: float = 0.5,
+    knots: float = 0.3,
+    candidates: int = 100,
+    generations: int = 100,
+    iterations: int = 10,
+    monte_carlo: int = 0,
+    seed: int = 1,
+    threads: int = 1,
+    initial: dict[str, float] = {},
+    coordinate: str | Sequence[str] = [],
+    lock: dict[str, float] = {},
+    integrator: _Integrator = "vi",
+    step: float | None = None,
+) -> DesignResult:
+    """Finds the excitations and the external torque that are most informative about parameters.
+
+    Inputs are piecewise linear between knots, within limits of size and rate. With I the information
+    about the parameters of interest, the nuisance parameters unknown, in units of the default prior
+    standard deviations, the search makes least
+
+        E: -ln(least eigenvalue of I)    A: ln(trace of the inverse of I)    D: -ln det I
+
+    and keeps to the range and the speed of the coordinate.
+
+    Parameters
+    ----------
+    model : Model
+    trial : Trial
+        The baseline to improve on: excitations, duration, initial state.
+    parameters, nuisance : list of str
+        Parameters of interest, and further unknown ones, with their default priors; names may contain *.
+    priors : bool
+        True: default priors for the parameters of interest as well.
+    prior : dict
+        {parameter: prior standard deviation [its unit] > 0} instead of the default.
+    criterion : {'E', 'A', 'D'}
+    noise : float
+        Standard deviation of the measured coordinate [rad] or [m] > 0; default: 0.5 degrees.
+    rate : float
+        Measurements per second [Hz] > 0.
+    torque, torque_rate : float
+        Largest external torque on the coordinate [N m] >= 0 (0: none), and its rate [N m/s] > 0.
+    excite : list of str
+        Muscles whose excitations are designed: 'flexors', 'extensors', or names; 'BRA+BRD' share one.
+    excitation_max, excitation_rate : float
+        Largest excitation of them (0.01 to 1), and its rate [1/s] > 0.
+    range : (float, float), optional
+        To which the coordinate is limited [rad] or [m]; default: its range in the model.
+    speed : float
+        Largest speed of the coordinate [rad/s] or [m/s] > 0; default: 500 degrees per second.
+    surprise : float
+        The range is respected even if the parameters are so many prior standard deviations off.
+    knots : float
+        Interval between the knots [s] > 0.
+    candidates, generations, iterations : int
+        Random initial designs, generations of the evolution strategy from the best of them, iterations
+        of the final gradient search.
+    monte_carlo : int
+        Simulated and estimated repetitions of the designed experiment, to confirm the bounds; needs no
+        nuisance parameters.
+    seed, threads : int
+        The same seed gives the same numbers with any number of threads; 0 threads: all cores.
+    initial, coordinate, lock, integrator, step
+        As in sensitivity. The first free coordinate is measured and driven.
+
+    Returns
+    -------
+    improved : bool
+        False: no experiment within the limits is better than trial, which is then what is returned.
+    names, units : list of str
+        Of the parameters of interest, then of the nuisance parameters.
+    values, prior_sd : array, parameters
+        In the model, and prior standard deviations [unit], inf without a prior.
+    of_interest : list of bool
+    bound_before, bound_after : array, parameters
+        Cramér-Rao standard deviations in the baseline and in the designed experiment [unit].
+    columns : dict
+        {name: array, times} of the designed experiment, as make_trial takes them: time, excitations,
+        the torque, and the predicted coordinate where it is measured, else nan.
+    trial : Trial
+        The same.
+    times, predicted, predicted_before, surprise : array, measurements
+        Measured times [s]; the coordinate as predicted, in the baseline, and how far off it is with
+        parameters off by surprise [rad] or [m].
+    bound_over_time, bound_over_time_before : array, measurements
+        Bound on the first parameter from the measurements up to each time [unit]; nan: none.
+    lowest, highest, surprised_lowest, surprised_highest : float
+        Of the coordinate, and with parameters off [rad] or [m].
+    largest_speed : float
+        [rad/s] or [m/s]
+    largest_torque, largest_torque_rate, largest_excitation_rate : float
+        [N m], [N m/s], [1/s]
+    costs : array
+        The criterion of the baseline, then of each better experiment within the limits.
+    found_at : list of int
+        Simulations until each of these was found.
+    simulations, impossible_simulations : int
+        Simulations with sensitivities, and those that did not reach the end.
+    monte_carlo : None or, if it was asked for,
+
+        mean, sd, bound : array, parameters of interest
+            Of the estimates, and the Cramér-Rao bound [unit].
+        converged, trials : int
+
+    Raises
+    ------
+    ValueError
+        For an unknown parameter or muscle, a limit out of its range, nothing to change, an integrator
+        without sensitivities, a trial with prescribed coordinates, known_mass_in_hand or known_arm_turn.
+    RuntimeError
+        If the baseline does not reach its end.
+    """
+
+@type_check_only
+class SeparateResult:
+    improved: bool
+    effects: list[str]
+    size: dict[str, float]
+    unit: dict[str, str]
+    nats_before: dict[str, float]
+    nats_after: dict[str, float]
+    bound_before: dict[str, float]
+    bound_after: dict[str, float]
+    columns: dict[str, _Array]
+    trial: Trial
+    times: _Array
+    predicted: _Array
+    predicted_with: dict[str, _Array]
+    lowest: float
+    highest: float
+    largest_speed: float
+    largest_torque: float
+    largest_torque_rate: float
+    largest_excitation_rate: float
+    nats: _Array
+    found_at: list[int]
+    simulations: int
+    impossible_simulations: int
+
+def separate(
+    model: Model,
+    trial: Trial,
+    first: str,
+    second: str,
+    *,
+    size: dict[str, float] = {},
+    noise: float = 0.008726646259971648,
+    rate: float = 100.0,
+    torque: float = 10.0,
+    torque_rate: float = 50.0,
+    excite: Sequence[str] = [],
+    excitation_max: float = 0.5,
+    excitation_rate: float = 2.0,
+    range: tuple[float, float] | None = None,
+    speed: float = 8.726646259971648,
+    knots: float = 0.3,
+    candidates: int = 100,
+    generations: int = 100,
+    seed: int = 1,
+    threads: int = 1,
+    initial: dict[str, float] = {},
+    coordinate: str | Sequence[str] = [],
+    lock: dict[str, float] = {},
+    integrator: _Integrator = "vi",
+    step: float | None = None,
+) -> SeparateResult:
+    """Finds the experiment that best discriminates two effects of discover's catalogue.
+
+    It makes the smaller of both expected log Bayes factors largest, with every parameter of the model
+    uncertain by its default prior. The motions without an effect and with either keep to the range and
+    the speed of the coordinate.
+
+    Parameters
+    ----------
+    model : Model
+    trial : Trial
+        The baseline to improve on.
+    first, second : str
+        Effects, by id or long name.
+    size : dict
+        {effect: assumed size in its unit}; default: its prior standard deviation.
+    noise, rate, torque, torque_rate, excite, excitation_max, excitation_rate, range, speed, knots
+        As in design.
+    candidates, generations, seed, threads
+        As in design; there is no gradient search.
+    initial, coordinate, lock, integrator, step
+        As in design.
+
+    Returns
+    -------
+    improved : bool
+        False: no experiment within the limits is better than trial, which is then what is returned.
+    effects : list of str
+        Both ids.
+    size, unit : dict
+        Assumed size of each, and its unit.
+    nats_before, nats_after : dict
+        Expected log Bayes factor over the other effect if it is the one that is present, in the baseline
+        and in the designed experiment.
+    bound_before, bound_after : dict
+        Expected standard deviation of its size [unit].
+    columns, trial
+        The designed experiment, as of design; the coordinate is that of the model without an effect.
+    times, predicted : array, measurements
+        Measured times [s], and the coordinate without an effect [rad] or [m].
+    predicted_with : dict
+        {effect: array, measurements} with each effect [rad] or [m].
+    lowest, highest, largest_speed : float
+        Of all three motions [rad], [rad/s], or [m], [m/s].
+    largest_torque, largest_torque_rate, largest_excitation_rate : float
+        [N m], [N m/s], [1/s]
+    nats : array
+        Smaller log Bayes factor in the baseline, then in each better experiment within the limits.
+    found_at : list of int
+        Experiments simulated until each of these was found.
+    simulations, impossible_simulations : int
+        Experiments that were simulated, and those that did not reach the end.
+
+    Raises
+    ------
+    ValueError
+        For an unknown effect, one that the model has, a size out of its bounds, and what design raises.
+    """
+
+@type_check_only
+class DynamometerExperiment:
+    kind: Literal["isometric", "isokinetic", "passive", "release", "isotonic"]
+    start: float
+    end: float
+    speed: float
+    muscles: str
+    effort: float
+    load: float
+    torque: float
+    instruction: str
+    information: float
+    bounds: _Array
+    columns: dict[str, _Array]
+    trial: Trial
+
+@type_check_only
+class DynamometerDesignResult:
+    names: list[str]
+    units: list[str]
+    bound_before: _Array
+    bound_after: _Array
+    experiments: list[DynamometerExperiment]
+    candidates: int
+    candidates_not_simulated: int
+    candidates_unsuitable: int
+
+def design_on_dynamometer(
+    model: Model,
+    coordinate: str,
+    parameters: Sequence[str],
+    *,
+    nuisance: Sequence[str] = [],
+    kinds: Sequence[Literal["isometric", "isokinetic", "passive", "release", "isotonic"]] = [],
+    angles: Sequence[float] = [],
+    speeds: Sequence[float] = [],
+    efforts: Sequence[float] = [],
+    releases: Sequence[float] = [],
+    release_speed: float | None = None,
+    loads: Sequence[float] = [],
+    experiments: int = 4,
+    moment_noise: float = 0.5,
+    noise: float = 0.008726646259971648,
+    rate: float = 100.0,
+    speed: float = 8.726646259971648,
+    surprise: float = 0.5,
+    threads: int = 1,
+    lock: dict[str, float] = {},
+    integrator: _Integrator = "vi",
+    step: float | None = None,
+) -> DynamometerDesignResult:
+    """Ranks what a dynamometer can do by what it tells of parameters.
+
+    A dynamometer holds or turns the coordinate and measures its moment, or lets it go against a torque
+    and measures its angle; flexors and extensors contract in turn. One experiment after the other is
+    chosen, each the one that adds most to what those before tell, none twice.
+
+    Parameters
+    ----------
+    model : Model
+    coordinate : str
+        Held and turned; all others are locked.
+    parameters, nuisance : list of str
+        Parameters of interest, and further unknown ones; names may contain *. All have their default
+        priors.
+    kinds : list of {'isometric', 'isokinetic', 'passive', 'release', 'isotonic'}
+        Experiments that it can do; default: all.
+    angles : list of float
+        To hold [rad] or [m]; turns go between the first and the last. Default: four in the range.
+    speeds : list of float
+        Of turns [rad/s] or [m/s]; default: 30 and 120 degrees (or mm) per second, as far as they fit.
+    efforts : list of float
+        Contractions as shares of the maximum voluntary one (0.01 to 1); default: 0.3, 0.6, 1.
+    releases : list of float
+        How far muscles shorten in a quick release [rad] or [m]; default: 10 degrees (or mm).
+    release_speed : float, optional
+        Largest speed of a release [rad/s] or [m/s]; default: 200 degrees (or mm) per second, less where
+        rate (eight samples in a release) or speed require it.
+    loads : list of float
+        Torque of isotonic contractions over what holds the contracted limb (0 to 1); default: 0.5, 0.8.
+    experiments : int
+        How many are wanted.
+    moment_noise : float
+        Standard deviation of a sample of the moment [N m] or [N] > 0.
+    noise : float
+        Of a sample of the angle, in isotonic contractions [rad] or [m] > 0; default: 0.5 degrees.
+    rate : float
+        Samples per second [Hz] > 0.
+    speed, surprise : float
+        As in design, of isotonic contractions; speed limits turns and releases as well.
+    threads : int
+        0: all cores.
+    lock, integrator, step
+        As in sensitivity.
+
+    Returns
+    -------
+    names, units : list of str
+        Of the parameters of interest.
+    bound_before, bound_after : array, parameters
+        Default prior standard deviations, and Cramér-Rao bounds after all experiments [unit].
+    experiments : list
+        In the order in which they are chosen:
+
+        kind : str
+        start, end : float
+            Coordinate at begin and end; of an isotonic contraction the end as predicted [rad] or [m].
+        speed : float
+            Of the turn, of a release the largest [rad/s] or [m/s]; 0: held, or free.
+        muscles : str
+            'flexors', 'extensors', or empty: all relaxed.
+        effort, load : float
+            Their excitation, and the share of the holding torque (isotonic), 0 to 1.
+        torque : float
+            On the coordinate, in its direction (isotonic) [N m] or [N].
+        instruction : str
+            To the person on the dynamometer.
+        information : float
+            That it adds [nats].
+        bounds : array, parameters
+            After it and those before it [unit].
+        columns : dict
+            {name: array, times} as make_trial takes them, with prescribe=[coordinate] unless isotonic;
+            what is measured is to be filled in (isotonic: replaces the predicted coordinate).
+        trial : Trial
+            The same.
+    candidates, candidates_not_simulated, candidates_unsuitable : int
+        Experiments considered; those that cannot be simulated; those that would leave the range, are too
+        fast, or do not carry the limb.
+
+    Raises
+    ------
+    ValueError
+        For an unknown coordinate, parameter or kind, a value out of its range, or a list for kinds that
+        are left out.
+    RuntimeError
+        If none of the experiments can be simulated.
     """
 
 # Discovery ----------------------------------------------------------------------------------------

@@ -213,7 +213,8 @@ TEST(DesignCommand, RefusesExperimentsThatADynamometerCannotDo) {
   refused({"--dynamometer", "knee"}, "knee");
   refused({"--dynamometer", "elbow_flexion", "--angles", "400deg"}, "is outside the range");
   refused({"--dynamometer", "elbow_flexion", "--angles", "x"}, "--angles: ");
-  refused({"--dynamometer", "elbow_flexion", "--speeds", "-1deg"}, "--speeds: -1deg, must be > 0");
+  refused({"--dynamometer", "elbow_flexion", "--speeds", "-1deg"},
+          "speeds: -0.01745 rad/s (-1 deg/s), must be > 0");
   refused({"--dynamometer", "elbow_flexion", "--efforts", "120"}, "at most 100");
   refused({"--dynamometer", "elbow_flexion", "--efforts", "0.5"}, "must be > 1");
   refused({"--dynamometer", "elbow_flexion", "--speeds", "1deg"}, "these would take");
@@ -226,11 +227,12 @@ TEST(DesignCommand, RefusesExperimentsThatADynamometerCannotDo) {
   refused({"--dynamometer", "elbow_flexion", "--kinds", "isotnic"}, "isotnic");
   refused({"--dynamometer", "elbow_flexion", "--loads", "100"}, "below 100");
   refused({"--dynamometer", "elbow_flexion", "--releases", "0deg"},
-          "--releases: 0deg, must be > 0");
+          "releases: 0 rad (0 deg), must be > 0");
   refused({"--dynamometer", "elbow_flexion", "--release-speed", "300deg"}, "at least 8 samples");
-  refused({"--dynamometer", "elbow_flexion", "--speeds", "501deg"}, "at most --speed 500 deg/s");
+  refused({"--dynamometer", "elbow_flexion", "--speeds", "501deg"},
+          "at most the largest speed, 8.727 rad/s (500 deg/s)");
   refused({"--dynamometer", "elbow_flexion", "--kinds", "isometric", "--loads", "50"},
-          "--loads requires isotonic among --kinds");
+          "loads: must have isotonic among the kinds of experiments");
   // what only a search uses, or a measured angle
   for (const char* option : {"--iterations", "--generations", "--candidates", "--torque",
                              "--torque-rate", "--excitation-max", "--excitation-rate", "--knots"}) {

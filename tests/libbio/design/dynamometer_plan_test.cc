@@ -188,6 +188,8 @@ TEST(DynamometerPlan, RefusesListsThatMakeNoSense) {
   refused([](auto& q) { q.noise = 0; }, "must be > 0");
   refused([](auto& q) { q.angleNoise = 0; }, "must be > 0");
   refused([](auto& q) { q.loads = {1}; }, "below 1");
+  refused([](auto& q) { q.rate = 1e9; }, "at most 1e5");
+  refused([](auto& q) { q.parameters = {}; }, "no parameter");
   refused([](auto& q) { q.surprise = -1; }, "surprise");
   refused(
       [](auto& q) {

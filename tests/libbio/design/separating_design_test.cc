@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "bio/tables/trial_table.h"
 #include "info/discovery/likelihood/joint_fit.h"
 #include "support/cut_trial.h"
 #include "support/numbers.h"
@@ -94,6 +95,38 @@ TEST(SeparatingDesign, FindsABetterExperimentWithinTheLimits) {
   const SeparatingResult again = design.search(settings);
   EXPECT_EQ(result.after.inputs, again.after.inputs);
   EXPECT_EQ(result.after.tells.least(), again.after.tells.least());
+}
+
+TEST(SeparatingDesign, SizesAreOfEitherEffectByAnyOfItsNames) {
+  const SeparationQuestion q =
+      withSizes({.first = "visc", .second = "coulomb"}, {{"viscous_damping", 0.2}});
+  EXPECT_EQ(q.firstSize, 0.2);
+  EXPECT_EQ(q.secondSize, 0);
+  EXPECT_EQ(withSizes(q, {{"coulomb", -1}}).secondSize, -1);
+  support::throwsSaying(
+      [&] {
+        (void)withSizes(q, {{"drag", 1}});
+      },
+      "size: 'drag' is not one of the two effects");
+  support::throwsSaying(
+      [&] {
+        (void)withSizes(q, {{"visc", 0}});
+      },
+      "size: visc = 0, must not be 0");
+}
+
+// The trial of the table plays the predicted motion.
+TEST(SeparatingDesign, ItsTableIsTheTrial) {
+  const Asked asked;
+  const SeparatingDesign design = asked.design();
+  const SeparatingExperiment e = design.before();
+  const Table table = separatingTable(design, e);
+  const Trial trial = trialFrom(table, "table", asked.elbow.model);
+  EXPECT_EQ(trial.muscles, e.trial.muscles);
+  EXPECT_TRUE(trial.excitations == e.trial.excitations);
+  ASSERT_EQ(trial.measured.size(), 1u);
+  EXPECT_EQ(trial.measured[0].coordinate, "elbow_flexion");
+  EXPECT_TRUE(trial.measured[0].values == e.base);
 }
 
 TEST(SeparatingDesign, SaysWhatIsWrongWithAQuestion) {

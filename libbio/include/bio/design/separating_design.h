@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,11 @@ struct SeparationQuestion {
   double noise = 0.009;  ///< standard deviation of a measurement [rad] or [m] > 0
   double period = 0.01;  ///< between measurements [s] > 0
 };
+
+/// Sets the assumed amplitudes of effects by id or long name, in their units.
+/// @throws std::invalid_argument for the name of another effect, or a size of 0
+SeparationQuestion withSizes(SeparationQuestion question,
+                             const std::map<std::string, double>& sizes);
 
 /// One experiment and its expected log Bayes factors.
 struct SeparatingExperiment {
@@ -59,6 +65,7 @@ class SeparatingDesign {
                    std::vector<bio::MuscleGroup> groups, double knotInterval = 0.3);
 
   const DesignInputs& inputs() const { return inputs_; }
+  const std::string& coordinate() const { return coordinate_; }
   const SeparationQuestion& question() const { return question_; }
   /// The catalogue entries.
   const info::discover::Candidate& first() const { return candidates_[0]; }
@@ -88,5 +95,9 @@ class SeparatingDesign {
   info::discover::Candidate candidates_[2];
   std::string units_[2];
 };
+
+/// The experiment as a trial for replay and discover: excitations of every muscle, the torque, the
+/// experimental conditions, and the base model's motion at the measured times.
+Table separatingTable(const SeparatingDesign& design, const SeparatingExperiment& experiment);
 
 }  // namespace bio::discover
