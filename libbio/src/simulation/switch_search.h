@@ -8,6 +8,15 @@
 
 namespace bio::stepping {
 
+/// The longest step [s] at some time after the length of a path has jumped. The jump strains the
+/// tendon at once, and the force that follows decays within tenths of a millisecond at first: a
+/// longer step across that would be stable, but give the limb a wrong impulse (decision 071).
+/// @param time  since the jump [s]; infinite if there was none
+inline double longestStepAfterJump(double time) {
+  constexpr double first = 2e-5, share = 0.5;
+  return std::max(first, share * time);
+}
+
 /// Where within a step a path gains or loses points. The length jumps there, so a step across it
 /// would be of first order only; one that ends there is not. The secant through the last two ends,
 /// at first through the start, in fractions of the step.

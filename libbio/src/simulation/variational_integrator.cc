@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "sensitivity/step_tape.h"
 #include "simulation/activation_player.h"
+#include "simulation/switch_jump.h"
 #include "simulation/switch_search.h"
 #include "simulation/variational_step.h"
 
@@ -77,11 +80,15 @@ class VariationalRun {
   }
 
  private:
-  /// Moves now_ and activation_ from t0 to t1; in halves, and halves of them, where Newton fails,
-  /// and in two parts where a conditional path point comes or goes.
+  /// Moves now_ and activation_ from t0 to t1; in halves, and halves of them, where Newton fails or
+  /// a length has just jumped, and in two parts where a conditional path point comes or goes.
   bool advance(const TimeMark& begin, const TimeMark& end, int depth) {
     const double t0 = begin.value;
     const double t1 = end.value;
+    if (t1 - t0 > longestStepAfterJump(t0 - lastJump_)) {
+      const TimeMark middle = markMiddle(begin, end);
+      return advance(begin, middle, depth) && advance(middle, end, depth);
+    }
     Eigen::VectorXd& kept = keptActivation_[static_cast<std::size_t>(depth)];
     kept = activation_;
     if (solve(t0, t1)) {
@@ -93,6 +100,7 @@ class VariationalRun {
       }
       const TimeMark middle = markSwitch(split, *met);
       accept(begin, middle);
+      if (lengthJumps(configuration_, arm_, *met, now_.q)) lastJump_ = split;
       return advance(middle, end, depth);
     }
     if (depth >= options_.maxHalvings) return false;
@@ -216,6 +224,7 @@ class VariationalRun {
   Eigen::LDLT<Eigen::Matrix<double, N, N>> factor_;
   Eigen::VectorXd fibreVelocity_, fibreVelocityBefore_;
   double length_, lengthBefore_;
+  double lastJump_ = -std::numeric_limits<double>::infinity();  ///< [s]
   double muscleWork_ = 0;
   double passiveWork_ = 0;
   double externalWork_ = 0;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "simulation/switch_jump.h"
+
 namespace bio::lanes {
 
 using Eigen::Index;
@@ -61,6 +63,7 @@ LaneDriver::LaneDriver(const MusculoskeletalSystem& arm, const ExcitationSignal&
 
 bool LaneDriver::ask(int lane, LaneStep& step) {
   if (phase_ == Phase::finished || phase_ == Phase::failed) return false;
+  if (phase_ == Phase::wholeStep && !fromRest_) shortenAfterJump();
   if (phase_ != Phase::meetSwitch) t1_ = targets_.back().time;
   if (!fromRest_) {
     if (phase_ == Phase::wholeStep) kept_ = activation_;
@@ -133,6 +136,7 @@ void LaneDriver::take(int lane, const LaneStep& step) {
   switch (search_.take(qEnd_)) {
     case stepping::SwitchSearch::Found::met:
       accept(false);
+      noteJump();
       return;
     case stepping::SwitchSearch::Found::again:
       meetSwitch();
@@ -140,6 +144,25 @@ void LaneDriver::take(int lane, const LaneStep& step) {
     case stepping::SwitchSearch::Found::givenUp:
       jumpSwitch();
   }
+}
+
+void LaneDriver::noteJump() {
+  if (!sides_) sides_ = std::make_unique<SystemConfiguration<1>>(*arm_);
+  const Eigen::Matrix<double, 1, 1> q(q_);
+  if (stepping::lengthJumps(*sides_, *arm_, search_.which(), q)) lastJump_ = t0_;
+}
+
+/// Steps end in the middle of what is too long for them.
+void LaneDriver::shortenAfterJump() {
+  const double longest = stepping::longestStepAfterJump(t0_ - lastJump_);
+  if (!(targets_.back().time - t0_ > longest)) return;
+  while (targets_.back().time - t0_ > longest) {
+    const Target whole = targets_.back();
+    targets_.push_back({t0_ + (whole.time - t0_) / 2, whole.halvings});
+  }
+  if (within_) return;
+  kept_ = activation_;
+  returnToBegin();
 }
 
 /// Activations are played from the begin of the step.

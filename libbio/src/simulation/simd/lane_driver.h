@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 
 #include "simulation/activation_player.h"
@@ -71,6 +72,8 @@ class LaneDriver {
     int halvings;
   };
   void chooseActivation();
+  void shortenAfterJump();
+  void noteJump();
   void returnToBegin();
   void meetSwitch();
   void jumpSwitch();
@@ -91,6 +94,8 @@ class LaneDriver {
   bool fromRest_ = false;        ///< the first guess is the begin: the parabola's step has failed
   double q_, p_;
   double velocity_, velocityBefore_, length_, lengthBefore_;
+  double lastJump_ = -std::numeric_limits<double>::infinity();  ///< of a length [s]
+  std::unique_ptr<SystemConfiguration<1>> sides_;  ///< of a switch; none before the first
   Eigen::VectorXd fibre_, fibreVelocity_, fibreVelocityBefore_;
   Eigen::VectorXd activation_, middle_, kept_;  ///< at the end, the middle, the begin of the step
   // the end that was last taken
