@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "discovery/search/effect_sets.h"
@@ -184,6 +185,12 @@ class Search {
   std::map<std::size_t, GridStart> gridStarts_;  ///< best start of each candidate with a grid
   Eigen::VectorXd scaleValues_;
   std::map<Effects, Entry> entries_;
+  struct ScreenedFit {
+    Fit fit;
+    std::vector<Screened> result;
+  };
+  /// The last results of screen(), of which several decisions ask for the same.
+  mutable std::map<std::pair<Effects, bool>, ScreenedFit> screened_;
   int fits_ = 0;
   bool racedFromNominal_ = false;
 };
