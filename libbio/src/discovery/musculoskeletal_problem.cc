@@ -328,6 +328,12 @@ MusculoskeletalProblem::Prediction MusculoskeletalProblem::predict(
   return predictWith(nullptr, trial, values, latent, wanted, latentToo);
 }
 
+std::unique_ptr<MusculoskeletalProblem::Simulation> MusculoskeletalProblem::simulated(
+    int trial, const VectorXd& values, const VectorXd& latent,
+    const std::vector<std::size_t>& wanted, bool latentToo) const {
+  return simulatedWith(nullptr, trial, values, latent, wanted, latentToo);
+}
+
 MatrixXd MusculoskeletalProblem::inputs(int trial) const {
   const OfTrial& one = of(trial);
   MatrixXd values(static_cast<Index>(one.times.size()), one.excitation.numMuscles());

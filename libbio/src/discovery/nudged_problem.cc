@@ -33,6 +33,11 @@ class MusculoskeletalProblem::Nudged final : public info::discover::DiscoveryPro
                      const std::vector<std::size_t>& wanted, bool latentToo) const override {
     return of_.predictWith(&of(trial), trial, values, latent, wanted, latentToo);
   }
+  std::unique_ptr<Simulation> simulated(int trial, const VectorXd& values, const VectorXd& latent,
+                                        const std::vector<std::size_t>& wanted,
+                                        bool latentToo) const override {
+    return of_.simulatedWith(&of(trial), trial, values, latent, wanted, latentToo);
+  }
   VectorXd outputs(int trial, const VectorXd& values, const VectorXd& latent) const override {
     return of_.outputsOf(of_.of(trial), values, latent, 1, &of(trial));
   }

@@ -6,6 +6,7 @@
 #include "bio/discovery/musculoskeletal_problem.h"
 #include "bio/sensitivity/coupled_sensitivity.h"
 #include "discovery/look_at.h"
+#include "sensitivity/sensitivity_run.h"
 
 namespace bio::discover {
 
@@ -64,86 +65,162 @@ MatrixXd MusculoskeletalProblem::latentScale(const OfTrial& one, const Musculosk
   return scale;
 }
 
-MusculoskeletalProblem::Prediction MusculoskeletalProblem::predictWith(
-    const Nudge* nudge, int trial, const VectorXd& values, const VectorXd& latent,
-    const std::vector<std::size_t>& wanted, bool latentToo) const {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  const OfTrial& one = of(trial);
-  const auto K = static_cast<Index>(one.times.size());
-  const auto numNodes = static_cast<Index>(latentToo ? one.nodes.size() : 0);
-  Prediction result{
-      VectorXd::Constant(K, nan), MatrixXd::Constant(K, static_cast<Index>(wanted.size()), nan),
-      MatrixXd::Constant(latentToo ? K : 0, numNodes, nan),
-      MatrixXd::Constant(numNodes, 1, options_.latentFloor), VectorXd::Constant(K, nan)};
-  ParameterCatalogue::Setting setting = settingAt(one, values, wanted);
-  const SensorLaw sensor = encompassing_.sensorAt(values);
-  const double begin = one.trial.times[0];
-  // forces that change in time follow those at the nodes
-  const MatrixXd timedNodes = timedDirections(one, values, wanted);
-  const bool timed = timedNodes.size() > 0;
-  const Columns columns = columnsOf(one, values, wanted);
-
-  SensitivityOptions options;
-  SensitivityTrajectory s;
-  try {
-    options.simulation = simulationOf(one, withTimedForces(one, values, latent), sensor);
-    if (nudge) apply(*nudge, setting.model, options.simulation.externalForce);
-    if (latentToo || timed) options.externalNodes = {encompassing_.freeIndex(), one.nodes};
-    const MusculoskeletalSystem arm = encompassing_.armOf(setting);
-    s = simulateWithSensitivities(arm, setting, columns.directions, excitationFor(one, arm),
-                                  options);
-    if (latentToo) result.latentScale = latentScale(one, arm, s.motion);
-  } catch (const std::exception&) {
-    return result;  // outside the model's domain
+/// A trial's simulation and, once asked for, its derivatives.
+class MusculoskeletalProblem::Run final : public Simulation {
+ public:
+  Run(const MusculoskeletalProblem& of, const Nudge* nudge, int trial, const VectorXd& values,
+      const VectorXd& latent, const std::vector<std::size_t>& wanted, bool latentToo)
+      : of_(of),
+        one_(of.of(trial)),
+        wanted_(wanted),
+        latentToo_(latentToo),
+        setting_(of.settingAt(one_, values, wanted)),
+        sensor_(of.encompassing_.sensorAt(values)),
+        timedNodes_(of.timedDirections(one_, values, wanted)),
+        columns_(of.columnsOf(one_, values, wanted)),
+        outputs_(VectorXd::Constant(static_cast<Index>(one_.times.size()), nan)),
+        speeds_(outputs_) {
+    try {
+      options_.simulation =
+          of.simulationOf(one_, of.withTimedForces(one_, values, latent), sensor_);
+      if (nudge) apply(*nudge, setting_.model, options_.simulation.externalForce);
+      // forces that change in time follow those at the nodes
+      if (latentToo || timedNodes_.size() > 0) {
+        options_.externalNodes = {of.encompassing_.freeIndex(), one_.nodes};
+      }
+      arm_.emplace(of.encompassing_.armOf(setting_));
+      excitation_ = of.excitationFor(one_, *arm_);
+      run_.emplace(*arm_, setting_, excitation_, options_);
+    } catch (const std::exception&) {
+      return;  // outside the model's domain
+    }
+    observe();
   }
 
-  const auto c = static_cast<std::size_t>(encompassing_.freeIndex());
-  const Lagged course = lagged(s.motion.time, s.motion.q.row(encompassing_.freeIndex()),
-                               s.motion.qDot.row(encompassing_.freeIndex()), sensor.lag);
-  const auto q = course.value.row(0), qDot = course.speed.row(0);
-  if (sensor.lag > 0) {
-    const auto behind = [&](SensitivityMatrix& of, SensitivityMatrix& rate) {
-      const Lagged late = lagged(s.motion.time, of.transpose(), rate.transpose(), sensor.lag);
-      of = late.value.transpose();
-      rate = late.speed.transpose();
-    };
-    behind(s.q[c], s.qDot[c]);
-    if (numNodes > 0 || timed) behind(s.qOfNodes[c], s.qDotOfNodes[c]);
+  const VectorXd& outputs() const override { return outputs_; }
+
+  Prediction predict() override {
+    const auto K = static_cast<Index>(one_.times.size());
+    const auto numNodes = static_cast<Index>(latentToo_ ? one_.nodes.size() : 0);
+    Prediction result{outputs_, MatrixXd::Constant(K, static_cast<Index>(wanted_.size()), nan),
+                      MatrixXd::Constant(latentToo_ ? K : 0, numNodes, nan),
+                      MatrixXd::Constant(numNodes, 1, of_.options_.latentFloor), speeds_};
+    if (!run_) return result;
+    SensitivityTrajectory s;
+    try {
+      s = run_->sensitivities(columns_.directions);
+      if (latentToo_) result.latentScale = of_.latentScale(one_, *arm_, s.motion);
+    } catch (const std::exception&) {
+      result.outputs.setConstant(nan);
+      result.speeds.setConstant(nan);
+      return result;
+    }
+    differentiate(s, result);
+    return result;
   }
-  const double factor = 1 + sensor.gain;
-  const double firstAngle = setting.start.q[encompassing_.freeIndex()];
-  for (Index i = 0; i < K; ++i) {
-    const double t = one.times[static_cast<std::size_t>(i)];
-    const auto w = lookAt(s.motion.time, sensor.measuredAt(t, begin));
-    if (!w) continue;
-    const double value = w->value(q, qDot), slope = w->slope(q, qDot);
-    result.outputs[i] = factor * value + sensor.bias + sensor.drift * (t - begin);
-    result.speeds[i] = factor * slope;
-    const Eigen::RowVectorXd along = factor * w->rows(s.q[c], s.qDot[c]);
-    for (std::size_t j = 0; j < wanted.size(); ++j) {
+
+ private:
+  static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+  std::optional<MotionWeights> look(const Trajectory& motion, double t) const {
+    return lookAt(motion.time, sensor_.measuredAt(t, one_.trial.times[0]));
+  }
+
+  /// What the sensor shows of the motion.
+  void observe() {
+    const Trajectory& motion = run_->motion();
+    const int c = of_.encompassing_.freeIndex();
+    course_ = lagged(motion.time, motion.q.row(c), motion.qDot.row(c), sensor_.lag);
+    const auto q = course_.value.row(0), qDot = course_.speed.row(0);
+    for (Index i = 0; i < outputs_.size(); ++i) {
+      const double t = one_.times[static_cast<std::size_t>(i)];
+      const auto w = look(motion, t);
+      if (!w) continue;
+      const double factor = 1 + sensor_.gain;
+      outputs_[i] =
+          factor * w->value(q, qDot) + sensor_.bias + sensor_.drift * (t - one_.trial.times[0]);
+      speeds_[i] = factor * w->slope(q, qDot);
+    }
+  }
+
+  void differentiate(SensitivityTrajectory& s, Prediction& result) const {
+    const auto c = static_cast<std::size_t>(of_.encompassing_.freeIndex());
+    const bool hasNodes = !s.qOfNodes.empty();
+    if (sensor_.lag > 0) {
+      const auto behind = [&](SensitivityMatrix& of, SensitivityMatrix& rate) {
+        const Lagged late = lagged(s.motion.time, of.transpose(), rate.transpose(), sensor_.lag);
+        of = late.value.transpose();
+        rate = late.speed.transpose();
+      };
+      behind(s.q[c], s.qDot[c]);
+      if (hasNodes) behind(s.qOfNodes[c], s.qDotOfNodes[c]);
+    }
+    const double factor = 1 + sensor_.gain;
+    for (Index i = 0; i < outputs_.size(); ++i) {
+      const auto w = look(s.motion, one_.times[static_cast<std::size_t>(i)]);
+      if (!w) continue;
+      const Eigen::RowVectorXd along = factor * w->rows(s.q[c], s.qDot[c]);
+      Eigen::RowVectorXd ofNodes;
+      if (hasNodes) ofNodes = w->rows(s.qOfNodes[c], s.qDotOfNodes[c]);
+      addRow(i, *w, along, ofNodes, result);
+      if (latentToo_) result.latentGamma.row(i) = factor * ofNodes;
+    }
+  }
+
+  /// The derivatives of sample i in the wanted quantities.
+  void addRow(Index i, const MotionWeights& w, const Eigen::RowVectorXd& along,
+              const Eigen::RowVectorXd& ofNodes, Prediction& result) const {
+    const double factor = 1 + sensor_.gain;
+    const double since = one_.times[static_cast<std::size_t>(i)] - one_.trial.times[0];
+    const double firstAngle = setting_.start.q[of_.encompassing_.freeIndex()];
+    const auto q = course_.value.row(0), qDot = course_.speed.row(0);
+    const double value = w.value(q, qDot), slope = w.slope(q, qDot);
+    for (std::size_t j = 0; j < wanted_.size(); ++j) {
       double& entry = result.gamma(i, static_cast<Index>(j));
-      entry = columns.place[j] >= 0 ? along[columns.place[j]] : 0;
+      entry = columns_.place[j] >= 0 ? along[columns_.place[j]] : 0;
       // what the sensor shows of the first angle stays where it is
-      const auto kind = columns.kind[j];
-      if (wanted[j] == one.angle) entry /= factor;
+      const auto kind = columns_.kind[j];
+      if (wanted_[j] == one_.angle) entry /= factor;
       if (kind == Meaning::Kind::bias) entry = 1 - entry / factor;
       if (kind == Meaning::Kind::gain) entry = value - entry * firstAngle / factor;
       if (kind == Meaning::Kind::clock) entry = -factor * slope;
-      if (kind == Meaning::Kind::rate) entry = factor * slope * (t - begin);
+      if (kind == Meaning::Kind::rate) entry = factor * slope * since;
       if (kind == Meaning::Kind::lag) {
-        entry = factor * w->value(course.inLag.row(0), course.inLagSpeed.row(0));
+        entry = factor * w.value(course_.inLag.row(0), course_.inLagSpeed.row(0));
       }
-      if (kind == Meaning::Kind::drift) entry = t - begin;
+      if (kind == Meaning::Kind::drift) entry = since;
       if (kind == Meaning::Kind::timed) {
-        entry = factor *
-                w->rows(s.qOfNodes[c], s.qDotOfNodes[c]).dot(timedNodes.col(static_cast<Index>(j)));
+        entry = factor * ofNodes.dot(timedNodes_.col(static_cast<Index>(j)));
       }
-    }
-    if (numNodes > 0) {
-      result.latentGamma.row(i) = factor * w->rows(s.qOfNodes[c], s.qDotOfNodes[c]);
     }
   }
-  return result;
+
+  const MusculoskeletalProblem& of_;
+  const OfTrial& one_;
+  std::vector<std::size_t> wanted_;
+  bool latentToo_;
+  ParameterCatalogue::Setting setting_;
+  SensorLaw sensor_;
+  MatrixXd timedNodes_;
+  Columns columns_;
+  VectorXd outputs_, speeds_;
+  SensitivityOptions options_;
+  std::optional<MusculoskeletalSystem> arm_;
+  ExcitationSignal excitation_;
+  std::optional<stepping::SensitivityRun> run_;  ///< empty: outside the model's domain
+  Lagged course_;
+};
+
+std::unique_ptr<MusculoskeletalProblem::Simulation> MusculoskeletalProblem::simulatedWith(
+    const Nudge* nudge, int trial, const VectorXd& values, const VectorXd& latent,
+    const std::vector<std::size_t>& wanted, bool latentToo) const {
+  return std::make_unique<Run>(*this, nudge, trial, values, latent, wanted, latentToo);
+}
+
+MusculoskeletalProblem::Prediction MusculoskeletalProblem::predictWith(
+    const Nudge* nudge, int trial, const VectorXd& values, const VectorXd& latent,
+    const std::vector<std::size_t>& wanted, bool latentToo) const {
+  return Run(*this, nudge, trial, values, latent, wanted, latentToo).predict();
 }
 
 }  // namespace bio::discover

@@ -4,6 +4,7 @@
 
 #include "sensitivity/parameter_directions.h"
 #include "sensitivity/sensitivity_pass.h"
+#include "sensitivity/sensitivity_run.h"
 
 namespace bio {
 namespace {
@@ -58,32 +59,42 @@ SensitivityTrajectory simulateWithSensitivities(const MusculoskeletalSystem& arm
                                                 const ParameterCatalogue::Setting& setting,
                                                 const std::vector<ParameterDirection>& wanted,
                                                 const ExcitationSignal& trial,
-                                                const SensitivityOptions& given) {
-  SensitivityOptions own;
-  const bool isChanged = stepping::changesForces(arm, given.simulation);
-  if (isChanged) {
-    own = given;
-    stepping::withOwnForces(arm, given.simulation, own.simulation);
+                                                const SensitivityOptions& options) {
+  return stepping::SensitivityRun(arm, setting, trial, options).sensitivities(wanted);
+}
+
+namespace stepping {
+
+SensitivityRun::SensitivityRun(const MusculoskeletalSystem& arm,
+                               const ParameterCatalogue::Setting& setting,
+                               const ExcitationSignal& trial, const SensitivityOptions& given)
+    : arm_(arm), setting_(setting), trial_(trial), given_(given) {
+  if (changesForces(arm, given.simulation)) {
+    own_ = given;
+    withOwnForces(arm, given.simulation, own_->simulation);
   }
-  const SensitivityOptions& options = isChanged ? own : given;
-  const Integrator integrator = options.simulation.integrator;
+  const SensitivityOptions& used = options();
+  const Integrator integrator = used.simulation.integrator;
   if (integrator != Integrator::variational && integrator != Integrator::variationalLeft) {
     throw std::invalid_argument("sensitivities: integrator must be vi or vi-left");
   }
-  checkNodes(options.externalNodes, arm);
-  const ExcitationSignal driven = drivenExcitation(trial, muscleNames(arm), setting.mapping);
-  const SystemState start = startOf(arm, setting, driven, options.simulation.startTime);
-  stepping::checkSimulation(arm, driven, start, options.simulation);
-  stepping::StepTape tape;
-  Trajectory motion = stepping::simulateVariational(arm, driven, start, options.simulation, &tape);
-  stepping::completeStates(arm, driven, motion);
-  stepping::addReactions(arm, driven, options.simulation, motion);
-  const stepping::ParameterEffects effects(arm, setting, wanted);
-  return stepping::withCoordinates(arm.skeleton(), [&](auto N) {
-    stepping::SensitivityPass<decltype(N)::value> pass(
-        arm, effects, setting, trial, driven, static_cast<Eigen::Index>(wanted.size()), options);
-    return pass.run(std::move(motion), start, tape);
+  checkNodes(used.externalNodes, arm);
+  driven_ = drivenExcitation(trial, muscleNames(arm), setting.mapping);
+  start_ = startOf(arm, setting, driven_, used.simulation.startTime);
+  checkSimulation(arm, driven_, start_, used.simulation);
+  motion_ = simulateVariational(arm, driven_, start_, used.simulation, &tape_);
+  completeStates(arm, driven_, motion_);
+  addReactions(arm, driven_, used.simulation, motion_);
+}
+
+SensitivityTrajectory SensitivityRun::sensitivities(const std::vector<ParameterDirection>& wanted) {
+  const ParameterEffects effects(arm_, setting_, wanted);
+  return withCoordinates(arm_.skeleton(), [&](auto N) {
+    SensitivityPass<decltype(N)::value> pass(arm_, effects, setting_, trial_, driven_,
+                                             static_cast<Eigen::Index>(wanted.size()), options());
+    return pass.run(std::move(motion_), start_, tape_);
   });
 }
 
+}  // namespace stepping
 }  // namespace bio

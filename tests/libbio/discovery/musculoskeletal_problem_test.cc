@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "bio/discovery/add_effects.h"
-#include "info/discovery/likelihood/hypothesis.h"
+#include "info/discovery/likelihood/joint_fit.h"
 #include "libbio/discovery/effect_cases.h"
 
 namespace bio::discover {
@@ -88,6 +88,114 @@ TEST(MusculoskeletalProblem, StartsWhereTheSensorShowsTheFirstAngle) {
   const VectorXd off = c.outputs(values);
   EXPECT_NEAR(off[0], shown, 1e-12);
   EXPECT_GT(std::abs(off.tail(1)[0] - c.outputs(c.nominal()).tail(1)[0]), 1e-3);
+}
+
+bool areSame(const MusculoskeletalProblem::Prediction& a,
+             const MusculoskeletalProblem::Prediction& b) {
+  return a.outputs == b.outputs && a.gamma == b.gamma && a.latentGamma == b.latentGamma &&
+         a.latentScale == b.latentScale && a.speeds == b.speeds;
+}
+
+TEST(MusculoskeletalProblem, DerivativesThatComeLaterAreThoseOfPredict) {
+  const Case c(0.4);
+  VectorXd values = c.nominal();
+  for (const char* id : {"clock", "gain", "lag"}) {
+    values[static_cast<Index>(c.find(id).quantities[0])] = 0.01;
+  }
+  const VectorXd latent = VectorXd::Constant(static_cast<Index>(c.data.latentTimes(0).size()), 0.3);
+  std::vector<std::size_t> wanted = c.data.nuisances();
+  for (const char* id : {"clock", "gain", "lag", "bias", "payload"}) {
+    wanted.push_back(c.find(id).quantities[0]);
+  }
+  const auto nudged = c.data.nudged(3);
+  const info::discover::DiscoveryProblem& free = c.data;
+  for (const auto* data : {&free, static_cast<decltype(&free)>(nudged.get())}) {
+    for (const bool latentToo : {false, true}) {
+      const auto simulation = data->simulated(0, values, latent, wanted, latentToo);
+      EXPECT_TRUE(simulation->outputs() == data->outputs(0, values, latent));
+      EXPECT_TRUE(
+          areSame(simulation->predict(), data->predict(0, values, latent, wanted, latentToo)));
+    }
+  }
+  values[static_cast<Index>(c.find("lslack_TRI").quantities[0])] = 40;
+  const auto failed = c.data.simulated(0, values, latent, wanted, true);
+  EXPECT_FALSE(failed->outputs().allFinite());
+  EXPECT_FALSE(failed->predict().gamma.allFinite());
+}
+
+/// A problem whose derivatives come later or at once, and how many were computed.
+class Counted final : public info::discover::DiscoveryProblem {
+ public:
+  Counted(const MusculoskeletalProblem& of, bool later) : of_(of), later_(later) {}
+  const std::vector<info::discover::Quantity>& quantities() const override {
+    return of_.quantities();
+  }
+  const std::vector<std::size_t>& nuisances() const override { return of_.nuisances(); }
+  const std::vector<Candidate>& candidates() const override { return of_.candidates(); }
+  int numTrials() const override { return of_.numTrials(); }
+  std::string trialName(int trial) const override { return of_.trialName(trial); }
+  const std::vector<double>& times(int trial) const override { return of_.times(trial); }
+  const VectorXd& measured(int trial) const override { return of_.measured(trial); }
+  const std::vector<double>& latentTimes(int trial) const override {
+    return of_.latentTimes(trial);
+  }
+  Prediction predict(int trial, const VectorXd& values, const VectorXd& latent,
+                     const std::vector<std::size_t>& wanted, bool latentToo) const override {
+    ++derivatives;
+    return of_.predict(trial, values, latent, wanted, latentToo);
+  }
+  std::unique_ptr<Simulation> simulated(int trial, const VectorXd& values, const VectorXd& latent,
+                                        const std::vector<std::size_t>& wanted,
+                                        bool latentToo) const override {
+    if (!later_) return nullptr;
+    return std::make_unique<Later>(of_.simulated(trial, values, latent, wanted, latentToo), *this);
+  }
+  VectorXd outputs(int trial, const VectorXd& values, const VectorXd& latent) const override {
+    return of_.outputs(trial, values, latent);
+  }
+  Eigen::MatrixXd inputs(int trial) const override { return of_.inputs(trial); }
+  std::vector<std::string> inputNames() const override { return of_.inputNames(); }
+
+  mutable int derivatives = 0;
+
+ private:
+  struct Later final : Simulation {
+    Later(std::unique_ptr<Simulation> given, const Counted& by) : all(std::move(given)), of(by) {}
+    const VectorXd& outputs() const override { return all->outputs(); }
+    Prediction predict() override {
+      ++of.derivatives;
+      return all->predict();
+    }
+    std::unique_ptr<Simulation> all;
+    const Counted& of;
+  };
+
+  const MusculoskeletalProblem& of_;
+  bool later_;
+};
+
+TEST(MusculoskeletalProblem, AFitIsTheSameWithDerivativesOnlyWhereAStepIsTaken) {
+  const Case c(1.2);
+  VectorXd start = c.nominal();
+  for (const char* id : {"Fmax_TRI", "Fmax_BRA"}) {
+    start[static_cast<Index>(c.find(id).quantities[0])] = id[5] == 'T' ? 0.55 : 1.6;
+  }
+  int saved = 0;
+  for (const double latent : {0.0, 0.05}) {
+    const Counted atOnce(c.data, false), later(c.data, true);
+    const auto fitted = [&](const Counted& data) {
+      const info::discover::Likelihood likelihood(data, {0}, c.nominal());
+      return likelihood.fit(info::discover::makeHypothesis(data, {}, {0}), {0.002, latent, 0.08},
+                            start);
+    };
+    const info::discover::Fit one = fitted(atOnce), other = fitted(later);
+    EXPECT_TRUE(one.values == other.values && one.eta == other.eta);
+    EXPECT_EQ(one.logEvidence, other.logEvidence);
+    EXPECT_EQ(one.iterations, other.iterations);
+    EXPECT_LE(later.derivatives, atOnce.derivatives);
+    saved += atOnce.derivatives - later.derivatives;
+  }
+  EXPECT_GT(saved, 0);  // steps that were refused
 }
 
 TEST(MusculoskeletalProblem, SaysNothingWhereTheSimulationFails) {

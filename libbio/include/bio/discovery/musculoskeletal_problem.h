@@ -72,6 +72,10 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   double latentLag() const override { return latentLag_; }
   Prediction predict(int trial, const Eigen::VectorXd& values, const Eigen::VectorXd& latent,
                      const std::vector<std::size_t>& wanted, bool latentToo) const override;
+  std::unique_ptr<Simulation> simulated(int trial, const Eigen::VectorXd& values,
+                                        const Eigen::VectorXd& latent,
+                                        const std::vector<std::size_t>& wanted,
+                                        bool latentToo) const override;
   Eigen::VectorXd outputs(int trial, const Eigen::VectorXd& values,
                           const Eigen::VectorXd& latent) const override;
   Eigen::VectorXd refinedOutputs(int trial, const Eigen::VectorXd& values) const override;
@@ -103,6 +107,7 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
 
  private:
   class Nudged;
+  class Run;
   struct OfTrial {
     Trial trial;
     ExcitationSignal excitation;
@@ -145,6 +150,11 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   /// Scales of the latent force at the nodes: the muscles' moments, and the floor.
   Eigen::MatrixXd latentScale(const OfTrial& one, const MusculoskeletalSystem& arm,
                               const Trajectory& motion) const;
+  std::unique_ptr<Simulation> simulatedWith(const Nudge* nudge, int trial,
+                                            const Eigen::VectorXd& values,
+                                            const Eigen::VectorXd& latent,
+                                            const std::vector<std::size_t>& wanted,
+                                            bool latentToo) const;
   Prediction predictWith(const Nudge* nudge, int trial, const Eigen::VectorXd& values,
                          const Eigen::VectorXd& latent, const std::vector<std::size_t>& wanted,
                          bool latentToo) const;

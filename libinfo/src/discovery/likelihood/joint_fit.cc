@@ -94,25 +94,41 @@ Likelihood::Linear Likelihood::linearise(std::size_t at, const Hypothesis& hypot
                                          const VectorXd& xi, const VectorXd& eta,
                                          const std::vector<std::size_t>& extra, bool force) const {
   std::vector<std::size_t> wanted = wantedOf(hypothesis);
-  const auto p = static_cast<Index>(wanted.size());
   wanted.insert(wanted.end(), extra.begin(), extra.end());
   const bool latent = eta.size() != 0;
   VectorXd d;
   if (latent) d = latentSize * (roots_[at] * eta);
-  DiscoveryProblem::Prediction prediction =
-      data_.predict(trials_[at], values, d, wanted, latent || force);
+  return linearOf(at, hypothesis, latent ? latentSize : 0, xi,
+                  data_.predict(trials_[at], values, d, wanted, latent || force), force);
+}
+
+/// @param latentSize 0: without latent force
+Likelihood::Linear Likelihood::linearOf(std::size_t at, const Hypothesis& hypothesis,
+                                        double latentSize, const VectorXd& xi,
+                                        DiscoveryProblem::Prediction prediction, bool force) const {
+  const auto p = static_cast<Index>(hypothesis.free.size());
   Linear linear;
   linear.residuals = data_.measured(trials_[at]) - prediction.outputs;
   linear.gamma = prediction.gamma.leftCols(p);
   for (Index i = 0; i < p; ++i)
     linear.gamma.col(i) *= hypothesis.free[static_cast<std::size_t>(i)].slope(xi[i]);
   linear.extra = prediction.gamma.rightCols(prediction.gamma.cols() - p);
-  linear.latent = latent ? MatrixXd(latentSize * (prediction.latentGamma *
-                                                  roots_[at].triangularView<Eigen::Lower>()))
-                         : MatrixXd(linear.residuals.size(), 0);
+  linear.latent = latentSize > 0
+                      ? MatrixXd(latentSize * (prediction.latentGamma *
+                                               roots_[at].triangularView<Eigen::Lower>()))
+                      : MatrixXd(linear.residuals.size(), 0);
   if (force) linear.force = std::move(prediction.latentGamma);
   linear.speeds = std::move(prediction.speeds);
   return linear;
+}
+
+std::unique_ptr<DiscoveryProblem::Simulation> Likelihood::simulated(std::size_t at,
+                                                                    const Hypothesis& hypothesis,
+                                                                    const Noise& noise,
+                                                                    const Point& point) const {
+  const VectorXd& eta = point.eta[at];
+  return data_.simulated(trials_[at], point.values, latentForce(at, noise, eta),
+                         wantedOf(hypothesis), eta.size() != 0);
 }
 
 Likelihood::Linear Likelihood::linearise(std::size_t at, const Fit& fit, const VectorXd& values,

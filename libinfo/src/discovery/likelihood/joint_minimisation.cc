@@ -158,6 +158,7 @@ class Likelihood::JointMinimisation {
 
   Point startPoint(const VectorXd& values, const std::vector<VectorXd>& eta) const;
   std::vector<Linear> linearised(const Point& at) const;
+  std::vector<Linear> linearisedIfLess(const Point& at, bool isFirst) const;
   double costOf(const std::vector<Linear>& linear, const Point& at) const;
   End improve(const Normal& normal);
   bool tryStep(Step& next, const DampedSystem& system, bool isFirst);
@@ -262,16 +263,39 @@ Likelihood::JointMinimisation::End Likelihood::JointMinimisation::improve(const 
 
 bool Likelihood::JointMinimisation::tryStep(Step& next, const DampedSystem& system, bool isFirst) {
   likelihood_.bend(next, hypothesis_, noise_, trials_, system, point_);
-  // the first attempt mostly succeeds, and then its derivatives are needed as well
-  const bool promising =
-      next.to.values.allFinite() &&
-      (isFirst || likelihood_.simulatedCost(noise_, next.to) + tilt_.dot(next.to.xi) < cost_);
-  if (!promising) return false;
-  std::vector<Linear> there = linearised(next.to);
+  if (!next.to.values.allFinite()) return false;
+  std::vector<Linear> there = linearisedIfLess(next.to, isFirst);
+  if (there.empty()) return false;
   const double cost = costOf(there, next.to);
   if (!(cost < cost_)) return false;
   accept(next, std::move(there), cost);
   return true;
+}
+
+// Derivatives are computed where the cost is less than here; else, empty, and the remaining trials,
+// which could only add to the cost, are not simulated.
+std::vector<Likelihood::Linear> Likelihood::JointMinimisation::linearisedIfLess(
+    const Point& at, bool isFirst) const {
+  std::vector<std::unique_ptr<DiscoveryProblem::Simulation>> simulations;
+  double squares = 0;
+  for (std::size_t t = 0; t < likelihood_.trials_.size(); ++t) {
+    auto simulation = likelihood_.simulated(t, hypothesis_, noise_, at);
+    if (!simulation) {
+      // the first attempt mostly succeeds, and then its derivatives are needed as well
+      const bool isLess =
+          isFirst || likelihood_.simulatedCost(noise_, at) + tilt_.dot(at.xi) < cost_;
+      return isLess ? linearised(at) : std::vector<Linear>();
+    }
+    const VectorXd& measured = likelihood_.data_.measured(likelihood_.trials_[t]);
+    squares += VectorXd(measured - simulation->outputs()).squaredNorm();
+    if (!(Likelihood::cost(noise_, at, squares) + tilt_.dot(at.xi) < cost_)) return {};
+    simulations.push_back(std::move(simulation));
+  }
+  std::vector<Linear> linear;
+  for (std::size_t t = 0; t < simulations.size(); ++t)
+    linear.push_back(likelihood_.linearOf(t, hypothesis_, noise_.latent, at.xi,
+                                          simulations[t]->predict(), false));
+  return linear;
 }
 
 void Likelihood::JointMinimisation::accept(Step& next, std::vector<Linear> there, double cost) {

@@ -28,19 +28,48 @@ SelectedSamples::SelectedSamples(std::unique_ptr<DiscoveryProblem> data,
   owned_ = std::move(data);
 }
 
+namespace {
+
+DiscoveryProblem::Prediction selected(DiscoveryProblem::Prediction all,
+                                      const std::vector<Index>& samples) {
+  DiscoveryProblem::Prediction some;
+  some.outputs = all.outputs(samples);
+  some.gamma = all.gamma(samples, Eigen::all);
+  if (all.latentGamma.size() > 0) some.latentGamma = all.latentGamma(samples, Eigen::all);
+  some.latentScale = std::move(all.latentScale);
+  some.speeds = all.speeds(samples);
+  return some;
+}
+
+}  // namespace
+
 DiscoveryProblem::Prediction SelectedSamples::predict(int trial, const VectorXd& values,
                                                       const VectorXd& latent,
                                                       const std::vector<std::size_t>& wanted,
                                                       bool latentToo) const {
-  Prediction all = data_.predict(trial, values, latent, wanted, latentToo);
-  const auto& samples = of(trial).samples;
-  Prediction some;
-  some.outputs = all.outputs(samples);
-  some.gamma = all.gamma(samples, Eigen::all);
-  if (latentToo) some.latentGamma = all.latentGamma(samples, Eigen::all);
-  some.latentScale = std::move(all.latentScale);
-  some.speeds = all.speeds(samples);
-  return some;
+  return selected(data_.predict(trial, values, latent, wanted, latentToo), of(trial).samples);
+}
+
+/// Of a simulation the selected samples.
+class SelectedSamples::Some final : public Simulation {
+ public:
+  Some(std::unique_ptr<Simulation> all, const std::vector<Index>& samples)
+      : all_(std::move(all)), samples_(samples), outputs_(all_->outputs()(samples)) {}
+  const VectorXd& outputs() const override { return outputs_; }
+  Prediction predict() override { return selected(all_->predict(), samples_); }
+
+ private:
+  std::unique_ptr<Simulation> all_;
+  const std::vector<Index>& samples_;
+  VectorXd outputs_;
+};
+
+std::unique_ptr<DiscoveryProblem::Simulation> SelectedSamples::simulated(
+    int trial, const VectorXd& values, const VectorXd& latent,
+    const std::vector<std::size_t>& wanted, bool latentToo) const {
+  auto all = data_.simulated(trial, values, latent, wanted, latentToo);
+  if (!all) return nullptr;
+  return std::make_unique<Some>(std::move(all), of(trial).samples);
 }
 
 VectorXd SelectedSamples::outputs(int trial, const VectorXd& values, const VectorXd& latent) const {

@@ -29,6 +29,10 @@ class SelectedSamples final : public DiscoveryProblem {
   double latentLag() const override { return data_.latentLag(); }
   Prediction predict(int trial, const Eigen::VectorXd& values, const Eigen::VectorXd& latent,
                      const std::vector<std::size_t>& wanted, bool latentToo) const override;
+  std::unique_ptr<Simulation> simulated(int trial, const Eigen::VectorXd& values,
+                                        const Eigen::VectorXd& latent,
+                                        const std::vector<std::size_t>& wanted,
+                                        bool latentToo) const override;
   Eigen::VectorXd outputs(int trial, const Eigen::VectorXd& values,
                           const Eigen::VectorXd& latent) const override;
   Eigen::VectorXd refinedOutputs(int trial, const Eigen::VectorXd& values) const override;
@@ -39,6 +43,7 @@ class SelectedSamples final : public DiscoveryProblem {
       const std::vector<FormulaTerm>& terms, const std::vector<std::size_t>& kept) const override;
 
  private:
+  class Some;
   struct OfTrial {
     std::vector<Eigen::Index> samples;
     std::vector<double> times;

@@ -24,20 +24,24 @@ constexpr double kExplainsMuch = 20;
 
 }  // namespace
 
-std::optional<Search::Led> Search::ledFrom(const Effects& effects, VectorXd start) {
-  if (nudgedLikelihoods_.empty()) return {};
+std::optional<VectorXd> Search::ledFrom(const Effects& effects, const VectorXd& start) {
+  const std::size_t stages = nudgedLikelihoods_.size();
+  Led led{start};
+  if (stages == 0 || !lead(effects, 0, stages, led)) return {};
+  return std::move(led.values);
+}
+
+bool Search::lead(const Effects& effects, std::size_t first, std::size_t end, Led& led) {
   const Hypothesis hypothesis = makeHypothesis(data_, effects, trials_);
-  Led led;
-  for (std::size_t i = 0; i < nudgedLikelihoods_.size(); ++i) {
+  for (std::size_t i = first; i < end; ++i) {
     const Noise noise{nudgeStages[i].spread * output_, 0, options_.latentTime};
-    const auto fit = nudgedLikelihoods_[i].tryFit(hypothesis, noise, start, {}, {6, 0.1});
+    const auto fit = nudgedLikelihoods_[i].tryFit(hypothesis, noise, led.values, {}, {6, 0.1});
     ++fits_;
-    if (!fit) return {};
-    start = fit->values;
-    if (i == kHalfWay) led.evidence = fit->logEvidence;
+    if (!fit) return false;
+    led.values = fit->values;
+    led.evidence = fit->logEvidence;
   }
-  led.values = std::move(start);
-  return led;
+  return true;
 }
 
 std::optional<Fit> Search::tracked(const Effects& effects, VectorXd start) {
@@ -57,7 +61,11 @@ std::optional<Fit> Search::tracked(const Effects& effects, VectorXd start) {
   return last;
 }
 
+// All candidates are led half way; of the weakest nudging only those need to come through that are
+// continued without it.
 void Search::raceLed(const Effects& base, const std::vector<std::size_t>& candidates) {
+  const std::size_t stages = nudgedLikelihoods_.size(), half = std::min(kHalfWay + 1, stages);
+  if (stages == 0) return;
   std::vector<std::pair<std::size_t, Led>> all;
   const VectorXd nominal = nominalValues(data_);
   for (const std::size_t c : candidates) {
@@ -70,24 +78,32 @@ void Search::raceLed(const Effects& base, const std::vector<std::size_t>& candid
         start[static_cast<Index>(q)] = at(base).fit.values[static_cast<Index>(q)];
     Fit near = at(base).fit;
     near.values = std::move(start);
-    if (auto led = ledFrom(effects, bestStart(base, c, near, 0))) all.emplace_back(c, *led);
+    Led led{bestStart(base, c, near, 0)};
+    if (lead(effects, 0, half, led)) all.emplace_back(c, std::move(led));
   }
   std::sort(all.begin(), all.end(),
             [](const auto& a, const auto& b) { return a.second.evidence > b.second.evidence; });
-  const Noise still{output_, 0, options_.latentTime};
-  for (std::size_t i = 0; i < std::min(all.size(), kLedFits); ++i) {
-    const auto& [c, led] = all[i];
-    if (led.evidence < all.front().second.evidence - kLedBehind) break;
+  std::vector<double> led;  // evidence half way of those that came through
+  for (auto& [c, one] : all) {
+    const double evidence = one.evidence;
+    if (led.size() == kLedFits || (!led.empty() && evidence < led.front() - kLedBehind)) break;
     const Effects effects = with(base, c);
     report_(describe(data_, effects));
-    const auto fit = likelihood_->tryFit(makeHypothesis(data_, effects, trials_), still, led.values,
-                                         {}, {kShort, 0.1});
-    ++fits_;
-    if (!fit) continue;
-    const Entry& entry = at(effects);
-    const bool known = entry.simulation && entry.simulation->logEvidence > fit->logEvidence - kNews;
-    if (!known) improve(effects, fit->values, kSmallSize, nullptr, bestScore() - kGivenUp);
+    if (!lead(effects, half, stages, one)) continue;
+    led.push_back(evidence);
+    continueLed(effects, one.values);
   }
+}
+
+void Search::continueLed(const Effects& effects, const VectorXd& start) {
+  const Noise still{output_, 0, options_.latentTime};
+  const auto fit =
+      likelihood_->tryFit(makeHypothesis(data_, effects, trials_), still, start, {}, {kShort, 0.1});
+  ++fits_;
+  if (!fit) return;
+  const Entry& entry = at(effects);
+  const bool known = entry.simulation && entry.simulation->logEvidence > fit->logEvidence - kNews;
+  if (!known) improve(effects, fit->values, kSmallSize, nullptr, bestScore() - kGivenUp);
 }
 
 VectorXd Search::bestStart(const Effects& base, std::size_t candidate, const Fit& near,

@@ -24,7 +24,16 @@ constexpr std::size_t kGrids = 3;
 
 std::vector<Screened> Search::screen(const Effects& effects, bool simulation) const {
   const Entry& entry = at(effects);
-  return screenAt(*likelihood_, simulation ? entry.simulation.value() : entry.fit, effects);
+  const Fit& fit = simulation ? entry.simulation.value() : entry.fit;
+  auto& [of, result] = screened_[{effects, simulation}];
+  // sizes are the same where σ_d is
+  const bool isKnown = !result.empty() && of.noise.latent == fit.noise.latent &&
+                       of.values == fit.values && of.xi == fit.xi && of.eta == fit.eta &&
+                       of.atBound == fit.atBound;
+  if (isKnown) return result;
+  result = screenAt(*likelihood_, fit, effects);
+  of = fit;
+  return result;
 }
 
 std::vector<Screened> Search::screenAt(const Likelihood& likelihood, const Fit& fit,
@@ -37,6 +46,10 @@ std::vector<Screened> Search::screenAt(const Likelihood& likelihood, const Fit& 
     return c.quantities.size() > 1 ? c.starts.size() : 1;
   };
   for (const Candidate& c : candidates) rounds = std::max(rounds, roundsOf(c));
+  // of the first round: the others differ in effects that are absent
+  std::vector<Likelihood::Linear> linear;
+  Fit bare = fit;
+  bare.hypothesis.free.clear();
   for (std::size_t round = 0; round < rounds; ++round) {
     std::vector<std::size_t> which, amplitudes;
     VectorXd values = fit.values;
@@ -53,11 +66,13 @@ std::vector<Screened> Search::screenAt(const Likelihood& likelihood, const Fit& 
       }
     }
     if (which.empty()) continue;  // all candidates have been chosen
-    std::vector<Likelihood::Linear> linear;
     std::vector<MatrixXd> columns;
     for (std::size_t t = 0; t < trials_.size(); ++t) {
-      linear.push_back(likelihood.linearise(t, fit, values, amplitudes, false));
-      columns.push_back(linear.back().extra);
+      const bool isFirst = linear.size() == t;
+      Likelihood::Linear one =
+          likelihood.linearise(t, isFirst ? fit : bare, values, amplitudes, false);
+      columns.push_back(one.extra);
+      if (isFirst) linear.push_back(std::move(one));
     }
     const auto projected = likelihood.project(fit, linear, columns);
     for (std::size_t i = 0; i < which.size(); ++i) {

@@ -149,7 +149,7 @@ void Search::calibrate() {
   }
   report_("base model");
   if (const auto led = ledFrom({}, nominalValues(data_)))
-    improve({}, led->values, kSmallSize, nullptr, bestScore() - kGivenUp);
+    improve({}, *led, kSmallSize, nullptr, bestScore() - kGivenUp);
 }
 
 // The nominal values, followed by samples of the prior.

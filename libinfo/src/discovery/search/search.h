@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "discovery/search/effect_sets.h"
@@ -138,13 +139,19 @@ class Search {
   /// A fit without latent force by nudging that is gradually reduced.
   struct Led {
     Eigen::VectorXd values;  ///< where it ends
-    double evidence = 0;     ///< half way
+    double evidence = 0;     ///< of its last stage
   };
-  /// Empty if the model cannot be simulated so, or if DiscoveryProblem::nudged is not available.
-  std::optional<Led> ledFrom(const Effects& effects, Eigen::VectorXd start);
+  /// Fits with the nudging of stages first to end − 1, from led.values on. False if the model
+  /// cannot be simulated so.
+  bool lead(const Effects& effects, std::size_t first, std::size_t end, Led& led);
+  /// Where all stages lead. Empty if the model cannot be simulated so, or if
+  /// DiscoveryProblem::nudged is not available.
+  std::optional<Eigen::VectorXd> ledFrom(const Effects& effects, const Eigen::VectorXd& start);
   /// Fits candidates beside `base` from the results of nudged fits that start at the nominal
   /// values, for those close to the best.
   void raceLed(const Effects& base, const std::vector<std::size_t>& candidates);
+  /// Fits without latent force from where nudged fits led; improve() from there if that is news.
+  void continueLed(const Effects& effects, const Eigen::VectorXd& start);
   /// One-step gains of all candidates that are not in `effects` at a fit of a likelihood.
   std::vector<Screened> screenAt(const Likelihood& likelihood, const Fit& fit,
                                  const Effects& effects) const;
@@ -178,6 +185,12 @@ class Search {
   std::map<std::size_t, GridStart> gridStarts_;  ///< best start of each candidate with a grid
   Eigen::VectorXd scaleValues_;
   std::map<Effects, Entry> entries_;
+  struct ScreenedFit {
+    Fit fit;
+    std::vector<Screened> result;
+  };
+  /// The last results of screen(), of which several decisions ask for the same.
+  mutable std::map<std::pair<Effects, bool>, ScreenedFit> screened_;
   int fits_ = 0;
   bool racedFromNominal_ = false;
 };

@@ -110,6 +110,22 @@ class DiscoveryProblem {
   virtual Prediction predict(int trial, const Eigen::VectorXd& values,
                              const Eigen::VectorXd& latent, const std::vector<std::size_t>& wanted,
                              bool latentToo) const = 0;
+  /// A simulation whose derivatives are computed when they are asked for.
+  class Simulation {
+   public:
+    virtual ~Simulation() = default;
+    virtual const Eigen::VectorXd& outputs() const = 0;
+    /// What predict() of the same arguments gives; to be called once at most.
+    virtual Prediction predict() = 0;
+  };
+  /// The arguments of predict(); must not outlive this object. Null: not available, predict() and
+  /// outputs() are called instead.
+  virtual std::unique_ptr<Simulation> simulated(int /*trial*/, const Eigen::VectorXd& /*values*/,
+                                                const Eigen::VectorXd& /*latent*/,
+                                                const std::vector<std::size_t>& /*wanted*/,
+                                                bool /*latentToo*/) const {
+    return nullptr;
+  }
   /// The outputs alone.
   virtual Eigen::VectorXd outputs(int trial, const Eigen::VectorXd& values,
                                   const Eigen::VectorXd& latent) const = 0;

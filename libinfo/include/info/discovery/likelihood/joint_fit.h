@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -153,6 +154,13 @@ class Likelihood {
                    const Eigen::VectorXd& values, const Eigen::VectorXd& xi,
                    const Eigen::VectorXd& eta, const std::vector<std::size_t>& extra,
                    bool force) const;
+  Linear linearOf(std::size_t at, const Hypothesis& hypothesis, double latentSize,
+                  const Eigen::VectorXd& xi, DiscoveryProblem::Prediction prediction,
+                  bool force) const;
+  std::unique_ptr<DiscoveryProblem::Simulation> simulated(std::size_t at,
+                                                          const Hypothesis& hypothesis,
+                                                          const Noise& noise,
+                                                          const Point& point) const;
   void finish(Fit& fit, const std::vector<Linear>& trials, const Eigen::VectorXd& tilt) const;
   Eigen::VectorXd logDeterminantSlope(const Fit& fit) const;
 
