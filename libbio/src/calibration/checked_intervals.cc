@@ -99,7 +99,7 @@ info::Estimate betterBeside(const info::LeastSquares& least, info::Estimate esti
     info::Estimate next = info::estimate(least, lowest->theta, options);
     next.iterations += estimate.iterations;
     next.evaluations += estimate.evaluations;
-    if (!(next.cost < estimate.cost)) break;
+    if (!(next.cost < estimate.cost) || (estimate.converged && !next.converged)) break;
     estimate = std::move(next);
   }
   return estimate;

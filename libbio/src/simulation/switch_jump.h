@@ -9,22 +9,34 @@
 
 namespace bio::stepping {
 
-/// Whether a length jumps by more than 1e-5 m where a path gains or loses points.
-/// @param configuration  of the system; is moved
-/// @param q              on the switch
+/// Looks at both sides of a switch. Allocates nothing after its construction.
 template <int N>
-bool lengthJumps(SystemConfiguration<N>& configuration, const MusculoskeletalSystem& arm,
-                 const PathSwitch& met, const typename SystemConfiguration<N>::Vector& q) {
-  constexpr double noticeable = 1e-5;
-  std::vector<double> lengths(arm.numPaths());
-  configuration.moveTo(beyondSwitch(met, q, 1));
-  for (std::size_t i = 0; i < lengths.size(); ++i) lengths[i] = configuration.length(i).length;
-  configuration.moveTo(beyondSwitch(met, q, -1));
-  double largest = 0;
-  for (std::size_t i = 0; i < lengths.size(); ++i) {
-    largest = std::max(largest, std::abs(configuration.length(i).length - lengths[i]));
+class SwitchSides {
+ public:
+  using Vector = typename SystemConfiguration<N>::Vector;
+
+  explicit SwitchSides(const MusculoskeletalSystem& arm)
+      : configuration_(arm), lengths_(arm.numPaths()) {}
+
+  /// Whether a length jumps by more than 1e-5 m there. @param q  on the switch
+  bool lengthJumps(const PathSwitch& met, const Vector& q) {
+    configuration_.moveTo(beyondSwitch(met, q, 1));
+    for (std::size_t i = 0; i < lengths_.size(); ++i) {
+      lengths_[i] = configuration_.length(i).length;
+    }
+    configuration_.moveTo(beyondSwitch(met, q, -1));
+    double largest = 0;
+    for (std::size_t i = 0; i < lengths_.size(); ++i) {
+      largest = std::max(largest, std::abs(configuration_.length(i).length - lengths_[i]));
+    }
+    return largest > noticeable;
   }
-  return largest > noticeable;
-}
+
+ private:
+  static constexpr double noticeable = 1e-5;  ///< [m]
+
+  SystemConfiguration<N> configuration_;
+  std::vector<double> lengths_;
+};
 
 }  // namespace bio::stepping

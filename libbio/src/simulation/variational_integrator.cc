@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <optional>
 
 #include "sensitivity/step_tape.h"
 #include "simulation/activation_player.h"
@@ -42,6 +43,7 @@ class VariationalRun {
     fibreVelocityBefore_ = fibreVelocity_;
     length_ = lengthBefore_ = options.step;
     next_ = now_;
+    if (!arm_.switches().empty()) sides_.emplace(arm_);
     recorder_.add(options.startTime, now_.q, velocity_, activation_, now_.fibreLength, 0, 0, 0);
     if (tape_) tape_->begin(now_.q, now_.fibreLength, activation_, numRows(options_));
   }
@@ -100,7 +102,7 @@ class VariationalRun {
       }
       const TimeMark middle = markSwitch(split, *met);
       accept(begin, middle);
-      if (lengthJumps(configuration_, arm_, *met, now_.q)) lastJump_ = split;
+      if (sides_->lengthJumps(*met, now_.q)) lastJump_ = split;
       return advance(middle, end, depth);
     }
     if (depth >= options_.maxHalvings) return false;
@@ -224,6 +226,7 @@ class VariationalRun {
   Eigen::LDLT<Eigen::Matrix<double, N, N>> factor_;
   Eigen::VectorXd fibreVelocity_, fibreVelocityBefore_;
   double length_, lengthBefore_;
+  std::optional<SwitchSides<N>> sides_;                         ///< where there are switches
   double lastJump_ = -std::numeric_limits<double>::infinity();  ///< [s]
   double muscleWork_ = 0;
   double passiveWork_ = 0;

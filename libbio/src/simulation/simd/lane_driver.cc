@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "simulation/switch_jump.h"
-
 namespace bio::lanes {
 
 using Eigen::Index;
@@ -58,6 +56,7 @@ LaneDriver::LaneDriver(const MusculoskeletalSystem& arm, const ExcitationSignal&
       kept_(activation_),
       fibreEnd_(fibre_),
       search_(options.newtonTolerance) {
+  if (!arm.switches().empty()) sides_.emplace(arm);
   recorder_.add(options.startTime, start.q, start.qDot, activation_, fibre_, 0, 0, 0);
 }
 
@@ -147,9 +146,8 @@ void LaneDriver::take(int lane, const LaneStep& step) {
 }
 
 void LaneDriver::noteJump() {
-  if (!sides_) sides_ = std::make_unique<SystemConfiguration<1>>(*arm_);
   const Eigen::Matrix<double, 1, 1> q(q_);
-  if (stepping::lengthJumps(*sides_, *arm_, search_.which(), q)) lastJump_ = t0_;
+  if (sides_->lengthJumps(search_.which(), q)) lastJump_ = t0_;
 }
 
 /// Steps end in the middle of what is too long for them.

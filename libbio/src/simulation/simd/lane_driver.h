@@ -2,10 +2,12 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "simulation/activation_player.h"
 #include "simulation/integrators.h"
 #include "simulation/simd/lane_model.h"
+#include "simulation/switch_jump.h"
 #include "simulation/switch_search.h"
 
 namespace bio::lanes {
@@ -95,7 +97,7 @@ class LaneDriver {
   double q_, p_;
   double velocity_, velocityBefore_, length_, lengthBefore_;
   double lastJump_ = -std::numeric_limits<double>::infinity();  ///< of a length [s]
-  std::unique_ptr<SystemConfiguration<1>> sides_;  ///< of a switch; none before the first
+  std::optional<stepping::SwitchSides<1>> sides_;               ///< where there are switches
   Eigen::VectorXd fibre_, fibreVelocity_, fibreVelocityBefore_;
   Eigen::VectorXd activation_, middle_, kept_;  ///< at the end, the middle, the begin of the step
   // the end that was last taken
