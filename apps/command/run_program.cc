@@ -59,6 +59,15 @@ CLI::App* parsedSubcommand(const CLI::App& program) {
   return parsed.empty() ? nullptr : parsed.front();
 }
 
+/// A check of the library names a quantity, "speeds: …": as the option of that name that was given.
+std::string namedAsOption(const std::string& message, const CLI::App& options) {
+  const std::string name = message.substr(0, message.find(": "));
+  const bool isWord =
+      !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") == std::string::npos;
+  const CLI::Option* option = isWord ? options.get_option_no_throw("--" + name) : nullptr;
+  return option && option->count() > 0 ? "--" + message : message;
+}
+
 /// @param options  what the subcommand was parsed by
 int runCommand(Command& command, const CommandContext& context, const CLI::App& options) {
   try {
@@ -76,7 +85,7 @@ int runCommand(Command& command, const CommandContext& context, const CLI::App& 
   } catch (const std::bad_alloc&) {
     return fail(context.subcommand, "not enough memory");
   } catch (const std::exception& error) {
-    return fail(context.subcommand, error.what());
+    return fail(context.subcommand, namedAsOption(error.what(), options));
   } catch (...) {
     return fail(context.subcommand, "stopped by an unknown error");
   }

@@ -214,7 +214,7 @@ TEST(DesignCommand, RefusesExperimentsThatADynamometerCannotDo) {
   refused({"--dynamometer", "elbow_flexion", "--angles", "400deg"}, "is outside the range");
   refused({"--dynamometer", "elbow_flexion", "--angles", "x"}, "--angles: ");
   refused({"--dynamometer", "elbow_flexion", "--speeds", "-1deg"},
-          "speeds: -0.01745 rad/s (-1 deg/s), must be > 0");
+          "--speeds: -0.01745 rad/s (-1 deg/s), must be > 0");
   refused({"--dynamometer", "elbow_flexion", "--efforts", "120"}, "at most 100");
   refused({"--dynamometer", "elbow_flexion", "--efforts", "0.5"}, "must be > 1");
   refused({"--dynamometer", "elbow_flexion", "--speeds", "1deg"}, "these would take");
