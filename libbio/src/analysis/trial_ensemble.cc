@@ -6,6 +6,7 @@
 
 #include "bio/analysis/ensemble_statistics.h"
 #include "bio/analysis/replay.h"
+#include "bio/analysis/sensitivity_study.h"
 #include "bio/simulation/simulate.h"
 #include "info/probability/global_sensitivity.h"
 #include "info/probability/random_stream.h"
@@ -68,9 +69,9 @@ void TrialEnsemble::check(const Trial& trial, const TrialEnsembleOptions& asked)
   (void)ensembleOutputNamed(asked.output);
   if (!asked.sobol) return;
   if (laws_.together) refuse(fmt::format("{0}covariance cannot be combined with {0}sobol", prefix));
-  if (laws_.selection.size() > 32) {
-    refuse(fmt::format("{0}sobol: {1} parameters, at most 32; choose them with {0}parameters",
-                       prefix, laws_.selection.size()));
+  if (laws_.selection.size() > mostGlobalParameters) {
+    refuse(fmt::format("{0}sobol: {1} parameters, at most {2}; choose them with {0}parameters",
+                       prefix, laws_.selection.size(), mostGlobalParameters));
   }
   if (asked.draws < 2) refuse(fmt::format("{0}sobol: {0}draws must be at least 2", prefix));
   if (asked.output == "rms_error" && !measured_) {

@@ -85,8 +85,7 @@ class Calibrator {
       return result_;
     }
     judge();
-    if (options_.isFinal && result_.complete && !options_.isFinal(result_))
-      return std::move(result_);
+    if (result_.complete && options_.isFinal && !options_.isFinal(result_)) return result_;
     if (result_.complete) refineIntervals();
     if (result_.complete) profiles();
     if (result_.complete && options_.bootstrap > 0) resample();
@@ -120,6 +119,10 @@ class Calibrator {
     if (!options_.progress || options_.progress(share)) return true;
     result_.complete = false;
     return false;
+  }
+
+  double shareOfFit() const {
+    return options_.profile.empty() && options_.bootstrap == 0 ? 1.0 : 0.3;
   }
 
   /// A parameter that changes no measured angle, and has no prior, stays where it is.
@@ -179,12 +182,11 @@ class Calibrator {
   }
 
   void fit() {
-    const double fitShare = options_.profile.empty() && options_.bootstrap == 0 ? 1.0 : 0.3;
     double done = 0;
     info::EstimateOptions estimate = estimateOptions();
     estimate.progress = [&](const info::EstimateProgress&) {
       done += 0.15 * (1 - done);
-      return progress(fitShare * done);
+      return progress(shareOfFit() * done);
     };
     const auto p = static_cast<Index>(asked_.size());
     result_.noiseFloor = measuredSd(training_);
@@ -221,8 +223,11 @@ class Calibrator {
     }
     if (result_.complete) lookForOtherMinima(estimate);
     if (result_.complete) {
+      const int iterations = estimate_.iterations, evaluations = estimate_.evaluations;
       estimate_ =
           betterBeside(problem(result_.noise.effective), std::move(estimate_), common(), estimate);
+      result_.iterations += estimate_.iterations - iterations;
+      result_.evaluations += estimate_.evaluations - evaluations;
     }
     result_.why = estimate_.why;
     result_.converged = estimate_.converged;
@@ -315,8 +320,10 @@ class Calibrator {
   /// By the cost itself, and by the other minima.
   void refineIntervals() {
     if (options_.loss.kind == info::RobustLoss::Kind::gaussian) {  // else a nat is none of the cost
-      checkIntervals(problem(result_.noise.effective), estimate_, covariance_, common(),
-                     estimateOptions(), result_.parameters);
+      info::EstimateOptions options = estimateOptions();
+      options.progress = [&](const info::EstimateProgress&) { return progress(shareOfFit()); };
+      checkIntervals(problem(result_.noise.effective), estimate_, covariance_, common(), options,
+                     result_.parameters);
     }
     encloseMinima(result_.otherMinima, common(), options_.confidence, result_.parameters);
   }

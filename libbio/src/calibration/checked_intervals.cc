@@ -46,14 +46,10 @@ std::optional<IntervalEnd> endOf(const info::LeastSquares& least, const VectorXd
   return end;
 }
 
-std::string noInterval(const CalibratedParameter& one, const std::string& reason) {
-  return fmt::format("no interval of {}: {}", one.asked.name, reason);
-}
-
-void withoutInterval(CalibratedParameter& one, std::string why) {
+void withoutInterval(CalibratedParameter& one, const std::string& reason) {
   one.sd = one.lower = one.upper = std::numeric_limits<double>::quiet_NaN();
   one.identifiable = false;
-  one.why = std::move(why);
+  one.why = fmt::format("no interval of {}: {}", one.asked.name, reason);
 }
 
 /// Takes the ends of the profile likelihood.
@@ -64,17 +60,14 @@ void follow(const info::LeastSquares& least, const info::Estimate& estimate, Ind
       found.profile.points.begin(), found.profile.points.end(),
       [](const info::ProfilePoint& a, const info::ProfilePoint& b) { return a.cost < b.cost; });
   if (lowest != found.profile.points.end() && lowest->cost < estimate.cost - 0.5) {
-    return withoutInterval(
-        one, noInterval(
-                 one, fmt::format("the data fit better at {:.4g}, from where the search did not go "
-                                  "on; try --starts",
-                                  lowest->value)));
+    return withoutInterval(one, fmt::format("the data fit better at {:.4g}, from where the search "
+                                            "did not go on; try --starts",
+                                            lowest->value));
   }
   if (!std::isfinite(found.lower) || !std::isfinite(found.upper)) {
-    return withoutInterval(
-        one,
-        noInterval(one, fmt::format("the likelihood does not bound it {}",
-                                    std::isfinite(found.upper) ? "from below" : "from above")));
+    return withoutInterval(one,
+                           fmt::format("the likelihood does not bound it {}",
+                                       std::isfinite(found.upper) ? "from below" : "from above"));
   }
   one.lower = found.lower;
   one.upper = found.upper;
@@ -99,7 +92,11 @@ info::Estimate betterBeside(const info::LeastSquares& least, info::Estimate esti
     info::Estimate next = info::estimate(least, lowest->theta, options);
     next.iterations += estimate.iterations;
     next.evaluations += estimate.evaluations;
-    if (!(next.cost < estimate.cost) || (estimate.converged && !next.converged)) break;
+    if (!(next.cost < estimate.cost) || (estimate.converged && !next.converged)) {
+      estimate.iterations = next.iterations;
+      estimate.evaluations = next.evaluations;
+      break;
+    }
     estimate = std::move(next);
   }
   return estimate;
@@ -125,11 +122,10 @@ void checkIntervals(const info::LeastSquares& least, const info::Estimate& estim
     } else {
       withoutInterval(
           one,
-          noInterval(one,
-                     fmt::format("the misfit is not smooth where the search stopped (at the ends "
-                                 "of the interval it rises by {:.2g} to {:.2g} nats instead of "
-                                 "{:.2f}), as where muscle lengths jump",
-                                 std::min(fewest, most) * z * z / 2, most * z * z / 2, z * z / 2)));
+          fmt::format("the misfit is not smooth where the search stopped (at the ends of the "
+                      "interval it rises by {:.2g} to {:.2g} nats instead of {:.2f}), as where "
+                      "muscle lengths jump",
+                      fewest * z * z / 2, most * z * z / 2, z * z / 2));
     }
   }
 }

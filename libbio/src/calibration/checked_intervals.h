@@ -11,7 +11,9 @@ namespace bio {
 
 /// Goes on from an end of an interval of the first `common` numbers where the cost is lower than at
 /// the estimate: the search has stopped early there, as it may at a corner of the cost.
-/// @return the estimate itself where no end is lower, or no search from there converges as it did
+/// @return with iterations and evaluations added up; the estimate itself where no end is lower, or
+/// no
+///   search from there converges as it did
 info::Estimate betterBeside(const info::LeastSquares& least, info::Estimate estimate,
                             Eigen::Index common, const info::EstimateOptions& options);
 

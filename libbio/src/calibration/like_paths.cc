@@ -16,8 +16,8 @@ using Eigen::VectorXd;
 constexpr int mostPoints = 6, mostPostures = 24, gridPoints = 41, goldenSteps = 20;
 constexpr double likeness = 5e-3;  ///< RMS difference of lengths [m]
 
-/// Measured values of all coordinates that were measured in every trial, at moments spread over the
-/// trials; coordinates that were not are where the first trial begins.
+/// Measured values of the coordinates at moments spread over the trials, for pathsAt; empty unless
+/// all trials measure the same coordinates.
 PostureTable measuredPostures(const TrialSet& trials) {
   PostureTable table;
   std::vector<std::vector<const MeasuredSeries*>> byTrial(trials.trials().size());
@@ -27,7 +27,10 @@ PostureTable measuredPostures(const TrialSet& trials) {
   std::vector<VectorXd> rows;
   const auto each = std::max<Index>(2, mostPostures / std::ssize(byTrial));
   for (const auto& measured : byTrial) {
-    if (measured.size() != byTrial.front().size() || measured.empty()) return {};
+    const bool isAlike =
+        std::ranges::equal(measured, byTrial.front(),
+                           [](const auto* a, const auto* b) { return a->what.of == b->what.of; });
+    if (!isAlike || measured.empty()) return {};
     const Index count = measured.front()->values.size();
     for (Index k = 0; k < std::min(each, count); ++k) {
       VectorXd row(std::ssize(measured));
@@ -91,6 +94,30 @@ class LengthsOf {
   VectorXd here_;
 };
 
+struct LikeValue {
+  double value;
+  double distance;  ///< [m]
+};
+
+/// The minimum between two values, by the golden section.
+LikeValue nearestBetween(const LengthsOf& lengths, double low, double high) {
+  const double golden = (std::sqrt(5) - 1) / 2;
+  double a = high - golden * (high - low), b = low + golden * (high - low);
+  double atA = lengths.distance(a), atB = lengths.distance(b);
+  for (int i = 0; i < goldenSteps; ++i) {
+    if (atA < atB) {
+      high = b, b = a, atB = atA;
+      a = high - golden * (high - low);
+      atA = lengths.distance(a);
+    } else {
+      low = a, a = b, atA = atB;
+      b = low + golden * (high - low);
+      atB = lengths.distance(b);
+    }
+  }
+  return atA < atB ? LikeValue{a, atA} : LikeValue{b, atB};
+}
+
 /// Lowest minimum between the bounds, but for the one at `estimate`.
 std::optional<double> likeValue(const LengthsOf& lengths, const info::Parameter& parameter,
                                 double estimate) {
@@ -104,26 +131,12 @@ std::optional<double> likeValue(const LengthsOf& lengths, const info::Parameter&
   double least = likeness;
   for (std::size_t k = 1; k + 1 < distance.size(); ++k) {
     const bool isLowest = distance[k] < distance[k - 1] && distance[k] <= distance[k + 1];
-    double middle = parameter.lower + static_cast<double>(k) * spacing;
+    const double middle = parameter.lower + static_cast<double>(k) * spacing;
     if (!isLowest || std::abs(middle - estimate) <= spacing) continue;
-    const double golden = (std::sqrt(5) - 1) / 2;
-    double low = middle - spacing, high = middle + spacing;
-    double a = high - golden * (high - low), b = low + golden * (high - low);
-    double atA = lengths.distance(a), atB = lengths.distance(b);
-    for (int i = 0; i < goldenSteps; ++i) {
-      if (atA < atB) {
-        high = b, b = a, atB = atA;
-        a = high - golden * (high - low);
-        atA = lengths.distance(a);
-      } else {
-        low = a, a = b, atA = atB;
-        b = low + golden * (high - low);
-        atB = lengths.distance(b);
-      }
-    }
-    if (std::min(atA, atB) >= least) continue;
-    least = std::min(atA, atB);
-    best = atA < atB ? a : b;
+    const LikeValue found = nearestBetween(lengths, middle - spacing, middle + spacing);
+    if (found.distance >= least) continue;
+    least = found.distance;
+    best = found.value;
   }
   return best;
 }

@@ -31,6 +31,17 @@ class SwitchSides {
     }
     return largest > noticeable;
   }
+  /// The same of one that a step from q to qEnd crosses.
+  bool lengthJumps(const PathSwitch& crossed, const Vector& q, const Vector& qEnd) {
+    const double before = crossed.distance(q[crossed.freeIndex]);
+    const double after = crossed.distance(qEnd[crossed.freeIndex]);
+    Vector on = q;
+    crossingOf(1, before, before, after, [&](double x) {
+      on = q + x * (qEnd - q);
+      return crossed.distance(on[crossed.freeIndex]);
+    });
+    return lengthJumps(crossed, on);
+  }
 
  private:
   static constexpr double noticeable = 1e-5;  ///< [m]

@@ -10,10 +10,11 @@ namespace bio::stepping {
 
 /// The longest step [s] at some time after the length of a path has jumped. The jump strains the
 /// tendon at once, and the force that follows decays within tenths of a millisecond at first: a
-/// longer step across that would be stable, but give the limb a wrong impulse (decision 071).
+/// longer step across that would be stable, but give the limb a wrong impulse (decision 071). A
+/// share of a half would tie with the halves of halved steps, and rounding would decide.
 /// @param time  since the jump [s]; infinite if there was none
 inline double longestStepAfterJump(double time) {
-  constexpr double first = 2e-5, share = 0.5;
+  constexpr double first = 2e-5, share = 0.6;
   return std::max(first, share * time);
 }
 
@@ -43,9 +44,16 @@ class SwitchSearch {
       }
     }
     ends_ = 0;
-    return which_ != nullptr && fraction_ >= worthwhile && fraction_ <= 1 - worthwhile;
+    isNearEnd_ = which_ != nullptr && (fraction_ < worthwhile || fraction_ > 1 - worthwhile);
+    return which_ != nullptr && !isNearEnd_;
   }
 
+  /// Whether the first switch crossed is too near to the begin or the end of the step to end a part
+  /// of it there: it may count as met at that end.
+  bool isAtBegin() const { return isNearEnd_ && fraction_ < worthwhile; }
+  bool isAtEnd() const { return isNearEnd_ && fraction_ > 1 - worthwhile; }
+
+  /// The first that was crossed, if one was.
   const PathSwitch& which() const { return *which_; }
   /// Of the whole step: how long the next one is to be.
   double fraction() const { return fraction_; }
@@ -69,6 +77,7 @@ class SwitchSearch {
 
   double onSwitch_;  ///< [rad] or [m]
   const PathSwitch* which_ = nullptr;
+  bool isNearEnd_ = false;
   double fraction_ = 1, before_ = 0, distanceBefore_ = 0;
   int ends_ = 0;
 };

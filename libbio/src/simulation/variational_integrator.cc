@@ -28,6 +28,7 @@ class VariationalRun {
         stepper_(arm, options),
         player_(arm, excitation, options.startTime),
         configuration_(arm),
+        search_(options.newtonTolerance),
         recorder_(arm, numRows(options)),
         activation_(start.activation),
         middle_(start.activation),
@@ -83,7 +84,8 @@ class VariationalRun {
 
  private:
   /// Moves now_ and activation_ from t0 to t1; in halves, and halves of them, where Newton fails or
-  /// a length has just jumped, and in two parts where a conditional path point comes or goes.
+  /// a length has just jumped, and in two parts where a conditional path point comes or goes. One
+  /// that comes or goes very near to an end of the step does so at that end.
   bool advance(const TimeMark& begin, const TimeMark& end, int depth) {
     const double t0 = begin.value;
     const double t1 = end.value;
@@ -97,7 +99,15 @@ class VariationalRun {
       double split = 0;
       const PathSwitch* met = findSwitch(t0, t1, kept, split);
       if (met == nullptr) {
+        if (search_.isAtBegin() && lastJump_ != t0 && jumps()) {
+          lastJump_ = t0;
+          activation_ = kept;
+          player_.restart(t0);
+          return advance(begin, end, depth);
+        }
+        const bool jumpsAtEnd = search_.isAtEnd() && jumps();
         accept(begin, end);
+        if (jumpsAtEnd) lastJump_ = t1;
         return true;
       }
       const TimeMark middle = markSwitch(split, *met);
@@ -112,6 +122,9 @@ class VariationalRun {
     const TimeMark middle = markMiddle(begin, end);
     return advance(begin, middle, depth + 1) && advance(middle, end, depth + 1);
   }
+
+  /// Whether a length does at the switch that the step just solved crosses.
+  bool jumps() { return sides_->lengthJumps(search_.which(), now_.q, next_.q); }
 
   TimeMark markRow(double time) { return {time, tape_ ? tape_->addRow(time) : 0}; }
   TimeMark markSwitch(double time, const PathSwitch& met) {
@@ -151,15 +164,14 @@ class VariationalRun {
   /// Returns which switch it then ends on, or null.
   const PathSwitch* findSwitch(double t0, double t1, const Eigen::VectorXd& activationAtStart,
                                double& split) {
-    SwitchSearch search(options_.newtonTolerance);
-    if (!search.begin(arm_.switches(), now_.q, next_.q)) return nullptr;
+    if (!search_.begin(arm_.switches(), now_.q, next_.q)) return nullptr;
     for (auto found = SwitchSearch::Found::again; found == SwitchSearch::Found::again;) {
-      split = t0 + search.fraction() * (t1 - t0);
+      split = t0 + search_.fraction() * (t1 - t0);
       activation_ = activationAtStart;
       player_.restart(t0);
       if (!solve(t0, split)) break;
-      found = search.take(next_.q[search.which().freeIndex]);
-      if (found == SwitchSearch::Found::met) return &search.which();
+      found = search_.take(next_.q[search_.which().freeIndex]);
+      if (found == SwitchSearch::Found::met) return &search_.which();
     }
     // not to be met exactly: take the whole step as it is
     activation_ = activationAtStart;
@@ -216,6 +228,7 @@ class VariationalRun {
   Stepper stepper_;
   ActivationPlayer player_;
   SystemConfiguration<N> configuration_;
+  SwitchSearch search_;
   Recorder recorder_;
   Eigen::VectorXd activation_, middle_;
   Ends now_, next_;

@@ -72,9 +72,9 @@ TEST(CalibrateForces, FindsTheStrengthOfAMotorAndTheStiffnessOfABand) {
   const std::string trial = recordedMotion(scratch, orthosis(scratch, "true.osim", 2, 60));
   const std::string guess = orthosis(scratch, "guess.osim", 1.4, 45);
   const std::string out = (scratch / "out").string();
-  const ProgramResult result = runFisherHill({"calibrate", guess, trial, "--parameters",
-                                              "motor.optimal_force,band.stiffness", "--step",
-                                              "0.01", "--noise-deg", "0.01", "--out", out});
+  const ProgramResult result =
+      runFisherHill({"calibrate", guess, trial, "--parameters",
+                     "motor.optimal_force,band.stiffness", "--step", "0.01", "--out", out});
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = nlohmann::json::parse(contentOf(out + "/summary.json"));
   EXPECT_NEAR(json["estimates"]["motor.optimal_force"]["value"].get<double>(), 2, 0.01);
@@ -87,9 +87,9 @@ TEST(CalibrateForces, FindsTheStrengthOfAMotorAndTheStiffnessOfABand) {
 
   // with an estimate of the excitation the trial is written anew, with the motor's control
   const std::string driven = (scratch / "driven").string();
-  const ProgramResult shaped = runFisherHill(
-      {"calibrate", guess, trial, "--parameters", "motor.optimal_force,band.stiffness,emg.gain",
-       "--step", "0.01", "--noise-deg", "0.01", "--out", driven});
+  const ProgramResult shaped = runFisherHill({"calibrate", guess, trial, "--parameters",
+                                              "motor.optimal_force,band.stiffness,emg.gain",
+                                              "--step", "0.01", "--out", driven});
   ASSERT_EQ(shaped.status, 0) << shaped.err;
   const auto again =
       runFisherHill({"replay", driven + "/calibrated.osim", driven + "/driven_1.sto", "--json"});

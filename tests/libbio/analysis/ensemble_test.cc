@@ -52,16 +52,14 @@ TEST(SystemBatch, RunsAreThoseOfArmsCompiledFromNothing) {
       const Trajectory motion = experiment.simulate(theta);
       ASSERT_EQ(run.outcome, "ok");
       EXPECT_TRUE(std::isnan(run.failedAt));
-      // Newton's tolerance in the short steps after a jump of a length
-      constexpr double same = 1e-6;
-      EXPECT_NEAR(run.last, motion.q(0, motion.q.cols() - 1), same);
-      EXPECT_NEAR(run.lowest, motion.q.minCoeff(), same);
-      EXPECT_NEAR(run.highest, motion.q.maxCoeff(), same);
-      EXPECT_LT((run.atCourse - experiment.outputs(theta)).cwiseAbs().maxCoeff(), same);
+      EXPECT_NEAR(run.last, motion.q(0, motion.q.cols() - 1), 1e-9);
+      EXPECT_NEAR(run.lowest, motion.q.minCoeff(), 1e-9);
+      EXPECT_NEAR(run.highest, motion.q.maxCoeff(), 1e-9);
+      EXPECT_LT((run.atCourse - experiment.outputs(theta)).cwiseAbs().maxCoeff(), 1e-9);
       const Eigen::ArrayXd change = (motion.q - nominal.q).row(0).transpose();
-      EXPECT_NEAR(run.rmsFromNominal, std::sqrt(change.square().mean()), same);
+      EXPECT_NEAR(run.rmsFromNominal, std::sqrt(change.square().mean()), 1e-9);
       EXPECT_NEAR(run.rmsError,
-                  compareWithMeasured(elbow.arm, motion, elbow.trial.measured.front()).rms, same);
+                  compareWithMeasured(elbow.arm, motion, elbow.trial.measured.front()).rms, 1e-9);
     }
   }
 }

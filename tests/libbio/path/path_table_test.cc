@@ -170,7 +170,7 @@ TEST(PathTable, SimulatesTheSameMotion) {
   const Trajectory exact = motion(plain), found = motion(tabulated);
   ASSERT_EQ(exact.outcome, Outcome::completed);
   ASSERT_GT(exact.q.maxCoeff() - exact.q.minCoeff(), 20 * degree);
-  EXPECT_LT((found.q - exact.q).cwiseAbs().maxCoeff(), 1e-7);
+  EXPECT_LT((found.q - exact.q).cwiseAbs().maxCoeff(), 1e-9);
   EXPECT_EQ(found.steps, exact.steps);
 }
 

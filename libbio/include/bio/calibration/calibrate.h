@@ -60,7 +60,7 @@ struct CalibratedParameter {
   double sd, lower, upper;
   bool byLikelihood = false;      ///< the interval is that of the profile likelihood
   info::Determinacy determinacy;  ///< identifiability from the data alone
-  std::string why;                ///< reason why there is no interval; else empty
+  std::string why;  ///< why there is no interval, or one that encloses other minima; else empty
   std::optional<info::ProfileInterval> profile;
   /// From the bootstrap; NaN without bootstrap or interval.
   double bootstrapSd, bootstrapLower, bootstrapUpper;

@@ -18,8 +18,9 @@ void addDelay(EncompassingModel& model) {
       model.add(amplitude("delay.time", "s", 0, 0.25, 0.05),
                 {Meaning::Kind::shift, {{model.number(EmgTarget{What::delay, ""}, 0)}}});
   model.add(candidate(model, "delay", "electromechanical delay",
-                      "The muscles act later than their EMG indicates.", EffectKind::input, {d},
-                      {{0.02}}, {"clock"}));
+                      "The muscles act later than their EMG indicates. EMG that a low-pass filter "
+                      "has smoothed may look like this.",
+                      EffectKind::input, {d}, {{0.02}}, {"clock"}));
 }
 
 void addShape(EncompassingModel& model) {

@@ -95,7 +95,8 @@ void addMassError(EncompassingModel& model) {
 void addActivationError(EncompassingModel& model) {
   if (model.arm().numMuscles() == 0) return;
   addBeyond(model, model.find(timeName), 0.8, "tau", "time scale of activation",
-            "The muscles' activation is slower or faster than in the model.");
+            "The muscles' activation is slower or faster than in the model. EMG that a low-pass "
+            "filter has smoothed looks the same as slower activation.");
 }
 
 void addMuscleErrors(EncompassingModel& model) {

@@ -128,8 +128,15 @@ void LaneDriver::take(int lane, const LaneStep& step) {
     meetSwitch();
     return;
   }
+  if (phase_ == Phase::wholeStep && search_.isAtBegin() && lastJump_ != t0_ && jumps()) {
+    lastJump_ = t0_;
+    returnToBegin();
+    return;
+  }
   if (phase_ != Phase::meetSwitch) {
+    const bool jumpsAtEnd = phase_ == Phase::wholeStep && search_.isAtEnd() && jumps();
     accept(true);
+    if (jumpsAtEnd) lastJump_ = t0_;
     return;
   }
   switch (search_.take(qEnd_)) {
@@ -148,6 +155,12 @@ void LaneDriver::take(int lane, const LaneStep& step) {
 void LaneDriver::noteJump() {
   const Eigen::Matrix<double, 1, 1> q(q_);
   if (sides_->lengthJumps(search_.which(), q)) lastJump_ = t0_;
+}
+
+/// Whether a length does at the switch that the step taken crosses.
+bool LaneDriver::jumps() {
+  using Number = Eigen::Matrix<double, 1, 1>;
+  return sides_->lengthJumps(search_.which(), Number(q_), Number(qEnd_));
 }
 
 /// Steps end in the middle of what is too long for them.

@@ -76,6 +76,7 @@ class LaneDriver {
   void chooseActivation();
   void shortenAfterJump();
   void noteJump();
+  bool jumps();
   void returnToBegin();
   void meetSwitch();
   void jumpSwitch();
