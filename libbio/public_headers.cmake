@@ -117,6 +117,7 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/path/span.h
   include/bio/path/posture_samples.h
   include/bio/path/tree_path.h
+  include/bio/path/with_cylinders.h
   include/bio/path/surface/chain.h
   include/bio/path/surface/chain_change.h
   include/bio/path/surface/ellipsoid_surface.h
