@@ -152,10 +152,12 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/skeleton/tree_motion.h
   include/bio/tables/c3d_file.h
   include/bio/tables/coordinate_curve.h
+  include/bio/tables/different_trials.h
   include/bio/tables/experimental_conditions.h
   include/bio/tables/file_error.h
   include/bio/tables/observable.h
   include/bio/tables/marker_trajectories.h
+  include/bio/tables/recorded_file.h
   include/bio/tables/recording.h
   include/bio/tables/study_file.h
   include/bio/tables/table_file.h
