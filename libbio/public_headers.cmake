@@ -117,6 +117,7 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/path/span.h
   include/bio/path/posture_samples.h
   include/bio/path/tree_path.h
+  include/bio/path/with_cylinders.h
   include/bio/path/surface/chain.h
   include/bio/path/surface/chain_change.h
   include/bio/path/surface/ellipsoid_surface.h
@@ -151,10 +152,12 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/skeleton/tree_motion.h
   include/bio/tables/c3d_file.h
   include/bio/tables/coordinate_curve.h
+  include/bio/tables/different_trials.h
   include/bio/tables/experimental_conditions.h
   include/bio/tables/file_error.h
   include/bio/tables/observable.h
   include/bio/tables/marker_trajectories.h
+  include/bio/tables/recorded_file.h
   include/bio/tables/recording.h
   include/bio/tables/study_file.h
   include/bio/tables/table_file.h

@@ -11,6 +11,7 @@
 #include "bio/model/integrator_names.h"
 #include "bio/opensim/external_loads.h"
 #include "bio/opensim/osim_file.h"
+#include "bio/path/with_cylinders.h"
 #include "bio/skeleton/articulated_tree.h"
 #include "bio/tables/trial_table.h"
 #include "docstrings.h"
@@ -23,9 +24,11 @@ bio::Trial trialOfColumns(const bio::Model& model, const py::dict& columns, cons
                           bool ignoreExtra, double knownMassInHand, double knownArmTurn,
                           const std::vector<std::string>& prescribe,
                           const std::map<std::string, double>& hold,
-                          std::optional<double> prescribeCutoff) {
+                          std::optional<double> prescribeCutoff,
+                          const std::string& latentExcitation) {
   bio::Table table;
   table.metadata = bio::headerOf({knownMassInHand, knownArmTurn});
+  if (!latentExcitation.empty()) table.metadata["latent_excitation"] = latentExcitation;
   for (const auto& [key, values] : columns) {
     const auto column = values.cast<Eigen::VectorXd>();
     const auto index = static_cast<Eigen::Index>(table.columns.size());
@@ -140,15 +143,16 @@ py::dict reactionsOf(const bio::MusculoskeletalSystem& arm, const bio::Trajector
 }
 
 py::object replay(const bio::Model& given, const bio::Trial& trial,
-                  const std::map<std::string, double>& initial, const Names& coordinate,
-                  const std::map<std::string, double>& lock, const std::string& integrator,
-                  std::optional<double> step) {
+                  const std::map<std::string, double>& initial, bool strict,
+                  const Names& coordinate, const std::map<std::string, double>& lock,
+                  const std::string& integrator, std::optional<double> step) {
   const SystemChoice choice = armChoice(given, {trial}, coordinate, lock, integrator, step);
   bio::requireLoadsCover(given.externalLoads, trial.times[0], trial.times[0] + trial.duration());
   bio::TrialReplay replayed;
   const bio::Trajectory& motion = replayed.motion;
   bio::MuscleReport muscles;
   double energyError = 0;
+  std::optional<bio::LeftRange> left;
   std::unique_ptr<bio::MusculoskeletalSystem> arm;
   interruptible([&](const std::atomic<bool>& goOn) {
     const bio::Model model =
@@ -165,24 +169,26 @@ py::object replay(const bio::Model& given, const bio::Trial& trial,
         bio::replayTrial(*arm, trial, options, bio::beginningOf(trial, model, *arm, initial));
     muscles = bio::reportMuscles(*arm, motion);
     energyError = bio::energyError(*arm, motion);
+    left = bio::leftRange(*arm, motion);
   });
+  if (strict && left) throw std::runtime_error(left->what);
   std::vector<std::string> coordinates, names;
   for (const auto& one : arm->skeleton().coordinates()) coordinates.push_back(one.name);
   for (const auto& one : arm->muscles()) names.push_back(one.name);
-  return results("time"_a = py::array_t<double>(py::cast(motion.time)),
-                 "coordinates"_a = coordinates, "muscles"_a = names,
-                 "q"_a = motion.q.transpose().eval(), "q_dot"_a = motion.qDot.transpose().eval(),
-                 "activation"_a = motion.activation.transpose().eval(),
-                 "fibre_length"_a = motion.fibreLength.transpose().eval(),
-                 "tendon_force"_a = muscles.tendonForce.transpose().eval(),
-                 "moment_arm"_a = muscles.momentArm.transpose().eval(),
-                 "reaction"_a = reactionsOf(*arm, motion),
-                 "rms_error"_a = errorsOf(*arm, trial, motion),
-                 "channel_rms_error"_a = channelErrorsOf(replayed), "energy_error"_a = energyError,
-                 "outcome"_a = bio::name(motion.outcome), "why"_a = motion.why,
-                 "start_from"_a = bio::name(replayed.beginning.from),
-                 "step"_a = replayed.options.step, "steps"_a = motion.steps,
-                 "newton_iterations"_a = motion.newtonIterations, "warnings"_a = arm->warnings());
+  return results(
+      "time"_a = py::array_t<double>(py::cast(motion.time)), "coordinates"_a = coordinates,
+      "muscles"_a = names, "q"_a = motion.q.transpose().eval(),
+      "q_dot"_a = motion.qDot.transpose().eval(),
+      "activation"_a = motion.activation.transpose().eval(),
+      "fibre_length"_a = motion.fibreLength.transpose().eval(),
+      "tendon_force"_a = muscles.tendonForce.transpose().eval(),
+      "moment_arm"_a = muscles.momentArm.transpose().eval(),
+      "reaction"_a = reactionsOf(*arm, motion), "rms_error"_a = errorsOf(*arm, trial, motion),
+      "channel_rms_error"_a = channelErrorsOf(replayed), "energy_error"_a = energyError,
+      "outcome"_a = bio::name(motion.outcome), "why"_a = motion.why,
+      "left_range"_a = left ? left->what : "", "start_from"_a = bio::name(replayed.beginning.from),
+      "step"_a = replayed.options.step, "steps"_a = motion.steps,
+      "newton_iterations"_a = motion.newtonIterations, "warnings"_a = arm->warnings());
 }
 
 }  // namespace
@@ -296,6 +302,7 @@ void defineSystems(py::module_& module) {
           [](const bio::Model& self, const std::string& file) { bio::writeOsim(self, file); },
           "file"_a, docstrings::Model_write)
       .def("with_muscles", &withMuscles, "muscle_class"_a, docstrings::Model_with_muscles)
+      .def("with_cylinders", &bio::withCylinders, "names"_a, docstrings::Model_with_cylinders)
       .def("with_external_loads", &withExternalLoads, "file"_a,
            docstrings::Model_with_external_loads)
       .def("__repr__", [](const bio::Model& self) {
@@ -335,10 +342,11 @@ void defineSystems(py::module_& module) {
              "name"_a = "trial", "ignore_extra"_a = false, "known_mass_in_hand"_a = 0.0,
              "known_arm_turn"_a = 0.0, "prescribe"_a = std::vector<std::string>(),
              "hold"_a = std::map<std::string, double>(), "prescribe_cutoff"_a = py::none(),
-             docstrings::make_trial);
+             "latent_excitation"_a = "", docstrings::make_trial);
   defineReviews(module, model, trial);
   defineWithChoice(module, "replay", &replay, docstrings::replay, "model"_a, "trial"_a,
-                   py::kw_only(), "initial"_a = std::map<std::string, double>());
+                   py::kw_only(), "initial"_a = std::map<std::string, double>(),
+                   "strict"_a = false);
 }
 
 }  // namespace python

@@ -7,6 +7,8 @@
 #include "arms.h"
 #include "bio/calibration/calibrate_at_shorter_steps.h"
 #include "bio/calibration/calibrated_model.h"
+#include "bio/calibration/predicted_series.h"
+#include "bio/tables/different_trials.h"
 #include "docstrings.h"
 #include "interruptible.h"
 
@@ -44,6 +46,25 @@ double rmse(const bio::TrialSet* set, const Eigen::MatrixXd& predicted) {
   return set && predicted.size() > 0 ? std::sqrt(set->meanSquare(predicted)) : NAN;
 }
 
+/// What is predicted of every held-out series.
+py::list predictionsOf(const bio::SteppedCalibration& stepped) {
+  py::list list;
+  if (!stepped.heldOut) return list;
+  const bio::TrialSet& heldOut = *stepped.heldOut;
+  for (const bio::PredictedSeries& one : bio::predictedSeries(
+           *stepped.training, heldOut, stepped.calibration, stepped.options.confidence)) {
+    const bio::MeasuredSeries& series = heldOut.series()[one.series];
+    const bio::MeasuredGroup& channel = heldOut.channels()[series.channel];
+    list.append(results(
+        "trial"_a = heldOut.trials()[series.trial].file, "channel"_a = bio::nameOf(series.what),
+        "unit"_a = channel.areAngles ? "rad" : channel.unit, "peak_measured"_a = one.measuredPeak,
+        "peak_predicted"_a = one.predictedPeak, "sd_of_estimates"_a = one.sdOfEstimates,
+        "noise"_a = one.noise, "interval"_a = py::make_tuple(one.lower, one.upper),
+        "holds_peak"_a = one.holdsPeak, "share_of_samples_held"_a = one.shareHeld));
+  }
+  return list;
+}
+
 /// Latent excitations {muscle: (sd, distance of knots [s])} instead of what the trials say, if any.
 std::vector<bio::Trial> declaring(std::vector<bio::Trial> trials, const Pairs& latent) {
   for (bio::Trial& trial : trials) {
@@ -67,6 +88,7 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
   const SystemChoice choice = armChoice(model, trials, coordinate, lock, integrator, step);
   for (const auto* set : {&trials, &holdOut})
     for (const bio::Trial& trial : *set) mustBeOfTheModelAsItIs(trial);
+  bio::requireDifferentTrials(trials, holdOut);
   bio::CalibrationOptions options;
   options.trials.parameters = parameters;
   options.trials.ownStart = ownStart;
@@ -114,6 +136,7 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
                  "rmse_after"_a = calibrated ? calibrated->rms(false) : NAN,
                  "rmse_held_out_before"_a = rmse(stepped.heldOut.get(), found.heldOutBefore),
                  "rmse_held_out"_a = calibrated ? calibrated->rms(true) : NAN,
+                 "held_out_predictions"_a = predictionsOf(stepped),
                  "model"_a = calibrated ? py::cast(calibrated->model) : py::none());
 }
 

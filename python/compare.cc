@@ -9,11 +9,56 @@
 #include "bio/analysis/replay.h"
 #include "bio/model/integrator_names.h"
 #include "bio/opensim/external_loads.h"
+#include "bio/tables/coordinate_curve.h"
 #include "docstrings.h"
 #include "interruptible.h"
 
 namespace python {
 namespace {
+
+/// A table of states, or times [s] and values [rad].
+using OtherMotion = std::variant<std::string, std::pair<Eigen::VectorXd, Eigen::VectorXd>>;
+
+bio::CoordinateCurve curveOf(const std::string& name, const OtherMotion& motion,
+                             const bio::Coordinate& coordinate) {
+  if (const auto* file = std::get_if<std::string>(&motion)) {
+    return bio::readCoordinate(*file, coordinate);
+  }
+  const auto& [times, values] = std::get<1>(motion);
+  if (times.size() != values.size()) {
+    throw std::invalid_argument(fmt::format("also: '{}' has {} times and {} values, must be equal",
+                                            name, times.size(), values.size()));
+  }
+  return {{times.begin(), times.end()}, {values.begin(), values.end()}};
+}
+
+/// Curves of the coordinate by which motions are compared, the first that turns; null: none does.
+struct OtherCurves {
+  const bio::Coordinate* coordinate = nullptr;
+  std::map<std::string, bio::CoordinateCurve> curves = {};
+
+  OtherCurves(const std::map<std::string, OtherMotion>& also,
+              const bio::MusculoskeletalSystem& system) {
+    for (const bio::Coordinate& one : system.skeleton().coordinates()) {
+      if (one.isRotation && coordinate == nullptr) coordinate = &one;
+    }
+    if (coordinate == nullptr) return;
+    for (const auto& [name, motion] : also) curves[name] = curveOf(name, motion, *coordinate);
+  }
+
+  /// RMS differences from the reference [rad]; NaN without a reference.
+  std::map<std::string, double> rms(const bio::MusculoskeletalSystem& system,
+                                    const bio::ConvergedReference& reference) const {
+    std::map<std::string, double> differences;
+    for (const auto& [name, curve] : curves) {
+      differences[name] =
+          reference.completed()
+              ? bio::rmsDifference(system, curve, reference.motion, coordinate->name)
+              : std::numeric_limits<double>::quiet_NaN();
+    }
+    return differences;
+  }
+};
 
 /// Ends a comparison early; interruptible() drops it.
 struct Stopped : std::exception {};
@@ -80,7 +125,7 @@ py::object cellOf(const bio::CompareCell& cell) {
 }
 
 py::object comparisonOf(const bio::Comparison& comparison, const bio::MusculoskeletalSystem& system,
-                        const bio::CompareOptions& options) {
+                        const bio::CompareOptions& options, const OtherCurves& others) {
   py::list cells;
   for (const bio::CompareCell& cell : comparison.cells) cells.append(cellOf(cell));
   py::dict limits, orders;
@@ -100,13 +145,15 @@ py::object comparisonOf(const bio::Comparison& comparison, const bio::Musculoske
   }
   return results("coordinates"_a = coordinates, "reference"_a = referenceOf(comparison.reference),
                  "runs"_a = cells, "largest_stable_step"_a = limits, "observed_order"_a = orders,
+                 "also"_a = others.rms(system, comparison.reference),
                  "stable_means_rms_below"_a = options.usefulError, "warnings"_a = warnings);
 }
 
 py::object compare(const bio::Model& model, const bio::Trial& trial,
                    const std::vector<std::string>& integrators, const std::vector<double>& steps,
-                   int timings, const std::map<std::string, double>& initial,
-                   const Names& coordinate, const std::map<std::string, double>& lock) {
+                   int timings, const std::map<std::string, OtherMotion>& also,
+                   const std::map<std::string, double>& initial, const Names& coordinate,
+                   const std::map<std::string, double>& lock) {
   const SystemChoice choice = armChoice(model, {trial}, coordinate, lock, "vi", {});
   bio::CompareOptions options;
   options.integrators.clear();
@@ -121,9 +168,11 @@ py::object compare(const bio::Model& model, const bio::Trial& trial,
   options.steps = steps;
   options.timings = timings;
   std::optional<PreparedTrial> at;
+  std::optional<OtherCurves> others;
   bio::Comparison comparison;
   interruptible([&](const std::atomic<bool>& goOn) {
     at.emplace(prepared(model, trial, choice, initial));
+    others.emplace(also, at->system);
     options.startTime = at->simulation.startTime;
     options.duration = at->simulation.duration;
     options.externalForce = at->simulation.externalForce;
@@ -134,7 +183,7 @@ py::object compare(const bio::Model& model, const bio::Trial& trial,
     start.qDot = at->start.qDot;
     comparison = bio::compareIntegrators(at->system, at->excitation, start, options);
   });
-  return comparisonOf(comparison, at->system, options);
+  return comparisonOf(comparison, at->system, options, *others);
 }
 
 py::object classOf(const bio::MuscleClassMotion& one) {
@@ -196,6 +245,7 @@ void defineComparisons(py::module_& module) {
   module.def("compare", &compare, docstrings::compare, "model"_a, "trial"_a, py::kw_only(),
              "integrators"_a = std::vector<std::string>{"rk4", "vi", "vi-left", "cvode"},
              "steps"_a = bio::CompareOptions().steps, "timings"_a = 5,
+             "also"_a = std::map<std::string, OtherMotion>(),
              "initial"_a = std::map<std::string, double>(),
              "coordinate"_a = std::vector<std::string>(),
              "lock"_a = std::map<std::string, double>());

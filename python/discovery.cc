@@ -4,7 +4,10 @@
 #include <optional>
 
 #include "arms.h"
+#include "bio/discovery/effect_names.h"
+#include "bio/discovery/effects.h"
 #include "bio/discovery/workflow.h"
+#include "bio/tables/different_trials.h"
 #include "bio/tables/trial_table.h"
 #include "docstrings.h"
 #include "info/discovery/judgement/separation.h"
@@ -141,13 +144,11 @@ py::list fittedOf(const std::vector<info::discover::FittedNumber>& fitted) {
   return list;
 }
 
-py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
-                    const std::vector<bio::Trial>& holdOut, std::optional<double> noise,
-                    const std::vector<std::string>& without, int maxEffects,
-                    std::optional<double> inputScatter, const Names& coordinate,
-                    const std::map<std::string, double>& lock, const std::string& integrator,
-                    std::optional<double> firstStep) {
-  const SystemChoice choice = armChoice(model, trials, coordinate, lock, integrator, firstStep);
+/// What is searched: one coordinate that is free.
+SystemChoice searchedChoice(const bio::Model& model, const std::vector<bio::Trial>& trials,
+                            const Names& coordinate, const std::map<std::string, double>& lock,
+                            const std::string& integrator, std::optional<double> step) {
+  SystemChoice choice = armChoice(model, trials, coordinate, lock, integrator, step);
   if (!choice.prescribed.empty()) {
     throw std::invalid_argument(
         fmt::format("'{}' is prescribed, which discover does not take: lock it or make it free",
@@ -156,6 +157,41 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
   if (choice.coordinates.size() != 1) {
     throw std::invalid_argument("coordinate: several are free, must be one for discover");
   }
+  return choice;
+}
+
+py::object listEffects(const bio::Model& model, const Names& coordinate,
+                       const std::map<std::string, double>& lock) {
+  const SystemChoice choice = searchedChoice(model, {}, coordinate, lock, "vi", {});
+  std::optional<bio::discover::EncompassingModel> encompassing;
+  interruptible([&](const std::atomic<bool>&) {
+    encompassing.emplace(
+        bio::discover::encompassingModel(model, choice.armOptions(), choice.coordinates.front()));
+  });
+  py::list effects;
+  for (const info::discover::Candidate& one : encompassing->candidates()) {
+    py::dict parameters;
+    for (const std::size_t k : one.quantities) {
+      const info::discover::Quantity& quantity = encompassing->quantities()[k];
+      parameters[quantity.name.c_str()] = quantity.unit;
+    }
+    effects.append(results("id"_a = one.id, "long_id"_a = bio::discover::effectLongName(one.id),
+                           "name"_a = one.name, "kind"_a = info::discover::name(one.kind),
+                           "meaning"_a = one.sentence, "parameters"_a = parameters,
+                           "equivalents"_a = one.equivalents));
+  }
+  return results("effects"_a = effects, "present"_a = encompassing->present());
+}
+
+py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
+                    const std::vector<bio::Trial>& holdOut, std::optional<double> noise,
+                    const std::vector<std::string>& without, int maxEffects,
+                    std::optional<double> inputScatter, const Names& coordinate,
+                    const std::map<std::string, double>& lock, const std::string& integrator,
+                    std::optional<double> firstStep) {
+  const SystemChoice choice =
+      searchedChoice(model, trials, coordinate, lock, integrator, firstStep);
+  bio::requireDifferentTrials(trials, holdOut);
   trials.insert(trials.end(), holdOut.begin(), holdOut.end());
   bio::discover::DiscoveryRequest asked{model,
                                         choice.armOptions(),
@@ -216,6 +252,9 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
 }  // namespace
 
 void defineDiscovery(py::module_& module) {
+  module.def("list_effects", &listEffects, "model"_a, py::kw_only(),
+             "coordinate"_a = std::vector<std::string>(),
+             "lock"_a = std::map<std::string, double>(), docstrings::list_effects);
   defineWithChoice(module, "discover", &discover, docstrings::discover, "model"_a, "trials"_a,
                    py::kw_only(), "hold_out"_a = std::vector<bio::Trial>(), "noise"_a = py::none(),
                    "without"_a = std::vector<std::string>(), "max_effects"_a = 3,

@@ -1,9 +1,12 @@
 #include "bio/emg/emg.h"
 
+#include <limits>
+
 #include "arms.h"
 #include "bio/emg/emg_config.h"
 #include "bio/emg/emg_recordings.h"
 #include "bio/emg/emg_trial.h"
+#include "bio/tables/recorded_file.h"
 #include "docstrings.h"
 #include "interruptible.h"
 
@@ -52,11 +55,35 @@ py::object emg(const Names& recordings, const std::string& config, const std::st
                  "remarks"_a = result.remarks, "warnings"_a = result.warnings);
 }
 
+/// As `check` shows it.
+py::object readRecording(const std::string& file) {
+  bio::RecordedFile recorded;
+  interruptible([&](const std::atomic<bool>&) { recorded = bio::readRecordedFile(file); });
+  py::dict markers;
+  Eigen::VectorXd times;
+  if (recorded.markers) {
+    times = recorded.markers->times;
+    for (const std::string& name : recorded.markers->names) {
+      markers[name.c_str()] = Eigen::MatrixXd(bio::positionsOf(*recorded.markers, name));
+    }
+  }
+  py::list channels;
+  for (const bio::Channel& one : recorded.channels) {
+    channels.append(results("name"_a = one.name, "unit"_a = one.unit, "rate"_a = one.rate,
+                            "start_time"_a = one.startTime, "values"_a = one.values));
+  }
+  return results("markers"_a = markers, "times"_a = times,
+                 "frame_rate"_a = recorded.markers ? recorded.markers->rate
+                                                   : std::numeric_limits<double>::quiet_NaN(),
+                 "channels"_a = channels, "remarks"_a = recorded.remarks);
+}
+
 }  // namespace
 
 void defineEmg(py::module_& module) {
   module.def("emg", &emg, "recordings"_a, "config"_a, py::kw_only(), "write"_a = "",
              docstrings::emg);
+  module.def("read_recording", &readRecording, "file"_a, docstrings::read_recording);
 }
 
 }  // namespace python

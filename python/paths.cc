@@ -70,14 +70,29 @@ py::object fitOf(const bio::MuscleFit& one) {
 }
 
 py::object fitPaths(const bio::Model& model, const std::vector<std::string>& muscles,
-                    double tolerance, int order, const Names& coordinate,
+                    double tolerance, int order, const std::string& table, const Names& coordinate,
                     const std::map<std::string, double>& lock,
                     const std::vector<std::string>& wrapAsCylinder) {
-  const SystemChoice choice = armChoice(model, {}, coordinate, lock, "vi", {});
+  std::optional<bio::LengthTable> lengths;
+  if (!table.empty()) {
+    if (coordinate != Names(std::vector<std::string>())) {
+      throw std::invalid_argument("coordinate: with a table its coordinates are free");
+    }
+    lengths = bio::readLengths(table, model);
+  }
+  SystemChoice choice;
+  if (lengths) {
+    choice.coordinates = lengths->postures.coordinates;
+    choice.locks = lock;
+  } else {
+    choice = armChoice(model, {}, coordinate, lock, "vi", {});
+  }
+  const bio::SkeletonOptions skeleton = choice.armOptions().skeleton;
+  const bio::PathFitOptions options{tolerance, order};
   std::vector<bio::MuscleFit> fits;
   interruptible([&](const std::atomic<bool>&) {
-    fits = bio::fitPaths(model, choice.armOptions().skeleton, wrapAsCylinder, muscles,
-                         {tolerance, order});
+    fits = lengths ? bio::fitPathsToTable(model, skeleton, *lengths, muscles, options)
+                   : bio::fitPaths(model, skeleton, wrapAsCylinder, muscles, options);
   });
   if (fits.empty()) {
     throw std::invalid_argument(
@@ -97,7 +112,7 @@ void definePaths(py::module_& module) {
              "wrap_as_cylinder"_a = std::vector<std::string>(), docstrings::moment_arms);
   module.def("fit_paths", &fitPaths, "model"_a, py::kw_only(),
              "muscles"_a = std::vector<std::string>(), "tolerance"_a = 1e-4, "order"_a = 9,
-             "coordinate"_a = std::vector<std::string>(),
+             "table"_a = "", "coordinate"_a = std::vector<std::string>(),
              "lock"_a = std::map<std::string, double>(),
              "wrap_as_cylinder"_a = std::vector<std::string>(), docstrings::fit_paths);
 }

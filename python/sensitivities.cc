@@ -10,6 +10,7 @@
 #include "bio/analysis/sensitivity_study.h"
 #include "bio/calibration/trial_set.h"
 #include "bio/model/integrator_names.h"
+#include "bio/tables/different_trials.h"
 #include "docstrings.h"
 #include "interruptible.h"
 
@@ -41,6 +42,7 @@ Studies begun(const bio::Model& model, const std::vector<bio::Trial>& trials,
       armChoice(model, trials, chosen.coordinate, chosen.lock, chosen.integrator, chosen.step)};
   if (trials.empty()) throw std::invalid_argument("trials: empty, must have at least one");
   for (const bio::Trial& trial : trials) mustBeOfTheModelAsItIs(trial);
+  bio::requireDifferentTrials(trials, {});
   return studies;
 }
 

@@ -1,6 +1,7 @@
 #include <numbers>
 
 #include "arms.h"
+#include "bio/model/free_coordinates.h"
 #include "bio/tables/study_file.h"
 #include "docstrings.h"
 
@@ -31,10 +32,38 @@ py::object readStudy(const std::string& file) {
                  "step"_a = study.step_s, "subjects"_a = subjects);
 }
 
+/// {coordinate: value [rad] or [m]} at which trials measure the moment of a coordinate that does
+/// not move, where load_trial's `hold` has it, as the program holds it.
+std::map<std::string, double> heldIn(const bio::Model& model, const std::vector<bio::Trial>& trials,
+                                     const std::vector<std::string>& coordinates,
+                                     const std::map<std::string, double>& lock) {
+  std::set<std::string> moments, measured;
+  for (const bio::Trial& trial : trials) {
+    for (const bio::MeasuredMotion& one : trial.measured) measured.insert(one.coordinate);
+    for (const bio::MeasuredChannel& one : trial.channels)
+      if (one.what.kind == bio::Observable::Kind::moment) moments.insert(one.what.of);
+  }
+  std::set<std::string> locked, asked(coordinates.begin(), coordinates.end());
+  for (const auto& [name, value] : lock) locked.insert(name);
+  asked.insert(locked.begin(), locked.end());
+  const std::vector<std::string> prescribed = bio::prescribedByModel(model, asked);
+  std::vector<std::string> moving = coordinates;
+  if (moving.empty()) {
+    locked.insert(prescribed.begin(), prescribed.end());
+    moving = bio::freeByDefault(model, locked, measured, !prescribed.empty() || !moments.empty());
+  }
+  moving.insert(moving.end(), prescribed.begin(), prescribed.end());
+  std::map<std::string, double> held =
+      bio::heldCoordinates(model, {moving.begin(), moving.end()}, lock);
+  std::erase_if(held, [&](const auto& one) { return !moments.contains(one.first); });
+  return held;
+}
+
 }  // namespace
 
 void defineStudies(py::module_& module) {
   module.def("read_study", &readStudy, "file"_a, docstrings::read_study);
+  module.def("_held", &heldIn, "model"_a, "trials"_a, "coordinates"_a, "lock"_a);
   module.attr("_study_docstring") = docstrings::study;  // of _study.py
 }
 

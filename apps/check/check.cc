@@ -12,6 +12,7 @@
 #include "bio/opensim/osim_file.h"
 #include "bio/path/length_jumps.h"
 #include "bio/tables/file_error.h"
+#include "bio/tables/recorded_file.h"
 #include "bio/tables/table_file.h"
 #include "bio/tables/trial.h"
 #include "bio/tables/trial_review.h"
@@ -200,7 +201,7 @@ class Check : public Command {
             modelFiles.push_back(file);
           }
           const Contents contents = areModels ? checkModel(file, models.back(), findings)
-                                    : isRecordedFile(file)
+                                    : bio::isRecordedFile(file)
                                         ? checkRecording(file, findings, summary, recordings)
                                         : checkTrial(file, models, findings);
           report.details.insert(report.details.end(), contents.begin(), contents.end());

@@ -15,10 +15,7 @@ struct RecordingContents {
   std::vector<std::string> remarks;  ///< what was left out, assumed, or looks odd
 };
 
-/// Whether the name says C3D, XDF or TRC.
-bool isRecordedFile(const std::string& file);
-
-/// @throws bio::FileError as the readers
+/// @throws what bio::readRecordedFile throws
 RecordingContents recordingContents(const std::string& file);
 
 }  // namespace app

@@ -5,20 +5,16 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "bio/tables/different_trials.h"
+
 namespace app {
 
 void inputsMustDiffer(const Summary& summary, std::size_t training, std::size_t first) {
-  const auto& inputs = summary.inputs();
-  for (std::size_t i = first; i < inputs.size(); ++i) {
-    for (std::size_t j = i + 1; j < inputs.size(); ++j) {
-      if (inputs[i].sha256 != inputs[j].sha256) continue;
-      const bool between = i < first + training && j >= first + training;
-      throw std::invalid_argument(
-          between ? fmt::format("{}: is held out and also used for estimation, as {}",
-                                inputs[j].path, inputs[i].path)
-                  : fmt::format("{}: is the same trial as {}", inputs[j].path, inputs[i].path));
-    }
+  std::vector<bio::TrialIdentity> trials;
+  for (std::size_t i = first; i < summary.inputs().size(); ++i) {
+    trials.push_back({summary.inputs()[i].path, summary.inputs()[i].sha256});
   }
+  bio::requireDifferentTrials(trials, training);
 }
 
 void resultsMustNotBeInputs(const Summary& summary, const OutputFolder& folder,

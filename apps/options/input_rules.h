@@ -9,8 +9,7 @@
 /// Rules for commands with calibration and held-out trials.
 namespace app {
 
-/// No trial may be given twice, since it would count twice, and no held-out trial may be used for
-/// estimation.
+/// bio::requireDifferentTrials() for the inputs of a command.
 /// @param summary its inputs are the model, the calibration trials, the held-out trials
 /// @param training number of calibration trials
 /// @param first index of the first trial among the inputs

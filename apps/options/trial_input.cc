@@ -146,21 +146,20 @@ void takePrescribedByModel(SimulationOptions& options, const bio::Model& model, 
 /// The locked coordinates at which a moment is measured, or all of them.
 void holdLocked(SimulationOptions& options, const bio::Model& model,
                 const std::set<std::string>& moments, bool all) {
-  const std::map<std::string, double> locks = byName(options.locks);
+  std::set<std::string> others(options.prescribed.begin(), options.prescribed.end());
+  others.insert(options.prescribedByModel.begin(), options.prescribedByModel.end());
   for (const std::string& name : bio::independentCoordinates(model)) {
-    if (contains(options.prescribed, name) || contains(options.prescribedByModel, name)) continue;
-    const bool isMeasured = moments.contains(name);
-    if (contains(options.coordinates, name)) {
-      if (!isMeasured) continue;
+    if (others.contains(name) || !contains(options.coordinates, name)) continue;
+    if (moments.contains(name)) {
       throw std::invalid_argument(fmt::format(
           "'{0}.moment' is measured, but '{0}' is free to move, where nothing holds it: must be "
           "prescribed (--prescribe {0}, its motion is that of the trial) or locked (--lock {0}=…)",
           name));
     }
-    if (!isMeasured && !all) continue;
-    const auto at = locks.find(name);
-    options.held[name] =
-        at != locks.end() ? at->second : bio::findCoordinate(model, name).defaultValue;
+    others.insert(name);
+  }
+  for (const auto& [name, value] : bio::heldCoordinates(model, others, byName(options.locks))) {
+    if (all || moments.contains(name)) options.held[name] = value;
   }
 }
 

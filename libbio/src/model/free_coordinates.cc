@@ -48,4 +48,16 @@ std::vector<std::string> prescribedByModel(const Model& model,
   return names;
 }
 
+std::map<std::string, double> heldCoordinates(const Model& model,
+                                              const std::set<std::string>& freeOrPrescribed,
+                                              const std::map<std::string, double>& locks) {
+  std::map<std::string, double> held;
+  for (const std::string& name : independentCoordinates(model)) {
+    if (freeOrPrescribed.contains(name)) continue;
+    const auto at = locks.find(name);
+    held[name] = at != locks.end() ? at->second : findCoordinate(model, name).defaultValue;
+  }
+  return held;
+}
+
 }  // namespace bio

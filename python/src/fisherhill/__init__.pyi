@@ -39,6 +39,7 @@ __all__ = [
     "global_sensitivity",
     "identifiability",
     "length_jumps",
+    "list_effects",
     "list_parameters",
     "load_model",
     "load_trial",
@@ -48,6 +49,7 @@ __all__ = [
     "opensim_differences",
     "parameter_sweep",
     "profile_likelihood",
+    "read_recording",
     "read_study",
     "replay",
     "sensitivity",
@@ -141,8 +143,29 @@ class Model:
             For another class, or a muscle whose numbers break a rule of it.
         """
 
+    def with_cylinders(self, names: Sequence[str]) -> Model:
+        """The model with wrap cylinders in place of ellipsoids, as --wrap-as-cylinder takes them.
+
+        Parameters
+        ----------
+        names : list of str
+            Wrap ellipsoids with two equal semi-axes, which are the radius; the third is the axis and
+            half the length. Objects of another shape, and spheres, stay as they are.
+
+        Returns
+        -------
+        Model
+            With a remark on each. The cylinder's axis is z of its frame, to which its parameters
+            rotation.x to rotation.z refer. Files that it is written to have cylinders, too.
+
+        Raises
+        ------
+        ValueError
+            For an unknown name, or an ellipsoid without two equal semi-axes.
+        """
+
     def with_external_loads(self, file: str) -> Model:
-        """The model with forces and torques on bodies, which replay simulates.
+        """The model with forces and torques on bodies, which replay and comparisons simulate.
 
         Parameters
         ----------
@@ -286,6 +309,7 @@ def make_trial(
     prescribe: Sequence[str] = [],
     hold: dict[str, float] = {},
     prescribe_cutoff: float | None = None,
+    latent_excitation: str = "",
 ) -> Trial:
     """Makes a trial from arrays.
 
@@ -309,6 +333,9 @@ def make_trial(
         rises.
     prescribe, hold, prescribe_cutoff
         As in load_trial.
+    latent_excitation : str
+        What a file's header line of that name says, 'MUSCLE SD SECONDS', several between semicolons:
+        muscles without an electrode, whose excitations calibrate corrects; empty: none.
 
     Returns
     -------
@@ -349,8 +376,9 @@ class EmgResult:
 def emg(recordings: str | Sequence[str], config: str, *, write: str = "") -> EmgResult:
     """Converts raw EMG recordings of one movement into the columns of a trial.
 
-    make_trial(model, emg(recordings, config).columns) is the trial, without latent_excitation;
-    load_trial of the written file has that, too.
+    With e = emg(recordings, config), the trial is
+    make_trial(model, e.columns, latent_excitation=e.latent_excitation), or load_trial of the written
+    file.
 
     Parameters
     ----------
@@ -393,7 +421,7 @@ def emg(recordings: str | Sequence[str], config: str, *, write: str = "") -> Emg
         {file: offset [s]} of further recordings: time of the first = its own + offset.
     latent_excitation : str
         The header line of that name of a trial's file, if calibrate may correct muscles without an
-        electrode, else empty; make_trial has no headers.
+        electrode, else empty; make_trial takes it.
     remarks, warnings : list of str
         Processing steps and limitations; channels that look wrong.
 
@@ -402,6 +430,56 @@ def emg(recordings: str | Sequence[str], config: str, *, write: str = "") -> Emg
     ValueError
         If a file cannot be read, a channel is missing or has gaps, or a setting breaks a rule; the
         line names file and key, or channel.
+    """
+
+@type_check_only
+class RecordedChannel:
+    name: str
+    unit: str
+    rate: float
+    start_time: float
+    values: _Array
+
+@type_check_only
+class RecordedFile:
+    markers: dict[str, _Array]
+    times: _Array
+    frame_rate: float
+    channels: list[RecordedChannel]
+    remarks: list[str]
+
+def read_recording(file: str) -> RecordedFile:
+    """Reads markers and signals of a C3D, XDF or TRC file, whose contents check shows.
+
+    Parameters
+    ----------
+    file : str
+        (.c3d, .xdf, .trc)
+
+    Returns
+    -------
+    markers : dict
+        {marker: array, frames x 3} in the laboratory's axes [m]; NaN: not seen.
+    times : array, frames
+        [s]; empty without markers.
+    frame_rate : float
+        [Hz]; NaN for a format without markers.
+    channels : list
+        Analog channels, or those of all streams; names need not be unique. Each with
+
+        name, unit : str
+            The unit of its values; empty: not stated in the file.
+        rate, start_time : float
+            [Hz], [s]: value k belongs to start_time + k / rate.
+        values : array
+            NaN: not measured.
+    remarks : list of str
+        What was left out or assumed, and markers that are never seen.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read, contradicts itself or is of another format.
     """
 
 # Muscles ------------------------------------------------------------------------------------------
@@ -460,6 +538,7 @@ class ReplayResult:
     energy_error: float
     outcome: Literal["ok", "unstable", "no solution"]
     why: str
+    left_range: str
     start_from: Literal["given", "model", "measured", "default"]
     step: float
     steps: int
@@ -471,6 +550,7 @@ def replay(
     trial: Trial,
     *,
     initial: dict[str, float] = {},
+    strict: bool = False,
     coordinate: str | Sequence[str] = [],
     lock: dict[str, float] = {},
     integrator: _Integrator = "vi",
@@ -485,6 +565,8 @@ def replay(
     initial : dict
         {coordinate: initial value [rad] or [m]}, at rest. Default: the fitted or first measured value,
         else the model's default value.
+    strict : bool
+        True: RuntimeError if the motion leaves the valid range of the model (left_range).
     coordinate : str or list of str
         The free coordinate, or several. Default: the measured coordinates of the trial, else all that
         the model does not lock.
@@ -523,6 +605,9 @@ def replay(
         'ok', 'unstable' or 'no solution'; of the last two the rows up to that time are returned.
     why : str
         The reason if the outcome is not 'ok', else empty.
+    left_range : str
+        When a coordinate first leaves its range by more than a tenth of it, or a fibre 0.2 to 2
+        optimal lengths; empty if none does.
     start_from : str
         Source of the initial state: 'given', 'model' (fitted by discover or calibrate for this trial),
         'measured' or 'default'.
@@ -537,7 +622,8 @@ def replay(
     ValueError
         For an unknown coordinate or integrator, or a step that is not > 0 or longer than the trial.
     RuntimeError
-        If a muscle has no static equilibrium at the start.
+        If a muscle has no static equilibrium at the start, or with strict for a motion that leaves the
+        range.
     """
 
 # Paths --------------------------------------------------------------------------------------------
@@ -686,6 +772,7 @@ def fit_paths(
     muscles: Sequence[str] = [],
     tolerance: float = 0.0001,
     order: int = 9,
+    table: str = "",
     coordinate: str | Sequence[str] = [],
     lock: dict[str, float] = {},
     wrap_as_cylinder: Sequence[str] = [],
@@ -701,10 +788,13 @@ def fit_paths(
         Largest error of a length [m] > 0; a muscle that exceeds it keeps its points.
     order : int
         Highest order tried, 1 to 9.
+    table : str
+        File (.csv) of lengths to fit instead of those of the paths, OpenSim's for example, as
+        moment-arms --postures writes it: columns COORDINATE [rad] or [m] and MUSCLE.length_m [m].
     coordinate, lock
-        As in replay; fitted over the ranges of the free coordinates.
+        As in replay; fitted over the ranges of the free coordinates, with a table those of its columns.
     wrap_as_cylinder
-        As in moment_arms.
+        As in moment_arms; without effect on a table.
 
     Returns
     -------
@@ -725,7 +815,8 @@ def fit_paths(
     Raises
     ------
     ValueError
-        For an unknown muscle or coordinate, a tolerance that is not > 0, or another order.
+        For an unknown muscle or coordinate, a tolerance that is not > 0, another order, a coordinate
+        beside a table, or a table that cannot be read.
     """
 
 # Parameters and their information -----------------------------------------------------------------
@@ -1436,6 +1527,7 @@ class CompareResult:
     runs: list[IntegratorRun]
     largest_stable_step: dict[str, StepLimit]
     observed_order: dict[str, ObservedOrder]
+    also: dict[str, float]
     stable_means_rms_below: float
     warnings: list[str]
 
@@ -1446,6 +1538,7 @@ def compare(
     integrators: Sequence[_Integrator] = ["rk4", "vi", "vi-left", "cvode"],
     steps: Sequence[float] = [0.0002, 0.0003, 0.0005, 0.0008, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05],
     timings: int = 5,
+    also: dict[str, str | tuple[ArrayLike, ArrayLike]] = {},
     initial: dict[str, float] = {},
     coordinate: str | Sequence[str] = [],
     lock: dict[str, float] = {},
@@ -1462,6 +1555,9 @@ def compare(
         Time steps [s] > 0, rising; for 'cvode' the interval of its output.
     timings : int
         Least number of runs of each integrator and step, whose median time is reported >= 1.
+    also : dict
+        {name: motion} of another program to compare with: a table of states with the first free
+        rotation (.sto, .mot, .csv), or (times [s], values [rad]).
     initial : dict
         {coordinate: initial value [rad] or [m]}, at rest. Default: as in replay.
     coordinate : str or list of str
@@ -1526,6 +1622,8 @@ def compare(
     observed_order : dict
         {integrator: order} of the same: order p of an error proportional to step**p (NaN with fewer than
         three usable steps), and steps [s] and errors [rad] of the fit.
+    also : dict
+        {name: RMS difference of that motion from the reference [rad]}; NaN without a reference.
     stable_means_rms_below : float
         [rad]
     warnings : list of str
@@ -1534,8 +1632,9 @@ def compare(
     Raises
     ------
     ValueError
-        For an unknown integrator or one listed twice, steps that do not rise, no free rotation, or a
-        trial with known_mass_in_hand or known_arm_turn.
+        For an unknown integrator or one listed twice, steps that do not rise, no free rotation, a
+        motion of `also` without the coordinate or at other times, or a trial with known_mass_in_hand or
+        known_arm_turn.
     """
 
 @type_check_only
@@ -1654,6 +1753,19 @@ class OtherMinimum:
     nats_of_data: float
 
 @type_check_only
+class HeldOutPrediction:
+    trial: str
+    channel: str
+    unit: str
+    peak_measured: float
+    peak_predicted: float
+    sd_of_estimates: float
+    noise: float
+    interval: tuple[float, float]
+    holds_peak: bool | None
+    share_of_samples_held: float
+
+@type_check_only
 class CalibrationResult:
     estimates: dict[str, ParameterEstimate]
     correlation: _Array
@@ -1668,6 +1780,7 @@ class CalibrationResult:
     rmse_after: float
     rmse_held_out_before: float
     rmse_held_out: float
+    held_out_predictions: list[HeldOutPrediction]
     model: Model | None
 
 def calibrate(
@@ -1776,6 +1889,24 @@ def calibrate(
         RMS errors of the calibration trials with the given and the calibrated model [rad].
     rmse_held_out_before, rmse_held_out : float
         The same for the held-out trials; NaN without any.
+    held_out_predictions : list
+        Of every measured channel of the held-out trials, what the calibrated model predicts, y +- 1.96
+        sqrt(sd**2 + noise**2), angles in rad:
+
+        trial, channel, unit : str
+        peak_measured, peak_predicted : float
+            The values farthest from 0, wherever each is [unit].
+        sd_of_estimates : float
+            Of the predicted peak, from the covariance of the estimates [unit].
+        noise : float
+            Of one sample, from the residuals of the calibration trials; NaN, as all that follows from
+            it, if none of them has the channel [unit].
+        interval : tuple of float
+            Of the peak, 95 % [unit].
+        holds_peak : bool or None
+            Whether the measured peak is in the interval; None: the noise is unknown.
+        share_of_samples_held : float
+            Of all samples, within the interval of their own prediction.
     model : Model or None
         The calibrated model.
 
@@ -1783,7 +1914,8 @@ def calibrate(
     ------
     ValueError
         For an unknown parameter, a trial without a measured angle or with an external torque,
-        known_mass_in_hand or known_arm_turn, or an option out of range.
+        known_mass_in_hand or known_arm_turn, a trial that is given twice or both held out and used
+        for estimation (by its content), or an option out of range.
     RuntimeError
         If no estimate is possible, with the reason.
     """
@@ -2506,8 +2638,59 @@ def discover(
     Raises
     ------
     ValueError
-        For several free coordinates, a trial in which the coordinate was not measured, an unknown id,
-        or an option out of range.
+        For several free coordinates, a trial in which the coordinate was not measured, a trial that is
+        given twice or both held out and used for estimation (by its content), an unknown id, or an
+        option out of range.
+    """
+
+@type_check_only
+class ListedEffect:
+    id: str
+    long_id: str
+    name: str
+    kind: Literal["structure", "input", "geometry", "sensor", "parameter"]
+    meaning: str
+    parameters: dict[str, str]
+    equivalents: list[str]
+
+@type_check_only
+class EffectList:
+    effects: list[ListedEffect]
+    present: dict[str, str]
+
+def list_effects(
+    model: Model, *, coordinate: str | Sequence[str] = [], lock: dict[str, float] = {}
+) -> EffectList:
+    """Lists the effects that discover looks for in the model.
+
+    Parameters
+    ----------
+    model : Model
+    coordinate, lock
+        As in discover. Default of the coordinate: the one that the model does not lock.
+
+    Returns
+    -------
+    effects : list
+        Each with
+
+        id, long_id, name : str
+            Short and long id, both of which `without` of discover takes, and the name.
+        kind : str
+            As of the effects that discover names.
+        meaning : str
+            A sentence.
+        parameters : dict
+            {name: unit}
+        equivalents : list of str
+            Ids of effects that the same data never distinguish from it.
+    present : dict
+        {id: what the model has of it already}, which are not looked for.
+
+    Raises
+    ------
+    ValueError
+        For an unknown coordinate, or several free ones.
     """
 
 # Studies ------------------------------------------------------------------------------------------
@@ -2601,16 +2784,32 @@ class StudyRow:
     calibration: CalibrationResult | None
     discovery: DiscoveryResult | None
 
-def study(file: str, *, seed: int = 1, threads: int = 1) -> list[StudyRow]:
-    """Carries every subject of a study through emg, calibrate with its held-out test, and discover.
+def study(
+    file: str,
+    *,
+    subjects: Sequence[str] | None = None,
+    each: Callable[[StudyRow], object] | None = None,
+    seed: int = 1,
+    threads: int = 1,
+) -> list[StudyRow]:
+    """Carries the subjects of a study through emg, calibrate with its held-out test, and discover.
 
     What cannot be carried out for a subject is the status and message of its row and does not stop
-    the others. One subject is computed after the other.
+    the others. One subject is computed after the other. With `each`, an interruption loses nothing
+    but the subject at work, and the study goes on with those that are left:
+
+        done = {}  # or what an earlier session wrote to a file
+        left = [one.name for one in read_study(file).subjects if one.name not in done]
+        study(file, subjects=left, each=lambda row: done.update({row.subject: row}))
 
     Parameters
     ----------
     file : str
         As in read_study.
+    subjects : list of str, optional
+        Names of those to compute. Default: all.
+    each : callable, optional
+        each(row) gets each row as soon as it is computed; what it raises ends the study.
     seed : int
         Of calibrate.
     threads : int
@@ -2619,7 +2818,7 @@ def study(file: str, *, seed: int = 1, threads: int = 1) -> list[StudyRow]:
     Returns
     -------
     list
-        A row for every subject, in the order of the file, each with
+        A row for every subject asked for, in the order of the file, each with
 
         subject : str
         status : str
@@ -2645,7 +2844,7 @@ def study(file: str, *, seed: int = 1, threads: int = 1) -> list[StudyRow]:
     Raises
     ------
     ValueError
-        As read_study does.
+        As read_study does, and for a name that is no subject's.
     """
 
 # Systems defined in Python ------------------------------------------------------------------------

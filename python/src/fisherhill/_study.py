@@ -1,10 +1,8 @@
 """Carries the subjects of a study through emg, calibrate and discover, as `fisherhill study run` does."""
 
 import contextlib
-import hashlib
 import math
 import os
-import pathlib
 import re
 import tempfile
 from types import SimpleNamespace
@@ -65,24 +63,6 @@ def _trial_files(subject, folder):
     return train, held_out
 
 
-def _must_differ(train, held_out):
-    """No two trials are the same, as the commands have it."""
-    files = [*train, *held_out]
-    contents = [hashlib.sha256(pathlib.Path(file).read_bytes()).digest() for file in files]
-    for i, file in enumerate(files):
-        for j in range(i + 1, len(files)):
-            if contents[i] == contents[j]:
-                between = i < len(train) <= j
-                what = "is held out and also used for estimation, as" if between else "is the same trial as"
-                raise ValueError(f"{files[j]}: {what} {file}")
-
-
-def _held(model, train, locks):
-    """The locked coordinates at which a trial measures the moment, with their values."""
-    measured = {name for file in train for name in fh.load_trial(file, model).channels}
-    return {name: value for name, value in locks.items() if f"{name}.moment" in measured}
-
-
 def _trial(file, model, held):
     trial = fh.load_trial(file, model, hold=held)
     for remark in trial.review(model):
@@ -96,10 +76,11 @@ def _inputs(study, subject, files, moments):
 
     moments: whether the moments at locked coordinates are among the data.
     """
-    _must_differ(*files)
     model = fh.load_model(subject.model)
     locks = _locks(study.lock)
-    held = _held(model, files[0], locks) if moments else {}
+    held = {}
+    if moments:
+        held = fh._held(model, [fh.load_trial(file, model) for file in files[0]], study.coordinates, locks)
     train, held_out = ([_trial(file, model, held) for file in some] for some in files)
     shared = {
         "hold_out": held_out,
@@ -183,9 +164,24 @@ def _row(study, subject, seed, threads):
     return row
 
 
-def study(file, *, seed=1, threads=1):
+def _asked(plan, names):
+    if names is None:
+        return plan.subjects
+    known = [subject.name for subject in plan.subjects]
+    for name in names:
+        if name not in known:
+            raise ValueError(f"subjects: '{name}' is none of the study, which has {', '.join(known)}")
+    return [subject for subject in plan.subjects if subject.name in names]
+
+
+def study(file, *, subjects=None, each=None, seed=1, threads=1):
     plan = fh.read_study(file)
-    return [_row(plan, subject, seed, threads) for subject in plan.subjects]
+    rows = []
+    for subject in _asked(plan, subjects):
+        rows.append(_row(plan, subject, seed, threads))
+        if each is not None:
+            each(rows[-1])
+    return rows
 
 
 study.__doc__ = fh._study_docstring

@@ -75,5 +75,14 @@ TEST(PrescribedByModel, AreThoseThatItPrescribesAndDoesNotLock) {
   EXPECT_THAT(prescribedByModel(model, {"shoulder_elv"}), testing::IsEmpty());
 }
 
+TEST(HeldCoordinates, AreThoseThatDoNotMove) {
+  const Model model = elbowWithUnlocked({"elbow_flexion"});
+  const auto held = heldCoordinates(model, {"elbow_flexion"}, {{"pro_sup", 0.5}});
+  EXPECT_FALSE(held.contains("elbow_flexion"));
+  EXPECT_EQ(held.at("pro_sup"), 0.5);
+  EXPECT_EQ(held.at("shoulder_elv"), findCoordinate(model, "shoulder_elv").defaultValue);
+  EXPECT_FALSE(heldCoordinates(model, {"elbow_flexion", "pro_sup"}, {}).contains("pro_sup"));
+}
+
 }  // namespace
 }  // namespace bio

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -27,5 +28,13 @@ std::vector<std::string> freeByDefault(const Model& model, const std::set<std::s
 /// @throws std::invalid_argument if the function of one is of a class that is not known
 std::vector<std::string> prescribedByModel(const Model& model,
                                            const std::set<std::string>& otherwise);
+
+/// The coordinates that are held in place, with their values [rad] or [m]: those of the model that
+/// are neither free nor prescribed, at the user's value, else the default. Dependent coordinates of
+/// couplers are left out.
+/// @param locks  the user's values
+std::map<std::string, double> heldCoordinates(const Model& model,
+                                              const std::set<std::string>& freeOrPrescribed,
+                                              const std::map<std::string, double>& locks);
 
 }  // namespace bio

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
+
+#include "path/surface/cylinder_of_ellipsoid.h"
 
 namespace bio {
 namespace {
@@ -12,36 +13,18 @@ namespace {
 // A sphere if all semi-axes are equal, a cylinder if asked for; else false.
 bool ellipsoidAsSurface(const WrapObject& object, const std::vector<std::string>& wrapAsCylinder,
                         CandidateWrap& candidate, PathSurface& surface) {
-  const Vec3<double>& s = object.semiAxes;
-  const auto equal = [&](int i, int j) { return std::abs(s[i] - s[j]) <= 1e-9 * s[i]; };
-  if (equal(0, 1) && equal(1, 2)) {
+  if (hasEqualSemiAxes(object.semiAxes)) {
     surface.isSphere = true;
-    surface.radius = s[0];
+    surface.radius = object.semiAxes[0];
     return true;
   }
   const auto& names = wrapAsCylinder;
   if (std::find(names.begin(), names.end(), object.name) == names.end()) return false;
-  // the axis is the odd one out; a cyclic change of axes makes it z
-  int axis = -1;
-  for (int k = 0; k < 3; ++k) {
-    if (equal((k + 1) % 3, (k + 2) % 3)) axis = k;
-  }
-  if (axis < 0) {
-    throw std::invalid_argument(
-        fmt::format("wrap object '{}' cannot be treated as a cylinder: its semi-axes are {}, {} "
-                    "and {} m, two must be equal",
-                    object.name, s[0], s[1], s[2]));
-  }
-  Mat3<double> turn = Mat3<double>::Zero();  // columns: new x, y, z in the old frame
-  for (int k = 0; k < 3; ++k) turn((axis + 1 + k) % 3, k) = 1;
-  candidate.X_SC.R = (candidate.X_SC.R * turn).eval();
-  surface.radius = s[(axis + 1) % 3];
-  surface.halfLength = s[axis];
-  if (surface.quadrant != WrapQuadrant::all) {
-    const int code = static_cast<int>(surface.quadrant) - 1;  // 2·axis + (minus)
-    const int turned = (code / 2 - axis - 1 + 6) % 3;
-    surface.quadrant = static_cast<WrapQuadrant>(1 + 2 * turned + code % 2);
-  }
+  const CylinderOfEllipsoid cylinder = cylinderOf(object);
+  candidate.X_SC.R = (candidate.X_SC.R * cylinder.turn).eval();
+  surface.radius = cylinder.radius;
+  surface.halfLength = cylinder.halfLength;
+  surface.quadrant = cylinder.quadrant;
   return true;
 }
 

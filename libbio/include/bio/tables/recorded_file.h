@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bio/tables/marker_trajectories.h"
+#include "bio/tables/recording.h"
+
+namespace bio {
+
+/// What a file of recorded markers or signals holds.
+struct RecordedFile {
+  std::optional<MarkerTrajectories> markers;  ///< none: a format without markers
+  std::vector<Channel> channels;              ///< analog channels, or those of all streams
+  std::vector<std::string> remarks;           ///< what was left out or assumed, or looks odd
+};
+
+/// Whether the name says C3D, XDF or TRC.
+bool isRecordedFile(const std::string& file);
+
+/// Reads a file of one of these formats by its name (readC3d, readXdf, readTrc).
+/// @throws FileError as they do; std::invalid_argument for another name
+RecordedFile readRecordedFile(const std::string& file);
+
+}  // namespace bio

@@ -1,0 +1,69 @@
+#include "bio/tables/recorded_file.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <stdexcept>
+
+#include "bio/tables/c3d_file.h"
+#include "bio/tables/xdf_file.h"
+
+namespace bio {
+namespace {
+
+std::string lowerExtension(const std::string& file) {
+  std::string out = std::filesystem::path(file).extension().string();
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return out;
+}
+
+void addRemarks(const std::vector<std::string>& more, std::vector<std::string>& remarks) {
+  remarks.insert(remarks.end(), more.begin(), more.end());
+}
+
+void takeMarkers(MarkerTrajectories markers, RecordedFile& out) {
+  addRemarks(markers.remarks, out.remarks);
+  std::vector<std::string> unseen;
+  for (const std::string& name : markers.names) {
+    if (positionsOf(markers, name).col(0).array().isNaN().all()) unseen.push_back(name);
+  }
+  if (!unseen.empty()) {
+    out.remarks.push_back(fmt::format("{} of {} markers are never seen: {}", unseen.size(),
+                                      markers.names.size(), fmt::join(unseen, ", ")));
+  }
+  out.markers = std::move(markers);
+}
+
+}  // namespace
+
+bool isRecordedFile(const std::string& file) {
+  const std::string extension = lowerExtension(file);
+  return extension == ".c3d" || extension == ".xdf" || extension == ".trc";
+}
+
+RecordedFile readRecordedFile(const std::string& file) {
+  const std::string extension = lowerExtension(file);
+  RecordedFile out;
+  if (extension == ".trc") {
+    takeMarkers(readTrc(file), out);
+  } else if (extension == ".c3d") {
+    C3dFile c3d = readC3d(file);
+    addRemarks(c3d.remarks, out.remarks);
+    takeMarkers(std::move(c3d.markers), out);
+    out.channels = std::move(c3d.analog);
+  } else if (extension == ".xdf") {
+    XdfFile xdf = readXdf(file);
+    addRemarks(xdf.remarks, out.remarks);
+    for (XdfStream& stream : xdf.streams)
+      for (Channel& channel : stream.channels) out.channels.push_back(std::move(channel));
+  } else {
+    throw std::invalid_argument(fmt::format("{}: must be .c3d, .xdf or .trc", file));
+  }
+  return out;
+}
+
+}  // namespace bio
