@@ -105,7 +105,10 @@ Inputs prepare(const MotionRequest& request, MotionDesign& design, double step, 
 }
 
 TimedMotion timed(const ProjectedMotion& projection, double step) {
-  return {step, projection.motion().x, projection.motion().u, projection.informationOverTime()};
+  const Index candidates = std::ssize(projection.informations());
+  TimedMotion motion{step, {}, projection.motion().u, projection.informationOverTime()};
+  for (const VectorXd& x : projection.motion().x) motion.x.push_back(x.head(x.size() / candidates));
+  return motion;
 }
 
 // θ, and each parameter alone ±30 %.

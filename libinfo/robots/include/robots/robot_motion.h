@@ -41,7 +41,8 @@ struct MotionRequest {
 /// The number of inputs of the initial motion.
 std::size_t numInputs(const MotionRequest& request);
 
-/// A motion at the times k·step, from continuous or discrete time.
+/// A motion at the times k·step, from continuous or discrete time; of several candidates that of
+/// the first.
 struct TimedMotion {
   double step;  ///< [s]
   std::vector<Eigen::VectorXd> x, u;

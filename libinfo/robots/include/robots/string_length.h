@@ -38,7 +38,8 @@ struct StringLengthTrial {
 
 struct StringLengthResult {
   std::vector<StringLengthTrial> trials;  ///< empty if nothing would move
-  ActionEnd firstDecision;                ///< of the first trial; the arm moves if it `acts`
+  ActionEnd firstDecision =
+      ActionEnd::notFinite;  ///< of the first trial; the arm moves if it `acts`
 
   // over all trials
   double mean = 0;          ///< of the estimates [m]
