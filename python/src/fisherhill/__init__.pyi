@@ -3047,8 +3047,9 @@ class EstimatorComparisonResult:
 def compare_robot_estimators(
     *, amplitude: float | None = None, period: float | None = None, seed: int = 1
 ) -> EstimatorComparisonResult:
-    """Convergence of three estimators of the suspended mass: gradient descent, iterated least squares,
-    Newton-Raphson.
+    """Convergence of three estimators of mass and string length of the suspended mass.
+
+    They are gradient descent, iterated least squares and Newton-Raphson.
 
     Parameters
     ----------

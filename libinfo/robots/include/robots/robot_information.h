@@ -15,10 +15,11 @@ namespace info::robot {
 
 /// An experiment of 5 s with the cart motion amplitude·(1 − cos 2πt/period).
 struct ExperimentRequest {
-  bool pendulum = true;                     ///< else the suspended mass
-  std::optional<double> amplitude, period;  ///< [m] > 0 and [s] > 0; empty: those of the thesis
-  bool bothMasses = false;                  ///< θ = (m1, m2) in place of (m1, c); pendulum only
-  bool undamped = false;                    ///< c = 0; with bothMasses only
+  bool pendulum = true;  ///< else the suspended mass
+  std::optional<double> amplitude = {},
+                        period = {};  ///< [m] > 0 and [s] > 0; empty: those of the thesis
+  bool bothMasses = false;            ///< θ = (m1, m2) in place of (m1, c); pendulum only
+  bool undamped = false;              ///< c = 0; with bothMasses only
 };
 
 /// The double pendulum sampled at 30 Hz, the suspended mass at 100 Hz.

@@ -15,27 +15,29 @@ namespace info::robot {
 
 /// What is optimised, and the initial motion.
 struct MotionRequest {
-  bool pendulum = true;                     ///< else the suspended mass
-  bool discrete = false;                    ///< the variational integrator's motion (chapter 5)
-  std::optional<double> amplitude, period;  ///< of the initial motion, [m] ≥ 0 and [s] > 0
-  std::optional<double> perturb;            ///< added to the initial input [unit of the input] > 0
-  std::vector<double> warmStart;            ///< the initial inputs (numInputs); empty: none
+  bool pendulum = true;   ///< else the suspended mass
+  bool discrete = false;  ///< the variational integrator's motion (chapter 5)
+  std::optional<double> amplitude = {},
+                        period = {};   ///< of the initial motion, [m] ≥ 0 and [s] > 0
+  std::optional<double> perturb = {};  ///< added to the initial input [unit of the input] > 0
+  std::vector<double> warmStart = {};  ///< the initial inputs (numInputs); empty: none
 
-  std::optional<InformationWeights> objective;      ///< else the task's own
-  std::optional<double> inputWeight;                ///< R, else the task's own
-  std::optional<std::pair<double, double>> limits;  ///< of the input, lower and upper
-  std::optional<double> tolerance;                  ///< |DJ·ζ| at which the search ends, ≥ 0
-  std::optional<int> iterations;                    ///< at most, ≥ 0
-  int stepsPerSample = 1;                           ///< of the discrete motion, ≥ 1
+  std::optional<InformationWeights> objective = {};      ///< else the task's own
+  std::optional<double> inputWeight = {};                ///< R, else the task's own
+  std::optional<std::pair<double, double>> limits = {};  ///< of the input, lower and upper
+  std::optional<double> tolerance = {};  ///< |DJ·ζ| at which the search ends, ≥ 0
+  std::optional<int> iterations = {};    ///< at most, ≥ 0
+  int stepsPerSample = 1;                ///< of the discrete motion, ≥ 1
 
-  std::optional<RobustRule> robust;             ///< over these values of θ
-  std::vector<Eigen::Vector2d> candidates;      ///< empty: θ, and each parameter ±30 %
-  std::optional<LaboratoryEffects> laboratory;  ///< try both motions there; not with `discrete`
+  std::optional<RobustRule> robust = {};         ///< over these values of θ
+  std::vector<Eigen::Vector2d> candidates = {};  ///< empty: θ, and each parameter ±30 %
+  std::optional<LaboratoryEffects> laboratory =
+      {};  ///< try both motions there; not with `discrete`
 
   int trials = 300;        ///< simulated experiments of the double pendulum, ≥ 1
   std::uint64_t seed = 1;  ///< of the perturbation, the trials and the laboratory
   int threads = 1;         ///< 0: all cores
-  WorkProgress progress;
+  WorkProgress progress = {};
 };
 
 /// The number of inputs of the initial motion.

@@ -15,18 +15,18 @@ namespace info::robot {
 
 /// Trials from several initial estimates of the length.
 struct StringLengthRequest {
-  bool realTime = false;               ///< four threads at their own rates, not simulated time
-  double duration = 6;                 ///< of a trial [s] > 0
-  std::vector<double> initialLengths;  ///< [m]; empty: the nine of chapter 6
-  double payload = 0.2;                ///< [kg] > 0
-  double trueLength = 0.368;           ///< [m] > 0
-  double noise = 0.1;                  ///< of the load cell [N] > 0
+  bool realTime = false;                    ///< four threads at their own rates, not simulated time
+  double duration = 6;                      ///< of a trial [s] > 0
+  std::vector<double> initialLengths = {};  ///< [m]; empty: the nine of chapter 6
+  double payload = 0.2;                     ///< [kg] > 0
+  double trueLength = 0.368;                ///< [m] > 0
+  double noise = 0.1;                       ///< of the load cell [N] > 0
   double disturbance = 0.5;    ///< unmeasured acceleration of the string's top [m/s²] ≥ 0
   double trackingWeight = 20;  ///< of the gripper's position, ≥ 0
   double window = 0;           ///< of the estimation [s]; 0: growing
   bool estimateMass = false, ignoreClipping = false, searchTime = false;
   std::uint64_t seed = 1;
-  WorkProgress progress;
+  WorkProgress progress = {};
 };
 
 /// One trial, and the task carried out without and with the estimate.
