@@ -26,21 +26,9 @@ bio::Trial trialOfColumns(const bio::Model& model, const py::dict& columns, cons
                           const std::map<std::string, double>& hold,
                           std::optional<double> prescribeCutoff,
                           const std::string& latentExcitation) {
-  bio::Table table;
+  bio::Table table = tableOf(columns, name);
   table.metadata = bio::headerOf({knownMassInHand, knownArmTurn});
   if (!latentExcitation.empty()) table.metadata["latent_excitation"] = latentExcitation;
-  for (const auto& [key, values] : columns) {
-    const auto column = values.cast<Eigen::VectorXd>();
-    const auto index = static_cast<Eigen::Index>(table.columns.size());
-    if (index == 0) table.values.resize(column.size(), static_cast<Eigen::Index>(columns.size()));
-    table.columns.push_back(key.cast<std::string>());
-    if (column.size() != table.values.rows()) {
-      throw std::invalid_argument(fmt::format("{}: column '{}' has {} rows, must be {} as '{}' has",
-                                              name, table.columns.back(), column.size(),
-                                              table.values.rows(), table.columns.front()));
-    }
-    table.values.col(index) = column;
-  }
   bio::Trial trial = trialOf(table, name, model,
                              {.ignoreExtra = ignoreExtra,
                               .experimentalConditions = true,
@@ -255,6 +243,23 @@ bio::Trial trialOf(const bio::Table& table, const std::string& name, const bio::
                                    sizeof(double) * static_cast<std::size_t>(table.values.size()))))
           .attr("encode")());
   return trial;
+}
+
+bio::Table tableOf(const py::dict& columns, const std::string& name) {
+  bio::Table table;
+  for (const auto& [key, values] : columns) {
+    const auto column = values.cast<Eigen::VectorXd>();
+    const auto index = static_cast<Eigen::Index>(table.columns.size());
+    if (index == 0) table.values.resize(column.size(), static_cast<Eigen::Index>(columns.size()));
+    table.columns.push_back(key.cast<std::string>());
+    if (column.size() != table.values.rows()) {
+      throw std::invalid_argument(fmt::format("{}: column '{}' has {} rows, must be {} as '{}' has",
+                                              name, table.columns.back(), column.size(),
+                                              table.values.rows(), table.columns.front()));
+    }
+    table.values.col(index) = column;
+  }
+  return table;
 }
 
 py::dict columnsOf(const bio::Table& table) {

@@ -8,6 +8,7 @@
 #include "bio/tables/file_error.h"
 #include "info/version.h"
 #include "python_system.h"
+#include "robots/robots.h"
 
 namespace python {
 namespace {
@@ -58,6 +59,9 @@ PYBIND11_MODULE(_fisherhill, module) {
   python::defineEnsemble(module);
   python::defineCalibration(module);
   python::defineDiscovery(module);
+  python::defineRobotDiscovery(module);
+  python::defineRobotMotions(module);
+  python::defineStringLength(module);
   python::defineStudies(module);
   python::defineDesign(module);
   python::defineDynamometer(module);

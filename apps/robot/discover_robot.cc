@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
 
 #include "discover/discover_results.h"
 #include "discover/discover_search.h"
 #include "discover/suggested_experiments.h"
-#include "info/discovery/search/shorter_steps.h"
 #include "info/version.h"
 #include "options/input_rules.h"
 #include "options/number_rules.h"
@@ -18,7 +16,7 @@
 #include "output/result.h"
 #include "output/text.h"
 #include "robot/robot_trial.h"
-#include "robots/robot_problem.h"
+#include "robots/robot_discovery.h"
 
 namespace app {
 namespace {
@@ -26,54 +24,23 @@ namespace {
 using info::robot::RobotProblem;
 using nlohmann::ordered_json;
 
-constexpr double shortestRobotStep = 1e-3;  // [s]
-
-info::robot::Model plainModel(const std::string& system,
-                              const std::vector<info::robot::Trial>& trials) {
-  if (system == "double-pendulum") return info::robot::doublePendulum();
-  double least = HUGE_VAL, greatest = -HUGE_VAL;
-  for (const auto& trial : trials)
-    for (const double force : trial.measured.reshaped()) {
-      if (std::isnan(force)) continue;
-      least = std::min(least, force);
-      greatest = std::max(greatest, force);
-    }
-  if (!(greatest > least))
-    throw std::invalid_argument("the measured force is constant in all trials, must change");
-  return info::robot::suspendedMass(least, greatest);
-}
-
-/// Builds the effects of a with_effect.json into the model; they are no candidates any more.
-void buildIn(const std::string& file, info::robot::Model& model,
-             std::map<std::string, std::string>& present) {
+/// Builds the effects of a with_effect.json into the model; returns those that are no candidates
+/// any more.
+std::vector<std::string> buildInFile(const std::string& file, info::robot::Model& model) {
   std::ifstream stream(file);
   try {
     const ordered_json json = ordered_json::parse(stream);
     if (json.at("system") != model.name)
       throw std::invalid_argument(fmt::format("system is {}, must be {}",
                                               json.at("system").get<std::string>(), model.name));
+    std::vector<info::robot::KnownEffect> effects;
     for (const auto& effect : json.at("effects")) {
-      const std::string id = effect.at("id");
-      const auto at = std::find_if(model.candidates.begin(), model.candidates.end(),
-                                   [&](const auto& c) { return c.id == id; });
-      if (at == model.candidates.end())
-        throw std::invalid_argument(fmt::format("effect {} is not in the catalogue", id));
-      for (const std::size_t q : at->quantities) {
-        info::discover::Quantity& quantity = model.quantities[q];
-        const double value = effect.at("parameters").at(quantity.name).at("value");
-        if (!(value >= quantity.lower && value <= quantity.upper))
-          throw std::invalid_argument(fmt::format("{}: {} {}, must be {} to {}", quantity.name,
-                                                  value, quantity.unit, quantity.lower,
-                                                  quantity.upper));
-        quantity.nominal = value;
-      }
-      if (at->kind == info::discover::EffectKind::parameter) {
-        at->starts = {Eigen::VectorXd::Constant(1, model.quantities[at->quantities[0]].nominal)};
-      } else {
-        model.candidates.erase(at);
-        present[id] = file;
-      }
+      info::robot::KnownEffect& known = effects.emplace_back();
+      known.id = effect.at("id");
+      for (const auto& [name, parameter] : effect.at("parameters").items())
+        known.values[name] = parameter.at("value");
     }
+    return info::robot::buildIn(effects, model);
   } catch (const std::exception& error) {
     throw std::invalid_argument(fmt::format("{}: {}", file, error.what()));
   }
@@ -139,9 +106,7 @@ class RobotSearch {
     OutputFolder folder(context_, names);
     Summary summary(context_);
     std::vector<info::robot::Trial> trials;
-    const std::vector<info::robot::Channel> channels =
-        request_.system == "double-pendulum" ? info::robot::doublePendulum().channels
-                                             : info::robot::suspendedMass(0, 1).channels;
+    const std::vector<info::robot::Channel> channels = info::robot::channelsOf(request_.system);
     for (const std::string& file : files) {
       summary.addInput(file);
       std::vector<std::string> warnings;
@@ -155,38 +120,36 @@ class RobotSearch {
       }
     }
     inputsMustDiffer(summary, request_.trials.size(), 0);
-    info::robot::Model model = plainModel(request_.system, trials);
+    info::robot::DiscoveryRequest asked;
+    asked.model = info::robot::modelFor(request_.system, trials);
     std::map<std::string, std::string> present;
     if (!request_.with.empty()) {
-      buildIn(request_.with, model, present);
+      for (const std::string& id : buildInFile(request_.with, asked.model))
+        present[id] = request_.with;
       summary.addInput(request_.with);
     }
     resultsMustNotBeInputs(summary, folder, names);
-    info::robot::DisagreementOptions problem = problemOptions(channels);
-    info::discover::TrialSearch asked{trials.size(), request_.heldOut.size(), request_.step,
-                                      problem.step,  shortestRobotStep,       {}};
-    asked.options = engineOptions(request_.maxEffects, request_.inputScatter);
-    if (!problem.sds.empty()) asked.options.outputSd = problem.sds.front();
+    asked.trials = trials;
+    asked.numHeldOut = request_.heldOut.size();
+    asked.step = request_.step;
+    asked.problem = problemOptions(channels);
+    asked.search = engineOptions(request_.maxEffects, request_.inputScatter);
     WatchedSearch watch(context_.quiet);
-    asked.options.progress = watch.progress();
-    const info::discover::SteppedVerdict found = info::discover::searchTrials(
-        asked, [&](double step) -> const info::discover::DiscoveryProblem& {
-          problem.step = step;
-          data_ = std::make_unique<RobotProblem>(model, trials, problem);
-          return *data_;
-        });
+    asked.search.progress = watch.progress();
+    const info::robot::DiscoveryResult result = info::robot::discover(asked);
+    const info::discover::SteppedVerdict& found = result.found;
+    const RobotProblem& data = *result.data;
     watch.end();
     const info::discover::Verdict& verdict = found.verdict;
     warnOfOneTrial(summary, request_.trials.size(), request_.heldOut.size());
-    DiscoverWording wording = wordingOf(*data_);
+    DiscoverWording wording = wordingOf(data);
     wording.present = present;
-    const std::string next = followUp(*data_, verdict, followUpsOfRobots());
+    const std::string next = followUp(data, verdict, followUpsOfRobots());
     const std::vector<bio::discover::PredictedExperiment> predictedExperiments;  // of arms only
     const std::string name = "the " + request_.system;
-    const auto fitted = info::discover::fittedNumbers(*data_, verdict);
     const DiscoverFindings findings{name,
                                     files,
-                                    *data_,
+                                    data,
                                     wording,
                                     found.options,
                                     verdict,
@@ -194,7 +157,7 @@ class RobotSearch {
                                     predictedExperiments,
                                     found.wallSeconds,
                                     found.processorSeconds,
-                                    fitted,
+                                    result.fitted,
                                     nullptr,
                                     found.step};
     summary.set("system", request_.system);
@@ -207,7 +170,7 @@ class RobotSearch {
     summary.set("wall_s", found.wallSeconds);
     for (std::size_t c = 0; c < channels.size(); ++c)
       summary.set(fmt::format("noise_{}_{}", channels[c].name, wording.outputs[c].unit),
-                  wording.unit * data_->sds()[c]);
+                  wording.unit * data.sds()[c]);
     writeFindings(findings, summary, folder);
     if (info::discover::mayBeAdded(verdict))
       folder.write("with_effect.json", [&](std::ostream& out) {
@@ -244,7 +207,6 @@ class RobotSearch {
 
   const RobotRequest& request_;
   const CommandContext& context_;
-  std::unique_ptr<RobotProblem> data_;
 };
 
 }  // namespace

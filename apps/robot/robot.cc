@@ -60,7 +60,7 @@ class Robot : public Command {
     if (convergence_) {
       status = tellConvergence(experiment(), context, summary, report);
     } else if (optimise) {
-      status = optimiseRobot(request(), context, summary, report, folder);
+      status = optimiseRobot(request(), warmStart_, context, summary, report, folder);
     } else {
       const std::optional<int> trials = boundOnly_ ? std::optional<int>() : trials_;
       status = tellInformation(experiment(), trials, context, summary, report);
@@ -251,14 +251,13 @@ class Robot : public Command {
     return weights;
   }
 
-  OptimiseRequest request() const {
-    OptimiseRequest r;
+  MotionRequest request() const {
+    MotionRequest r;
     r.pendulum = pendulum();
     r.discrete = discrete_;
     r.amplitude = amplitude_;
     r.period = period_;
     r.perturb = perturb_;
-    r.warmStart = warmStart_;
     r.trials = trials_;
     r.objective = objective();
     r.inputWeight = inputWeight_;
@@ -269,25 +268,16 @@ class Robot : public Command {
     if (!robust_.empty())
       r.robust = robust_ == "worst" ? info::RobustRule::worst : info::RobustRule::average;
     for (const auto& [first, second] : candidates_) r.candidates.emplace_back(first, second);
-    r.lab = effects();
+    r.laboratory = effects();
     return r;
   }
 
   info::PlannedExperiment experiment() const {
-    using info::DoublePendulumUnknowns;
-    if (!pendulum())
-      return info::suspendedMassExperiment(
-          amplitude_ || period_
-              ? info::cosineMotion(amplitude_.value_or(0.0476), period_.value_or(5), 5, 100, 1)
-              : info::suspendedMassStart());
-    const info::CartMotion motion =
-        amplitude_ || period_
-            ? info::cosineMotion(amplitude_.value_or(0.05), period_.value_or(5), 5, 30, 2)
-            : info::doublePendulumStart();
-    return unknown_ == "m1,c"
-               ? info::doublePendulumExperiment(motion)
-               : info::doublePendulumExperiment(motion, DoublePendulumUnknowns::bothMasses,
-                                                undamped_ ? 0.0 : 5e-4);
+    return info::robot::plannedExperiment({.pendulum = pendulum(),
+                                           .amplitude = amplitude_,
+                                           .period = period_,
+                                           .bothMasses = unknown_ != "m1,c",
+                                           .undamped = undamped_});
   }
 
   std::string robot_;

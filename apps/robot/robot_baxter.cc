@@ -3,78 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "options/number_rules.h"
-#include "output/interruption.h"
-#include "output/progress_bar.h"
 #include "output/text.h"
+#include "robot/robot_search.h"
 
 namespace app {
 namespace {
-
-info::ActiveEstimationTask taskOf(const BaxterRequest& request, const CommandContext& context,
-                                  double initialLength, std::uint64_t stream) {
-  info::ActiveEstimationTask task;
-  task.initialLength = initialLength;
-  task.trueLength = request.trueLength;
-  task.trueMass = request.payload;
-  task.initialMass = request.estimateMass ? 0.8 * request.payload : request.payload;
-  task.estimateMass = request.estimateMass;
-  task.duration = request.duration;
-  task.seed = context.seed;
-  task.stream = stream;
-  task.cell.sd = request.noise;
-  task.disturbance.acceleration = request.disturbance;
-  task.trackingWeight *= request.trackingWeight / 20;
-  task.modelClipping = !request.ignoreClipping;
-  task.window = request.window;
-  task.action.searchTime = request.searchTime;
-  return task;
-}
-
-// All trials one after the other: timings of a controller must not be those of its neighbours.
-std::vector<BaxterTrial> runTrials(const BaxterRequest& request, const CommandContext& context) {
-  ProgressBar bar("trials");
-  std::vector<BaxterTrial> trials;
-  const std::vector<double> lengths =
-      request.initial.empty() ? info::initialLengths() : request.initial;
-  const auto n = static_cast<double>(lengths.size());
-  for (double length : lengths) {
-    const auto done = static_cast<double>(trials.size());
-    const info::ActiveEstimationTask task = taskOf(request, context, length, trials.size());
-    BaxterTrial trial{length, {}, {}, {}};
-    trial.learnt = request.realTime
-                       ? info::runActiveEstimationInRealTime(
-                             task,
-                             [&](double time) {
-                               bar.update((done + std::min(1.0, time / request.duration)) / n);
-                               return !interruptionRequested();
-                             })
-                       : info::runActiveEstimation(task);
-    stopIfInterrupted();
-    trials.push_back(std::move(trial));
-    bar.update((done + 1) / n);
-  }
-  return trials;
-}
-
-// The same task with both plans, on the true string.
-void swing(BaxterTrial& trial, const BaxterRequest& request) {
-  const auto with = [&](double length) {
-    try {
-      return info::executeSwing(info::planSwing(length), request.trueLength, {}, {.start = 0},
-                                request.payload);
-    } catch (const std::domain_error& e) {
-      info::SwingRun none{};
-      none.crossingHeight = std::nan("");
-      none.why = fmt::format("planning failed: {}", e.what());
-      return none;
-    }
-  };
-  trial.withoutEstimation = with(trial.initialLength);
-  trial.withEstimation = with(trial.learnt.length());
-}
 
 void writeTables(const std::vector<BaxterTrial>& trials, OutputFolder& folder) {
   folder.write("estimates.csv", [&](std::ostream& out) {
@@ -132,14 +67,14 @@ void writeTables(const std::vector<BaxterTrial>& trials, OutputFolder& folder) {
     }
 }
 
-void summarise(const std::vector<BaxterTrial>& trials, const BaxterRequest& request,
+void summarise(const info::robot::StringLengthResult& found, const BaxterRequest& request,
                Summary& summary) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  double sum = 0, worstError = 0, worstLate = 0;
-  std::size_t misses = 0, cycles = 0, skipped = 0, clipped = 0, without = 0, with = 0;
+  double worstLate = 0;
+  std::size_t misses = 0, cycles = 0, skipped = 0;
   std::vector<double> busy;
-  bool priority = true, slack = false;
-  for (const BaxterTrial& t : trials) {
+  bool priority = true;
+  for (const BaxterTrial& t : found.trials) {
     const auto& last = t.learnt.estimates.back();
     nlohmann::ordered_json one = {{"initial_m", t.initialLength},
                                   {"estimate_m", last.length},
@@ -148,31 +83,22 @@ void summarise(const std::vector<BaxterTrial>& trials, const BaxterRequest& requ
     one["success_without_estimation"] = t.withoutEstimation.success;
     one["success_with_estimation"] = t.withEstimation.success;
     list.push_back(std::move(one));
-    sum += last.length;
-    worstError = std::max(worstError, std::abs(last.length - request.trueLength));
     busy.insert(busy.end(), t.learnt.cycleSeconds.begin(), t.learnt.cycleSeconds.end());
     misses += t.learnt.controller.misses;
     cycles += t.learnt.controller.cycles;
     skipped += t.learnt.controller.skipped;
-    clipped += t.learnt.clippedSamples;
     worstLate = std::max(worstLate, t.learnt.controller.worstLate);
-    without += t.withoutEstimation.success;
-    with += t.withEstimation.success;
     priority = priority && t.learnt.realTimePriority;
-    slack = slack || !(t.learnt.leastTension > 0);
   }
-  const double n = static_cast<double>(trials.size()), mean = sum / n;
-  double squares = 0;
-  for (const BaxterTrial& t : trials) squares += std::pow(t.learnt.length() - mean, 2);
   std::sort(busy.begin(), busy.end());
   summary.set("trials", std::move(list));
   summary.set("true_length_m", request.trueLength);
-  summary.set("mean_m", mean);
-  summary.set("standard_deviation_m", trials.size() > 1 ? std::sqrt(squares / (n - 1)) : 0.0);
-  summary.set("largest_error_m", worstError);
-  summary.set("successes_without_estimation", without);
-  summary.set("successes_with_estimation", with);
-  summary.set("clipped_samples", clipped);
+  summary.set("mean_m", found.mean);
+  summary.set("standard_deviation_m", found.sd);
+  summary.set("largest_error_m", found.largestError);
+  summary.set("successes_without_estimation", found.successesWithout);
+  summary.set("successes_with_estimation", found.successesWith);
+  summary.set("clipped_samples", found.clippedSamples);
   summary.set("mode",
               request.realTime ? "four threads in real time" : "one thread, simulated time");
   summary.set("cycle_ms", {{"median", busy.empty() ? 0 : 1e3 * busy[busy.size() / 2]},
@@ -184,7 +110,7 @@ void summarise(const std::vector<BaxterTrial>& trials, const BaxterRequest& requ
     summary.set("worst_wake_up_ms", 1e3 * worstLate);
     summary.set("real_time_priority", priority);
   }
-  if (slack) summary.warn("the string was slack for a moment, where the model is not valid");
+  if (found.slack) summary.warn("the string was slack for a moment, where the model is not valid");
 }
 
 }  // namespace
@@ -204,7 +130,7 @@ std::vector<CLI::Option*> addBaxterOptions(CLI::App& options, BaxterRequest& r) 
   positive("--duration", r.duration, "duration of a trial", "S");
   add(options
           .add_option(
-              "--initial-length", r.initial,
+              "--initial-length", r.initialLengths,
               "initial estimate of the length; may be repeated (nine values, 0.308 to 0.468)")
           ->check(between(0.05, 1.5))
           ->type_name("M"));
@@ -242,24 +168,26 @@ std::vector<std::string> baxterFiles() {
           "swing.csv",     "swing_failure.svg", "swing_success.svg"};
 }
 
-ExitStatus runBaxter(const BaxterRequest& request, const CommandContext& context, Summary& summary,
+ExitStatus runBaxter(BaxterRequest request, const CommandContext& context, Summary& summary,
                      Report& report, OutputFolder& folder) {
-  const double first = request.initial.empty() ? 0.308 : request.initial.front();
-  const info::ActionEnd why = info::firstAction(taskOf(request, context, first, 0)).why;
-  if (why != info::ActionEnd::acts) {
-    summary.set("first_decision", info::describe(why));
+  request.seed = context.seed;
+  const info::robot::StringLengthResult found = [&] {
+    WorkBars bars;
+    request.progress = bars.progress();
+    return info::robot::estimateStringLength(request);
+  }();
+  if (found.trials.empty()) {
+    summary.set("first_decision", info::describe(found.firstDecision));
     report.verdict = fmt::format(
         "Nothing would move: {}. The load hangs at rest, where the force does not depend on the "
         "string's length (Γ = 0), and no small motion changes this to first order. Only a tracking "
         "weight starts a motion: --tracking-weight is {}, must be > 0.",
-        info::describe(why), numberText(request.trackingWeight));
+        info::describe(found.firstDecision), numberText(request.trackingWeight));
     return ExitStatus::answerIsNo;
   }
-  std::vector<BaxterTrial> trials = runTrials(request, context);
-  for (BaxterTrial& trial : trials) swing(trial, request);
-  summarise(trials, request, summary);
-  writeTables(trials, folder);
-  reportBaxter(trials, request, report);
+  summarise(found, request, summary);
+  writeTables(found.trials, folder);
+  reportBaxter(found.trials, request, report);
   return ExitStatus::done;
 }
 

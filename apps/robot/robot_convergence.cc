@@ -2,61 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
-
-#include "info/estimation/convergence.h"
 #include "output/text.h"
+#include "robots/robot_information.h"
 
 namespace app {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-using info::Method;
-
-struct NamedMethod {
-  Method method;
-  std::string name;
-  int maxIterations;
-};
-const std::vector<NamedMethod> kMethods = {
-    {Method::gradientDescent, "gradient descent", 1000},
-    {Method::iteratedLeastSquares, "iterated least squares", 100},
-    {Method::newtonRaphson, "Newton-Raphson", 100}};
-
-/// One estimator's way to the minimum.
-struct Approach {
-  std::string method;
-  info::Estimate estimate;
-  std::vector<info::ConvergenceRow> rows;
-};
-
-std::vector<Approach> approaches(const info::PlannedExperiment& experiment, const MatrixXd& data,
-                                 const std::optional<VectorXd>& knownMinimum) {
-  const info::LeastSquares problem(experiment.predictor, {data, experiment.covariance},
-                                   experiment.parameters);
-  info::EstimateOptions options;
-  VectorXd minimum;
-  if (knownMinimum) {
-    minimum = *knownMinimum;
-  } else {
-    options.method = Method::newtonRaphson;
-    options.decrementTolerance = 0;
-    minimum = info::estimate(problem, experiment.truth, options).parameters;
-    options = {};
-  }
-  std::vector<Approach> all;
-  for (const NamedMethod& method : kMethods) {
-    options.method = method.method;
-    options.maxIterations = method.maxIterations;
-    info::Estimate estimate = info::estimate(problem, options);
-    auto rows = info::convergenceTable(estimate, minimum);
-    all.push_back({method.name, std::move(estimate), std::move(rows)});
-  }
-  return all;
-}
+using Approach = info::robot::EstimatorConvergence;
 
 // All rows of a short approach; of a long one the first six and the last four.
 std::vector<info::ConvergenceRow> shownRows(const std::vector<info::ConvergenceRow>& rows) {
@@ -111,11 +63,9 @@ Figure errorFigure(const std::vector<Approach>& all) {
 
 ExitStatus tellConvergence(const info::PlannedExperiment& quiet, const CommandContext& context,
                            Summary& summary, Report& report) {
-  // the start as in the thesis, with exact data; then a livelier motion with one noisy recording
-  const auto slow =
-      approaches(quiet, quiet.predictor.outputs(quiet.truth), std::optional(quiet.truth));
-  const info::PlannedExperiment lively = info::suspendedMassExperiment(info::suspendedMassLively());
-  const auto fast = approaches(lively, info::simulateMeasurement(lively, context.seed), {});
+  const info::robot::ConvergenceComparison found =
+      info::robot::compareEstimators(quiet, context.seed);
+  const std::vector<Approach>&slow = found.quiet, &fast = found.lively;
   const std::vector<Table> tables = {
       convergenceTableOf("Quiet initial motion, exact data", slow),
       convergenceTableOf("Lively motion 0.1 m, 1.2 s, one recording with noise", fast)};
@@ -128,13 +78,10 @@ ExitStatus tellConvergence(const info::PlannedExperiment& quiet, const CommandCo
       std::string name = approach.method;
       for (char& c : name)
         if (c == ' ' || c == '-') c = '_';
-      // over all iterations, since single steps of gradient descent zigzag
-      const double meanRatio = std::pow(approach.rows.back().error / approach.rows.front().error,
-                                        1.0 / std::max(1, approach.estimate.iterations));
       summary.set(prefix + name, {{"iterations", approach.estimate.iterations},
                                   {"converged", approach.estimate.converged},
                                   {"final_error", approach.rows.back().error},
-                                  {"mean_ratio", meanRatio},
+                                  {"mean_ratio", approach.meanRatio},
                                   {"final_ratio", approach.rows.back().ratio}});
       if (approach.method == "Newton-Raphson")
         summary.set(prefix + name + "_final_order", approach.rows.back().order);

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "info/estimation/monte_carlo.h"
+#include "info/information/symmetric_eigen.h"
 #include "output/text.h"
 #include "report/isolines.h"
 
@@ -30,7 +31,7 @@ Series curve(const std::string& name, const TimedMotion& motion,
 
 }  // namespace
 
-Figure stateFigure(const std::string& title, const std::string& label, const Found& found,
+Figure stateFigure(const std::string& title, const std::string& label, const MotionResult& found,
                    const std::vector<std::pair<std::string, Index>>& states) {
   Figure figure{.title = title, .xLabel = "Time [s]", .yLabel = label};
   for (const auto& [name, index] : states) {
@@ -44,7 +45,7 @@ Figure stateFigure(const std::string& title, const std::string& label, const Fou
   return figure;
 }
 
-Figure inputFigure(const std::string& label, const Found& found) {
+Figure inputFigure(const std::string& label, const MotionResult& found) {
   return {.title = "Input",
           .xLabel = "Time [s]",
           .yLabel = label,
@@ -68,7 +69,7 @@ Figure costFigure(const info::SearchResult& search) {
           .yScale = AxisScale::logarithmic};
 }
 
-Figure informationFigure(const Found& found) {
+Figure informationFigure(const MotionResult& found) {
   Figure figure{
       .title = "Information over time",
       .xLabel = "Time [s]",
@@ -81,7 +82,7 @@ Figure informationFigure(const Found& found) {
       figure.series.push_back(curve(
           fmt::format("{}, {}", i == 0 ? "least" : "greatest", name), motion,
           [&](std::size_t k) {
-            const double lambda = eigenvaluesOf(motion.grown[k])[i];
+            const double lambda = info::symmetricEigenvalues(motion.grown[k])[i];
             // rounding makes tiny ones of either sign where nothing is known yet
             return lambda > 1e-12 * motion.grown.back().trace()
                        ? lambda

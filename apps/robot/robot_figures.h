@@ -11,17 +11,17 @@
 namespace app {
 
 /// States by name and index, before (dashed) and after.
-Figure stateFigure(const std::string& title, const std::string& label, const Found& found,
+Figure stateFigure(const std::string& title, const std::string& label, const MotionResult& found,
                    const std::vector<std::pair<std::string, Eigen::Index>>& states);
 
 /// The input, before and after.
-Figure inputFigure(const std::string& label, const Found& found);
+Figure inputFigure(const std::string& label, const MotionResult& found);
 
 /// J over the iterations.
 Figure costFigure(const info::SearchResult& search);
 
 /// Eigenvalues of the information gathered up to each time, before and after.
-Figure informationFigure(const Found& found);
+Figure informationFigure(const MotionResult& found);
 
 /// Contour map of the cost β over two parameters, with the path of an estimator.
 struct Basin {

@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "info/information/fisher.h"
-#include "info/information/identifiability.h"
-#include "info/information/symmetric_eigen.h"
 #include "output/text.h"
 #include "robot/robot_figures.h"
+#include "robots/robot_information.h"
 
 namespace app {
 namespace {
@@ -55,7 +53,9 @@ Figure basinAbout(const info::PlannedExperiment& plan, int threads) {
 
 void simulate(const CommandContext& context, const info::PlannedExperiment& plan, int trials,
               Summary& summary, Report& report) {
-  const auto result = simulateTrials(context, plan, trials, "trials");
+  WorkBars bars;
+  const info::MonteCarloResult result = info::robot::simulateTrials(
+      plan, trials, context.seed, context.threads, "trials", bars.progress());
   summary.set("trials", trials);
   summary.set("trials_converged", result.converged);
   summary.set("trials_covariance", upperTriangle(result.covariance, namesOf(plan)));
@@ -71,14 +71,11 @@ void simulate(const CommandContext& context, const info::PlannedExperiment& plan
 ExitStatus tellInformation(const info::PlannedExperiment& plan, std::optional<int> trials,
                            const CommandContext& context, Summary& summary, Report& report) {
   const std::vector<std::string> names = namesOf(plan);
-  const MatrixXd matrix =
-      info::fisherInformation(plan.predictor.withSensitivities(plan.truth).gamma, plan.covariance);
-  std::vector<info::Parameter> atTruth = plan.parameters;
-  for (std::size_t i = 0; i < atTruth.size(); ++i) {
-    atTruth[i].start = plan.truth[static_cast<Eigen::Index>(i)];
-    summary.set("unit_" + names[i], atTruth[i].unit);
-  }
-  const auto verdict = info::identifiability(matrix, atTruth);
+  const info::robot::ExperimentInformation found = info::robot::informationOf(plan);
+  const MatrixXd& matrix = found.information;
+  const info::IdentifiabilityReport& verdict = found.identifiability;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    summary.set("unit_" + names[i], plan.parameters[i].unit);
   summary.set("information", upperTriangle(matrix, names));
   summary.set("determined_directions", verdict.rank);
   summary.set("findings", verdict.sentences);
@@ -93,8 +90,8 @@ ExitStatus tellInformation(const info::PlannedExperiment& plan, std::optional<in
     return ExitStatus::answerIsNo;
   }
 
-  const MatrixXd bound = info::cramerRaoBound(matrix, names);
-  const Eigen::VectorXd eigenvalues = info::symmetricEigenvalues(matrix);
+  const MatrixXd& bound = found.bound;
+  const Eigen::VectorXd& eigenvalues = found.eigenvalues;
   summary.set("cramer_rao_bound", upperTriangle(bound, names));
   summary.set("least_eigenvalue", eigenvalues[0]);
   summary.set("condition_number", eigenvalues[eigenvalues.size() - 1] / eigenvalues[0]);

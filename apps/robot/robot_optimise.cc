@@ -1,23 +1,46 @@
 #include "robot/robot_optimise.h"
 
+#include <fmt/format.h>
+
 namespace app {
+namespace {
+
+MotionResult optimised(MotionRequest request) {
+  WorkBars bars;
+  request.progress = bars.progress();
+  try {
+    return info::robot::optimiseMotion(request);
+  } catch (const info::NoInformation& e) {
+    throw std::invalid_argument(fmt::format(
+        "{}: --perturb 0.05 adds a small smooth motion, --amplitude a larger one", e.what()));
+  }
+}
+
+}  // namespace
 
 std::vector<std::string> optimiseFiles() {
   return {"motion_initial.csv", "motion_optimised.csv", "search.json"};
 }
 
-info::CartMotion cartMotion(const TimedMotion& motion, std::size_t stepsPerSample) {
-  info::CartMotion cart{{}, motion.step, stepsPerSample};
-  for (const Eigen::VectorXd& u : motion.u) cart.acceleration.push_back(u[0]);
-  return cart;
-}
-
-ExitStatus optimiseRobot(const OptimiseRequest& request, const CommandContext& context,
-                         Summary& summary, Report& report, OutputFolder& folder) {
-  if (!request.warmStart.empty()) summary.addInput(request.warmStart);
-  if (!request.pendulum) return optimiseSuspendedMass(request, context, summary, report, folder);
-  return request.discrete ? optimisePendulumInSteps(request, context, summary, report, folder)
-                          : optimisePendulum(request, context, summary, report, folder);
+ExitStatus optimiseRobot(MotionRequest request, const std::string& warmStart,
+                         const CommandContext& context, Summary& summary, Report& report,
+                         OutputFolder& folder) {
+  if (!warmStart.empty()) {
+    summary.addInput(warmStart);
+    request.warmStart = readInputs(warmStart, info::robot::numInputs(request));
+  }
+  request.seed = context.seed;
+  request.threads = context.threads;
+  const MotionResult found = optimised(request);
+  if (!request.pendulum) {
+    tellSuspendedMass(found, context, summary, report);
+  } else if (request.discrete) {
+    tellPendulumInSteps(found, request.stepsPerSample, summary, report);
+  } else {
+    tellPendulum(found, context, summary, report);
+  }
+  tellSearch(found, summary, report, folder);
+  return statusOf(found, report);
 }
 
 }  // namespace app

@@ -2,19 +2,15 @@
 
 #include <cmath>
 
-#include "info/design/projection.h"
+#include "info/information/symmetric_eigen.h"
 #include "output/text.h"
 #include "robot/robot_laboratory.h"
 #include "robot/robot_optimise.h"
-#include "robots/robot_designs.h"
 
 namespace app {
 namespace {
 
 using Eigen::MatrixXd;
-using Eigen::Vector2d;
-
-constexpr std::size_t kStepsPerSample = 4;  // of 1/120 s at 30 Hz
 
 void addRow(Table& table, const std::string& what, const MatrixXd& ours,
             const std::string& thesis) {
@@ -22,54 +18,34 @@ void addRow(Table& table, const std::string& what, const MatrixXd& ours,
       {what, numberText(ours(0, 0)), numberText(ours(0, 1)), numberText(ours(1, 1)), thesis});
 }
 
-LaboratoryRobot inLaboratory(const info::LaboratoryEffects& effects) {
-  LaboratoryRobot robot;
-  robot.truth = Vector2d(0.110, 0.180);
-  robot.experiment = [](const info::CartMotion& motion) {
-    return info::doublePendulumExperiment(motion);
-  };
-  robot.measure = [=, truth = robot.truth](const info::CartMotion& motion, std::uint64_t seed) {
-    return info::measureDoublePendulum(motion, truth, effects, seed);
-  };
-  robot.thesis = {{{"0.085", "0.500"},
-                   {"0.110", "0.180"},
-                   {"0.085", "0.500"},
-                   {"22.7 %", "316.7 %"},
-                   {"0.107", "0.211"},
-                   {"2.7 %", "17.2 %"}}};
-  robot.thesisTable = "4.4";
-  robot.range = {{0.04, 0.18}, {-0.2, 1.0}};
-  return robot;
+ThesisLaboratory laboratoryOfThesis() {
+  return {"4.4",
+          {{{"0.085", "0.500"},
+            {"0.110", "0.180"},
+            {"0.085", "0.500"},
+            {"22.7 %", "316.7 %"},
+            {"0.107", "0.211"},
+            {"2.7 %", "17.2 %"}}},
+          {{0.04, 0.18}, {-0.2, 1.0}}};
 }
 
 }  // namespace
 
-ExitStatus optimisePendulum(const OptimiseRequest& request, const CommandContext& context,
-                            Summary& summary, Report& report, OutputFolder& folder) {
-  const double step = 1.0 / (30 * kStepsPerSample);
-  info::FlowTask task = info::doublePendulumFlowTask(step);
-  const Inputs start = prepare(request, context, task.design, step, 0.05);
-  const auto project = [&](const std::vector<Vector2d>& theta, const Inputs& from) {
-    return std::make_unique<info::FlowProjection>(
-        systemAt<info::ExtendedFlow>(theta, info::doublePendulumFlow), task.design, from);
-  };
-  const Found found =
-      find(request, project, Vector2d(0.085, 0.5), task.design, step, start, {.largestMove = 2});
-  const info::CartMotion slowCart = cartMotion(found.before, kStepsPerSample),
-                         fastCart = cartMotion(found.after, kStepsPerSample);
-  const auto before = info::doublePendulumExperiment(slowCart);
-  const auto after = info::doublePendulumExperiment(fastCart);
-  const MatrixXd boundBefore = boundOf(before), boundAfter = boundOf(after);
-  const double factor =
-      eigenvaluesOf(boundBefore).maxCoeff() / eigenvaluesOf(boundAfter).maxCoeff();
+void tellPendulum(const MotionResult& found, const CommandContext& context, Summary& summary,
+                  Report& report) {
+  const MatrixXd &boundBefore = found.boundBefore, &boundAfter = found.boundAfter;
+  const info::MonteCarloResult &slow = found.trialsBefore->trials,
+                               &fast = found.trialsAfter->trials;
+  const Eigen::VectorXd &truthBefore = found.trialsBefore->plan.truth,
+                        &truthAfter = found.trialsAfter->plan.truth;
+  const double factor = info::symmetricEigenvalues(boundBefore).maxCoeff() /
+                        info::symmetricEigenvalues(boundAfter).maxCoeff();
   summary.set("bound_initial", rowsOf(boundBefore));
   summary.set("bound_optimised", rowsOf(boundAfter));
-  const auto slow = simulateTrials(context, before, request.trials, "trials, start"),
-             fast = simulateTrials(context, after, request.trials, "trials, optimised");
   summary.set("monte_carlo_initial", rowsOf(slow.covariance));
   summary.set("monte_carlo_optimised", rowsOf(fast.covariance));
   summary.set("lambda_min_factor", factor);
-  summary.set("trials", request.trials);
+  summary.set("trials", found.trialsBefore->asked);
   summary.set("trials_converged", {{"initial", slow.converged}, {"optimised", fast.converged}});
 
   report.mainFigure = stateFigure("Motion", "Angle [rad]", found, {{"link 1", 1}, {"link 2", 2}});
@@ -90,17 +66,12 @@ ExitStatus optimisePendulum(const OptimiseRequest& request, const CommandContext
   report.details.emplace_back(stateFigure("Cart", "Position [m]", found, {{"cart", 0}}));
   report.details.emplace_back(inputFigure("Cart acceleration [m/s²]", found));
   report.details.emplace_back(informationFigure(found));
-  report.details.emplace_back(histogram("m1 [kg], start", slow, 0, before.truth[0]));
-  report.details.emplace_back(histogram("m1 [kg], optimised", fast, 0, after.truth[0]));
-  report.details.emplace_back(histogram("c [1e-3 kg m²/s], start", slow, 1, before.truth[1]));
-  report.details.emplace_back(histogram("c [1e-3 kg m²/s], optimised", fast, 1, after.truth[1]));
-  if (request.lab)
-    tellLaboratory(inLaboratory(*request.lab), *request.lab, slowCart, fastCart, context, summary,
-                   report);
-  tellSearch(
-      found,
-      {"cart_m", "angle1_rad", "angle2_rad", "cart_m_per_s", "rate1_rad_per_s", "rate2_rad_per_s"},
-      summary, report, folder);
+  report.details.emplace_back(histogram("m1 [kg], start", slow, 0, truthBefore[0]));
+  report.details.emplace_back(histogram("m1 [kg], optimised", fast, 0, truthAfter[0]));
+  report.details.emplace_back(histogram("c [1e-3 kg m²/s], start", slow, 1, truthBefore[1]));
+  report.details.emplace_back(histogram("c [1e-3 kg m²/s], optimised", fast, 1, truthAfter[1]));
+  if (found.laboratory)
+    tellLaboratory(*found.laboratory, laboratoryOfThesis(), context, summary, report);
   report.verdict = fmt::format(
       "The optimised motion gives {} times as much information about the least determined "
       "direction; the standard deviation of m1 falls from {} to {} kg, that of c from {} to {} "
@@ -108,7 +79,6 @@ ExitStatus optimisePendulum(const OptimiseRequest& request, const CommandContext
       numberText(factor), numberText(std::sqrt(boundBefore(0, 0)), 3),
       numberText(std::sqrt(boundAfter(0, 0)), 3), numberText(std::sqrt(boundBefore(1, 1)), 3),
       numberText(std::sqrt(boundAfter(1, 1)), 3));
-  return statusOf(found, report);
 }
 
 }  // namespace app

@@ -5,46 +5,16 @@
 #include <cmath>
 #include <numbers>
 
-#include "info/information/fisher.h"
-#include "info/information/symmetric_eigen.h"
-#include "output/progress_bar.h"
-
 namespace app {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 nlohmann::ordered_json rowsOf(const MatrixXd& matrix) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const auto& row : matrix.rowwise())
     rows.push_back(std::vector<double>(row.begin(), row.end()));
   return rows;
-}
-
-VectorXd eigenvaluesOf(const MatrixXd& information) {
-  return info::symmetricEigenvalues(information);
-}
-
-MatrixXd boundOf(const info::PlannedExperiment& plan) {
-  return info::cramerRaoBound(
-      info::fisherInformation(plan.predictor.withSensitivities(plan.truth).gamma, plan.covariance));
-}
-
-info::MonteCarloResult simulateTrials(const CommandContext& context,
-                                      const info::PlannedExperiment& plan, int trials,
-                                      const std::string& label) {
-  ProgressBar bar(label);
-  info::MonteCarloOptions options;
-  options.trials = trials;
-  options.seed = context.seed;
-  options.threads = context.threads;
-  options.startSpread = 1;
-  options.progress = [&](int done, int all) {
-    bar.update(static_cast<double>(done) / all);
-    return true;
-  };
-  return info::monteCarlo(plan.predictor, plan.truth, plan.covariance, plan.parameters, options);
 }
 
 Figure histogram(const std::string& name, const info::MonteCarloResult& result, Index parameter,

@@ -26,14 +26,17 @@ __all__ = [
     "calibrate",
     "compare",
     "compare_muscles",
+    "compare_robot_estimators",
     "cost_gradient",
     "cramer_rao_bound",
     "design",
     "design_on_dynamometer",
     "discover",
+    "discover_robot",
     "emg",
     "ensemble",
     "estimate",
+    "estimate_string_length",
     "fisher_information",
     "fit_paths",
     "global_sensitivity",
@@ -47,11 +50,13 @@ __all__ = [
     "moment_arms",
     "muscle_states",
     "opensim_differences",
+    "optimise_robot_motion",
     "parameter_sweep",
     "profile_likelihood",
     "read_recording",
     "read_study",
     "replay",
+    "robot_information",
     "sensitivity",
     "separate",
     "study",
@@ -2693,6 +2698,121 @@ def list_effects(
         For an unknown coordinate, or several free ones.
     """
 
+@type_check_only
+class RobotEffect:
+    id: str
+    name: str
+    kind: Literal["structure", "input", "geometry", "sensor", "parameter"]
+    parameters: dict[str, EffectParameter]
+    log_bayes_factor: float
+    probability: float
+    cannot_be_told_from: list[str]
+
+@type_check_only
+class RobotDiscoveryResult:
+    verdict: Literal["named", "ambiguous", "parameter", "none", "unknown", "numerical"]
+    sentence: str
+    effects: list[RobotEffect]
+    surrogate: bool
+    probability_vetoed: bool
+    noise: dict[str, float]
+    gap: ExcessError
+    gap_held_out: ExcessError | None
+    held_out_fitted: bool
+    replicated: bool | None
+    undetectable_below: dict[str, float]
+    unknown: UnknownForce | None
+    force_without_a_name: NonparametricForce | None
+    fitted_parameters: list[FittedParameter]
+    already_in_the_model: list[str]
+    warnings: list[str]
+    step: float
+    fits: int
+
+_RobotTrial: TypeAlias = str | dict[str, ArrayLike]
+
+def discover_robot(
+    system: Literal["double-pendulum", "suspended-mass"],
+    trials: Sequence[_RobotTrial],
+    *,
+    hold_out: Sequence[_RobotTrial] = [],
+    with_effects: str | Sequence[RobotEffect] | None = None,
+    noise: float | Sequence[float] | None = None,
+    without: Sequence[str] = [],
+    max_effects: int = 3,
+    step: float | None = None,
+    input_scatter: float | None = None,
+    ignore_extra: bool = False,
+) -> RobotDiscoveryResult:
+    """Finds and names the effect that a robot's model lacks.
+
+    Parameters
+    ----------
+    system : {'double-pendulum', 'suspended-mass'}
+        Two links on a cart, with measured angles, or a mass on a string below a cart, with the measured
+        force of the string.
+    trials : list of str or dict
+        Files, or {column: values}: time [s], input (the cart's commanded acceleration [m/s^2]), and
+        link1_rad and link2_rad (absolute angles from hanging down [rad]; or link1_deg and link2_deg) or
+        force_N; NaN: not measured. The cart is at rest before.
+    hold_out : list of str or dict
+        Trials used to test the result.
+    with_effects : str or list, optional
+        Effects to add to the model first: a with_effect.json, or the effects of an earlier result.
+    noise : float or list of float, optional
+        Standard deviation of each measured column, link1 and link2 [rad] or force [N]. Default:
+        estimated from the data.
+    without : list of str
+        Ids of effects to exclude from the catalogue.
+    max_effects : int
+        Largest number of effects in one hypothesis.
+    step : float, optional
+        Time step [s] > 0. Default: 0.005 s, halved where this is too long.
+    input_scatter : float, optional
+        Error of the cart's acceleration that is tolerated [m/s^2], >= 0; a larger residual counts as a
+        missing effect. Default: 0.075.
+    ignore_extra : bool
+        Ignore unknown columns.
+
+    Returns
+    -------
+    verdict, sentence : str
+        As discover.
+    effects : list
+        For each effect: id, name, kind, parameters, log_bayes_factor, probability and
+        cannot_be_told_from as discover.
+    surrogate, probability_vetoed : bool
+        As discover.
+    noise : dict
+        {channel: standard deviation of the noise that was used [rad] or [N]}.
+    gap, gap_held_out
+        As discover, in [rad] or [N]; errors of link2 are weighted by the ratio of the two noises.
+    held_out_fitted : bool
+        As discover.
+    replicated : bool or None
+        As discover.
+    undetectable_below : dict
+        As discover.
+    unknown, force_without_a_name
+        As discover; the force is an acceleration of the cart [m/s^2].
+    fitted_parameters : list
+        As discover.
+    already_in_the_model : list of str
+        Ids of the effects of with_effects that are no candidates any more.
+    warnings : list of str
+        Columns that were ignored.
+    step : float
+        Time step [s].
+    fits : int
+        Number of fits.
+
+    Raises
+    ------
+    ValueError
+        For an unknown system, a table that breaks a rule, an unknown id, a step longer than a trial, or
+        an option out of range.
+    """
+
 # Studies ------------------------------------------------------------------------------------------
 
 @type_check_only
@@ -2845,6 +2965,456 @@ def study(
     ------
     ValueError
         As read_study does, and for a name that is no subject's.
+    """
+
+# Robots -------------------------------------------------------------------------------------------
+
+@type_check_only
+class RobotTrials:
+    trials: int
+    converged: int
+    mean: _Array
+    covariance: _Array
+    estimates: _Array
+
+@type_check_only
+class RobotInformationResult:
+    names: list[str]
+    units: list[str]
+    truth: _Array
+    information: _Array
+    bound: _Array | None
+    eigenvalues: _Array
+    determined_directions: int
+    sentences: list[str]
+    determined: list[str]
+    undetermined_directions: list[str]
+    trials: RobotTrials | None
+
+def robot_information(
+    robot: Literal["double-pendulum", "suspended-mass"],
+    *,
+    amplitude: float | None = None,
+    period: float | None = None,
+    unknown: Sequence[str] = [],
+    undamped: bool = False,
+    trials: int = 0,
+    seed: int = 1,
+    threads: int = 1,
+) -> RobotInformationResult:
+    """Information of an experiment with a robot about two of its parameters.
+
+    The cart moves by amplitude (1 - cos(2 pi t / period)) for 5 s.
+
+    Parameters
+    ----------
+    robot : {'double-pendulum', 'suspended-mass'}
+        Two links on a cart, their angles measured at 30 Hz: mass of the first link and damping of the
+        joints are unknown. Or a mass on a string below a cart, the string's force measured at 100 Hz:
+        mass and length are unknown.
+    amplitude : float, optional
+        [m] > 0. Default: 0.05, of the suspended mass 0.0476.
+    period : float, optional
+        [s] > 0. Default: 5.
+    unknown : list of str
+        ['m1', 'c'] or ['m1', 'm2'], of the double pendulum. Default: ['m1', 'c'].
+    undamped : bool
+        True: no damping; with ['m1', 'm2'] only.
+    trials : int
+        Number of simulated experiments with independent noise, each estimated from an initial guess
+        drawn between 0 and 2 times the true values; 0: none.
+    seed : int
+    threads : int
+        0: all cores. The result does not depend on it.
+
+    Returns
+    -------
+    names, units : list of str
+        Of the parameters.
+    truth : array, 2
+        The values at which the information holds.
+    information : array, 2 x 2
+        Fisher information of one experiment.
+    bound : array, 2 x 2, or None
+        Cramer-Rao bound, the smallest covariance of unbiased estimates; None if the parameters are not
+        separately identifiable.
+    eigenvalues : array, 2
+        Of the information, rising.
+    determined_directions : int
+        Number of combinations of the parameters that the experiment determines.
+    sentences : list of str
+        The result in words.
+    determined : list of str
+        Combinations that are determined although their parameters are not.
+    undetermined_directions : list of str
+        Changes of the parameters that leave all outputs unchanged.
+    trials
+        trials and converged (numbers of simulated experiments and of converged estimates), mean,
+        covariance, estimates (of those that converged, one a row); None without any.
+
+    Raises
+    ------
+    ValueError
+        For an unknown robot or parameter, or an option out of range.
+    """
+
+@type_check_only
+class RobotMotion:
+    time: _Array
+    input: _Array
+    states: _Array
+    information: _Array
+
+@type_check_only
+class RobustInformation:
+    candidates: _Array
+    initial: _Array
+    nominal: _Array
+    robust: _Array
+
+@type_check_only
+class LaboratoryResult:
+    recordings: int
+    truth: _Array
+    start: _Array
+    estimate_before: _Array
+    estimate_after: _Array
+    median_error_before: _Array
+    median_error_after: _Array
+
+@type_check_only
+class RobotMotionResult:
+    names: list[str]
+    units: list[str]
+    state_names: list[str]
+    before: RobotMotion
+    after: RobotMotion
+    iterations: int
+    motions_tried: int
+    converged: bool
+    why: str
+    costs: _Array
+    slopes: _Array
+    steps: _Array
+    information_before: _Array
+    information_after: _Array
+    bound_before: _Array
+    bound_after: _Array
+    trials_before: RobotTrials | None
+    trials_after: RobotTrials | None
+    estimator_iterations_before: dict[str, int] | None
+    estimator_iterations_after: dict[str, int] | None
+    robust: RobustInformation | None
+    laboratory: LaboratoryResult | None
+
+def optimise_robot_motion(
+    robot: Literal["double-pendulum", "suspended-mass"],
+    *,
+    discrete: bool = False,
+    amplitude: float | None = None,
+    period: float | None = None,
+    perturb: float | None = None,
+    warm_start: ArrayLike | None = None,
+    objective: dict[str, float] | None = None,
+    input_weight: float | None = None,
+    limits: tuple[float, float] | None = None,
+    tolerance: float | None = None,
+    iterations: int | None = None,
+    robust: Literal["worst", "average"] | None = None,
+    candidates: Sequence[tuple[float, float]] = [],
+    measure_every: int = 1,
+    lab: bool | dict[str, float] = False,
+    trials: int = 300,
+    seed: int = 1,
+    threads: int = 1,
+) -> RobotMotionResult:
+    """Searches the motion of a robot that is most informative about two of its parameters.
+
+    The search minimises J = phi(I) + (R/2) int (u - u0)^2 dt by the projection operator, with the
+    Fisher information I, phi = e/lambda_min + a tr I^-1 - d ln det I + condition lambda_max/lambda_min,
+    the cart's input u and the initial input u0. A search that makes no progress is a result.
+
+    Parameters
+    ----------
+    robot : {'double-pendulum', 'suspended-mass'}
+        As robot_information.
+    discrete : bool
+        True: the motion of the variational integrator in steps of 0.02 s, whose input is the cart's
+        position [m]; double pendulum only. Else the input is the cart's acceleration [m/s^2].
+    amplitude : float, optional
+        Of the initial motion [m] >= 0: amplitude (1 - cos(2 pi t / period)), with `discrete` amplitude
+        sin(2 pi t / period). Default: 0.05, with `discrete` 0.01, of the suspended mass 0.0476.
+    period : float, optional
+        Of the initial motion [s] > 0. Default: 5.
+    perturb : float, optional
+        Size > 0 of a smooth random motion that is added to the initial input [its unit].
+    warm_start : array, optional
+        Input to start from, such as `after.input` of an earlier result.
+    objective : dict, optional
+        {criterion: weight} with 'e', 'a', 'd' and 'condition'. Default: the robot's own.
+    input_weight : float, optional
+        R >= 0. Default: the robot's own.
+    limits : tuple, optional
+        Lower and upper limit of the input.
+    tolerance : float, optional
+        The search ends when the expected decrease of J is below this, >= 0. Default: 0.1, with
+        `discrete` 0.01.
+    iterations : int, optional
+        Largest number, >= 0. Default: 100.
+    robust : {'worst', 'average'}, optional
+        Optimise the worst case or the average over several values of the parameters.
+    candidates : list of tuple
+        These values, with `robust` only. Default: the model's values, and each alone +-30 %.
+    measure_every : int
+        Steps between measurements, >= 1; with `discrete` only.
+    lab : bool or dict
+        Estimate from recordings of both motions that are simulated with effects which the model lacks:
+        True for those of usual size, or sizes by name: out_of_plane [rad], dry_friction [N m],
+        control_lag [s], control_noise [m/s^2], sensor_curvature, sensor_step [rad] or [N]. Not with
+        `discrete`.
+    trials : int
+        Simulated experiments with each motion of the double pendulum, >= 1.
+    seed : int
+        Of the perturbation, the trials and the laboratory.
+    threads : int
+        0: all cores. The result does not depend on it.
+
+    Returns
+    -------
+    names, units : list of str
+        Of the parameters.
+    state_names : list of str
+        With units.
+    before, after
+        The initial and the optimised motion:
+
+        time : array, times
+            [s]
+        input : array, times
+        states : array, times x states
+        information : array, times x 2 x 2
+            Fisher information of all measurements up to each time.
+    iterations, motions_tried : int
+    converged : bool
+    why : str
+        Why the search ended.
+    costs : array, iterations + 1
+        J at the start and after each iteration.
+    slopes, steps : array
+        Expected decrease of J for a step of 1 (< 0) at each iteration, and the steps taken.
+    information_before, information_after : array, 2 x 2
+        As the search takes it: of the double pendulum in continuous time that of one sample a second,
+        else of the experiment.
+    bound_before, bound_after : array, 2 x 2
+        Cramer-Rao bounds of one experiment.
+    trials_before, trials_after
+        As `trials` of robot_information; None of the suspended mass.
+    estimator_iterations_before, estimator_iterations_after : dict or None
+        Of the suspended mass: {estimator: iterations on exact data}; 1001: not converged.
+    robust
+        With `robust` the smallest eigenvalue of the information for each of `candidates` (one a row):
+        initial (motion), nominal (optimised for the first alone), robust; else None.
+    laboratory
+        With `lab` recordings (of each motion), truth, start (initial guess), estimate_before and
+        estimate_after (from the first recording), median_error_before and median_error_after (relative,
+        of all recordings); else None.
+
+    Raises
+    ------
+    ValueError
+        If the initial motion has no information about a combination of the parameters, or for an option
+        out of range.
+    """
+
+@type_check_only
+class EstimatorConvergence:
+    method: Literal["gradient descent", "iterated least squares", "Newton-Raphson"]
+    iterations: int
+    converged: bool
+    parameters: _Array
+    cost: _Array
+    error: _Array
+    ratio: _Array
+    order: _Array
+    mean_ratio: float
+
+@type_check_only
+class EstimatorComparisonResult:
+    quiet: list[EstimatorConvergence]
+    lively: list[EstimatorConvergence]
+
+def compare_robot_estimators(
+    *, amplitude: float | None = None, period: float | None = None, seed: int = 1
+) -> EstimatorComparisonResult:
+    """Convergence of three estimators of mass and string length of the suspended mass.
+
+    They are gradient descent, iterated least squares and Newton-Raphson.
+
+    Parameters
+    ----------
+    amplitude, period : float, optional
+        Of the quiet motion, as robot_information.
+    seed : int
+        Of the noise.
+
+    Returns
+    -------
+    quiet : list
+        With exact data, for each estimator:
+
+        method : str
+        iterations : int
+        converged : bool
+        parameters : array, 2
+            Mass [kg] and length [m].
+        cost, error, ratio, order : array, iterations + 1
+            Cost, relative error, error divided by the last one, and order of convergence; NaN where
+            undefined.
+        mean_ratio : float
+            Of the errors of successive iterations.
+    lively : list
+        The same for a motion of 0.1 m and 1.2 s, one recording with noise.
+
+    Raises
+    ------
+    ValueError
+        For an option out of range.
+    """
+
+@type_check_only
+class LengthEstimates:
+    time: _Array
+    length: _Array
+    length_sd: _Array
+    mass: _Array
+    mass_sd: _Array
+    converged: list[bool]
+
+@type_check_only
+class ArmSamples:
+    time: _Array
+    reference: _Array
+    position: _Array
+    acceleration: _Array
+    force: _Array
+    predicted_force: _Array
+    information: _Array
+
+@type_check_only
+class Swing:
+    success: bool
+    why: str
+    crossing_height: float
+    time: _Array
+    gripper: _Array
+    ball_x: _Array
+    ball_z: _Array
+
+@type_check_only
+class StringLengthTrial:
+    initial_length: float
+    length: float
+    length_sd: float
+    mass: float
+    estimates: LengthEstimates
+    samples: ArmSamples
+    clipped_samples: int
+    least_tension: float
+    deadline_misses: int
+    swing_without: Swing
+    swing_with: Swing
+
+@type_check_only
+class StringLengthResult:
+    trials: list[StringLengthTrial]
+    mean: float
+    sd: float
+    largest_error: float
+    successes_without: int
+    successes_with: int
+
+def estimate_string_length(
+    initial_lengths: Sequence[float] = [],
+    *,
+    duration: float = 6.0,
+    payload: float = 0.2,
+    true_length: float = 0.368,
+    noise: float = 0.1,
+    disturbance: float = 0.5,
+    tracking_weight: float = 20.0,
+    window: float = 0.0,
+    estimate_mass: bool = False,
+    ignore_clipping: bool = False,
+    search_time: bool = False,
+    real_time: bool = False,
+    seed: int = 1,
+) -> StringLengthResult:
+    """A robot arm estimates the length of a string while it moves, then swings the ball into a box.
+
+    The arm moves a mass on a string such that the measured force is informative about the string's
+    length. The swing is planned with the initial and with the estimated length, and carried out on the
+    true string.
+
+    Parameters
+    ----------
+    initial_lengths : list of float
+        Initial estimates [m], 0.05 to 1.5, one for each trial. Default: nine from 0.308 to 0.468.
+    duration : float
+        Of a trial [s] > 0.
+    payload : float
+        Mass on the string [kg] > 0, known unless `estimate_mass`.
+    true_length : float
+        [m] > 0
+    noise : float
+        Standard deviation of the load cell's noise [N] > 0.
+    disturbance : float
+        Unmeasured acceleration of the string's top [m/s^2] >= 0.
+    tracking_weight : float
+        Weight of tracking the middle position, > 0; without it nothing would move.
+    window : float
+        Length of the estimation window [s], at least 0.1; 0: all data since the start.
+    estimate_mass : bool
+        Estimate the mass as well, from 0.8 times its value.
+    ignore_clipping : bool
+        Treat clipped samples as measurements.
+    search_time : bool
+        Let the controller postpone its action to a better time.
+    real_time : bool
+        Run four threads in real time, each at its own rate; takes `duration` for each trial.
+    seed : int
+
+    Returns
+    -------
+    trials : list
+        Each with
+
+        initial_length, length, length_sd, mass : float
+            Initial and final estimate, its standard deviation [m], and the mass [kg].
+        estimates
+            In the course of the trial: time [s], length, length_sd [m], mass, mass_sd [kg], converged.
+        samples
+            time [s], reference and position [m] and acceleration [m/s^2] of the gripper, force and
+            predicted_force [N], information about the length so far [1/m^2].
+        clipped_samples : int
+        least_tension : float
+            [N]; <= 0: the string was slack, where the model is not valid.
+        deadline_misses : int
+            Of the controller.
+        swing_without, swing_with
+            The swings planned with the initial and with the estimated length: success, why,
+            crossing_height (of the ball at the near wall above the edge [m]; NaN without a plan),
+            time [s], gripper, ball_x, ball_z [m].
+    mean, sd : float
+        Of the final estimates [m].
+    largest_error : float
+        [m]
+    successes_without, successes_with : int
+        Number of swings that end in the box.
+
+    Raises
+    ------
+    ValueError
+        For an option out of range, or if nothing would move.
     """
 
 # Systems defined in Python ------------------------------------------------------------------------

@@ -9,6 +9,7 @@
 #include "bio/discovery/workflow.h"
 #include "bio/tables/different_trials.h"
 #include "bio/tables/trial_table.h"
+#include "discovery/verdict.h"
 #include "docstrings.h"
 #include "info/discovery/judgement/separation.h"
 #include "info/version.h"
@@ -18,38 +19,13 @@ namespace python {
 namespace {
 
 using bio::discover::MusculoskeletalProblem;
-using info::discover::Estimate;
-using info::discover::ExcessError;
 using info::discover::Verdict;
-
-py::dict estimatesOf(const MusculoskeletalProblem& data, const std::vector<Estimate>& estimates) {
-  py::dict all;
-  for (const Estimate& one : estimates) {
-    const auto& quantity = data.quantities()[one.quantity];
-    all[quantity.name.c_str()] =
-        results("value"_a = one.value, "sd"_a = one.sd, "unit"_a = quantity.unit);
-  }
-  return all;
-}
 
 py::object effectOf(const MusculoskeletalProblem& data, const info::discover::NamedEffect& effect,
                     const bio::discover::EffectSize& size) {
-  const auto& candidate = data.candidates()[effect.candidate];
-  std::vector<std::string> rivals;
-  for (const std::size_t c : effect.equals) rivals.push_back(data.candidates()[c].id);
-  return results("id"_a = candidate.id, "name"_a = candidate.name,
-                 "kind"_a = info::discover::name(candidate.kind),
-                 "parameters"_a = estimatesOf(data, effect.estimates),
-                 "log_bayes_factor"_a = effect.logBayesFactor, "probability"_a = effect.probability,
-                 "cannot_be_told_from"_a = rivals, "moment_rms"_a = size.momentRms,
+  return results(**effectMembers(data, effect), "moment_rms"_a = size.momentRms,
                  "moment_peak"_a = size.momentPeak, "share_of_muscle_moment"_a = size.share,
                  "motion_rms"_a = size.motionRms);
-}
-
-py::object excessErrorOf(const ExcessError& gap) {
-  return results("nominal"_a = gap.nominal, "calibrated"_a = gap.calibrated, "after"_a = gap.after,
-                 "expected"_a = gap.expected, "probability"_a = gap.probability,
-                 "noise_floor"_a = gap.floor, "closed"_a = gap.closedFromCalibrated);
 }
 
 /// What could be done to tell apart what these data cannot, the best first.
@@ -64,43 +40,6 @@ py::list plannedOf(const MusculoskeletalProblem& data, const Verdict& verdict,
                            "expected_nats"_a = nats));
   }
   return planned;
-}
-
-/// The unknown effect, and the formula that was compared for it.
-py::object unknownOf(const Verdict& verdict) {
-  if (!verdict.unknown) return py::none();
-  py::object raced = py::none();
-  if (verdict.formula) {
-    const info::discover::RacedFormula& race = *verdict.formula;
-    py::list terms;
-    for (std::size_t k = 0; k < race.values.size(); ++k)
-      terms.append(results("expression"_a = race.terms[k].expression, "value"_a = race.values[k],
-                           "sd"_a = race.sds[k]));
-    raced = results("formula"_a = race.text, "wins"_a = race.wins, "terms"_a = terms,
-                    "log_bayes_factor"_a = race.logBayesFactor,
-                    "amplitude_over_sd"_a = race.significance, "adequate"_a = race.after.adequate(),
-                    "gap"_a = excessErrorOf(race.gap),
-                    "gap_held_out"_a = race.heldOut ? excessErrorOf(*race.heldOut) : py::none());
-  }
-  const info::discover::Unknown& unknown = *verdict.unknown;
-  return results("formula"_a = unknown.formula, "stable"_a = unknown.stable,
-                 "evidence"_a = unknown.evidence, "explained"_a = unknown.explained,
-                 "peak_frequency"_a = unknown.peakFrequency, "rms"_a = unknown.forceSize,
-                 "raced"_a = raced);
-}
-
-/// The best smooth force of the angle or the speed alone, beside the names.
-py::object nonparametricForceOf(const MusculoskeletalProblem& data, const Verdict& verdict) {
-  if (!verdict.nonparametric) return py::none();
-  const info::discover::NonparametricForce& force = *verdict.nonparametric;
-  std::vector<std::string> besides;
-  for (const std::size_t c : force.besides) besides.push_back(data.candidates()[c].id);
-  return results("follows"_a = info::discover::name(force.follows), "beside"_a = besides,
-                 "log_bayes_factor"_a = force.logBayesFactor, "nats_ahead_of_names"_a = force.ahead,
-                 "wins"_a = force.wins,
-                 "at"_a = Eigen::VectorXd(Eigen::VectorXd::Map(
-                     force.at.data(), static_cast<Eigen::Index>(force.at.size()))),
-                 "force"_a = force.force, "sd"_a = force.sd);
 }
 
 /// The model with all that was fitted, or None, and what replays of it give.
@@ -132,16 +71,6 @@ Written writtenOf(bio::discover::DiscoveryResult& result) {
   }
   if (result.repaired) written.model = py::cast(result.repaired->added.model);
   return written;
-}
-
-py::list fittedOf(const std::vector<info::discover::FittedNumber>& fitted) {
-  py::list list;
-  for (const auto& one : fitted) {
-    list.append(results("name"_a = one.name, "unit"_a = one.unit, "nominal"_a = one.nominal,
-                        "estimate"_a = one.estimate, "sd"_a = one.sd, "prior_sd"_a = one.prior,
-                        "prior_z"_a = one.priorZ));
-  }
-  return list;
 }
 
 /// What is searched: one coordinate that is free.
@@ -205,14 +134,8 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
   asked.problem.simulation = choice.simulation();
   asked.problem.simulation.duration = 1;
   asked.problem.without = without;
-  asked.search.maxEffects = maxEffects;
+  asked.search = searchOptions(maxEffects, inputScatter);
   asked.search.outputSd = noise;
-  if (inputScatter) {
-    if (!(*inputScatter >= 0) || !std::isfinite(*inputScatter))
-      throw std::invalid_argument(
-          fmt::format("input_scatter: {} must be a number ≥ 0", *inputScatter));
-    asked.search.latentTolerance = *inputScatter;
-  }
   asked.provenance.tool = "fisherhill " + std::string(info::version());
   for (const bio::Trial& trial : asked.trials)
     asked.provenance.data.push_back(fmt::format("{} SHA-256 {}", trial.file, trial.sha256));
@@ -228,25 +151,13 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
   py::list effects;
   for (std::size_t i = 0; i < verdict.effects.size(); ++i)
     effects.append(effectOf(data, verdict.effects[i], result.sizes[i]));
-  py::dict undetectable;
-  for (const auto& one : verdict.detectability) {
-    undetectable[data.candidates()[one.candidate].id.c_str()] = one.amplitude;
-  }
-  return results(
-      "verdict"_a = info::discover::name(verdict.finding), "sentence"_a = verdict.sentence,
-      "effects"_a = effects, "surrogate"_a = verdict.proxy, "probability_vetoed"_a = verdict.vetoed,
-      "noise"_a = verdict.outputSd, "gap"_a = excessErrorOf(verdict.gap),
-      "gap_held_out"_a = verdict.heldOut ? excessErrorOf(*verdict.heldOut) : py::none(),
-      "held_out_fitted"_a = verdict.heldOutFitted,
-      "replicated"_a = verdict.replication ? py::cast(verdict.replication->replicated) : py::none(),
-      "position_break"_a =
-          result.positionBreak ? py::cast(result.positionBreak->position) : py::none(),
-      "trials_are_cut"_a = result.trialsAreCut, "undetectable_below"_a = undetectable,
-      "planned_experiments"_a = plannedOf(data, verdict, result.experiments),
-      "unknown"_a = unknownOf(verdict),
-      "force_without_a_name"_a = nonparametricForceOf(data, verdict), "model"_a = written.model,
-      "trials"_a = written.trials, "fitted_parameters"_a = fittedOf(result.fitted),
-      "step"_a = found.step, "fits"_a = verdict.fits);
+  return results(**verdictMembers(data, found, result.fitted), "effects"_a = effects,
+                 "noise"_a = verdict.outputSd,
+                 "position_break"_a =
+                     result.positionBreak ? py::cast(result.positionBreak->position) : py::none(),
+                 "trials_are_cut"_a = result.trialsAreCut,
+                 "planned_experiments"_a = plannedOf(data, verdict, result.experiments),
+                 "model"_a = written.model, "trials"_a = written.trials);
 }
 
 }  // namespace

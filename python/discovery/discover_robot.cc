@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+
+#include <variant>
+
+#include "arms.h"
+#include "bio/tables/table_file.h"
+#include "discovery/verdict.h"
+#include "docstrings.h"
+#include "interruptible.h"
+#include "robots/robot_discovery.h"
+#include "robots/robot_recording.h"
+#include "robots/robots.h"
+
+namespace python {
+namespace {
+
+using info::robot::KnownEffect;
+
+/// A file, or columns as make_trial takes them.
+using RobotTrial = std::variant<std::string, py::dict>;
+
+info::robot::Trial robotTrialOf(const RobotTrial& given, std::size_t number,
+                                const std::vector<info::robot::Channel>& channels, bool ignoreExtra,
+                                std::vector<std::string>& warnings) {
+  const auto* file = std::get_if<std::string>(&given);
+  const std::string name = file ? *file : fmt::format("trial {}", number);
+  const bio::Table table = file ? bio::readTable(*file) : tableOf(std::get<py::dict>(given), name);
+  return info::robot::recordingOf(
+      {name, table.columns, table.values, table.inDegrees}, channels,
+      [&](const std::string& column) {
+        const std::string what = fmt::format("{}: column {} is unknown", name, column);
+        if (!ignoreExtra) throw std::invalid_argument(what + "; ignore_extra=True ignores it");
+        warnings.push_back(what + " and ignored");
+      });
+}
+
+/// From the members of a result's effects.
+std::vector<KnownEffect> effectsOf(const py::iterable& effects) {
+  std::vector<KnownEffect> known;
+  for (const auto& effect : effects) {
+    KnownEffect& one = known.emplace_back();
+    one.id = effect.attr("id").cast<std::string>();
+    for (const auto& [name, parameter] : effect.attr("parameters").cast<py::dict>())
+      one.values[name.cast<std::string>()] = parameter.attr("value").cast<double>();
+  }
+  return known;
+}
+
+/// From a with_effect.json.
+std::vector<KnownEffect> effectsIn(const std::string& file, const std::string& system) {
+  try {
+    const auto path = py::module_::import("pathlib").attr("Path")(file);
+    const py::object json =
+        py::module_::import("json").attr("loads")(path.attr("read_text")("encoding"_a = "utf-8"));
+    const auto ofSystem = json["system"].cast<std::string>();
+    if (ofSystem != system)
+      throw std::invalid_argument(fmt::format("system is {}, must be {}", ofSystem, system));
+    std::vector<KnownEffect> known;
+    for (const auto& effect : json["effects"]) {
+      KnownEffect& one = known.emplace_back();
+      one.id = effect["id"].cast<std::string>();
+      for (const auto& [name, parameter] : effect["parameters"].cast<py::dict>())
+        one.values[name.cast<std::string>()] = parameter["value"].cast<double>();
+    }
+    return known;
+  } catch (const py::error_already_set& error) {
+    throw std::invalid_argument(
+        fmt::format("{}: {}", file, py::str(error.value()).cast<std::string>()));
+  } catch (const std::exception& error) {
+    throw std::invalid_argument(fmt::format("{}: {}", file, error.what()));
+  }
+}
+
+std::vector<KnownEffect> knownEffectsOf(const py::object& given, const std::string& system) {
+  if (given.is_none()) return {};
+  if (py::isinstance<py::str>(given)) return effectsIn(given.cast<std::string>(), system);
+  return effectsOf(given.cast<py::iterable>());
+}
+
+py::object discoverRobot(const std::string& system, std::vector<RobotTrial> trials,
+                         const std::vector<RobotTrial>& holdOut, const py::object& withEffects,
+                         const std::optional<std::variant<double, std::vector<double>>>& noise,
+                         const std::vector<std::string>& without, int maxEffects,
+                         std::optional<double> step, std::optional<double> inputScatter,
+                         bool ignoreExtra) {
+  const std::vector<info::robot::Channel> channels = info::robot::channelsOf(system);
+  if (trials.empty()) throw std::invalid_argument("trials: empty, must hold at least one");
+  trials.insert(trials.end(), holdOut.begin(), holdOut.end());
+  info::robot::DiscoveryRequest asked;
+  std::vector<std::string> warnings;
+  for (const RobotTrial& trial : trials)
+    asked.trials.push_back(
+        robotTrialOf(trial, asked.trials.size() + 1, channels, ignoreExtra, warnings));
+  asked.numHeldOut = holdOut.size();
+  asked.model = info::robot::modelFor(system, asked.trials);
+  const std::vector<std::string> present =
+      info::robot::buildIn(knownEffectsOf(withEffects, system), asked.model);
+  if (step && !(*step > 0))
+    throw std::invalid_argument(fmt::format("step = {} s, must be > 0", *step));
+  asked.step = step;
+  asked.problem.without = without;
+  if (noise)
+    asked.problem.sds = std::holds_alternative<double>(*noise)
+                            ? std::vector<double>{std::get<double>(*noise)}
+                            : std::get<std::vector<double>>(*noise);
+  asked.search = searchOptions(maxEffects, inputScatter);
+  info::robot::DiscoveryResult result;
+  interruptible([&](const std::atomic<bool>& goOn) {
+    asked.search.progress = [&](const info::discover::Progress&) { return goOn.load(); };
+    result = info::robot::discover(asked);
+  });
+  const info::robot::RobotProblem& data = *result.data;
+  py::list effects;
+  for (const auto& effect : result.found.verdict.effects)
+    effects.append(results(**effectMembers(data, effect)));
+  py::dict noises;
+  for (std::size_t c = 0; c < channels.size(); ++c)
+    noises[channels[c].name.c_str()] = data.sds()[c];
+  return results(**verdictMembers(data, result.found, result.fitted), "effects"_a = effects,
+                 "noise"_a = noises, "already_in_the_model"_a = present, "warnings"_a = warnings);
+}
+
+}  // namespace
+
+void defineRobotDiscovery(py::module_& module) {
+  module.def("discover_robot", &discoverRobot, "system"_a, "trials"_a, py::kw_only(),
+             "hold_out"_a = std::vector<RobotTrial>(), "with_effects"_a = py::none(),
+             "noise"_a = py::none(), "without"_a = std::vector<std::string>(), "max_effects"_a = 3,
+             "step"_a = py::none(), "input_scatter"_a = py::none(), "ignore_extra"_a = false,
+             docstrings::discover_robot);
+}
+
+}  // namespace python
