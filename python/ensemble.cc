@@ -31,7 +31,7 @@ struct EnsembleRows {
   std::vector<bio::EnsembleRun> runs;
 };
 
-EnsembleRows rowsOf(const bio::TrialEnsemble& ensemble, std::uint64_t seed, int threads,
+EnsembleRows rowsOf(const bio::TrialEnsemble& ensemble, int first, std::uint64_t seed, int threads,
                     const std::atomic<bool>& goOn) {
   constexpr int together = 32;
   const auto count = static_cast<int>(ensemble.count());
@@ -43,7 +43,8 @@ EnsembleRows rowsOf(const bio::TrialEnsemble& ensemble, std::uint64_t seed, int 
     std::vector<Eigen::VectorXd> thetas;
     const int begin = part * together;
     for (int i = begin; i < std::min(begin + together, count); ++i) {
-      thetas.push_back(ensemble.draw(static_cast<std::uint64_t>(i), seed));
+      thetas.push_back(
+          ensemble.draw(static_cast<std::uint64_t>(first) + static_cast<std::uint64_t>(i), seed));
       rows.parameters.row(i) = thetas.back();
     }
     std::vector<bio::EnsembleRun> runs = ensemble.run(thetas);
@@ -135,9 +136,10 @@ py::object resultOf(const bio::TrialEnsemble& ensemble, const EnsembleRows& rows
 }
 
 py::object ensemble(const bio::Model& model, const bio::Trial& trial,
-                    const std::vector<std::string>& parameters, int draws, std::uint64_t seed,
-                    const std::string& distribution, double spread, const Pairs& prior,
-                    const Pairs& bounds, const std::optional<Covariance>& covariance, bool sobol,
+                    const std::vector<std::string>& parameters, int draws, int first,
+                    std::uint64_t seed, const std::string& distribution, double spread,
+                    const Pairs& prior, const Pairs& bounds,
+                    const std::optional<Covariance>& covariance, bool sobol,
                     const std::string& output, int bandPoints, int threads,
                     const std::map<std::string, double>& initial, const Names& coordinate,
                     const std::map<std::string, double>& lock, const std::string& integrator,
@@ -145,6 +147,10 @@ py::object ensemble(const bio::Model& model, const bio::Trial& trial,
   const SystemChoice choice = armChoice(model, {trial}, coordinate, lock, integrator, step);
   if (choice.coordinates.empty()) {
     throw std::invalid_argument("no coordinate is free to be observed: all are prescribed");
+  }
+  if (first < 0 || (first > 0 && sobol)) {
+    throw std::invalid_argument(fmt::format(
+        "first = {}, must be ≥ 0, and 0 with sobol, whose runs belong together", first));
   }
   if (threads < 0) throw std::invalid_argument(fmt::format("threads = {}, must be ≥ 0", threads));
   mustBeOfTheModelAsItIs(trial);
@@ -169,7 +175,7 @@ py::object ensemble(const bio::Model& model, const bio::Trial& trial,
     made = std::make_unique<const bio::TrialEnsemble>(
         model, system, choice.armOptions(), trial,
         bio::beginningOf(trial, model, system, initial).point, options);
-    rows = rowsOf(*made, seed, threads, goOn);
+    rows = rowsOf(*made, first, seed, threads, goOn);
     if (!sobol || !goOn) return;
     const auto of = bio::ensembleOutputs()[bio::ensembleOutputNamed(output)].of;
     indices = bio::sobolOf(ofEachRun(rows.runs, of),
@@ -183,9 +189,9 @@ py::object ensemble(const bio::Model& model, const bio::Trial& trial,
 void defineEnsemble(py::module_& module) {
   defineWithChoice(module, "ensemble", &ensemble, docstrings::ensemble, "model"_a, "trial"_a,
                    py::kw_only(), "parameters"_a = std::vector<std::string>(), "draws"_a = 1000,
-                   "seed"_a = 1, "distribution"_a = "normal", "spread"_a = 1.0, "prior"_a = Pairs(),
-                   "bounds"_a = Pairs(), "covariance"_a = py::none(), "sobol"_a = false,
-                   "output"_a = "final", "band_points"_a = 46, "threads"_a = 1,
+                   "first"_a = 0, "seed"_a = 1, "distribution"_a = "normal", "spread"_a = 1.0,
+                   "prior"_a = Pairs(), "bounds"_a = Pairs(), "covariance"_a = py::none(),
+                   "sobol"_a = false, "output"_a = "final", "band_points"_a = 46, "threads"_a = 1,
                    "initial"_a = std::map<std::string, double>());
 }
 

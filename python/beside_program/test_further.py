@@ -94,6 +94,19 @@ class Further(AsTheProgram):
                 rtol=1e-14)
         self.assertEqual(fh.calibrate(self.model, [self.slow], names, step=0.01).held_out_predictions, [])
 
+    def test_portions_of_an_ensemble_are_rows_of_the_whole_and_of_the_program(self):
+        _, out = self.run_program("ensemble", ELBOW, SLOW, "--parameters", "TRI.radius,hand.mass", "--draws", "7", "--step", "0.02")
+        rows = self.rows(out / "draws.csv")
+        asked = dict(parameters=["TRI.radius", "hand.mass"], seed=3, step=0.02)
+        portions = [fh.ensemble(self.model, self.slow, draws=n, first=first, **asked) for first, n in ((0, 3), (3, 4))]
+        for k, name in enumerate(("TRI.radius [m]", "hand.mass [kg]")):
+            np.testing.assert_array_equal(np.concatenate([one.parameters[:, k] for one in portions]), self.column(rows, name))
+        whole = fh.ensemble(self.model, self.slow, draws=7, **asked)
+        np.testing.assert_allclose(np.concatenate([one.course for one in portions]), whole.course, rtol=0, atol=1e-12)
+        for wrong in (dict(first=-1), dict(first=1, sobol=True, draws=2)):
+            with self.assertRaisesRegex(ValueError, "first = "):
+                fh.ensemble(self.model, self.slow, **asked, **wrong)
+
     def test_no_trial_is_used_twice(self):
         again = fh.load_trial(SLOW, self.model)
         for call, words in (

@@ -170,7 +170,7 @@ class Model:
         """
 
     def with_external_loads(self, file: str) -> Model:
-        """The model with forces and torques on bodies, which replay and comparisons simulate.
+        """The model with forces and torques on bodies, which replay, comparisons and ensemble simulate.
 
         Parameters
         ----------
@@ -1365,6 +1365,7 @@ def ensemble(
     *,
     parameters: Sequence[str] = [],
     draws: int = 1000,
+    first: int = 0,
     seed: int = 1,
     distribution: Literal["normal", "uniform"] = "normal",
     spread: float = 1.0,
@@ -1396,6 +1397,8 @@ def ensemble(
     draws : int
         Number of simulations >= 1; with sobol number n of base points >= 2, of which each is
         parameters + 2 simulations.
+    first : int
+        Number of the first run >= 0: portions of an ensemble have the rows of the whole. Not with sobol.
     seed : int
     distribution : {'normal', 'uniform'}
         Normal, or constant over the mean +- sqrt(3) standard deviations; both within the bounds.
