@@ -3,6 +3,7 @@
 #include <variant>
 
 #include "arms.h"
+#include "bio/tables/different_trials.h"
 #include "bio/tables/table_file.h"
 #include "discovery/verdict.h"
 #include "docstrings.h"
@@ -19,19 +20,28 @@ using info::robot::KnownEffect;
 /// A file, or columns as make_trial takes them.
 using RobotTrial = std::variant<std::string, py::dict>;
 
-info::robot::Trial robotTrialOf(const RobotTrial& given, std::size_t number,
-                                const std::vector<info::robot::Channel>& channels, bool ignoreExtra,
-                                std::vector<std::string>& warnings) {
+/// Trials as they are given, and by what they are known.
+struct RobotTrials {
+  std::vector<info::robot::Trial> trials;
+  std::vector<bio::TrialIdentity> identities;
+  std::vector<std::string> warnings;  ///< columns that were ignored
+};
+
+void addTrial(const RobotTrial& given, const std::vector<info::robot::Channel>& channels,
+              bool ignoreExtra, RobotTrials& all) {
   const auto* file = std::get_if<std::string>(&given);
-  const std::string name = file ? *file : fmt::format("trial {}", number);
+  const std::string name = file ? *file : fmt::format("trial {}", all.trials.size() + 1);
   const bio::Table table = file ? bio::readTable(*file) : tableOf(std::get<py::dict>(given), name);
-  return info::robot::recordingOf(
+  all.trials.push_back(info::robot::recordingOf(
       {name, table.columns, table.values, table.inDegrees}, channels,
       [&](const std::string& column) {
         const std::string what = fmt::format("{}: column {} is unknown", name, column);
         if (!ignoreExtra) throw std::invalid_argument(what + "; ignore_extra=True ignores it");
-        warnings.push_back(what + " and ignored");
-      });
+        all.warnings.push_back(what + " and ignored");
+      }));
+  const auto size = sizeof(double) * static_cast<std::size_t>(table.values.size());
+  all.identities.push_back(
+      {name, digestOf(py::bytes(reinterpret_cast<const char*>(table.values.data()), size))});
 }
 
 /// From the members of a result's effects.
@@ -87,10 +97,10 @@ py::object discoverRobot(const std::string& system, std::vector<RobotTrial> tria
   if (trials.empty()) throw std::invalid_argument("trials: empty, must hold at least one");
   trials.insert(trials.end(), holdOut.begin(), holdOut.end());
   info::robot::DiscoveryRequest asked;
-  std::vector<std::string> warnings;
-  for (const RobotTrial& trial : trials)
-    asked.trials.push_back(
-        robotTrialOf(trial, asked.trials.size() + 1, channels, ignoreExtra, warnings));
+  RobotTrials all;
+  for (const RobotTrial& trial : trials) addTrial(trial, channels, ignoreExtra, all);
+  bio::requireDifferentTrials(all.identities, trials.size() - holdOut.size());
+  asked.trials = std::move(all.trials);
   asked.numHeldOut = holdOut.size();
   asked.model = info::robot::modelFor(system, asked.trials);
   const std::vector<std::string> present =
@@ -117,7 +127,8 @@ py::object discoverRobot(const std::string& system, std::vector<RobotTrial> tria
   for (std::size_t c = 0; c < channels.size(); ++c)
     noises[channels[c].name.c_str()] = data.sds()[c];
   return results(**verdictMembers(data, result.found, result.fitted), "effects"_a = effects,
-                 "noise"_a = noises, "already_in_the_model"_a = present, "warnings"_a = warnings);
+                 "noise"_a = noises, "already_in_the_model"_a = present,
+                 "warnings"_a = all.warnings);
 }
 
 }  // namespace

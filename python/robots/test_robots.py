@@ -191,6 +191,8 @@ class Discovery(AsTheProgram):
         for call, words in (
             (lambda: fh.discover_robot("baxter", [trial]), "system 'baxter', must be double-pendulum or suspended-mass"),
             (lambda: discover([]), "trials: empty"),
+            (lambda: discover([trial, dict(trial)]), "trial 2: is the same trial as trial 1"),
+            (lambda: discover([file], hold_out=[trial]), "trial 2: is held out and also used for estimation"),
             (lambda: discover([no_input]), "trial 1: has no column input"),
             (lambda: discover([trial | {"force": trial["force_N"]}]), "columns force_N and force have the same meaning"),
             (lambda: discover([trial | {"time": -trial["time"]}]), "must be finite and rise"),

@@ -2812,8 +2812,8 @@ def discover_robot(
     Raises
     ------
     ValueError
-        For an unknown system, a table that breaks a rule, an unknown id, a step longer than a trial, or
-        an option out of range.
+        For an unknown system, a table that breaks a rule, a trial given twice, an unknown id, a step
+        longer than a trial, or an option out of range.
     """
 
 # Studies ------------------------------------------------------------------------------------------
