@@ -205,7 +205,7 @@ bio::SimulationOptions SystemChoice::simulation() const {
 
 SystemChoice armChoice(const bio::Model& model, const std::vector<bio::Trial>& trials,
                        const Names& coordinate, const std::map<std::string, double>& lock,
-                       const std::string& integrator, std::optional<double> step) {
+                       const std::string& integrator, std::optional<double> step, bool mayBeNone) {
   if (step && !(*step > 0)) {
     throw std::invalid_argument(fmt::format("step = {} s, must be > 0", *step));
   }
@@ -225,7 +225,7 @@ SystemChoice armChoice(const bio::Model& model, const std::vector<bio::Trial>& t
     for (const auto& [name, value] : lock) locked.insert(name);
     for (const bio::Trial& trial : trials)
       for (const bio::MeasuredMotion& motion : trial.measured) measured.insert(motion.coordinate);
-    free = bio::freeByDefault(model, locked, measured, !prescribed.empty());
+    free = bio::freeByDefault(model, locked, measured, mayBeNone || !prescribed.empty());
   }
   return {.coordinates = std::move(free),
           .prescribed = prescribed,

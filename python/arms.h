@@ -32,10 +32,13 @@ struct SystemChoice {
 using Names = std::variant<std::string, std::vector<std::string>>;
 
 /// @param trials  if no coordinate is named, bio::freeByDefault takes those that they measure
+/// @param mayBeNone  as freeByDefault has it; where something is prescribed none is an answer
+/// anyway
 /// @throws std::invalid_argument for a step that is not > 0, and what freeByDefault throws
 SystemChoice armChoice(const bio::Model& model, const std::vector<bio::Trial>& trials,
                        const Names& coordinate, const std::map<std::string, double>& lock,
-                       const std::string& integrator, std::optional<double> step);
+                       const std::string& integrator, std::optional<double> step,
+                       bool mayBeNone = false);
 
 /// Defines a function whose last four arguments are those of armChoice(), by name.
 /// @param before  annotations of the arguments before them, and the docstring

@@ -37,24 +37,15 @@ py::object readStudy(const std::string& file) {
 std::map<std::string, double> heldIn(const bio::Model& model, const std::vector<bio::Trial>& trials,
                                      const std::vector<std::string>& coordinates,
                                      const std::map<std::string, double>& lock) {
-  std::set<std::string> moments, measured;
-  for (const bio::Trial& trial : trials) {
-    for (const bio::MeasuredMotion& one : trial.measured) measured.insert(one.coordinate);
+  std::set<std::string> moments;
+  for (const bio::Trial& trial : trials)
     for (const bio::MeasuredChannel& one : trial.channels)
       if (one.what.kind == bio::Observable::Kind::moment) moments.insert(one.what.of);
-  }
-  std::set<std::string> locked, asked(coordinates.begin(), coordinates.end());
-  for (const auto& [name, value] : lock) locked.insert(name);
-  asked.insert(locked.begin(), locked.end());
-  const std::vector<std::string> prescribed = bio::prescribedByModel(model, asked);
-  std::vector<std::string> moving = coordinates;
-  if (moving.empty()) {
-    locked.insert(prescribed.begin(), prescribed.end());
-    moving = bio::freeByDefault(model, locked, measured, !prescribed.empty() || !moments.empty());
-  }
-  moving.insert(moving.end(), prescribed.begin(), prescribed.end());
-  std::map<std::string, double> held =
-      bio::heldCoordinates(model, {moving.begin(), moving.end()}, lock);
+  const SystemChoice choice =
+      armChoice(model, trials, coordinates, lock, "vi", {}, !moments.empty());
+  std::set<std::string> moving(choice.coordinates.begin(), choice.coordinates.end());
+  moving.insert(choice.prescribed.begin(), choice.prescribed.end());
+  std::map<std::string, double> held = bio::heldCoordinates(model, moving, lock);
   std::erase_if(held, [&](const auto& one) { return !moments.contains(one.first); });
   return held;
 }

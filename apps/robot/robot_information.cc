@@ -5,6 +5,7 @@
 
 #include "output/text.h"
 #include "robot/robot_figures.h"
+#include "robot/robot_search.h"
 #include "robots/robot_information.h"
 
 namespace app {

@@ -34,8 +34,8 @@ ThesisLaboratory laboratoryOfThesis() {
 void tellPendulum(const MotionResult& found, const CommandContext& context, Summary& summary,
                   Report& report) {
   const MatrixXd &boundBefore = found.boundBefore, &boundAfter = found.boundAfter;
-  const info::MonteCarloResult &slow = found.trialsBefore->trials,
-                               &fast = found.trialsAfter->trials;
+  const info::MonteCarloResult &slow = found.trialsBefore->result,
+                               &fast = found.trialsAfter->result;
   const Eigen::VectorXd &truthBefore = found.trialsBefore->plan.truth,
                         &truthAfter = found.trialsAfter->plan.truth;
   const double factor = info::symmetricEigenvalues(boundBefore).maxCoeff() /
@@ -45,7 +45,7 @@ void tellPendulum(const MotionResult& found, const CommandContext& context, Summ
   summary.set("monte_carlo_initial", rowsOf(slow.covariance));
   summary.set("monte_carlo_optimised", rowsOf(fast.covariance));
   summary.set("lambda_min_factor", factor);
-  summary.set("trials", found.trialsBefore->asked);
+  summary.set("trials", slow.trials.size());
   summary.set("trials_converged", {{"initial", slow.converged}, {"optimised", fast.converged}});
 
   report.mainFigure = stateFigure("Motion", "Angle [rad]", found, {{"link 1", 1}, {"link 2", 2}});

@@ -20,15 +20,14 @@ void tellPendulumInSteps(const MotionResult& found, int stepsPerSample, Summary&
   const MatrixXd &boundBefore = found.boundBefore, &boundAfter = found.boundAfter;
   const info::PlannedExperiment &slowPlan = found.trialsBefore->plan,
                                 &fastPlan = found.trialsAfter->plan;
-  const info::MonteCarloResult &slow = found.trialsBefore->trials,
-                               &fast = found.trialsAfter->trials;
-  const int asked = found.trialsBefore->asked;
+  const info::MonteCarloResult &slow = found.trialsBefore->result,
+                               &fast = found.trialsAfter->result;
   const double step = found.before.step, ms = 1e3 * found.secondsPerIteration;
   summary.set("bound_initial", rowsOf(boundBefore));
   summary.set("bound_optimised", rowsOf(boundAfter));
   summary.set("monte_carlo_initial", rowsOf(slow.covariance));
   summary.set("monte_carlo_optimised", rowsOf(fast.covariance));
-  summary.set("trials", asked);
+  summary.set("trials", slow.trials.size());
   summary.set("trials_converged", {{"initial", slow.converged}, {"optimised", fast.converged}});
   summary.set("information_initial", rowsOf(s.informationStart));
   summary.set("information_optimised", rowsOf(s.information));
@@ -52,7 +51,7 @@ void tellPendulumInSteps(const MotionResult& found, int stepsPerSample, Summary&
                {"iterations", std::to_string(s.iterations), "2"},
                {"ms per iteration, in steps", numberText(ms, 3), "39900"},
                {"ms per iteration, continuous", numberText(continuous, 3), "762500"}}});
-  Table trials{.title = fmt::format("{} simulated experiments and the bound", asked),
+  Table trials{.title = fmt::format("{} simulated experiments and the bound", slow.trials.size()),
                .columns = {"", "m1 m1 [kg²]", "m1 c [kg·10e-3 kg m²/s]", "c c [(10e-3 kg m²/s)²]"},
                .rows = {}};
   const auto row = [&](const char* what, const MatrixXd& of) {

@@ -44,14 +44,17 @@ void addTrial(const RobotTrial& given, const std::vector<info::robot::Channel>& 
       {name, digestOf(py::bytes(reinterpret_cast<const char*>(table.values.data()), size))});
 }
 
-/// From the members of a result's effects.
-std::vector<KnownEffect> effectsOf(const py::iterable& effects) {
+/// @param member  (object, name) ↦ the member of an effect or of a parameter
+template <class Member>
+std::vector<KnownEffect> effectsFrom(const py::iterable& effects, const Member& member) {
   std::vector<KnownEffect> known;
   for (const auto& effect : effects) {
     KnownEffect& one = known.emplace_back();
-    one.id = effect.attr("id").cast<std::string>();
-    for (const auto& [name, parameter] : effect.attr("parameters").cast<py::dict>())
-      one.values[name.cast<std::string>()] = parameter.attr("value").cast<double>();
+    one.id = member(effect, "id").template cast<std::string>();
+    const auto parameters = member(effect, "parameters").template cast<py::dict>();
+    for (const auto& [name, parameter] : parameters)
+      one.values[name.template cast<std::string>()] =
+          member(parameter, "value").template cast<double>();
   }
   return known;
 }
@@ -65,14 +68,9 @@ std::vector<KnownEffect> effectsIn(const std::string& file, const std::string& s
     const auto ofSystem = json["system"].cast<std::string>();
     if (ofSystem != system)
       throw std::invalid_argument(fmt::format("system is {}, must be {}", ofSystem, system));
-    std::vector<KnownEffect> known;
-    for (const auto& effect : json["effects"]) {
-      KnownEffect& one = known.emplace_back();
-      one.id = effect["id"].cast<std::string>();
-      for (const auto& [name, parameter] : effect["parameters"].cast<py::dict>())
-        one.values[name.cast<std::string>()] = parameter["value"].cast<double>();
-    }
-    return known;
+    return effectsFrom(json["effects"], [](const py::handle& object, const char* name) {
+      return py::object(object[name]);
+    });
   } catch (const py::error_already_set& error) {
     throw std::invalid_argument(
         fmt::format("{}: {}", file, py::str(error.value()).cast<std::string>()));
@@ -84,7 +82,9 @@ std::vector<KnownEffect> effectsIn(const std::string& file, const std::string& s
 std::vector<KnownEffect> knownEffectsOf(const py::object& given, const std::string& system) {
   if (given.is_none()) return {};
   if (py::isinstance<py::str>(given)) return effectsIn(given.cast<std::string>(), system);
-  return effectsOf(given.cast<py::iterable>());
+  return effectsFrom(given.cast<py::iterable>(), [](const py::handle& object, const char* name) {
+    return py::object(object.attr(name));
+  });
 }
 
 py::object discoverRobot(const std::string& system, std::vector<RobotTrial> trials,

@@ -45,12 +45,13 @@ std::vector<std::string> unitsOf(const std::vector<info::Parameter>& parameters)
   return units;
 }
 
-py::object trialsOf(const info::MonteCarloResult& found, int asked) {
+py::object trialsOf(const info::MonteCarloResult& found) {
   std::vector<VectorXd> estimates;
   for (const info::MonteCarloTrial& one : found.trials)
     if (one.converged) estimates.push_back(one.parameters);
-  return results("trials"_a = asked, "converged"_a = found.converged, "mean"_a = found.mean,
-                 "covariance"_a = found.covariance, "estimates"_a = rowsOf(estimates));
+  return results("trials"_a = found.trials.size(), "converged"_a = found.converged,
+                 "mean"_a = found.mean, "covariance"_a = found.covariance,
+                 "estimates"_a = rowsOf(estimates));
 }
 
 py::object motionOf(const info::robot::TimedMotion& motion) {
@@ -138,13 +139,6 @@ bool isPendulum(const std::string& robot) {
       fmt::format("robot '{}', must be double-pendulum or suspended-mass", robot));
 }
 
-/// Ends the work when `goOn` becomes false.
-info::robot::WorkProgress whileTrue(const std::atomic<bool>& goOn) {
-  return [&goOn](const char*, double) {
-    if (!goOn) throw std::runtime_error("stopped");
-  };
-}
-
 MotionResult optimised(MotionRequest& request) {
   MotionResult found;
   interruptible([&](const std::atomic<bool>& goOn) {
@@ -197,7 +191,7 @@ py::object optimiseRobotMotion(const std::string& robot, bool discrete,
   const MotionResult found = optimised(request);
   const info::SearchResult& search = found.search;
   const auto tried = [](const std::optional<info::robot::MotionTrials>& one) {
-    return one ? trialsOf(one->trials, one->asked) : py::none();
+    return one ? trialsOf(one->result) : py::none();
   };
   return results("names"_a = namesOf(found.unknown), "units"_a = unitsOf(found.unknown),
                  "state_names"_a = found.states, "before"_a = motionOf(found.before),
@@ -239,7 +233,7 @@ py::object robotInformation(const std::string& robot, std::optional<double> ampl
       monteCarlo =
           info::robot::simulateTrials(plan, trials, seed, threads, "trials", whileTrue(goOn));
   });
-  if (trials > 0 && found.bound.size() > 0) simulated = trialsOf(monteCarlo, trials);
+  if (trials > 0 && found.bound.size() > 0) simulated = trialsOf(monteCarlo);
   const info::IdentifiabilityReport& verdict = found.identifiability;
   std::vector<std::string> directions;
   for (const auto& direction : verdict.undetermined) directions.push_back(direction.words);
@@ -280,6 +274,12 @@ py::object compareRobotEstimators(std::optional<double> amplitude, std::optional
 }
 
 }  // namespace
+
+info::robot::WorkProgress whileTrue(const std::atomic<bool>& goOn) {
+  return [&goOn](const char*, double) {
+    if (!goOn) throw std::runtime_error("stopped");
+  };
+}
 
 void defineRobotMotions(py::module_& module) {
   module.def("robot_information", &robotInformation, "robot"_a, py::kw_only(),

@@ -76,9 +76,7 @@ py::object estimateStringLength(const std::vector<double>& initialLengths, doubl
                                            .progress = {}};
   info::robot::StringLengthResult found;
   interruptible([&](const std::atomic<bool>& goOn) {
-    request.progress = [&](const char*, double) {
-      if (!goOn) throw std::runtime_error("stopped");
-    };
+    request.progress = whileTrue(goOn);
     found = info::robot::estimateStringLength(request);
   });
   if (found.trials.empty())

@@ -6,24 +6,17 @@ Run from the top of the source tree, with the program's path in FISHERHILL_PROGR
 import csv
 import json
 import math
-import os
 import pathlib
-import signal
-import subprocess
-import sys
 import tempfile
-import threading
-import time
 import unittest
 
 import numpy as np
 
 import fisherhill as fh
 
-sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
 import stub
+from beside_program.as_the_program import BesideProgram
 
-PROGRAM = os.environ.get("FISHERHILL_PROGRAM", "")
 NOISE = 0.02  # of the force [N]
 GRAVITY = 9.81
 
@@ -53,20 +46,11 @@ def hanging_mass(amplitude, period, bias, seed):
     return {"time": np.array(times), "input": np.array([cart(t) for t in times]), "force_N": np.array(forces) + bias + noise}
 
 
-@unittest.skipUnless(PROGRAM, "FISHERHILL_PROGRAM is not set")
-class AsTheProgram(unittest.TestCase):
+class RobotsBesideProgram(BesideProgram):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
-
-    def run_program(self, *words, status=0):
-        """summary.json, and the folder that it lies in."""
-        out = pathlib.Path(tempfile.mkdtemp(dir=self.folder)) / "out"
-        done = subprocess.run([PROGRAM, *map(str, words), "--out", str(out), "--seed", "3", "--threads", "2"],
-                              capture_output=True, text=True)
-        self.assertEqual(done.returncode, status, done.stderr)
-        return json.loads((out / "summary.json").read_text(encoding="utf-8")), out
 
     def table(self, columns, name):
         """A file with these columns; every number reads back as the same."""
@@ -78,28 +62,14 @@ class AsTheProgram(unittest.TestCase):
         return str(file)
 
     def columns(self, file):
-        with open(file, encoding="utf-8") as table:
-            rows = list(csv.DictReader(table))
-        return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+        rows = self.rows(file)
+        return {name: self.column(rows, name) for name in rows[0]}
 
     def same(self, mine, its):
         np.testing.assert_array_equal(np.asarray(mine, float), np.asarray(its, float))
 
-    def one_line(self, call, words):
-        with self.subTest(words), self.assertRaisesRegex(ValueError, words) as raised:
-            call()
-        self.assertEqual(str(raised.exception).count("\n"), 0)
 
-    def ends_soon_after_ctrl_c(self, call):
-        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
-        threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
-        begin = time.monotonic()
-        with self.assertRaises(KeyboardInterrupt):
-            call()
-        self.assertLess(time.monotonic() - begin, 20)
-
-
-class Discovery(AsTheProgram):
+class Discovery(RobotsBesideProgram):
     def setUp(self):
         super().setUp()
         self.trials = [hanging_mass(0.1, 1.2, 0.3, 0), hanging_mass(0.09, 1.3, 0.3, 2)]
@@ -212,7 +182,7 @@ class Discovery(AsTheProgram):
         self.ends_soon_after_ctrl_c(lambda: fh.discover_robot("suspended-mass", self.trials, step=0.0005))
 
 
-class Motions(AsTheProgram):
+class Motions(RobotsBesideProgram):
     def same_search(self, found, summary, out):
         self.assertEqual(found.iterations, summary["iterations"])
         self.assertEqual((found.costs[0], found.costs[-1]), (summary["cost_initial"], summary["cost_optimised"]))
@@ -356,7 +326,7 @@ class Motions(AsTheProgram):
         self.ends_soon_after_ctrl_c(lambda: fh.robot_information("double-pendulum", trials=1000000))
 
 
-class StringLength(AsTheProgram):
+class StringLength(RobotsBesideProgram):
     def test_as_the_program(self):
         summary, out = self.run_program("robot", "baxter", "--duration", 1.5, "--initial-length", 0.42, "--estimate-mass",
                                         "--window", 1, "--noise", 0.08)
@@ -394,7 +364,7 @@ class StringLength(AsTheProgram):
         self.ends_soon_after_ctrl_c(lambda: fh.estimate_string_length([0.42], duration=60, real_time=True))
 
 
-del AsTheProgram  # has no tests of its own
+del BesideProgram, RobotsBesideProgram  # have no tests of their own
 
 if __name__ == "__main__":
     unittest.main()

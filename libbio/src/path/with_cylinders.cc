@@ -11,7 +11,8 @@ namespace bio {
 namespace {
 
 /// Body-fixed x-y-z angles, the inverse of placementOf(): R = R_x R_y R_z. Exact at β = ±π/2, too,
-/// where only α ± γ counts: α is taken from R R_z⁻¹ = R_x R_y.
+/// where only α ± γ counts: α is taken from R R_z⁻¹ = R_x R_y. Eigen's eulerAngles takes the first
+/// angle from [0, π], so that small ones would be written as others near π.
 Eigen::Vector3d bodyFixedAngles(const Mat3<double>& R) {
   const double gamma = std::atan2(-R(0, 1), R(0, 0));
   const double c = std::cos(gamma), s = std::sin(gamma);

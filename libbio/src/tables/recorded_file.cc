@@ -3,22 +3,18 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <stdexcept>
 
 #include "bio/tables/c3d_file.h"
 #include "bio/tables/xdf_file.h"
+#include "tables/cells.h"
 
 namespace bio {
 namespace {
 
-std::string lowerExtension(const std::string& file) {
-  std::string out = std::filesystem::path(file).extension().string();
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return out;
+std::string extensionOf(const std::string& file) {
+  return tables::lowered(std::filesystem::path(file).extension().string());
 }
 
 void addRemarks(const std::vector<std::string>& more, std::vector<std::string>& remarks) {
@@ -41,12 +37,12 @@ void takeMarkers(MarkerTrajectories markers, RecordedFile& out) {
 }  // namespace
 
 bool isRecordedFile(const std::string& file) {
-  const std::string extension = lowerExtension(file);
+  const std::string extension = extensionOf(file);
   return extension == ".c3d" || extension == ".xdf" || extension == ".trc";
 }
 
 RecordedFile readRecordedFile(const std::string& file) {
-  const std::string extension = lowerExtension(file);
+  const std::string extension = extensionOf(file);
   RecordedFile out;
   if (extension == ".trc") {
     takeMarkers(readTrc(file), out);

@@ -49,12 +49,12 @@ LaboratoryEstimates estimateInLaboratory(const LaboratoryRobot& robot, const Car
   LaboratoryEstimates out{problemOf(plan, robot.measure(motion, seed)), {}, {}, {}};
   out.first = estimate(out.problem);
   out.error = errorOf(out.first);
-  std::vector<Vector2d> errors(static_cast<std::size_t>(recordings));
+  std::vector<Vector2d> errors(static_cast<std::size_t>(recordings), out.error);
   std::mutex mutex;
-  int done = 0;
-  parallelFor(recordings, threads, [&](int i) {
-    const std::uint64_t own = seed + static_cast<std::uint64_t>(i);
-    errors[std::size_t(i)] = errorOf(estimate(problemOf(plan, robot.measure(motion, own))));
+  int done = 1;
+  parallelFor(recordings - 1, threads, [&](int k) {
+    const auto i = static_cast<std::size_t>(k) + 1;
+    errors[i] = errorOf(estimate(problemOf(plan, robot.measure(motion, seed + i))));
     const std::lock_guard lock(mutex);
     if (progress) progress("laboratory", static_cast<double>(++done) / recordings);
   });

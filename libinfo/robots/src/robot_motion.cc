@@ -194,13 +194,26 @@ CartMotion cartMotion(const TimedMotion& motion, std::size_t stepsPerSample) {
 void tryBoth(const MotionRequest& request, PlannedExperiment before, PlannedExperiment after,
              MotionResult& found) {
   const auto tried = [&](PlannedExperiment plan, const char* doing) {
-    MonteCarloResult trials = simulateTrials(plan, request.trials, request.seed, request.threads,
+    MonteCarloResult result = simulateTrials(plan, request.trials, request.seed, request.threads,
                                              doing, request.progress);
-    return MotionTrials{std::move(plan), request.trials, std::move(trials)};
+    return MotionTrials{std::move(plan), std::move(result)};
   };
   found.trialsBefore = tried(std::move(before), "trials, start");
   found.trialsAfter = tried(std::move(after), "trials, optimised");
   found.unknown = found.trialsBefore->plan.parameters;
+}
+
+/// Searches the motion of a task in continuous time.
+/// @param system   of values of θ
+/// @param amplitude the task's own [m]
+template <class System>
+MotionResult findFlow(const MotionRequest& request, FlowTask task, const System& system,
+                      const Vector2d& theta, double step, double amplitude) {
+  const Inputs start = prepare(request, task.design, step, amplitude);
+  const auto project = [&](const std::vector<Vector2d>& at, const Inputs& from) {
+    return std::make_unique<FlowProjection>(systemAt<ExtendedFlow>(at, system), task.design, from);
+  };
+  return find(request, project, theta, task.design, step, start, {.largestMove = 2});
 }
 
 void tryInLaboratory(const MotionRequest& request, const LaboratoryRobot& robot,
@@ -211,14 +224,8 @@ void tryInLaboratory(const MotionRequest& request, const LaboratoryRobot& robot,
 }
 
 MotionResult optimisePendulum(const MotionRequest& request) {
-  FlowTask task = doublePendulumFlowTask(kFlowStep);
-  const Inputs start = prepare(request, task.design, kFlowStep, 0.05);
-  const auto project = [&](const std::vector<Vector2d>& theta, const Inputs& from) {
-    return std::make_unique<FlowProjection>(systemAt<ExtendedFlow>(theta, doublePendulumFlow),
-                                            task.design, from);
-  };
-  MotionResult found = find(request, project, Vector2d(0.085, 0.5), task.design, kFlowStep, start,
-                            {.largestMove = 2});
+  MotionResult found = findFlow(request, doublePendulumFlowTask(kFlowStep), doublePendulumFlow,
+                                Vector2d(0.085, 0.5), kFlowStep, 0.05);
   found.states = {"cart_m",       "angle1_rad",      "angle2_rad",
                   "cart_m_per_s", "rate1_rad_per_s", "rate2_rad_per_s"};
   PlannedExperiment before =
@@ -274,14 +281,8 @@ ExactEstimates exactEstimates(const MotionRequest& request, const PlannedExperim
 }
 
 MotionResult optimiseMass(const MotionRequest& request) {
-  FlowTask task = suspendedMassFlowTask(kMassStep);
-  const Inputs start = prepare(request, task.design, kMassStep, 0.0476);
-  const auto project = [&](const std::vector<Vector2d>& theta, const Inputs& from) {
-    return std::make_unique<FlowProjection>(systemAt<ExtendedFlow>(theta, suspendedMassFlow),
-                                            task.design, from);
-  };
-  MotionResult found = find(request, project, Vector2d(0.10, 0.60), task.design, kMassStep, start,
-                            {.largestMove = 2});
+  MotionResult found = findFlow(request, suspendedMassFlowTask(kMassStep), suspendedMassFlow,
+                                Vector2d(0.10, 0.60), kMassStep, 0.0476);
   found.states = {"cart_m", "angle_rad", "cart_m_per_s", "rate_rad_per_s"};
   found.boundBefore = found.search.informationStart.inverse();
   found.boundAfter = found.search.information.inverse();

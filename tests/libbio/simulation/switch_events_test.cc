@@ -136,7 +136,8 @@ TEST(SwitchEvents, LanesShortenStepsAfterAJumpAsSingleSimulationsDo) {
 double timeOfJump(const MusculoskeletalSystem& arm) {
   const Trajectory motion = rise(arm, Integrator::variational, 1e-4);
   Eigen::Index k = 0;
-  while (motion.q(0, k + 1) < 0) ++k;
+  while (k + 2 < motion.q.cols() && motion.q(0, k + 1) < 0) ++k;
+  EXPECT_GE(motion.q(0, k + 1), 0) << "does not reach it";
   return 1e-4 * (static_cast<double>(k) - motion.q(0, k) / (motion.q(0, k + 1) - motion.q(0, k)));
 }
 

@@ -60,8 +60,7 @@ struct RobustOutcome {
 /// A motion of the double pendulum as an experiment, and simulated trials of it.
 struct MotionTrials {
   PlannedExperiment plan;
-  int asked;  ///< number of trials
-  MonteCarloResult trials;
+  MonteCarloResult result;
 };
 
 /// Two estimators on exact data of a motion of the suspended mass.
