@@ -164,6 +164,7 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/tables/trial.h
   include/bio/tables/trial_review.h
   include/bio/tables/trial_table.h
+  include/bio/tables/units.h
   include/bio/tables/unknown_column.h
   include/bio/tables/xdf_file.h
 )

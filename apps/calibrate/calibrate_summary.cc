@@ -171,6 +171,7 @@ void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
     if (!one.why.empty() && !one.ofTrial && std::isnan(one.lower)) summary.warn(one.why);
   }
   summary.set("estimates", estimates);
+  for (const std::string& remark : c.remarks) summary.warn(remark);
   tellLatent(f, summary);
   tellPredictions(f, summary);
   const bool firstAreAngles = f.training.channels().front().areAngles;

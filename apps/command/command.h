@@ -28,7 +28,8 @@ class Command {
 };
 
 /// Every subcommand, in the order in which --help lists them. A new one is a file in a folder of
-/// its own with a function that makes it, declared and called in all_commands.cc.
+/// its own with a function that makes it, declared and called in all_commands.cc. The work with
+/// robots is missing: fisherhill-robot does it.
 std::vector<std::unique_ptr<Command>> allCommands();
 
 }  // namespace app

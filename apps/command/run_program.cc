@@ -68,6 +68,21 @@ std::string namedAsOption(const std::string& message, const CLI::App& options) {
   return option && option->count() > 0 ? "--" + message : message;
 }
 
+/// What the standard library says of itself, "stod" or "vector::_M_range_check: …", tells a user nothing:
+/// that it could be thrown is a fault of the program.
+std::string inWords(const std::string& message, const std::string& subcommand) {
+  const auto begins = [&](const char* words) { return message.starts_with(words); };
+  const bool isRaw = message.find(' ') == std::string::npos || begins("vector::") ||
+                     begins("basic_string") || begins("map::") || begins("_Map_base::") ||
+                     begins("array::") || begins("deque::") || begins("std::") ||
+                     begins("[json.exception") || message == "bad optional access";
+  if (!isRaw) return message;
+  return fmt::format(
+      "stopped by a fault of the program ({}); nothing was written. Please report it with the "
+      "command line and the input of this {}",
+      message.empty() ? "no message" : message, subcommand);
+}
+
 /// @param options  what the subcommand was parsed by
 int runCommand(Command& command, const CommandContext& context, const CLI::App& options) {
   try {
@@ -85,7 +100,8 @@ int runCommand(Command& command, const CommandContext& context, const CLI::App& 
   } catch (const std::bad_alloc&) {
     return fail(context.subcommand, "not enough memory");
   } catch (const std::exception& error) {
-    return fail(context.subcommand, namedAsOption(error.what(), options));
+    return fail(context.subcommand,
+                namedAsOption(inWords(error.what(), context.subcommand), options));
   } catch (...) {
     return fail(context.subcommand, "stopped by an unknown error");
   }

@@ -6,13 +6,15 @@
 #include "discover/model_discovery.h"
 #include "options/number_rules.h"
 #include "options/trial_input.h"
-#include "robot/discover_robot.h"
+#include "robot_options/discover_robot.h"
 
 namespace app {
 namespace {
 
 class Discover : public Command {
  public:
+  explicit Discover(RobotDiscovery inRobot) : inRobot_(std::move(inRobot)) {}
+
   About about() const override {
     return {"discover", "Find, name and add the effect that a model lacks",
             "fisherhill discover models/elbow8.osim emg_data/hidden_a/train_1.sto "
@@ -79,7 +81,7 @@ class Discover : public Command {
       robot_.ignoreExtra = simulation_.ignoreExtra;
       robot_.step = simulation_.step;
       mustSuitRobots();
-      return discoverInRobot(robot_, context);
+      return inRobot_(robot_, context);
     }
     if (trials_.empty()) throw std::invalid_argument("TRIAL is required (see --help)");
     if (!robot_.with.empty()) throw std::invalid_argument("--with requires --system");
@@ -102,6 +104,7 @@ class Discover : public Command {
     }
   }
 
+  RobotDiscovery inRobot_;
   std::string model_;
   std::vector<std::string> trials_, heldOut_, without_;
   std::optional<double> noise_;
@@ -117,8 +120,9 @@ class Discover : public Command {
 
 /// `fisherhill discover MODEL TRIAL…`: finds where simulation and data disagree, names the missing
 /// effect and adds it; writes verdict.json and with_effect.osim.
-std::unique_ptr<Command> discoverCommand() {
-  return std::make_unique<Discover>();
+/// @param inRobot  what --system does
+std::unique_ptr<Command> discoverCommand(RobotDiscovery inRobot) {
+  return std::make_unique<Discover>(std::move(inRobot));
 }
 
 }  // namespace app

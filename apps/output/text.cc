@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdlib>
 
 namespace app {
 
@@ -33,6 +34,10 @@ std::string cellText(double value) {
 
 std::string cellText(double value, int digits) {
   return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : std::string();
+}
+
+double numberIn(const std::string& text) {
+  return std::strtod(text.c_str(), nullptr);
 }
 
 std::string withUnit(double value, const std::string& unit, int digits) {

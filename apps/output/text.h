@@ -18,6 +18,10 @@ std::string cellText(double value);
 /// The same with at most `digits` significant digits.
 std::string cellText(double value, int digits);
 
+/// The number that a text written by this program begins with; also one below the least normal
+/// number, 2.2e-308.
+double numberIn(const std::string& text);
+
 /// "0.016 m", or "0.016" for a pure number.
 std::string withUnit(double value, const std::string& unit, int digits = 4);
 

@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 /// Six significant digits are more than a screen can show.
 Json plotNumber(double value) {
   if (!std::isfinite(value)) return nullptr;
-  return std::stod(fmt::format("{:.6g}", value));
+  return numberIn(fmt::format("{:.6g}", value));
 }
 
 Json plotNumbers(const std::vector<double>& values) {

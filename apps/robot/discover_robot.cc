@@ -1,4 +1,4 @@
-#include "robot/discover_robot.h"
+#include "robot_options/discover_robot.h"
 
 #include <fmt/format.h>
 
@@ -210,29 +210,6 @@ class RobotSearch {
 };
 
 }  // namespace
-
-void addRobotOptions(CLI::App& options, RobotRequest& request) {
-  options
-      .add_option("--system", request.system,
-                  "a robot in place of MODEL: double-pendulum (columns time, input [m/s^2, the "
-                  "cart's commanded acceleration], link1_deg and link2_deg [absolute angles from "
-                  "hanging down; or _rad]) or suspended-mass (time, input, force_N)")
-      ->check(CLI::IsMember({"double-pendulum", "suspended-mass"}))
-      ->type_name("NAME");
-  options
-      .add_option("--with", request.with,
-                  "with --system: a with_effect.json whose effects are added to the model")
-      ->check(CLI::ExistingFile)
-      ->type_name("FILE");
-  options
-      .add_option("--noise", request.noise,
-                  "with --system: standard deviation of each measured column [deg or N]; default: "
-                  "estimated from the data")
-      ->check(positive())
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("SD");
-}
 
 ExitStatus discoverInRobot(const RobotRequest& request, const CommandContext& context) {
   return RobotSearch(request, context).run();

@@ -10,6 +10,7 @@
 #include "robot/robot_baxter.h"
 #include "robot/robot_information.h"
 #include "robot/robot_optimise.h"
+#include "robot_options/robot_program.h"
 #include "robots/laboratory.h"
 
 namespace app {

@@ -32,8 +32,8 @@ void readEstimates(const std::string& subject, const fs::path& file,
     const std::vector<std::string> cells = cellsOf(line);
     if (cells.size() < 5 || isOfATrial(cells[0])) continue;
     all.push_back(
-        {subject, cells[0], cells[1], std::stod(cells[2]), std::stod(cells[3]),
-         cells[4].empty() ? std::numeric_limits<double>::quiet_NaN() : std::stod(cells[4])});
+        {subject, cells[0], cells[1], numberIn(cells[2]), numberIn(cells[3]),
+         cells[4].empty() ? std::numeric_limits<double>::quiet_NaN() : numberIn(cells[4])});
   }
 }
 

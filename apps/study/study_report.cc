@@ -17,7 +17,7 @@ namespace {
 
 double valueOf(const std::vector<std::string>& row, const std::string& column) {
   const std::string& cell = cellOf(row, column);
-  return cell.empty() ? std::numeric_limits<double>::quiet_NaN() : std::stod(cell);
+  return cell.empty() ? std::numeric_limits<double>::quiet_NaN() : numberIn(cell);
 }
 
 /// Of the subjects that have this figure; nothing if none has.

@@ -192,6 +192,23 @@ SkeletonOptions skeletonFor(const Model& model, const std::vector<const SystemMo
   return options;
 }
 
+namespace {
+
+/// Of a course, over the 20 ms about each time that it has: what a rigid tendon's muscle shortens by.
+Eigen::RowVectorXd slopes(const Eigen::VectorXd& of, const Eigen::VectorXd& values,
+                          const Eigen::VectorXd& times) {
+  constexpr double half = 0.01;  // [s]
+  const double first = of[0], last = of[of.size() - 1];
+  return times
+      .unaryExpr([&](double t) {
+        const double from = std::max(first, t - half), to = std::min(last, t + half);
+        return to > from ? (valueAt(of, values, to) - valueAt(of, values, from)) / (to - from) : 0.0;
+      })
+      .transpose();
+}
+
+}  // namespace
+
 TendonForces tendonForces(const Model& model, const SystemOptions& options,
                           const SystemMotion& motion, const Eigen::VectorXd& times) {
   TendonForces forces;
@@ -205,7 +222,9 @@ TendonForces tendonForces(const Model& model, const SystemOptions& options,
     shown.time = {times.begin(), times.end()};
     const auto n = static_cast<Eigen::Index>(arm.numMuscles());
     shown.q.resize(arm.skeleton().numCoordinates(), times.size());
+    shown.qDot.setZero(shown.q.rows(), times.size());
     shown.fibreLength.resize(n, times.size());
+    shown.activation.setZero(n, times.size());
     const auto sample = [&](const Eigen::VectorXd& values) -> Eigen::RowVectorXd {
       return times.unaryExpr([&](double t) { return valueAt(motion.time, values, t); }).transpose();
     };
@@ -216,6 +235,7 @@ TendonForces tendonForces(const Model& model, const SystemOptions& options,
         shown.q.row(i).setConstant(coordinate.defaultValue);
       } else {
         shown.q.row(i) = sample(found->second);
+        shown.qDot.row(i) = slopes(motion.time, found->second, times);
       }
     }
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -226,6 +246,14 @@ TendonForces tendonForces(const Model& model, const SystemOptions& options,
         return forces;
       }
       shown.fibreLength.row(i) = sample(found->second);
+      if (arm.muscles()[static_cast<std::size_t>(i)].muscle.hasFibreState()) continue;
+      const auto active = motion.activations.find(muscle);
+      if (active == motion.activations.end()) {
+        forces.whyNone = fmt::format(
+            "the states give no activation of '{}', whose rigid tendon needs it", muscle);
+        return forces;
+      }
+      shown.activation.row(i) = sample(active->second);
     }
     const MuscleReport report = reportMuscles(arm, shown);
     for (Eigen::Index i = 0; i < n; ++i) {

@@ -57,6 +57,12 @@ struct SyntheticElbow {
     return result;
   }
 
+  /// Of a parameter in the model.
+  double valueOf(const std::string& parameter) const {
+    const ParameterCatalogue catalogue(model, arm, {arm.skeleton().defaultValues(), {}});
+    return catalogue.parameters()[catalogue.find(parameter)].value;
+  }
+
   /// The trial with noise on its angle. The first value keeps exact: it is where simulations start.
   static Trial noisy(Trial trial, double degrees, std::uint64_t seed, std::uint64_t stream = 0) {
     info::RandomStream random(seed, stream);

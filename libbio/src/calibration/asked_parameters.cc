@@ -26,13 +26,45 @@ void requireTransferable(const TrialSet& training, const TrialSet& heldOut) {
   }
 }
 
+/// Numbers whose domain does not depend on the others.
+bool hasOwnDomain(const ParameterTarget& target) {
+  if (const auto* wrap = std::get_if<WrapTarget>(&target))
+    return wrap->component == 0 || wrap->component > 6;
+  if (const auto* body = std::get_if<BodyTarget>(&target)) return body->component == 0;
+  return !std::holds_alternative<PointTarget>(target) &&
+         !std::holds_alternative<InitialTarget>(target);
+}
+
+/// The bound itself may be the open end of the domain: what lies just inside is tried.
+void requireInDomain(const TrialSet& training, std::size_t index, double bound,
+                     const std::string& what) {
+  const ModelParameter& parameter = training.catalogue().parameters()[index];
+  if (!std::isfinite(bound) || !hasOwnDomain(parameter.targets.front())) return;
+  const double inside = bound + 1e-9 * (parameter.value - bound);
+  try {
+    const ParameterCatalogue::Setting there =
+        training.catalogue().at({index}, Eigen::VectorXd::Constant(1, inside));
+    const MusculoskeletalSystem system(there.model, training.options());
+    std::vector<std::string> muscles;
+    for (const SystemMuscle& muscle : system.muscles()) muscles.push_back(muscle.name);
+    requireValid(muscles, there.mapping);
+  } catch (const std::invalid_argument& rule) {
+    throw std::invalid_argument(fmt::format("{}{} = {:.6g}{}{} is outside of its domain: {}", what,
+                                            parameter.name, bound,
+                                            parameter.unit.empty() ? "" : " ", parameter.unit,
+                                            rule.what()));
+  }
+}
+
 void setBounds(const TrialSet& training, const CalibrationOptions& options,
                std::vector<info::Parameter>& parameters) {
   for (const auto& [name, bounds] : options.bounds) {
     const std::size_t i = placeOfParameter(training, name, "bounds");
     std::tie(parameters[i].lower, parameters[i].upper) = bounds;
-    training.catalogue().requireBelowLimit(training.selection()[i], parameters[i].upper,
-                                           "upper bound of ");
+    const std::size_t index = training.selection()[i];
+    training.catalogue().requireBelowLimit(index, parameters[i].upper, "upper bound of ");
+    requireInDomain(training, index, parameters[i].lower, "lower bound of ");
+    requireInDomain(training, index, parameters[i].upper, "upper bound of ");
   }
 }
 

@@ -216,7 +216,10 @@ class Calibrator {
         isSettled = isSettled && std::abs(change) <= noiseSettled * before[i].effective;
       }
       // also where it is settled: the cost that profiles compare with is that of this noise
-      estimate_ = info::estimate(problem(result_.noise.effective), estimate_.parameters, estimate);
+      auto again = info::estimateIfDefined(problem(result_.noise.effective), estimate_.parameters,
+                                           estimate);
+      if (!again) break;
+      estimate_ = std::move(*again);
       result_.iterations += estimate_.iterations;
       result_.evaluations += estimate_.evaluations;
       if (isSettled) break;
@@ -256,11 +259,11 @@ class Calibrator {
       }
     }
     for (const VectorXd& start : further) {
-      if (!std::isfinite(least.cost(start))) continue;
-      const info::Estimate end = info::estimate(least, start, options);
-      result_.iterations += end.iterations;
-      result_.evaluations += end.evaluations;
-      ends.push_back({start, end.parameters, end.cost, end.converged, info::describe(end.why)});
+      const auto end = info::estimateIfDefined(least, start, options);
+      if (!end) continue;
+      result_.iterations += end->iterations;
+      result_.evaluations += end->evaluations;
+      ends.push_back({start, end->parameters, end->cost, end->converged, info::describe(end->why)});
     }
     OtherMinima found = otherMinima(least, ends, known_, common(), estimate_, options);
     result_.iterations += found.iterations;
@@ -338,8 +341,13 @@ class Calibrator {
       if (std::count(held_.begin(), held_.end(), profiled_[k]) > 0) continue;
       CalibratedParameter& one = result_.parameters[profiled_[k]];
       const double width = std::isfinite(one.sd) ? one.sd : one.known;
-      one.profile = info::profileInterval(least, estimate_, static_cast<Index>(profiled_[k]), width,
-                                          estimateOptions());
+      try {
+        one.profile = info::profileInterval(least, estimate_, static_cast<Index>(profiled_[k]),
+                                            width, estimateOptions());
+      } catch (const std::domain_error& error) {
+        result_.remarks.push_back(
+            fmt::format("no profile likelihood of {}: {}", one.asked.name, error.what()));
+      }
     }
   }
 
@@ -356,8 +364,13 @@ class Calibrator {
     bootstrap.progress = [&](int done, int replicates) {
       return progress(0.6 + 0.4 * static_cast<double>(done) / static_cast<double>(replicates));
     };
-    const info::BootstrapResult spread =
-        info::bootstrap(problem(result_.noise.effective), estimate_, lengths, bootstrap);
+    info::BootstrapResult spread;
+    try {
+      spread = info::bootstrap(problem(result_.noise.effective), estimate_, lengths, bootstrap);
+    } catch (const std::domain_error& error) {
+      result_.remarks.push_back(fmt::format("no bootstrap intervals: {}", error.what()));
+      return;
+    }
     result_.bootstrapConverged = spread.converged;
     for (Index i = 0; i < spread.sd.size(); ++i) {
       CalibratedParameter& one = result_.parameters[static_cast<std::size_t>(i)];

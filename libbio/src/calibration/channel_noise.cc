@@ -135,6 +135,7 @@ info::Predictor ChannelNoise::weighted(const info::Predictor& predictor) const {
     at.gamma.array().colwise() /= weight.transpose().array().col(0);
     return at;
   };
+  scaled.whyUndefined = predictor.whyUndefined;
   return scaled;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 
 #include "info/estimation/profile_likelihood.h"
 
@@ -89,7 +90,9 @@ info::Estimate betterBeside(const info::LeastSquares& least, info::Estimate esti
       }
     }
     if (!lowest || lowest->rise > -worthwhileFall) break;
-    info::Estimate next = info::estimate(least, lowest->theta, options);
+    std::optional<info::Estimate> found = info::estimateIfDefined(least, lowest->theta, options);
+    if (!found) break;
+    info::Estimate next = std::move(*found);
     next.iterations += estimate.iterations;
     next.evaluations += estimate.evaluations;
     if (!(next.cost < estimate.cost) || (estimate.converged && !next.converged)) {
@@ -118,7 +121,11 @@ void checkIntervals(const info::LeastSquares& least, const info::Estimate& estim
     }
     if (fewest >= leastRise && most <= mostRise) continue;
     if (estimate.converged) {
-      follow(least, estimate, i, one.sd, options, one);
+      try {
+        follow(least, estimate, i, one.sd, options, one);
+      } catch (const std::domain_error& error) {
+        withoutInterval(one, fmt::format("its profile likelihood: {}", error.what()));
+      }
     } else {
       withoutInterval(
           one,

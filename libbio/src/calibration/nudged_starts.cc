@@ -38,12 +38,9 @@ std::vector<VectorXd> ledStarts(const TrialSet& trials,
     const info::OutputCovariance covariance(MatrixXd::Constant(1, 1, sigma * sigma));
     const info::LeastSquares problem(predictor, {measured, covariance, {}, {}}, parameters);
     std::erase_if(led, [&](VectorXd& theta) {
-      try {
-        theta = info::estimate(problem, theta, options).parameters;
-        return false;
-      } catch (const std::domain_error&) {
-        return true;
-      }
+      const auto end = info::estimateIfDefined(problem, theta, options);
+      if (end) theta = end->parameters;
+      return !end;
     });
   }
   return led;

@@ -64,7 +64,9 @@ OtherMinima otherMinima(const info::LeastSquares& least,
       return isNear(start.parameters, end, known, common);
     };
     if (isSeen(result.best) || std::any_of(ends.begin(), ends.end(), isSeen)) continue;
-    info::Estimate end = info::estimate(least, start.parameters, options);
+    std::optional<info::Estimate> found = info::estimateIfDefined(least, start.parameters, options);
+    if (!found) continue;
+    info::Estimate end = std::move(*found);
     result.iterations += end.iterations;
     result.evaluations += end.evaluations;
     if (!end.converged || isNear(end.parameters, result.best, known, common)) continue;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <new>
 #include <stdexcept>
 
 namespace bio {
@@ -92,8 +93,18 @@ Eigen::VectorXd TrialPredictor::outputs(const Eigen::VectorXd& theta) const {
     const Held held = heldAt(setting);
     return ObservedMotion(held.arm, series_)
         .values(simulateSetting(held.arm, held.setting, trial_, held.options));
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception&) {
-    return Eigen::VectorXd::Constant(size_, nan);  // outside the model's domain
+    return Eigen::VectorXd::Constant(size_, nan);  // outside the model's domain: whyUndefined()
+  }
+}
+
+std::string TrialPredictor::whyUndefined(const Eigen::VectorXd& theta) const {
+  try {
+    return simulate(theta).why;
+  } catch (const std::exception& error) {
+    return error.what();
   }
 }
 
@@ -105,6 +116,8 @@ TrialPredictor::Linearised TrialPredictor::withSensitivities(const Eigen::Vector
     ObservedMotion::Linearised at = observed.linearised(
         sensitivitiesOf(held, observed.needsMuscles(), observed.needsReactions()));
     return {std::move(at.values), std::move(at.gamma)};
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception&) {
     return {Eigen::VectorXd::Constant(size_, nan),
             Eigen::MatrixXd::Constant(size_, theta.size(), nan)};
@@ -128,6 +141,7 @@ info::Predictor TrialPredictor::predictor() const {
     Linearised at = withSensitivities(theta);
     return info::Prediction{at.outputs.transpose(), std::move(at.gamma)};
   };
+  predictor.whyUndefined = [this](const Eigen::VectorXd& theta) { return whyUndefined(theta); };
   return predictor;
 }
 
@@ -162,6 +176,12 @@ info::Predictor joined(const std::vector<TrialPredictor>& experiments) {
       at += count;
     }
     return all;
+  };
+  predictor.whyUndefined = [experiments](const Eigen::VectorXd& theta) {
+    std::string why;
+    for (std::size_t i = 0; i < experiments.size() && why.empty(); ++i)
+      why = experiments[i].whyUndefined(theta);
+    return why;
   };
   return predictor;
 }

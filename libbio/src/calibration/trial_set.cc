@@ -329,15 +329,19 @@ info::Predictor TrialSet::predictor(const std::vector<TrialPredictor>& experimen
     });
     return all;
   };
+  predictor.whyUndefined = [this, &experiments](const Eigen::VectorXd& theta) {
+    std::string why;
+    for (std::size_t i = 0; i < trials_.size() && why.empty(); ++i) {
+      const std::string one = experiments[i].whyUndefined(thetaOf(i, theta));
+      if (!one.empty()) why = fmt::format("{}: {}", trials_[i].file, one);
+    }
+    return why;
+  };
   return predictor;
 }
 
 std::string TrialSet::failure(std::size_t trial, const Eigen::VectorXd& theta) const {
-  try {
-    return experiments_[trial].simulate(thetaOf(trial, theta)).why;
-  } catch (const std::exception& error) {
-    return error.what();
-  }
+  return experiments_[trial].whyUndefined(thetaOf(trial, theta));
 }
 
 namespace {

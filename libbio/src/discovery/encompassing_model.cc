@@ -96,7 +96,9 @@ VectorXd EncompassingModel::momentArms(const MusculoskeletalSystem& arm) const {
   Trajectory still;
   still.time = {0};
   still.q = q;
+  still.qDot = VectorXd::Zero(q.size());
   still.fibreLength = VectorXd::Ones(static_cast<Index>(arm.numMuscles()));
+  still.activation = VectorXd::Zero(static_cast<Index>(arm.numMuscles()));
   return reportMuscles(arm, still, freeIndex_).momentArm;
 }
 

@@ -50,13 +50,17 @@ MatrixXd MusculoskeletalProblem::latentScale(const OfTrial& one, const Musculosk
   const auto rows = static_cast<Index>(motion.time.size());
   const auto numNodes = static_cast<Index>(one.nodes.size());
   atNodes.q.resize(motion.q.rows(), numNodes);
+  atNodes.qDot.resize(motion.qDot.rows(), numNodes);
   atNodes.fibreLength.resize(motion.fibreLength.rows(), numNodes);
+  atNodes.activation.resize(motion.activation.rows(), numNodes);
   for (Index k = 0; k < numNodes; ++k) {
     const double at = one.nodes[static_cast<std::size_t>(k)] - motion.time.front();
     const Index row = std::clamp<Index>(
         static_cast<Index>(std::lround(at / options_.simulation.step)), 0, rows - 1);
     atNodes.q.col(k) = motion.q.col(row);
+    atNodes.qDot.col(k) = motion.qDot.col(row);
     atNodes.fibreLength.col(k) = motion.fibreLength.col(row);
+    atNodes.activation.col(k) = motion.activation.col(row);
   }
   const MuscleReport muscles = reportMuscles(arm, atNodes, encompassing_.freeIndex());
   MatrixXd scale(numNodes, muscles.momentArm.rows() + 1);

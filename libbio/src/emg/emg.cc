@@ -87,7 +87,7 @@ void setFull(const Electrode& electrode, ElectrodeTrace& trace) {
                       electrode.channel, trace.full, trace.unit, trace.fullSource));
 }
 
-constexpr int mostRows = 100'000'000;
+constexpr int mostRows = 10'000'000;
 
 // Rows common to all electrodes and inside the span that was asked for.
 Eigen::VectorXd rowTimes(const std::vector<ElectrodeTrace>& traces, const EmgConfig& config) {

@@ -7,6 +7,8 @@
 #include <numbers>
 
 #include "bio/tables/file_error.h"
+#include "bio/tables/units.h"
+#include "emg/column_units.h"
 #include "emg/emg_config_parts.h"
 #include "emg/toml_table.h"
 
@@ -233,11 +235,10 @@ void readColumns(TomlTable& root, EmgConfigFile& out) {
     MeasuredOptions options;
     options.channel = table.required("channel", table.text("channel"));
     options.coordinate = table.required("name", table.text("name"));
-    const double scale =
-        table
-            .number(
-                "scale", [](double x) { return std::isfinite(x) && x != 0; }, "must not be 0")
-            .value_or(1);
+    const std::optional<double> given = table.number(
+        "scale", [](double x) { return std::isfinite(x) && x != 0; }, "must not be 0");
+    const double scale = given.value_or(1);
+    out.columnScales.push_back(given.has_value() || table.has("offset"));
     const double offset = table.number("offset", finite, "must be finite").value_or(0);
     options.degreesPerUnit = std::abs(scale);
     options.sign = scale < 0 ? -1 : 1;
@@ -260,6 +261,18 @@ const Channel& channelAt(const EmgConfigFile& config, int line, const Recording&
   } catch (const std::invalid_argument& e) {
     throw FileError(fmt::format("{}:{}: {}", config.file, line, e.what()));
   }
+}
+
+/// The envelope of a maximum contraction in the channel's unit.
+double mvcIn(const Channel& channel, const FullDeclaration& full, const std::string& file,
+             int line) {
+  if (areSameUnit(full.unit, channel.unit)) return *full.mvc;
+  const auto given = knownUnit(full.unit), its = knownUnit(channel.unit);
+  if (!given || !its || given->si != its->si) {
+    throw FileError(fmt::format("{}:{}: mvc = {:g} {}, but channel '{}' is in '{}'", file, line,
+                                *full.mvc, full.unit, channel.name, channel.unit));
+  }
+  return *full.mvc * given->factor / its->factor;
 }
 
 MvcValue mvcFromFile(const EmgConfigFile& config, std::size_t i) {
@@ -296,12 +309,12 @@ EmgConfig emgConfigFor(const EmgConfigFile& config, const Recording& recording,
     const int line = config.electrodeLines[i];
     const Channel& channel = channelAt(config, line, recording, out.electrodes[i].channel);
     if (full.mvc) {
-      if (full.unit != channel.unit) {
-        throw FileError(fmt::format("{}:{}: mvc = {:g} {}, but channel '{}' is in '{}'",
-                                    config.file, line, *full.mvc, full.unit, channel.name,
-                                    channel.unit));
+      out.electrodes[i].full =
+          MvcValue{mvcIn(channel, full, config.file, line), fmt::format("{}:{}", config.file, line)};
+      if (!areSameUnit(full.unit, channel.unit)) {
+        out.conversions.push_back(fmt::format("{}: mvc = {:g} {} was converted to {}.", channel.name,
+                                              *full.mvc, full.unit, channel.unit));
       }
-      out.electrodes[i].full = MvcValue{*full.mvc, fmt::format("{}:{}", config.file, line)};
     } else if (!full.mvcFile.empty()) {
       out.electrodes[i].full = mvcFromFile(config, i);
     } else {
@@ -309,25 +322,35 @@ EmgConfig emgConfigFor(const EmgConfigFile& config, const Recording& recording,
     }
   }
   for (std::size_t k = 0; k < out.columns.size(); ++k) {
-    channelAt(config, config.columnLines[k], recording, out.columns[k].channel);
+    const Channel& channel =
+        channelAt(config, config.columnLines[k], recording, out.columns[k].channel);
+    if (config.columnScales[k]) continue;
+    try {
+      const std::string said = setUnit(channel, out.columns[k]);
+      if (!said.empty()) out.conversions.push_back(said);
+    } catch (const std::invalid_argument& rule) {
+      throw FileError(
+          fmt::format("{}:{}: column {}", config.file, config.columnLines[k], rule.what()));
+    }
   }
   addMarkerColumns(config, recording, markers, out);
   if (out.measured) {
     const Channel& channel =
         channelAt(config, config.measuredLine, recording, out.measured->channel);
-    const bool degrees = channel.unit == "deg";
-    const bool radians = channel.unit == "rad";
-    if (config.degreesPerUnit && (degrees || radians)) {
+    const auto unit = knownUnit(channel.unit);
+    const bool isAngle = unit && unit->si == "rad";
+    if (config.degreesPerUnit && isAngle) {
       throw FileError(fmt::format(
           "{}:{}: degrees_per_unit = {:g}, but channel '{}' is an angle in {}", config.file,
           config.measuredLine, *config.degreesPerUnit, channel.name, channel.unit));
     }
-    if (!config.degreesPerUnit && !degrees && !radians) {
+    if (!config.degreesPerUnit && !isAngle) {
       throw FileError(fmt::format("{}:{}: channel '{}' is in '{}', needs degrees_per_unit",
                                   config.file, config.measuredLine, channel.name, channel.unit));
     }
-    out.measured->degreesPerUnit =
-        config.degreesPerUnit.value_or(radians ? 180 / std::numbers::pi : 1.0);
+    const bool degrees = isAngle && unit->name == "deg";
+    out.measured->degreesPerUnit = config.degreesPerUnit.value_or(
+        isAngle && !degrees ? unit->factor * (180 / std::numbers::pi) : 1.0);
   }
   return out;
 }

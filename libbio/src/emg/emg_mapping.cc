@@ -29,62 +29,6 @@ Shaped shaped(double x, double A) {
   return {value, (x * (above + 1) - value * (below + 1)) / below};
 }
 
-void check(const std::vector<std::string>& muscles, const EmgMapping& mapping) {
-  for (const auto& [muscle, gain] : mapping.gain) {
-    if (std::find(muscles.begin(), muscles.end(), muscle) == muscles.end()) {
-      throw std::invalid_argument(fmt::format("EMG gain of '{}': no such muscle moves", muscle));
-    }
-    if (!(gain >= 0 && std::isfinite(gain))) {
-      throw std::invalid_argument(
-          fmt::format("EMG gain of '{}' = {}, must be ≥ 0 and finite", muscle, gain));
-    }
-  }
-  const auto known = [&](const std::string& muscle) {
-    return std::find(muscles.begin(), muscles.end(), muscle) != muscles.end();
-  };
-  for (const auto& [muscle, offset] : mapping.offset) {
-    if (!known(muscle) || !std::isfinite(offset)) {
-      throw std::invalid_argument(fmt::format(
-          "EMG offset of '{}' = {}: must be finite, of a muscle that moves", muscle, offset));
-    }
-  }
-  for (const auto& [muscle, size] : mapping.saturation) {
-    if (!known(muscle) || !std::isfinite(size)) {
-      throw std::invalid_argument(fmt::format(
-          "EMG saturation of '{}' = {}: must be finite, of a muscle that moves", muscle, size));
-    }
-  }
-  for (const auto& [muscle, latent] : mapping.latent) {
-    if (!known(muscle) || mapping.saturation.count(muscle) > 0) {
-      throw std::invalid_argument(
-          fmt::format("latent excitation of '{}': must be of a muscle that moves, and of one whose "
-                      "record does not saturate",
-                      muscle));
-    }
-  }
-  for (const EmgMapping::Crosstalk& c : mapping.crosstalk) {
-    if (!known(c.from) || !known(c.to) || !std::isfinite(c.share)) {
-      throw std::invalid_argument(
-          fmt::format("EMG crosstalk {} from '{}' to '{}': must be finite, between muscles "
-                      "that move",
-                      c.share, c.from, c.to));
-    }
-  }
-  if (!std::isfinite(mapping.delay)) {
-    throw std::invalid_argument(fmt::format("EMG delay = {} s, must be finite", mapping.delay));
-  }
-  if (!(std::abs(mapping.fatigue) <= 1) ||
-      !(mapping.fatigueTime > 0 && std::isfinite(mapping.fatigueTime))) {
-    throw std::invalid_argument(
-        fmt::format("EMG fatigue φ = {}, must be −1 to 1, with T = {} s, must be > 0",
-                    mapping.fatigue, mapping.fatigueTime));
-  }
-  if (!(std::abs(mapping.nonlinearity) <= 6)) {
-    throw std::invalid_argument(
-        fmt::format("EMG nonlinearity = {}, must be −6 to 6", mapping.nonlinearity));
-  }
-}
-
 double gainOf(const EmgMapping& mapping, const std::string& muscle) {
   const auto at = mapping.gain.find(muscle);
   return at == mapping.gain.end() ? 1.0 : at->second;
@@ -166,6 +110,62 @@ Eigen::ArrayXd freshness(const EmgMapping& mapping, const Eigen::RowVectorXd& wo
 
 }  // namespace
 
+void requireValid(const std::vector<std::string>& muscles, const EmgMapping& mapping) {
+  for (const auto& [muscle, gain] : mapping.gain) {
+    if (std::find(muscles.begin(), muscles.end(), muscle) == muscles.end()) {
+      throw std::invalid_argument(fmt::format("EMG gain of '{}': no such muscle moves", muscle));
+    }
+    if (!(gain >= 0 && std::isfinite(gain))) {
+      throw std::invalid_argument(
+          fmt::format("EMG gain of '{}' = {}, must be ≥ 0 and finite", muscle, gain));
+    }
+  }
+  const auto known = [&](const std::string& muscle) {
+    return std::find(muscles.begin(), muscles.end(), muscle) != muscles.end();
+  };
+  for (const auto& [muscle, offset] : mapping.offset) {
+    if (!known(muscle) || !std::isfinite(offset)) {
+      throw std::invalid_argument(fmt::format(
+          "EMG offset of '{}' = {}: must be finite, of a muscle that moves", muscle, offset));
+    }
+  }
+  for (const auto& [muscle, size] : mapping.saturation) {
+    if (!known(muscle) || !std::isfinite(size)) {
+      throw std::invalid_argument(fmt::format(
+          "EMG saturation of '{}' = {}: must be finite, of a muscle that moves", muscle, size));
+    }
+  }
+  for (const auto& [muscle, latent] : mapping.latent) {
+    if (!known(muscle) || mapping.saturation.count(muscle) > 0) {
+      throw std::invalid_argument(
+          fmt::format("latent excitation of '{}': must be of a muscle that moves, and of one whose "
+                      "record does not saturate",
+                      muscle));
+    }
+  }
+  for (const EmgMapping::Crosstalk& c : mapping.crosstalk) {
+    if (!known(c.from) || !known(c.to) || !std::isfinite(c.share)) {
+      throw std::invalid_argument(
+          fmt::format("EMG crosstalk {} from '{}' to '{}': must be finite, between muscles "
+                      "that move",
+                      c.share, c.from, c.to));
+    }
+  }
+  if (!std::isfinite(mapping.delay)) {
+    throw std::invalid_argument(fmt::format("EMG delay = {} s, must be finite", mapping.delay));
+  }
+  if (!(std::abs(mapping.fatigue) <= 1) ||
+      !(mapping.fatigueTime > 0 && std::isfinite(mapping.fatigueTime))) {
+    throw std::invalid_argument(
+        fmt::format("EMG fatigue φ = {}, must be −1 to 1, with T = {} s, must be > 0",
+                    mapping.fatigue, mapping.fatigueTime));
+  }
+  if (!(std::abs(mapping.nonlinearity) <= 6)) {
+    throw std::invalid_argument(
+        fmt::format("EMG nonlinearity = {}, must be −6 to 6", mapping.nonlinearity));
+  }
+}
+
 Eigen::RowVectorXd flatTops(const Eigen::VectorXd& times, const Eigen::RowVectorXd& record) {
   const Eigen::Index n = record.size();
   Eigen::RowVectorXd lacking = Eigen::RowVectorXd::Zero(n);
@@ -207,7 +207,7 @@ Eigen::RowVectorXd EmgDerivatives::tired(Eigen::Index muscle,
 ExcitationSignal drivenExcitation(const ExcitationSignal& trial,
                                   const std::vector<std::string>& muscles,
                                   const EmgMapping& mapping) {
-  check(muscles, mapping);
+  requireValid(muscles, mapping);
   const bool changesNothing = mapping.gain.empty() && mapping.delay == 0 &&
                               mapping.nonlinearity == 0 && mapping.offset.empty() &&
                               mapping.crosstalk.empty() && mapping.saturation.empty() &&
@@ -234,7 +234,7 @@ ExcitationSignal drivenExcitation(const ExcitationSignal& trial,
 
 EmgDerivatives emgDerivatives(const ExcitationSignal& trial,
                               const std::vector<std::string>& muscles, const EmgMapping& mapping) {
-  check(muscles, mapping);
+  requireValid(muscles, mapping);
   const Eigen::MatrixXd recorded = recordedOf(trial, muscles, mapping);
   Eigen::MatrixXd rows = cleaned(recorded, muscles, mapping);
   addLacking(timesOf(trial), recorded, muscles, mapping, rows);

@@ -130,6 +130,7 @@ std::vector<std::string> remarksOn(const Recording& recording, const EmgConfig& 
           0.4 * config.outputRate, config.outputRate));
     }
   }
+  out.insert(out.end(), config.conversions.begin(), config.conversions.end());
   addUnrecorded(config, out);
   addLimits(config, result, out);
   out.insert(out.end(), recording.remarks.begin(), recording.remarks.end());

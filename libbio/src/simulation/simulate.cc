@@ -267,6 +267,20 @@ MuscleReport reportMuscles(const MusculoskeletalSystem& arm, const Trajectory& t
   }
   const auto n = static_cast<Eigen::Index>(arm.numMuscles());
   const Eigen::Index K = trajectory.q.cols();
+  const auto mustBe = [K](const Eigen::MatrixXd& values, Eigen::Index rows, const char* what) {
+    if (values.rows() == rows && values.cols() == K) return;
+    throw std::invalid_argument(fmt::format("{} of the trajectory: {} × {}, must be {} × {}", what,
+                                            values.rows(), values.cols(), rows, K));
+  };
+  mustBe(trajectory.q, arm.skeleton().numCoordinates(), "coordinates");
+  mustBe(trajectory.fibreLength, n, "fibre lengths");
+  const bool anyIsRigid =
+      std::any_of(arm.muscles().begin(), arm.muscles().end(),
+                  [](const SystemMuscle& each) { return !each.muscle.hasFibreState(); });
+  if (anyIsRigid) {  // its force follows from activation and speed
+    mustBe(trajectory.qDot, arm.skeleton().numCoordinates(), "speeds");
+    mustBe(trajectory.activation, n, "activations");
+  }
   MuscleReport report;
   report.tendonForce.resize(n, K);
   report.muscleTendonLength.resize(n, K);

@@ -116,10 +116,43 @@ void requireTableText(std::string_view text, const std::string& file) {
   }
 }
 
+namespace {
+
+bool isTextInUtf8(std::string_view text) {
+  for (std::size_t k = 0; k < text.size();) {
+    const auto first = static_cast<unsigned char>(text[k]);
+    const int more = first < 0x80 ? 0 : first >= 0xC2 && first < 0xE0 ? 1 : first < 0xF0 ? 2 : 3;
+    if (first >= 0x80 && (first < 0xC2 || first > 0xF4)) return false;
+    for (int i = 1; i <= more; ++i) {
+      if (k + static_cast<std::size_t>(i) >= text.size() ||
+          (static_cast<unsigned char>(text[k + static_cast<std::size_t>(i)]) & 0xC0) != 0x80)
+        return false;
+    }
+    k += static_cast<std::size_t>(more) + 1;
+  }
+  return true;
+}
+
+std::string fromLatin1(std::string_view text) {
+  std::string utf8;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80) {
+      utf8 += c;
+    } else {
+      utf8 += static_cast<char>(0xC0 | (byte >> 6));
+      utf8 += static_cast<char>(0x80 | (byte & 0x3F));
+    }
+  }
+  return utf8;
+}
+
+}  // namespace
+
 std::string readTableText(const std::filesystem::path& file) {
   std::string text = readTextFile(file);
   requireTableText(text, file.string());
-  return text;
+  return isTextInUtf8(text) ? text : fromLatin1(text);
 }
 
 Lines::Lines(std::string_view text) : left_(text) {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "bio/tables/file_error.h"
+#include "bio/tables/units.h"
 #include "tables/c3d_parameters.h"
 #include "tables/recording_layouts.h"
 #include "tables/text_file.h"
@@ -100,14 +101,20 @@ Channel channelOf(const std::string& file, const RawColumn& column,
   }
   if (!(channel.rate > 0)) fail("has no rate in the file and none is declared (rate_Hz)");
   channel.unit = !declared.unit.empty() ? declared.unit : column.unit;
-  if (!column.unit.empty() && channel.unit != column.unit && !declared.scale) {
+  double toDeclared = 1;  // mV of the file as the V that is declared
+  if (!column.unit.empty() && !areSameUnit(channel.unit, column.unit) && !declared.scale) {
+    const auto from = knownUnit(column.unit), to = knownUnit(channel.unit);
+    if (from && to && from->si == to->si) toDeclared = from->factor / to->factor;
+  }
+  if (!column.unit.empty() && !areSameUnit(channel.unit, column.unit) && !declared.scale &&
+      toDeclared == 1) {
     fail(fmt::format("declared unit '{}', but the file says '{}' (give a scale to convert)",
                      channel.unit, column.unit));
   }
   if (column.values.size() < 2) {
     fail(fmt::format("has {} values, a recording needs at least 2", column.values.size()));
   }
-  const double scale = declared.scale.value_or(1.0);
+  const double scale = declared.scale.value_or(toDeclared);
   if (!std::isfinite(scale) || scale == 0) fail(fmt::format("scale {}, must not be 0", scale));
   channel.values = (scale * column.values.array() + declared.offset).matrix();
   return channel;
@@ -180,10 +187,11 @@ Recording readRecording(const std::string& file, const RecordingLayout& layout) 
   Recording out;
   out.file = file;
   out.format = layout.format == RecordingFormat::automatic ? detectFormat(file) : layout.format;
-  const std::vector<RawColumn> columns = readColumns(file, out.format, out.remarks);
+  std::vector<RawColumn> columns = readColumns(file, out.format, out.remarks);
   checkDeclarations(file, columns, layout);
-  for (const RawColumn& column : columns) {
+  for (RawColumn& column : columns) {
     const ColumnDeclaration* declared = declarationOf(column, layout);
+    column.unit = plainUnit(std::move(column.unit));
     if (declared == nullptr && out.format == RecordingFormat::columns) {
       out.remarks.push_back(fmt::format(
           "Column {} is not declared in the configuration and was not read.", column.number));

@@ -29,7 +29,8 @@ std::vector<std::string> cellsOf(const std::string& line, char separator);
 double finiteNumber(const std::string& file, std::size_t line, const std::string& column,
                     const std::string& cell);
 
-/// The project's words for units that instruments write with other letters: µV is uV, ° is deg.
+/// The project's word for a unit that is known (units.h), whatever the instrument writes: µV and
+/// microvolts are uV, ° is deg; any other as it is.
 std::string plainUnit(std::string unit);
 
 /// Takes away values at both ends that are not measured.

@@ -8,6 +8,7 @@
 
 #include "bio/tables/file_error.h"
 #include "bio/tables/table_file.h"
+#include "bio/tables/units.h"
 #include "tables/recording_layouts.h"
 
 namespace bio {
@@ -40,7 +41,8 @@ namespace {
 
 // "BIClong_uV" → "uV", "envelope_mV" → "mV", "biceps [mV]" → "mV", "knee (deg)" → "deg"
 std::string unitIn(const std::string& column) {
-  constexpr std::array<std::string_view, 6> units = {"V", "mV", "uV", "deg", "rad", "g"};
+  constexpr std::array<std::string_view, 9> units = {"V", "mV",  "uV", "deg", "rad",
+                                                     "g", "N m", "mm", "cm"};
   const char last = column.empty() ? ' ' : column.back();
   if (last == ']' || last == ')') {
     const auto open = column.rfind(last == ']' ? '[' : '(');
@@ -81,10 +83,8 @@ RawColumn compressed(const Eigen::VectorXd& cells, double rate, double startTime
 }
 
 std::string plainUnit(std::string unit) {
-  for (const std::string_view micro : {"\xC2\xB5", "\xCE\xBC"}) {
-    if (unit.starts_with(micro)) return "u" + unit.substr(micro.size());
-  }
-  return unit == "\xC2\xB0" || unit == "degrees" ? "deg" : unit;
+  const auto known = knownUnit(unit);
+  return known ? std::string(known->name) : unit;
 }
 
 std::vector<RawColumn> readTableColumns(const std::string& file) {

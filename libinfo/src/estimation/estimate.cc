@@ -58,8 +58,12 @@ class Estimator {
                         label(parameter), start[i], lower_[i], upper_[i]));
     }
     at_ = linearise(theta_);
-    if (!std::isfinite(at_.cost))
-      throw std::domain_error("estimate: the prediction at the start is not finite");
+    if (!std::isfinite(at_.cost)) {
+      const auto& why = problem.predictor().whyUndefined;
+      const std::string reason = why ? why(theta_) : "";
+      throw std::domain_error(fmt::format("estimate: the prediction at the start is not finite{}{}",
+                                          reason.empty() ? "" : ": ", reason));
+    }
     for (Index i = 0; i < start.size(); ++i)
       if (lower_[i] < upper_[i] && !(at_.information(i, i) > 0))
         throw std::domain_error(
@@ -304,6 +308,15 @@ Estimate estimate(const LeastSquares& problem, const VectorXd& start,
 
 Estimate estimate(const LeastSquares& problem, const EstimateOptions& options) {
   return estimate(problem, problem.start(), options);
+}
+
+std::optional<Estimate> estimateIfDefined(const LeastSquares& problem, const VectorXd& start,
+                                          const EstimateOptions& options) {
+  try {
+    return estimate(problem, start, options);
+  } catch (const std::domain_error&) {
+    return {};
+  }
 }
 
 }  // namespace info

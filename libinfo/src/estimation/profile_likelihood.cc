@@ -9,6 +9,32 @@
 #include <stdexcept>
 
 namespace info {
+namespace {
+
+/// The least cost near `start`. Where the model has no value at `start` it is infinite; what has no
+/// effect there stays as it is.
+ProfilePoint pointFrom(const LeastSquares& conditional, const Eigen::VectorXd& start, double value,
+                       const EstimateOptions& options) {
+  try {
+    const Estimate best = estimate(conditional, start, options);
+    return {value, best.cost, best.parameters, best.converged};
+  } catch (const std::domain_error&) {
+    const LeastSquares::Linearised at = conditional.linearise(start);
+    if (!std::isfinite(at.cost))
+      return {value, std::numeric_limits<double>::infinity(), start, false};
+    std::vector<Parameter> parameters = conditional.parameters();
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      const auto j = static_cast<Eigen::Index>(k);
+      if (!(at.information(j, j) > 0))
+        parameters[k].lower = parameters[k].upper = parameters[k].start = start[j];
+    }
+    const Estimate best =
+        estimate({conditional.predictor(), conditional.measurements(), parameters}, start, options);
+    return {value, best.cost, best.parameters, best.converged};
+  }
+}
+
+}  // namespace
 
 Profile profileLikelihood(const LeastSquares& problem, const Estimate& estimated,
                           Eigen::Index parameter, const std::vector<double>& values,
@@ -41,10 +67,9 @@ Profile profileLikelihood(const LeastSquares& problem, const Estimate& estimated
   for (std::size_t i : order) {
     Eigen::VectorXd& start = values[i] < centre ? below : above;
     start[parameter] = held.lower = held.upper = held.start = values[i];
-    const LeastSquares conditional(problem.predictor(), problem.measurements(), parameters);
-    const Estimate best = estimate(conditional, start, options);
-    profile.points[i] = {values[i], best.cost, best.parameters, best.converged};
-    start = best.parameters;
+    profile.points[i] = pointFrom({problem.predictor(), problem.measurements(), parameters}, start,
+                                  values[i], options);
+    start = profile.points[i].parameters;
   }
   return profile;
 }
@@ -65,10 +90,11 @@ ProfileInterval profileInterval(const LeastSquares& problem, const Estimate& est
   const auto rootAt = [&](double value) {
     Estimate near = estimated;
     near.parameters = from.parameters;
-    const Profile one = profileLikelihood(problem, near, parameter, {value}, options);
-    from = one.points.front();
-    result.profile.points.push_back(from);
-    return std::sqrt(2 * std::max(0.0, from.cost - estimated.cost));
+    const ProfilePoint point =
+        profileLikelihood(problem, near, parameter, {value}, options).points.front();
+    result.profile.points.push_back(point);
+    if (std::isfinite(point.cost)) from = point;
+    return std::sqrt(2 * std::max(0.0, point.cost - estimated.cost));
   };
   const auto search = [&](double side, double bound, bool& atBound) {
     from = {centre, estimated.cost, estimated.parameters, true};
@@ -87,8 +113,10 @@ ProfileInterval profileInterval(const LeastSquares& problem, const Estimate& est
         return bound;
       }
       for (int i = 0; i < 12; ++i) {
-        const double middle =
-            inside + (z - rootInside) / (rootOutside - rootInside) * (outside - inside);
+        // where the model ends there is no slope to follow
+        const double share =
+            std::isfinite(rootOutside) ? (z - rootInside) / (rootOutside - rootInside) : 0.5;
+        const double middle = inside + share * (outside - inside);
         if (std::abs(middle - inside) < 0.01 * sd || std::abs(middle - outside) < 0.01 * sd)
           return middle;
         const double root = rootAt(middle);

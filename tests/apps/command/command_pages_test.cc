@@ -10,6 +10,7 @@
 #include "command/completion.h"
 #include "command/described_commands.h"
 #include "command/manual_page.h"
+#include "robot_options/robot_program.h"
 #include "support/scratch_folder.h"
 
 // Man page and completions against what the parser itself prints as help.
@@ -43,7 +44,7 @@ std::string inRoff(const std::string& text) {
 }
 
 struct Pages : testing::Test {
-  CommandLine line{allCommands()};
+  CommandLine line{allCommandsWith(robotCommand(), discoverInRobot)};
   DescribedCommand program = describe(line.program());
   support::ScratchFolder scratch;
 

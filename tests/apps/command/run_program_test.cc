@@ -4,11 +4,16 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <functional>
+#include <map>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
+#include <variant>
 
 #include "options/simulation_options.h"
 #include "output/interruption.h"
@@ -93,6 +98,33 @@ TEST(RunProgram, TurnsEveryExceptionIntoOneLine) {
   EXPECT_EQ(outcomeOf(std::bad_alloc()).err, "fisherhill try: not enough memory\n");
   EXPECT_EQ(outcomeOf(42).status, 2);
   EXPECT_EQ(outcomeOf(Interrupted{}).status, 130);
+}
+
+// What the standard library says is never all that a user is told.
+TEST(RunProgram, CallsAFaultOfTheProgramByItsName) {
+  const std::vector<int> none;
+  const std::map<int, int> empty;
+  const auto sayOf = [](const std::function<void()>& fault) {
+    return tryProgram({"try", "x"}, [&](const auto&, const auto&) {
+      fault();
+      return ExitStatus::done;
+    });
+  };
+  for (const std::function<void()>& fault : std::vector<std::function<void()>>{
+           [] { (void)std::stod("1e-310"); }, [] { (void)std::stoi("many"); },
+           [&] { (void)none.at(1); }, [&] { (void)empty.at(1); },
+           [] { (void)std::string("a").substr(2); }, [] { std::function<void()>()(); },
+           [] { (void)std::optional<int>().value(); },
+           [] { (void)std::get<int>(std::variant<int, double>(1.5)); },
+           [] { (void)nlohmann::json::parse("{"); }}) {
+    const Outcome outcome = sayOf(fault);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.err,
+                testing::StartsWith("fisherhill try: stopped by a fault of the program ("));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  }
+  EXPECT_EQ(sayOf([] { throw std::invalid_argument("step = 0 s must be > 0"); }).err,
+            "fisherhill try: step = 0 s must be > 0\n");
 }
 
 TEST(RunProgram, EveryMistakeOnTheCommandLineIsOneLineAndStatusTwo) {

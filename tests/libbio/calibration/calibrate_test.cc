@@ -219,23 +219,60 @@ TEST(Calibrate, CorrelatedResidualsCountForLess) {
               1e-12);
 }
 
-// A muscle that pushes is refused by the model: no simulation at such values.
+// The cylinder may be moved to where points of its paths lie inside: no simulation there.
 TEST(Calibrate, AFailedSimulationIsAStepNotTaken) {
-  const double truth = 900;
-  CalibrationOptions asked = options({"BRA.max_isometric_force"});
+  const double truth = elbow().valueOf("TRI.translation.y") + 0.002;
+  CalibrationOptions asked = options({"TRI.translation.y"});
   asked.noise = 0.5 * degree;
-  asked.bounds["BRA.max_isometric_force"] = {-3000, 3000};
-  asked.prior["BRA.max_isometric_force"] = {1000, 2000};
+  asked.prior["TRI.translation.y"] = {truth - 0.002, 0.02};
   asked.starts = 12;
   asked.trials.threads = 2;
   const Calibration found =
-      run({elbow().trial("curl_slow", 0.8, {{"BRA.max_isometric_force", truth}})}, asked);
+      run({elbow().trial("curl_slow", 1.5, {{"TRI.translation.y", truth}})}, asked);
   int failed = 0;
   for (const info::StartOutcome& start : found.starts) failed += !std::isfinite(start.cost);
   EXPECT_GT(failed, 0);
   EXPECT_LT(failed, 12);
   EXPECT_TRUE(found.converged);
-  EXPECT_NEAR(found.parameters[0].value, truth, 0.01 * truth);
+  EXPECT_NEAR(found.parameters[0].value, truth, 1e-4);
+}
+
+// A profile that meets the end of the model's domain ends there, and the fit stays.
+TEST(Calibrate, KeepsTheEstimateWhereItsProfileLeavesTheDomain) {
+  CalibrationOptions asked = options({"TRI.translation.y"});
+  asked.noise = 20 * degree;
+  asked.priors = false;
+  asked.profile = {"TRI.translation.y"};
+  const Calibration found = run({elbow().trial("curl_slow", 1.5)}, asked);
+  EXPECT_EQ(found.failure, "");
+  ASSERT_EQ(found.parameters.size(), 1u);
+  ASSERT_TRUE(found.parameters[0].profile);
+  const auto& points = found.parameters[0].profile->profile.points;
+  EXPECT_TRUE(std::any_of(points.begin(), points.end(),
+                          [](const auto& point) { return std::isinf(point.cost); }));
+}
+
+TEST(Calibrate, RefusesBoundsBeyondTheDomainOfANumber) {
+  const std::vector<Trial> trials = {elbow().trial("curl_slow", 0.3)};
+  const auto fails = [&](const char* name, double lower, double upper, const char* message) {
+    CalibrationOptions asked = options({name});
+    asked.bounds[name] = {lower, upper};
+    EXPECT_THAT([&] { run(trials, asked); },
+                ThrowsMessage<std::invalid_argument>(HasSubstr(message)));
+  };
+  fails("emg.nonlinearity", -8, 0,
+        "lower bound of emg.nonlinearity = -8 is outside of its domain: EMG nonlinearity");
+  fails("emg.nonlinearity", -1, 7, "upper bound of emg.nonlinearity = 7");
+  fails("BRA.max_isometric_force", -3000, 3000, "lower bound of BRA.max_isometric_force = -3000 N");
+  fails("BRA.optimal_fiber_length", -1, 1, "lower bound of BRA.optimal_fiber_length = -1 m");
+  fails("BRA.pennation_angle", 0, 2, "upper bound of BRA.pennation_angle = 2 rad");
+  fails("emg.BRA.gain", -1, 1, "lower bound of emg.BRA.gain = -1");
+  fails("hand.mass", -1, 1, "lower bound of hand.mass = -1 kg");
+  fails("TRI.radius", -0.01, 0.017, "lower bound of TRI.radius = -0.01 m");
+  CalibrationOptions edge = options({"emg.nonlinearity"});
+  edge.bounds["emg.nonlinearity"] = {-6, 6};
+  edge.noise = 20 * degree;
+  EXPECT_EQ(run(trials, edge).failure, "");
 }
 
 // The triceps touches its cylinder in flexion only.

@@ -91,6 +91,62 @@ TEST(ProfileInterval, IsSkewWhereTheModelIs) {
   EXPECT_NEAR(interval.upper, std::log(0.5 + 0.195996), 0.004);
 }
 
+/// y = a + b·max(0, a); no value below `end`.
+info::Predictor endingAt(double end) {
+  info::Predictor model;
+  model.outputs = [end](const VectorXd& theta) -> MatrixXd {
+    const double y = theta[0] + theta[1] * std::max(0.0, theta[0]);
+    return MatrixXd::Constant(1, 1, theta[0] < end ? std::nan("") : y);
+  };
+  model.withSensitivities = [model](const VectorXd& theta) {
+    const bool rises = theta[0] > 0;
+    return info::Prediction{model.outputs(theta),
+                            Eigen::RowVector2d(1 + (rises ? theta[1] : 0), rises ? theta[0] : 0)};
+  };
+  model.whyUndefined = [end](const VectorXd& theta) -> std::string {
+    return theta[0] < end ? "a is too small" : "";
+  };
+  return model;
+}
+
+TEST(ProfileInterval, EndsWhereTheModelEnds) {
+  const info::LeastSquares problem(
+      endingAt(0.93), {MatrixXd::Constant(1, 1, 1.0), kLineNoise},
+      {{.name = "a", .start = 1}, {.name = "b", .lower = 0, .upper = 0}});
+  const auto best = info::estimate(problem);
+  const double sd = std::sqrt(best.covariance(0, 0));
+  const auto interval = info::profileInterval(problem, best, 0, sd);
+  EXPECT_NEAR(interval.lower, 0.93, 0.02 * sd);
+  EXPECT_NEAR(interval.upper, best.intervals(0, 1), 0.02 * sd);
+  EXPECT_FALSE(interval.lowerAtBound);
+  for (const info::ProfilePoint& point : interval.profile.points)
+    EXPECT_EQ(std::isinf(point.cost), point.value < 0.93) << point.value;
+}
+
+// At a = 0 the other parameter has no effect: it stays, and the profile goes on.
+TEST(ProfileLikelihood, GoesOnWhereAnotherParameterLosesItsEffect) {
+  const info::LeastSquares problem(endingAt(-9), {MatrixXd::Constant(1, 1, 1.0), kLineNoise},
+                                   {{.name = "a", .start = 0.5}, {.name = "b", .start = 0.5}});
+  const auto best = info::estimate(problem);
+  const auto profile = info::profileLikelihood(problem, best, 0, {-1, 0.4});
+  EXPECT_NEAR(profile.points[0].cost, 0.5 * std::pow(2 / 0.1, 2), 1e-9);
+  EXPECT_NEAR(profile.points[1].cost, 0, 1e-9);
+}
+
+TEST(Estimate, SaysWhyThePredictionAtTheStartIsNotFinite) {
+  const info::LeastSquares problem(
+      endingAt(2), {MatrixXd::Constant(1, 1, 1.0), kLineNoise},
+      {{.name = "a", .start = 1}, {.name = "b", .lower = 0, .upper = 0}});
+  try {
+    info::estimate(problem);
+    FAIL() << "must throw";
+  } catch (const std::domain_error& error) {
+    EXPECT_STREQ(error.what(),
+                 "estimate: the prediction at the start is not finite: a is too small");
+  }
+  EXPECT_FALSE(info::estimateIfDefined(problem, problem.start(), {}));
+}
+
 TEST(ProfileInterval, SaysWhereItIsOpenAndWhereABoundEndsIt) {
   info::Predictor sum;
   sum.outputs = [](const VectorXd& theta) -> MatrixXd {

@@ -54,6 +54,8 @@ class TrialPredictor {
     Eigen::MatrixXd gamma;    ///< Γ = dy/dθ: samples × parameters
   };
   Linearised withSensitivities(const Eigen::VectorXd& theta) const;
+  /// In words, why outputs(θ) is not finite; empty if it is.
+  std::string whyUndefined(const Eigen::VectorXd& theta) const;
 
   /// J = ½ Σ ((y_i − m_i)/σ_i)² over size() samples, and dJ/dθ by one sweep back, for a few
   /// simulations however many parameters there are; NaN if the motion ends too early.

@@ -68,6 +68,8 @@ struct EmgConfig {
   /// Other measured columns of the trial: `coordinate` is the column's name, `degreesPerUnit` and
   /// `sign` its factor.
   std::vector<MeasuredOptions> columns = {};
+  /// In sentences, which units were converted or assumed.
+  std::vector<std::string> conversions = {};
 };
 
 /// Intermediate results of one electrode, at its own sampling rate.

@@ -54,6 +54,7 @@ struct EmgConfigFile {
   std::optional<double> degreesPerUnit;  ///< of the measured channel, if stated
   int measuredLine = 0;                  ///< of [measured], 0: none
   std::vector<int> columnLines;          ///< of [[column]]
+  std::vector<bool> columnScales;        ///< whether it has a scale or an offset of its own
   std::optional<MarkerDeclaration> markers;
 };
 
@@ -61,8 +62,10 @@ struct EmgConfigFile {
 /// a value of the wrong type or out of its range, a missing key
 EmgConfigFile readEmgConfig(const std::string& file);
 
-/// The configuration for one recording: channels found, units compared, maximum contractions read
-/// from their own files (the maximum of their envelope through the same filters).
+/// The configuration for one recording: channels found, maximum contractions read from their own
+/// files (the maximum of their envelope through the same filters) or converted to the unit of their
+/// channel, measured columns converted from the unit that the file states to that of a trial
+/// (EmgConfig::conversions), unless they have a scale.
 /// A marker of the model becomes three columns BODY.MARKER.x, .y and .z of points in the recording,
 /// turned into the model's axes.
 /// @param markers  BODY.MARKER of the model that [markers] names, if it does

@@ -45,10 +45,14 @@ struct EmgMapping {
 /// record is flat from beginning to end.
 Eigen::RowVectorXd flatTops(const Eigen::VectorXd& times, const Eigen::RowVectorXd& record);
 
-/// @param muscles  the signal's, in order
+/// @param muscles  of a signal
 /// @throws std::invalid_argument for a gain < 0, a delay that is not finite, A outside −6 … 6, φ
 ///   outside −1 … 1, T not above 0, a gain, offset, crosstalk, saturation or latent excitation of
 ///   an unknown muscle, or the last two of one
+void requireValid(const std::vector<std::string>& muscles, const EmgMapping& mapping);
+
+/// @param muscles  the signal's, in order
+/// @throws std::invalid_argument as requireValid() does
 ExcitationSignal drivenExcitation(const ExcitationSignal& trial,
                                   const std::vector<std::string>& muscles,
                                   const EmgMapping& mapping);

@@ -134,6 +134,9 @@ struct MuscleReport {
   Eigen::MatrixXd muscleTendonLength;  ///< [m]
   Eigen::MatrixXd momentArm;           ///< −∂ℓ/∂q of coordinate `coordinate` [m]
 };
+/// @param trajectory  coordinates and fibre lengths, of muscles with rigid tendons also speeds and
+///   activations
+/// @throws std::invalid_argument where one of these is missing or of another size
 MuscleReport reportMuscles(const MusculoskeletalSystem& arm, const Trajectory& trajectory,
                            int coordinate = 0);
 

@@ -23,12 +23,14 @@ struct MarkerTrajectories {
 /// @throws FileError as readC3d and readTrc, and for a file that is neither
 MarkerTrajectories readMarkers(const std::filesystem::path& file);
 
-/// Reads a TRC file: `PathFileType` in line 1, names and values of DataRate, NumFrames, NumMarkers
-/// and Units (mm, cm or m) in lines 2 and 3, names of markers in line 4, then `Frame# Time X1 Y1 Z1
-/// …` between tabs. Empty cells and NaN: not seen; the last cells of a row can be missing.
-/// @throws FileError naming line and column for a value that is no number, a marker that is half
-///   seen, counts that contradict the header, times that do not rise by 1/DataRate (a frame more
-///   than a quarter of an interval off)
+/// Reads a TRC file by the order of its cells, between tabs, commas or blanks: `PathFileType` in line
+/// 1, keys and values of DataRate and Units (mm, cm or m) in lines 2 and 3, names of markers in line
+/// 4, perhaps labels `X1 Y1 Z1 …`, then rows of frame, time and three coordinates of each marker.
+/// Empty cells and NaN: not seen; the last cells of a row can be missing. Remarks tell where counts
+/// of frames and markers, DataRate or names contradict the rows, and what was taken.
+/// @throws FileError naming line and cell for a value that is no number, no or unknown Units, more or
+///   fewer names than columns where their places do not tell, times that fit no equal spacing (a
+///   frame more than a quarter of an interval off; frames that are missing are not seen)
 MarkerTrajectories readTrc(const std::filesystem::path& file);
 
 /// The same from a text in memory, which messages call `name`.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -101,6 +102,10 @@ struct Estimate {
 Estimate estimate(const LeastSquares& problem, const EstimateOptions& options = {});
 Estimate estimate(const LeastSquares& problem, const Eigen::VectorXd& start,
                   const EstimateOptions& options);
+/// The same for further searches, whose failure must not end what was found already: nothing where
+/// estimate() throws std::domain_error.
+std::optional<Estimate> estimateIfDefined(const LeastSquares& problem, const Eigen::VectorXd& start,
+                                          const EstimateOptions& options);
 
 /// The two-sided quantile z of the standard normal distribution: P(|Z| ≤ z) = confidence, in (0,
 /// 1).

@@ -31,6 +31,8 @@ struct Predictor {
   /// unavailable.
   std::function<Eigen::MatrixXd(const Eigen::VectorXd& theta, const Eigen::MatrixXd& w)>
       contractedCurvature;
+  /// In words, why outputs(θ) is not finite; empty if it is. May be empty.
+  std::function<std::string(const Eigen::VectorXd& theta)> whyUndefined;
 };
 
 /// The measurements.

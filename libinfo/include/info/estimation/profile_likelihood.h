@@ -9,7 +9,7 @@ namespace info {
 /// A point of a profile: one parameter fixed, all others optimal.
 struct ProfilePoint {
   double value;                ///< of the fixed parameter
-  double cost;                 ///< minimal β over the other parameters
+  double cost;                 ///< minimal β over the other parameters; +∞: the model has no value
   Eigen::VectorXd parameters;  ///< where it is attained
   bool converged;
 };
@@ -23,8 +23,8 @@ struct Profile {
 /// the Cramér–Rao interval it does not assume that β is a parabola; if the profile stays below the
 /// threshold on one side, the data do not bound the parameter there.
 ///
-/// Each point starts from its neighbour's parameters, outwards from the estimate. Source: Raue et
-/// al. 2009; threshold from the likelihood-ratio test with one degree of freedom.
+/// Each point starts from its neighbour's parameters, outwards from the estimate; where the model
+/// has no value there, the point's cost is infinite. Source: Raue et al. 2009; threshold from the likelihood-ratio test with one degree of freedom.
 ///
 /// @param estimated the minimum of `problem`
 /// @param values within the parameter's bounds
@@ -45,7 +45,8 @@ struct ProfileInterval {
 
 /// Searches outwards from the estimate: profile points at 1, 2, 4 and 8 times z·deviation on each
 /// side, until one is beyond the threshold; the crossing is found by regula falsi on the signed
-/// root √(2(β − β̂)), nearly straight in the parameter, to 1 % of the deviation.
+/// root √(2(β − β̂)), nearly straight in the parameter, to 1 % of the deviation; by halving where
+/// the model ends before the threshold is reached: the interval then ends there.
 ///
 /// @param deviation Cramér–Rao standard deviation of the parameter [its unit] > 0, finite
 /// @throws std::invalid_argument for any other deviation, and what profileLikelihood throws

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,8 +26,11 @@ struct RobotRequest {
 /// Adds --system, --with and --noise.
 void addRobotOptions(CLI::App& options, RobotRequest& request);
 
+/// What `discover --system` does with its request.
+using RobotDiscovery = std::function<ExitStatus(const RobotRequest&, const CommandContext&)>;
+
 /// Finds, names and adds the effect that a robot's model lacks; writes verdict.json and, if an
-/// effect was named, with_effect.json.
+/// effect was named, with_effect.json. Defined in fisherhill-robot only.
 /// @throws std::invalid_argument, bio::FileError for bad input
 ExitStatus discoverInRobot(const RobotRequest& request, const CommandContext& context);
 
