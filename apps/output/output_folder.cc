@@ -1,6 +1,8 @@
 #include "output/output_folder.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <stdio.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,9 +12,20 @@
 #include <stdexcept>
 
 #include "output/interruption.h"
+#include "output/sha256.h"
 
 namespace app {
 namespace fs = std::filesystem;
+namespace {
+
+/// The folder in which this one lies.
+fs::path besides(const fs::path& folder) {
+  std::error_code error;
+  const fs::path whole = fs::canonical(folder, error);
+  return error ? fs::path() : whole.parent_path();
+}
+
+}  // namespace
 
 OutputFolder::OutputFolder(const CommandContext& context, std::vector<std::string> resultNames)
     : force_(context.force), inputs_(context.inputs) {
@@ -24,6 +37,7 @@ OutputFolder::OutputFolder(const CommandContext& context, std::vector<std::strin
   }
   resultNames.insert(resultNames.end(), {"summary.json", "report.html"});
   for (const std::string& name : resultNames) mayBeWritten(name);
+  resultNames_ = resultNames;
 
   // Remember which folders are made here, to take them away again if there is no result.
   std::vector<fs::path> missing;
@@ -47,6 +61,7 @@ OutputFolder::OutputFolder(const CommandContext& context, std::vector<std::strin
         fmt::format("--out {}: cannot be written to ({})", folder_.string(), error.message()));
   }
   removeLeftovers(folder_);
+  removeLeftovers(besides(folder_));
 }
 
 OutputFolder::~OutputFolder() {
@@ -76,6 +91,10 @@ void OutputFolder::mayBeWritten(const std::string& name) const {
     if (!fs::equivalent(folder_ / name, input, ignored)) continue;
     throw std::invalid_argument(fmt::format(
         "{}: is an input and would be overwritten; choose another --out", input.string()));
+  }
+  if (fs::is_directory(fs::symlink_status(folder_ / name))) {
+    throw std::runtime_error(fmt::format("--out {}: {} is a folder, a file of this name is written",
+                                         folder_.string(), name));
   }
   if (force_ || !fs::exists(fs::symlink_status(folder_ / name))) return;
   throw std::runtime_error(
@@ -107,7 +126,73 @@ void OutputFolder::writeFile(const std::string& name,
   finished_.push_back(name);
 }
 
+std::string OutputFolder::hashOf(const std::string& name) const {
+  return active() ? sha256OfFile(mark_->temporaryPath(name)) : std::string();
+}
+
+bool OutputFolder::isReplaced(const std::string& name) const {
+  const auto holds = [&](const std::vector<std::string>& names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  return holds(finished_) || holds(resultNames_);
+}
+
+bool OutputFolder::exchange() {
+  std::error_code error;
+  const fs::path target = fs::canonical(folder_, error);
+  if (error || !target.has_filename() || target == target.root_path()) return false;
+  // whoever works in the folder, this program too, would be left in the old one
+  const std::string here = (fs::current_path(error) / "").string();
+  if (error || here.starts_with((target / "").string())) return false;
+  if (WriterMark::hasOne(target.parent_path())) return false;  // e.g. of a study's subject
+  const WriterMark mark(target.parent_path());
+  const fs::path aside = mark.temporaryPath(target.filename().string());
+  if (!fs::create_directory(aside, target, error)) return false;
+  const auto giveUp = [&] {
+    std::error_code ignored;
+    for (const std::string& name : finished_)
+      if (fs::exists(aside / name)) fs::rename(aside / name, mark_->temporaryPath(name), ignored);
+    fs::remove_all(aside, ignored);
+    return false;
+  };
+  const std::string own = mark_->temporaryPath("").filename().string();
+  for (const auto& entry : fs::directory_iterator(target, error)) {
+    const std::string name = entry.path().filename().string();
+    if (isReplaced(name) || name + "-" == own || name.starts_with(own)) continue;
+    fs::copy(entry.path(), aside / name,
+             fs::copy_options::create_hard_links | fs::copy_options::recursive |
+                 fs::copy_options::copy_symlinks,
+             error);
+    if (error) return giveUp();
+  }
+  if (error) return giveUp();
+  for (const std::string& name : finished_) {
+    fs::rename(mark_->temporaryPath(name), aside / name, error);
+    if (error) return giveUp();
+  }
+  if (renameat2(AT_FDCWD, aside.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) != 0)
+    return giveUp();
+  committed_ = finished_.size();
+  // what somebody put there meanwhile
+  for (const auto& entry : fs::directory_iterator(aside, error)) {
+    const std::string name = entry.path().filename().string();
+    if (isReplaced(name) || name + "-" == own || fs::exists(target / name)) continue;
+    std::error_code ignored;
+    fs::rename(entry.path(), target / name, ignored);
+  }
+  fs::remove_all(aside, error);
+  return true;
+}
+
 void OutputFolder::commit() {
+  if (!active() || finished_.empty()) return;
+  if (exchange()) {
+    mark_.reset();
+    return;
+  }
+  // the older result goes first: nobody finds a part of it beside a part of the new one
+  std::error_code ignored;
+  for (const std::string& name : resultNames_) fs::remove(folder_ / name, ignored);
   for (; committed_ < finished_.size(); ++committed_) {
     const std::string& name = finished_[committed_];
     fs::rename(mark_->temporaryPath(name), path(name));

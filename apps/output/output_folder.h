@@ -15,15 +15,19 @@ namespace app {
 
 /// The folder of --out. Its files appear all at once.
 ///
-/// A file is first written under a temporary name in the folder; commit() renames all of them.
-/// Without commit() everything is removed, including the folder if it was created here; only after
-/// Ctrl-C the finished files are kept. Without --out nothing is written and no call fails.
-/// Temporary files of a program that was killed are removed when the folder is opened again.
+/// A file is first written under a temporary name in the folder. commit() builds a second folder beside
+/// it, of the new files and of hard links to all else that is there, and exchanges the two in one step
+/// (renameat2): whoever looks, also after kill -9, sees the older result or the new one as a whole. What
+/// an older result has beyond the new one's files goes with it. Where folders cannot be exchanged (the
+/// folder is where the program runs, or the file system can do neither) the files are renamed one by one,
+/// behind the removal of the older ones. Without commit() everything is removed, including the folder if
+/// it was created here; only after Ctrl-C the finished files are kept. Without --out nothing is written
+/// and no call fails. What a program that was killed has left is removed when the folder is opened again.
 class OutputFolder {
  public:
   /// @param resultNames files the subcommand is going to write, beside summary.json and report.html
-  /// @throws std::runtime_error if the folder cannot be made or written to, or if it holds one of
-  ///   those files and --force was not given; std::invalid_argument if one of them is an input,
+  /// @throws std::runtime_error if the folder cannot be made or written to, if it holds one of
+  ///   those files and --force was not given, or a folder of that name; std::invalid_argument if one of them is an input,
   ///   also under another name
   OutputFolder(const CommandContext& context, std::vector<std::string> resultNames);
   ~OutputFolder();
@@ -50,12 +54,18 @@ class OutputFolder {
   /// Names of the files written so far.
   const std::vector<std::string>& files() const { return finished_; }
 
+  /// SHA-256 of one of them that has no final name yet.
+  std::string hashOf(const std::string& name) const;
+
  private:
+  bool isReplaced(const std::string& name) const;
+  bool exchange();
   void mayBeWritten(const std::string& name) const;
 
   std::filesystem::path folder_;
   std::vector<std::filesystem::path> foldersMade_;  ///< outermost first
   bool force_ = false;
+  std::vector<std::string> resultNames_;
   std::vector<std::filesystem::path> inputs_;
   std::vector<std::string> finished_;  ///< complete, possibly still under temporary names
   std::string unfinished_;             ///< the file being written

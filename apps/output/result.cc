@@ -28,6 +28,8 @@ void deliver(const CommandContext& context, const Summary& summary, const Report
   nlohmann::ordered_json json = summary.toJson();
   folder.write("report.html", [&](std::ostream& out) { out << renderReport(report, summary); });
   json["files"] = folder.files();
+  json["files_sha256"] = nlohmann::ordered_json::object();
+  for (const std::string& name : folder.files()) json["files_sha256"][name] = folder.hashOf(name);
   folder.write("summary.json", [&](std::ostream& out) { out << jsonText(json, 2) << '\n'; });
   folder.commit();
 

@@ -96,6 +96,11 @@ WriterMark::~WriterMark() {
   close(lock_);
 }
 
+bool WriterMark::hasOne(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::exists(folder / fmt::format("{}{}", marksHere(), getpid()), ignored);
+}
+
 fs::path WriterMark::temporaryPath(const std::string& name) const {
   return path_.string() + "-" + name;
 }
@@ -112,9 +117,11 @@ void removeLeftovers(const fs::path& folder) {
       const std::string begin = mark.filename().string() + "-";
       std::error_code ignored;
       for (const fs::path& path : paths) {
-        if (path.filename().string().starts_with(begin) && isRegular(path)) {
-          fs::remove(path, ignored);
-        }
+        if (!path.filename().string().starts_with(begin)) continue;
+        // a folder: a result that was to be exchanged with an older one, or that one
+        const auto kind = fs::symlink_status(path, ignored).type();
+        if (kind == fs::file_type::regular || kind == fs::file_type::directory)
+          fs::remove_all(path, ignored);
       }
       fs::remove(mark, ignored);
     }

@@ -20,6 +20,9 @@ class WriterMark {
   WriterMark(const WriterMark&) = delete;
   WriterMark& operator=(const WriterMark&) = delete;
 
+  /// Whether this program has a mark in a folder already.
+  static bool hasOne(const std::filesystem::path& folder);
+
   /// The temporary name of a file.
   std::filesystem::path temporaryPath(const std::string& name) const;
 
@@ -28,7 +31,7 @@ class WriterMark {
   int lock_ = -1;  ///< open and locked; −1: no locks on this file system
 };
 
-/// Removes from a folder the marks, and the regular files named after them, of programs of this
+/// Removes from a folder the marks, and the files and folders named after them, of programs of this
 /// host that have ended.
 void removeLeftovers(const std::filesystem::path& folder);
 

@@ -62,9 +62,14 @@ ColumnMeaning meaningOfPath(const std::string& column, const Model& model) {
   std::vector<std::string> parts = partsOf(column);
   const bool inJoints = parts.front() == "jointset", inForces = parts.front() == "forceset";
   if (inJoints || inForces) parts.erase(parts.begin());
-  if (!inForces && parts.size() == 3 && coordinateOf(model, parts[0], parts[1])) {
-    return {parts[2] == "value" ? Meaning::coordinate : Meaning::nothingShown, parts[1]};
+  if (!inForces && parts.size() == 3) {
+    const Meaning meaning = parts[2] == "value" ? Meaning::coordinate : Meaning::nothingShown;
+    if (coordinateOf(model, parts[0], parts[1])) return {meaning, parts[1]};
+    // one of several of its name is called by joint and name
+    const std::string full = parts[0] + "/" + parts[1];
+    if (coordinateOf(model, parts[0], full)) return {meaning, full};
   }
+  if (coordinateOf(model, "", column)) return {Meaning::coordinate, column};
   if (!inJoints && parts.size() == 2 && hasMuscle(model, parts[0])) {
     return muscleState(parts[0], parts[1]);
   }

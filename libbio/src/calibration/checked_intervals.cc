@@ -112,6 +112,11 @@ void checkIntervals(const info::LeastSquares& least, const info::Estimate& estim
   for (Index i = 0; i < common; ++i) {
     CalibratedParameter& one = parameters[static_cast<std::size_t>(i)];
     if (std::isnan(one.sd)) continue;
+    if (!estimate.converged) {
+      withoutInterval(one, fmt::format("the search did not converge ({})",
+                                       info::describe(estimate.why)));
+      continue;
+    }
     double fewest = std::numeric_limits<double>::infinity(), most = 0;
     for (const double side : {-z, z}) {
       const auto end = endOf(least, estimate.parameters, estimate.cost, covariance, i, side);
@@ -120,19 +125,10 @@ void checkIntervals(const info::LeastSquares& least, const info::Estimate& estim
       most = std::max(most, end->rise / (z * z / 2));
     }
     if (fewest >= leastRise && most <= mostRise) continue;
-    if (estimate.converged) {
-      try {
-        follow(least, estimate, i, one.sd, options, one);
-      } catch (const std::domain_error& error) {
-        withoutInterval(one, fmt::format("its profile likelihood: {}", error.what()));
-      }
-    } else {
-      withoutInterval(
-          one,
-          fmt::format("the misfit is not smooth where the search stopped (at the ends of the "
-                      "interval it rises by {:.2g} to {:.2g} nats instead of {:.2f}), as where "
-                      "muscle lengths jump",
-                      fewest * z * z / 2, most * z * z / 2, z * z / 2));
+    try {
+      follow(least, estimate, i, one.sd, options, one);
+    } catch (const std::domain_error& error) {
+      withoutInterval(one, fmt::format("its profile likelihood: {}", error.what()));
     }
   }
 }

@@ -8,13 +8,16 @@
 #include "bio/tables/file_error.h"
 #include "opensim/merge.h"
 #include "opensim/read_model.h"
+#include "opensim/update.h"
 #include "opensim/writing.h"
 #include "tables/text_file.h"
 
 namespace bio {
 namespace {
 
-void parse(tinyxml2::XMLDocument& document, const std::string& text, const std::string& file) {
+/// @returns what was changed to bring the file to the form that the reader knows
+std::vector<std::string> parse(tinyxml2::XMLDocument& document, const std::string& text,
+                               const std::string& file) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
     throw FileError(file + ": is empty, must be an OpenSim model");
   }
@@ -22,6 +25,7 @@ void parse(tinyxml2::XMLDocument& document, const std::string& text, const std::
     throw FileError(fmt::format("{}:{}: is not well-formed XML ({})", file, document.ErrorLineNum(),
                                 tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID())));
   }
+  return osim::update(document, file);
 }
 
 // OpenSim indents with tabs.
@@ -33,8 +37,11 @@ class Printer : public tinyxml2::XMLPrinter {
 };
 
 std::string print(const tinyxml2::XMLDocument& document) {
+  tinyxml2::XMLDocument written;
+  document.DeepCopy(&written);
+  osim::restoreNames(written);
   Printer printer;
-  document.Print(&printer);
+  written.Print(&printer);
   return printer.CStr();
 }
 
@@ -61,8 +68,10 @@ osim::Format formatOf(const tinyxml2::XMLDocument& document) {
 
 Model readOsim(const std::filesystem::path& file) {
   tinyxml2::XMLDocument document;
-  parse(document, readTextFile(file), file.string());
-  return osim::readModel(document, file.string());
+  const std::vector<std::string> remarks = parse(document, readTextFile(file), file.string());
+  Model model = osim::readModel(document, file.string());
+  model.warnings.insert(model.warnings.begin(), remarks.begin(), remarks.end());
+  return model;
 }
 
 void writeOsim(const Model& model, const std::filesystem::path& file) {

@@ -46,7 +46,10 @@ std::string readCoordinateName(const Reading& reading, const Element& object,
                                const char* property) {
   std::string name = readText(reading.source, object, property);
   if (const auto slash = name.find_last_of('/'); slash != std::string::npos) {
-    name = name.substr(slash + 1);
+    // "/jointset/j1/rz": by joint and name where several joints have one of this name
+    const auto before = slash == 0 ? std::string::npos : name.find_last_of('/', slash - 1);
+    const std::string full = before == std::string::npos ? name : name.substr(before + 1);
+    name = coordinateOrNull(reading.model, full) ? full : name.substr(slash + 1);
   }
   if (!coordinateOrNull(reading.model, name)) {
     fail(reading.source, object,

@@ -52,7 +52,16 @@ const BodyFrame* find(const Reading& reading, const std::string& ownerPath,
     if (base.empty()) break;
   }
   const std::string name = lastPart(path);
-  return name == "ground" ? at("/ground") : at("/bodyset/" + name);
+  const BodyFrame* body = name == "ground" ? at("/ground") : at("/bodyset/" + name);
+  if (body) return body;
+  // a frame of that name wherever it stands, if there is only one
+  const BodyFrame* found = nullptr;
+  for (const auto& [absolute, frame] : reading.frames) {
+    if (lastPart(absolute) != name) continue;
+    if (found) return nullptr;
+    found = &frame;
+  }
+  return found;
 }
 
 // Offset frames may hang on offset frames that come later in the file.

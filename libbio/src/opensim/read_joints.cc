@@ -106,15 +106,22 @@ void readTransform(Reading& reading, const Element& element, Joint& joint) {
 }
 
 // A coordinate is an angle if it drives a rotation.
-void classifyCoordinates(const Source& source, const Element& element, Joint& joint) {
-  for (Coordinate& coordinate : joint.coordinates) {
-    bool turns = false, shifts = false;
-    for (std::size_t i = 0; i < 6; ++i) {
-      if (joint.axes[i].coordinate == coordinate.name) (i < 3 ? turns : shifts) = true;
+void classifyCoordinates(Reading& reading, const Element& element, Joint& joint) {
+  std::erase_if(joint.coordinates, [&](const Coordinate& coordinate) {
+    const bool drives = std::any_of(joint.axes.begin(), joint.axes.end(), [&](const auto& axis) {
+      return axis.coordinate == coordinate.name;
+    });
+    if (!drives) {
+      reading.model.warnings.push_back(
+          fmt::format("{}: coordinate '{}' drives none of the joint's axes and was left out",
+                      label(element), coordinate.name));
     }
-    if (!turns && !shifts) {
-      fail(source, element,
-           fmt::format("coordinate '{}' drives none of the joint's axes", coordinate.name));
+    return !drives;
+  });
+  for (Coordinate& coordinate : joint.coordinates) {
+    bool turns = false;
+    for (std::size_t i = 0; i < 6; ++i) {
+      if (i < 3 && joint.axes[i].coordinate == coordinate.name) turns = true;
     }
     coordinate.isRotation = turns;
   }
@@ -132,7 +139,7 @@ void readKind(Reading& reading, const Element& element, Joint& joint) {
   if (kind == "CustomJoint") {
     joint.kind = JointKind::custom;
     readTransform(reading, element, joint);
-    classifyCoordinates(source, element, joint);
+    classifyCoordinates(reading, element, joint);
     return;
   }
   const auto fixed = fixedJoints.find(kind);
@@ -151,7 +158,7 @@ void readKind(Reading& reading, const Element& element, Joint& joint) {
     joint.axes[axes[i]].coordinate = joint.coordinates[i].name;
     joint.axes[axes[i]].function = {1, LinearFunction{1, 0}};
   }
-  classifyCoordinates(source, element, joint);
+  classifyCoordinates(reading, element, joint);
   joint.kind = kind == "PinJoint"      ? JointKind::pin
                : kind == "SliderJoint" ? JointKind::slider
                                        : JointKind::custom;

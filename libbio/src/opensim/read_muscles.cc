@@ -1,12 +1,14 @@
 #include <fmt/format.h>
-#include <cmath>
 
+#include <algorithm>
+#include <cmath>
 #include <initializer_list>
 #include <numbers>
 #include <stdexcept>
 #include <string_view>
 
 #include "bio/muscle/muscle_parameters.h"
+#include "bio/tables/file_error.h"
 #include "opensim/reading.h"
 
 namespace bio::osim {
@@ -178,10 +180,21 @@ Muscle readMuscle(Reading& reading, const Element& element) {
   muscle.className = element.Name();
   muscle.enabled = isEnabled(reading, element);
   muscle.path = readPath(reading, element);
-  if (muscle.className.starts_with("Schutte1993Muscle")) {
-    muscle.schutte = readSchutte(reading, element);
-  } else if (muscles::MuscleClasses::has(muscle.className)) {
-    muscle.hill = readHill(reading, element);
+  try {
+    if (muscle.className.starts_with("Schutte1993Muscle")) {
+      muscle.schutte = readSchutte(reading, element);
+    } else if (muscles::MuscleClasses::has(muscle.className)) {
+      muscle.hill = readHill(reading, element);
+    }
+  } catch (const FileError& broken) {
+    // a number that a muscle cannot have is no reason to refuse the rest of the model
+    const std::string what = broken.what();
+    if (what.ends_with("must be a number") || what.ends_with("must be finite")) throw;
+    muscle.schutte.reset();
+    muscle.hill.reset();
+    reading.model.warnings.push_back(
+        fmt::format("line {}; the muscle is not simulated, only its path is used",
+                    what.substr(std::min(what.size(), reading.source.file.size() + 1))));
   }
   return muscle;
 }

@@ -31,8 +31,13 @@ std::string lastPart(const std::string& path) {
 }
 
 // The name that a column of an OpenSim 4 file stands for.
-std::string plainName(const std::string& column) {
+std::string plainName(const Model& model, const std::string& column) {
   if (!column.starts_with('/')) return column;
+  // "/jointset/j1/rz/value" where several joints have an rz
+  if (column.starts_with("/jointset/") && column.ends_with("/value")) {
+    const std::string full = column.substr(10, column.size() - 16);
+    if (coordinateOrNull(model, full)) return full;
+  }
   if (column.starts_with("/forceset/") && std::count(column.begin(), column.end(), '/') == 2) {
     return lastPart(column);
   }
@@ -55,7 +60,7 @@ Meaning channelOf(const Model& model, const Table& table, const std::string& bar
 
 Meaning meaningOf(const Model& model, const Table& table, const std::string& column) {
   if (column == "time" || column == "time_s") return {Meaning::Kind::time, column, false};
-  const std::string name = plainName(column);
+  const std::string name = plainName(model, column);
   for (const Muscle& muscle : model.muscles) {
     if (muscle.name == name) return {Meaning::Kind::muscle, name, false};
   }
@@ -196,7 +201,7 @@ class TrialReader {
       if (meaning.kind == Meaning::Kind::time) continue;
       const bool isApplied = meaning.kind == Meaning::Kind::applied;
       const auto [found, isNew] = seen.emplace(
-          (isApplied ? "." : "") + (meaning.actuator ? plainName(column) : meaning.name), column);
+          (isApplied ? "." : "") + (meaning.actuator ? plainName(model_, column) : meaning.name), column);
       if (!isNew) {
         fail(fmt::format("columns '{}' and '{}' both give '{}', must be one", found->second, column,
                          meaning.name));

@@ -385,7 +385,7 @@ Verdict run(const DiscoveryProblem& data, const Options& options, WarmStart* dra
   const std::vector<int> trials = fittedTrials(data, options);
   RecordedNoise noise;
   if (options.judgeSamples)
-    noise = recordedNoise(data, trials);
+    noise = recordedNoise(data, trials, options.outputSd);
   else if (!options.outputSd)
     noise.sd = estimateOutputSd(data, trials);
   if (noise.usesAll()) return Work(data, options, std::move(noise)).run(draft);

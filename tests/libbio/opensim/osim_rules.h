@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "bio/opensim/osim_file.h"
 #include "bio/tables/file_error.h"
@@ -82,6 +83,10 @@ class OsimRules : public testing::Test {
   }
   std::string messageAfter(const std::string& old, const std::string& with) const {
     return messageOf(replaced(valid, old, with));
+  }
+  // What is said of a model that is read nevertheless.
+  std::vector<std::string> warningsAfter(const std::string& old, const std::string& with) const {
+    return read(replaced(valid, old, with)).warnings;
   }
   support::ScratchFolder folder_;
 };

@@ -58,4 +58,35 @@ TEST(OutputSd, ComesFromThirdDifferences) {
   EXPECT_LT(found.relativeError, 0.08);
 }
 
+// 148 of 200 rows a second have a value: never four in a row that are equally spaced.
+TEST(ThirdDifferences, TellTheNoiseOfSamplesThatAreNotEquallySpaced) {
+  info::RandomStream random(3, 0);
+  std::vector<double> all, some, gaps;
+  VectorXd y(4000);
+  for (Eigen::Index k = 0; k < y.size(); ++k) {
+    const double t = static_cast<double>(k) / 200;
+    all.push_back(t);
+    y[k] = std::sin(3 * t) + 0.01 * random.normal();
+  }
+  std::vector<Eigen::Index> kept, most;
+  for (Eigen::Index k = 0; k < y.size(); ++k) {
+    if (k % 4 != 3) {
+      some.push_back(all[static_cast<std::size_t>(k)]);
+      kept.push_back(k);
+    }
+    if (k % 100 != 50) {
+      gaps.push_back(all[static_cast<std::size_t>(k)]);
+      most.push_back(k);
+    }
+  }
+  ThirdDifferences differences;
+  differences.add(some, y(kept));
+  EXPECT_EQ(differences.count, some.size() - 3);
+  EXPECT_NEAR(differences.sd(), 0.01, 0.0006);
+  // single gaps among equal spacing are left out, as ever
+  ThirdDifferences among;
+  among.add(gaps, y(most));
+  EXPECT_EQ(among.count, gaps.size() - 3 - 3 * 40);
+}
+
 }  // namespace

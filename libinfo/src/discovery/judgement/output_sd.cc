@@ -8,15 +8,55 @@ namespace info::discover {
 
 using Eigen::Index;
 
+namespace {
+
+/// Of the four samples that end with the k-th.
+bool areEquallySpaced(const std::vector<double>& times, std::size_t k) {
+  const double step = times[k] - times[k - 1];
+  return std::abs(times[k - 1] - times[k - 2] - step) <= 1e-3 * step &&
+         std::abs(times[k - 2] - times[k - 3] - step) <= 1e-3 * step;
+}
+
+bool areNearlyEquallySpaced(const std::vector<double>& times, std::size_t k) {
+  constexpr double mostRatio = 3.5;
+  const auto [least, most] = std::minmax(
+      {times[k] - times[k - 1], times[k - 1] - times[k - 2], times[k - 2] - times[k - 3]});
+  return least > 0 && most <= mostRatio * least;
+}
+
+/// The third divided difference of the four samples that end with the k-th, scaled so that white
+/// noise has twenty times its variance in it, as in Δ³y.
+double scaledDifference(const std::vector<double>& times,
+                        const Eigen::Ref<const Eigen::VectorXd>& values, std::size_t k) {
+  double sum = 0, squares = 0;
+  const double span = times[k] - times[k - 3];
+  for (std::size_t i = k - 3; i <= k; ++i) {
+    double weight = 1;
+    for (std::size_t j = k - 3; j <= k; ++j)
+      if (j != i) weight *= span / (times[i] - times[j]);
+    sum += weight * values[static_cast<Index>(i)];
+    squares += weight * weight;
+  }
+  return sum * std::sqrt(20 / squares);
+}
+
+}  // namespace
+
 void ThirdDifferences::add(const std::vector<double>& times,
                            const Eigen::Ref<const Eigen::VectorXd>& values) {
+  std::size_t equal = 0;
+  for (std::size_t k = 3; k < times.size(); ++k) equal += areEquallySpaced(times, k);
+  const bool mostAreEqual = 2 * (equal + 3) >= times.size();
   for (std::size_t k = 3; k < times.size(); ++k) {
-    const double step = times[k] - times[k - 1];
-    if (std::abs(times[k - 1] - times[k - 2] - step) > 1e-3 * step ||
-        std::abs(times[k - 2] - times[k - 3] - step) > 1e-3 * step)
-      continue;
     const auto i = static_cast<Index>(k);
-    const double third = values[i] - 3 * values[i - 1] + 3 * values[i - 2] - values[i - 3];
+    double third;
+    if (areEquallySpaced(times, k)) {
+      third = values[i] - 3 * values[i - 1] + 3 * values[i - 2] - values[i - 3];
+    } else if (!mostAreEqual && areNearlyEquallySpaced(times, k)) {
+      third = scaledDifference(times, values, k);
+    } else {
+      continue;
+    }
     if (!std::isfinite(third)) continue;
     squares += third * third;
     ++count;
@@ -27,7 +67,7 @@ double ThirdDifferences::sd() const {
   return std::sqrt(squares / (20 * count));
 }
 
-OutputSd estimateOutputSd(const DiscoveryProblem& data, const std::vector<int>& trials) {
+ThirdDifferences differencesOf(const DiscoveryProblem& data, const std::vector<int>& trials) {
   ThirdDifferences differences;
   for (const int trial : trials) {
     const auto& channels = data.outputOfSample(trial);
@@ -43,10 +83,15 @@ OutputSd estimateOutputSd(const DiscoveryProblem& data, const std::vector<int>& 
       differences.add(times, data.measured(trial)(samples));
     }
   }
+  return differences;
+}
+
+OutputSd estimateOutputSd(const DiscoveryProblem& data, const std::vector<int>& trials) {
+  const ThirdDifferences differences = differencesOf(data, trials);
   if (!(differences.squares > 0))
     throw std::invalid_argument(
-        "standard deviation of the outputs: must have four equally spaced samples that do not lie "
-        "on a parabola");
+        "standard deviation of the outputs: must have four samples in a row that do not lie on a "
+        "parabola; give the noise instead");
   // their autocorrelations are −15, 6, −1 of 20
   return {differences.sd(), std::sqrt(2 * (1 + 2 * 262.0 / 400.0) / differences.count)};
 }

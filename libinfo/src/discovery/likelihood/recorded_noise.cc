@@ -158,7 +158,8 @@ ThirdDifferences over(int m, const std::vector<double>& times, const VectorXd& v
 
 }  // namespace
 
-RecordedNoise recordedNoise(const DiscoveryProblem& data, const std::vector<int>& trials) {
+RecordedNoise recordedNoise(const DiscoveryProblem& data, const std::vector<int>& trials,
+                            std::optional<double> givenSd) {
   RecordedNoise noise;
   Kept& kept = noise.kept;
   bool single = true;
@@ -168,6 +169,11 @@ RecordedNoise recordedNoise(const DiscoveryProblem& data, const std::vector<int>
     noise.samples += all.size();
     kept.push_back(std::move(all));
     single = single && data.outputOfSample(trial).empty();
+  }
+  // samples may be too sparse to tell it
+  if (givenSd && !(differencesOf(data, trials).squares > 0)) {
+    noise.sd = {*givenSd, 0};
+    return noise;
   }
   noise.sd = estimateOutputSd(data, trials);
   if (!single) return noise;

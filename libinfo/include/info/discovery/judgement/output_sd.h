@@ -8,7 +8,9 @@
 namespace info::discover {
 
 /// Third differences of samples that are equally spaced, Σ(Δ³y)²; differences over a gap, a value
-/// that is not finite or another spacing are omitted.
+/// that is not finite or another spacing are omitted. Where most samples are not equally spaced, as
+/// of an angle that is slower than the rows of its table, divided differences of four samples whose
+/// intervals differ by a factor of at most 3.5 are taken as well, scaled to the same variance.
 struct ThirdDifferences {
   double squares = 0;
   double count = 0;
@@ -18,13 +20,16 @@ struct ThirdDifferences {
   double sd() const;
 };
 
+/// Of all outputs of these trials.
+ThirdDifferences differencesOf(const DiscoveryProblem& data, const std::vector<int>& trials);
+
 /// σ_y from the third differences of equally spaced samples, Σ(Δ³y)²/20: exact for noise on a curve
 /// that is a parabola over any four samples; smooth curves add little.
 struct OutputSd {
   double value = 0;
   double relativeError = 0;  ///< standard error of value²/value², for noise
 };
-/// @throws std::invalid_argument if no four samples are equally spaced
+/// @throws std::invalid_argument if there are no four such samples
 OutputSd estimateOutputSd(const DiscoveryProblem& data, const std::vector<int>& trials);
 
 }  // namespace info::discover

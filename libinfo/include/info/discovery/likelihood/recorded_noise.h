@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "info/discovery/judgement/output_sd.h"
@@ -35,7 +36,9 @@ struct RecordedNoise {
 /// σ_y is that of third differences (output_deviation.h), or σ_m if samples are excluded because of
 /// correlation, and at least the quantisation error, quantum/√12.
 /// @param trials the trials to estimate from; `kept` has all trials
-/// @throws std::invalid_argument what estimateOutputSd throws
-RecordedNoise recordedNoise(const DiscoveryProblem& data, const std::vector<int>& trials);
+/// @param givenSd  σ_y if it is known: taken where the samples are too sparse to tell it
+/// @throws std::invalid_argument what estimateOutputSd throws, without a givenSd
+RecordedNoise recordedNoise(const DiscoveryProblem& data, const std::vector<int>& trials,
+                            std::optional<double> givenSd = {});
 
 }  // namespace info::discover
