@@ -153,6 +153,7 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/tables/c3d_file.h
   include/bio/tables/coordinate_curve.h
   include/bio/tables/different_trials.h
+  include/bio/tables/edf_file.h
   include/bio/tables/experimental_conditions.h
   include/bio/tables/file_error.h
   include/bio/tables/observable.h

@@ -99,8 +99,8 @@ class Emg : public Command {
   void addOptions(CLI::App& options) override {
     options
         .add_option("RAW", recordings_,
-                    "raw recording: text columns, Trigno export, .sto, .mot, .csv, .c3d, .xdf or "
-                    ".trc; "
+                    "raw recording: text columns, exports of Trigno, EMGworks, Noraxon, Nexus, "
+                    "Biodex, .sto, .mot, .csv, .c3d, .xdf, .edf, .bdf or .trc; "
                     "further recordings of the same movement ([[recording]])")
         ->required()
         ->check(CLI::ExistingFile)
@@ -131,6 +131,10 @@ class Emg : public Command {
     folder.writeFile("excitations.sto", [&](const std::filesystem::path& path) {
       bio::writeTable(bio::excitationTable(result, config), path);
     });
+    summary.set("conversions", config.conversions);
+    if (!context.json && !context.quiet) {
+      for (const std::string& one : config.conversions) fmt::print("Unit: {}\n", one);
+    }
     tell(joined, result, summary);
     tellUnrecorded(config, summary);
     deliver(context, summary, reportOn(result), folder);

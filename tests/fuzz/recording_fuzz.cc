@@ -9,7 +9,8 @@ namespace {
 bio::RecordingLayout layoutOf(std::uint8_t choice) {
   using enum bio::RecordingFormat;
   constexpr std::array formats = {automatic, columns, trigno,    table,
-                                  emgworks,  noraxon, automatic, automatic};
+                                  emgworks,  noraxon, nexus,     listing,
+                                  edf,       automatic, automatic, automatic};
   bio::RecordingLayout layout;
   layout.format = formats[choice % formats.size()];
   if (choice & 0x80) {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "bio/emg/channel_review.h"
+#include "emg/bridged.h"
 #include "emg/emg_remarks.h"
 #include "model/require.h"
 
@@ -171,12 +172,41 @@ std::vector<std::string> warningsOn(const Recording& recording, const EmgConfig&
   };
   if (config.measured) add(*config.measured);
   for (const MeasuredOptions& column : config.columns) add(column);
-  return reviewChannels(channels);
+  std::vector<std::string> out = recording.warnings;
+  for (const ReviewedChannel& one : channels) {
+    const std::string& name = one.channel->name;
+    const bool further = std::any_of(recording.channels.begin(), recording.channels.end(),
+                                     [&](const Channel& c) { return c.name == name + " (2)"; });
+    if (!further) continue;
+    out.push_back(
+        fmt::format("Several channels of {} are called '{}'; the first was used (the further ones "
+                    "are '{} (2)' …).",
+                    recording.file, name, name));
+  }
+  const std::vector<std::string> looks = reviewChannels(channels);
+  out.insert(out.end(), looks.begin(), looks.end());
+  return out;
+}
+
+// A channel that was resampled may have gaps that the envelope does not show: up to a quarter of
+// the period of its cut-off.
+Channel withoutShortGaps(const Channel& channel, const EmgConfig& config) {
+  if (channel.largestGap == 0) return channel;
+  const double most = 0.25 / config.envelope.cutoff;
+  require(
+      channel.largestGap <= most,
+      fmt::format("EMG channel '{}': no sample for {:.4g} ms, must be at most {:.4g} ms, a quarter "
+                  "of the period of the envelope's cut-off, {:g} Hz",
+                  channel.name, 1e3 * channel.largestGap, 1e3 * most, config.envelope.cutoff));
+  Channel out = channel;
+  out.values = bridged(channel.values);
+  return out;
 }
 
 }  // namespace
 
-ElectrodeTrace emgEnvelope(const Channel& channel, const EmgConfig& config) {
+ElectrodeTrace emgEnvelope(const Channel& recorded, const EmgConfig& config) {
+  const Channel channel = withoutShortGaps(recorded, config);
   checkWithoutGaps(channel);
   const double length = static_cast<double>(channel.values.size()) / channel.rate;
   require(length * config.envelope.cutoff >= 1,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -24,21 +25,20 @@ int orderOf(TomlTable& table, int standard) {
   return order;
 }
 
-RecordingFormat formatOf(const std::string& word) {
-  for (const auto format :
-       {RecordingFormat::columns, RecordingFormat::trigno, RecordingFormat::table,
-        RecordingFormat::c3d, RecordingFormat::xdf, RecordingFormat::trc, RecordingFormat::emgworks,
-        RecordingFormat::noraxon}) {
+constexpr std::array recordingFormats = {
+    RecordingFormat::automatic, RecordingFormat::columns,  RecordingFormat::trigno,
+    RecordingFormat::table,     RecordingFormat::c3d,      RecordingFormat::xdf,
+    RecordingFormat::trc,       RecordingFormat::emgworks, RecordingFormat::noraxon,
+    RecordingFormat::nexus,     RecordingFormat::listing,  RecordingFormat::edf};
+
+RecordingFormat readFormat(TomlTable& table) {
+  std::vector<std::string> words;
+  for (const RecordingFormat format : recordingFormats) words.emplace_back(nameOf(format));
+  const std::string word = table.word("format", words).value_or("automatic");
+  for (const RecordingFormat format : recordingFormats) {
     if (word == nameOf(format)) return format;
   }
   return RecordingFormat::automatic;
-}
-
-RecordingFormat readFormat(TomlTable& table) {
-  return formatOf(table
-                      .word("format", {"automatic", "columns", "trigno", "table", "c3d", "xdf",
-                                       "trc", "emgworks", "noraxon"})
-                      .value_or(""));
 }
 
 std::vector<ColumnDeclaration> readChannels(TomlTable& owner) {
@@ -235,10 +235,12 @@ void readColumns(TomlTable& root, EmgConfigFile& out) {
     MeasuredOptions options;
     options.channel = table.required("channel", table.text("channel"));
     options.coordinate = table.required("name", table.text("name"));
-    const std::optional<double> given = table.number(
-        "scale", [](double x) { return std::isfinite(x) && x != 0; }, "must not be 0");
-    const double scale = given.value_or(1);
-    out.columnScales.push_back(given.has_value() || table.has("offset"));
+    const double scale =
+        table
+            .number(
+                "scale", [](double x) { return std::isfinite(x) && x != 0; }, "must not be 0")
+            .value_or(1);
+    out.columnScales.push_back(std::abs(scale) != 1);
     const double offset = table.number("offset", finite, "must be finite").value_or(0);
     options.degreesPerUnit = std::abs(scale);
     options.sign = scale < 0 ? -1 : 1;
@@ -263,24 +265,30 @@ const Channel& channelAt(const EmgConfigFile& config, int line, const Recording&
   }
 }
 
-/// The envelope of a maximum contraction in the channel's unit.
-double mvcIn(const Channel& channel, const FullDeclaration& full, const std::string& file,
-             int line) {
-  if (areSameUnit(full.unit, channel.unit)) return *full.mvc;
-  const auto given = knownUnit(full.unit), its = knownUnit(channel.unit);
+// A contraction's envelope in `unit` as one in the unit of the channel.
+double envelopeIn(const Channel& channel, double envelope, const std::string& unit,
+                  const std::string& source, std::vector<std::string>& conversions) {
+  if (areSameUnit(unit, channel.unit)) return envelope;
+  const auto given = knownUnit(unit), its = knownUnit(channel.unit);
   if (!given || !its || given->si != its->si) {
-    throw FileError(fmt::format("{}:{}: mvc = {:g} {}, but channel '{}' is in '{}'", file, line,
-                                *full.mvc, full.unit, channel.name, channel.unit));
+    throw FileError(fmt::format("{} {}, but channel '{}' is in '{}'", source, unit, channel.name,
+                                channel.unit));
   }
-  return *full.mvc * given->factor / its->factor;
+  conversions.push_back(fmt::format("{}: its maximum contraction, {:.4g} {}, was converted to {}.",
+                                    channel.name, envelope, unit, channel.unit));
+  return envelope * given->factor / its->factor;
 }
 
-MvcValue mvcFromFile(const EmgConfigFile& config, std::size_t i) {
+MvcValue mvcFromFile(const EmgConfigFile& config, std::size_t i, const Channel& its,
+                     std::vector<std::string>& conversions) {
   const std::string& file = config.full[i].mvcFile;
   const Recording recording = readRecording(file, config.layout);
   const Channel& channel =
       channelAt(config, config.electrodeLines[i], recording, config.emg.electrodes[i].channel);
-  return {emgEnvelope(channel, config.emg).envelope.maxCoeff(), "from " + file};
+  const double most = emgEnvelope(channel, config.emg).envelope.maxCoeff();
+  const std::string source = fmt::format("{}:{}: mvc_file {} has {:.4g}", config.file,
+                                         config.electrodeLines[i], file, most);
+  return {envelopeIn(its, most, channel.unit, source, conversions), "from " + file};
 }
 
 }  // namespace
@@ -309,14 +317,12 @@ EmgConfig emgConfigFor(const EmgConfigFile& config, const Recording& recording,
     const int line = config.electrodeLines[i];
     const Channel& channel = channelAt(config, line, recording, out.electrodes[i].channel);
     if (full.mvc) {
+      const std::string at = fmt::format("{}:{}", config.file, line);
+      const std::string source = fmt::format("{}: mvc = {:g}", at, *full.mvc);
       out.electrodes[i].full =
-          MvcValue{mvcIn(channel, full, config.file, line), fmt::format("{}:{}", config.file, line)};
-      if (!areSameUnit(full.unit, channel.unit)) {
-        out.conversions.push_back(fmt::format("{}: mvc = {:g} {} was converted to {}.", channel.name,
-                                              *full.mvc, full.unit, channel.unit));
-      }
+          MvcValue{envelopeIn(channel, *full.mvc, full.unit, source, out.conversions), at};
     } else if (!full.mvcFile.empty()) {
-      out.electrodes[i].full = mvcFromFile(config, i);
+      out.electrodes[i].full = mvcFromFile(config, i, channel, out.conversions);
     } else {
       out.electrodes[i].full = OwnPercentile{full.percentile.value()};
     }
@@ -324,9 +330,9 @@ EmgConfig emgConfigFor(const EmgConfigFile& config, const Recording& recording,
   for (std::size_t k = 0; k < out.columns.size(); ++k) {
     const Channel& channel =
         channelAt(config, config.columnLines[k], recording, out.columns[k].channel);
-    if (config.columnScales[k]) continue;
     try {
-      const std::string said = setUnit(channel, out.columns[k]);
+      const std::string said = config.columnScales[k] ? scaledUnit(channel, out.columns[k])
+                                                      : setUnit(channel, out.columns[k]);
       if (!said.empty()) out.conversions.push_back(said);
     } catch (const std::invalid_argument& rule) {
       throw FileError(

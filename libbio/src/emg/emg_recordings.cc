@@ -63,6 +63,7 @@ class Joining {
     all.file += " + " + file;
     std::move(more.channels.begin(), more.channels.end(), std::back_inserter(all.channels));
     std::move(more.remarks.begin(), more.remarks.end(), std::back_inserter(all.remarks));
+    std::move(more.warnings.begin(), more.warnings.end(), std::back_inserter(all.warnings));
     out_.placed.push_back(std::move(placed));
   }
 

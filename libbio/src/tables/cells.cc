@@ -149,10 +149,14 @@ std::string fromLatin1(std::string_view text) {
 
 }  // namespace
 
+std::string inUtf8(std::string text) {
+  return isTextInUtf8(text) ? text : fromLatin1(text);
+}
+
 std::string readTableText(const std::filesystem::path& file) {
   std::string text = readTextFile(file);
   requireTableText(text, file.string());
-  return isTextInUtf8(text) ? text : fromLatin1(text);
+  return inUtf8(std::move(text));
 }
 
 Lines::Lines(std::string_view text) : left_(text) {

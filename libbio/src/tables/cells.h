@@ -18,8 +18,11 @@ inline constexpr std::string_view byteOrderMark = "\xEF\xBB\xBF";
 /// @throws FileError with advice for UTF-16 and UTF-32, and for bytes that are no text
 void requireTableText(std::string_view text, const std::string& file);
 
-/// readTextFile in UTF-8: a text that is none is taken for Latin-1. @throws FileError with advice for
-/// UTF-16 and UTF-32
+/// The text in UTF-8: one that is none is taken for Latin-1.
+std::string inUtf8(std::string text);
+
+/// readTextFile in UTF-8: a text that is none is taken for Latin-1. @throws FileError with advice
+/// for UTF-16 and UTF-32
 std::string readTableText(const std::filesystem::path& file);
 
 /// The lines of a text with their numbers; a line ends in LF, CR LF or, in a text without any LF,

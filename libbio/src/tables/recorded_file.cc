@@ -4,9 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <filesystem>
-#include <stdexcept>
 
 #include "bio/tables/c3d_file.h"
+#include "bio/tables/file_error.h"
 #include "bio/tables/xdf_file.h"
 #include "tables/cells.h"
 
@@ -22,7 +22,6 @@ void addRemarks(const std::vector<std::string>& more, std::vector<std::string>& 
 }
 
 void takeMarkers(MarkerTrajectories markers, RecordedFile& out) {
-  addRemarks(markers.remarks, out.remarks);
   std::vector<std::string> unseen;
   for (const std::string& name : markers.names) {
     if (positionsOf(markers, name).col(0).array().isNaN().all()) unseen.push_back(name);
@@ -38,26 +37,42 @@ void takeMarkers(MarkerTrajectories markers, RecordedFile& out) {
 
 bool isRecordedFile(const std::string& file) {
   const std::string extension = extensionOf(file);
-  return extension == ".c3d" || extension == ".xdf" || extension == ".trc";
+  if (extension == ".c3d" || extension == ".xdf" || extension == ".trc") return true;
+  if (extension == ".edf" || extension == ".bdf") return true;
+  if (extension == ".sto" || extension == ".mot" || extension == ".osim") return false;
+  try {
+    const RecordingFormat format = detectFormat(file);
+    return format != RecordingFormat::table && format != RecordingFormat::columns;
+  } catch (const FileError&) {
+    return false;
+  }
 }
 
 RecordedFile readRecordedFile(const std::string& file) {
   const std::string extension = extensionOf(file);
   RecordedFile out;
   if (extension == ".trc") {
-    takeMarkers(readTrc(file), out);
+    MarkerTrajectories markers = readTrc(file);
+    addRemarks(markers.remarks, out.warnings);  // where names, counts and rows contradict
+    takeMarkers(std::move(markers), out);
   } else if (extension == ".c3d") {
     C3dFile c3d = readC3d(file);
     addRemarks(c3d.remarks, out.remarks);
+    addRemarks(c3d.warnings, out.warnings);
+    addRemarks(c3d.markers.remarks, out.remarks);
     takeMarkers(std::move(c3d.markers), out);
     out.channels = std::move(c3d.analog);
   } else if (extension == ".xdf") {
     XdfFile xdf = readXdf(file);
     addRemarks(xdf.remarks, out.remarks);
+    addRemarks(xdf.warnings, out.warnings);
     for (XdfStream& stream : xdf.streams)
       for (Channel& channel : stream.channels) out.channels.push_back(std::move(channel));
   } else {
-    throw std::invalid_argument(fmt::format("{}: must be .c3d, .xdf or .trc", file));
+    Recording recording = readRecording(file);
+    addRemarks(recording.remarks, out.remarks);
+    addRemarks(recording.warnings, out.warnings);
+    out.channels = std::move(recording.channels);
   }
   return out;
 }

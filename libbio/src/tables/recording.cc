@@ -5,43 +5,75 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 #include <stdexcept>
 
 #include "bio/tables/file_error.h"
 #include "bio/tables/units.h"
-#include "tables/c3d_parameters.h"
+#include "tables/cells.h"
+#include "tables/formats/c3d_parameters.h"
+#include "tables/formats/foreign_format.h"
+#include "tables/formats/xdf_chunks.h"
 #include "tables/recording_layouts.h"
 #include "tables/text_file.h"
-#include "tables/xdf_chunks.h"
 
 namespace bio {
 namespace {
 
 std::vector<RawColumn> readColumns(const std::string& file, RecordingFormat format,
-                                   std::vector<std::string>& remarks) {
+                                   ReadingNotes& notes) {
   switch (format) {
     case RecordingFormat::c3d:
-      return readC3dColumns(file, remarks);
+      return readC3dColumns(file, notes);
     case RecordingFormat::xdf:
-      return readXdfColumns(file, remarks);
+      return readXdfColumns(file, notes);
+    case RecordingFormat::edf:
+      return readEdfColumns(file, notes);
     case RecordingFormat::trc:
-      return readTrcColumns(file, remarks);
+      return readTrcColumns(file, notes);
     case RecordingFormat::columns:
       return readPlainColumns(file);
     case RecordingFormat::trigno:
-      return readTrigno(file);
+      return readTrigno(file, notes);
     case RecordingFormat::emgworks:
-      return readEmgworks(file);
+      return readEmgworks(file, notes);
     case RecordingFormat::noraxon:
-      return readNoraxon(file, remarks);
+      return readNoraxon(file, notes);
+    case RecordingFormat::nexus:
+      return readNexus(file, notes);
+    case RecordingFormat::listing:
+      return readListing(file, notes);
     default:
-      return readTableColumns(file);
+      return readTableColumns(file, notes);
   }
 }
 
 bool namesItsChannels(RecordingFormat format) {
   return format == RecordingFormat::c3d || format == RecordingFormat::xdf ||
-         format == RecordingFormat::trc;
+         format == RecordingFormat::trc || format == RecordingFormat::edf;
+}
+
+// Names are what configurations refer to: further channels of one name are numbered.
+void numberAlike(std::vector<RawColumn>& columns, ReadingNotes& notes) {
+  std::map<std::string, int> uses;
+  std::set<std::string> taken;
+  for (const RawColumn& column : columns) taken.insert(column.header);
+  for (RawColumn& column : columns) {
+    const std::string header = column.header;
+    if (header.empty() || ++uses[header] == 1) continue;
+    int number = uses[header];
+    do {
+      column.header = fmt::format("{} ({})", header, number++);
+    } while (!taken.insert(column.header).second);
+    uses[header] = number - 1;
+  }
+  for (const auto& [header, count] : uses) {
+    if (count < 2) continue;
+    notes.remarks.push_back(fmt::format(
+        "Several channels are called '{0}': the first is '{0}', the further ones are '{0} (2)' …",
+        header));
+  }
 }
 
 std::string calledIn(const RawColumn& column) {
@@ -100,7 +132,9 @@ Channel channelOf(const std::string& file, const RawColumn& column,
     if (column.rate <= 0) channel.rate = *declared.rate;
   }
   if (!(channel.rate > 0)) fail("has no rate in the file and none is declared (rate_Hz)");
-  channel.unit = !declared.unit.empty() ? declared.unit : column.unit;
+  channel.nominalRate = column.nominalRate;
+  channel.largestGap = column.largestGap;
+  channel.unit = !declared.unit.empty() ? plainUnit(declared.unit) : column.unit;
   double toDeclared = 1;  // mV of the file as the V that is declared
   if (!column.unit.empty() && !areSameUnit(channel.unit, column.unit) && !declared.scale) {
     const auto from = knownUnit(column.unit), to = knownUnit(channel.unit);
@@ -144,6 +178,12 @@ std::string_view nameOf(RecordingFormat format) {
       return "emgworks";
     case RecordingFormat::noraxon:
       return "noraxon";
+    case RecordingFormat::nexus:
+      return "nexus";
+    case RecordingFormat::listing:
+      return "listing";
+    case RecordingFormat::edf:
+      return "edf";
     default:
       return "automatic";
   }
@@ -154,9 +194,19 @@ RecordingFormat detectFormat(const std::string& file) {
     const std::string bytes = readTextFile(file);
     if (file.ends_with(".xdf") || tables::isXdf(bytes)) return RecordingFormat::xdf;
     if (file.ends_with(".c3d") || tables::isC3d(bytes)) return RecordingFormat::c3d;
-    if (bytes.starts_with("PathFileType")) return RecordingFormat::trc;
+    if (tables::isEdf(bytes)) return RecordingFormat::edf;
+    std::string_view text = bytes;
+    while (text.starts_with(tables::byteOrderMark))
+      text.remove_prefix(tables::byteOrderMark.size());
+    if (tables::trimmed(text.substr(0, 200)).starts_with("PathFileType")) {
+      return RecordingFormat::trc;
+    }
+    const std::string foreign = tables::foreignFormat(file, bytes);
+    if (!foreign.empty()) throw FileError(foreign);
   }
   const std::vector<std::string> lines = linesOf(file);
+  if (isNexus(lines)) return RecordingFormat::nexus;
+  if (discoverRates(lines) > 0) return RecordingFormat::trigno;
   // line 7 of a Trigno export: nothing but rates
   if (lines.size() >= 7) {
     const std::vector<std::string> rates = cellsOf(lines[6], ',');
@@ -165,6 +215,7 @@ RecordingFormat detectFormat(const std::string& file) {
   }
   if (emgworksNames(lines) > 0) return RecordingFormat::emgworks;
   if (noraxonNames(lines) > 0) return RecordingFormat::noraxon;
+  if (listingNames(lines) > 0) return RecordingFormat::listing;
   // first line with anything in it: nothing but numbers
   for (const std::string& line : lines) {
     std::string cells = line;
@@ -187,11 +238,16 @@ Recording readRecording(const std::string& file, const RecordingLayout& layout) 
   Recording out;
   out.file = file;
   out.format = layout.format == RecordingFormat::automatic ? detectFormat(file) : layout.format;
-  std::vector<RawColumn> columns = readColumns(file, out.format, out.remarks);
+  ReadingNotes notes;
+  std::vector<RawColumn> columns = readColumns(file, out.format, notes);
+  numberAlike(columns, notes);
+  out.remarks = std::move(notes.remarks);
+  out.warnings = std::move(notes.warnings);
   checkDeclarations(file, columns, layout);
   for (RawColumn& column : columns) {
     const ColumnDeclaration* declared = declarationOf(column, layout);
-    column.unit = plainUnit(std::move(column.unit));
+    const std::string written = column.unit;
+    column.unit = plainUnit(written);
     if (declared == nullptr && out.format == RecordingFormat::columns) {
       out.remarks.push_back(fmt::format(
           "Column {} is not declared in the configuration and was not read.", column.number));
@@ -202,6 +258,7 @@ Recording readRecording(const std::string& file, const RecordingLayout& layout) 
       continue;
     }
     out.channels.push_back(channelOf(file, column, declared ? *declared : ColumnDeclaration{}));
+    if (out.channels.back().unit == column.unit) out.channels.back().writtenUnit = written;
   }
   // names are what configurations refer to
   for (std::size_t i = 0; i < out.channels.size(); ++i) {

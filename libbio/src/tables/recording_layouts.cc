@@ -155,8 +155,9 @@ std::vector<RawColumn> readPlainColumns(const std::string& file) {
   return numberColumns(file, lines, static_cast<std::size_t>(first - lines.begin()) + 1, separator);
 }
 
-std::vector<RawColumn> readTrigno(const std::string& file) {
+std::vector<RawColumn> readTrigno(const std::string& file, ReadingNotes& notes) {
   const std::vector<std::string> lines = linesOf(file);
+  if (discoverRates(lines) > 0) return readDiscover(file, lines, notes);
   if (lines.size() < 8) {
     throw FileError(
         fmt::format("{}: has {} lines, a Trigno export has 7 header lines and then values", file,

@@ -9,51 +9,13 @@
 #include "bio/tables/file_error.h"
 #include "bio/tables/table_file.h"
 #include "bio/tables/units.h"
+#include "tables/cells.h"
+#include "tables/equal_times.h"
 #include "tables/recording_layouts.h"
 
 namespace bio {
 
-// Printed times are rounded, so single intervals may differ; a missing or doubled
-// row moves all that follow by a whole interval against equal spacing between the first and the
-// last.
-double rateOf(const std::string& file, const Eigen::VectorXd& times) {
-  const Eigen::Index last = times.size() - 1;
-  if (last < 1) {
-    throw FileError(fmt::format("{}: has {} rows, a recording needs at least 2", file, last + 1));
-  }
-  const double rate = static_cast<double>(last) / (times[last] - times[0]);
-  for (Eigen::Index i = 0; i <= last; ++i) {
-    const double off = (times[i] - times[0]) * rate - static_cast<double>(i);
-    if (!(std::abs(off) <= 0.25)) {
-      throw FileError(
-          fmt::format("{}: time = {} s in row {} is {:.2g} intervals away from equal spacing at "
-                      "{:.6g} Hz, must be "
-                      "at most 0.25",
-                      file, times[i], i + 1, std::abs(off), rate));
-    }
-  }
-  // a rate read off rounded times is known only so well
-  const double rounded = std::round(rate);
-  return std::abs(rounded / rate - 1) < 1e-4 ? rounded : rate;
-}
-
 namespace {
-
-// "BIClong_uV" → "uV", "envelope_mV" → "mV", "biceps [mV]" → "mV", "knee (deg)" → "deg"
-std::string unitIn(const std::string& column) {
-  constexpr std::array<std::string_view, 9> units = {"V", "mV",  "uV", "deg", "rad",
-                                                     "g", "N m", "mm", "cm"};
-  const char last = column.empty() ? ' ' : column.back();
-  if (last == ']' || last == ')') {
-    const auto open = column.rfind(last == ']' ? '[' : '(');
-    if (open == std::string::npos || open == 0) return "";
-    return plainUnit(column.substr(open + 1, column.size() - open - 2));
-  }
-  const auto mark = column.rfind('_');
-  if (mark == std::string::npos) return "";
-  const std::string unit = plainUnit(column.substr(mark + 1));
-  return std::find(units.begin(), units.end(), unit) != units.end() ? unit : "";
-}
 
 // An angle of OpenSim, whose unit the header tells: all coordinates but those that translate.
 bool isAngleInDegrees(const Table& table, const std::string& column) {
@@ -62,6 +24,35 @@ bool isAngleInDegrees(const Table& table, const std::string& column) {
 }
 
 }  // namespace
+
+std::string unitInName(const std::string& column) {
+  constexpr std::array<std::string_view, 17> units = {
+      "V",    "mV",     "uV",     "deg", "rad", "mrad", "g",     "N m",  "N mm",
+      "N cm", "ft lbf", "in lbf", "mm",  "cm",  "lbf",  "deg/s", "rad/s"};
+  const char last = column.empty() ? ' ' : column.back();
+  if (last == ']' || last == ')') {
+    const auto open = column.rfind(last == ']' ? '[' : '(');
+    if (open == std::string::npos || open == 0) return "";
+    const std::string unit = column.substr(open + 1, column.size() - open - 2);
+    // "knee (right)", "EMG (2)" are no units; what brackets hold is one, known or not
+    const bool isWord =
+        last == ')' && !knownUnit(unit) &&
+        (unit.find(' ') != std::string::npos || isNumber(unit) ||
+         std::string_view(",l,r,left,right,raw,filtered,abs,x,y,z,")
+                 .find("," + tables::lowered(unit) + ",") != std::string_view::npos);
+    return isWord ? "" : unit;
+  }
+  // "BIClong_uV", "speed_deg_s"
+  auto mark = column.rfind('_');
+  if (mark == std::string::npos) return "";
+  std::string unit = column.substr(mark + 1);
+  if (unit == "s" && mark > 0 && column.rfind('_', mark - 1) != std::string::npos) {
+    mark = column.rfind('_', mark - 1);
+    unit = column.substr(mark + 1, column.size() - mark - 3) + "/s";
+  }
+  const std::string plain = plainUnit(unit);
+  return std::find(units.begin(), units.end(), plain) != units.end() ? unit : "";
+}
 
 RawColumn compressed(const Eigen::VectorXd& cells, double rate, double startTime) {
   Eigen::Index first = -1;
@@ -87,18 +78,18 @@ std::string plainUnit(std::string unit) {
   return known ? std::string(known->name) : unit;
 }
 
-std::vector<RawColumn> readTableColumns(const std::string& file) {
+std::vector<RawColumn> readTableColumns(const std::string& file, ReadingNotes& notes) {
   const Table table = readTable(file);
-  const Eigen::VectorXd times = timesOf(table);
-  const double rate = rateOf(file, times);
+  const RowTimes rows = rowTimesOf(file, timesOf(table));
+  if (!rows.equal) notes.warnings.push_back(jitterOf(rows));
   std::vector<RawColumn> out;
   for (std::size_t k = 0; k < table.columns.size(); ++k) {
     const std::string& name = table.columns[k];
     if (name == "time" || name == "time_s") continue;
-    RawColumn column = compressed(table.values.col(static_cast<Eigen::Index>(k)), rate, times[0]);
+    RawColumn column = atEqualTimes(table.values.col(static_cast<Eigen::Index>(k)), rows);
     column.number = static_cast<int>(k + 1);
     column.header = name;
-    column.unit = unitIn(name);
+    column.unit = unitInName(name);
     if (column.unit.empty() && isAngleInDegrees(table, name)) column.unit = "deg";
     out.push_back(std::move(column));
   }

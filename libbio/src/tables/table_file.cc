@@ -12,6 +12,7 @@
 
 #include "bio/tables/file_error.h"
 #include "tables/cells.h"
+#include "tables/formats/foreign_format.h"
 #include "tables/text_file.h"
 
 namespace bio {
@@ -33,7 +34,8 @@ struct Reader {
   int expectedRows = -1;
   int expectedColumns = -1;
   std::size_t blankNames = 0;  ///< separators without a name behind the last name
-  tables::TimeName time;       ///< unit of the column `time`
+  tables::TimeName time = {};  ///< unit of the column `time`
+  std::map<std::string, std::pair<std::string, int>> said = {};  ///< value and line by key
 
   [[noreturn]] void fail(const std::string& message) const {
     throw FileError(fmt::format("{}:{}: {}", file, lines.number(), message));
@@ -50,6 +52,7 @@ struct Reader {
 
   void readHeader();
   void readHeaderLine(std::string_view line, bool isFirst);
+  void checkOnce(const std::string& low, std::string_view key, std::string_view value);
   void readNames(std::string_view line, Separator separator);
   void findTime();
   void readRows(Separator separator);
@@ -60,9 +63,20 @@ struct Reader {
                 const std::string& name) const;
 };
 
+// What a header says twice it must say alike; free text between keys may begin alike.
+void Reader::checkOnce(const std::string& low, std::string_view key, std::string_view value) {
+  const bool isKey = key.find_first_of(" \t") == key.npos && !key.empty();
+  if (!isKey) return;
+  const auto [before, isNew] = said.try_emplace(low, std::string(value), lines.number());
+  if (isNew || lowered(before->second.first) == lowered(value)) return;
+  fail(fmt::format("header: {} = '{}', but line {} says '{}', must be said once", key, value,
+                   before->second.second, before->second.first));
+}
+
 void Reader::readHeaderLine(std::string_view line, bool isFirst) {
   // OpenSim writes key=value, SIMM wrote "key value".
   auto mark = line.find('=');
+  const bool hasEquals = mark != std::string_view::npos;
   if (mark == std::string_view::npos && !isFirst) mark = line.find_first_of(" \t");
   if (mark == std::string_view::npos) {
     if (isFirst) table.name = line;
@@ -71,6 +85,10 @@ void Reader::readHeaderLine(std::string_view line, bool isFirst) {
   const std::string key(trimmed(line.substr(0, mark)));
   const std::string_view value = trimmed(line.substr(mark + 1));
   const std::string low = lowered(key);
+  if (hasEquals || low == "nrows" || low == "ncolumns" || low == "datarows" ||
+      low == "datacolumns" || low == "indegrees") {
+    checkOnce(low, key, value);
+  }
   if (low == "nrows" || low == "datarows") {
     expectedRows = count(key, value);
   } else if (low == "ncolumns" || low == "datacolumns") {
@@ -136,7 +154,8 @@ void Reader::findTime() {
     column = "time";
   }
   if (found.empty()) {
-    fail("has no column 'time', must have one, in s or with its unit, 'time [ms]'");
+    fail("has no column 'time', must have one, in s or with its unit, 'time [ms]'" +
+         tables::looksLike(file));
   }
 }
 
@@ -284,7 +303,7 @@ void checkWritable(const Table& table, const std::string& file) {
 
 Table readTable(const std::filesystem::path& file, TableKind kind) {
   const std::string text = tables::readTableText(file);
-  Reader reader{.file = file.string(), .lines = Lines(text), .table = {}, .time = {}};
+  Reader reader{.file = file.string(), .lines = Lines(text), .table = {}};
   if (trimmed(text).empty()) throw FileError(file.string() + ": is empty, must be a table");
 
   const std::string extension = lowered(file.extension().string());

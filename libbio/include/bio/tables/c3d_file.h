@@ -12,9 +12,10 @@ namespace bio {
 
 /// What a C3D file holds.
 struct C3dFile {
-  MarkerTrajectories markers;   ///< no columns if it has none
-  std::vector<Channel> analog;  ///< in the units of ANALOG:UNITS; names need not be unique
-  std::vector<std::string> remarks;
+  MarkerTrajectories markers;         ///< no columns if it has none
+  std::vector<Channel> analog;        ///< in the units of ANALOG:UNITS; names need not be unique
+  std::vector<std::string> remarks;   ///< what was left out or assumed
+  std::vector<std::string> warnings;  ///< contradictions
 };
 
 /// Reads points and analog channels of a C3D file with numbers as Intel, DEC or MIPS processors

@@ -16,8 +16,9 @@ struct XdfStream {
 };
 
 struct XdfFile {
-  std::vector<XdfStream> streams;    ///< those with numbers at a steady rate
-  std::vector<std::string> remarks;  ///< what was left out or looks odd
+  std::vector<XdfStream> streams;     ///< those with numbers at a steady rate
+  std::vector<std::string> remarks;   ///< what was left out or looks odd
+  std::vector<std::string> warnings;  ///< stamps that run backwards, rates that contradict
 };
 
 /// Reads the numeric streams of an XDF file, as Lab Streaming Layer's recorders write it. All are

@@ -9,6 +9,7 @@
 
 #include "bio/tables/file_error.h"
 #include "tables/cells.h"
+#include "tables/equal_times.h"
 #include "tables/recording_layouts.h"
 
 namespace bio {
@@ -167,7 +168,7 @@ std::size_t noraxonNames(const std::vector<std::string>& lines) {
   return namesLine(lines, noraxonCells);
 }
 
-std::vector<RawColumn> readEmgworks(const std::string& file) {
+std::vector<RawColumn> readEmgworks(const std::string& file, ReadingNotes& notes) {
   const std::vector<std::string> lines = linesOf(file);
   const std::size_t line = emgworksNames(lines);
   ExportReader reader =
@@ -204,19 +205,29 @@ std::vector<RawColumn> readEmgworks(const std::string& file) {
       const tables::TimeName unitOfTime = tables::timeNameOf(reader.names()[timeOf[k]]);
       const Eigen::VectorXd times =
           vectorOf(columns[timeOf[k]]) * (unitOfTime.times / unitOfTime.per);
-      column.rate = rateOf(fmt::format("{}: column {} '{}'", file, timeOf[k] + 1, name), times);
-      column.startTime = times[0];
+      const RowTimes rows =
+          rowTimesOf(fmt::format("{}: column {} '{}'", file, timeOf[k] + 1, name), times);
+      if (rows.equal) {
+        column.rate = rows.rate;
+        column.startTime = times[0];
+        column.values = vectorOf(columns[k]);
+      } else {
+        columns[k].resize(columns[timeOf[k]].size(), noValue);
+        column = atEqualTimes(vectorOf(columns[k]), rows);
+        notes.warnings.push_back(fmt::format("Column '{}': {}", name, jitterOf(rows)));
+      }
+    } else {
+      column.values = vectorOf(columns[k]);
     }
     column.number = static_cast<int>(k + 1);
     column.header = name;
-    column.unit = plainUnit(std::string(unit));
-    column.values = vectorOf(columns[k]);
+    column.unit = std::string(unit);
     out.push_back(std::move(column));
   }
   return out;
 }
 
-std::vector<RawColumn> readNoraxon(const std::string& file, std::vector<std::string>& remarks) {
+std::vector<RawColumn> readNoraxon(const std::string& file, ReadingNotes& notes) {
   const std::vector<std::string> lines = linesOf(file);
   const std::size_t line = noraxonNames(lines);
   ExportReader reader =
@@ -246,21 +257,22 @@ std::vector<RawColumn> readNoraxon(const std::string& file, std::vector<std::str
   const tables::TimeName unitOfTime = tables::timeNameOf(names[time]);
   const Eigen::VectorXd times =
       vectorOf(columns[time].values) * (unitOfTime.times / unitOfTime.per);
-  const double rate = rateOf(file, times);
+  const RowTimes rows = rowTimesOf(file, times);
+  if (!rows.equal) notes.warnings.push_back(jitterOf(rows));
   std::vector<RawColumn> out;
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (k == time) continue;
     if (columns[k].anyText) {
-      remarks.push_back(fmt::format("Column '{}' holds texts and was not read.", names[k]));
+      notes.remarks.push_back(fmt::format("Column '{}' holds texts and was not read.", names[k]));
       continue;
     }
     if (names[k].empty() && !columns[k].anyNumber) continue;
-    RawColumn column = compressed(vectorOf(columns[k].values), rate, times[0]);
+    RawColumn column = atEqualTimes(vectorOf(columns[k].values), rows);
     auto [name, unit] = splitAtComma(names[k]);
     if (unit.empty()) std::tie(name, unit) = splitBrackets(names[k]);
     column.number = static_cast<int>(k + 1);
     column.header = name;
-    column.unit = plainUnit(std::string(unit));
+    column.unit = std::string(unit);
     out.push_back(std::move(column));
   }
   return out;

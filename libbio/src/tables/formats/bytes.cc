@@ -1,4 +1,4 @@
-#include "tables/bytes.h"
+#include "tables/formats/bytes.h"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "tables/bytes.h"
+#include "tables/formats/bytes.h"
 
 namespace bio::tables {
 

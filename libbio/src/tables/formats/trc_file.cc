@@ -13,24 +13,12 @@
 #include "bio/tables/c3d_file.h"
 #include "bio/tables/file_error.h"
 #include "bio/tables/marker_trajectories.h"
-#include "tables/c3d_parameters.h"
 #include "tables/cells.h"
+#include "tables/formats/c3d_parameters.h"
 #include "tables/length_unit.h"
 #include "tables/text_file.h"
 
 namespace bio {
-
-double tables::metresPer(std::string_view unit) {
-  const std::string low = lowered(trimmed(unit));
-  // some programs keep the first letters only
-  const auto begins = [&](std::string_view whole) {
-    return low.size() > 2 && whole.starts_with(low);
-  };
-  if (low == "mm" || begins("millimeters") || begins("millimetres")) return 1e-3;
-  if (low == "cm" || begins("centimeters") || begins("centimetres")) return 1e-2;
-  if (low == "m" || begins("meters") || begins("metres")) return 1;
-  return 0;
-}
 
 namespace {
 
@@ -44,8 +32,8 @@ struct TrcRows {
   std::vector<int> lines;     ///< of the file
 };
 
-/// Reads by order: two columns for frame and time, then three for each marker. What names, labels and
-/// counts say beside that is compared, and told where it contradicts.
+/// Reads by order: two columns for frame and time, then three for each marker. What names, labels
+/// and counts say beside that is compared, and told where it contradicts.
 class TrcReader {
  public:
   TrcReader(std::string file, std::string_view text) : lines_(text), mostCells_(4 * text.size()) {
@@ -127,10 +115,12 @@ class TrcReader {
     markers_ = count(header, "NumMarkers");
     if (header.count("units") == 0) failAt(line, "has no Units, must have mm, cm or m");
     metres_ = tables::metresPer(header["units"]);
-    if (!(metres_ > 0)) failAt(line, fmt::format("Units = '{}', must be mm, cm or m", header["units"]));
+    if (!(metres_ > 0))
+      failAt(line, fmt::format("Units = '{}', must be mm, cm or m", header["units"]));
   }
 
-  // "Frame#", "Time", then names in order; they stand above the first of three columns each, if at all.
+  // "Frame#", "Time", then names in order; they stand above the first of three columns each, if at
+  // all.
   void readNames(std::string_view line) {
     if (line.find('\t') == line.npos && line.find(',') != line.npos) commas();
     const Cells cells = cellsOf(line);
@@ -201,9 +191,10 @@ class TrcReader {
     markers = std::max(markers, std::min(std::max(labelled, named_.size()),
                                          std::max(markers_.value_or(0), named_.size())));
     if (named_.size() > markers || most_ > 3 * markers) {
-      failAt(namesLine_, fmt::format("{} names of markers, but rows hold {} columns of coordinates, "
-                                     "must have three for each",
-                                     named_.size(), most_));
+      failAt(namesLine_,
+             fmt::format("{} names of markers, but rows hold {} columns of coordinates, "
+                         "must have three for each",
+                         named_.size(), most_));
     }
     std::vector<std::string> names(markers);
     const bool byPlace = inThrees_ && !named_.empty() && named_.back().first < markers;
@@ -241,7 +232,8 @@ class TrcReader {
   void settleTimes() {
     const std::vector<double>& times = rows_.times;
     const auto n = static_cast<double>(times.size() - 1);
-    const bool all = std::all_of(times.begin(), times.end(), [](double t) { return !std::isnan(t); });
+    const bool all =
+        std::all_of(times.begin(), times.end(), [](double t) { return !std::isnan(t); });
     const bool rise = all && times.back() > times.front();
     if (!rise) {
       if (!(out_.rate > 0)) fail("has neither times that rise nor a DataRate");
@@ -357,7 +349,8 @@ MarkerTrajectories readTrc(const std::filesystem::path& file) {
 
 MarkerTrajectories trcFrom(std::string_view text, const std::string& name) {
   tables::requireTableText(text, name);
-  return TrcReader(name, text).read();
+  const std::string readable = tables::inUtf8(std::string(text));
+  return TrcReader(name, readable).read();
 }
 
 MarkerTrajectories readMarkers(const std::filesystem::path& file) {

@@ -1,4 +1,4 @@
-#include "tables/xdf_chunks.h"
+#include "tables/formats/xdf_chunks.h"
 
 #include <fmt/format.h>
 #include <tinyxml2.h>

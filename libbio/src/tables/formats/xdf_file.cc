@@ -6,9 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "tables/cells.h"
+#include "tables/formats/xdf_chunks.h"
 #include "tables/recording_layouts.h"
 #include "tables/text_file.h"
-#include "tables/xdf_chunks.h"
 
 namespace bio {
 namespace {
@@ -146,11 +147,61 @@ struct XdfSegment {
   std::size_t first = 0, count = 0;
   double start = 0;     // [s]
   double interval = 0;  // [s]
+  bool anyBackward = false;
 };
 
-std::vector<XdfSegment> segmentsOf(const Bytes& bytes, const RawXdfStream& stream) {
+double middleOf(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// The straight line through stamps of which some run backwards: those over 6 standard deviations
+// off the one through medians do not count.
+Line lineWithoutStrays(const double* stamps, std::size_t count) {
+  const auto number = [](std::size_t i) { return static_cast<double>(i); };
+  const std::size_t half = count / 2;
+  std::vector<double> slopes, rest;
+  for (std::size_t i = 0; i + half < count; ++i) {
+    slopes.push_back((stamps[i + half] - stamps[i]) / number(half));
+  }
+  const double slope = middleOf(slopes);
+  for (std::size_t i = 0; i < count; ++i) rest.push_back(stamps[i] - slope * number(i));
+  const double level = middleOf(rest);
+  for (double& off : rest) off = std::abs(off - level);
+  const double most = 6 * 1.4826 * middleOf(rest) + 1e-9;
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (rest[i] <= most) kept.push_back(i);
+  }
+  return lineThrough(
+      kept.size(), [&](std::size_t k) { return number(kept[k]); },
+      [&](std::size_t k) { return stamps[kept[k]]; });
+}
+
+// Stamps that run backwards, and by how much at most.
+struct BackwardStamps {
+  std::size_t count = 0, first = 0;
+  double most = 0;  // [s]
+};
+
+void tellBackward(const RawXdfStream& stream, const BackwardStamps& backward,
+                  std::vector<std::string>& warnings) {
+  if (backward.count == 0) return;
+  warnings.push_back(fmt::format(
+      "Stream '{}': its time stamps run backwards {} time{}, first at sample {} ({:.6f} s after "
+      "{:.6f} s), by at most {:.3g} ms; its rate is that of a straight line that such stamps do "
+      "not "
+      "pull.",
+      stream.name, backward.count, backward.count == 1 ? "" : "s", backward.first + 1,
+      stream.stamps[backward.first], stream.stamps[backward.first - 1], 1e3 * backward.most));
+}
+
+std::vector<XdfSegment> segmentsOf(const Bytes& bytes, const RawXdfStream& stream,
+                                   std::vector<std::string>& warnings) {
   const double leap = std::max(1.0, 500 / stream.nominalRate);
   std::vector<XdfSegment> out;
+  BackwardStamps backward;
   for (std::size_t i = 0; i < stream.stamps.size(); ++i) {
     const double step = i == 0 ? 0 : stream.stamps[i] - stream.stamps[i - 1];
     if (step < -leap) {
@@ -159,16 +210,26 @@ std::vector<XdfSegment> segmentsOf(const Bytes& bytes, const RawXdfStream& strea
     }
     const bool restarts =
         std::find(stream.restarts.begin(), stream.restarts.end(), i) != stream.restarts.end();
-    if (i == 0 || step > leap || restarts) out.push_back({.first = i});
+    if (i == 0 || step > leap || restarts) {
+      out.push_back({.first = i});
+    } else if (step < 0) {
+      if (backward.count++ == 0) backward.first = i;
+      backward.most = std::max(backward.most, -step);
+      out.back().anyBackward = true;
+    }
     ++out.back().count;
   }
   for (XdfSegment& segment : out) {
-    const Line line = lineThrough(
-        segment.count, [](std::size_t i) { return static_cast<double>(i); },
-        [&](std::size_t i) { return stream.stamps[segment.first + i]; });
+    const double* stamps = stream.stamps.data() + segment.first;
+    const Line line = segment.anyBackward && segment.count >= 20
+                          ? lineWithoutStrays(stamps, segment.count)
+                          : lineThrough(
+                                segment.count, [](std::size_t i) { return static_cast<double>(i); },
+                                [&](std::size_t i) { return stamps[i]; });
     segment.start = line.at(0);
     segment.interval = line.slope;
   }
+  tellBackward(stream, backward, warnings);
   return out;
 }
 
@@ -196,14 +257,16 @@ std::string channelName(const RawXdfStream& stream, std::size_t c) {
   return stream.channels == 1 ? stream.name : fmt::format("{} {}", stream.name, c + 1);
 }
 
-XdfStream streamOf(const Bytes& bytes, const RawXdfStream& raw, std::vector<std::string>& remarks) {
-  const std::vector<XdfSegment> segments = segmentsOf(bytes, raw);
+XdfStream streamOf(const Bytes& bytes, const RawXdfStream& raw, std::vector<std::string>& remarks,
+                   std::vector<std::string>& warnings) {
+  const std::vector<XdfSegment> segments = segmentsOf(bytes, raw, warnings);
   const double rate = rateOfStream(bytes, raw, segments);
-  if (!(std::abs(rate / raw.nominalRate - 1) < 0.05)) {
-    remarks.push_back(
-        fmt::format("Stream '{}': {:.6g} Hz by its time stamps, {:g} Hz by its "
-                    "header; the stamps were used.",
-                    raw.name, rate, raw.nominalRate));
+  const double off = std::abs(rate / raw.nominalRate - 1);
+  if (!(off < 0.005)) {
+    (off < 0.05 ? remarks : warnings)
+        .push_back(fmt::format("Stream '{}': {:.6g} Hz by its time stamps, {:g} Hz by its "
+                               "header; the stamps were used.",
+                               raw.name, rate, raw.nominalRate));
   }
   // row of each segment's first sample; missing samples between them
   std::vector<Eigen::Index> rows;
@@ -229,7 +292,9 @@ XdfStream streamOf(const Bytes& bytes, const RawXdfStream& raw, std::vector<std:
   for (std::size_t c = 0; c < raw.channels; ++c) {
     Channel channel;
     channel.name = channelName(raw, c);
-    channel.unit = c < raw.units.size() ? plainUnit(raw.units[c]) : "";
+    channel.writtenUnit = c < raw.units.size() ? tables::inUtf8(raw.units[c]) : "";
+    channel.unit = plainUnit(channel.writtenUnit);
+    channel.nominalRate = raw.nominalRate;
     channel.rate = rate;
     channel.startTime = segments.front().start;
     channel.values.setConstant(end, std::numeric_limits<double>::quiet_NaN());
@@ -277,7 +342,7 @@ XdfFile xdfFrom(std::string_view content, const std::string& name) {
       continue;
     }
     synchronise(bytes, stream, out.remarks);
-    out.streams.push_back(streamOf(bytes, stream, out.remarks));
+    out.streams.push_back(streamOf(bytes, stream, out.remarks, out.warnings));
     earliest = std::min(earliest, out.streams.back().channels.front().startTime);
   }
   for (XdfStream& stream : out.streams) {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tables/bytes.h"
+#include "tables/formats/bytes.h"
 
 namespace bio::tables {
 

@@ -1,4 +1,4 @@
-#include "tables/c3d_parameters.h"
+#include "tables/formats/c3d_parameters.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@ namespace {
 // Blanks and zero bytes fill texts up.
 std::string filledText(std::string_view text) {
   const auto zero = text.find('\0');
-  return onOneLine(std::string(trimmed(text.substr(0, zero))));
+  return onOneLine(inUtf8(std::string(trimmed(text.substr(0, zero)))));
 }
 
 std::string nameOfEntry(std::string_view text) {

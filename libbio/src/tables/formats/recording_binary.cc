@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bio/tables/c3d_file.h"
+#include "bio/tables/edf_file.h"
 #include "bio/tables/marker_trajectories.h"
 #include "bio/tables/xdf_file.h"
 #include "tables/recording_layouts.h"
@@ -17,17 +18,25 @@ void append(std::vector<Channel>& channels, std::vector<RawColumn>& out) {
     RawColumn column;
     column.number = static_cast<int>(out.size()) + 1;
     column.header = std::move(channel.name);
-    column.unit = plainUnit(channel.unit);
+    column.unit = channel.writtenUnit.empty() ? channel.unit : channel.writtenUnit;
     column.rate = channel.rate;
     column.startTime = channel.startTime;
+    column.nominalRate = channel.nominalRate;
     column.values = std::move(channel.values);
     out.push_back(std::move(column));
   }
 }
 
+void add(const std::vector<std::string>& remarks, const std::vector<std::string>& warnings,
+         ReadingNotes& notes) {
+  notes.remarks.insert(notes.remarks.end(), remarks.begin(), remarks.end());
+  notes.warnings.insert(notes.warnings.end(), warnings.begin(), warnings.end());
+}
+
 // Three columns of every point that was seen.
-void appendPoints(const MarkerTrajectories& markers, std::vector<std::string>& remarks,
+void appendPoints(const MarkerTrajectories& markers, ReadingNotes& notes,
                   std::vector<RawColumn>& out) {
+  std::vector<std::string>& remarks = notes.remarks;
   remarks.insert(remarks.end(), markers.remarks.begin(), markers.remarks.end());
   std::vector<Channel> channels;
   std::vector<std::string> unseen;
@@ -62,24 +71,35 @@ void cutEnds(Channel& channel) {
   channel.values = channel.values.segment(first, end - first).eval();
 }
 
-std::vector<RawColumn> readC3dColumns(const std::string& file, std::vector<std::string>& remarks) {
+std::vector<RawColumn> readC3dColumns(const std::string& file, ReadingNotes& notes) {
   C3dFile c3d = readC3d(file);
-  remarks.insert(remarks.end(), c3d.remarks.begin(), c3d.remarks.end());
+  add(c3d.remarks, c3d.warnings, notes);
   std::vector<RawColumn> out;
   append(c3d.analog, out);
-  appendPoints(c3d.markers, remarks, out);
+  appendPoints(c3d.markers, notes, out);
   return out;
 }
 
-std::vector<RawColumn> readTrcColumns(const std::string& file, std::vector<std::string>& remarks) {
+std::vector<RawColumn> readEdfColumns(const std::string& file, ReadingNotes& notes) {
+  EdfFile edf = readEdf(file);
+  add(edf.remarks, edf.warnings, notes);
   std::vector<RawColumn> out;
-  appendPoints(readTrc(file), remarks, out);
+  append(edf.channels, out);
   return out;
 }
 
-std::vector<RawColumn> readXdfColumns(const std::string& file, std::vector<std::string>& remarks) {
+std::vector<RawColumn> readTrcColumns(const std::string& file, ReadingNotes& notes) {
+  MarkerTrajectories markers = readTrc(file);
+  notes.warnings = std::move(markers.remarks);  // where names, counts and rows contradict
+  markers.remarks.clear();
+  std::vector<RawColumn> out;
+  appendPoints(markers, notes, out);
+  return out;
+}
+
+std::vector<RawColumn> readXdfColumns(const std::string& file, ReadingNotes& notes) {
   XdfFile xdf = readXdf(file);
-  remarks.insert(remarks.end(), xdf.remarks.begin(), xdf.remarks.end());
+  add(xdf.remarks, xdf.warnings, notes);
   std::vector<RawColumn> out;
   for (XdfStream& stream : xdf.streams) append(stream.channels, out);
   return out;
