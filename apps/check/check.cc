@@ -152,9 +152,13 @@ Contents checkTrial(const std::string& file, const std::vector<bio::Model>& mode
 }
 
 Contents checkRecording(const std::string& file, Findings& findings, Summary& summary,
-                        nlohmann::ordered_json& recordings) {
+                        nlohmann::ordered_json& recordings, const CommandContext& context) {
   RecordingContents contents = recordingContents(file);
+  for (const std::string& warning : contents.warnings) findings.add(file, "warning", warning);
   for (const std::string& remark : contents.remarks) findings.add(file, "unusual", remark);
+  if (!context.json && !context.quiet) {
+    for (const std::string& line : contents.lines) fmt::print("{}: {}\n", file, line);
+  }
   recordings.push_back(std::move(contents.summary));
   summary.set("recordings", recordings);
   return std::move(contents.parts);
@@ -202,7 +206,7 @@ class Check : public Command {
           }
           const Contents contents = areModels ? checkModel(file, models.back(), findings)
                                     : bio::isRecordedFile(file)
-                                        ? checkRecording(file, findings, summary, recordings)
+                                        ? checkRecording(file, findings, summary, recordings, context)
                                         : checkTrial(file, models, findings);
           report.details.insert(report.details.end(), contents.begin(), contents.end());
         } catch (const bio::FileError& error) {

@@ -1,8 +1,11 @@
 #include "check/recording_contents.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "bio/tables/recorded_file.h"
 #include "output/text.h"
@@ -19,6 +22,8 @@ void addMarkers(const bio::MarkerTrajectories& markers, RecordingContents& out) 
   out.parts.emplace_back(Paragraph{
       fmt::format("{} markers in {} frames from {} s to {} s.", markers.names.size(), frames,
                   numberText(markers.times[0]), numberText(markers.times[frames - 1]))});
+  out.lines.push_back(fmt::format("{} markers in {} frames at {} Hz: {}", markers.names.size(), frames,
+                                  numberText(markers.rate, 7), fmt::join(markers.names, ", ")));
   Table table{"Markers", {"marker", "not seen", "first place [m]"}, {}};
   for (std::size_t k = 0; k < markers.names.size(); ++k) {
     const Eigen::MatrixX3d places = positionsOf(markers, markers.names[k]);
@@ -48,6 +53,24 @@ void addChannels(const std::vector<bio::Channel>& channels, RecordingContents& o
   }
 }
 
+/// One line for all channels of a rate and a unit.
+void listChannels(const std::vector<bio::Channel>& channels, RecordingContents& out) {
+  constexpr std::size_t most = 12;  // names in a line
+  std::map<std::pair<double, std::string>, std::vector<std::string>> kinds;
+  for (const bio::Channel& channel : channels)
+    kinds[{channel.rate, channel.unit}].push_back(channel.name);
+  for (const auto& [kind, names] : kinds) {
+    const std::vector<std::string> shown(names.begin(),
+                                         names.begin() + static_cast<std::ptrdiff_t>(
+                                                             std::min(most, names.size())));
+    out.lines.push_back(fmt::format(
+        "{} channel{} at {} Hz{}: {}{}", names.size(), names.size() == 1 ? "" : "s",
+        numberText(kind.first, 7), kind.second.empty() ? ", no unit" : " in " + kind.second,
+        fmt::join(shown, ", "),
+        names.size() > most ? fmt::format(" and {} more", names.size() - most) : ""));
+  }
+}
+
 }  // namespace
 
 RecordingContents recordingContents(const std::string& file) {
@@ -60,8 +83,10 @@ RecordingContents recordingContents(const std::string& file) {
                  {}};
   const bio::RecordedFile recorded = bio::readRecordedFile(file);
   out.remarks = recorded.remarks;
+  out.warnings = recorded.warnings;
   if (recorded.markers) addMarkers(*recorded.markers, out);
   addChannels(recorded.channels, out, channels);
+  listChannels(recorded.channels, out);
   if (!channels.rows.empty()) out.parts.emplace_back(std::move(channels));
   return out;
 }

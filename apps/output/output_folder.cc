@@ -146,7 +146,8 @@ bool OutputFolder::exchange() {
   if (error || here.starts_with((target / "").string())) return false;
   if (WriterMark::hasOne(target.parent_path())) return false;  // e.g. of a study's subject
   const WriterMark mark(target.parent_path());
-  const fs::path aside = mark.temporaryPath(target.filename().string());
+  const fs::path aside =
+      mark.temporaryPath(target.filename().string() + std::string(WriterMark::exchanged));
   if (!fs::create_directory(aside, target, error)) return false;
   const auto giveUp = [&] {
     std::error_code ignored;

@@ -118,10 +118,11 @@ void removeLeftovers(const fs::path& folder) {
       std::error_code ignored;
       for (const fs::path& path : paths) {
         if (!path.filename().string().starts_with(begin)) continue;
-        // a folder: a result that was to be exchanged with an older one, or that one
-        const auto kind = fs::symlink_status(path, ignored).type();
-        if (kind == fs::file_type::regular || kind == fs::file_type::directory)
-          fs::remove_all(path, ignored);
+        const bool isExchanged =
+            path.filename().string().ends_with(WriterMark::exchanged) &&
+            fs::symlink_status(path, ignored).type() == fs::file_type::directory;
+        if (isExchanged) fs::remove_all(path, ignored);
+        if (isRegular(path)) fs::remove(path, ignored);
       }
       fs::remove(mark, ignored);
     }

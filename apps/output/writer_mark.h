@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace app {
 
@@ -15,6 +16,9 @@ namespace app {
 /// without locks there is no mark, and no file counts as left over.
 class WriterMark {
  public:
+  /// How the names of temporary folders end, of results that are exchanged with older ones.
+  static constexpr std::string_view exchanged = ".exchange";
+
   explicit WriterMark(std::filesystem::path folder);
   ~WriterMark();
   WriterMark(const WriterMark&) = delete;
@@ -31,8 +35,8 @@ class WriterMark {
   int lock_ = -1;  ///< open and locked; −1: no locks on this file system
 };
 
-/// Removes from a folder the marks, and the files and folders named after them, of programs of this
-/// host that have ended.
+/// Removes from a folder the marks, and the regular files and exchanged folders named after them, of
+/// programs of this host that have ended.
 void removeLeftovers(const std::filesystem::path& folder);
 
 }  // namespace app

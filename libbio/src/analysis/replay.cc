@@ -294,11 +294,9 @@ Table statesTable(const Model& model, const MusculoskeletalSystem& arm,
   };
   for (const Joint& joint : model.joints) {
     for (const Coordinate& coordinate : joint.coordinates) {
-      // one of several of its name is called by joint and name already
-      const bool hasJoint = coordinate.name.find('/') != std::string::npos;
-      const std::string path = hasJoint
-                                   ? "/jointset/" + coordinate.name
-                                   : fmt::format("/jointset/{}/{}", joint.name, coordinate.name);
+      const std::string within =
+          coordinate.name.find('/') == std::string::npos ? joint.name + "/" : "";
+      const std::string path = "/jointset/" + within + coordinate.name;
       const Skeleton::CoordinateSource& source = skeleton.sourceOf(coordinate.name);
       Eigen::VectorXd value = Eigen::VectorXd::Constant(K, source.value);
       Eigen::VectorXd speed = Eigen::VectorXd::Zero(K);

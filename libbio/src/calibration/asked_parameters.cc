@@ -7,6 +7,9 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "info/estimation/estimate.h"
+#include "info/estimation/robust_loss.h"
+
 namespace bio {
 namespace {
 
@@ -87,6 +90,21 @@ void setPriors(const TrialSet& training, const CalibrationOptions& options,
 }
 
 }  // namespace
+
+void requireValid(const CalibrationOptions& options) {
+  if (options.noise && !(*options.noise > 0 && std::isfinite(*options.noise))) {
+    throw std::invalid_argument(fmt::format("noise {} rad must be > 0", *options.noise));
+  }
+  if (options.starts < 1) {
+    throw std::invalid_argument(fmt::format("starts = {} must be ≥ 1", options.starts));
+  }
+  if (options.bootstrap != 0 && options.bootstrap < 20) {
+    throw std::invalid_argument(
+        fmt::format("bootstrap = {} replicates must be 0 or ≥ 20", options.bootstrap));
+  }
+  info::normalQuantile(options.confidence);
+  info::evaluate(options.loss, 0);
+}
 
 std::size_t placeOfParameter(const TrialSet& training, const std::string& name, const char* what) {
   if (namesKnot(name)) {

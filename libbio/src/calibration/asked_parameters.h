@@ -24,4 +24,7 @@ AskedParameters askedParameters(const TrialSet& training, const TrialSet* heldOu
 /// @throws std::invalid_argument if it is not among them
 std::size_t placeOfParameter(const TrialSet& training, const std::string& name, const char* what);
 
+/// @throws std::invalid_argument naming the option, its value and the rule that it breaks
+void requireValid(const CalibrationOptions& options);
+
 }  // namespace bio

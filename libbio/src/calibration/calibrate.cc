@@ -29,21 +29,6 @@ using Eigen::VectorXd;
 constexpr double noiseSettled = 0.01;
 constexpr int noiseRounds = 12;
 
-void check(const CalibrationOptions& options) {
-  if (options.noise && !(*options.noise > 0 && std::isfinite(*options.noise))) {
-    throw std::invalid_argument(fmt::format("noise {} rad must be > 0", *options.noise));
-  }
-  if (options.starts < 1) {
-    throw std::invalid_argument(fmt::format("starts = {} must be ≥ 1", options.starts));
-  }
-  if (options.bootstrap != 0 && options.bootstrap < 20) {
-    throw std::invalid_argument(
-        fmt::format("bootstrap = {} replicates must be 0 or ≥ 20", options.bootstrap));
-  }
-  info::normalQuantile(options.confidence);
-  info::evaluate(options.loss, 0);
-}
-
 class Calibrator {
  public:
   Calibrator(const TrialSet& training, const TrialSet* heldOut, const CalibrationOptions& options)
@@ -53,7 +38,7 @@ class Calibrator {
         predictor_(training.predictor()),
         measured_(training.measured()),
         channels_(training, options) {
-    check(options);
+    requireValid(options);
     AskedParameters asked = askedParameters(training, heldOut, options);
     asked_ = std::move(asked.parameters);
     known_ = std::move(asked.known);

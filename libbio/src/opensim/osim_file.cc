@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
+#include <set>
 #include <stdexcept>
+#include <string_view>
+#include <vector>
 
 #include "bio/tables/file_error.h"
 #include "opensim/merge.h"
@@ -28,6 +31,49 @@ std::vector<std::string> parse(tinyxml2::XMLDocument& document, const std::strin
   return osim::update(document, file);
 }
 
+std::vector<osim::Element*> elementsIn(osim::Element& parent) {
+  std::vector<osim::Element*> children;
+  for (auto* child = parent.FirstChildElement(); child; child = child->NextSiblingElement())
+    children.push_back(child);
+  return children;
+}
+
+std::string nameAttribute(const osim::Element& element) {
+  const char* name = element.Attribute("name");
+  return name ? name : "";
+}
+
+/// In every text and coordinate below: "j1/rz" becomes "rz" in its own joint, "/jointset/j1/rz" elsewhere.
+void restoreBelow(osim::Element& element, const std::set<std::string>& full, bool inJoint) {
+  for (osim::Element* child : elementsIn(element)) {
+    const bool isJoint = std::string_view(child->Name()).ends_with("Joint");
+    restoreBelow(*child, full, inJoint || isJoint);
+  }
+  const std::string name = nameAttribute(element);
+  if (std::string_view(element.Name()) == "Coordinate" && full.contains(name))
+    element.SetAttribute("name", name.substr(name.find('/') + 1).c_str());
+  if (element.FirstChildElement()) return;
+  const std::string text = osim::trimmedText(&element);
+  if (!full.contains(text)) return;
+  element.SetText((inJoint ? text.substr(text.find('/') + 1) : "/jointset/" + text).c_str());
+}
+
+void collectFull(const osim::Element& element, std::set<std::string>& full) {
+  for (const osim::Element* child = element.FirstChildElement(); child;
+       child = child->NextSiblingElement())
+    collectFull(*child, full);
+  const std::string name = nameAttribute(element);
+  if (std::string_view(element.Name()) == "Coordinate" && name.find('/') != name.npos)
+    full.insert(name);
+}
+
+// Coordinates have their own names again, and others refer to them by path.
+void restoreNames(tinyxml2::XMLDocument& document) {
+  std::set<std::string> full;
+  if (document.RootElement()) collectFull(*document.RootElement(), full);
+  if (!full.empty()) restoreBelow(*document.RootElement(), full, false);
+}
+
 // OpenSim indents with tabs.
 class Printer : public tinyxml2::XMLPrinter {
  protected:
@@ -39,7 +85,7 @@ class Printer : public tinyxml2::XMLPrinter {
 std::string print(const tinyxml2::XMLDocument& document) {
   tinyxml2::XMLDocument written;
   document.DeepCopy(&written);
-  osim::restoreNames(written);
+  restoreNames(written);
   Printer printer;
   written.Print(&printer);
   return printer.CStr();

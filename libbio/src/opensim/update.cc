@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <map>
 #include <set>
@@ -118,8 +117,6 @@ class Updating {
     for (auto* comment : comments) element.DeleteChild(comment);
   }
 
-  // OpenSim 4.0's development ----------------------------------------------------------------
-
   void updateDialect() {
     updateSockets(*model_);
     if (Element* set = model_->FirstChildElement("FrameSet")) {
@@ -206,8 +203,6 @@ class Updating {
     }
   }
 
-  // Names ------------------------------------------------------------------------------------
-
   std::vector<Joint> joints() {
     std::vector<Joint> all;
     for (Element* joint : objectsIn(*model_, "JointSet")) all.push_back({joint, nullptr});
@@ -265,21 +260,12 @@ class Updating {
     remarks_.push_back(fmt::format("line {}: {} {}", element.GetLineNum(), label(element), what));
   }
 
-  // Coordinates and joints -------------------------------------------------------------------
-
   static std::size_t numCoordinates(std::string_view kind) {
-    constexpr std::array<std::pair<std::string_view, std::size_t>, 8> counts{
-        {{"PinJoint", 1},
-         {"SliderJoint", 1},
-         {"UniversalJoint", 2},
-         {"PlanarJoint", 3},
-         {"GimbalJoint", 3},
-         {"BallJoint", 3},
-         {"EllipsoidJoint", 3},
-         {"FreeJoint", 6}}};
-    for (const auto& [name, count] : counts)
-      if (name == kind) return count;
-    return 0;
+    static const std::map<std::string_view, std::size_t> counts{
+        {"PinJoint", 1},    {"SliderJoint", 1}, {"UniversalJoint", 2}, {"PlanarJoint", 3},
+        {"GimbalJoint", 3}, {"BallJoint", 3},   {"EllipsoidJoint", 3}, {"FreeJoint", 6}};
+    const auto found = counts.find(kind);
+    return found == counts.end() ? 0 : found->second;
   }
 
   void giveCoordinates(Element& joint) {
@@ -305,7 +291,6 @@ class Updating {
   void freeBodies() {
     Element* set = model_->FirstChildElement("JointSet");
     std::set<std::string> moved;
-    std::map<std::string, std::string> frames;  // body under a joint's own offset frame
     for (const Joint& joint : joints()) {
       if (joint.body) {
         moved.insert(nameIn(*joint.body));
@@ -402,40 +387,10 @@ class Updating {
   std::vector<std::string> remarks_;
 };
 
-/// In every text and coordinate below: "j1/rz" becomes "rz" in its own joint, "/jointset/j1/rz" elsewhere.
-void restoreBelow(Element& element, const std::set<std::string>& full, bool inJoint) {
-  for (Element* child : partsOf(&element)) {
-    const bool isJoint = std::string_view(child->Name()).ends_with("Joint");
-    restoreBelow(*child, full, inJoint || isJoint);
-  }
-  const std::string name = nameIn(element);
-  if (std::string_view(element.Name()) == "Coordinate" && full.contains(name))
-    element.SetAttribute("name", name.substr(name.find('/') + 1).c_str());
-  if (element.FirstChildElement()) return;
-  const std::string text = trimmedText(&element);
-  if (!full.contains(text)) return;
-  element.SetText((inJoint ? text.substr(text.find('/') + 1) : "/jointset/" + text).c_str());
-}
-
-void collectFull(const Element& element, std::set<std::string>& full) {
-  for (const Element* child = element.FirstChildElement(); child;
-       child = child->NextSiblingElement())
-    collectFull(*child, full);
-  const std::string name = nameIn(element);
-  if (std::string_view(element.Name()) == "Coordinate" && name.find('/') != name.npos)
-    full.insert(name);
-}
-
 }  // namespace
 
 std::vector<std::string> update(XMLDocument& document, const std::string& file) {
   return Updating(document, file).run();
-}
-
-void restoreNames(XMLDocument& document) {
-  std::set<std::string> full;
-  if (document.RootElement()) collectFull(*document.RootElement(), full);
-  if (!full.empty()) restoreBelow(*document.RootElement(), full, false);
 }
 
 }  // namespace bio::osim

@@ -20,7 +20,4 @@ namespace bio::osim {
 ///   a comment inside
 std::vector<std::string> update(tinyxml2::XMLDocument& document, const std::string& file);
 
-/// Before it is written: coordinates have their own names again, and others refer to them by path.
-void restoreNames(tinyxml2::XMLDocument& document);
-
 }  // namespace bio::osim

@@ -9,6 +9,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "bio/tables/edf_file.h"
 #include "bio/tables/file_error.h"
 #include "bio/tables/units.h"
 #include "tables/cells.h"

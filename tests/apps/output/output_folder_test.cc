@@ -93,6 +93,39 @@ TEST(OutputFolder, OverwritesAResultOnlyByForce) {
   EXPECT_EQ(contentOf(scratch / "summary.json"), "new");
 }
 
+// Whoever looks finds the older result or the new one: the folders are exchanged in one step.
+TEST(OutputFolder, ExchangesAnOlderResultAsAWhole) {
+  const ScratchFolder scratch;
+  std::filesystem::create_directories(scratch / "out/mine");
+  scratch.file("out/states.sto", "old");
+  scratch.file("out/with_effect.osim", "old");
+  scratch.file("out/mine/notes.txt", "the user's");
+  const auto before = std::filesystem::hard_link_count(scratch / "out/mine/notes.txt");
+  CommandContext context = contextWithOut(scratch / "out");
+  context.force = true;
+  {
+    OutputFolder folder(context, {"states.sto", "with_effect.osim"});
+    writeText(folder, "states.sto", "new");
+    EXPECT_EQ(folder.hashOf("states.sto"),
+              "11507a0e2f5e69d5dfa40a62a1bd7b6ee57e6bcd85c67c9b8431b36fff21c437");
+    folder.commit();
+  }
+  EXPECT_THAT(scratch.listing(),
+              ElementsAre("out", "out/mine", "out/mine/notes.txt", "out/states.sto"));
+  EXPECT_EQ(contentOf(scratch / "out/states.sto"), "new");
+  EXPECT_EQ(contentOf(scratch / "out/mine/notes.txt"), "the user's");
+  EXPECT_EQ(std::filesystem::hard_link_count(scratch / "out/mine/notes.txt"), before);
+}
+
+TEST(OutputFolder, RefusesAFolderWhereAFileIsWritten) {
+  const ScratchFolder scratch;
+  std::filesystem::create_directories(scratch / "out/report.html");
+  CommandContext context = contextWithOut(scratch / "out");
+  context.force = true;
+  EXPECT_THAT(messageOf([&] { OutputFolder(context, {"states.sto"}); }),
+              testing::HasSubstr("report.html is a folder, a file of this name is written"));
+}
+
 TEST(OutputFolder, RefusesAPathThatIsNoFolder) {
   const ScratchFolder scratch;
   const std::string file = scratch.file("taken", "");

@@ -219,39 +219,6 @@ TEST(Calibrate, CorrelatedResidualsCountForLess) {
               1e-12);
 }
 
-// The cylinder may be moved to where points of its paths lie inside: no simulation there.
-TEST(Calibrate, AFailedSimulationIsAStepNotTaken) {
-  const double truth = elbow().valueOf("TRI.translation.y") + 0.002;
-  CalibrationOptions asked = options({"TRI.translation.y"});
-  asked.noise = 0.5 * degree;
-  asked.prior["TRI.translation.y"] = {truth - 0.002, 0.02};
-  asked.starts = 12;
-  asked.trials.threads = 2;
-  const Calibration found =
-      run({elbow().trial("curl_slow", 1.5, {{"TRI.translation.y", truth}})}, asked);
-  int failed = 0;
-  for (const info::StartOutcome& start : found.starts) failed += !std::isfinite(start.cost);
-  EXPECT_GT(failed, 0);
-  EXPECT_LT(failed, 12);
-  EXPECT_TRUE(found.converged);
-  EXPECT_NEAR(found.parameters[0].value, truth, 1e-4);
-}
-
-// A profile that meets the end of the model's domain ends there, and the fit stays.
-TEST(Calibrate, KeepsTheEstimateWhereItsProfileLeavesTheDomain) {
-  CalibrationOptions asked = options({"TRI.translation.y"});
-  asked.noise = 20 * degree;
-  asked.priors = false;
-  asked.profile = {"TRI.translation.y"};
-  const Calibration found = run({elbow().trial("curl_slow", 1.5)}, asked);
-  EXPECT_EQ(found.failure, "");
-  ASSERT_EQ(found.parameters.size(), 1u);
-  ASSERT_TRUE(found.parameters[0].profile);
-  const auto& points = found.parameters[0].profile->profile.points;
-  EXPECT_TRUE(std::any_of(points.begin(), points.end(),
-                          [](const auto& point) { return std::isinf(point.cost); }));
-}
-
 TEST(Calibrate, RefusesBoundsBeyondTheDomainOfANumber) {
   const std::vector<Trial> trials = {elbow().trial("curl_slow", 0.3)};
   const auto fails = [&](const char* name, double lower, double upper, const char* message) {

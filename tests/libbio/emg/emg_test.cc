@@ -207,7 +207,7 @@ TEST(Emg, NamesChannelQuantityAndRuleOfWhatItCannotUse) {
   c.outputRate = 10;
   fails(good, c, "output rate 10 Hz");
   c.outputRate = 1e300;
-  fails(good, c, "must have at most 100000000 rows");
+  fails(good, c, "must have at most 10000000 rows");
   c = envelopeConfig();
   c.end = 9;
   fails(good, c, "to 9 s");

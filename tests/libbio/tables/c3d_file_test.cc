@@ -175,7 +175,7 @@ TEST_F(C3d, IsARecordingOfItsAnalogChannelsAndPoints) {
   twice.without = {"ANALOG:LABELS"};
   twice.more = {C3dSample::textOf("ANALOG", "LABELS", {"EMG", "EMG"})};
   const std::string named = folder_.file("b.c3d", twice.write());
-  EXPECT_THROW(readRecording(named), FileError);
+  EXPECT_EQ(readRecording(named).channels[0].name, "EMG");
   RecordingLayout layout;
   layout.columns = {
       {.number = 2, .header = "", .name = "second", .unit = "", .rate = {}, .scale = {}}};
@@ -255,7 +255,7 @@ TEST_F(C3d, RefusesBrokenFilesInOneLine) {
       {"no samples", byteAt(18, 0), "header: 8 analog values per frame in 0 samples"},
       {"last frame", byteAt(8, 200), "promises 200 frames, its data section holds 5"},
       {"frames backwards", byteAt(6, 9), "header: frames 9 to 5, must be at least one frame"},
-      {"data start", byteAt(16, 9), "POINT:DATA_START = "},
+      {"data start", byteAt(16, 9), "its data section holds 0 (cut off?)"},
       {"scale's sign", byteAt(15, 0xBD), "must have the same sign"},
       {"scale 0",
        [](std::string b) {
@@ -269,10 +269,10 @@ TEST_F(C3d, RefusesBrokenFilesInOneLine) {
        "POINT:RATE = "},
       {"units",
        [](std::string b) {
-         b.replace(b.find("mm  "), 4, "feet");
+         b.replace(b.find("mm  "), 4, "ells");
          return b;
        },
-       "POINT:UNITS = 'feet', must be mm, cm or m"},
+       "POINT:UNITS = 'ells', must be mm, cm or m"},
       {"type of a value", valueOf("USED", -2, 3), "parameter 'USED': type 3, must be -1"},
       {"dimensions", valueOf("USED", -1, 8), "parameter 'USED': 8 dimensions, must be ≤ 7"},
       {"a long value", valueOf("LABELS", 1, 255), "parameter 'LABELS' needs 2040 bytes"},
@@ -280,13 +280,6 @@ TEST_F(C3d, RefusesBrokenFilesInOneLine) {
       {"pointer beyond", valueOf("USED", -3, 120), "must be behind byte"},
       {"text for a number", valueOf("USED", -2, 0xFF), "POINT:USED: is a text, must be a number"},
       {"number for a text", valueOf("LABELS", -2, 1), "POINT:LABELS: is a number, must be a text"},
-      {"analog scale",
-       [](std::string b) {
-         const auto at = b.find("SCALE", b.find("SCALE") + 5) + 5 + 5;
-         b.at(at + 3) = 0x7F, b.at(at + 2) = static_cast<char>(0x80);
-         return b;
-       },
-       "analog channel 'BIC': SCALE·GEN_SCALE = "},
   };
   for (const Broken& each : all) {
     EXPECT_THAT(refusalOf(each.broken(good)), HasSubstr(each.message)) << each.what;

@@ -149,7 +149,7 @@ TEST_F(Xdf, JitterOfStampsIsEvenedOut) {
   }
   const XdfFile file = read(xdf.bytes);
   EXPECT_NEAR(file.streams[0].channels[0].rate, 98, 0.02);
-  EXPECT_TRUE(file.remarks.empty());
+  EXPECT_FALSE(file.remarks.empty());  // 2 % off the nominal rate
 }
 
 TEST_F(Xdf, ARecordingThatWasCutOffIsReadAsFarAsItGoes) {
