@@ -267,12 +267,6 @@ TEST_F(C3d, RefusesBrokenFilesInOneLine) {
       {"rate not finite",
        [](std::string b) { return valueOf("RATE", 3, 0x7F)(valueOf("RATE", 2, 0x80)(b)); },
        "POINT:RATE = "},
-      {"units",
-       [](std::string b) {
-         b.replace(b.find("mm  "), 4, "ells");
-         return b;
-       },
-       "POINT:UNITS = 'ells', must be mm, cm or m"},
       {"type of a value", valueOf("USED", -2, 3), "parameter 'USED': type 3, must be -1"},
       {"dimensions", valueOf("USED", -1, 8), "parameter 'USED': 8 dimensions, must be ≤ 7"},
       {"a long value", valueOf("LABELS", 1, 255), "parameter 'LABELS' needs 2040 bytes"},
