@@ -113,8 +113,9 @@ TEST_F(Recordings, RenamesAndRescalesAHeadedColumnByItsHeader) {
   EXPECT_EQ(bio::findChannel(r, "biceps").values[0], 500);
   EXPECT_EQ(bio::findChannel(r, "biceps").unit, "uV");
   layout.columns[0].scale.reset();
-  EXPECT_EQ(bio::findChannel(bio::readRecording(file("t.csv", trigno), layout), "biceps").values[0],
-            500);  // converted from the file's mV
+  EXPECT_DOUBLE_EQ(
+      bio::findChannel(bio::readRecording(file("t.csv", trigno), layout), "biceps").values[0],
+      500);  // converted from the file's mV
   layout.columns[0].unit = "deg";
   fails(file("t.csv", trigno), layout, "declared unit 'deg', but the file says 'mV'");
   layout.columns[0].unit = "mV";
