@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "bio/analysis/path_postures.h"
 #include "bio/discovery/add_effects.h"
 #include "bio/discovery/musculoskeletal_problem.h"
 #include "generator/data_set.h"

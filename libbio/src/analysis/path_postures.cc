@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <sstream>
 
+#include "bio/path/path_lengths.h"
 #include "bio/path/posture_samples.h"
 #include "bio/path/tree_path.h"
 #include "bio/tables/file_error.h"
+#include "model/listed_names.h"
 #include "tables/recording_layouts.h"
 #include "tables/text_file.h"
 
@@ -204,6 +207,59 @@ PathPostures pathsAt(const Model& model, const PostureTable& postures,
     }
   }
   return result;
+}
+
+PathSample samplePaths(const Model& model, const Skeleton& skeleton,
+                       const std::vector<std::string>& wrapAsCylinder,
+                       const Eigen::VectorXd& values) {
+  std::vector<MusclePath> paths;
+  std::vector<std::string> unmoved;
+  PostureSamples postures(model, skeleton);
+  PathSample sample;
+  sample.value = values;
+  sample.notes = adviceOnCylinders(wrapAsCylinder);
+  for (const Muscle& muscle : model.muscles) {
+    if (!muscle.enabled) continue;
+    std::optional<MusclePath> compiled;
+    try {
+      compiled.emplace(model, skeleton, muscle, wrapAsCylinder, postures.of(muscle));
+    } catch (const UnsupportedWrap& e) {
+      sample.warnings.push_back(fmt::format("{}: the muscle is left out", e.what()));
+      continue;
+    }
+    MusclePath& path = *compiled;
+    sample.warnings.insert(sample.warnings.end(), path.warnings().begin(), path.warnings().end());
+    if (!path.moves()) {
+      unmoved.push_back(muscle.name);
+      continue;
+    }
+    sample.notes.insert(sample.notes.end(), path.notes().begin(), path.notes().end());
+    sample.muscles.push_back(muscle.name);
+    paths.push_back(std::move(path));
+  }
+  for (std::string& note : unmovedMuscles(unmoved)) sample.notes.push_back(std::move(note));
+  const auto n = static_cast<Eigen::Index>(paths.size());
+  sample.length.resize(values.size(), n);
+  sample.momentArm.resize(values.size(), n);
+  sample.momentArmSlope.resize(values.size(), n);
+  sample.wrapped.resize(values.size(), n);
+  PathLengths lengths(skeleton);
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    lengths.add(findMuscle(model, sample.muscles[i]), paths[i]);
+  }
+  Eigen::VectorXd q = skeleton.defaultValues();
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    q[0] = values[k];
+    lengths.moveTo(q);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const PathLengths::Along along = lengths.along(static_cast<std::size_t>(i));
+      sample.length(k, i) = along.length;
+      sample.momentArm(k, i) = -along.slope;
+      sample.momentArmSlope(k, i) = -along.curvature;
+      sample.wrapped(k, i) = along.wrapped ? 1 : 0;
+    }
+  }
+  return sample;
 }
 
 }  // namespace bio

@@ -9,8 +9,6 @@
 
 #include "bio/analysis/observed_motion.h"
 #include "bio/model/integrator_names.h"
-#include "bio/path/path_lengths.h"
-#include "bio/path/posture_samples.h"
 #include "simulation/integrators.h"
 #include "simulation/motion_weights.h"
 
@@ -343,58 +341,6 @@ Table forcesTable(const MusculoskeletalSystem& arm, const Trajectory& trajectory
     table.values.col(1 + muscles + i) = trajectory.reaction.row(k).transpose();
   }
   return table;
-}
-
-PathSample samplePaths(const Model& model, const Skeleton& skeleton,
-                       const std::vector<std::string>& wrapAsCylinder,
-                       const Eigen::VectorXd& values) {
-  std::vector<MusclePath> paths;
-  PostureSamples postures(model, skeleton);
-  PathSample sample;
-  sample.value = values;
-  sample.notes = adviceOnCylinders(wrapAsCylinder);
-  for (const Muscle& muscle : model.muscles) {
-    if (!muscle.enabled) continue;
-    std::optional<MusclePath> compiled;
-    try {
-      compiled.emplace(model, skeleton, muscle, wrapAsCylinder, postures.of(muscle));
-    } catch (const UnsupportedWrap& e) {
-      sample.warnings.push_back(fmt::format("{}: the muscle is left out", e.what()));
-      continue;
-    }
-    MusclePath& path = *compiled;
-    sample.warnings.insert(sample.warnings.end(), path.warnings().begin(), path.warnings().end());
-    if (!path.moves()) {
-      sample.notes.push_back(
-          fmt::format("muscle '{}' is left out: no free coordinate moves it", muscle.name));
-      continue;
-    }
-    sample.notes.insert(sample.notes.end(), path.notes().begin(), path.notes().end());
-    sample.muscles.push_back(muscle.name);
-    paths.push_back(std::move(path));
-  }
-  const auto n = static_cast<Eigen::Index>(paths.size());
-  sample.length.resize(values.size(), n);
-  sample.momentArm.resize(values.size(), n);
-  sample.momentArmSlope.resize(values.size(), n);
-  sample.wrapped.resize(values.size(), n);
-  PathLengths lengths(skeleton);
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    lengths.add(findMuscle(model, sample.muscles[i]), paths[i]);
-  }
-  Eigen::VectorXd q = skeleton.defaultValues();
-  for (Eigen::Index k = 0; k < values.size(); ++k) {
-    q[0] = values[k];
-    lengths.moveTo(q);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const PathLengths::Along along = lengths.along(static_cast<std::size_t>(i));
-      sample.length(k, i) = along.length;
-      sample.momentArm(k, i) = -along.slope;
-      sample.momentArmSlope(k, i) = -along.curvature;
-      sample.wrapped(k, i) = along.wrapped ? 1 : 0;
-    }
-  }
-  return sample;
 }
 
 }  // namespace bio

@@ -113,12 +113,13 @@ void MusculoskeletalProblem::addTrial(Trial trial) {
   }
   one.heldMass = weightOfHeldMass(encompassing_, one.times, one.measured, one.nodes);
   const bool turns = observed.isRotation;
+  const double length = turns ? 1 : 0.125;  // [m] that stand for a radian
   one.angle = addOwnQuantity("", {"", turns ? "rad" : "m", one.measured[0], observed.rangeMin,
-                                  observed.rangeMax, options_.startSd, false});
+                                  observed.rangeMax, options_.startSd * length, false});
   const double shown = std::abs(initialSpeedShown(one.times, one.measured));
-  one.speed =
-      addOwnQuantity(".speed", {"", turns ? "rad/s" : "m/s", 0, turns ? -10.0 : -2.0,
-                                turns ? 10.0 : 2.0, std::max(options_.speedSd, shown), false});
+  one.speed = addOwnQuantity(
+      ".speed", {"", turns ? "rad/s" : "m/s", 0, turns ? -10.0 : -2.0, turns ? 10.0 : 2.0,
+                 std::max(options_.speedSd * length, shown), false});
   trials_.push_back(std::move(one));
 }
 

@@ -27,17 +27,42 @@ std::string whyNotFree(const Model& model, const Coordinate& coordinate) {
   }
 }
 
+/// Coordinates that cannot move together in the default posture, though each can by itself; empty
+/// if there are none.
+std::string whyNotTogether(const Model& model, const std::vector<std::string>& free) {
+  if (free.size() < 2) return "";
+  try {
+    const Skeleton skeleton(model, {free, {}});
+    const std::string never = whatMovesNoMass(skeleton);
+    if (!never.empty()) return never;
+    const std::string here = whatMovesNoMassAt(skeleton, skeleton.defaultValues());
+    return here.empty() ? ""
+                        : here +
+                              " in the default posture: a motion must start in another, or one "
+                              "of them be locked";
+  } catch (const std::invalid_argument&) {
+    return "";  // a reason of another kind, told where they are freed
+  }
+}
+
 }  // namespace
 
 std::vector<Remark> reviewModel(const Model& model) {
   std::vector<Remark> remarks = reviewNumbers(model);
+  std::vector<std::string> free;
   for (const Joint& joint : model.joints) {
     for (const Coordinate& coordinate : joint.coordinates) {
       if (coordinate.prescribed || !mayBeFree(model, coordinate)) continue;
       const std::string why = whyNotFree(model, coordinate);
-      if (!why.empty()) remarks.push_back({"model", why, Weight::warning});
+      if (why.empty()) {
+        free.push_back(coordinate.name);
+      } else {
+        remarks.push_back({"model", why, Weight::warning});
+      }
     }
   }
+  const std::string together = whyNotTogether(model, free);
+  if (!together.empty()) remarks.push_back({"model", together, Weight::warning});
   return remarks;
 }
 

@@ -8,6 +8,7 @@
 
 #include "bio/path/path_lengths.h"
 #include "bio/path/posture_samples.h"
+#include "model/listed_names.h"
 #include "model/plausible.h"
 #include "simulation/integrators.h"
 #include "skeleton/moved_mass.h"
@@ -144,12 +145,16 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
       actuators_.push_back(actuator);
     }
   }
-  if (!like) {
+  if (like) {
+    isSingularInDefaultPosture_ = like->isSingularInDefaultPosture_;
+  } else {
     requireMovedMass(model, skeleton_);
+    isSingularInDefaultPosture_ = !whatMovesNoMassAt(skeleton_, skeleton_.defaultValues()).empty();
     warnings_ = lockRemarks(model, options.skeleton);
     notes_ = adviceOnCylinders(options.wrapAsCylinder);
   }
   PostureSamples postures(model, skeleton_);
+  std::vector<std::string> unmoved;
   for (const Muscle& muscle : model.muscles) {
     if (!muscle.enabled) {
       notes_.push_back(fmt::format("muscle '{}' is switched off in the model", muscle.name));
@@ -180,8 +185,7 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
       }
     }
     if (!path.moves()) {
-      notes_.push_back(
-          fmt::format("muscle '{}' is left out: no free coordinate moves it", muscle.name));
+      unmoved.push_back(muscle.name);
       continue;
     }
     if (!muscle.canBeSimulated()) {
@@ -214,6 +218,7 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
       throw std::invalid_argument(fmt::format("muscle '{}': {}", muscle.name, e.what()));
     }
   }
+  for (std::string& note : unmovedMuscles(unmoved)) notes_.push_back(std::move(note));
   addElasticPaths(model, options, like, postures);
   addTreePaths(model);
   for (const Marker& marker : model.markers) {

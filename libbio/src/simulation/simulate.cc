@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "simulation/integrators.h"
+#include "skeleton/moved_mass.h"
 
 namespace bio {
 
@@ -115,6 +116,12 @@ void stepping::checkSimulation(const MusculoskeletalSystem& arm, const Excitatio
   require(start.q.allFinite() && start.qDot.allFinite() && start.activation.allFinite() &&
               start.fibreLength.allFinite(),
           "start state: a value is not finite");
+  if (arm.isSingularInDefaultPosture()) {
+    const std::string singular = whatMovesNoMassAt(arm.skeleton(), start.q);
+    require(
+        singular.empty(),
+        singular + " in the posture at the start, must not: start elsewhere, or lock a coordinate");
+  }
   require(options.externalForce.empty() || options.externalForce.numCoordinates() == N,
           fmt::format("external force: {} columns, the arm has {} free coordinates",
                       options.externalForce.numCoordinates(), N));

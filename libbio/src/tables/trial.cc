@@ -13,6 +13,7 @@
 #include "bio/tables/file_error.h"
 #include "bio/tables/trial_table.h"
 #include "bio/tables/unknown_column.h"
+#include "model/listed_names.h"
 
 namespace bio {
 namespace {
@@ -201,7 +202,8 @@ class TrialReader {
       if (meaning.kind == Meaning::Kind::time) continue;
       const bool isApplied = meaning.kind == Meaning::Kind::applied;
       const auto [found, isNew] = seen.emplace(
-          (isApplied ? "." : "") + (meaning.actuator ? plainName(model_, column) : meaning.name), column);
+          (isApplied ? "." : "") + (meaning.actuator ? plainName(model_, column) : meaning.name),
+          column);
       if (!isNew) {
         fail(fmt::format("columns '{}' and '{}' both give '{}', must be one", found->second, column,
                          meaning.name));
@@ -317,6 +319,18 @@ class TrialReader {
                     idle.size() > 1 ? "they" : "it", idle.size() > 1 ? "" : "s"));
   }
 
+  // One line for all muscles that no column drives.
+  void warnWithoutColumn(const std::vector<std::string>& muscles) {
+    if (muscles.size() == 1) {
+      trial_.warnings.push_back(fmt::format("{}: muscle '{}' has no column, its excitation is {}",
+                                            file_, muscles.front(), options_.baseline));
+    } else if (!muscles.empty()) {
+      trial_.warnings.push_back(fmt::format(
+          "{}: {} of {} muscles have no column, their excitation is {}: {}", file_, muscles.size(),
+          trial_.muscles.size(), options_.baseline, listedNames(muscles)));
+    }
+  }
+
   void readExcitations() {
     for (const Muscle& muscle : model_.muscles) {
       if (muscle.enabled) trial_.muscles.push_back(muscle.name);
@@ -326,13 +340,13 @@ class TrialReader {
     }
     trial_.excitations.resize(table_.values.rows(),
                               static_cast<Eigen::Index>(trial_.muscles.size()));
+    std::vector<std::string> withoutColumn;
     for (std::size_t m = 0; m < trial_.muscles.size(); ++m) {
       const auto target = static_cast<Eigen::Index>(m);
       const auto found = columnOf_.find(trial_.muscles[m]);
       if (found == columnOf_.end()) {
         trial_.excitations.col(target).setConstant(options_.baseline);
-        trial_.warnings.push_back(fmt::format("{}: muscle '{}' has no column, its excitation is {}",
-                                              file_, trial_.muscles[m], options_.baseline));
+        withoutColumn.push_back(trial_.muscles[m]);
         continue;
       }
       for (Eigen::Index row = 0; row < table_.values.rows(); ++row) {
@@ -344,6 +358,7 @@ class TrialReader {
         trial_.excitations(row, target) = value;
       }
     }
+    warnWithoutColumn(withoutColumn);
     if (columnOf_.empty()) fail("drives no muscle of the model, must have a column for one");
   }
 

@@ -17,6 +17,7 @@
 #include "info/discovery/judgement/decide.h"
 #include "info/discovery/judgement/expected_error.h"
 #include "info/discovery/judgement/output_sd.h"
+#include "info/discovery/search/needed_memory.h"
 
 namespace info::discover {
 
@@ -202,6 +203,7 @@ class Work {
     if (worst != nullptr) judgement.surprise = std::abs(worst->surprise);
 
     gaps(before, after, judgement);
+    judgement.explained = verdict_.gap.closedFromCalibrated;
     if (stepsTooLong()) return;
     Decision decision = decide(data_.candidates(), judgement, options_);
     const Fit smoothing =
@@ -383,6 +385,7 @@ class Work {
 
 Verdict run(const DiscoveryProblem& data, const Options& options, WarmStart* draft) {
   const std::vector<int> trials = fittedTrials(data, options);
+  requireMemory(data, trials, availableMemory());
   RecordedNoise noise;
   if (options.judgeSamples)
     noise = recordedNoise(data, trials, options.outputSd);

@@ -160,7 +160,7 @@ TEST(CheckCommand, MatchesATrialsColumnsWithTheModel) {
   const ProgramResult fits = runFisherHill({"check", good, "models/elbow8.osim"});
   EXPECT_EQ(fits.status, 0) << fits.out;
   EXPECT_THAT(fits.out,
-              HasSubstr("'TRIlong' has no column, its excitation is 0.01 (and 6 similar findings"));
+              HasSubstr("7 of 8 muscles have no column, their excitation is 0.01: TRIlong, "));
 
   const std::string bad = scratch.file("bad.csv", "time,BIClong,GLUTmax\n" + rows);
   const ProgramResult differs = runFisherHill({"check", bad, "models/elbow8.osim"});

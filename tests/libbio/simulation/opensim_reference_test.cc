@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "bio/analysis/path_postures.h"
 #include "support/numbers.h"
 #include "support/reference.h"
 

@@ -206,7 +206,7 @@ TEST_F(Recordings, NamesTheLineOfABrokenTrignoHeader) {
 
 TEST(Channels, AreFoundByNameOrTheNamesAreListed) {
   const bio::Recording r{
-      "f.csv", bio::RecordingFormat::table, {{"a", "", 1, 0, {}}, {"b", "", 1, 0, {}}}, {}};
+      "f.csv", bio::RecordingFormat::table, {{"a", "", 1, 0, {}}, {"b", "", 1, 0, {}}}, {}, {}};
   EXPECT_THAT([&] { bio::findChannel(r, "c"); },
               ThrowsMessage<std::invalid_argument>(
                   HasSubstr("f.csv: no channel 'c'; the file has 'a', 'b'")));

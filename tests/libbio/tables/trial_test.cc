@@ -183,6 +183,18 @@ TEST_F(TrialFile, AMuscleWithoutAColumnGetsTheBaselineAndAWarning) {
   EXPECT_EQ(read("time,BRA\n0,0.5\n1,0.5\n", {.baseline = 0.2}).excitations(0, 1), 0.2);
 }
 
+TEST_F(TrialFile, ManyMusclesWithoutAColumnAreNamedInOneLine) {
+  Model model = twoMuscles();
+  for (const char* name : {"a", "b", "c", "d", "e", "f"}) {
+    Muscle muscle;
+    muscle.name = name;
+    model.muscles.push_back(muscle);
+  }
+  EXPECT_THAT(readTrial(folder_.file("t.csv", "time,BRA\n0,0.5\n1,0.5\n"), model, {}).warnings,
+              ElementsAre(HasSubstr("7 of 8 muscles have no column, their excitation is 0.01: "
+                                    "TRIlong, a, b, c, d and 2 more")));
+}
+
 TEST_F(TrialFile, ExtraColumnsAreIgnoredOnlyWhenAskedFor) {
   const std::string text = "time,BRA,TRIlong,knee\n0,0.5,0,1\n1,0.5,0,2\n";
   EXPECT_EQ(

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bio/model/model.h"
+#include "bio/skeleton/skeleton.h"
 
 namespace bio {
 
@@ -55,5 +56,23 @@ struct PathPostures {
 PathPostures pathsAt(const Model& model, const PostureTable& postures,
                      const std::map<std::string, double>& locked,
                      const std::vector<std::string>& wrapAsCylinder);
+
+/// Lengths and moment arms of muscles over the range of one coordinate.
+struct PathSample {
+  Eigen::VectorXd value;  ///< of the coordinate [rad] or [m]
+  std::vector<std::string> muscles;
+  Eigen::MatrixXd length;          ///< rows = values, columns = muscles [m]
+  Eigen::MatrixXd momentArm;       ///< −∂ℓ/∂q [m]
+  Eigen::MatrixXd momentArmSlope;  ///< −∂²ℓ/∂q² [m/rad]
+  Eigen::MatrixXi wrapped;         ///< 1: a wrap object is touched
+  std::vector<std::string> notes;
+  std::vector<std::string> warnings;  ///< muscles that cannot be computed and are left out
+};
+/// Paths of every enabled muscle that the skeleton's first coordinate moves, whatever its class;
+/// the other free coordinates stay at their defaults.
+/// @throws std::invalid_argument what MusclePath throws
+PathSample samplePaths(const Model& model, const Skeleton& skeleton,
+                       const std::vector<std::string>& wrapAsCylinder,
+                       const Eigen::VectorXd& values);
 
 }  // namespace bio

@@ -128,22 +128,4 @@ Table statesTable(const Model& model, const MusculoskeletalSystem& arm,
 Table forcesTable(const MusculoskeletalSystem& arm, const Trajectory& trajectory,
                   const MuscleReport& report);
 
-/// Lengths and moment arms of muscles over the range of one coordinate.
-struct PathSample {
-  Eigen::VectorXd value;  ///< of the coordinate [rad] or [m]
-  std::vector<std::string> muscles;
-  Eigen::MatrixXd length;          ///< rows = values, columns = muscles [m]
-  Eigen::MatrixXd momentArm;       ///< −∂ℓ/∂q [m]
-  Eigen::MatrixXd momentArmSlope;  ///< −∂²ℓ/∂q² [m/rad]
-  Eigen::MatrixXi wrapped;         ///< 1: a wrap object is touched
-  std::vector<std::string> notes;
-  std::vector<std::string> warnings;  ///< muscles that cannot be computed and are left out
-};
-/// Paths of every enabled muscle that the skeleton's first coordinate moves, whatever its class;
-/// the other free coordinates stay at their defaults.
-/// @throws std::invalid_argument what MusclePath throws
-PathSample samplePaths(const Model& model, const Skeleton& skeleton,
-                       const std::vector<std::string>& wrapAsCylinder,
-                       const Eigen::VectorXd& values);
-
 }  // namespace bio

@@ -15,9 +15,11 @@ struct MusculoskeletalProblemOptions {
   SimulationOptions simulation;      ///< integrator: variational or variationalLeft; step
   double latentSpacing = 0.05;       ///< between nodes of the latent force [s] > 0
   double latentFloor = 0.5;          ///< τ_0 of its scale [N·m] > 0
-  double startSd = 0.035;            ///< prior sd of each trial's initial angle [rad] > 0
-  double speedSd = 0.1;              ///< prior sd of each trial's initial speed [rad/s] > 0, of one
-                                     ///< that starts in motion: as large as that speed
+  double startSd = 0.035;            ///< prior sd of each trial's initial angle [rad] > 0; a shift
+                                     ///< has an eighth of it [m]
+  double speedSd = 0.1;              ///< prior sd of each trial's initial speed [rad/s] > 0, or an
+                                     ///< eighth of it [m/s]; of one that starts in motion: as large
+                                     ///< as that speed
   bool trialsAreCut = false;         ///< they are parts of those in the files
   bool usableSeries = true;          ///< refuse measured series that requireUsable refuses
   std::vector<std::string> without;  ///< ids of effects to exclude from the catalogue

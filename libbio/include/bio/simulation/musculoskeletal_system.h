@@ -106,6 +106,10 @@ class MusculoskeletalSystem {
   /// Coordinate values at which a path gains or loses conditional points, each listed once.
   const std::vector<PathSwitch>& switches() const { return switches_; }
 
+  /// Some coordinates move no mass together in the default posture, though they do in others: a
+  /// motion must start elsewhere (Y-Z-Y angles at Z = 0).
+  bool isSingularInDefaultPosture() const { return isSingularInDefaultPosture_; }
+
   /// One line each: muscles left out because they cannot be simulated, unusual locked values, paths
   /// without length, paths that use one of several wrap objects touched at once.
   const std::vector<std::string>& warnings() const { return warnings_; }
@@ -138,6 +142,7 @@ class MusculoskeletalSystem {
   std::unique_ptr<ArticulatedTree> tree_;
   std::vector<TreePath> treePaths_;
   std::vector<PathSwitch> switches_;
+  bool isSingularInDefaultPosture_ = false;
   std::vector<std::string> notes_;
   std::vector<std::string> warnings_;
 };

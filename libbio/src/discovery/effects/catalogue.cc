@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "bio/discovery/effect_names.h"
@@ -133,6 +134,32 @@ Candidate candidate(const EncompassingModel& model, std::string id, std::string 
     one.starts.push_back(Eigen::VectorXd::Map(start.data(), static_cast<Index>(start.size())));
   }
   return one;
+}
+
+namespace {
+
+/// F0 [N]
+double maxIsometricForce(const Muscle& muscle) {
+  if (muscle.schutte) return muscle.schutte->maxIsometricForce;
+  return std::visit([](auto p) { return p.at(p, muscles::common::maxIsometricForce); },
+                    *muscle.hill);
+}
+
+}  // namespace
+
+CoordinateUnits unitsOf(const EncompassingModel& model) {
+  if (model.coordinate().isRotation) return {"rad", "rad/s", "N m", "torque"};
+  double up = 0, down = 0;
+  for (const MuscleGroup& group : model.groups()) {
+    for (const std::size_t i : group.muscles) {
+      const double most =
+          maxIsometricForce(findMuscle(model.base(), model.arm().muscles()[i].name));
+      (group.momentArm > 0 ? up : down) += std::abs(group.momentArm) * most;
+    }
+  }
+  const double strongest = std::max(up, down);
+  const double strength = strongest > 0 ? std::exp2(std::round(std::log2(strongest / 64))) : 1;
+  return {"m", "m/s", "N", "force", 0.125, strength};
 }
 
 std::string lawName(const EncompassingModel& model, const std::string& id) {

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "discovery/effects/effects.h"
@@ -27,59 +29,78 @@ void addViscousDamping(EncompassingModel& model) {
   if (const std::string damper = damperOf(model); !damper.empty()) {
     return model.addPresent("visc", damper);
   }
+  const CoordinateUnits units = unitsOf(model);
+  const double size = units.strength / units.length;
   const std::size_t law =
       model.addLaw(SpringGeneralizedForce{lawName(model, "visc"), model.coordinate().name});
   const std::size_t b =
-      model.add(amplitude("visc.viscosity", "N m s/rad", 0, 3, 0.3),
+      model.add(amplitude("visc.viscosity", units.viscosity(), 0, 3 * size, 0.3 * size),
                 {Meaning::Kind::shift, {{model.number(SpringForceTarget{law, 2}, 0)}}});
   model.lawFollows({b});
   model.add(candidate(model, "visc", "viscous joint damping",
                       "The joint resists its motion in proportion to the speed.",
-                      info::discover::EffectKind::structure, {b}, {{0.1}}));
+                      info::discover::EffectKind::structure, {b}, {{0.1 * size}}));
 }
 
 void addCoulombFriction(EncompassingModel& model) {
+  const CoordinateUnits units = unitsOf(model);
+  const double size = units.strength;
   addExpression(model, {"coulomb",
                         "Coulomb friction",
-                        "The joint resists its motion with a constant torque at any speed.",
-                        "-c*tanh(qdot/0.05)",
+                        fmt::format("The joint resists its motion with a constant {} at any speed.",
+                                    units.word),
+                        fmt::format("-c*tanh(qdot/{})", 0.05 * units.length),
                         {"c"},
-                        {amplitude("coulomb.torque", "N m", 0, 3, 0.6)},
-                        {{0.2}}});
+                        {amplitude("coulomb." + units.word, units.force, 0, 3 * size, 0.6 * size)},
+                        {{0.2 * size}}});
 }
 
 void addStribeckFriction(EncompassingModel& model) {
-  addExpression(model,
-                {"stribeck",
-                 "Stribeck friction",
-                 "The joint resists its motion with a torque that is twice as large near rest.",
-                 "-c*(1+exp(-(qdot/v)^2))*tanh(qdot/0.05)",
-                 {"c", "v"},
-                 {amplitude("stribeck.torque", "N m", 0, 3, 0.6),
-                  shape("stribeck.speed", "rad/s", 0.3, 0.1, 1, 0.15)},
-                 {{0.15, 0.3}}});
+  const CoordinateUnits units = unitsOf(model);
+  const double size = units.strength, speed = units.length;
+  addExpression(
+      model,
+      {"stribeck",
+       "Stribeck friction",
+       fmt::format("The joint resists its motion with a {} that is twice as large near rest.",
+                   units.word),
+       fmt::format("-c*(1+exp(-(qdot/v)^2))*tanh(qdot/{})", 0.05 * speed),
+       {"c", "v"},
+       {amplitude("stribeck." + units.word, units.force, 0, 3 * size, 0.6 * size),
+        shape("stribeck.speed", units.speed, 0.3 * speed, 0.1 * speed, 1 * speed, 0.15 * speed)},
+       {{0.15 * size, 0.3 * speed}}});
 }
 
 void addQuadraticDrag(EncompassingModel& model) {
+  const CoordinateUnits units = unitsOf(model);
+  const double size = units.strength / (units.length * units.length);
   addExpression(model, {"drag",
                         "quadratic drag",
                         "The joint resists its motion in proportion to the square of the speed.",
                         "-c*qdot*abs(qdot)",
                         {"c"},
-                        {amplitude("drag.coefficient", "N m s^2/rad^2", 0, 1, 0.1)},
-                        {{0.03}}});
+                        {amplitude("drag.coefficient",
+                                   fmt::format("{} s^2/{}^2", units.force, units.position), 0,
+                                   1 * size, 0.1 * size)},
+                        {{0.03 * size}}});
 }
 
 void addPowerDamping(EncompassingModel& model) {
-  addExpression(model, {"powerdamp",
-                        "sub-linear damping",
-                        "The joint resists its motion with a power of the speed between 0 "
-                        "(constant) and 1 (proportional).",
-                        "-b*qdot*exp((n-1)/2*log(qdot^2+0.0001))",
-                        {"b", "n"},
-                        {amplitude("powerdamp.torque", "N m at 1 rad/s", 0, 3, 0.3),
-                         shape("powerdamp.exponent", "", 0.5, 0.2, 0.9, 0.2)},
-                        {{0.2, 0.5}}});
+  const CoordinateUnits units = unitsOf(model);
+  // b |q̇|^n at n = 1/2 is as large as a rotation's where q̇ is `length` times its speed
+  const double size = units.strength * (units.position == "rad" ? 1 : std::exp2(1.5));
+  addExpression(
+      model,
+      {"powerdamp",
+       "sub-linear damping",
+       "The joint resists its motion with a power of the speed between 0 "
+       "(constant) and 1 (proportional).",
+       fmt::format("-b*qdot*exp((n-1)/2*log(qdot^2+{}))", 0.0001 * units.length * units.length),
+       {"b", "n"},
+       {amplitude("powerdamp." + units.word, fmt::format("{} at 1 {}", units.force, units.speed), 0,
+                  3 * size, 0.3 * size),
+        shape("powerdamp.exponent", "", 0.5, 0.2, 0.9, 0.2)},
+       {{0.2 * size, 0.5}}});
 }
 
 }  // namespace bio::discover

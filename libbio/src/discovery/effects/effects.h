@@ -14,6 +14,20 @@ void addExperimentalConditions(EncompassingModel& model);
 /// An entry of the catalogue that experimental conditions need, too.
 void addHandForce(EncompassingModel& model);
 
+/// Units, words and sizes of a coordinate and of a force on it. Priors and bounds of the catalogue
+/// are those of an elbow, in N m and rad; a shift's are these times powers of two.
+struct CoordinateUnits {
+  std::string position, speed, force;  ///< "rad", "rad/s", "N m"; "m", "m/s", "N"
+  std::string word;                    ///< "torque" or "force"
+  double length = 1;                   ///< 1/8 m stands for a radian
+  /// The strongest isometric force of the muscles in one direction, over 64, in [N] of a shift; 1
+  /// for a rotation.
+  double strength = 1;
+  std::string stiffness() const { return force + "/" + position; }
+  std::string viscosity() const { return force + " s/" + position; }
+};
+CoordinateUnits unitsOf(const EncompassingModel& model);
+
 /// A quantity that is 0 while its effect is absent.
 inline info::discover::Quantity amplitude(std::string name, std::string unit, double lower,
                                           double upper, double sd) {

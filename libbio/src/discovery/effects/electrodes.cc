@@ -128,18 +128,28 @@ std::vector<std::string> unsaturated(const EncompassingModel& model,
 }
 
 void addElectrodeGains(EncompassingModel& model) {
-  forMusclesAndGroups(model, [&](const std::string& name, const std::vector<std::string>& muscles) {
+  const auto add = [&](const std::string& id, const std::vector<std::string>& muscles,
+                       const std::string& name, const std::string& sentence,
+                       const std::vector<std::string>& equivalents) {
     std::vector<Meaning::Part> parts;
     for (const std::string& muscle : muscles) {
       parts.push_back({model.number(EmgTarget{What::gain, muscle}, 1)});
     }
-    const std::string id = "gain_" + name;
     const std::size_t g =
         model.add(factor(id + ".factor", 0.2, 5, 0.3), {Meaning::Kind::scale, parts});
-    model.add(candidate(model, id, fmt::format("electrode gain of {}", name),
-                        fmt::format("The EMG of {} is scaled by a wrong gain.", name),
-                        EffectKind::input, {g}, {{1.1}}, {"Fmax_" + name}));
+    model.add(candidate(model, id, name, sentence, EffectKind::input, {g}, {{1.1}}, equivalents));
+  };
+  forMusclesAndGroups(model, [&](const std::string& name, const std::vector<std::string>& muscles) {
+    add("gain_" + name, muscles, fmt::format("electrode gain of {}", name),
+        fmt::format("The EMG of {} is scaled by a wrong gain.", name), {"Fmax_" + name});
   });
+  if (model.groups().size() < 2) return;  // else that of the only group
+  std::vector<std::string> all;
+  for (const SystemMuscle& muscle : model.arm().muscles()) all.push_back(muscle.name);
+  add("gain_of_all", all, "electrode gain of all muscles",
+      "The EMG of all muscles is scaled by one wrong gain, as by a wrong unit, amplification or "
+      "maximum voluntary contraction.",
+      {});
 }
 
 void addBaselines(EncompassingModel& model) {

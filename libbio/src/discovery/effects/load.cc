@@ -56,13 +56,16 @@ void addTilt(EncompassingModel& model) {
 }
 
 void addConstantTorque(EncompassingModel& model) {
-  addExpression(model, {"const",
-                        "constant joint torque",
-                        "A constant torque acts on the joint.",
-                        "c",
-                        {"c"},
-                        {amplitude("const.torque", "N m", -10, 10, 1)},
-                        {{0.2}}});
+  const CoordinateUnits units = unitsOf(model);
+  const double size = units.strength;
+  addExpression(model,
+                {"const",
+                 "constant joint " + units.word,
+                 fmt::format("A constant {} acts on the joint.", units.word),
+                 "c",
+                 {"c"},
+                 {amplitude("const." + units.word, units.force, -10 * size, 10 * size, 1 * size)},
+                 {{0.2 * size}}});
 }
 
 // τ(q) = F e·∂p/∂q = F(A cos(q + t) + B sin(q + t)) where the joint is a plain hinge, with e

@@ -10,9 +10,12 @@ namespace bio::discover {
 using info::discover::EffectKind;
 
 void addTimedForces(EncompassingModel& model) {
-  const auto add = [&](const char* id, const char* name, const char* sentence, TimedForce force,
-                       info::discover::Quantity size, const std::vector<double>& starts) {
-    size.name = fmt::format("{}.{}", id, force.of == TimedForce::Of::mass ? "mass" : "torque");
+  const CoordinateUnits units = unitsOf(model);
+  const double most = units.strength;
+  const auto add = [&](const char* id, const std::string& name, const std::string& sentence,
+                       TimedForce force, info::discover::Quantity size,
+                       const std::vector<double>& starts) {
+    size.name = fmt::format("{}.{}", id, force.of == TimedForce::Of::mass ? "mass" : units.word);
     force.amplitude = model.add(std::move(size), {Meaning::Kind::timed, {}});
     force.time =
         model.add(shape(fmt::format("{}.time", id), "s", 1, 0, 2, 1), {Meaning::Kind::timed, {}});
@@ -23,13 +26,13 @@ void addTimedForces(EncompassingModel& model) {
     model.addTimedForce(force);
   };
   using Of = TimedForce::Of;
-  const auto torque = amplitude("", "N m", -10, 10, 1);
-  add("torque_from", "torque that starts during the trial",
-      "A constant torque starts to act on the joint during the trial.", {Of::force, false, 0, 0},
-      torque, {0.3});
-  add("torque_until", "torque that ends during the trial",
-      "A constant torque acts on the joint and ends during the trial.", {Of::force, true, 0, 0},
-      torque, {0.3});
+  const auto torque = amplitude("", units.force, -10 * most, 10 * most, 1 * most);
+  add("torque_from", units.word + " that starts during the trial",
+      fmt::format("A constant {} starts to act on the joint during the trial.", units.word),
+      {Of::force, false, 0, 0}, torque, {0.3 * most});
+  add("torque_until", units.word + " that ends during the trial",
+      fmt::format("A constant {} acts on the joint and ends during the trial.", units.word),
+      {Of::force, true, 0, 0}, torque, {0.3 * most});
   if (model.movedBodies().empty()) return;
   const auto mass = amplitude("", "kg", 0, 5, 0.7);
   add("mass_from", "mass picked up by the hand", "The hand picks up a mass during the trial.",

@@ -149,8 +149,8 @@ class DiscoverReader {
         throw FileError(
             fmt::format("{}:{}: column {}: has a rate but no name", file_, at + 1, k + 1));
       }
-      const std::optional<double> hertz = numberBefore(rate, "hz");
-      if (!hertz) {
+      const std::optional<double> stated = numberBefore(rate, "hz");
+      if (!stated) {
         throw FileError(fmt::format("{}:{}: column {} '{}': rate '{}', must be a number > 0 and Hz",
                                     file_, header_.line, k + 1, name, rate));
       }
@@ -161,7 +161,7 @@ class DiscoverReader {
       signal.raw.number = static_cast<int>(k + 1);
       signal.raw.header = sensor.empty() ? name : sensor + " " + name;
       signal.raw.unit = unit;
-      signal.raw.rate = *hertz;
+      signal.raw.rate = *stated;
       signals_.push_back(std::move(signal));
     }
   }

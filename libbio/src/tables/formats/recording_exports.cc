@@ -205,16 +205,16 @@ std::vector<RawColumn> readEmgworks(const std::string& file, ReadingNotes& notes
       const tables::TimeName unitOfTime = tables::timeNameOf(reader.names()[timeOf[k]]);
       const Eigen::VectorXd times =
           vectorOf(columns[timeOf[k]]) * (unitOfTime.times / unitOfTime.per);
-      const RowTimes rows =
+      const RowTimes spacing =
           rowTimesOf(fmt::format("{}: column {} '{}'", file, timeOf[k] + 1, name), times);
-      if (rows.equal) {
-        column.rate = rows.rate;
+      if (spacing.equal) {
+        column.rate = spacing.rate;
         column.startTime = times[0];
         column.values = vectorOf(columns[k]);
       } else {
         columns[k].resize(columns[timeOf[k]].size(), noValue);
-        column = atEqualTimes(vectorOf(columns[k]), rows);
-        notes.warnings.push_back(fmt::format("Column '{}': {}", name, jitterOf(rows)));
+        column = atEqualTimes(vectorOf(columns[k]), spacing);
+        notes.warnings.push_back(fmt::format("Column '{}': {}", name, jitterOf(spacing)));
       }
     } else {
       column.values = vectorOf(columns[k]);

@@ -64,6 +64,9 @@ struct Options {
   /// If errors as large as those of the held-out trials are less probable than this, the verdict
   /// says so and gives no probability of an effect.
   double farOff = 0.01;
+  /// Smallest share of the excess squared error that effects must explain in simulation to be
+  /// named.
+  double leastExplained = 0.05;
   /// Called between fits; returning false ends the search, and the verdict holds the results so
   /// far.
   std::function<bool(const Progress&)> progress;

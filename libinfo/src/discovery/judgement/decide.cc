@@ -89,9 +89,10 @@ Decision decide(const std::vector<Candidate>& candidates, const Judgement& judge
   }
   const Adequacy& after = judgement.after;
   const bool contradicted = judgement.heldOutWorse || judgement.strangeAfter;
+  const bool explainsNothing = judgement.explained && *judgement.explained < options.leastExplained;
   if (!after.white || !after.independent || !after.causeless ||
       judgement.latentAfter > options.latentTolerance || (contradicted && !judgement.replicated) ||
-      stretched || judgement.nonparametricWins) {
+      stretched || judgement.nonparametricWins || explainsNothing) {
     decision.finding = Finding::unknown;
     decision.proxy = true;
     decision.probability = 0;

@@ -20,6 +20,9 @@ struct Judgement {
   bool replicated = false;         ///< but they show the same effects: Replication::replicated
   bool heldOutFarOff = false;      ///< their simulation errors are improbable: Options::farOff
   bool nonparametricWins = false;  ///< NonparametricForce::wins
+  /// Share of the base model's excess squared error that the chosen effects explain:
+  /// ExcessError::closedFromCalibrated.
+  std::optional<double> explained;
 };
 
 struct Decision {
@@ -40,6 +43,8 @@ struct Decision {
 /// - Chosen, but one of them, without equivalents, has a shape parameter at a bound: the same,
 ///   since the true force has another form.
 /// - Chosen, but a non-parametric force explains more: the same.
+/// - Chosen, but the simulation with them explains less than `leastExplained` of the excess error:
+///   the same.
 /// - Chosen: each forms a class with its declared equivalents and with all alternatives whose log
 ///   evidence is at most `classWidth` lower. If every class has one member: `named`, or `parameter`
 ///   if all are errors of parameters; otherwise `ambiguous`. No probability is given if the
