@@ -57,7 +57,7 @@ class Render : public Command {
     auto* time = options.add_option("--time", options_.time,
                                     "time of the picture [s]; default: the middle of the motion");
     time->check(finite())->type_name("SECONDS");
-    options.add_flag("--film", options_.film, "film of the whole motion, arm.mp4 (needs ffmpeg)")
+    options.add_flag("--film", options_.film, "film of the whole motion, film.mp4 (needs ffmpeg)")
         ->excludes(time);
     options.add_option("--fps", options_.framesPerSecond, "frames per second of the film")
         ->check(between(1, 240))

@@ -221,7 +221,7 @@ view::SceneOptions sceneOptions(const RenderOptions& options, const Shown& shown
 ExitStatus drawPictures(const RenderOptions& options, const CommandContext& context) {
   const auto begin = std::chrono::steady_clock::now();
   const bool toFilm = options.film && view::FilmWriter::available();
-  OutputFolder folder(context, {!options.film ? "arm.png" : toFilm ? "arm.mp4" : frameName(0)});
+  OutputFolder folder(context, {!options.film ? "picture.png" : toFilm ? "film.mp4" : frameName(0)});
   Summary summary(context);
   const Shown shown = readShown(options, summary);
   const Eigen::VectorXd& times = shown.times;
@@ -269,7 +269,7 @@ ExitStatus drawPictures(const RenderOptions& options, const CommandContext& cont
 
   std::string verdict;
   if (toFilm) {
-    folder.writeFile("arm.mp4", [&](const std::filesystem::path& file) {
+    folder.writeFile("film.mp4", [&](const std::filesystem::path& file) {
       view::FilmWriter film(file, options.width, options.height, options.framesPerSecond,
                             context.threads);
       drawAll([&](Eigen::Index, const view::Image& image) { film.add(image); });
@@ -279,7 +279,7 @@ ExitStatus drawPictures(const RenderOptions& options, const CommandContext& cont
                           numberText(options.framesPerSecond));
   } else {
     drawAll([&](Eigen::Index k, const view::Image& image) {
-      folder.write(options.film ? frameName(k) : "arm.png",
+      folder.write(options.film ? frameName(k) : "picture.png",
                    [&](std::ostream& out) { out << view::pngOf(image); });
     });
     verdict = options.film ? fmt::format("{} frames of a film.", times.size())
@@ -288,7 +288,7 @@ ExitStatus drawPictures(const RenderOptions& options, const CommandContext& cont
   if (options.film && !toFilm) {
     summary.warn(
         fmt::format("ffmpeg is not installed; this command makes the film from the frames: ffmpeg "
-                    "-framerate {} -i {}/frame_%04d.png -pix_fmt yuv420p arm.mp4",
+                    "-framerate {} -i {}/frame_%04d.png -pix_fmt yuv420p film.mp4",
                     numberText(options.framesPerSecond), context.out->string()));
   }
 

@@ -4,7 +4,7 @@
 
 namespace app {
 
-/// Draws arm.png, or arm.mp4, or without ffmpeg the film's pictures frame_0001.png, …
+/// Draws picture.png, or film.mp4, or without ffmpeg the film's pictures frame_0001.png, …
 ExitStatus drawPictures(const RenderOptions& options, const CommandContext& context);
 
 }  // namespace app

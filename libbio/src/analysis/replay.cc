@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "analysis/initial_speed.h"
 #include "bio/analysis/observed_motion.h"
 #include "bio/model/integrator_names.h"
 #include "simulation/integrators.h"
@@ -93,7 +94,7 @@ TrialBeginning beginningOf(const Trial& trial, const Model& model, const Musculo
   using From = TrialBeginning::From;
   TrialBeginning beginning;
   beginning.point.q = startCoordinates(trial, arm, given);
-  beginning.point.qDot = Eigen::VectorXd::Zero(beginning.point.q.size());
+  beginning.point.qDot = beginning.point.speedSd = Eigen::VectorXd::Zero(beginning.point.q.size());
   if (!arm.prescribed().empty()) {
     Eigen::VectorXd q = beginning.point.q;
     prescribedMotionOf(trial, arm).place(trial.times[0], q, beginning.point.qDot);
@@ -102,13 +103,19 @@ TrialBeginning beginningOf(const Trial& trial, const Model& model, const Musculo
   for (Eigen::Index i = 0; i < beginning.point.q.size(); ++i) {
     const std::string& free = arm.skeleton().coordinates()[static_cast<std::size_t>(i)].name;
     if (given.contains(free) || arm.isPrescribed(static_cast<int>(i))) continue;
-    for (const MeasuredMotion& measured : trial.measured)
-      isMeasured = isMeasured || (measured.coordinate == free && measured.values.size() > 0);
+    for (const MeasuredMotion& measured : trial.measured) {
+      if (measured.coordinate != free || measured.values.size() == 0) continue;
+      isMeasured = true;
+      const bool turns = arm.skeleton().coordinates()[static_cast<std::size_t>(i)].isRotation;
+      beginning.point.speedSd[i] = std::abs(initialSpeedShown(
+          {measured.times.begin(), measured.times.end()}, measured.values, turns ? 0.3 : 0.3 / 8));
+    }
     for (const TrialStart& start : model.fitted.starts) {
       if (trial.sha256.empty() || start.sha256 != trial.sha256 || start.coordinate != free)
         continue;
       beginning.point.q[i] = start.value;
       beginning.point.qDot[i] = start.speed;
+      beginning.point.speedSd[i] = 0;  // the fit knows it better
       isFitted = true;
     }
   }

@@ -7,12 +7,12 @@
 #include <limits>
 #include <stdexcept>
 
+#include "analysis/initial_speed.h"
 #include "bio/analysis/replay.h"
 #include "bio/discovery/effects.h"
 #include "bio/discovery/with_experimental_conditions.h"
 #include "bio/sensitivity/coupled_sensitivity.h"
 #include "bio/tables/trial_review.h"
-#include "discovery/initial_speed.h"
 #include "discovery/look_at.h"
 
 namespace bio::discover {
@@ -116,7 +116,7 @@ void MusculoskeletalProblem::addTrial(Trial trial) {
   const double length = turns ? 1 : 0.125;  // [m] that stand for a radian
   one.angle = addOwnQuantity("", {"", turns ? "rad" : "m", one.measured[0], observed.rangeMin,
                                   observed.rangeMax, options_.startSd * length, false});
-  const double shown = std::abs(initialSpeedShown(one.times, one.measured));
+  const double shown = std::abs(initialSpeedShown(one.times, one.measured, 0.3 * length));
   one.speed = addOwnQuantity(
       ".speed", {"", turns ? "rad/s" : "m/s", 0, turns ? -10.0 : -2.0, turns ? 10.0 : 2.0,
                  std::max(options_.speedSd * length, shown), false});

@@ -52,9 +52,11 @@ void addStartParameters(const MusculoskeletalSystem& arm, const StartPoint& star
     const auto k = static_cast<Eigen::Index>(i);
     if (arm.isPrescribed(static_cast<int>(i))) continue;
     const bool turns = coordinates[i].isRotation;
+    const double least = turns ? 0.1 : 0.02;
     list.add("initial." + coordinates[i].name + ".speed", turns ? "rad/s" : "m/s",
              "speed at the start", start.qDot.size() ? start.qDot[k] : 0.0,
-             {turns ? -10.0 : -2.0, turns ? 10.0 : 2.0, turns ? 0.1 : 0.02},
+             {turns ? -10.0 : -2.0, turns ? 10.0 : 2.0,
+              start.speedSd.size() ? std::max(least, start.speedSd[k]) : least},
              {InitialTarget{static_cast<int>(i), true}});
   }
 }

@@ -74,7 +74,7 @@ class RenderCommand : public testing::Test {
 TEST_F(RenderCommand, DrawsAPictureWithoutADisplayAndLeavesNoServer) {
   const ProgramResult result = render({"--show-wraps", "--ghost", states_});
   ASSERT_EQ(result.status, 0) << result.err;
-  const std::string png = contentOf(scratch_ / "out/arm.png");
+  const std::string png = contentOf(scratch_ / "out/picture.png");
   ASSERT_GT(png.size(), 1000u);
   EXPECT_EQ(png.substr(1, 3), "PNG");
   EXPECT_EQ(static_cast<unsigned char>(png[19]), 160);  // width and height, big-endian
@@ -94,13 +94,13 @@ TEST_F(RenderCommand, TheGhostMayBeAnotherModel) {
   text.replace(at, joint.size(), "0.0061 -0.2104 -0.0123");
   const std::string shorter = scratch_.file("shorter.osim", text);
   ASSERT_EQ(render({}).status, 0);
-  const std::string alone = contentOf(scratch_ / "out/arm.png");
+  const std::string alone = contentOf(scratch_ / "out/picture.png");
   ASSERT_EQ(render({"--force", "--ghost", states_}).status, 0);
-  const std::string same = contentOf(scratch_ / "out/arm.png");
+  const std::string same = contentOf(scratch_ / "out/picture.png");
   const ProgramResult result = render({"--force", "--ghost", states_, "--ghost-model", shorter});
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_NE(contentOf(scratch_ / "out/arm.png"), same);
-  EXPECT_NE(contentOf(scratch_ / "out/arm.png"), alone);
+  EXPECT_NE(contentOf(scratch_ / "out/picture.png"), same);
+  EXPECT_NE(contentOf(scratch_ / "out/picture.png"), alone);
   EXPECT_THAT(contentOf(scratch_ / "out/summary.json"), HasSubstr("shorter.osim"));
 }
 
@@ -125,7 +125,7 @@ class RenderGeometry : public RenderCommand {
                              "--force", "--size", "160x120", "--geometry", geometry});
     EXPECT_EQ(result.status, 0) << result.err;
     messages = result.err;
-    return contentOf(scratch_ / "out/arm.png");
+    return contentOf(scratch_ / "out/picture.png");
   }
 };
 
@@ -157,7 +157,7 @@ TEST_F(RenderCommand, MakesAFilm) {
   if (!fs::exists("/usr/bin/ffmpeg")) GTEST_SKIP() << "ffmpeg is not installed";
   const ProgramResult result = render({"--film", "--fps", "20"});
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_EQ(contentOf(scratch_ / "out/arm.mp4").substr(4, 4), "ftyp");
+  EXPECT_EQ(contentOf(scratch_ / "out/film.mp4").substr(4, 4), "ftyp");
   EXPECT_THAT(contentOf(scratch_ / "out/summary.json"), HasSubstr("\"pictures\": 5"));
   EXPECT_FALSE(made("frame_0001.png"));
   expectNothingLeftRunning();
@@ -168,7 +168,7 @@ TEST_F(RenderCommand, WithoutFfmpegKeepsThePicturesAndSaysHowToMakeTheFilm) {
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(result.err, HasSubstr("ffmpeg -framerate 10 -i "));
   EXPECT_TRUE(made("frame_0001.png") && made("frame_0003.png"));
-  EXPECT_FALSE(made("frame_0004.png") || made("arm.mp4"));
+  EXPECT_FALSE(made("frame_0004.png") || made("film.mp4"));
 }
 
 TEST_F(RenderCommand, AFailingFfmpegIsOneLineAndLeavesNothing) {

@@ -61,6 +61,21 @@ TEST(TrialSet, SensitivitiesAreDerivativesOfTheOutputs) {
   EXPECT_TRUE((at.gamma.col(5).head(first).array() == 0).all());
 }
 
+TEST(TrialSet, ASpeedAtTheStartIsAsUncertainAsTheRecordingShows) {
+  std::vector<Trial> list = {subject().trial("curl_slow", 1.0, {}, 100),
+                             subject().trial("curl_slow", 1.0, {}, 100)};
+  MeasuredMotion& moving = list[1].measured.front();
+  moving.values = (0.6 + 1.9 * (moving.times.array() - moving.times[0])).matrix();
+  TrialSetOptions options;
+  options.parameters = {"hand.mass"};
+  options.ownStart = true;
+  const TrialSet trials(subject().model, SyntheticElbow::options(), list, options);
+  std::map<std::string, double> sds;
+  for (const info::Parameter& one : trials.parameters()) sds[one.name] = one.prior->sd;
+  EXPECT_EQ(sds.at("trial1.initial.elbow_flexion.speed"), 0.1);
+  EXPECT_NEAR(sds.at("trial2.initial.elbow_flexion.speed"), 1.9, 0.01);
+}
+
 // Trials of different length have different knots; one trial has none.
 TEST(TrialSet, KnotsOfLatentExcitationsBelongToTheirTrials) {
   std::vector<Trial> list = {subject().trial("curl_slow", 1.0, {}, 30),

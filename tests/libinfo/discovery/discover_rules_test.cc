@@ -80,6 +80,20 @@ TEST(Decide, KeepsANameThatHeldOutTrialsShowWithOtherParameters) {
   EXPECT_EQ(decide(catalogue(), j, {}).finding, Finding::unknown);
 }
 
+TEST(Decide, NamesNothingThatExplainsNothing) {
+  Judgement j = raced({{{0}, 30.0}, {{1}, 20.0}}, {0});
+  j.explained = 0.06;
+  EXPECT_EQ(decide(catalogue(), j, {}).finding, Finding::named);
+  for (const double share : {0.04, 0.0, -2.0}) {
+    j.explained = share;
+    const Decision d = decide(catalogue(), j, {});
+    EXPECT_EQ(d.finding, Finding::unknown) << share;
+    EXPECT_TRUE(d.proxy);
+  }
+  j.explained.reset();  // the base model's error is about that of the sensor
+  EXPECT_EQ(decide(catalogue(), j, {}).finding, Finding::named);
+}
+
 TEST(Decide, SaysUnknownWhenALawFitsOnlyAtTheEdgeOfItsShape) {
   std::vector<Candidate> all = catalogue();
   all[0].quantities = {0, 4};

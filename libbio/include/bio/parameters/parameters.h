@@ -123,6 +123,9 @@ struct ModelParameter {
 struct StartPoint {
   Eigen::VectorXd q;     ///< [rad] or [m]
   Eigen::VectorXd qDot;  ///< [rad/s] or [m/s]; empty: 0
+  /// Speeds that the recording shows there: the prior standard deviation of a speed is at least as
+  /// large [rad/s] or [m/s]; empty: 0.
+  Eigen::VectorXd speedSd = {};
 };
 
 /// All parameters that affect the motion, by name.

@@ -147,6 +147,11 @@ double maxIsometricForce(const Muscle& muscle) {
 
 }  // namespace
 
+std::string endOfLimb(const EncompassingModel& model) {
+  const std::string& last = model.movedBodies().back();
+  return last.find("hand") != std::string::npos ? "the hand" : last;
+}
+
 CoordinateUnits unitsOf(const EncompassingModel& model) {
   if (model.coordinate().isRotation) return {"rad", "rad/s", "N m", "torque"};
   double up = 0, down = 0;

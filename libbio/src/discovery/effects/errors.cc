@@ -88,7 +88,7 @@ void addNuisances(EncompassingModel& model) {
 
 void addMassError(EncompassingModel& model) {
   if (model.movedBodies().empty()) return;
-  addBeyond(model, model.find(massName), 0.3, "mass", "mass of the forearm",
+  addBeyond(model, model.find(massName), 0.3, "mass", "mass of the limb",
             "The moving bodies are heavier or lighter than in the model.", {"payload"});
 }
 

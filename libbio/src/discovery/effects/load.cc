@@ -40,7 +40,8 @@ void addPayload(EncompassingModel& model) {
   const std::string& hand = model.movedBodies().back();
   const std::size_t m = model.add(amplitude("payload.mass", "kg", 0, 5, 0.7),
                                   {Meaning::Kind::shift, model.numbers(hand + ".mass")});
-  model.add(candidate(model, "payload", "mass in the hand",
+  model.add(candidate(model, "payload",
+                      (endOfLimb(model) == "the hand" ? "mass in " : "mass on ") + endOfLimb(model),
                       fmt::format("The {} carries a mass that the model does not have.", hand),
                       info::discover::EffectKind::structure, {m}, {{0.2}}, {"mass"}));
 }
@@ -49,7 +50,7 @@ void addTilt(EncompassingModel& model) {
   if (horizontal(model).isZero()) return;
   const std::size_t angle =
       model.add(amplitude("tilt.angle", "rad", -0.5, 0.5, 0.3), {Meaning::Kind::tilt, {}});
-  model.add(candidate(model, "tilt", "arm tilt",
+  model.add(candidate(model, "tilt", "tilt of the limb",
                       "Gravity acts in a different direction than the model assumes: the limb is "
                       "tilted in the plane of the joint.",
                       info::discover::EffectKind::structure, {angle}, {{0.05}}, {"handforce"}));
@@ -82,7 +83,7 @@ void addHandForce(EncompassingModel& model) {
   const double sign = A < 0 ? -1 : 1;
   const auto force = addExpression(
       model, {"handforce",
-              "horizontal force on the hand",
+              "horizontal force on " + endOfLimb(model),
               fmt::format("A constant horizontal force acts on the {}.", hand),
               fmt::format("F*(({:.17g})*cos(q+t)+({:.17g})*sin(q+t))", sign * A, sign * B),
               {"F", "t"},

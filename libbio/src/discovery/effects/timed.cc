@@ -35,10 +35,12 @@ void addTimedForces(EncompassingModel& model) {
       {Of::force, true, 0, 0}, torque, {0.3 * most});
   if (model.movedBodies().empty()) return;
   const auto mass = amplitude("", "kg", 0, 5, 0.7);
-  add("mass_from", "mass picked up by the hand", "The hand picks up a mass during the trial.",
+  const std::string hand = endOfLimb(model);
+  const std::string subject = hand == "the hand" ? "The hand" : hand;
+  add("mass_from", "mass picked up by " + hand, subject + " picks up a mass during the trial.",
       {Of::mass, false, 0, 0}, mass, {0.3});
-  add("mass_until", "mass put down by the hand",
-      "The hand carries a mass and puts it down during the trial.", {Of::mass, true, 0, 0}, mass,
+  add("mass_until", "mass put down by " + hand,
+      subject + " carries a mass and puts it down during the trial.", {Of::mass, true, 0, 0}, mass,
       {0.3});
 }
 

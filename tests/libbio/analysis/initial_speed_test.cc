@@ -1,4 +1,4 @@
-#include "discovery/initial_speed.h"
+#include "analysis/initial_speed.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 
 namespace {
 
-using bio::discover::initialSpeedShown;
+using bio::initialSpeedShown;
 
 constexpr double noise = 0.0087;  // half a degree
 

@@ -1,11 +1,12 @@
-#include "discovery/initial_speed.h"
+#include "analysis/initial_speed.h"
 
 #include <cmath>
 
-namespace bio::discover {
+namespace bio {
 
-double initialSpeedShown(const std::vector<double>& times, const Eigen::VectorXd& measured) {
-  constexpr double span = 0.25, slowest = 0.3, standardErrors = 4;
+double initialSpeedShown(const std::vector<double>& times, const Eigen::VectorXd& measured,
+                         double slowest) {
+  constexpr double span = 0.25, standardErrors = 4;
   Eigen::Index n = 0;
   while (n < measured.size() && times[static_cast<std::size_t>(n)] - times[0] <= span) ++n;
   if (n < 8) return 0;
@@ -24,4 +25,4 @@ double initialSpeedShown(const std::vector<double>& times, const Eigen::VectorXd
   return std::abs(speed) > slowest && std::abs(speed) > standardErrors * error ? speed : 0;
 }
 
-}  // namespace bio::discover
+}  // namespace bio
