@@ -10,14 +10,12 @@
 //   sum of chords            OpenSim adds chords of about 1 mm, and ours added so is not longer
 //   tangent cylinder         OpenSim takes a torus for the cylinder that touches its ring
 // Other rows are printed. Ends with 1 if those are more than 2 % of all rows, if any of a path that
-// touches nothing or a sphere is off by 2e-6 m, or if a path has no length; with 77 if a file is
-// not there.
+// touches nothing or a sphere is off by 2e-6 m, or if a path has no length.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -294,11 +292,6 @@ int main(int argc, char** argv) {
   if (argc != 3) {
     fmt::print(stderr, "usage: posture_tables MODEL.osim POSTURES.csv\n");
     return 2;
-  }
-  for (const char* file : {argv[1], argv[2]}) {
-    if (std::filesystem::exists(file)) continue;
-    fmt::print("posture_tables: skipped, there is no {}\n", file);
-    return 77;
   }
   try {
     const bio::Model model = bio::readOsim(argv[1]);

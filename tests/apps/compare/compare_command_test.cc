@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "support/reference.h"
 #include "support/run_program.h"
 #include "support/scratch_folder.h"
 #include "support/shipped_files.h"
@@ -105,14 +106,10 @@ TEST(CompareCommand, WritesTheTableTheSummaryAndTheReport) {
 
 // The elbow as OpenSim 4.6 moved it, in the columns its own states files have.
 TEST(CompareCommand, LaysOpenSimsStatesBesideOurs) {
-  const std::filesystem::path reference =
-      std::filesystem::path(FISHERHILL_SOURCE_DIR) / "../shared/reference";
-  if (!std::filesystem::exists(reference / "forward_101.csv")) {
-    GTEST_SKIP() << "needs OpenSim's reference files in ../shared/reference, which are not part of "
-                    "the project";
-  }
+  const std::filesystem::path openSims =
+      bio::fixtures::reference("opensim/motion_Schutte1993_101.csv");
   const ScratchFolder scratch;
-  std::istringstream rows(support::contentOf(reference / "forward_101.csv"));
+  std::istringstream rows(support::contentOf(openSims));
   std::string row, states;
   std::getline(rows, row);
   int count = 0;
@@ -130,11 +127,10 @@ TEST(CompareCommand, LaysOpenSimsStatesBesideOurs) {
           "/jointset/elbow/elbow_flexion/speed\n" +
           states);
   const std::string out = (scratch / "out").string();
-  const ProgramResult result =
-      runFisherHill({"compare", (reference / "elbow8_reference.osim").string(),
-                     (reference / "excitations_101.sto").string(), "--initial", "elbow_flexion=0.6",
-                     "--integrators", "vi", "--steps", "0.01", "--also", "OpenSim=" + file,
-                     "--also", "table=" + (reference / "forward_101.csv").string(), "--out", out});
+  const ProgramResult result = runFisherHill(
+      {"compare", model, bio::fixtures::reference("opensim/excitations_101.sto").string(),
+       "--initial", "elbow_flexion=0.6", "--integrators", "vi", "--steps", "0.01", "--also",
+       "OpenSim=" + file, "--also", "table=" + openSims.string(), "--out", out});
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = nlohmann::json::parse(support::contentOf(out + "/summary.json"));
   EXPECT_LT(json["also_OpenSim_rms_deg"].get<double>(), 1e-3);

@@ -2,8 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "libbio/tables/binary_samples.h"
 #include "support/run_program.h"
@@ -107,17 +108,46 @@ TEST(EmgCommand, JoinsRecordingsOfTwoClocks) {
   EXPECT_TRUE((names + 1)->ends_with("\t-21")) << *(names + 1);
 }
 
-TEST(EmgCommand, RunsOnTheGoniometerRecordingWithTheShippedConfiguration) {
-  const std::string raw =
-      std::string(FISHERHILL_SOURCE_DIR) + "/../shared/data/emg/goniometer/Carl_1.txt";
-  if (!std::filesystem::exists(raw)) GTEST_SKIP() << "no recording at " << raw;
+// A recording of our own in the columns of the shipped configuration: 6 s, three columns of
+// different length, tabs, carriage returns, an EMG with an offset and a line of 120 Hz, an angle
+// that goes beyond the instrument's end stop.
+std::string goniometerRecording(double& clipped) {
+  constexpr int emgRows = 6000, angleRows = 300, constantRows = 5900;
+  std::string text;
+  std::uint32_t state = 1;
+  int beyond = 0;
+  for (int k = 0; k < emgRows; ++k) {
+    const double t = 0.001 * k, effort = std::pow(std::sin(std::numbers::pi * t / 2), 2);
+    state = state * 1664525u + 1013904223u;
+    const double noise = static_cast<double>(state >> 8) / (1 << 24) - 0.5;
+    const double emg = 135 + 2000 * effort * noise + 40 * std::sin(2 * std::numbers::pi * 120 * t);
+    text += std::to_string(std::lround(emg)) + '\t';
+    if (k < angleRows) {
+      const double angle = -2900 - 1150 * std::sin(std::numbers::pi * 0.02 * k / 1.5);
+      beyond += angle < -4000 ? 1 : 0;
+      text += std::to_string(std::lround(std::max(angle, -4000.0)));
+    }
+    text += '\t';
+    if (k < constantRows) text += "31";
+    text += "\r\n";
+  }
+  clipped = static_cast<double>(beyond) / angleRows;
+  return text;
+}
+
+TEST(EmgCommand, RunsOnAGoniometerRecordingWithTheShippedConfiguration) {
+  const ScratchFolder scratch;
+  double clipped = 0;
+  const std::string raw = scratch.file("curls.txt", goniometerRecording(clipped));
+  ASSERT_GT(clipped, 0.05);
   const ProgramResult result =
       runFisherHill({"emg", raw, "--config", "emg_data/configs/goniometer.toml", "--json"});
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = nlohmann::json::parse(result.out);
   EXPECT_THAT(json["muscles"], testing::ElementsAre("BIClong", "BICshort", "BRA", "BRD"));
   EXPECT_THAT(json["remarks"], Contains(HasSubstr("does not show how they share the load")));
-  EXPECT_NEAR(json["measured_fraction_missing"], 0.013, 0.0005);
+  // samples at the stop itself count as clipped: one on either side of a peak may round to it
+  EXPECT_NEAR(json["measured_fraction_missing"].get<double>(), clipped, 0.02);
 }
 
 }  // namespace

@@ -217,6 +217,7 @@ TEST(Remainder, OfAnInputThatComesLateFollowsTheInputs) {
   });
   const ResidualEvidence evidence = remainderOf(data);
   EXPECT_GT(evidence.of(Cause::inputs), 5);
+  EXPECT_EQ(evidence.strongest(), Cause::inputs);
 }
 
 // A mass that the model lacks pulls against every acceleration.
@@ -237,6 +238,7 @@ TEST(Remainder, OfAMassFollowsTheAcceleration) {
   }
   const ResidualEvidence evidence = remainderOf(data);
   EXPECT_GT(evidence.of(Cause::acceleration), 5);
+  EXPECT_EQ(evidence.strongest(), Cause::acceleration);
 }
 
 TEST(Remainder, OfASensorThatIsNotStraightFollowsTheSensor) {
