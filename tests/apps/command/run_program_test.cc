@@ -116,7 +116,7 @@ TEST(RunProgram, CallsAFaultOfTheProgramByItsName) {
            [] { (void)std::string("a").substr(2); }, [] { std::function<void()>()(); },
            [] { (void)std::optional<int>().value(); },
            [] { (void)std::get<int>(std::variant<int, double>(1.5)); },
-           [] { (void)nlohmann::json::parse("{"); }}) {
+           [] { const nlohmann::json read = nlohmann::json::parse("{"); }}) {
     const Outcome outcome = sayOf(fault);
     EXPECT_EQ(outcome.status, 2);
     EXPECT_THAT(outcome.err,

@@ -44,7 +44,7 @@ bio::Channel smooth(const std::string& name) {
 }
 
 bio::Recording recording(const std::vector<bio::Channel>& channels) {
-  return {"made_up.csv", bio::RecordingFormat::table, channels, {}};
+  return {"made_up.csv", bio::RecordingFormat::table, channels, {}, {}};
 }
 
 bio::EmgConfig envelopeConfig() {

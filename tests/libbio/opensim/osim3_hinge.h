@@ -37,9 +37,9 @@ inline const std::string hingeOfOpenSim3 = R"(<?xml version="1.0" encoding="UTF-
 <PathPoint name="c"><location>0.01 -0.1 0</location><body>lower</body></PathPoint>
 </objects></PathPointSet>
 <PathWrapSet><objects><PathWrap name="w"><wrap_object>roll</wrap_object><range>2 3</range></PathWrap></objects></PathWrapSet></GeometryPath>
-<max_isometric_force>500</max_isometric_force><optimal_fiber_length>0.1</optimal_fiber_length><tendon_slack_length>0.2</tendon_slack_length><pennation_angle>0.1</pennation_angle>
+<max_isometric_force>500</max_isometric_force><optimal_fiber_length>0.1</optimal_fiber_length><tendon_slack_length>0.2</tendon_slack_length><pennation_angle_at_optimal>0.1</pennation_angle_at_optimal>
 <time_scale>0.1</time_scale><activation1>7.667</activation1><activation2>1.459854</activation2><damping>0.017</damping>
-<active_force_length_curve><SimmSpline><x>0 0.5 1 1.5 2</x><y>0 0.3 1 0.3 0</y></SimmSpline></active_force_length_curve>
+<SimmSpline name="active_force_length_curve"><x>0 0.5 1 1.5 2</x><y>0 0.3 1 0.3 0</y></SimmSpline>
 </Schutte1993Muscle_Deprecated>
 <CoordinateLimitForce name="stop"><coordinate>q</coordinate><upper_limit>90</upper_limit><lower_limit>-10</lower_limit><upper_stiffness>1</upper_stiffness><lower_stiffness>1</lower_stiffness><transition>5</transition></CoordinateLimitForce>
 <SpringGeneralizedForce name="spring"><coordinate>q</coordinate><viscosity>0.1</viscosity></SpringGeneralizedForce>

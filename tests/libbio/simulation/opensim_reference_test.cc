@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "bio/analysis/path_postures.h"
-#include "support/opensim_motion.h"
+#include "libbio/simulation/opensim_motion.h"
 #include "support/reference.h"
 #include "support/shipped_elbow.h"
 

@@ -6,8 +6,8 @@
 
 namespace info::discover {
 
-/// A position of the first output beyond which the base model lacks a force at once, as where a
-/// muscle's path jumps or the limb meets something (docs/decisions/068-position-breaks.md).
+/// A position of the first output beyond which the base model lacks a force at once, as where
+/// something is met or an input's direction jumps (docs/decisions/068-position-breaks.md).
 struct PositionBreak {
   double position = 0;  ///< [unit of the output]
   bool above = true;    ///< beyond it: larger positions; false: smaller ones
