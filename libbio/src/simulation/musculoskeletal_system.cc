@@ -148,8 +148,7 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
   if (like) {
     isSingularInDefaultPosture_ = like->isSingularInDefaultPosture_;
   } else {
-    requireMovedMass(model, skeleton_);
-    isSingularInDefaultPosture_ = !whatMovesNoMassAt(skeleton_, skeleton_.defaultValues()).empty();
+    isSingularInDefaultPosture_ = !requireMovedMass(model, skeleton_);
     warnings_ = lockRemarks(model, options.skeleton);
     notes_ = adviceOnCylinders(options.wrapAsCylinder);
   }

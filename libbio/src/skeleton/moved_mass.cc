@@ -74,7 +74,7 @@ std::string whatMovesNoMass(const Skeleton& skeleton) {
                    ", must move some: the bodies behind it need mass, or it has to be locked";
 }
 
-void requireMovedMass(const Model& model, const Skeleton& skeleton) {
+bool requireMovedMass(const Model& model, const Skeleton& skeleton) {
   for (const Body& body : model.bodies) {
     const Eigen::Vector3d principal = principalMoments(body);
     const bool isRounding =
@@ -87,6 +87,7 @@ void requireMovedMass(const Model& model, const Skeleton& skeleton) {
   }
   const std::string nothing = whatMovesNoMass(skeleton);
   if (!nothing.empty()) throw std::invalid_argument(nothing);
+  return whatMovesNoMassAt(skeleton, skeleton.defaultValues()).empty();
 }
 
 }  // namespace bio

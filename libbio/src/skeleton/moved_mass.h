@@ -19,9 +19,10 @@ std::string whatMovesNoMass(const Skeleton& skeleton);
 /// together without moving any mass"; empty if all move some.
 std::string whatMovesNoMassAt(const Skeleton& skeleton, const Eigen::VectorXd& q);
 
+/// Whether every coordinate moves mass of its own in the default posture already.
 /// @throws std::invalid_argument if a free coordinate, or several together, move no mass in any
 ///   posture, or if a body that moves has a principal moment of inertia below −5 % of its largest
 ///   (rounded numbers of a flat body pass)
-void requireMovedMass(const Model& model, const Skeleton& skeleton);
+bool requireMovedMass(const Model& model, const Skeleton& skeleton);
 
 }  // namespace bio

@@ -76,8 +76,12 @@ TEST(Slider, HasEffectsInNewtonsAndMetres) {
     EXPECT_EQ(quantity.unit.find("rad"), std::string::npos) << quantity.name << quantity.unit;
     EXPECT_EQ(quantity.unit.find("N m"), std::string::npos) << quantity.name << quantity.unit;
     EXPECT_EQ(quantity.name.find("torque."), std::string::npos) << quantity.name;
-    if (quantity.name == "trial1.initial.x") EXPECT_DOUBLE_EQ(quantity.sd, 0.035 / 8);
-    if (quantity.name == "trial1.initial.x.speed") EXPECT_DOUBLE_EQ(quantity.sd, 0.1 / 8);
+    if (quantity.name == "trial1.initial.x") {
+      EXPECT_DOUBLE_EQ(quantity.sd, 0.035 / 8);
+    }
+    if (quantity.name == "trial1.initial.x.speed") {
+      EXPECT_DOUBLE_EQ(quantity.sd, 0.1 / 8);
+    }
   }
   const auto amplitudeOf = [&](const char* id) {
     return data.quantities()[data.candidates()[candidateOf(data, id)].quantities.front()];
