@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "bio/tables/file_error.h"
+#include "opensim/writing.h"
 #include "opensim/xml.h"
 
 namespace bio::osim {
@@ -31,12 +32,6 @@ std::vector<Element*> objectsIn(Element& owner, const char* set) {
 
 std::string textOf(const Element& owner, const char* property) {
   return trimmedText(owner.FirstChildElement(property));
-}
-
-Element* append(Element& owner, const char* name, const std::string& text) {
-  Element* child = owner.InsertNewChildElement(name);
-  child->SetText(text.c_str());
-  return child;
 }
 
 std::string nameIn(const Element& element) {
@@ -156,7 +151,7 @@ class Updating {
     if (name == "parent_body") name = "parent_frame";
     if (name == "child_body") name = "child_frame";
     const std::string tag = "socket_" + name;
-    if (!element.FirstChildElement(tag.c_str())) append(element, tag.c_str(), connectee);
+    if (!element.FirstChildElement(tag.c_str())) appendText(element, tag.c_str(), connectee);
   }
 
   void reverse(Element& joint) {
@@ -194,9 +189,9 @@ class Updating {
       if (!frames) frames = joint.InsertNewChildElement("frames");
       Element* frame = frames->InsertNewChildElement("PhysicalOffsetFrame");
       frame->SetAttribute("name", (base + "_offset").c_str());
-      append(*frame, "socket_parent", base == "ground" ? "/ground" : "/bodyset/" + base);
-      append(*frame, "translation", place ? trimmedText(place) : "0 0 0");
-      append(*frame, "orientation", turn ? trimmedText(turn) : "0 0 0");
+      appendText(*frame, "socket_parent", base == "ground" ? "/ground" : "/bodyset/" + base);
+      appendText(*frame, "translation", place ? trimmedText(place) : "0 0 0");
+      appendText(*frame, "orientation", turn ? trimmedText(turn) : "0 0 0");
       socket->SetText((base + "_offset").c_str());
       if (place) joint.DeleteChild(place);
       if (turn) joint.DeleteChild(turn);
@@ -323,13 +318,13 @@ class Updating {
         Element* objects = set->FirstChildElement("objects");
         if (!objects) objects = set->InsertNewChildElement("objects");
         joint = objects->InsertNewChildElement("FreeJoint");
-        append(*joint, "socket_parent_frame", "/ground");
-        append(*joint, "socket_child_frame", "/bodyset/" + name);
+        appendText(*joint, "socket_parent_frame", "/ground");
+        appendText(*joint, "socket_child_frame", "/bodyset/" + name);
       } else {
         Element* holder = body->FirstChildElement("Joint");
         if (!holder) holder = body->InsertNewChildElement("Joint");
         joint = holder->InsertNewChildElement("FreeJoint");
-        append(*joint, "parent_body", "ground");
+        appendText(*joint, "parent_body", "ground");
       }
       joint->SetAttribute("name", ("free_" + name).c_str());
       Element* list = joint->InsertNewChildElement("coordinates");

@@ -225,4 +225,17 @@ TEST(SourceTree, CmakeNamesEveryFileButEffectsAndThoseOfTheProgram) {
   }
 }
 
+// The fuzzed programs link a list of readers of their own, last in `.ci/run`: what it lacks shows up an hour later there.
+TEST(SourceTree, FuzzedReadersNameEveryReaderOfModelsAndRecordings) {
+  const std::string listed = contentOf(sourceTree / "tests/fuzz/CMakeLists.txt");
+  int readers = 0;
+  for (const std::string folder : {"opensim", "tables/formats"})
+    for (const auto& entry : fs::directory_iterator(sourceTree / "libbio/src" / folder))
+      if (entry.path().extension() == ".cc") {
+        EXPECT_THAT(listed, testing::HasSubstr(folder + "/" + entry.path().filename().string()));
+        ++readers;
+      }
+  EXPECT_GT(readers, 30);
+}
+
 }  // namespace
