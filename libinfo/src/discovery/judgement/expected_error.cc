@@ -65,15 +65,15 @@ ExpectedError expectedError(const Likelihood& held, const Fit& starts, const Fit
     trials.push_back(held.linearise(t, scattered, starts.values, uncertain.quantities, false));
     columns += trials.back().latent.cols() + trials.back().gamma.cols();
   }
-  const double variance = fit.noise.output * fit.noise.output;
-  MatrixXd moved = MatrixXd::Zero(samples, columns);  // in units of N(0, 1)
+  // both in standard deviations of the outputs until the end
+  MatrixXd moved = MatrixXd::Zero(samples, columns);  // by sources N(0, 1)
   MatrixXd P = MatrixXd::Identity(samples, samples);  // after the fit of the initial states
   Index row = 0, column = uncertain.root.cols();
   for (const Likelihood::Linear& l : trials) {
     const Index n = l.residuals.size();
     const MatrixXd& S = l.gamma;
     MatrixXd inner = S.transpose() * S;
-    inner.diagonal().array() += variance;
+    inner.diagonal().array() += 1;
     const MatrixXd own = MatrixXd::Identity(n, n) - S * inner.llt().solve(MatrixXd(S.transpose()));
     P.block(row, row, n, n) = own;
     if (uncertain.root.size() != 0)
@@ -84,7 +84,17 @@ ExpectedError expectedError(const Likelihood& held, const Fit& starts, const Fit
     column += l.latent.cols();
     row += n;
   }
-  const MatrixXd covariance = moved * moved.transpose() + variance * P * P.transpose();
+  VectorXd sds(samples);
+  row = 0;
+  for (std::size_t t = 0; t < trials.size(); ++t) {
+    const Index n = trials[t].residuals.size();
+    sds.segment(row, n) =
+        fit.noise.output.bySample(held.data().outputOfSample(held.trials()[t]), n);
+    row += n;
+  }
+  moved = sds.asDiagonal() * moved;
+  P = sds.asDiagonal() * P;
+  const MatrixXd covariance = moved * moved.transpose() + P * P.transpose();
   ExpectedError expected;
   expected.variances = Eigen::SelfAdjointEigenSolver<MatrixXd>(covariance, Eigen::EigenvaluesOnly)
                            .eigenvalues()

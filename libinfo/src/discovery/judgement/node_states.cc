@@ -50,13 +50,13 @@ NodeStates statesAtNodes(const Likelihood& likelihood, const Fit& fit) {
     const auto& linear = states.linear.back();
     const auto& nodes = data.latentTimes(trial);
     const FirstOutput first(data, trial);
-    states.q.push_back(
-        atNodes(nodes, first.times, first.of(data.measured(trial) - linear.residuals)));
+    states.q.push_back(atNodes(nodes, first.times, first.of(linear.outputs)));
     states.qDot.push_back(atNodes(nodes, first.times, first.of(linear.speeds)));
     const auto n = static_cast<Index>(nodes.size());
     MatrixXd response(n, linear.force.cols());
     for (Index j = 0; j < response.cols(); ++j)
-      response.col(j) = atNodes(nodes, first.times, first.of(linear.force.col(j)));
+      response.col(j) =
+          fit.noise.output.sd(0) * atNodes(nodes, first.times, first.of(linear.force.col(j)));
     states.response.push_back(std::move(response));
     const MatrixXd u = data.inputs(trial);
     MatrixXd placed(static_cast<Index>(nodes.size()), u.cols());

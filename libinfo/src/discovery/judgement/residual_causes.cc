@@ -160,11 +160,12 @@ MatrixXd accelerations(const Likelihood& likelihood, const Fit& fit, const NodeS
 }
 
 // 1, y, y² and ẏ of the first output at its samples
-std::vector<MatrixXd> sensorErrors(const Likelihood& likelihood, const NodeStates& states) {
+std::vector<MatrixXd> sensorErrors(const Likelihood& likelihood, const Fit& fit,
+                                   const NodeStates& states) {
   const DiscoveryProblem& data = likelihood.data();
   std::vector<VectorXd> outputs, squares, speeds;
   for (std::size_t t = 0; t < states.linear.size(); ++t) {
-    outputs.push_back(data.measured(likelihood.trials()[t]) - states.linear[t].residuals);
+    outputs.push_back(states.linear[t].outputs);
     speeds.push_back(states.linear[t].speeds);
   }
   const VectorXd y = scaled(outputs), ySquared = scaled({y.cwiseAbs2()}), yDot = scaled(speeds);
@@ -177,6 +178,7 @@ std::vector<MatrixXd> sensorErrors(const Likelihood& likelihood, const NodeState
     const auto& channels = data.outputOfSample(likelihood.trials()[t]);
     for (Index k = 0; !channels.empty() && k < n; ++k)
       if (channels[static_cast<std::size_t>(k)] != 0) own.row(k).setZero();
+    fit.noise.output.whiten(channels, own);
     columns.push_back(std::move(own));
     at += n;
   }
@@ -222,7 +224,7 @@ ResidualEvidence residualEvidence(const Likelihood& likelihood, const Fit& fit) 
   return {{of(outputsOf(states, fieldOfState(states))),
            of(outputsOf(states, pastInputs(likelihood, states))),
            of(outputsOf(states, accelerations(likelihood, fit, states))),
-           of(sensorErrors(likelihood, states)),
+           of(sensorErrors(likelihood, fit, states)),
            of(outputsOf(states, moments(likelihood, fit, states)))}};
 }
 

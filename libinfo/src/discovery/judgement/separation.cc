@@ -103,7 +103,7 @@ double expectedSeparation(const DiscoveryProblem& planned, const DiscoveryProble
     const VectorXd difference = one.outputs - other.outputs;
     MatrixXd S = one.variance + other.variance + one.starts * one.starts.transpose();
     if (latent > 0) S += one.latent;
-    S.diagonal().array() += a.noise.output * a.noise.output;
+    S.diagonal() += a.noise.output.bySample(planned.outputOfSample(trial), S.rows()).cwiseAbs2();
     nats += 0.5 * S.llt().matrixL().solve(difference).squaredNorm();
   }
   return nats;

@@ -68,11 +68,15 @@ Index Likelihood::samples() const {
   return n;
 }
 
-// J of residuals whose squares have this sum.
-double Likelihood::cost(const Noise& noise, const Point& point, double squares) {
-  double cost = 0.5 * point.xi.squaredNorm() + 0.5 * squares / (noise.output * noise.output);
+// J of whitened residuals whose squares have this sum.
+double Likelihood::cost(const Point& point, double squares) {
+  double cost = 0.5 * point.xi.squaredNorm() + 0.5 * squares;
   for (const VectorXd& eta : point.eta) cost += 0.5 * eta.squaredNorm();
   return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
+}
+
+void Likelihood::whiten(std::size_t at, const Noise& noise, VectorXd& samples) const {
+  noise.output.whiten(data_.outputOfSample(trials_[at]), samples);
 }
 
 VectorXd Likelihood::latentForce(std::size_t at, const Noise& noise, const VectorXd& eta) const {
@@ -83,41 +87,48 @@ VectorXd Likelihood::latentForce(std::size_t at, const Noise& noise, const Vecto
 double Likelihood::simulatedCost(const Noise& noise, const Point& point) const {
   double squares = 0;
   for (std::size_t t = 0; t < trials_.size(); ++t) {
-    const VectorXd y = data_.outputs(trials_[t], point.values, latentForce(t, noise, point.eta[t]));
-    squares += (data_.measured(trials_[t]) - y).squaredNorm();
+    VectorXd e = data_.measured(trials_[t]) -
+                 data_.outputs(trials_[t], point.values, latentForce(t, noise, point.eta[t]));
+    whiten(t, noise, e);
+    squares += e.squaredNorm();
   }
-  return cost(noise, point, squares);
+  return cost(point, squares);
 }
 
 Likelihood::Linear Likelihood::linearise(std::size_t at, const Hypothesis& hypothesis,
-                                         double latentSize, const VectorXd& values,
+                                         const Noise& noise, const VectorXd& values,
                                          const VectorXd& xi, const VectorXd& eta,
                                          const std::vector<std::size_t>& extra, bool force) const {
   std::vector<std::size_t> wanted = wantedOf(hypothesis);
   wanted.insert(wanted.end(), extra.begin(), extra.end());
   const bool latent = eta.size() != 0;
-  VectorXd d;
-  if (latent) d = latentSize * (roots_[at] * eta);
-  return linearOf(at, hypothesis, latent ? latentSize : 0, xi,
-                  data_.predict(trials_[at], values, d, wanted, latent || force), force);
+  return linearOf(at, hypothesis, noise, xi,
+                  data_.predict(trials_[at], values, latentForce(at, noise, eta), wanted,
+                                latent || force),
+                  latent, force);
 }
 
-/// @param latentSize 0: without latent force
 Likelihood::Linear Likelihood::linearOf(std::size_t at, const Hypothesis& hypothesis,
-                                        double latentSize, const VectorXd& xi,
-                                        DiscoveryProblem::Prediction prediction, bool force) const {
+                                        const Noise& noise, const VectorXd& xi,
+                                        DiscoveryProblem::Prediction prediction, bool latent,
+                                        bool force) const {
   const auto p = static_cast<Index>(hypothesis.free.size());
+  const std::vector<int>& outputs = data_.outputOfSample(trials_[at]);
+  noise.output.whiten(outputs, prediction.gamma);
+  if (prediction.latentGamma.size() != 0) noise.output.whiten(outputs, prediction.latentGamma);
   Linear linear;
   linear.residuals = data_.measured(trials_[at]) - prediction.outputs;
+  noise.output.whiten(outputs, linear.residuals);
   linear.gamma = prediction.gamma.leftCols(p);
   for (Index i = 0; i < p; ++i)
     linear.gamma.col(i) *= hypothesis.free[static_cast<std::size_t>(i)].slope(xi[i]);
   linear.extra = prediction.gamma.rightCols(prediction.gamma.cols() - p);
-  linear.latent = latentSize > 0
-                      ? MatrixXd(latentSize * (prediction.latentGamma *
+  linear.latent = latent && noise.latent > 0
+                      ? MatrixXd(noise.latent * (prediction.latentGamma *
                                                roots_[at].triangularView<Eigen::Lower>()))
                       : MatrixXd(linear.residuals.size(), 0);
   if (force) linear.force = std::move(prediction.latentGamma);
+  linear.outputs = std::move(prediction.outputs);
   linear.speeds = std::move(prediction.speeds);
   return linear;
 }
@@ -133,7 +144,7 @@ std::unique_ptr<DiscoveryProblem::Simulation> Likelihood::simulated(std::size_t 
 
 Likelihood::Linear Likelihood::linearise(std::size_t at, const Fit& fit, const VectorXd& values,
                                          const std::vector<std::size_t>& extra, bool force) const {
-  return linearise(at, fit.hypothesis, fit.noise.latent, values, fit.xi, fit.eta[at], extra, force);
+  return linearise(at, fit.hypothesis, fit.noise, values, fit.xi, fit.eta[at], extra, force);
 }
 
 double Likelihood::simulationError(const VectorXd& values) const {

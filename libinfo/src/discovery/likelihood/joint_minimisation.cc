@@ -42,19 +42,18 @@ VectorXd withCoordinates(const Hypothesis& h, VectorXd values, const VectorXd& x
 }  // namespace
 
 Likelihood::Normal Likelihood::normalEquations(const std::vector<Linear>& trials,
-                                               const Noise& noise, const Point& point) const {
-  const double precision = 1 / (noise.output * noise.output);
+                                               const Point& point) {
   Normal normal;
   DampedSystem::Blocks& blocks = normal.blocks;
   blocks.information = MatrixXd::Identity(point.xi.size(), point.xi.size());
   normal.downhill.xi = -point.xi;
   for (std::size_t t = 0; t < trials.size(); ++t) {
     const Linear& l = trials[t];
-    blocks.information.noalias() += precision * l.gamma.transpose() * l.gamma;
-    blocks.latent.push_back(latentBlock(l.latent, noise.output));
-    blocks.coupling.push_back(precision * l.latent.transpose() * l.gamma);
-    normal.downhill.xi.noalias() += precision * l.gamma.transpose() * l.residuals;
-    normal.downhill.eta.push_back(precision * l.latent.transpose() * l.residuals - point.eta[t]);
+    blocks.information.noalias() += l.gamma.transpose() * l.gamma;
+    blocks.latent.push_back(latentBlock(l.latent));
+    blocks.coupling.push_back(l.latent.transpose() * l.gamma);
+    normal.downhill.xi.noalias() += l.gamma.transpose() * l.residuals;
+    normal.downhill.eta.push_back(l.latent.transpose() * l.residuals - point.eta[t]);
   }
   return normal;
 }
@@ -95,22 +94,23 @@ Likelihood::Point Likelihood::moved(const Hypothesis& hypothesis, const Point& f
 
 // Geodesic acceleration (docs/decisions/036-geodesic-acceleration.md). The outputs along a straight
 // step v are y + Jv + ½y_vv; one more simulation at h·v gives y_vv, and the second-order step is v
-// + ½a with (JᵀJ/σ² + 1 + λ) a = −Jᵀy_vv/σ². The correction is omitted if it is not small relative
+// + ½a with (JᵀJ + 1 + λ) a = −Jᵀy_vv, everything in σ. The correction is omitted if it is not small relative
 // to v.
 void Likelihood::bend(Step& step, const Hypothesis& hypothesis, const Noise& noise,
                       const std::vector<Linear>& trials, const DampedSystem& system,
                       const Point& point) const {
-  const double length = step.move.norm(), precision = 1 / (noise.output * noise.output);
+  const double length = step.move.norm();
   if (!(length > 0) || !step.to.values.allFinite()) return;
   const Point ahead = moved(hypothesis, point, step.move, kProbe);
   JointVector right{VectorXd::Zero(point.xi.size()), {}};
   for (std::size_t t = 0; t < trials.size(); ++t) {
     const Linear& l = trials[t];
-    const VectorXd y = data_.outputs(trials_[t], ahead.values, latentForce(t, noise, ahead.eta[t]));
-    const VectorXd slope = (y - data_.measured(trials_[t]) + l.residuals) / kProbe;
-    VectorXd curve = slope - l.gamma * step.move.xi;
+    VectorXd change =
+        data_.outputs(trials_[t], ahead.values, latentForce(t, noise, ahead.eta[t])) - l.outputs;
+    whiten(t, noise, change);
+    VectorXd curve = change / kProbe - l.gamma * step.move.xi;
     if (l.latent.cols() > 0) curve.noalias() -= l.latent * step.move.eta[t];
-    curve *= 2 / kProbe * precision;
+    curve *= 2 / kProbe;
     right.xi.noalias() -= l.gamma.transpose() * curve;
     right.eta.push_back(-(l.latent.transpose() * curve));
   }
@@ -199,8 +199,8 @@ Likelihood::Point Likelihood::JointMinimisation::startPoint(
 std::vector<Likelihood::Linear> Likelihood::JointMinimisation::linearised(const Point& at) const {
   std::vector<Linear> linear;
   for (std::size_t t = 0; t < likelihood_.trials_.size(); ++t)
-    linear.push_back(likelihood_.linearise(t, hypothesis_, noise_.latent, at.values, at.xi,
-                                           at.eta[t], {}, false));
+    linear.push_back(
+        likelihood_.linearise(t, hypothesis_, noise_, at.values, at.xi, at.eta[t], {}, false));
   return linear;
 }
 
@@ -210,12 +210,10 @@ double Likelihood::JointMinimisation::costOf(const std::vector<Linear>& linear,
                                              const Point& at) const {
   double squares = 0;
   for (const Linear& l : linear) {
-    if (!std::isfinite((l.gamma.squaredNorm() + l.latent.squaredNorm()) /
-                       (noise_.output * noise_.output)))
-      return kInfinity;
+    if (!std::isfinite(l.gamma.squaredNorm() + l.latent.squaredNorm())) return kInfinity;
     squares += l.residuals.squaredNorm();
   }
-  return Likelihood::cost(noise_, at, squares) + tilt_.dot(at.xi);
+  return Likelihood::cost(at, squares) + tilt_.dot(at.xi);
 }
 
 bool Likelihood::JointMinimisation::start(const VectorXd& values,
@@ -233,7 +231,7 @@ bool Likelihood::JointMinimisation::start(const VectorXd& values,
 
 void Likelihood::JointMinimisation::minimise() {
   for (iterations_ = 0; iterations_ < options_.iterations; ++iterations_) {
-    Normal normal = likelihood_.normalEquations(trials_, noise_, point_);
+    Normal normal = normalEquations(trials_, point_);
     normal.downhill.xi -= tilt_;
     if (idle_ >= kIdle &&
         likelihood_.step(hypothesis_, normal, DampedSystem(normal.blocks, 0), point_).gain <
@@ -286,15 +284,16 @@ std::vector<Likelihood::Linear> Likelihood::JointMinimisation::linearisedIfLess(
           isFirst || likelihood_.simulatedCost(noise_, at) + tilt_.dot(at.xi) < cost_;
       return isLess ? linearised(at) : std::vector<Linear>();
     }
-    const VectorXd& measured = likelihood_.data_.measured(likelihood_.trials_[t]);
-    squares += VectorXd(measured - simulation->outputs()).squaredNorm();
-    if (!(Likelihood::cost(noise_, at, squares) + tilt_.dot(at.xi) < cost_)) return {};
+    VectorXd e = likelihood_.data_.measured(likelihood_.trials_[t]) - simulation->outputs();
+    likelihood_.whiten(t, noise_, e);
+    squares += e.squaredNorm();
+    if (!(Likelihood::cost(at, squares) + tilt_.dot(at.xi) < cost_)) return {};
     simulations.push_back(std::move(simulation));
   }
   std::vector<Linear> linear;
   for (std::size_t t = 0; t < simulations.size(); ++t)
-    linear.push_back(likelihood_.linearOf(t, hypothesis_, noise_.latent, at.xi,
-                                          simulations[t]->predict(), false));
+    linear.push_back(likelihood_.linearOf(t, hypothesis_, noise_, at.xi, simulations[t]->predict(),
+                                          at.eta[t].size() != 0, false));
   return linear;
 }
 
@@ -324,9 +323,9 @@ Fit Likelihood::JointMinimisation::result() {
 std::optional<Fit> Likelihood::tryFit(const Hypothesis& hypothesis, const Noise& noise,
                                       const VectorXd& start, const std::vector<VectorXd>& eta,
                                       const FitOptions& options) const {
-  if (!(noise.output > 0) || !(noise.latent >= 0))
+  if (!noise.output.isPositive() || !(noise.latent >= 0))
     throw std::invalid_argument(fmt::format("noise: σ_y = {} must be > 0 and σ_d = {} must be ≥ 0",
-                                            noise.output, noise.latent));
+                                            noise.output.sd(0), noise.latent));
   JointMinimisation minimisation(*this, hypothesis, noise, options);
   if (!minimisation.start(start, eta)) return std::nullopt;
   minimisation.minimise();

@@ -6,19 +6,19 @@
 
 namespace info::discover {
 
-/// 1 + WᵀW/σ_y², the block of one trial's latent force in the information; lower triangle.
-inline Eigen::MatrixXd latentBlock(const Eigen::MatrixXd& W, double output) {
+/// 1 + WᵀW, the block of one trial's latent force in the information; lower triangle.
+inline Eigen::MatrixXd latentBlock(const Eigen::MatrixXd& W) {
   Eigen::MatrixXd C = Eigen::MatrixXd::Identity(W.cols(), W.cols());
   if (W.cols() != 0)  // Eigen would access the first of no columns
-    C.selfadjointView<Eigen::Lower>().rankUpdate(W.transpose(), 1 / (output * output));
+    C.selfadjointView<Eigen::Lower>().rankUpdate(W.transpose());
   return C;
 }
 
-/// σ_y² + WWᵀ, the covariance of one trial's n samples; lower triangle.
-inline Eigen::MatrixXd outputCovariance(const Eigen::MatrixXd& W, Eigen::Index n, double output) {
+/// 1 + WWᵀ, the covariance of one trial's n whitened samples; lower triangle.
+inline Eigen::MatrixXd outputCovariance(const Eigen::MatrixXd& W, Eigen::Index n) {
   Eigen::MatrixXd S = Eigen::MatrixXd::Zero(n, n);
   if (W.cols() != 0) S.selfadjointView<Eigen::Lower>().rankUpdate(W);
-  S.diagonal().array() += output * output;
+  S.diagonal().array() += 1;
   return S;
 }
 

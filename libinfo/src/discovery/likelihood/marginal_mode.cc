@@ -23,8 +23,8 @@ constexpr double kApart = 0.02;
 // then discarded.
 constexpr double kLost = 2;
 
-double logDeterminant(const MatrixXd& W, double output) {
-  const MatrixXd L = latentBlock(W, output).llt().matrixL();
+double logDeterminant(const MatrixXd& W) {
+  const MatrixXd L = latentBlock(W).llt().matrixL();
   return 2 * L.diagonal().array().log().sum();
 }
 
@@ -34,20 +34,18 @@ double logDeterminant(const MatrixXd& W, double output) {
 // initial state affects its own trial only. 0 if the simulation fails.
 VectorXd Likelihood::logDeterminantSlope(const Fit& fit) const {
   const auto p = fit.xi.size();
-  const double output = fit.noise.output;
   VectorXd slope = VectorXd::Zero(p);
   for (std::size_t t = 0; t < trials_.size(); ++t) {
     const Linear here = linearise(t, fit, fit.values, {}, false);
-    const auto block = latentBlock(here.latent, output).llt();
-    const MatrixXd follow =
-        -block.solve(MatrixXd(here.latent.transpose() * here.gamma)) / (output * output);
-    const double logHere = logDeterminant(here.latent, output);
+    const auto block = latentBlock(here.latent).llt();
+    const MatrixXd follow = -block.solve(MatrixXd(here.latent.transpose() * here.gamma));
+    const double logHere = logDeterminant(here.latent);
     Fit beside = fit;
     beside.hypothesis.free.clear();  // no derivatives in ξ are needed
     for (Index i = 0; i < p; ++i) {
       const FreeQuantity& q = fit.hypothesis.free[static_cast<std::size_t>(i)];
       if (here.gamma.col(i).isZero(0) || q.lowest >= q.highest) continue;
-      const double curvature = 1 + here.gamma.col(i).squaredNorm() / (output * output);
+      const double curvature = 1 + here.gamma.col(i).squaredNorm();
       const double sd =
           fit.covariance(i, i) > 0 ? std::sqrt(fit.covariance(i, i)) : 1 / std::sqrt(curvature);
       double apart = kApart * sd;
@@ -56,7 +54,7 @@ VectorXd Likelihood::logDeterminantSlope(const Fit& fit) const {
       beside.values[static_cast<Index>(q.quantity)] = q.value(fit.xi[i] + apart);
       beside.eta[t] = fit.eta[t] + apart * follow.col(i);
       const Linear there = linearise(t, beside, beside.values, {}, false);
-      const double change = 0.5 * (logDeterminant(there.latent, output) - logHere) / apart;
+      const double change = 0.5 * (logDeterminant(there.latent) - logHere) / apart;
       if (std::isfinite(change)) slope[i] += change;
     }
   }

@@ -124,7 +124,7 @@ Remains remainsOf(const Likelihood& likelihood, const Fit& fit, const NodeStates
     Q << l.gamma(Eigen::all, inside), l.force * library.columns[t], l.residuals;
     if (l.latent.cols() > 0) Q.col(p + m) += l.latent * fit.eta[t];
     rows.middleRows(static_cast<Index>(blockOf.size()), n) =
-        outputCovariance(l.latent, n, fit.noise.output).llt().matrixL().solve(Q);
+        outputCovariance(l.latent, n).llt().matrixL().solve(Q);
     const auto& times = likelihood.data().times(likelihood.trials()[t]);
     for (const double time : times)
       blockOf.push_back(blocks + static_cast<int>((time - times.front()) / kBlock));

@@ -24,24 +24,25 @@ double Fit::sd(std::size_t free) const {
 void Likelihood::finish(Fit& fit, const std::vector<Linear>& trials, const VectorXd& tilt) const {
   const Hypothesis& h = fit.hypothesis;
   const Index p = fit.xi.size();
-  const double precision = 1 / (fit.noise.output * fit.noise.output);
   MatrixXd R = MatrixXd::Identity(p, p);
   VectorXd gradient = fit.xi + tilt;
   double logDeterminant = 0;
   fit.latentNormSquared = 0;
   fit.effectiveParameters = 0;
-  Index samples = 0;
-  std::vector<MatrixXd> carried;  // C⁻¹WᵀΓ/σ² = −dη/dξ
+  double logNoise = 0;            // Σ log(σ√2π)
+  std::vector<MatrixXd> carried;  // C⁻¹WᵀΓ = −dη/dξ
   for (std::size_t t = 0; t < trials.size(); ++t) {
     const Linear& l = trials[t];
-    samples += l.residuals.size();
-    R.noalias() += precision * l.gamma.transpose() * l.gamma;
-    gradient.noalias() -= precision * l.gamma.transpose() * l.residuals;
+    const Index samples = l.residuals.size();
+    logNoise += fit.noise.output.logDeterminant(data_.outputOfSample(trials_[t]), samples) +
+                0.5 * static_cast<double>(samples) * std::log(2 * std::numbers::pi);
+    R.noalias() += l.gamma.transpose() * l.gamma;
+    gradient.noalias() -= l.gamma.transpose() * l.residuals;
     if (l.latent.cols() == 0) continue;
-    const auto block = latentBlock(l.latent, fit.noise.output).llt();
+    const auto block = latentBlock(l.latent).llt();
     const MatrixXd L = block.matrixL();
     logDeterminant += 2 * L.diagonal().array().log().sum();
-    MatrixXd half = precision * l.latent.transpose() * l.gamma;
+    MatrixXd half = l.latent.transpose() * l.gamma;
     if (p > 0) block.matrixL().solveInPlace(half);  // Eigen does not allow empty matrices here
     R.noalias() -= half.transpose() * half;
     const MatrixXd inverse = block.matrixL().solve(MatrixXd::Identity(L.rows(), L.rows()));
@@ -89,14 +90,11 @@ void Likelihood::finish(Fit& fit, const std::vector<Linear>& trials, const Vecto
   }
   for (const MatrixXd& c : carried)
     fit.effectiveParameters -= (c * fit.covariance).cwiseProduct(c).sum();
-  fit.logEvidence =
-      -fit.cost - 0.5 * logDeterminant + mass -
-      static_cast<double>(samples) * std::log(fit.noise.output * std::sqrt(2 * std::numbers::pi));
+  fit.logEvidence = -fit.cost - 0.5 * logDeterminant + mass - logNoise;
 }
 
 Likelihood::Projected Likelihood::project(const Fit& fit, const std::vector<Linear>& trials,
                                           const std::vector<MatrixXd>& disturbances) const {
-  const double precision = 1 / (fit.noise.output * fit.noise.output);
   std::vector<Index> inside;
   for (Index i = 0; i < fit.xi.size(); ++i)
     if (!fit.atBound[static_cast<std::size_t>(i)]) inside.push_back(i);
@@ -110,10 +108,10 @@ Likelihood::Projected Likelihood::project(const Fit& fit, const std::vector<Line
     MatrixXd Q(l.residuals.size(), p + m + 1);
     Q << l.gamma(Eigen::all, inside), disturbances[t], l.residuals;
     if (l.latent.cols() > 0) Q.col(p + m) += l.latent * fit.eta[t];
-    gram.noalias() += precision * Q.transpose() * Q;
+    gram.noalias() += Q.transpose() * Q;
     if (l.latent.cols() == 0) continue;
-    const auto block = latentBlock(l.latent, fit.noise.output).llt();
-    const MatrixXd half = block.matrixL().solve(MatrixXd(precision * l.latent.transpose() * Q));
+    const auto block = latentBlock(l.latent).llt();
+    const MatrixXd half = block.matrixL().solve(MatrixXd(l.latent.transpose() * Q));
     gram.noalias() -= half.transpose() * half;
   }
   gram.topLeftCorner(p, p).diagonal().array() += 1;
@@ -134,9 +132,9 @@ Likelihood::Projected Likelihood::project(const Fit& fit, const std::vector<Line
 
 Likelihood::Whitened Likelihood::whitened(std::size_t at, const Fit& fit) const {
   const Linear l = linearise(at, fit, fit.values, {}, false);
-  if (l.latent.cols() == 0) return {l.residuals / fit.noise.output, l.gamma / fit.noise.output};
+  if (l.latent.cols() == 0) return {l.residuals, l.gamma};
   const Index n = l.residuals.size();
-  const Eigen::LLT<MatrixXd> factor(outputCovariance(l.latent, n, fit.noise.output));
+  const Eigen::LLT<MatrixXd> factor(outputCovariance(l.latent, n));
   return {factor.matrixL().solve(VectorXd(l.residuals + l.latent * fit.eta[at])),
           factor.matrixL().solve(l.gamma)};
 }
@@ -149,10 +147,9 @@ VectorXd Likelihood::force(std::size_t at, const Fit& fit) const {
 VectorXd Likelihood::forceSd(std::size_t at, const Fit& fit) const {
   if (fit.eta[at].size() == 0) return VectorXd::Zero(roots_[at].rows());
   const Linear l = linearise(at, fit, fit.values, {}, false);
-  const double precision = 1 / (fit.noise.output * fit.noise.output);
-  const auto block = latentBlock(l.latent, fit.noise.output).llt();
+  const auto block = latentBlock(l.latent).llt();
   // var η = C⁻¹ + C⁻¹ B cov(ξ) Bᵀ C⁻¹
-  const MatrixXd B = block.solve(MatrixXd(precision * l.latent.transpose() * l.gamma));
+  const MatrixXd B = block.solve(MatrixXd(l.latent.transpose() * l.gamma));
   MatrixXd variance = block.solve(MatrixXd::Identity(B.rows(), B.rows()));
   variance.noalias() += B * fit.covariance * B.transpose();
   const MatrixXd root = fit.noise.latent * roots_[at];

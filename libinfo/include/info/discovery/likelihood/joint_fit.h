@@ -7,6 +7,7 @@
 
 #include "info/discovery/likelihood/discovery_problem.h"
 #include "info/discovery/likelihood/hypothesis.h"
+#include "info/discovery/likelihood/whitening.h"
 
 namespace info::discover {
 
@@ -15,7 +16,7 @@ struct JointVector;
 
 /// The noise model: how the data scatter about the model.
 struct Noise {
-  double output = 0;         ///< σ_y > 0, of every sample
+  Whitening output;          ///< σ_y > 0 of each output
   double latent = 0;         ///< σ_d ≥ 0, size of the latent force in units of its scale G
   double latentTime = 0.08;  ///< ℓ [s] > 0, correlation time of the latent force
 };
@@ -30,7 +31,7 @@ struct Fit {
   Eigen::VectorXd xi;      ///< of the free quantities, prior N(0, 1)
   std::vector<Eigen::VectorXd>
       eta;                     ///< latent force of each trial, prior N(0, 1); empty if σ_d = 0
-  double cost = 0;             ///< J = ½Σe²/σ_y² + ½|ξ|² + ½|η|²
+  double cost = 0;             ///< J = ½|e|² + ½|ξ|² + ½|η|²
   double logEvidence = 0;      ///< log Z
   Eigen::MatrixXd covariance;  ///< of ξ; 0 for those at a bound
   std::vector<bool> atBound;
@@ -56,9 +57,10 @@ double latentCorrelation(double interval, double time, double lag);
 /// Gaussian likelihood of whole trials: docs/decisions/030-latent-force-likelihood.md.
 ///
 /// The latent force is d = σ_d·L·η at its nodes, LLᵀ = (GGᵀ)∘κ(|t_i−t_j|), η ~ N(0, 1). All
-/// unknowns are then N(0, 1) a priori, and with residuals e = ỹ − y(ξ, η)
-///     J = ½|e|²/σ_y² + ½|ξ|² + ½|η|²
-///     log Z = −J − ½ log|H| − N·log(σ_y√2π),   H = 1 + ΓᵀΓ/σ_y² over (ξ, η)
+/// unknowns are then N(0, 1) a priori. Samples are whitened on entry: residuals e = (ỹ − y(ξ, η))/σ
+/// and their derivatives Γ = −de/d(ξ, η) are in standard deviations of the output of each sample.
+///     J = ½|e|² + ½|ξ|² + ½|η|²
+///     log Z = −J − ½ log|H| − Σ log(σ√2π),   H = 1 + ΓᵀΓ over (ξ, η)
 /// where bounds truncate the normal distributions. For a linear model without bounds log Z is
 /// exactly the sum of a Kalman filter's innovation terms.
 class Likelihood {
@@ -84,7 +86,7 @@ class Likelihood {
 
   /// The same hypothesis with the most probable parameters after marginalisation over the latent
   /// forces: the minimum over ξ of
-  ///     min_η J + ½ log|H_ηη(ξ)|,   H_ηη = 1 + WᵀW/σ_y²,   W = dy/dη
+  ///     min_η J + ½ log|H_ηη(ξ)|,   H_ηη = 1 + WᵀW,   W = dy/dη/σ
   /// and the latent forces at that ξ. The joint fit lacks the second term, which is larger where
   /// latent forces have a larger effect on the outputs. It therefore underestimates damping,
   /// because small latent forces then suffice (docs/decisions/042-marginal-mode.md).
@@ -94,22 +96,23 @@ class Likelihood {
   /// the result has less evidence.
   Fit marginal(const Fit& near) const;
 
-  /// Score and information of further disturbances of the outputs at a fit.
+  /// A trial at a fit. All but `outputs` and `speeds` is divided by the σ of each sample's output.
   struct Linear {
-    Eigen::VectorXd residuals;  ///< e = ỹ − y
-    Eigen::MatrixXd gamma;      ///< dy/dξ
-    Eigen::MatrixXd latent;     ///< dy/dη
-    Eigen::MatrixXd extra;      ///< dy/dq of the further quantities
-    Eigen::MatrixXd force;      ///< dy/dd
-    Eigen::VectorXd speeds;
+    Eigen::VectorXd residuals;  ///< e = (ỹ − y)/σ
+    Eigen::MatrixXd gamma;      ///< dy/dξ/σ
+    Eigen::MatrixXd latent;     ///< dy/dη/σ
+    Eigen::MatrixXd extra;      ///< dy/dq/σ of the further quantities
+    Eigen::MatrixXd force;      ///< dy/dd/σ
+    Eigen::VectorXd outputs;    ///< y
+    Eigen::VectorXd speeds;     ///< ẏ
   };
   /// @param at    in the order of trials()
   /// @param extra further quantities, at their values in `values`
   Linear linearise(std::size_t at, const Fit& fit, const Eigen::VectorXd& values,
                    const std::vector<std::size_t>& extra, bool force) const;
 
-  /// Score and information of further disturbances, per trial samples × disturbances, after
-  /// elimination of all quantities that are free in the fit and not at a bound.
+  /// Score and information of further disturbances of the whitened outputs, per trial samples ×
+  /// disturbances, after elimination of all quantities that are free in the fit and not at a bound.
   struct Projected {
     Eigen::VectorXd score;
     Eigen::MatrixXd information;
@@ -117,7 +120,7 @@ class Likelihood {
   Projected project(const Fit& fit, const std::vector<Linear>& trials,
                     const std::vector<Eigen::MatrixXd>& disturbances) const;
 
-  /// Whitened residuals (white for known ξ) in the order of time, with LLᵀ = σ_y² + WWᵀ. With ξ
+  /// Whitened residuals (white for known ξ) in the order of time, with LLᵀ = 1 + WWᵀ. With ξ
   /// fitted the innovations' covariance is 1 − (L⁻¹Γ) cov(ξ) (L⁻¹Γ)ᵀ.
   struct Whitened {
     Eigen::VectorXd innovations;  ///< L⁻¹(e + Wη)
@@ -138,10 +141,10 @@ class Likelihood {
   struct Normal;
   struct Step;
   class JointMinimisation;
-  static double cost(const Noise& noise, const Point& point, double squares);
+  static double cost(const Point& point, double squares);
+  void whiten(std::size_t at, const Noise& noise, Eigen::VectorXd& samples) const;
   double simulatedCost(const Noise& noise, const Point& point) const;
-  Normal normalEquations(const std::vector<Linear>& trials, const Noise& noise,
-                         const Point& point) const;
+  static Normal normalEquations(const std::vector<Linear>& trials, const Point& point);
   static Point moved(const Hypothesis& hypothesis, const Point& from, const JointVector& move,
                      double share);
   Step step(const Hypothesis& hypothesis, const Normal& normal, const DampedSystem& system,
@@ -150,12 +153,12 @@ class Likelihood {
             const std::vector<Linear>& trials, const DampedSystem& system,
             const Point& point) const;
   Eigen::VectorXd latentForce(std::size_t at, const Noise& noise, const Eigen::VectorXd& eta) const;
-  Linear linearise(std::size_t at, const Hypothesis& hypothesis, double latentSize,
+  Linear linearise(std::size_t at, const Hypothesis& hypothesis, const Noise& noise,
                    const Eigen::VectorXd& values, const Eigen::VectorXd& xi,
                    const Eigen::VectorXd& eta, const std::vector<std::size_t>& extra,
                    bool force) const;
-  Linear linearOf(std::size_t at, const Hypothesis& hypothesis, double latentSize,
-                  const Eigen::VectorXd& xi, DiscoveryProblem::Prediction prediction,
+  Linear linearOf(std::size_t at, const Hypothesis& hypothesis, const Noise& noise,
+                  const Eigen::VectorXd& xi, DiscoveryProblem::Prediction prediction, bool latent,
                   bool force) const;
   std::unique_ptr<DiscoveryProblem::Simulation> simulated(std::size_t at,
                                                           const Hypothesis& hypothesis,

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <utility>
+#include <vector>
+
+namespace info::discover {
+
+/// The noise of the outputs, v ~ N(0, σ_o²) of output o: what concerns samples (residuals,
+/// derivatives, disturbances) is divided by the standard deviation of the sample's output, so that
+/// outputs of different units can be added.
+///
+/// `outputs` is the index of each sample's output (DiscoveryProblem::outputOfSample); empty: one
+/// output.
+class Whitening {
+ public:
+  /// All outputs have the standard deviation `sd`. Not explicit: a number is the commonest noise.
+  Whitening(double sd = 0) : sds_(Eigen::VectorXd::Constant(1, sd)) {}
+  /// @param sds one for each output, in its unit
+  explicit Whitening(Eigen::VectorXd sds) : sds_(std::move(sds)) {}
+
+  /// Whether every σ is positive and finite; otherwise nothing can be divided.
+  bool isPositive() const;
+  double sd(std::size_t output) const;
+  /// The same outputs with `factor` times the noise.
+  Whitening scaled(double factor) const { return Whitening(Eigen::VectorXd(factor * sds_)); }
+
+  /// σ of each of n samples
+  Eigen::VectorXd bySample(const std::vector<int>& outputs, Eigen::Index n) const;
+  /// Divides each row (a sample) by its σ.
+  template <class Rows>
+  void whiten(const std::vector<int>& outputs, Rows& rows) const {
+    if (sds_.size() == 1)
+      rows /= sds_[0];
+    else
+      rows.array().colwise() /= bySample(outputs, rows.rows()).array();
+  }
+  /// Multiplies each row (a sample) by its σ.
+  template <class Rows>
+  void unwhiten(const std::vector<int>& outputs, Rows& rows) const {
+    if (sds_.size() == 1)
+      rows *= sds_[0];
+    else
+      rows.array().colwise() *= bySample(outputs, rows.rows()).array();
+  }
+  /// Σ log σ over n samples: what whitening takes from the logarithm of their density
+  double logDeterminant(const std::vector<int>& outputs, Eigen::Index n) const;
+
+ private:
+  Eigen::VectorXd sds_;  // one, or one for each output
+};
+
+}  // namespace info::discover
