@@ -36,7 +36,7 @@ bool isRunByCi(const std::string& line) {
 
 /// tests/python/pip_install runs them.
 bool isRunByPipTest(const std::string& line) {
-  return line.starts_with("python3 -m venv ") || line.starts_with("v/bin/pip ");
+  return line.starts_with("/usr/bin/python3 -m venv ") || line.starts_with("v/bin/pip ");
 }
 
 TEST(Readme, EveryCommandOfTheProgramWorks) {
