@@ -4,6 +4,7 @@ What has been compiled in a build folder is used again. The folder is the one in
 FISHERHILL_BUILD, else build/program where `./start` has made it, else build/pip.
 """
 
+import importlib.util
 import os
 import pathlib
 import re
@@ -23,6 +24,19 @@ def found(file, pattern):
     if match is None:
         raise SystemExit(f"setup.py: {file} has no line that matches {pattern}")
     return match.group(1)
+
+
+def require_packages():
+    """What pip does not install without isolation: lacking `wheel` it would say that bdist_wheel is an invalid command."""
+    missing = [name for name in ("wheel", "numpy") if importlib.util.find_spec(name) is None]
+    if "wheel" in missing and importlib.util.find_spec("setuptools.command.bdist_wheel") is not None:
+        missing.remove("wheel")  # setuptools 70.1 does without
+    if missing:
+        raise SystemExit(
+            f"setup.py: the Python of {sys.base_prefix} has no package {' and no '.join(missing)}; make the environment with "
+            "Debian's Python (/usr/bin/python3 -m venv --system-site-packages v; Debian's packages: README.md, Installing "
+            f"it), or install there first: {sys.executable} -m pip install {' '.join(missing)}"
+        )
 
 
 def build_folder():
@@ -61,6 +75,7 @@ class CMakeBuild(build_ext):
         shutil.copy2(built, target)
 
 
+require_packages()
 (source / "build").mkdir(exist_ok=True)
 setup(
     version=found("CMakeLists.txt", r"^project\(FisherHill VERSION ([0-9.]+) "),

@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "arguments/columns.h"
+#include "arguments/file_name.h"
 #include "bio/analysis/replay.h"
 #include "bio/discovery/with_experimental_conditions.h"
 #include "bio/model/convert_muscles.h"
@@ -20,9 +22,9 @@
 namespace python {
 namespace {
 
-bio::Trial trialOfColumns(const bio::Model& model, const py::dict& columns, const std::string& name,
-                          bool ignoreExtra, double knownMassInHand, double knownArmTurn,
-                          const std::vector<std::string>& prescribe,
+bio::Trial trialOfColumns(const bio::Model& model, const py::object& columns,
+                          const std::string& name, bool ignoreExtra, double knownMassInHand,
+                          double knownArmTurn, const std::vector<std::string>& prescribe,
                           const std::map<std::string, double>& hold,
                           std::optional<double> prescribeCutoff,
                           const std::string& latentExcitation) {
@@ -38,16 +40,17 @@ bio::Trial trialOfColumns(const bio::Model& model, const py::dict& columns, cons
   return trial;
 }
 
-bio::Trial loadTrial(const std::string& file, const bio::Model& model, bool ignoreExtra,
+bio::Trial loadTrial(const FileName& file, const bio::Model& model, bool ignoreExtra,
                      const std::vector<std::string>& prescribe,
                      const std::map<std::string, double>& hold,
                      std::optional<double> prescribeCutoff) {
-  bio::Trial trial = bio::readTrial(file, model,
+  bio::Trial trial = bio::readTrial(file.text, model,
                                     {.ignoreExtra = ignoreExtra,
                                      .experimentalConditions = true,
                                      .prescribed = prescribe,
                                      .held = hold});
-  trial.sha256 = digestOf(py::module_::import("pathlib").attr("Path")(file).attr("read_bytes")());
+  trial.sha256 =
+      digestOf(py::module_::import("pathlib").attr("Path")(file.text).attr("read_bytes")());
   if (prescribeCutoff) bio::smoothPrescribed(trial, *prescribeCutoff);
   return trial;
 }
@@ -60,8 +63,8 @@ bio::Model withMuscles(bio::Model model, const std::string& className) {
   return model;
 }
 
-bio::Model withExternalLoads(bio::Model model, const std::string& file) {
-  model.externalLoads = bio::readExternalLoads(file, model, model.warnings);
+bio::Model withExternalLoads(bio::Model model, const FileName& file) {
+  model.externalLoads = bio::readExternalLoads(file.text, model, model.warnings);
   return model;
 }
 
@@ -245,32 +248,6 @@ bio::Trial trialOf(const bio::Table& table, const std::string& name, const bio::
   return trial;
 }
 
-bio::Table tableOf(const py::dict& columns, const std::string& name) {
-  bio::Table table;
-  for (const auto& [key, values] : columns) {
-    const auto column = values.cast<Eigen::VectorXd>();
-    const auto index = static_cast<Eigen::Index>(table.columns.size());
-    if (index == 0) table.values.resize(column.size(), static_cast<Eigen::Index>(columns.size()));
-    table.columns.push_back(key.cast<std::string>());
-    if (column.size() != table.values.rows()) {
-      throw std::invalid_argument(fmt::format("{}: column '{}' has {} rows, must be {} as '{}' has",
-                                              name, table.columns.back(), column.size(),
-                                              table.values.rows(), table.columns.front()));
-    }
-    table.values.col(index) = column;
-  }
-  return table;
-}
-
-py::dict columnsOf(const bio::Table& table) {
-  py::dict columns;
-  for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    columns[table.columns[i].c_str()] =
-        Eigen::VectorXd(table.values.col(static_cast<Eigen::Index>(i)));
-  }
-  return columns;
-}
-
 std::string digestOf(const py::object& bytes) {
   return py::module_::import("hashlib")
       .attr("sha256")(bytes)
@@ -304,7 +281,7 @@ void defineSystems(py::module_& module) {
       .def_property_readonly("muscles", &musclesOf, docstrings::Model_muscles)
       .def(
           "write",
-          [](const bio::Model& self, const std::string& file) { bio::writeOsim(self, file); },
+          [](const bio::Model& self, const FileName& file) { bio::writeOsim(self, file.text); },
           "file"_a, docstrings::Model_write)
       .def("with_muscles", &withMuscles, "muscle_class"_a, docstrings::Model_with_muscles)
       .def("with_cylinders", &bio::withCylinders, "names"_a, docstrings::Model_with_cylinders)
@@ -338,7 +315,7 @@ void defineSystems(py::module_& module) {
         return fmt::format("<fisherhill.Trial '{}', {} rows>", self.file, self.times.size());
       });
   module.def(
-      "load_model", [](const std::string& file) { return bio::readOsim(file); }, "file"_a,
+      "load_model", [](const FileName& file) { return bio::readOsim(file.text); }, "file"_a,
       docstrings::load_model);
   module.def("load_trial", &loadTrial, "file"_a, "model"_a, py::kw_only(), "ignore_extra"_a = false,
              "prescribe"_a = std::vector<std::string>(), "hold"_a = std::map<std::string, double>(),

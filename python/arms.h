@@ -56,12 +56,6 @@ std::string digestOf(const py::object& bytes);
 /// bio::trialFrom, known by its numbers as trials of files are by theirs.
 bio::Trial trialOf(const bio::Table& table, const std::string& name, const bio::Model& model,
                    const bio::TrialOptions& options);
-/// A table of columns by name.
-/// @param name named in messages
-/// @throws std::invalid_argument for columns of different lengths
-bio::Table tableOf(const py::dict& columns, const std::string& name);
-/// The table as make_trial takes it.
-py::dict columnsOf(const bio::Table& table);
 
 /// For what simulates the model as it is.
 /// @throws std::invalid_argument for a trial that was recorded with something changed on purpose

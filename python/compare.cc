@@ -4,6 +4,8 @@
 
 #include <numbers>
 
+#include "arguments/columns.h"
+#include "arguments/file_name.h"
 #include "arms.h"
 #include "bio/analysis/compare_muscles.h"
 #include "bio/analysis/replay.h"
@@ -17,14 +19,16 @@ namespace python {
 namespace {
 
 /// A table of states, or times [s] and values [rad].
-using OtherMotion = std::variant<std::string, std::pair<Eigen::VectorXd, Eigen::VectorXd>>;
+using OtherMotion = std::variant<FileName, std::pair<py::object, py::object>>;
 
 bio::CoordinateCurve curveOf(const std::string& name, const OtherMotion& motion,
                              const bio::Coordinate& coordinate) {
-  if (const auto* file = std::get_if<std::string>(&motion)) {
-    return bio::readCoordinate(*file, coordinate);
+  if (const auto* file = std::get_if<FileName>(&motion)) {
+    return bio::readCoordinate(file->text, coordinate);
   }
-  const auto& [times, values] = std::get<1>(motion);
+  const auto& given = std::get<1>(motion);
+  const Eigen::VectorXd times = columnOf(given.first, fmt::format("also: times of '{}'", name));
+  const Eigen::VectorXd values = columnOf(given.second, fmt::format("also: values of '{}'", name));
   if (times.size() != values.size()) {
     throw std::invalid_argument(fmt::format("also: '{}' has {} times and {} values, must be equal",
                                             name, times.size(), values.size()));

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 
+#include "arguments/columns.h"
 #include "arms.h"
 #include "bio/analysis/replay.h"
 #include "bio/design/design_setup.h"

@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 
+#include "arguments/columns.h"
 #include "arms.h"
 #include "bio/design/dynamometer_question.h"
 #include "bio/model/free_coordinates.h"

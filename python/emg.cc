@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "arguments/columns.h"
+#include "arguments/file_name.h"
 #include "arms.h"
 #include "bio/emg/emg_config.h"
 #include "bio/emg/emg_recordings.h"
@@ -25,30 +27,29 @@ py::dict electrodesOf(const bio::EmgResult& result) {
   return electrodes;
 }
 
-py::object emg(const Names& recordings, const std::string& config, const std::string& write) {
-  const auto* one = std::get_if<std::string>(&recordings);
-  const std::vector<std::string> files =
-      one ? std::vector<std::string>{*one} : std::get<std::vector<std::string>>(recordings);
+py::object emg(const std::variant<FileName, std::vector<FileName>>& recordings,
+               const FileName& config, const FileName& write) {
+  std::vector<std::string> files;
+  if (const auto* one = std::get_if<FileName>(&recordings)) {
+    files.push_back(one->text);
+  } else {
+    for (const FileName& each : std::get<1>(recordings)) files.push_back(each.text);
+  }
   if (files.empty()) throw std::invalid_argument("recordings: empty, must have at least one");
   bio::JoinedRecordings joined;
   bio::EmgResult result;
   bio::Table trial;
   interruptible([&](const std::atomic<bool>&) {
-    const bio::EmgConfigFile file = bio::readEmgConfig(config);
+    const bio::EmgConfigFile file = bio::readEmgConfig(config.text);
     joined = bio::readRecordings(file, files);
     const bio::EmgConfig of = bio::emgConfigFor(file, joined.recording, bio::markerNames(file));
     result = bio::excitationsFromEmg(joined.recording, of);
     trial = bio::excitationTable(result, of);
-    if (!write.empty()) bio::writeTable(trial, write);
+    if (!write.text.empty()) bio::writeTable(trial, write.text);
   });
   py::dict offsets;
   for (const auto& placed : joined.placed) offsets[placed.file.c_str()] = placed.offset;
-  py::dict columns;  // as make_trial takes them
-  for (std::size_t k = 0; k < trial.columns.size(); ++k) {
-    columns[trial.columns[k].c_str()] =
-        Eigen::VectorXd(trial.values.col(static_cast<Eigen::Index>(k)));
-  }
-  return results("columns"_a = columns, "muscles"_a = result.muscles,
+  return results("columns"_a = columnsOf(trial), "muscles"_a = result.muscles,
                  "electrodes"_a = electrodesOf(result),
                  "fraction_of_sums_clipped"_a = result.fractionSumAbove, "offsets"_a = offsets,
                  "latent_excitation"_a = trial.metadata["latent_excitation"],
@@ -56,9 +57,9 @@ py::object emg(const Names& recordings, const std::string& config, const std::st
 }
 
 /// As `check` shows it.
-py::object readRecording(const std::string& file) {
+py::object readRecording(const FileName& file) {
   bio::RecordedFile recorded;
-  interruptible([&](const std::atomic<bool>&) { recorded = bio::readRecordedFile(file); });
+  interruptible([&](const std::atomic<bool>&) { recorded = bio::readRecordedFile(file.text); });
   py::dict markers;
   Eigen::VectorXd times;
   if (recorded.markers) {

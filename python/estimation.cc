@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "arguments/columns.h"
 #include "docstrings.h"
 #include "info/estimation/estimate.h"
 #include "info/information/fisher.h"
@@ -14,11 +15,14 @@ using Eigen::VectorXd;
 
 /// A standard deviation, one for each output, or a covariance matrix of the outputs.
 info::OutputCovariance covarianceOf(const py::object& noise, Eigen::Index outputs) {
-  const auto array = py::array_t<double, py::array::forcecast>::ensure(noise);
-  if (!array) throw py::error_already_set();
+  const Numbers array = numbersOf(noise, "noise");
+  if (array.ndim() > 2) {
+    throw std::invalid_argument(fmt::format(
+        "noise: {} dimensions, must be one number, one for each output, or outputs x outputs",
+        array.ndim()));
+  }
   if (array.ndim() == 2) return info::OutputCovariance(array.cast<MatrixXd>());
-  const VectorXd given = array.ndim() == 0 ? VectorXd::Constant(outputs, noise.cast<double>())
-                                           : array.cast<VectorXd>();
+  const VectorXd given = Eigen::Map<const VectorXd>(array.data(), array.size());
   const VectorXd sd = given.size() == 1 ? VectorXd::Constant(outputs, given[0]) : given;
   if (!(sd.array() > 0).all()) {
     throw std::invalid_argument("noise: standard deviations must be > 0");
@@ -72,8 +76,7 @@ info::Method methodOf(const std::string& name) {
 }
 
 MatrixXd fisherInformation(const py::object& gamma, const py::object& noise, Eigen::Index outputs) {
-  const auto array = py::array_t<double, py::array::forcecast | py::array::c_style>::ensure(gamma);
-  if (!array) throw py::error_already_set();
+  const Numbers array = numbersOf(gamma, "gamma");
   if (array.ndim() != 2 && array.ndim() != 3) {
     throw std::invalid_argument(fmt::format(
         "gamma: {} dimensions, must be (samples * outputs) x parameters or samples x outputs x "
@@ -97,11 +100,7 @@ py::object estimate(const py::object& predict, const py::object& measured, const
     sensitivities = predict.attr("sensitivities");
   }
   const info::Predictor predictor = predictorOf(predict, sensitivities);
-  const auto data = py::array_t<double, py::array::forcecast>::ensure(measured);
-  if (!data) throw py::error_already_set();
-  MatrixXd samples = data.cast<MatrixXd>();
-  if (data.ndim() == 1) samples = samples.reshaped(data.size(), 1).eval();
-  const MatrixXd outputs = samples.transpose();
+  const MatrixXd outputs = samplesOf(measured, "measured").transpose();
   info::Measurements measurements{outputs, covarianceOf(noise, outputs.rows()),
                                   info::observedWhereNotNaN(outputs)};
   info::EstimateOptions options;
@@ -121,6 +120,10 @@ py::object estimate(const py::object& predict, const py::object& measured, const
       "reduced_chi_square"_a = found.reducedChiSquare);
 }
 
+MatrixXd cramerRaoBound(const MatrixXd& information, const std::vector<std::string>& names) {
+  return info::cramerRaoBound(information, namesFor(names, information.rows()));
+}
+
 py::object identifiability(const MatrixXd& information, const VectorXd& values,
                            const std::vector<std::string>& names) {
   const auto report = info::identifiability(
@@ -137,7 +140,7 @@ void defineEstimation(py::module_& module) {
   const std::vector<std::string> unnamed;
   module.def("fisher_information", &fisherInformation, "gamma"_a, "noise"_a, py::kw_only(),
              "outputs"_a = 1, docstrings::fisher_information);
-  module.def("cramer_rao_bound", &info::cramerRaoBound, "information"_a, "names"_a = unnamed,
+  module.def("cramer_rao_bound", &cramerRaoBound, "information"_a, "names"_a = unnamed,
              docstrings::cramer_rao_bound);
   module.def("identifiability", &identifiability, "information"_a, "values"_a, "names"_a = unnamed,
              docstrings::identifiability);

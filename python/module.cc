@@ -27,12 +27,15 @@ std::string lineOf(const char* text) {
   return line;
 }
 
-/// Wrong use and bad files are ValueError, all else RuntimeError.
+/// Wrong use and bad files are ValueError, an object of another type is TypeError, all else
+/// RuntimeError.
 void translate(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
   } catch (const py::error_already_set&) {
     throw;
+  } catch (const py::cast_error& error) {
+    PyErr_SetString(PyExc_TypeError, lineOf(error.what()).c_str());
   } catch (const py::builtin_exception&) {
     throw;
   } catch (const bio::FileError& error) {

@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "arguments/columns.h"
+#include "arguments/file_name.h"
 #include "arms.h"
 #include "bio/analysis/fit_paths.h"
 #include "docstrings.h"
@@ -11,27 +13,27 @@ namespace python {
 namespace {
 
 /// Columns [rad] or [m] by coordinate, of one length.
-bio::PostureTable posturesOf(const bio::Model& model,
-                             const std::map<std::string, Eigen::VectorXd>& columns) {
-  if (columns.empty()) throw std::invalid_argument("postures: no coordinate is given");
+bio::PostureTable posturesOf(const bio::Model& model, const py::object& postures) {
+  const bio::Table given = tableOf(postures, "postures");
+  if (given.columns.empty()) throw std::invalid_argument("postures: no coordinate is given");
+  std::map<std::string, Eigen::Index> columns;  // in the order of names
+  for (const std::string& name : given.columns) columns.emplace(name, std::ssize(columns));
   bio::PostureTable table;
-  const Eigen::Index rows = columns.begin()->second.size();
-  table.values.resize(rows, static_cast<Eigen::Index>(columns.size()));
-  for (const auto& [name, values] : columns) {
+  table.values.resize(given.values.rows(), given.values.cols());
+  for (const auto& [name, column] : columns) {
     bio::findCoordinate(model, name);
-    if (values.size() != rows || rows == 0 || !values.allFinite()) {
-      throw std::invalid_argument(
-          fmt::format("postures: '{}' has {} values, must have as many finite ones as '{}', {}",
-                      name, values.size(), columns.begin()->first, rows));
+    const auto values = given.values.col(column);
+    if (values.size() == 0 || !values.allFinite()) {
+      throw std::invalid_argument(fmt::format(
+          "postures: column '{}' must have at least one row, and finite values only", name));
     }
-    table.values.col(static_cast<Eigen::Index>(table.coordinates.size())) = values;
+    table.values.col(std::ssize(table.coordinates)) = values;
     table.coordinates.push_back(name);
   }
   return table;
 }
 
-py::object momentArms(const bio::Model& model,
-                      const std::map<std::string, Eigen::VectorXd>& postures,
+py::object momentArms(const bio::Model& model, const py::object& postures,
                       const std::map<std::string, double>& lock,
                       const std::vector<std::string>& wrapAsCylinder) {
   const bio::PostureTable table = posturesOf(model, postures);
@@ -70,15 +72,15 @@ py::object fitOf(const bio::MuscleFit& one) {
 }
 
 py::object fitPaths(const bio::Model& model, const std::vector<std::string>& muscles,
-                    double tolerance, int order, const std::string& table, const Names& coordinate,
+                    double tolerance, int order, const FileName& table, const Names& coordinate,
                     const std::map<std::string, double>& lock,
                     const std::vector<std::string>& wrapAsCylinder) {
   std::optional<bio::LengthTable> lengths;
-  if (!table.empty()) {
+  if (!table.text.empty()) {
     if (coordinate != Names(std::vector<std::string>())) {
       throw std::invalid_argument("coordinate: with a table its coordinates are free");
     }
-    lengths = bio::readLengths(table, model);
+    lengths = bio::readLengths(table.text, model);
   }
   SystemChoice choice;
   if (lengths) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "arguments/columns.h"
 #include "docstrings.h"
 #include "info/autodiff/derivatives.h"
 
@@ -11,24 +12,9 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A number, a vector (one row per sample), or samples × outputs.
-MatrixXd samplesOf(const py::object& values) {
-  const auto array = py::array_t<double, py::array::forcecast | py::array::c_style>::ensure(values);
-  if (!array) throw py::error_already_set();
-  if (array.ndim() > 2) {
-    throw std::invalid_argument(
-        fmt::format("outputs: {} dimensions, must be samples, or samples x outputs", array.ndim()));
-  }
-  const Eigen::Index rows = array.ndim() == 0 ? 1 : array.shape(0);
-  const Eigen::Index columns = array.ndim() == 2 ? array.shape(1) : 1;
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  return Eigen::Map<const RowMajor>(array.data(), rows, columns);
-}
-
 /// Γ as (samples·outputs) × parameters, or samples × outputs × parameters.
 MatrixXd gammaOf(const py::object& values, Eigen::Index rows, Eigen::Index parameters) {
-  const auto array = py::array_t<double, py::array::forcecast | py::array::c_style>::ensure(values);
-  if (!array) throw py::error_already_set();
+  const Numbers array = numbersOf(values, "sensitivities");
   if (array.size() != rows * parameters ||
       (array.ndim() > 1 && array.shape(array.ndim() - 1) != parameters)) {
     throw std::invalid_argument(
@@ -40,7 +26,7 @@ MatrixXd gammaOf(const py::object& values, Eigen::Index rows, Eigen::Index param
 }
 
 VectorXd vectorFrom(const char* what, const py::object& value, Eigen::Index size) {
-  const MatrixXd all = samplesOf(value);
+  const MatrixXd all = samplesOf(value, what);
   if (all.size() != size || (all.rows() != 1 && all.cols() != 1)) {
     throw std::invalid_argument(
         fmt::format("{}: {} x {} numbers, must be {}", what, all.rows(), all.cols(), size));
@@ -50,7 +36,7 @@ VectorXd vectorFrom(const char* what, const py::object& value, Eigen::Index size
 
 MatrixXd matrixFrom(const char* what, const py::object& value, Eigen::Index rows,
                     Eigen::Index columns) {
-  const MatrixXd all = samplesOf(value);
+  const MatrixXd all = samplesOf(value, what);
   if (all.rows() != rows || all.cols() != columns) {
     throw std::invalid_argument(fmt::format("{}: {} x {} numbers, must be {} x {}", what,
                                             all.rows(), all.cols(), rows, columns));
@@ -64,6 +50,18 @@ VectorXd stack(const MatrixXd& samples) {
 }
 
 }  // namespace
+
+MatrixXd samplesOf(const py::object& values, const std::string& what) {
+  const Numbers array = numbersOf(values, what);
+  if (array.ndim() > 2) {
+    throw std::invalid_argument(fmt::format(
+        "{}: {} dimensions, must be samples, or samples x outputs", what, array.ndim()));
+  }
+  const Eigen::Index rows = array.ndim() == 0 ? 1 : array.shape(0);
+  const Eigen::Index columns = array.ndim() == 2 ? array.shape(1) : 1;
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  return Eigen::Map<const RowMajor>(array.data(), rows, columns);
+}
 
 PythonSystem::PythonSystem(py::object f, VectorXd x0, VectorXd times, MatrixXd inputs, py::object g,
                            Derivatives derivatives, int substeps)
@@ -131,7 +129,7 @@ PythonSystem::State PythonSystem::stepped(const State& state, Eigen::Index k, in
 
 VectorXd PythonSystem::outputOf(const State& state, Eigen::Index k, const VectorXd& theta) const {
   if (g_.is_none()) return state.x;
-  return stack(samplesOf(g_(state.x, VectorXd(inputs_.row(k)), theta)));
+  return stack(samplesOf(g_(state.x, VectorXd(inputs_.row(k)), theta), "g"));
 }
 
 MatrixXd PythonSystem::outputs(const VectorXd& theta) const {
@@ -188,7 +186,9 @@ MatrixXd differenced(const std::function<MatrixXd(const VectorXd&)>& outputs,
 }
 
 info::Predictor predictorOf(const py::object& outputs, const py::object& sensitivities) {
-  const auto samples = [outputs](const VectorXd& theta) { return samplesOf(outputs(theta)); };
+  const auto samples = [outputs](const VectorXd& theta) {
+    return samplesOf(outputs(theta), "outputs");
+  };
   info::Predictor predictor;
   predictor.outputs = [samples](const VectorXd& theta) -> MatrixXd {
     return samples(theta).transpose();
@@ -211,8 +211,8 @@ void defineSystem(py::module_& module) {
                        const py::object& inputs, py::object g, py::object f_x, py::object f_theta,
                        py::object g_x, py::object g_theta, int substeps) {
              return PythonSystem(
-                 std::move(f), x0, times, inputs.is_none() ? MatrixXd() : samplesOf(inputs),
-                 std::move(g),
+                 std::move(f), x0, times,
+                 inputs.is_none() ? MatrixXd() : samplesOf(inputs, "inputs"), std::move(g),
                  {std::move(f_x), std::move(f_theta), std::move(g_x), std::move(g_theta)},
                  substeps);
            }),

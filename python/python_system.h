@@ -53,6 +53,11 @@ class PythonSystem {
   int substeps_;
 };
 
+/// A number, a vector (one row per sample), or samples × outputs.
+/// @param what the argument, for messages
+/// @throws std::invalid_argument for more dimensions, and what numbersOf throws
+Eigen::MatrixXd samplesOf(const py::object& values, const std::string& what);
+
 /// y: samples × outputs, as Python functions of θ, for estimation: `sensitivities` gives Γ, else
 /// central differences do.
 info::Predictor predictorOf(const py::object& outputs, const py::object& sensitivities);

@@ -1,5 +1,6 @@
 #include "bio/model/model_review.h"
 
+#include "arguments/file_name.h"
 #include "arms.h"
 #include "bio/analysis/muscle_states.h"
 #include "bio/analysis/opensim_paths.h"
@@ -61,8 +62,8 @@ py::list openSimDifferences(const bio::Model& model) {
   return list;
 }
 
-py::object muscleStates(const std::string& file) {
-  const std::vector<bio::MuscleState> states = bio::muscleStates(file);
+py::object muscleStates(const FileName& file) {
+  const std::vector<bio::MuscleState> states = bio::muscleStates(file.text);
   const auto column = [&](double bio::MuscleState::*member) {
     Eigen::VectorXd values(std::ssize(states));
     for (std::size_t i = 0; i < states.size(); ++i) {

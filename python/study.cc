@@ -1,5 +1,6 @@
 #include <numbers>
 
+#include "arguments/file_name.h"
 #include "arms.h"
 #include "bio/model/free_coordinates.h"
 #include "bio/tables/study_file.h"
@@ -18,8 +19,8 @@ py::object subjectOf(const bio::StudySubject& subject) {
                  "hold_out"_a = subject.heldOut, "recordings"_a = recordings);
 }
 
-py::object readStudy(const std::string& file) {
-  const bio::StudyFile study = bio::readStudy(file);
+py::object readStudy(const FileName& file) {
+  const bio::StudyFile study = bio::readStudy(file.text);
   py::list subjects;
   for (const bio::StudySubject& subject : study.subjects) subjects.append(subjectOf(subject));
   py::object noise = py::none();

@@ -256,7 +256,7 @@ class Arms(unittest.TestCase):
                 one()
         turned = fh.make_trial(self.model, self.columns(), known_arm_turn=-45 * DEGREE)
         self.assertAlmostEqual(turned.known_arm_turn, -45 * DEGREE)
-        with self.assertRaisesRegex(ValueError, "the arm turned by -45 deg, which only discover"):
+        with self.assertRaisesRegex(ValueError, "the limb turned by -45 deg, which only discover"):
             fh.sensitivity(self.model, [turned], ["hand.mass"])
         noise = 0.5 * DEGREE
         columns = {name: values[self.trial.times <= 2.5] for name, values in self.columns().items()}

@@ -104,15 +104,18 @@ std::string subcommandSection(const DescribedCommand& program, const DescribedCo
   std::string text = fmt::format(".SS {}\n{}\n.PP\n{}.\n", roff(command.name), synopsis(command),
                                  roff(withoutPeriod(command.purpose)));
   for (const DescribedOption& argument : command.arguments) text += entry(argument);
-  std::string group = "Options";
+  // each group once, wherever its options stand; those of none come first, without a heading
+  std::vector<std::pair<std::string, std::string>> groups = {{"Options", ""}};
   for (const DescribedOption& option : command.options) {
     if (isShared(program, option)) continue;
-    if (option.group != group) {
-      group = option.group;
-      text += ".PP\n" + italic(group) + "\n";
+    auto group = std::find_if(groups.begin(), groups.end(),
+                              [&](const auto& one) { return one.first == option.group; });
+    if (group == groups.end()) {
+      group = groups.insert(group, {option.group, ".PP\n" + italic(option.group) + "\n"});
     }
-    text += entry(option);
+    group->second += entry(option);
   }
+  for (const auto& [name, entries] : groups) text += entries;
   return text + exampleBlock(command.footer);
 }
 

@@ -98,8 +98,7 @@ ModelDiscovery discoverInModel(ModelDiscoveryRequest request, const CommandConte
   std::string next =
       predictedExperimentSentence(result.experiments, data, verdict, found.options.evidence);
   if (next.empty()) {
-    next =
-        followUp(data, verdict, followUpsOfModels(coordinate + (isAngle ? ".torque" : ".force")));
+    next = followUp(data, verdict, followUpsOfModels(data.encompassing()));
   }
   const DiscoverFindings findings{request.model,
                                   files,

@@ -2,11 +2,17 @@
 
 #include <algorithm>
 
+#include "bio/discovery/end_of_limb.h"
+
 namespace app {
 
 using info::discover::Finding;
 
-FollowUps followUpsOfModels(const std::string& loadColumn) {
+FollowUps followUpsOfModels(const bio::discover::EncompassingModel& model) {
+  const bio::Coordinate& coordinate = model.coordinate();
+  const std::string loadColumn = coordinate.name + (coordinate.isRotation ? ".torque" : ".force");
+  const std::string end = bio::discover::endOfLimb(model);
+  const std::string place = bio::discover::placeOfMass(model);
   return {
       {
           {{"delay", "clock"},
@@ -14,8 +20,8 @@ FollowUps followUpsOfModels(const std::string& loadColumn) {
                "): the limb responds to a pulse at once and to its muscles with a delay, whereas "
                "a clock offset shifts both."},
           {{"tilt", "handforce", "const"},
-           "Repeat a trial with a known mass, e.g. 1 kg, in the hand: the effect of gravity "
-           "grows with it, a force on the hand does not."},
+           "Repeat a trial with a known mass, e.g. 1 kg, " + place + ": the effect of gravity " +
+               "grows with it, a force on " + end + " does not."},
           {{"payload", "mass", "const", "handforce"},
            "Let the limb hang and swing passively with relaxed muscles: a mass adds weight and "
            "inertia, a force adds no inertia."},
@@ -32,8 +38,8 @@ FollowUps followUpsOfModels(const std::string& loadColumn) {
            "Repeat the trial at half and at twice the speed: at twice the speed Coulomb friction "
            "is unchanged, viscous torque doubles, quadratic drag quadruples."},
       },
-      "Repeat the trials at another speed and with a known mass in the hand: these data cannot "
-      "distinguish the effects listed together.",
+      "Repeat the trials at another speed and with a known mass " + place +
+          ": these data cannot distinguish the effects listed together.",
       "Record passive motion (relaxed muscles, limb moved by hand or by a dynamometer) over the "
       "region that the score map marks: this shows whether the missing effect belongs to the "
       "joint or to the muscles.",

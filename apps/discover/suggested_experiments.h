@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bio/discovery/encompassing_model.h"
 #include "info/discovery/discover.h"
 
 namespace app {
@@ -21,8 +22,7 @@ struct FollowUps {
   std::string otherwise;  ///< for a class that none of them separates
   std::string ifUnknown, ifNamed;
 };
-/// @param loadColumn the trial's column of the external load, e.g. elbow_flexion.torque
-FollowUps followUpsOfModels(const std::string& loadColumn);
+FollowUps followUpsOfModels(const bio::discover::EncompassingModel& model);
 
 /// The experiment to do after this verdict, in words: the one that distinguishes most members of a
 /// class of effects, or what to record if no effect was named. It is chosen by the ids of the

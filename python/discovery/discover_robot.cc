@@ -2,6 +2,8 @@
 
 #include <variant>
 
+#include "arguments/columns.h"
+#include "arguments/file_name.h"
 #include "arms.h"
 #include "bio/tables/different_trials.h"
 #include "bio/tables/table_file.h"
@@ -18,7 +20,7 @@ namespace {
 using info::robot::KnownEffect;
 
 /// A file, or columns as make_trial takes them.
-using RobotTrial = std::variant<std::string, py::dict>;
+using RobotTrial = std::variant<FileName, py::object>;
 
 /// Trials as they are given, and by what they are known.
 struct RobotTrials {
@@ -29,9 +31,9 @@ struct RobotTrials {
 
 void addTrial(const RobotTrial& given, const std::vector<info::robot::Channel>& channels,
               bool ignoreExtra, RobotTrials& all) {
-  const auto* file = std::get_if<std::string>(&given);
-  const std::string name = file ? *file : fmt::format("trial {}", all.trials.size() + 1);
-  const bio::Table table = file ? bio::readTable(*file) : tableOf(std::get<py::dict>(given), name);
+  const auto* file = std::get_if<FileName>(&given);
+  const std::string name = file ? file->text : fmt::format("trial {}", all.trials.size() + 1);
+  const bio::Table table = file ? bio::readTable(name) : tableOf(std::get<py::object>(given), name);
   all.trials.push_back(info::robot::recordingOf(
       {name, table.columns, table.values, table.inDegrees}, channels,
       [&](const std::string& column) {
@@ -81,7 +83,9 @@ std::vector<KnownEffect> effectsIn(const std::string& file, const std::string& s
 
 std::vector<KnownEffect> knownEffectsOf(const py::object& given, const std::string& system) {
   if (given.is_none()) return {};
-  if (py::isinstance<py::str>(given)) return effectsIn(given.cast<std::string>(), system);
+  if (py::isinstance<py::str>(given) || py::hasattr(given, "__fspath__")) {
+    return effectsIn(given.cast<FileName>().text, system);
+  }
   return effectsFrom(given.cast<py::iterable>(), [](const py::handle& object, const char* name) {
     return py::object(object.attr(name));
   });

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "bio/analysis/replay.h"
+#include "bio/discovery/end_of_limb.h"
 #include "bio/simulation/simulate.h"
 
 namespace bio::discover {
@@ -114,13 +115,17 @@ Trial movedPassively(Trial trial, const EncompassingModel& model, double low, do
   return trial;
 }
 
-std::string sentenceOf(const Trial& moved, const Coordinate& coordinate, double low, double high) {
+std::string sentenceOf(const Trial& moved, const EncompassingModel& model, double low,
+                       double high) {
+  const Coordinate& coordinate = model.coordinate();
   const bool turns = coordinate.isRotation;
   const double unit = turns ? std::numbers::pi / 180 : 1;
-  std::string changed = inWords(moved.known), header;
-  if (!changed.empty()) changed.insert(0, ", ");
+  std::string changed, header;
+  if (moved.known.massInHand != 0)
+    changed = fmt::format(", with {} kg {}", moved.known.massInHand, placeOfMass(model));
   if (moved.known.armTurn != 0)
-    changed += " (as a whole, about the joint, positive as the coordinate rises)";
+    changed += ", " + inWords({0, moved.known.armTurn}) +
+               " (as a whole, about the joint, positive as the coordinate rises)";
   for (const auto& [line, value] : headerOf(moved.known))
     header += fmt::format("{}{}={}", header.empty() ? ", header " : " and ", line, value);
   return fmt::format(
@@ -152,7 +157,7 @@ std::vector<PlannedExperiment> passiveMotions(const Trial& trial, const Encompas
       changed.known.massInHand += mass;
       changed.known.armTurn += turn * std::numbers::pi / 180;
       Trial moved = movedPassively(std::move(changed), model, low, high);
-      planned.push_back({sentenceOf(moved, coordinate, low, high), std::move(moved)});
+      planned.push_back({sentenceOf(moved, model, low, high), std::move(moved)});
     }
   }
   return planned;

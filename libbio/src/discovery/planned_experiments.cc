@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "bio/discovery/end_of_limb.h"
+
 namespace bio::discover {
 
 namespace {
@@ -39,17 +41,20 @@ Trial pushed(Trial trial, const std::string& coordinate, double size) {
 }  // namespace
 
 std::vector<PlannedExperiment> plannedExperiments(const Trial& trial,
-                                                  const Coordinate& coordinate) {
+                                                  const EncompassingModel& model) {
+  const Coordinate& coordinate = model.coordinate();
   const std::string file = std::filesystem::path(trial.file).filename().string();
   std::vector<PlannedExperiment> planned;
   planned.push_back({fmt::format("repeat {} unchanged", file), trial});
   for (const double mass : {0.1, 0.3, 1.0}) {
+    if (model.movedBodies().empty()) break;
     Trial loaded = trial;
     loaded.known.massInHand += mass;
-    planned.push_back({fmt::format("repeat {} with a known mass of {} kg in the hand (header line "
-                                   "known_mass_in_hand_kg={})",
-                                   file, loaded.known.massInHand, loaded.known.massInHand),
-                       loaded});
+    planned.push_back(
+        {fmt::format("repeat {} with a known mass of {} kg {} (header line "
+                     "known_mass_in_hand_kg={})",
+                     file, loaded.known.massInHand, placeOfMass(model), loaded.known.massInHand),
+         loaded});
   }
   const bool turns = coordinate.isRotation;
   for (const double size : {0.25, 0.5, 1.0}) {

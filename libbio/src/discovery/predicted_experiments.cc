@@ -23,7 +23,7 @@ std::vector<PredictedExperiment> predictExperiments(const Model& model, const Sy
   std::vector<PredictedExperiment> predictedExperiments;
   if (verdict.rivals.size() < 2) return predictedExperiments;
   const Coordinate& coordinate = data.encompassing().coordinate();
-  std::vector<PlannedExperiment> experiments = plannedExperiments(trial, coordinate);
+  std::vector<PlannedExperiment> experiments = plannedExperiments(trial, data.encompassing());
   for (PlannedExperiment& one : passiveMotions(trial, data.encompassing()))
     experiments.push_back(std::move(one));
   for (const PlannedExperiment& experiment : experiments) {

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "bio/discovery/add_effects.h"
+#include "bio/discovery/end_of_limb.h"
 #include "discovery/effects/effects.h"
 
 namespace bio::discover {
@@ -29,9 +30,10 @@ Eigen::VectorXd experimentalConditionsOf(const Trial& trial,
   change("known.turn", trial.known.armTurn, "the coordinate does not turn bodies across gravity");
   if (trial.known.armTurn != 0 && encompassing.present().count("handforce") > 0) {
     throw std::invalid_argument(
-        fmt::format("{}: recorded {}, but the model has a force on the hand ({}), which would turn "
-                    "with the limb",
-                    trial.file, inWords(trial.known), encompassing.present().at("handforce")));
+        fmt::format("{}: recorded {}, but the model has a force on {} ({}), which would turn with "
+                    "the limb",
+                    trial.file, inWords(trial.known), endOfLimb(encompassing),
+                    encompassing.present().at("handforce")));
   }
   return changes;
 }

@@ -37,9 +37,9 @@ double numberOf(const std::map<std::string, std::string>& header, const char* na
 
 std::string inWords(const ExperimentalConditions& known) {
   std::string words;
-  if (known.massInHand != 0) words = fmt::format("with {} kg in the hand", known.massInHand);
+  if (known.massInHand != 0) words = fmt::format("with a known mass of {} kg", known.massInHand);
   if (known.armTurn != 0) {
-    words += fmt::format("{} the arm turned by {} deg", words.empty() ? "with" : " and",
+    words += fmt::format("{} the limb turned by {} deg", words.empty() ? "with" : " and",
                          inDegrees(known.armTurn));
   }
   return words;

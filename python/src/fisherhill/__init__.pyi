@@ -1,6 +1,8 @@
 """Hill muscles and Fisher information: simulate, identify and explain how muscles move limbs.
 
-Everything is in SI units and radians; arrays have one row per time.
+Everything is in SI units and radians; arrays have one row per time. A file is named by a str or a
+path of pathlib. A table of columns is a dict of sequences or arrays of numbers, or a DataFrame of
+pandas, whose index is not read.
 
 Errors: values and files that break a rule raise ValueError, and a computation that cannot be
 carried out raises RuntimeError, each with one line that says which quantity and which rule. An
@@ -13,8 +15,9 @@ are marked `type_check_only`, which exist for type checkers alone.
 
 # The docstrings of the compiled module are made from this file (python/docstrings.py).
 
-from collections.abc import Callable, Sequence
-from typing import Literal, TypeAlias, type_check_only
+from collections.abc import Callable, Mapping, Sequence
+from os import PathLike
+from typing import Any, Literal, Protocol, TypeAlias, type_check_only
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -66,6 +69,14 @@ __version__: str
 
 _Array: TypeAlias = NDArray[np.float64]
 _Integrator: TypeAlias = Literal["vi", "vi-left", "rk4", "cvode"]
+_File: TypeAlias = str | PathLike[str]
+
+@type_check_only
+class _DataFrame(Protocol):  # of pandas, and what is like it
+    columns: Any
+    to_numpy: Any
+
+_Columns: TypeAlias = Mapping[str, ArrayLike] | _DataFrame
 
 # Models and trials --------------------------------------------------------------------------------
 
@@ -114,12 +125,12 @@ class Model:
                 Quantity, value with its unit, and the usual range.
         """
 
-    def write(self, file: str) -> None:
+    def write(self, file: _File) -> None:
         """Writes the model as an OpenSim 4 file (.osim).
 
         Parameters
         ----------
-        file : str
+        file : str or PathLike
             The file appears complete or not at all.
 
         Raises
@@ -169,12 +180,12 @@ class Model:
             For an unknown name, or an ellipsoid without two equal semi-axes.
         """
 
-    def with_external_loads(self, file: str) -> Model:
+    def with_external_loads(self, file: _File) -> Model:
         """The model with forces and torques on bodies, which replay, comparisons and ensemble simulate.
 
         Parameters
         ----------
-        file : str
+        file : str or PathLike
             OpenSim's ExternalLoads (.xml); its datafile must cover the trials. They are not written
             into a model file.
 
@@ -247,12 +258,12 @@ class Trial:
             As of Model.review.
         """
 
-def load_model(file: str) -> Model:
+def load_model(file: _File) -> Model:
     """Reads an OpenSim 3 or 4 model (.osim).
 
     Parameters
     ----------
-    file : str
+    file : str or PathLike
 
     Returns
     -------
@@ -265,7 +276,7 @@ def load_model(file: str) -> Model:
     """
 
 def load_trial(
-    file: str,
+    file: _File,
     model: Model,
     *,
     ignore_extra: bool = False,
@@ -279,7 +290,7 @@ def load_trial(
 
     Parameters
     ----------
-    file : str
+    file : str or PathLike
     model : Model
     ignore_extra : bool
         True: ignore columns that match nothing in the model, with a warning.
@@ -305,7 +316,7 @@ def load_trial(
 
 def make_trial(
     model: Model,
-    columns: dict[str, ArrayLike],
+    columns: _Columns,
     *,
     name: str = "trial",
     ignore_extra: bool = False,
@@ -321,7 +332,7 @@ def make_trial(
     Parameters
     ----------
     model : Model
-    columns : dict
+    columns : dict or DataFrame
         {column: values}, named as in a file, all of one length: 'time' [s]; muscles (excitation, 0 to
         1); 'elbow_flexion' [rad] or 'elbow_flexion_deg', NaN where it was not measured;
         'elbow_flexion.torque' [N m], an external load; 'elbow_flexion.moment' [N m], what the limb
@@ -378,7 +389,7 @@ class EmgResult:
     remarks: list[str]
     warnings: list[str]
 
-def emg(recordings: str | Sequence[str], config: str, *, write: str = "") -> EmgResult:
+def emg(recordings: _File | Sequence[_File], config: _File, *, write: _File = "") -> EmgResult:
     """Converts raw EMG recordings of one movement into the columns of a trial.
 
     With e = emg(recordings, config), the trial is
@@ -387,12 +398,12 @@ def emg(recordings: str | Sequence[str], config: str, *, write: str = "") -> Emg
 
     Parameters
     ----------
-    recordings : str or list of str
+    recordings : str or PathLike, or list of these
         File, or several of the same movement: text columns, Trigno export, .sto, .mot, .csv, .c3d,
         .xdf or .trc.
-    config : str
+    config : str or PathLike
         File (.toml) of channels, filters, electrodes and muscles (docs/emg.md).
-    write : str
+    write : str or PathLike
         File (.sto) to which the trial is written, as the program writes it; empty: none.
 
     Returns
@@ -453,12 +464,12 @@ class RecordedFile:
     channels: list[RecordedChannel]
     remarks: list[str]
 
-def read_recording(file: str) -> RecordedFile:
+def read_recording(file: _File) -> RecordedFile:
     """Reads markers and signals of a C3D, XDF or TRC file, whose contents check shows.
 
     Parameters
     ----------
-    file : str
+    file : str or PathLike
         (.c3d, .xdf, .trc)
 
     Returns
@@ -497,12 +508,12 @@ class MuscleStatesResult:
     static_fibre_length: _Array
     static_tendon_force: _Array
 
-def muscle_states(file: str) -> MuscleStatesResult:
+def muscle_states(file: _File) -> MuscleStatesResult:
     """Evaluates muscle laws for given states, class by class.
 
     Parameters
     ----------
-    file : str
+    file : str or PathLike
         Table (.csv) with class, max_isometric_force [N], optimal_fiber_length [m],
         tendon_slack_length [m], pennation [rad], max_contraction_velocity [optimal lengths/s],
         activation, fiber_length [m], path_length [m] and path_speed [m/s]; models/muscle_states.csv
@@ -644,7 +655,7 @@ class MomentArmsResult:
 
 def moment_arms(
     model: Model,
-    postures: dict[str, ArrayLike],
+    postures: _Columns,
     *,
     lock: dict[str, float] = {},
     wrap_as_cylinder: Sequence[str] = [],
@@ -654,7 +665,7 @@ def moment_arms(
     Parameters
     ----------
     model : Model
-    postures : dict
+    postures : dict or DataFrame
         {coordinate: values [rad] or [m]}, one for each posture, all of one length. Other coordinates
         are at their default values.
     lock : dict
@@ -777,7 +788,7 @@ def fit_paths(
     muscles: Sequence[str] = [],
     tolerance: float = 0.0001,
     order: int = 9,
-    table: str = "",
+    table: _File = "",
     coordinate: str | Sequence[str] = [],
     lock: dict[str, float] = {},
     wrap_as_cylinder: Sequence[str] = [],
@@ -793,7 +804,7 @@ def fit_paths(
         Largest error of a length [m] > 0; a muscle that exceeds it keeps its points.
     order : int
         Highest order tried, 1 to 9.
-    table : str
+    table : str or PathLike
         File (.csv) of lengths to fit instead of those of the paths, OpenSim's for example, as
         moment-arms --postures writes it: columns COORDINATE [rad] or [m] and MUSCLE.length_m [m].
     coordinate, lock
@@ -1546,7 +1557,7 @@ def compare(
     integrators: Sequence[_Integrator] = ["rk4", "vi", "vi-left", "cvode"],
     steps: Sequence[float] = [0.0002, 0.0003, 0.0005, 0.0008, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05],
     timings: int = 5,
-    also: dict[str, str | tuple[ArrayLike, ArrayLike]] = {},
+    also: dict[str, _File | tuple[ArrayLike, ArrayLike]] = {},
     initial: dict[str, float] = {},
     coordinate: str | Sequence[str] = [],
     lock: dict[str, float] = {},
@@ -2732,14 +2743,14 @@ class RobotDiscoveryResult:
     step: float
     fits: int
 
-_RobotTrial: TypeAlias = str | dict[str, ArrayLike]
+_RobotTrial: TypeAlias = _File | _Columns
 
 def discover_robot(
     system: Literal["double-pendulum", "suspended-mass"],
     trials: Sequence[_RobotTrial],
     *,
     hold_out: Sequence[_RobotTrial] = [],
-    with_effects: str | Sequence[RobotEffect] | None = None,
+    with_effects: _File | Sequence[RobotEffect] | None = None,
     noise: float | Sequence[float] | None = None,
     without: Sequence[str] = [],
     max_effects: int = 3,
@@ -2754,13 +2765,13 @@ def discover_robot(
     system : {'double-pendulum', 'suspended-mass'}
         Two links on a cart, with measured angles, or a mass on a string below a cart, with the measured
         force of the string.
-    trials : list of str or dict
+    trials : list of str, PathLike, dict or DataFrame
         Files, or {column: values}: time [s], input (the cart's commanded acceleration [m/s^2]), and
         link1_rad and link2_rad (absolute angles from hanging down [rad]; or link1_deg and link2_deg) or
         force_N; NaN: not measured. The cart is at rest before.
-    hold_out : list of str or dict
+    hold_out : list of str, PathLike, dict or DataFrame
         Trials used to test the result.
-    with_effects : str or list, optional
+    with_effects : str, PathLike or list, optional
         Effects to add to the model first: a with_effect.json, or the effects of an earlier result.
     noise : float or list of float, optional
         Standard deviation of each measured column, link1 and link2 [rad] or force [N]. Default:
@@ -2848,12 +2859,12 @@ class StudyFile:
     step: float | None
     subjects: list[StudySubject]
 
-def read_study(file: str) -> StudyFile:
+def read_study(file: _File) -> StudyFile:
     """Reads a study: subjects with their models and trials, and what is to be estimated from them.
 
     Parameters
     ----------
-    file : str
+    file : str or PathLike
         (.toml); docs/study.md lists every key. Paths in it are relative to its folder.
 
     Returns
@@ -2908,7 +2919,7 @@ class StudyRow:
     discovery: DiscoveryResult | None
 
 def study(
-    file: str,
+    file: _File,
     *,
     subjects: Sequence[str] | None = None,
     each: Callable[[StudyRow], object] | None = None,
@@ -2927,7 +2938,7 @@ def study(
 
     Parameters
     ----------
-    file : str
+    file : str or PathLike
         As in read_study.
     subjects : list of str, optional
         Names of those to compute. Default: all.
@@ -3539,7 +3550,8 @@ def cramer_rao_bound(information: ArrayLike, names: Sequence[str] = []) -> _Arra
     Raises
     ------
     ValueError
-        If there is no information about a parameter or a combination of parameters, which it names.
+        If the matrix is not symmetric but for rounding, or if there is no information about a parameter
+        or a combination of parameters, which it names.
     """
 
 @type_check_only
@@ -3579,7 +3591,8 @@ def identifiability(
     Raises
     ------
     ValueError
-        For sizes that do not fit, or an information that is not finite.
+        For sizes that do not fit, or an information that is not finite or not symmetric but for
+        rounding.
     """
 
 @type_check_only

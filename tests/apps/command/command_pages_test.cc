@@ -85,6 +85,33 @@ TEST_F(Pages, ManPageHasEverySubcommandAndEveryOptionOfIt) {
   }
 }
 
+// Options of one group may stand apart from each other on the command line.
+TEST_F(Pages, ManPageHasEachGroupOfOptionsOnceUnderItsHeading) {
+  const std::string page = manualPage(program, "1.2.3");
+  const std::string shared = partOf(page, ".SH COMMON OPTIONS", ".SH ");
+  std::size_t headings = 0;
+  for (const DescribedCommand& command : program.subcommands) {
+    const std::string section = partOf(page, ".SS " + inRoff(command.name) + "\n", ".S");
+    for (const DescribedOption& option : command.options) {
+      const std::string entry = ".TP\n\\fB" + inRoff(option.names.front()) + "\\fR";
+      const std::size_t at = section.find(entry);
+      if (at == section.npos) {
+        EXPECT_THAT(shared, testing::HasSubstr(entry)) << command.name;
+        continue;
+      }
+      const std::size_t heading = section.rfind(".PP\n\\fI", at);
+      const bool isUnderAHeading = heading != section.npos;
+      EXPECT_EQ(isUnderAHeading, option.group != "Options") << command.name << entry;
+      if (!isUnderAHeading) continue;
+      const std::string its = ".PP\n\\fI" + inRoff(option.group) + "\\fR\n";
+      EXPECT_EQ(section.substr(heading, its.size()), its) << command.name << entry;
+      EXPECT_EQ(section.find(its), section.rfind(its)) << command.name << entry;
+      ++headings;
+    }
+  }
+  EXPECT_GT(headings, 20u);
+}
+
 TEST_F(Pages, ProgramsOfTheirOwnHaveAPageWithEveryOptionOfTheirSubcommand) {
   const std::string page =
       helperPage(program, "1.2.3", "fisherhill-mpi", "ensemble", "It works.", "mpirun -n N");

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <regex>
 #include <sstream>
 
 #include "support/run_program.h"
@@ -35,7 +36,7 @@ bool isRunByCi(const std::string& line) {
 
 /// tests/python/pip_install runs them.
 bool isRunByPipTest(const std::string& line) {
-  return line.starts_with("python3 -m venv ") || line.starts_with("v/bin/pip ");
+  return line.starts_with("/usr/bin/python3 -m venv ") || line.starts_with("v/bin/pip ");
 }
 
 TEST(Readme, EveryCommandOfTheProgramWorks) {
@@ -177,6 +178,72 @@ TEST(Start, RefusesWhatItDoesNotKnow) {
   const auto result = support::runProgram({(source / "start").string(), "everything"});
   EXPECT_EQ(result.status, 2);
   EXPECT_THAT(result.err, testing::HasSubstr("unknown argument 'everything'"));
+}
+
+/// A repository whose `start` only notes its arguments, with the script that times it.
+class TimedFirstCommands : public testing::Test {
+ protected:
+  support::ProgramResult timed(std::vector<std::string> options) {
+    options.insert(options.begin(), (folder / "bench/first_commands.sh").string());
+    return support::runProgram(options);
+  }
+  /// @param start its lines, in which $NOTES is the file of notes
+  void commit(const std::string& start) {
+    std::filesystem::create_directories(folder / "bench");
+    std::filesystem::copy_file(source / "bench/first_commands.sh",
+                               folder / "bench/first_commands.sh");
+    folder.file("start", "#!/bin/sh\nNOTES=" + notes + "\n" + start);
+    std::filesystem::permissions(folder / "start", std::filesystem::perms::owner_all);
+    const std::string git = "cd '" + folder.path().string() +
+                            "' && git init --quiet && git add . && git -c user.name=a -c "
+                            "user.email=a@b.c commit --quiet --message=start";
+    ASSERT_EQ(support::runProgram({"sh", "-c", git}).status, 0);
+  }
+
+  ScratchFolder folder, elsewhere;
+  const std::string notes = (elsewhere / "notes").string();
+};
+
+TEST_F(TimedFirstCommands, RunInNewClonesWithoutCcacheAndTheMedianIsALineOfTheReadme) {
+  commit("test ! -e built && echo \"$* $CCACHE_DISABLE\" >> $NOTES && touch ${1}built\n");
+  const auto result = timed({});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out,
+              testing::ContainsRegex("3: ./start [0-9.]+ s, ./start test [0-9.]+ s\nOn [0-9]+ "
+                                     "cores, run in this order, the first command takes 0 s and "
+                                     "the second 0 s [(]medians of 3, 20[0-9-]+[)][.]\n$"));
+  EXPECT_EQ(contentOf(notes),
+            "--yes 1\ntest --yes 1\n--yes 1\ntest --yes 1\n--yes 1\ntest --yes 1\n");
+  const std::string words = "On two cores, run in this order, the first command takes";
+  EXPECT_THAT(
+      std::regex_replace(contentOf(source / "README.md"), std::regex("\n"), " "),
+      testing::AllOf(testing::HasSubstr(words), testing::HasSubstr("bench/first_commands.sh")));
+}
+
+TEST_F(TimedFirstCommands, TheMedianIsTheMiddleOneAndAnotherCommandMayStandForStart) {
+  commit("exit 1\n");
+  const std::string other = elsewhere.file("other", "#!/bin/sh\necho $1 >> " + notes +
+                                                        "\ntest $1 = test || sleep $(wc -l < " +
+                                                        notes + " | tr 135 204)\n");  // 2, 0, 4 s
+  std::filesystem::permissions(other, std::filesystem::perms::owner_all);
+  const auto result = timed({"--start", other});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, testing::HasSubstr("the first command takes 2 s and the second 0 s"));
+}
+
+TEST_F(TimedFirstCommands, EndWithTheLastLinesOfACommandThatFails) {
+  commit("echo out of wood; exit 4\n");
+  const auto result = timed({"--times", "1"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_EQ(result.out, "");
+  EXPECT_THAT(result.err, testing::AllOf(testing::HasSubstr("out of wood\n"),
+                                         testing::HasSubstr("./start --yes failed")));
+  for (const std::vector<std::string>& wrong :
+       {std::vector<std::string>{"--times", "0"}, {"--times"}, {"--repeat", "2"}}) {
+    const auto refused = timed(wrong);
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_EQ(support::linesOf(refused.err).size(), 1u) << refused.err;
+  }
 }
 
 TEST(Start, NamesAPackageForEveryLibraryThatIsLookedFor) {

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <tuple>
 #include <utility>
 
+#include "bio/discovery/effects.h"
 #include "bio/discovery/passive_motion.h"
 #include "bio/discovery/planned_experiments.h"
 #include "info/discovery/likelihood/joint_fit.h"
@@ -25,8 +27,8 @@ TEST(PlannedExperiments, RepeatATrialWithWhatTheExperimenterKnows) {
   const ShippedElbow elbow;
   Trial trial = elbow.trial;
   trial.known.massInHand = 0.5;
-  const Coordinate coordinate{.name = "elbow_flexion"};
-  const auto planned = plannedExperiments(trial, coordinate);
+  const EncompassingModel model(elbow.model, ShippedElbow::options(), "elbow_flexion");
+  const auto planned = plannedExperiments(trial, model);
   ASSERT_GE(planned.size(), 4U);
   EXPECT_EQ(planned.front().trial.known.massInHand, 0.5);
   EXPECT_TRUE(planned.front().trial.applied.empty());
@@ -51,12 +53,40 @@ TEST(PlannedExperiments, RepeatATrialWithWhatTheExperimenterKnows) {
   EXPECT_EQ(loaded, 3);
   // what pushes already stays
   trial.applied = {{"elbow_flexion", VectorXd::Constant(trial.times.size(), 0.7)}};
-  const auto both = plannedExperiments(trial, coordinate);
+  const auto both = plannedExperiments(trial, model);
   ASSERT_EQ(both.back().trial.applied.size(), 1U);
   EXPECT_NEAR((both.back().trial.applied[0].values - planned.back().trial.applied[0].values)
                   .cwiseAbs()
                   .maxCoeff(),
               0.7, 1e-12);
+}
+
+// A leg has no hand.
+TEST(PlannedExperiments, PutAMassWhereTheLimbEnds) {
+  const std::string folder = ShippedElbow::root() + "/models/";
+  for (const auto& [file, coordinate, place] :
+       {std::tuple{"elbow8.osim", "elbow_flexion", "in the hand"},
+        std::tuple{"ankle_ta.osim", "ankle_angle", "on foot"}}) {
+    const Model base = readOsim(folder + file);
+    const EncompassingModel model =
+        encompassingModel(base, SystemOptions{{{coordinate}, {}}, {}, {}}, coordinate);
+    Trial trial;
+    trial.file = "calm.sto";
+    trial.times = VectorXd::LinSpaced(101, 0, 1);
+    for (const Muscle& muscle : base.muscles) trial.muscles.push_back(muscle.name);
+    trial.excitations = Eigen::MatrixXd::Constant(101, std::ssize(trial.muscles), 0.1);
+    std::vector<PlannedExperiment> planned = plannedExperiments(trial, model);
+    for (PlannedExperiment& one : passiveMotions(trial, model)) planned.push_back(std::move(one));
+    int loaded = 0;
+    for (const PlannedExperiment& one : planned) {
+      const std::size_t kg = one.sentence.find(" kg ");
+      EXPECT_EQ(kg != one.sentence.npos, one.trial.known.massInHand > 0) << one.sentence;
+      if (kg == one.sentence.npos) continue;
+      EXPECT_EQ(one.sentence.find(place, kg), kg + 4) << one.sentence;
+      ++loaded;
+    }
+    EXPECT_GE(loaded, 4);  // three of a repeated trial, and those of passive motions
+  }
 }
 
 TEST(PassiveMotions, FollowTheSweepThatTheyPlan) {

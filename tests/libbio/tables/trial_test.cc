@@ -81,8 +81,8 @@ TEST_F(TrialFile, AKnownMassIsReadOrRefused) {
   EXPECT_EQ(turned.known.massInHand, 0.5);
   EXPECT_DOUBLE_EQ(turned.known.armTurn, -std::numbers::pi / 4);
   EXPECT_TRUE(ExperimentalConditions({.armTurn = 0.1}).any());
-  EXPECT_EQ(inWords(turned.known), "with 0.5 kg in the hand and the arm turned by -45 deg");
-  EXPECT_EQ(inWords({0, 0.1}), "with the arm turned by 5.72957795131 deg");
+  EXPECT_EQ(inWords(turned.known), "with a known mass of 0.5 kg and the limb turned by -45 deg");
+  EXPECT_EQ(inWords({0, 0.1}), "with the limb turned by 5.72957795131 deg");
   EXPECT_EQ(inWords({}), "");
   EXPECT_THAT(headerOf(turned.known), ElementsAre(std::pair("known_arm_turn_deg", "-45"),
                                                   std::pair("known_mass_in_hand_kg", "0.5")));
@@ -90,8 +90,8 @@ TEST_F(TrialFile, AKnownMassIsReadOrRefused) {
   EXPECT_EQ(experimentalConditionsIn(headerOf(turned.known)).armTurn, turned.known.armTurn);
   // whoever would simulate the arm without it must not read the trial at all
   for (const auto& [value, options, message] :
-       {std::tuple{"1.25", TrialOptions{}, "recorded with 1.25 kg in the hand"},
-        {"0\nknown_arm_turn_deg=30", TrialOptions{}, "recorded with the arm turned by 30 deg"},
+       {std::tuple{"1.25", TrialOptions{}, "recorded with a known mass of 1.25 kg"},
+        {"0\nknown_arm_turn_deg=30", TrialOptions{}, "recorded with the limb turned by 30 deg"},
         {"0\nknown_arm_turn_deg=181", heeds,
          "known_arm_turn_deg = '181', must be a number from -180 to 180"},
         {"-1", heeds, "known_mass_in_hand_kg = '-1', must be a number from 0 to 100"},

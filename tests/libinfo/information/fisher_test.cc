@@ -118,6 +118,28 @@ TEST(Fisher, NamesTheParameterWithoutInformation) {
       ThrowsMessage<std::domain_error>(HasSubstr("parameters m1, m2:")));
 }
 
+// Only rounding is tolerated, whatever the units.
+TEST(Fisher, RefusesABoundOfHalfAMatrix) {
+  Eigen::Matrix2d information{{5, 2}, {2, 3}};
+  const Eigen::DiagonalMatrix<double, 2> units(1e-9, 1e6);
+  const MatrixXd bound = information.inverse();
+  information(0, 1) *= 1 + 1e-9;
+  EXPECT_LT((info::cramerRaoBound(information) - bound).norm(), 1e-8);
+  EXPECT_NO_THROW(info::cramerRaoBound(units * information * units));
+  for (const double factor : {0.0, -1.0, 1 + 1e-4}) {
+    information(0, 1) = 2 * factor;
+    EXPECT_THAT([&] { info::cramerRaoBound(units * information * units); },
+                ThrowsMessage<std::invalid_argument>(HasSubstr("must be symmetric")));
+  }
+  information(0, 1) = 1;
+  EXPECT_THAT(
+      [&] {
+        info::cramerRaoBound(information, {"mass", "damping"});
+      },
+      ThrowsMessage<std::invalid_argument>(
+          HasSubstr("but entry (mass, damping) is 1 and (damping, mass) is 2")));
+}
+
 TEST(Fisher, RefusesWhatItCannotMean) {
   EXPECT_THROW(info::stack({MatrixXd::Ones(1, 2), MatrixXd::Ones(2, 2)}), std::invalid_argument);
   const MatrixXd nan = MatrixXd::Constant(1, 1, std::nan(""));

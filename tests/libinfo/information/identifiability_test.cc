@@ -110,6 +110,16 @@ TEST(Identifiability, DoesNotDependOnUnits) {
   EXPECT_EQ(report.rank, 2);
 }
 
+TEST(Identifiability, RefusesHalfAMatrix) {
+  Eigen::Matrix2d information{{1, 0.3}, {0.5, 1}};
+  const std::vector<Parameter> two = {{.name = "a", .start = 2}, {.name = "b", .start = 1e-3}};
+  EXPECT_THAT([&] { identifiability(information, two); },
+              testing::ThrowsMessage<std::invalid_argument>(
+                  HasSubstr("must be symmetric, but entry (a, b) is 0.3 and (b, a) is 0.5")));
+  information(0, 1) = 0.5;
+  EXPECT_EQ(identifiability(information, two).rank, 2);
+}
+
 TEST(Identifiability, RefusesWhatItCannotScale) {
   EXPECT_THAT([] { identifiability(MatrixXd::Ones(1, 1), {{.name = "c", .start = 0}}); },
               testing::ThrowsMessage<std::invalid_argument>(HasSubstr("parameter c")));

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "bio/discovery/encompassing_model.h"
 #include "bio/tables/trial.h"
 
 namespace bio::discover {
@@ -13,11 +14,12 @@ struct PlannedExperiment {
   Trial trial;
 };
 
-/// Experiments that are easy to do: a known mass in the hand (0.1 to 1 kg, in addition to one that
-/// is already there), and recorded external pushes of 0.2 s on the coordinate, ±0.25 to ±1 N·m (N
-/// for a translation), one per second. The first one is an unchanged repetition.
+/// Experiments that are easy to do: a known mass at the end of the limb (0.1 to 1 kg, in addition
+/// to one that is already there; none if no body can carry it), and recorded external pushes of
+/// 0.2 s on the model's coordinate, ±0.25 to ±1 N·m (N for a translation), one per second. The first
+/// one is an unchanged repetition.
 /// @param trial the recorded trial; its external torque is kept
-/// @param coordinate the coordinate that is pushed and observed
-std::vector<PlannedExperiment> plannedExperiments(const Trial& trial, const Coordinate& coordinate);
+std::vector<PlannedExperiment> plannedExperiments(const Trial& trial,
+                                                  const EncompassingModel& model);
 
 }  // namespace bio::discover

@@ -16,7 +16,7 @@ struct ExperimentalConditions {
   bool any() const { return massInHand != 0 || armTurn != 0; }
 };
 
-/// "with 1 kg in the hand and the arm turned by -45 deg"; empty without any.
+/// "with a known mass of 1 kg and the limb turned by -45 deg"; empty without any.
 std::string inWords(const ExperimentalConditions& known);
 
 /// The lines of the header; none for unchanged conditions.

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "bio/discovery/effect_names.h"
+#include "bio/discovery/end_of_limb.h"
 #include "discovery/effects/effects.h"
 
 namespace bio::discover {
@@ -148,8 +149,14 @@ double maxIsometricForce(const Muscle& muscle) {
 }  // namespace
 
 std::string endOfLimb(const EncompassingModel& model) {
+  if (model.movedBodies().empty()) return "the limb";
   const std::string& last = model.movedBodies().back();
   return last.find("hand") != std::string::npos ? "the hand" : last;
+}
+
+std::string placeOfMass(const EncompassingModel& model) {
+  const std::string end = endOfLimb(model);
+  return (end == "the hand" ? "in " : "on ") + end;
 }
 
 CoordinateUnits unitsOf(const EncompassingModel& model) {

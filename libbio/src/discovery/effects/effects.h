@@ -28,9 +28,6 @@ struct CoordinateUnits {
 };
 CoordinateUnits unitsOf(const EncompassingModel& model);
 
-/// "the hand" if that is what moves last, else the name of the last moving body.
-std::string endOfLimb(const EncompassingModel& model);
-
 /// A quantity that is 0 while its effect is absent.
 inline info::discover::Quantity amplitude(std::string name, std::string unit, double lower,
                                           double upper, double sd) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "bio/discovery/end_of_limb.h"
 #include "discovery/effects/effects.h"
 
 // Loads: masses, gravity, constant forces. Priors: what a hand holds in a laboratory (0.7 kg), how
@@ -40,8 +41,7 @@ void addPayload(EncompassingModel& model) {
   const std::string& hand = model.movedBodies().back();
   const std::size_t m = model.add(amplitude("payload.mass", "kg", 0, 5, 0.7),
                                   {Meaning::Kind::shift, model.numbers(hand + ".mass")});
-  model.add(candidate(model, "payload",
-                      (endOfLimb(model) == "the hand" ? "mass in " : "mass on ") + endOfLimb(model),
+  model.add(candidate(model, "payload", "mass " + placeOfMass(model),
                       fmt::format("The {} carries a mass that the model does not have.", hand),
                       info::discover::EffectKind::structure, {m}, {{0.2}}, {"mass"}));
 }

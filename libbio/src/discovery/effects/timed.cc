@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "bio/discovery/end_of_limb.h"
 #include "discovery/effects/effects.h"
 
 // Forces that begin or end during the trials. Priors: those of a constant torque and of a mass in

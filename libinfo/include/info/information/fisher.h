@@ -43,9 +43,9 @@ Eigen::MatrixXd continuousFisherInformation(const std::vector<double>& times,
 /// Cramér–Rao bound I⁻¹: no unbiased estimator has a smaller covariance. Wilson's thesis (2.1).
 ///
 /// @param names of the parameters, for messages; empty: θ0, θ1, …
-/// @throws std::domain_error if I is not finite, if a parameter has no information at all (named),
-/// or if
-///         I is singular to working accuracy after scaling each parameter to unit information
+/// @throws std::invalid_argument if I is not square, or not symmetric but for rounding;
+///         std::domain_error if I is not finite, if a parameter has no information at all (named),
+///         or if I is singular to working accuracy after scaling each parameter to unit information
 ///         (the combination is named; identifiability.h tells more)
 Eigen::MatrixXd cramerRaoBound(const Eigen::MatrixXd& information,
                                const std::vector<std::string>& names = {});

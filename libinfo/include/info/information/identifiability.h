@@ -44,8 +44,8 @@ struct IdentifiabilityReport {
 ///
 /// @param information I or I plus prior information, p × p
 /// @param parameters their names, units, start values and priors
-/// @throws std::invalid_argument if sizes differ, or a start is 0 on the logarithmic scale;
-///         std::domain_error if I is not finite
+/// @throws std::invalid_argument if sizes differ, I is not symmetric but for rounding, or a start
+///         is 0 on the logarithmic scale; std::domain_error if I is not finite
 IdentifiabilityReport identifiability(const Eigen::MatrixXd& information,
                                       const std::vector<Parameter>& parameters,
                                       ParameterScale scale = ParameterScale::logarithmic,

@@ -1,0 +1,35 @@
+#include "discover/suggested_experiments.h"
+
+#include <gmock/gmock.h>
+
+#include "bio/opensim/osim_file.h"
+
+namespace app {
+namespace {
+
+/// All that is suggested for a shipped model, one line each.
+std::string suggested(const std::string& model, const std::string& coordinate) {
+  const bio::discover::EncompassingModel of(
+      bio::readOsim(FISHERHILL_SOURCE_DIR "/models/" + model + ".osim"),
+      bio::SystemOptions{{{coordinate}, {}}, {}, {}}, coordinate);
+  const FollowUps known = followUpsOfModels(of);
+  std::string all = known.otherwise + "\n" + known.ifUnknown + "\n" + known.ifNamed;
+  for (const Intervention& one : known.interventions) all += "\n" + one.sentence;
+  return all;
+}
+
+TEST(SuggestedExperiments, PutAMassWhereTheLimbEnds) {
+  const std::string arm = suggested("elbow8", "elbow_flexion");
+  EXPECT_THAT(arm, testing::HasSubstr("with a known mass, e.g. 1 kg, in the hand: the effect of "
+                                      "gravity grows with it, a force on the hand does not."));
+  EXPECT_THAT(arm, testing::HasSubstr("and with a known mass in the hand: these data cannot"));
+  EXPECT_THAT(arm, testing::HasSubstr("(column elbow_flexion.torque)"));
+  const std::string leg = suggested("ankle_ta", "ankle_angle");
+  EXPECT_THAT(leg, testing::HasSubstr("with a known mass, e.g. 1 kg, on foot: the effect of "
+                                      "gravity grows with it, a force on foot does not."));
+  EXPECT_THAT(leg, testing::HasSubstr("and with a known mass on foot: these data cannot"));
+  EXPECT_THAT(leg, testing::Not(testing::HasSubstr("hand")));
+}
+
+}  // namespace
+}  // namespace app
