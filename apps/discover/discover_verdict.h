@@ -16,7 +16,6 @@ namespace app {
 struct ShownOutput {
   std::string name;   ///< e.g. "elbow_flexion"
   std::string unit;   ///< e.g. "deg"
-  double weight = 1;  ///< its weight in DiscoveryProblem::measured
 };
 
 /// Words and units of the report, for one kind of system.

@@ -147,11 +147,14 @@ Likelihood::Linear Likelihood::linearise(std::size_t at, const Fit& fit, const V
   return linearise(at, fit.hypothesis, fit.noise, values, fit.xi, fit.eta[at], extra, force);
 }
 
-double Likelihood::simulationError(const VectorXd& values) const {
+double Likelihood::simulationError(const VectorXd& values, const Whitening& noise) const {
   double sum = 0;
-  for (const int trial : trials_)
-    sum += (data_.measured(trial) - data_.outputs(trial, values, {})).squaredNorm();
-  return std::sqrt(sum / static_cast<double>(samples()));
+  for (const int trial : trials_) {
+    VectorXd e = data_.measured(trial) - data_.outputs(trial, values, {});
+    noise.whiten(data_.outputOfSample(trial), e);
+    sum += e.squaredNorm();
+  }
+  return noise.sd(0) * std::sqrt(sum / static_cast<double>(samples()));
 }
 
 }  // namespace info::discover
