@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 
 #include "info/discovery/likelihood/discovery_problem.h"
+#include "info/discovery/likelihood/whitening.h"
 
 namespace info::discover {
 
