@@ -28,10 +28,10 @@ std::vector<Index> samplesOf(const DiscoverFindings& f, int t, std::size_t outpu
   return samples;
 }
 
-/// In the unit in which the output is shown, without its weight.
+/// In the unit in which the output is shown.
 std::vector<double> shownValues(const DiscoverFindings& f, const VectorXd& values,
                                 const std::vector<Index>& samples, std::size_t output) {
-  const VectorXd result = f.wording.unit / f.wording.outputs[output].weight * values(samples);
+  const VectorXd result = f.wording.unit * values(samples);
   return {result.begin(), result.end()};
 }
 

@@ -251,8 +251,8 @@ void addUnknown(const DiscoverFindings& f, ordered_json& json) {
 void tellFindings(const DiscoverFindings& f, Summary& summary) {
   const auto& verdict = f.verdict;
   summary.set("verdict", verdictWord(verdict));
-  summary.set("noise", f.wording.unit * verdict.outputSd);
-  summary.set("noise" + f.wording.gapEnd, f.wording.unit * verdict.outputSd);
+  summary.set("noise", f.wording.unit * verdict.outputSd.sd(0));
+  summary.set("noise" + f.wording.gapEnd, f.wording.unit * verdict.outputSd.sd(0));
   summary.set("noise_is", verdict.sdEstimated ? "from the data" : "given");
   for (const auto& effect : verdict.effects) {
     const std::string id = f.data.candidates()[effect.candidate].id;
@@ -310,7 +310,7 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   }
   json["next_experiment"] = f.nextExperiment;
   addPlannedExperiments(f, json);
-  json["noise_sd"] = orNull(verdict.outputSd);
+  json["noise_sd"] = orNull(verdict.outputSd.sd(0));
   json["samples"] = {{"recorded", verdict.noise.samples},
                      {"outliers", verdict.noise.outliers},
                      {"every", verdict.noise.spacing},

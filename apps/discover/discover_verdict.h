@@ -14,9 +14,8 @@ namespace app {
 
 /// A measured output and its unit in the report.
 struct ShownOutput {
-  std::string name;   ///< e.g. "elbow_flexion"
-  std::string unit;   ///< e.g. "deg"
-  double weight = 1;  ///< its weight in DiscoveryProblem::measured
+  std::string name;  ///< e.g. "elbow_flexion"
+  std::string unit;  ///< e.g. "deg"
 };
 
 /// Words and units of the report, for one kind of system.

@@ -53,8 +53,7 @@ DiscoverWording wordingOf(const RobotProblem& data) {
     const auto& channel = data.model().channels[c];
     const bool isAngle = channel.unit == "rad";
     angles = angles && isAngle;
-    wording.outputs.push_back(
-        {channel.name, isAngle ? "deg" : channel.unit, data.weight(static_cast<int>(c))});
+    wording.outputs.push_back({channel.name, isAngle ? "deg" : channel.unit});
   }
   wording.unit = angles ? radian : 1;
   wording.gapEnd = angles ? "_deg" : "_N";

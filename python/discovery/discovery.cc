@@ -152,7 +152,7 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
   for (std::size_t i = 0; i < verdict.effects.size(); ++i)
     effects.append(effectOf(data, verdict.effects[i], result.sizes[i]));
   return results(**verdictMembers(data, found, result.fitted), "effects"_a = effects,
-                 "noise"_a = verdict.outputSd,
+                 "noise"_a = verdict.outputSd.sd(0),
                  "position_break"_a =
                      result.positionBreak ? py::cast(result.positionBreak->position) : py::none(),
                  "trials_are_cut"_a = result.trialsAreCut,

@@ -148,7 +148,7 @@ std::vector<RepairedTrial> recordedTrials(const MusculoskeletalProblem& data,
     const Compared nominal = replayed(data, base, data.trial(i), nominalStep, {});
     one.nominal = nominal.rms;
     one.samples = nominal.samples > 0 ? nominal.samples : data.measured(i).size();
-    one.floor = verdict.outputSd;
+    one.floor = verdict.outputSd.sd(0);
     const VectorXd difference = data.outputs(i, verdict.values, {}) - data.measured(i);
     one.fitted = std::sqrt(difference.squaredNorm() / static_cast<double>(difference.size()));
     trials.push_back(std::move(one));

@@ -79,7 +79,9 @@ DiscoveryResult discover(const DiscoveryRequest& request) {
   DisagreementOptions problem = request.problem;
   discover::TrialSearch asked{request.trials.size(), request.numHeldOut, request.step,
                               problem.step,          kShortestStep,      request.search};
-  if (!problem.sds.empty()) asked.options.outputSd = problem.sds.front();
+  if (!problem.sds.empty())
+    asked.options.outputSd = discover::Whitening(
+        Eigen::VectorXd::Map(problem.sds.data(), static_cast<Eigen::Index>(problem.sds.size())));
   DiscoveryResult result;
   result.found =
       discover::searchTrials(asked, [&](double step) -> const discover::DiscoveryProblem& {

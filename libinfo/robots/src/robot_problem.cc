@@ -73,7 +73,6 @@ RobotProblem::RobotProblem(Model model, std::vector<Trial> trials, DisagreementO
       throw std::invalid_argument(fmt::format("noise of {}: {} {}, must be > 0",
                                               model_.channels[c].name, sds_[c],
                                               model_.channels[c].unit));
-    weights_.push_back(sds_[0] / sds_[c]);
   }
 
   quantities_ = model_.quantities;
@@ -82,7 +81,7 @@ RobotProblem::RobotProblem(Model model, std::vector<Trial> trials, DisagreementO
     OfTrial one;
     one.trial = std::move(trials[t]);
     const Trial& trial = one.trial;
-    std::vector<double> measured, weights;
+    std::vector<double> measured;
     VectorXd first = VectorXd::Zero(static_cast<Index>(model_.channels.size()));
     std::vector<bool> seen(model_.channels.size(), false);
     for (std::size_t k = 0; k < trial.times.size(); ++k)
@@ -94,14 +93,12 @@ RobotProblem::RobotProblem(Model model, std::vector<Trial> trials, DisagreementO
         one.samples.push_back({trial.times[k], static_cast<int>(c)});
         one.times.push_back(trial.times[k]);
         one.channels.push_back(static_cast<int>(c));
-        measured.push_back(weights_[c] * y);
-        weights.push_back(weights_[c]);
+        measured.push_back(y);
       }
     if (measured.empty())
       throw std::invalid_argument(
           fmt::format("{}: holds no measured value, must hold at least one", trial.name));
     one.measured = VectorXd::Map(measured.data(), static_cast<Index>(measured.size()));
-    one.weights = VectorXd::Map(weights.data(), static_cast<Index>(weights.size()));
     const double begin = trial.times.front(), length = trial.times.back() - begin;
     const auto count = static_cast<int>(std::ceil(length / options_.latentSpacing - 1e-9)) + 2;
     for (int i = 0; i < count; ++i) one.nodes.push_back(begin + i * options_.latentSpacing);
@@ -137,22 +134,22 @@ RobotProblem::Prediction RobotProblem::predict(int trial, const VectorXd& values
   for (const std::size_t q : wanted)
     if (q < model_.quantities.size() && std::find(shared.begin(), shared.end(), q) == shared.end())
       shared.push_back(q);
-  const Response r = simulate(one, values, latent, shared, true, latentToo, 1);
+  Response r = simulate(one, values, latent, shared, true, latentToo, 1);
   Prediction p;
-  p.outputs = one.weights.cwiseProduct(r.outputs);
-  p.speeds = one.weights.cwiseProduct(r.speeds);
+  p.outputs = std::move(r.outputs);
+  p.speeds = std::move(r.speeds);
   p.gamma = MatrixXd::Zero(p.outputs.size(), static_cast<Index>(wanted.size()));
   for (std::size_t j = 0; j < wanted.size(); ++j) {
     const std::size_t q = wanted[j];
     const auto at = std::find(shared.begin(), shared.end(), q);
     auto column = p.gamma.col(static_cast<Index>(j));
     if (at != shared.end())
-      column = one.weights.cwiseProduct(r.byWanted.col(at - shared.begin()));
+      column = r.byWanted.col(at - shared.begin());
     else if (q >= one.start && q < one.start + model_.starts.size())
-      column = one.weights.cwiseProduct(r.byStart.col(static_cast<Index>(q - one.start)));
+      column = r.byStart.col(static_cast<Index>(q - one.start));
   }
   if (latentToo) {
-    p.latentGamma = one.weights.asDiagonal() * r.byLatent;
+    p.latentGamma = std::move(r.byLatent);
     p.latentScale = VectorXd::Ones(static_cast<Index>(one.nodes.size()));
   }
   return p;
@@ -160,12 +157,12 @@ RobotProblem::Prediction RobotProblem::predict(int trial, const VectorXd& values
 
 VectorXd RobotProblem::outputs(int trial, const VectorXd& values, const VectorXd& latent) const {
   const OfTrial& one = of(trial);
-  return one.weights.cwiseProduct(simulate(one, values, latent, {}, false, false, 1).outputs);
+  return simulate(one, values, latent, {}, false, false, 1).outputs;
 }
 
 VectorXd RobotProblem::refinedOutputs(int trial, const VectorXd& values) const {
   const OfTrial& one = of(trial);
-  return one.weights.cwiseProduct(simulate(one, values, {}, {}, false, false, 0.5).outputs);
+  return simulate(one, values, {}, {}, false, false, 0.5).outputs;
 }
 
 MatrixXd RobotProblem::states(int trial, const VectorXd& values) const {

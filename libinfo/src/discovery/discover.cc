@@ -116,8 +116,9 @@ class Work {
     for (const int t : trials_) {
       const VectorXd refined = data_.refinedOutputs(t, values);
       if (refined.size() == 0) continue;
-      const double change =
-          (refined - data_.outputs(t, values, {})).cwiseAbs().maxCoeff() / verdict_.outputSd;
+      VectorXd moved = refined - data_.outputs(t, values, {});
+      verdict_.outputSd.whiten(data_.outputOfSample(t), moved);
+      const double change = moved.cwiseAbs().maxCoeff();
       if (!(change > verdict_.numericalError)) continue;
       verdict_.numericalError = change;
       worst = t;
@@ -292,23 +293,18 @@ class Work {
 
   void gaps(const Entry& before, const Entry& after, Judgement& judgement) {
     ExcessError& gap = verdict_.gap;
-    gap.floor = verdict_.outputSd;
-    double low = HUGE_VAL, high = -HUGE_VAL;
-    for (const int t : trials_) {
-      low = std::min(low, data_.measured(t).minCoeff());
-      high = std::max(high, data_.measured(t).maxCoeff());
-    }
-    gap.range = high - low;
+    gap.floor = verdict_.outputSd.sd(0);
+    gap.range = rangeOf(data_, trials_, verdict_.outputSd);
     const Noise still{verdict_.outputSd, 0, options_.latentTime};
     const Likelihood& likelihood = search_->likelihood();
     const auto nominal = [&](const Likelihood& l) {
       const auto fit = l.tryFit(startsOnly(data_, l.trials()), still, nominalValues(data_));
-      return fit ? l.simulationError(fit->values)
+      return fit ? l.simulationError(fit->values, still.output)
                  : HUGE_VAL;  // the original model may not reach the end of a trial
     };
     gap.nominal = nominal(likelihood);
-    gap.calibrated = likelihood.simulationError(search_->simulation({}).values);
-    gap.after = likelihood.simulationError(search_->simulation(chosen_).values);
+    gap.calibrated = likelihood.simulationError(search_->simulation({}).values, still.output);
+    gap.after = likelihood.simulationError(search_->simulation(chosen_).values, still.output);
     explainExcess(gap);
     if (options_.heldOut.empty()) return;
     std::vector<int> every;

@@ -34,7 +34,8 @@ VectorXd predictedSd(const DiscoveryProblem& data, const Verdict& verdict, int t
   }
   const auto at = data.predict(trial, verdict.values, {}, amplitudes, false);
   const VectorXd spread = (at.gamma * sd.asDiagonal()).rowwise().squaredNorm();
-  return (spread.array() + verdict.outputSd * verdict.outputSd).sqrt();
+  const VectorXd noise = verdict.outputSd.bySample(data.outputOfSample(trial), spread.size());
+  return (spread + noise.cwiseAbs2()).cwiseSqrt();
 }
 
 }  // namespace info::discover

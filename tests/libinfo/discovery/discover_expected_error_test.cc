@@ -30,7 +30,7 @@ TEST(ExpectedError, IsWhatNewTrialsHaveOnAverage) {
       Fit fit = seen.fit(makeHypothesis(data, {0}, {0}), noise, nominalValues(data), {}, kExact);
       const Fit starts = held.fit(startsOnly(data, {1}), still, fit.values, {}, kExact);
       expected += std::pow(expectedError(held, starts, fit).rms, 2);
-      found += std::pow(held.simulationError(starts.values), 2);
+      found += std::pow(held.simulationError(starts.values, kLoud), 2);
       fit.covariance.setZero();
       certain += std::pow(expectedError(held, starts, fit).rms, 2);
     }

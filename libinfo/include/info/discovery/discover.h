@@ -35,8 +35,8 @@ struct Progress {
 };
 
 struct Options {
-  /// σ_y [unit of the output]; empty: estimated from the data's third differences
-  std::optional<double> outputSd;
+  /// σ_y of each output [its unit]; empty: estimated from the data's third differences
+  std::optional<Whitening> outputSd;
   double latentTime = 0.08;        ///< ℓ [s] of the latent force
   double latentScale = 0.02;       ///< s of the prior exp(−σ_d/s), which favours σ_d = 0
   double latentTolerance = 0.075;  ///< largest σ_d that noise of the inputs may explain
@@ -176,7 +176,7 @@ struct Verdict {
   /// trials were therefore fitted, and none is left for validation (Options::secondLook).
   bool heldOutFitted = false;
 
-  double outputSd = 0;  ///< σ_y
+  Whitening outputSd;  ///< σ_y of each output
   bool sdEstimated = false;
   RecordedNoise noise;                   ///< the samples that were used, and why others were not
   double latentSizeBefore = 0;           ///< σ_d with the base model

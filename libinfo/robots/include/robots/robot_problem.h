@@ -22,8 +22,7 @@ struct DisagreementOptions {
 /// The latent force is an additional acceleration of the cart [m/s²], of scale 1, as caused by
 /// drives and floors. Friction of the first joint has nearly the same effect.
 ///
-/// A robot may measure several channels; samples are in the order of time. Values of channel c are
-/// weighted by σ_0/σ_c, so that all have the noise of channel 0, in its unit.
+/// A robot may measure several channels, each an output; samples are in the order of time.
 ///
 /// All derivatives are exact. The cart is at rest before the first row.
 class RobotProblem final : public discover::DiscoveryProblem {
@@ -50,8 +49,6 @@ class RobotProblem final : public discover::DiscoveryProblem {
   std::vector<std::string> inputNames() const override { return {"cart acceleration"}; }
 
   const Model& model() const { return model_; }
-  /// Weight of the values of a channel, σ_0/σ_c.
-  double weight(int channel) const { return weights_.at(static_cast<std::size_t>(channel)); }
   /// σ_c [unit of the channel].
   const std::vector<double>& sds() const { return sds_; }
   /// Model::states at the trial's rows.
@@ -63,8 +60,8 @@ class RobotProblem final : public discover::DiscoveryProblem {
     std::vector<Sample> samples;
     std::vector<double> times, nodes;
     std::vector<int> channels;
-    Eigen::VectorXd measured, weights;  ///< weighted values; the weight of each sample
-    std::size_t start;                  ///< index of the first quantity of its initial state
+    Eigen::VectorXd measured;
+    std::size_t start;  ///< index of the first quantity of its initial state
   };
   const OfTrial& of(int trial) const { return trials_.at(static_cast<std::size_t>(trial)); }
   Response simulate(const OfTrial& one, const Eigen::VectorXd& values,
@@ -73,7 +70,7 @@ class RobotProblem final : public discover::DiscoveryProblem {
 
   Model model_;
   DisagreementOptions options_;
-  std::vector<double> sds_, weights_;
+  std::vector<double> sds_;
   std::vector<discover::Quantity>
       quantities_;  ///< those of the model, then the initial states of the trials
   std::vector<std::size_t> nuisances_;

@@ -63,12 +63,12 @@ Seen seenOf(const DiscoveryProblem& planned, int trial, const PresentEffect& eff
   return seen;
 }
 
-// ½ Δᵀ S⁻¹ Δ with S = σ² + FFᵀ, the cost of Δ after adjustment of everything in `free`.
-double remaining(const VectorXd& change, const MatrixXd& free, double variance) {
+// ½ Δᵀ S⁻¹ Δ with S = 1 + FFᵀ, the cost of Δ after adjustment of everything in `free`, both in σ.
+double remaining(const VectorXd& change, const MatrixXd& free) {
   MatrixXd inner = free.transpose() * free;
-  inner.diagonal().array() += variance;
+  inner.diagonal().array() += 1;
   const VectorXd along = free.transpose() * change;
-  return 0.5 * (change.squaredNorm() - along.dot(inner.llt().solve(along))) / variance;
+  return 0.5 * (change.squaredNorm() - along.dot(inner.llt().solve(along)));
 }
 
 }  // namespace
@@ -78,13 +78,14 @@ double Distinction::least() const {
 }
 
 Distinction distinction(const DiscoveryProblem& planned, const PresentEffect& first,
-                        const PresentEffect& second, double outputSd) {
+                        const PresentEffect& second, const Whitening& outputSd) {
   check(planned, first);
   check(planned, second);
   if (first.candidate == second.candidate)
     throw std::invalid_argument("distinction: the two effects must differ");
-  if (!(outputSd > 0) || !std::isfinite(outputSd))
-    throw std::invalid_argument(fmt::format("distinction: noise = {}, must be > 0", outputSd));
+  if (!outputSd.isPositive())
+    throw std::invalid_argument(
+        fmt::format("distinction: noise = {}, must be > 0", outputSd.sd(0)));
   std::vector<int> trials;
   Index samples = 0;
   for (int t = 0; t < planned.numTrials(); ++t) {
@@ -102,6 +103,10 @@ Distinction distinction(const DiscoveryProblem& planned, const PresentEffect& fi
   Index row = 0;
   for (const int t : trials) {
     const auto n = static_cast<Index>(planned.times(t).size());
+    const auto whitened = [&](MatrixXd rows) {
+      outputSd.whiten(planned.outputOfSample(t), rows);
+      return rows;
+    };
     const auto base = planned.predict(t, nominalValues(planned), {}, wanted, false);
     if (!base.outputs.allFinite() || !base.gamma.allFinite())
       throw std::domain_error("the base model cannot be simulated");
@@ -112,16 +117,15 @@ Distinction distinction(const DiscoveryProblem& planned, const PresentEffect& fi
       const FreeQuantity& q = nuisances.free[static_cast<std::size_t>(i)];
       gamma.col(i) *= q.slope(q.coordinate(q.nominal));
     }
-    changeA.segment(row, n) = a.change;
-    changeB.segment(row, n) = b.change;
-    freeA.middleRows(row, n) << gamma, b.adjusted;
-    freeB.middleRows(row, n) << gamma, a.adjusted;
+    changeA.segment(row, n) = whitened(a.change);
+    changeB.segment(row, n) = whitened(b.change);
+    freeA.middleRows(row, n) << whitened(gamma), whitened(b.adjusted);
+    freeB.middleRows(row, n) << whitened(gamma), whitened(a.adjusted);
     row += n;
   }
-  const double variance = outputSd * outputSd;
   Distinction result;
-  result.firstOverSecond = remaining(changeA, freeA, variance);
-  result.secondOverFirst = remaining(changeB, freeB, variance);
+  result.firstOverSecond = remaining(changeA, freeA);
+  result.secondOverFirst = remaining(changeB, freeB);
   const auto sd = [&](const PresentEffect& e, double nats) {
     const std::size_t amplitude = planned.candidates()[e.candidate].quantities[0];
     return std::abs(e.values[0] - planned.quantities()[amplitude].nominal) / std::sqrt(2 * nats);

@@ -1,6 +1,31 @@
 #include "info/discovery/judgement/excess_error.h"
 
+#include <algorithm>
+#include <map>
+#include <utility>
+
 namespace info::discover {
+
+double rangeOf(const DiscoveryProblem& data, const std::vector<int>& trials,
+               const Whitening& noise) {
+  std::map<int, std::pair<double, double>> ends;  // by output
+  for (const int t : trials) {
+    const auto& outputs = data.outputOfSample(t);
+    const Eigen::VectorXd& y = data.measured(t);
+    for (Eigen::Index k = 0; k < y.size(); ++k) {
+      const int output = outputs.empty() ? 0 : outputs[static_cast<std::size_t>(k)];
+      auto& [low, high] = ends.try_emplace(output, y[k], y[k]).first->second;
+      low = std::min(low, y[k]);
+      high = std::max(high, y[k]);
+    }
+  }
+  double widest = 0;
+  for (const auto& [output, of] : ends) {
+    const double factor = noise.sd(0) / noise.sd(static_cast<std::size_t>(output));
+    widest = std::max(widest, factor * (of.second - of.first));
+  }
+  return widest;
+}
 
 void explainExcess(ExcessError& gap) {
   const double floor = gap.floor * gap.floor, after = gap.after * gap.after - floor;

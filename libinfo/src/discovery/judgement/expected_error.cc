@@ -65,7 +65,7 @@ ExpectedError expectedError(const Likelihood& held, const Fit& starts, const Fit
     trials.push_back(held.linearise(t, scattered, starts.values, uncertain.quantities, false));
     columns += trials.back().latent.cols() + trials.back().gamma.cols();
   }
-  // both in standard deviations of the outputs until the end
+  // both in standard deviations of the outputs
   MatrixXd moved = MatrixXd::Zero(samples, columns);  // by sources N(0, 1)
   MatrixXd P = MatrixXd::Identity(samples, samples);  // after the fit of the initial states
   Index row = 0, column = uncertain.root.cols();
@@ -84,17 +84,8 @@ ExpectedError expectedError(const Likelihood& held, const Fit& starts, const Fit
     column += l.latent.cols();
     row += n;
   }
-  VectorXd sds(samples);
-  row = 0;
-  for (std::size_t t = 0; t < trials.size(); ++t) {
-    const Index n = trials[t].residuals.size();
-    sds.segment(row, n) =
-        fit.noise.output.bySample(held.data().outputOfSample(held.trials()[t]), n);
-    row += n;
-  }
-  moved = sds.asDiagonal() * moved;
-  P = sds.asDiagonal() * P;
-  const MatrixXd covariance = moved * moved.transpose() + P * P.transpose();
+  const double first = fit.noise.output.sd(0);  // errors are told in its unit
+  const MatrixXd covariance = first * first * (moved * moved.transpose() + P * P.transpose());
   ExpectedError expected;
   expected.variances = Eigen::SelfAdjointEigenSolver<MatrixXd>(covariance, Eigen::EigenvaluesOnly)
                            .eigenvalues()

@@ -30,7 +30,7 @@ HeldOutTrials heldOutTrials(const DiscoveryProblem& data, const Search& search, 
   const Hypothesis starts = startsOnly(data, held.trials());
   if (const auto near = held.tryFit(starts, wide, entry.fit.values, {}, {10, 0.1})) {
     if (auto fit = held.tryFit(starts, still, near->values, {}, {30, 0.01})) {
-      result.error = held.simulationError(fit->values);
+      result.error = held.simulationError(fit->values, fit->noise.output);
       together(fit->values);  // the other values are final
       result.starts = std::move(fit);
     }

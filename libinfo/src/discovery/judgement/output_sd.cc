@@ -67,11 +67,14 @@ double ThirdDifferences::sd() const {
   return std::sqrt(squares / (20 * count));
 }
 
-ThirdDifferences differencesOf(const DiscoveryProblem& data, const std::vector<int>& trials) {
-  ThirdDifferences differences;
+std::vector<ThirdDifferences> differencesOf(const DiscoveryProblem& data,
+                                            const std::vector<int>& trials) {
+  std::vector<ThirdDifferences> differences(1);
   for (const int trial : trials) {
     const auto& channels = data.outputOfSample(trial);
     const int last = channels.empty() ? 0 : *std::max_element(channels.begin(), channels.end());
+    if (differences.size() <= static_cast<std::size_t>(last))
+      differences.resize(static_cast<std::size_t>(last) + 1);
     for (int channel = 0; channel <= last; ++channel) {
       std::vector<double> times;
       std::vector<Index> samples;
@@ -80,20 +83,26 @@ ThirdDifferences differencesOf(const DiscoveryProblem& data, const std::vector<i
         times.push_back(data.times(trial)[k]);
         samples.push_back(static_cast<Index>(k));
       }
-      differences.add(times, data.measured(trial)(samples));
+      differences[static_cast<std::size_t>(channel)].add(times, data.measured(trial)(samples));
     }
   }
   return differences;
 }
 
 OutputSd estimateOutputSd(const DiscoveryProblem& data, const std::vector<int>& trials) {
-  const ThirdDifferences differences = differencesOf(data, trials);
-  if (!(differences.squares > 0))
-    throw std::invalid_argument(
-        "standard deviation of the outputs: must have four samples in a row that do not lie on a "
-        "parabola; give the noise instead");
+  const std::vector<ThirdDifferences> differences = differencesOf(data, trials);
+  Eigen::VectorXd sds(static_cast<Index>(differences.size()));
+  double count = 0;
+  for (std::size_t i = 0; i < differences.size(); ++i) {
+    if (!(differences[i].squares > 0))
+      throw std::invalid_argument(
+          "standard deviation of the outputs: must have four samples in a row that do not lie on a "
+          "parabola; give the noise instead");
+    sds[static_cast<Index>(i)] = differences[i].sd();
+    count += differences[i].count;
+  }
   // their autocorrelations are −15, 6, −1 of 20
-  return {differences.sd(), std::sqrt(2 * (1 + 2 * 262.0 / 400.0) / differences.count)};
+  return {Whitening(std::move(sds)), std::sqrt(2 * (1 + 2 * 262.0 / 400.0) / count)};
 }
 
 }  // namespace info::discover

@@ -77,7 +77,7 @@ PositionBreak breakAt(const std::vector<Node>& nodes, double position, bool abov
 }
 
 std::optional<PositionBreak> breakOf(const DiscoveryProblem& data, const Options& options,
-                                     double outputSd) {
+                                     const Whitening& outputSd) {
   const std::vector<int> trials = fittedTrials(data, options);
   Search search(data, trials, options, outputSd, [](const std::string&) {});
   const auto fit = search.tracked({}, nominalValues(data));

@@ -26,7 +26,7 @@ bool agree(const Estimate& one, const Estimate& other) {
 }  // namespace
 
 std::optional<Replication> replicate(const DiscoveryProblem& data, const Options& options,
-                                     double outputSd, const Entry& entry,
+                                     const Whitening& outputSd, const Entry& entry,
                                      const Search::Report& report) {
   if (entry.effects.empty() || !mayReplicate(data, entry.effects)) return {};
   Search search(data, options.heldOut, options, outputSd, report);

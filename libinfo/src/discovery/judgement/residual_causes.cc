@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "discovery/judgement/node_states.h"
 
@@ -165,8 +166,12 @@ std::vector<MatrixXd> sensorErrors(const Likelihood& likelihood, const Fit& fit,
   const DiscoveryProblem& data = likelihood.data();
   std::vector<VectorXd> outputs, squares, speeds;
   for (std::size_t t = 0; t < states.linear.size(); ++t) {
-    outputs.push_back(states.linear[t].outputs);
-    speeds.push_back(states.linear[t].speeds);
+    for (auto [to, from] : {std::pair{&outputs, &states.linear[t].outputs},
+                            std::pair{&speeds, &states.linear[t].speeds}}) {
+      VectorXd whitened = *from;
+      fit.noise.output.whiten(data.outputOfSample(likelihood.trials()[t]), whitened);
+      to->push_back(fit.noise.output.sd(0) * whitened);
+    }
   }
   const VectorXd y = scaled(outputs), ySquared = scaled({y.cwiseAbs2()}), yDot = scaled(speeds);
   std::vector<MatrixXd> columns;

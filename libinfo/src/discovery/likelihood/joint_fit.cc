@@ -102,10 +102,10 @@ Likelihood::Linear Likelihood::linearise(std::size_t at, const Hypothesis& hypot
   std::vector<std::size_t> wanted = wantedOf(hypothesis);
   wanted.insert(wanted.end(), extra.begin(), extra.end());
   const bool latent = eta.size() != 0;
-  return linearOf(at, hypothesis, noise, xi,
-                  data_.predict(trials_[at], values, latentForce(at, noise, eta), wanted,
-                                latent || force),
-                  latent, force);
+  return linearOf(
+      at, hypothesis, noise, xi,
+      data_.predict(trials_[at], values, latentForce(at, noise, eta), wanted, latent || force),
+      latent, force);
 }
 
 Likelihood::Linear Likelihood::linearOf(std::size_t at, const Hypothesis& hypothesis,
@@ -125,7 +125,7 @@ Likelihood::Linear Likelihood::linearOf(std::size_t at, const Hypothesis& hypoth
   linear.extra = prediction.gamma.rightCols(prediction.gamma.cols() - p);
   linear.latent = latent && noise.latent > 0
                       ? MatrixXd(noise.latent * (prediction.latentGamma *
-                                               roots_[at].triangularView<Eigen::Lower>()))
+                                                 roots_[at].triangularView<Eigen::Lower>()))
                       : MatrixXd(linear.residuals.size(), 0);
   if (force) linear.force = std::move(prediction.latentGamma);
   linear.outputs = std::move(prediction.outputs);
@@ -147,11 +147,14 @@ Likelihood::Linear Likelihood::linearise(std::size_t at, const Fit& fit, const V
   return linearise(at, fit.hypothesis, fit.noise, values, fit.xi, fit.eta[at], extra, force);
 }
 
-double Likelihood::simulationError(const VectorXd& values) const {
+double Likelihood::simulationError(const VectorXd& values, const Whitening& noise) const {
   double sum = 0;
-  for (const int trial : trials_)
-    sum += (data_.measured(trial) - data_.outputs(trial, values, {})).squaredNorm();
-  return std::sqrt(sum / static_cast<double>(samples()));
+  for (const int trial : trials_) {
+    VectorXd e = data_.measured(trial) - data_.outputs(trial, values, {});
+    noise.whiten(data_.outputOfSample(trial), e);
+    sum += e.squaredNorm();
+  }
+  return noise.sd(0) * std::sqrt(sum / static_cast<double>(samples()));
 }
 
 }  // namespace info::discover

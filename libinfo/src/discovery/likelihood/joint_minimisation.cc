@@ -94,8 +94,8 @@ Likelihood::Point Likelihood::moved(const Hypothesis& hypothesis, const Point& f
 
 // Geodesic acceleration (docs/decisions/036-geodesic-acceleration.md). The outputs along a straight
 // step v are y + Jv + ½y_vv; one more simulation at h·v gives y_vv, and the second-order step is v
-// + ½a with (JᵀJ + 1 + λ) a = −Jᵀy_vv, everything in σ. The correction is omitted if it is not small relative
-// to v.
+// + ½a with (JᵀJ + 1 + λ) a = −Jᵀy_vv, everything in σ. The correction is omitted if it is not
+// small relative to v.
 void Likelihood::bend(Step& step, const Hypothesis& hypothesis, const Noise& noise,
                       const std::vector<Linear>& trials, const DampedSystem& system,
                       const Point& point) const {

@@ -159,7 +159,7 @@ ThirdDifferences over(int m, const std::vector<double>& times, const VectorXd& v
 }  // namespace
 
 RecordedNoise recordedNoise(const DiscoveryProblem& data, const std::vector<int>& trials,
-                            std::optional<double> givenSd) {
+                            const std::optional<Whitening>& givenSd) {
   RecordedNoise noise;
   Kept& kept = noise.kept;
   bool single = true;
@@ -171,7 +171,9 @@ RecordedNoise recordedNoise(const DiscoveryProblem& data, const std::vector<int>
     single = single && data.outputOfSample(trial).empty();
   }
   // samples may be too sparse to tell it
-  if (givenSd && !(differencesOf(data, trials).squares > 0)) {
+  const std::vector<ThirdDifferences> told = differencesOf(data, trials);
+  const auto tellsNothing = [](const ThirdDifferences& d) { return !(d.squares > 0); };
+  if (givenSd && std::any_of(told.begin(), told.end(), tellsNothing)) {
     noise.sd = {*givenSd, 0};
     return noise;
   }
@@ -194,12 +196,12 @@ RecordedNoise recordedNoise(const DiscoveryProblem& data, const std::vector<int>
   const SelectedSamples selected(data, kept);
   if (noise.outliers > 0) noise.sd = estimateOutputSd(selected, trials);
   const double quantum = quantumOf(selected, trials);
-  if (quantum > noise.sd.value) {
+  if (const double found = noise.sd.value.sd(0); quantum > found) {
     noise.quantum = quantum;
-    noise.sd.value = std::max(noise.sd.value, quantum / std::sqrt(12.0));
+    noise.sd.value = std::max(found, quantum / std::sqrt(12.0));
   }
 
-  const auto left = residuals(selected, trials, noise.sd.value);
+  const auto left = residuals(selected, trials, noise.sd.value.sd(0));
   if (!left) return noise;
   std::array<ThirdDifferences, 2 * kMostSpacing + 1> differences;
   for (int m = 1; m <= 2 * kMostSpacing; ++m)

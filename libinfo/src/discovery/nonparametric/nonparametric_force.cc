@@ -133,8 +133,8 @@ void drawInto(NonparametricForce& drawn, const Family& family, const Fit& fit,
 
 std::optional<NonparametricForce> raceNonparametric(const Search& search, const Effects& chosen,
                                                     const Fit& smoothing, const Options& options,
-                                                    double outputSd, const Search::Report& report,
-                                                    int& fits) {
+                                                    const Whitening& outputSd,
+                                                    const Search::Report& report, int& fits) {
   const NodeStates states = statesAtNodes(search.likelihood(), smoothing);
   const double sd = kSize * scaleOf(search.likelihood(), smoothing.values);
   std::optional<NonparametricForce> best;

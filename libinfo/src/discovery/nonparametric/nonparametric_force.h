@@ -15,7 +15,7 @@ namespace info::discover {
 /// @param fits is increased by the number of fits
 std::optional<NonparametricForce> raceNonparametric(const Search& search, const Effects& chosen,
                                                     const Fit& smoothing, const Options& options,
-                                                    double outputSd, const Search::Report& report,
-                                                    int& fits);
+                                                    const Whitening& outputSd,
+                                                    const Search::Report& report, int& fits);
 
 }  // namespace info::discover

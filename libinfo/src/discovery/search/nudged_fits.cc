@@ -34,7 +34,7 @@ std::optional<VectorXd> Search::ledFrom(const Effects& effects, const VectorXd& 
 bool Search::lead(const Effects& effects, std::size_t first, std::size_t end, Led& led) {
   const Hypothesis hypothesis = makeHypothesis(data_, effects, trials_);
   for (std::size_t i = first; i < end; ++i) {
-    const Noise noise{nudgeStages[i].spread * output_, 0, options_.latentTime};
+    const Noise noise{output_.scaled(nudgeStages[i].spread), 0, options_.latentTime};
     const auto fit = nudgedLikelihoods_[i].tryFit(hypothesis, noise, led.values, {}, {6, 0.1});
     ++fits_;
     if (!fit) return false;
@@ -120,7 +120,7 @@ VectorXd Search::bestStart(const Effects& base, std::size_t candidate, const Fit
     return from;
   }
   const bool held = !nudgedLikelihoods_.empty();
-  const Noise noise{(held ? nudgeStages[0].spread : 1) * output_, held ? 0 : latent,
+  const Noise noise{held ? output_.scaled(nudgeStages[0].spread) : output_, held ? 0 : latent,
                     options_.latentTime};
   const auto eta = held ? std::vector<VectorXd>() : forceKept(near.eta, near.noise.latent, latent);
   VectorXd from = started(candidate, 0, near.values);
@@ -141,7 +141,7 @@ VectorXd Search::bestStart(const Effects& base, std::size_t candidate, const Fit
 std::vector<Screened> Search::screenHeld(const Effects& effects) {
   if (nudgedLikelihoods_.size() <= kHeldStage) return {};
   const Likelihood& held = nudgedLikelihoods_[kHeldStage];
-  const Noise noise{nudgeStages[kHeldStage].spread * output_, 0, options_.latentTime};
+  const Noise noise{output_.scaled(nudgeStages[kHeldStage].spread), 0, options_.latentTime};
   const auto fitted = [&](const Effects& of, const VectorXd& from, int iterations) {
     ++fits_;
     return held.tryFit(makeHypothesis(data_, of, trials_), noise, from, {}, {iterations, 0.1});

@@ -20,7 +20,7 @@ std::vector<VectorXd> forceKept(std::vector<VectorXd> eta, double from, double t
 }
 
 Search::Search(const DiscoveryProblem& data, std::vector<int> trials, const Options& options,
-               double outputSd, Report report)
+               const Whitening& outputSd, Report report)
     : data_(data),
       trials_(std::move(trials)),
       options_(options),

@@ -57,7 +57,7 @@ class Search {
  public:
   using Report = std::function<void(const std::string& doing)>;
   Search(const DiscoveryProblem& data, std::vector<int> trials, const Options& options,
-         double outputSd, Report report);
+         const Whitening& outputSd, Report report);
 
   /// Calibrates the base model by homotopy in σ_d, from the nominal values; then from several
   /// starts without homotopy.
@@ -168,7 +168,7 @@ class Search {
   const DiscoveryProblem& data_;
   std::vector<int> trials_;
   const Options& options_;
-  double output_;
+  Whitening output_;
   Report report_;
   std::optional<Likelihood> likelihood_;
   std::vector<std::unique_ptr<DiscoveryProblem>> nudged_;  ///< the strongest first

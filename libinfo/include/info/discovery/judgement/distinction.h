@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 
 #include "info/discovery/likelihood/discovery_problem.h"
+#include "info/discovery/likelihood/whitening.h"
 
 namespace info::discover {
 
@@ -25,8 +26,8 @@ struct Distinction {
 
 /// With Δ_A = y(A) − y(base) over all trials, Γ_0 the sensitivities to the nuisance parameters
 /// (with the initial states) and Γ_B those to the quantities of the other effect, all in units of
-/// their priors,
-///     nats(A over B) = ½ Δ_Aᵀ S⁻¹ Δ_A,   S = σ_y² + Γ_0Γ_0ᵀ + Γ_BΓ_Bᵀ
+/// their priors and of the outputs' noise,
+///     nats(A over B) = ½ Δ_Aᵀ S⁻¹ Δ_A,   S = 1 + Γ_0Γ_0ᵀ + Γ_BΓ_Bᵀ
 /// the minimal cost of fitting A's outputs by B and the base model; exact for linear outputs. Γ_B
 /// is taken with B present, its amplitude along Δ_B, Γ_0 without either. The deviation of A's
 /// amplitude a is a/√(2·nats).
@@ -35,6 +36,6 @@ struct Distinction {
 ///   is wrong, an amplitude has the value of an absent effect, or σ_y is not > 0
 /// @throws std::domain_error if one of them cannot be simulated
 Distinction distinction(const DiscoveryProblem& planned, const PresentEffect& first,
-                        const PresentEffect& second, double outputSd);
+                        const PresentEffect& second, const Whitening& outputSd);
 
 }  // namespace info::discover

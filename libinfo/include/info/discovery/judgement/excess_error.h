@@ -5,11 +5,12 @@
 #include <vector>
 
 #include "info/discovery/likelihood/discovery_problem.h"
+#include "info/discovery/likelihood/whitening.h"
 
 namespace info::discover {
 
 /// Root mean square difference of simulation (without latent force) and data over all samples, in
-/// the unit of the output.
+/// the unit of the output; of several outputs in σ, times the σ of the first.
 struct ExcessError {
   double nominal = NAN;     ///< original base model, initial states fitted; NaN: not computed yet
   double calibrated = NAN;  ///< base model after calibration
@@ -24,6 +25,10 @@ struct ExcessError {
   /// 1.2·floor², three standard deviations of a mean square over 450 samples
   std::optional<double> closedFromCalibrated, closedFromNominal;
 };
+
+/// Range of the measured values of an output, the widest in σ, times the σ of the first output.
+double rangeOf(const DiscoveryProblem& data, const std::vector<int>& trials,
+               const Whitening& noise);
 
 /// Sets `closedFrom…`.
 void explainExcess(ExcessError& gap);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "info/discovery/likelihood/discovery_problem.h"
+#include "info/discovery/likelihood/whitening.h"
 
 namespace info::discover {
 
@@ -20,16 +21,17 @@ struct ThirdDifferences {
   double sd() const;
 };
 
-/// Of all outputs of these trials.
-ThirdDifferences differencesOf(const DiscoveryProblem& data, const std::vector<int>& trials);
+/// Of each output of these trials.
+std::vector<ThirdDifferences> differencesOf(const DiscoveryProblem& data,
+                                            const std::vector<int>& trials);
 
-/// σ_y from the third differences of equally spaced samples, Σ(Δ³y)²/20: exact for noise on a curve
-/// that is a parabola over any four samples; smooth curves add little.
+/// σ_y of each output from the third differences of equally spaced samples, Σ(Δ³y)²/20: exact for
+/// noise on a curve that is a parabola over any four samples; smooth curves add little.
 struct OutputSd {
-  double value = 0;
-  double relativeError = 0;  ///< standard error of value²/value², for noise
+  Whitening value;
+  double relativeError = 0;  ///< standard error of value²/value², for noise, of all outputs
 };
-/// @throws std::invalid_argument if there are no four such samples
+/// @throws std::invalid_argument if an output has no four such samples
 OutputSd estimateOutputSd(const DiscoveryProblem& data, const std::vector<int>& trials);
 
 }  // namespace info::discover

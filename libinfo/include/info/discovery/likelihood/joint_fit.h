@@ -133,8 +133,9 @@ class Likelihood {
   Eigen::VectorXd force(std::size_t at, const Fit& fit) const;
   Eigen::VectorXd forceSd(std::size_t at, const Fit& fit) const;
 
-  /// Root mean square of ỹ − y without latent force over all trials.
-  double simulationError(const Eigen::VectorXd& values) const;
+  /// Root mean square of (ỹ − y)/σ without latent force over all trials, times the σ of the first
+  /// output: in its unit. Of one output, the root mean square of ỹ − y.
+  double simulationError(const Eigen::VectorXd& values, const Whitening& noise) const;
 
  private:
   struct Point;

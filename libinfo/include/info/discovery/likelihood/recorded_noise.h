@@ -39,6 +39,6 @@ struct RecordedNoise {
 /// @param givenSd  σ_y if it is known: taken where the samples are too sparse to tell it
 /// @throws std::invalid_argument what estimateOutputSd throws, without a givenSd
 RecordedNoise recordedNoise(const DiscoveryProblem& data, const std::vector<int>& trials,
-                            std::optional<double> givenSd = {});
+                            const std::optional<Whitening>& givenSd = {});
 
 }  // namespace info::discover

@@ -21,6 +21,7 @@ class Whitening {
 
   /// Whether every σ is positive and finite; otherwise nothing can be divided.
   bool isPositive() const;
+  /// of the output with this index
   double sd(std::size_t output) const;
   /// The same outputs with `factor` times the noise.
   Whitening scaled(double factor) const { return Whitening(Eigen::VectorXd(factor * sds_)); }
@@ -45,6 +46,10 @@ class Whitening {
   }
   /// Σ log σ over n samples: what whitening takes from the logarithm of their density
   double logDeterminant(const std::vector<int>& outputs, Eigen::Index n) const;
+
+  friend bool operator==(const Whitening& a, const Whitening& b) {
+    return a.sds_.size() == b.sds_.size() && a.sds_ == b.sds_;
+  }
 
  private:
   Eigen::VectorXd sds_;  // one, or one for each output
