@@ -22,7 +22,7 @@ DiscoverWording wordingOf(const bio::discover::MusculoskeletalProblem& data) {
   const bio::Coordinate& coordinate = data.encompassing().coordinate();
   const bool isAngle = coordinate.isRotation;
   DiscoverWording wording;
-  wording.outputs = {{coordinate.name, isAngle ? "deg" : "m", 1}};
+  wording.outputs = {{coordinate.name, isAngle ? "deg" : "m"}};
   wording.unit = isAngle ? radian : 1;
   wording.gapEnd = isAngle ? "_deg" : "_m";
   wording.force = isAngle ? "Torque [N·m]" : "Force [N]";
