@@ -54,7 +54,7 @@ TEST(OutputSd, ComesFromThirdDifferences) {
   data.draw(5, truth, 0.05, 0, kTime);
   const OutputSd found = estimateOutputSd(data, {0, 1});
   // the relative error of σ is half of that of σ²
-  EXPECT_NEAR(found.value / 0.05, 1, 3 * 0.5 * found.relativeError);
+  EXPECT_NEAR(found.value.sd(0) / 0.05, 1, 3 * 0.5 * found.relativeError);
   EXPECT_LT(found.relativeError, 0.08);
 }
 

@@ -90,7 +90,7 @@ TEST(RecordedNoise, KeepsEverySampleOfWhiteNoise) {
   data.add(white);
   const RecordedNoise noise = recordedNoise(data, {0, 1});
   EXPECT_TRUE(noise.usesAll());
-  EXPECT_NEAR(noise.sd.value, kSize, 0.1 * kSize);
+  EXPECT_NEAR(noise.sd.value.sd(0), kSize, 0.1 * kSize);
   EXPECT_EQ(noise.quantum, 0);
   ASSERT_EQ(noise.kept.size(), 3u);
   EXPECT_EQ(noise.kept[2].size(), 450u);
@@ -111,12 +111,12 @@ TEST(RecordedNoise, KeepsOneOfSeveralWhereNoiseIsCorrelated) {
   };
   KnownMotion data;
   data.add(lowPassed);
-  EXPECT_LT(estimateOutputSd(data, {0, 1}).value, 0.1 * kSize);
+  EXPECT_LT(estimateOutputSd(data, {0, 1}).value.sd(0), 0.1 * kSize);
   const RecordedNoise noise = recordedNoise(data, {0, 1});
   EXPECT_GE(noise.spacing, 5);
   EXPECT_LE(noise.spacing, 10);
   EXPECT_NEAR(noise.interval, 0.01 * noise.spacing, 1e-4);
-  EXPECT_NEAR(noise.sd.value, kSize, 0.25 * kSize);
+  EXPECT_NEAR(noise.sd.value.sd(0), kSize, 0.25 * kSize);
   EXPECT_NEAR(static_cast<double>(noise.kept[2].size()), 450.0 / noise.spacing, 1);
   // a model that cannot be held gives nothing to compare with
   KnownMotion free(false);
@@ -134,7 +134,7 @@ TEST(RecordedNoise, LeavesOutliersOut) {
   const RecordedNoise noise = recordedNoise(data, {0, 1});
   EXPECT_EQ(noise.outliers, put);
   EXPECT_EQ(noise.spacing, 1);
-  EXPECT_NEAR(noise.sd.value, kSize, 0.15 * kSize);
+  EXPECT_NEAR(noise.sd.value.sd(0), kSize, 0.15 * kSize);
   for (const std::size_t k : noise.kept[1]) EXPECT_TRUE(k % 23 != 11 || k >= 440) << k;
 }
 
@@ -154,8 +154,8 @@ TEST(RecordedNoise, IsNotBelowWhatRoundingMakes) {
     data.of(trial) = (data.of(trial) / quantum).array().round() * quantum;
   const RecordedNoise noise = recordedNoise(data, {0, 1});
   EXPECT_NEAR(noise.quantum, quantum, 1e-9);
-  EXPECT_GE(noise.sd.value, quantum / std::sqrt(12.0) * (1 - 1e-9));
-  EXPECT_LT(noise.sd.value, quantum);
+  EXPECT_GE(noise.sd.value.sd(0), quantum / std::sqrt(12.0) * (1 - 1e-9));
+  EXPECT_LT(noise.sd.value.sd(0), quantum);
 }
 
 }  // namespace

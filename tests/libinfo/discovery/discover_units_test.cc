@@ -3,10 +3,14 @@
 
 #include <cmath>
 
+#include "info/discovery/judgement/distinction.h"
+#include "info/discovery/judgement/excess_error.h"
 #include "info/discovery/judgement/expected_error.h"
 #include "info/discovery/judgement/residual_causes.h"
 #include "info/discovery/judgement/separation.h"
+#include "info/discovery/likelihood/recorded_noise.h"
 #include "info/discovery/likelihood/whitening.h"
+#include "info/probability/random_stream.h"
 #include "libinfo/discovery/drawn_problem.h"
 
 // Outputs of different units and noise: nothing that is inferred depends on the unit.
@@ -16,6 +20,7 @@ namespace {
 using namespace drawn_problem;
 using Eigen::Index;
 using Eigen::MatrixXd;
+using info::RandomStream;
 
 constexpr double kFactor = 1000;
 
@@ -30,13 +35,6 @@ class TwoUnits : public LinearDisagreement {
   const std::vector<int>& outputOfSample(int) const override { return outputs_; }
   VectorXd outputs(int trial, const VectorXd& values, const VectorXd& latent) const override {
     return scaled(LinearDisagreement::outputs(trial, values, latent));
-  }
-  Prediction predict(int trial, const VectorXd& values, const VectorXd& latent,
-                     const std::vector<std::size_t>& wanted, bool latentToo) const override {
-    Prediction p = LinearDisagreement::predict(trial, values, latent, wanted, latentToo);
-    if (p.gamma.size() != 0) p.gamma = scaled(p.gamma);
-    if (p.latentGamma.size() != 0) p.latentGamma = scaled(p.latentGamma);
-    return p;
   }
   VectorXd factors() const {
     VectorXd factors(static_cast<Index>(outputs_.size()));
@@ -113,18 +111,44 @@ TEST(Whitening, AnOutputInAnotherUnitGivesTheSameExpectedErrorAndSeparation) {
   const Fit push = fitted(one, kOutput, {0}), bias = fitted(one, kOutput, {2});
   const Fit pushOfBoth = fitted(two, twoNoises(), {0}), biasOfBoth = fitted(two, twoNoises(), {2});
   const double nats = expectedSeparation(one, one, push, bias);
-  EXPECT_GT(nats, 1);
+  EXPECT_GT(nats, 0.01);
   EXPECT_NEAR(expectedSeparation(two, two, pushOfBoth, biasOfBoth), nats, 1e-4 * nats);
 
   const auto expected = [](const LinearDisagreement& data, const Whitening& noise, const Fit& fit) {
     const Likelihood held(data, {0, 1}, nominalValues(data), kTime);
     const Fit starts = held.fit(startsOnly(data, {0, 1}), {noise, 0, kTime}, fit.values);
-    return expectedError(held, starts, fit);
+    return expectedError(held, starts, fit).rms / held.simulationError(starts.values, noise);
   };
-  const ExpectedError single = expected(one, kOutput, push),
-                      both = expected(two, twoNoises(), pushOfBoth);
-  // in the units of the outputs: nearly all of it is that of the smaller unit
-  EXPECT_NEAR(both.rms / kFactor, single.rms / std::sqrt(2.0), 0.1 * single.rms);
+  const double single = expected(one, kOutput, push);
+  EXPECT_NEAR(expected(two, twoNoises(), pushOfBoth), single, 1e-6 * single);
+
+  const PresentEffect shove{0, VectorXd::Constant(1, 0.4)}, shift{2, VectorXd::Constant(1, 0.1)};
+  const double told = distinction(one, shove, shift, kOutput).least();
+  EXPECT_NEAR(distinction(two, shove, shift, twoNoises()).least(), told, 1e-6 * told);
+}
+
+TEST(Whitening, EveryOutputTellsItsOwnNoiseAndRange) {
+  LinearDisagreement one(2, 400);
+  for (int t = 0; t < 2; ++t) {
+    RandomStream random(7, static_cast<std::uint64_t>(t));
+    VectorXd y(400);
+    for (double& value : y) value = 0.05 * random.normal();
+    one.measure(t, y);
+  }
+  const TwoUnits two(one);
+  const OutputSd found = estimateOutputSd(two, {0, 1});
+  for (const std::size_t output : {0u, 1u})
+    EXPECT_NEAR(found.value.sd(output) / (output == 0 ? 0.05 : 0.05 * kFactor), 1,
+                3 * 0.5 * std::sqrt(2.0) * found.relativeError);
+  EXPECT_NE(found.value.sd(0), found.value.sd(1) / kFactor);
+  EXPECT_FALSE(recordedNoise(two, {0, 1}).sd.value == Whitening(found.value.sd(0)));
+
+  // in the unit of the first output, of the wider one in σ
+  LinearDisagreement wide(1, 4);
+  wide.measure(0, VectorXd{{1, 5, 2, 8}});
+  const TwoUnits both(wide);  // 1 and 2; 5000 and 8000
+  EXPECT_NEAR(rangeOf(both, {0}, Whitening(VectorXd{{0.1, 100}})), 3, 1e-12);
+  EXPECT_NEAR(rangeOf(both, {0}, Whitening(VectorXd{{0.1, 1000}})), 1, 1e-12);
 }
 
 }  // namespace
