@@ -63,6 +63,7 @@ std::vector<Remark> reviewModel(const Model& model) {
   }
   const std::string together = whyNotTogether(model, free);
   if (!together.empty()) remarks.push_back({"model", together, Weight::warning});
+  for (Remark& inside : reviewPathPoints(model)) remarks.push_back(std::move(inside));
   return remarks;
 }
 

@@ -144,10 +144,9 @@ void Reviewer::reviewAxes(const Joint& joint) {
 }
 
 void Reviewer::reviewWrap(const WrapObject& wrap) {
-  const double size = std::max({wrap.radius, wrap.outerRadius, wrap.semiAxes.maxCoeff()});
-  if (size > 0.5) {
+  if (sizeOf(wrap) > largestWrap) {
     say(fmt::format("wrap object '{}'", wrap.name),
-        "radius = {} m, usually below 0.5 m: millimetres?", size);
+        "radius = {} m, usually below {} m: millimetres?", sizeOf(wrap), largestWrap);
   }
 }
 

@@ -2,7 +2,10 @@
 
 // Not public.
 
+#include <algorithm>
 #include <numbers>
+
+#include "bio/model/model.h"
 
 namespace bio {
 
@@ -17,5 +20,13 @@ inline constexpr double millisecondsBeyond = 0.5, millisecondsFrom = 60;
 
 /// A path that is shorter is none [m].
 inline constexpr double shortestPath = 1e-6;
+
+/// A wrap object beyond this is probably in millimetres [m].
+inline constexpr double largestWrap = 0.5;
+
+/// Its largest radius or semi-axis [m].
+inline double sizeOf(const WrapObject& wrap) {
+  return std::max({wrap.radius, wrap.outerRadius, wrap.semiAxes.maxCoeff()});
+}
 
 }  // namespace bio

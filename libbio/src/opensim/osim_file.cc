@@ -28,6 +28,7 @@ std::vector<std::string> parse(tinyxml2::XMLDocument& document, const std::strin
     throw FileError(fmt::format("{}:{}: is not well-formed XML ({})", file, document.ErrorLineNum(),
                                 tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID())));
   }
+  osim::checkVersion(document, file);
   return osim::update(document, file);
 }
 

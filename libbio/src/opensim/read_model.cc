@@ -12,16 +12,6 @@ namespace {
 
 const Element& findModel(const tinyxml2::XMLDocument& document, const Source& source) {
   const Element* root = document.RootElement();
-  if (!root) throw FileError(source.file + ": holds no XML element, must be an OpenSim model");
-  if (std::string_view(root->Name()) != "OpenSimDocument") {
-    fail(source, *root, fmt::format("root element is {}, must be OpenSimDocument", root->Name()));
-  }
-  const int version = root->IntAttribute("Version", 0);
-  if (version < 10000) {
-    fail(source, *root,
-         fmt::format("Version = '{}', must be 10000 or more",
-                     root->Attribute("Version") ? root->Attribute("Version") : ""));
-  }
   const Element* model = root->FirstChildElement("Model");
   if (!model) fail(source, *root, "holds no Model, must hold one");
   for (const Element* set : childrenOf(model)) {
@@ -59,6 +49,27 @@ void warnOfPrescribedAndCoupled(Reading& reading) {
 }
 
 }  // namespace
+
+void checkVersion(const tinyxml2::XMLDocument& document, const std::string& file) {
+  const Source source{file, {}};
+  const Element* root = document.RootElement();
+  if (!root) throw FileError(file + ": holds no XML element, must be an OpenSim model");
+  if (std::string_view(root->Name()) != "OpenSimDocument") {
+    fail(source, *root, fmt::format("root element is {}, must be OpenSimDocument", root->Name()));
+  }
+  const char* text = root->Attribute("Version");
+  const int version = root->IntAttribute("Version", 0);
+  // OpenSim 1.9.1 writes 10901; a 1.09 is read as 1.
+  if (version == 1 || (version >= 10000 && version < 20000)) {
+    fail(source, *root,
+         fmt::format("Version = '{}', a file of OpenSim 1 is too old: open it once in OpenSim (3.3 "
+                     "or newer) and save it",
+                     text));
+  }
+  if (version < 20000) {
+    fail(source, *root, fmt::format("Version = '{}', must be 20000 or more", text ? text : ""));
+  }
+}
 
 Model readModel(const tinyxml2::XMLDocument& document, const std::string& file) {
   Reading reading;

@@ -8,7 +8,12 @@
 
 namespace bio::osim {
 
-/// What a parsed document says; `file` is the name used in messages.
+/// Whether a parsed document is an OpenSim model of version 2 or newer (Version ≥ 20000); to be asked
+/// first, as nothing in an older one is where a reader looks for it.
+/// @throws FileError if not; for a file of OpenSim 1, that it must be saved by a newer one
+void checkVersion(const tinyxml2::XMLDocument& document, const std::string& file);
+
+/// What a parsed document that passes checkVersion says; `file` is the name used in messages.
 /// @throws FileError
 Model readModel(const tinyxml2::XMLDocument& document, const std::string& file);
 

@@ -32,7 +32,7 @@ TEST_F(OsimRules, FilesThatAreNoModel) {
   EXPECT_EQ(messageOf("<OpenSimDocument Version=\"40000\"/>"),
             "m.osim:1: OpenSimDocument: holds no Model, must hold one");
   EXPECT_EQ(messageAfter("Version=\"40000\"", "Version=\"four\""),
-            "m.osim:2: OpenSimDocument: Version = 'four', must be 10000 or more");
+            "m.osim:2: OpenSimDocument: Version = 'four', must be 20000 or more");
   EXPECT_EQ(
       messageAfter("<JointSet name", "<JointSet file=\"joints.xml\" name"),
       "m.osim:13: JointSet 'jointset': is kept in another file ('joints.xml'), must be in this "
@@ -41,6 +41,25 @@ TEST_F(OsimRules, FilesThatAreNoModel) {
               testing::ThrowsMessage<FileError>(HasSubstr("none.osim: there is no such file")));
   EXPECT_THAT([&] { readOsim(folder_.path()); },
               testing::ThrowsMessage<FileError>(HasSubstr("is a directory, must be a file")));
+}
+
+// Whatever else such a file lacks: OpenSim 1 writes joints and engines that no reader knows.
+TEST_F(OsimRules, FilesOfOpenSim1AreTooOld) {
+  for (const std::string version : {"10500", "10900", "10905", "19999", "1.09", "1"}) {
+    SCOPED_TRACE(version);
+    const std::string attribute = "Version=\"" + version + "\"";
+    const std::string expected =
+        "OpenSimDocument: Version = '" + version +
+        "', a file of OpenSim 1 is too old: open it once in OpenSim (3.3 or newer) and save it";
+    EXPECT_EQ(messageAfter("Version=\"40000\"", attribute), "m.osim:2: " + expected);
+    EXPECT_EQ(messageOf("<OpenSimDocument " + attribute + "><Model><SimbodyEngine/></Model>"
+                        "</OpenSimDocument>"),
+              "m.osim:1: " + expected);
+  }
+  for (const std::string version : {"2", "0.9", "9999", "-1", "nan", ""}) {
+    EXPECT_EQ(messageAfter("Version=\"40000\"", "Version=\"" + version + "\""),
+              "m.osim:2: OpenSimDocument: Version = '" + version + "', must be 20000 or more");
+  }
 }
 
 TEST_F(OsimRules, Bodies) {

@@ -34,11 +34,17 @@ struct Remark {
 /// or do not peak near F/F0 = 1, ℓ/ℓ0 = 1 (active); transform axes that are not of length 1; models
 /// without muscles, or without a free coordinate.
 ///
-/// Warnings: coordinates that cannot be free since they move no mass.
+/// Warnings: coordinates that cannot be free since they move no mass. Then come the remarks of
+/// reviewPathPoints.
 std::vector<Remark> reviewModel(const Model& model);
 
-/// The same without the warnings that require a skeleton.
+/// The same without what requires a skeleton.
 std::vector<Remark> reviewNumbers(const Model& model);
+
+/// Active path points of enabled muscles that lie inside a wrap object of their path, by 1 µm or
+/// more, in the default posture; of a cylinder, between its ends. Spans that end there pass through
+/// the object, here and in OpenSim.
+std::vector<Remark> reviewPathPoints(const Model& model);
 
 /// Reason why a model cannot be simulated: no muscle, none of a class that can be simulated, or no
 /// coordinate that moves a mass; such a model can be used for paths and pictures only. Empty if it
