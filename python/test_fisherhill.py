@@ -252,7 +252,7 @@ class Arms(unittest.TestCase):
                     lambda: fh.calibrate(self.model, [loaded], ["hand.mass"]),
                     lambda: fh.calibrate(self.model, [self.trial], ["hand.mass"], hold_out=[loaded]),
                     lambda: fh.make_trial(self.model, self.columns(), known_mass_in_hand=-1)):
-            with self.assertRaisesRegex(ValueError, "hand"):
+            with self.assertRaisesRegex(ValueError, "known.mass"):
                 one()
         turned = fh.make_trial(self.model, self.columns(), known_arm_turn=-45 * DEGREE)
         self.assertAlmostEqual(turned.known_arm_turn, -45 * DEGREE)
