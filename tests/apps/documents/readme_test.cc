@@ -205,7 +205,8 @@ class TimedFirstCommands : public testing::Test {
 };
 
 TEST_F(TimedFirstCommands, RunInNewClonesWithoutCcacheAndTheMedianIsALineOfTheReadme) {
-  commit("test ! -e built && echo \"$* $CCACHE_DISABLE\" >> $NOTES && touch ${1}built\n");
+  commit(
+      "test ! -e \"./$1.done\" && echo \"$* $CCACHE_DISABLE\" >> $NOTES && touch \"./$1.done\"\n");
   const auto result = timed({});
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(result.out,
