@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "bio/analysis/replay.h"
+#include "bio/analysis/step_effect.h"
 #include "bio/discovery/with_experimental_conditions.h"
 #include "bio/opensim/osim_file.h"
 #include "command/command.h"
@@ -12,6 +13,9 @@
 
 namespace app {
 namespace {
+
+/// So few steps are always tested, at no cost that is felt.
+constexpr long fewSteps = 20;
 
 class Replay : public Command {
  public:
@@ -78,6 +82,8 @@ class Replay : public Command {
       const bool isSaid = left && sentence.starts_with(left->name + " leaves its range");
       if (!isSaid) summary.warn(sentence);
     }
+    const std::optional<bio::StepEffect> effect = effectOfStep(arm, trial, replay);
+    if (effect) summary.warn(describe(*effect));
     const bio::MuscleReport muscles = bio::reportMuscles(arm, motion);
     folder.writeFile("states.sto", [&](const std::filesystem::path& path) {
       bio::writeTable(bio::statesTable(model, arm, motion), path);
@@ -86,16 +92,28 @@ class Replay : public Command {
       bio::writeTable(bio::forcesTable(arm, motion, muscles), path);
     });
 
-    const ReplayFindings findings{model_, trial_, model, trial, arm, replay, muscles, left};
+    const ReplayFindings findings{model_, trial_, model, trial, arm, replay, muscles, left, effect};
     summary.setSimulation(simulation_.integrator, replay.options.step, replay.options.duration,
                           motion.wallSeconds);
     tellReplay(findings, summary);
     deliver(context, summary, replayReport(findings), folder);
-    const bool isFine = motion.outcome == bio::Outcome::completed && !(strict_ && left);
+    const bool isFine = motion.outcome == bio::Outcome::completed && !effect && !(strict_ && left);
     return isFine ? ExitStatus::done : ExitStatus::answerIsNo;
   }
 
  private:
+  /// Of an explicit integrator's step that was asked for, since it may be unstable, and of any where
+  /// there are few.
+  std::optional<bio::StepEffect> effectOfStep(const bio::MusculoskeletalSystem& arm,
+                                              const bio::Trial& trial,
+                                              const bio::TrialReplay& replay) const {
+    const bool isCompleted = replay.motion.outcome == bio::Outcome::completed;
+    const bool mayLeap =
+        simulation_.step && replay.options.integrator == bio::Integrator::rungeKutta4;
+    if (!isCompleted || !(mayLeap || replay.motion.steps <= fewSteps)) return {};
+    return bio::stepEffect(arm, trial, replay);
+  }
+
   std::string model_;
   std::string trial_;
   SimulationOptions simulation_;

@@ -204,8 +204,11 @@ nlohmann::ordered_json channelErrors(const ReplayFindings& f) {
 void tellReplay(const ReplayFindings& f, Summary& summary) {
   const bio::Trajectory& motion = f.replay.motion;
   const bool left = f.left && motion.outcome == bio::Outcome::completed;
-  summary.set("status", left ? "left_range" : bio::name(motion.outcome));
+  summary.set("status", f.effect ? "step_too_long"
+                        : left   ? "left_range"
+                                 : bio::name(motion.outcome));
   if (!motion.why.empty()) summary.set("why", motion.why);
+  if (f.effect) summary.set("why", describe(*f.effect));
   if (f.left) {
     summary.set("left_range_at_s", f.left->time);
     summary.set("left_range", f.left->what);
@@ -256,6 +259,10 @@ Report replayReport(const ReplayFindings& f) {
   }
   if (f.replay.motion.outcome != bio::Outcome::completed) {
     report.verdict = fmt::format("The simulation did not reach the end: {}.", f.replay.motion.why);
+  }
+  if (f.effect) {
+    report.verdict =
+        fmt::format("The motion depends on the step: {}. {}", describe(*f.effect), report.verdict);
   }
   if (f.left) {
     report.verdict = fmt::format("The motion leaves the valid range of the model: {}. {}",

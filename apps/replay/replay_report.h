@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bio/analysis/replay.h"
+#include "bio/analysis/step_effect.h"
 #include "bio/simulation/simulate.h"
 #include "bio/tables/trial.h"
 #include "report/report.h"
@@ -20,6 +21,7 @@ struct ReplayFindings {
   const bio::TrialReplay& replay;
   const bio::MuscleReport& muscles;
   const std::optional<bio::LeftRange>& left;
+  const std::optional<bio::StepEffect>& effect;
 };
 
 /// Sets the values of summary.json: rms_error_deg, newton_iterations_per_step, …

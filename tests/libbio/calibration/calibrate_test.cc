@@ -97,7 +97,7 @@ TEST(Calibrate, PredictsTrialsHeldOut) {
     return (y - held).norm() / std::sqrt(static_cast<double>(y.size())) / degree;
   };
   EXPECT_GT(rms(found.heldOutBefore), 2);
-  EXPECT_LT(rms(found.heldOutAfter), 0.7);
+  EXPECT_NEAR(rms(found.heldOutAfter), 0.5, 0.1);  // the noise
 }
 
 TEST(Calibrate, EstimatesStartsThatWereMeasuredBadly) {

@@ -22,6 +22,7 @@ TEST(TorqueStatistics, MomentAngleAndFascicleAreFittedTogether) {
   EXPECT_GE(s.converged, 4);
   EXPECT_LT(s.bias.abs().maxCoeff(), 4);
   EXPECT_LT(s.variance.maxCoeff(), 3);
+  EXPECT_GE(s.coverage.minCoeff(), 0.5);  // 3 of 6: by chance in one of 12,000 at 95 %
 }
 
 }  // namespace

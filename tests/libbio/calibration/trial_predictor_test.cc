@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "info/estimation/estimate.h"
 #include "support/shipped_elbow.h"
 
 namespace bio {
@@ -61,6 +62,41 @@ TEST(TrialPredictor, OutsideTheModelsDomainNothingIsFinite) {
   const TrialPredictor e = experimentOn(elbow, {"TRI.radius"}, {0.5});
   EXPECT_TRUE(std::isnan(e.outputs(Eigen::VectorXd::Constant(1, -0.01))[0]));
   EXPECT_TRUE(std::isnan(e.withSensitivities(Eigen::VectorXd::Constant(1, -0.01)).gamma(0, 0)));
+}
+
+// The first step of Gauss and Newton leads to half the negative force, which no muscle has.
+TEST(TrialPredictor, LetsASearchStepBackFromWhereASimulationFails) {
+  const ShippedElbow elbow;
+  const TrialPredictor e = experimentOn(elbow, {"BRA.max_isometric_force"}, {0.3, 0.6, 0.9});
+  const double start = elbow.catalogue.values(e.selection())[0];
+  const auto at = e.withSensitivities(Eigen::VectorXd::Constant(1, start));
+  const Eigen::MatrixXd measured = at.outputs - at.gamma.col(0) * 1.5 * start;
+  info::Predictor predictor = joined({e});
+  int outside = 0;
+  const auto outputs = predictor.outputs;
+  predictor.outputs = [&, outputs](const Eigen::VectorXd& theta) {
+    const Eigen::MatrixXd y = outputs(theta);
+    if (!y.allFinite()) {
+      ++outside;
+      EXPECT_LT(theta[0], 0);
+    }
+    return y;
+  };
+  const auto linearised = predictor.withSensitivities;
+  predictor.withSensitivities = [&, linearised](const Eigen::VectorXd& theta) {
+    const info::Prediction y = linearised(theta);
+    outside += y.outputs.allFinite() ? 0 : 1;
+    return y;
+  };
+  const info::LeastSquares problem(
+      predictor,
+      {measured.transpose(), info::OutputCovariance(Eigen::MatrixXd::Constant(1, 1, 1e-4))},
+      {{.name = "force", .start = start}});
+  const info::Estimate found = info::estimate(problem);
+  EXPECT_GE(outside, 1);
+  EXPECT_GT(found.parameters[0], 0);
+  EXPECT_LT(found.parameters[0], start);
+  EXPECT_LT(found.cost, 0.5 * (measured - at.outputs).squaredNorm() / 1e-4);
 }
 
 TEST(TrialPredictor, JoinsTrialsOneBehindTheOther) {

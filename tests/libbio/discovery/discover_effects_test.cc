@@ -104,6 +104,7 @@ TEST(Effects, ChangeNothingAtAmplitudeZero) {
   }
 }
 
+// By a microradian at least, of an amplitude of one prior standard deviation.
 TEST(Effects, AllMoveTheArmInAWholeTrial) {
   VectorXd largest;
   for (const char* trial : {"cocontraction", "curl_fast"}) {
@@ -119,7 +120,8 @@ TEST(Effects, AllMoveTheArmInAWholeTrial) {
     const VectorXd moved = at.gamma.cwiseAbs().colwise().maxCoeff().transpose();
     largest = largest.size() ? VectorXd(largest.cwiseMax(moved)) : moved;
     for (std::size_t j = 0; j < amplitudes.size() && trial[1] == 'u'; ++j) {
-      EXPECT_GT(largest[static_cast<Index>(j)], 0) << c.data.candidates()[j].id;
+      const double sd = c.data.quantities()[amplitudes[j]].sd;
+      EXPECT_GT(largest[static_cast<Index>(j)] * sd, 1e-6) << c.data.candidates()[j].id;
     }
   }
 }
