@@ -15,6 +15,7 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/analysis/replay.h
   include/bio/analysis/trial_ensemble.h
   include/bio/analysis/sensitivity_study.h
+  include/bio/analysis/step_effect.h
   include/bio/calibration/calibrate.h
   include/bio/calibration/calibrate_at_shorter_steps.h
   include/bio/calibration/calibrated_model.h
