@@ -138,6 +138,7 @@ const Run runs[] = {
     {"MuscleStates", {"muscle-states", "models/muscle_states.csv"}},
     {"Replay", {"replay", model, slow}},
     {"ReplayThatFails", {"replay", model, slow, "--integrator", "rk4", "--step", "0.02"}},
+    {"ReplayOfOneStep", {"replay", model, slow, "--step", "4.5"}},
     {"RobotInformation", {"robot", "double-pendulum", "--bound-only"}},
     {"RobotUndetermined",
      {"robot", "double-pendulum", "--bound-only", "--unknown", "m1,m2", "--undamped"}},
