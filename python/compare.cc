@@ -21,19 +21,36 @@ namespace {
 /// A table of states, or times [s] and values [rad].
 using OtherMotion = std::variant<FileName, std::pair<py::object, py::object>>;
 
-bio::CoordinateCurve curveOf(const std::string& name, const OtherMotion& motion,
-                             const bio::Coordinate& coordinate) {
+/// The same with numbers of C++: a thread beside Python may read it.
+using KnownMotion = std::variant<FileName, bio::CoordinateCurve>;
+
+std::map<std::string, KnownMotion> motionsOf(const std::map<std::string, OtherMotion>& also) {
+  std::map<std::string, KnownMotion> motions;
+  for (const auto& [name, motion] : also) {
+    if (const auto* file = std::get_if<FileName>(&motion)) {
+      motions[name] = *file;
+      continue;
+    }
+    const auto& given = std::get<1>(motion);
+    const Eigen::VectorXd times = columnOf(given.first, fmt::format("also: times of '{}'", name));
+    const Eigen::VectorXd values =
+        columnOf(given.second, fmt::format("also: values of '{}'", name));
+    if (times.size() != values.size()) {
+      throw std::invalid_argument(
+          fmt::format("also: '{}' has {} times and {} values, must be equal", name, times.size(),
+                      values.size()));
+    }
+    motions[name] =
+        bio::CoordinateCurve{{times.begin(), times.end()}, {values.begin(), values.end()}};
+  }
+  return motions;
+}
+
+bio::CoordinateCurve curveOf(const KnownMotion& motion, const bio::Coordinate& coordinate) {
   if (const auto* file = std::get_if<FileName>(&motion)) {
     return bio::readCoordinate(file->text, coordinate);
   }
-  const auto& given = std::get<1>(motion);
-  const Eigen::VectorXd times = columnOf(given.first, fmt::format("also: times of '{}'", name));
-  const Eigen::VectorXd values = columnOf(given.second, fmt::format("also: values of '{}'", name));
-  if (times.size() != values.size()) {
-    throw std::invalid_argument(fmt::format("also: '{}' has {} times and {} values, must be equal",
-                                            name, times.size(), values.size()));
-  }
-  return {{times.begin(), times.end()}, {values.begin(), values.end()}};
+  return std::get<bio::CoordinateCurve>(motion);
 }
 
 /// Curves of the coordinate by which motions are compared, the first that turns; null: none does.
@@ -41,13 +58,13 @@ struct OtherCurves {
   const bio::Coordinate* coordinate = nullptr;
   std::map<std::string, bio::CoordinateCurve> curves = {};
 
-  OtherCurves(const std::map<std::string, OtherMotion>& also,
+  OtherCurves(const std::map<std::string, KnownMotion>& also,
               const bio::MusculoskeletalSystem& system) {
     for (const bio::Coordinate& one : system.skeleton().coordinates()) {
       if (one.isRotation && coordinate == nullptr) coordinate = &one;
     }
     if (coordinate == nullptr) return;
-    for (const auto& [name, motion] : also) curves[name] = curveOf(name, motion, *coordinate);
+    for (const auto& [name, motion] : also) curves[name] = curveOf(motion, *coordinate);
   }
 
   /// RMS differences from the reference [rad]; NaN without a reference.
@@ -174,9 +191,10 @@ py::object compare(const bio::Model& model, const bio::Trial& trial,
   std::optional<PreparedTrial> at;
   std::optional<OtherCurves> others;
   bio::Comparison comparison;
+  const std::map<std::string, KnownMotion> motions = motionsOf(also);
   interruptible([&](const std::atomic<bool>& goOn) {
     at.emplace(prepared(model, trial, choice, initial));
-    others.emplace(also, at->system);
+    others.emplace(motions, at->system);
     options.startTime = at->simulation.startTime;
     options.duration = at->simulation.duration;
     options.externalForce = at->simulation.externalForce;
