@@ -30,7 +30,7 @@ std::vector<Index> samplesOf(const DiscoverFindings& f, int t, std::size_t outpu
 
 /// In the unit in which the output is shown.
 std::vector<double> shownValues(const DiscoverFindings& f, const VectorXd& values,
-                                const std::vector<Index>& samples, std::size_t output) {
+                                const std::vector<Index>& samples) {
   const VectorXd result = f.wording.unit * values(samples);
   return {result.begin(), result.end()};
 }
@@ -53,22 +53,20 @@ Figure motionFigure(const DiscoverFindings& f, int t, std::size_t output) {
                 .yLabel = fmt::format("{} [{}]", shownOutput.name, shownOutput.unit)};
   figure.series.push_back({.name = "measured",
                            .x = times,
-                           .y = shownValues(f, f.data.measured(t), samples, output),
+                           .y = shownValues(f, f.data.measured(t), samples),
                            .style = SeriesStyle::points});
   if (verdict.base.size() > 0) {
-    figure.series.push_back(
-        {.name = "calibrated, no effect added",
-         .x = times,
-         .y = shownValues(f, f.data.outputs(t, verdict.base, {}), samples, output),
-         .style = SeriesStyle::dashed});
+    figure.series.push_back({.name = "calibrated, no effect added",
+                             .x = times,
+                             .y = shownValues(f, f.data.outputs(t, verdict.base, {}), samples),
+                             .style = SeriesStyle::dashed});
   }
   if (!verdict.effects.empty()) {
     const VectorXd after = f.data.outputs(t, verdict.values, {});
-    Series series{
-        .name = "with the effect", .x = times, .y = shownValues(f, after, samples, output)};
+    Series series{.name = "with the effect", .x = times, .y = shownValues(f, after, samples)};
     const VectorXd wide = 1.96 * info::discover::predictedSd(f.data, verdict, t);
-    series.bandLow = shownValues(f, after - wide, samples, output);
-    series.bandHigh = shownValues(f, after + wide, samples, output);
+    series.bandLow = shownValues(f, after - wide, samples);
+    series.bandHigh = shownValues(f, after + wide, samples);
     figure.series.push_back(std::move(series));
     figure.caption =
         "Simulations from the initial state to the end, not corrected by the measurements. Band: "
