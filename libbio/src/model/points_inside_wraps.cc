@@ -40,10 +40,8 @@ class DefaultPosture {
   }
 
   bool isActive(const PathPoint& point) const {
-    if (!point.condition) return true;
-    const double value = valueOf(point.condition->coordinate);
-    return value >= point.condition->lower - conditionMargin &&
-           value <= point.condition->upper + conditionMargin;
+    return !point.condition ||
+           bio::isActive(*point.condition, valueOf(point.condition->coordinate));
   }
 
   /// In the frame of a wrap object.

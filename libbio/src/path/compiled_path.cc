@@ -77,10 +77,7 @@ class Compiler {
       const CompiledCondition condition{skeleton_.sourceOf(point.condition->coordinate),
                                         point.condition->lower, point.condition->upper};
       if (condition.source.freeIndex < 0) {
-        const double value = condition.source.value;
-        const bool active = value >= condition.lower - conditionMargin &&
-                            value <= condition.upper + conditionMargin;
-        if (!active) return;
+        if (!isActive(condition, condition.source.value)) return;
       } else {
         node.condition = conditionIndex(*point.condition, condition);
       }

@@ -122,10 +122,7 @@ bool SpanSurfaces::occurs(std::size_t bits, const Posture& posture) const {
   for (std::size_t i = 0; i < path_.conditions.size(); ++i) {
     const CompiledCondition& c = path_.conditions[i];
     const double q = posture.q[static_cast<std::size_t>(c.source.freeIndex)];
-    const double coordinate = c.source.coupling.evaluate(q).value;
-    const bool active =
-        coordinate >= c.lower - conditionMargin && coordinate <= c.upper + conditionMargin;
-    if (active != (((bits >> i) & 1) != 0)) return false;
+    if (isActive(c, c.source.coupling.evaluate(q).value) != (((bits >> i) & 1) != 0)) return false;
   }
   return true;
 }

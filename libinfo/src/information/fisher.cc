@@ -71,13 +71,7 @@ MatrixXd cramerRaoBound(const MatrixXd& information, const std::vector<std::stri
     throw std::invalid_argument("Cramér–Rao bound: the information matrix must be square");
   if (!information.allFinite())
     throw std::domain_error("Cramér–Rao bound: every entry of the information must be finite");
-  if (const auto pair = asymmetricPair(information)) {
-    const auto [i, j] = *pair;
-    throw std::invalid_argument(fmt::format(
-        "Cramér–Rao bound: the information matrix must be symmetric, but entry ({}, {}) is {} and "
-        "({}, {}) is {}",
-        name(i), name(j), information(i, j), name(j), name(i), information(j, i)));
-  }
+  requireSymmetric(information, "Cramér–Rao bound", name);
   for (Index i = 0; i < p; ++i)
     if (!(information(i, i) > 0))
       throw std::domain_error(fmt::format(

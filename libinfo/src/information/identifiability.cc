@@ -254,15 +254,8 @@ IdentifiabilityReport identifiability(const MatrixXd& information,
                     information.rows(), information.cols(), p));
   if (!information.allFinite())
     throw std::domain_error("identifiability: every entry of the information must be finite");
-  if (const auto pair = asymmetricPair(information)) {
-    const auto [i, j] = *pair;
-    const std::string& one = parameters[static_cast<std::size_t>(i)].name;
-    const std::string& other = parameters[static_cast<std::size_t>(j)].name;
-    throw std::invalid_argument(fmt::format(
-        "identifiability: the information matrix must be symmetric, but entry ({}, {}) is {} and "
-        "({}, {}) is {}",
-        one, other, information(i, j), other, one, information(j, i)));
-  }
+  requireSymmetric(information, "identifiability",
+                   [&](Index i) { return parameters[static_cast<std::size_t>(i)].name; });
 
   IdentifiabilityReport report;
   const VectorXd s = scales(parameters, scale);

@@ -1,17 +1,24 @@
 #include "info/information/symmetric_eigen.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <stdexcept>
 
 namespace info {
 
-std::optional<std::pair<Eigen::Index, Eigen::Index>> asymmetricPair(const Eigen::MatrixXd& matrix) {
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    for (Eigen::Index j = 0; j < i; ++j) {
+void requireSymmetric(const Eigen::MatrixXd& matrix, const std::string& what,
+                      const std::function<std::string(Eigen::Index)>& nameOf) {
+  for (Eigen::Index j = 0; j < matrix.rows(); ++j) {
+    for (Eigen::Index i = 0; i < j; ++i) {
       const double size = std::sqrt(std::abs(matrix(i, i) * matrix(j, j)));
-      if (!(std::abs(matrix(i, j) - matrix(j, i)) <= 1e-6 * size)) return {{j, i}};
+      if (std::abs(matrix(i, j) - matrix(j, i)) <= 1e-6 * size) continue;
+      throw std::invalid_argument(fmt::format(
+          "{}: the information matrix must be symmetric, but entry ({}, {}) is {} and ({}, {}) is "
+          "{}",
+          what, nameOf(i), nameOf(j), matrix(i, j), nameOf(j), nameOf(i), matrix(j, i)));
     }
   }
-  return {};
 }
 
 SymmetricEigen symmetricEigen(const Eigen::MatrixXd& matrix) {

@@ -57,11 +57,8 @@ TEST(Whitening, DividesEverySampleByTheNoiseOfItsOutput) {
   const std::vector<int> outputs{0, 1, 1, 0};
   MatrixXd rows(4, 2);
   rows << 2, 4, 5, 10, 15, 20, 6, 8;
-  const MatrixXd raw = rows;
   both.whiten(outputs, rows);
   EXPECT_EQ(rows, (MatrixXd(4, 2) << 1, 2, 1, 2, 3, 4, 3, 4).finished());
-  both.unwhiten(outputs, rows);
-  EXPECT_EQ(rows, raw);
   EXPECT_EQ(both.bySample(outputs, 4), (VectorXd(4) << 2, 5, 5, 2).finished());
   EXPECT_NEAR(both.logDeterminant(outputs, 4), 2 * std::log(2.0) + 2 * std::log(5.0), 1e-15);
   EXPECT_NEAR(Whitening(3).logDeterminant(outputs, 4), 4 * std::log(3.0), 1e-15);

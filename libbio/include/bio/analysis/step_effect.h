@@ -17,7 +17,7 @@ struct StepEffect {
   std::string failed;     ///< why the motion with half the step did not reach the end; else empty
 };
 
-/// Difference up to which a motion counts as independent of its step: 2° or 20 mm.
+/// Difference up to which a motion counts as independent of its step: 2° or 20 mm, by judgement.
 inline constexpr double largestStepEffect_deg = 2, largestStepEffect_mm = 20;
 
 /// Simulates a replayed trial again with half its step and compares the motions at all rows of the

@@ -137,6 +137,13 @@ CompiledPath compilePath(const Model& model, const Skeleton& skeleton, const Mus
 /// Conditional points stay active this far beyond their range, as in OpenSim [rad] or [m].
 constexpr double conditionMargin = 1e-5;
 
+/// Whether a point with this condition is active where its coordinate has this value [rad] or [m].
+template <class Condition>
+bool isActive(const Condition& condition, double coordinate) {
+  return coordinate >= condition.lower - conditionMargin &&
+         coordinate <= condition.upper + conditionMargin;
+}
+
 /// The path variant that is active in a configuration.
 template <class Q>
 const PathVariant& activeVariant(const CompiledPath& path, const Q& q) {
@@ -147,9 +154,7 @@ const PathVariant& activeVariant(const CompiledPath& path, const Q& q) {
         condition.source.coupling
             .evaluate(plainValue(q[static_cast<Eigen::Index>(condition.source.freeIndex)]))
             .value;
-    const bool active = coordinate >= condition.lower - conditionMargin &&
-                        coordinate <= condition.upper + conditionMargin;
-    bits |= (active ? std::size_t{1} : std::size_t{0}) << i;
+    bits |= (isActive(condition, coordinate) ? std::size_t{1} : std::size_t{0}) << i;
   }
   return path.variants[bits];
 }

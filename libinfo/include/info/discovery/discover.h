@@ -12,6 +12,7 @@
 #include "info/discovery/judgement/localise.h"
 #include "info/discovery/likelihood/discovery_problem.h"
 #include "info/discovery/likelihood/recorded_noise.h"
+#include "info/discovery/likelihood/whitening.h"
 #include "info/discovery/nonparametric/unknown.h"
 
 namespace info::discover {

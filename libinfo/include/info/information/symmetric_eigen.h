@@ -1,8 +1,8 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <optional>
-#include <utility>
+#include <functional>
+#include <string>
 
 namespace info {
 
@@ -17,9 +17,13 @@ struct SymmetricEigen {
 /// it takes long to compile.
 SymmetricEigen symmetricEigen(const Eigen::MatrixXd& matrix);
 
-/// Row and column, row < column, of a square matrix where |a_ij − a_ji| > 1e-6·√|a_ii·a_jj| or is
-/// NaN: more than rounding, whatever the units. None: it is symmetric.
-std::optional<std::pair<Eigen::Index, Eigen::Index>> asymmetricPair(const Eigen::MatrixXd& matrix);
+/// Requires a finite square matrix to be symmetric: |a_ij − a_ji| ≤ 1e-6·√|a_ii·a_jj|, whatever the
+/// units. One that was written with six digits and read again is symmetric.
+/// @param what   whose matrix it is, for the message
+/// @param nameOf the row or column with this index, for the message
+/// @throws std::invalid_argument that names the two entries
+void requireSymmetric(const Eigen::MatrixXd& matrix, const std::string& what,
+                      const std::function<std::string(Eigen::Index)>& nameOf);
 
 /// The eigenvalues alone, in ascending order.
 Eigen::VectorXd symmetricEigenvalues(const Eigen::MatrixXd& matrix);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "info/discovery/likelihood/hypothesis.h"
 
@@ -119,8 +120,9 @@ Distinction distinction(const DiscoveryProblem& planned, const PresentEffect& fi
     }
     changeA.segment(row, n) = whitened(a.change);
     changeB.segment(row, n) = whitened(b.change);
-    freeA.middleRows(row, n) << whitened(gamma), whitened(b.adjusted);
-    freeB.middleRows(row, n) << whitened(gamma), whitened(a.adjusted);
+    gamma = whitened(std::move(gamma));
+    freeA.middleRows(row, n) << gamma, whitened(b.adjusted);
+    freeB.middleRows(row, n) << gamma, whitened(a.adjusted);
     row += n;
   }
   Distinction result;

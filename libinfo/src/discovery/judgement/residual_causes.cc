@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "discovery/judgement/node_states.h"
 
@@ -164,14 +163,14 @@ MatrixXd accelerations(const Likelihood& likelihood, const Fit& fit, const NodeS
 std::vector<MatrixXd> sensorErrors(const Likelihood& likelihood, const Fit& fit,
                                    const NodeStates& states) {
   const DiscoveryProblem& data = likelihood.data();
-  std::vector<VectorXd> outputs, squares, speeds;
+  std::vector<VectorXd> outputs, speeds;
   for (std::size_t t = 0; t < states.linear.size(); ++t) {
-    for (auto [to, from] : {std::pair{&outputs, &states.linear[t].outputs},
-                            std::pair{&speeds, &states.linear[t].speeds}}) {
-      VectorXd whitened = *from;
-      fit.noise.output.whiten(data.outputOfSample(likelihood.trials()[t]), whitened);
-      to->push_back(fit.noise.output.sd(0) * whitened);
-    }
+    const auto whitened = [&](VectorXd samples) {
+      fit.noise.output.whiten(data.outputOfSample(likelihood.trials()[t]), samples);
+      return samples;
+    };
+    outputs.push_back(whitened(states.linear[t].outputs));
+    speeds.push_back(whitened(states.linear[t].speeds));
   }
   const VectorXd y = scaled(outputs), ySquared = scaled({y.cwiseAbs2()}), yDot = scaled(speeds);
   std::vector<MatrixXd> columns;

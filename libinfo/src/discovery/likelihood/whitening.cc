@@ -23,10 +23,9 @@ double Whitening::sd(std::size_t output) const {
 }
 
 VectorXd Whitening::bySample(const std::vector<int>& outputs, Index n) const {
-  if (sds_.size() == 1 || outputs.empty()) return VectorXd::Constant(n, sd(0));
+  if (sds_.size() == 1) return VectorXd::Constant(n, sds_[0]);
   VectorXd sds(n);
-  for (Index k = 0; k < n; ++k)
-    sds[k] = sd(static_cast<std::size_t>(outputs.at(static_cast<std::size_t>(k))));
+  for (Index k = 0; k < n; ++k) sds[k] = sd(outputOf(outputs, k));
   return sds;
 }
 

@@ -28,21 +28,14 @@ class Whitening {
 
   /// σ of each of n samples
   Eigen::VectorXd bySample(const std::vector<int>& outputs, Eigen::Index n) const;
-  /// Divides each row (a sample) by its σ.
+  /// Divides each row (a sample) by its σ. Allocates nothing.
   template <class Rows>
   void whiten(const std::vector<int>& outputs, Rows& rows) const {
-    if (sds_.size() == 1)
+    if (sds_.size() == 1) {
       rows /= sds_[0];
-    else
-      rows.array().colwise() /= bySample(outputs, rows.rows()).array();
-  }
-  /// Multiplies each row (a sample) by its σ.
-  template <class Rows>
-  void unwhiten(const std::vector<int>& outputs, Rows& rows) const {
-    if (sds_.size() == 1)
-      rows *= sds_[0];
-    else
-      rows.array().colwise() *= bySample(outputs, rows.rows()).array();
+      return;
+    }
+    for (Eigen::Index k = 0; k < rows.rows(); ++k) rows.row(k) /= sd(outputOf(outputs, k));
   }
   /// Σ log σ over n samples: what whitening takes from the logarithm of their density
   double logDeterminant(const std::vector<int>& outputs, Eigen::Index n) const;
@@ -52,6 +45,11 @@ class Whitening {
   }
 
  private:
+  static std::size_t outputOf(const std::vector<int>& outputs, Eigen::Index sample) {
+    return outputs.empty() ? 0
+                           : static_cast<std::size_t>(outputs.at(static_cast<std::size_t>(sample)));
+  }
+
   Eigen::VectorXd sds_;  // one, or one for each output
 };
 
