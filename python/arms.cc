@@ -68,17 +68,19 @@ bio::Model withExternalLoads(bio::Model model, const FileName& file) {
   return model;
 }
 
-py::dict coursesOf(const std::vector<bio::MeasuredMotion>& motions) {
+py::dict coursesOf(const std::vector<bio::MeasuredChannel>& motions) {
   py::dict courses;
-  for (const bio::MeasuredMotion& one : motions) {
-    courses[one.coordinate.c_str()] = py::make_tuple(one.times, one.values);
+  for (const bio::MeasuredChannel& one : motions) {
+    if (!one.what.isCoordinate()) continue;
+    courses[one.what.of.c_str()] = py::make_tuple(one.times, one.values);
   }
   return courses;
 }
 
 py::dict channelsOf(const bio::Trial& trial) {
   py::dict channels;
-  for (const bio::MeasuredChannel& one : trial.channels) {
+  for (const bio::MeasuredChannel& one : trial.measured) {
+    if (one.what.isCoordinate()) continue;
     channels[bio::nameOf(one.what).c_str()] = py::make_tuple(one.times, one.values);
   }
   return channels;
@@ -104,13 +106,11 @@ std::vector<std::string> musclesOf(const bio::Model& model) {
 py::dict errorsOf(const bio::MusculoskeletalSystem& arm, const bio::Trial& trial,
                   const bio::Trajectory& motion) {
   py::dict errors;
-  for (const bio::MeasuredMotion& measured : trial.measured) {
-    const auto& free = arm.skeleton().coordinates();
-    const bool isFree = std::any_of(free.begin(), free.end(), [&](const bio::Coordinate& one) {
-      return one.name == measured.coordinate;
-    });
+  for (const bio::MeasuredChannel& measured : trial.measured) {
+    if (!measured.what.isCoordinate()) continue;
+    const bool isFree = arm.skeleton().indexOf(measured.what.of) >= 0;
     if (isFree && motion.time.back() >= measured.times[0]) {
-      errors[measured.coordinate.c_str()] = bio::compareWithMeasured(arm, motion, measured).rms;
+      errors[measured.what.of.c_str()] = bio::compareWithMeasured(arm, motion, measured).rms;
     }
   }
   return errors;
@@ -217,7 +217,7 @@ SystemChoice armChoice(const bio::Model& model, const std::vector<bio::Trial>& t
       one ? std::vector<std::string>{*one} : std::get<std::vector<std::string>>(coordinate);
   std::set<std::string> given;
   for (const bio::Trial& trial : trials)
-    for (const bio::MeasuredMotion& course : trial.prescribed) given.insert(course.coordinate);
+    for (const bio::MeasuredChannel& course : trial.prescribed) given.insert(course.what.of);
   std::set<std::string> otherwise = given;
   otherwise.insert(free.begin(), free.end());
   for (const auto& [name, value] : lock) otherwise.insert(name);
@@ -227,7 +227,8 @@ SystemChoice armChoice(const bio::Model& model, const std::vector<bio::Trial>& t
     std::set<std::string> locked = given, measured;
     for (const auto& [name, value] : lock) locked.insert(name);
     for (const bio::Trial& trial : trials)
-      for (const bio::MeasuredMotion& motion : trial.measured) measured.insert(motion.coordinate);
+      for (const bio::MeasuredChannel& one : trial.measured)
+        if (one.what.isCoordinate()) measured.insert(one.what.of);
     free = bio::freeByDefault(model, locked, measured, mayBeNone || !prescribed.empty());
   }
   return {.coordinates = std::move(free),

@@ -40,7 +40,7 @@ std::map<std::string, double> heldIn(const bio::Model& model, const std::vector<
                                      const std::map<std::string, double>& lock) {
   std::set<std::string> moments;
   for (const bio::Trial& trial : trials)
-    for (const bio::MeasuredChannel& one : trial.channels)
+    for (const bio::MeasuredChannel& one : trial.measured)
       if (one.what.kind == bio::Observable::Kind::moment) moments.insert(one.what.of);
   const SystemChoice choice =
       armChoice(model, trials, coordinates, lock, "vi", {}, !moments.empty());

@@ -65,7 +65,7 @@ bio::Trial repetition(const bio::EmgResult& r, const bio::Model& model, Index fr
     values.push_back(r.measured_deg[k] * degree);
   }
   const auto n = static_cast<Index>(times.size());
-  trial.measured = {{"elbow_flexion", Eigen::VectorXd::Map(times.data(), n),
+  trial.measured = {{bio::ofCoordinate("elbow_flexion"), Eigen::VectorXd::Map(times.data(), n),
                      Eigen::VectorXd::Map(values.data(), n)}};
   return trial;
 }

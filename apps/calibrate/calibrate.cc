@@ -267,7 +267,8 @@ class Calibrate : public Command {
           trials.back().latent.push_back({one.name, one.first, one.second});
         }
       }
-      for (const bio::MeasuredMotion& motion : trials.back().measured) {
+      for (const bio::MeasuredChannel& motion : trials.back().measured) {
+        if (!motion.what.isCoordinate()) continue;
         const std::string why = bio::whyNotUsable(motion);
         if (!why.empty())
           summary.warn(fmt::format("{}: measured {} for a reliable estimate", file, why));

@@ -40,10 +40,11 @@ void tellNotFitted(const bio::TrialSet& training, const std::vector<bio::Trial>&
   std::map<std::string, std::vector<std::string>> files;  // by coordinate
   for (const auto* trials : {&training.trials(), &heldOut}) {
     for (const bio::Trial& trial : *trials) {
-      for (const bio::MeasuredMotion& motion : trial.measured) {
-        const int index = training.arm().skeleton().indexOf(motion.coordinate);
+      for (const bio::MeasuredChannel& motion : trial.measured) {
+        if (!motion.what.isCoordinate()) continue;
+        const int index = training.arm().skeleton().indexOf(motion.what.of);
         if (index < 0 || !training.arm().isPrescribed(index)) continue;
-        files[motion.coordinate].push_back(trial.file);
+        files[motion.what.of].push_back(trial.file);
       }
     }
   }

@@ -93,8 +93,8 @@ std::string verdictOf(const CompareFindings& f) {
 }
 
 void addMeasured(const CompareFindings& f, Report& report) {
-  for (const bio::MeasuredMotion& measured : f.trial.measured) {
-    if (measured.coordinate != f.coordinate.name) continue;
+  for (const bio::MeasuredChannel& measured : f.trial.measured) {
+    if (measured.what != bio::ofCoordinate(f.coordinate.name)) continue;
     Figure figure = besideFigure(f, "Comparison with the measured motion");
     const bio::MeasuredError error =
         bio::compareWithMeasured(f.arm, f.comparison.reference.motion, measured);
@@ -178,8 +178,8 @@ void tellCompare(const CompareFindings& f, Summary& summary) {
   summary.set("reference_second_integrator", "vi");
   summary.set("reference_second_step_s", reference.secondStep);
   summary.set("reference_second_rms_deg", reference.second.rms * radian);
-  for (const bio::MeasuredMotion& measured : f.trial.measured) {
-    if (measured.coordinate != f.coordinate.name) continue;
+  for (const bio::MeasuredChannel& measured : f.trial.measured) {
+    if (measured.what != bio::ofCoordinate(f.coordinate.name)) continue;
     summary.set("reference_from_measured_rms_deg",
                 bio::compareWithMeasured(f.arm, reference.motion, measured).rms * radian);
   }

@@ -33,7 +33,7 @@ struct EnsembleFindings {
   const bio::EnsembleRun& nominal;
   std::uint64_t count;                               ///< of rows
   std::function<DrawTable::Row(std::uint64_t)> row;  ///< by number, below `count`
-  std::optional<bio::MeasuredMotion> measured;
+  std::optional<bio::MeasuredChannel> measured;
   std::map<std::string, std::uint64_t> outcomes = {};  ///< number of simulations by outcome
   std::vector<std::vector<double>> outputs = {};       ///< by output, then by row; NaN: none
   Band band = {};

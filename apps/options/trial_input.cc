@@ -94,10 +94,8 @@ MeasuredNames measuredIn(const std::vector<std::string>& trials, const bio::Mode
   for (const std::string& file : trials) {
     const bio::Trial trial = bio::readTrial(
         file, model, {.ignoreExtra = options.ignoreExtra, .experimentalConditions = true});
-    for (const bio::MeasuredMotion& motion : trial.measured) {
-      names.coordinates.insert(motion.coordinate);
-    }
-    for (const bio::MeasuredChannel& channel : trial.channels) {
+    for (const bio::MeasuredChannel& channel : trial.measured) {
+      if (channel.what.isCoordinate()) names.coordinates.insert(channel.what.of);
       if (channel.what.kind == bio::Observable::Kind::moment) names.moments.insert(channel.what.of);
     }
   }
@@ -242,8 +240,8 @@ bio::Trial readTrialFile(const std::string& file, const bio::Model& model,
   for (std::string& line : bio::heldRemarks(trial, model, armOptions(options).skeleton)) {
     trial.warnings.push_back(std::move(line));
   }
-  for (const bio::MeasuredChannel& channel : trial.channels) {
-    if (use.channels) continue;
+  for (const bio::MeasuredChannel& channel : trial.measured) {
+    if (use.channels || channel.what.isCoordinate()) continue;
     trial.warnings.push_back(fmt::format(
         "{}: column '{}' is measured, but not used by this command", file, nameOf(channel.what)));
   }

@@ -25,11 +25,8 @@ std::vector<double> inUnit(const Eigen::VectorXd& values, double factor) {
   return {result.begin(), result.end()};
 }
 
-const bio::MeasuredMotion* measuredOf(const ReplayFindings& f, const std::string& coordinate) {
-  for (const bio::MeasuredMotion& measured : f.trial.measured) {
-    if (measured.coordinate == coordinate) return &measured;
-  }
-  return nullptr;
+const bio::MeasuredChannel* measuredOf(const ReplayFindings& f, const std::string& coordinate) {
+  return f.trial.measurementOf(bio::ofCoordinate(coordinate));
 }
 
 Figure motionFigure(const ReplayFindings& f, std::size_t index) {
@@ -78,9 +75,8 @@ Figure channelFigure(const ReplayFindings& f, const bio::MeasuredChannel& channe
 std::vector<Figure> channelFigures(const ReplayFindings& f) {
   std::vector<Figure> figures;
   for (const bio::ChannelError& one : f.replay.channelErrors) {
-    for (const bio::MeasuredChannel& channel : f.trial.channels) {
-      if (channel.what == one.what) figures.push_back(channelFigure(f, channel, one.error));
-    }
+    if (const auto* channel = f.trial.measurementOf(one.what))
+      figures.push_back(channelFigure(f, *channel, one.error));
   }
   return figures;
 }

@@ -46,8 +46,8 @@ Figure sweepFigure(const SensitivityFindings& f, const bio::Sweep& sweep) {
   for (const bio::SweepRun& run : sweep.runs) {
     if (figure.series.size() < 7) add(withUnit(run.value, unit), run.motion, SeriesStyle::line);
   }
-  for (const bio::MeasuredMotion& measured : f.trial.measured) {
-    if (measured.coordinate != f.coordinate.name) continue;
+  for (const bio::MeasuredChannel& measured : f.trial.measured) {
+    if (measured.what != bio::ofCoordinate(f.coordinate.name)) continue;
     figure.series.push_back({.name = "measured",
                              .x = {measured.times.begin(), measured.times.end()},
                              .y = scaled(measured.values, factor),

@@ -43,7 +43,7 @@ struct SyntheticElbow {
     SimulationOptions simulation;
     simulation.startTime = result.times[0];
     simulation.duration = result.times[rows - 1] - result.times[0];
-    MeasuredMotion measured{"elbow_flexion", {}, {}};
+    MeasuredChannel measured{ofCoordinate("elbow_flexion"), {}, {}};
     std::vector<double> times;
     for (Eigen::Index k = 0; k < rows; k += every) times.push_back(result.times[k]);
     const auto n = static_cast<Eigen::Index>(times.size());

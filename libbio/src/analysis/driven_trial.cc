@@ -20,13 +20,10 @@ struct Course {
 std::vector<Course> coursesOf(const Trial& trial) {
   std::vector<Course> courses;
   for (const auto* list : {&trial.measured, &trial.prescribed}) {
-    for (const MeasuredMotion& motion : *list) {
+    for (const MeasuredChannel& motion : *list) {
       if (list == &trial.prescribed && motion.times.size() == 1) continue;
-      courses.push_back({motion.coordinate, &motion.times, &motion.values});
+      courses.push_back({nameOf(motion.what), &motion.times, &motion.values});
     }
-  }
-  for (const MeasuredChannel& channel : trial.channels) {
-    courses.push_back({nameOf(channel.what), &channel.times, &channel.values});
   }
   return courses;
 }

@@ -70,7 +70,7 @@ struct SystemBatch::Draw {
 
 SystemBatch::SystemBatch(const ParameterCatalogue& catalogue, const SystemOptions& arm,
                          ExcitationSignal trial, const std::string& coordinate,
-                         std::optional<MeasuredMotion> measured, std::vector<double> course,
+                         std::optional<MeasuredChannel> measured, std::vector<double> course,
                          std::vector<std::size_t> selection, const SimulationOptions& options)
     : catalogue_(&catalogue),
       armOptions_(arm),

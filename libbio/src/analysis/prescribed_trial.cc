@@ -17,7 +17,7 @@ constexpr double usualCutoff = 6;         ///< of human movement [Hz]
 constexpr double roughAcceleration = 10;  ///< [rad/s²]: 1 N·m at 0.1 kg m²
 
 /// Root mean square of the acceleration of a course.
-double meanAcceleration(const MeasuredMotion& course) {
+double meanAcceleration(const MeasuredChannel& course) {
   PrescribedMotion motion;
   motion.add(0, listOf(course.times), listOf(course.values));
   double sum = 0;
@@ -29,12 +29,12 @@ double meanAcceleration(const MeasuredMotion& course) {
   return std::sqrt(sum / static_cast<double>(course.times.size()));
 }
 
-MeasuredMotion smoothedCourse(const MeasuredMotion& course, double cutoff) {
+MeasuredChannel smoothedCourse(const MeasuredChannel& course, double cutoff) {
   const double duration = course.times[course.times.size() - 1] - course.times[0];
   const double spacing =
       std::min(0.1 / cutoff, duration / static_cast<double>(course.times.size() - 1));
   const SmoothedMotion smooth = smoothed(listOf(course.times), course.values, cutoff, spacing);
-  MeasuredMotion result{course.coordinate, {}, smooth.values};
+  MeasuredChannel result{course.what, {}, smooth.values};
   result.times = Eigen::Map<const Eigen::VectorXd>(smooth.times.data(),
                                                    static_cast<Eigen::Index>(smooth.times.size()));
   return result;
@@ -48,7 +48,7 @@ PrescribedMotion prescribedMotionOf(const Trial& trial, const MusculoskeletalSys
     const std::string& name = arm.skeleton().coordinates()[static_cast<std::size_t>(k)].name;
     const auto at =
         std::find_if(trial.prescribed.begin(), trial.prescribed.end(),
-                     [&](const MeasuredMotion& course) { return course.coordinate == name; });
+                     [&](const MeasuredChannel& course) { return course.what.of == name; });
     if (const Function* own = arm.courseOf(k); own && at == trial.prescribed.end()) {
       motion.add(k, *own);
       continue;
@@ -63,15 +63,15 @@ PrescribedMotion prescribedMotionOf(const Trial& trial, const MusculoskeletalSys
 }
 
 void smoothPrescribed(Trial& trial, double cutoff) {
-  for (MeasuredMotion& course : trial.prescribed) {
+  for (MeasuredChannel& course : trial.prescribed) {
     if (course.times.size() >= 4) course = smoothedCourse(course, cutoff);
   }
 }
 
 std::vector<std::string> roughnessRemarks(const Trial& trial, const Model& model) {
   std::vector<std::string> remarks;
-  for (const MeasuredMotion& course : trial.prescribed) {
-    if (course.times.size() < 8 || !findCoordinate(model, course.coordinate).isRotation) continue;
+  for (const MeasuredChannel& course : trial.prescribed) {
+    if (course.times.size() < 8 || !findCoordinate(model, course.what.of).isRotation) continue;
     const double raw = meanAcceleration(course);
     const double smooth = meanAcceleration(smoothedCourse(course, usualCutoff));
     if (raw < roughAcceleration || raw < 3 * smooth) continue;
@@ -79,7 +79,7 @@ std::vector<std::string> roughnessRemarks(const Trial& trial, const Model& model
         "{}: the prescribed '{}' has an acceleration of {:.3g} rad/s² (root mean square), of which "
         "{:.3g} rad/s² is below {} Hz: if the rest is noise of the sensor, smooth it with "
         "--prescribe-cutoff {}",
-        trial.file, course.coordinate, raw, smooth, usualCutoff, usualCutoff));
+        trial.file, course.what.of, raw, smooth, usualCutoff, usualCutoff));
   }
   return remarks;
 }

@@ -73,10 +73,8 @@ Eigen::VectorXd startCoordinates(const Trial& trial, const MusculoskeletalSystem
   Eigen::VectorXd q(static_cast<Eigen::Index>(free.size()));
   for (std::size_t i = 0; i < free.size(); ++i) {
     double value = free[i].defaultValue;
-    for (const MeasuredMotion& measured : trial.measured) {
-      if (measured.coordinate == free[i].name && measured.values.size() > 0)
-        value = measured.values[0];
-    }
+    const MeasuredChannel* measured = trial.measurementOf(ofCoordinate(free[i].name));
+    if (measured && measured->values.size() > 0) value = measured->values[0];
     const auto at = given.find(free[i].name);
     q[static_cast<Eigen::Index>(i)] = at != given.end() ? at->second : value;
   }
@@ -103,12 +101,13 @@ TrialBeginning beginningOf(const Trial& trial, const Model& model, const Musculo
   for (Eigen::Index i = 0; i < beginning.point.q.size(); ++i) {
     const std::string& free = arm.skeleton().coordinates()[static_cast<std::size_t>(i)].name;
     if (given.contains(free) || arm.isPrescribed(static_cast<int>(i))) continue;
-    for (const MeasuredMotion& measured : trial.measured) {
-      if (measured.coordinate != free || measured.values.size() == 0) continue;
+    const MeasuredChannel* measured = trial.measurementOf(ofCoordinate(free));
+    if (measured && measured->values.size() > 0) {
       isMeasured = true;
       const bool turns = arm.skeleton().coordinates()[static_cast<std::size_t>(i)].isRotation;
-      beginning.point.speedSd[i] = std::abs(initialSpeedShown(
-          {measured.times.begin(), measured.times.end()}, measured.values, turns ? 0.3 : 0.3 / 8));
+      beginning.point.speedSd[i] =
+          std::abs(initialSpeedShown({measured->times.begin(), measured->times.end()},
+                                     measured->values, turns ? 0.3 : 0.3 / 8));
     }
     for (const TrialStart& start : model.fitted.starts) {
       if (trial.sha256.empty() || start.sha256 != trial.sha256 || start.coordinate != free)
@@ -134,11 +133,9 @@ double stepOf(const Model& model, Integrator integrator, const std::optional<dou
 }
 
 std::vector<double> observedTimes(const Trial& trial, const std::string& coordinate, double step) {
-  for (const MeasuredMotion& measured : trial.measured) {
-    if (measured.coordinate == coordinate && measured.times.size() > 0) {
-      return {measured.times.begin(), measured.times.end()};
-    }
-  }
+  const MeasuredChannel* measured = trial.measurementOf(ofCoordinate(coordinate));
+  if (measured && measured->times.size() > 0)
+    return {measured->times.begin(), measured->times.end()};
   const double begin = trial.times[0], end = trial.times[trial.times.size() - 1];
   std::vector<double> times;
   for (int k = 0; begin + k * step <= end + 1e-9; ++k) times.push_back(begin + k * step);
@@ -169,11 +166,11 @@ MeasuredError errorOf(const Eigen::VectorXd& times, const Eigen::VectorXd& simul
 }  // namespace
 
 MeasuredError compareWithMeasured(const MusculoskeletalSystem& arm, const Trajectory& trajectory,
-                                  const MeasuredMotion& measured) {
-  const int index = arm.skeleton().indexOf(measured.coordinate);
+                                  const MeasuredChannel& measured) {
+  const int index = arm.skeleton().indexOf(measured.what.of);
   if (index < 0) {
     throw std::invalid_argument(
-        fmt::format("measured coordinate '{}' is not free", measured.coordinate));
+        fmt::format("measured coordinate '{}' is not free", measured.what.of));
   }
   const std::vector<double>& time = trajectory.time;
   Eigen::VectorXd simulated =
@@ -188,7 +185,7 @@ MeasuredError compareWithMeasured(const MusculoskeletalSystem& arm, const Trajec
   const MeasuredError error = errorOf(measured.times, simulated, measured.values);
   if (error.count == 0) {
     throw std::invalid_argument(
-        fmt::format("measured coordinate '{}': no value between {} s and {} s", measured.coordinate,
+        fmt::format("measured coordinate '{}': no value between {} s and {} s", measured.what.of,
                     time.front(), time.back()));
   }
   return error;
@@ -206,19 +203,17 @@ TrialReplay replayTrial(const MusculoskeletalSystem& arm, const Trial& trial,
   SystemState start = initialState(arm, replay.beginning.point.q, excitation, options.startTime);
   start.qDot = replay.beginning.point.qDot;
   replay.motion = simulate(arm, excitation, start, options);
-  for (const MeasuredMotion& measured : trial.measured) {
-    const bool isReached =
-        measured.times.size() > 0 && measured.times[0] <= replay.motion.time.back();
-    if (isReached && arm.skeleton().indexOf(measured.coordinate) >= 0) {
-      replay.errors.emplace_back(measured.coordinate,
+  for (const MeasuredChannel& measured : trial.measured) {
+    if (measured.times.size() == 0 || measured.times[0] > replay.motion.time.back()) continue;
+    if (!measured.what.isCoordinate()) {
+      const ObservedMotion observed(arm, {{measured.what, measured.times}});
+      replay.channelErrors.push_back(
+          {measured.what,
+           errorOf(measured.times, observed.values(replay.motion), measured.values)});
+    } else if (arm.skeleton().indexOf(measured.what.of) >= 0) {
+      replay.errors.emplace_back(measured.what.of,
                                  compareWithMeasured(arm, replay.motion, measured));
     }
-  }
-  for (const MeasuredChannel& channel : trial.channels) {
-    if (channel.times[0] > replay.motion.time.back()) continue;
-    const ObservedMotion observed(arm, {{channel.what, channel.times}});
-    replay.channelErrors.push_back(
-        {channel.what, errorOf(channel.times, observed.values(replay.motion), channel.values)});
   }
   options.progress = {};
   replay.options = std::move(options);

@@ -21,12 +21,9 @@ const Coordinate& observedCoordinate(const MusculoskeletalSystem& system) {
   return system.skeleton().coordinates().front();
 }
 
-std::optional<MeasuredMotion> measurementOf(const Trial& trial, const std::string& coordinate) {
-  std::optional<MeasuredMotion> measured;
-  for (const MeasuredMotion& motion : trial.measured) {
-    if (motion.coordinate == coordinate) measured = motion;
-  }
-  return measured;
+std::optional<MeasuredChannel> measurementOf(const Trial& trial, const std::string& coordinate) {
+  const MeasuredChannel* measured = trial.measurementOf(ofCoordinate(coordinate));
+  return measured ? std::optional(*measured) : std::nullopt;
 }
 
 }  // namespace

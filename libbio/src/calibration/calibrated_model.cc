@@ -88,12 +88,12 @@ CalibratedModel calibratedModel(const TrialSet& training, const TrialSet* heldOu
         one.driven = drivenTable(trial, set->arm(),
                                  set->mappingAt(i, isHeldOut ? calibration.heldOutValues : theta));
         TrialOptions options;
-        for (const MeasuredMotion& course : trial.prescribed) {
-          if (course.times.size() > 1) options.prescribed.push_back(course.coordinate);
+        for (const MeasuredChannel& course : trial.prescribed) {
+          if (course.times.size() > 1) options.prescribed.push_back(course.what.of);
         }
         Trial driven = trialFrom(*one.driven, trial.file, result.model, options);
         driven.prescribed = std::move(trial.prescribed);
-        driven.channels = std::move(trial.channels);
+        driven.measured = std::move(trial.measured);
         trial = std::move(driven);
       }
       compareWithReplay(calibrated, trial, simulation, start, one);

@@ -124,20 +124,19 @@ std::size_t TrialSet::channelOf(const Observable& what, const Model& model) {
 }
 
 void TrialSet::collectSeries(const Model& model) {
-  const auto add = [&](std::size_t trial, const Observable& what, const Eigen::VectorXd& times,
-                       const Eigen::VectorXd& values) {
-    series_.push_back({trial, what, channelOf(what, model), {times.begin(), times.end()}, values});
-  };
   for (std::size_t i = 0; i < trials_.size(); ++i) {
     const std::size_t before = series_.size();
-    for (const MeasuredMotion& measured : trials_[i].measured) {
-      const int index = arm_->skeleton().indexOf(measured.coordinate);
-      if (index < 0 || arm_->isPrescribed(index) || measured.times.size() == 0) continue;
-      add(i, {Observable::Kind::coordinate, measured.coordinate, 0}, measured.times,
-          measured.values);
-    }
-    for (const MeasuredChannel& channel : trials_[i].channels) {
-      add(i, channel.what, channel.times, channel.values);
+    for (const MeasuredChannel& measured : trials_[i].measured) {
+      if (measured.times.size() == 0) continue;
+      if (measured.what.isCoordinate()) {
+        const int index = arm_->skeleton().indexOf(measured.what.of);
+        if (index < 0 || arm_->isPrescribed(index)) continue;
+      }
+      series_.push_back({i,
+                         measured.what,
+                         channelOf(measured.what, model),
+                         {measured.times.begin(), measured.times.end()},
+                         measured.values});
     }
     if (series_.size() == before) {
       std::vector<std::string> names;

@@ -115,7 +115,7 @@ MusculoskeletalProblem SeparatingDesign::planned(const Trial& trial) const {
   Trial measured = trial;
   const auto& times = inputs_.measuredTimes();
   const auto n = static_cast<Index>(times.size());
-  measured.measured = {{coordinate_, Eigen::Map<const VectorXd>(times.data(), n),
+  measured.measured = {{ofCoordinate(coordinate_), Eigen::Map<const VectorXd>(times.data(), n),
                         VectorXd::Constant(n, question_.start)}};
   return {model_, arm_, coordinate_, {measured}, options_};
 }
@@ -145,7 +145,7 @@ SeparatingExperiment SeparatingDesign::at(const VectorXd& x) const {
                   e.fastest <= limits.speed &&
                   (x.size() == 0 || inputs_.profiles().excess(x) < 1e-9);
   const auto& times = inputs_.measuredTimes();
-  e.trial.measured = {{coordinate_,
+  e.trial.measured = {{ofCoordinate(coordinate_),
                        Eigen::Map<const VectorXd>(times.data(), static_cast<Index>(times.size())),
                        e.base}};
   return e;
@@ -261,7 +261,7 @@ Table separatingTable(const SeparatingDesign& design, const SeparatingExperiment
     table.values.col(1 + muscles + i) = trial.applied[static_cast<std::size_t>(i)].values;
   }
   Index row = 0;
-  const MeasuredMotion& motion = trial.measured.front();
+  const MeasuredChannel& motion = trial.measured.front();
   for (Index i = 0; i < motion.times.size(); ++i) {
     while (row + 1 < trial.times.size() && trial.times[row] < motion.times[i] - 1e-9) ++row;
     table.values(row, table.values.cols() - 1) = motion.values[i];

@@ -37,16 +37,13 @@ Trial partUntil(const Trial& trial, double end) {
     if (one.control.size() > 0) one.control.conservativeResize(rows);
   }
   cut(part.measured, end);
-  cut(part.channels, end);
   return part;
 }
 
 std::optional<Trial> firstPart(const Trial& trial, const std::string& coordinate, double position,
                                bool above) {
-  const auto motion =
-      std::find_if(trial.measured.begin(), trial.measured.end(),
-                   [&](const MeasuredMotion& one) { return one.coordinate == coordinate; });
-  if (motion == trial.measured.end()) return trial;
+  const MeasuredChannel* motion = trial.measurementOf(ofCoordinate(coordinate));
+  if (!motion) return trial;
   const auto isBeyond = [&](double value) { return above ? value > position : value < position; };
   const auto passed = std::find_if(motion->values.begin(), motion->values.end(), isBeyond);
   if (passed == motion->values.end()) return trial;

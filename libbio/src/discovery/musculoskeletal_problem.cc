@@ -93,11 +93,10 @@ MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemO
 void MusculoskeletalProblem::addTrial(Trial trial) {
   const Coordinate& observed = encompassing_.coordinate();
   OfTrial one{std::move(trial), {}, {}, {}, {}, {}, {}, {}, 0, 0};
-  for (const MeasuredMotion& motion : one.trial.measured) {
-    if (motion.coordinate != observed.name) continue;
-    if (options_.usableSeries) requireUsable(one.trial.file, motion);
-    one.times.assign(motion.times.begin(), motion.times.end());
-    one.measured = motion.values;
+  if (const auto* motion = one.trial.measurementOf(ofCoordinate(observed.name))) {
+    if (options_.usableSeries) requireUsable(one.trial.file, *motion);
+    one.times.assign(motion->times.begin(), motion->times.end());
+    one.measured = motion->values;
   }
   if (one.times.empty()) {
     throw std::invalid_argument(

@@ -108,8 +108,8 @@ Trial movedPassively(Trial trial, const EncompassingModel& model, double low, do
     torque[i] = torqueOf(model, bodies, muscles, trial.known, at(trial.times[i]));
   std::erase_if(trial.applied, [&](const auto& one) { return one.coordinate == coordinate; });
   trial.applied.push_back({coordinate, torque});
-  for (MeasuredMotion& measured : trial.measured) {
-    if (measured.coordinate != coordinate) continue;
+  for (MeasuredChannel& measured : trial.measured) {
+    if (measured.what != ofCoordinate(coordinate)) continue;
     for (Index i = 0; i < measured.times.size(); ++i) measured.values[i] = at(measured.times[i]).q;
   }
   return trial;

@@ -43,7 +43,7 @@ Lagged lagged(const std::vector<double>& times, const Eigen::Ref<const MatrixXd>
 namespace {
 
 /// Of the course that the samples smoothly follow [1/s of its unit].
-VectorXd speedsOf(const MeasuredMotion& motion) {
+VectorXd speedsOf(const MeasuredChannel& motion) {
   const std::vector<double> times(motion.times.begin(), motion.times.end());
   const SmoothedMotion course = smoothed(times, motion.values);
   VectorXd speeds(motion.times.size());
@@ -61,8 +61,8 @@ VectorXd speedsOf(const MeasuredMotion& motion) {
 Trial asTrueSensor(Trial trial, const std::string& coordinate, const SensorLaw& sensor) {
   if (!sensor.isTrue()) trial.sha256.clear();  // it is not what is in the file
   const double first = trial.times[0], last = trial.times[trial.times.size() - 1];
-  for (MeasuredMotion& motion : trial.measured) {
-    if (motion.coordinate != coordinate || sensor.isTrue()) continue;
+  for (MeasuredChannel& motion : trial.measured) {
+    if (motion.what != ofCoordinate(coordinate) || sensor.isTrue()) continue;
     VectorXd shown = motion.values;
     if (sensor.lag > 0) shown += sensor.lag * speedsOf(motion);
     std::vector<double> times, values;

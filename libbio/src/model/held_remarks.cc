@@ -13,9 +13,9 @@ std::vector<std::string> heldRemarks(const Trial& trial, const Model& model,
                                      const SkeletonOptions& options) {
   std::vector<std::string> remarks;
   const Skeleton skeleton(model, options);
-  for (const MeasuredMotion& motion : trial.measured) {
-    if (skeleton.indexOf(motion.coordinate) >= 0) continue;
-    const Coordinate& c = findCoordinate(model, motion.coordinate);
+  for (const MeasuredChannel& motion : trial.measured) {
+    if (!motion.what.isCoordinate() || skeleton.indexOf(motion.what.of) >= 0) continue;
+    const Coordinate& c = findCoordinate(model, motion.what.of);
     const Skeleton::CoordinateSource& source = skeleton.sourceOf(c.name);
     const bool isCoupled =
         std::any_of(model.couplers.begin(), model.couplers.end(),

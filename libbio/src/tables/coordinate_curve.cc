@@ -41,7 +41,7 @@ CoordinateCurve readCoordinate(const std::filesystem::path& statesFile,
 
 double rmsDifference(const MusculoskeletalSystem& arm, const CoordinateCurve& curve,
                      const Trajectory& motion, const std::string& coordinate) {
-  MeasuredMotion known{coordinate, {}, {}};
+  MeasuredChannel known{ofCoordinate(coordinate), {}, {}};
   std::vector<double> times, values;
   for (std::size_t i = 0; i < curve.time.size(); ++i) {
     if (std::isnan(curve.value[i])) continue;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 
@@ -14,80 +15,10 @@
 #include "bio/tables/trial_table.h"
 #include "bio/tables/unknown_column.h"
 #include "model/listed_names.h"
+#include "tables/column_meaning.h"
 
 namespace bio {
 namespace {
-
-struct Meaning {
-  enum class Kind { time, muscle, coordinate, applied, channel, extra } kind = Kind::extra;
-  std::string name;
-  bool inDegrees = false;
-  const CoordinateActuator* actuator = nullptr;  // of which the column is the control
-  Observable what = {};                          // of a channel
-};
-
-// "/a/b/c" → "c"
-std::string lastPart(const std::string& path) {
-  return path.substr(path.find_last_of('/') + 1);
-}
-
-// The name that a column of an OpenSim 4 file stands for.
-std::string plainName(const Model& model, const std::string& column) {
-  if (!column.starts_with('/')) return column;
-  // "/jointset/j1/rz/value" where several joints have an rz
-  if (column.starts_with("/jointset/") && column.ends_with("/value")) {
-    const std::string full = column.substr(10, column.size() - 16);
-    if (coordinateOrNull(model, full)) return full;
-  }
-  if (column.starts_with("/forceset/") && std::count(column.begin(), column.end(), '/') == 2) {
-    return lastPart(column);
-  }
-  if (column.ends_with("/value")) return lastPart(column.substr(0, column.size() - 6));
-  return column;
-}
-
-Meaning channelOf(const Model& model, const Table& table, const std::string& bare, bool suffix) {
-  Meaning meaning;
-  if (!readObservable(bare, model, meaning.what)) return {};
-  const bool isAngle = meaning.what.kind == Observable::Kind::pennation ||
-                       (meaning.what.kind == Observable::Kind::speed &&
-                        findCoordinate(model, meaning.what.of).isRotation);
-  if (suffix && !isAngle) return {};
-  meaning.kind = Meaning::Kind::channel;
-  meaning.name = bare;
-  meaning.inDegrees = isAngle && (suffix || table.inDegrees);
-  return meaning;
-}
-
-Meaning meaningOf(const Model& model, const Table& table, const std::string& column) {
-  if (column == "time" || column == "time_s") return {Meaning::Kind::time, column, false};
-  const std::string name = plainName(model, column);
-  for (const Muscle& muscle : model.muscles) {
-    if (muscle.name == name) return {Meaning::Kind::muscle, name, false};
-  }
-  for (const bool enabled : {true, false}) {  // one of the same name may be switched off
-    for (const CoordinateActuator& actuator : model.actuators) {
-      if (actuator.name != name || actuator.enabled != enabled) continue;
-      return {Meaning::Kind::applied, actuator.coordinate, false, &actuator};
-    }
-  }
-  const bool suffix = name.ends_with("_deg");
-  const std::string bare = suffix ? name.substr(0, name.size() - 4) : name;
-  if (const Coordinate* coordinate = coordinateOrNull(model, name)) {
-    return {Meaning::Kind::coordinate, name, coordinate->isRotation && table.inDegrees};
-  }
-  for (const auto& [ending, ofRotation] : {std::pair{".torque", true}, {".force", false}}) {
-    if (!name.ends_with(ending)) continue;
-    const std::string pushed = name.substr(0, name.rfind('.'));
-    const Coordinate* coordinate = coordinateOrNull(model, pushed);
-    if (coordinate && coordinate->isRotation == ofRotation) {
-      return {Meaning::Kind::applied, pushed, false};
-    }
-  }
-  const Coordinate* coordinate = suffix ? coordinateOrNull(model, bare) : nullptr;
-  if (coordinate && coordinate->isRotation) return {Meaning::Kind::coordinate, bare, true};
-  return channelOf(model, table, bare, suffix);
-}
 
 class TrialReader {
  public:
@@ -184,10 +115,11 @@ class TrialReader {
 
   void sortColumns() {
     std::map<std::string, std::string> seen;  // meaning → column
+    std::vector<MeasuredChannel> others;      // than coordinates
     for (std::size_t i = 0; i < table_.columns.size(); ++i) {
       const std::string& column = table_.columns[i];
-      const Meaning meaning = meaningOf(model_, table_, column);
-      if (meaning.kind == Meaning::Kind::extra) {
+      const ColumnMeaning meaning = meaningOf(model_, table_, column);
+      if (meaning.kind == ColumnMeaning::Kind::extra) {
         if (!options_.ignoreExtra) {
           throw UnknownColumn(
               fmt::format("{}: column '{}' is neither a muscle nor a coordinate of the model, nor "
@@ -199,8 +131,8 @@ class TrialReader {
         trial_.warnings.push_back(fmt::format("{}: column '{}' is ignored", file_, column));
         continue;
       }
-      if (meaning.kind == Meaning::Kind::time) continue;
-      const bool isApplied = meaning.kind == Meaning::Kind::applied;
+      if (meaning.kind == ColumnMeaning::Kind::time) continue;
+      const bool isApplied = meaning.kind == ColumnMeaning::Kind::applied;
       const auto [found, isNew] = seen.emplace(
           (isApplied ? "." : "") + (meaning.actuator ? plainName(model_, column) : meaning.name),
           column);
@@ -208,21 +140,20 @@ class TrialReader {
         fail(fmt::format("columns '{}' and '{}' both give '{}', must be one", found->second, column,
                          meaning.name));
       }
-      if (meaning.kind == Meaning::Kind::muscle) {
+      if (meaning.kind == ColumnMeaning::Kind::muscle) {
         columnOf_[meaning.name] = static_cast<Eigen::Index>(i);
       } else if (isApplied) {
         readApplied(static_cast<Eigen::Index>(i), meaning);
-      } else if (meaning.kind == Meaning::Kind::channel) {
-        MeasuredMotion course = readCourse(static_cast<Eigen::Index>(i), meaning);
-        trial_.channels.push_back(
-            {meaning.what, std::move(course.times), std::move(course.values)});
+      } else if (meaning.kind == ColumnMeaning::Kind::channel) {
+        others.push_back(readCourse(static_cast<Eigen::Index>(i), meaning));
       } else {
         trial_.measured.push_back(readCourse(static_cast<Eigen::Index>(i), meaning));
       }
     }
+    std::move(others.begin(), others.end(), std::back_inserter(trial_.measured));
   }
 
-  MeasuredMotion readCourse(Eigen::Index column, const Meaning& meaning) {
+  MeasuredChannel readCourse(Eigen::Index column, const ColumnMeaning& meaning) {
     const double unit = meaning.inDegrees ? std::numbers::pi / 180 : 1.0;
     std::vector<double> times, values;
     for (Eigen::Index row = 0; row < table_.values.rows(); ++row) {
@@ -236,16 +167,23 @@ class TrialReader {
                        table_.columns[static_cast<std::size_t>(column)]));
     }
     const auto count = static_cast<Eigen::Index>(times.size());
-    return {meaning.name, Eigen::Map<Eigen::VectorXd>(times.data(), count),
+    const bool isCoordinate = meaning.kind == ColumnMeaning::Kind::coordinate;
+    return {isCoordinate ? ofCoordinate(meaning.name) : meaning.what,
+            Eigen::Map<Eigen::VectorXd>(times.data(), count),
             Eigen::Map<Eigen::VectorXd>(values.data(), count)};
+  }
+
+  // The measurement of a coordinate.
+  std::vector<MeasuredChannel>::iterator find(const std::string& coordinate) {
+    return std::find_if(
+        trial_.measured.begin(), trial_.measured.end(),
+        [&](const MeasuredChannel& one) { return one.what == ofCoordinate(coordinate); });
   }
 
   // A held coordinate may be measured, where it is held. A joint that a dynamometer holds gives way
   // by 0.3 to 0.7° (the recordings of validation/ankle), and a lock is typed to the degree.
   void dropHeld(const std::string& name, double value) {
-    const auto at =
-        std::find_if(trial_.measured.begin(), trial_.measured.end(),
-                     [&](const MeasuredMotion& motion) { return motion.coordinate == name; });
+    const auto at = find(name);
     if (at == trial_.measured.end()) return;
     const bool turns = findCoordinate(model_, name).isRotation;
     const double away = (at->values.array() - value).abs().maxCoeff();
@@ -263,9 +201,7 @@ class TrialReader {
   // Prescribed coordinates are an input, not a measurement to compare with.
   void takePrescribed() {
     for (const std::string& name : options_.prescribed) {
-      const auto at =
-          std::find_if(trial_.measured.begin(), trial_.measured.end(),
-                       [&](const MeasuredMotion& motion) { return motion.coordinate == name; });
+      const auto at = find(name);
       if (at == trial_.measured.end()) {
         fail(
             fmt::format("has no column '{}', must have one: the motion of this coordinate is "
@@ -284,12 +220,13 @@ class TrialReader {
     }
     for (const auto& [name, value] : options_.held) {
       dropHeld(name, value);
-      trial_.prescribed.push_back({name, Eigen::VectorXd::Constant(1, trial_.times[0]),
+      trial_.prescribed.push_back({ofCoordinate(name),
+                                   Eigen::VectorXd::Constant(1, trial_.times[0]),
                                    Eigen::VectorXd::Constant(1, value)});
     }
   }
 
-  void readApplied(Eigen::Index column, const Meaning& meaning) {
+  void readApplied(Eigen::Index column, const ColumnMeaning& meaning) {
     Eigen::VectorXd values = table_.values.col(column);
     for (Eigen::Index row = 0; row < values.size(); ++row) {
       if (!std::isfinite(values[row])) fail(column, row, "is missing, must be given in every row");
@@ -383,6 +320,12 @@ Trial trialFrom(const Table& table, const std::string& name, const Model& model,
     throw std::domain_error(fmt::format("baseline = {}, must be 0 to 1", options.baseline));
   }
   return TrialReader(table, name, model, options).read();
+}
+
+const MeasuredChannel* Trial::measurementOf(const Observable& what) const {
+  const auto at = std::find_if(measured.begin(), measured.end(),
+                               [&](const MeasuredChannel& one) { return one.what == what; });
+  return at == measured.end() ? nullptr : &*at;
 }
 
 double excitationAt(const Trial& trial, Eigen::Index muscle, double t) {

@@ -69,9 +69,9 @@ void reviewApplied(const AppliedForce& applied, bool isRotation, std::vector<Rem
   }
 }
 
-void reviewMotion(const MeasuredMotion& motion, const Coordinate& coordinate, double start,
+void reviewMotion(const MeasuredChannel& motion, const Coordinate& coordinate, double start,
                   std::vector<Remark>& remarks) {
-  const std::string subject = fmt::format("measured '{}'", motion.coordinate);
+  const std::string subject = fmt::format("measured '{}'", motion.what.of);
   const double least = motion.values.minCoeff(), largest = motion.values.maxCoeff();
   const double encompassing = std::max(std::abs(least), std::abs(largest));
   const char* unit = coordinate.isRotation ? "rad" : "m";
@@ -81,7 +81,7 @@ void reviewMotion(const MeasuredMotion& motion, const Coordinate& coordinate, do
         {subject,
          fmt::format("values = {:.4g} to {:.4g} rad, must be within ±2π or the model's range: "
                      "degrees stand in a column '{}_deg', or under inDegrees=yes",
-                     least, largest, motion.coordinate),
+                     least, largest, motion.what.of),
          Weight::error});
     return;
   }
@@ -121,34 +121,35 @@ std::vector<Remark> reviewTrial(const Trial& trial, const Model& model) {
   for (const AppliedForce& applied : trial.applied) {
     reviewApplied(applied, findCoordinate(model, applied.coordinate).isRotation, remarks);
   }
-  for (const MeasuredMotion& motion : trial.measured) {
-    reviewMotion(motion, findCoordinate(model, motion.coordinate), trial.times(0), remarks);
+  for (const MeasuredChannel& motion : trial.measured) {
+    if (!motion.what.isCoordinate()) continue;
+    reviewMotion(motion, findCoordinate(model, motion.what.of), trial.times(0), remarks);
   }
   return remarks;
 }
 
-std::string whyNotUsable(const MeasuredMotion& motion, Eigen::Index fewest) {
+std::string whyNotUsable(const MeasuredChannel& motion, Eigen::Index fewest) {
   const auto count = motion.values.size();
   if (count < fewest) {
-    return fmt::format("'{}' has {} measured value{}, must have at least {}", motion.coordinate,
+    return fmt::format("'{}' has {} measured value{}, must have at least {}", nameOf(motion.what),
                        count, count == 1 ? "" : "s", fewest);
   }
   const double low = motion.values.minCoeff(), high = motion.values.maxCoeff();
   if (low == high) {
-    return fmt::format("'{}' has the same value in all {} samples, must change", motion.coordinate,
-                       count);
+    return fmt::format("'{}' has the same value in all {} samples, must change",
+                       nameOf(motion.what), count);
   }
   const bool areTwo = (motion.values.array() == low || motion.values.array() == high).all();
   if (areTwo && count > 2) {
     return fmt::format(
         "'{}' has only two different values in {} samples (resolution of its sensor), must have "
         "more",
-        motion.coordinate, count);
+        nameOf(motion.what), count);
   }
   return "";
 }
 
-void requireUsable(const std::string& file, const MeasuredMotion& motion, Eigen::Index fewest) {
+void requireUsable(const std::string& file, const MeasuredChannel& motion, Eigen::Index fewest) {
   const std::string why = whyNotUsable(motion, fewest);
   if (!why.empty()) throw std::invalid_argument(fmt::format("{}: measured {}", file, why));
 }

@@ -78,20 +78,21 @@ class Dynamometer {
       const Eigen::VectorXd values = y.middleCols(at, series.values.size()).transpose();
       at += series.values.size();
       Trial& trial = list[series.trial];
-      for (MeasuredChannel& channel : trial.channels) {
+      for (MeasuredChannel& channel : trial.measured) {
         if (channel.what == series.what) channel.values = values;
       }
-      if (series.what.kind == Observable::Kind::coordinate) trial.measured[0].values = values;
     }
     return list;
   }
 
   Trial noisy(Trial trial, std::uint64_t seed, std::uint64_t stream) const {
     info::RandomStream random(seed, stream);
-    for (MeasuredChannel& channel : trial.channels) {
+    for (MeasuredChannel& channel : trial.measured) {
+      if (channel.what.isCoordinate()) continue;
       for (double& value : channel.values) value += noiseOf(channel.what) * random.normal();
     }
-    for (MeasuredMotion& motion : trial.measured) {  // the first value is the start
+    for (MeasuredChannel& motion : trial.measured) {  // the first value is the start
+      if (!motion.what.isCoordinate()) continue;
       for (Eigen::Index k = 1; k < motion.values.size(); ++k) {
         motion.values[k] += study_.angleNoise * random.normal();
       }
@@ -127,19 +128,20 @@ class Dynamometer {
         trial.excitations(k, m) = 0.02 + strength * pulse * (name == "BRA" ? 0.7 : 1);
       }
     }
-    MeasuredMotion course{driven_, trial.times, {}};
+    MeasuredChannel course{ofCoordinate(driven_), trial.times, {}};
     course.values = (degrees + degreesPerSecond * trial.times.array() +
                      15 * (2 * std::numbers::pi * frequency * trial.times.array()).sin()) /
                     180 * std::numbers::pi;
     trial.prescribed = {course};
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(rows);
-    trial.channels.push_back({{Observable::Kind::moment, driven_, 0}, trial.times, none});
+    trial.measured.push_back({{Observable::Kind::moment, driven_, 0}, trial.times, none});
     if (study_.fascicle) {
-      trial.channels.push_back({{Observable::Kind::fibreLength, "BRA", 0}, trial.times, none});
+      trial.measured.push_back({{Observable::Kind::fibreLength, "BRA", 0}, trial.times, none});
     }
     if (study_.shoulder) {
-      trial.measured.push_back(
-          {"elbow_flexion", trial.times, Eigen::VectorXd::Constant(rows, 60 / 57.29577951)});
+      trial.measured.insert(trial.measured.begin(),
+                            {ofCoordinate("elbow_flexion"), trial.times,
+                             Eigen::VectorXd::Constant(rows, 60 / 57.29577951)});
     }
     return trial;
   }

@@ -64,7 +64,7 @@ TEST(TrialSet, SensitivitiesAreDerivativesOfTheOutputs) {
 TEST(TrialSet, ASpeedAtTheStartIsAsUncertainAsTheRecordingShows) {
   std::vector<Trial> list = {subject().trial("curl_slow", 1.0, {}, 100),
                              subject().trial("curl_slow", 1.0, {}, 100)};
-  MeasuredMotion& moving = list[1].measured.front();
+  MeasuredChannel& moving = list[1].measured.front();
   moving.values = (0.6 + 1.9 * (moving.times.array() - moving.times[0])).matrix();
   TrialSetOptions options;
   options.parameters = {"hand.mass"};

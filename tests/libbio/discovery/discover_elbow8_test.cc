@@ -47,7 +47,7 @@ std::vector<Trial> record(const std::vector<Hidden>& hidden, unsigned seed) {
       values[static_cast<Index>(data.encompassing().find(one.quantity))] = one.value;
     }
     auto setting = data.encompassing().settingAt(values, {});
-    const MeasuredMotion& old = elbow.trial.measured.front();
+    const MeasuredChannel& old = elbow.trial.measured.front();
     setting.start.q[0] = old.values[0];
     const MusculoskeletalSystem arm(setting.model, ShippedElbow::options());
     SimulationOptions options;
@@ -57,7 +57,7 @@ std::vector<Trial> record(const std::vector<Hidden>& hidden, unsigned seed) {
     EXPECT_EQ(motion.outcome, Outcome::completed) << motion.why;
     Trial trial = elbow.trial;
     trial.file = name;
-    MeasuredMotion& measured = trial.measured.front();
+    MeasuredChannel& measured = trial.measured.front();
     measured.times = VectorXd::Map(motion.time.data(), static_cast<Index>(motion.time.size()));
     measured.values = motion.q.row(0).transpose();
     for (double& angle : measured.values) angle += 0.5 * degree * normal(random);
@@ -108,7 +108,7 @@ TEST(Discover, UsesWhatComesBeforeAPositionAtWhichTheModelFails) {
     const TrialReplay replay =
         replayTrial(arm, trial, options, beginningOf(trial, person, arm, {}));
     ASSERT_EQ(replay.motion.outcome, Outcome::completed) << replay.motion.why;
-    MeasuredMotion& measured = trial.measured.front();
+    MeasuredChannel& measured = trial.measured.front();
     const auto n = static_cast<Index>(replay.motion.time.size());
     measured.times = VectorXd::Map(replay.motion.time.data(), n);
     measured.values = replay.motion.q.row(0).transpose();

@@ -32,7 +32,7 @@ std::vector<Trial> curls(const std::string& law, unsigned seed) {
     const MusculoskeletalSystem arm(model, ShippedElbow::options());
     Trial trial = elbow.trial;
     trial.file = name;
-    MeasuredMotion& measured = trial.measured.front();
+    MeasuredChannel& measured = trial.measured.front();
     SimulationOptions options;
     options.integrator = Integrator::cvode;
     const TrialReplay replay = replayTrial(arm, trial, options, beginningOf(trial, model, arm, {}));
@@ -81,7 +81,7 @@ TEST(PositionBreak, IsNotThereWithoutOne) {
 TEST(FirstPart, EndsBeforeThePositionIsFirstPassed) {
   const ShippedElbow elbow;
   const Trial& whole = elbow.trial;
-  const MeasuredMotion& motion = whole.measured.front();
+  const MeasuredChannel& motion = whole.measured.front();
   const double most = motion.values.maxCoeff();
   const auto all = firstPart(whole, "elbow_flexion", most, true);
   ASSERT_TRUE(all);
@@ -103,7 +103,7 @@ TEST(FirstPart, EndsBeforeThePositionIsFirstPassed) {
 
 TEST(FirstPart, IsNothingWhereLessThanASecondIsLeft) {
   const ShippedElbow elbow;
-  const MeasuredMotion& motion = elbow.trial.measured.front();
+  const MeasuredChannel& motion = elbow.trial.measured.front();
   EXPECT_FALSE(firstPart(elbow.trial, "elbow_flexion", motion.values[0] - 0.01, true));
   EXPECT_FALSE(firstPart(elbow.trial, "elbow_flexion", motion.values[0] + 0.01, false));
 }

@@ -63,13 +63,13 @@ TEST(SensorLaw, ACorrectedTrialIsWhatATrueSensorShows) {
   const auto behind = [&](double t) {
     return 1 + 0.4 / std::sqrt(1 + 4 * 0.04 * 0.04) * std::sin(2 * t - std::atan(2 * 0.04));
   };
-  MeasuredMotion motion{"elbow", trial.times, trial.times};
+  MeasuredChannel motion{ofCoordinate("elbow"), trial.times, trial.times};
   for (Eigen::Index k = 0; k < motion.times.size(); ++k) {
     const double t = motion.times[k];
     motion.values[k] = 1.1 * behind(1 + 1.05 * (t - 1) - 0.03) + 0.02 + 0.01 * (t - 1);
   }
   trial.measured = {motion};
-  const MeasuredMotion corrected = asTrueSensor(trial, "elbow", sensor).measured.front();
+  const MeasuredChannel corrected = asTrueSensor(trial, "elbow", sensor).measured.front();
   ASSERT_GT(corrected.times.size(), 180);
   EXPECT_LT(corrected.times.size(), 201);  // those beyond the trial's end are lost
   for (Eigen::Index k = 5; k + 5 < corrected.times.size(); ++k)

@@ -56,7 +56,7 @@ Trial pulled(double frequency) {
     const double phase = 2 * std::numbers::pi * frequency * trial.times[k];
     trial.excitations.row(k) << 0.12 + 0.1 * std::sin(phase), 0.12 + 0.1 * std::sin(1.37 * phase);
   }
-  trial.measured.push_back({"x", trial.times, VectorXd::LinSpaced(301, 0, 0.01)});
+  trial.measured.push_back({ofCoordinate("x"), trial.times, VectorXd::LinSpaced(301, 0, 0.01)});
   return trial;
 }
 

@@ -23,7 +23,8 @@ Trial usual() {
   trial.times = Eigen::VectorXd::LinSpaced(101, 0, 1);
   trial.muscles = {"BRA"};
   trial.excitations = Eigen::VectorXd::LinSpaced(101, 0.1, 0.9);
-  trial.measured.push_back({"elbow_flexion", trial.times, Eigen::VectorXd::LinSpaced(101, 0.5, 1)});
+  trial.measured.push_back(
+      {ofCoordinate("elbow_flexion"), trial.times, Eigen::VectorXd::LinSpaced(101, 0.5, 1)});
   return trial;
 }
 
@@ -85,7 +86,7 @@ TEST(TrialReview, WhatACommandMustTellOrRefuseWeighsMore) {
 }
 
 TEST(UsableSeries, NeedsEnoughValuesThatChange) {
-  MeasuredMotion motion = usual().measured[0];
+  MeasuredChannel motion = usual().measured[0];
   EXPECT_EQ(whyNotUsable(motion), "");
   motion.values.head(100).setConstant(0.5);
   motion.values.tail(1).setConstant(0.6);

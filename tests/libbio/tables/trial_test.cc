@@ -131,15 +131,15 @@ TEST_F(TrialFile, TheHeaderNamesMusclesWithoutAnElectrode) {
 TEST_F(TrialFile, PennationIsAnAngle) {
   const Trial trial =
       read("time,BRA,TRIlong,BRA.pennation_deg,TRIlong.pennation\n0,0,0,18,\n1,0,0,,0.25\n");
-  ASSERT_THAT(trial.channels, SizeIs(2));
-  EXPECT_EQ(trial.channels[0].what, (Observable{Observable::Kind::pennation, "BRA", 0}));
-  EXPECT_NEAR(trial.channels[0].values[0], 18 * degree, 1e-15);
-  EXPECT_EQ(trial.channels[1].values[0], 0.25);
-  EXPECT_EQ(trial.channels[1].times[0], 1);
+  ASSERT_THAT(trial.measured, SizeIs(2));
+  EXPECT_EQ(trial.measured[0].what, (Observable{Observable::Kind::pennation, "BRA", 0}));
+  EXPECT_NEAR(trial.measured[0].values[0], 18 * degree, 1e-15);
+  EXPECT_EQ(trial.measured[1].values[0], 0.25);
+  EXPECT_EQ(trial.measured[1].times[0], 1);
   const Trial inDegrees = read(
       "t\ninDegrees=yes\nendheader\ntime\tBRA\tTRIlong\tBRA.pennation\n0\t0\t0\t18\n1\t0\t0\t19\n",
       {}, "t.sto");
-  EXPECT_NEAR(inDegrees.channels[0].values[1], 19 * degree, 1e-15);
+  EXPECT_NEAR(inDegrees.measured[0].values[1], 19 * degree, 1e-15);
   EXPECT_THAT(messageOf("time,BRA,TRIlong,BRA.fiber_length_deg\n0,0,0,18\n1,0,0,18\n"),
               HasSubstr("column 'BRA.fiber_length_deg' is neither"));
 }
@@ -157,7 +157,7 @@ TEST_F(TrialFile, MeasuredAnglesAreRadiansUnlessToldOtherwise) {
   const Trial radians = read("time,BRA,TRIlong,elbow_flexion\n0,0,0,0.5\n1,0,0,0.6\n");
   EXPECT_EQ(radians.measured.at(0).values(1), 0.6);
   const Trial suffix = read("time,BRA,TRIlong,elbow_flexion_deg\n0,0,0,30\n1,0,0,40\n");
-  EXPECT_EQ(suffix.measured.at(0).coordinate, "elbow_flexion");
+  EXPECT_EQ(suffix.measured.at(0).what.of, "elbow_flexion");
   EXPECT_DOUBLE_EQ(suffix.measured.at(0).values(1), 40 * degree);
   const Trial header = read(
       "t\ninDegrees=yes\nendheader\ntime\tBRA\tTRIlong\telbow_flexion\tdrawer\n"
@@ -215,7 +215,7 @@ TEST_F(TrialFile, UnderstandsThePathsOfOpenSim4) {
   const Trial trial = read(
       "time,/forceset/BRA,TRIlong,/jointset/elbow/elbow_flexion/value\n0,0.5,0,0.1\n1,0.5,0,0.2\n");
   EXPECT_EQ(trial.excitations(0, 0), 0.5);
-  EXPECT_EQ(trial.measured.at(0).coordinate, "elbow_flexion");
+  EXPECT_EQ(trial.measured.at(0).what.of, "elbow_flexion");
 }
 
 TEST_F(TrialFile, SaysInOneLineWhatIsWrong) {

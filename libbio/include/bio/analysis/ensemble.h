@@ -40,7 +40,7 @@ class SystemBatch {
   /// @throws std::invalid_argument what simulate() throws, if the coordinate is not free, or if the
   ///   model's own motion does not reach the end of the trial
   SystemBatch(const ParameterCatalogue& catalogue, const SystemOptions& arm, ExcitationSignal trial,
-              const std::string& coordinate, std::optional<MeasuredMotion> measured,
+              const std::string& coordinate, std::optional<MeasuredChannel> measured,
               std::vector<double> course, std::vector<std::size_t> selection,
               const SimulationOptions& options);
 
@@ -63,7 +63,7 @@ class SystemBatch {
   const ParameterCatalogue* catalogue_;
   SystemOptions armOptions_;
   ExcitationSignal trial_;
-  std::optional<MeasuredMotion> measured_;
+  std::optional<MeasuredChannel> measured_;
   std::vector<double> course_;
   std::vector<std::size_t> selection_;
   SimulationOptions options_;

@@ -77,7 +77,7 @@ struct MeasuredError {
 };
 /// @throws std::invalid_argument if the coordinate is not free, or no measured time is covered
 MeasuredError compareWithMeasured(const MusculoskeletalSystem& arm, const Trajectory& trajectory,
-                                  const MeasuredMotion& measured);
+                                  const MeasuredChannel& measured);
 
 /// The same against any other measured channel.
 struct ChannelError {

@@ -45,7 +45,7 @@ class TrialEnsemble {
   const ParameterLaws& laws() const { return laws_; }
   /// The first free coordinate, which is observed.
   const Coordinate& coordinate() const { return coordinate_; }
-  const std::optional<MeasuredMotion>& measured() const { return measured_; }
+  const std::optional<MeasuredChannel>& measured() const { return measured_; }
   /// Times of the percentile band [s].
   const std::vector<double>& course() const { return batch_->course(); }
   /// The run with the model's own parameters.
@@ -66,7 +66,7 @@ class TrialEnsemble {
   void check(const Trial& trial, const TrialEnsembleOptions& asked) const;
 
   Coordinate coordinate_;
-  std::optional<MeasuredMotion> measured_;
+  std::optional<MeasuredChannel> measured_;
   ParameterCatalogue catalogue_;
   ParameterLaws laws_;
   bool sobol_;

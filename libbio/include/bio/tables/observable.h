@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <string>
+#include <utility>
 
 #include "bio/model/model.h"
 
@@ -34,8 +35,14 @@ struct Observable {
   Kind kind = Kind::coordinate;
   std::string of;  ///< coordinate, muscle, or BODY.MARKER
   int axis = 0;    ///< of a marker: 0 x, 1 y, 2 z of the ground
+  bool isCoordinate() const { return kind == Kind::coordinate; }
   friend bool operator==(const Observable&, const Observable&) = default;
 };
+
+/// A coordinate itself.
+inline Observable ofCoordinate(std::string name) {
+  return {Observable::Kind::coordinate, std::move(name), 0};
+}
 
 /// The column's name.
 std::string nameOf(const Observable& observable);
@@ -48,7 +55,7 @@ std::string unitOf(const Observable& observable, const Model& model);
 /// @returns whether there is one
 bool readObservable(const std::string& column, const Model& model, Observable& found);
 
-/// A measured course of anything but a coordinate.
+/// A measured course; possibly sampled less often than the excitations.
 struct MeasuredChannel {
   Observable what;
   Eigen::VectorXd times;   ///< [s] strictly rising, a subset of the trial's

@@ -14,13 +14,6 @@
 
 namespace bio {
 
-/// The measured course of one coordinate; possibly sampled less often than the excitations.
-struct MeasuredMotion {
-  std::string coordinate;
-  Eigen::VectorXd times;   ///< [s] strictly rising, a subset of the trial's
-  Eigen::VectorXd values;  ///< [rad] or [m], finite
-};
-
 /// External load on one coordinate, in every row.
 struct AppliedForce {
   std::string coordinate;
@@ -39,10 +32,10 @@ struct Trial {
                                      ///< those switched off that have a column
   Eigen::MatrixXd excitations;       ///< 0 to 1; one row per time, one column per muscle
   std::vector<AppliedForce> applied;
-  std::vector<MeasuredMotion> measured;    ///< of coordinates that are simulated, or locked
-  std::vector<MeasuredMotion> prescribed;  ///< of TrialOptions::prescribed and held; one sample: a
-                                           ///< constant
-  std::vector<MeasuredChannel> channels;   ///< all else that was measured
+  /// All that was measured: coordinates that are simulated, or locked, first; then everything else.
+  std::vector<MeasuredChannel> measured;
+  /// The course of coordinates of TrialOptions::prescribed and held; one sample: a constant.
+  std::vector<MeasuredChannel> prescribed;
   ExperimentalConditions known;
   /// Muscles without an electrode, whose column is only what is expected: calibration may correct
   /// it (header line `latent_excitation`, latent_excitation.h).
@@ -51,6 +44,8 @@ struct Trial {
 
   /// [s]
   double duration() const { return times[times.size() - 1] - times[0]; }
+  /// What was measured of it; null: nothing.
+  const MeasuredChannel* measurementOf(const Observable& what) const;
 };
 
 struct TrialOptions {

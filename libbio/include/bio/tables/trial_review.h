@@ -23,10 +23,11 @@ std::vector<Remark> reviewTrial(const Trial& trial, const Model& model);
 /// Reason why a measured series cannot be used, or is too short for its noise to be distinguished
 /// from the motion: fewer than `fewest` values, one value throughout, two values throughout
 /// (resolution of the sensor). Empty if it can be used.
-std::string whyNotUsable(const MeasuredMotion& motion, Eigen::Index fewest = 20);
+std::string whyNotUsable(const MeasuredChannel& motion, Eigen::Index fewest = 20);
 
 /// @throws std::invalid_argument naming the file, for a series that cannot be used (whyNotUsable)
-void requireUsable(const std::string& file, const MeasuredMotion& motion, Eigen::Index fewest = 20);
+void requireUsable(const std::string& file, const MeasuredChannel& motion,
+                   Eigen::Index fewest = 20);
 
 /// A line for each measured coordinate that is not compared, because it was locked at another value
 /// or is coupled to another coordinate.
