@@ -90,7 +90,7 @@ class MusculoskeletalProblem::Run final : public Simulation {
       if (nudge) apply(*nudge, setting_.model, options_.simulation.externalForce);
       // forces that change in time follow those at the nodes
       if (latentToo || timedNodes_.size() > 0) {
-        options_.externalNodes = {of.encompassing_.freeIndex(), one_.nodes};
+        options_.externalNodes = {{of.encompassing_.freeIndex()}, one_.nodes};
       }
       arm_.emplace(of.encompassing_.armOf(setting_));
       excitation_ = of.excitationFor(one_, *arm_);
@@ -149,7 +149,7 @@ class MusculoskeletalProblem::Run final : public Simulation {
 
   void differentiate(SensitivityTrajectory& s, Prediction& result) const {
     const auto c = static_cast<std::size_t>(of_.encompassing_.freeIndex());
-    const bool hasNodes = !s.qOfNodes.empty();
+    const Index numNodes = options_.externalNodes.count();
     if (sensor_.lag > 0) {
       const auto behind = [&](SensitivityMatrix& of, SensitivityMatrix& rate) {
         const Lagged late = lagged(s.motion.time, of.transpose(), rate.transpose(), sensor_.lag);
@@ -157,17 +157,15 @@ class MusculoskeletalProblem::Run final : public Simulation {
         rate = late.speed.transpose();
       };
       behind(s.q[c], s.qDot[c]);
-      if (hasNodes) behind(s.qOfNodes[c], s.qDotOfNodes[c]);
     }
     const double factor = 1 + sensor_.gain;
     for (Index i = 0; i < outputs_.size(); ++i) {
       const auto w = look(s.motion, one_.times[static_cast<std::size_t>(i)]);
       if (!w) continue;
       const Eigen::RowVectorXd along = factor * w->rows(s.q[c], s.qDot[c]);
-      Eigen::RowVectorXd ofNodes;
-      if (hasNodes) ofNodes = w->rows(s.qOfNodes[c], s.qDotOfNodes[c]);
+      const Eigen::RowVectorXd ofNodes = along.tail(numNodes);
       addRow(i, *w, along, ofNodes, result);
-      if (latentToo_) result.latentGamma.row(i) = factor * ofNodes;
+      if (latentToo_) result.latentGamma.row(i) = ofNodes;
     }
   }
 
@@ -194,7 +192,7 @@ class MusculoskeletalProblem::Run final : public Simulation {
       }
       if (kind == Meaning::Kind::drift) entry = since;
       if (kind == Meaning::Kind::timed) {
-        entry = factor * ofNodes.dot(timedNodes_.col(static_cast<Index>(j)));
+        entry = ofNodes.dot(timedNodes_.col(static_cast<Index>(j)));
       }
     }
   }

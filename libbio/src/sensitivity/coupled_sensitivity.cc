@@ -1,5 +1,6 @@
 #include "bio/sensitivity/coupled_sensitivity.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "sensitivity/parameter_directions.h"
@@ -18,9 +19,15 @@ void checkNodes(const ExternalNodes& nodes, const MusculoskeletalSystem& arm) {
   if (!rises) {
     throw std::invalid_argument("nodes of the external force: must be at least 2 and rise in time");
   }
-  if (nodes.coordinate < 0 || nodes.coordinate >= arm.skeleton().numCoordinates()) {
-    throw std::invalid_argument("nodes of the external force: coordinate must be a free one");
+  const int n = arm.skeleton().numCoordinates();
+  for (const int k : nodes.coordinates) {
+    if (k >= 0 && k < n && std::count(nodes.coordinates.begin(), nodes.coordinates.end(), k) == 1)
+      continue;
+    throw std::invalid_argument(
+        "nodes of the external force: coordinates must be free or prescribed ones, each once");
   }
+  if (nodes.coordinates.empty())
+    throw std::invalid_argument("nodes of the external force: must act on a coordinate");
 }
 
 }  // namespace

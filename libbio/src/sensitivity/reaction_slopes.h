@@ -31,11 +31,11 @@ class ReactionSlopes {
         y_(dynamics_.size()),
         yDot_(dynamics_.size()) {}
 
-  /// Into result.reaction, from what stands in `result` for the row and its muscles. Moves the
-  /// configuration.
+  /// Into result.reaction, from the row of the motion. Moves the configuration.
   /// @param speed  dq̇/dθ
+  /// @param forces  dF/dθ of the tendons
   void add(Index row, const SensitivityState<N>& state, const Rows& speed,
-           SensitivityTrajectory& result) {
+           const SensitivityMatrix& forces, SensitivityTrajectory& result) {
     const Trajectory& motion = result.motion;
     const Vector q = motion.q.col(row), qDot = motion.qDot.col(row);
     y_ << q, qDot, motion.activation.col(row), motion.fibreLength.col(row);
@@ -45,8 +45,9 @@ class ReactionSlopes {
     tau_.noalias() = tau_q * state.dq;
     tau_.noalias() += tau_v * speed;
     direct_.addOtherForces(motion.time[static_cast<std::size_t>(row)], q, qDot, external_, tau_);
+    state.columns.addNodes(motion.time[static_cast<std::size_t>(row)], tau_);
     for (std::size_t i = 0; i < arm_.numMuscles(); ++i) {
-      addMuscle(i, q, result.tendonForce[i].row(row), state);
+      addMuscle(i, q, forces.row(static_cast<Index>(i)), state);
     }
     addInertia(q, qDot);
     Rows X = tau_;
@@ -54,8 +55,7 @@ class ReactionSlopes {
     X = dynamics_.factor().solve(X).eval();
     tau_ = dynamics_.massMatrix() * X - tau_;
     for (const int k : arm_.prescribed()) {
-      result.reaction[static_cast<std::size_t>(k)].row(row) =
-          tau_.row(k).head(state.columns.numParameters());
+      state.columns.record(tau_.row(k), result.reaction[static_cast<std::size_t>(k)].row(row));
     }
   }
 
@@ -67,7 +67,7 @@ class ReactionSlopes {
     const LengthJet<N>& path = configuration_.length(i);
     const double F = dynamics_.rate(i).tendonForce;
     forEachMoved<N>(path, [&](int k, int slot) {
-      tau_.row(k).head(force.size()) -= path.dL_dq[k] * force;
+      tau_.row(k) -= path.dL_dq[k] * force;
       forEachMoved<N>(path, [&](int j, int other) {
         tau_.row(k) -= (F * secondOf(path, slot, other)) * state.dq.row(j);
       });

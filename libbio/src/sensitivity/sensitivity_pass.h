@@ -2,6 +2,8 @@
 
 // The pass along the tape of a run that carries its sensitivities; not public.
 
+#include <cmath>
+
 #include "sensitivity/sensitivity_recorder.h"
 #include "sensitivity/sensitivity_step.h"
 #include "sensitivity/tape_slopes.h"
@@ -46,7 +48,10 @@ class SensitivityPass {
     result.motion = std::move(motion);
     SensitivityRecorder<N> recorder(arm_, options_, driven_, configuration_, direct_,
                                     state_.columns, result);
-    begin(start, result.motion.time.front());
+    const double first = result.motion.time.front();
+    begin(start, first);
+    // a reaction follows a force at once
+    if (options_.reactions && state_.columns.beginNodes(std::nextafter(first, HUGE_VAL))) widen();
     recorder.add(state_);
     TapeSlopes slopes(tape);
     for (std::size_t i = 0; i < tape.parts().size(); ++i) {

@@ -30,25 +30,19 @@ class SensitivityRecorder {
         result_(result),
         rows_(static_cast<Index>(result.motion.time.size())) {
     const auto room = [&](std::size_t count) {
-      return std::vector<SensitivityMatrix>(count,
-                                            SensitivityMatrix(rows_, columns.numParameters()));
+      return std::vector<SensitivityMatrix>(count, SensitivityMatrix(rows_, columns.numRecorded()));
     };
     const auto n = static_cast<std::size_t>(countOf<N>(arm));
     result.q = room(n);
     result.qDot = room(n);
     if (muscles_) {
       result.fibreLength = result.activation = result.tendonForce = room(arm.numMuscles());
-      recordThickness(columns.numParameters());
-    }
-    const auto numNodes = static_cast<Index>(columns.nodes().times.size());
-    if (numNodes > 0) {
-      result.qOfNodes.assign(n, SensitivityMatrix::Zero(rows_, numNodes));
-      result.qDotOfNodes = result.qOfNodes;
+      recordThickness(columns.numRecorded());
     }
     if (options.reactions && !arm.prescribed().empty()) {
       result.reaction.resize(n);
       for (const int k : arm.prescribed()) {
-        result.reaction[static_cast<std::size_t>(k)].resize(rows_, columns.numParameters());
+        result.reaction[static_cast<std::size_t>(k)].resize(rows_, columns.numRecorded());
       }
       reactions_.emplace(arm, options.simulation, driven, configuration, direct);
     }
@@ -65,6 +59,7 @@ class SensitivityRecorder {
       configuration_.moveSkeletonTo(q);
     }
     addCoordinates(qDot, state);
+    if (muscles_) forces_.resize(static_cast<Index>(arm_.numMuscles()), state.columns.count());
     for (std::size_t i = 0; muscles_ && i < arm_.numMuscles(); ++i) {
       if (arm_.muscles()[i].muscle.hasFibreState()) {
         addMuscle(i, q, state);
@@ -72,15 +67,15 @@ class SensitivityRecorder {
         addRigid(i, q, qDot, state);
       }
     }
-    if (reactions_) reactions_->add(row_, state, speed_, result_);
+    if (reactions_) reactions_->add(row_, state, speed_, forces_, result_);
     ++row_;
   }
 
  private:
-  void recordThickness(Index parameters) {
+  void recordThickness(Index columns) {
     for (std::size_t i = 0; i < arm_.numMuscles(); ++i) {
       const PerMuscleNumber d = arm_.muscles()[i].muscle.thicknessInNumbers();
-      RowVector& row = result_.thickness.emplace_back(RowVector::Zero(parameters));
+      RowVector& row = result_.thickness.emplace_back(RowVector::Zero(columns));
       for (const QuantityEffect& effect : direct_.effects().muscles[i].fibre) {
         row[effect.column] += effect.factor * d[effect.quantity];
       }
@@ -99,15 +94,10 @@ class SensitivityRecorder {
     }
     const Matrix perMass = inverseMass(energy.T_vv);
     speed_.noalias() = perMass * momentum_;
-    const Index parameters = state.columns.numParameters();
     for (int k = 0; k < countOf<N>(arm_); ++k) {
       const auto sk = static_cast<std::size_t>(k);
-      result_.q[sk].row(row_) = state.dq.row(k).head(parameters);
-      result_.qDot[sk].row(row_) = speed_.row(k).head(parameters);
-      if (state.columns.nodes().times.empty()) continue;
-      const Index begun = state.columns.numBegun();
-      result_.qOfNodes[sk].row(row_).head(begun) = state.dq.row(k).tail(begun);
-      result_.qDotOfNodes[sk].row(row_).head(begun) = speed_.row(k).tail(begun);
+      state.columns.record(state.dq.row(k), result_.q[sk].row(row_));
+      state.columns.record(speed_.row(k), result_.qDot[sk].row(row_));
     }
   }
 
@@ -122,7 +112,6 @@ class SensitivityRecorder {
 
   void addMuscle(std::size_t i, const Vector& q, const State& state) {
     const auto si = static_cast<Index>(i);
-    const Index parameters = state.columns.numParameters();
     const SimulatedMuscle& muscle = arm_.muscles()[i].muscle;
     const LengthJet<N>& path = configuration_.length(i);
     const double l = result_.motion.fibreLength(si, row_);
@@ -130,24 +119,29 @@ class SensitivityRecorder {
     SchuttePieces unknown;
     const FibreRateDerivatives r = muscle.rate(activation, l, path.length, unknown);
     const SimulatedMuscle::InNumbers d = muscle.inNumbers(activation, l, path.length, 0, unknown);
-    result_.fibreLength[i].row(row_) = state.fibre.row(si).head(parameters);
-    state.activation.record(si, result_.activation[i].row(row_));
-    auto force = result_.tendonForce[i].row(row_);
-    force = (r.dF_dFibreLength * state.fibre.row(si) +
-             r.dF_dMuscleTendonLength * (path.dL_dq.transpose() * state.dq))
-                .head(parameters);
+    state.columns.record(state.fibre.row(si), result_.fibreLength[i].row(row_));
+    recordActivation(i, state);
+    auto force = forces_.row(si);
+    force = r.dF_dFibreLength * state.fibre.row(si) +
+            r.dF_dMuscleTendonLength * (path.dL_dq.transpose() * state.dq);
     for (const QuantityEffect& effect : direct_.effects().muscles[i].fibre) {
       force[effect.column] += effect.factor * d.dF[effect.quantity];
     }
     direct_.forGeometry(i, q, [&](const QuantityEffect& effect, const auto& gradient) {
       force[effect.column] += effect.factor * r.dF_dMuscleTendonLength * gradient[0];
     });
+    state.columns.record(force, result_.tendonForce[i].row(row_));
+  }
+
+  void recordActivation(std::size_t i, const State& state) {
+    activation_.resize(state.columns.count());
+    state.activation.record(static_cast<Index>(i), activation_);
+    state.columns.record(activation_, result_.activation[i].row(row_));
   }
 
   /// With a rigid tendon fibre length and force follow from the row.
   void addRigid(std::size_t i, const Vector& q, const Vector& qDot, const State& state) {
     const auto si = static_cast<Index>(i);
-    const Index parameters = state.columns.numParameters();
     const SimulatedMuscle& muscle = arm_.muscles()[i].muscle;
     const LengthJet<N>& path = configuration_.length(i);
     const double activation = result_.motion.activation(si, row_);
@@ -156,27 +150,26 @@ class SensitivityRecorder {
     const PerMuscleNumber d = muscle.rigidInNumbers(activation, path.length, speed);
     const SimulatedMuscle::RestSlopes l = muscle.restSlopes(
         activation, path.length, {StaticEquilibrium::Why::found, r.fibreLength, r.tendonForce, 1});
-    state.activation.record(si, result_.activation[i].row(row_));
-    const RowVector length = path.dL_dq.transpose() * state.dq;
-    auto fibre = result_.fibreLength[i].row(row_);
-    auto force = result_.tendonForce[i].row(row_);
-    fibre = l.dl_dPathLength * length.head(parameters);
+    recordActivation(i, state);
+    fibre_.noalias() = l.dl_dPathLength * (path.dL_dq.transpose() * state.dq);
+    auto force = forces_.row(si);
     Vector F_q = r.dF_dPathLength * path.dL_dq;
     addSecondTimes<N>(F_q, r.dF_dPathSpeed, path, qDot);
-    force = (F_q.transpose() * state.dq + r.dF_dPathSpeed * (path.dL_dq.transpose() * speed_))
-                .head(parameters);
-    force += r.dF_dActivation * result_.activation[i].row(row_);
+    force = F_q.transpose() * state.dq + r.dF_dPathSpeed * (path.dL_dq.transpose() * speed_);
+    force += r.dF_dActivation * activation_;
     for (const QuantityEffect& effect : direct_.effects().muscles[i].fibre) {
-      fibre[effect.column] += effect.factor * l.dl_dNumber[effect.quantity];
+      fibre_[effect.column] += effect.factor * l.dl_dNumber[effect.quantity];
       force[effect.column] += effect.factor * d[effect.quantity];
     }
     direct_.forGeometry(i, q, [&](const QuantityEffect& effect, const auto& gradient) {
       double change = r.dF_dPathLength * gradient[0];
       forEachMoved<N>(
           path, [&](int k, int slot) { change += r.dF_dPathSpeed * gradient[1 + slot] * qDot[k]; });
-      fibre[effect.column] += effect.factor * l.dl_dPathLength * gradient[0];
+      fibre_[effect.column] += effect.factor * l.dl_dPathLength * gradient[0];
       force[effect.column] += effect.factor * change;
     });
+    state.columns.record(fibre_, result_.fibreLength[i].row(row_));
+    state.columns.record(force, result_.tendonForce[i].row(row_));
   }
 
   const MusculoskeletalSystem& arm_;
@@ -186,6 +179,8 @@ class SensitivityRecorder {
   SensitivityTrajectory& result_;
   Index rows_, row_ = 0;
   typename State::Rows momentum_, speed_;
+  SensitivityMatrix forces_;  ///< of the tendons at the row
+  RowVector activation_, fibre_;
   std::optional<ReactionSlopes<N>> reactions_;
 };
 

@@ -96,6 +96,65 @@ TEST(ObservedMotion, SensitivitiesOfEveryChannelMatchDifferences) {
       {"BIClong.max_isometric_force", "BRD.tendon_slack_length", "hand.mass", "emg.BIClong.gain"});
 }
 
+// The nodes of forces on two free coordinates and on the prescribed one; the first parameter beside
+// them has the column that it has without nodes.
+TEST(ObservedMotion, NodesOfForcesAreColumnsOfEveryChannel) {
+  Observed o({"elbow_flexion", "pro_sup", "shoulder_elv"});
+  o.prescribe(2);
+  const MusculoskeletalSystem system(o.model, o.options);
+  const ParameterCatalogue catalogue(o.model, system, {o.c.start.q, {}});
+  const auto setting = catalogue.nominal();
+  std::vector<ObservedSeries> series;
+  for (const Observable& what : std::vector<Observable>{{Kind::coordinate, "elbow_flexion", 0},
+                                                        {Kind::coordinate, "pro_sup", 0},
+                                                        {Kind::speed, "pro_sup", 0},
+                                                        {Kind::moment, "shoulder_elv", 0},
+                                                        {Kind::marker, "hand.knuckle", 1},
+                                                        {Kind::fibreLength, "BRA", 0},
+                                                        {Kind::tendonForce, "BRD", 0},
+                                                        {Kind::activation, "BRA", 0}})
+    series.push_back({what, o.times});
+  const ObservedMotion observed(system, series);
+  SensitivityOptions options{o.simulation, true, true, {{0, 2, 1}, {0, 0.06, 0.13, 0.2, 0.31}}};
+  const auto wanted = catalogue.select({"hand.mass"});
+  const auto with = observed.linearised(
+      simulateWithSensitivities(system, catalogue, setting, wanted, o.c.excitation, options));
+  const ExternalNodes nodes = options.externalNodes;
+  ASSERT_EQ(with.gamma.cols(), 1 + nodes.count());
+  ASSERT_TRUE(with.gamma.allFinite());
+  const auto numTimes = static_cast<Eigen::Index>(nodes.times.size());
+  for (std::size_t c = 0; c < nodes.coordinates.size(); ++c) {
+    for (Eigen::Index k = 0; k < numTimes; ++k) {
+      const double h = 1e-3;
+      std::vector<Eigen::VectorXd> ends;
+      for (const double d : {h, -h}) {
+        Eigen::MatrixXd values = Eigen::MatrixXd::Zero(numTimes, 3);
+        values(k, nodes.coordinates[c]) = d;
+        SimulationOptions pushed = o.simulation;
+        pushed.externalForce = ExternalForce(nodes.times, values);
+        ends.push_back(observed.values(simulateSetting(system, setting, o.c.excitation, pushed)));
+      }
+      const Eigen::VectorXd difference = (ends[0] - ends[1]) / (2 * h);
+      const Eigen::VectorXd exact = with.gamma.col(1 + static_cast<Eigen::Index>(c) * numTimes + k);
+      for (std::size_t i = 0; i < series.size(); ++i) {
+        const auto first = static_cast<Eigen::Index>(i) * o.times.size();
+        const Eigen::VectorXd part = exact.segment(first, o.times.size());
+        EXPECT_LT((part - difference.segment(first, o.times.size())).cwiseAbs().maxCoeff(),
+                  2e-5 * part.cwiseAbs().maxCoeff() + 1e-6)
+            << nameOf(series[i].what) << " of node " << k << " on " << nodes.coordinates[c];
+      }
+    }
+  }
+  options.externalNodes = {};
+  const auto without = observed.linearised(
+      simulateWithSensitivities(system, catalogue, setting, wanted, o.c.excitation, options));
+  EXPECT_LT((without.gamma.col(0) - with.gamma.col(0)).norm(), 1e-13 * with.gamma.col(0).norm());
+  // what is pushed reacts at once, and a push of the prescribed coordinate moves nothing
+  const auto moments = with.gamma.middleRows(3 * o.times.size(), o.times.size());
+  EXPECT_NEAR(moments.middleCols(1 + numTimes, numTimes).row(0).sum(), 1, 1e-9);
+  EXPECT_EQ(with.gamma.block(0, 1 + numTimes, 3 * o.times.size(), numTimes).norm(), 0);
+}
+
 // sin α = ℓ0 sin α0/ℓ, in every class; BRA has α0 = 0.
 TEST(ObservedMotion, PennationFollowsFromTheFibreLength) {
   const Observed o({"elbow_flexion"});

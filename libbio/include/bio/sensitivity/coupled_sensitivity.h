@@ -12,7 +12,8 @@ namespace bio {
 using SensitivityMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// A simulated motion and its derivatives with respect to parameters [unit of the quantity per unit
-/// of θ].
+/// of θ]. Behind the columns of the parameters stand those of the nodes of an external force, if
+/// there are any (ExternalNodes).
 struct SensitivityTrajectory {
   Trajectory motion;
   std::vector<SensitivityMatrix> q;            ///< dq/dθ of each free coordinate
@@ -25,17 +26,18 @@ struct SensitivityTrajectory {
   /// Of the reaction at each free coordinate; empty for those that are not prescribed, and unless
   /// asked for.
   std::vector<SensitivityMatrix> reaction;
-  std::vector<SensitivityMatrix> qOfNodes;     ///< dq/dd of each free coordinate: times × nodes
-  std::vector<SensitivityMatrix> qDotOfNodes;  ///< dq̇/dd of each free coordinate
   double wallSeconds = 0;  ///< of the sensitivities; motion.wallSeconds is that of the motion
 };
 
-/// Nodes of an external force on one coordinate, linear between them and 0 outside, as for
-/// SimulationOptions::externalForce; derivatives of the motion with respect to the values at the
-/// nodes [unit of q per N·m or N].
+/// Nodes of external forces on some coordinates, linear between them and 0 outside, as for
+/// SimulationOptions::externalForce. Their values [N·m] or [N] are parameters: first those of the
+/// first coordinate at all times, then those of the second, …
 struct ExternalNodes {
-  int coordinate = 0;         ///< free index
-  std::vector<double> times;  ///< [s] strictly rising; empty, or at least two
+  std::vector<int> coordinates;  ///< indices in the skeleton, free or prescribed
+  std::vector<double> times;     ///< [s] strictly rising; empty, or at least two
+  Eigen::Index count() const {
+    return static_cast<Eigen::Index>(coordinates.size() * times.size());
+  }
 };
 
 struct SensitivityOptions {
