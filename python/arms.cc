@@ -146,11 +146,10 @@ py::object replay(const bio::Model& given, const bio::Trial& trial,
   std::optional<bio::LeftRange> left;
   std::unique_ptr<bio::MusculoskeletalSystem> arm;
   interruptible([&](const std::atomic<bool>& goOn) {
-    const bio::Model model =
-        trial.known.any() ? bio::discover::withExperimentalConditions(
-                                given, choice.armOptions(),
-                                choice.coordinates.empty() ? "" : choice.coordinates.front(), trial)
-                          : given;
+    const bio::Model model = trial.known.any()
+                                 ? bio::discover::withExperimentalConditions(
+                                       given, choice.armOptions(), choice.coordinates, trial)
+                                 : given;
     arm = std::make_unique<bio::MusculoskeletalSystem>(model, choice.armOptions());
     bio::SimulationOptions options = choice.simulation();
     options.step = bio::stepOf(model, options.integrator, choice.step);

@@ -58,9 +58,8 @@ class Replay : public Command {
                                            {.experimentalConditions = true, .channels = true});
     for (const std::string& warning : trial.warnings) summary.warn(warning);
     if (trial.known.any()) {
-      const auto& free = simulation_.coordinates;
       model = bio::discover::withExperimentalConditions(model, armOptions(simulation_),
-                                                        free.empty() ? "" : free.front(), trial);
+                                                        simulation_.coordinates, trial);
     }
     const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
     bio::TrialReplay replay;
@@ -102,8 +101,8 @@ class Replay : public Command {
   }
 
  private:
-  /// Of an explicit integrator's step that was asked for, since it may be unstable, and of any where
-  /// there are few.
+  /// Of an explicit integrator's step that was asked for, since it may be unstable, and of any
+  /// where there are few.
   std::optional<bio::StepEffect> effectOfStep(const bio::MusculoskeletalSystem& arm,
                                               const bio::Trial& trial,
                                               const bio::TrialReplay& replay) const {

@@ -112,10 +112,12 @@ Augmented addEffects(const EncompassingModel& encompassing, const std::vector<Ef
   return result;
 }
 
-Augmented addEffects(const Model& model, const SystemOptions& arm, const std::string& coordinate,
-                     const std::vector<EffectToAdd>& effects, const EffectProvenance& provenance,
-                     const std::vector<info::discover::FormulaTerm>& formula) {
-  return addEffects(encompassingModel(model, arm, coordinate, {}, formula), effects, provenance);
+Augmented addEffects(const Model& model, const SystemOptions& arm,
+                     const CoordinateNames& coordinates, const std::vector<EffectToAdd>& effects,
+                     const EffectProvenance& provenance,
+                     const std::vector<info::discover::FormulaTerm>& formula, std::size_t axis) {
+  return addEffects(encompassingModel(model, arm, coordinates, {}, formula, axis), effects,
+                    provenance);
 }
 
 }  // namespace bio::discover

@@ -16,23 +16,48 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 EncompassingModel::EncompassingModel(const Model& model, const SystemOptions& arm,
-                                     const std::string& coordinate)
+                                     const CoordinateNames& coordinates,
+                                     std::vector<Observable> sensors)
     : base_(model),
       armOptions_(arm),
       arm_(std::make_unique<const MusculoskeletalSystem>(model, arm)),
-      freeIndex_(arm_->skeleton().indexOf(coordinate)),
+      sensors_(std::move(sensors)),
       encompassing_(model) {
-  if (freeIndex_ < 0) {
-    throw std::invalid_argument(fmt::format("observed coordinate '{}' is not free", coordinate));
+  if (coordinates.all.empty()) throw std::invalid_argument("no observed coordinate is given");
+  for (const std::string& name : coordinates.all) {
+    MovingCoordinate at;
+    at.index = arm_->skeleton().indexOf(name);
+    if (at.index < 0)
+      throw std::invalid_argument(fmt::format("observed coordinate '{}' is not free", name));
+    at.coordinate = arm_->skeleton().coordinates()[static_cast<std::size_t>(at.index)];
+    coordinates_.push_back(std::move(at));
+  }
+  if (sensors_.empty()) {
+    for (const std::string& name : coordinates.all) sensors_.push_back(ofCoordinate(name));
   }
   parameters_ = std::make_unique<const ParameterCatalogue>(
       model, *arm_, StartPoint{arm_->skeleton().defaultValues(), {}});
-  findBodies();
+  for (MovingCoordinate& at : coordinates_) findBodies(at);
+  for (const Body& body : base_.bodies) {
+    const bool isMoved =
+        std::any_of(coordinates_.begin(), coordinates_.end(), [&](const MovingCoordinate& at) {
+          return std::count(at.movedBodies.begin(), at.movedBodies.end(), body.name) > 0;
+        });
+    if (isMoved) movedBodies_.push_back(body.name);
+  }
+  for (const MovingCoordinate& at : coordinates_) {
+    const bool isAcross = at.axis.cross(base_.gravity).norm() > 1e-6 * base_.gravity.norm();
+    if (axis_.isZero() && (isAcross || hasOneCoordinate())) axis_ = at.axis;
+  }
   findGroups();
 }
 
-const Coordinate& EncompassingModel::coordinate() const {
-  return arm_->skeleton().coordinates()[static_cast<std::size_t>(freeIndex_)];
+std::string EncompassingModel::idAt(const MovingCoordinate& at, const std::string& id) const {
+  return hasOneCoordinate() ? id : at.coordinate.name + "." + id;
+}
+
+std::string EncompassingModel::idOf(std::size_t sensor, const std::string& id) const {
+  return sensors_.size() == 1 ? id : nameOf(sensors_.at(sensor)) + "." + id;
 }
 
 namespace {
@@ -65,45 +90,60 @@ Vector3d EncompassingModel::positionOf(const std::string& body, const Vector3d& 
   const BodyPlacement& place = arm_->skeleton().placeOf(body);
   const Vector3d inSegment = place.X_SB.R * point + place.X_SB.p;
   if (place.segment == 0) return inSegment;
-  const Placement<double> X = movement(*arm_, place.segment, freeIndex_, q).at;
+  const Placement<double> X = movement(*arm_, place.segment, freeIndex(), q).at;
   return X.R * inSegment + X.p;
 }
+
+namespace {
+
+/// ∂(mass centre of a body in ground)/∂q
+Vector3d centreIn(const Model& model, const BodyPlacement& place, const std::string& body,
+                  const Placement<double>& derivative) {
+  const Vector3d center = place.X_SB.R * findBody(model, body).massCenter + place.X_SB.p;
+  return derivative.R * center + derivative.p;
+}
+
+}  // namespace
 
 Vector3d EncompassingModel::velocityOf(const std::string& body, double q) const {
   const BodyPlacement& place = arm_->skeleton().placeOf(body);
   if (place.segment == 0) return Vector3d::Zero();
-  const Placement<double> X_k = movement(*arm_, place.segment, freeIndex_, q).derivative;
-  const Vector3d center = place.X_SB.R * findBody(base_, body).massCenter + place.X_SB.p;
-  return X_k.R * center + X_k.p;
+  return centreIn(base_, place, body, movement(*arm_, place.segment, freeIndex(), q).derivative);
 }
 
-void EncompassingModel::findBodies() {
+void EncompassingModel::findBodies(MovingCoordinate& at) const {
   for (const Body& body : base_.bodies) {
     const BodyPlacement& place = arm_->skeleton().placeOf(body.name);
     if (place.segment == 0 || !(body.mass > 0)) continue;
-    const Movement moved = movement(*arm_, place.segment, freeIndex_, middle());
+    const Movement moved = movement(*arm_, place.segment, at.index, at.middle());
     const Eigen::Matrix3d turn = moved.derivative.R * moved.at.R.transpose();  // ω×
     const Vector3d omega(turn(2, 1), turn(0, 2), turn(1, 0));
-    if (omega.norm() < 1e-9 && velocityOf(body.name, middle()).norm() < 1e-9) continue;
-    movedBodies_.push_back(body.name);
-    if (omega.norm() > 0.5) axis_ = omega.normalized();
+    const Vector3d centre = centreIn(base_, place, body.name, moved.derivative);
+    if (omega.norm() < 1e-9 && centre.norm() < 1e-9) continue;
+    at.movedBodies.push_back(body.name);
+    if (omega.norm() > 0.5) at.axis = omega.normalized();
   }
 }
 
-VectorXd EncompassingModel::momentArms(const MusculoskeletalSystem& arm) const {
-  VectorXd q = arm.skeleton().defaultValues();
-  q[freeIndex_] = middle();
-  Trajectory still;
-  still.time = {0};
-  still.q = q;
-  still.qDot = VectorXd::Zero(q.size());
-  still.fibreLength = VectorXd::Ones(static_cast<Index>(arm.numMuscles()));
-  still.activation = VectorXd::Zero(static_cast<Index>(arm.numMuscles()));
-  return reportMuscles(arm, still, freeIndex_).momentArm;
+Eigen::MatrixXd EncompassingModel::momentArms(const MusculoskeletalSystem& arm) const {
+  const auto n = static_cast<Index>(arm.numMuscles());
+  Eigen::MatrixXd result(n, static_cast<Index>(coordinates_.size()));
+  for (std::size_t k = 0; k < coordinates_.size(); ++k) {
+    VectorXd q = arm.skeleton().defaultValues();
+    q[coordinates_[k].index] = coordinates_[k].middle();
+    Trajectory still;
+    still.time = {0};
+    still.q = q;
+    still.qDot = VectorXd::Zero(q.size());
+    still.fibreLength = VectorXd::Ones(n);
+    still.activation = VectorXd::Zero(n);
+    result.col(static_cast<Index>(k)) = reportMuscles(arm, still, coordinates_[k].index).momentArm;
+  }
+  return result;
 }
 
 void EncompassingModel::findGroups() {
-  const VectorXd momentArm = momentArms(*arm_);
+  const Eigen::MatrixXd all = momentArms(*arm_);
   for (std::size_t i = 0; i < arm_->numMuscles(); ++i) {
     const std::string& muscle = arm_->muscles()[i].name;
     std::size_t length = 0;
@@ -113,16 +153,18 @@ void EncompassingModel::findGroups() {
     const std::string name = length > 0 ? muscle.substr(0, length) : muscle;
     auto at = std::find_if(groups_.begin(), groups_.end(),
                            [&](const MuscleGroup& group) { return group.name == name; });
-    if (at == groups_.end()) at = groups_.insert(groups_.end(), MuscleGroup{name, {}, 0});
+    if (at == groups_.end())
+      at = groups_.insert(groups_.end(), MuscleGroup{name, {}, VectorXd::Zero(all.cols())});
     at->muscles.push_back(i);
-    at->momentArm += momentArm[static_cast<Index>(i)];
+    at->momentArms += all.row(static_cast<Index>(i)).transpose();
   }
-  for (MuscleGroup& group : groups_) group.momentArm /= static_cast<double>(group.muscles.size());
+  for (MuscleGroup& group : groups_) group.momentArms /= static_cast<double>(group.muscles.size());
 }
 
 bool EncompassingModel::knows(const std::string& id) const {
-  return std::any_of(candidates_.begin(), candidates_.end(),
-                     [&](const Candidate& candidate) { return candidate.id == id; });
+  return std::any_of(candidates_.begin(), candidates_.end(), [&](const Candidate& candidate) {
+    return candidate.id == id || candidate.id.ends_with("." + id);
+  });
 }
 
 std::size_t EncompassingModel::find(const std::string& quantity) const {
@@ -211,7 +253,9 @@ void EncompassingModel::trialsLast(double first, double last) {
 
 void EncompassingModel::forget(const std::vector<std::string>& ids) {
   std::erase_if(candidates_, [&](const Candidate& candidate) {
-    return std::find(ids.begin(), ids.end(), candidate.id) != ids.end();
+    return std::any_of(ids.begin(), ids.end(), [&](const std::string& id) {
+      return candidate.id == id || candidate.id.ends_with("." + id);
+    });
   });
 }
 
@@ -336,9 +380,10 @@ ParameterDirection EncompassingModel::direction(const VectorXd& values,
   return direction;
 }
 
-SensorLaw EncompassingModel::sensorAt(const VectorXd& values) const {
+SensorLaw EncompassingModel::sensorAt(const VectorXd& values, std::size_t of) const {
   SensorLaw sensor;
   for (std::size_t i = 0; i < meanings_.size(); ++i) {
+    if (meanings_[i].sensor != of) continue;
     const double value = values[static_cast<Index>(i)];
     if (meanings_[i].kind == Meaning::Kind::bias) sensor.bias += value;
     if (meanings_[i].kind == Meaning::Kind::gain) sensor.gain += value;

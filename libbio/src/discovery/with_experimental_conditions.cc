@@ -39,9 +39,9 @@ Eigen::VectorXd experimentalConditionsOf(const Trial& trial,
 }
 
 Model withExperimentalConditions(const Model& model, const SystemOptions& arm,
-                                 const std::string& coordinate, const Trial& trial) {
+                                 const CoordinateNames& coordinates, const Trial& trial) {
   if (!trial.known.any()) return model;
-  EncompassingModel encompassing(model, arm, coordinate);
+  EncompassingModel encompassing(model, arm, coordinates);
   addExperimentalConditions(encompassing);
   addHandForce(encompassing);  // which the model may have already
   return augmentedModel(encompassing,

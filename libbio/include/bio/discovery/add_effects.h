@@ -59,8 +59,10 @@ std::string effectCredits(const EncompassingModel& encompassing,
 Augmented addEffects(const EncompassingModel& encompassing, const std::vector<EffectToAdd>& effects,
                      const EffectProvenance& provenance);
 /// The same where the model with every effect, and with `formula`, is not there yet.
-Augmented addEffects(const Model& model, const SystemOptions& arm, const std::string& coordinate,
-                     const std::vector<EffectToAdd>& effects, const EffectProvenance& provenance,
-                     const std::vector<info::discover::FormulaTerm>& formula = {});
+Augmented addEffects(const Model& model, const SystemOptions& arm,
+                     const CoordinateNames& coordinates, const std::vector<EffectToAdd>& effects,
+                     const EffectProvenance& provenance,
+                     const std::vector<info::discover::FormulaTerm>& formula = {},
+                     std::size_t axis = 0);
 
 }  // namespace bio::discover

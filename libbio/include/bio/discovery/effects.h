@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "bio/discovery/encompassing_model.h"
@@ -9,14 +10,21 @@ namespace bio::discover {
 
 /// One line of the catalogue: adds an effect, or a small family of them, to a model. An effect that
 /// the base model already has becomes EncompassingModel::present(); one that the skeleton cannot
-/// have (tilt, if gravity does not turn the joint) is left out.
+/// have (tilt, if gravity does not turn the joint) is left out. An effect belongs to the system, to
+/// each of its coordinates, or to each of its sensors.
+using OfSystem = void (*)(EncompassingModel& model);
+using OfCoordinate = void (*)(EncompassingModel& model, const MovingCoordinate& at);
+using OfSensor = void (*)(EncompassingModel& model, std::size_t sensor);
 struct EffectEntry {
   const char* id;
-  void (*add)(EncompassingModel& model);
+  std::variant<OfSystem, OfCoordinate, OfSensor> add;
 };
 
 // clang-format off
-/// The catalogue. τ is the generalised force on the observed coordinate, + up; w = q̇.
+/// The catalogue. τ is the generalised force on the coordinate, + up; w = q̇. Of several
+/// coordinates, visc to limit_exp, const, torque_from and torque_until are one per coordinate
+/// (knee_angle_r.visc); handforce, spring, mass_from and mass_until are those of one coordinate
+/// only. Of several sensors, bias to drift are one per sensor.
 ///
 /// | id | effect | amplitude |
 /// |---|---|---|
@@ -51,7 +59,8 @@ void addNuisances(EncompassingModel& model);
 
 /// Adds a candidate "formula", a force outside the catalogue, c·(e_1 + r_2·e_2 + …); in a model an
 /// ExpressionBasedCoordinateForce. Its quantities are c, r_2, ….
-void addFormula(EncompassingModel& model, const std::vector<info::discover::FormulaTerm>& terms);
+void addFormula(EncompassingModel& model, const MovingCoordinate& at,
+                const std::vector<info::discover::FormulaTerm>& terms);
 
 /// Ids of the candidates saturated_i that cannot be: those of muscles whose record has no flat top.
 /// @param flat  muscles whose record has one
@@ -60,11 +69,13 @@ std::vector<std::string> unsaturated(const EncompassingModel& model,
 
 /// addNuisances, and every entry but those whose ids are in `without`.
 /// @param without  ids of entries or of candidates, or their long names (effect_names.h)
-/// @param formula  if not empty, also addFormula of it
+/// @param formula  if not empty, also addFormula of it, on the coordinate `axis`
+/// @param sensors  what is measured; empty: the coordinates
 /// @throws std::invalid_argument for an unknown id, with a list of the known ones
 EncompassingModel encompassingModel(const Model& model, const SystemOptions& arm,
-                                    const std::string& coordinate,
+                                    const CoordinateNames& coordinates,
                                     const std::vector<std::string>& without = {},
-                                    const std::vector<info::discover::FormulaTerm>& formula = {});
+                                    const std::vector<info::discover::FormulaTerm>& formula = {},
+                                    std::size_t axis = 0, std::vector<Observable> sensors = {});
 
 }  // namespace bio::discover

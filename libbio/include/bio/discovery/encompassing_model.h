@@ -36,13 +36,34 @@ struct Meaning {
   };
   Kind kind = Kind::shift;
   std::vector<Part> parts;
+  std::size_t sensor = 0;  ///< of EncompassingModel::sensors(), for effects of a sensor
 };
 
 /// Muscles whose names begin with the same capitals: TRIlong, TRIlat and TRImed are TRI.
 struct MuscleGroup {
   std::string name;
-  std::vector<std::size_t> muscles;  ///< indices into the arm's
-  double momentArm = 0;              ///< mean at mid-range [m], > 0: pulls the coordinate up
+  std::vector<std::size_t> muscles;  ///< indices into the system's
+  /// Mean at mid-range [m], by EncompassingModel::coordinates(); > 0: pulls the coordinate up.
+  Eigen::VectorXd momentArms;
+};
+
+/// A coordinate whose motion is in question: what it moves.
+struct MovingCoordinate {
+  int index = 0;  ///< in the skeleton
+  Coordinate coordinate;
+  std::vector<std::string> movedBodies;  ///< with mass, in order of distance from ground
+  /// Unit axis in ground about which it turns all of them; zero if it does not.
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+
+  double middle() const { return (coordinate.rangeMin + coordinate.rangeMax) / 2; }
+};
+
+/// Names of coordinates; one name is a list of one.
+struct CoordinateNames {
+  CoordinateNames(const char* name) : all{name} {}
+  CoordinateNames(std::string name) : all{std::move(name)} {}
+  CoordinateNames(std::vector<std::string> names) : all(std::move(names)) {}
+  std::vector<std::string> all;
 };
 
 /// The encompassing model: a model with every effect of the catalogue built in, initially absent.
@@ -58,30 +79,42 @@ class EncompassingModel {
   using Quantity = info::discover::Quantity;
   using Candidate = info::discover::Candidate;
 
-  /// @param coordinate the observed one; free in `arm`
+  /// @param coordinates those whose motion is in question, at least one, free or prescribed in
+  ///   `arm`
+  /// @param sensors what is measured; empty: the coordinates
   /// @throws std::invalid_argument what MusculoskeletalSystem throws; a coordinate that is not free
-  EncompassingModel(const Model& model, const SystemOptions& arm, const std::string& coordinate);
+  EncompassingModel(const Model& model, const SystemOptions& arm,
+                    const CoordinateNames& coordinates, std::vector<Observable> sensors = {});
 
   // What effects ask ------------------------------------------------------------------------------
 
   const Model& base() const { return base_; }
   const MusculoskeletalSystem& arm() const { return *arm_; }
   const SystemOptions& armOptions() const { return armOptions_; }
-  int freeIndex() const { return freeIndex_; }
-  const Coordinate& coordinate() const;
-  double middle() const { return (coordinate().rangeMin + coordinate().rangeMax) / 2; }
+  const std::vector<MovingCoordinate>& coordinates() const { return coordinates_; }
+  /// Whether there is one coordinate, whose effects have short ids.
+  bool hasOneCoordinate() const { return coordinates_.size() == 1; }
+  /// Of the first coordinate, which is the only one where the model has one.
+  int freeIndex() const { return coordinates_.front().index; }
+  const Coordinate& coordinate() const { return coordinates_.front().coordinate; }
+  double middle() const { return coordinates_.front().middle(); }
+  const std::vector<Observable>& sensors() const { return sensors_; }
   const std::vector<MuscleGroup>& groups() const { return groups_; }
   const ParameterCatalogue& parameters() const { return *parameters_; }
-  /// Bodies with mass that the coordinate moves, in order of distance from ground.
+  /// Bodies with mass that any of the coordinates moves, in order of distance from ground.
   const std::vector<std::string>& movedBodies() const { return movedBodies_; }
-  /// Unit axis in ground about which the coordinate turns all of them; zero if it does not.
+  /// Axis of the first coordinate that turns its bodies across gravity; zero if none does.
   const Eigen::Vector3d& axis() const { return axis_; }
-  /// A point of a body, in ground, at q and the defaults of the other coordinates.
+  /// A point of a body, in ground, at q of the first coordinate and the defaults of the others.
   Eigen::Vector3d positionOf(const std::string& body, const Eigen::Vector3d& point, double q) const;
-  /// Of an arm's muscles on the coordinate, at mid-range [m].
-  Eigen::VectorXd momentArms(const MusculoskeletalSystem& arm) const;
-  /// ∂(mass centre of a body in ground)/∂q.
+  /// Of a system's muscles on the coordinates, each at its mid-range [m]: muscles × coordinates.
+  Eigen::MatrixXd momentArms(const MusculoskeletalSystem& arm) const;
+  /// ∂(mass centre of a body in ground)/∂q of the first coordinate.
   Eigen::Vector3d velocityOf(const std::string& body, double q) const;
+  /// Of an effect or quantity of a coordinate: "visc"; of several coordinates, "knee_angle_r.visc".
+  std::string idAt(const MovingCoordinate& at, const std::string& id) const;
+  /// Of an effect or quantity of a sensor: "bias"; of several sensors, "knee_angle_r.bias".
+  std::string idOf(std::size_t sensor, const std::string& id) const;
   bool knows(const std::string& id) const;  ///< whether there is a candidate with this id
   std::size_t find(const std::string& quantity) const;  ///< @throws std::invalid_argument
 
@@ -138,7 +171,8 @@ class EncompassingModel {
   MusculoskeletalSystem armOf(const ParameterCatalogue::Setting& setting) const;
   /// Derivatives of the numbers with respect to a quantity; empty for one of the sensor.
   ParameterDirection direction(const Eigen::VectorXd& values, std::size_t quantity) const;
-  SensorLaw sensorAt(const Eigen::VectorXd& values) const;
+  SensorLaw sensorAt(const Eigen::VectorXd& values, std::size_t sensor = 0) const;
+  std::size_t sensorOf(std::size_t quantity) const { return meanings_[quantity].sensor; }
   const std::vector<TimedForce>& timedForces() const { return timedForces_; }
   Meaning::Kind kindOf(std::size_t quantity) const { return meanings_[quantity].kind; }
 
@@ -161,13 +195,14 @@ class EncompassingModel {
     }
   };
   Numbers numbersAt(const Eigen::VectorXd& values) const;
-  void findBodies();
+  void findBodies(MovingCoordinate& at) const;
   void findGroups();
 
   Model base_;
   SystemOptions armOptions_;
   std::unique_ptr<const MusculoskeletalSystem> arm_;
-  int freeIndex_;
+  std::vector<MovingCoordinate> coordinates_;
+  std::vector<Observable> sensors_;
   std::unique_ptr<const ParameterCatalogue> parameters_;
   std::vector<std::string> movedBodies_;
   Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();

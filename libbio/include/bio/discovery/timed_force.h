@@ -14,7 +14,8 @@ namespace bio::discover {
 struct TimedForce {
   enum class Of { force, mass } of = Of::force;
   bool ends = false;
-  std::size_t amplitude = 0;  ///< quantities
+  std::size_t coordinate = 0;  ///< of EncompassingModel::coordinates()
+  std::size_t amplitude = 0;   ///< quantities
   std::size_t time = 0;
 };
 

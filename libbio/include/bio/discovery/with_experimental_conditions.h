@@ -15,9 +15,9 @@ Eigen::VectorXd experimentalConditionsOf(const Trial& trial, const EncompassingM
 
 /// The model under the experimental conditions of the trial: with the known mass in the hand, and
 /// with gravity turned accordingly. The unchanged model if nothing was changed.
-/// @param coordinate the free coordinate
+/// @param coordinates the free ones
 /// @throws what EncompassingModel and experimentalConditionsOf throw
 Model withExperimentalConditions(const Model& model, const SystemOptions& arm,
-                                 const std::string& coordinate, const Trial& trial);
+                                 const CoordinateNames& coordinates, const Trial& trial);
 
 }  // namespace bio::discover

@@ -35,7 +35,7 @@ std::string parentOf(const EncompassingModel& model) {
 // Where the joint is a plain hinge L² = A + B cos q + C sin q.
 void addElasticBand(EncompassingModel& model) {
   const std::string parent = parentOf(model);
-  if (parent.empty() || model.movedBodies().empty()) return;
+  if (parent.empty() || model.movedBodies().empty() || !model.hasOneCoordinate()) return;
   const std::string& hand = model.movedBodies().back();
   const Vector3d center = findBody(model.base(), hand).massCenter;
   const auto squaredLength = [&](double q) {
@@ -59,7 +59,7 @@ void addElasticBand(EncompassingModel& model) {
       fmt::format("sqrt({:.17g}+({:.17g})*cos(q)+({:.17g})*sin(q))", A, B, C);
   const std::string slope = fmt::format("(({:.17g})*cos(q)-({:.17g})*sin(q))/(2*{})", C, B, length);
   addExpression(
-      model,
+      model, model.coordinates().front(),
       {"spring",
        "elastic band",
        fmt::format("An elastic band pulls the {} towards the near end of the {}.", hand, parent),

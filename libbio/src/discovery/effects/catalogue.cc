@@ -15,19 +15,20 @@ using Eigen::Index;
 using info::discover::Candidate;
 
 // One line here and one below for each effect, or small family of them, of a file in this folder.
-void addViscousDamping(EncompassingModel& model);
-void addCoulombFriction(EncompassingModel& model);
-void addStribeckFriction(EncompassingModel& model);
-void addQuadraticDrag(EncompassingModel& model);
-void addPowerDamping(EncompassingModel& model);
-void addStiffness(EncompassingModel& model);
-void addLimits(EncompassingModel& model);
-void addExponentialLimits(EncompassingModel& model);
+void addViscousDamping(EncompassingModel& model, const MovingCoordinate& at);
+void addCoulombFriction(EncompassingModel& model, const MovingCoordinate& at);
+void addStribeckFriction(EncompassingModel& model, const MovingCoordinate& at);
+void addQuadraticDrag(EncompassingModel& model, const MovingCoordinate& at);
+void addPowerDamping(EncompassingModel& model, const MovingCoordinate& at);
+void addStiffness(EncompassingModel& model, const MovingCoordinate& at);
+void addLimits(EncompassingModel& model, const MovingCoordinate& at);
+void addExponentialLimits(EncompassingModel& model, const MovingCoordinate& at);
 void addPayload(EncompassingModel& model);
 void addTilt(EncompassingModel& model);
-void addConstantTorque(EncompassingModel& model);
+void addConstantTorque(EncompassingModel& model, const MovingCoordinate& at);
 void addElasticBand(EncompassingModel& model);
-void addTimedForces(EncompassingModel& model);
+void addTimedTorques(EncompassingModel& model, const MovingCoordinate& at);
+void addTimedMasses(EncompassingModel& model);
 void addMissingMuscles(EncompassingModel& model);
 void addDelay(EncompassingModel& model);
 void addShape(EncompassingModel& model);
@@ -42,7 +43,7 @@ void addActivationError(EncompassingModel& model);
 void addMuscleErrors(EncompassingModel& model);
 void addTendonCompliance(EncompassingModel& model);
 void addWrapErrors(EncompassingModel& model);
-void addSensorErrors(EncompassingModel& model);
+void addSensorErrors(EncompassingModel& model, std::size_t sensor);
 
 const std::vector<EffectEntry>& effectEntries() {
   static const std::vector<EffectEntry> entries = {
@@ -59,7 +60,8 @@ const std::vector<EffectEntry>& effectEntries() {
       {"const", addConstantTorque},
       {"handforce", addHandForce},
       {"spring", addElasticBand},
-      {"timed", addTimedForces},
+      {"timed", addTimedTorques},
+      {"timed", addTimedMasses},
       {"fatigue", addFatigue},
       {"missing", addMissingMuscles},
       {"delay", addDelay},
@@ -98,20 +100,28 @@ void mustBeKnown(const EncompassingModel& encompassing, const std::vector<std::s
 }  // namespace
 
 EncompassingModel encompassingModel(const Model& model, const SystemOptions& arm,
-                                    const std::string& coordinate,
+                                    const CoordinateNames& coordinates,
                                     const std::vector<std::string>& leftOut,
-                                    const std::vector<info::discover::FormulaTerm>& formula) {
+                                    const std::vector<info::discover::FormulaTerm>& formula,
+                                    std::size_t axis, std::vector<Observable> sensors) {
   const std::vector<std::string> without = effectIds(leftOut);
-  EncompassingModel encompassing(model, arm, coordinate);
+  EncompassingModel encompassing(model, arm, coordinates, std::move(sensors));
   addNuisances(encompassing);
   addExperimentalConditions(encompassing);
   for (const EffectEntry& entry : effectEntries()) {
-    if (std::find(without.begin(), without.end(), entry.id) == without.end())
-      entry.add(encompassing);
+    if (std::find(without.begin(), without.end(), entry.id) != without.end()) continue;
+    if (const auto* ofSystem = std::get_if<OfSystem>(&entry.add)) (*ofSystem)(encompassing);
+    if (const auto* ofCoordinate = std::get_if<OfCoordinate>(&entry.add)) {
+      for (const MovingCoordinate& at : encompassing.coordinates())
+        (*ofCoordinate)(encompassing, at);
+    }
+    if (const auto* ofSensor = std::get_if<OfSensor>(&entry.add)) {
+      for (std::size_t i = 0; i < encompassing.sensors().size(); ++i) (*ofSensor)(encompassing, i);
+    }
   }
   mustBeKnown(encompassing, without);
   encompassing.forget(without);
-  if (!formula.empty()) addFormula(encompassing, formula);
+  if (!formula.empty()) addFormula(encompassing, encompassing.coordinates().at(axis), formula);
   return encompassing;
 }
 
@@ -159,14 +169,15 @@ std::string placeOfMass(const EncompassingModel& model) {
   return (end == "the hand" ? "in " : "on ") + end;
 }
 
-CoordinateUnits unitsOf(const EncompassingModel& model) {
-  if (model.coordinate().isRotation) return {"rad", "rad/s", "N m", "torque"};
+CoordinateUnits unitsOf(const EncompassingModel& model, const MovingCoordinate& at) {
+  if (at.coordinate.isRotation) return {"rad", "rad/s", "N m", "torque"};
+  const auto k = &at - model.coordinates().data();
   double up = 0, down = 0;
   for (const MuscleGroup& group : model.groups()) {
     for (const std::size_t i : group.muscles) {
       const double most =
           maxIsometricForce(findMuscle(model.base(), model.arm().muscles()[i].name));
-      (group.momentArm > 0 ? up : down) += std::abs(group.momentArm) * most;
+      (group.momentArms[k] > 0 ? up : down) += std::abs(group.momentArms[k]) * most;
     }
   }
   const double strongest = std::max(up, down);
@@ -174,11 +185,24 @@ CoordinateUnits unitsOf(const EncompassingModel& model) {
   return {"m", "m/s", "N", "force", 0.125, strength};
 }
 
-std::string lawName(const EncompassingModel& model, const std::string& id) {
-  return model.coordinate().name + "_" + id;
+Candidate candidateAt(const EncompassingModel& model, const MovingCoordinate& at,
+                      const std::string& id, std::string name, std::string sentence,
+                      std::vector<std::size_t> quantities,
+                      const std::vector<std::vector<double>>& starts) {
+  if (!model.hasOneCoordinate()) {
+    name += " of " + at.coordinate.name;
+    sentence = at.coordinate.name + ": " + sentence;
+  }
+  return candidate(model, model.idAt(at, id), std::move(name), std::move(sentence),
+                   info::discover::EffectKind::structure, std::move(quantities), starts);
 }
 
-void addFormula(EncompassingModel& model, const std::vector<info::discover::FormulaTerm>& terms) {
+std::string lawName(const MovingCoordinate& at, const std::string& id) {
+  return at.coordinate.name + "_" + id;
+}
+
+void addFormula(EncompassingModel& model, const MovingCoordinate& at,
+                const std::vector<info::discover::FormulaTerm>& terms) {
   ExpressionEffect effect{"formula",
                           "free-form force",
                           "A force outside the catalogue, as a formula of the state.",
@@ -197,29 +221,33 @@ void addFormula(EncompassingModel& model, const std::vector<info::discover::Form
     effect.starts[0].push_back(terms[k].start);
   }
   effect.expression = fmt::format("c*({})", sum);
-  addExpression(model, effect);
+  addExpression(model, at, effect);
 }
 
-std::optional<std::size_t> addExpression(EncompassingModel& model, const ExpressionEffect& effect) {
-  const std::string law = lawName(model, effect.id);
+std::optional<std::size_t> addExpression(EncompassingModel& model, const MovingCoordinate& at,
+                                         const ExpressionEffect& effect) {
+  const std::string law = lawName(at, effect.id);
   for (const ExpressionBasedCoordinateForce& force : model.base().expressionForces) {
     if (force.name != law || !force.enabled) continue;
-    model.addPresent(effect.id, law);
+    model.addPresent(model.idAt(at, effect.id), law);
     return {};
   }
   std::vector<NamedConstant> constants;
   for (const std::string& name : effect.constants) constants.push_back({name, 0});
   const std::size_t force =
-      model.addLaw({law, model.coordinate().name, effect.expression, true, constants});
+      model.addLaw({law, at.coordinate.name, effect.expression, true, constants});
   std::vector<std::size_t> quantities;
   for (std::size_t i = 0; i < effect.quantities.size(); ++i) {
     const std::size_t number = model.number(ExpressionTarget{force, i}, 0);
-    quantities.push_back(model.add(effect.quantities[i], {Meaning::Kind::shift, {{number}}}));
+    info::discover::Quantity quantity = effect.quantities[i];
+    quantity.name = model.idAt(at, quantity.name);
+    quantities.push_back(model.add(std::move(quantity), {Meaning::Kind::shift, {{number}}}));
   }
   model.lawFollows(quantities);
-  model.add(candidate(model, effect.id, effect.name, effect.sentence,
-                      info::discover::EffectKind::structure, quantities, effect.starts,
-                      effect.equivalents));
+  Candidate one =
+      candidateAt(model, at, effect.id, effect.name, effect.sentence, quantities, effect.starts);
+  one.equivalents = effect.equivalents;
+  model.add(std::move(one));
   return force;
 }
 

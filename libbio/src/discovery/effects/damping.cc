@@ -11,55 +11,56 @@ namespace bio::discover {
 namespace {
 
 /// Anything that damps through the whole range.
-std::string damperOf(const EncompassingModel& model) {
+std::string damperOf(const EncompassingModel& model, const MovingCoordinate& at) {
   for (const SpringGeneralizedForce& spring : model.base().springForces) {
-    const bool here = spring.enabled && spring.coordinate == model.coordinate().name;
+    const bool here = spring.enabled && spring.coordinate == at.coordinate.name;
     if (here && spring.viscosity != 0) return spring.name;
   }
   for (const CoordinateLimitForce& limit : model.base().limitForces) {
-    if (!limit.enabled || limit.coordinate != model.coordinate().name) continue;
-    if (evaluate(limit, model.middle(), 1).dForce_dqDot != 0) return limit.name;
+    if (!limit.enabled || limit.coordinate != at.coordinate.name) continue;
+    if (evaluate(limit, at.middle(), 1).dForce_dqDot != 0) return limit.name;
   }
   return {};
 }
 
 }  // namespace
 
-void addViscousDamping(EncompassingModel& model) {
-  if (const std::string damper = damperOf(model); !damper.empty()) {
-    return model.addPresent("visc", damper);
+void addViscousDamping(EncompassingModel& model, const MovingCoordinate& at) {
+  if (const std::string damper = damperOf(model, at); !damper.empty()) {
+    return model.addPresent(model.idAt(at, "visc"), damper);
   }
-  const CoordinateUnits units = unitsOf(model);
+  const CoordinateUnits units = unitsOf(model, at);
   const double size = units.strength / units.length;
   const std::size_t law =
-      model.addLaw(SpringGeneralizedForce{lawName(model, "visc"), model.coordinate().name});
-  const std::size_t b =
-      model.add(amplitude("visc.viscosity", units.viscosity(), 0, 3 * size, 0.3 * size),
-                {Meaning::Kind::shift, {{model.number(SpringForceTarget{law, 2}, 0)}}});
+      model.addLaw(SpringGeneralizedForce{lawName(at, "visc"), at.coordinate.name});
+  const std::size_t b = model.add(
+      amplitude(model.idAt(at, "visc.viscosity"), units.viscosity(), 0, 3 * size, 0.3 * size),
+      {Meaning::Kind::shift, {{model.number(SpringForceTarget{law, 2}, 0)}}});
   model.lawFollows({b});
-  model.add(candidate(model, "visc", "viscous joint damping",
-                      "The joint resists its motion in proportion to the speed.",
-                      info::discover::EffectKind::structure, {b}, {{0.1 * size}}));
+  model.add(candidateAt(model, at, "visc", "viscous joint damping",
+                        "The joint resists its motion in proportion to the speed.", {b},
+                        {{0.1 * size}}));
 }
 
-void addCoulombFriction(EncompassingModel& model) {
-  const CoordinateUnits units = unitsOf(model);
+void addCoulombFriction(EncompassingModel& model, const MovingCoordinate& at) {
+  const CoordinateUnits units = unitsOf(model, at);
   const double size = units.strength;
-  addExpression(model, {"coulomb",
-                        "Coulomb friction",
-                        fmt::format("The joint resists its motion with a constant {} at any speed.",
-                                    units.word),
-                        fmt::format("-c*tanh(qdot/{})", 0.05 * units.length),
-                        {"c"},
-                        {amplitude("coulomb." + units.word, units.force, 0, 3 * size, 0.6 * size)},
-                        {{0.2 * size}}});
+  addExpression(
+      model, at,
+      {"coulomb",
+       "Coulomb friction",
+       fmt::format("The joint resists its motion with a constant {} at any speed.", units.word),
+       fmt::format("-c*tanh(qdot/{})", 0.05 * units.length),
+       {"c"},
+       {amplitude("coulomb." + units.word, units.force, 0, 3 * size, 0.6 * size)},
+       {{0.2 * size}}});
 }
 
-void addStribeckFriction(EncompassingModel& model) {
-  const CoordinateUnits units = unitsOf(model);
+void addStribeckFriction(EncompassingModel& model, const MovingCoordinate& at) {
+  const CoordinateUnits units = unitsOf(model, at);
   const double size = units.strength, speed = units.length;
   addExpression(
-      model,
+      model, at,
       {"stribeck",
        "Stribeck friction",
        fmt::format("The joint resists its motion with a {} that is twice as large near rest.",
@@ -71,26 +72,27 @@ void addStribeckFriction(EncompassingModel& model) {
        {{0.15 * size, 0.3 * speed}}});
 }
 
-void addQuadraticDrag(EncompassingModel& model) {
-  const CoordinateUnits units = unitsOf(model);
+void addQuadraticDrag(EncompassingModel& model, const MovingCoordinate& at) {
+  const CoordinateUnits units = unitsOf(model, at);
   const double size = units.strength / (units.length * units.length);
-  addExpression(model, {"drag",
-                        "quadratic drag",
-                        "The joint resists its motion in proportion to the square of the speed.",
-                        "-c*qdot*abs(qdot)",
-                        {"c"},
-                        {amplitude("drag.coefficient",
-                                   fmt::format("{} s^2/{}^2", units.force, units.position), 0,
-                                   1 * size, 0.1 * size)},
-                        {{0.03 * size}}});
+  addExpression(
+      model, at,
+      {"drag",
+       "quadratic drag",
+       "The joint resists its motion in proportion to the square of the speed.",
+       "-c*qdot*abs(qdot)",
+       {"c"},
+       {amplitude("drag.coefficient", fmt::format("{} s^2/{}^2", units.force, units.position), 0,
+                  1 * size, 0.1 * size)},
+       {{0.03 * size}}});
 }
 
-void addPowerDamping(EncompassingModel& model) {
-  const CoordinateUnits units = unitsOf(model);
+void addPowerDamping(EncompassingModel& model, const MovingCoordinate& at) {
+  const CoordinateUnits units = unitsOf(model, at);
   // b |q̇|^n at n = 1/2 is as large as a rotation's where q̇ is `length` times its speed
   const double size = units.strength * (units.position == "rad" ? 1 : std::exp2(1.5));
   addExpression(
-      model,
+      model, at,
       {"powerdamp",
        "sub-linear damping",
        "The joint resists its motion with a power of the speed between 0 "

@@ -26,7 +26,7 @@ struct CoordinateUnits {
   std::string stiffness() const { return force + "/" + position; }
   std::string viscosity() const { return force + " s/" + position; }
 };
-CoordinateUnits unitsOf(const EncompassingModel& model);
+CoordinateUnits unitsOf(const EncompassingModel& model, const MovingCoordinate& at);
 
 /// A quantity that is 0 while its effect is absent.
 inline info::discover::Quantity amplitude(std::string name, std::string unit, double lower,
@@ -51,11 +51,17 @@ info::discover::Candidate candidate(const EncompassingModel& model, std::string 
                                     const std::vector<std::vector<double>>& starts,
                                     std::vector<std::string> equivalents = {});
 
-/// Name of the law that an effect adds to a model: "elbow_flexion_visc".
-std::string lawName(const EncompassingModel& model, const std::string& id);
+/// The same of a coordinate, which id, name and sentence tell where there are several.
+info::discover::Candidate candidateAt(const EncompassingModel& model, const MovingCoordinate& at,
+                                      const std::string& id, std::string name, std::string sentence,
+                                      std::vector<std::size_t> quantities,
+                                      const std::vector<std::vector<double>>& starts);
 
-/// Adds an effect given as an expression in q, qdot and its quantities (by the names of
-/// `constants`). Present if the model has a law of that name.
+/// Name of the law that an effect adds to a model: "elbow_flexion_visc".
+std::string lawName(const MovingCoordinate& at, const std::string& id);
+
+/// Adds a force on a coordinate, given as an expression in q, qdot and its quantities (by the names
+/// of `constants`). Present if the model has a law of that name.
 struct ExpressionEffect {
   std::string id, name, sentence, expression;
   std::vector<std::string> constants;
@@ -64,6 +70,7 @@ struct ExpressionEffect {
   std::vector<std::string> equivalents = {};
 };
 /// @return the law's index in the model's list; nothing if it is present
-std::optional<std::size_t> addExpression(EncompassingModel& model, const ExpressionEffect& effect);
+std::optional<std::size_t> addExpression(EncompassingModel& model, const MovingCoordinate& at,
+                                         const ExpressionEffect& effect);
 
 }  // namespace bio::discover

@@ -13,9 +13,9 @@ namespace bio::discover {
 namespace {
 
 /// What stops the coordinate at its ends in the model already; empty: nothing.
-std::string limitOf(const EncompassingModel& model) {
+std::string limitOf(const EncompassingModel& model, const MovingCoordinate& at) {
   for (const CoordinateLimitForce& limit : model.base().limitForces) {
-    if (!limit.enabled || limit.coordinate != model.coordinate().name) continue;
+    if (!limit.enabled || limit.coordinate != at.coordinate.name) continue;
     const bool dampsOnly = std::max(limit.upperStiffness, limit.lowerStiffness) < 1e-3;
     if (!dampsOnly) return limit.name;
   }
@@ -24,80 +24,81 @@ std::string limitOf(const EncompassingModel& model) {
 
 }  // namespace
 
-void addStiffness(EncompassingModel& model) {
+void addStiffness(EncompassingModel& model, const MovingCoordinate& at) {
   for (const SpringGeneralizedForce& spring : model.base().springForces) {
-    const bool here = spring.enabled && spring.coordinate == model.coordinate().name;
-    if (here && spring.stiffness != 0) return model.addPresent("stiffness", spring.name);
+    const bool here = spring.enabled && spring.coordinate == at.coordinate.name;
+    if (here && spring.stiffness != 0)
+      return model.addPresent(model.idAt(at, "stiffness"), spring.name);
   }
-  const Coordinate& q = model.coordinate();
-  const CoordinateUnits units = unitsOf(model);
+  const Coordinate& q = at.coordinate;
+  const CoordinateUnits units = unitsOf(model, at);
   const double size = units.strength / units.length, span = q.rangeMax - q.rangeMin;
   const std::size_t law =
-      model.addLaw(SpringGeneralizedForce{lawName(model, "stiffness"), model.coordinate().name});
-  const std::size_t k =
-      model.add(amplitude("stiffness.stiffness", units.stiffness(), 0, 10 * size, 2 * size),
-                {Meaning::Kind::shift, {{model.number(SpringForceTarget{law, 0}, 0)}}});
-  const std::size_t rest = model.add(
-      shape("stiffness.rest", units.position, model.middle(), q.rangeMin, q.rangeMax, 0.3 * span),
-      {Meaning::Kind::shift, {{model.number(SpringForceTarget{law, 1}, 0)}}});
+      model.addLaw(SpringGeneralizedForce{lawName(at, "stiffness"), at.coordinate.name});
+  const std::size_t k = model.add(
+      amplitude(model.idAt(at, "stiffness.stiffness"), units.stiffness(), 0, 10 * size, 2 * size),
+      {Meaning::Kind::shift, {{model.number(SpringForceTarget{law, 0}, 0)}}});
+  const std::size_t rest =
+      model.add(shape(model.idAt(at, "stiffness.rest"), units.position, at.middle(), q.rangeMin,
+                      q.rangeMax, 0.3 * span),
+                {Meaning::Kind::shift, {{model.number(SpringForceTarget{law, 1}, 0)}}});
   model.lawFollows({k, rest});
-  model.add(candidate(model, "stiffness", "joint stiffness",
-                      "A spring pulls the joint towards a rest position.",
-                      info::discover::EffectKind::structure, {k, rest},
-                      {{0.5 * size, model.middle()},
-                       {0.5 * size, q.rangeMin + 0.2 * span},
-                       {0.5 * size, q.rangeMax - 0.2 * span}}));
+  model.add(candidateAt(model, at, "stiffness", "joint stiffness",
+                        "A spring pulls the joint towards a rest position.", {k, rest},
+                        {{0.5 * size, at.middle()},
+                         {0.5 * size, q.rangeMin + 0.2 * span},
+                         {0.5 * size, q.rangeMax - 0.2 * span}}));
 }
 
-void addLimits(EncompassingModel& model) {
-  if (const std::string limit = limitOf(model); !limit.empty()) {
-    return model.addPresent("limit", limit);
+void addLimits(EncompassingModel& model, const MovingCoordinate& at) {
+  if (const std::string limit = limitOf(model, at); !limit.empty()) {
+    return model.addPresent(model.idAt(at, "limit"), limit);
   }
-  const Coordinate& q = model.coordinate();
-  const CoordinateUnits units = unitsOf(model);
+  const Coordinate& q = at.coordinate;
+  const CoordinateUnits units = unitsOf(model, at);
   const double size = units.strength / units.length, span = q.rangeMax - q.rangeMin;
   const std::size_t law =
-      model.addLaw(CoordinateLimitForce{lawName(model, "limit"), model.coordinate().name});
+      model.addLaw(CoordinateLimitForce{lawName(at, "limit"), at.coordinate.name});
   const auto number = [&](int component) {
     return model.number(LimitForceTarget{law, component}, 0);
   };
-  const std::size_t K =
-      model.add(amplitude("limit.stiffness", units.stiffness(), 0, 100 * size, 10 * size),
-                {Meaning::Kind::shift, {{number(1)}, {number(3)}}});
+  const std::size_t K = model.add(
+      amplitude(model.idAt(at, "limit.stiffness"), units.stiffness(), 0, 100 * size, 10 * size),
+      {Meaning::Kind::shift, {{number(1)}, {number(3)}}});
   // tissue leaves the middle fifth of the range free: else this is a stiffness that grows
   const double upperAt = q.rangeMax - 0.2 * span, lowerAt = q.rangeMin + 0.2 * span,
                free = 0.1 * span;
-  const std::size_t upper = model.add(
-      shape("limit.upper", units.position, upperAt, model.middle() + free, q.rangeMax, 0.15 * span),
-      {Meaning::Kind::shift, {{number(0)}}});
-  const std::size_t lower = model.add(
-      shape("limit.lower", units.position, lowerAt, q.rangeMin, model.middle() - free, 0.15 * span),
-      {Meaning::Kind::shift, {{number(2)}}});
-  const std::size_t transition = model.add(
-      shape("limit.transition", units.position, 0.2 * span, 0.05 * span, span, 0.1 * span),
-      {Meaning::Kind::shift, {{number(5)}}});
+  const std::size_t upper = model.add(shape(model.idAt(at, "limit.upper"), units.position, upperAt,
+                                            at.middle() + free, q.rangeMax, 0.15 * span),
+                                      {Meaning::Kind::shift, {{number(0)}}});
+  const std::size_t lower = model.add(shape(model.idAt(at, "limit.lower"), units.position, lowerAt,
+                                            q.rangeMin, at.middle() - free, 0.15 * span),
+                                      {Meaning::Kind::shift, {{number(2)}}});
+  const std::size_t transition = model.add(shape(model.idAt(at, "limit.transition"), units.position,
+                                                 0.2 * span, 0.05 * span, span, 0.1 * span),
+                                           {Meaning::Kind::shift, {{number(5)}}});
   model.lawFollows({K, upper, lower, transition});
   std::vector<std::vector<double>> starts;
   for (const double inward : {0.2, 0.3, 0.1}) {
     starts.push_back(
         {3 * size, q.rangeMax - inward * span, q.rangeMin + inward * span, 0.2 * span});
   }
-  model.add(candidate(
-      model, "limit", "passive joint limits",
+  model.add(candidateAt(
+      model, at, "limit", "passive joint limits",
       "Passive tissue increasingly resists motion towards both ends of the joint's range.",
-      info::discover::EffectKind::structure, {K, upper, lower, transition}, starts));
+      {K, upper, lower, transition}, starts));
 }
 
-void addExponentialLimits(EncompassingModel& model) {
-  if (const std::string limit = limitOf(model); !limit.empty()) {
-    return model.addPresent("limit_exp", limit);
+void addExponentialLimits(EncompassingModel& model, const MovingCoordinate& at) {
+  if (const std::string limit = limitOf(model, at); !limit.empty()) {
+    return model.addPresent(model.idAt(at, "limit_exp"), limit);
   }
-  const Coordinate& q = model.coordinate();
-  const CoordinateUnits units = unitsOf(model);
+  const Coordinate& q = at.coordinate;
+  const CoordinateUnits units = unitsOf(model, at);
   const double size = units.strength, per = 1 / units.length;
-  const double span = q.rangeMax - q.rangeMin, middle = model.middle();
+  const double span = q.rangeMax - q.rangeMin, middle = at.middle();
   addExpression(
-      model,
+      model, at,
       {"limit_exp",
        "exponential passive joint limits",
        fmt::format("Passive tissue resists motion with a {} that grows exponentially "

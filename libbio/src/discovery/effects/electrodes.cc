@@ -36,7 +36,7 @@ void addShape(EncompassingModel& model) {
 void addCrosstalk(EncompassingModel& model) {
   for (const MuscleGroup& from : model.groups()) {
     for (const MuscleGroup& to : model.groups()) {
-      if (from.momentArm * to.momentArm >= 0) continue;
+      if ((from.momentArms.array() * to.momentArms.array() >= 0).all()) continue;
       std::vector<Meaning::Part> parts;
       for (const std::size_t i : to.muscles) {
         for (const std::size_t j : from.muscles) {

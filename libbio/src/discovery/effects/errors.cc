@@ -177,31 +177,69 @@ void addWrapErrors(EncompassingModel& model) {
   }
 }
 
-void addSensorErrors(EncompassingModel& model) {
-  const auto add = [&](const char* id, const char* name, const char* sentence, const char* unit,
-                       double bound, double sd, double start, Meaning::Kind kind,
-                       std::vector<std::string> equivalents = {}) {
+namespace {
+
+/// What is usual of a sensor: bound, prior sd and start of a fit, for its bias and its drift per
+/// second. Judgements: a few degrees, millimetres or N m.
+struct SensorSizes {
+  double biasBound, biasSd, biasStart, driftBound, driftSd, driftStart;
+  SensorSizes scaled(double by) const {
+    return {by * biasBound,  by * biasSd,  by * biasStart,
+            by * driftBound, by * driftSd, by * driftStart};
+  }
+};
+
+SensorSizes sizesOf(const Observable& what, const std::string& unit) {
+  constexpr SensorSizes angle{0.5, 0.1, 0.02, 0.1, 0.02, 0.003};
+  constexpr SensorSizes shift{0.2, 0.02, 0.005, 0.02, 0.004, 0.0006};
+  if (what.kind == Observable::Kind::fibreLength) return shift.scaled(0.25);
+  if (what.kind == Observable::Kind::tendonForce) return angle.scaled(256);
+  if (unit == "rad") return angle;
+  if (unit == "m") return shift;
+  if (unit == "rad/s") return angle.scaled(4);
+  if (unit == "m/s") return shift.scaled(4);
+  if (unit == "N·m") return angle.scaled(8);
+  if (unit == "N") return angle.scaled(64);
+  return angle;  // an activation
+}
+
+}  // namespace
+
+void addSensorErrors(EncompassingModel& model, std::size_t sensor) {
+  const Observable& what = model.sensors()[sensor];
+  const bool isOne = model.sensors().size() == 1;
+  const std::string unit = unitOf(what, model.base());
+  const auto add = [&](const char* id, std::string name, std::string sentence,
+                       const std::string& of, double bound, double sd, double start,
+                       Meaning::Kind kind, std::vector<std::string> equivalents = {}) {
     const double lowest = kind == Meaning::Kind::lag ? 0 : -bound;
+    const std::string full = model.idOf(sensor, id);
     const std::size_t x =
-        model.add(amplitude(fmt::format("{}.value", id), unit, lowest, bound, sd), {kind, {}});
-    model.add(candidate(model, id, name, sentence, EffectKind::sensor, {x}, {{start}},
-                        std::move(equivalents)));
+        model.add(amplitude(full + ".value", of, lowest, bound, sd), {kind, {}, sensor});
+    if (!isOne) {
+      name += " of " + nameOf(what);
+      sentence = nameOf(what) + ": " + sentence;
+    }
+    model.add(candidate(model, full, std::move(name), std::move(sentence), EffectKind::sensor, {x},
+                        {{start}}, std::move(equivalents)));
   };
-  const bool turns = model.coordinate().isRotation;
-  add("bias", "sensor bias", "The sensor's reading is off by a constant.", turns ? "rad" : "m",
-      turns ? 0.5 : 0.2, turns ? 0.1 : 0.02, turns ? 0.02 : 0.005, Meaning::Kind::bias);
-  add("gain", "sensor gain", "The sensor's reading is a multiple of the coordinate.", "", 0.5, 0.1,
-      0.02, Meaning::Kind::gain);
+  const SensorSizes sizes = sizesOf(what, unit);
+  const std::string thing = what.isCoordinate() ? "coordinate" : "true value";
+  add("bias", "sensor bias", "The sensor's reading is off by a constant.", unit, sizes.biasBound,
+      sizes.biasSd, sizes.biasStart, Meaning::Kind::bias);
+  add("gain", "sensor gain", fmt::format("The sensor's reading is a multiple of the {}.", thing),
+      "", 0.5, 0.1, 0.02, Meaning::Kind::gain);
   add("clock", "clock offset", "The sensor's clock is behind that of the EMG.", "s", 0.2, 0.05,
-      0.01, Meaning::Kind::clock, {"delay"});
+      0.01, Meaning::Kind::clock,
+      isOne ? std::vector<std::string>{"delay"} : std::vector<std::string>{});
   add("clock_rate", "clock rate",
       "The sensor's clock is slow relative to that of the EMG (fast if negative): a sample with "
       "time stamp t was measured at (1 + rate) t.",
       "", 0.2, 0.03, 0.01, Meaning::Kind::rate);
-  add("lag", "sensor lag", "The sensor follows the coordinate with a first-order lag.", "s", 0.3,
-      0.05, 0.01, Meaning::Kind::lag);
+  add("lag", "sensor lag", fmt::format("The sensor follows the {} with a first-order lag.", thing),
+      "s", 0.3, 0.05, 0.01, Meaning::Kind::lag);
   add("drift", "sensor drift", "The sensor's reading drifts at a constant rate.",
-      turns ? "rad/s" : "m/s", turns ? 0.1 : 0.02, turns ? 0.02 : 0.004, turns ? 0.003 : 0.0006,
+      unit.empty() ? "1/s" : unit + "/s", sizes.driftBound, sizes.driftSd, sizes.driftStart,
       Meaning::Kind::drift);
 }
 

@@ -56,10 +56,10 @@ void addTilt(EncompassingModel& model) {
                       info::discover::EffectKind::structure, {angle}, {{0.05}}, {"handforce"}));
 }
 
-void addConstantTorque(EncompassingModel& model) {
-  const CoordinateUnits units = unitsOf(model);
+void addConstantTorque(EncompassingModel& model, const MovingCoordinate& at) {
+  const CoordinateUnits units = unitsOf(model, at);
   const double size = units.strength;
-  addExpression(model,
+  addExpression(model, at,
                 {"const",
                  "constant joint " + units.word,
                  fmt::format("A constant {} acts on the joint.", units.word),
@@ -72,8 +72,9 @@ void addConstantTorque(EncompassingModel& model) {
 // τ(q) = F e·∂p/∂q = F(A cos(q + t) + B sin(q + t)) where the joint is a plain hinge, with e
 // horizontal, p the mass centre of the hand and t the known turn of the arm.
 void addHandForce(EncompassingModel& model) {
+  // the force of one formula acts on one coordinate
   const Vector3d e = horizontal(model);
-  if (e.isZero()) return;
+  if (e.isZero() || !model.hasOneCoordinate()) return;
   const std::string& hand = model.movedBodies().back();
   const auto arm = [&](double q) { return e.dot(model.velocityOf(hand, q)); };
   const double A = arm(0), B = arm(std::numbers::pi / 2);
@@ -81,15 +82,16 @@ void addHandForce(EncompassingModel& model) {
     if (std::abs(arm(q) - A * std::cos(q) - B * std::sin(q)) > 1e-9) return;
   }
   const double sign = A < 0 ? -1 : 1;
-  const auto force = addExpression(
-      model, {"handforce",
-              "horizontal force on " + endOfLimb(model),
-              fmt::format("A constant horizontal force acts on the {}.", hand),
-              fmt::format("F*(({:.17g})*cos(q+t)+({:.17g})*sin(q+t))", sign * A, sign * B),
-              {"F", "t"},
-              {amplitude("handforce.force", "N", -30, 30, 3)},
-              {{0.5}},
-              {"tilt"}});
+  const auto force =
+      addExpression(model, model.coordinates().front(),
+                    {"handforce",
+                     "horizontal force on " + endOfLimb(model),
+                     fmt::format("A constant horizontal force acts on the {}.", hand),
+                     fmt::format("F*(({:.17g})*cos(q+t)+({:.17g})*sin(q+t))", sign * A, sign * B),
+                     {"F", "t"},
+                     {amplitude("handforce.force", "N", -30, 30, 3)},
+                     {{0.5}},
+                     {"tilt"}});
   if (force) model.extend(model.find("known.turn"), {model.number(ExpressionTarget{*force, 1}, 0)});
 }
 

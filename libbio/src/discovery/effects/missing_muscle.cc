@@ -20,16 +20,16 @@ std::vector<std::string> synergists(const EncompassingModel& model, std::size_t 
   std::vector<std::string> names;
   try {
     const MusculoskeletalSystem arm(with, model.armOptions());
-    const Eigen::VectorXd momentArms = model.momentArms(arm);
+    const Eigen::MatrixXd momentArms = model.momentArms(arm);
     const auto& muscles = arm.muscles();
     const auto own = std::find_if(muscles.begin(), muscles.end(), [&](const SystemMuscle& one) {
       return one.name == with.muscles[muscle].name;
     });
     if (own == muscles.end()) return {};
-    const double pull = momentArms[own - muscles.begin()];
+    const Eigen::VectorXd pull = momentArms.row(own - muscles.begin()).transpose();
     for (std::size_t i = 0; i < muscles.size(); ++i) {
       const bool isOther = muscles[i].name != own->name;
-      if (isOther && momentArms[static_cast<Eigen::Index>(i)] * pull > 0)
+      if (isOther && momentArms.row(static_cast<Eigen::Index>(i)).dot(pull) > 0)
         names.push_back(muscles[i].name);
     }
   } catch (const std::invalid_argument&) {

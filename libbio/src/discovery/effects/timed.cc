@@ -10,39 +10,56 @@ namespace bio::discover {
 
 using info::discover::EffectKind;
 
-void addTimedForces(EncompassingModel& model) {
-  const CoordinateUnits units = unitsOf(model);
+using Of = TimedForce::Of;
+
+namespace {
+
+/// Adds the two quantities of a timed force. @return the force
+TimedForce withQuantities(EncompassingModel& model, const std::string& id, const std::string& word,
+                          TimedForce force, info::discover::Quantity size) {
+  size.name = id + "." + word;
+  force.amplitude = model.add(std::move(size), {Meaning::Kind::timed, {}});
+  force.time = model.add(shape(id + ".time", "s", 1, 0, 2, 1), {Meaning::Kind::timed, {}});
+  model.addTimedForce(force);
+  return force;
+}
+
+}  // namespace
+
+void addTimedTorques(EncompassingModel& model, const MovingCoordinate& at) {
+  const CoordinateUnits units = unitsOf(model, at);
   const double most = units.strength;
-  const auto add = [&](const char* id, const std::string& name, const std::string& sentence,
-                       TimedForce force, info::discover::Quantity size,
-                       const std::vector<double>& starts) {
-    size.name = fmt::format("{}.{}", id, force.of == TimedForce::Of::mass ? "mass" : units.word);
-    force.amplitude = model.add(std::move(size), {Meaning::Kind::timed, {}});
-    force.time =
-        model.add(shape(fmt::format("{}.time", id), "s", 1, 0, 2, 1), {Meaning::Kind::timed, {}});
-    std::vector<std::vector<double>> all;
-    for (const double start : starts) all.push_back({start, 1.0});
-    model.add(candidate(model, id, name, sentence, EffectKind::structure,
-                        {force.amplitude, force.time}, all));
-    model.addTimedForce(force);
+  const auto which = static_cast<std::size_t>(&at - model.coordinates().data());
+  const auto add = [&](const char* id, bool ends, const std::string& name,
+                       const std::string& sentence) {
+    const TimedForce force =
+        withQuantities(model, model.idAt(at, id), units.word, {Of::force, ends, which, 0, 0},
+                       amplitude("", units.force, -10 * most, 10 * most, 1 * most));
+    model.add(candidateAt(model, at, id, name, sentence, {force.amplitude, force.time},
+                          {{0.3 * most, 1.0}}));
   };
-  using Of = TimedForce::Of;
-  const auto torque = amplitude("", units.force, -10 * most, 10 * most, 1 * most);
-  add("torque_from", units.word + " that starts during the trial",
-      fmt::format("A constant {} starts to act on the joint during the trial.", units.word),
-      {Of::force, false, 0, 0}, torque, {0.3 * most});
-  add("torque_until", units.word + " that ends during the trial",
-      fmt::format("A constant {} acts on the joint and ends during the trial.", units.word),
-      {Of::force, true, 0, 0}, torque, {0.3 * most});
-  if (model.movedBodies().empty()) return;
-  const auto mass = amplitude("", "kg", 0, 5, 0.7);
+  add("torque_from", false, units.word + " that starts during the trial",
+      fmt::format("A constant {} starts to act on the joint during the trial.", units.word));
+  add("torque_until", true, units.word + " that ends during the trial",
+      fmt::format("A constant {} acts on the joint and ends during the trial.", units.word));
+}
+
+void addTimedMasses(EncompassingModel& model) {
+  // its moment is that of a mass on a coordinate that moves as measured, of one coordinate
+  if (model.movedBodies().empty() || !model.hasOneCoordinate()) return;
   const std::string hand = endOfLimb(model);
   const std::string subject = hand == "the hand" ? "The hand" : hand;
-  add("mass_from", "mass picked up by " + hand, subject + " picks up a mass during the trial.",
-      {Of::mass, false, 0, 0}, mass, {0.3});
-  add("mass_until", "mass put down by " + hand,
-      subject + " carries a mass and puts it down during the trial.", {Of::mass, true, 0, 0}, mass,
-      {0.3});
+  const auto add = [&](const char* id, bool ends, const std::string& name,
+                       const std::string& sentence) {
+    const TimedForce force = withQuantities(model, id, "mass", {Of::mass, ends, 0, 0, 0},
+                                            amplitude("", "kg", 0, 5, 0.7));
+    model.add(candidate(model, id, name, sentence, EffectKind::structure,
+                        {force.amplitude, force.time}, {{0.3, 1.0}}));
+  };
+  add("mass_from", false, "mass picked up by " + hand,
+      subject + " picks up a mass during the trial.");
+  add("mass_until", true, "mass put down by " + hand,
+      subject + " carries a mass and puts it down during the trial.");
 }
 
 }  // namespace bio::discover
