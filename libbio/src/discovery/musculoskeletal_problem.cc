@@ -82,6 +82,9 @@ MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemO
     lastStart = std::max(lastStart, trial.times[0]);
     firstEnd = std::min(firstEnd, trial.times[trial.times.size() - 1]);
   }
+  const Coordinate& observed = encompassing_.coordinate();
+  axes_ = {observed.isRotation ? info::discover::Axis{observed.name, "rad", "N·m"}
+                               : info::discover::Axis{observed.name, "m", "N"}};
   encompassing_.trialsLast(lastStart, firstEnd);
   encompassing_.forget(unsaturated(encompassing_, withFlatTops(trials)));
   quantities_ = encompassing_.quantities();
@@ -92,7 +95,7 @@ MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemO
 
 void MusculoskeletalProblem::addTrial(Trial trial) {
   const Coordinate& observed = encompassing_.coordinate();
-  OfTrial one{std::move(trial), {}, {}, {}, {}, {}, {}, {}, 0, 0};
+  OfTrial one{std::move(trial), {}, {}, {}, {}, {}, {}, {}, {}, 0, 0};
   for (const MeasuredMotion& motion : one.trial.measured) {
     if (motion.coordinate != observed.name) continue;
     if (options_.usableSeries) requireUsable(one.trial.file, motion);
@@ -110,6 +113,7 @@ void MusculoskeletalProblem::addTrial(Trial trial) {
   const double intervals = std::max(1.0, std::ceil((last - first) / options_.latentSpacing - 1e-9));
   for (int k = 0; k <= static_cast<int>(intervals); ++k) {
     one.nodes.push_back(first + k * options_.latentSpacing);
+    one.latentNodes.push_back({one.nodes.back(), 0});
   }
   one.heldMass = weightOfHeldMass(encompassing_, one.times, one.measured, one.nodes);
   const bool turns = observed.isRotation;
@@ -350,7 +354,7 @@ std::vector<std::string> MusculoskeletalProblem::inputNames() const {
 }
 
 std::unique_ptr<info::discover::DiscoveryProblem> MusculoskeletalProblem::withFormula(
-    const std::vector<info::discover::FormulaTerm>& terms,
+    std::size_t /*axis*/, const std::vector<info::discover::FormulaTerm>& terms,
     const std::vector<std::size_t>& kept) const {
   MusculoskeletalProblemOptions options = options_;
   options.formula = terms;

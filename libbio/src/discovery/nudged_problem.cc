@@ -25,8 +25,9 @@ class MusculoskeletalProblem::Nudged final : public info::discover::DiscoveryPro
   std::string trialName(int trial) const override { return of_.trialName(trial); }
   const std::vector<double>& times(int trial) const override { return of_.times(trial); }
   const VectorXd& measured(int trial) const override { return of_.measured(trial); }
-  const std::vector<double>& latentTimes(int trial) const override {
-    return of_.latentTimes(trial);
+  const std::vector<info::discover::Axis>& axes() const override { return of_.axes(); }
+  const std::vector<info::discover::Node>& nodes(int trial) const override {
+    return of_.nodes(trial);
   }
   double latentLag() const override { return of_.latentLag(); }
   Prediction predict(int trial, const VectorXd& values, const VectorXd& latent,

@@ -106,19 +106,25 @@ class MusculoskeletalProblem::Run final : public Simulation {
   Prediction predict() override {
     const auto K = static_cast<Index>(one_.times.size());
     const auto numNodes = static_cast<Index>(latentToo_ ? one_.nodes.size() : 0);
-    Prediction result{outputs_, MatrixXd::Constant(K, static_cast<Index>(wanted_.size()), nan),
+    const VectorXd nowhere = VectorXd::Constant(numNodes, nan);
+    Prediction result{outputs_,
+                      MatrixXd::Constant(K, static_cast<Index>(wanted_.size()), nan),
                       MatrixXd::Constant(latentToo_ ? K : 0, numNodes, nan),
-                      MatrixXd::Constant(numNodes, 1, of_.options_.latentFloor), speeds_};
+                      MatrixXd::Constant(numNodes, 1, of_.options_.latentFloor),
+                      speeds_,
+                      {nowhere, nowhere},
+                      MatrixXd::Constant(numNodes, numNodes, nan)};
     if (!run_) return result;
     SensitivityTrajectory s;
     try {
       s = run_->sensitivities(columns_.directions);
-      if (latentToo_) result.latentScale = of_.latentScale(one_, *arm_, s.motion);
+      if (latentToo_) result.scale = of_.latentScale(one_, *arm_, s.motion);
     } catch (const std::exception&) {
       result.outputs.setConstant(nan);
       result.speeds.setConstant(nan);
       return result;
     }
+    if (latentToo_) setCourse(s, result);
     differentiate(s, result);
     return result;
   }
@@ -147,6 +153,22 @@ class MusculoskeletalProblem::Run final : public Simulation {
     }
   }
 
+  /// The coordinate itself at the nodes; behind the last row it is as there.
+  void setCourse(const SensitivityTrajectory& s, Prediction& result) const {
+    const auto c = static_cast<std::size_t>(of_.encompassing_.freeIndex());
+    const Trajectory& motion = s.motion;
+    const auto q = motion.q.row(static_cast<Index>(c)),
+               qDot = motion.qDot.row(static_cast<Index>(c));
+    for (Index k = 0; k < static_cast<Index>(one_.nodes.size()); ++k) {
+      const double node = one_.nodes[static_cast<std::size_t>(k)];
+      const auto w = lookAt(motion.time, std::min(node, motion.time.back()));
+      if (!w) continue;
+      result.course.q[k] = w->value(q, qDot);
+      result.course.qDot[k] = w->slope(q, qDot);
+      result.courseByNode.row(k) = w->rows(s.qOfNodes[c], s.qDotOfNodes[c]);
+    }
+  }
+
   void differentiate(SensitivityTrajectory& s, Prediction& result) const {
     const auto c = static_cast<std::size_t>(of_.encompassing_.freeIndex());
     const bool hasNodes = !s.qOfNodes.empty();
@@ -167,7 +189,7 @@ class MusculoskeletalProblem::Run final : public Simulation {
       Eigen::RowVectorXd ofNodes;
       if (hasNodes) ofNodes = w->rows(s.qOfNodes[c], s.qDotOfNodes[c]);
       addRow(i, *w, along, ofNodes, result);
-      if (latentToo_) result.latentGamma.row(i) = factor * ofNodes;
+      if (latentToo_) result.byNode.row(i) = factor * ofNodes;
     }
   }
 

@@ -178,7 +178,7 @@ Repaired repairedModel(const MusculoskeletalProblem& data, const Verdict& verdic
     if (!trial.sha256.empty()) model.fitted.starts.push_back(one.start);
     if (isDriven) {
       if (const VectorXd force = data.timedForce(one.index, verdict.values); force.size() > 0) {
-        trial = withTimedForce(std::move(trial), coordinate, data.latentTimes(one.index), force);
+        trial = withTimedForce(std::move(trial), coordinate, nodeTimes(data, one.index), force);
       }
       one.driven = drivenTable(asTrueSensor(trial, coordinate, sensor), arm, result.added.mapping);
       trial = trialFrom(*one.driven, trial.file, model, {.experimentalConditions = true});

@@ -102,13 +102,13 @@ double fieldEvidence(const LinearDisagreement& data, const Fit& fit) {
   VectorXd e(2 * n), q(2 * n);
   for (int t = 0; t < 2; ++t) {
     const auto p = data.predict(t, fit.values, {}, {}, true);
-    D.block(t * n, t * n, n, n) = p.latentGamma;
+    D.block(t * n, t * n, n, n) = p.byNode;
     e.segment(t * n, n) = data.measured(t) - data.outputs(t, nominalValues(data), {});
     q.segment(t * n, n) = data.outputs(t, fit.values,
                                        kLatent * Eigen::MatrixXd(correlation(n).llt().matrixL()) *
                                            fit.eta[static_cast<std::size_t>(t)]);
     S.block(t * n, t * n, n, n) =
-        kLatent * kLatent * p.latentGamma * correlation(n) * p.latentGamma.transpose();
+        kLatent * kLatent * p.byNode * correlation(n) * p.byNode.transpose();
   }
   S.diagonal().array() += kOutput * kOutput;
   for (const FreeQuantity& free : fit.hypothesis.free) {

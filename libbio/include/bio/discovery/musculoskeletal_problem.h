@@ -46,10 +46,10 @@ inline constexpr double shortestSearchStep = 0.003;
 /// and handforce are not equivalent. In a trial with a known turn of the limb, gravity and a force
 /// on the hand are turned accordingly.
 ///
-/// The latent force is a torque on the coordinate with one channel per muscle, scaled by the
-/// muscle's moment r_i F_i, and one of the constant scale τ_0 [N·m]: independent relative errors of
-/// each muscle's force, and other errors. Its time constant is that of the activations, 1/k at the
-/// mean excitation, k midway between rising and falling.
+/// The latent force is a torque on the coordinate, the only axis, with one channel per muscle,
+/// scaled by the muscle's moment r_i F_i, and one of the constant scale τ_0 [N·m]: independent
+/// relative errors of each muscle's force, and other errors. Its time constant is that of the
+/// activations, 1/k at the mean excitation, k midway between rising and falling.
 class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
  public:
   using Quantity = info::discover::Quantity;
@@ -70,7 +70,10 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   std::string trialName(int trial) const override { return of(trial).trial.file; }
   const std::vector<double>& times(int trial) const override { return of(trial).times; }
   const Eigen::VectorXd& measured(int trial) const override { return of(trial).measured; }
-  const std::vector<double>& latentTimes(int trial) const override { return of(trial).nodes; }
+  const std::vector<info::discover::Axis>& axes() const override { return axes_; }
+  const std::vector<info::discover::Node>& nodes(int trial) const override {
+    return of(trial).latentNodes;
+  }
   double latentLag() const override { return latentLag_; }
   Prediction predict(int trial, const Eigen::VectorXd& values, const Eigen::VectorXd& latent,
                      const std::vector<std::size_t>& wanted, bool latentToo) const override;
@@ -87,12 +90,12 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   std::unique_ptr<info::discover::DiscoveryProblem> nudged(double frequency) const override;
   /// Null if the model already has the force of a formula.
   std::unique_ptr<info::discover::DiscoveryProblem> withFormula(
-      const std::vector<info::discover::FormulaTerm>& terms,
+      std::size_t axis, const std::vector<info::discover::FormulaTerm>& terms,
       const std::vector<std::size_t>& kept) const override;
 
   /// Model and effects, without the initial states of the trials.
   const EncompassingModel& encompassing() const { return encompassing_; }
-  /// Sum of the timed forces at latentTimes(trial); empty if there is none.
+  /// Sum of the timed forces at nodes(trial); empty if there is none.
   Eigen::VectorXd timedForce(int trial, const Eigen::VectorXd& values) const;
   const MusculoskeletalProblemOptions& options() const { return options_; }
   /// The trial as given, with an excitation for every muscle that was added (withProxies).
@@ -117,6 +120,7 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
     std::vector<double> times;
     Eigen::VectorXd measured;
     std::vector<double> nodes;
+    std::vector<info::discover::Node> latentNodes;  ///< the same
     Eigen::VectorXd heldMass;  ///< moment of a mass of 1 kg at the nodes [N·m]
     Eigen::VectorXd known;     ///< change of the model's quantities by Trial::known
     std::size_t angle,
@@ -165,6 +169,7 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   MusculoskeletalProblemOptions options_;
   std::vector<Quantity> quantities_;  ///< those of the model, then the initial states of the trials
   std::vector<std::size_t> nuisances_;
+  std::vector<info::discover::Axis> axes_;  ///< the coordinate
   std::vector<OfTrial> trials_;
   double latentLag_ = 0;
 };
