@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "bio/discovery/add_effects.h"
@@ -45,6 +46,49 @@ TEST(LatentForce, NodesMatchDifferencesOfSimulationsWithAnExternalForce) {
   ASSERT_EQ(at.scale.cols(), 9);
   EXPECT_TRUE((at.scale.col(8).array() == 0.5).all());
   EXPECT_GT(at.scale.leftCols(8).cwiseAbs().maxCoeff(), 0.5);
+}
+
+// The state itself at the nodes, whatever the sensor shows; the last node lies behind the end.
+TEST(LatentForce, CourseIsThatOfTheSimulationAndItsDerivativesMatchDifferences) {
+  const Case c(0.57);
+  VectorXd values = c.with(c.find("visc"));
+  for (const char* id : {"bias", "gain", "lag", "drift"}) {
+    values[static_cast<Index>(c.find(id).quantities[0])] = 0.05;
+  }
+  const std::vector<info::discover::Node>& nodes = c.data.nodes(0);
+  const auto n = static_cast<Index>(nodes.size());
+  const auto free = c.data.predict(0, values, VectorXd::Zero(n), {}, true);
+  const Trajectory motion = c.data.motion(0, values);
+  ASSERT_EQ(free.course.q.size(), n);
+  const auto last = static_cast<Index>(motion.time.size()) - 1;
+  const int coordinate = c.data.encompassing().freeIndex();
+  for (Index k = 0; k < n; ++k) {
+    const auto behind = std::lower_bound(motion.time.begin(), motion.time.end(),
+                                         nodes[static_cast<std::size_t>(k)].time - 1e-9);
+    const Index row = std::min<Index>(behind - motion.time.begin(), last);
+    EXPECT_NEAR(free.course.q[k], motion.q(coordinate, row), 1e-9) << k;
+    EXPECT_NEAR(free.course.qDot[k], motion.qDot(coordinate, row), 1e-9) << k;
+  }
+  EXPECT_GT((free.course.q.array() - free.course.q[0]).abs().maxCoeff(), 0.01);
+  VectorXd latent(n);
+  for (Index k = 0; k < n; ++k) latent[k] = 0.5 * std::sin(1.7 * static_cast<double>(k));
+  const auto at = c.data.predict(0, values, latent, {}, true);
+  ASSERT_EQ(at.courseByNode.rows(), n);
+  ASSERT_EQ(at.courseByNode.cols(), n);
+  for (Index k = 0; k < n; ++k) {
+    const auto f = [&](double step) {
+      VectorXd moved = latent;
+      moved[k] += step;
+      return c.data.predict(0, values, moved, {}, true).course.q;
+    };
+    EXPECT_LT(problem(at.courseByNode.col(k), f, 1), 1e-5) << "node " << k;
+  }
+  const auto without = c.data.predict(0, values, latent, {}, false);
+  EXPECT_EQ(without.course.q.size(), 0);
+  EXPECT_EQ(without.courseByNode.size(), 0);
+  ASSERT_EQ(c.data.axes().size(), 1U);
+  EXPECT_EQ(c.data.axes()[0].name, "elbow_flexion");
+  EXPECT_EQ(c.data.axes()[0].forceUnit, "N·m");
 }
 
 TEST(MusculoskeletalProblem, DerivativesInNuisancesMatchDifferencesUnderALatentForceAndASensor) {
