@@ -177,9 +177,9 @@ TEST(Remainder, HasTheEvidenceOfAGaussianProcessOverTheState) {
     const double found = remainderOf(data, &fit).of(Cause::state) + std::log(5.0);
     const double exact = fieldEvidence(data, fit);
     EXPECT_GT(exact, 0.5);
-    // five sizes instead of many
+    // five sizes instead of many, fifteen directions instead of all
     EXPECT_LT(found, exact + 0.05) << size;
-    EXPECT_GT(found, exact - 1) << size;
+    EXPECT_GT(found, exact - 1 - 5e-4 * exact) << size;
   }
 }
 
