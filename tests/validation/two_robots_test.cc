@@ -171,6 +171,11 @@ TEST(TwoRobots, DerivativesMatchDifferences) {
       down[node] -= 1e-5;
       const VectorXd difference = (data.outputs(0, v, up) - data.outputs(0, v, down)) / 2e-5;
       EXPECT_LT((p.byNode.col(node) - difference).norm(), 1e-6 * difference.norm()) << node;
+      const VectorXd moved = (data.predict(0, v, up, {}, true).course.q -
+                              data.predict(0, v, down, {}, true).course.q) /
+                             2e-5;
+      EXPECT_GT(moved.norm(), 0) << node;
+      EXPECT_LT((p.courseByNode.col(node) - moved).norm(), 1e-5 * moved.norm()) << node;
     }
   }
 }
