@@ -37,7 +37,7 @@ class HotJobs {
   /// Newton iterations a step of the last simulation.
   double newtonIterations = 0;
   std::size_t numPredicted() const { return wanted_.size(); }
-  std::size_t numNodes() const { return data_.latentTimes(0).size(); }
+  std::size_t numNodes() const { return data_.nodes(0).size(); }
   std::size_t numParameters() const { return every_.size(); }
 
   /// @return how many of `count` simulations with parameters drawn reached their end, on `threads`

@@ -46,13 +46,13 @@ std::string besides(const DiscoverFindings& f, const NonparametricForce& force) 
 }
 
 Figure curve(const DiscoverFindings& f, const NonparametricForce& force) {
-  const bool angle = force.follows == NonparametricForce::Follows::angle;
+  const bool position = force.follows == NonparametricForce::Follows::position;
   const ShownOutput& output = f.wording.outputs.front();
   const std::string names = besides(f, force);
   Figure figure{
       .title = "Free-form force",
-      .xLabel = angle ? fmt::format("{} [{}]", output.name, output.unit)
-                      : fmt::format("Speed [{}/s]", output.unit),
+      .xLabel = position ? fmt::format("{} [{}]", output.name, output.unit)
+                         : fmt::format("Speed [{}/s]", output.unit),
       .yLabel = f.wording.force,
       .caption = fmt::format(
           "Fitted together with all parameters, ±2 standard deviations: any smooth function of the "
@@ -101,7 +101,8 @@ std::string namesAgainstForces(const DiscoverFindings& f) {
   const auto& force = f.verdict.nonparametric;
   if (!force || force->wins || f.verdict.effects.empty()) return "";
   return fmt::format(
-      "A free-form force (any smooth function of the angle or of the speed alone) is {} nats {}.",
+      "A free-form force (any smooth function of the position or of the speed alone) is {} nats "
+      "{}.",
       numberText(std::abs(force->ahead), 3),
       force->ahead > 0 ? "better than the named effects, too little to doubt them"
                        : "worse than the named effects");

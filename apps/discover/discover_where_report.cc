@@ -13,6 +13,11 @@ namespace {
 using Eigen::VectorXd;
 using info::discover::Score;
 
+/// ", NAME" where there are several axes.
+std::string named(const DiscoverFindings& f, std::size_t axis) {
+  return f.data.axes().size() > 1 ? ", " + f.data.axes()[axis].name : "";
+}
+
 Figure scoreOverTime(const DiscoverFindings& f) {
   const auto& map = f.verdict.localisation;
   Figure figure{
@@ -25,25 +30,29 @@ Figure scoreOverTime(const DiscoverFindings& f) {
                              f.wording.push)};
   Series marks{.name = "significant", .style = SeriesStyle::points};
   for (const int trial : map.trials) {
-    Series series{.name = f.data.trialName(trial)};
-    for (const Score& one : map.times) {
-      if (one.trial != trial) continue;
-      series.x.push_back((one.from + one.to) / 2);
-      series.y.push_back(one.z);
-      if (one.significant) {
-        marks.x.push_back(series.x.back());
-        marks.y.push_back(one.z);
+    for (std::size_t axis = 0; axis < f.data.axes().size(); ++axis) {
+      Series series{.name = f.data.trialName(trial) + named(f, axis)};
+      for (const Score& one : map.times) {
+        if (one.trial != trial || one.axis != axis) continue;
+        series.x.push_back((one.from + one.to) / 2);
+        series.y.push_back(one.z);
+        if (one.significant) {
+          marks.x.push_back(series.x.back());
+          marks.y.push_back(one.z);
+        }
       }
+      figure.series.push_back(std::move(series));
     }
-    figure.series.push_back(std::move(series));
   }
   if (!marks.x.empty()) figure.series.push_back(std::move(marks));
   return figure;
 }
 
-/// A heat map over output and rate.
-std::string scoreMap(const DiscoverFindings& f) {
-  const std::vector<Score>& scores = f.verdict.localisation.cells;
+/// A heat map over an axis's position and speed.
+std::string scoreMap(const DiscoverFindings& f, std::size_t axis) {
+  std::vector<Score> scores;
+  for (const Score& one : f.verdict.localisation.cells)
+    if (one.axis == axis) scores.push_back(one);
   if (scores.empty()) return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 1 1\"/>";
   double lowQ = HUGE_VAL, highQ = -HUGE_VAL, lowV = HUGE_VAL, highV = -HUGE_VAL;
   for (const Score& one : scores) {
@@ -96,13 +105,19 @@ Figure missingForce(const DiscoverFindings& f) {
                     "Posterior mean of the latent force of the base model, ±2 standard deviations. "
                     "It is found by smoothing; the measurements are not differentiated."};
   for (std::size_t k = 0; k < map.trials.size(); ++k) {
-    Series series{.name = f.data.trialName(map.trials[k]), .x = f.data.latentTimes(map.trials[k])};
-    const VectorXd& r = map.force[k];
-    const VectorXd low = r - 2 * map.forceSd[k], high = r + 2 * map.forceSd[k];
-    series.y.assign(r.begin(), r.end());
-    series.bandLow.assign(low.begin(), low.end());
-    series.bandHigh.assign(high.begin(), high.end());
-    figure.series.push_back(std::move(series));
+    for (std::size_t axis = 0; axis < f.data.axes().size(); ++axis) {
+      Series series{.name = f.data.trialName(map.trials[k]) + named(f, axis),
+                    .x = info::discover::nodeTimes(f.data, map.trials[k])};
+      const auto own = [&](const VectorXd& all) {
+        return VectorXd(info::discover::onAxis(all, axis, f.data.axes().size()));
+      };
+      const VectorXd r = own(map.force[k]), sd = own(map.forceSd[k]);
+      const VectorXd low = r - 2 * sd, high = r + 2 * sd;
+      series.y.assign(r.begin(), r.end());
+      series.bandLow.assign(low.begin(), low.end());
+      series.bandHigh.assign(high.begin(), high.end());
+      figure.series.push_back(std::move(series));
+    }
   }
   return figure;
 }
@@ -116,12 +131,14 @@ std::vector<ReportPart> whereTheyDisagree(const DiscoverFindings& f) {
   parts.emplace_back(Section{"Where model and data disagree"});
   parts.emplace_back(scoreOverTime(f));
   if (f.wording.hasMap) {
-    parts.emplace_back(
-        VectorDrawing{"Score over angle and speed", scoreMap(f),
-                      fmt::format("Orange: the data ask for an additional force that raises {}; "
-                                  "blue: one that lowers it; framed: significant. {}",
-                                  f.wording.outputs.front().name,
-                                  map.cells.empty() ? "" : "White: not visited.")});
+    for (std::size_t axis = 0; axis < f.data.axes().size(); ++axis) {
+      parts.emplace_back(
+          VectorDrawing{"Score over angle and speed" + named(f, axis), scoreMap(f, axis),
+                        fmt::format("Orange: the data ask for an additional force that raises {}; "
+                                    "blue: one that lowers it; framed: significant. {}",
+                                    f.wording.outputs.front().name,
+                                    map.cells.empty() ? "" : "White: not visited.")});
+    }
   } else {
     parts.emplace_back(Paragraph{"There is no map over angle and speed: no angle was measured."});
   }
@@ -130,7 +147,8 @@ std::vector<ReportPart> whereTheyDisagree(const DiscoverFindings& f) {
                 {f.wording.input, "score [standard deviations]", "significant"},
                 {}};
   for (const Score& one : map.inputs) {
-    muscles.rows.push_back({one.input, numberText(one.z, 3), one.significant ? "yes" : "no"});
+    muscles.rows.push_back(
+        {one.input + named(f, one.axis), numberText(one.z, 3), one.significant ? "yes" : "no"});
   }
   parts.emplace_back(std::move(muscles));
   return parts;

@@ -45,7 +45,7 @@ class LinearDisagreement : public info::discover::DiscoveryProblem {
       if (i == 3) c.kind = info::discover::EffectKind::sensor;
       candidates_.push_back(c);
     }
-    for (int k = 0; k < samples; ++k) times_.push_back(kStep * k);
+    for (int k = 0; k < samples; ++k) times_.push_back(kStep * k), nodes_.push_back({kStep * k, 0});
     measured_.assign(static_cast<std::size_t>(trials), VectorXd::Zero(samples));
   }
 
@@ -77,7 +77,7 @@ class LinearDisagreement : public info::discover::DiscoveryProblem {
   const VectorXd& measured(int trial) const override {
     return measured_[static_cast<std::size_t>(trial)];
   }
-  const std::vector<double>& latentTimes(int) const override { return times_; }
+  const std::vector<info::discover::Node>& nodes(int) const override { return nodes_; }
   double latentLag() const override { return lag; }
 
   Prediction predict(int trial, const VectorXd& values, const VectorXd& latent,
@@ -93,23 +93,21 @@ class LinearDisagreement : public info::discover::DiscoveryProblem {
       p.gamma.col(static_cast<Eigen::Index>(j)) = outputs(trial, unit, {});
     }
     if (latentToo) {
-      p.latentScale = scale.size() == 0 ? MatrixXd(MatrixXd::Ones(n, 1)) : scale;
-      p.latentGamma.resize(n, n);
-      for (Eigen::Index j = 0; j < n; ++j)
-        p.latentGamma.col(j) = outputs(trial, VectorXd::Zero(values.size()), VectorXd::Unit(n, j));
+      p.scale = scale.size() == 0 ? MatrixXd(MatrixXd::Ones(n, 1)) : scale;
+      p.byNode.resize(n, n);
+      p.courseByNode.resize(n, n);
+      const VectorXd still = VectorXd::Zero(values.size());
+      for (Eigen::Index j = 0; j < n; ++j) {
+        p.byNode.col(j) = outputs(trial, still, VectorXd::Unit(n, j));
+        p.courseByNode.col(j) = states(trial, still, VectorXd::Unit(n, j)).col(0);
+      }
+      const MatrixXd x = states(trial, values, latent);
+      p.course = {x.col(0), x.col(1)};
     }
     return p;
   }
   VectorXd outputs(int trial, const VectorXd& values, const VectorXd& latent) const override {
-    const auto n = static_cast<Eigen::Index>(times_.size());
-    VectorXd y(n);
-    Eigen::Vector2d x = values.segment<2>(4 + 2 * trial);
-    for (Eigen::Index k = 0; k < n; ++k) {
-      y[k] = x[0] + values[3];
-      const double d = latent.size() != 0 ? latent[k] : 0;
-      x = F * x + B * (d + values[0] * input(k) + values[1] + values[2]);
-    }
-    return y;
+    return states(trial, values, latent).col(0).array() + values[3];
   }
   MatrixXd inputs(int) const override {
     MatrixXd u(times_.size(), 1);
@@ -125,6 +123,17 @@ class LinearDisagreement : public info::discover::DiscoveryProblem {
   Eigen::Vector2d B;
 
  private:
+  MatrixXd states(int trial, const VectorXd& values, const VectorXd& latent) const {
+    const auto n = static_cast<Eigen::Index>(times_.size());
+    MatrixXd all(n, 2);
+    Eigen::Vector2d x = values.segment<2>(4 + 2 * trial);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      all.row(k) = x.transpose();
+      const double d = latent.size() != 0 ? latent[k] : 0;
+      x = F * x + B * (d + values[0] * input(k) + values[1] + values[2]);
+    }
+    return all;
+  }
   static VectorXd speeds(const VectorXd& y) {
     const Eigen::Index n = y.size();
     VectorXd slopes = VectorXd::Zero(n);
@@ -136,5 +145,6 @@ class LinearDisagreement : public info::discover::DiscoveryProblem {
   std::vector<std::size_t> nuisances_;
   std::vector<info::discover::Candidate> candidates_;
   std::vector<double> times_;
+  std::vector<info::discover::Node> nodes_;
   std::vector<VectorXd> measured_;
 };

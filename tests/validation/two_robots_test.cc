@@ -145,7 +145,7 @@ TEST(TwoRobots, DerivativesMatchDifferences) {
   for (const std::string system : systems) {
     const RobotProblem data = recorded(system, hidden::robotKind(system).nominal);
     const VectorXd v = busy(data, system);
-    VectorXd d = VectorXd::Zero(static_cast<Index>(data.latentTimes(0).size()));
+    VectorXd d = VectorXd::Zero(static_cast<Index>(data.nodes(0).size()));
     d[7] = 0.2, d[8] = -0.1;
     std::vector<std::size_t> all;
     for (std::size_t i = 0; i < data.quantities().size(); ++i) all.push_back(i);
@@ -170,7 +170,12 @@ TEST(TwoRobots, DerivativesMatchDifferences) {
       up[node] += 1e-5;
       down[node] -= 1e-5;
       const VectorXd difference = (data.outputs(0, v, up) - data.outputs(0, v, down)) / 2e-5;
-      EXPECT_LT((p.latentGamma.col(node) - difference).norm(), 1e-6 * difference.norm()) << node;
+      EXPECT_LT((p.byNode.col(node) - difference).norm(), 1e-6 * difference.norm()) << node;
+      const VectorXd moved = (data.predict(0, v, up, {}, true).course.q -
+                              data.predict(0, v, down, {}, true).course.q) /
+                             2e-5;
+      EXPECT_GT(moved.norm(), 0) << node;
+      EXPECT_LT((p.courseByNode.col(node) - moved).norm(), 1e-5 * moved.norm()) << node;
     }
   }
 }

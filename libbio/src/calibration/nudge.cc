@@ -37,7 +37,7 @@ Nudge nudgeTo(const MusculoskeletalSystem& arm, int freeIndex, const std::vector
 
 void apply(const Nudge& nudge, Model& model, ExternalForce& external) {
   model.springForces.push_back(
-      {"nudge", nudge.coordinate, nudge.stiffness, 0, nudge.damping, true});
+      {"nudge_" + nudge.coordinate, nudge.coordinate, nudge.stiffness, 0, nudge.damping, true});
   external = sum(external, nudge.pull);
 }
 

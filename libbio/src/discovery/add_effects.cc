@@ -55,8 +55,9 @@ std::string wordsOf(const EncompassingModel& encompassing,
 
 Augmented augmentedModel(const EncompassingModel& encompassing, const Eigen::VectorXd& values) {
   ParameterCatalogue::Setting setting = encompassing.settingAt(values, {});
-  Augmented result{
-      std::move(setting.model), std::move(setting.mapping), encompassing.sensorAt(values), {}};
+  Augmented result{std::move(setting.model), std::move(setting.mapping), {}, {}};
+  for (std::size_t i = 0; i < encompassing.sensors().size(); ++i)
+    result.sensors.push_back(encompassing.sensorAt(values, i));
   Model& model = result.model;
   for (std::size_t i = 0; i < model.muscles.size(); ++i) {
     if (!model.muscles[i].enabled) model.muscles[i] = encompassing.base().muscles[i];

@@ -13,7 +13,7 @@
 #include "bio/discovery/with_experimental_conditions.h"
 #include "bio/sensitivity/coupled_sensitivity.h"
 #include "bio/tables/trial_review.h"
-#include "discovery/look_at.h"
+#include "discovery/sensed_motion.h"
 
 namespace bio::discover {
 
@@ -25,12 +25,32 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// A force on one coordinate, straight between nodes.
-ExternalForce onOne(const std::vector<double>& nodes, const VectorXd& values, int freeIndex,
-                    Index coordinates) {
-  MatrixXd all = MatrixXd::Zero(values.size(), coordinates);
-  all.col(freeIndex) = values;
-  return {nodes, all};
+/// What the trials measure: the coordinates in question, then all other channels. Empty: nothing.
+std::vector<Observable> measuredIn(const std::vector<Trial>& trials, const SystemOptions& arm,
+                                   const std::vector<std::string>& coordinates) {
+  std::vector<Observable> sensors;
+  const auto add = [&](const Observable& what) {
+    if (std::find(sensors.begin(), sensors.end(), what) == sensors.end()) sensors.push_back(what);
+  };
+  for (const std::string& name : coordinates) {
+    const bool isPrescribed =
+        std::find(arm.prescribed.begin(), arm.prescribed.end(), name) != arm.prescribed.end();
+    const bool isMeasured = std::any_of(trials.begin(), trials.end(), [&](const Trial& trial) {
+      return trial.measurementOf(ofCoordinate(name));
+    });
+    if (isMeasured && !isPrescribed) add(ofCoordinate(name));
+  }
+  for (const Trial& trial : trials) {
+    for (const MeasuredChannel& channel : trial.measured)
+      if (!channel.what.isCoordinate()) add(channel.what);
+  }
+  return sensors;
+}
+
+std::vector<std::string> namesOf(const std::vector<MovingCoordinate>& coordinates) {
+  std::vector<std::string> names;
+  for (const MovingCoordinate& at : coordinates) names.push_back(at.coordinate.name);
+  return names;
 }
 
 /// Muscles whose record has a flat top in a trial that hides 1 % of its height or more.
@@ -55,11 +75,13 @@ SystemOptions withTables(SystemOptions arm) {
 }  // namespace
 
 MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemOptions& arm,
-                                               const std::string& coordinate,
+                                               const CoordinateNames& coordinates,
                                                std::vector<Trial> trials,
                                                MusculoskeletalProblemOptions options)
-    : encompassing_(
-          encompassingModel(model, withTables(arm), coordinate, options.without, options.formula)),
+    : encompassing_(encompassingModel(
+          model, withTables(arm), coordinates, options.without, options.formula,
+          options.formulaAxis,
+          options.sensors.empty() ? measuredIn(trials, arm, coordinates.all) : options.sensors)),
       options_(std::move(options)),
       quantities_(encompassing_.quantities()),
       nuisances_(encompassing_.nuisances()) {
@@ -82,6 +104,11 @@ MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemO
     lastStart = std::max(lastStart, trial.times[0]);
     firstEnd = std::min(firstEnd, trial.times[trial.times.size() - 1]);
   }
+  for (const MovingCoordinate& at : encompassing_.coordinates()) {
+    const std::string& name = at.coordinate.name;
+    axes_.push_back(at.coordinate.isRotation ? info::discover::Axis{name, "rad", "N·m"}
+                                             : info::discover::Axis{name, "m", "N"});
+  }
   encompassing_.trialsLast(lastStart, firstEnd);
   encompassing_.forget(unsaturated(encompassing_, withFlatTops(trials)));
   quantities_ = encompassing_.quantities();
@@ -91,41 +118,100 @@ MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemO
 }
 
 void MusculoskeletalProblem::addTrial(Trial trial) {
-  const Coordinate& observed = encompassing_.coordinate();
-  OfTrial one{std::move(trial), {}, {}, {}, {}, {}, {}, {}, 0, 0};
-  if (const auto* motion = one.trial.measurementOf(ofCoordinate(observed.name))) {
-    if (options_.usableSeries) requireUsable(one.trial.file, *motion);
-    one.times.assign(motion->times.begin(), motion->times.end());
-    one.measured = motion->values;
-  }
-  if (one.times.empty()) {
-    throw std::invalid_argument(
-        fmt::format("{}: no measured value of '{}'", one.trial.file, observed.name));
-  }
+  OfTrial one;
+  one.trial = std::move(trial);
+  collectSamples(one);
   one.excitation = excitationOf(one.trial, encompassing_.arm());
   one.external = externalForceOf(one.trial, encompassing_.arm());
+  one.prescribed = prescribedMotionOf(one.trial, encompassing_.arm());
   one.known = experimentalConditionsOf(one.trial, encompassing_);
-  const double first = one.trial.times[0], last = one.times.back();
-  const double intervals = std::max(1.0, std::ceil((last - first) / options_.latentSpacing - 1e-9));
-  for (int k = 0; k <= static_cast<int>(intervals); ++k) {
-    one.nodes.push_back(first + k * options_.latentSpacing);
-  }
-  one.heldMass = weightOfHeldMass(encompassing_, one.times, one.measured, one.nodes);
-  const bool turns = observed.isRotation;
-  const double length = turns ? 1 : 0.125;  // [m] that stand for a radian
-  one.angle = addOwnQuantity("", {"", turns ? "rad" : "m", one.measured[0], observed.rangeMin,
-                                  observed.rangeMax, options_.startSd * length, false});
-  const double shown = std::abs(initialSpeedShown(one.times, one.measured, 0.3 * length));
-  one.speed = addOwnQuantity(
-      ".speed", {"", turns ? "rad/s" : "m/s", 0, turns ? -10.0 : -2.0, turns ? 10.0 : 2.0,
-                 std::max(options_.speedSd * length, shown), false});
+  addNodes(one);
+  addStarts(one);
   trials_.push_back(std::move(one));
 }
 
-std::size_t MusculoskeletalProblem::addOwnQuantity(const char* what, Quantity quantity) {
+/// By time, and at one time by output.
+void MusculoskeletalProblem::collectSamples(OfTrial& one) const {
+  struct Sample {
+    double time, value;
+    std::size_t sensor;
+  };
+  std::vector<Sample> samples;
+  const auto& sensors = encompassing_.sensors();
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const MeasuredChannel* channel = one.trial.measurementOf(sensors[i]);
+    if (!channel || channel->times.size() == 0) continue;
+    if (options_.usableSeries) requireUsable(one.trial.file, *channel);
+    for (Index k = 0; k < channel->times.size(); ++k)
+      samples.push_back({channel->times[k], channel->values[k], i});
+    one.series.push_back({i, {channel->times.begin(), channel->times.end()}, {}});
+  }
+  if (samples.empty()) {
+    std::string names;
+    for (const Observable& what : sensors)
+      names += (names.empty() ? "'" : ", '") + nameOf(what) + "'";
+    throw std::invalid_argument(fmt::format("{}: no measured value of {}", one.trial.file, names));
+  }
+  std::stable_sort(samples.begin(), samples.end(),
+                   [](const Sample& a, const Sample& b) { return a.time < b.time; });
+  one.measured.resize(static_cast<Index>(samples.size()));
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    one.times.push_back(samples[k].time);
+    one.measured[static_cast<Index>(k)] = samples[k].value;
+    if (sensors.size() > 1) one.outputs.push_back(static_cast<int>(samples[k].sensor));
+    for (Series& series : one.series)
+      if (series.sensor == samples[k].sensor) series.samples.push_back(static_cast<Index>(k));
+  }
+}
+
+void MusculoskeletalProblem::addNodes(OfTrial& one) const {
+  const double first = one.trial.times[0], last = one.times.back();
+  const double intervals = std::max(1.0, std::ceil((last - first) / options_.latentSpacing - 1e-9));
+  for (int k = 0; k <= static_cast<int>(intervals); ++k)
+    one.nodeTimes.push_back(first + k * options_.latentSpacing);
+  for (std::size_t axis = 0; axis < axes_.size(); ++axis)
+    for (const double t : one.nodeTimes) one.nodes.push_back({t, axis});
+  one.heldMass = VectorXd::Zero(static_cast<Index>(one.nodeTimes.size()));
+  if (!encompassing_.hasOneCoordinate() || one.series.front().sensor != 0) return;
+  const MeasuredChannel* channel = one.trial.measurementOf(encompassing_.sensors().front());
+  if (channel->what.isCoordinate())
+    one.heldMass =
+        weightOfHeldMass(encompassing_, one.series.front().times, channel->values, one.nodeTimes);
+}
+
+void MusculoskeletalProblem::addStarts(OfTrial& one) {
+  const auto& coordinates = encompassing_.coordinates();
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    if (encompassing_.arm().isPrescribed(coordinates[i].index)) continue;
+    const Coordinate& observed = coordinates[i].coordinate;
+    const bool turns = observed.isRotation;
+    const double length = turns ? 1 : 0.125;  // [m] that stand for a radian
+    const Observable what = ofCoordinate(observed.name);
+    const auto& sensors = encompassing_.sensors();
+    const auto sensor = std::find(sensors.begin(), sensors.end(), what);
+    const MeasuredChannel* channel = one.trial.measurementOf(what);
+    const bool isMeasured = sensor != sensors.end() && channel && channel->times.size() > 0;
+    Start start{i, 0, 0, isMeasured ? static_cast<int>(sensor - sensors.begin()) : -1};
+    double shown = 0;
+    if (isMeasured) {
+      const std::vector<double> times(channel->times.begin(), channel->times.end());
+      shown = std::abs(initialSpeedShown(times, channel->values, 0.3 * length));
+    }
+    const double first = isMeasured ? channel->values[0] : observed.defaultValue;
+    start.angle = addOwnQuantity(
+        observed.name, {"", turns ? "rad" : "m", first, observed.rangeMin, observed.rangeMax,
+                        (isMeasured ? 1 : 10) * options_.startSd * length, false});
+    start.speed =
+        addOwnQuantity(observed.name + ".speed",
+                       {"", turns ? "rad/s" : "m/s", 0, turns ? -10.0 : -2.0, turns ? 10.0 : 2.0,
+                        std::max(options_.speedSd * length, shown), false});
+    one.starts.push_back(start);
+  }
+}
+
+std::size_t MusculoskeletalProblem::addOwnQuantity(const std::string& what, Quantity quantity) {
   quantity.trial = static_cast<int>(trials_.size());
-  quantity.name = fmt::format("trial{}.initial.{}{}", quantity.trial + 1,
-                              encompassing_.coordinate().name, what);
+  quantity.name = fmt::format("trial{}.initial.{}", quantity.trial + 1, what);
   quantity.lower = std::min(quantity.lower, quantity.nominal);
   quantity.upper = std::max(quantity.upper, quantity.nominal);
   nuisances_.push_back(quantities_.size());
@@ -137,7 +223,9 @@ void MusculoskeletalProblem::separateWhatTrialsTellApart() {
   // the arm answers a push at once, but late muscles late; a clock that is off shifts both
   const bool isPushed = std::any_of(trials_.begin(), trials_.end(), [&](const OfTrial& one) {
     return std::any_of(one.trial.applied.begin(), one.trial.applied.end(), [&](const auto& push) {
-      return push.coordinate == encompassing_.coordinate().name &&
+      const auto& all = encompassing_.coordinates();
+      return std::any_of(all.begin(), all.end(),
+                         [&](const auto& at) { return at.coordinate.name == push.coordinate; }) &&
              push.values.maxCoeff() > push.values.minCoeff();
     });
   });
@@ -160,11 +248,13 @@ VectorXd MusculoskeletalProblem::withTimedForces(const OfTrial& one, const Vecto
     const double size = values[static_cast<Index>(force.amplitude)];
     if (size == 0) continue;
     if (sum.size() == 0) sum = VectorXd::Zero(static_cast<Index>(one.nodes.size()));
-    for (Index k = 0; k < sum.size(); ++k) {
-      const double share = timedShare(one.nodes[static_cast<std::size_t>(k)],
+    const auto numTimes = static_cast<Index>(one.nodeTimes.size());
+    const Index first = static_cast<Index>(force.coordinate) * numTimes;
+    for (Index k = 0; k < numTimes; ++k) {
+      const double share = timedShare(one.nodeTimes[static_cast<std::size_t>(k)],
                                       values[static_cast<Index>(force.time)], force.ends)
                                .value;
-      sum[k] += size * share * (force.of == TimedForce::Of::mass ? one.heldMass[k] : 1.0);
+      sum[first + k] += size * share * (force.of == TimedForce::Of::mass ? one.heldMass[k] : 1.0);
     }
   }
   return sum;
@@ -179,11 +269,13 @@ MatrixXd MusculoskeletalProblem::timedDirections(const OfTrial& one, const Vecto
       const auto rows = static_cast<Index>(one.nodes.size());
       if (nodes.size() == 0) nodes = MatrixXd::Zero(rows, static_cast<Index>(wanted.size()));
       const double size = values[static_cast<Index>(force.amplitude)];
-      for (Index k = 0; k < rows; ++k) {
-        const TimedShare share = timedShare(one.nodes[static_cast<std::size_t>(k)],
+      const auto numTimes = static_cast<Index>(one.nodeTimes.size());
+      const Index first = static_cast<Index>(force.coordinate) * numTimes;
+      for (Index k = 0; k < numTimes; ++k) {
+        const TimedShare share = timedShare(one.nodeTimes[static_cast<std::size_t>(k)],
                                             values[static_cast<Index>(force.time)], force.ends);
         const double weight = force.of == TimedForce::Of::mass ? one.heldMass[k] : 1.0;
-        nodes(k, static_cast<Index>(j)) =
+        nodes(first + k, static_cast<Index>(j)) =
             weight * (wanted[j] == force.amplitude ? share.value : size * share.inTime);
       }
     }
@@ -217,21 +309,34 @@ ParameterCatalogue::Setting MusculoskeletalProblem::settingAt(
   const auto own = static_cast<Index>(encompassing_.quantities().size());
   ParameterCatalogue::Setting setting =
       encompassing_.settingAt(values.head(own) + one.known, wanted);
-  const SensorLaw sensor = encompassing_.sensorAt(values);
-  setting.start.q[encompassing_.freeIndex()] =
-      (values[static_cast<Index>(one.angle)] - sensor.bias) / (1 + sensor.gain);
-  setting.start.qDot[encompassing_.freeIndex()] = values[static_cast<Index>(one.speed)];
+  for (const Start& start : one.starts) {
+    const int c = encompassing_.coordinates()[start.coordinate].index;
+    SensorLaw sensor;
+    if (start.sensor >= 0)
+      sensor = encompassing_.sensorAt(values, static_cast<std::size_t>(start.sensor));
+    setting.start.q[c] =
+        (values[static_cast<Index>(start.angle)] - sensor.bias) / (1 + sensor.gain);
+    setting.start.qDot[c] = values[static_cast<Index>(start.speed)];
+  }
+  if (!encompassing_.arm().prescribed().empty())
+    one.prescribed.place(one.trial.times[0], setting.start.q, setting.start.qDot);
   return setting;
 }
 
-SimulationOptions MusculoskeletalProblem::simulationOf(const OfTrial& one, const VectorXd& latent,
-                                                       const SensorLaw& sensor) const {
+SimulationOptions MusculoskeletalProblem::simulationOf(const OfTrial& one, const VectorXd& values,
+                                                       const VectorXd& latent) const {
   SimulationOptions simulation = options_.simulation;
   simulation.startTime = one.trial.times[0];
   // a sensor may look behind the last sample
-  simulation.duration =
-      std::max(one.times.back(), sensor.measuredAt(one.times.back(), simulation.startTime)) -
-      simulation.startTime;
+  double end = one.times.back();
+  for (const Series& series : one.series) {
+    const SensorLaw sensor = encompassing_.sensorAt(values, series.sensor);
+    end = std::max(end, sensor.measuredAt(series.times.back(), simulation.startTime));
+  }
+  if (!encompassing_.arm().prescribed().empty())
+    end = std::min(end, one.trial.times[one.trial.times.size() - 1]);  // beyond, none is given
+  simulation.duration = end - simulation.startTime;
+  simulation.prescribed = one.prescribed;
   simulation.progress = {};
   simulation.externalForce = one.external;
   if (latent.size() == 0) return simulation;
@@ -240,9 +345,12 @@ SimulationOptions MusculoskeletalProblem::simulationOf(const OfTrial& one, const
         fmt::format("{} values of the latent force for {} nodes, must be as many", latent.size(),
                     one.nodes.size()));
   }
-  simulation.externalForce =
-      sum(simulation.externalForce, onOne(one.nodes, latent, encompassing_.freeIndex(),
-                                          encompassing_.arm().skeleton().numCoordinates()));
+  const auto numTimes = static_cast<Index>(one.nodeTimes.size());
+  MatrixXd forces = MatrixXd::Zero(numTimes, encompassing_.arm().skeleton().numCoordinates());
+  for (std::size_t axis = 0; axis < axes_.size(); ++axis)
+    forces.col(encompassing_.coordinates()[axis].index) =
+        latent.segment(static_cast<Index>(axis) * numTimes, numTimes);
+  simulation.externalForce = sum(simulation.externalForce, {one.nodeTimes, forces});
   return simulation;
 }
 
@@ -255,11 +363,12 @@ ExcitationSignal MusculoskeletalProblem::excitationFor(const OfTrial& one,
 
 Trajectory MusculoskeletalProblem::simulate(const OfTrial& one, const VectorXd& values,
                                             const VectorXd& latent, double stepFactor,
-                                            const Nudge* nudge) const {
+                                            const std::vector<Nudge>* nudges) const {
   ParameterCatalogue::Setting setting = settingAt(one, values, {});
-  SimulationOptions simulation =
-      simulationOf(one, withTimedForces(one, values, latent), encompassing_.sensorAt(values));
-  if (nudge) apply(*nudge, setting.model, simulation.externalForce);
+  SimulationOptions simulation = simulationOf(one, values, withTimedForces(one, values, latent));
+  if (nudges) {
+    for (const Nudge& nudge : *nudges) apply(nudge, setting.model, simulation.externalForce);
+  }
   simulation.step *= stepFactor;
   const MusculoskeletalSystem arm = encompassing_.armOf(setting);
   return simulateSetting(arm, setting, excitationFor(one, arm), simulation);
@@ -267,27 +376,30 @@ Trajectory MusculoskeletalProblem::simulate(const OfTrial& one, const VectorXd& 
 
 VectorXd MusculoskeletalProblem::outputsOf(const OfTrial& one, const VectorXd& values,
                                            const VectorXd& latent, double stepFactor,
-                                           const Nudge* nudge) const {
+                                           const std::vector<Nudge>* nudges) const {
   VectorXd y = VectorXd::Constant(static_cast<Index>(one.times.size()), nan);
-  Trajectory motion;
   try {
-    motion = simulate(one, values, latent, stepFactor, nudge);
+    const Trajectory motion = simulate(one, values, latent, stepFactor, nudges);
+    const MusculoskeletalSystem system = encompassing_.armOf(settingAt(one, values, {}));
+    const std::vector<SensedMotion> sensors = sensedBy(system, one, values);
+    for (std::size_t i = 0; i < sensors.size(); ++i)
+      y(one.series[i].samples) = sensors[i].shown(motion).values;
   } catch (const std::exception&) {
-    return y;  // outside its domain
-  }
-  const SensorLaw sensor = encompassing_.sensorAt(values);
-  const int c = encompassing_.freeIndex();
-  const double begin = one.trial.times[0];
-  const Lagged course = lagged(motion.time, motion.q.row(c), motion.qDot.row(c), sensor.lag);
-  for (std::size_t i = 0; i < one.times.size(); ++i) {
-    const double t = one.times[i];
-    const auto w = lookAt(motion.time, sensor.measuredAt(t, begin));
-    if (!w) continue;
-    y[static_cast<Index>(i)] =
-        (1 + sensor.gain) * w->value(course.value.row(0), course.speed.row(0)) + sensor.bias +
-        sensor.drift * (t - begin);
+    y.setConstant(nan);  // outside its domain
   }
   return y;
+}
+
+std::vector<SensedMotion> MusculoskeletalProblem::sensedBy(const MusculoskeletalSystem& system,
+                                                           const OfTrial& one,
+                                                           const VectorXd& values) const {
+  std::vector<SensedMotion> sensors;
+  for (const Series& series : one.series) {
+    sensors.emplace_back(system, encompassing_.sensors()[series.sensor],
+                         encompassing_.sensorAt(values, series.sensor), series.times,
+                         one.trial.times[0]);
+  }
+  return sensors;
 }
 
 VectorXd MusculoskeletalProblem::outputs(int trial, const VectorXd& values,
@@ -307,11 +419,16 @@ MusculoskeletalSystem MusculoskeletalProblem::armAt(int trial, const VectorXd& v
   return encompassing_.armOf(settingAt(of(trial), values, {}));
 }
 
-TrialStart MusculoskeletalProblem::startAt(int trial, const VectorXd& values) const {
+std::vector<TrialStart> MusculoskeletalProblem::startsAt(int trial, const VectorXd& values) const {
   const OfTrial& one = of(trial);
-  const StartPoint start = settingAt(one, values, {}).start;
-  return {one.trial.file, one.trial.sha256, encompassing_.coordinate().name,
-          start.q[encompassing_.freeIndex()], start.qDot[encompassing_.freeIndex()]};
+  const StartPoint point = settingAt(one, values, {}).start;
+  std::vector<TrialStart> starts;
+  for (const Start& start : one.starts) {
+    const MovingCoordinate& at = encompassing_.coordinates()[start.coordinate];
+    starts.push_back({one.trial.file, one.trial.sha256, at.coordinate.name, point.q[at.index],
+                      point.qDot[at.index]});
+  }
+  return starts;
 }
 
 std::string MusculoskeletalProblem::failure(int trial, const VectorXd& values) const {
@@ -349,10 +466,12 @@ std::vector<std::string> MusculoskeletalProblem::inputNames() const {
 }
 
 std::unique_ptr<info::discover::DiscoveryProblem> MusculoskeletalProblem::withFormula(
-    const std::vector<info::discover::FormulaTerm>& terms,
+    std::size_t axis, const std::vector<info::discover::FormulaTerm>& terms,
     const std::vector<std::size_t>& kept) const {
   MusculoskeletalProblemOptions options = options_;
   options.formula = terms;
+  options.formulaAxis = axis;
+  options.sensors = encompassing_.sensors();
   for (std::size_t c = 0; c < candidates().size(); ++c) {
     if (std::find(kept.begin(), kept.end(), c) == kept.end())
       options.without.push_back(candidates()[c].id);
@@ -360,7 +479,7 @@ std::unique_ptr<info::discover::DiscoveryProblem> MusculoskeletalProblem::withFo
   std::vector<Trial> trials;
   for (const OfTrial& one : trials_) trials.push_back(one.trial);
   auto widened = std::make_unique<MusculoskeletalProblem>(
-      encompassing_.base(), encompassing_.armOptions(), encompassing_.coordinate().name,
+      encompassing_.base(), encompassing_.armOptions(), namesOf(encompassing_.coordinates()),
       std::move(trials), std::move(options));
   if (!widened->encompassing().knows("formula")) return nullptr;
   return widened;

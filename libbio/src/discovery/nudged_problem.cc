@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "bio/calibration/nudge.h"
 #include "bio/discovery/musculoskeletal_problem.h"
 
@@ -8,14 +6,20 @@ namespace bio::discover {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// What MusculoskeletalProblem is while its coordinate is held near what was measured. Must not
+/// What MusculoskeletalProblem is while its coordinates are held near what was measured. Must not
 /// outlive it.
 class MusculoskeletalProblem::Nudged final : public info::discover::DiscoveryProblem {
  public:
   Nudged(const MusculoskeletalProblem& of, double frequency) : of_(of) {
     for (const OfTrial& one : of.trials_) {
-      nudges_.push_back(nudgeTo(of.encompassing_.arm(), of.encompassing_.freeIndex(), one.times,
-                                one.measured, frequency));
+      std::vector<Nudge>& nudges = nudges_.emplace_back();
+      for (const Series& series : one.series) {
+        const Observable& what = of.encompassing_.sensors()[series.sensor];
+        if (!what.isCoordinate()) continue;
+        nudges.push_back(nudgeTo(of.encompassing_.arm(),
+                                 of.encompassing_.arm().skeleton().indexOf(what.of), series.times,
+                                 one.measured(series.samples), frequency));
+      }
     }
   }
   const std::vector<Quantity>& quantities() const override { return of_.quantities(); }
@@ -24,9 +28,13 @@ class MusculoskeletalProblem::Nudged final : public info::discover::DiscoveryPro
   int numTrials() const override { return of_.numTrials(); }
   std::string trialName(int trial) const override { return of_.trialName(trial); }
   const std::vector<double>& times(int trial) const override { return of_.times(trial); }
+  const std::vector<int>& outputOfSample(int trial) const override {
+    return of_.outputOfSample(trial);
+  }
   const VectorXd& measured(int trial) const override { return of_.measured(trial); }
-  const std::vector<double>& latentTimes(int trial) const override {
-    return of_.latentTimes(trial);
+  const std::vector<info::discover::Axis>& axes() const override { return of_.axes(); }
+  const std::vector<info::discover::Node>& nodes(int trial) const override {
+    return of_.nodes(trial);
   }
   double latentLag() const override { return of_.latentLag(); }
   Prediction predict(int trial, const VectorXd& values, const VectorXd& latent,
@@ -45,18 +53,25 @@ class MusculoskeletalProblem::Nudged final : public info::discover::DiscoveryPro
   std::vector<std::string> inputNames() const override { return of_.inputNames(); }
 
  private:
-  const Nudge& of(int trial) const { return nudges_.at(static_cast<std::size_t>(trial)); }
+  const std::vector<Nudge>& of(int trial) const {
+    return nudges_.at(static_cast<std::size_t>(trial));
+  }
 
   const MusculoskeletalProblem& of_;
-  std::vector<Nudge> nudges_;
+  std::vector<std::vector<Nudge>> nudges_;
 };
 
 std::unique_ptr<info::discover::DiscoveryProblem> MusculoskeletalProblem::nudged(
     double frequency) const {
-  if (std::any_of(trials_.begin(), trials_.end(),
-                  [](const OfTrial& one) { return one.times.size() < 4; })) {
-    return nullptr;
+  bool isMeasured = false;
+  for (const OfTrial& one : trials_) {
+    for (const Series& series : one.series) {
+      if (!encompassing_.sensors()[series.sensor].isCoordinate()) continue;
+      isMeasured = true;
+      if (series.times.size() < 4) return nullptr;
+    }
   }
+  if (!isMeasured) return nullptr;
   return std::make_unique<Nudged>(*this, frequency);
 }
 

@@ -42,7 +42,6 @@ Trial pushed(Trial trial, const std::string& coordinate, double size) {
 
 std::vector<PlannedExperiment> plannedExperiments(const Trial& trial,
                                                   const EncompassingModel& model) {
-  const Coordinate& coordinate = model.coordinate();
   const std::string file = std::filesystem::path(trial.file).filename().string();
   std::vector<PlannedExperiment> planned;
   planned.push_back({fmt::format("repeat {} unchanged", file), trial});
@@ -56,13 +55,18 @@ std::vector<PlannedExperiment> plannedExperiments(const Trial& trial,
                      file, loaded.known.massInHand, placeOfMass(model), loaded.known.massInHand),
          loaded});
   }
-  const bool turns = coordinate.isRotation;
-  for (const double size : {0.25, 0.5, 1.0}) {
-    planned.push_back(
-        {fmt::format("repeat {} with recorded external pushes of {} {} lasting 0.2 s, alternately "
-                     "up and down, one per second (column {}.{})",
-                     file, size, turns ? "N·m" : "N", coordinate.name, turns ? "torque" : "force"),
-         pushed(trial, coordinate.name, size)});
+  for (const MovingCoordinate& at : model.coordinates()) {
+    const Coordinate& coordinate = at.coordinate;
+    if (model.arm().isPrescribed(at.index)) continue;
+    const bool turns = coordinate.isRotation;
+    for (const double size : {0.25, 0.5, 1.0}) {
+      planned.push_back(
+          {fmt::format(
+               "repeat {} with recorded external pushes of {} {} lasting 0.2 s, alternately "
+               "up and down, one per second (column {}.{})",
+               file, size, turns ? "N·m" : "N", coordinate.name, turns ? "torque" : "force"),
+           pushed(trial, coordinate.name, size)});
+    }
   }
   return planned;
 }

@@ -6,6 +6,7 @@
 #include "bio/discovery/musculoskeletal_problem.h"
 #include "bio/sensitivity/coupled_sensitivity.h"
 #include "discovery/look_at.h"
+#include "discovery/sensed_motion.h"
 #include "sensitivity/sensitivity_run.h"
 
 namespace bio::discover {
@@ -19,25 +20,36 @@ struct MusculoskeletalProblem::Columns {
   std::vector<ParameterDirection> directions;
   std::vector<Index> place;                        ///< of the wanted among them; −1: none
   std::vector<std::optional<Meaning::Kind>> kind;  ///< of the model's quantities
+  /// The sensor that shows the start which a column is that of; −1: none.
+  std::vector<int> startSensor;
 };
 
 MusculoskeletalProblem::Columns MusculoskeletalProblem::columnsOf(
     const OfTrial& one, const VectorXd& values, const std::vector<std::size_t>& wanted) const {
   const std::size_t own = encompassing_.quantities().size();
   const VectorXd modelValues = values.head(static_cast<Index>(own)) + one.known;
-  const int c = encompassing_.freeIndex();
   Columns columns;
   for (const std::size_t quantity : wanted) {
     ParameterDirection direction;
     std::optional<Meaning::Kind> kind;
+    int startSensor = -1;
     if (quantity < own) {
       kind = encompassing_.kindOf(quantity);
       direction = encompassing_.direction(modelValues, quantity);
     }
-    if (quantity == one.angle || kind == Meaning::Kind::bias || kind == Meaning::Kind::gain)
-      direction = {{InitialTarget{c, false}}};
-    if (quantity == one.speed) direction = {{InitialTarget{c, true}}};
+    for (const Start& start : one.starts) {
+      const int c = encompassing_.coordinates()[start.coordinate].index;
+      const bool isShown = kind == Meaning::Kind::bias || kind == Meaning::Kind::gain;
+      const bool shows =
+          isShown && start.sensor == static_cast<int>(encompassing_.sensorOf(quantity));
+      if (quantity == start.angle || shows) {
+        direction = {{InitialTarget{c, false}}};
+        startSensor = start.sensor;
+      }
+      if (quantity == start.speed) direction = {{InitialTarget{c, true}}};
+    }
     columns.kind.push_back(kind);
+    columns.startSensor.push_back(startSensor);
     columns.place.push_back(direction.empty() ? -1 : static_cast<Index>(columns.directions.size()));
     if (!direction.empty()) columns.directions.push_back(std::move(direction));
   }
@@ -48,13 +60,13 @@ MatrixXd MusculoskeletalProblem::latentScale(const OfTrial& one, const Musculosk
                                              const Trajectory& motion) const {
   Trajectory atNodes;  // the nearest rows
   const auto rows = static_cast<Index>(motion.time.size());
-  const auto numNodes = static_cast<Index>(one.nodes.size());
-  atNodes.q.resize(motion.q.rows(), numNodes);
-  atNodes.qDot.resize(motion.qDot.rows(), numNodes);
-  atNodes.fibreLength.resize(motion.fibreLength.rows(), numNodes);
-  atNodes.activation.resize(motion.activation.rows(), numNodes);
-  for (Index k = 0; k < numNodes; ++k) {
-    const double at = one.nodes[static_cast<std::size_t>(k)] - motion.time.front();
+  const auto numTimes = static_cast<Index>(one.nodeTimes.size());
+  atNodes.q.resize(motion.q.rows(), numTimes);
+  atNodes.qDot.resize(motion.qDot.rows(), numTimes);
+  atNodes.fibreLength.resize(motion.fibreLength.rows(), numTimes);
+  atNodes.activation.resize(motion.activation.rows(), numTimes);
+  for (Index k = 0; k < numTimes; ++k) {
+    const double at = one.nodeTimes[static_cast<std::size_t>(k)] - motion.time.front();
     const Index row = std::clamp<Index>(
         static_cast<Index>(std::lround(at / options_.simulation.step)), 0, rows - 1);
     atNodes.q.col(k) = motion.q.col(row);
@@ -62,43 +74,67 @@ MatrixXd MusculoskeletalProblem::latentScale(const OfTrial& one, const Musculosk
     atNodes.fibreLength.col(k) = motion.fibreLength.col(row);
     atNodes.activation.col(k) = motion.activation.col(row);
   }
-  const MuscleReport muscles = reportMuscles(arm, atNodes, encompassing_.freeIndex());
-  MatrixXd scale(numNodes, muscles.momentArm.rows() + 1);
-  scale << muscles.momentArm.cwiseProduct(muscles.tendonForce).transpose(),
-      VectorXd::Constant(numNodes, options_.latentFloor);
+  const auto axes = static_cast<Index>(axes_.size());
+  const auto muscles = static_cast<Index>(arm.numMuscles());
+  MatrixXd scale = MatrixXd::Zero(axes * numTimes, muscles + axes);
+  for (Index a = 0; a < axes; ++a) {
+    const int c = encompassing_.coordinates()[static_cast<std::size_t>(a)].index;
+    const MuscleReport report = reportMuscles(arm, atNodes, c);
+    scale.block(a * numTimes, 0, numTimes, muscles) =
+        report.momentArm.cwiseProduct(report.tendonForce).transpose();
+    scale.block(a * numTimes, muscles + a, numTimes, 1).setConstant(options_.latentFloor);
+  }
   return scale;
 }
 
 /// A trial's simulation and, once asked for, its derivatives.
 class MusculoskeletalProblem::Run final : public Simulation {
  public:
-  Run(const MusculoskeletalProblem& of, const Nudge* nudge, int trial, const VectorXd& values,
-      const VectorXd& latent, const std::vector<std::size_t>& wanted, bool latentToo)
+  Run(const MusculoskeletalProblem& of, const std::vector<Nudge>* nudges, int trial,
+      const VectorXd& values, const VectorXd& latent, const std::vector<std::size_t>& wanted,
+      bool latentToo)
       : of_(of),
         one_(of.of(trial)),
         wanted_(wanted),
         latentToo_(latentToo),
         setting_(of.settingAt(one_, values, wanted)),
-        sensor_(of.encompassing_.sensorAt(values)),
         timedNodes_(of.timedDirections(one_, values, wanted)),
         columns_(of.columnsOf(one_, values, wanted)),
         outputs_(VectorXd::Constant(static_cast<Index>(one_.times.size()), nan)),
         speeds_(outputs_) {
     try {
-      options_.simulation =
-          of.simulationOf(one_, of.withTimedForces(one_, values, latent), sensor_);
-      if (nudge) apply(*nudge, setting_.model, options_.simulation.externalForce);
+      options_.simulation = of.simulationOf(one_, values, of.withTimedForces(one_, values, latent));
+      if (nudges) {
+        for (const Nudge& nudge : *nudges)
+          apply(nudge, setting_.model, options_.simulation.externalForce);
+      }
       // forces that change in time follow those at the nodes
       if (latentToo || timedNodes_.size() > 0) {
-        options_.externalNodes = {{of.encompassing_.freeIndex()}, one_.nodes};
+        options_.externalNodes.times = one_.nodeTimes;
+        for (const MovingCoordinate& at : of.encompassing_.coordinates())
+          options_.externalNodes.coordinates.push_back(at.index);
+      }
+      for (const Series& series : one_.series) {
+        const auto kind = of.encompassing_.sensors()[series.sensor].kind;
+        options_.reactions = options_.reactions || kind == Observable::Kind::moment;
+        options_.muscles = options_.muscles || kind == Observable::Kind::fibreLength ||
+                           kind == Observable::Kind::pennation ||
+                           kind == Observable::Kind::tendonForce ||
+                           kind == Observable::Kind::activation;
       }
       arm_.emplace(of.encompassing_.armOf(setting_));
       excitation_ = of.excitationFor(one_, *arm_);
       run_.emplace(*arm_, setting_, excitation_, options_);
+      sensors_ = of.sensedBy(*arm_, one_, values);
     } catch (const std::exception&) {
+      run_.reset();
       return;  // outside the model's domain
     }
-    observe();
+    for (std::size_t i = 0; i < sensors_.size(); ++i) {
+      const SensedMotion::Shown shown = sensors_[i].shown(run_->motion());
+      outputs_(one_.series[i].samples) = shown.values;
+      speeds_(one_.series[i].samples) = shown.rates;
+    }
   }
 
   const VectorXd& outputs() const override { return outputs_; }
@@ -106,95 +142,112 @@ class MusculoskeletalProblem::Run final : public Simulation {
   Prediction predict() override {
     const auto K = static_cast<Index>(one_.times.size());
     const auto numNodes = static_cast<Index>(latentToo_ ? one_.nodes.size() : 0);
-    Prediction result{outputs_, MatrixXd::Constant(K, static_cast<Index>(wanted_.size()), nan),
+    const VectorXd nowhere = VectorXd::Constant(numNodes, nan);
+    const auto axes = static_cast<Index>(of_.axes_.size());
+    Prediction result{outputs_,
+                      MatrixXd::Constant(K, static_cast<Index>(wanted_.size()), nan),
                       MatrixXd::Constant(latentToo_ ? K : 0, numNodes, nan),
-                      MatrixXd::Constant(numNodes, 1, of_.options_.latentFloor), speeds_};
+                      MatrixXd::Constant(numNodes, axes, of_.options_.latentFloor),
+                      speeds_,
+                      {nowhere, nowhere},
+                      MatrixXd::Constant(numNodes, numNodes, nan)};
     if (!run_) return result;
     SensitivityTrajectory s;
     try {
       s = run_->sensitivities(columns_.directions);
-      if (latentToo_) result.latentScale = of_.latentScale(one_, *arm_, s.motion);
+      if (latentToo_) result.scale = of_.latentScale(one_, *arm_, s.motion);
     } catch (const std::exception&) {
       result.outputs.setConstant(nan);
       result.speeds.setConstant(nan);
       return result;
     }
-    differentiate(s, result);
+    if (latentToo_) setCourse(s, result);
+    for (std::size_t i = 0; i < sensors_.size(); ++i)
+      differentiate(sensors_[i], one_.series[i], s, result);
     return result;
   }
 
  private:
   static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-  std::optional<MotionWeights> look(const Trajectory& motion, double t) const {
-    return lookAt(motion.time, sensor_.measuredAt(t, one_.trial.times[0]));
-  }
-
-  /// What the sensor shows of the motion.
-  void observe() {
-    const Trajectory& motion = run_->motion();
-    const int c = of_.encompassing_.freeIndex();
-    course_ = lagged(motion.time, motion.q.row(c), motion.qDot.row(c), sensor_.lag);
-    const auto q = course_.value.row(0), qDot = course_.speed.row(0);
-    for (Index i = 0; i < outputs_.size(); ++i) {
-      const double t = one_.times[static_cast<std::size_t>(i)];
-      const auto w = look(motion, t);
+  /// The coordinates themselves at the nodes; behind the last row they are as there.
+  void setCourse(const SensitivityTrajectory& s, Prediction& result) const {
+    const Trajectory& motion = s.motion;
+    const auto numNodes = static_cast<Index>(one_.nodes.size());
+    for (Index k = 0; k < numNodes; ++k) {
+      const info::discover::Node& node = one_.nodes[static_cast<std::size_t>(k)];
+      const auto c = static_cast<std::size_t>(of_.encompassing_.coordinates()[node.axis].index);
+      const auto w = lookAt(motion.time, std::min(node.time, motion.time.back()));
       if (!w) continue;
-      const double factor = 1 + sensor_.gain;
-      outputs_[i] =
-          factor * w->value(q, qDot) + sensor_.bias + sensor_.drift * (t - one_.trial.times[0]);
-      speeds_[i] = factor * w->slope(q, qDot);
+      const auto q = motion.q.row(static_cast<Index>(c)),
+                 qDot = motion.qDot.row(static_cast<Index>(c));
+      result.course.q[k] = w->value(q, qDot);
+      result.course.qDot[k] = w->slope(q, qDot);
+      result.courseByNode.row(k) = w->rows(s.q[c], s.qDot[c]).tail(numNodes);
     }
   }
 
-  void differentiate(SensitivityTrajectory& s, Prediction& result) const {
-    const auto c = static_cast<std::size_t>(of_.encompassing_.freeIndex());
+  /// The derivatives of the samples of one sensor in the wanted quantities and the nodes.
+  void differentiate(const SensedMotion& sensor, const Series& series,
+                     const SensitivityTrajectory& s, Prediction& result) const {
+    const SensedMotion::Slopes slopes = sensor.slopes(s);
     const Index numNodes = options_.externalNodes.count();
-    if (sensor_.lag > 0) {
-      const auto behind = [&](SensitivityMatrix& of, SensitivityMatrix& rate) {
-        const Lagged late = lagged(s.motion.time, of.transpose(), rate.transpose(), sensor_.lag);
-        of = late.value.transpose();
-        rate = late.speed.transpose();
-      };
-      behind(s.q[c], s.qDot[c]);
-    }
-    const double factor = 1 + sensor_.gain;
-    for (Index i = 0; i < outputs_.size(); ++i) {
-      const auto w = look(s.motion, one_.times[static_cast<std::size_t>(i)]);
-      if (!w) continue;
-      const Eigen::RowVectorXd along = factor * w->rows(s.q[c], s.qDot[c]);
-      const Eigen::RowVectorXd ofNodes = along.tail(numNodes);
-      addRow(i, *w, along, ofNodes, result);
-      if (latentToo_) result.latentGamma.row(i) = ofNodes;
+    for (Index i = 0; i < sensor.size(); ++i) {
+      const Index at = series.samples[static_cast<std::size_t>(i)];
+      if (std::isnan(outputs_[at])) continue;
+      const Eigen::RowVectorXd along = slopes.gamma.row(i);
+      for (std::size_t j = 0; j < wanted_.size(); ++j)
+        result.gamma(at, static_cast<Index>(j)) =
+            entryOf(j, sensor, series, slopes, i, along, numNodes, speeds_[at]);
+      if (latentToo_) result.byNode.row(at) = along.tail(numNodes);
     }
   }
 
-  /// The derivatives of sample i in the wanted quantities.
-  void addRow(Index i, const MotionWeights& w, const Eigen::RowVectorXd& along,
-              const Eigen::RowVectorXd& ofNodes, Prediction& result) const {
-    const double factor = 1 + sensor_.gain;
-    const double since = one_.times[static_cast<std::size_t>(i)] - one_.trial.times[0];
-    const double firstAngle = setting_.start.q[of_.encompassing_.freeIndex()];
-    const auto q = course_.value.row(0), qDot = course_.speed.row(0);
-    const double value = w.value(q, qDot), slope = w.slope(q, qDot);
-    for (std::size_t j = 0; j < wanted_.size(); ++j) {
-      double& entry = result.gamma(i, static_cast<Index>(j));
-      entry = columns_.place[j] >= 0 ? along[columns_.place[j]] : 0;
-      // what the sensor shows of the first angle stays where it is
-      const auto kind = columns_.kind[j];
-      if (wanted_[j] == one_.angle) entry /= factor;
-      if (kind == Meaning::Kind::bias) entry = 1 - entry / factor;
-      if (kind == Meaning::Kind::gain) entry = value - entry * firstAngle / factor;
-      if (kind == Meaning::Kind::clock) entry = -factor * slope;
-      if (kind == Meaning::Kind::rate) entry = factor * slope * since;
-      if (kind == Meaning::Kind::lag) {
-        entry = factor * w.value(course_.inLag.row(0), course_.inLagSpeed.row(0));
-      }
-      if (kind == Meaning::Kind::drift) entry = since;
-      if (kind == Meaning::Kind::timed) {
-        entry = ofNodes.dot(timedNodes_.col(static_cast<Index>(j)));
-      }
+  double entryOf(std::size_t j, const SensedMotion& sensor, const Series& series,
+                 const SensedMotion::Slopes& slopes, Index i, const Eigen::RowVectorXd& along,
+                 Index numNodes, double rate) const {
+    using Kind = Meaning::Kind;
+    double entry = columns_.place[j] >= 0 ? along[columns_.place[j]] : 0;
+    // what a sensor shows of the first angle stays where it is
+    const int starts = columns_.startSensor[j];
+    const auto kind = columns_.kind[j];
+    if (starts >= 0) {
+      if (kind == Kind::gain) entry *= startAngle(starts);
+      entry /= 1 + startLaw(starts).gain;
+      if (kind == Kind::bias || kind == Kind::gain) entry = -entry;
     }
+    if (!kind) return entry;
+    if (*kind == Kind::timed)
+      return along.tail(numNodes).dot(timedNodes_.col(static_cast<Index>(j)));
+    if (of_.encompassing_.sensorOf(wanted_[j]) != series.sensor) return entry;
+    switch (*kind) {
+      case Kind::bias:
+        return 1 + entry;
+      case Kind::gain:
+        return slopes.value[i] + entry;
+      case Kind::clock:
+        return -rate;
+      case Kind::rate:
+        return rate * sensor.since(i);
+      case Kind::lag:
+        return slopes.inLag[i];
+      case Kind::drift:
+        return sensor.since(i);
+      default:
+        return entry;
+    }
+  }
+
+  const SensorLaw& startLaw(int sensor) const {
+    for (std::size_t i = 0; i < sensors_.size(); ++i)
+      if (static_cast<int>(one_.series[i].sensor) == sensor) return sensors_[i].law();
+    throw std::logic_error("a start that no sensor shows");
+  }
+  double startAngle(int sensor) const {
+    for (const Start& start : one_.starts)
+      if (start.sensor == sensor)
+        return setting_.start.q[of_.encompassing_.coordinates()[start.coordinate].index];
+    throw std::logic_error("a start that no sensor shows");
   }
 
   const MusculoskeletalProblem& of_;
@@ -202,7 +255,6 @@ class MusculoskeletalProblem::Run final : public Simulation {
   std::vector<std::size_t> wanted_;
   bool latentToo_;
   ParameterCatalogue::Setting setting_;
-  SensorLaw sensor_;
   MatrixXd timedNodes_;
   Columns columns_;
   VectorXd outputs_, speeds_;
@@ -210,19 +262,19 @@ class MusculoskeletalProblem::Run final : public Simulation {
   std::optional<MusculoskeletalSystem> arm_;
   ExcitationSignal excitation_;
   std::optional<stepping::SensitivityRun> run_;  ///< empty: outside the model's domain
-  Lagged course_;
+  std::vector<SensedMotion> sensors_;            ///< of the trial's series
 };
 
 std::unique_ptr<MusculoskeletalProblem::Simulation> MusculoskeletalProblem::simulatedWith(
-    const Nudge* nudge, int trial, const VectorXd& values, const VectorXd& latent,
+    const std::vector<Nudge>* nudges, int trial, const VectorXd& values, const VectorXd& latent,
     const std::vector<std::size_t>& wanted, bool latentToo) const {
-  return std::make_unique<Run>(*this, nudge, trial, values, latent, wanted, latentToo);
+  return std::make_unique<Run>(*this, nudges, trial, values, latent, wanted, latentToo);
 }
 
 MusculoskeletalProblem::Prediction MusculoskeletalProblem::predictWith(
-    const Nudge* nudge, int trial, const VectorXd& values, const VectorXd& latent,
+    const std::vector<Nudge>* nudges, int trial, const VectorXd& values, const VectorXd& latent,
     const std::vector<std::size_t>& wanted, bool latentToo) const {
-  return Run(*this, nudge, trial, values, latent, wanted, latentToo).predict();
+  return Run(*this, nudges, trial, values, latent, wanted, latentToo).predict();
 }
 
 }  // namespace bio::discover

@@ -11,6 +11,26 @@ namespace bio::discover {
 
 using Eigen::Index;
 
+namespace {
+
+/// Whether the coordinates among the outputs stay in their ranges.
+bool staysInRange(const MusculoskeletalProblem& planned, const Eigen::VectorXd& outputs) {
+  const std::vector<int>& which = planned.outputOfSample(0);
+  for (Index k = 0; k < outputs.size(); ++k) {
+    const auto sensor = which.empty()
+                            ? std::size_t{0}
+                            : static_cast<std::size_t>(which[static_cast<std::size_t>(k)]);
+    const Observable& what = planned.encompassing().sensors()[sensor];
+    for (const MovingCoordinate& at : planned.encompassing().coordinates()) {
+      if (what != ofCoordinate(at.coordinate.name)) continue;
+      if (outputs[k] < at.coordinate.rangeMin || outputs[k] > at.coordinate.rangeMax) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
 double PredictedExperiment::least() const {
   return nats.empty() ? 0 : *std::min_element(nats.begin(), nats.end());
 }
@@ -22,20 +42,21 @@ std::vector<PredictedExperiment> predictExperiments(const Model& model, const Sy
                                                     const info::discover::Verdict& verdict) {
   std::vector<PredictedExperiment> predictedExperiments;
   if (verdict.rivals.size() < 2) return predictedExperiments;
-  const Coordinate& coordinate = data.encompassing().coordinate();
+  const EncompassingModel& encompassing = data.encompassing();
+  std::vector<std::string> coordinates;
+  for (const MovingCoordinate& at : encompassing.coordinates())
+    coordinates.push_back(at.coordinate.name);
   std::vector<PlannedExperiment> experiments = plannedExperiments(trial, data.encompassing());
   for (PlannedExperiment& one : passiveMotions(trial, data.encompassing()))
     experiments.push_back(std::move(one));
   for (const PlannedExperiment& experiment : experiments) {
-    const MusculoskeletalProblem planned(model, arm, coordinate.name, {experiment.trial}, options);
+    const MusculoskeletalProblem planned(model, arm, coordinates, {experiment.trial}, options);
     // where the arm would go
     Eigen::VectorXd values = info::discover::nominalValues(planned);
     const auto own = static_cast<Index>(data.encompassing().quantities().size());
     values.head(own) = verdict.values.head(own);
     const Eigen::VectorXd motion = planned.outputs(0, values, {});
-    if (!motion.allFinite() || motion.minCoeff() < coordinate.rangeMin ||
-        motion.maxCoeff() > coordinate.rangeMax)
-      continue;
+    if (!motion.allFinite() || !staysInRange(planned, motion)) continue;
     PredictedExperiment one{experiment.sentence, {}};
     try {
       for (std::size_t rival = 1; rival < verdict.rivals.size(); ++rival)

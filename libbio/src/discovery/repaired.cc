@@ -33,12 +33,14 @@ bool concernsTrials(const Augmented& added) {
   const EmgMapping& m = added.mapping;
   return !added.muscles.empty() || !m.gain.empty() || m.delay != 0 || m.nonlinearity != 0 ||
          !m.offset.empty() || !m.crosstalk.empty() || !m.saturation.empty() || m.fatigue != 0 ||
-         !added.sensor.isTrue();
+         std::any_of(added.sensors.begin(), added.sensors.end(),
+                     [](const SensorLaw& sensor) { return !sensor.isTrue(); });
 }
 
-/// The trial with forces that begin or end, as if they were known from outside.
+/// The trial with forces on one coordinate that begin or end, as if they were known from outside.
 Trial withTimedForce(Trial trial, const std::string& coordinate, const std::vector<double>& nodes,
                      const VectorXd& force) {
+  if (force.isZero(0)) return trial;
   const auto known = std::find_if(trial.applied.begin(), trial.applied.end(),
                                   [&](const auto& one) { return one.coordinate == coordinate; });
   AppliedForce& applied = known != trial.applied.end()
@@ -63,26 +65,54 @@ struct Compared {
   Index samples = 0;
 };
 
+std::vector<std::string> coordinatesOf(const MusculoskeletalProblem& data) {
+  std::vector<std::string> names;
+  for (const MovingCoordinate& at : data.encompassing().coordinates())
+    names.push_back(at.coordinate.name);
+  return names;
+}
+
+/// The error of one output in its unit; of several, in σ times the σ of the first.
+Compared pooled(const std::vector<Observable>& outputs, const TrialReplay& replay,
+                const info::discover::Whitening& noise) {
+  double squares = 0;
+  Compared all{0, 0};
+  const auto add = [&](const Observable& what, const MeasuredError& error) {
+    const auto at = std::find(outputs.begin(), outputs.end(), what);
+    if (at == outputs.end()) return;
+    if (outputs.size() == 1) {
+      all = {error.rms, error.count};
+      return;
+    }
+    const double scale = noise.sd(0) / noise.sd(static_cast<std::size_t>(at - outputs.begin()));
+    squares += static_cast<double>(error.count) * std::pow(scale * error.rms, 2);
+    all.samples += error.count;
+    all.rms = std::sqrt(squares / static_cast<double>(all.samples));
+  };
+  for (const auto& [name, error] : replay.errors) add(ofCoordinate(name), error);
+  for (const ChannelError& one : replay.channelErrors) add(one.what, one.error);
+  return all.samples > 0 ? all : Compared{};
+}
+
 /// Nothing where the replay does not reach the end.
 Compared replayed(const MusculoskeletalProblem& data, const Model& model, const Trial& trial,
-                  double step, const std::optional<TrialStart>& start) {
-  const std::string& coordinate = data.encompassing().coordinate().name;
+                  double step, const std::vector<TrialStart>& starts,
+                  const info::discover::Whitening& noise) {
   const SystemOptions options = withoutTables(data);
   try {
-    const MusculoskeletalSystem arm(withExperimentalConditions(model, options, coordinate, trial),
-                                    options);
+    const MusculoskeletalSystem arm(
+        withExperimentalConditions(model, options, coordinatesOf(data), trial), options);
     SimulationOptions simulation = data.options().simulation;
     simulation.step = step;
     simulation.progress = {};
     TrialBeginning beginning = beginningOf(trial, model, arm, {});
-    if (start) {
-      beginning.point.q[arm.skeleton().indexOf(coordinate)] = start->value;
-      beginning.point.qDot[arm.skeleton().indexOf(coordinate)] = start->speed;
+    for (const TrialStart& start : starts) {
+      beginning.point.q[arm.skeleton().indexOf(start.coordinate)] = start.value;
+      beginning.point.qDot[arm.skeleton().indexOf(start.coordinate)] = start.speed;
     }
     const TrialReplay replay = replayTrial(arm, trial, simulation, beginning);
     if (replay.motion.outcome != Outcome::completed) return {};
-    for (const auto& [name, error] : replay.errors)
-      if (name == coordinate) return {error.rms, error.count};
+    return pooled(data.encompassing().sensors(), replay, noise);
   } catch (const std::exception&) {
     // it has no start, say, or no arm can be made of it
   }
@@ -144,12 +174,16 @@ std::vector<RepairedTrial> recordedTrials(const MusculoskeletalProblem& data,
     RepairedTrial one;
     one.index = i;
     one.isHeldOut = std::find(heldOut.begin(), heldOut.end(), i) != heldOut.end();
-    one.start = data.startAt(i, verdict.values);
-    const Compared nominal = replayed(data, base, data.trial(i), nominalStep, {});
+    one.starts = data.startsAt(i, verdict.values);
+    const Compared nominal = replayed(data, base, data.trial(i), nominalStep, {}, verdict.outputSd);
     one.nominal = nominal.rms;
     one.samples = nominal.samples > 0 ? nominal.samples : data.measured(i).size();
     one.floor = verdict.outputSd.sd(0);
-    const VectorXd difference = data.outputs(i, verdict.values, {}) - data.measured(i);
+    VectorXd difference = data.outputs(i, verdict.values, {}) - data.measured(i);
+    if (data.encompassing().sensors().size() > 1) {
+      verdict.outputSd.whiten(data.outputOfSample(i), difference);
+      difference *= verdict.outputSd.sd(0);
+    }
     one.fitted = std::sqrt(difference.squaredNorm() / static_cast<double>(difference.size()));
     trials.push_back(std::move(one));
   }
@@ -159,11 +193,10 @@ std::vector<RepairedTrial> recordedTrials(const MusculoskeletalProblem& data,
 Repaired repairedModel(const MusculoskeletalProblem& data, const Verdict& verdict,
                        const std::vector<int>& heldOut, const std::optional<double>& step,
                        const EffectProvenance& provenance) {
-  const std::string& coordinate = data.encompassing().coordinate().name;
   Repaired result{augmentedModel(data.encompassing(), ownValues(data, verdict.values)),
                   recordedTrials(data, verdict, heldOut, step)};
   Model& model = result.added.model;
-  const SensorLaw& sensor = result.added.sensor;
+  const std::vector<Observable>& outputs = data.encompassing().sensors();
   std::string effects;
   if (!verdict.effects.empty())
     effects = effectCredits(data.encompassing(), effectsToAdd(data, verdict), provenance);
@@ -175,16 +208,30 @@ Repaired repairedModel(const MusculoskeletalProblem& data, const Verdict& verdic
   const MusculoskeletalSystem arm(model, withoutTables(data));
   for (RepairedTrial& one : result.trials) {
     Trial trial = data.trial(one.index);
-    if (!trial.sha256.empty()) model.fitted.starts.push_back(one.start);
+    if (!trial.sha256.empty())
+      model.fitted.starts.insert(model.fitted.starts.end(), one.starts.begin(), one.starts.end());
     if (isDriven) {
       if (const VectorXd force = data.timedForce(one.index, verdict.values); force.size() > 0) {
-        trial = withTimedForce(std::move(trial), coordinate, data.latentTimes(one.index), force);
+        const std::vector<double> nodes = info::discover::nodeTimes(data, one.index);
+        const auto n = static_cast<Index>(nodes.size());
+        const std::vector<std::string> names = coordinatesOf(data);
+        for (std::size_t axis = 0; axis < names.size(); ++axis)
+          trial = withTimedForce(std::move(trial), names[axis], nodes,
+                                 force.segment(static_cast<Index>(axis) * n, n));
       }
-      one.driven = drivenTable(asTrueSensor(trial, coordinate, sensor), arm, result.added.mapping);
-      trial = trialFrom(*one.driven, trial.file, model, {.experimentalConditions = true});
-      one.floor /= 1 + sensor.gain;
+      for (std::size_t i = 0; i < outputs.size(); ++i)
+        trial = asTrueSensor(std::move(trial), outputs[i], result.added.sensors[i]);
+      one.driven = drivenTable(trial, arm, result.added.mapping);
+      std::vector<MeasuredChannel> prescribed = trial.prescribed;
+      TrialOptions options{.experimentalConditions = true};
+      for (const MeasuredChannel& course : prescribed)
+        if (course.times.size() > 1) options.prescribed.push_back(course.what.of);
+      trial = trialFrom(*one.driven, trial.file, model, options);
+      trial.prescribed = std::move(prescribed);
+      if (outputs.size() == 1) one.floor /= 1 + result.added.sensors.front().gain;
     }
-    const Compared after = replayed(data, model, trial, data.options().simulation.step, one.start);
+    const Compared after =
+        replayed(data, model, trial, data.options().simulation.step, one.starts, verdict.outputSd);
     one.after = after.rms;
     if (after.samples > 0) one.samples = after.samples;
   }
@@ -193,7 +240,8 @@ Repaired repairedModel(const MusculoskeletalProblem& data, const Verdict& verdic
 
 void takeReplays(Verdict& verdict, const Repaired& repaired) {
   // what a gap compares is what the sensor shows
-  const double shown = 1 + repaired.added.sensor.gain;
+  const std::vector<SensorLaw>& sensors = repaired.added.sensors;
+  const double shown = sensors.size() == 1 ? 1 + sensors.front().gain : 1;
   const auto take = [&](info::discover::ExcessError& gap, bool heldOut) {
     gap.nominal = repaired.pooled(&RepairedTrial::nominal, heldOut);
     gap.after = shown * repaired.pooled(&RepairedTrial::after, heldOut);

@@ -26,8 +26,8 @@ SteppedVerdict search(const DiscoveryRequest& request, const std::vector<Trial>&
   return info::discover::searchTrials(
       asked, [&](double step) -> const info::discover::DiscoveryProblem& {
         problem.simulation.step = step;
-        result.data = std::make_unique<MusculoskeletalProblem>(request.model, request.arm,
-                                                               request.coordinate, trials, problem);
+        result.data = std::make_unique<MusculoskeletalProblem>(
+            request.model, request.arm, request.coordinates, trials, problem);
         return *result.data;
       });
 }
@@ -50,7 +50,7 @@ std::vector<Trial> partsBefore(const DiscoveryRequest& request,
   const double end = found.position + (found.above ? -1 : 1) * found.margin;
   std::vector<Trial> parts;
   for (const Trial& trial : request.trials) {
-    auto part = firstPart(trial, request.coordinate, end, found.above);
+    auto part = firstPart(trial, request.coordinates.all.at(found.axis), end, found.above);
     if (!part) return {};
     parts.push_back(std::move(*part));
   }
@@ -83,7 +83,9 @@ void searchBeforeBreak(const DiscoveryRequest& request, DiscoveryResult& result)
     result.found.processorSeconds = processor;
   }
   result.found.verdict.sentence += sentenceOf(
-      *result.positionBreak, result.data->encompassing().coordinate(), result.trialsAreCut);
+      *result.positionBreak,
+      result.data->encompassing().coordinates().at(result.positionBreak->axis).coordinate,
+      result.trialsAreCut);
 }
 
 /// The model that the verdict means, and the replays of the trials with it.
@@ -133,6 +135,7 @@ DiscoveryResult discover(const DiscoveryRequest& request) {
   if (verdict.reached == Stage::finished) {
     MusculoskeletalProblemOptions options = request.problem;
     options.simulation.step = data.options().simulation.step;
+    options.sensors = data.encompassing().sensors();
     result.experiments =
         predictExperiments(request.model, request.arm, data.trial(0), options, data, verdict);
   }

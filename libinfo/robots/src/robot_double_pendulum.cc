@@ -55,7 +55,7 @@ double endOfLink2() {
 // divided by m3 ℓ, gives ℓ γ̈ whatever m3 is; put into the other two, it leaves terms in m3 alone.
 template <bool Third>
 struct Pendulum {
-  static constexpr int stateSize = Third ? 8 : 6, startSize = 4;
+  static constexpr int stateSize = Third ? 8 : 6, startSize = 4, rate1 = 2;
   static constexpr std::size_t sharedSize = kCount, lag = kLag, clock = kClock;
   template <class T>
   using Numbers = std::array<T, kCount>;

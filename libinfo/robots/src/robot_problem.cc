@@ -102,6 +102,7 @@ RobotProblem::RobotProblem(Model model, std::vector<Trial> trials, DisagreementO
     const double begin = trial.times.front(), length = trial.times.back() - begin;
     const auto count = static_cast<int>(std::ceil(length / options_.latentSpacing - 1e-9)) + 2;
     for (int i = 0; i < count; ++i) one.nodes.push_back(begin + i * options_.latentSpacing);
+    for (const double time : one.nodes) one.latentNodes.push_back({time, 0});
     one.start = quantities_.size();
     for (const StartQuantity& s : model_.starts) {
       const double nominal = s.channel < 0 ? 0 : first[s.channel];
@@ -149,8 +150,10 @@ RobotProblem::Prediction RobotProblem::predict(int trial, const VectorXd& values
       column = r.byStart.col(static_cast<Index>(q - one.start));
   }
   if (latentToo) {
-    p.latentGamma = std::move(r.byLatent);
-    p.latentScale = VectorXd::Ones(static_cast<Index>(one.nodes.size()));
+    p.byNode = std::move(r.byLatent);
+    p.scale = VectorXd::Ones(static_cast<Index>(one.nodes.size()));
+    p.course = {std::move(r.angle), std::move(r.rate)};
+    p.courseByNode = std::move(r.angleByLatent);
   }
   return p;
 }

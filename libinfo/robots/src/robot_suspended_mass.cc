@@ -36,7 +36,7 @@ enum : std::size_t {
 // which at C = 0 is F*. Its step is the L-stable one of two stages with γ = 1 − 1/√2, so that
 // stiff strings cost nothing; length and rates take F linear over a step.
 struct Bob {
-  static constexpr int stateSize = 6, startSize = 2;
+  static constexpr int stateSize = 6, startSize = 2, rate1 = 1;
   static constexpr std::size_t sharedSize = kMassCount, lag = kMassLag, clock = kMassClock;
   template <class T>
   using Numbers = std::array<T, kMassCount>;

@@ -14,7 +14,8 @@
 // the chain rule makes whole trials of it, so that the cost of a latent node is a column.
 //
 // A plant has `stateSize`, `sharedSize`, `startSize`, places `lag` and `clock` among
-// its quantities, and templates over the scalar
+// its quantities, `rate1`, the place of the rate of x[0] in its state, and templates over the
+// scalar
 //     start(s, u, p)           state at rest but for the start quantities s
 //     step(x, u, h, p)         its state (all but the last entry) after h; u at 0, h/2 and h
 //     outputs(x, u, p)
@@ -118,6 +119,9 @@ class StepSensitivity {
         if (!step(times[row] + j * h, h, command[row] + slope * (j * h), slope)) return;
       keepState(static_cast<Eigen::Index>(row) + 1);
     }
+    if constexpr (differentiated) {  // nodes behind the end
+      while (isCourseWanted()) keepCourse(0, 1, x_, S_, x_, S_);
+    }
   }
 
  private:
@@ -178,6 +182,10 @@ class StepSensitivity {
       after.middleCols(starts, kSlots) += B;
       for (int i = 0; i < 3; ++i) addLatent(after, D.col(i), times[i]);
       S_.swap(after);
+      std::array<double, static_cast<std::size_t>(n)> ended;
+      for (int i = 0; i < n; ++i) ended[std::size_t(i)] = plainValue(next[std::size_t(i)]);
+      while (isCourseWanted() && request_.nodes[node_] <= t + h * (1 + 1e-9))
+        keepCourse((request_.nodes[node_] - t) / h, h, x_, after, ended, S_);
     }
     for (int i = 0; i < n; ++i) x_[std::size_t(i)] = plainValue(next[std::size_t(i)]);
     return true;
@@ -234,6 +242,27 @@ class StepSensitivity {
     }
   }
 
+  bool isCourseWanted() const {
+    return request_.latentToo && first_ == 0 && node_ < request_.nodes.size();
+  }
+
+  // The first joint at the next node, by Hermite's cubic at share s of a step of length h.
+  template <class Numbers>
+  void keepCourse(double s, double h, const Numbers& x0, const Eigen::MatrixXd& S0,
+                  const Numbers& x1, const Eigen::MatrixXd& S1) {
+    constexpr int rate = Plant::rate1;
+    const double h01 = s * s * (3 - 2 * s), h00 = 1 - h01;
+    const double h10 = h * s * (1 - s) * (1 - s), h11 = -h * s * s * (1 - s);
+    const double slope = 6 * s * (1 - s) / h;
+    const auto at = static_cast<Eigen::Index>(node_++);
+    response_.angle[at] = h00 * x0[0] + h10 * x0[rate] + h01 * x1[0] + h11 * x1[rate];
+    response_.rate[at] =
+        slope * (x1[0] - x0[0]) + (1 - s) * (1 - 3 * s) * x0[rate] + s * (3 * s - 2) * x1[rate];
+    const Eigen::RowVectorXd row =
+        h00 * S0.row(0) + h10 * S0.row(rate) + h01 * S1.row(0) + h11 * S1.row(rate);
+    response_.angleByLatent.row(at) = row.tail(static_cast<int>(request_.nodes.size()));
+  }
+
   void keepState(Eigen::Index row) {
     if (first_ != 0) return;
     for (int i = 0; i < n; ++i) response_.states(row, i) = x_[std::size_t(i)];
@@ -246,7 +275,7 @@ class StepSensitivity {
   std::array<T, static_cast<std::size_t>(Plant::sharedSize)> p_;
   std::array<double, static_cast<std::size_t>(n)> x_{};
   Eigen::MatrixXd S_;
-  std::size_t slots_ = 0, sample_ = 0;
+  std::size_t slots_ = 0, sample_ = 0, node_ = 0;
   int columns_ = 0;
 };
 
@@ -265,8 +294,13 @@ Response walk(const Request& request) {
   }
   response.byWanted.setConstant(samples, static_cast<Eigen::Index>(request.wanted.size()), nan);
   response.byStart.setConstant(samples, Plant::startSize, nan);
-  if (request.latentToo)
-    response.byLatent.setConstant(samples, static_cast<Eigen::Index>(request.nodes.size()), nan);
+  if (request.latentToo) {
+    const auto nodes = static_cast<Eigen::Index>(request.nodes.size());
+    response.byLatent.setConstant(samples, nodes, nan);
+    response.angle.setConstant(nodes, nan);
+    response.rate.setConstant(nodes, nan);
+    response.angleByLatent.setConstant(nodes, nodes, nan);
+  }
   std::size_t first = 0;
   do {
     StepSensitivity<Plant, Dual<Plant::stateSize + 3 + kSlots>>(request, first, response).run();

@@ -18,7 +18,7 @@ const char* name(EffectKind kind) {
 }
 
 const char* name(NonparametricForce::Follows follows) {
-  return follows == NonparametricForce::Follows::angle ? "angle" : "speed";
+  return follows == NonparametricForce::Follows::position ? "position" : "speed";
 }
 
 }  // namespace info::discover

@@ -87,7 +87,8 @@ class VerdictSentence {
                               : " The closest match is " + names + atBounds() + ".") +
                cause() + tie() + nonparametric() +
                (verdict_.formula && verdict_.formula->wins
-                    ? " The force " + verdict_.formula->text + " explains the residual."
+                    ? " The force " + verdict_.formula->text + on(verdict_.formula->axis) +
+                          " explains the residual."
                     : "");
       case Finding::numerical:
         break;
@@ -119,8 +120,8 @@ class VerdictSentence {
     if (!verdict_.unknown || verdict_.unknown->tie.share < kTied) return "";
     const TimeTie& tie = verdict_.unknown->tie;
     std::string words = fmt::format(
-        " The missing force is tied to time: {:.0f} % of its power is the same in every trial",
-        100 * tie.share);
+        " The missing force{} is tied to time: {:.0f} % of its power is the same in every trial",
+        on(verdict_.unknown->axis), 100 * tie.share);
     if (tie.stepShare < kStep) return words + ".";
     const char* how = std::abs(tie.after) > 3 * std::abs(tie.before)   ? "begins"
                       : std::abs(tie.before) > 3 * std::abs(tie.after) ? "ends"
@@ -130,9 +131,14 @@ class VerdictSentence {
 
   std::string nonparametric() const {
     if (!verdict_.nonparametric || !verdict_.nonparametric->wins) return "";
-    return fmt::format(" A free-form force of the {} alone explains {}.",
-                       name(verdict_.nonparametric->follows),
+    return fmt::format(" A free-form force of the {} alone{} explains {}.",
+                       name(verdict_.nonparametric->follows), on(verdict_.nonparametric->axis),
                        somethingChosen_ ? "the data better" : "part of the residual");
+  }
+
+  // Which axis, if there are several.
+  std::string on(std::size_t axis) const {
+    return data_.axes().size() > 1 ? " on " + data_.axes()[axis].name : "";
   }
 
   std::string atBounds() const {

@@ -2429,7 +2429,7 @@ class UnknownForce:
 
 @type_check_only
 class NonparametricForce:
-    follows: Literal["angle", "speed"]
+    follows: Literal["position", "speed"]
     beside: list[str]
     log_bayes_factor: float
     nats_ahead_of_names: float

@@ -314,7 +314,7 @@ TEST(Formula, IsAnEffectLikeAnyOther) {
   const Case c;
   const std::vector<info::discover::FormulaTerm> terms = {{"q^3", -1.5, 3},
                                                           {"qdot*abs(qdot)", 0.4, 2}};
-  const auto widened = c.data.withFormula(terms, {0, 2});
+  const auto widened = c.data.withFormula(0, terms, {0, 2});
   ASSERT_TRUE(widened);
   ASSERT_EQ(widened->candidates().size(), 3U);
   EXPECT_EQ(widened->candidates()[1].id, c.data.candidates()[2].id);
@@ -347,14 +347,14 @@ TEST(Formula, IsAnEffectLikeAnyOther) {
                                         {cut(c.elbow.trial, 0.6)}, Case::exact());
   const VectorXd again = repaired.outputs(0, info::discover::nominalValues(repaired), {});
   EXPECT_LT((again - with).cwiseAbs().maxCoeff(), 1e-9);
-  EXPECT_FALSE(repaired.withFormula(terms, {}));
+  EXPECT_FALSE(repaired.withFormula(0, terms, {}));
 }
 
 // As forces without a name are written, about a middle on either side of 0.
 TEST(Formula, MayBeAPowerAboutAMiddle) {
   const Case c;
   const auto outputs = [&](const char* expression, double amplitude) {
-    const auto widened = c.data.withFormula({{expression, 1, 1}}, {});
+    const auto widened = c.data.withFormula(0, {{expression, 1, 1}}, {});
     VectorXd values = info::discover::nominalValues(*widened);
     values[static_cast<Index>(widened->candidates()[0].quantities[0])] = amplitude;
     return widened->outputs(0, values, {});

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "bio/discovery/add_effects.h"
@@ -16,12 +17,12 @@ using namespace effect_cases;
 TEST(LatentForce, NodesMatchDifferencesOfSimulationsWithAnExternalForce) {
   const Case c(0.6);
   const VectorXd values = c.with(c.find("visc"));
-  const auto nodes = static_cast<Index>(c.data.latentTimes(0).size());
+  const auto nodes = static_cast<Index>(c.data.nodes(0).size());
   VectorXd latent(nodes);
   for (Index k = 0; k < nodes; ++k) latent[k] = 0.5 * std::sin(1.7 * static_cast<double>(k));
   const auto at = c.data.predict(0, values, latent, {}, true);
   EXPECT_EQ(at.outputs, c.data.outputs(0, values, latent));
-  ASSERT_EQ(at.latentGamma.cols(), nodes);
+  ASSERT_EQ(at.byNode.cols(), nodes);
   double largest = 0;
   for (Index k = 0; k < nodes; ++k) {
     const auto f = [&](double step) {
@@ -29,13 +30,12 @@ TEST(LatentForce, NodesMatchDifferencesOfSimulationsWithAnExternalForce) {
       moved[k] += step;
       return c.data.outputs(0, values, moved);
     };
-    largest = std::max(largest, at.latentGamma.col(k).cwiseAbs().maxCoeff());
-    EXPECT_LT(problem(at.latentGamma.col(k), f, 1), 1e-5) << "node " << k;
+    largest = std::max(largest, at.byNode.col(k).cwiseAbs().maxCoeff());
+    EXPECT_LT(problem(at.byNode.col(k), f, 1), 1e-5) << "node " << k;
     // nothing moves before the hat begins
-    const double begins =
-        c.data.latentTimes(0)[static_cast<std::size_t>(std::max<Index>(k - 1, 0))];
+    const double begins = c.data.nodes(0)[static_cast<std::size_t>(std::max<Index>(k - 1, 0))].time;
     for (std::size_t i = 0; i < c.data.times(0).size() && c.data.times(0)[i] <= begins; ++i) {
-      EXPECT_EQ(at.latentGamma(static_cast<Index>(i), k), 0);
+      EXPECT_EQ(at.byNode(static_cast<Index>(i), k), 0);
     }
   }
   EXPECT_GT(largest, 0.01);
@@ -43,9 +43,52 @@ TEST(LatentForce, NodesMatchDifferencesOfSimulationsWithAnExternalForce) {
   EXPECT_GT(c.data.latentLag(), 0.038);
   EXPECT_LT(c.data.latentLag(), 0.069);
   // a channel for each muscle, the last of constant size
-  ASSERT_EQ(at.latentScale.cols(), 9);
-  EXPECT_TRUE((at.latentScale.col(8).array() == 0.5).all());
-  EXPECT_GT(at.latentScale.leftCols(8).cwiseAbs().maxCoeff(), 0.5);
+  ASSERT_EQ(at.scale.cols(), 9);
+  EXPECT_TRUE((at.scale.col(8).array() == 0.5).all());
+  EXPECT_GT(at.scale.leftCols(8).cwiseAbs().maxCoeff(), 0.5);
+}
+
+// The state itself at the nodes, whatever the sensor shows; the last node lies behind the end.
+TEST(LatentForce, CourseIsThatOfTheSimulationAndItsDerivativesMatchDifferences) {
+  const Case c(0.57);
+  VectorXd values = c.with(c.find("visc"));
+  for (const char* id : {"bias", "gain", "lag", "drift"}) {
+    values[static_cast<Index>(c.find(id).quantities[0])] = 0.05;
+  }
+  const std::vector<info::discover::Node>& nodes = c.data.nodes(0);
+  const auto n = static_cast<Index>(nodes.size());
+  const auto free = c.data.predict(0, values, VectorXd::Zero(n), {}, true);
+  const Trajectory motion = c.data.motion(0, values);
+  ASSERT_EQ(free.course.q.size(), n);
+  const auto last = static_cast<Index>(motion.time.size()) - 1;
+  const int coordinate = c.data.encompassing().freeIndex();
+  for (Index k = 0; k < n; ++k) {
+    const auto behind = std::lower_bound(motion.time.begin(), motion.time.end(),
+                                         nodes[static_cast<std::size_t>(k)].time - 1e-9);
+    const Index row = std::min<Index>(behind - motion.time.begin(), last);
+    EXPECT_NEAR(free.course.q[k], motion.q(coordinate, row), 1e-9) << k;
+    EXPECT_NEAR(free.course.qDot[k], motion.qDot(coordinate, row), 1e-9) << k;
+  }
+  EXPECT_GT((free.course.q.array() - free.course.q[0]).abs().maxCoeff(), 0.01);
+  VectorXd latent(n);
+  for (Index k = 0; k < n; ++k) latent[k] = 0.5 * std::sin(1.7 * static_cast<double>(k));
+  const auto at = c.data.predict(0, values, latent, {}, true);
+  ASSERT_EQ(at.courseByNode.rows(), n);
+  ASSERT_EQ(at.courseByNode.cols(), n);
+  for (Index k = 0; k < n; ++k) {
+    const auto f = [&](double step) {
+      VectorXd moved = latent;
+      moved[k] += step;
+      return c.data.predict(0, values, moved, {}, true).course.q;
+    };
+    EXPECT_LT(problem(at.courseByNode.col(k), f, 1), 1e-5) << "node " << k;
+  }
+  const auto without = c.data.predict(0, values, latent, {}, false);
+  EXPECT_EQ(without.course.q.size(), 0);
+  EXPECT_EQ(without.courseByNode.size(), 0);
+  ASSERT_EQ(c.data.axes().size(), 1U);
+  EXPECT_EQ(c.data.axes()[0].name, "elbow_flexion");
+  EXPECT_EQ(c.data.axes()[0].forceUnit, "N·m");
 }
 
 TEST(MusculoskeletalProblem, DerivativesInNuisancesMatchDifferencesUnderALatentForceAndASensor) {
@@ -57,7 +100,7 @@ TEST(MusculoskeletalProblem, DerivativesInNuisancesMatchDifferencesUnderALatentF
   values[static_cast<Index>(c.find("Fmax_TRIlong").quantities[0])] = 0.9;
   values[static_cast<Index>(c.find("mass").quantities[0])] = 1.05;
   values[static_cast<Index>(c.find("payload").quantities[0])] = 0.1;
-  const VectorXd latent = VectorXd::Constant(static_cast<Index>(c.data.latentTimes(0).size()), 0.3);
+  const VectorXd latent = VectorXd::Constant(static_cast<Index>(c.data.nodes(0).size()), 0.3);
   std::vector<std::size_t> wanted = c.data.nuisances();
   for (const char* id : {"clock", "gain", "bias", "Fmax_TRI", "payload"}) {
     wanted.push_back(c.find(id).quantities[0]);
@@ -92,8 +135,9 @@ TEST(MusculoskeletalProblem, StartsWhereTheSensorShowsTheFirstAngle) {
 
 bool areSame(const MusculoskeletalProblem::Prediction& a,
              const MusculoskeletalProblem::Prediction& b) {
-  return a.outputs == b.outputs && a.gamma == b.gamma && a.latentGamma == b.latentGamma &&
-         a.latentScale == b.latentScale && a.speeds == b.speeds;
+  return a.outputs == b.outputs && a.gamma == b.gamma && a.byNode == b.byNode &&
+         a.scale == b.scale && a.speeds == b.speeds && a.course.q == b.course.q &&
+         a.course.qDot == b.course.qDot && a.courseByNode == b.courseByNode;
 }
 
 TEST(MusculoskeletalProblem, DerivativesThatComeLaterAreThoseOfPredict) {
@@ -102,7 +146,7 @@ TEST(MusculoskeletalProblem, DerivativesThatComeLaterAreThoseOfPredict) {
   for (const char* id : {"clock", "gain", "lag"}) {
     values[static_cast<Index>(c.find(id).quantities[0])] = 0.01;
   }
-  const VectorXd latent = VectorXd::Constant(static_cast<Index>(c.data.latentTimes(0).size()), 0.3);
+  const VectorXd latent = VectorXd::Constant(static_cast<Index>(c.data.nodes(0).size()), 0.3);
   std::vector<std::size_t> wanted = c.data.nuisances();
   for (const char* id : {"clock", "gain", "lag", "bias", "payload"}) {
     wanted.push_back(c.find(id).quantities[0]);
@@ -136,8 +180,8 @@ class Counted final : public info::discover::DiscoveryProblem {
   std::string trialName(int trial) const override { return of_.trialName(trial); }
   const std::vector<double>& times(int trial) const override { return of_.times(trial); }
   const VectorXd& measured(int trial) const override { return of_.measured(trial); }
-  const std::vector<double>& latentTimes(int trial) const override {
-    return of_.latentTimes(trial);
+  const std::vector<info::discover::Node>& nodes(int trial) const override {
+    return of_.nodes(trial);
   }
   Prediction predict(int trial, const VectorXd& values, const VectorXd& latent,
                      const std::vector<std::size_t>& wanted, bool latentToo) const override {
@@ -206,7 +250,7 @@ TEST(MusculoskeletalProblem, SaysNothingWhereTheSimulationFails) {
   EXPECT_FALSE(c.data.failure(0, values).empty());
   const auto at = c.data.predict(0, values, {}, {0}, true);
   EXPECT_FALSE(at.outputs.allFinite());
-  EXPECT_EQ(at.latentGamma.cols(), static_cast<Index>(c.data.latentTimes(0).size()));
+  EXPECT_EQ(at.byNode.cols(), static_cast<Index>(c.data.nodes(0).size()));
 }
 
 TEST(MusculoskeletalProblem, RefusesWhatItCannotUse) {

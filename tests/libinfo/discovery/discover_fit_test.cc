@@ -146,7 +146,7 @@ TEST(JointFit, OfChannelsBehindALagHasTheEvidenceOfTheirJointNormalDistribution)
     const auto p = data.predict(t, nominalValues(data), {}, wanted, true);
     e.segment(50 * t, 50) = data.measured(t) - p.outputs;
     J.middleRows(50 * t, 50) = p.gamma;
-    S.block(50 * t, 50 * t, 50, 50) = p.latentGamma * K * p.latentGamma.transpose();
+    S.block(50 * t, 50 * t, 50, 50) = p.byNode * K * p.byNode.transpose();
   }
   for (std::size_t i = 0; i < h.free.size(); ++i) J.col(static_cast<Index>(i)) *= h.free[i].sd;
   S += J * J.transpose() + kOutput * kOutput * MatrixXd::Identity(100, 100);

@@ -126,7 +126,9 @@ class Nameless : public LinearDisagreement {
         known_{LinearDisagreement::candidates()[1]} {}
   const std::vector<Candidate>& candidates() const override { return known_; }
   std::unique_ptr<DiscoveryProblem> withFormula(
-      const std::vector<FormulaTerm>& terms, const std::vector<std::size_t>& kept) const override {
+      std::size_t axis, const std::vector<FormulaTerm>& terms,
+      const std::vector<std::size_t>& kept) const override {
+    EXPECT_EQ(axis, 0U);
     if (!offers_ || terms.size() > 1) return nullptr;
     EXPECT_EQ(terms[0].expression, "1");
     EXPECT_TRUE(kept.empty());

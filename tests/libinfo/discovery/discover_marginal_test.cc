@@ -32,9 +32,8 @@ class Damped : public LinearDisagreement {
     const VectorXd slope = VectorXd::Ones(p.outputs.size()) + 2 * bent_ * position(values, latent);
     VectorXd still = VectorXd::Zero(values.size());
     still[0] = values[0];
-    for (Index k = 0; k < p.latentGamma.cols(); ++k)
-      p.latentGamma.col(k) =
-          slope.cwiseProduct(position(still, VectorXd::Unit(p.latentGamma.cols(), k)));
+    for (Index k = 0; k < p.byNode.cols(); ++k)
+      p.byNode.col(k) = slope.cwiseProduct(position(still, VectorXd::Unit(p.byNode.cols(), k)));
     p.gamma.resize(p.outputs.size(), static_cast<Index>(wanted.size()));
     for (std::size_t j = 0; j < wanted.size(); ++j) {
       const double h = 1e-4;
@@ -219,7 +218,7 @@ class Kinked : public LinearDisagreement {
   Prediction predict(int trial, const VectorXd& values, const VectorXd& latent,
                      const std::vector<std::size_t>& wanted, bool latentToo) const override {
     Prediction p = LinearDisagreement::predict(trial, values, latent, wanted, latentToo);
-    if (values[0] > from) p.latentGamma *= 5;
+    if (values[0] > from) p.byNode *= 5;
     return p;
   }
   double from = HUGE_VAL;

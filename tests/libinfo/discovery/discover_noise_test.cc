@@ -17,7 +17,7 @@ class KnownMotion : public DiscoveryProblem {
  public:
   explicit KnownMotion(bool holds = true) : holds_(holds) {
     for (int k = 0; k < 450; ++k) times_.push_back(0.01 * k);
-    for (int k = 0; k <= 90; ++k) nodes_.push_back(0.05 * k);
+    for (int k = 0; k <= 90; ++k) nodes_.push_back({0.05 * k, 0});
     for (VectorXd& y : measured_) y = outputs(0, VectorXd::Ones(1), {});
   }
   template <class Noise>
@@ -47,16 +47,25 @@ class KnownMotion : public DiscoveryProblem {
   const VectorXd& measured(int trial) const override {
     return measured_[static_cast<std::size_t>(trial)];
   }
-  const std::vector<double>& latentTimes(int) const override { return nodes_; }
+  const std::vector<Node>& nodes(int) const override { return nodes_; }
   Prediction predict(int, const VectorXd& values, const VectorXd&,
                      const std::vector<std::size_t>& wanted, bool latentToo) const override {
     Prediction p;
     p.outputs = outputs(0, values, {});
     const auto n = p.outputs.size();
     p.gamma = p.outputs.replicate(1, static_cast<Eigen::Index>(wanted.size())) / values[0];
-    p.latentGamma = MatrixXd::Zero(latentToo ? n : 0, static_cast<Eigen::Index>(nodes_.size()));
-    p.latentScale = MatrixXd::Ones(static_cast<Eigen::Index>(nodes_.size()), 1);
     p.speeds = VectorXd::Zero(n);
+    if (!latentToo) return p;
+    const auto nodes = static_cast<Eigen::Index>(nodes_.size());
+    p.byNode = MatrixXd::Zero(n, nodes);
+    p.scale = MatrixXd::Ones(nodes, 1);
+    p.course = {VectorXd(nodes), VectorXd(nodes)};
+    for (Eigen::Index k = 0; k < nodes; ++k) {
+      const double phase = 4 * nodes_[static_cast<std::size_t>(k)].time;
+      p.course.q[k] = values[0] * std::sin(phase);
+      p.course.qDot[k] = 4 * values[0] * std::cos(phase);
+    }
+    p.courseByNode = MatrixXd::Zero(nodes, nodes);
     return p;
   }
   VectorXd outputs(int, const VectorXd& values, const VectorXd&) const override {
@@ -73,7 +82,8 @@ class KnownMotion : public DiscoveryProblem {
 
  private:
   bool holds_;
-  std::vector<double> times_, nodes_;
+  std::vector<double> times_;
+  std::vector<Node> nodes_;
   std::vector<VectorXd> measured_{3};
 };
 

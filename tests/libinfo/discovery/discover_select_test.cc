@@ -45,6 +45,7 @@ class Astray : public DiscoveryProblem {
     waves_.resize(kSamples, kWaves);
     for (int k = 0; k < kSamples; ++k) {
       times_.push_back(0.05 * k);
+      nodes_.push_back({0.05 * k, 0});
       for (int j = 0; j < kWaves; ++j)
         waves_(k, j) = std::sqrt(2.0) * std::cos(M_PI * (j + 3) * (k + 0.5) / kSamples);
     }
@@ -66,7 +67,7 @@ class Astray : public DiscoveryProblem {
   std::string trialName(int trial) const override { return std::to_string(trial); }
   const std::vector<double>& times(int) const override { return times_; }
   const VectorXd& measured(int trial) const override { return measured_[trial]; }
-  const std::vector<double>& latentTimes(int) const override { return times_; }
+  const std::vector<Node>& nodes(int) const override { return nodes_; }
   MatrixXd inputs(int) const override { return MatrixXd::Zero(kSamples, 0); }
   std::vector<std::string> inputNames() const override { return {}; }
 
@@ -88,8 +89,9 @@ class Astray : public DiscoveryProblem {
     for (std::size_t j = 0; j < wanted.size(); ++j)
       p.gamma.col(static_cast<Index>(j)) = waves_ * slopes.col(static_cast<Index>(wanted[j]));
     if (latentToo) {
-      p.latentScale = MatrixXd::Ones(kSamples, 1);
-      p.latentGamma = kForce * MatrixXd::Identity(kSamples, kSamples);
+      p.scale = MatrixXd::Ones(kSamples, 1);
+      p.byNode = p.courseByNode = kForce * MatrixXd::Identity(kSamples, kSamples);
+      p.course = {p.outputs, p.speeds};
     }
     return p;
   }
@@ -126,6 +128,7 @@ class Astray : public DiscoveryProblem {
   std::vector<std::size_t> nuisances_ = {0};
   std::vector<Candidate> candidates_;
   std::vector<double> times_;
+  std::vector<Node> nodes_;
   MatrixXd waves_;
   VectorXd measured_[2];
 };

@@ -14,7 +14,7 @@ TEST(NeededMemory, IsFourMatricesOfSamplesAndNodesOfTheTrialsThatAreFitted) {
   const LinearDisagreement data = drawn(3, 40, 0);
   double numbers = 0;
   for (const int t : {0, 2}) {
-    numbers += static_cast<double>(data.times(t).size() * data.latentTimes(t).size());
+    numbers += static_cast<double>(data.times(t).size() * data.nodes(t).size());
   }
   EXPECT_EQ(neededMemory(data, {0, 2}), 32 * numbers);
 }

@@ -79,7 +79,7 @@ TEST(ReducedElbow, FollowsTheIndependentTruthWithEveryEffect) {
 TEST(ReducedElbow, DerivativesMatchDifferences) {
   const Elbow elbow(reduced::record(plain(), 6));
   const VectorXd v = busy(elbow);
-  VectorXd d = VectorXd::Zero(static_cast<Index>(elbow.latentTimes(0).size()));
+  VectorXd d = VectorXd::Zero(static_cast<Index>(elbow.nodes(0).size()));
   d[7] = 0.2;
   std::vector<std::size_t> all;
   for (std::size_t i = 0; i < elbow.quantities().size(); ++i) all.push_back(i);
@@ -102,7 +102,12 @@ TEST(ReducedElbow, DerivativesMatchDifferences) {
     up[node] += 1e-5;
     down[node] -= 1e-5;
     const VectorXd difference = (elbow.outputs(0, v, up) - elbow.outputs(0, v, down)) / 2e-5;
-    EXPECT_LT((p.latentGamma.col(node) - difference).norm(), 1e-5 * difference.norm()) << node;
+    EXPECT_LT((p.byNode.col(node) - difference).norm(), 1e-5 * difference.norm()) << node;
+    const VectorXd moved = (elbow.predict(0, v, up, {}, true).course.q -
+                            elbow.predict(0, v, down, {}, true).course.q) /
+                           2e-5;
+    EXPECT_GT(moved.norm(), 0) << node;
+    EXPECT_LT((p.courseByNode.col(node) - moved).norm(), 1e-5 * moved.norm()) << node;
   }
 }
 
@@ -115,7 +120,7 @@ TEST(ReducedElbow, FormulasHaveTheirDerivativesAndVanishWithTheirAmplitude) {
         "qdot*abs(qdot)", "qdot*abs(qdot)/2.5", "qdot^3", "tanh(qdot/0.05)", "q*qdot", "sin(q)",
         "cos(q)"})
     terms.push_back({expression, terms.empty() ? 0.05 : 0.3, 0.1});
-  const auto widened = elbow.withFormula(terms, {0, 5});
+  const auto widened = elbow.withFormula(0, terms, {0, 5});
   ASSERT_TRUE(widened);
   ASSERT_EQ(widened->candidates().size(), 3U);
   EXPECT_EQ(widened->candidates()[1].id, elbow.candidates()[5].id);
@@ -146,7 +151,7 @@ TEST(ReducedElbow, FormulasHaveTheirDerivativesAndVanishWithTheirAmplitude) {
         << terms[k].expression;
   }
   for (const char* strange : {"q^2 + 1", "exp(q)", "", "((q-1.3)/0.4)^3)"})
-    EXPECT_FALSE(elbow.withFormula({{strange, 1, 1}}, {})) << strange;
+    EXPECT_FALSE(elbow.withFormula(0, {{strange, 1, 1}}, {})) << strange;
 }
 
 TEST(ReducedElbow, EffectsOfZeroAmplitudeChangeNothing) {

@@ -39,7 +39,7 @@ Elbow::Elbow(std::vector<Trial> trials, const std::vector<std::string>& hidden, 
       times_.back().push_back(trial.firstSample + kTick * static_cast<double>(k));
     const double duration = kTick * static_cast<double>(trial.excitations.size() - 1);
     nodes_.emplace_back();
-    for (int i = 0; (i - 1) * kNode < duration - 1e-9; ++i) nodes_.back().push_back(i * kNode);
+    for (int i = 0; (i - 1) * kNode < duration - 1e-9; ++i) nodes_.back().push_back({i * kNode, 0});
   }
 }
 
@@ -51,9 +51,16 @@ Elbow::Prediction Elbow::predict(int trial, const VectorXd& values, const Vector
   p.outputs = s.outputs;
   p.speeds = s.speeds;
   p.gamma = s.gamma.leftCols(P);
-  if (latentToo) p.latentGamma = s.gamma.rightCols(s.gamma.cols() - P);
-  p.latentScale = s.scale;
+  if (latentToo) p.byNode = s.gamma.rightCols(s.gamma.cols() - P);
+  p.scale = s.scale;
+  p.course = {s.q, s.qDot};
+  p.courseByNode = s.courseByNode;
   return p;
+}
+
+const std::vector<info::discover::Axis>& Elbow::axes() const {
+  static const std::vector<info::discover::Axis> elbow = {{"elbow", "rad", "N·m"}};
+  return elbow;
 }
 
 VectorXd Elbow::outputs(int trial, const VectorXd& values, const VectorXd& latent) const {
@@ -65,7 +72,7 @@ VectorXd Elbow::refinedOutputs(int trial, const VectorXd& values) const {
 }
 
 std::unique_ptr<info::discover::DiscoveryProblem> Elbow::withFormula(
-    const std::vector<info::discover::FormulaTerm>& terms,
+    std::size_t /*axis*/, const std::vector<info::discover::FormulaTerm>& terms,
     const std::vector<std::size_t>& kept) const {
   auto widened = std::make_unique<Elbow>(*this);
   widened->candidates_.clear();

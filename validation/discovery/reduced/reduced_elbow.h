@@ -49,7 +49,10 @@ class Elbow final : public info::discover::DiscoveryProblem {
   std::string trialName(int trial) const override { return "trial " + std::to_string(trial + 1); }
   const std::vector<double>& times(int trial) const override { return times_[index(trial)]; }
   const Eigen::VectorXd& measured(int trial) const override { return trials_[index(trial)].angles; }
-  const std::vector<double>& latentTimes(int trial) const override { return nodes_[index(trial)]; }
+  const std::vector<info::discover::Axis>& axes() const override;
+  const std::vector<info::discover::Node>& nodes(int trial) const override {
+    return nodes_[index(trial)];
+  }
   Prediction predict(int trial, const Eigen::VectorXd& values, const Eigen::VectorXd& latent,
                      const std::vector<std::size_t>& wanted, bool latentToo) const override;
   Eigen::VectorXd outputs(int trial, const Eigen::VectorXd& values,
@@ -59,7 +62,7 @@ class Elbow final : public info::discover::DiscoveryProblem {
   std::vector<std::string> inputNames() const override { return {"BIC", "BRA", "BRD", "TRI"}; }
   /// Null if StateTerm knows one of the terms not.
   std::unique_ptr<info::discover::DiscoveryProblem> withFormula(
-      const std::vector<info::discover::FormulaTerm>& terms,
+      std::size_t axis, const std::vector<info::discover::FormulaTerm>& terms,
       const std::vector<std::size_t>& kept) const override;
 
  private:
@@ -75,7 +78,8 @@ class Elbow final : public info::discover::DiscoveryProblem {
   std::vector<info::discover::Quantity> quantities_;
   std::vector<std::size_t> nuisances_;
   std::vector<info::discover::Candidate> candidates_;
-  std::vector<std::vector<double>> times_, nodes_;
+  std::vector<std::vector<double>> times_;
+  std::vector<std::vector<info::discover::Node>> nodes_;
 };
 
 }  // namespace reduced

@@ -44,7 +44,10 @@ class MotionSolver {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     motion_.outputs = VectorXd::Constant(numSamples_, nan);
     motion_.speeds = VectorXd::Zero(numSamples_);
-    if (task.latentToo) motion_.scale = VectorXd::Constant(task.numNodes, nan);
+    if (task.latentToo) {
+      motion_.scale = motion_.q = motion_.qDot = VectorXd::Constant(task.numNodes, nan);
+      if (derivatives) motion_.courseByNode.setConstant(task.numNodes, task.numNodes, nan);
+    }
     const Index columns = numWanted_ + (task.latentToo ? task.numNodes : 0);
     if (derivatives) motion_.gamma.setConstant(numSamples_, columns, nan);
     Sq_ = Sw_ = stageQ_ = stageW_ = oldQ_ = oldW_ = ArrayXd::Zero(columns);
@@ -67,12 +70,23 @@ class MotionSolver {
     }
     if (task_.latentToo) {  // the node at the end, and one beyond it
       for (Index i = 1; i < task_.numNodes; ++i)
-        if (!std::isfinite(motion_.scale[i])) motion_.scale[i] = motion_.scale[i - 1];
+        if (!std::isfinite(motion_.scale[i])) {
+          motion_.scale[i] = motion_.scale[i - 1];
+          keepCourse(i);
+        }
     }
     return std::move(motion_);
   }
 
  private:
+  // The state as that of a node.
+  void keepCourse(Index node) {
+    motion_.q[node] = q_;
+    motion_.qDot[node] = w_;
+    if constexpr (derivatives)
+      motion_.courseByNode.row(node) = Sq_.tail(task_.numNodes).matrix().transpose();
+  }
+
   std::size_t wanted(Index j) const { return task_.wanted[static_cast<std::size_t>(j)]; }
   bool isWanted(Index j, Index quantity) const {
     return wanted(j) == static_cast<std::size_t>(quantity);
@@ -124,7 +138,10 @@ class MotionSolver {
       evaluate<derivatives>(task_.values, qs, ws, level, used, d + amplitude_ * shape.value, now_);
       vq[s] = ws;
       vw[s] = now_.acceleration;
-      if (task_.latentToo && s == 0 && share < 1e-6) motion_.scale[node] = now_.scale;
+      if (task_.latentToo && s == 0 && share < 1e-6) {
+        motion_.scale[node] = now_.scale;
+        keepCourse(node);
+      }
       if constexpr (derivatives) {
         differentiateStage(s, reach, active, shape);
         differentiateByInputs(s, place);

@@ -28,6 +28,8 @@ struct MotionTask {
 /// motion runs away.
 struct Motion {
   Eigen::VectorXd outputs, speeds, scale;
+  Eigen::VectorXd q, qDot;       ///< at the nodes; with `latentToo`
+  Eigen::MatrixXd courseByNode;  ///< ∂q/∂d, nodes × nodes; with `latentToo`
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> gamma;
 };
 

@@ -21,7 +21,7 @@ namespace bio::discover {
 struct Augmented {
   Model model;
   EmgMapping mapping;
-  SensorLaw sensor;
+  std::vector<SensorLaw> sensors;    ///< of EncompassingModel::sensors()
   std::vector<std::string> muscles;  ///< switched on
 };
 

@@ -11,6 +11,8 @@
 
 namespace bio::discover {
 
+class SensedMotion;
+
 struct MusculoskeletalProblemOptions {
   SimulationOptions simulation;      ///< integrator: variational or variationalLeft; step
   double latentSpacing = 0.05;       ///< between nodes of the latent force [s] > 0
@@ -24,18 +26,22 @@ struct MusculoskeletalProblemOptions {
   bool usableSeries = true;          ///< refuse measured series that requireUsable refuses
   std::vector<std::string> without;  ///< ids of effects to exclude from the catalogue
   std::vector<info::discover::FormulaTerm> formula;  ///< of a candidate "formula"; empty: none
+  std::size_t formulaAxis = 0;                       ///< the coordinate that it acts on
+  std::vector<Observable> sensors;                   ///< outputs; empty: what the trials measure
 };
 
 /// A search with too long a step is repeated with half the step, unless the step was shorter than
 /// this [s] (info::discover::runAtShorterSteps).
 inline constexpr double shortestSearchStep = 0.003;
 
-/// The discovery problem of a musculoskeletal model for info::discover: recorded trials with one
-/// observed coordinate, and the model with every effect of the catalogue built in.
+/// The discovery problem of a musculoskeletal model for info::discover: recorded trials, and the
+/// model with every effect of the catalogue built in. Outputs are the measured coordinates among
+/// those in question and all other channels that the trials measure (Observable), in this order.
 ///
-/// Each trial is simulated over its rows from its own initial angle, driven by its excitations and
-/// its external torque. The prior mean of the initial angle is the first measured value as the
-/// sensor, which may be in error, shows it. y(t_k) is the cubic Hermite interpolant between rows.
+/// Each trial is simulated over its rows from its own initial state, driven by its excitations, its
+/// external torques and the course of prescribed coordinates. The prior mean of an initial angle is
+/// the first measured value as the sensor, which may be in error, shows it; the default of one that
+/// is not measured, with ten times the deviation. SensedMotion gives what the sensors show.
 /// All derivatives are exact: those of parameters, forces and latent nodes by the implicit function
 /// theorem (coupled_sensitivity.h), those of EMG and sensor by the chain rule. Before the start of
 /// a trial, which a clock offset may require, the coordinate is extrapolated with its initial
@@ -46,21 +52,21 @@ inline constexpr double shortestSearchStep = 0.003;
 /// and handforce are not equivalent. In a trial with a known turn of the limb, gravity and a force
 /// on the hand are turned accordingly.
 ///
-/// The latent force is a torque on the coordinate with one channel per muscle, scaled by the
-/// muscle's moment r_i F_i, and one of the constant scale τ_0 [N·m]: independent relative errors of
-/// each muscle's force, and other errors. Its time constant is that of the activations, 1/k at the
-/// mean excitation, k midway between rising and falling.
+/// The latent force acts on every coordinate in question, its axes, with one channel per muscle,
+/// scaled by the muscle's moments r_i F_i on all of them, and one of the constant scale τ_0 [N·m]
+/// on each: independent relative errors of each muscle's force, and other errors. Its time constant
+/// is that of the activations, 1/k at the mean excitation, k midway between rising and falling.
 class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
  public:
   using Quantity = info::discover::Quantity;
   using Candidate = info::discover::Candidate;
 
-  /// @param coordinate the observed one, measured in every trial; missing samples have no time
-  /// @throws std::invalid_argument what EncompassingModel throws, no trial, a trial without
-  ///   a measured value of the coordinate, an integrator without sensitivities, an option out of
-  ///   range, a known mass in the hand of a model without a body to carry it
+  /// @param coordinates those in question; missing samples have no time
+  /// @throws std::invalid_argument what EncompassingModel and ObservedMotion throw, no trial, a
+  ///   trial without a measured value, an integrator without sensitivities, an option out of range,
+  ///   a known mass in the hand of a model without a body to carry it
   MusculoskeletalProblem(const Model& model, const SystemOptions& arm,
-                         const std::string& coordinate, std::vector<Trial> trials,
+                         const CoordinateNames& coordinates, std::vector<Trial> trials,
                          MusculoskeletalProblemOptions options = {});
 
   const std::vector<Quantity>& quantities() const override { return quantities_; }
@@ -69,8 +75,12 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   int numTrials() const override { return static_cast<int>(trials_.size()); }
   std::string trialName(int trial) const override { return of(trial).trial.file; }
   const std::vector<double>& times(int trial) const override { return of(trial).times; }
+  const std::vector<int>& outputOfSample(int trial) const override { return of(trial).outputs; }
   const Eigen::VectorXd& measured(int trial) const override { return of(trial).measured; }
-  const std::vector<double>& latentTimes(int trial) const override { return of(trial).nodes; }
+  const std::vector<info::discover::Axis>& axes() const override { return axes_; }
+  const std::vector<info::discover::Node>& nodes(int trial) const override {
+    return of(trial).nodes;
+  }
   double latentLag() const override { return latentLag_; }
   Prediction predict(int trial, const Eigen::VectorXd& values, const Eigen::VectorXd& latent,
                      const std::vector<std::size_t>& wanted, bool latentToo) const override;
@@ -83,16 +93,17 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   Eigen::VectorXd refinedOutputs(int trial, const Eigen::VectorXd& values) const override;
   Eigen::MatrixXd inputs(int trial) const override;
   std::vector<std::string> inputNames() const override;
-  /// The same with the coordinate held near its measured course (nudge.h).
+  /// The same with the measured coordinates held near their courses (nudge.h); null if one of them
+  /// has fewer than four samples, or none is measured.
   std::unique_ptr<info::discover::DiscoveryProblem> nudged(double frequency) const override;
   /// Null if the model already has the force of a formula.
   std::unique_ptr<info::discover::DiscoveryProblem> withFormula(
-      const std::vector<info::discover::FormulaTerm>& terms,
+      std::size_t axis, const std::vector<info::discover::FormulaTerm>& terms,
       const std::vector<std::size_t>& kept) const override;
 
   /// Model and effects, without the initial states of the trials.
   const EncompassingModel& encompassing() const { return encompassing_; }
-  /// Sum of the timed forces at latentTimes(trial); empty if there is none.
+  /// Sum of the timed forces at nodes(trial); empty if there is none.
   Eigen::VectorXd timedForce(int trial, const Eigen::VectorXd& values) const;
   const MusculoskeletalProblemOptions& options() const { return options_; }
   /// The trial as given, with an excitation for every muscle that was added (withProxies).
@@ -102,25 +113,40 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   Trajectory motion(int trial, const Eigen::VectorXd& values) const;
   /// The model that it belongs to.
   MusculoskeletalSystem armAt(int trial, const Eigen::VectorXd& values) const;
-  /// Its initial state: the coordinate itself, not the sensor's reading.
-  TrialStart startAt(int trial, const Eigen::VectorXd& values) const;
+  /// Its initial state by coordinate: the coordinate itself, not the sensor's reading.
+  std::vector<TrialStart> startsAt(int trial, const Eigen::VectorXd& values) const;
   /// Why the trial's simulation does not reach its end; empty if it does.
   std::string failure(int trial, const Eigen::VectorXd& values) const;
 
  private:
   class Nudged;
   class Run;
+  /// What one sensor measured in a trial.
+  struct Series {
+    std::size_t sensor;
+    std::vector<double> times;
+    std::vector<Eigen::Index> samples;  ///< places among those of the trial
+  };
+  /// The initial state of a coordinate that is free to move.
+  struct Start {
+    std::size_t coordinate;    ///< of EncompassingModel::coordinates()
+    std::size_t angle, speed;  ///< quantities, the angle as the sensor shows it
+    int sensor;                ///< that shows it; −1: none
+  };
   struct OfTrial {
     Trial trial;
     ExcitationSignal excitation;
     ExternalForce external;
+    PrescribedMotion prescribed;
     std::vector<double> times;
+    std::vector<int> outputs;  ///< of the samples; empty: one output
     Eigen::VectorXd measured;
-    std::vector<double> nodes;
+    std::vector<Series> series;
+    std::vector<double> nodeTimes;
+    std::vector<info::discover::Node> nodes;
     Eigen::VectorXd heldMass;  ///< moment of a mass of 1 kg at the nodes [N·m]
     Eigen::VectorXd known;     ///< change of the model's quantities by Trial::known
-    std::size_t angle,
-        speed;  ///< quantities of its initial state, the angle as the sensor shows it
+    std::vector<Start> starts;
   };
   Eigen::VectorXd withTimedForces(const OfTrial& one, const Eigen::VectorXd& values,
                                   const Eigen::VectorXd& latent) const;
@@ -130,21 +156,28 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
                                   const std::vector<std::size_t>& wanted) const;
   double activationLag() const;
   void addTrial(Trial trial);
+  void collectSamples(OfTrial& one) const;
+  void addNodes(OfTrial& one) const;
+  void addStarts(OfTrial& one);
   /// A number of the initial state of the trial that is being added; its place.
-  std::size_t addOwnQuantity(const char* what, Quantity quantity);
+  std::size_t addOwnQuantity(const std::string& what, Quantity quantity);
   /// Equivalent candidates that these trials distinguish.
   void separateWhatTrialsTellApart();
   const OfTrial& of(int trial) const { return trials_.at(static_cast<std::size_t>(trial)); }
   ParameterCatalogue::Setting settingAt(const OfTrial& one, const Eigen::VectorXd& values,
                                         const std::vector<std::size_t>& wanted) const;
-  SimulationOptions simulationOf(const OfTrial& one, const Eigen::VectorXd& latent,
-                                 const SensorLaw& sensor) const;
+  SimulationOptions simulationOf(const OfTrial& one, const Eigen::VectorXd& values,
+                                 const Eigen::VectorXd& latent) const;
+  /// The sensors of the trial's series, on a system that is that of `values`.
+  std::vector<SensedMotion> sensedBy(const MusculoskeletalSystem& system, const OfTrial& one,
+                                     const Eigen::VectorXd& values) const;
   ExcitationSignal excitationFor(const OfTrial& one, const MusculoskeletalSystem& arm) const;
   Trajectory simulate(const OfTrial& one, const Eigen::VectorXd& values,
-                      const Eigen::VectorXd& latent, double stepFactor, const Nudge* nudge) const;
+                      const Eigen::VectorXd& latent, double stepFactor,
+                      const std::vector<Nudge>* nudges) const;
   Eigen::VectorXd outputsOf(const OfTrial& one, const Eigen::VectorXd& values,
                             const Eigen::VectorXd& latent, double stepFactor,
-                            const Nudge* nudge) const;
+                            const std::vector<Nudge>* nudges) const;
   /// What of a simulation the wanted quantities follow.
   struct Columns;
   Columns columnsOf(const OfTrial& one, const Eigen::VectorXd& values,
@@ -152,12 +185,12 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   /// Scales of the latent force at the nodes: the muscles' moments, and the floor.
   Eigen::MatrixXd latentScale(const OfTrial& one, const MusculoskeletalSystem& arm,
                               const Trajectory& motion) const;
-  std::unique_ptr<Simulation> simulatedWith(const Nudge* nudge, int trial,
+  std::unique_ptr<Simulation> simulatedWith(const std::vector<Nudge>* nudges, int trial,
                                             const Eigen::VectorXd& values,
                                             const Eigen::VectorXd& latent,
                                             const std::vector<std::size_t>& wanted,
                                             bool latentToo) const;
-  Prediction predictWith(const Nudge* nudge, int trial, const Eigen::VectorXd& values,
+  Prediction predictWith(const std::vector<Nudge>* nudges, int trial, const Eigen::VectorXd& values,
                          const Eigen::VectorXd& latent, const std::vector<std::size_t>& wanted,
                          bool latentToo) const;
 
@@ -165,6 +198,7 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   MusculoskeletalProblemOptions options_;
   std::vector<Quantity> quantities_;  ///< those of the model, then the initial states of the trials
   std::vector<std::size_t> nuisances_;
+  std::vector<info::discover::Axis> axes_;  ///< the coordinates
   std::vector<OfTrial> trials_;
   double latentLag_ = 0;
 };

@@ -13,19 +13,20 @@
 
 namespace bio::discover {
 
-/// One trial of a search and the RMS errors of its simulations [rad] or [m]; NaN if unavailable.
+/// One trial of a search and the RMS errors of its simulations, in the unit of the output; of
+/// several outputs as ExcessError has them. NaN if unavailable.
 struct RepairedTrial {
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  int index = 0;                ///< of MusculoskeletalProblem
-  bool isHeldOut = false;       ///< judged by only
-  TrialStart start;             ///< initial state of the coordinate, for the repaired model
-  std::optional<Table> driven;  ///< trial to replay instead: the excitations that
-                                ///< drove the muscles, sensor errors removed
-  double nominal = none;        ///< replay of the original model on the recorded trial
-  double after = none;          ///< replay of the repaired model, on `driven` if there is one
-  double fitted = none;         ///< the fit's own simulation at the same values
-  double floor = none;          ///< noise of the replayed trial
-  Eigen::Index samples = 0;     ///< number of samples compared by `after`, else by `nominal`
+  int index = 0;                   ///< of MusculoskeletalProblem
+  bool isHeldOut = false;          ///< judged by only
+  std::vector<TrialStart> starts;  ///< initial states of the coordinates, for the repaired model
+  std::optional<Table> driven;     ///< trial to replay instead: the excitations that
+                                   ///< drove the muscles, sensor errors removed
+  double nominal = none;           ///< replay of the original model on the recorded trial
+  double after = none;             ///< replay of the repaired model, on `driven` if there is one
+  double fitted = none;            ///< the fit's own simulation at the same values
+  double floor = none;             ///< noise of the replayed trial
+  Eigen::Index samples = 0;        ///< number of samples compared by `after`, else by `nominal`
 };
 
 /// A model with all values fitted by a search, and its replays.

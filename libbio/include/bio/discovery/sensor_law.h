@@ -44,6 +44,6 @@ Lagged lagged(const std::vector<double>& times, const Eigen::Ref<const Eigen::Ma
 
 /// The trial as a sensor without errors would have measured it; samples whose time lies outside the
 /// trial are dropped. A lag is undone with the rate of the smoothed course (smoothed_motion.h).
-Trial asTrueSensor(Trial trial, const std::string& coordinate, const SensorLaw& sensor);
+Trial asTrueSensor(Trial trial, const Observable& what, const SensorLaw& sensor);
 
 }  // namespace bio::discover

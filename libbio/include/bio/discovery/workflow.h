@@ -19,10 +19,10 @@ namespace bio::discover {
 struct DiscoveryRequest {
   const Model& model;
   SystemOptions arm;
-  std::string coordinate;      ///< the observed one
-  std::vector<Trial> trials;   ///< those held out last
-  std::size_t numHeldOut = 0;  ///< < trials.size(); tested by only
-  std::optional<double> step;  ///< [s]; empty: that of problem.simulation, halved if need be
+  CoordinateNames coordinates;  ///< those in question
+  std::vector<Trial> trials;    ///< those held out last
+  std::size_t numHeldOut = 0;   ///< < trials.size(); tested by only
+  std::optional<double> step;   ///< [s]; empty: that of problem.simulation, halved if need be
   MusculoskeletalProblemOptions problem;
   info::discover::Options search;  ///< heldOut is set by discover()
   EffectProvenance provenance;     ///< for the credits of written models

@@ -121,6 +121,7 @@ struct RacedFormula {
   bool wins = false;  ///< as a candidate it would have been the verdict, without an alternative
   double logBayesFactor = 0;  ///< log Bayes factor [nats] against the base model
   double significance = 0;    ///< |c|/deviation, for given r_k
+  std::size_t axis = 0;       ///< on which the force acts
   std::vector<FormulaTerm> terms;
   std::string text;            ///< with values, e.g. "-1.48·(q³ - 3.6·q²)"
   std::vector<double> values;  ///< c, then r_2, … (FormulaTerm)
@@ -133,11 +134,13 @@ struct RacedFormula {
   std::shared_ptr<const Verdict> verdict;
 };
 
-/// A non-parametric force, a smooth function of the position or of the speed alone, and its
-/// comparison with the effects of the catalogue (docs/decisions/047-nonparametric-forces.md).
+/// A non-parametric force on one axis, a smooth function of its position or of its speed alone, and
+/// its comparison with the effects of the catalogue (docs/decisions/047-nonparametric-forces.md):
+/// the one that is furthest ahead over all axes.
 struct NonparametricForce {
-  enum class Follows { angle, speed };
-  Follows follows = Follows::angle;
+  enum class Follows { position, speed };
+  std::size_t axis = 0;  ///< on which it acts, and whose position or speed it follows
+  Follows follows = Follows::position;
   std::vector<std::size_t> besides;  ///< effects that remain in the model beside it: candidates
   double logBayesFactor =
       0;  ///< log Bayes factor [nats] against the base model, together with those
@@ -145,7 +148,7 @@ struct NonparametricForce {
   /// none, less Options::evidence for each effect.
   double ahead = 0;
   bool wins = false;       ///< by more than Options::remainder: the named effects are only a proxy
-  std::vector<double> at;  ///< visited positions or speeds [unit of the output, or of its rate]
+  std::vector<double> at;  ///< visited positions or speeds [unit of the axis, or of its rate]
   Eigen::VectorXd force;   ///< the force at these [unit of the generalised force]
   Eigen::VectorXd sd;      ///< of that
 };

@@ -57,7 +57,9 @@ struct Response {
   Eigen::VectorXd speeds;    ///< their rates
   Eigen::MatrixXd byWanted;  ///< exact derivatives, samples × wanted
   Eigen::MatrixXd byStart, byLatent;
-  Eigen::MatrixXd states;  ///< at the trial's times
+  Eigen::VectorXd angle, rate;    ///< of the first joint at the nodes; with `latentToo`
+  Eigen::MatrixXd angleByLatent;  ///< its derivatives, nodes × nodes; with `latentToo`
+  Eigen::MatrixXd states;         ///< at the trial's times
 };
 
 /// A robot with its catalogue.

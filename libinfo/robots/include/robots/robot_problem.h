@@ -20,7 +20,8 @@ struct DisagreementOptions {
 /// The discovery problem of a robot and its recordings for info::discover.
 ///
 /// The latent force is an additional acceleration of the cart [m/s²], of scale 1, as caused by
-/// drives and floors. Friction of the first joint has nearly the same effect.
+/// drives and floors. Friction of the first joint has nearly the same effect; its angle is
+/// therefore taken as the position of the axis.
 ///
 /// A robot may measure several channels, each an output; samples are in the order of time.
 ///
@@ -39,7 +40,10 @@ class RobotProblem final : public discover::DiscoveryProblem {
   const std::vector<double>& times(int trial) const override { return of(trial).times; }
   const std::vector<int>& outputOfSample(int trial) const override { return of(trial).channels; }
   const Eigen::VectorXd& measured(int trial) const override { return of(trial).measured; }
-  const std::vector<double>& latentTimes(int trial) const override { return of(trial).nodes; }
+  const std::vector<discover::Axis>& axes() const override { return axes_; }
+  const std::vector<discover::Node>& nodes(int trial) const override {
+    return of(trial).latentNodes;
+  }
   Prediction predict(int trial, const Eigen::VectorXd& values, const Eigen::VectorXd& latent,
                      const std::vector<std::size_t>& wanted, bool latentToo) const override;
   Eigen::VectorXd outputs(int trial, const Eigen::VectorXd& values,
@@ -59,6 +63,7 @@ class RobotProblem final : public discover::DiscoveryProblem {
     Trial trial;
     std::vector<Sample> samples;
     std::vector<double> times, nodes;
+    std::vector<discover::Node> latentNodes;  ///< the same
     std::vector<int> channels;
     Eigen::VectorXd measured;
     std::size_t start;  ///< index of the first quantity of its initial state
@@ -71,6 +76,7 @@ class RobotProblem final : public discover::DiscoveryProblem {
   Model model_;
   DisagreementOptions options_;
   std::vector<double> sds_;
+  std::vector<discover::Axis> axes_ = {{"angle of the first joint", "rad", "m/s²"}};
   std::vector<discover::Quantity>
       quantities_;  ///< those of the model, then the initial states of the trials
   std::vector<std::size_t> nuisances_;

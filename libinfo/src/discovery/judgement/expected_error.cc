@@ -61,7 +61,7 @@ ExpectedError expectedError(const Likelihood& held, const Fit& starts, const Fit
   for (std::size_t t = 0; t < held.trials().size(); ++t) {
     if (fit.noise.latent > 0)
       scattered.eta[t] =
-          VectorXd::Zero(static_cast<Index>(held.data().latentTimes(held.trials()[t]).size()));
+          VectorXd::Zero(static_cast<Index>(held.data().nodes(held.trials()[t]).size()));
     trials.push_back(held.linearise(t, scattered, starts.values, uncertain.quantities, false));
     columns += trials.back().latent.cols() + trials.back().gamma.cols();
   }

@@ -22,21 +22,19 @@ class Disturbances {
   Disturbances(const Likelihood& likelihood, const NodeStates& states)
       : likelihood_(likelihood), states_(states), columns_(likelihood.trials().size()) {}
 
-  void addHats(double width);
-  void addCells(int cellsQ, int cellsQDot);
-  void addInputs();
+  void addHats(double width, std::size_t axis);
+  void addCells(int cellsQ, int cellsQDot, std::size_t axis);
+  void addInputs(std::size_t axis);
 
   std::vector<Score>& scores() { return scores_; }
   /// The change of the outputs by each disturbance: per trial samples × disturbances.
   std::vector<MatrixXd> outputs() const;
 
  private:
-  /// @param forceOf the force at the nodes of a trial
+  /// @param forceOf the force at the nodes of a trial on the score's axis
   template <class ForceOf>
   void add(const Score& score, const ForceOf& forceOf);
-  VectorXd noForce(std::size_t trial) const {
-    return VectorXd::Zero(states_.linear[trial].force.cols());
-  }
+  VectorXd noForce(std::size_t trial) const { return VectorXd::Zero(states_.count(trial)); }
 
   const Likelihood& likelihood_;
   const NodeStates& states_;
@@ -49,7 +47,7 @@ void Disturbances::add(const Score& score, const ForceOf& forceOf) {
   bool any = false;
   std::vector<VectorXd> forces;
   for (std::size_t t = 0; t < columns_.size(); ++t) {
-    forces.push_back(forceOf(t));
+    forces.emplace_back(states_.placed(t, score.axis, forceOf(t)));
     any = any || forces.back().squaredNorm() > 0;
   }
   if (!any) return;
@@ -59,12 +57,13 @@ void Disturbances::add(const Score& score, const ForceOf& forceOf) {
 }
 
 // Hats in time, half a width apart.
-void Disturbances::addHats(double width) {
+void Disturbances::addHats(double width, std::size_t axis) {
   for (std::size_t t = 0; t < columns_.size(); ++t) {
-    const auto& nodes = likelihood_.data().latentTimes(likelihood_.trials()[t]);
+    const std::vector<double> nodes = nodeTimes(likelihood_.data(), likelihood_.trials()[t]);
     const double half = 0.5 * width;
     for (double middle = nodes.front(); middle <= nodes.back() + 1e-9; middle += half) {
       Score score;
+      score.axis = axis;
       score.trial = likelihood_.trials()[t];
       score.from = middle - half;
       score.to = middle + half;
@@ -83,27 +82,27 @@ struct StateRange {
   double lowestQ = 1e300, highestQ = -1e300, lowestQDot = 1e300, highestQDot = -1e300;
 };
 
-StateRange rangeOf(const NodeStates& states) {
+StateRange rangeOf(const std::vector<VectorXd>& q, const std::vector<VectorXd>& qDot) {
   StateRange range;
-  for (std::size_t t = 0; t < states.q.size(); ++t) {
-    range.lowestQ = std::min(range.lowestQ, states.q[t].minCoeff());
-    range.highestQ = std::max(range.highestQ, states.q[t].maxCoeff());
-    range.lowestQDot = std::min(range.lowestQDot, states.qDot[t].minCoeff());
-    range.highestQDot = std::max(range.highestQDot, states.qDot[t].maxCoeff());
+  for (std::size_t t = 0; t < q.size(); ++t) {
+    range.lowestQ = std::min(range.lowestQ, q[t].minCoeff());
+    range.highestQ = std::max(range.highestQ, q[t].maxCoeff());
+    range.lowestQDot = std::min(range.lowestQDot, qDot[t].minCoeff());
+    range.highestQDot = std::max(range.highestQDot, qDot[t].maxCoeff());
   }
   return range;
 }
 
-// Cells of equal size in the visited part of (q, q̇).
-void Disturbances::addCells(int cellsQ, int cellsQDot) {
-  const auto& q = states_.q;
-  const auto& qDot = states_.qDot;
-  const StateRange range = rangeOf(states_);
+// Cells of equal size in the visited part of an axis's (q, q̇).
+void Disturbances::addCells(int cellsQ, int cellsQDot, std::size_t axis) {
+  const std::vector<VectorXd> q = states_.positions(axis), qDot = states_.speeds(axis);
+  const StateRange range = rangeOf(q, qDot);
   const double widthQ = (range.highestQ - range.lowestQ) / cellsQ + 1e-12,
                widthQDot = (range.highestQDot - range.lowestQDot) / cellsQDot + 1e-12;
   for (int a = 0; a < cellsQ; ++a)
     for (int b = 0; b < cellsQDot; ++b) {
       Score score;
+      score.axis = axis;
       score.lowerQ = range.lowestQ + a * widthQ;
       score.upperQ = score.lowerQ + widthQ;
       score.lowerQDot = range.lowestQDot + b * widthQDot;
@@ -121,13 +120,17 @@ void Disturbances::addCells(int cellsQ, int cellsQDot) {
 }
 
 // Forces proportional to an input.
-void Disturbances::addInputs() {
+void Disturbances::addInputs(std::size_t axis) {
   const auto names = likelihood_.data().inputNames();
   for (std::size_t j = 0; j < names.size(); ++j) {
     Score score;
+    score.axis = axis;
     score.input = names[j];
-    add(score,
-        [&](std::size_t of) { return VectorXd(states_.inputs[of].col(static_cast<Index>(j))); });
+    add(score, [&](std::size_t of) {
+      return VectorXd(states_.inputs[of]
+                          .col(static_cast<Index>(j))
+                          .segment(states_.begin(of, axis), states_.count(of)));
+    });
   }
 }
 
@@ -179,11 +182,15 @@ Localisation localise(const Likelihood& likelihood, const Fit& fit, const Fit& s
   const NodeStates states = statesAtNodes(likelihood, fit);
   Disturbances disturbances(likelihood, states);
   std::vector<Score>& scores = disturbances.scores();
-  disturbances.addHats(options.width);
+  const auto onEveryAxis = [&](const auto& addOn) {
+    for (std::size_t axis = 0; axis < states.numAxes; ++axis) addOn(axis);
+  };
+  onEveryAxis([&](std::size_t axis) { disturbances.addHats(options.width, axis); });
   const auto numTimes = static_cast<std::ptrdiff_t>(scores.size());
-  disturbances.addCells(options.cellsQ, options.cellsQDot);
+  onEveryAxis(
+      [&](std::size_t axis) { disturbances.addCells(options.cellsQ, options.cellsQDot, axis); });
   const auto numTimesAndCells = static_cast<std::ptrdiff_t>(scores.size());
-  disturbances.addInputs();
+  onEveryAxis([&](std::size_t axis) { disturbances.addInputs(axis); });
   setScores(scores, likelihood.project(fit, states.linear, disturbances.outputs()));
 
   const auto cells = scores.begin() + numTimes, inputs = scores.begin() + numTimesAndCells;

@@ -10,59 +10,60 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Samples of the first output alone.
-struct FirstOutput {
-  FirstOutput(const DiscoveryProblem& data, int trial) {
-    const auto& channels = data.outputOfSample(trial);
-    for (std::size_t k = 0; k < data.times(trial).size(); ++k) {
-      if (!channels.empty() && channels[k] != 0) continue;
-      which.push_back(static_cast<Index>(k));
-      times.push_back(data.times(trial)[k]);
-    }
-  }
-  VectorXd of(const VectorXd& samples) const { return samples(which); }
-  std::vector<Index> which;
-  std::vector<double> times;
-};
-
-// y at the latent nodes, linear between samples
-VectorXd atNodes(const std::vector<double>& nodes, const std::vector<double>& times,
-                 const VectorXd& y) {
-  VectorXd result(static_cast<Index>(nodes.size()));
-  std::size_t k = 0;
+// Values at the nodes' times, straight between the first samples of each time.
+MatrixXd atNodes(const std::vector<Node>& nodes, const std::vector<double>& times,
+                 const MatrixXd& samples) {
+  std::vector<Index> first;
+  for (std::size_t k = 0; k < times.size(); ++k)
+    if (k == 0 || times[k] > times[k - 1]) first.push_back(static_cast<Index>(k));
+  const auto time = [&](std::size_t k) { return times[static_cast<std::size_t>(first[k])]; };
+  MatrixXd result(static_cast<Index>(nodes.size()), samples.cols());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    while (k + 2 < times.size() && times[k + 1] < nodes[i]) ++k;
-    const auto at = static_cast<Index>(k);
-    const double s = std::clamp((nodes[i] - times[k]) / (times[k + 1] - times[k]), 0.0, 1.0);
-    result[static_cast<Index>(i)] = (1 - s) * y[at] + s * y[at + 1];
+    auto row = result.row(static_cast<Index>(i));
+    if (first.size() == 1) {
+      row = samples.row(0);
+      continue;
+    }
+    std::size_t k = 0;
+    while (k + 2 < first.size() && time(k + 1) < nodes[i].time) ++k;
+    const double s = std::clamp((nodes[i].time - time(k)) / (time(k + 1) - time(k)), 0.0, 1.0);
+    row = (1 - s) * samples.row(first[k]) + s * samples.row(first[k + 1]);
   }
   return result;
 }
 
 }  // namespace
 
+std::vector<VectorXd> NodeStates::positions(std::size_t axis) const {
+  std::vector<VectorXd> own;
+  for (const VectorXd& all : q) own.emplace_back(onAxis(all, axis, numAxes));
+  return own;
+}
+
+std::vector<VectorXd> NodeStates::speeds(std::size_t axis) const {
+  std::vector<VectorXd> own;
+  for (const VectorXd& all : qDot) own.emplace_back(onAxis(all, axis, numAxes));
+  return own;
+}
+
+MatrixXd NodeStates::placed(std::size_t trial, std::size_t axis, const MatrixXd& forces) const {
+  MatrixXd all = MatrixXd::Zero(q[trial].size(), forces.cols());
+  all.middleRows(begin(trial, axis), count(trial)) = forces;
+  return all;
+}
+
 NodeStates statesAtNodes(const Likelihood& likelihood, const Fit& fit) {
   const DiscoveryProblem& data = likelihood.data();
   NodeStates states;
+  states.numAxes = data.axes().size();
   for (std::size_t t = 0; t < likelihood.trials().size(); ++t) {
     const int trial = likelihood.trials()[t];
     states.linear.push_back(likelihood.linearise(t, fit, fit.values, {}, true));
-    const auto& linear = states.linear.back();
-    const auto& nodes = data.latentTimes(trial);
-    const FirstOutput first(data, trial);
-    states.q.push_back(atNodes(nodes, first.times, first.of(linear.outputs)));
-    states.qDot.push_back(atNodes(nodes, first.times, first.of(linear.speeds)));
-    const auto n = static_cast<Index>(nodes.size());
-    MatrixXd response(n, linear.force.cols());
-    for (Index j = 0; j < response.cols(); ++j)
-      response.col(j) =
-          fit.noise.output.sd(0) * atNodes(nodes, first.times, first.of(linear.force.col(j)));
-    states.response.push_back(std::move(response));
-    const MatrixXd u = data.inputs(trial);
-    MatrixXd placed(static_cast<Index>(nodes.size()), u.cols());
-    for (Index j = 0; j < u.cols(); ++j)
-      placed.col(j) = atNodes(nodes, first.times, first.of(u.col(j)));
-    states.inputs.push_back(std::move(placed));
+    Likelihood::Linear& linear = states.linear.back();
+    states.q.push_back(std::move(linear.course.q));
+    states.qDot.push_back(std::move(linear.course.qDot));
+    states.response.push_back(std::move(linear.courseByNode));
+    states.inputs.push_back(atNodes(data.nodes(trial), data.times(trial), data.inputs(trial)));
   }
   return states;
 }

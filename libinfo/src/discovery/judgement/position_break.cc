@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "discovery/judgement/held_out_trials.h"
+#include "discovery/judgement/node_states.h"
 #include "discovery/likelihood/selected_samples.h"
 #include "discovery/search/search.h"
 
@@ -24,24 +25,10 @@ constexpr double kCorrelated = 3;
 // Least standard deviation on one side, as a share of the force's rms value.
 constexpr double kLeastSpread = 0.2;
 
-struct Node {
+// The latent force at a node, and the position of its axis there.
+struct Visit {
   double position, force;
 };
-
-// The measured position next to each node of the latent force.
-std::vector<Node> nodesOf(const DiscoveryProblem& data, int trial, const VectorXd& force) {
-  const std::vector<double>& times = data.times(trial);
-  const std::vector<int>& outputs = data.outputOfSample(trial);
-  std::vector<Node> nodes;
-  for (Index k = 1; k < force.size(); ++k) {
-    const double at = data.latentTimes(trial)[static_cast<std::size_t>(k)];
-    auto i = std::lower_bound(times.begin(), times.end(), at) - times.begin();
-    i = std::min<std::ptrdiff_t>(i, static_cast<std::ptrdiff_t>(times.size()) - 1);
-    while (i > 0 && !outputs.empty() && outputs[static_cast<std::size_t>(i)] != 0) --i;
-    nodes.push_back({data.measured(trial)[i], force[k]});
-  }
-  return nodes;
-}
 
 struct Side {
   double sum = 0, squares = 0;
@@ -55,12 +42,12 @@ struct Side {
   double variance() const { return std::max(0.0, squares / count - mean() * mean()); }
 };
 
-PositionBreak breakAt(const std::vector<Node>& nodes, double position, bool above, double width,
+PositionBreak breakAt(const std::vector<Visit>& nodes, double position, bool above, double width,
                       double least) {
   PositionBreak found{.position = position, .above = above};
   Side near, far;
   std::size_t beyond = 0;
-  for (const Node& node : nodes) {
+  for (const Visit& node : nodes) {
     const double distance = (above ? 1 : -1) * (node.position - position);
     if (distance > 0) ++beyond;
     if (distance > 0 && distance < width) far.add(node.force);
@@ -76,35 +63,49 @@ PositionBreak breakAt(const std::vector<Node>& nodes, double position, bool abov
   return found;
 }
 
-std::optional<PositionBreak> breakOf(const DiscoveryProblem& data, const Options& options,
-                                     const Whitening& outputSd) {
-  const std::vector<int> trials = fittedTrials(data, options);
-  Search search(data, trials, options, outputSd, [](const std::string&) {});
-  const auto fit = search.tracked({}, nominalValues(data));
-  if (!fit) return {};
-  std::vector<Node> nodes;
-  double squares = 0;
-  for (std::size_t t = 0; t < trials.size(); ++t) {
-    const VectorXd force = search.likelihood().force(t, *fit);
-    squares += force.squaredNorm();
-    const auto more = nodesOf(data, trials[t], force);
-    nodes.insert(nodes.end(), more.begin(), more.end());
-  }
-  if (nodes.empty() || !(squares > 0)) return {};
+// The position with the largest |z| among those of one axis.
+// @param squares Σ d² of its force
+PositionBreak largestBreak(const std::vector<Visit>& nodes, double squares) {
+  PositionBreak best;
+  if (nodes.empty() || !(squares > 0)) return best;
   const auto [low, high] =
       std::minmax_element(nodes.begin(), nodes.end(),
-                          [](const Node& a, const Node& b) { return a.position < b.position; });
+                          [](const Visit& a, const Visit& b) { return a.position < b.position; });
   const double from = low->position, range = high->position - from;
   const double least = kLeastSpread * kLeastSpread * squares / static_cast<double>(nodes.size());
-  PositionBreak best;
   for (int k = 1; k < kThresholds; ++k)
     for (const bool above : {true, false}) {
       const PositionBreak one =
           breakAt(nodes, from + k * range / kThresholds, above, kBeside * range, least);
       if (std::abs(one.z) > std::abs(best.z)) best = one;
     }
-  if (std::abs(best.z) < kStandardErrors) return {};
   best.margin = kMargin * range;
+  return best;
+}
+
+std::optional<PositionBreak> breakOf(const DiscoveryProblem& data, const Options& options,
+                                     const Whitening& outputSd) {
+  const std::vector<int> trials = fittedTrials(data, options);
+  Search search(data, trials, options, outputSd, [](const std::string&) {});
+  const auto tracked = search.tracked({}, nominalValues(data));
+  if (!tracked) return {};
+  const NodeStates states = statesAtNodes(*tracked->of, tracked->fit);
+  PositionBreak best;
+  for (std::size_t axis = 0; axis < states.numAxes; ++axis) {
+    const std::vector<VectorXd> positions = states.positions(axis);
+    std::vector<Visit> nodes;
+    double squares = 0;
+    for (std::size_t t = 0; t < trials.size(); ++t) {
+      const VectorXd force =
+          onAxis(search.likelihood().force(t, tracked->fit), axis, states.numAxes);
+      squares += force.squaredNorm();
+      for (Index k = 1; k < force.size(); ++k) nodes.push_back({positions[t][k], force[k]});
+    }
+    PositionBreak one = largestBreak(nodes, squares);
+    one.axis = axis;
+    if (std::abs(one.z) > std::abs(best.z)) best = one;
+  }
+  if (std::abs(best.z) < kStandardErrors) return {};
   return best;
 }
 

@@ -79,20 +79,29 @@ double evidenceOf(const Likelihood& likelihood, const Fit& fit, const NodeStates
   return best - std::log(static_cast<double>(kSizes));
 }
 
-// Response of the outputs to forces with these columns at the nodes of all trials, stacked by
-// trial.
-std::vector<MatrixXd> outputsOf(const NodeStates& states, const MatrixXd& forces) {
-  std::vector<MatrixXd> disturbances;
-  Index at = 0;
-  for (const auto& linear : states.linear) {
-    disturbances.push_back(linear.force * forces.middleRows(at, linear.force.cols()));
-    at += linear.force.cols();
+// Response of the outputs to forces on every axis in turn.
+// @param forcesOn columns of force at the nodes of an axis of all trials, stacked by trial
+template <class ForcesOn>
+std::vector<MatrixXd> outputsOf(const NodeStates& states, const ForcesOn& forcesOn) {
+  std::vector<MatrixXd> disturbances(states.linear.size());
+  for (std::size_t axis = 0; axis < states.numAxes; ++axis) {
+    const MatrixXd forces = forcesOn(axis);
+    Index at = 0;
+    for (std::size_t t = 0; t < states.linear.size(); ++t) {
+      const MatrixXd& byNode = states.linear[t].force;
+      const MatrixXd own = byNode.middleCols(states.begin(t, axis), states.count(t)) *
+                           forces.middleRows(at, states.count(t));
+      MatrixXd& all = disturbances[t];
+      all.conservativeResize(own.rows(), all.cols() + own.cols());
+      all.rightCols(own.cols()) = own;
+      at += states.count(t);
+    }
   }
   return disturbances;
 }
 
-MatrixXd fieldOfState(const NodeStates& states) {
-  const VectorXd q = scaled(states.q), qDot = scaled(states.qDot);
+MatrixXd fieldOfState(const NodeStates& states, std::size_t axis) {
+  const VectorXd q = scaled(states.positions(axis)), qDot = scaled(states.speeds(axis));
   const Index n = q.size();
   MatrixXd K(n, n);
   for (Index i = 0; i < n; ++i)
@@ -104,15 +113,15 @@ MatrixXd fieldOfState(const NodeStates& states) {
 }
 
 // Every input at every lag; before the start of a trial it has its initial value.
-MatrixXd pastInputs(const Likelihood& likelihood, const NodeStates& states) {
+MatrixXd pastInputs(const Likelihood& likelihood, const NodeStates& states, std::size_t axis) {
   Index rows = 0;
-  for (const MatrixXd& u : states.inputs) rows += u.rows();
+  for (std::size_t t = 0; t < states.inputs.size(); ++t) rows += states.count(t);
   const Index inputs = states.inputs.front().cols();
   MatrixXd past(rows, inputs * kLags);
   Index at = 0;
   for (std::size_t t = 0; t < states.inputs.size(); ++t) {
-    const MatrixXd& u = states.inputs[t];
-    const auto& nodes = likelihood.data().latentTimes(likelihood.trials()[t]);
+    const MatrixXd u = onAxis(states.inputs[t], axis, states.numAxes);
+    const std::vector<double> nodes = nodeTimes(likelihood.data(), likelihood.trials()[t]);
     for (Index i = 0; i < u.rows(); ++i)
       for (Index lag = 0; lag < kLags; ++lag) {
         const double then = nodes[static_cast<std::size_t>(i)] - 0.05 * static_cast<double>(lag);
@@ -126,18 +135,20 @@ MatrixXd pastInputs(const Likelihood& likelihood, const NodeStates& states) {
   return past;
 }
 
-// q̈ at the nodes without the latent force: second differences of the simulated motion, less the
-// direct contribution of the forces at the node and its neighbours. Otherwise every force would be
-// correlated with the acceleration that it causes
+// q̈ at an axis's nodes without the latent force: second differences of the simulated motion, less
+// the direct contribution of the forces on all axes at the node and its neighbours. Otherwise every
+// force would be correlated with the acceleration that it causes
 // (docs/decisions/049-latent-force-acceleration.md).
-MatrixXd accelerations(const Likelihood& likelihood, const Fit& fit, const NodeStates& states) {
+MatrixXd accelerations(const Likelihood& likelihood, const Fit& fit, const NodeStates& states,
+                       std::size_t axis) {
   std::vector<VectorXd> all;
-  for (std::size_t t = 0; t < states.q.size(); ++t) {
-    const VectorXd& q = states.q[t];
-    const MatrixXd& response = states.response[t];
+  const std::vector<VectorXd> positions = states.positions(axis);
+  for (std::size_t t = 0; t < positions.size(); ++t) {
+    const VectorXd& q = positions[t];
+    const MatrixXd response = onAxis(states.response[t], axis, states.numAxes);
     const VectorXd force = fit.eta[t].size() > 0 ? likelihood.force(t, fit) : VectorXd();
     const DiscoveryProblem& data = likelihood.data();
-    const auto& nodes = data.latentTimes(likelihood.trials()[t]);
+    const std::vector<double> nodes = nodeTimes(data, likelihood.trials()[t]);
     const double last = data.times(likelihood.trials()[t]).back();
     const auto bend = [](const auto& x, Index i) { return x[i + 1] - 2 * x[i] + x[i - 1]; };
     VectorXd own = VectorXd::Zero(q.size());
@@ -146,8 +157,9 @@ MatrixXd accelerations(const Likelihood& likelihood, const Fit& fit, const NodeS
       const double width =
           nodes[static_cast<std::size_t>(i)] - nodes[static_cast<std::size_t>(i - 1)];
       own[i] = bend(q, i);
-      for (Index j = i - 1; force.size() > 0 && j <= i + 1; ++j)
-        own[i] -= bend(response.col(j), i) * force[j];
+      for (std::size_t from = 0; force.size() > 0 && from < states.numAxes; ++from)
+        for (Index j = states.begin(t, from) + i - 1; j <= states.begin(t, from) + i + 1; ++j)
+          own[i] -= bend(response.col(j), i) * force[j];
       own[i] /= width * width;
     }
     if (i > 1) {  // no differences at the ends
@@ -189,14 +201,16 @@ std::vector<MatrixXd> sensorErrors(const Likelihood& likelihood, const Fit& fit,
   return columns;
 }
 
-// Every channel's moment times z and z² − 1, z the scaled output
-MatrixXd moments(const Likelihood& likelihood, const Fit& fit, const NodeStates& states) {
-  const VectorXd q = scaled(states.q);
+// Every channel's moment about an axis times z and z² − 1, z the scaled position
+MatrixXd moments(const Likelihood& likelihood, const Fit& fit, const NodeStates& states,
+                 std::size_t axis) {
+  const VectorXd q = scaled(states.positions(axis));
   MatrixXd columns;
   Index at = 0;
   for (const int trial : likelihood.trials()) {
-    const MatrixXd G = likelihood.data().predict(trial, fit.values, {}, {}, true).latentScale;
-    const Index n = G.rows(), m = G.cols() > 1 ? G.cols() - 1 : 0;
+    const MatrixXd G = onAxis(likelihood.data().predict(trial, fit.values, {}, {}, true).scale,
+                              axis, states.numAxes);
+    const Index n = G.rows(), m = std::max<Index>(G.cols() - static_cast<Index>(states.numAxes), 0);
     if (at == 0) columns.resize(q.size(), 2 * m);
     const VectorXd z = q.segment(at, n);
     columns.middleRows(at, n).leftCols(m) = z.asDiagonal() * G.leftCols(m);
@@ -225,11 +239,12 @@ ResidualEvidence residualEvidence(const Likelihood& likelihood, const Fit& fit) 
   const auto of = [&](const std::vector<MatrixXd>& disturbances) {
     return evidenceOf(likelihood, fit, states, disturbances);
   };
-  return {{of(outputsOf(states, fieldOfState(states))),
-           of(outputsOf(states, pastInputs(likelihood, states))),
-           of(outputsOf(states, accelerations(likelihood, fit, states))),
+  const auto ofForces = [&](const auto& forcesOn) { return of(outputsOf(states, forcesOn)); };
+  return {{ofForces([&](std::size_t axis) { return fieldOfState(states, axis); }),
+           ofForces([&](std::size_t axis) { return pastInputs(likelihood, states, axis); }),
+           ofForces([&](std::size_t axis) { return accelerations(likelihood, fit, states, axis); }),
            of(sensorErrors(likelihood, fit, states)),
-           of(outputsOf(states, moments(likelihood, fit, states)))}};
+           ofForces([&](std::size_t axis) { return moments(likelihood, fit, states, axis); })}};
 }
 
 }  // namespace info::discover

@@ -61,14 +61,9 @@ class Predicted {
     outcome.variance = y.gamma.leftCols(p) * covariance_ * y.gamma.leftCols(p).transpose();
     outcome.starts = y.gamma.rightCols(y.gamma.cols() - p);
     if (latentSize > 0) {
-      MatrixXd K = y.latentScale * y.latentScale.transpose();
-      const auto& nodes = planned_.latentTimes(trial);
-      for (Index i = 0; i < K.rows(); ++i)
-        for (Index j = 0; j < K.cols(); ++j)
-          K(i, j) *= latentCorrelation(
-              std::abs(nodes[static_cast<std::size_t>(i)] - nodes[static_cast<std::size_t>(j)]),
-              fit_.noise.latentTime, planned_.latentLag());
-      outcome.latent = latentSize * latentSize * (y.latentGamma * K * y.latentGamma.transpose());
+      const MatrixXd K = latentCovariance(planned_.nodes(trial), y.scale, fit_.noise.latentTime,
+                                          planned_.latentLag());
+      outcome.latent = latentSize * latentSize * (y.byNode * K * y.byNode.transpose());
     }
     return outcome;
   }

@@ -25,21 +25,12 @@ std::vector<std::size_t> wantedOf(const Hypothesis& h) {
 
 }  // namespace
 
-double latentCorrelation(double interval, double time, double lag) {
-  if (!(lag > 0)) return std::exp(-interval / time);
-  if (std::abs(lag - time) < 1e-3 * time) {  // the limit of equal times
-    const double x = 2 * interval / (time + lag);
-    return (1 + x) * std::exp(-x);
-  }
-  return (time * std::exp(-interval / time) - lag * std::exp(-interval / lag)) / (time - lag);
-}
-
 Likelihood::Likelihood(const DiscoveryProblem& data, std::vector<int> trials,
                        const VectorXd& values, double latentTime)
     : data_(data), trials_(std::move(trials)) {
   if (trials_.empty()) throw std::invalid_argument("likelihood: no trial, must have at least one");
   for (const int trial : trials_) {
-    const auto& nodes = data.latentTimes(trial);
+    const std::vector<Node>& nodes = data.nodes(trial);
     const VectorXd& measured = data.measured(trial);
     const auto n = static_cast<Index>(nodes.size());
     if (measured.size() == 0 || !measured.allFinite() ||
@@ -47,18 +38,13 @@ Likelihood::Likelihood(const DiscoveryProblem& data, std::vector<int> trials,
       throw std::invalid_argument(
           fmt::format("{}: samples must be finite, at least one, and one for each time",
                       data.trialName(trial)));
-    MatrixXd K(n, n);
-    for (Index i = 0; i < n; ++i)
-      for (Index j = 0; j < n; ++j)
-        K(i, j) = latentCorrelation(
-            std::abs(nodes[static_cast<std::size_t>(i)] - nodes[static_cast<std::size_t>(j)]),
-            latentTime, data.latentLag());
-    const MatrixXd G = data.predict(trial, values, {}, {}, true).latentScale;
+    requireOrdered(data, trial);
+    const MatrixXd G = data.predict(trial, values, {}, {}, true).scale;
     if (G.rows() != n || G.cols() < 1 || !G.allFinite())
       throw std::invalid_argument(
           fmt::format("{}: scale of the latent force must be finite at its {} nodes",
                       data.trialName(trial), n));
-    roots_.push_back(K.cwiseProduct(G * G.transpose()).llt().matrixL());
+    roots_.push_back(latentCovariance(nodes, G, latentTime, data.latentLag()).llt().matrixL());
   }
 }
 
@@ -115,7 +101,7 @@ Likelihood::Linear Likelihood::linearOf(std::size_t at, const Hypothesis& hypoth
   const auto p = static_cast<Index>(hypothesis.free.size());
   const std::vector<int>& outputs = data_.outputOfSample(trials_[at]);
   noise.output.whiten(outputs, prediction.gamma);
-  if (prediction.latentGamma.size() != 0) noise.output.whiten(outputs, prediction.latentGamma);
+  if (prediction.byNode.size() != 0) noise.output.whiten(outputs, prediction.byNode);
   Linear linear;
   linear.residuals = data_.measured(trials_[at]) - prediction.outputs;
   noise.output.whiten(outputs, linear.residuals);
@@ -123,13 +109,15 @@ Likelihood::Linear Likelihood::linearOf(std::size_t at, const Hypothesis& hypoth
   for (Index i = 0; i < p; ++i)
     linear.gamma.col(i) *= hypothesis.free[static_cast<std::size_t>(i)].slope(xi[i]);
   linear.extra = prediction.gamma.rightCols(prediction.gamma.cols() - p);
-  linear.latent = latent && noise.latent > 0
-                      ? MatrixXd(noise.latent * (prediction.latentGamma *
-                                                 roots_[at].triangularView<Eigen::Lower>()))
-                      : MatrixXd(linear.residuals.size(), 0);
-  if (force) linear.force = std::move(prediction.latentGamma);
+  linear.latent =
+      latent && noise.latent > 0
+          ? MatrixXd(noise.latent * (prediction.byNode * roots_[at].triangularView<Eigen::Lower>()))
+          : MatrixXd(linear.residuals.size(), 0);
+  if (force) linear.force = std::move(prediction.byNode);
   linear.outputs = std::move(prediction.outputs);
   linear.speeds = std::move(prediction.speeds);
+  linear.course = std::move(prediction.course);
+  linear.courseByNode = std::move(prediction.courseByNode);
   return linear;
 }
 

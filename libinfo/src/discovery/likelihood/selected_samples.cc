@@ -35,9 +35,11 @@ DiscoveryProblem::Prediction selected(DiscoveryProblem::Prediction all,
   DiscoveryProblem::Prediction some;
   some.outputs = all.outputs(samples);
   some.gamma = all.gamma(samples, Eigen::all);
-  if (all.latentGamma.size() > 0) some.latentGamma = all.latentGamma(samples, Eigen::all);
-  some.latentScale = std::move(all.latentScale);
+  if (all.byNode.size() > 0) some.byNode = all.byNode(samples, Eigen::all);
+  some.scale = std::move(all.scale);
   some.speeds = all.speeds(samples);
+  some.course = std::move(all.course);
+  some.courseByNode = std::move(all.courseByNode);
   return some;
 }
 
@@ -92,8 +94,9 @@ MatrixXd SelectedSamples::inputs(int trial) const {
 }
 
 std::unique_ptr<DiscoveryProblem> SelectedSamples::withFormula(
-    const std::vector<FormulaTerm>& terms, const std::vector<std::size_t>& kept) const {
-  auto widened = data_.withFormula(terms, kept);
+    std::size_t axis, const std::vector<FormulaTerm>& terms,
+    const std::vector<std::size_t>& kept) const {
+  auto widened = data_.withFormula(axis, terms, kept);
   if (!widened) return nullptr;
   return std::make_unique<SelectedSamples>(std::move(widened), kept_);
 }

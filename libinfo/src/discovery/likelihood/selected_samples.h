@@ -23,9 +23,8 @@ class SelectedSamples final : public DiscoveryProblem {
   const std::vector<double>& times(int trial) const override { return of(trial).times; }
   const std::vector<int>& outputOfSample(int trial) const override { return of(trial).outputs; }
   const Eigen::VectorXd& measured(int trial) const override { return of(trial).measured; }
-  const std::vector<double>& latentTimes(int trial) const override {
-    return data_.latentTimes(trial);
-  }
+  const std::vector<Axis>& axes() const override { return data_.axes(); }
+  const std::vector<Node>& nodes(int trial) const override { return data_.nodes(trial); }
   double latentLag() const override { return data_.latentLag(); }
   Prediction predict(int trial, const Eigen::VectorXd& values, const Eigen::VectorXd& latent,
                      const std::vector<std::size_t>& wanted, bool latentToo) const override;
@@ -40,7 +39,8 @@ class SelectedSamples final : public DiscoveryProblem {
   Eigen::MatrixXd inputs(int trial) const override;
   std::vector<std::string> inputNames() const override { return data_.inputNames(); }
   std::unique_ptr<DiscoveryProblem> withFormula(
-      const std::vector<FormulaTerm>& terms, const std::vector<std::size_t>& kept) const override;
+      std::size_t axis, const std::vector<FormulaTerm>& terms,
+      const std::vector<std::size_t>& kept) const override;
 
  private:
   class Some;

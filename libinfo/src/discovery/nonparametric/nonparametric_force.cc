@@ -19,12 +19,13 @@ namespace {
 using Follows = NonparametricForce::Follows;
 
 constexpr double kSize = 0.3;   // prior sd of each term, in units of the latent force's scale
-constexpr int kDegree = 5;      // of the polynomial in the angle
+constexpr int kDegree = 5;      // of the polynomial in the position
 constexpr double kGrip = 0.05;  // speed scale of dry friction, as in the catalogues
 constexpr int kPoints = 61;     // points of the plotted curve
 
 // The terms of a force, as functions of (q, q̇) and as text.
 struct Family {
+  std::size_t axis;
   Follows follows;
   double lowest, highest;  // range of its argument
   std::vector<StateForce> terms;
@@ -40,13 +41,13 @@ double rootMeanSquare(const std::vector<VectorXd>& parts) {
 }
 
 // (q − middle)/half to the powers 0 … 5
-Family elastic(const NodeStates& states) {
+Family elastic(const NodeStates& states, std::size_t axis) {
   double low = HUGE_VAL, high = -HUGE_VAL;
-  for (const VectorXd& q : states.q) {
+  for (const VectorXd& q : states.positions(axis)) {
     low = std::min(low, q.minCoeff());
     high = std::max(high, q.maxCoeff());
   }
-  Family family{Follows::angle, low, high, {}};
+  Family family{axis, Follows::position, low, high, {}};
   const double middle = 0.5 * (low + high), half = 0.5 * (high - low);
   if (!(half > 0)) return family;
   for (int power = 0; power <= kDegree; ++power)
@@ -57,11 +58,12 @@ Family elastic(const NodeStates& states) {
 }
 
 // viscous, quadratic and dry friction, each of size 1 at the typical speed
-Family damping(const NodeStates& states) {
-  const double usual = rootMeanSquare(states.qDot);
+Family damping(const NodeStates& states, std::size_t axis) {
+  const std::vector<VectorXd> speeds = states.speeds(axis);
+  const double usual = rootMeanSquare(speeds);
   double highest = 0;
-  for (const VectorXd& w : states.qDot) highest = std::max(highest, w.cwiseAbs().maxCoeff());
-  Family family{Follows::speed, -highest, highest, {}};
+  for (const VectorXd& w : speeds) highest = std::max(highest, w.cwiseAbs().maxCoeff());
+  Family family{axis, Follows::speed, -highest, highest, {}};
   if (!(usual > 0)) return family;
   family.terms = {
       {fmt::format("qdot/{:.17g}", usual), [=](double, double w) { return w / usual; }},
@@ -71,12 +73,15 @@ Family damping(const NodeStates& states) {
   return family;
 }
 
-// RMS of the scale of the latent force.
-double scaleOf(const Likelihood& likelihood, const VectorXd& values) {
+// RMS of the scale of the latent force on an axis.
+double scaleOf(const Likelihood& likelihood, const VectorXd& values, std::size_t axis) {
+  const DiscoveryProblem& data = likelihood.data();
   std::vector<VectorXd> parts;
   for (const int trial : likelihood.trials())
     parts.emplace_back(
-        likelihood.data().predict(trial, values, {}, {}, true).latentScale.rowwise().norm());
+        onAxis(data.predict(trial, values, {}, {}, true).scale, axis, data.axes().size())
+            .rowwise()
+            .norm());
   return rootMeanSquare(parts);
 }
 
@@ -136,13 +141,19 @@ std::optional<NonparametricForce> raceNonparametric(const Search& search, const 
                                                     const Whitening& outputSd,
                                                     const Search::Report& report, int& fits) {
   const NodeStates states = statesAtNodes(search.likelihood(), smoothing);
-  const double sd = kSize * scaleOf(search.likelihood(), smoothing.values);
+  std::vector<Family> families;
+  for (std::size_t axis = 0; axis < states.numAxes; ++axis) {
+    families.push_back(elastic(states, axis));
+    families.push_back(damping(states, axis));
+  }
   std::optional<NonparametricForce> best;
-  for (Family family : {elastic(states), damping(states)}) {
+  for (Family& family : families) {
     if (family.terms.empty()) continue;
+    const double sd = kSize * scaleOf(search.likelihood(), smoothing.values, family.axis);
     const VectorXd coefficients =
-        linearCoefficients(search.likelihood(), smoothing, states, family.terms, sd);
-    const auto widened = search.data().withFormula(formulaOf(family, coefficients, sd), chosen);
+        linearCoefficients(search.likelihood(), smoothing, states, family.axis, family.terms, sd);
+    const auto widened =
+        search.data().withFormula(family.axis, formulaOf(family, coefficients, sd), chosen);
     if (!widened) return {};
     const auto known = searchMemoryOf(search, chosen, *widened);
     const auto formula = placeOf(*widened, "formula");
@@ -164,6 +175,7 @@ std::optional<NonparametricForce> raceNonparametric(const Search& search, const 
       const double ahead = net(all) - net(known->chosen);
       if (best && best->ahead >= ahead) continue;
       best.emplace();
+      best->axis = family.axis;
       best->follows = family.follows;
       best->logBayesFactor = race.at(all).score - race.at({}).score;
       best->ahead = ahead;

@@ -7,7 +7,8 @@
 
 namespace info::discover {
 
-/// Compares non-parametric forces, each a smooth function of the position or of the speed alone,
+/// Compares non-parametric forces, each on one axis and a smooth function of its position or speed
+/// alone,
 /// with the effects that a search has chosen, or with none
 /// (docs/decisions/047-nonparametric-forces.md). Returns the better one; empty if the problem does
 /// not offer formulas, or if neither could be fitted.

@@ -39,10 +39,11 @@ std::string textOf(const Unknown& unknown, const std::vector<double>& values) {
 std::optional<RacedFormula> raceFormula(const Search& search, const Unknown& unknown,
                                         const Effects& kept, Options options) {
   RacedFormula formula;
+  formula.axis = unknown.axis;
   formula.terms = termsOf(unknown);
   if (formula.terms.empty()) return {};
   const std::shared_ptr<const DiscoveryProblem> widened =
-      search.data().withFormula(formula.terms, kept);
+      search.data().withFormula(formula.axis, formula.terms, kept);
   if (!widened) return {};
   options.symbolic = false;
   options.judgeSamples = false;

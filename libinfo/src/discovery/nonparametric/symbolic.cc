@@ -21,7 +21,7 @@ constexpr int kRepeats = 100;   // bootstraps
 constexpr double kBlock = 0.5;  // [s] length of a bootstrap block
 constexpr Index kMostTerms = 3;
 
-// A possible term of a formula, as columns of force at the nodes of all trials.
+// The possible terms of a formula on one axis, as columns of force at the nodes of all axes.
 struct Library {
   std::vector<std::string> names, expressions;
   std::vector<MatrixXd> columns;  // per trial: nodes × terms
@@ -59,7 +59,8 @@ MatrixXd integrals(const MatrixXd& values, const std::vector<double>& times) {
   return sums;
 }
 
-Library libraryOf(const Likelihood& likelihood, const Fit& fit, const NodeStates& states) {
+Library libraryOf(const Likelihood& likelihood, const Fit& fit, const NodeStates& states,
+                  std::size_t axis) {
   const DiscoveryProblem& data = likelihood.data();
   Library library;
   for (const StateTerm& term : stateTerms()) {
@@ -69,25 +70,27 @@ Library libraryOf(const Likelihood& likelihood, const Fit& fit, const NodeStates
   const std::vector<std::string> inputs = data.inputNames();
   const auto numInputs = static_cast<Index>(inputs.size());
   bool haveMoments = true;
-  for (std::size_t t = 0; t < states.q.size(); ++t) {
+  const std::vector<VectorXd> q = states.positions(axis), qDot = states.speeds(axis);
+  for (std::size_t t = 0; t < q.size(); ++t) {
     const int trial = likelihood.trials()[t];
-    const auto& nodes = data.latentTimes(trial);
+    const std::vector<double> nodes = nodeTimes(data, trial);
     const auto n = static_cast<Index>(nodes.size());
     // channels of the latent force: the moment of each input's actuator, and one of constant scale
-    const MatrixXd scale = data.predict(trial, fit.values, {}, {}, true).latentScale;
-    haveMoments = haveMoments && scale.cols() == numInputs + 1;
+    // for each axis
+    const MatrixXd scale =
+        onAxis(data.predict(trial, fit.values, {}, {}, true).scale, axis, states.numAxes);
+    haveMoments = haveMoments && scale.cols() == numInputs + static_cast<Index>(states.numAxes);
     const auto own = static_cast<Index>(stateTerms().size());
     MatrixXd columns(n, own + numInputs * (haveMoments ? 3 : 1));
     for (Index j = 0; j < own; ++j)
       for (Index i = 0; i < n; ++i)
-        columns(i, j) =
-            stateTerms()[static_cast<std::size_t>(j)].at(states.q[t][i], states.qDot[t][i]);
-    columns.middleCols(own, numInputs) = states.inputs[t];
+        columns(i, j) = stateTerms()[static_cast<std::size_t>(j)].at(q[t][i], qDot[t][i]);
+    columns.middleCols(own, numInputs) = onAxis(states.inputs[t], axis, states.numAxes);
     if (haveMoments) {
       columns.middleCols(own + numInputs, numInputs) = scale.leftCols(numInputs);
       columns.rightCols(numInputs) = integrals(scale.leftCols(numInputs), nodes);
     }
-    library.columns.push_back(std::move(columns));
+    library.columns.push_back(states.placed(t, axis, columns));
   }
   for (const std::string& input : inputs) library.names.push_back("u_" + input);
   if (haveMoments) {
@@ -198,15 +201,18 @@ Subset bestSubset(const MatrixXd& normal, const VectorXd& right, double samples)
   return best;
 }
 
-// Fraction of the latent force's power that the formula explains, each node weighted by its
-// certainty.
-double shareExplained(const Likelihood& likelihood, const Fit& fit, const Library& library,
-                      const Subset& best) {
+// Fraction of the latent force's power on an axis that the formula explains, each node weighted by
+// its certainty.
+double shareExplained(const Likelihood& likelihood, const Fit& fit, const NodeStates& states,
+                      std::size_t axis, const Library& library, const Subset& best) {
   double power = 0, left = 0;
   for (std::size_t t = 0; t < library.columns.size(); ++t) {
-    const VectorXd sd = likelihood.forceSd(t, fit).cwiseMax(1e-9);
-    const VectorXd force = likelihood.force(t, fit);
-    const VectorXd formula = library.columns[t](Eigen::all, best.terms) * best.coefficients;
+    const auto own = [&](const VectorXd& all) {
+      return VectorXd(all.segment(states.begin(t, axis), states.count(t)));
+    };
+    const VectorXd sd = own(likelihood.forceSd(t, fit).cwiseMax(1e-9));
+    const VectorXd force = own(likelihood.force(t, fit));
+    const VectorXd formula = own(library.columns[t](Eigen::all, best.terms) * best.coefficients);
     power += force.cwiseQuotient(sd).squaredNorm();
     left += (force - formula).cwiseQuotient(sd).squaredNorm();
   }
@@ -221,16 +227,17 @@ std::string SymbolicTerm::times(double coefficient, const std::string& name) {
 }
 
 VectorXd linearCoefficients(const Likelihood& likelihood, const Fit& fit, const NodeStates& states,
-                            const std::vector<StateForce>& forces, double sd) {
+                            std::size_t axis, const std::vector<StateForce>& forces, double sd) {
   const auto n = static_cast<Index>(forces.size());
   Library library;
   library.names.resize(forces.size());
-  for (std::size_t t = 0; t < states.q.size(); ++t) {
-    MatrixXd columns(states.q[t].size(), n);
+  const std::vector<VectorXd> q = states.positions(axis), qDot = states.speeds(axis);
+  for (std::size_t t = 0; t < q.size(); ++t) {
+    MatrixXd columns(q[t].size(), n);
     for (Index j = 0; j < n; ++j)
       for (Index i = 0; i < columns.rows(); ++i)
-        columns(i, j) = forces[static_cast<std::size_t>(j)].at(states.q[t][i], states.qDot[t][i]);
-    library.columns.push_back(std::move(columns));
+        columns(i, j) = forces[static_cast<std::size_t>(j)].at(q[t][i], qDot[t][i]);
+    library.columns.push_back(states.placed(t, axis, columns));
   }
   MatrixXd normal = MatrixXd::Identity(n, n) / (sd * sd);
   VectorXd right = VectorXd::Zero(n);
@@ -242,7 +249,7 @@ VectorXd linearCoefficients(const Likelihood& likelihood, const Fit& fit, const 
 
 void findFormula(const Likelihood& likelihood, const Fit& fit, Unknown& unknown) {
   const NodeStates states = statesAtNodes(likelihood, fit);
-  const Library library = libraryOf(likelihood, fit, states);
+  const Library library = libraryOf(likelihood, fit, states, unknown.axis);
   const auto n = static_cast<Index>(library.names.size());
   const Remains remains = remainsOf(likelihood, fit, states, library);
   const std::size_t blocks = remains.normal.size() - 1;
@@ -272,7 +279,7 @@ void findFormula(const Likelihood& likelihood, const Fit& fit, Unknown& unknown)
   unknown.evidence = best.evidence;
   unknown.stable = !best.terms.empty();
   if (best.terms.empty()) return;
-  unknown.explained = shareExplained(likelihood, fit, library, best);
+  unknown.explained = shareExplained(likelihood, fit, states, unknown.axis, library, best);
   for (std::size_t i = 0; i < best.terms.size(); ++i) {
     const auto term = static_cast<std::size_t>(best.terms[i]);
     const auto at = static_cast<Index>(i);

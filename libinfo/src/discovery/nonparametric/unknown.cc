@@ -12,15 +12,33 @@ using Eigen::VectorXd;
 
 namespace {
 
-void spectrum(const Likelihood& likelihood, const Fit& fit, Unknown& unknown) {
+// The axis with the most certain force: the largest Σ (d/its standard deviation)².
+std::size_t strongestAxis(const Likelihood& likelihood, const Fit& fit) {
+  const std::size_t numAxes = likelihood.data().axes().size();
+  if (numAxes == 1) return 0;
+  VectorXd evidence = VectorXd::Zero(static_cast<Index>(numAxes));
+  for (std::size_t t = 0; t < likelihood.trials().size(); ++t) {
+    const VectorXd sd = likelihood.forceSd(t, fit).cwiseMax(1e-9);
+    const VectorXd ratio = likelihood.force(t, fit).cwiseQuotient(sd);
+    for (std::size_t axis = 0; axis < numAxes; ++axis)
+      evidence[static_cast<Index>(axis)] += onAxis(ratio, axis, numAxes).squaredNorm();
+  }
+  Index strongest = 0;
+  evidence.maxCoeff(&strongest);
+  return static_cast<std::size_t>(strongest);
+}
+
+void spectrum(const Likelihood& likelihood, const Fit& fit,
+              const std::vector<std::vector<double>>& times, const std::vector<VectorXd>& forces,
+              Unknown& unknown) {
   double power = 0, count = 0, peak = -1;
   std::vector<double> density;
   const double step = 0.1;
   for (double f = step; f < 9; f += step) {
     double sum = 0;
-    for (std::size_t t = 0; t < likelihood.trials().size(); ++t) {
-      const auto& nodes = likelihood.data().latentTimes(likelihood.trials()[t]);
-      const VectorXd d = likelihood.force(t, fit);
+    for (std::size_t t = 0; t < forces.size(); ++t) {
+      const std::vector<double>& nodes = times[t];
+      const VectorXd& d = forces[t];
       double cosine = 0, sine = 0;
       for (std::size_t i = 0; i < nodes.size(); ++i) {
         const double x = 2 * std::numbers::pi * f * nodes[i];
@@ -47,8 +65,7 @@ void spectrum(const Likelihood& likelihood, const Fit& fit, Unknown& unknown) {
       near += density[i];
   }
   unknown.peakShare = total > 0 ? near / total : 0;
-  for (std::size_t t = 0; t < likelihood.trials().size(); ++t) {
-    const VectorXd d = likelihood.force(t, fit);
+  for (const VectorXd& d : forces) {
     power += d.squaredNorm();
     count += static_cast<double>(d.size());
   }
@@ -59,13 +76,15 @@ void spectrum(const Likelihood& likelihood, const Fit& fit, Unknown& unknown) {
 
 Unknown describeUnknown(const Likelihood& likelihood, const Fit& fit) {
   Unknown unknown;
-  spectrum(likelihood, fit, unknown);
+  unknown.axis = strongestAxis(likelihood, fit);
   std::vector<std::vector<double>> times;
   std::vector<VectorXd> forces;
   for (std::size_t t = 0; t < likelihood.trials().size(); ++t) {
-    times.push_back(likelihood.data().latentTimes(likelihood.trials()[t]));
-    forces.push_back(likelihood.force(t, fit));
+    times.push_back(nodeTimes(likelihood.data(), likelihood.trials()[t]));
+    forces.emplace_back(
+        onAxis(likelihood.force(t, fit), unknown.axis, likelihood.data().axes().size()));
   }
+  spectrum(likelihood, fit, times, forces, unknown);
   unknown.tie = timeTie(times, forces);
   findFormula(likelihood, fit, unknown);
   return unknown;

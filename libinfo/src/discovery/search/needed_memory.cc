@@ -36,7 +36,7 @@ double neededMemory(const DiscoveryProblem& data, const std::vector<int>& trials
   double numbers = 0;
   for (const int t : trials) {
     numbers +=
-        static_cast<double>(data.times(t).size()) * static_cast<double>(data.latentTimes(t).size());
+        static_cast<double>(data.times(t).size()) * static_cast<double>(data.nodes(t).size());
   }
   return 4 * sizeof(double) * numbers;
 }

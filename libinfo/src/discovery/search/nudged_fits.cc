@@ -44,10 +44,10 @@ bool Search::lead(const Effects& effects, std::size_t first, std::size_t end, Le
   return true;
 }
 
-std::optional<Fit> Search::tracked(const Effects& effects, VectorXd start) {
+std::optional<Search::Tracked> Search::tracked(const Effects& effects, VectorXd start) {
   if (nudgedLikelihoods_.empty()) return {};
   const Hypothesis hypothesis = makeHypothesis(data_, effects, trials_);
-  std::optional<Fit> last;
+  std::optional<Tracked> last;
   std::vector<VectorXd> eta;
   for (const Likelihood& nudged : nudgedLikelihoods_) {
     auto fit = nudged.tryFit(hypothesis, {output_, kFirstSize, options_.latentTime}, start, eta,
@@ -56,7 +56,7 @@ std::optional<Fit> Search::tracked(const Effects& effects, VectorXd start) {
     if (!fit) continue;
     start = fit->values;
     eta = fit->eta;
-    last = std::move(fit);
+    last = Tracked{std::move(*fit), &nudged};
   }
   return last;
 }

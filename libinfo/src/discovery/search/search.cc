@@ -130,7 +130,7 @@ void Search::calibrate() {
     if (!at({}).works() || at({}).fit.noise.latent > kFirstSize)
       improve({}, nominalValues(data_), size);
   if (const auto led = tracked({}, nominalValues(data_)))
-    improve({}, led->values, kFirstSize, &*led);
+    improve({}, led->fit.values, kFirstSize, &led->fit);
   mustWork();
   // evaluate the scale of the latent force along the measured motion, then repeat from both ends
   const Fit first = at({}).fit;

@@ -89,11 +89,15 @@ class Search {
   /// The fit without latent force, computed on demand; from the nominal values if the model cannot
   /// be simulated without that force at the values of its fit.
   const Fit& simulation(const Effects& effects);
+  struct Tracked {
+    Fit fit;
+    const Likelihood* of;  ///< of the nudged model
+  };
   /// A fit with latent force of a nudged model, the nudging reduced from stage to stage while the
   /// latent force takes its place: the simulation stays near the data from the beginning, also past
   /// places where a path jumps, which no step of a fit would cross. Empty if nudging is not
   /// available.
-  std::optional<Fit> tracked(const Effects& effects, Eigen::VectorXd start);
+  std::optional<Tracked> tracked(const Effects& effects, Eigen::VectorXd start);
   /// Fits `base` + a candidate, unless already fitted.
   void raceOne(const Effects& base, std::size_t candidate);
   /// The same for each candidate; then repeats them, and `base`, from the leader's nuisance

@@ -8,12 +8,13 @@
 
 namespace info::discover {
 
-/// One element of a score map: a disturbance of the generalised force that is local in time or in
-/// (q, q̇).
+/// One element of a score map: a disturbance of the generalised force on one axis that is local in
+/// time or in (q, q̇), or proportional to an input.
 struct Score {
+  std::size_t axis = 0;                 ///< on which it acts
   int trial = -1;                       ///< −1: over all trials
   double from = 0, to = 0;              ///< times [s], of a hat
-  double lowerQ = 0, upperQ = 0;        ///< output, of a cell
+  double lowerQ = 0, upperQ = 0;        ///< position of the axis, of a cell
   double lowerQDot = 0, upperQDot = 0;  ///< its rate, of a cell
   std::string input;                    ///< of an input
   double z = 0;              ///< N(0, 1) under the base model with any admissible parameters
@@ -23,7 +24,7 @@ struct Score {
 
 struct Localisation {
   std::vector<Score> times, cells, inputs;
-  /// Per fitted trial: latent force and its standard deviation at DiscoveryProblem::latentTimes().
+  /// Per fitted trial: latent force and its standard deviation at DiscoveryProblem::nodes().
   std::vector<int> trials;
   std::vector<Eigen::VectorXd> force, forceSd;
 };

@@ -46,9 +46,22 @@ struct Candidate {
       equivalents;  ///< ids of effects that such data can never distinguish from it
 };
 
-/// One term of a force c·(e_1 + r_2·e_2 + …) on the observed coordinate.
+/// A coordinate on which a latent force may act.
+struct Axis {
+  std::string name;
+  std::string unit;       ///< of the coordinate
+  std::string forceUnit;  ///< of the generalised force on it
+};
+
+/// A node of the latent force.
+struct Node {
+  double time = 0;       ///< [s]
+  std::size_t axis = 0;  ///< index into DiscoveryProblem::axes()
+};
+
+/// One term of a force c·(e_1 + r_2·e_2 + …) on one axis.
 struct FormulaTerm {
-  std::string expression;  ///< e_k in q and qdot, e.g. "qdot*abs(qdot)"
+  std::string expression;  ///< e_k in that axis's q and its rate qdot, e.g. "qdot*abs(qdot)"
   double start = 0;        ///< starting value of fits: c for the first term, r_k for the others
   double sd = 1;           ///< prior standard deviation about 0
 };
@@ -59,11 +72,12 @@ struct FormulaTerm {
 ///
 ///     ẋ = f(x,u,θ) + Σ_c φ_c(x,u,t;β_c) + d(t),      y_k = g(x(t_k);β) + v_k,   v_k ~ N(0, σ²)
 ///
-/// The latent generalised force d(t) is given by its values at latentTimes() with linear
-/// interpolation; its prior is the sum of independent Ornstein–Uhlenbeck processes, filtered by a
-/// first-order lag (latentLag()), with standard deviations σ_d·G_c(t) for the channels c of the
-/// scale that predict() returns (for instance one per actuator, scaled by its moment, and one of
-/// constant scale; or a single channel of scale 1).
+/// The latent generalised force d(t) has a component on every axis, given by its values at nodes()
+/// with linear interpolation in time; its prior is the sum of independent Ornstein–Uhlenbeck
+/// processes, filtered by a first-order lag (latentLag()), with standard deviations σ_d·G_c(t) for
+/// the channels c of the scale that predict() returns: for instance one per input, scaled by the
+/// moments of its actuator about all axes, then one of constant scale per axis; or a single channel
+/// of scale 1. A channel that acts on several axes couples their forces.
 ///
 /// Contract: pure, i.e. equal arguments give equal results, from any thread. If the simulation
 /// fails, the outputs are not finite.
@@ -84,28 +98,44 @@ class DiscoveryProblem {
   virtual const std::vector<double>& times(int trial) const = 0;
   /// Index of each sample's output, from 0, if several outputs are measured; empty: one output.
   /// Samples of one time are consecutive, in the order of the outputs; all have the same noise (the
-  /// model weights them). Maps over (q, q̇) show the first output.
+  /// model weights them).
   virtual const std::vector<int>& outputOfSample(int /*trial*/) const {
     static const std::vector<int> one;
     return one;
   }
   /// Measured values at these times; NaN is not allowed, missing samples have no time.
   virtual const Eigen::VectorXd& measured(int trial) const = 0;
-  /// Nodes of the latent force [s], equally spaced over the trial.
-  virtual const std::vector<double>& latentTimes(int trial) const = 0;
+  /// The coordinates on which the latent force acts, at least one. Maps over (q, q̇) and formulas
+  /// are told axis by axis.
+  virtual const std::vector<Axis>& axes() const {
+    static const std::vector<Axis> one(1);
+    return one;
+  }
+  /// Nodes of the latent force: those of axis 0 in rising, equally spaced times over the trial,
+  /// then those of axis 1, …; all axes at the same times.
+  virtual const std::vector<Node>& nodes(int trial) const = 0;
   /// τ [s] ≥ 0, time constant of the lag that filters the latent force: errors of an input act on
   /// the force through the actuators' dynamics.
   virtual double latentLag() const { return 0; }
 
+  /// The simulated coordinate of each node's axis and its rate, at the node's time: the state
+  /// itself, not what a sensor shows of it. A node outside the simulation has the nearest state.
+  struct Course {
+    Eigen::VectorXd q;     ///< [unit of the axis]
+    Eigen::VectorXd qDot;  ///< [unit of the axis/s]
+  };
+  /// `byNode`, `scale`, `course` and `courseByNode` are empty unless requested.
   struct Prediction {
-    Eigen::VectorXd outputs;      ///< y at times(trial)
-    Eigen::MatrixXd gamma;        ///< dy/dq of the wanted quantities: samples × wanted
-    Eigen::MatrixXd latentGamma;  ///< dy/dd: samples × latent nodes; empty unless requested
-    Eigen::MatrixXd latentScale;  ///< G: latent nodes × channels; empty unless requested
-    Eigen::VectorXd speeds;       ///< rate of the output at times(trial), for the map over (q, q̇)
+    Eigen::VectorXd outputs;       ///< y at times(trial)
+    Eigen::MatrixXd gamma;         ///< dy/dq of the wanted quantities: samples × wanted
+    Eigen::MatrixXd byNode;        ///< dy/dd: samples × nodes
+    Eigen::MatrixXd scale;         ///< G: nodes × channels
+    Eigen::VectorXd speeds;        ///< rate of each sample's output at times(trial)
+    Course course;                 ///< at nodes(trial)
+    Eigen::MatrixXd courseByNode;  ///< ∂(course.q)/∂d: nodes × nodes
   };
   /// @param values   of all quantities
-  /// @param latent   of d at latentTimes(trial) [unit of the generalised force]; empty: 0
+  /// @param latent   of d at nodes(trial) [units of the generalised forces]; empty: 0
   /// @param wanted   indices of quantities, columns of gamma in this order
   virtual Prediction predict(int trial, const Eigen::VectorXd& values,
                              const Eigen::VectorXd& latent, const std::vector<std::size_t>& wanted,
@@ -147,10 +177,12 @@ class DiscoveryProblem {
   virtual Eigen::MatrixXd inputs(int trial) const = 0;
   virtual std::vector<std::string> inputNames() const = 0;
 
-  /// The same data and model with a candidate "formula" of these terms (at least one) with the
-  /// quantities c, r_2, …; of the other candidates only `kept` (indices). Null: not available.
+  /// The same data and model with a candidate "formula", a force of these terms (at least one) on
+  /// an axis, with the quantities c, r_2, …; of the other candidates only `kept` (indices). Null:
+  /// not available.
   virtual std::unique_ptr<DiscoveryProblem> withFormula(
-      const std::vector<FormulaTerm>& /*terms*/, const std::vector<std::size_t>& /*kept*/) const {
+      std::size_t /*axis*/, const std::vector<FormulaTerm>& /*terms*/,
+      const std::vector<std::size_t>& /*kept*/) const {
     return nullptr;
   }
 };

@@ -7,6 +7,7 @@
 
 #include "info/discovery/likelihood/discovery_problem.h"
 #include "info/discovery/likelihood/hypothesis.h"
+#include "info/discovery/likelihood/latent_nodes.h"
 #include "info/discovery/likelihood/whitening.h"
 
 namespace info::discover {
@@ -49,16 +50,12 @@ struct FitOptions {
   Eigen::VectorXd tilt = {};  ///< c: the minimised function is J + cᵀξ; empty: 0
 };
 
-/// Correlation over an interval Δ [s] of an Ornstein–Uhlenbeck process with time constant ℓ after a
-/// first-order lag τ:
-///     κ(Δ) = (ℓ e^{−Δ/ℓ} − τ e^{−Δ/τ})/(ℓ − τ),   e^{−Δ/ℓ} for τ = 0
-double latentCorrelation(double interval, double time, double lag);
-
 /// Gaussian likelihood of whole trials: docs/decisions/030-latent-force-likelihood.md.
 ///
-/// The latent force is d = σ_d·L·η at its nodes, LLᵀ = (GGᵀ)∘κ(|t_i−t_j|), η ~ N(0, 1). All
-/// unknowns are then N(0, 1) a priori. Samples are whitened on entry: residuals e = (ỹ − y(ξ, η))/σ
-/// and their derivatives Γ = −de/d(ξ, η) are in standard deviations of the output of each sample.
+/// The latent force is d = σ_d·L·η at its nodes, LLᵀ = (GGᵀ)∘κ(|t_a−t_b|) over the nodes a of
+/// all axes (latentCovariance), η ~ N(0, 1). All unknowns are then N(0, 1) a priori. Samples are
+/// whitened on entry: residuals e = (ỹ − y(ξ, η))/σ and their derivatives Γ = −de/d(ξ, η) are in
+/// standard deviations of the output of each sample.
 ///     J = ½|e|² + ½|ξ|² + ½|η|²
 ///     log Z = −J − ½ log|H| − Σ log(σ√2π),   H = 1 + ΓᵀΓ over (ξ, η)
 /// where bounds truncate the normal distributions. For a linear model without bounds log Z is
@@ -96,15 +93,18 @@ class Likelihood {
   /// the result has less evidence.
   Fit marginal(const Fit& near) const;
 
-  /// A trial at a fit. All but `outputs` and `speeds` is divided by the σ of each sample's output.
+  /// A trial at a fit. `outputs`, `speeds` and the course are in their own units, all
+  /// else is divided by the σ of each sample's output.
   struct Linear {
-    Eigen::VectorXd residuals;  ///< e = (ỹ − y)/σ
-    Eigen::MatrixXd gamma;      ///< dy/dξ/σ
-    Eigen::MatrixXd latent;     ///< dy/dη/σ
-    Eigen::MatrixXd extra;      ///< dy/dq/σ of the further quantities
-    Eigen::MatrixXd force;      ///< dy/dd/σ
-    Eigen::VectorXd outputs;    ///< y
-    Eigen::VectorXd speeds;     ///< ẏ
+    Eigen::VectorXd residuals;        ///< e = (ỹ − y)/σ
+    Eigen::MatrixXd gamma;            ///< dy/dξ/σ
+    Eigen::MatrixXd latent;           ///< dy/dη/σ
+    Eigen::MatrixXd extra;            ///< dy/dq/σ of the further quantities
+    Eigen::MatrixXd force;            ///< dy/dd/σ
+    Eigen::VectorXd outputs;          ///< y
+    Eigen::VectorXd speeds;           ///< ẏ
+    DiscoveryProblem::Course course;  ///< only with η or `force`, likewise
+    Eigen::MatrixXd courseByNode;     ///< ∂q/∂d
   };
   /// @param at    in the order of trials()
   /// @param extra further quantities, at their values in `values`

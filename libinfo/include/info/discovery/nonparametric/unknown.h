@@ -23,14 +23,17 @@ struct SymbolicTerm {
 /// Description of a missing effect that is not in the catalogue.
 ///
 /// The formula is a sum of at most three of {1, q, q², q³, q̇, q̇|q̇|, q̇³, tanh(q̇/0.05), q·q̇,
-/// sin q, cos q, u_i, M_i, ∫M_i dt}: q the first output, u_i the inputs, M_i the moments of the
-/// driven actuators if the latent force has a channel for each. Its terms are forces at the latent
-/// nodes; with their score g and information S, after elimination of all quantities that are free
-/// in the fit and with the latent force in the covariance, the subset with the largest evidence is
-/// taken,
+/// sin q, cos q, u_i, M_i, ∫M_i dt}: q the position of the axis, u_i the inputs, M_i the moments of
+/// the driven actuators about it if the latent force has a channel for each. Its terms are forces
+/// at the nodes of that axis; with their score g and information S, after elimination of all
+/// quantities that are free in the fit and with the latent force in the covariance, the subset with
+/// the largest evidence is taken,
 ///     ½ gᵀS⁻¹g − ½ k·log n   (k terms, n samples; Schwarz),
 /// so that an error of a parameter does not appear as a formula.
 struct Unknown {
+  /// The axis whose force is described: that with the most certain latent force, the largest
+  /// Σ (d/its standard deviation)² over its nodes.
+  std::size_t axis = 0;
   double peakFrequency = 0;  ///< [Hz] peak of the latent force's spectrum, relative to its prior
   double peakShare = 0;      ///< fraction of its power within ±0.5 Hz of the peak
   double forceSize = 0;      ///< root mean square [unit of the generalised force]

@@ -1,0 +1,65 @@
+#pragma once
+
+// Not public.
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "bio/discovery/sensor_law.h"
+#include "bio/sensitivity/coupled_sensitivity.h"
+#include "bio/tables/observable.h"
+
+namespace bio::discover {
+
+/// What a sensor shows of a simulated motion at the time stamps of its samples (sensor_law.h), with
+/// x the observable, x_L after the sensor's lag and t′ the time at which it was measured:
+///     y = (1 + gain)·x_L(t′) + bias + drift·(t − t₀)
+/// A coordinate is the cubic of Hermite between rows, and before the first row goes on with its
+/// first speed; other observables are those of ObservedMotion, with a lag linear between rows, and
+/// before the first row as there.
+class SensedMotion {
+ public:
+  /// @param stamps of the samples [s] rising; @param first  t₀ [s]
+  /// @throws std::invalid_argument for what the system does not have (ObservedMotion)
+  SensedMotion(const MusculoskeletalSystem& system, Observable what, const SensorLaw& law,
+               std::vector<double> stamps, double first);
+
+  struct Shown {
+    Eigen::VectorXd values;  ///< y; NaN at times that the motion has not reached
+    Eigen::VectorXd rates;   ///< (1 + gain)·ẋ_L(t′)
+  };
+  Shown shown(const Trajectory& motion) const;
+
+  struct Slopes {
+    /// (1 + gain)·∂x_L/∂θ: samples × all columns of the sensitivities
+    Eigen::MatrixXd gamma;
+    Eigen::VectorXd value;  ///< x_L
+    Eigen::VectorXd inLag;  ///< ∂y/∂lag
+  };
+  Slopes slopes(const SensitivityTrajectory& motion) const;
+
+  const SensorLaw& law() const { return law_; }
+  double stamp(Eigen::Index sample) const { return stamps_[static_cast<std::size_t>(sample)]; }
+  /// t − t₀
+  double since(Eigen::Index sample) const { return stamp(sample) - first_; }
+  Eigen::Index size() const { return static_cast<Eigen::Index>(stamps_.size()); }
+
+ private:
+  double measuredAt(Eigen::Index sample) const { return law_.measuredAt(stamp(sample), first_); }
+  Shown shownCoordinate(const Trajectory& motion) const;
+  Slopes slopesOfCoordinate(const SensitivityTrajectory& motion) const;
+  /// The observable without lag at times [s], of which those outside the motion are its ends.
+  Eigen::VectorXd valuesAt(const Trajectory& motion, const Eigen::VectorXd& times) const;
+  Eigen::VectorXd timesWithin(const Trajectory& motion, double shift) const;
+  Eigen::VectorXd ratesOf(const Trajectory& motion) const;
+  Lagged laggedCourse(const Trajectory& motion) const;
+
+  const MusculoskeletalSystem* system_;
+  Observable what_;
+  SensorLaw law_;
+  std::vector<double> stamps_;
+  double first_;
+  int coordinate_ = -1;  ///< in the skeleton; −1: another observable
+};
+
+}  // namespace bio::discover
