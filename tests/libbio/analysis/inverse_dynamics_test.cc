@@ -108,7 +108,8 @@ struct Pushed {
 };
 
 // A simulation turned round: what is left out of the forces is what keeps its motion, and the
-// fibres are those of the simulation.
+// fibres are those of the simulation. The first and last 50 ms have the order one: there a spline's
+// curvature follows from one side only, and the fibres' first transient is shorter than a step.
 TEST(InverseDynamics, FindTheForceThatMadeAMotion) {
   const Pushed pushed;
   std::vector<double> errors;
@@ -119,17 +120,18 @@ TEST(InverseDynamics, FindTheForceThatMadeAMotion) {
     without.step = step;
     const Trajectory kept = pushed.kept(motion, without);
     ASSERT_EQ(kept.reaction.cols(), motion.q.cols());
-    EXPECT_LT((kept.fibreLength - motion.fibreLength).cwiseAbs().maxCoeff(), 1e-9);
-    EXPECT_EQ(kept.q, motion.q);
+    EXPECT_LT((kept.fibreLength - motion.fibreLength).cwiseAbs().maxCoeff(), 1e-8);
+    EXPECT_LT((kept.q - motion.q).cwiseAbs().maxCoeff(), 1e-14);
     errors.push_back(0);
     for (Index k = 0; k < motion.q.cols(); ++k) {
-      const Vector2d e =
-          kept.reaction.col(k) - Pushed::push(motion.time[static_cast<std::size_t>(k)]);
-      errors.back() = std::max(errors.back(), e.cwiseAbs().maxCoeff());
+      const double t = motion.time[static_cast<std::size_t>(k)];
+      const double e = (kept.reaction.col(k) - Pushed::push(t)).cwiseAbs().maxCoeff();
+      EXPECT_LT(e, 10 * step) << t;
+      if (t > 0.05 && t < Pushed::duration - 0.05) errors.back() = std::max(errors.back(), e);
     }
   }
   std::printf("  errors %.3g %.3g %.3g N m\n", errors[0], errors[1], errors[2]);
-  EXPECT_LT(errors[2], 0.02);
+  EXPECT_LT(errors[2], 0.002);
   EXPECT_NEAR(std::log2(errors[0] / errors[2]) / 2, 2.0, 0.3);
 }
 
