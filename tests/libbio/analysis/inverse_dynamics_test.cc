@@ -108,8 +108,8 @@ struct Pushed {
 };
 
 // A simulation turned round: what is left out of the forces is what keeps its motion, and the
-// fibres are those of the simulation. The first and last 50 ms have the order one: there a spline's
-// curvature follows from one side only, and the fibres' first transient is shorter than a step.
+// fibres are those of the simulation. Of second order between the kinks of q̈, where a fibre turns,
+// of first order there and at both ends.
 TEST(InverseDynamics, FindTheForceThatMadeAMotion) {
   const Pushed pushed;
   std::vector<double> errors;
@@ -127,7 +127,8 @@ TEST(InverseDynamics, FindTheForceThatMadeAMotion) {
       const double t = motion.time[static_cast<std::size_t>(k)];
       const double e = (kept.reaction.col(k) - Pushed::push(t)).cwiseAbs().maxCoeff();
       EXPECT_LT(e, 10 * step) << t;
-      if (t > 0.05 && t < Pushed::duration - 0.05) errors.back() = std::max(errors.back(), e);
+      if (k % std::lround(0.04 / step) == 0 && t > 0.1 && t < 0.35)
+        errors.back() = std::max(errors.back(), e);
     }
   }
   std::printf("  errors %.3g %.3g %.3g N m\n", errors[0], errors[1], errors[2]);
