@@ -144,7 +144,8 @@ class Writer {
         "it out changes the simulated motion by {5} (RMS).",
         motion, f_.wording.forceUnit == "N·m" && unit == "deg" ? "moment" : "force",
         withUnit(size.moment.rms, f_.wording.forceUnit, 2),
-        withUnit(size.moment.peak, f_.wording.forceUnit, 2), numberText(100 * size.moment.share, 2), moved);
+        withUnit(size.moment.peak, f_.wording.forceUnit, 2), numberText(100 * size.moment.share, 2),
+        moved);
   }
 
   /// Each trial's figures, and the commands that make them.

@@ -11,8 +11,8 @@ namespace bio::discover {
 struct EffectMoment {
   double rms = std::numeric_limits<double>::quiet_NaN();    ///< [N·m] or force [N]
   double peak = std::numeric_limits<double>::quiet_NaN();   ///< its largest absolute value
-  double share = std::numeric_limits<double>::quiet_NaN();  ///< rms over the RMS of the muscles' net
-                                                            ///< moment on this coordinate
+  double share = std::numeric_limits<double>::quiet_NaN();  ///< rms over the RMS of the muscles'
+                                                            ///< net moment on this coordinate
 };
 
 /// The physical size of an effect along one motion. NaN: unknown or undefined.
