@@ -7,6 +7,7 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/analysis/ensemble.h
   include/bio/analysis/ensemble_statistics.h
   include/bio/analysis/fit_paths.h
+  include/bio/analysis/inverse_dynamics.h
   include/bio/analysis/muscle_states.h
   include/bio/analysis/observed_motion.h
   include/bio/analysis/opensim_paths.h

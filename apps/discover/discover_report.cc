@@ -133,7 +133,7 @@ class Writer {
     const std::string& unit = f_.wording.outputs.front().unit;
     const std::string moved = withUnit(f_.wording.unit * size.motionRms, unit, 2);
     if (std::isnan(size.motionRms)) return "";
-    if (std::isnan(size.momentRms)) {
+    if (std::isnan(size.moment.rms)) {
       return candidate(f_.verdict.effects[effect].candidate).kind ==
                      info::discover::EffectKind::sensor
                  ? fmt::format("On {} it shifts the sensor's reading by {} (RMS).", motion, moved)
@@ -143,8 +143,9 @@ class Writer {
         "On {0} its {1} is {2} (RMS; largest {3}), which is {4} % of the muscles' net {1}. Leaving "
         "it out changes the simulated motion by {5} (RMS).",
         motion, f_.wording.forceUnit == "N·m" && unit == "deg" ? "moment" : "force",
-        withUnit(size.momentRms, f_.wording.forceUnit, 2),
-        withUnit(size.momentPeak, f_.wording.forceUnit, 2), numberText(100 * size.share, 2), moved);
+        withUnit(size.moment.rms, f_.wording.forceUnit, 2),
+        withUnit(size.moment.peak, f_.wording.forceUnit, 2), numberText(100 * size.moment.share, 2),
+        moved);
   }
 
   /// Each trial's figures, and the commands that make them.

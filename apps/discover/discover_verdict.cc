@@ -87,9 +87,9 @@ void addSizes(const DiscoverFindings& f, ordered_json& effects) {
   for (std::size_t i = 0; i < f.written->sizes.size(); ++i) {
     const bio::discover::EffectSize& size = f.written->sizes[i];
     effects[i]["along"] = f.data.trialName(f.written->shown);
-    effects[i]["moment_rms_Nm"] = orNull(size.momentRms);
-    effects[i]["moment_peak_Nm"] = orNull(size.momentPeak);
-    effects[i]["share_of_muscle_moment"] = orNull(size.share);
+    effects[i]["moment_rms_Nm"] = orNull(size.moment.rms);
+    effects[i]["moment_peak_Nm"] = orNull(size.moment.peak);
+    effects[i]["share_of_muscle_moment"] = orNull(size.moment.share);
     effects[i]["motion_rms" + f.wording.gapEnd] = orNull(unit * size.motionRms);
   }
 }

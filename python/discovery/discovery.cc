@@ -23,8 +23,8 @@ using info::discover::Verdict;
 
 py::object effectOf(const MusculoskeletalProblem& data, const info::discover::NamedEffect& effect,
                     const bio::discover::EffectSize& size) {
-  return results(**effectMembers(data, effect), "moment_rms"_a = size.momentRms,
-                 "moment_peak"_a = size.momentPeak, "share_of_muscle_moment"_a = size.share,
+  return results(**effectMembers(data, effect), "moment_rms"_a = size.moment.rms,
+                 "moment_peak"_a = size.moment.peak, "share_of_muscle_moment"_a = size.moment.share,
                  "motion_rms"_a = size.motionRms);
 }
 

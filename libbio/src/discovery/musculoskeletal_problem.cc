@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "analysis/initial_speed.h"
+#include "bio/analysis/inverse_dynamics.h"
 #include "bio/analysis/replay.h"
 #include "bio/discovery/effects.h"
 #include "bio/discovery/with_experimental_conditions.h"
@@ -413,6 +414,17 @@ VectorXd MusculoskeletalProblem::refinedOutputs(int trial, const VectorXd& value
 
 Trajectory MusculoskeletalProblem::motion(int trial, const VectorXd& values) const {
   return simulate(of(trial), values, {}, 1, nullptr);
+}
+
+Trajectory MusculoskeletalProblem::inverseDynamics(int trial, const VectorXd& values,
+                                                   const Trajectory& motion) const {
+  const OfTrial& one = of(trial);
+  const ParameterCatalogue::Setting setting = settingAt(one, values, {});
+  MusculoskeletalSystem system = encompassing_.armOf(setting);
+  const ExcitationSignal driven =
+      drivenExcitation(excitationFor(one, system), muscleNames(system), setting.mapping);
+  return bio::inverseDynamics(std::move(system), driven, motion.time, motion.q,
+                              simulationOf(one, values, withTimedForces(one, values, {})));
 }
 
 MusculoskeletalSystem MusculoskeletalProblem::armAt(int trial, const VectorXd& values) const {

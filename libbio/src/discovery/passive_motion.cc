@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
+#include "bio/analysis/inverse_dynamics.h"
 #include "bio/analysis/replay.h"
 #include "bio/discovery/end_of_limb.h"
-#include "bio/simulation/simulate.h"
+#include "bio/discovery/with_experimental_conditions.h"
 
 namespace bio::discover {
 
@@ -19,98 +21,59 @@ namespace {
 
 constexpr double relaxed = 0.01;  // excitation, at most
 
-struct Point {
-  double q, qDot, qDotDot;
-};
-
 // Minimum jerk from `low` to `high` and back; a moment's rest before, between and after.
-Point sweepAt(double share, double duration, double low, double high) {
+double sweepAt(double share, double low, double high) {
   constexpr double rest = 0.04, half = 0.5;
   const bool back = share > half;
-  const double time = (half - 1.5 * rest) * duration;
   const double x =
-      std::clamp((share - (back ? half + rest / 2 : rest)) * duration / time, 0.0, 1.0);
+      std::clamp((share - (back ? half + rest / 2 : rest)) / (half - 1.5 * rest), 0.0, 1.0);
   const double from = back ? high : low, d = back ? low - high : high - low;
-  return {from + d * x * x * x * (10 - 15 * x + 6 * x * x),
-          d / time * 30 * x * x * (1 - x) * (1 - x),
-          d / (time * time) * 60 * x * (1 - x) * (1 - 2 * x)};
+  return from + d * x * x * x * (10 - 15 * x + 6 * x * x);
 }
 
-// What the muscles do to the coordinate at rest, over its range; nothing where one has no rest.
-class RestingMuscles {
- public:
-  RestingMuscles(const MusculoskeletalSystem& arm, const Trial& trial, double low, double high) {
-    const ExcitationSignal excitation = excitationOf(trial, arm);
-    constexpr Index angles = 31;
-    q_ = VectorXd::LinSpaced(angles, low, high);
-    moment_ = VectorXd::Zero(angles);
-    for (Index i = 0; i < angles; ++i) {
-      try {
-        const SystemState state =
-            initialState(arm, q_.segment(i, 1), excitation, excitation.times().front());
-        Trajectory rest;
-        rest.time = {0};
-        rest.q = state.q;
-        rest.qDot = state.qDot;
-        rest.activation = state.activation;
-        rest.fibreLength = state.fibreLength;
-        const MuscleReport report = reportMuscles(arm, rest);
-        moment_[i] = report.tendonForce.cwiseProduct(report.momentArm).sum();
-      } catch (const NoStaticEquilibrium&) {
-        // a slack muscle, say: it does nothing
-      }
-    }
-  }
-  double momentAt(double q) const {
-    const double last = static_cast<double>(q_.size() - 1);
-    const double x = std::clamp((q - q_[0]) / (q_[q_.size() - 1] - q_[0]) * last, 0.0, last);
-    const auto k = std::min(static_cast<Index>(x), q_.size() - 2);
-    const double w = x - static_cast<double>(k);
-    return (1 - w) * moment_[k] + w * moment_[k + 1];
-  }
-
- private:
-  VectorXd q_, moment_;
-};
-
-// What moves the arm so, the mass in the hand among it. Gravity of an arm that is turned is that of
-// q + turn.
-double torqueOf(const EncompassingModel& model, SystemConfiguration<1>& bodies,
-                const RestingMuscles& muscles, const ExperimentalConditions& known,
-                const Point& p) {
-  using Vector = SystemConfiguration<1>::Vector;
-  const double mass = known.massInHand;
-  const Eigen::Vector3d& gravity = model.arm().skeleton().gravity();
-  const std::string hand = mass != 0 ? model.movedBodies().back() : "";
-  bodies.moveSkeletonTo(Vector(p.q + known.armTurn));
-  double torque = bodies.inertia().dV[0];
-  if (mass != 0) torque -= mass * gravity.dot(model.velocityOf(hand, p.q + known.armTurn));
-  bodies.moveSkeletonTo(Vector(p.q));
-  torque += bodies.inertia().massMatrix(0, 0) * p.qDotDot +
-            bodies.inertia().dM[0](0, 0) / 2 * p.qDot * p.qDot;
-  if (mass != 0) torque += mass * model.velocityOf(hand, p.q).squaredNorm() * p.qDotDot;
-  Vector passive = Vector::Zero(), slope = Vector::Zero(), rate = Vector::Zero();
-  model.arm().coordinateForces().add<1>(Vector(p.q), Vector(p.qDot), passive, slope, rate);
-  return torque - passive[0] - muscles.momentAt(p.q);
+// The force that moves the model of the trial along the sweep; none where that cannot be simulated.
+ExternalForce sweepingForce(const Trial& trial, const EncompassingModel& model, double low,
+                            double high) {
+  const ParameterCatalogue::Setting setting =
+      model.settingAt(model.nominal() + experimentalConditionsOf(trial, model), {});
+  MusculoskeletalSystem system = model.armOf(setting);
+  const ExcitationSignal excitation = excitationOf(trial, system);
+  // a course much finer than the steps, since its third derivative jumps
+  const auto steps = std::max<Index>(trial.times.size() - 1,
+                                     static_cast<Index>(std::ceil(trial.duration() / 0.01)));
+  const VectorXd shares = VectorXd::LinSpaced(10 * steps + 1, 0, 1);
+  const VectorXd times = (trial.times[0] + trial.duration() * shares.array()).matrix();
+  const VectorXd q = shares.unaryExpr([&](double share) { return sweepAt(share, low, high); });
+  SimulationOptions simulation;
+  simulation.step = trial.duration() / static_cast<double>(steps);
+  const Trajectory moved = inverseDynamics(std::move(system), excitation,
+                                           {times.begin(), times.end()}, q.transpose(), simulation);
+  if (moved.outcome != Outcome::completed) return {};
+  return {moved.time, moved.reaction.transpose()};
 }
 
-// The trial with the arm relaxed and moved from `low` to `high` and back by a torque that is known.
-Trial movedPassively(Trial trial, const EncompassingModel& model, double low, double high) {
+// The trial with the limb relaxed and moved from `low` to `high` and back by a force that is known;
+// nothing where the model cannot be moved so.
+std::optional<Trial> movedPassively(Trial trial, const EncompassingModel& model, double low,
+                                    double high) {
   const std::string& coordinate = model.coordinate().name;
   trial.excitations.rowwise() = trial.excitations.colwise().minCoeff().cwiseMin(relaxed).eval();
-  const RestingMuscles muscles(model.arm(), trial, low, high);
-  SystemConfiguration<1> bodies(model.arm());
-  const auto at = [&](double t) {
-    return sweepAt((t - trial.times[0]) / trial.duration(), trial.duration(), low, high);
-  };
-  VectorXd torque(trial.times.size());
-  for (Index i = 0; i < torque.size(); ++i)
-    torque[i] = torqueOf(model, bodies, muscles, trial.known, at(trial.times[i]));
   std::erase_if(trial.applied, [&](const auto& one) { return one.coordinate == coordinate; });
-  trial.applied.push_back({coordinate, torque});
+  ExternalForce force;
+  try {
+    force = sweepingForce(trial, model, low, high);
+  } catch (const std::exception&) {
+    // outside the model's domain
+  }
+  if (force.empty()) return {};
+  const double first = trial.times[0];
+  const auto sweep = [&](double t) { return sweepAt((t - first) / trial.duration(), low, high); };
+  trial.applied.push_back({coordinate, trial.times.unaryExpr([&](double t) {
+                             return force.at(std::min(t, force.times().back())).value[0];
+                           })});
   for (MeasuredChannel& measured : trial.measured) {
-    if (measured.what != ofCoordinate(coordinate)) continue;
-    for (Index i = 0; i < measured.times.size(); ++i) measured.values[i] = at(measured.times[i]).q;
+    if (measured.what == ofCoordinate(coordinate))
+      measured.values = measured.times.unaryExpr(sweep);
   }
   return trial;
 }
@@ -156,8 +119,8 @@ std::vector<PlannedExperiment> passiveMotions(const Trial& trial, const Encompas
       Trial changed = trial;
       changed.known.massInHand += mass;
       changed.known.armTurn += turn * std::numbers::pi / 180;
-      Trial moved = movedPassively(std::move(changed), model, low, high);
-      planned.push_back({sentenceOf(moved, model, low, high), std::move(moved)});
+      if (auto moved = movedPassively(std::move(changed), model, low, high))
+        planned.push_back({sentenceOf(*moved, model, low, high), std::move(*moved)});
     }
   }
   return planned;

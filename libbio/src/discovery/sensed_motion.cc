@@ -117,8 +117,8 @@ SensedMotion::Shown SensedMotion::shownCoordinate(const Trajectory& motion) cons
 SensedMotion::Slopes SensedMotion::slopesOfCoordinate(const SensitivityTrajectory& s) const {
   const auto c = static_cast<std::size_t>(coordinate_);
   const Trajectory& motion = s.motion;
-  Slopes slopes{MatrixXd::Constant(size(), s.q[c].cols(), missing), VectorXd::Constant(size(), missing),
-                VectorXd::Constant(size(), missing)};
+  Slopes slopes{MatrixXd::Constant(size(), s.q[c].cols(), missing),
+                VectorXd::Constant(size(), missing), VectorXd::Constant(size(), missing)};
   SensitivityMatrix late, lateRate;
   if (law_.lag > 0) {
     const Lagged behind = lagged(motion.time, s.q[c].transpose(), s.qDot[c].transpose(), law_.lag);

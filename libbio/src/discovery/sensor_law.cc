@@ -58,11 +58,11 @@ VectorXd speedsOf(const MeasuredChannel& motion) {
 
 }  // namespace
 
-Trial asTrueSensor(Trial trial, const std::string& coordinate, const SensorLaw& sensor) {
+Trial asTrueSensor(Trial trial, const Observable& what, const SensorLaw& sensor) {
   if (!sensor.isTrue()) trial.sha256.clear();  // it is not what is in the file
   const double first = trial.times[0], last = trial.times[trial.times.size() - 1];
   for (MeasuredChannel& motion : trial.measured) {
-    if (motion.what != ofCoordinate(coordinate) || sensor.isTrue()) continue;
+    if (motion.what != what || sensor.isTrue()) continue;
     VectorXd shown = motion.values;
     if (sensor.lag > 0) shown += sensor.lag * speedsOf(motion);
     std::vector<double> times, values;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 
@@ -66,6 +67,12 @@ bool MusculoskeletalSystem::isPrescribed(int coordinate) const {
 const Function* MusculoskeletalSystem::courseOf(int coordinate) const {
   const auto at = courses_.find(coordinate);
   return at == courses_.end() ? nullptr : &at->second;
+}
+
+MusculoskeletalSystem MusculoskeletalSystem::withAllPrescribed() && {
+  prescribed_.resize(skeleton_.coordinates().size());
+  std::iota(prescribed_.begin(), prescribed_.end(), 0);
+  return std::move(*this);
 }
 
 const MusclePath* MusculoskeletalSystem::pathOf(const std::string& muscle) const {

@@ -111,6 +111,10 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   /// The complete simulation at `values`, without a latent force.
   /// @throws what MusculoskeletalSystem, initialState and simulate throw
   Trajectory motion(int trial, const Eigen::VectorXd& values) const;
+  /// The generalised forces that keep the model at `values` on a motion of the trial: with its
+  /// excitations, external and timed forces (inverse_dynamics.h).
+  Trajectory inverseDynamics(int trial, const Eigen::VectorXd& values,
+                             const Trajectory& motion) const;
   /// The model that it belongs to.
   MusculoskeletalSystem armAt(int trial, const Eigen::VectorXd& values) const;
   /// Its initial state by coordinate: the coordinate itself, not the sensor's reading.

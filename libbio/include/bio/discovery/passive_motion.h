@@ -13,12 +13,11 @@ namespace bio::discover {
 /// acts in another direction.
 ///
 /// The coordinate moves from 10 to 65 % of its range (85 % if turned) by minimum jerk; the
-/// excitation of every muscle is its smallest value in the trial, at most 0.01; the torque [N·m]
-/// (force [N])
-///     τ = (M + m|v(q)|²)·q̈ + ½·∂M·q̇² + ∂V(q + t) − m·g·v(q + t) − passive − Σ F_T r,
-///     v = ∂(mass centre of the hand)/∂q, m the known mass, t the known turn, F_T r at rest,
-/// so that the limb roughly follows. An external torque of the trial is replaced. Empty if the
-/// model has other free coordinates.
+/// excitation of every muscle is its smallest value in the trial, at most 0.01. The torque [N·m]
+/// (force [N]) is the one that keeps the model under these conditions on this motion
+/// (inverse_dynamics.h), so that the limb follows as far as the model is right. An external torque
+/// of the trial is replaced. Motions that the model cannot make are left out; empty if the model
+/// has other free coordinates.
 std::vector<PlannedExperiment> passiveMotions(const Trial& trial, const EncompassingModel& model);
 
 }  // namespace bio::discover

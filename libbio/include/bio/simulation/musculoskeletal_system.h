@@ -80,6 +80,8 @@ class MusculoskeletalSystem {
   bool isPrescribed(int coordinate) const;
   /// The model's own function of time of a prescribed coordinate; null: it has none.
   const Function* courseOf(int coordinate) const;
+  /// The same system with the motion of every coordinate given by SimulationOptions::prescribed.
+  MusculoskeletalSystem withAllPrescribed() &&;
 
   const CoordinateForces& coordinateForces() const { return coordinateForces_; }
   const std::vector<SystemMuscle>& muscles() const { return muscles_; }
