@@ -45,7 +45,14 @@ TEST(TrialReview, NamesEachUnusualQuantityOnce) {
   const Case cases[] = {
       {[](Trial& t) { t.times(50) += 0.002; },
        "time: intervals = 0.008 to 0.012 s, usually equal (the median is 0.01 s)"},
-      {[](Trial& t) { t.times *= 20; }, "time: rows are 0.2 s apart, usually below 0.1 s"},
+      {[](Trial& t) { t.times *= 20; },
+       "time: rows are up to 0.2 s apart: the excitation between them is taken as a straight line; "
+       "record it, or resample the recording, at 20 Hz or more"},
+      {[](Trial& t) {
+         t.times *= 20;
+         t.excitations.setConstant(0.3);
+       },
+       "time: rows are 0.2 s apart, usually below 0.1 s"},
       {[](Trial& t) { t.times *= 100; },
        "time: rows are 1 s apart, usually below 0.1 s: milliseconds?"},
       {[](Trial& t) { t.excitations.setZero(); }, "excitation of 'BRA': is 0 throughout"},
@@ -81,7 +88,26 @@ TEST(TrialReview, WhatACommandMustTellOrRefuseWeighsMore) {
   milliseconds.times *= 100;
   EXPECT_EQ(reviewTrial(milliseconds, hinge()).front().weight, Weight::warning);
   milliseconds.times /= 5;
+  EXPECT_EQ(reviewTrial(milliseconds, hinge()).front().weight, Weight::warning);
+  milliseconds.excitations.setConstant(0.3);
   EXPECT_EQ(reviewTrial(milliseconds, hinge()).front().weight, Weight::unusual);
+}
+
+// A gap matters where an excitation changes across it, and only beyond a tenth of a second.
+TEST(TrialReview, AsksForRowsThatShowTheExcitation) {
+  const auto told = [](const Trial& trial) {
+    for (const std::string& line : linesOf(trial)) {
+      if (line.find("straight line") != std::string::npos) return line;
+    }
+    return std::string();
+  };
+  Trial trial = usual();
+  trial.times *= 10;
+  EXPECT_EQ(told(trial), "");  // 0.1 s
+  trial.times.tail(40).array() += 0.3;
+  EXPECT_THAT(told(trial), testing::HasSubstr("up to 0.4 s apart"));
+  trial.excitations.row(61) = trial.excitations.row(60);
+  EXPECT_EQ(told(trial), "");  // row 61 is the first of the last 40
 }
 
 TEST(UsableSeries, NeedsEnoughValuesThatChange) {
