@@ -43,4 +43,29 @@ TEST(ReplayCommand, RemarksOnRowsThatDoNotShowTheExcitation) {
   EXPECT_THAT(warningsOf(0.25, 0.1), Not(Contains(HasSubstr(straightLine))));
 }
 
+/// The figure of a report, as its script gets it; null if there is none.
+nlohmann::json figureOf(const std::string& report, const std::string& title) {
+  const std::string begin = "{\"title\":\"" + title + "\"";
+  const auto at = report.find(begin);
+  if (at == std::string::npos) return {};
+  return nlohmann::json::parse(report.substr(at, report.find("</script>", at) - at));
+}
+
+TEST(ReplayCommand, DrawsTheExcitationsThatTheTrialGives) {
+  const ScratchFolder scratch;
+  const std::string trial = scratch.file(
+      "trial.csv", "time,BRA,TRIlong\n0,0.1,0.01\n0.05,0.3,0.01\n0.1,0.2,0.02\n0.15,0.1,0.02\n");
+  const std::string out = (scratch / "out").string();
+  const ProgramResult result = runFisherHill({"replay", support::model, trial, "--out", out});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::string report = support::contentOf(out + "/report.html");
+  const nlohmann::json figure = figureOf(report, "Excitations");
+  ASSERT_EQ(figure["series"].size(), 2u) << figure;  // of eight muscles
+  EXPECT_EQ(figure["series"][0]["name"], "TRIlong");
+  EXPECT_EQ(figure["series"][1]["name"], "BRA");
+  EXPECT_EQ(figure["series"][1]["x"], nlohmann::json({0, 0.05, 0.1, 0.15}));
+  EXPECT_EQ(figure["series"][1]["y"], nlohmann::json({0.1, 0.3, 0.2, 0.1}));
+  EXPECT_EQ(figureOf(report, "Activations")["series"].size(), 8u);
+}
+
 }  // namespace
