@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "bio/tables/interpolated_series.h"
 #include "model/plausible.h"
 
 namespace bio {
@@ -135,6 +136,20 @@ void reviewMotion(const MeasuredMotion& motion, const Coordinate& coordinate, do
   }
 }
 
+/// Of a coordinate or another measured channel.
+void reviewInterpolation(const std::string& name, const Eigen::VectorXd& times,
+                         const Eigen::VectorXd& values, std::vector<Remark>& remarks) {
+  const int factor = interpolationFactor(times, values);
+  if (factor == 1) return;
+  remarks.push_back(
+      {fmt::format("measured '{}'", name),
+       fmt::format("1 value in {} was recorded, the others lie on straight lines between: noise is "
+                   "estimated too small from them, and intervals become too narrow; give the "
+                   "recorded values only, with empty cells (or NaN) between",
+                   factor),
+       Weight::warning});
+}
+
 }  // namespace
 
 std::vector<Remark> reviewTrial(const Trial& trial, const Model& model) {
@@ -149,6 +164,10 @@ std::vector<Remark> reviewTrial(const Trial& trial, const Model& model) {
   }
   for (const MeasuredMotion& motion : trial.measured) {
     reviewMotion(motion, findCoordinate(model, motion.coordinate), trial.times(0), remarks);
+    reviewInterpolation(motion.coordinate, motion.times, motion.values, remarks);
+  }
+  for (const MeasuredChannel& channel : trial.channels) {
+    reviewInterpolation(nameOf(channel.what), channel.times, channel.values, remarks);
   }
   return remarks;
 }

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -41,6 +42,30 @@ TEST(ReplayCommand, RemarksOnRowsThatDoNotShowTheExcitation) {
                      HasSubstr("at 20 Hz or more"))));
   EXPECT_THAT(warningsOf(0.1, 0.12), Not(Contains(HasSubstr(straightLine))));
   EXPECT_THAT(warningsOf(0.25, 0.1), Not(Contains(HasSubstr(straightLine))));
+}
+
+// Angles of 50 Hz that were interpolated to the rows of the EMG.
+TEST(ReplayCommand, RemarksOnAnInterpolatedAngle) {
+  const ScratchFolder scratch;
+  std::string rows = "time,BRA,elbow_flexion_deg\n", recorded = rows;
+  for (int k = 0; k <= 100; ++k) {
+    const auto angle = [](int i) { return 60 + 2 * std::sin(0.2 * i) + 0.1 * std::sin(17.0 * i); };
+    const double value = angle(k / 4) + 0.25 * (k % 4) * (angle(k / 4 + 1) - angle(k / 4));
+    const std::string time = fmt::format("{:.3f},{:.4f},", 0.005 * k, 0.05 + 0.0001 * k);
+    rows += time + fmt::format("{:.6f}\n", value);
+    recorded += time + (k % 4 == 0 ? fmt::format("{:.6f}\n", value) : "\n");
+  }
+  const auto warnings = [&](const std::string& text) {
+    const std::string file = scratch.file("trial.csv", text);
+    const ProgramResult result = runFisherHill({"replay", support::model, file, "--json"});
+    const ProgramResult checked = runFisherHill({"check", support::model, file, "--json"});
+    const auto found = nlohmann::json::parse(result.out)["warnings"];
+    EXPECT_EQ(checked.out.find("1 value in") == std::string::npos,
+              found.dump().find("1 value in") == std::string::npos);
+    return found;
+  };
+  EXPECT_THAT(warnings(rows), Contains(HasSubstr("measured 'elbow_flexion': 1 value in 4 was")));
+  EXPECT_THAT(warnings(recorded), Not(Contains(HasSubstr("1 value in"))));
 }
 
 /// The figure of a report, as its script gets it; null if there is none.
