@@ -160,6 +160,7 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/tables/experimental_conditions.h
   include/bio/tables/file_error.h
   include/bio/tables/observable.h
+  include/bio/tables/interpolated_series.h
   include/bio/tables/marker_trajectories.h
   include/bio/tables/recorded_file.h
   include/bio/tables/recording.h

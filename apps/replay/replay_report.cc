@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "bio/analysis/observed_motion.h"
 #include "bio/analysis/replay.h"
 #include "bio/model/integrator_names.h"
@@ -106,6 +108,25 @@ Figure perMuscle(const ReplayFindings& f, const std::string& title, const std::s
     figure.series.push_back({.name = f.arm.muscles()[i].name,
                              .x = f.replay.motion.time,
                              .y = inUnit(rows.row(static_cast<Eigen::Index>(i)), factor)});
+  }
+  return figure;
+}
+
+/// What drives the muscles, in the rows of the trial. A muscle without a column is left out: its
+/// excitation is the baseline throughout.
+Figure excitationFigure(const ReplayFindings& f) {
+  Figure figure{.title = "Excitations",
+                .xLabel = "Time [s]",
+                .yLabel = "Excitation [1]",
+                .caption = "From the trial, 0 to 1; straight lines between its rows."};
+  const double baseline = bio::TrialOptions{}.baseline;
+  for (const bio::SystemMuscle& muscle : f.arm.muscles()) {
+    const auto& names = f.trial.muscles;
+    const auto at = std::find(names.begin(), names.end(), muscle.name);
+    if (at == names.end()) continue;
+    const Eigen::VectorXd values = f.trial.excitations.col(at - names.begin());
+    if ((values.array() == baseline).all()) continue;
+    figure.series.push_back({.name = muscle.name, .x = asList(f.trial.times), .y = asList(values)});
   }
   return figure;
 }
@@ -277,6 +298,8 @@ Report replayReport(const ReplayFindings& f) {
     if (!figure.series.empty()) report.details.push_back(std::move(figure));
   }
   report.details.push_back(Section{"Muscles"});
+  Figure excitations = excitationFigure(f);
+  if (!excitations.series.empty()) report.details.push_back(std::move(excitations));
   report.details.push_back(
       perMuscle(f, "Activations", "Activation [1]", f.replay.motion.activation, 1));
   report.details.push_back(perMuscle(f, "Tendon forces", "Force [N]", f.muscles.tendonForce, 1));

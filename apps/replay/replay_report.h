@@ -27,7 +27,7 @@ struct ReplayFindings {
 /// Sets the values of summary.json: rms_error_deg, newton_iterations_per_step, …
 void tellReplay(const ReplayFindings& findings, Summary& summary);
 
-/// Simulated and measured angle, activations, forces, moment arms, energy.
+/// Simulated and measured angle, excitations, activations, forces, moment arms, energy.
 Report replayReport(const ReplayFindings& findings);
 
 }  // namespace app

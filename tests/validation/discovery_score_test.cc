@@ -249,6 +249,16 @@ TEST(Score, SaysWhatChanceMakesOfATarget) {
   EXPECT_FALSE(spread.within(2));
   spread.atMost = false;
   EXPECT_TRUE(spread.within(2));
+
+  // of four or fewer, one must be
+  for (const std::size_t count : {1u, 2u, 4u}) {
+    spread.values.assign(count, 0.5);
+    EXPECT_FALSE(spread.within(2)) << count;
+    spread.values.back() = 1.5;
+    EXPECT_TRUE(spread.within(2)) << count;
+  }
+  spread.values.clear();
+  EXPECT_TRUE(spread.within(2));
 }
 
 TEST(Judge, ALabelWithoutASizeLeavesTheEstimateAlone) {

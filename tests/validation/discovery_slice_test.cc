@@ -3,7 +3,7 @@
 // is the design's target less two binomial deviations, computed from the number of sets:
 // Row::within and Spread::within of discovery_score.h. Of 8 single effects with a target of 97 %,
 // for example, 7.76 − 2·√(8·0.97·0.03) = 6.8, so that 7 right names pass; of 6 null sets with 2 %,
-// 0.12 + 2·√(6·0.02·0.98) = 0.8, so that none may be given a name.
+// 0.12 + 2·√(6·0.02·0.98) = 0.8, so that none may be given a name. Every set must be counted.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -83,8 +83,32 @@ Outcome onElbow(const hidden::DataSetPlan& plan) {
   return byCommand(scratch, {std::filesystem::exists(own) ? own.string() : shipped.string()});
 }
 
-void expectTargets(const std::vector<Outcome>& outcomes) {
+/// How many sets hide nothing, a wrong parameter only, or one effect.
+struct Sets {
+  int nothing = 0, parameter = 0, effect = 0;
+};
+
+/// A row without sets is within its target, so that the sets are counted here.
+void expectCounted(const hidden::Score& score, const Sets& sets) {
+  int nothing = 0, parameter = 0, effect = 0, all = 0;
+  for (const hidden::Row& row : score.rows) {
+    if (row.metric == "false alarms on null data") nothing += row.n;
+    if (row.metric == "structure named when only parameters are wrong") parameter += row.n;
+    if (row.metric.starts_with("right name first, ")) effect += row.n;
+    if (row.metric == "confidently wrong") all += row.n;
+  }
+  EXPECT_EQ(nothing, sets.nothing);
+  EXPECT_EQ(parameter, sets.parameter);
+  EXPECT_EQ(effect, sets.effect + sets.parameter);
+  EXPECT_EQ(all, sets.nothing + sets.parameter + sets.effect);
+  for (const hidden::Spread& spread : score.spreads) {
+    if (spread.metric == "time per data set") EXPECT_EQ(std::ssize(spread.values), all);
+  }
+}
+
+void expectTargets(const std::vector<Outcome>& outcomes, const Sets& sets) {
   const hidden::Score score = hidden::score(outcomes);
+  expectCounted(score, sets);
   for (const hidden::Row& row : score.rows) {
     EXPECT_TRUE(row.target == "–" || row.within(2)) << row.metric;
   }
@@ -100,7 +124,9 @@ void expectTargetsOnReducedElbows(const std::string& suite, std::uint64_t first,
     plan.seed = first + static_cast<std::uint64_t>(i);
     outcomes.push_back(onReducedElbow(plan));
   }
-  expectTargets(outcomes);
+  expectTargets(outcomes, {.nothing = suite == "null" ? count : 0,
+                           .parameter = suite == "parameter" ? count : 0,
+                           .effect = suite == "single" ? count : 0});
 }
 
 void expectTargetsOnRobots(const std::string& system, std::uint64_t first, int single, int null) {
@@ -112,7 +138,7 @@ void expectTargetsOnRobots(const std::string& system, std::uint64_t first, int s
     plan.seed = first + static_cast<std::uint64_t>(i);
     outcomes.push_back(onRobot(plan));
   }
-  expectTargets(outcomes);
+  expectTargets(outcomes, {.nothing = null, .effect = single});
 }
 
 TEST(DiscoverySlice, OfReducedElbowsWithNothingHidden) {
@@ -152,7 +178,7 @@ TEST(DiscoverySlice, OfElbowsWithEightMuscles) {
   visc.effects = {"visc"};
   missing.effects = {"missing_BRD"};
   nothing.seed = 45500, visc.seed = 45501, missing.seed = 45502;
-  expectTargets({onElbow(nothing), onElbow(visc), onElbow(missing)});
+  expectTargets({onElbow(nothing), onElbow(visc), onElbow(missing)}, {.nothing = 1, .effect = 2});
 }
 TEST(DiscoverySlice, OfDoublePendulums) {
   expectTargetsOnRobots("double-pendulum", 45300, 3, 1);

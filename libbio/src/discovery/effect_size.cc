@@ -52,7 +52,12 @@ EffectSize effectSize(const MusculoskeletalProblem& data, std::size_t candidate,
     const Trajectory with = data.motion(trial, values);
     if (with.outcome != Outcome::completed) return size;
     if (effect.kind == info::discover::EffectKind::sensor) {
-      size.motionRms = sensorError(with, data.encompassing().sensorAt(alone), coordinate);
+      const EncompassingModel& model = data.encompassing();
+      const std::size_t sensor = model.sensorOf(effect.quantities.front());
+      const Observable& what = model.sensors()[sensor];
+      if (what.isCoordinate())
+        size.motionRms = sensorError(with, model.sensorAt(alone, sensor),
+                                     model.arm().skeleton().indexOf(what.of));
       return size;
     }
     const Trajectory without = data.motion(trial, absent);

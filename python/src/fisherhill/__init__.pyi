@@ -118,7 +118,7 @@ class Model:
             Each with
 
             weight : str
-                'error' (simulations refuse it), 'warning' (probably another unit) or 'unusual'.
+                'error' (simulations refuse it), 'warning' (probably a mistake, as another unit) or 'unusual'.
             subject : str
                 What it is about, e.g. "coordinate 'elbow_flexion'".
             message : str

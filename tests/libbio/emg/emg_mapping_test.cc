@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "bio/emg/emg_stages.h"
+#include "support/throws_saying.h"
 
 namespace bio {
 namespace {
@@ -152,16 +153,19 @@ TEST(EmgMapping, DerivativesOfTiredMusclesMatchDifferences) {
 }
 
 TEST(EmgMapping, RefusesWhatBreaksItsRules) {
-  EXPECT_THROW(drivenExcitation(signal(), muscles, {{{"C", 1}}, 0, 0}), std::invalid_argument);
-  EXPECT_THROW(drivenExcitation(signal(), muscles, {{{"A", -1}}, 0, 0}), std::invalid_argument);
-  EXPECT_THROW(drivenExcitation(signal(), muscles, {{}, std::nan(""), 0}), std::invalid_argument);
-  EXPECT_THROW(drivenExcitation(signal(), muscles, {{}, 0, std::nan("")}), std::invalid_argument);
+  const auto refused = [](const EmgMapping& mapping, const char* words) {
+    support::throwsSaying([&] { drivenExcitation(signal(), muscles, mapping); }, words);
+  };
+  refused({{{"C", 1}}, 0, 0}, "EMG gain of 'C': no such muscle moves");
+  refused({{{"A", -1}}, 0, 0}, "EMG gain of 'A' = -1, must be ≥ 0");
+  refused({{}, std::nan(""), 0}, "EMG delay = nan s, must be finite");
+  refused({{}, 0, std::nan("")}, "EMG nonlinearity = nan, must be −6 to 6");
   EmgMapping tired;
   tired.fatigue = 1.1;
-  EXPECT_THROW(drivenExcitation(signal(), muscles, tired), std::invalid_argument);
+  refused(tired, "EMG fatigue φ = 1.1, must be −1 to 1");
   tired.fatigue = 0.1;
   tired.fatigueTime = 0;
-  EXPECT_THROW(drivenExcitation(signal(), muscles, tired), std::invalid_argument);
+  refused(tired, "T = 0 s, must be > 0");
 }
 
 }  // namespace

@@ -112,7 +112,8 @@ TEST_F(C3d, NamesGoOnInFurtherParameters) {
   EXPECT_EQ(file.markers.names.at(254), "P254");
   EXPECT_EQ(file.markers.names.at(299), "P299");
   EXPECT_EQ(positionsOf(file.markers, "P299").cols(), 3);
-  EXPECT_THROW(positionsOf(file.markers, "P300"), std::invalid_argument);
+  support::throwsSaying([&] { positionsOf(file.markers, "P300"); },
+                        "no marker 'P300'; the file has");
 }
 
 TEST_F(C3d, AnalogValuesCanBeWithoutSign) {

@@ -10,6 +10,7 @@
 #include "bio/tables/recording.h"
 #include "bio/tables/table_file.h"
 #include "bio/tables/trial.h"
+#include "bio/tables/trial_review.h"
 
 namespace {
 
@@ -22,9 +23,12 @@ class ShippedTrials : public testing::TestWithParam<std::string> {
 };
 
 TEST_P(ShippedTrials, AreTrialsOfTheElbowModelWithoutAWarning) {
-  const bio::Trial trial =
-      bio::readTrial(this->trial(), bio::readOsim(sourceTree + "/models/elbow8.osim"));
+  const bio::Model model = bio::readOsim(sourceTree + "/models/elbow8.osim");
+  const bio::Trial trial = bio::readTrial(this->trial(), model);
   EXPECT_THAT(trial.warnings, testing::IsEmpty());
+  for (const bio::Remark& remark : bio::reviewTrial(trial, model)) {
+    EXPECT_EQ(remark.weight, bio::Weight::unusual) << remark.message;
+  }
   EXPECT_EQ(trial.times.size(), 901);
   EXPECT_DOUBLE_EQ(trial.times[900], 4.5);
   ASSERT_EQ(trial.measured.size(), 1u);

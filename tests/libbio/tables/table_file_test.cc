@@ -7,6 +7,7 @@
 
 #include "bio/tables/file_error.h"
 #include "support/scratch_folder.h"
+#include "support/throws_saying.h"
 
 namespace bio {
 namespace {
@@ -143,7 +144,8 @@ TEST_F(TableFile, LeavesTheOldFileWhenItCannotWrite) {
 
 TEST_F(TableFile, NamesAColumnThatIsNotThere) {
   const Table table = readTable(write("a.csv", "time,BRA\n0,1\n"));
-  EXPECT_THROW(columnIndex(table, "BRD"), std::invalid_argument);
+  support::throwsSaying([&] { columnIndex(table, "BRD"); },
+                        "the table has no column 'BRD' (it has: time, BRA)");
 }
 
 TEST_F(TableFile, SaysInOneLineWhatIsWrong) {

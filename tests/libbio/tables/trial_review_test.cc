@@ -2,7 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <functional>
+
+#include "support/throws_saying.h"
 
 namespace bio {
 namespace {
@@ -46,7 +49,14 @@ TEST(TrialReview, NamesEachUnusualQuantityOnce) {
   const Case cases[] = {
       {[](Trial& t) { t.times(50) += 0.002; },
        "time: intervals = 0.008 to 0.012 s, usually equal (the median is 0.01 s)"},
-      {[](Trial& t) { t.times *= 20; }, "time: rows are 0.2 s apart, usually below 0.1 s"},
+      {[](Trial& t) { t.times *= 20; },
+       "time: rows are up to 0.2 s apart: the excitation between them is taken as a straight line; "
+       "record it, or resample the recording, at 20 Hz or more"},
+      {[](Trial& t) {
+         t.times *= 20;
+         t.excitations.setConstant(0.3);
+       },
+       "time: rows are 0.2 s apart, usually below 0.1 s"},
       {[](Trial& t) { t.times *= 100; },
        "time: rows are 1 s apart, usually below 0.1 s: milliseconds?"},
       {[](Trial& t) { t.excitations.setZero(); }, "excitation of 'BRA': is 0 throughout"},
@@ -63,6 +73,19 @@ TEST(TrialReview, NamesEachUnusualQuantityOnce) {
        "measured 'elbow_flexion': jumps by 0.755 rad between measurements, usually below 0.5 rad"},
       {[](Trial& t) { t.measured[0].times.array() += 0.25; },
        "measured 'elbow_flexion': begins 0.25 s after the excitations"},
+      {[](Trial& t) {
+         for (Eigen::Index k = 0; k < 101; ++k) {
+           const Eigen::Index before = k / 4 * 4;
+           const auto recorded = [](Eigen::Index i) {
+             return 1 + 0.1 * std::sin(0.1 * static_cast<double>(i));
+           };
+           const double part = static_cast<double>(k - before) / 4;
+           t.measured[0].values(k) = (1 - part) * recorded(before) + part * recorded(before + 4);
+         }
+       },
+       "measured 'elbow_flexion': 1 value in 4 was recorded, the others lie on straight lines "
+       "between: noise is estimated too small from them, and intervals become too narrow; give the "
+       "recorded values only, with empty cells (or NaN) between"},
   };
   for (const Case& c : cases) {
     Trial trial = usual();
@@ -82,7 +105,26 @@ TEST(TrialReview, WhatACommandMustTellOrRefuseWeighsMore) {
   milliseconds.times *= 100;
   EXPECT_EQ(reviewTrial(milliseconds, hinge()).front().weight, Weight::warning);
   milliseconds.times /= 5;
+  EXPECT_EQ(reviewTrial(milliseconds, hinge()).front().weight, Weight::warning);
+  milliseconds.excitations.setConstant(0.3);
   EXPECT_EQ(reviewTrial(milliseconds, hinge()).front().weight, Weight::unusual);
+}
+
+// A gap matters where an excitation changes across it, and only beyond a tenth of a second.
+TEST(TrialReview, AsksForRowsThatShowTheExcitation) {
+  const auto told = [](const Trial& trial) {
+    for (const std::string& line : linesOf(trial)) {
+      if (line.find("straight line") != std::string::npos) return line;
+    }
+    return std::string();
+  };
+  Trial trial = usual();
+  trial.times *= 10;
+  EXPECT_EQ(told(trial), "");  // 0.1 s
+  trial.times.tail(40).array() += 0.3;
+  EXPECT_THAT(told(trial), testing::HasSubstr("up to 0.4 s apart"));
+  trial.excitations.row(61) = trial.excitations.row(60);
+  EXPECT_EQ(told(trial), "");  // row 61 is the first of the last 40
 }
 
 TEST(UsableSeries, NeedsEnoughValuesThatChange) {
@@ -97,7 +139,9 @@ TEST(UsableSeries, NeedsEnoughValuesThatChange) {
   EXPECT_EQ(whyNotUsable(motion), "'elbow_flexion' has 19 measured values, must have at least 20");
   EXPECT_EQ(whyNotUsable(motion, 19), "");
   EXPECT_NO_THROW(requireUsable("a.sto", motion, 19));
-  EXPECT_THROW(requireUsable("a.sto", motion), std::invalid_argument);
+  support::throwsSaying(
+      [&] { requireUsable("a.sto", motion); },
+      "a.sto: measured 'elbow_flexion' has 19 measured values, must have at least 20");
 }
 
 }  // namespace

@@ -70,7 +70,8 @@ bool Spread::within(double deviations) const {
     return atMost ? value <= bound : value >= bound;
   });
   const auto n = static_cast<double>(values.size());
-  return static_cast<double>(right) >= n / 2 - deviations * std::sqrt(n) / 2;
+  return n == 0 ||
+         static_cast<double>(right) >= std::max(1.0, n / 2 - deviations * std::sqrt(n) / 2);
 }
 
 namespace {

@@ -10,7 +10,7 @@ namespace bio {
 /// Severity of a remark.
 enum class Weight {
   unusual,  ///< allowed, but worth checking
-  warning,  ///< probably another unit; every command reports it
+  warning,  ///< probably a mistake, as another unit; every command reports it
   error     ///< simulations refuse it
 };
 

@@ -12,12 +12,14 @@ namespace bio {
 ///
 /// Errors: a measured angle beyond 2π rad and outside its coordinate's range (degrees). Warnings: a
 /// measured angle beyond 4π rad that the range allows; rows 0.5 s apart or more over a minute or
-/// more (milliseconds?). Unusual: unequal sampling (an interval more than 1 % off the median one);
-/// rows further apart than 0.1 s; excitations that are 0 or 1 throughout, or that jump by more than
-/// 0.5 between rows; a measured angle jumping by more than 0.5 rad between neighbours; a measured
-/// coordinate outside its range in the model; measurements that begin more than 0.1 s after the
-/// excitations; an external torque or force above 50 N·m or N, 0 throughout, or jumping by more
-/// than 5 between rows.
+/// more (milliseconds?); else rows further apart than 0.1 s between which an excitation changes,
+/// since a straight line between them is not what a muscle was given; a measured series that was
+/// interpolated to more rows (interpolationFactor). Unusual: unequal sampling (an interval more
+/// than 1 % off the median one); rows usually further apart than 0.1 s, with constant excitations;
+/// excitations that are 0 or 1 throughout, or that jump by more than 0.5 between rows; a measured
+/// angle jumping by more than 0.5 rad between neighbours; a measured coordinate outside its range
+/// in the model; measurements that begin more than 0.1 s after the excitations; an external torque
+/// or force above 50 N·m or N, 0 throughout, or jumping by more than 5 between rows.
 std::vector<Remark> reviewTrial(const Trial& trial, const Model& model);
 
 /// Reason why a measured series cannot be used, or is too short for its noise to be distinguished

@@ -180,13 +180,16 @@ TEST(CubicSpline, NanInGivesNanOut) {
 
 TEST(CubicSpline, RefusesPointsThatNoCurveCanHave) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(CubicSpline(SplineFunction{{0}, {0}}), std::invalid_argument);
-  EXPECT_THROW(CubicSpline(SplineFunction{{1, 1}, {2, 2}}), std::invalid_argument);
-  EXPECT_THROW(CubicSpline(SplineFunction{{0, 1}, {0}}), std::invalid_argument);
-  EXPECT_THROW(CubicSpline(SplineFunction{{0, 2, 1}, {0, 1, 2}}), std::invalid_argument);
-  EXPECT_THROW(CubicSpline(SplineFunction{{0, 1, 1}, {0, 1, 2}}), std::invalid_argument);
-  EXPECT_THROW(CubicSpline(SplineFunction{{0, nan}, {0, 1}}), std::invalid_argument);
-  EXPECT_THROW(CubicSpline(SplineFunction{{0, 1}, {0, nan}}), std::invalid_argument);
+  const auto refused = [](const SplineFunction& points, const char* words) {
+    support::throwsSaying([&] { CubicSpline{points}; }, words);
+  };
+  refused({{0}, {0}}, "needs at least 2 different points, has 1");
+  refused({{1, 1}, {2, 2}}, "needs at least 2 different points, has 1");
+  refused({{0, 1}, {0}}, "2 values of x but 1 of y");
+  refused({{0, 2, 1}, {0, 1, 2}}, "x must rise, but 1 follows 2 at point 3");
+  refused({{0, 1, 1}, {0, 1, 2}}, "two values, 1 and 2, at x = 1");
+  refused({{0, nan}, {0, 1}}, "point 2 is (nan, 1), must be finite");
+  refused({{0, 1}, {0, nan}}, "point 2 is (1, nan), must be finite");
 }
 
 TEST(PiecewiseLinear, ConnectsItsPointsAndGoesOnOutside) {
