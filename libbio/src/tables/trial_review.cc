@@ -167,7 +167,6 @@ std::vector<Remark> reviewTrial(const Trial& trial, const Model& model) {
       reviewMotion(channel, findCoordinate(model, channel.what.of), trial.times(0), remarks);
     reviewInterpolation(nameOf(channel.what), channel.times, channel.values, remarks);
   }
-  }
   return remarks;
 }
 
