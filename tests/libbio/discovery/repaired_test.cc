@@ -119,7 +119,7 @@ TEST(Repaired, WhereEmgOrSensorAreAtFaultDrivenTrialsGiveTheFigures) {
       writeTable(*one.driven, table);
       Trial driven = readTrial(table, model, {.experimentalConditions = true});
       driven.sha256 = std::string(64, 'd');  // as the program says of the file
-      model.fitted.starts = {one.start};
+      model.fitted.starts = one.starts;
       model.fitted.starts[0].sha256 = driven.sha256;
       rewriteOsim(ShippedElbow::root() + "/models/elbow8.osim", model, file);
       EXPECT_NEAR(f.replay(file, driven), one.after, 1e-9) << id;

@@ -69,7 +69,8 @@ TEST(SensorLaw, ACorrectedTrialIsWhatATrueSensorShows) {
     motion.values[k] = 1.1 * behind(1 + 1.05 * (t - 1) - 0.03) + 0.02 + 0.01 * (t - 1);
   }
   trial.measured = {motion};
-  const MeasuredChannel corrected = asTrueSensor(trial, ofCoordinate("elbow"), sensor).measured.front();
+  const MeasuredChannel corrected =
+      asTrueSensor(trial, ofCoordinate("elbow"), sensor).measured.front();
   ASSERT_GT(corrected.times.size(), 180);
   EXPECT_LT(corrected.times.size(), 201);  // those beyond the trial's end are lost
   for (Eigen::Index k = 5; k + 5 < corrected.times.size(); ++k)
