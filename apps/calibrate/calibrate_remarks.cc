@@ -18,15 +18,17 @@ void tellSteps(double asked, const bio::SteppedCalibration& found, Summary& summ
         "simulated angles or the estimates noticeably",
         numberText(asked), numberText(step)));
   }
-  const double noise = found.calibration.noise.sd;
   const auto& changes = found.change.ofTrials;
   for (std::size_t i = 0; i < changes.size(); ++i) {
-    if (!found.change.mattersToTrial(i, noise)) continue;
-    summary.warn(
-        fmt::format("{}: halving the step of {} s changes the simulated angles by up to {:.2g} "
-                    "deg, {:.2g} standard deviations of the noise: use a shorter --step",
-                    found.training->trials()[i].file, numberText(step), changes[i] * radian,
-                    changes[i] / noise));
+    if (!found.change.mattersToTrial(i)) continue;
+    const bio::MeasuredGroup& channel = found.training->channels()[changes[i].channel];
+    const bool areAngles = channel.areAngles;
+    summary.warn(fmt::format(
+        "{}: halving the step of {} s changes the simulated {} by up to {:.2g} {}, {:.2g} standard "
+        "deviations of the noise: use a shorter --step",
+        found.training->trials()[i].file, numberText(step), areAngles ? "angles" : channel.name,
+        changes[i].difference * (areAngles ? radian : 1),
+        areAngles ? "deg" : unitText(channel.unit), changes[i].difference / changes[i].sd));
   }
   if (!found.change.mattersToEstimates()) return;
   summary.warn(fmt::format(

@@ -52,10 +52,9 @@ void requireInDomain(const TrialSet& training, std::size_t index, double bound,
     for (const SystemMuscle& muscle : system.muscles()) muscles.push_back(muscle.name);
     requireValid(muscles, there.mapping);
   } catch (const std::invalid_argument& rule) {
-    throw std::invalid_argument(fmt::format("{}{} = {:.6g}{}{} is outside of its domain: {}", what,
-                                            parameter.name, bound,
-                                            parameter.unit.empty() ? "" : " ", parameter.unit,
-                                            rule.what()));
+    throw std::invalid_argument(
+        fmt::format("{}{} = {:.6g}{}{} is outside of its domain: {}", what, parameter.name, bound,
+                    parameter.unit.empty() ? "" : " ", parameter.unit, rule.what()));
   }
 }
 

@@ -174,7 +174,8 @@ class Calibrator {
       return progress(shareOfFit() * done);
     };
     const auto p = static_cast<Index>(asked_.size());
-    result_.noiseFloor = measuredSd(training_);
+    for (std::size_t i = 0; i < training_.channels().size(); ++i)
+      if (training_.channels()[i].areAngles) result_.noiseFloor = measuredSd(training_, i);
     const std::vector<VectorXd> led =
         options_.from ? std::vector<VectorXd>() : ledFrom(valuesOf(asked_), estimate);
     const MatrixXd guess = best(led);
@@ -201,8 +202,8 @@ class Calibrator {
         isSettled = isSettled && std::abs(change) <= noiseSettled * before[i].effective;
       }
       // also where it is settled: the cost that profiles compare with is that of this noise
-      auto again = info::estimateIfDefined(problem(result_.noise.effective), estimate_.parameters,
-                                           estimate);
+      auto again =
+          info::estimateIfDefined(problem(result_.noise.effective), estimate_.parameters, estimate);
       if (!again) break;
       estimate_ = std::move(*again);
       result_.iterations += estimate_.iterations;
@@ -238,10 +239,9 @@ class Calibrator {
     std::vector<VectorXd> further = options_.candidates;
     if (!options_.from) {
       further = startsAtLikePaths(training_, least.parameters(), estimate_.parameters);
-      if (training_.hasOnlyAngles()) {
-        const auto led = ledStarts(training_, least.parameters(), further, noiseSd(), options);
-        further.insert(further.end(), led.begin(), led.end());
-      }
+      const double sd = channels_.areOne() ? channels_.shown().front().sd : result_.noise.effective;
+      const auto led = ledStarts(training_, channels_, least.parameters(), further, sd, options);
+      further.insert(further.end(), led.begin(), led.end());
     }
     for (const VectorXd& start : further) {
       const auto end = info::estimateIfDefined(least, start, options);
@@ -258,17 +258,15 @@ class Calibrator {
     result_.candidates = std::move(found.candidates);
   }
 
-  /// Of an angle, for searches that have no estimate of it yet [rad].
-  double noiseSd() const { return std::max(options_.noise.value_or(result_.noiseFloor), 1e-4); }
-
   /// Where further starts end that are led by held models; none where nothing is to be led.
   std::vector<VectorXd> ledFrom(const VectorXd& start, const info::EstimateOptions& estimate) {
-    const double sd = noiseSd();
+    const std::vector<ResidualNoise> shown = channels_.shown();
+    channels_.weigh(shown);
+    const double sd = shown.front().sd;
     const std::vector<info::Parameter> parameters = problem(sd).parameters();
-    std::vector<VectorXd> starts = startsOnBothSides(training_, parameters, start);
-    // what is held near its course, and measured in one unit, is led there
-    if (!training_.hasOnlyAngles()) return starts;
-    return ledStarts(training_, parameters, starts, sd, estimate);
+    const std::vector<VectorXd> starts = startsOnBothSides(training_, parameters, start);
+    std::vector<VectorXd> led = ledStarts(training_, channels_, parameters, starts, sd, estimate);
+    return led.empty() ? starts : led;
   }
 
   /// The prediction nearest to the data, of the start and of those.

@@ -21,7 +21,9 @@ StepChange changeOfHalving(const Model& model, const SystemOptions& arm, const T
   const TrialSet finer(model, arm, training.trials(), halved);
   const VectorXd theta = calibration.values();
   const MatrixXd there = finer.predictor().outputs(theta);
-  change.ofTrials = finer.largestDifferences(there, calibration.after);
+  std::vector<double> sds;
+  for (const ResidualNoise& noise : calibration.channelNoise) sds.push_back(noise.sd);
+  change.ofTrials = finer.largestDifferences(there, calibration.after, sds);
   if (!there.allFinite()) return change;
   ChannelNoise noise(training, options);
   noise.weigh(calibration.channelNoise);
@@ -56,17 +58,17 @@ StepChange changeOfHalving(const Model& model, const SystemOptions& arm, const T
 
 }  // namespace
 
-bool StepChange::mattersToTrial(std::size_t trial, double noise) const {
-  return ofTrials[trial] > 0.2 * noise;
+bool StepChange::mattersToTrial(std::size_t trial) const {
+  return ofTrials[trial].difference > 0.2 * ofTrials[trial].sd;
 }
 
 bool StepChange::mattersToEstimates() const {
   return ofEstimates > 0.25;
 }
 
-bool StepChange::matters(double noise) const {
+bool StepChange::matters() const {
   for (std::size_t i = 0; i < ofTrials.size(); ++i) {
-    if (mattersToTrial(i, noise)) return true;
+    if (mattersToTrial(i)) return true;
   }
   return mattersToEstimates();
 }
@@ -93,7 +95,7 @@ SteppedCalibration calibrateAtShorterSteps(const Model& model, const SystemOptio
     result.options.isFinal = [&](const Calibration& now) {
       if (!now.calibrated) return true;
       result.change = changeOfHalving(model, arm, *result.training, result.options, now);
-      isFinal = !mayShorten || half < shortest || !result.change.matters(now.noise.sd);
+      isFinal = !mayShorten || half < shortest || !result.change.matters();
       return isFinal && (!options.isFinal || options.isFinal(now));
     };
     Calibration found = calibrate(*result.training, result.heldOut.get(), result.options);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "calibration/nudged_starts.h"
 #include "info/estimation/residuals.h"
 
 namespace bio {
@@ -53,6 +54,21 @@ std::vector<VectorXd> ChannelNoise::residuals(const MatrixXd& predicted,
     at += n;
   }
   return series;
+}
+
+std::vector<ResidualNoise> ChannelNoise::shown() const {
+  std::vector<ResidualNoise> noises;
+  const MatrixXd nothing = MatrixXd::Zero(1, measured_.size());
+  for (std::size_t channel = 0; channel < trials_.channels().size(); ++channel) {
+    const double least = trials_.channels()[channel].areAngles
+                             ? 1e-4
+                             : std::max(1e-3 * std::sqrt(trials_.meanSquareOf(nothing, channel)),
+                                        std::numeric_limits<double>::min());
+    ResidualNoise& noise = noises.emplace_back();
+    noise.sd = std::max(given(channel).value_or(measuredSd(trials_, channel)), least);
+    noise.effective = noise.sd;
+  }
+  return noises;
 }
 
 std::vector<ResidualNoise> ChannelNoise::of(const MatrixXd& predicted, Index fitted) const {

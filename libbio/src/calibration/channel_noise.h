@@ -21,6 +21,9 @@ class ChannelNoise {
 
   bool areOne() const { return trials_.channels().size() == 1; }
 
+  /// What is given, else what the measurements alone show (measuredSd), at least 0.1 mrad of an
+  /// angle, a thousandth of the root mean square of another channel.
+  std::vector<ResidualNoise> shown() const;
   /// Of the residuals that a prediction leaves after so many parameters were fitted, which the
   /// channels share by their numbers of samples.
   std::vector<ResidualNoise> of(const Eigen::MatrixXd& predicted, Eigen::Index fitted) const;

@@ -113,8 +113,8 @@ void checkIntervals(const info::LeastSquares& least, const info::Estimate& estim
     CalibratedParameter& one = parameters[static_cast<std::size_t>(i)];
     if (std::isnan(one.sd)) continue;
     if (!estimate.converged) {
-      withoutInterval(one, fmt::format("the search did not converge ({})",
-                                       info::describe(estimate.why)));
+      withoutInterval(
+          one, fmt::format("the search did not converge ({})", info::describe(estimate.why)));
       continue;
     }
     double fewest = std::numeric_limits<double>::infinity(), most = 0;

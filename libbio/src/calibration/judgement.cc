@@ -56,9 +56,10 @@ class Judge {
         if (isOfTrial(free[k])) own(i, i) += weight;  // what is known of a start was measured
       }
       const VectorXd known = asked_.known(free);
-      told =
-          info::determinacy(own, parameters, known,
-                            training_.hasOnlyAngles() ? "the measured angles" : "the measurements");
+      const auto& channels = training_.channels();
+      const bool areAngles = channels.size() == 1 && channels.front().areAngles;
+      told = info::determinacy(own, parameters, known,
+                               areAngles ? "the measured angles" : "the measurements");
       const MatrixXd covariance = scaledInverse(all, known);
       sd = covariance.diagonal().cwiseSqrt();
       result.covariance(free, free) = covariance;

@@ -23,17 +23,22 @@ constexpr int mostSides = 6;
 
 }  // namespace
 
-std::vector<VectorXd> ledStarts(const TrialSet& trials,
+std::vector<VectorXd> ledStarts(const TrialSet& trials, const ChannelNoise& channels,
                                 const std::vector<info::Parameter>& parameters,
                                 const std::vector<VectorXd>& starts, double sd,
                                 const info::EstimateOptions& estimate) {
+  const auto& series = trials.series();
+  const bool canHold = std::any_of(series.begin(), series.end(), [](const MeasuredSeries& one) {
+    return one.what.isCoordinate() && one.times.size() >= 4;
+  });
+  if (!canHold) return {};
   std::vector<VectorXd> led = starts;
   info::EstimateOptions options = estimate;
   options.maxIterations = stageIterations;
-  const MatrixXd measured = trials.measured();
+  const MatrixXd measured = channels.weighted(trials.measured());
   for (const info::NudgeStage& stage : info::nudgeStages) {
     const std::vector<TrialPredictor> held = trials.nudged(stage.frequency);
-    const info::Predictor predictor = trials.predictor(held);
+    const info::Predictor predictor = channels.weighted(trials.predictor(held));
     const double sigma = stage.spread * sd;
     const info::OutputCovariance covariance(MatrixXd::Constant(1, 1, sigma * sigma));
     const info::LeastSquares problem(predictor, {measured, covariance, {}, {}}, parameters);
@@ -71,10 +76,10 @@ std::vector<VectorXd> startsOnBothSides(const TrialSet& trials,
   return starts;
 }
 
-double measuredSd(const TrialSet& trials) {
+double measuredSd(const TrialSet& trials, std::size_t channel) {
   info::discover::ThirdDifferences differences;
   for (const MeasuredSeries& series : trials.series()) {
-    if (trials.channels()[series.channel].areAngles) differences.add(series.times, series.values);
+    if (series.channel == channel) differences.add(series.times, series.values);
   }
   return differences.count > 0 ? differences.sd() : 0;
 }

@@ -4,16 +4,19 @@
 #include <vector>
 
 #include "bio/calibration/trial_set.h"
+#include "calibration/channel_noise.h"
 #include "info/estimation/estimate.h"
 
 namespace bio {
 
-/// Where estimates end that are led from each start by models held near the data, less and less
-/// firmly (nudge.h): starts for the estimate itself. Those that cannot be simulated are left out.
+/// Where estimates end that are led from each start by models held near the measured coordinates,
+/// less and less firmly (nudge.h): starts for the estimate itself. Those that cannot be simulated
+/// are left out; none if no coordinate can be held.
+/// @param channels    weighs all that was measured
 /// @param parameters  with bounds and priors
 /// @param starts      θ each
-/// @param deviation   of the measured angles [rad] > 0
-std::vector<Eigen::VectorXd> ledStarts(const TrialSet& trials,
+/// @param sd          of the weighted measurements > 0
+std::vector<Eigen::VectorXd> ledStarts(const TrialSet& trials, const ChannelNoise& channels,
                                        const std::vector<info::Parameter>& parameters,
                                        const std::vector<Eigen::VectorXd>& starts, double sd,
                                        const info::EstimateOptions& estimate);
@@ -24,8 +27,8 @@ std::vector<Eigen::VectorXd> startsOnBothSides(const TrialSet& trials,
                                                const std::vector<info::Parameter>& parameters,
                                                const Eigen::VectorXd& start);
 
-/// Of the noise on the measured angles [rad], from third differences; 0 where no four samples of a
+/// Of the noise on a channel, in its unit, from third differences; 0 where no four samples of a
 /// series are equally spaced.
-double measuredSd(const TrialSet& trials);
+double measuredSd(const TrialSet& trials, std::size_t channel);
 
 }  // namespace bio

@@ -381,16 +381,17 @@ double TrialSet::meanSquare(const Eigen::MatrixXd& predicted, std::size_t trial)
   });
 }
 
-std::vector<double> TrialSet::largestDifferences(const Eigen::MatrixXd& a,
-                                                 const Eigen::MatrixXd& b) const {
-  std::vector<double> largest(trials_.size(), 0.0);
+std::vector<LargestDifference> TrialSet::largestDifferences(const Eigen::MatrixXd& a,
+                                                            const Eigen::MatrixXd& b,
+                                                            const std::vector<double>& sds) const {
+  std::vector<LargestDifference> largest(trials_.size());
   Index at = 0;
   for (const MeasuredSeries& series : series_) {
     const Index n = series.values.size();
-    const double difference = (a.middleCols(at, n) - b.middleCols(at, n)).cwiseAbs().maxCoeff();
-    if (channels_[series.channel].areAngles) {
-      largest[series.trial] = std::max(largest[series.trial], difference);
-    }
+    const double difference = (a - b).middleCols(at, n).cwiseAbs().maxCoeff();
+    const LargestDifference one{series.channel, difference, sds[series.channel]};
+    LargestDifference& so = largest[series.trial];
+    if (so.sd == 0 || one.difference / one.sd > so.difference / so.sd) so = one;
     at += n;
   }
   return largest;

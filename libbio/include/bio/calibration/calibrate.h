@@ -100,7 +100,7 @@ struct Calibration {
   /// Ends of searches up to 20 nats above the estimate, to go on from with other steps or noise.
   std::vector<Eigen::VectorXd> candidates;
   int bootstrapConverged = 0;
-  std::vector<std::string> remarks = {};  ///< what was asked for beside the estimates and failed
+  std::vector<std::string> remarks = {};    ///< what was asked for beside the estimates and failed
   bool complete = true;                     ///< false if the progress callback stopped it
   ResidualNoise noise;                      ///< of the first of the set's channels
   std::vector<ResidualNoise> channelNoise;  ///< of all of them, in that order

@@ -9,16 +9,17 @@ namespace bio {
 
 /// What halving the step of the simulations would change at the estimate.
 struct StepChange {
-  std::vector<double> ofTrials;  ///< largest change of the simulated angles of each trial [rad]
+  /// Of each trial, the channel that changes most relative to its noise.
+  std::vector<LargestDifference> ofTrials;
   /// Largest change of an estimate, in its standard deviations: of θ by (I + Λ)⁻¹ΓᵀΔy/σ² to first
   /// order, parameters at a bound held. 0 where no estimate has a standard deviation.
   double ofEstimates = 0;
-  /// Whether the change of a trial's angles exceeds 0.2 standard deviations of the noise [rad].
-  bool mattersToTrial(std::size_t trial, double noise) const;
+  /// Whether the change of a trial exceeds 0.2 standard deviations of a channel's noise.
+  bool mattersToTrial(std::size_t trial) const;
   /// Whether that of an estimate exceeds 0.25 of its standard deviation.
   bool mattersToEstimates() const;
   /// Either: then the step passes for an error of the model.
-  bool matters(double noise) const;
+  bool matters() const;
 };
 
 /// A calibration with the trials that it was made of.

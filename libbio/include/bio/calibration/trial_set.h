@@ -40,6 +40,13 @@ struct MeasuredGroup {
   bool areAngles = false;
 };
 
+/// The largest difference of two predictions of a trial, relative to the noise of its channel.
+struct LargestDifference {
+  std::size_t channel = 0;
+  double difference = 0;  ///< [unit of the channel]
+  double sd = 0;          ///< of the channel's noise
+};
+
 /// Several trials of one model as one experiment: θ = (parameters of the model, common to all;
 /// then of each trial, if asked for, start and start speed of its free coordinates and the knots of
 /// its latent excitations, all with priors), outputs = all that
@@ -65,8 +72,6 @@ class TrialSet {
   /// Trial by trial.
   const std::vector<MeasuredSeries>& series() const { return series_; }
   const std::vector<MeasuredGroup>& channels() const { return channels_; }
-  /// Whether nothing but angles was measured.
-  bool hasOnlyAngles() const { return channels_.size() == 1 && channels_.front().areAngles; }
   /// The catalogue of a trial; catalogues differ only in the initial state.
   const ParameterCatalogue& catalogue(std::size_t trial = 0) const { return *catalogues_[trial]; }
   /// Indices of the common parameters in the catalogue.
@@ -123,8 +128,10 @@ class TrialSet {
   double meanSquare(const Eigen::MatrixXd& predicted, std::size_t trial) const;
   /// That of the measurements of a channel, in the square of its unit.
   double meanSquareOf(const Eigen::MatrixXd& predicted, std::size_t channel) const;
-  /// Largest difference of two predictions of angles [rad], by trial.
-  std::vector<double> largestDifferences(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) const;
+  /// By trial. @param sds  of the noise of each channel > 0
+  std::vector<LargestDifference> largestDifferences(const Eigen::MatrixXd& a,
+                                                    const Eigen::MatrixXd& b,
+                                                    const std::vector<double>& sds) const;
 
  private:
   void collectSeries(const Model& model);
