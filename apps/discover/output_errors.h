@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "discover/discover_verdict.h"
+
+namespace app {
+
+/// Samples of one output among those of a trial.
+std::vector<Eigen::Index> samplesOf(const info::discover::DiscoveryProblem& data, int trial,
+                                    std::size_t output);
+
+/// Root mean square errors of the search's own simulations of one output, in its shown unit; NaN:
+/// no sample.
+struct OutputErrors {
+  double calibrated, after;
+};
+/// Of the held-out trials, or of the others.
+OutputErrors errorsOf(const DiscoverFindings& findings, std::size_t output, bool ofHeldOut);
+
+/// What was measured: name, unit, and noise in that unit; of several outputs also the errors of the
+/// fitted trials.
+nlohmann::ordered_json outputsJson(const DiscoverFindings& findings);
+
+}  // namespace app
