@@ -128,6 +128,22 @@ class Writer {
     }
   }
 
+  /// The moments of an effect on several coordinates.
+  std::string momentsOf(const bio::discover::EffectSize& size, const std::string& motion,
+                        const std::string& moved) const {
+    std::string list;
+    for (const ShownAxis& axis : f_.wording.axes) {
+      const bio::discover::EffectMoment& moment = size.moments.at(axis.place);
+      if (!(moment.rms > 0)) continue;
+      list += fmt::format("{}{} on {} ({} % of the muscles')", list.empty() ? "" : ", ",
+                          withUnit(moment.rms, axis.forceUnit, 2), axis.name,
+                          numberText(100 * moment.share, 2));
+    }
+    return fmt::format(
+        "On {} its moment (RMS) is {}. Leaving it out changes the simulated {} by {} (RMS).",
+        motion, list.empty() ? "0" : list, f_.wording.axes.front().name, moved);
+  }
+
   /// What an effect does to the motion shown; "" where that is not known.
   std::string sizeOf(std::size_t effect) const {
     if (!f_.written || effect >= f_.written->sizes.size()) return "";
@@ -136,6 +152,7 @@ class Writer {
     const ShownAxis& axis = f_.wording.axes.front();
     const std::string moved = withUnit(axis.scale * size.motionRms, axis.unit, 2);
     if (std::isnan(size.motionRms)) return "";
+    if (f_.wording.axes.size() > 1 && !size.moments.empty()) return momentsOf(size, motion, moved);
     if (std::isnan(size.moment.rms)) {
       return candidate(f_.verdict.effects[effect].candidate).kind ==
                      info::discover::EffectKind::sensor

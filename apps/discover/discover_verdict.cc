@@ -103,6 +103,15 @@ void addSizes(const DiscoverFindings& f, ordered_json& effects) {
     effects[i]["moment_peak_Nm"] = orNull(size.moment.peak);
     effects[i]["share_of_muscle_moment"] = orNull(size.moment.share);
     effects[i]["motion_rms" + axis.end()] = orNull(axis.scale * size.motionRms);
+    if (f.wording.axes.size() == 1 || size.moments.empty()) continue;
+    for (const ShownAxis& one : f.wording.axes) {
+      const bio::discover::EffectMoment& moment = size.moments.at(one.place);
+      effects[i]["moments"].push_back({{"coordinate", one.name},
+                                       {"rms", orNull(moment.rms)},
+                                       {"peak", orNull(moment.peak)},
+                                       {"share_of_muscle_moment", orNull(moment.share)},
+                                       {"unit", one.forceUnit}});
+    }
   }
 }
 
@@ -282,12 +291,13 @@ void addUnknown(const DiscoverFindings& f, ordered_json& json) {
 
 /// Of the whole recording in one number, where there is one.
 void tellNoise(const DiscoverFindings& f, Summary& summary) {
-  if (f.wording.isInNoise()) {
+  const std::string& end = f.wording.gapEnd;
+  if (end != "_deg" && end != "_m" && end != "_N") {
     summary.set("outputs", outputsJson(f));
   } else {
     const double noise = f.wording.unit * f.verdict.outputSd.sd(0);
     summary.set("noise", noise);
-    summary.set("noise" + f.wording.gapEnd, noise);
+    summary.set("noise" + end, noise);
   }
   summary.set("noise_is", f.verdict.sdEstimated ? "from the data" : "given");
 }

@@ -27,6 +27,7 @@ struct ShownAxis {
   std::string position;   ///< "angle", or "position" of one that slides
   std::string force;      ///< the latent force: "Torque [N·m]"
   std::string forceUnit;  ///< "N·m"
+  std::size_t place = 0;  ///< in EffectSize::moments
   /// Suffix of names in verdict.json: "_deg" or "_m".
   std::string end() const { return "_" + unit; }
 };

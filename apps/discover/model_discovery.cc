@@ -69,6 +69,7 @@ DiscoverWording wordingOf(const bio::discover::MusculoskeletalProblem& data,
         at.coordinate.isRotation
             ? ShownAxis{at.coordinate.name, "deg", radian, "angle", "Torque [N·m]", "N·m"}
             : ShownAxis{at.coordinate.name, "m", 1, "position", "Force [N]", "N"});
+    wording.axes.back().place = static_cast<std::size_t>(at.index);
   }
   const ShownOutput& first = wording.outputs.front();
   const bool isOne = wording.outputs.size() == 1;
