@@ -97,15 +97,14 @@ Table excessErrorTable(const DiscoverFindings& f) {
 
 Table outputErrorTable(const DiscoverFindings& f) {
   Table table{"RMS error (measured − simulated) by output",
-              {"output", "unit", "trials", "calibrated", "with the effect", "noise"},
+              {"output", "unit", "trials", "with all fitted parameters", "noise"},
               {}};
   for (std::size_t o = 0; o < f.wording.outputs.size(); ++o) {
     const ShownOutput& output = f.wording.outputs[o];
     for (const bool ofHeldOut : {false, true}) {
       if (ofHeldOut && f.options.heldOut.empty()) continue;
-      const OutputErrors errors = errorsOf(f, o, ofHeldOut);
       table.rows.push_back({output.name, output.unit, ofHeldOut ? "held out" : "fitted",
-                            numberText(errors.calibrated, 3), numberText(errors.after, 3),
+                            numberText(errorOf(f, o, ofHeldOut), 3),
                             numberText(output.scale * f.verdict.outputSd.sd(o), 3)});
     }
   }

@@ -13,7 +13,7 @@ Figure motionFigure(const DiscoverFindings& findings, int trial, std::size_t out
 /// RMS errors of the simulations before and after, and the noise.
 Table excessErrorTable(const DiscoverFindings& findings);
 
-/// The same output by output, in their units.
+/// Errors of the fitted model output by output, in their units.
 Table outputErrorTable(const DiscoverFindings& findings);
 
 /// The tests of the residuals, each with its rule.

@@ -9,23 +9,18 @@ namespace app {
 
 using nlohmann::ordered_json;
 
-OutputErrors errorsOf(const DiscoverFindings& f, std::size_t output, bool ofHeldOut) {
+double errorOf(const DiscoverFindings& f, std::size_t output, bool ofHeldOut) {
   const auto& held = f.options.heldOut;
-  double before = 0, after = 0, count = 0;
+  const Eigen::VectorXd& values = f.verdict.values.size() > 0 ? f.verdict.values : f.verdict.base;
+  double squares = 0, count = 0;
   for (int t = 0; t < f.data.numTrials(); ++t) {
     if ((std::find(held.begin(), held.end(), t) != held.end()) != ofHeldOut) continue;
     const std::vector<Eigen::Index> samples = samplesOf(f.data, t, output);
-    const Eigen::VectorXd measured = f.data.measured(t);
-    const auto squares = [&](const Eigen::VectorXd& values) {
-      const Eigen::VectorXd simulated = f.data.outputs(t, values, {});
-      return (simulated(samples) - measured(samples)).squaredNorm();
-    };
-    before += squares(f.verdict.base);
-    after += squares(f.verdict.values.size() > 0 ? f.verdict.values : f.verdict.base);
+    const Eigen::VectorXd simulated = f.data.outputs(t, values, {});
+    squares += (simulated(samples) - f.data.measured(t)(samples)).squaredNorm();
     count += static_cast<double>(samples.size());
   }
-  const double scale = f.wording.outputs[output].scale;
-  return {scale * std::sqrt(before / count), scale * std::sqrt(after / count)};
+  return f.wording.outputs[output].scale * std::sqrt(squares / count);
 }
 
 std::vector<Eigen::Index> samplesOf(const info::discover::DiscoveryProblem& data, int trial,
@@ -46,11 +41,8 @@ ordered_json outputsJson(const DiscoverFindings& f) {
     ordered_json json{{"name", output.name},
                       {"unit", output.unit},
                       {"noise_sd", orNull(output.scale * f.verdict.outputSd.sd(o))}};
-    if (f.wording.isInNoise() && f.verdict.base.size() > 0) {
-      const OutputErrors errors = errorsOf(f, o, false);
-      json["rmse_calibrated"] = orNull(errors.calibrated);
-      json["rmse_after"] = orNull(errors.after);
-    }
+    if (f.wording.isInNoise() && f.verdict.base.size() > 0)
+      json["rmse_after"] = orNull(errorOf(f, o, false));
     list.push_back(std::move(json));
   }
   return list;

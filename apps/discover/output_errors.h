@@ -12,15 +12,11 @@ namespace app {
 std::vector<Eigen::Index> samplesOf(const info::discover::DiscoveryProblem& data, int trial,
                                     std::size_t output);
 
-/// Root mean square errors of the search's own simulations of one output, in its shown unit; NaN:
-/// no sample.
-struct OutputErrors {
-  double calibrated, after;
-};
-/// Of the held-out trials, or of the others.
-OutputErrors errorsOf(const DiscoverFindings& findings, std::size_t output, bool ofHeldOut);
+/// Root mean square error of one output at all fitted values, without a latent force, over the
+/// held-out or the other trials, in its shown unit; NaN: no sample.
+double errorOf(const DiscoverFindings& findings, std::size_t output, bool ofHeldOut);
 
-/// What was measured: name, unit, and noise in that unit; of several outputs also the errors of the
+/// What was measured: name, unit, and noise in that unit; of several outputs also the error of the
 /// fitted trials.
 nlohmann::ordered_json outputsJson(const DiscoverFindings& findings);
 
