@@ -5,6 +5,7 @@
 #include "discover/effect_list.h"
 #include "discover/model_discovery.h"
 #include "options/number_rules.h"
+#include "options/quantity.h"
 #include "options/trial_input.h"
 #include "robot_options/discover_robot.h"
 
@@ -27,7 +28,8 @@ class Discover : public Command {
     options
         .add_option(
             "TRIAL", trials_,
-            "trials with a measured angle, at least one; with --system every argument is a trial")
+            "trials with a measured motion or moment, at least one; with --system every argument "
+            "is a trial")
         ->check(CLI::ExistingFile)
         ->type_name("");
     addRobotOptions(options, robot_);
@@ -41,9 +43,17 @@ class Discover : public Command {
     options
         .add_option(
             "--noise-deg", noise_,
-            "standard deviation of the measured angle [deg]; default: estimated from the data")
+            "standard deviation of every measured angle [deg]; default: estimated from the data")
         ->check(positive())
         ->type_name("DEG");
+    options
+        .add_option("--noise", outputNoise_,
+                    "standard deviation of one measured column, e.g. elbow_flexion.moment=0.5, in "
+                    "its unit [deg for an angle]; may be repeated; with --system the standard "
+                    "deviation alone, of each column in turn [deg or N]")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->type_name("NAME=VALUE");
     options.add_option("--without", without_, "effects to exclude from the catalogue, by id")
         ->allow_extra_args(false)
         ->delimiter(',')
@@ -58,6 +68,7 @@ class Discover : public Command {
     addInputScatter(options, inputScatter_);
     const std::size_t common = options.get_options().size();
     addSimulationOptions(options, simulation_);
+    addPrescribing(options, simulation_);
     const auto all = options.get_options();
     for (std::size_t i = common; i < all.size(); ++i) {
       const std::string name = all[i]->get_name();
@@ -81,14 +92,13 @@ class Discover : public Command {
       robot_.ignoreExtra = simulation_.ignoreExtra;
       robot_.step = simulation_.step;
       mustSuitRobots();
+      robot_.noise = noiseOfRobots();
       return inRobot_(robot_, context);
     }
     if (trials_.empty()) throw std::invalid_argument("TRIAL is required (see --help)");
     if (!robot_.with.empty()) throw std::invalid_argument("--with requires --system");
-    if (!robot_.noise.empty())
-      throw std::invalid_argument("--noise requires --system; without it use --noise-deg");
-    ModelDiscoveryRequest request{model_, trials_,     heldOut_,      without_,
-                                  noise_, maxEffects_, inputScatter_, simulation_};
+    ModelDiscoveryRequest request{model_,       trials_,     heldOut_,      without_,   noise_,
+                                  outputNoise_, maxEffects_, inputScatter_, simulation_};
     return discoverInModel(request, context).status;
   }
 
@@ -104,9 +114,23 @@ class Discover : public Command {
     }
   }
 
+  std::vector<double> noiseOfRobots() const {
+    std::vector<double> noise;
+    for (const std::string& text : outputNoise_) {
+      try {
+        noise.push_back(parseNumber(text));
+      } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument(fmt::format("--noise: {}", error.what()));
+      }
+      if (!(noise.back() > 0))
+        throw std::invalid_argument(fmt::format("--noise: {} must be > 0", text));
+    }
+    return noise;
+  }
+
   RobotDiscovery inRobot_;
   std::string model_;
-  std::vector<std::string> trials_, heldOut_, without_;
+  std::vector<std::string> trials_, heldOut_, without_, outputNoise_;
   std::optional<double> noise_;
   int maxEffects_ = 3;
   bool listEffects_ = false;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "discover/excess_error_text.h"
+#include "discover/output_errors.h"
 #include "info/discovery/likelihood/hypothesis.h"
 #include "output/text.h"
 
@@ -17,21 +18,10 @@ using info::discover::Adequacy;
 using info::discover::Cause;
 using info::discover::ExcessError;
 
-/// Samples of one output among those of a trial.
-std::vector<Index> samplesOf(const DiscoverFindings& f, int t, std::size_t output) {
-  const auto& which = f.data.outputOfSample(t);
-  std::vector<Index> samples;
-  for (std::size_t k = 0; k < f.data.times(t).size(); ++k) {
-    if (which.empty() || static_cast<std::size_t>(which[k]) == output)
-      samples.push_back(static_cast<Index>(k));
-  }
-  return samples;
-}
-
 /// In the unit in which the output is shown.
-std::vector<double> shownValues(const DiscoverFindings& f, const VectorXd& values,
+std::vector<double> shownValues(const ShownOutput& output, const VectorXd& values,
                                 const std::vector<Index>& samples) {
-  const VectorXd result = f.wording.unit * values(samples);
+  const VectorXd result = output.scale * values(samples);
   return {result.begin(), result.end()};
 }
 
@@ -40,33 +30,39 @@ bool isHeldOut(const DiscoverFindings& f, int t) {
   return std::find(held.begin(), held.end(), t) != held.end();
 }
 
+/// "elbow_flexion [deg]".
+std::string axisLabel(const ShownOutput& output) {
+  return output.unit.empty() ? output.name : fmt::format("{} [{}]", output.name, output.unit);
+}
+
 }  // namespace
 
 Figure motionFigure(const DiscoverFindings& f, int t, std::size_t output) {
   const auto& verdict = f.verdict;
-  const std::vector<Index> samples = samplesOf(f, t, output);
+  const std::vector<Index> samples = samplesOf(f.data, t, output);
   std::vector<double> times;
   for (const Index k : samples) times.push_back(f.data.times(t)[static_cast<std::size_t>(k)]);
-  const ShownOutput& shownOutput = f.wording.outputs[output];
+  const ShownOutput& shown = f.wording.outputs[output];
   Figure figure{.title = f.data.trialName(t) + (isHeldOut(f, t) ? " (held out)" : ""),
                 .xLabel = "Time [s]",
-                .yLabel = fmt::format("{} [{}]", shownOutput.name, shownOutput.unit)};
+                .yLabel = axisLabel(shown)};
+  if (samples.empty()) return figure;
   figure.series.push_back({.name = "measured",
                            .x = times,
-                           .y = shownValues(f, f.data.measured(t), samples),
+                           .y = shownValues(shown, f.data.measured(t), samples),
                            .style = SeriesStyle::points});
   if (verdict.base.size() > 0) {
     figure.series.push_back({.name = "calibrated, no effect added",
                              .x = times,
-                             .y = shownValues(f, f.data.outputs(t, verdict.base, {}), samples),
+                             .y = shownValues(shown, f.data.outputs(t, verdict.base, {}), samples),
                              .style = SeriesStyle::dashed});
   }
   if (!verdict.effects.empty()) {
     const VectorXd after = f.data.outputs(t, verdict.values, {});
-    Series series{.name = "with the effect", .x = times, .y = shownValues(f, after, samples)};
+    Series series{.name = "with the effect", .x = times, .y = shownValues(shown, after, samples)};
     const VectorXd wide = 1.96 * info::discover::predictedSd(f.data, verdict, t);
-    series.bandLow = shownValues(f, after - wide, samples);
-    series.bandHigh = shownValues(f, after + wide, samples);
+    series.bandLow = shownValues(shown, after - wide, samples);
+    series.bandHigh = shownValues(shown, after + wide, samples);
     figure.series.push_back(std::move(series));
     figure.caption =
         "Simulations from the initial state to the end, not corrected by the measurements. Band: "
@@ -77,9 +73,11 @@ Figure motionFigure(const DiscoverFindings& f, int t, std::size_t output) {
 }
 
 Table excessErrorTable(const DiscoverFindings& f) {
-  const std::string unit = f.wording.outputs.front().unit;
+  const std::string& unit = f.wording.gapUnit;
   const double scale = f.wording.unit;
-  Table table{"RMS error (measured − simulated)",
+  Table table{f.wording.isInNoise() ? "RMS error (measured − simulated) in standard deviations of "
+                                      "the noise, over all outputs"
+                                    : "RMS error (measured − simulated)",
               {"trials", "original model [" + unit + "]", "calibrated [" + unit + "]",
                "with the effect [" + unit + "]", "expected [" + unit + "]", "noise [" + unit + "]",
                "relative to the range [%]", "excess error explained"},
@@ -94,6 +92,22 @@ Table excessErrorTable(const DiscoverFindings& f) {
   };
   row("fitted", f.verdict.gap);
   if (f.verdict.heldOut) row("held out", *f.verdict.heldOut);
+  return table;
+}
+
+Table outputErrorTable(const DiscoverFindings& f) {
+  Table table{"RMS error (measured − simulated) by output",
+              {"output", "unit", "trials", "with all fitted parameters", "noise"},
+              {}};
+  for (std::size_t o = 0; o < f.wording.outputs.size(); ++o) {
+    const ShownOutput& output = f.wording.outputs[o];
+    for (const bool ofHeldOut : {false, true}) {
+      if (ofHeldOut && f.options.heldOut.empty()) continue;
+      table.rows.push_back({output.name, output.unit, ofHeldOut ? "held out" : "fitted",
+                            numberText(errorOf(f, o, ofHeldOut), 3),
+                            numberText(output.scale * f.verdict.outputSd.sd(o), 3)});
+    }
+  }
   return table;
 }
 
@@ -121,7 +135,8 @@ Table adequacyTable(const DiscoverFindings& f) {
   remainder(Cause::inputs, "all past " + f.wording.commands);
   remainder(Cause::acceleration, "the acceleration");
   remainder(Cause::sensor, "the sensor's reading");
-  remainder(Cause::moments, fmt::format("each {}'s moment and the angle", f.wording.input));
+  remainder(Cause::moments, fmt::format("each {}'s moment and the {}", f.wording.input,
+                                         f.wording.axes.front().position));
   table.rows.push_back(
       {"latent force still needed, " + f.wording.ofForce, numberText(f.verdict.latentSizeBefore, 2),
        numberText(f.verdict.latentSizeAfter, 2), fmt::format("≤ {}", f.options.latentTolerance)});

@@ -39,14 +39,16 @@ class Writer {
     const ExcessError& gap = excessOfHeldOut ? *f_.verdict.heldOut : f_.verdict.gap;
     if (gap.closedFromCalibrated && !f_.verdict.effects.empty()) {
       report_.verdict +=
-          " " + excessErrorWords(gap, f_.wording.unit, symbolOf(f_.wording.outputs.front().unit),
-                                 excessOfHeldOut);
+          " " + excessErrorWords(gap, f_.wording.unit, symbolOf(f_.wording.gapUnit), excessOfHeldOut);
     }
     const int first = f_.options.heldOut.empty() ? 0 : f_.options.heldOut.front();
+    bool hasMain = false;
     for (int t = 0; t < f_.data.numTrials(); ++t) {
       for (std::size_t output = 0; output < f_.wording.outputs.size(); ++output) {
         Figure figure = motionFigure(f_, t, output);
-        if (t == first && output == 0) {
+        if (figure.series.empty()) continue;
+        if (t == first && !hasMain) {
+          hasMain = true;
           report_.mainFigure = std::move(figure);
         } else {
           others_.push_back(std::move(figure));
@@ -60,6 +62,7 @@ class Writer {
     if (f_.verdict.base.size() > 0) {
       section("How well it fits");
       if (!std::isnan(f_.verdict.gap.floor)) report_.details.emplace_back(excessErrorTable(f_));
+      if (f_.wording.isInNoise()) report_.details.emplace_back(outputErrorTable(f_));
       report_.details.emplace_back(adequacyTable(f_));
       for (ReportPart& part : withoutName(f_)) report_.details.push_back(std::move(part));
       parameters();
@@ -70,7 +73,7 @@ class Writer {
     if (!f_.predictedExperiments.empty()) report_.details.emplace_back(predictedExperimentTable());
     reproduce();
     if (!others_.empty()) {
-      section("Other trials");
+      section(f_.wording.isInNoise() ? "Other outputs and trials" : "Other trials");
       for (Figure& figure : others_) report_.details.emplace_back(std::move(figure));
     }
     return std::move(report_);
@@ -125,14 +128,31 @@ class Writer {
     }
   }
 
+  /// The moments of an effect on several coordinates.
+  std::string momentsOf(const bio::discover::EffectSize& size, const std::string& motion,
+                        const std::string& moved) const {
+    std::string list;
+    for (const ShownAxis& axis : f_.wording.axes) {
+      const bio::discover::EffectMoment& moment = size.moments.at(axis.place);
+      if (!(moment.rms > 0)) continue;
+      list += fmt::format("{}{} on {} ({} % of the muscles')", list.empty() ? "" : ", ",
+                          withUnit(moment.rms, axis.forceUnit, 2), axis.name,
+                          numberText(100 * moment.share, 2));
+    }
+    return fmt::format(
+        "On {} its moment (RMS) is {}. Leaving it out changes the simulated {} by {} (RMS).",
+        motion, list.empty() ? "0" : list, f_.wording.axes.front().name, moved);
+  }
+
   /// What an effect does to the motion shown; "" where that is not known.
   std::string sizeOf(std::size_t effect) const {
     if (!f_.written || effect >= f_.written->sizes.size()) return "";
     const bio::discover::EffectSize& size = f_.written->sizes[effect];
     const std::string motion = f_.data.trialName(f_.written->shown);
-    const std::string& unit = f_.wording.outputs.front().unit;
-    const std::string moved = withUnit(f_.wording.unit * size.motionRms, unit, 2);
+    const ShownAxis& axis = f_.wording.axes.front();
+    const std::string moved = withUnit(axis.scale * size.motionRms, axis.unit, 2);
     if (std::isnan(size.motionRms)) return "";
+    if (f_.wording.axes.size() > 1 && !size.moments.empty()) return momentsOf(size, motion, moved);
     if (std::isnan(size.moment.rms)) {
       return candidate(f_.verdict.effects[effect].candidate).kind ==
                      info::discover::EffectKind::sensor
@@ -142,17 +162,16 @@ class Writer {
     return fmt::format(
         "On {0} its {1} is {2} (RMS; largest {3}), which is {4} % of the muscles' net {1}. Leaving "
         "it out changes the simulated motion by {5} (RMS).",
-        motion, f_.wording.forceUnit == "N·m" && unit == "deg" ? "moment" : "force",
-        withUnit(size.moment.rms, f_.wording.forceUnit, 2),
-        withUnit(size.moment.peak, f_.wording.forceUnit, 2), numberText(100 * size.moment.share, 2),
-        moved);
+        motion, axis.forceUnit == "N·m" ? "moment" : "force",
+        withUnit(size.moment.rms, axis.forceUnit, 2), withUnit(size.moment.peak, axis.forceUnit, 2),
+        numberText(100 * size.moment.share, 2), moved);
   }
 
   /// Each trial's figures, and the commands that make them.
   void reproduce() {
     if (!f_.written || f_.written->trials.empty()) return;
     section("Reproduce");
-    const std::string& unit = f_.wording.outputs.front().unit;
+    const std::string& unit = f_.wording.gapUnit;
     const auto figure = [&](double value) { return numberText(f_.wording.unit * value); };
     Table errors{"RMS error (measured − simulated), as replay reports it",
                  {"trial", "role", "original model [" + unit + "]",
@@ -182,7 +201,7 @@ class Writer {
                 "muscles received and the recording without errors of the sensor."
               : "The excitations or the recording were corrected: the driven trials (driven_*.sto) "
                 "hold the excitations that the muscles received and the corrected recording, which "
-                "shows the joint's own angle.");
+                "shows the motion itself.");
     }
   }
 

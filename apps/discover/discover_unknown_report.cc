@@ -29,7 +29,7 @@ Paragraph raced(const DiscoverFindings& f, const info::discover::RacedFormula& f
   const info::discover::ExcessError& gap = formula.heldOut ? *formula.heldOut : formula.gap;
   text += ". ";
   if (gap.closedFromCalibrated)
-    text += excessErrorWords(gap, f.wording.unit, symbolOf(f.wording.outputs.front().unit),
+    text += excessErrorWords(gap, f.wording.unit, symbolOf(f.wording.gapUnit),
                              formula.heldOut.has_value()) +
             " ";
   return {text + (formula.wins ? "With it the residual is adequate; with_effect.osim contains it."
@@ -47,21 +47,21 @@ std::string besides(const DiscoverFindings& f, const NonparametricForce& force) 
 
 Figure curve(const DiscoverFindings& f, const NonparametricForce& force) {
   const bool position = force.follows == NonparametricForce::Follows::position;
-  const ShownOutput& output = f.wording.outputs.front();
+  const ShownAxis& axis = f.wording.axes[force.axis];
   const std::string names = besides(f, force);
   Figure figure{
-      .title = "Free-form force",
-      .xLabel = position ? fmt::format("{} [{}]", output.name, output.unit)
-                         : fmt::format("Speed [{}/s]", output.unit),
-      .yLabel = f.wording.force,
+      .title = "Free-form force" + f.wording.named(force.axis),
+      .xLabel = position ? fmt::format("{} [{}]", axis.name, axis.unit)
+                         : fmt::format("Speed [{}/s]", axis.unit),
+      .yLabel = axis.force,
       .caption = fmt::format(
           "Fitted together with all parameters, ±2 standard deviations: any smooth function of the "
           "{} alone{}. Its form suggests what to look for.",
-          info::discover::name(force.follows), names.empty() ? "" : ", in addition to " + names)};
+          followedBy(f, force), names.empty() ? "" : ", in addition to " + names)};
   Series series{.name = "force"};
   for (std::size_t i = 0; i < force.at.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    series.x.push_back(f.wording.unit * force.at[i]);
+    series.x.push_back(axis.scale * force.at[i]);
     series.y.push_back(force.force[k]);
     series.bandLow.push_back(force.force[k] - 2 * force.sd[k]);
     series.bandHigh.push_back(force.force[k] + 2 * force.sd[k]);
@@ -78,16 +78,19 @@ std::vector<ReportPart> withoutName(const DiscoverFindings& f) {
   std::vector<ReportPart> parts;
   parts.emplace_back(Section{"Effect outside the catalogue"});
   parts.emplace_back(Paragraph{fmt::format(
-      "The missing force has an RMS of {} {}; {} % of its power lies within 0.5 Hz of {} Hz.",
-      numberText(u.forceSize, 3), f.wording.forceUnit, numberText(100 * u.peakShare, 2),
-      numberText(u.peakFrequency, 2))});
+      "The missing force{} has an RMS of {} {}; {} % of its power lies within 0.5 Hz of {} Hz.",
+      f.wording.axes.size() > 1 ? " on " + f.wording.axes[u.axis].name : "",
+      numberText(u.forceSize, 3), f.wording.axes[u.axis].forceUnit,
+      numberText(100 * u.peakShare, 2), numberText(u.peakFrequency, 2))});
   if (!u.formula.empty()) parts.emplace_back(formulaOf(u));
   if (f.verdict.formula) parts.emplace_back(raced(f, *f.verdict.formula));
   if (f.verdict.nonparametric && f.verdict.nonparametric->wins) {
     const std::string better = fmt::format(
-        "A free-form force of the {} alone explains the data better than {} (log Bayes factor {} "
+        "A free-form force of the {}{} alone explains the data better than {} (log Bayes factor {} "
         "nats)",
-        info::discover::name(f.verdict.nonparametric->follows),
+        followedBy(f, *f.verdict.nonparametric),
+        f.wording.axes.size() > 1 ? " of " + f.wording.axes[f.verdict.nonparametric->axis].name
+                                  : "",
         f.verdict.effects.empty() ? "the model without it" : "the effects above",
         numberText(f.verdict.nonparametric->ahead, 3));
     parts.emplace_back(Paragraph{
@@ -101,8 +104,8 @@ std::string namesAgainstForces(const DiscoverFindings& f) {
   const auto& force = f.verdict.nonparametric;
   if (!force || force->wins || f.verdict.effects.empty()) return "";
   return fmt::format(
-      "A free-form force (any smooth function of the position or of the speed alone) is {} nats "
-      "{}.",
+      "A free-form force (any smooth function of the {} or of the speed alone) is {} nats {}.",
+      f.wording.axes[force->axis].position,
       numberText(std::abs(force->ahead), 3),
       force->ahead > 0 ? "better than the named effects, too little to doubt them"
                        : "worse than the named effects");

@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "calibrate/fitted_table.h"
+#include "discover/output_errors.h"
 #include "discover/written_discovery.h"
 #include "info/discovery/judgement/separation.h"
 #include "info/discovery/likelihood/hypothesis.h"
@@ -43,8 +47,12 @@ ordered_json excessErrorJson(const DiscoverFindings& f, const ExcessError& gap) 
   return json;
 }
 
+/// Names the axis that something belongs to, where there are several.
+void addAxis(const DiscoverFindings& f, std::size_t axis, ordered_json& json) {
+  if (f.wording.axes.size() > 1) json["axis"] = f.wording.axes[axis].name;
+}
+
 ordered_json localisationJson(const DiscoverFindings& f) {
-  const double unit = f.wording.unit;
   ordered_json json{{"time_spans", ordered_json::array()},
                     {"state_regions", ordered_json::array()},
                     {f.wording.inputs, ordered_json::array()}};
@@ -55,16 +63,20 @@ ordered_json localisationJson(const DiscoverFindings& f) {
                                   {"from_s", one.from},
                                   {"to_s", one.to},
                                   {"score", orNull(one.z)}});
+    addAxis(f, one.axis, json["time_spans"].back());
   }
   for (const Score& one : map.cells) {
     if (!one.significant || !f.wording.hasMap) continue;
+    const double unit = f.wording.axes[one.axis].scale;
     json["state_regions"].push_back({{"from", {unit * one.lowerQ, unit * one.lowerQDot}},
                                      {"to", {unit * one.upperQ, unit * one.upperQDot}},
                                      {"score", orNull(one.z)}});
+    addAxis(f, one.axis, json["state_regions"].back());
   }
   for (const Score& one : map.inputs) {
     json[f.wording.inputs].push_back(
         {{"name", one.input}, {"score", orNull(one.z)}, {"significant", one.significant}});
+    addAxis(f, one.axis, json[f.wording.inputs].back());
   }
   return json;
 }
@@ -83,15 +95,36 @@ ordered_json adequacyJson(const info::discover::Adequacy& a, double latentSize) 
 /// What the effects do to the motion shown, into their objects.
 void addSizes(const DiscoverFindings& f, ordered_json& effects) {
   if (!f.written) return;
-  const double unit = f.wording.unit;
+  const ShownAxis& axis = f.wording.axes.front();
   for (std::size_t i = 0; i < f.written->sizes.size(); ++i) {
     const bio::discover::EffectSize& size = f.written->sizes[i];
     effects[i]["along"] = f.data.trialName(f.written->shown);
     effects[i]["moment_rms_Nm"] = orNull(size.moment.rms);
     effects[i]["moment_peak_Nm"] = orNull(size.moment.peak);
     effects[i]["share_of_muscle_moment"] = orNull(size.moment.share);
-    effects[i]["motion_rms" + f.wording.gapEnd] = orNull(unit * size.motionRms);
+    effects[i]["motion_rms" + axis.end()] = orNull(axis.scale * size.motionRms);
+    if (f.wording.axes.size() == 1 || size.moments.empty()) continue;
+    for (const ShownAxis& one : f.wording.axes) {
+      const bio::discover::EffectMoment& moment = size.moments.at(one.place);
+      effects[i]["moments"].push_back({{"coordinate", one.name},
+                                       {"rms", orNull(moment.rms)},
+                                       {"peak", orNull(moment.peak)},
+                                       {"share_of_muscle_moment", orNull(moment.share)},
+                                       {"unit", one.forceUnit}});
+    }
   }
+}
+
+/// The initial state of a trial's coordinate.
+ordered_json startJson(const DiscoverFindings& f, const bio::TrialStart& start) {
+  const auto& axes = f.wording.axes;
+  const auto at = std::find_if(axes.begin(), axes.end(), [&](const ShownAxis& axis) {
+    return axis.name == start.coordinate;
+  });
+  return {{"coordinate", start.coordinate},
+          {"value", orNull(start.value)},
+          {"speed", orNull(start.speed)},
+          {"unit", at == axes.end() || at->unit == "deg" ? "rad" : "m"}};
 }
 
 ordered_json trialsJson(const DiscoverFindings& f) {
@@ -106,10 +139,12 @@ ordered_json trialsJson(const DiscoverFindings& f) {
     json["rmse_nominal" + end] = orNull(unit * one.nominal);
     json["rmse_after" + end] = orNull(unit * one.after);
     json["noise_floor" + end] = orNull(unit * one.floor);
-    json["start"] = {{"coordinate", one.start.coordinate},
-                     {"value", orNull(one.start.value)},
-                     {"speed", orNull(one.start.speed)},
-                     {"unit", f.wording.gapEnd == "_deg" ? "rad" : "m"}};
+    if (one.starts.size() == 1) {
+      json["start"] = startJson(f, one.starts.front());
+    } else {
+      json["starts"] = ordered_json::array();
+      for (const bio::TrialStart& start : one.starts) json["starts"].push_back(startJson(f, start));
+    }
     list.push_back(std::move(json));
   }
   return list;
@@ -165,12 +200,15 @@ ordered_json replicationJson(const DiscoverFindings& f) {
 
 ordered_json positionBreakJson(const DiscoverFindings& f) {
   const info::discover::PositionBreak& found = *f.written->positionBreak;
-  return {{"position" + f.wording.gapEnd, orNull(f.wording.unit * found.position)},
-          {"side", found.above ? "above" : "below"},
-          {"force_before", orNull(found.before)},
-          {"force_beyond", orNull(found.beyond)},
-          {"z", orNull(found.z)},
-          {"trials_are_cut", f.written->trialsAreCut}};
+  const ShownAxis& axis = f.wording.axes[found.axis];
+  ordered_json json{{"position" + axis.end(), orNull(axis.scale * found.position)},
+                    {"side", found.above ? "above" : "below"},
+                    {"force_before", orNull(found.before)},
+                    {"force_beyond", orNull(found.beyond)},
+                    {"z", orNull(found.z)},
+                    {"trials_are_cut", f.written->trialsAreCut}};
+  addAxis(f, found.axis, json);
+  return json;
 }
 
 void addPlannedExperiments(const DiscoverFindings& f, ordered_json& json) {
@@ -201,11 +239,13 @@ ordered_json nonparametricForceJson(const DiscoverFindings& f) {
   const info::discover::NonparametricForce& force = *f.verdict.nonparametric;
   ordered_json besides = ordered_json::array();
   for (const std::size_t c : force.besides) besides.push_back(f.data.candidates()[c].id);
-  return {{"follows", info::discover::name(force.follows)},
-          {"beside", besides},
-          {"log_bayes_factor", orNull(force.logBayesFactor)},
-          {"nats_ahead_of_names", orNull(force.ahead)},
-          {"wins", force.wins}};
+  ordered_json json{{"follows", followedBy(f, force)},
+                    {"beside", besides},
+                    {"log_bayes_factor", orNull(force.logBayesFactor)},
+                    {"nats_ahead_of_names", orNull(force.ahead)},
+                    {"wins", force.wins}};
+  addAxis(f, force.axis, json);
+  return json;
 }
 
 /// The unknown effect, and the formula that was compared for it.
@@ -220,12 +260,14 @@ void addUnknown(const DiscoverFindings& f, ordered_json& json) {
                        {"same_in_every_trial", orNull(verdict.unknown->tie.share)},
                        {"step_at_s", orNull(verdict.unknown->tie.stepAt)},
                        {"step_explains", orNull(verdict.unknown->tie.stepShare)}};
-    if (f.wording.forceUnit == "N·m") {
+    const std::string& forceUnit = f.wording.axes[verdict.unknown->axis].forceUnit;
+    if (forceUnit == "N·m") {
       json["unknown"]["rms_Nm"] = orNull(verdict.unknown->forceSize);
     } else {
       json["unknown"]["rms"] = orNull(verdict.unknown->forceSize);
-      json["unknown"]["rms_unit"] = f.wording.forceUnit;
+      json["unknown"]["rms_unit"] = forceUnit;
     }
+    addAxis(f, verdict.unknown->axis, json["unknown"]);
   }
   if (verdict.formula) {
     const info::discover::RacedFormula& raced = *verdict.formula;
@@ -243,17 +285,34 @@ void addUnknown(const DiscoverFindings& f, ordered_json& json) {
       race["terms"].push_back({{"expression", raced.terms[k].expression},
                                {"value", orNull(raced.values[k])},
                                {"sd", orNull(raced.sds[k])}});
+    addAxis(f, raced.axis, race);
   }
+}
+
+/// Of the whole recording in one number, where there is one.
+void tellNoise(const DiscoverFindings& f, Summary& summary) {
+  const std::string& end = f.wording.gapEnd;
+  if (end != "_deg" && end != "_m" && end != "_N") {
+    summary.set("outputs", outputsJson(f));
+  } else {
+    const double noise = f.wording.unit * f.verdict.outputSd.sd(0);
+    summary.set("noise", noise);
+    summary.set("noise" + end, noise);
+  }
+  summary.set("noise_is", f.verdict.sdEstimated ? "from the data" : "given");
 }
 
 }  // namespace
 
+std::string followedBy(const DiscoverFindings& f, const info::discover::NonparametricForce& force) {
+  const bool isPosition = force.follows == info::discover::NonparametricForce::Follows::position;
+  return isPosition ? f.wording.axes[force.axis].position : info::discover::name(force.follows);
+}
+
 void tellFindings(const DiscoverFindings& f, Summary& summary) {
   const auto& verdict = f.verdict;
   summary.set("verdict", verdictWord(verdict));
-  summary.set("noise", f.wording.unit * verdict.outputSd.sd(0));
-  summary.set("noise" + f.wording.gapEnd, f.wording.unit * verdict.outputSd.sd(0));
-  summary.set("noise_is", verdict.sdEstimated ? "from the data" : "given");
+  tellNoise(f, summary);
   for (const auto& effect : verdict.effects) {
     const std::string id = f.data.candidates()[effect.candidate].id;
     summary.set("effect." + id, parametersJson(f, effect.estimates));
@@ -311,6 +370,7 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   json["next_experiment"] = f.nextExperiment;
   addPlannedExperiments(f, json);
   json["noise_sd"] = orNull(verdict.outputSd.sd(0));
+  if (f.written) json["outputs"] = outputsJson(f);
   json["samples"] = {{"recorded", verdict.noise.samples},
                      {"outliers", verdict.noise.outliers},
                      {"every", verdict.noise.spacing},

@@ -12,25 +12,46 @@
 
 namespace app {
 
-/// A measured output and its unit in the report.
+/// A measured output as the report shows it.
 struct ShownOutput {
   std::string name;  ///< e.g. "elbow_flexion"
   std::string unit;  ///< e.g. "deg"
+  double scale = 1;  ///< factor from internal values to shown ones
+};
+
+/// A coordinate on which a latent force may act, as the report shows it.
+struct ShownAxis {
+  std::string name;       ///< e.g. "elbow_flexion"
+  std::string unit;       ///< e.g. "deg"
+  double scale = 1;       ///< factor from internal values to shown ones
+  std::string position;   ///< "angle", or "position" of one that slides
+  std::string force;      ///< the latent force: "Torque [N·m]"
+  std::string forceUnit;  ///< "N·m"
+  std::size_t place = 0;  ///< in EffectSize::moments
+  /// Suffix of names in verdict.json: "_deg" or "_m".
+  std::string end() const { return "_" + unit; }
 };
 
 /// Words and units of the report, for one kind of system.
 struct DiscoverWording {
   std::vector<ShownOutput> outputs;  ///< by DiscoveryProblem::outputOfSample
-  double unit = 1;                   ///< factor from internal values to shown ones
-  std::string gapEnd;                ///< suffix of names in verdict.json: "_deg", "_m" or "_N"
-  std::string force;                 ///< the latent force: "Torque [N·m]"
-  std::string forceUnit;             ///< "N·m"
-  std::string ofForce;               ///< unit of its size: "fraction of the muscles' moments"
-  std::string push;                  ///< disturbance that a score tests: "a push"
-  std::string inputs, input;         ///< "muscles", "muscle"
-  std::string commands;              ///< the inputs: "excitations"
-  bool hasMap = true;                ///< false: no score map over the first output and its rate
+  std::vector<ShownAxis> axes;       ///< by DiscoveryProblem::axes
+  double unit = 1;                   ///< factor from internal RMS errors to shown ones
+  std::string gapUnit;  ///< their unit; "sd" if there are several outputs, whose errors are in
+                        ///< standard deviations of their noise
+  std::string gapEnd;   ///< suffix of names in verdict.json: "_deg", "_m", "_N", …, or "_sd"
+  std::string ofForce;  ///< unit of the latent force's size: "fraction of the muscles' moments"
+  std::string push;     ///< disturbance that a score tests: "a push"
+  std::string inputs, input;                   ///< "muscles", "muscle"
+  std::string commands;                        ///< the inputs: "excitations"
+  bool hasMap = true;                          ///< false: no score map over an axis and its rate
   std::map<std::string, std::string> present;  ///< effects that the model already has, and where
+
+  bool isInNoise() const { return gapEnd == "_sd"; }
+  /// ", NAME" where there are several axes.
+  std::string named(std::size_t axis) const {
+    return axes.size() > 1 ? ", " + axes[axis].name : "";
+  }
 };
 
 struct WrittenDiscovery;
@@ -51,6 +72,10 @@ struct DiscoverFindings {
   const WrittenDiscovery* written = nullptr;  ///< for musculoskeletal models
   double step = 0;                            ///< time step of the final search [s]
 };
+
+/// What a non-parametric force follows: "angle", or "position" of what slides, or "speed".
+std::string followedBy(const DiscoverFindings& findings,
+                       const info::discover::NonparametricForce& force);
 
 /// Sets the values of summary.json.
 void tellFindings(const DiscoverFindings& findings, Summary& summary);

@@ -13,15 +13,10 @@ namespace {
 using Eigen::VectorXd;
 using info::discover::Score;
 
-/// ", NAME" where there are several axes.
-std::string named(const DiscoverFindings& f, std::size_t axis) {
-  return f.data.axes().size() > 1 ? ", " + f.data.axes()[axis].name : "";
-}
-
-Figure scoreOverTime(const DiscoverFindings& f) {
+Figure scoreOverTime(const DiscoverFindings& f, std::size_t axis) {
   const auto& map = f.verdict.localisation;
   Figure figure{
-      .title = "Score over time",
+      .title = "Score over time" + f.wording.named(axis),
       .xLabel = "Time [s]",
       .yLabel = "Score [standard deviations]",
       .caption = fmt::format("How strongly the data ask for {} of 0.25 s at each time, beyond what "
@@ -30,19 +25,17 @@ Figure scoreOverTime(const DiscoverFindings& f) {
                              f.wording.push)};
   Series marks{.name = "significant", .style = SeriesStyle::points};
   for (const int trial : map.trials) {
-    for (std::size_t axis = 0; axis < f.data.axes().size(); ++axis) {
-      Series series{.name = f.data.trialName(trial) + named(f, axis)};
-      for (const Score& one : map.times) {
-        if (one.trial != trial || one.axis != axis) continue;
-        series.x.push_back((one.from + one.to) / 2);
-        series.y.push_back(one.z);
-        if (one.significant) {
-          marks.x.push_back(series.x.back());
-          marks.y.push_back(one.z);
-        }
+    Series series{.name = f.data.trialName(trial)};
+    for (const Score& one : map.times) {
+      if (one.trial != trial || one.axis != axis) continue;
+      series.x.push_back((one.from + one.to) / 2);
+      series.y.push_back(one.z);
+      if (one.significant) {
+        marks.x.push_back(series.x.back());
+        marks.y.push_back(one.z);
       }
-      figure.series.push_back(std::move(series));
     }
+    figure.series.push_back(std::move(series));
   }
   if (!marks.x.empty()) figure.series.push_back(std::move(marks));
   return figure;
@@ -61,8 +54,8 @@ std::string scoreMap(const DiscoverFindings& f, std::size_t axis) {
     lowV = std::min(lowV, one.lowerQDot);
     highV = std::max(highV, one.upperQDot);
   }
-  const ShownOutput& output = f.wording.outputs.front();
-  const double scale = f.wording.unit;
+  const ShownAxis& shown = f.wording.axes[axis];
+  const double scale = shown.scale;
   constexpr double left = 110, right = 900, top = 10, bottom = 300;
   const auto x = [&](double q) { return left + (q - lowQ) / (highQ - lowQ) * (right - left); };
   const auto y = [&](double v) { return bottom - (v - lowV) / (highV - lowV) * (bottom - top); };
@@ -91,33 +84,31 @@ std::string scoreMap(const DiscoverFindings& f, std::size_t axis) {
       "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" font-weight=\"bold\">{} [{}]</text>"
       "<text transform=\"translate(22 {}) rotate(-90)\" text-anchor=\"middle\" "
       "font-weight=\"bold\">Speed [{}/s]</text>\n",
-      (left + right) / 2, bottom + 46, htmlText(output.name), output.unit, (top + bottom) / 2,
-      output.unit);
+      (left + right) / 2, bottom + 46, htmlText(shown.name), shown.unit, (top + bottom) / 2,
+      shown.unit);
   return svg + "</svg>\n";
 }
 
-Figure missingForce(const DiscoverFindings& f) {
+Figure missingForce(const DiscoverFindings& f, std::size_t axis) {
   const auto& map = f.verdict.localisation;
-  Figure figure{.title = "Missing force",
+  Figure figure{.title = "Missing force" + f.wording.named(axis),
                 .xLabel = "Time [s]",
-                .yLabel = f.wording.force,
+                .yLabel = f.wording.axes[axis].force,
                 .caption =
                     "Posterior mean of the latent force of the base model, ±2 standard deviations. "
                     "It is found by smoothing; the measurements are not differentiated."};
   for (std::size_t k = 0; k < map.trials.size(); ++k) {
-    for (std::size_t axis = 0; axis < f.data.axes().size(); ++axis) {
-      Series series{.name = f.data.trialName(map.trials[k]) + named(f, axis),
-                    .x = info::discover::nodeTimes(f.data, map.trials[k])};
-      const auto own = [&](const VectorXd& all) {
-        return VectorXd(info::discover::onAxis(all, axis, f.data.axes().size()));
-      };
-      const VectorXd r = own(map.force[k]), sd = own(map.forceSd[k]);
-      const VectorXd low = r - 2 * sd, high = r + 2 * sd;
-      series.y.assign(r.begin(), r.end());
-      series.bandLow.assign(low.begin(), low.end());
-      series.bandHigh.assign(high.begin(), high.end());
-      figure.series.push_back(std::move(series));
-    }
+    Series series{.name = f.data.trialName(map.trials[k]),
+                  .x = info::discover::nodeTimes(f.data, map.trials[k])};
+    const auto own = [&](const VectorXd& all) {
+      return VectorXd(info::discover::onAxis(all, axis, f.data.axes().size()));
+    };
+    const VectorXd r = own(map.force[k]), sd = own(map.forceSd[k]);
+    const VectorXd low = r - 2 * sd, high = r + 2 * sd;
+    series.y.assign(r.begin(), r.end());
+    series.bandLow.assign(low.begin(), low.end());
+    series.bandHigh.assign(high.begin(), high.end());
+    figure.series.push_back(std::move(series));
   }
   return figure;
 }
@@ -129,26 +120,28 @@ std::vector<ReportPart> whereTheyDisagree(const DiscoverFindings& f) {
   if (map.times.empty()) return {};
   std::vector<ReportPart> parts;
   parts.emplace_back(Section{"Where model and data disagree"});
-  parts.emplace_back(scoreOverTime(f));
+  const std::size_t axes = f.wording.axes.size();
+  for (std::size_t axis = 0; axis < axes; ++axis) parts.emplace_back(scoreOverTime(f, axis));
   if (f.wording.hasMap) {
-    for (std::size_t axis = 0; axis < f.data.axes().size(); ++axis) {
-      parts.emplace_back(
-          VectorDrawing{"Score over angle and speed" + named(f, axis), scoreMap(f, axis),
-                        fmt::format("Orange: the data ask for an additional force that raises {}; "
-                                    "blue: one that lowers it; framed: significant. {}",
-                                    f.wording.outputs.front().name,
-                                    map.cells.empty() ? "" : "White: not visited.")});
+    for (std::size_t axis = 0; axis < axes; ++axis) {
+      const ShownAxis& shown = f.wording.axes[axis];
+      parts.emplace_back(VectorDrawing{
+          fmt::format("Score over {} and speed{}", shown.position, f.wording.named(axis)),
+          scoreMap(f, axis),
+          fmt::format("Orange: the data ask for an additional force that raises {}; "
+                      "blue: one that lowers it; framed: significant. {}",
+                      shown.name, map.cells.empty() ? "" : "White: not visited.")});
     }
   } else {
     parts.emplace_back(Paragraph{"There is no map over angle and speed: no angle was measured."});
   }
-  parts.emplace_back(missingForce(f));
+  for (std::size_t axis = 0; axis < axes; ++axis) parts.emplace_back(missingForce(f, axis));
   Table muscles{"Score by " + f.wording.input,
                 {f.wording.input, "score [standard deviations]", "significant"},
                 {}};
   for (const Score& one : map.inputs) {
     muscles.rows.push_back(
-        {one.input + named(f, one.axis), numberText(one.z, 3), one.significant ? "yes" : "no"});
+        {one.input + f.wording.named(one.axis), numberText(one.z, 3), one.significant ? "yes" : "no"});
   }
   parts.emplace_back(std::move(muscles));
   return parts;

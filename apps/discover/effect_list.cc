@@ -53,7 +53,7 @@ ExitStatus listEffects(const CommandContext& context, const std::string& file,
   chooseCoordinates(simulation, model, {});
   movableSystem(model, file, simulation, summary);  // warns and refuses as a search would
   const bio::discover::EncompassingModel encompassing = bio::discover::encompassingModel(
-      model, armOptions(simulation), observedCoordinate(simulation));
+      model, armOptions(simulation), coordinatesInQuestion(simulation, {}));
   if (context.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const Candidate& one : encompassing.candidates())

@@ -1,6 +1,10 @@
 #include "discover/model_discovery.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstring>
 
 #include "bio/discovery/workflow.h"
 #include "discover/discover_results.h"
@@ -18,22 +22,123 @@
 namespace app {
 namespace {
 
-DiscoverWording wordingOf(const bio::discover::MusculoskeletalProblem& data) {
-  const bio::Coordinate& coordinate = data.encompassing().coordinate();
-  const bool isAngle = coordinate.isRotation;
+/// The outputs of a search: the measured coordinates among those in question, then every other
+/// channel that a trial measures.
+std::vector<bio::Observable> outputsOf(const std::vector<bio::Trial>& trials,
+                                       const bio::SystemOptions& arm,
+                                       const std::vector<std::string>& coordinates) {
+  std::vector<bio::Observable> outputs;
+  const auto add = [&](const bio::Observable& what) {
+    if (std::find(outputs.begin(), outputs.end(), what) == outputs.end()) outputs.push_back(what);
+  };
+  for (const std::string& name : coordinates) {
+    if (std::find(arm.prescribed.begin(), arm.prescribed.end(), name) != arm.prescribed.end())
+      continue;
+    for (const bio::Trial& trial : trials)
+      if (trial.measurementOf(bio::ofCoordinate(name))) add(bio::ofCoordinate(name));
+  }
+  for (const bio::Trial& trial : trials) {
+    for (const bio::MeasuredChannel& channel : trial.measured)
+      if (!channel.what.isCoordinate()) add(channel.what);
+  }
+  return outputs;
+}
+
+ShownOutput shownOf(const bio::Observable& what, const bio::Model& model) {
+  const std::string unit = bio::unitOf(what, model);
+  if (unit == "rad") return {bio::nameOf(what), "deg", radian};
+  return {bio::nameOf(what), unit, 1};
+}
+
+/// "_Nm" of "N·m", "_rad_per_s" of "rad/s", "" of a pure number.
+std::string endOf(const std::string& unit) {
+  std::string end = unit.empty() ? "" : "_" + unit;
+  if (const auto at = end.find("·"); at != std::string::npos) end.erase(at, std::strlen("·"));
+  if (const auto at = end.find('/'); at != std::string::npos) end.replace(at, 1, "_per_");
+  return end;
+}
+
+DiscoverWording wordingOf(const bio::discover::MusculoskeletalProblem& data,
+                          const info::discover::Verdict& verdict) {
+  const bio::discover::EncompassingModel& model = data.encompassing();
   DiscoverWording wording;
-  wording.outputs = {{coordinate.name, isAngle ? "deg" : "m"}};
-  wording.unit = isAngle ? radian : 1;
-  wording.gapEnd = isAngle ? "_deg" : "_m";
-  wording.force = isAngle ? "Torque [N·m]" : "Force [N]";
-  wording.forceUnit = "N·m";
+  for (const bio::Observable& what : model.sensors())
+    wording.outputs.push_back(shownOf(what, model.base()));
+  for (const bio::discover::MovingCoordinate& at : model.coordinates()) {
+    wording.axes.push_back(
+        at.coordinate.isRotation
+            ? ShownAxis{at.coordinate.name, "deg", radian, "angle", "Torque [N·m]", "N·m"}
+            : ShownAxis{at.coordinate.name, "m", 1, "position", "Force [N]", "N"});
+    wording.axes.back().place = static_cast<std::size_t>(at.index);
+  }
+  const ShownOutput& first = wording.outputs.front();
+  const bool isOne = wording.outputs.size() == 1;
+  wording.unit = isOne ? first.scale : 1 / verdict.outputSd.sd(0);
+  wording.gapUnit = isOne ? first.unit : "sd";
+  wording.gapEnd = isOne ? endOf(first.unit) : "_sd";
   wording.ofForce = "fraction of the muscles' moments";
   wording.push = "a push";
   wording.inputs = "muscles";
   wording.input = "muscle";
   wording.commands = "excitations";
-  wording.present = data.encompassing().present();
+  wording.present = model.present();
   return wording;
+}
+
+/// NAME=VALUE of --noise, in the unit in which the output is shown.
+std::map<std::string, double> noiseByName(const std::vector<std::string>& texts) {
+  std::map<std::string, double> noise;
+  for (const std::string& text : texts) {
+    const auto at = text.rfind('=');
+    if (at == std::string::npos || at == 0)
+      throw std::invalid_argument(
+          fmt::format("--noise: '{}' must be NAME=VALUE, NAME a measured column", text));
+    const std::string name = text.substr(0, at);
+    double value = 0;
+    try {
+      value = parseNumber(text.substr(at + 1));
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("--noise: {}: {}", name, error.what()));
+    }
+    if (!(value > 0))
+      throw std::invalid_argument(fmt::format("--noise: {} = {}, must be > 0", name, value));
+    if (!noise.emplace(name, value).second)
+      throw std::invalid_argument(fmt::format("--noise: '{}' is given twice", name));
+  }
+  return noise;
+}
+
+/// The noise of every output, if the command line gives it.
+std::optional<info::discover::Whitening> noiseOf(const ModelDiscoveryRequest& request,
+                                                 const std::vector<ShownOutput>& outputs) {
+  std::map<std::string, double> byName = noiseByName(request.outputNoise);
+  if (!request.noise && byName.empty()) return {};
+  const bool isPosition = outputs.size() == 1 && outputs.front().unit == "m";
+  Eigen::VectorXd sds = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(outputs.size()));
+  std::vector<std::string> names, open;
+  for (std::size_t o = 0; o < outputs.size(); ++o) {
+    const ShownOutput& output = outputs[o];
+    names.push_back(output.name);
+    double& sd = sds[static_cast<Eigen::Index>(o)];
+    if (const auto own = byName.find(output.name); own != byName.end()) {
+      sd = own->second / output.scale;
+      byName.erase(own);
+    } else if (request.noise && (output.unit == "deg" || isPosition)) {
+      sd = *request.noise / output.scale;
+    } else {
+      open.push_back(output.name);
+    }
+  }
+  if (!byName.empty())
+    throw std::invalid_argument(
+        fmt::format("--noise: '{}' is not measured and in question; what is: {}",
+                    byName.begin()->first, fmt::join(names, ", ")));
+  if (!open.empty())
+    throw std::invalid_argument(fmt::format(
+        "the noise of {} is not given (--noise {}=SD): must be given for all that is measured, or "
+        "for nothing",
+        fmt::join(open, ", "), open.front()));
+  return info::discover::Whitening(std::move(sds));
 }
 
 bio::discover::EffectProvenance provenanceOf(const Summary& summary) {
@@ -46,13 +151,28 @@ bio::discover::EffectProvenance provenanceOf(const Summary& summary) {
 
 }  // namespace
 
-std::string observedCoordinate(const SimulationOptions& simulation) {
-  if (simulation.coordinates.size() != 1) {
-    throw std::invalid_argument(
-        fmt::format("--coordinate: {} coordinates are free, must be one for discover",
-                    simulation.coordinates.size()));
+std::vector<std::string> coordinatesInQuestion(const SimulationOptions& simulation,
+                                               const std::vector<bio::Trial>& trials) {
+  if (!simulation.coordinates.empty()) return simulation.coordinates;
+  std::vector<std::string> held = simulation.prescribed;
+  held.insert(held.end(), simulation.prescribedByModel.begin(),
+              simulation.prescribedByModel.end());
+  for (const auto& [name, value] : simulation.held) held.push_back(name);
+  std::vector<std::string> names;
+  for (const std::string& name : held) {
+    const bio::Observable moment{bio::Observable::Kind::moment, name, 0};
+    const bool isMeasured =
+        trials.empty() || std::any_of(trials.begin(), trials.end(), [&](const bio::Trial& trial) {
+          return trial.measurementOf(moment) != nullptr;
+        });
+    if (isMeasured) names.push_back(name);
   }
-  return simulation.coordinates.front();
+  if (names.empty())
+    throw std::invalid_argument(fmt::format(
+        "no coordinate is free, and no trial measures the moment of one that is prescribed or "
+        "locked{}: discover needs either",
+        held.empty() ? "" : fmt::format(" (a column {}.moment)", held.front())));
+  return names;
 }
 
 ModelDiscovery discoverInModel(ModelDiscoveryRequest request, const CommandContext& context) {
@@ -68,32 +188,36 @@ ModelDiscovery discoverInModel(ModelDiscoveryRequest request, const CommandConte
   for (const std::string& file : files) {
     summary.addInput(file);
     trials.push_back(
-        readTrialFile(file, model, request.simulation, {.experimentalConditions = true}));
+        readTrialFile(file, model, request.simulation, {.experimentalConditions = true, .channels = true}));
     for (const std::string& warning : trials.back().warnings) summary.warn(warning);
   }
   inputsMustDiffer(summary, request.trials.size());
   resultsMustNotBeInputs(summary, folder, names);
-  const std::string coordinate = observedCoordinate(request.simulation);
+  const std::vector<std::string> coordinates = coordinatesInQuestion(request.simulation, trials);
   const bio::SystemOptions arm = armOptions(request.simulation);
   const bio::MusculoskeletalSystem compiled(model, arm);
   for (const std::string& warning : compiled.warnings()) summary.warn(warning);
-  const bool isAngle = bio::findCoordinate(model, coordinate).isRotation;
   bio::discover::DiscoveryRequest asked{
-      model, arm, coordinate, trials, request.heldOut.size(), request.simulation.step, {}, {}, {}};
+      model, arm, coordinates, trials, request.heldOut.size(), request.simulation.step, {}, {}, {}};
   asked.problem.simulation = simulationOptions(request.simulation, 0, 1);
   asked.problem.without = request.without;
   asked.search = engineOptions(request.maxEffects, request.inputScatter);
-  if (request.noise) asked.search.outputSd = isAngle ? *request.noise / radian : *request.noise;
+  asked.problem.sensors = outputsOf(trials, arm, coordinates);
+  std::vector<ShownOutput> outputs;
+  for (const bio::Observable& what : asked.problem.sensors)
+    outputs.push_back(shownOf(what, model));
+  asked.search.outputSd = noiseOf(request, outputs);
   asked.provenance = provenanceOf(summary);
   WatchedSearch watch(context.quiet);
   asked.search.progress = watch.progress();
   bio::discover::DiscoveryResult result = bio::discover::discover(asked);
   watch.end();
-  const WrittenDiscovery written = writeDiscovery({request, files, result}, summary, folder);
   const bio::discover::MusculoskeletalProblem& data = *result.data;
+  const DiscoverWording wording = wordingOf(data, result.found.verdict);
+  const WrittenDiscovery written =
+      writeDiscovery({request, files, wording, result}, summary, folder);
   const info::discover::SteppedVerdict& found = result.found;
   const info::discover::Verdict& verdict = found.verdict;
-  const DiscoverWording wording = wordingOf(data);
   warnOfOneTrial(summary, request.trials.size(), request.heldOut.size());
   std::string next =
       predictedExperimentSentence(result.experiments, data, verdict, found.options.evidence);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bio/tables/trial.h"
 #include "command/command_context.h"
 #include "options/simulation_options.h"
 
@@ -16,7 +17,10 @@ struct ModelDiscoveryRequest {
   std::vector<std::string> trials;     ///< files, with a measured coordinate
   std::vector<std::string> heldOut;    ///< files of held-out trials
   std::vector<std::string> without;    ///< ids of effects to leave out of the catalogue
-  std::optional<double> noise;         ///< standard deviation of what was measured [deg] or [m]
+  /// Standard deviation of every measured angle [deg], or of the position that is measured alone
+  /// [m].
+  std::optional<double> noise;
+  std::vector<std::string> outputNoise;  ///< NAME=VALUE, in the unit in which that output is shown
   int maxEffects = 3;                  ///< largest number of effects in one hypothesis
   std::optional<double> inputScatter;  ///< of --input-scatter
   SimulationOptions simulation;
@@ -27,9 +31,11 @@ struct ModelDiscovery {
   nlohmann::ordered_json verdict;  ///< verdict.json
 };
 
-/// The one free coordinate, which discover observes.
-/// @throws std::invalid_argument unless there is exactly one
-std::string observedCoordinate(const SimulationOptions& simulation);
+/// The coordinates in question: all free ones; where none is free, those that are prescribed or
+/// held and whose moment the trials measure, or without trials all of them.
+/// @throws std::invalid_argument if there is none
+std::vector<std::string> coordinatesInQuestion(const SimulationOptions& simulation,
+                                               const std::vector<bio::Trial>& trials);
 
 /// Searches, writes verdict.json, the model with the effect and a report, and delivers them.
 /// @throws std::exception for bad input, Interrupted after Ctrl-C

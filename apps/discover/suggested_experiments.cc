@@ -8,9 +8,20 @@ namespace app {
 
 using info::discover::Finding;
 
+namespace {
+
+/// "visc" of "knee_angle_r.visc".
+std::string withoutOwner(const std::string& id) {
+  return id.substr(id.rfind('.') + 1);
+}
+
+}  // namespace
+
 FollowUps followUpsOfModels(const bio::discover::EncompassingModel& model) {
-  const bio::Coordinate& coordinate = model.coordinate();
-  const std::string loadColumn = coordinate.name + (coordinate.isRotation ? ".torque" : ".force");
+  std::string loadColumn;
+  for (const bio::discover::MovingCoordinate& at : model.coordinates())
+    loadColumn += (loadColumn.empty() ? "" : " or ") + at.coordinate.name +
+                  (at.coordinate.isRotation ? ".torque" : ".force");
   const std::string end = bio::discover::endOfLimb(model);
   const std::string place = bio::discover::placeOfMass(model);
   return {
@@ -58,7 +69,10 @@ std::string followUp(const info::discover::DiscoveryProblem& data,
           std::count_if(effect.equals.begin(), effect.equals.end(), [&](std::size_t c) {
             return std::any_of(
                 one.separates.begin(), one.separates.end(),
-                [&](const std::string& id) { return candidates[c].id.starts_with(id); });
+                [&](const std::string& id) {
+                  return candidates[c].id.starts_with(id) ||
+                         withoutOwner(candidates[c].id).starts_with(id);
+                });
           });
       if (touched > most) {
         most = touched;

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "bio/opensim/osim_file.h"
-#include "output/angle_unit.h"
 #include "output/sha256.h"
 #include "output/text.h"
 
@@ -19,6 +18,9 @@ std::string optionsOf(const SimulationOptions& options, bool withStep) {
   std::string text;
   if (!options.areChosen)
     for (const std::string& name : options.coordinates) text += " --coordinate " + shellWord(name);
+  for (const std::string& name : options.prescribed) text += " --prescribe " + shellWord(name);
+  if (options.prescribeCutoff)
+    text += fmt::format(" --prescribe-cutoff {}", *options.prescribeCutoff);
   for (const Assignment& lock : options.locks)
     text += " --lock " + shellWord(fmt::format("{}={}", lock.name, lock.value));
   for (const std::string& name : options.wrapAsCylinder)
@@ -35,6 +37,7 @@ class DiscoveryWriter {
   DiscoveryWriter(const DiscoveryToWrite& discovery, Summary& summary, OutputFolder& folder)
       : request_(discovery.request),
         files_(discovery.files),
+        wording_(discovery.wording),
         result_(discovery.result),
         summary_(summary),
         folder_(folder) {}
@@ -64,7 +67,7 @@ class DiscoveryWriter {
     written_.model = result_.addsEffect ? "with_effect.osim" : "refitted.osim";
     writeOsim(written_.model, model);
     if (result_.effectOnly) writeOsim("effect_only.osim", result_.effectOnly->model);
-    for (const RepairedTrial& one : repaired.trials) compareWithFit(one, repaired.added.sensor);
+    for (const RepairedTrial& one : repaired.trials) compareWithFit(one, repaired.added.sensors);
   }
 
   void writeOsim(const std::string& name, const bio::Model& model) {
@@ -78,28 +81,33 @@ class DiscoveryWriter {
         fmt::format("driven_{}{}.sto", trial.isHeldOut ? "held_out_" : "", number);
     folder_.writeFile(name, [&](const std::filesystem::path& path) {
       bio::writeTable(*trial.driven, path);
-      bio::TrialStart start = trial.start;
-      start.file = name;
-      start.sha256 = sha256OfFile(path);
-      model.fitted.starts.push_back(std::move(start));
+      for (bio::TrialStart start : trial.starts) {
+        start.file = name;
+        start.sha256 = sha256OfFile(path);
+        model.fitted.starts.push_back(std::move(start));
+      }
     });
     written_.replayFiles[static_cast<std::size_t>(trial.index)] =
         folder_.active() ? folder_.path(name).string() : name;
   }
 
   /// A corrected recording has other degrees, and may have fewer samples.
-  void compareWithFit(const RepairedTrial& one, const bio::discover::SensorLaw& sensor) {
-    const bool turns = result_.data->encompassing().coordinate().isRotation;
-    const double unit = turns ? radian : 1e3;
-    bio::discover::SensorLaw besidesBias = sensor;
-    besidesBias.bias = 0;
-    if (!besidesBias.isTrue() || std::isnan(one.after)) return;
-    if (unit * std::abs(one.after - one.fitted) <= 0.01) return;
-    summary_.warn(
-        fmt::format("{}: the written model replays with an RMS error of {} {}, the search itself "
-                    "had {}; the report gives the value of the replay",
-                    one.start.file, numberText(unit * one.after), turns ? "deg" : "mm",
-                    numberText(unit * one.fitted)));
+  void compareWithFit(const RepairedTrial& one, const std::vector<bio::discover::SensorLaw>& laws) {
+    for (bio::discover::SensorLaw law : laws) {
+      law.bias = 0;
+      if (!law.isTrue()) return;
+    }
+    if (std::isnan(one.after)) return;
+    const double unit = wording_.unit;
+    const double tolerance = wording_.gapEnd == "_deg" ? 0.01
+                             : wording_.gapEnd == "_m" ? 1e-5
+                                                       : 0.02 * unit * one.floor;
+    if (unit * std::abs(one.after - one.fitted) <= tolerance) return;
+    summary_.warn(fmt::format(
+        "{}: the written model replays with an RMS error of {}, the search itself had {}; the "
+        "report gives the value of the replay",
+        files_[static_cast<std::size_t>(one.index)], withUnit(unit * one.after, wording_.gapUnit),
+        withUnit(unit * one.fitted, wording_.gapUnit)));
   }
 
   void tellCommands() {
@@ -124,6 +132,7 @@ class DiscoveryWriter {
 
   const ModelDiscoveryRequest& request_;
   const std::vector<std::string>& files_;
+  const DiscoverWording& wording_;
   bio::discover::DiscoveryResult& result_;
   Summary& summary_;
   OutputFolder& folder_;

@@ -153,7 +153,7 @@ class Ensemble : public Command {
     if (pool->leads()) checkChoice(context);
     if (!pool->leads() && !pool->start()) return ExitStatus::done;
     if (!discover_.empty()) {
-      return discoverInSets({model_, {}, {}, {}, noise_, maxEffects_, inputScatter_, simulation_},
+      return discoverInSets({model_, {}, {}, {}, noise_, {}, maxEffects_, inputScatter_, simulation_},
                             discover_, context, *pool, threads);
     }
     if (!pool->leads()) {

@@ -1,7 +1,5 @@
 #include "robot_options/discover_robot.h"
 
-#include "options/number_rules.h"
-
 namespace app {
 
 void addRobotOptions(CLI::App& options, RobotRequest& request) {
@@ -17,14 +15,6 @@ void addRobotOptions(CLI::App& options, RobotRequest& request) {
                   "with --system: a with_effect.json whose effects are added to the model")
       ->check(CLI::ExistingFile)
       ->type_name("FILE");
-  options
-      .add_option("--noise", request.noise,
-                  "with --system: standard deviation of each measured column [deg or N]; default: "
-                  "estimated from the data")
-      ->check(positive())
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("SD");
 }
 
 }  // namespace app

@@ -23,7 +23,7 @@ struct RobotRequest {
   bool ignoreExtra = false;
 };
 
-/// Adds --system, --with and --noise.
+/// Adds --system and --with.
 void addRobotOptions(CLI::App& options, RobotRequest& request);
 
 /// What `discover --system` does with its request.

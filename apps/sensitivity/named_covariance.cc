@@ -50,7 +50,7 @@ class CellReader {
   int line_ = 0;
 };
 
-double numberIn(const std::string& cell, const std::string& column, const CellReader& reader) {
+double numberOfCell(const std::string& cell, const std::string& column, const CellReader& reader) {
   double value = std::nan("");
   try {
     value = parseNumber(cell);
@@ -98,7 +98,7 @@ NamedCovariance readCovariance(const std::filesystem::path& file) {
     }
     for (Eigen::Index j = 0; j < n; ++j) {
       const auto at = static_cast<std::size_t>(j);
-      covariance.values(row, j) = numberIn(cells[at], names[at], reader);
+      covariance.values(row, j) = numberOfCell(cells[at], names[at], reader);
     }
   }
   if (row != n) throw reader.failure(fmt::format("{} rows for {} names, must be as many", row, n));

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
+#include <map>
 #include <optional>
+#include <variant>
 
 #include "arms.h"
 #include "bio/discovery/effect_names.h"
@@ -58,44 +60,117 @@ Written writtenOf(bio::discover::DiscoveryResult& result) {
       trial = bio::trialFrom(*one.driven, trial.file + " (driven)", model,
                              {.experimentalConditions = true});
       trial.sha256 = digestOf(py::bytes(recorded + " driven"));
-      bio::TrialStart start = one.start;
-      start.file = trial.file;
-      start.sha256 = trial.sha256;
-      model.fitted.starts.push_back(std::move(start));
+      for (bio::TrialStart start : one.starts) {
+        start.file = trial.file;
+        start.sha256 = trial.sha256;
+        model.fitted.starts.push_back(std::move(start));
+      }
     }
-    written.trials.append(results("name"_a = result.data->trialName(one.index),
-                                  "role"_a = one.isHeldOut ? "held_out" : "train",
-                                  "nominal"_a = one.nominal, "after"_a = one.after,
-                                  "noise_floor"_a = one.floor, "start"_a = one.start.value,
-                                  "start_speed"_a = one.start.speed, "trial"_a = trial));
+    const bool isOne = one.starts.size() == 1;
+    py::list starts;
+    for (const bio::TrialStart& start : one.starts)
+      starts.append(results("coordinate"_a = start.coordinate, "value"_a = start.value,
+                            "speed"_a = start.speed));
+    written.trials.append(
+        results("name"_a = result.data->trialName(one.index),
+                "role"_a = one.isHeldOut ? "held_out" : "train", "nominal"_a = one.nominal,
+                "after"_a = one.after, "noise_floor"_a = one.floor,
+                "start"_a = isOne ? py::cast(one.starts.front().value) : py::none(),
+                "start_speed"_a = isOne ? py::cast(one.starts.front().speed) : py::none(),
+                "starts"_a = starts, "trial"_a = trial));
   }
   if (result.repaired) written.model = py::cast(result.repaired->added.model);
   return written;
 }
 
-/// What is searched: one coordinate that is free.
-SystemChoice searchedChoice(const bio::Model& model, const std::vector<bio::Trial>& trials,
-                            const Names& coordinate, const std::map<std::string, double>& lock,
-                            const std::string& integrator, std::optional<double> step) {
-  SystemChoice choice = armChoice(model, trials, coordinate, lock, integrator, step);
-  if (!choice.prescribed.empty()) {
+/// The coordinates in question: all free ones; where none is free, those that are prescribed and
+/// whose moment the trials measure, or without trials all of them.
+std::vector<std::string> inQuestion(const SystemChoice& choice,
+                                    const std::vector<bio::Trial>& trials) {
+  if (!choice.coordinates.empty()) return choice.coordinates;
+  std::vector<std::string> names;
+  for (const std::string& name : choice.prescribed) {
+    const bio::Observable moment{bio::Observable::Kind::moment, name, 0};
+    const bool isMeasured =
+        trials.empty() || std::any_of(trials.begin(), trials.end(), [&](const bio::Trial& trial) {
+          return trial.measurementOf(moment) != nullptr;
+        });
+    if (isMeasured) names.push_back(name);
+  }
+  if (names.empty())
     throw std::invalid_argument(
-        fmt::format("'{}' is prescribed, which discover does not take: lock it or make it free",
-                    choice.prescribed.front()));
+        "no coordinate is free, and no trial measures the moment of one that is prescribed: "
+        "discover needs either");
+  return names;
+}
+
+/// A number for all angles, or for the only output; or numbers by name.
+using GivenNoise = std::variant<double, std::map<std::string, double>>;
+
+/// The outputs of a search, as MusculoskeletalProblem takes them from the trials.
+std::vector<bio::Observable> outputsOf(const std::vector<bio::Trial>& trials,
+                                       const SystemChoice& choice,
+                                       const std::vector<std::string>& coordinates) {
+  std::vector<bio::Observable> outputs;
+  const auto add = [&](const bio::Observable& what) {
+    if (std::find(outputs.begin(), outputs.end(), what) == outputs.end()) outputs.push_back(what);
+  };
+  const auto& held = choice.prescribed;
+  for (const std::string& name : coordinates) {
+    if (std::find(held.begin(), held.end(), name) != held.end()) continue;
+    for (const bio::Trial& trial : trials)
+      if (trial.measurementOf(bio::ofCoordinate(name))) add(bio::ofCoordinate(name));
   }
-  if (choice.coordinates.size() != 1) {
-    throw std::invalid_argument("coordinate: several are free, must be one for discover");
+  for (const bio::Trial& trial : trials) {
+    for (const bio::MeasuredChannel& channel : trial.measured)
+      if (!channel.what.isCoordinate()) add(channel.what);
   }
-  return choice;
+  return outputs;
+}
+
+info::discover::Whitening noiseOf(const GivenNoise& given, const bio::Model& model,
+                                  const std::vector<bio::Observable>& outputs) {
+  const double* ofAll = std::get_if<double>(&given);
+  if (ofAll && outputs.size() == 1) return *ofAll;
+  std::map<std::string, double> byName;
+  if (!ofAll) byName = std::get<std::map<std::string, double>>(given);
+  Eigen::VectorXd sds(static_cast<Eigen::Index>(outputs.size()));
+  for (std::size_t o = 0; o < outputs.size(); ++o) {
+    const std::string name = bio::nameOf(outputs[o]);
+    const auto own = byName.find(name);
+    if (own == byName.end() && !(ofAll && bio::unitOf(outputs[o], model) == "rad"))
+      throw std::invalid_argument(
+          fmt::format("noise: that of '{}' is not given, must be given for all that is measured, "
+                      "or for nothing",
+                      name));
+    const double sd = own == byName.end() ? *ofAll : own->second;
+    if (!(sd > 0)) throw std::invalid_argument(fmt::format("noise: {} = {}, must be > 0", name, sd));
+    sds[static_cast<Eigen::Index>(o)] = sd;
+    if (own != byName.end()) byName.erase(own);
+  }
+  if (!byName.empty())
+    throw std::invalid_argument(
+        fmt::format("noise: '{}' is not measured and in question", byName.begin()->first));
+  return info::discover::Whitening(std::move(sds));
+}
+
+py::list outputsOf(const MusculoskeletalProblem& data, const Verdict& verdict) {
+  py::list outputs;
+  const bio::discover::EncompassingModel& model = data.encompassing();
+  for (std::size_t o = 0; o < model.sensors().size(); ++o)
+    outputs.append(results("name"_a = bio::nameOf(model.sensors()[o]),
+                           "unit"_a = bio::unitOf(model.sensors()[o], model.base()),
+                           "noise"_a = verdict.outputSd.sd(o)));
+  return outputs;
 }
 
 py::object listEffects(const bio::Model& model, const Names& coordinate,
                        const std::map<std::string, double>& lock) {
-  const SystemChoice choice = searchedChoice(model, {}, coordinate, lock, "vi", {});
+  const SystemChoice choice = armChoice(model, {}, coordinate, lock, "vi", {});
   std::optional<bio::discover::EncompassingModel> encompassing;
   interruptible([&](const std::atomic<bool>&) {
     encompassing.emplace(
-        bio::discover::encompassingModel(model, choice.armOptions(), choice.coordinates.front()));
+        bio::discover::encompassingModel(model, choice.armOptions(), inQuestion(choice, {})));
   });
   py::list effects;
   for (const info::discover::Candidate& one : encompassing->candidates()) {
@@ -113,18 +188,19 @@ py::object listEffects(const bio::Model& model, const Names& coordinate,
 }
 
 py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
-                    const std::vector<bio::Trial>& holdOut, std::optional<double> noise,
+                    const std::vector<bio::Trial>& holdOut, const std::optional<GivenNoise>& noise,
                     const std::vector<std::string>& without, int maxEffects,
                     std::optional<double> inputScatter, const Names& coordinate,
                     const std::map<std::string, double>& lock, const std::string& integrator,
                     std::optional<double> firstStep) {
-  const SystemChoice choice =
-      searchedChoice(model, trials, coordinate, lock, integrator, firstStep);
+  const SystemChoice choice = armChoice(model, trials, coordinate, lock, integrator, firstStep);
   bio::requireDifferentTrials(trials, holdOut);
   trials.insert(trials.end(), holdOut.begin(), holdOut.end());
+  const std::vector<std::string> coordinates = inQuestion(choice, trials);
+  const std::vector<bio::Observable> outputs = outputsOf(trials, choice, coordinates);
   bio::discover::DiscoveryRequest asked{model,
                                         choice.armOptions(),
-                                        choice.coordinates.front(),
+                                        coordinates,
                                         std::move(trials),
                                         holdOut.size(),
                                         choice.step,
@@ -135,7 +211,8 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
   asked.problem.simulation.duration = 1;
   asked.problem.without = without;
   asked.search = searchOptions(maxEffects, inputScatter);
-  asked.search.outputSd = noise;
+  asked.problem.sensors = outputs;
+  if (noise) asked.search.outputSd = noiseOf(*noise, model, outputs);
   asked.provenance.tool = "fisherhill " + std::string(info::version());
   for (const bio::Trial& trial : asked.trials)
     asked.provenance.data.push_back(fmt::format("{} SHA-256 {}", trial.file, trial.sha256));
@@ -152,7 +229,7 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
   for (std::size_t i = 0; i < verdict.effects.size(); ++i)
     effects.append(effectOf(data, verdict.effects[i], result.sizes[i]));
   return results(**verdictMembers(data, found, result.fitted), "effects"_a = effects,
-                 "noise"_a = verdict.outputSd.sd(0),
+                 "noise"_a = verdict.outputSd.sd(0), "outputs"_a = outputsOf(data, verdict),
                  "position_break"_a =
                      result.positionBreak ? py::cast(result.positionBreak->position) : py::none(),
                  "trials_are_cut"_a = result.trialsAreCut,

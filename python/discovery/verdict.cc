@@ -30,7 +30,7 @@ py::object excessErrorOf(const ExcessError& gap) {
 }
 
 /// The unknown effect, and the formula that was compared for it.
-py::object unknownOf(const Verdict& verdict) {
+py::object unknownOf(const DiscoveryProblem& data, const Verdict& verdict) {
   if (!verdict.unknown) return py::none();
   py::object raced = py::none();
   if (verdict.formula) {
@@ -46,7 +46,7 @@ py::object unknownOf(const Verdict& verdict) {
                     "gap_held_out"_a = race.heldOut ? excessErrorOf(*race.heldOut) : py::none());
   }
   const info::discover::Unknown& unknown = *verdict.unknown;
-  return results("formula"_a = unknown.formula, "stable"_a = unknown.stable,
+  return results("axis"_a = data.axes()[unknown.axis].name, "formula"_a = unknown.formula, "stable"_a = unknown.stable,
                  "evidence"_a = unknown.evidence, "explained"_a = unknown.explained,
                  "peak_frequency"_a = unknown.peakFrequency, "rms"_a = unknown.forceSize,
                  "raced"_a = raced);
@@ -58,7 +58,11 @@ py::object nonparametricForceOf(const DiscoveryProblem& data, const Verdict& ver
   const info::discover::NonparametricForce& force = *verdict.nonparametric;
   std::vector<std::string> besides;
   for (const std::size_t c : force.besides) besides.push_back(data.candidates()[c].id);
-  return results("follows"_a = info::discover::name(force.follows), "beside"_a = besides,
+  const info::discover::Axis& axis = data.axes()[force.axis];
+  const bool isAngle =
+      force.follows == info::discover::NonparametricForce::Follows::position && axis.unit == "rad";
+  return results("axis"_a = axis.name,
+                 "follows"_a = isAngle ? "angle" : info::discover::name(force.follows), "beside"_a = besides,
                  "log_bayes_factor"_a = force.logBayesFactor, "nats_ahead_of_names"_a = force.ahead,
                  "wins"_a = force.wins,
                  "at"_a = Eigen::VectorXd(Eigen::VectorXd::Map(
@@ -115,7 +119,7 @@ py::dict verdictMembers(const DiscoveryProblem& data, const info::discover::Step
       "gap_held_out"_a = verdict.heldOut ? excessErrorOf(*verdict.heldOut) : py::none(),
       "held_out_fitted"_a = verdict.heldOutFitted,
       "replicated"_a = verdict.replication ? py::cast(verdict.replication->replicated) : py::none(),
-      "undetectable_below"_a = undetectable, "unknown"_a = unknownOf(verdict),
+      "undetectable_below"_a = undetectable, "unknown"_a = unknownOf(data, verdict),
       "force_without_a_name"_a = nonparametricForceOf(data, verdict),
       "fitted_parameters"_a = fittedOf(fitted), "step"_a = found.step, "fits"_a = verdict.fits);
 }

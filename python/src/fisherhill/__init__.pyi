@@ -2419,6 +2419,7 @@ class RacedFormula:
 
 @type_check_only
 class UnknownForce:
+    axis: str
     formula: str
     stable: bool
     evidence: float
@@ -2429,7 +2430,8 @@ class UnknownForce:
 
 @type_check_only
 class NonparametricForce:
-    follows: Literal["position", "speed"]
+    axis: str
+    follows: Literal["angle", "position", "speed"]
     beside: list[str]
     log_bayes_factor: float
     nats_ahead_of_names: float
@@ -2439,14 +2441,27 @@ class NonparametricForce:
     sd: _Array
 
 @type_check_only
+class DiscoveryStart:
+    coordinate: str
+    value: float
+    speed: float
+
+@type_check_only
+class DiscoveryOutput:
+    name: str
+    unit: str
+    noise: float
+
+@type_check_only
 class DiscoveryTrial:
     name: str
     role: Literal["train", "held_out"]
     nominal: float
     after: float
     noise_floor: float
-    start: float
-    start_speed: float
+    start: float | None
+    start_speed: float | None
+    starts: list[DiscoveryStart]
     trial: Trial
 
 @type_check_only
@@ -2467,6 +2482,7 @@ class DiscoveryResult:
     surrogate: bool
     probability_vetoed: bool
     noise: float
+    outputs: list[DiscoveryOutput]
     gap: ExcessError
     gap_held_out: ExcessError | None
     held_out_fitted: bool
@@ -2488,7 +2504,7 @@ def discover(
     trials: Sequence[Trial],
     *,
     hold_out: Sequence[Trial] = [],
-    noise: float | None = None,
+    noise: float | dict[str, float] | None = None,
     without: Sequence[str] = [],
     max_effects: int = 3,
     input_scatter: float | None = None,
@@ -2503,12 +2519,13 @@ def discover(
     ----------
     model : Model
     trials : list of Trial
-        Trials with the measured coordinate. known_mass_in_hand and known_arm_turn are taken into
+        Trials with measured coordinates, moments or other channels. known_mass_in_hand and known_arm_turn are taken into
         account.
     hold_out : list of Trial
         Trials used to test the result.
-    noise : float, optional
-        Standard deviation of the measured coordinate [rad] or [m]. Default: estimated from the data.
+    noise : float or dict, optional
+        Standard deviation of every measured angle [rad], or of the only channel that is measured; or
+        {channel: standard deviation in its unit} of all of them. Default: estimated from the data.
     without : list of str
         Ids of effects to exclude from the catalogue.
     max_effects : int
@@ -2516,8 +2533,9 @@ def discover(
     input_scatter : float, optional
         Noise of the EMG that is tolerated, as a fraction of each muscle's moment, >= 0; a larger residual
         counts as a missing effect. Default: 0.075.
-    coordinate : str
-        The one free coordinate, which is the measured one.
+    coordinate : str or list of str
+        Free coordinates, which are in question. Where none is free, those that are prescribed and whose
+        moment the trials measure are. Default: the measured ones.
     lock : dict
         As in replay.
     integrator : {'vi', 'vi-left'}
@@ -2552,16 +2570,19 @@ def discover(
         share_of_muscle_moment : float
             moment_rms as a fraction of the muscles' net moment (RMS).
         motion_rms : float
-            RMS change of the motion [rad] or [m].
+            RMS change of the motion of the first coordinate [rad] or [m].
     surrogate : bool
         True: the effects are only proxies of an effect outside the catalogue.
     probability_vetoed : bool
         True: no probability of the verdict is given, since the residuals or the errors of held-out
         trials contradict it.
     noise : float
-        Standard deviation of the noise that was used [rad] or [m].
+        Standard deviation of the noise that was used [rad] or [m], of the first output.
+    outputs : list
+        For each measured channel: name, unit and noise [unit].
     gap, gap_held_out
-        RMS errors [rad] or [m] of the trials and of the held-out trials (None without any):
+        RMS errors [rad] or [m] of the trials and of the held-out trials (None without any); of several
+        outputs in standard deviations of their noise, times that of the first:
 
         nominal, calibrated, after : float
             With the given model, with its parameters fitted, and with the effects as well.
@@ -2597,6 +2618,8 @@ def discover(
     unknown
         If no effect fits, the missing force, else None:
 
+        axis : str
+            Coordinate that it acts on.
         formula : str
         stable : bool
             True: every term is selected in 90 % of the bootstrap samples.
@@ -2613,10 +2636,12 @@ def discover(
             it would have no rival), terms (expression, value, sd), log_bayes_factor [nats],
             amplitude_over_sd, adequate (True: the residuals pass every test), gap, gap_held_out.
     force_without_a_name
-        The best free-form force, a smooth function of the angle or of the speed alone, or None:
+        The best free-form force, a smooth function of one coordinate or of its speed alone, or None:
 
+        axis : str
+            Coordinate that it acts on and follows.
         follows : str
-            'angle' or 'speed'.
+            'angle', 'position' (of a coordinate that slides) or 'speed'.
         beside : list of str
             Ids of the effects that were fitted with it.
         log_bayes_factor : float
@@ -2642,8 +2667,11 @@ def discover(
             RMS errors [rad] or [m] in replay with the given and the returned model; NaN if unavailable.
         noise_floor : float
             Noise of the trial that was replayed [rad] or [m].
-        start, start_speed : float
-            Fitted initial value [rad] or [m] and speed [rad/s] or [m/s].
+        start, start_speed : float or None
+            Fitted initial value [rad] or [m] and speed [rad/s] or [m/s] of one free coordinate; None
+            unless one is free.
+        starts : list
+            The same of every free coordinate: coordinate, value, speed.
         trial : Trial
             The one to replay with the returned model.
     fitted_parameters : list
@@ -2657,7 +2685,7 @@ def discover(
     Raises
     ------
     ValueError
-        For several free coordinates, a trial in which the coordinate was not measured, a trial that is
+        For no coordinate in question, a trial in which nothing of it was measured, a trial that is
         given twice or both held out and used for estimation (by its content), an unknown id, or an
         option out of range.
     """
@@ -2686,7 +2714,7 @@ def list_effects(
     ----------
     model : Model
     coordinate, lock
-        As in discover. Default of the coordinate: the one that the model does not lock.
+        As in discover. Default of the coordinate: those that the model does not lock.
 
     Returns
     -------
@@ -2709,7 +2737,7 @@ def list_effects(
     Raises
     ------
     ValueError
-        For an unknown coordinate, or several free ones.
+        For an unknown coordinate.
     """
 
 @type_check_only
