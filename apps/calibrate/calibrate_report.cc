@@ -69,12 +69,13 @@ Figure overlay(const bio::TrialSet& set, std::size_t index, const Eigen::MatrixX
 Figure residualFigure(const CalibrateFindings& f, std::size_t channel) {
   const bio::MeasuredGroup& shown = f.training.channels()[channel];
   const ShownUnit unit = shownUnit(shown);
-  Figure figure{.title = f.training.hasOnlyAngles() ? "Residuals" : "Residuals of " + shown.name,
-                .xLabel = "Time [s]",
-                .yLabel = fmt::format("Measured − calibrated [{}]", unit.name),
-                .caption =
-                    "Residuals of the calibrated model. White noise scatters about 0; slow waves "
-                    "indicate an error of the model."};
+  Figure figure{
+      .title = measuresOnlyAngles(f.training) ? "Residuals" : "Residuals of " + shown.name,
+      .xLabel = "Time [s]",
+      .yLabel = fmt::format("Measured − calibrated [{}]", unit.name),
+      .caption =
+          "Residuals of the calibrated model. White noise scatters about 0; slow waves "
+          "indicate an error of the model."};
   const auto add = [&](const bio::TrialSet& set, const Eigen::MatrixXd& after, bool held) {
     for (std::size_t i = 0; i < set.series().size() && figure.series.size() < 8; ++i) {
       const bio::MeasuredSeries& series = set.series()[i];
@@ -237,7 +238,7 @@ std::string channelNoiseText(const CalibrateFindings& f) {
 }
 
 std::string noiseText(const CalibrateFindings& f) {
-  if (!f.training.hasOnlyAngles()) return channelNoiseText(f);
+  if (!measuresOnlyAngles(f.training)) return channelNoiseText(f);
   const bio::ResidualNoise& noise = f.calibration.noise;
   if (f.options.noise) {
     return fmt::format("White noise of {:.3g} deg was given; the reduced χ² is {:.3g}.{}",

@@ -39,4 +39,9 @@ std::vector<info::discover::FittedNumber> fittedNumbers(const bio::Calibration& 
 /// words.
 std::string estimateWords(const bio::CalibratedParameter& parameter);
 
+/// Whether results are told in degrees alone.
+inline bool measuresOnlyAngles(const bio::TrialSet& set) {
+  return set.channels().size() == 1 && set.channels().front().areAngles;
+}
+
 }  // namespace app

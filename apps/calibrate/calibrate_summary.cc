@@ -162,7 +162,7 @@ void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
   summary.set("rmse_held_out_deg", orNull(rmseAfter(f, true)));
   summary.set("rmse_held_out_before_deg",
               f.heldOut ? orNull(rmse(*f.heldOut, c.heldOutBefore)) : Json(nullptr));
-  if (!f.training.hasOnlyAngles()) summary.set("channels", channelsJson(f));
+  if (!measuresOnlyAngles(f.training)) summary.set("channels", channelsJson(f));
   Json estimates = Json::object();
   for (const bio::CalibratedParameter& one : c.parameters) {
     if (isKnot(one)) continue;  // of latent_excitations
