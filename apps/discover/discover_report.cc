@@ -38,8 +38,8 @@ class Writer {
     const bool excessOfHeldOut = f_.verdict.heldOut.has_value();
     const ExcessError& gap = excessOfHeldOut ? *f_.verdict.heldOut : f_.verdict.gap;
     if (gap.closedFromCalibrated && !f_.verdict.effects.empty()) {
-      report_.verdict +=
-          " " + excessErrorWords(gap, f_.wording.unit, symbolOf(f_.wording.gapUnit), excessOfHeldOut);
+      report_.verdict += " " + excessErrorWords(gap, f_.wording.unit, symbolOf(f_.wording.gapUnit),
+                                                excessOfHeldOut);
     }
     const int first = f_.options.heldOut.empty() ? 0 : f_.options.heldOut.front();
     bool hasMain = false;
