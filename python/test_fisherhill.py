@@ -191,6 +191,29 @@ class Arms(unittest.TestCase):
         self.assertGreater(found.effects[0].moment_peak, found.effects[0].moment_rms)
         self.assertGreater(found.effects[0].moment_rms, 0.1)
 
+    def test_discover_takes_several_channels_with_their_noise(self):
+        t = np.arange(0, 1.001, 0.01)
+        columns = {"time": t, **{name: np.full(len(t), 0.03) for name in self.model.muscles}}
+        columns["BRA"] = 0.03 + 0.2 * np.sin(3 * t) ** 2
+        trial = fh.make_trial(self.model, columns)
+        motion = fh.replay(self.model, trial, coordinate="elbow_flexion", initial={"elbow_flexion": 0.5})
+        random = np.random.default_rng(1)
+        measured = {"elbow_flexion": motion.q[:, 0] + 0.005 * random.standard_normal(len(t)),
+                    "elbow_flexion.speed": motion.q_dot[:, 0] + 0.02 * random.standard_normal(len(t))}
+        trial = fh.make_trial(self.model, {**columns, **measured})
+        noise = {"elbow_flexion": 0.005, "elbow_flexion.speed": 0.02}
+        found = fh.discover(self.model, [trial], noise=noise, max_effects=1, coordinate=["elbow_flexion"])
+        stub.check(found, "DiscoveryResult")
+        self.assertEqual(found.verdict, "none")
+        self.assertEqual({one.name: one.noise for one in found.outputs}, noise)
+        self.assertEqual([one.unit for one in found.outputs], ["rad", "rad/s"])
+        self.assertEqual([one.coordinate for one in found.trials[0].starts], ["elbow_flexion"])
+        self.assertEqual(found.trials[0].starts[0].value, found.trials[0].start)
+        for wrong, why in ((0.005, "that of 'elbow_flexion.speed' is not given"),
+                           ({**noise, "elbow_flexion": 0}, "must be > 0"), ({**noise, "ghost": 1}, "'ghost'")):
+            with self.assertRaisesRegex(ValueError, why):
+                fh.discover(self.model, [trial], noise=wrong, max_effects=1)
+
     def test_discover_tells_what_could_be_expected_of_held_out_trials(self):
         trials = [fh.load_trial(HIDDEN.replace("train_1", one), self.model) for one in ("train_1", "train_2")]
         found = fh.discover(self.model, trials[:1], hold_out=trials[1:], noise=0.5 * DEGREE, max_effects=1)

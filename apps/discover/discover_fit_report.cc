@@ -136,7 +136,7 @@ Table adequacyTable(const DiscoverFindings& f) {
   remainder(Cause::acceleration, "the acceleration");
   remainder(Cause::sensor, "the sensor's reading");
   remainder(Cause::moments, fmt::format("each {}'s moment and the {}", f.wording.input,
-                                         f.wording.axes.front().position));
+                                        f.wording.axes.front().position));
   table.rows.push_back(
       {"latent force still needed, " + f.wording.ofForce, numberText(f.verdict.latentSizeBefore, 2),
        numberText(f.verdict.latentSizeAfter, 2), fmt::format("≤ {}", f.options.latentTolerance)});

@@ -38,8 +38,8 @@ class Writer {
     const bool excessOfHeldOut = f_.verdict.heldOut.has_value();
     const ExcessError& gap = excessOfHeldOut ? *f_.verdict.heldOut : f_.verdict.gap;
     if (gap.closedFromCalibrated && !f_.verdict.effects.empty()) {
-      report_.verdict +=
-          " " + excessErrorWords(gap, f_.wording.unit, symbolOf(f_.wording.gapUnit), excessOfHeldOut);
+      report_.verdict += " " + excessErrorWords(gap, f_.wording.unit, symbolOf(f_.wording.gapUnit),
+                                                excessOfHeldOut);
     }
     const int first = f_.options.heldOut.empty() ? 0 : f_.options.heldOut.front();
     bool hasMain = false;
@@ -159,12 +159,13 @@ class Writer {
                  ? fmt::format("On {} it shifts the sensor's reading by {} (RMS).", motion, moved)
                  : "";
     }
-    return fmt::format(
-        "On {0} its {1} is {2} (RMS; largest {3}), which is {4} % of the muscles' net {1}. Leaving "
-        "it out changes the simulated motion by {5} (RMS).",
-        motion, axis.forceUnit == "N·m" ? "moment" : "force",
-        withUnit(size.moment.rms, axis.forceUnit, 2), withUnit(size.moment.peak, axis.forceUnit, 2),
-        numberText(100 * size.moment.share, 2), moved);
+    std::string text = fmt::format(
+        "On {0} its {1} is {2} (RMS; largest {3}), which is {4} % of the muscles' net {1}.", motion,
+        axis.forceUnit == "N·m" ? "moment" : "force", withUnit(size.moment.rms, axis.forceUnit, 2),
+        withUnit(size.moment.peak, axis.forceUnit, 2), numberText(100 * size.moment.share, 2));
+    if (size.motionRms > 0)  // else it is prescribed
+      text += fmt::format(" Leaving it out changes the simulated motion by {} (RMS).", moved);
+    return text;
   }
 
   /// Each trial's figures, and the commands that make them.

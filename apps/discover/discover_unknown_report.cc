@@ -105,8 +105,7 @@ std::string namesAgainstForces(const DiscoverFindings& f) {
   if (!force || force->wins || f.verdict.effects.empty()) return "";
   return fmt::format(
       "A free-form force (any smooth function of the {} or of the speed alone) is {} nats {}.",
-      f.wording.axes[force->axis].position,
-      numberText(std::abs(force->ahead), 3),
+      f.wording.axes[force->axis].position, numberText(std::abs(force->ahead), 3),
       force->ahead > 0 ? "better than the named effects, too little to doubt them"
                        : "worse than the named effects");
 }

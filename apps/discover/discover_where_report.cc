@@ -140,8 +140,8 @@ std::vector<ReportPart> whereTheyDisagree(const DiscoverFindings& f) {
                 {f.wording.input, "score [standard deviations]", "significant"},
                 {}};
   for (const Score& one : map.inputs) {
-    muscles.rows.push_back(
-        {one.input + f.wording.named(one.axis), numberText(one.z, 3), one.significant ? "yes" : "no"});
+    muscles.rows.push_back({one.input + f.wording.named(one.axis), numberText(one.z, 3),
+                            one.significant ? "yes" : "no"});
   }
   parts.emplace_back(std::move(muscles));
   return parts;

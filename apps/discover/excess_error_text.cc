@@ -34,7 +34,9 @@ int percent(const ExcessError& gap) {
 }  // namespace
 
 std::string symbolOf(const std::string& unit) {
-  return unit == "deg" ? "°" : " " + unit;
+  if (unit == "deg") return "°";
+  if (unit.empty()) return "";
+  return unit == "sd" ? " sd of the noise" : " " + unit;
 }
 
 std::string excessErrorWords(const ExcessError& gap, double unit, const std::string& symbol,

@@ -17,7 +17,7 @@ std::string excessErrorWords(const info::discover::ExcessError& gap, double unit
 /// The same as a cell of a table: "at the noise floor", "87 %", "none".
 std::string excessErrorCell(const info::discover::ExcessError& gap);
 
-/// "°" for deg, else the unit after a space.
+/// "°" for deg, " sd of the noise" for sd, else the unit after a space.
 std::string symbolOf(const std::string& unit);
 
 }  // namespace app

@@ -155,8 +155,7 @@ std::vector<std::string> coordinatesInQuestion(const SimulationOptions& simulati
                                                const std::vector<bio::Trial>& trials) {
   if (!simulation.coordinates.empty()) return simulation.coordinates;
   std::vector<std::string> held = simulation.prescribed;
-  held.insert(held.end(), simulation.prescribedByModel.begin(),
-              simulation.prescribedByModel.end());
+  held.insert(held.end(), simulation.prescribedByModel.begin(), simulation.prescribedByModel.end());
   for (const auto& [name, value] : simulation.held) held.push_back(name);
   std::vector<std::string> names;
   for (const std::string& name : held) {
@@ -187,8 +186,8 @@ ModelDiscovery discoverInModel(ModelDiscoveryRequest request, const CommandConte
   std::vector<bio::Trial> trials;
   for (const std::string& file : files) {
     summary.addInput(file);
-    trials.push_back(
-        readTrialFile(file, model, request.simulation, {.experimentalConditions = true, .channels = true}));
+    trials.push_back(readTrialFile(file, model, request.simulation,
+                                   {.experimentalConditions = true, .channels = true}));
     for (const std::string& warning : trials.back().warnings) summary.warn(warning);
   }
   inputsMustDiffer(summary, request.trials.size());
@@ -204,8 +203,7 @@ ModelDiscovery discoverInModel(ModelDiscoveryRequest request, const CommandConte
   asked.search = engineOptions(request.maxEffects, request.inputScatter);
   asked.problem.sensors = outputsOf(trials, arm, coordinates);
   std::vector<ShownOutput> outputs;
-  for (const bio::Observable& what : asked.problem.sensors)
-    outputs.push_back(shownOf(what, model));
+  for (const bio::Observable& what : asked.problem.sensors) outputs.push_back(shownOf(what, model));
   asked.search.outputSd = noiseOf(request, outputs);
   asked.provenance = provenanceOf(summary);
   WatchedSearch watch(context.quiet);

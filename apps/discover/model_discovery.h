@@ -13,16 +13,16 @@ namespace app {
 
 /// A request to find the effect that a model lacks.
 struct ModelDiscoveryRequest {
-  std::string model;                   ///< file
-  std::vector<std::string> trials;     ///< files, with a measured coordinate
-  std::vector<std::string> heldOut;    ///< files of held-out trials
-  std::vector<std::string> without;    ///< ids of effects to leave out of the catalogue
+  std::string model;                 ///< file
+  std::vector<std::string> trials;   ///< files, with a measured coordinate
+  std::vector<std::string> heldOut;  ///< files of held-out trials
+  std::vector<std::string> without;  ///< ids of effects to leave out of the catalogue
   /// Standard deviation of every measured angle [deg], or of the position that is measured alone
   /// [m].
   std::optional<double> noise;
   std::vector<std::string> outputNoise;  ///< NAME=VALUE, in the unit in which that output is shown
-  int maxEffects = 3;                  ///< largest number of effects in one hypothesis
-  std::optional<double> inputScatter;  ///< of --input-scatter
+  int maxEffects = 3;                    ///< largest number of effects in one hypothesis
+  std::optional<double> inputScatter;    ///< of --input-scatter
   SimulationOptions simulation;
 };
 

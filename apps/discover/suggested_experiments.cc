@@ -67,12 +67,11 @@ std::string followUp(const info::discover::DiscoveryProblem& data,
     for (const Intervention& one : known.interventions) {
       const long touched =
           std::count_if(effect.equals.begin(), effect.equals.end(), [&](std::size_t c) {
-            return std::any_of(
-                one.separates.begin(), one.separates.end(),
-                [&](const std::string& id) {
-                  return candidates[c].id.starts_with(id) ||
-                         withoutOwner(candidates[c].id).starts_with(id);
-                });
+            return std::any_of(one.separates.begin(), one.separates.end(),
+                               [&](const std::string& id) {
+                                 return candidates[c].id.starts_with(id) ||
+                                        withoutOwner(candidates[c].id).starts_with(id);
+                               });
           });
       if (touched > most) {
         most = touched;

@@ -32,7 +32,7 @@ std::vector<std::string> namesOfDiscovery(std::size_t training, std::size_t held
 /// The result of a search with what was asked.
 struct DiscoveryToWrite {
   const ModelDiscoveryRequest& request;
-  const std::vector<std::string>& files;   ///< of all trials, held-out ones last
+  const std::vector<std::string>& files;  ///< of all trials, held-out ones last
   const DiscoverWording& wording;
   bio::discover::DiscoveryResult& result;  ///< its repaired model gets the starts of driven_N.sto
 };

@@ -53,12 +53,11 @@ DiscoverWording wordingOf(const RobotProblem& data) {
     const auto& channel = data.model().channels[c];
     const bool isAngle = channel.unit == "rad";
     angles = angles && isAngle;
-    wording.outputs.push_back(
-        {channel.name, isAngle ? "deg" : channel.unit, isAngle ? radian : 1});
+    wording.outputs.push_back({channel.name, isAngle ? "deg" : channel.unit, isAngle ? radian : 1});
   }
   const ShownOutput first = wording.outputs.front();
-  wording.axes = {{first.name, first.unit, first.scale, "angle", "Acceleration of the cart [m/s²]",
-                   "m/s²"}};
+  wording.axes = {
+      {first.name, first.unit, first.scale, "angle", "Acceleration of the cart [m/s²]", "m/s²"}};
   wording.unit = angles ? radian : 1;
   wording.gapUnit = first.unit;
   wording.gapEnd = angles ? "_deg" : "_N";

@@ -144,7 +144,8 @@ info::discover::Whitening noiseOf(const GivenNoise& given, const bio::Model& mod
                       "or for nothing",
                       name));
     const double sd = own == byName.end() ? *ofAll : own->second;
-    if (!(sd > 0)) throw std::invalid_argument(fmt::format("noise: {} = {}, must be > 0", name, sd));
+    if (!(sd > 0))
+      throw std::invalid_argument(fmt::format("noise: {} = {}, must be > 0", name, sd));
     sds[static_cast<Eigen::Index>(o)] = sd;
     if (own != byName.end()) byName.erase(own);
   }

@@ -46,10 +46,10 @@ py::object unknownOf(const DiscoveryProblem& data, const Verdict& verdict) {
                     "gap_held_out"_a = race.heldOut ? excessErrorOf(*race.heldOut) : py::none());
   }
   const info::discover::Unknown& unknown = *verdict.unknown;
-  return results("axis"_a = data.axes()[unknown.axis].name, "formula"_a = unknown.formula, "stable"_a = unknown.stable,
-                 "evidence"_a = unknown.evidence, "explained"_a = unknown.explained,
-                 "peak_frequency"_a = unknown.peakFrequency, "rms"_a = unknown.forceSize,
-                 "raced"_a = raced);
+  return results("axis"_a = data.axes()[unknown.axis].name, "formula"_a = unknown.formula,
+                 "stable"_a = unknown.stable, "evidence"_a = unknown.evidence,
+                 "explained"_a = unknown.explained, "peak_frequency"_a = unknown.peakFrequency,
+                 "rms"_a = unknown.forceSize, "raced"_a = raced);
 }
 
 /// The best smooth force of the angle or the speed alone, beside the names.
@@ -62,9 +62,9 @@ py::object nonparametricForceOf(const DiscoveryProblem& data, const Verdict& ver
   const bool isAngle =
       force.follows == info::discover::NonparametricForce::Follows::position && axis.unit == "rad";
   return results("axis"_a = axis.name,
-                 "follows"_a = isAngle ? "angle" : info::discover::name(force.follows), "beside"_a = besides,
-                 "log_bayes_factor"_a = force.logBayesFactor, "nats_ahead_of_names"_a = force.ahead,
-                 "wins"_a = force.wins,
+                 "follows"_a = isAngle ? "angle" : info::discover::name(force.follows),
+                 "beside"_a = besides, "log_bayes_factor"_a = force.logBayesFactor,
+                 "nats_ahead_of_names"_a = force.ahead, "wins"_a = force.wins,
                  "at"_a = Eigen::VectorXd(Eigen::VectorXd::Map(
                      force.at.data(), static_cast<Eigen::Index>(force.at.size()))),
                  "force"_a = force.force, "sd"_a = force.sd);

@@ -70,6 +70,9 @@ TEST(GapWords, HaveTheUnitThatIsShown) {
   EXPECT_EQ(excessErrorWords(gap(0.3, 0.32, 0.05), 10, symbolOf("N"), false),
             "None of the excess error is explained (3.2 N, noise 0.5 N).");
   EXPECT_EQ(symbolOf("deg"), "°");
+  EXPECT_EQ(symbolOf(""), "");
+  EXPECT_EQ(excessErrorWords(gap(9.9, 0.98, 1), 1, symbolOf("sd"), false),
+            "The residual is at the noise floor (0.98 sd of the noise).");
 }
 
 }  // namespace

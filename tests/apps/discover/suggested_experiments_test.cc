@@ -8,10 +8,10 @@ namespace app {
 namespace {
 
 /// All that is suggested for a shipped model, one line each.
-std::string suggested(const std::string& model, const std::string& coordinate) {
+std::string suggested(const std::string& model, const std::vector<std::string>& coordinates) {
   const bio::discover::EncompassingModel of(
       bio::readOsim(FISHERHILL_SOURCE_DIR "/models/" + model + ".osim"),
-      bio::SystemOptions{{{coordinate}, {}}, {}, {}}, coordinate);
+      bio::SystemOptions{{coordinates, {}}, {}, {}}, coordinates);
   const FollowUps known = followUpsOfModels(of);
   std::string all = known.otherwise + "\n" + known.ifUnknown + "\n" + known.ifNamed;
   for (const Intervention& one : known.interventions) all += "\n" + one.sentence;
@@ -19,12 +19,14 @@ std::string suggested(const std::string& model, const std::string& coordinate) {
 }
 
 TEST(SuggestedExperiments, PutAMassWhereTheLimbEnds) {
-  const std::string arm = suggested("elbow8", "elbow_flexion");
+  const std::string arm = suggested("elbow8", {"elbow_flexion"});
   EXPECT_THAT(arm, testing::HasSubstr("with a known mass, e.g. 1 kg, in the hand: the effect of "
                                       "gravity grows with it, a force on the hand does not."));
   EXPECT_THAT(arm, testing::HasSubstr("and with a known mass in the hand: these data cannot"));
   EXPECT_THAT(arm, testing::HasSubstr("(column elbow_flexion.torque)"));
-  const std::string leg = suggested("ankle_ta", "ankle_angle");
+  EXPECT_THAT(suggested("elbow8", {"elbow_flexion", "shoulder_elv"}),
+              testing::HasSubstr("(column elbow_flexion.torque or shoulder_elv.torque)"));
+  const std::string leg = suggested("ankle_ta", {"ankle_angle"});
   EXPECT_THAT(leg, testing::HasSubstr("with a known mass, e.g. 1 kg, on foot: the effect of "
                                       "gravity grows with it, a force on foot does not."));
   EXPECT_THAT(leg, testing::HasSubstr("and with a known mass on foot: these data cannot"));

@@ -1,6 +1,8 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -258,6 +260,42 @@ TEST(VerdictSchema, HoldsWhatIsFoundInAnArmAndNothingElse) {
   changed = verdict;
   changed["verdict"] = "perhaps";
   EXPECT_THAT(verdictSchema().errorsOf(changed), HasSubstr("verdict"));
+}
+
+// Several outputs, of several units; and a moment alone, of a prescribed motion.
+TEST(VerdictSchema, HoldsWhatIsFoundInSeveralOutputsAndInAMoment) {
+  const ScratchFolder scratch;
+  std::string both = "time,TA,ankle_angle,ankle_angle.speed\n", moment =
+                                                                    "time,TA,ankle_angle,"
+                                                                    "ankle_angle.moment\n";
+  for (int k = 0; k <= 100; ++k) {
+    const double t = 0.01 * k, u = 0.1 + 0.1 * std::sin(5 * t), q = -0.3 + 0.1 * std::sin(4 * t);
+    const std::string row = fmt::format("{},{},{},", t, u, q);
+    both += row + fmt::format("{}\n", 0.4 * std::cos(4 * t));
+    moment += row + fmt::format("{}\n", 3 + std::sin(5 * t));
+  }
+  const std::string ankle = sourceTree + "/models/ankle_ta.osim";
+  const std::string out = (scratch / "out").string();
+  const auto verdictOf = [&](const std::string& trial, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {
+        "discover", ankle,    scratch.file("trial.csv", trial), "--max-effects", "1", "--out",
+        out,        "--force"};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProgramResult result = runFisherHill(words);
+    EXPECT_LE(result.status, 1) << result.err;
+    return checkedVerdict(out);
+  };
+  json verdict = verdictOf(both, {"--noise", "ankle_angle=1", "--noise", "ankle_angle.speed=0.05"});
+  EXPECT_EQ(verdict["outputs"].size(), 2u);
+  EXPECT_TRUE(verdict["gap"]["train"].contains("rmse_after_sd"));
+  for (const char* pointer : {"/outputs/0", "/gap/train", "/trials/0"}) {
+    json changed = verdict;
+    changed.at(json::json_pointer(pointer))["no_such_key"] = 1;
+    EXPECT_NE(verdictSchema().errorsOf(changed), "") << pointer;
+  }
+  verdict = verdictOf(moment, {"--prescribe", "ankle_angle", "--noise", "ankle_angle.moment=0.3"});
+  EXPECT_TRUE(verdict["gap"]["train"].contains("rmse_after_Nm"));
+  EXPECT_EQ(verdict["trials"][0]["starts"].size(), 0u);
 }
 
 TEST(VerdictSchema, HoldsWhatIsFoundInARobot) {
