@@ -3,11 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <stdexcept>
-
-#include "simulation/integrators.h"
 
 namespace bio::discover {
 
@@ -58,107 +55,6 @@ std::string EncompassingModel::idAt(const MovingCoordinate& at, const std::strin
 
 std::string EncompassingModel::idOf(std::size_t sensor, const std::string& id) const {
   return sensors_.size() == 1 ? id : nameOf(sensors_.at(sensor)) + "." + id;
-}
-
-namespace {
-
-/// A segment's placement in ground, and its first derivative in one coordinate.
-struct Movement {
-  Placement<double> at, derivative;
-};
-
-Movement movement(const MusculoskeletalSystem& arm, std::size_t segment, int freeIndex, double q) {
-  return stepping::withCoordinates(arm.skeleton(), [&](auto N) {
-    Eigen::Matrix<double, decltype(N)::value, 1> at = arm.skeleton().defaultValues();
-    at[freeIndex] = q;
-    SystemConfiguration<decltype(N)::value> configuration(arm);
-    configuration.moveTo(at);
-    if constexpr (decltype(N)::value == Eigen::Dynamic) {
-      return Movement{configuration.placement(segment), configuration.change(segment, freeIndex)};
-    } else {
-      const auto& motion = configuration.motions()[segment];
-      return Movement{Placement<double>(motion.value),
-                      Placement<double>(motion.first[static_cast<std::size_t>(freeIndex)])};
-    }
-  });
-}
-
-}  // namespace
-
-Vector3d EncompassingModel::positionOf(const std::string& body, const Vector3d& point,
-                                       double q) const {
-  const BodyPlacement& place = arm_->skeleton().placeOf(body);
-  const Vector3d inSegment = place.X_SB.R * point + place.X_SB.p;
-  if (place.segment == 0) return inSegment;
-  const Placement<double> X = movement(*arm_, place.segment, freeIndex(), q).at;
-  return X.R * inSegment + X.p;
-}
-
-namespace {
-
-/// ∂(mass centre of a body in ground)/∂q
-Vector3d centreIn(const Model& model, const BodyPlacement& place, const std::string& body,
-                  const Placement<double>& derivative) {
-  const Vector3d center = place.X_SB.R * findBody(model, body).massCenter + place.X_SB.p;
-  return derivative.R * center + derivative.p;
-}
-
-}  // namespace
-
-Vector3d EncompassingModel::velocityOf(const std::string& body, double q) const {
-  const BodyPlacement& place = arm_->skeleton().placeOf(body);
-  if (place.segment == 0) return Vector3d::Zero();
-  return centreIn(base_, place, body, movement(*arm_, place.segment, freeIndex(), q).derivative);
-}
-
-void EncompassingModel::findBodies(MovingCoordinate& at) const {
-  for (const Body& body : base_.bodies) {
-    const BodyPlacement& place = arm_->skeleton().placeOf(body.name);
-    if (place.segment == 0 || !(body.mass > 0)) continue;
-    const Movement moved = movement(*arm_, place.segment, at.index, at.middle());
-    const Eigen::Matrix3d turn = moved.derivative.R * moved.at.R.transpose();  // ω×
-    const Vector3d omega(turn(2, 1), turn(0, 2), turn(1, 0));
-    const Vector3d centre = centreIn(base_, place, body.name, moved.derivative);
-    if (omega.norm() < 1e-9 && centre.norm() < 1e-9) continue;
-    at.movedBodies.push_back(body.name);
-    if (omega.norm() > 0.5) at.axis = omega.normalized();
-  }
-}
-
-Eigen::MatrixXd EncompassingModel::momentArms(const MusculoskeletalSystem& arm) const {
-  const auto n = static_cast<Index>(arm.numMuscles());
-  Eigen::MatrixXd result(n, static_cast<Index>(coordinates_.size()));
-  for (std::size_t k = 0; k < coordinates_.size(); ++k) {
-    VectorXd q = arm.skeleton().defaultValues();
-    q[coordinates_[k].index] = coordinates_[k].middle();
-    Trajectory still;
-    still.time = {0};
-    still.q = q;
-    still.qDot = VectorXd::Zero(q.size());
-    still.fibreLength = VectorXd::Ones(n);
-    still.activation = VectorXd::Zero(n);
-    result.col(static_cast<Index>(k)) = reportMuscles(arm, still, coordinates_[k].index).momentArm;
-  }
-  return result;
-}
-
-void EncompassingModel::findGroups() {
-  const Eigen::MatrixXd all = momentArms(*arm_);
-  for (std::size_t i = 0; i < arm_->numMuscles(); ++i) {
-    const std::string& muscle = arm_->muscles()[i].name;
-    std::size_t length = 0;
-    while (length < muscle.size() && std::isupper(static_cast<unsigned char>(muscle[length]))) {
-      ++length;
-    }
-    const std::string name = length > 0 ? muscle.substr(0, length) : muscle;
-    auto at = std::find_if(groups_.begin(), groups_.end(),
-                           [&](const MuscleGroup& group) { return group.name == name; });
-    if (at == groups_.end())
-      at = groups_.insert(groups_.end(), MuscleGroup{name, {}, VectorXd::Zero(all.cols())});
-    at->muscles.push_back(i);
-    at->momentArms += all.row(static_cast<Index>(i)).transpose();
-  }
-  for (MuscleGroup& group : groups_) group.momentArms /= static_cast<double>(group.muscles.size());
 }
 
 bool EncompassingModel::knows(const std::string& id) const {

@@ -1,0 +1,218 @@
+// Simulations of the trials of a MusculoskeletalProblem.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "bio/analysis/inverse_dynamics.h"
+#include "bio/analysis/replay.h"
+#include "bio/discovery/musculoskeletal_problem.h"
+#include "bio/sensitivity/coupled_sensitivity.h"
+#include "discovery/sensed_motion.h"
+
+namespace bio::discover {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+VectorXd MusculoskeletalProblem::timedForce(int trial, const VectorXd& values) const {
+  return withTimedForces(of(trial), values, {});
+}
+
+VectorXd MusculoskeletalProblem::withTimedForces(const OfTrial& one, const VectorXd& values,
+                                                 const VectorXd& latent) const {
+  VectorXd sum = latent;
+  for (const TimedForce& force : encompassing_.timedForces()) {
+    const double size = values[static_cast<Index>(force.amplitude)];
+    if (size == 0) continue;
+    if (sum.size() == 0) sum = VectorXd::Zero(static_cast<Index>(one.nodes.size()));
+    const auto numTimes = static_cast<Index>(one.nodeTimes.size());
+    const Index first = static_cast<Index>(force.coordinate) * numTimes;
+    for (Index k = 0; k < numTimes; ++k) {
+      const double share = timedShare(one.nodeTimes[static_cast<std::size_t>(k)],
+                                      values[static_cast<Index>(force.time)], force.ends)
+                               .value;
+      sum[first + k] += size * share * (force.of == TimedForce::Of::mass ? one.heldMass[k] : 1.0);
+    }
+  }
+  return sum;
+}
+
+MatrixXd MusculoskeletalProblem::timedDirections(const OfTrial& one, const VectorXd& values,
+                                                 const std::vector<std::size_t>& wanted) const {
+  MatrixXd nodes;
+  for (std::size_t j = 0; j < wanted.size(); ++j) {
+    for (const TimedForce& force : encompassing_.timedForces()) {
+      if (wanted[j] != force.amplitude && wanted[j] != force.time) continue;
+      const auto rows = static_cast<Index>(one.nodes.size());
+      if (nodes.size() == 0) nodes = MatrixXd::Zero(rows, static_cast<Index>(wanted.size()));
+      const double size = values[static_cast<Index>(force.amplitude)];
+      const auto numTimes = static_cast<Index>(one.nodeTimes.size());
+      const Index first = static_cast<Index>(force.coordinate) * numTimes;
+      for (Index k = 0; k < numTimes; ++k) {
+        const TimedShare share = timedShare(one.nodeTimes[static_cast<std::size_t>(k)],
+                                            values[static_cast<Index>(force.time)], force.ends);
+        const double weight = force.of == TimedForce::Of::mass ? one.heldMass[k] : 1.0;
+        nodes(first + k, static_cast<Index>(j)) =
+            weight * (wanted[j] == force.amplitude ? share.value : size * share.inTime);
+      }
+    }
+  }
+  return nodes;
+}
+
+ParameterCatalogue::Setting MusculoskeletalProblem::settingAt(
+    const OfTrial& one, const VectorXd& values, const std::vector<std::size_t>& wanted) const {
+  if (values.size() != static_cast<Index>(quantities_.size())) {
+    throw std::invalid_argument(fmt::format("{} values for {} quantities, must be as many",
+                                            values.size(), quantities_.size()));
+  }
+  const auto own = static_cast<Index>(encompassing_.quantities().size());
+  ParameterCatalogue::Setting setting =
+      encompassing_.settingAt(values.head(own) + one.known, wanted);
+  for (const Start& start : one.starts) {
+    const int c = encompassing_.coordinates()[start.coordinate].index;
+    SensorLaw sensor;
+    if (start.sensor >= 0)
+      sensor = encompassing_.sensorAt(values, static_cast<std::size_t>(start.sensor));
+    setting.start.q[c] =
+        (values[static_cast<Index>(start.angle)] - sensor.bias) / (1 + sensor.gain);
+    setting.start.qDot[c] = values[static_cast<Index>(start.speed)];
+  }
+  if (!encompassing_.arm().prescribed().empty())
+    one.prescribed.place(one.trial.times[0], setting.start.q, setting.start.qDot);
+  return setting;
+}
+
+SimulationOptions MusculoskeletalProblem::simulationOf(const OfTrial& one, const VectorXd& values,
+                                                       const VectorXd& latent) const {
+  SimulationOptions simulation = options_.simulation;
+  simulation.startTime = one.trial.times[0];
+  // a sensor may look behind the last sample
+  double end = one.times.back();
+  for (const Series& series : one.series) {
+    const SensorLaw sensor = encompassing_.sensorAt(values, series.sensor);
+    end = std::max(end, sensor.measuredAt(series.times.back(), simulation.startTime));
+  }
+  if (!encompassing_.arm().prescribed().empty())
+    end = std::min(end, one.trial.times[one.trial.times.size() - 1]);  // beyond, none is given
+  simulation.duration = end - simulation.startTime;
+  simulation.prescribed = one.prescribed;
+  simulation.progress = {};
+  simulation.externalForce = one.external;
+  if (latent.size() == 0) return simulation;
+  if (latent.size() != static_cast<Index>(one.nodes.size())) {
+    throw std::invalid_argument(
+        fmt::format("{} values of the latent force for {} nodes, must be as many", latent.size(),
+                    one.nodes.size()));
+  }
+  const auto numTimes = static_cast<Index>(one.nodeTimes.size());
+  MatrixXd forces = MatrixXd::Zero(numTimes, encompassing_.arm().skeleton().numCoordinates());
+  for (std::size_t axis = 0; axis < axes_.size(); ++axis)
+    forces.col(encompassing_.coordinates()[axis].index) =
+        latent.segment(static_cast<Index>(axis) * numTimes, numTimes);
+  simulation.externalForce = sum(simulation.externalForce, {one.nodeTimes, forces});
+  return simulation;
+}
+
+// The arm may have muscles that the base model switched off.
+ExcitationSignal MusculoskeletalProblem::excitationFor(const OfTrial& one,
+                                                       const MusculoskeletalSystem& arm) const {
+  return arm.numMuscles() == encompassing_.arm().numMuscles() ? one.excitation
+                                                              : excitationOf(one.trial, arm);
+}
+
+Trajectory MusculoskeletalProblem::simulate(const OfTrial& one, const VectorXd& values,
+                                            const VectorXd& latent, double stepFactor,
+                                            const std::vector<Nudge>* nudges) const {
+  ParameterCatalogue::Setting setting = settingAt(one, values, {});
+  SimulationOptions simulation = simulationOf(one, values, withTimedForces(one, values, latent));
+  if (nudges) {
+    for (const Nudge& nudge : *nudges) apply(nudge, setting.model, simulation.externalForce);
+  }
+  simulation.step *= stepFactor;
+  const MusculoskeletalSystem arm = encompassing_.armOf(setting);
+  return simulateSetting(arm, setting, excitationFor(one, arm), simulation);
+}
+
+VectorXd MusculoskeletalProblem::outputsOf(const OfTrial& one, const VectorXd& values,
+                                           const VectorXd& latent, double stepFactor,
+                                           const std::vector<Nudge>* nudges) const {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  VectorXd y = VectorXd::Constant(static_cast<Index>(one.times.size()), nan);
+  try {
+    const Trajectory motion = simulate(one, values, latent, stepFactor, nudges);
+    const MusculoskeletalSystem system = encompassing_.armOf(settingAt(one, values, {}));
+    const std::vector<SensedMotion> sensors = sensedBy(system, one, values);
+    for (std::size_t i = 0; i < sensors.size(); ++i)
+      y(one.series[i].samples) = sensors[i].shown(motion).values;
+  } catch (const std::exception&) {
+    y.setConstant(nan);  // outside its domain
+  }
+  return y;
+}
+
+std::vector<SensedMotion> MusculoskeletalProblem::sensedBy(const MusculoskeletalSystem& system,
+                                                           const OfTrial& one,
+                                                           const VectorXd& values) const {
+  std::vector<SensedMotion> sensors;
+  for (const Series& series : one.series) {
+    sensors.emplace_back(system, encompassing_.sensors()[series.sensor],
+                         encompassing_.sensorAt(values, series.sensor), series.times,
+                         one.trial.times[0]);
+  }
+  return sensors;
+}
+
+VectorXd MusculoskeletalProblem::outputs(int trial, const VectorXd& values,
+                                         const VectorXd& latent) const {
+  return outputsOf(of(trial), values, latent, 1, nullptr);
+}
+
+VectorXd MusculoskeletalProblem::refinedOutputs(int trial, const VectorXd& values) const {
+  return outputsOf(of(trial), values, {}, 0.5, nullptr);
+}
+
+Trajectory MusculoskeletalProblem::motion(int trial, const VectorXd& values) const {
+  return simulate(of(trial), values, {}, 1, nullptr);
+}
+
+Trajectory MusculoskeletalProblem::inverseDynamics(int trial, const VectorXd& values,
+                                                   const Trajectory& motion) const {
+  const OfTrial& one = of(trial);
+  const ParameterCatalogue::Setting setting = settingAt(one, values, {});
+  MusculoskeletalSystem system = encompassing_.armOf(setting);
+  const ExcitationSignal driven =
+      drivenExcitation(excitationFor(one, system), muscleNames(system), setting.mapping);
+  return bio::inverseDynamics(std::move(system), driven, motion.time, motion.q,
+                              simulationOf(one, values, withTimedForces(one, values, {})));
+}
+
+MusculoskeletalSystem MusculoskeletalProblem::armAt(int trial, const VectorXd& values) const {
+  return encompassing_.armOf(settingAt(of(trial), values, {}));
+}
+
+std::vector<TrialStart> MusculoskeletalProblem::startsAt(int trial, const VectorXd& values) const {
+  const OfTrial& one = of(trial);
+  const StartPoint point = settingAt(one, values, {}).start;
+  std::vector<TrialStart> starts;
+  for (const Start& start : one.starts) {
+    const MovingCoordinate& at = encompassing_.coordinates()[start.coordinate];
+    starts.push_back({one.trial.file, one.trial.sha256, at.coordinate.name, point.q[at.index],
+                      point.qDot[at.index]});
+  }
+  return starts;
+}
+
+std::string MusculoskeletalProblem::failure(int trial, const VectorXd& values) const {
+  try {
+    return simulate(of(trial), values, {}, 1, nullptr).why;
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
+}  // namespace bio::discover
