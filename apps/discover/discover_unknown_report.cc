@@ -47,7 +47,7 @@ std::string besides(const DiscoverFindings& f, const NonparametricForce& force) 
 
 Figure curve(const DiscoverFindings& f, const NonparametricForce& force) {
   const bool position = force.follows == NonparametricForce::Follows::position;
-  const ShownAxis& axis = f.wording.axes[force.axis];
+  const ShownAxis& axis = f.wording.axes.at(force.axis);
   const std::string names = besides(f, force);
   Figure figure{
       .title = "Free-form force" + f.wording.named(force.axis),
@@ -79,8 +79,8 @@ std::vector<ReportPart> withoutName(const DiscoverFindings& f) {
   parts.emplace_back(Section{"Effect outside the catalogue"});
   parts.emplace_back(Paragraph{fmt::format(
       "The missing force{} has an RMS of {} {}; {} % of its power lies within 0.5 Hz of {} Hz.",
-      f.wording.axes.size() > 1 ? " on " + f.wording.axes[u.axis].name : "",
-      numberText(u.forceSize, 3), f.wording.axes[u.axis].forceUnit,
+      f.wording.axes.size() > 1 ? " on " + f.wording.axes.at(u.axis).name : "",
+      numberText(u.forceSize, 3), f.wording.axes.at(u.axis).forceUnit,
       numberText(100 * u.peakShare, 2), numberText(u.peakFrequency, 2))});
   if (!u.formula.empty()) parts.emplace_back(formulaOf(u));
   if (f.verdict.formula) parts.emplace_back(raced(f, *f.verdict.formula));
@@ -89,7 +89,7 @@ std::vector<ReportPart> withoutName(const DiscoverFindings& f) {
         "A free-form force of the {}{} alone explains the data better than {} (log Bayes factor {} "
         "nats)",
         followedBy(f, *f.verdict.nonparametric),
-        f.wording.axes.size() > 1 ? " of " + f.wording.axes[f.verdict.nonparametric->axis].name
+        f.wording.axes.size() > 1 ? " of " + f.wording.axes.at(f.verdict.nonparametric->axis).name
                                   : "",
         f.verdict.effects.empty() ? "the model without it" : "the effects above",
         numberText(f.verdict.nonparametric->ahead, 3));
@@ -105,7 +105,7 @@ std::string namesAgainstForces(const DiscoverFindings& f) {
   if (!force || force->wins || f.verdict.effects.empty()) return "";
   return fmt::format(
       "A free-form force (any smooth function of the {} or of the speed alone) is {} nats {}.",
-      f.wording.axes[force->axis].position, numberText(std::abs(force->ahead), 3),
+      f.wording.axes.at(force->axis).position, numberText(std::abs(force->ahead), 3),
       force->ahead > 0 ? "better than the named effects, too little to doubt them"
                        : "worse than the named effects");
 }

@@ -49,7 +49,7 @@ ordered_json excessErrorJson(const DiscoverFindings& f, const ExcessError& gap) 
 
 /// Names the axis that something belongs to, where there are several.
 void addAxis(const DiscoverFindings& f, std::size_t axis, ordered_json& json) {
-  if (f.wording.axes.size() > 1) json["axis"] = f.wording.axes[axis].name;
+  if (f.wording.axes.size() > 1) json["axis"] = f.wording.axes.at(axis).name;
 }
 
 ordered_json localisationJson(const DiscoverFindings& f) {
@@ -67,7 +67,7 @@ ordered_json localisationJson(const DiscoverFindings& f) {
   }
   for (const Score& one : map.cells) {
     if (!one.significant || !f.wording.hasMap) continue;
-    const double unit = f.wording.axes[one.axis].scale;
+    const double unit = f.wording.axes.at(one.axis).scale;
     json["state_regions"].push_back({{"from", {unit * one.lowerQ, unit * one.lowerQDot}},
                                      {"to", {unit * one.upperQ, unit * one.upperQDot}},
                                      {"score", orNull(one.z)}});
@@ -200,7 +200,7 @@ ordered_json replicationJson(const DiscoverFindings& f) {
 
 ordered_json positionBreakJson(const DiscoverFindings& f) {
   const info::discover::PositionBreak& found = *f.written->positionBreak;
-  const ShownAxis& axis = f.wording.axes[found.axis];
+  const ShownAxis& axis = f.wording.axes.at(found.axis);
   ordered_json json{{"position" + axis.end(), orNull(axis.scale * found.position)},
                     {"side", found.above ? "above" : "below"},
                     {"force_before", orNull(found.before)},
@@ -260,7 +260,7 @@ void addUnknown(const DiscoverFindings& f, ordered_json& json) {
                        {"same_in_every_trial", orNull(verdict.unknown->tie.share)},
                        {"step_at_s", orNull(verdict.unknown->tie.stepAt)},
                        {"step_explains", orNull(verdict.unknown->tie.stepShare)}};
-    const std::string& forceUnit = f.wording.axes[verdict.unknown->axis].forceUnit;
+    const std::string& forceUnit = f.wording.axes.at(verdict.unknown->axis).forceUnit;
     if (forceUnit == "N·m") {
       json["unknown"]["rms_Nm"] = orNull(verdict.unknown->forceSize);
     } else {
@@ -306,7 +306,7 @@ void tellNoise(const DiscoverFindings& f, Summary& summary) {
 
 std::string followedBy(const DiscoverFindings& f, const info::discover::NonparametricForce& force) {
   const bool isPosition = force.follows == info::discover::NonparametricForce::Follows::position;
-  return isPosition ? f.wording.axes[force.axis].position : info::discover::name(force.follows);
+  return isPosition ? f.wording.axes.at(force.axis).position : info::discover::name(force.follows);
 }
 
 void tellFindings(const DiscoverFindings& f, Summary& summary) {

@@ -54,7 +54,7 @@ std::string scoreMap(const DiscoverFindings& f, std::size_t axis) {
     lowV = std::min(lowV, one.lowerQDot);
     highV = std::max(highV, one.upperQDot);
   }
-  const ShownAxis& shown = f.wording.axes[axis];
+  const ShownAxis& shown = f.wording.axes.at(axis);
   const double scale = shown.scale;
   constexpr double left = 110, right = 900, top = 10, bottom = 300;
   const auto x = [&](double q) { return left + (q - lowQ) / (highQ - lowQ) * (right - left); };
@@ -93,7 +93,7 @@ Figure missingForce(const DiscoverFindings& f, std::size_t axis) {
   const auto& map = f.verdict.localisation;
   Figure figure{.title = "Missing force" + f.wording.named(axis),
                 .xLabel = "Time [s]",
-                .yLabel = f.wording.axes[axis].force,
+                .yLabel = f.wording.axes.at(axis).force,
                 .caption =
                     "Posterior mean of the latent force of the base model, ±2 standard deviations. "
                     "It is found by smoothing; the measurements are not differentiated."};
@@ -124,7 +124,7 @@ std::vector<ReportPart> whereTheyDisagree(const DiscoverFindings& f) {
   for (std::size_t axis = 0; axis < axes; ++axis) parts.emplace_back(scoreOverTime(f, axis));
   if (f.wording.hasMap) {
     for (std::size_t axis = 0; axis < axes; ++axis) {
-      const ShownAxis& shown = f.wording.axes[axis];
+      const ShownAxis& shown = f.wording.axes.at(axis);
       parts.emplace_back(VectorDrawing{
           fmt::format("Score over {} and speed{}", shown.position, f.wording.named(axis)),
           scoreMap(f, axis),

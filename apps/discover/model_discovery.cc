@@ -22,28 +22,6 @@
 namespace app {
 namespace {
 
-/// The outputs of a search: the measured coordinates among those in question, then every other
-/// channel that a trial measures.
-std::vector<bio::Observable> outputsOf(const std::vector<bio::Trial>& trials,
-                                       const bio::SystemOptions& arm,
-                                       const std::vector<std::string>& coordinates) {
-  std::vector<bio::Observable> outputs;
-  const auto add = [&](const bio::Observable& what) {
-    if (std::find(outputs.begin(), outputs.end(), what) == outputs.end()) outputs.push_back(what);
-  };
-  for (const std::string& name : coordinates) {
-    if (std::find(arm.prescribed.begin(), arm.prescribed.end(), name) != arm.prescribed.end())
-      continue;
-    for (const bio::Trial& trial : trials)
-      if (trial.measurementOf(bio::ofCoordinate(name))) add(bio::ofCoordinate(name));
-  }
-  for (const bio::Trial& trial : trials) {
-    for (const bio::MeasuredChannel& channel : trial.measured)
-      if (!channel.what.isCoordinate()) add(channel.what);
-  }
-  return outputs;
-}
-
 ShownOutput shownOf(const bio::Observable& what, const bio::Model& model) {
   const std::string unit = bio::unitOf(what, model);
   if (unit == "rad") return {bio::nameOf(what), "deg", radian};
@@ -201,7 +179,7 @@ ModelDiscovery discoverInModel(ModelDiscoveryRequest request, const CommandConte
   asked.problem.simulation = simulationOptions(request.simulation, 0, 1);
   asked.problem.without = request.without;
   asked.search = engineOptions(request.maxEffects, request.inputScatter);
-  asked.problem.sensors = outputsOf(trials, arm, coordinates);
+  asked.problem.sensors = bio::discover::measuredOutputs(trials, arm, coordinates);
   std::vector<ShownOutput> outputs;
   for (const bio::Observable& what : asked.problem.sensors) outputs.push_back(shownOf(what, model));
   asked.search.outputSd = noiseOf(request, outputs);

@@ -107,27 +107,6 @@ std::vector<std::string> inQuestion(const SystemChoice& choice,
 /// A number for all angles, or for the only output; or numbers by name.
 using GivenNoise = std::variant<double, std::map<std::string, double>>;
 
-/// The outputs of a search, as MusculoskeletalProblem takes them from the trials.
-std::vector<bio::Observable> outputsOf(const std::vector<bio::Trial>& trials,
-                                       const SystemChoice& choice,
-                                       const std::vector<std::string>& coordinates) {
-  std::vector<bio::Observable> outputs;
-  const auto add = [&](const bio::Observable& what) {
-    if (std::find(outputs.begin(), outputs.end(), what) == outputs.end()) outputs.push_back(what);
-  };
-  const auto& held = choice.prescribed;
-  for (const std::string& name : coordinates) {
-    if (std::find(held.begin(), held.end(), name) != held.end()) continue;
-    for (const bio::Trial& trial : trials)
-      if (trial.measurementOf(bio::ofCoordinate(name))) add(bio::ofCoordinate(name));
-  }
-  for (const bio::Trial& trial : trials) {
-    for (const bio::MeasuredChannel& channel : trial.measured)
-      if (!channel.what.isCoordinate()) add(channel.what);
-  }
-  return outputs;
-}
-
 info::discover::Whitening noiseOf(const GivenNoise& given, const bio::Model& model,
                                   const std::vector<bio::Observable>& outputs) {
   const double* ofAll = std::get_if<double>(&given);
@@ -198,7 +177,8 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
   bio::requireDifferentTrials(trials, holdOut);
   trials.insert(trials.end(), holdOut.begin(), holdOut.end());
   const std::vector<std::string> coordinates = inQuestion(choice, trials);
-  const std::vector<bio::Observable> outputs = outputsOf(trials, choice, coordinates);
+  const std::vector<bio::Observable> outputs =
+      bio::discover::measuredOutputs(trials, choice.armOptions(), coordinates);
   bio::discover::DiscoveryRequest asked{model,
                                         choice.armOptions(),
                                         coordinates,

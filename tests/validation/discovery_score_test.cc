@@ -250,11 +250,17 @@ TEST(Score, SaysWhatChanceMakesOfATarget) {
   spread.atMost = false;
   EXPECT_TRUE(spread.within(2));
 
-  // of four or fewer, one must be
+  // of four or fewer, whose count tells nothing, the median misses by less than half
   for (const std::size_t count : {1u, 2u, 4u}) {
-    spread.values.assign(count, 0.5);
+    spread.atMost = false;
+    spread.values.assign(count, 0.6);
     EXPECT_FALSE(spread.within(2)) << count;
-    spread.values.back() = 1.5;
+    spread.values.assign(count, 0.7);
+    EXPECT_TRUE(spread.within(2)) << count;
+    spread.atMost = true;
+    spread.values.assign(count, 1.6);
+    EXPECT_FALSE(spread.within(2)) << count;
+    spread.values.assign(count, 1.4);
     EXPECT_TRUE(spread.within(2)) << count;
   }
   spread.values.clear();

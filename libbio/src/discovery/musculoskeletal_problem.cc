@@ -10,6 +10,7 @@
 #include "bio/analysis/replay.h"
 #include "bio/discovery/effects.h"
 #include "bio/discovery/with_experimental_conditions.h"
+#include "bio/sensitivity/coupled_sensitivity.h"
 #include "bio/tables/trial_review.h"
 
 namespace bio::discover {
@@ -19,28 +20,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-/// What the trials measure: the coordinates in question, then all other channels. Empty: nothing.
-std::vector<Observable> measuredIn(const std::vector<Trial>& trials, const SystemOptions& arm,
-                                   const std::vector<std::string>& coordinates) {
-  std::vector<Observable> sensors;
-  const auto add = [&](const Observable& what) {
-    if (std::find(sensors.begin(), sensors.end(), what) == sensors.end()) sensors.push_back(what);
-  };
-  for (const std::string& name : coordinates) {
-    const bool isPrescribed =
-        std::find(arm.prescribed.begin(), arm.prescribed.end(), name) != arm.prescribed.end();
-    const bool isMeasured = std::any_of(trials.begin(), trials.end(), [&](const Trial& trial) {
-      return trial.measurementOf(ofCoordinate(name));
-    });
-    if (isMeasured && !isPrescribed) add(ofCoordinate(name));
-  }
-  for (const Trial& trial : trials) {
-    for (const MeasuredChannel& channel : trial.measured)
-      if (!channel.what.isCoordinate()) add(channel.what);
-  }
-  return sensors;
-}
 
 std::vector<std::string> namesOf(const std::vector<MovingCoordinate>& coordinates) {
   std::vector<std::string> names;
@@ -69,14 +48,36 @@ SystemOptions withTables(SystemOptions arm) {
 
 }  // namespace
 
+std::vector<Observable> measuredOutputs(const std::vector<Trial>& trials, const SystemOptions& arm,
+                                        const std::vector<std::string>& coordinates) {
+  std::vector<Observable> sensors;
+  const auto add = [&](const Observable& what) {
+    if (std::find(sensors.begin(), sensors.end(), what) == sensors.end()) sensors.push_back(what);
+  };
+  for (const std::string& name : coordinates) {
+    const bool isPrescribed =
+        std::find(arm.prescribed.begin(), arm.prescribed.end(), name) != arm.prescribed.end();
+    const bool isMeasured = std::any_of(trials.begin(), trials.end(), [&](const Trial& trial) {
+      return trial.measurementOf(ofCoordinate(name));
+    });
+    if (isMeasured && !isPrescribed) add(ofCoordinate(name));
+  }
+  for (const Trial& trial : trials) {
+    for (const MeasuredChannel& channel : trial.measured)
+      if (!channel.what.isCoordinate()) add(channel.what);
+  }
+  return sensors;
+}
+
 MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemOptions& arm,
                                                const CoordinateNames& coordinates,
                                                std::vector<Trial> trials,
                                                MusculoskeletalProblemOptions options)
-    : encompassing_(encompassingModel(
-          model, withTables(arm), coordinates, options.without, options.formula,
-          options.formulaAxis,
-          options.sensors.empty() ? measuredIn(trials, arm, coordinates.all) : options.sensors)),
+    : encompassing_(encompassingModel(model, withTables(arm), coordinates, options.without,
+                                      options.formula, options.formulaAxis,
+                                      options.sensors.empty()
+                                          ? measuredOutputs(trials, arm, coordinates.all)
+                                          : options.sensors)),
       options_(std::move(options)),
       quantities_(encompassing_.quantities()),
       nuisances_(encompassing_.nuisances()) {

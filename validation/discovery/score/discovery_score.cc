@@ -70,8 +70,9 @@ bool Spread::within(double deviations) const {
     return atMost ? value <= bound : value >= bound;
   });
   const auto n = static_cast<double>(values.size());
-  return n == 0 ||
-         static_cast<double>(right) >= std::max(1.0, n / 2 - deviations * std::sqrt(n) / 2);
+  if (n == 0) return true;
+  if (n <= 4) return atMost ? median() <= 1.5 * bound : median() >= bound / 1.5;
+  return static_cast<double>(right) >= n / 2 - deviations * std::sqrt(n) / 2;
 }
 
 namespace {

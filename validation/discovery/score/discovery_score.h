@@ -37,8 +37,8 @@ struct Spread {
   bool atMost = false;         ///< the median is to be at most that, else at least
   bool met = false;
   /// The same for a median that just meets its target: how many of the values are on the right
-  /// side is then binomial with p = 1/2, n/2 ± √n/2. One of them must be, since of up to four the
-  /// binomial with two deviations would allow none.
+  /// side is then binomial with p = 1/2, n/2 ± √n/2. Of up to four the binomial with two deviations
+  /// would allow anything: there the median may miss the target by a factor of 1.5.
   /// @param deviations d; true without a value
   bool within(double deviations) const;
 };

@@ -34,6 +34,11 @@ struct MusculoskeletalProblemOptions {
 /// this [s] (info::discover::runAtShorterSteps).
 inline constexpr double shortestSearchStep = 0.003;
 
+/// What trials measure, in the order of a problem's outputs: the coordinates in question that are
+/// not prescribed, then all other channels.
+std::vector<Observable> measuredOutputs(const std::vector<Trial>& trials, const SystemOptions& arm,
+                                        const std::vector<std::string>& coordinates);
+
 /// The discovery problem of a musculoskeletal model for info::discover: recorded trials, and the
 /// model with every effect of the catalogue built in. Outputs are the measured coordinates among
 /// those in question and all other channels that the trials measure (Observable), in this order.

@@ -1,0 +1,144 @@
+#!/usr/bin/env python3
+"""Blind sets for discover on two free joints, and on a dynamometer that reads a torque.
+
+    /usr/bin/python3 validation/discovery/joints_and_torque.py [--build build/program] [--sets 3] [--seed S] FOLDER
+
+Each set has a training and a held-out trial of 4.5 s at 100 Hz, simulated by `replay` of the shipped elbow with one effect hidden in it, drawn at
+random: damping of the elbow (or of the shoulder, where that is free), a mass in the hand, an electromechanical delay, or nothing. "joints": shoulder and
+elbow free, both angles measured with 0.3° of noise. "torque": the elbow turned by 40° to and fro, its moment measured with 0.2 N m of noise.
+discover sees the files only; the truths are written to FOLDER/truths.json and read after all verdicts are there. Prints one line per set and a count.
+Without --seed the sets are new ones. Exit status 1: a wrong name.
+"""
+import argparse
+import json
+import os
+import pathlib
+import subprocess
+import sys
+
+import numpy as np
+
+TOP = pathlib.Path(__file__).resolve().parents[2]
+MODEL = TOP / "models/elbow8.osim"
+# what discover may call it: the effect, or a class that holds it
+NAMES = {"payload": {"payload", "mass"}, "delay": {"delay", "clock"}}
+
+
+def table(path):
+    lines = path.read_text().splitlines()
+    begin = [k for k, line in enumerate(lines) if line.strip() == "endheader"][0] + 1
+    return lines[begin].split("\t"), np.array([[float(x) for x in line.split("\t")] for line in lines[begin + 1:] if line.strip()])
+
+
+def write(path, columns, rows):
+    path.write_text(",".join(columns) + "\n" + "".join(",".join(f"{x:.8g}" for x in row) + "\n" for row in rows))
+
+
+def damped(text, coordinate, viscosity):
+    spring = (f'<SpringGeneralizedForce name="hidden"><appliesForce>true</appliesForce><coordinate>{coordinate}</coordinate>'
+              f"<stiffness>0</stiffness><rest_length>0</rest_length><viscosity>{viscosity}</viscosity></SpringGeneralizedForce>")
+    at = text.index("<objects>", text.index("<ForceSet")) + len("<objects>")
+    return text[:at] + spring + text[at:]
+
+
+def loaded(text, mass):
+    begin = text.index("<mass>", text.index('<Body name="hand"')) + len("<mass>")
+    end = text.index("<", begin)
+    return text[:begin] + repr(float(text[begin:end]) + mass) + text[end:]
+
+
+def hide(world, random, text):
+    """An effect by its id, its size, the model with it and the delay of the muscles [s]."""
+    kinds = ["nothing", "payload", "elbow_flexion.visc", "delay"] + (["shoulder_elv.visc"] if world == "joints" else [])
+    kind = kinds[random.integers(len(kinds))]
+    if kind == "nothing":
+        return kind, 0.0, text, 0.0
+    if kind == "payload":
+        mass = random.uniform(0.25, 0.9)
+        return kind, mass, loaded(text, mass), 0.0
+    if kind == "delay":
+        delay = random.uniform(0.03, 0.08)
+        return kind, delay, text, delay
+    viscosity = random.uniform(0.3, 1.0)
+    return kind, viscosity, damped(text, kind.split(".")[0], viscosity), 0.0
+
+
+def options(world):
+    return ["--prescribe", "elbow_flexion"] if world == "torque" else ["--coordinate", "elbow_flexion", "--coordinate", "shoulder_elv"]
+
+
+def make_trial(program, folder, name, world, model, delay, source, frequency, phase, random):
+    columns, recorded = table(TOP / f"emg_data/{source}.sto")
+    muscles, time = columns[1:9], np.arange(0, 4.5001, 0.01)
+    excitation = np.array([np.interp(time, recorded[:, 0], recorded[:, k]) for k in range(1, 9)]).T
+    if world == "torque":
+        excitation = np.clip(2.5 * excitation, 0.01, 0.9)
+    driven = np.array([np.interp(time - delay, time, excitation[:, k]) for k in range(8)]).T
+    angle = 70 + 40 * np.sin(2 * np.pi * frequency * time + phase)
+    given = [angle] if world == "torque" else []
+    write(folder / "driven.csv", ["time", *muscles] + ["elbow_flexion_deg"] * len(given), np.column_stack([time, driven, *given]))
+    start = [] if given else ["--initial", "elbow_flexion=30deg", "--initial", "shoulder_elv=15deg"]
+    ran = subprocess.run([program, "replay", folder / model, folder / "driven.csv", "--out", folder / "replay", "--force", "--step", "0.0025",
+                          *options(world), *start], capture_output=True, text=True, check=False)
+    if ran.returncode not in (0, 1):
+        sys.exit(ran.stderr)
+    if world == "torque":
+        columns, simulated = table(folder / "replay/forces.sto")
+        reaction = np.interp(time, simulated[:, 0], simulated[:, columns.index("elbow_flexion.reaction")])
+        shown, names = [angle, -reaction + 0.2 * random.standard_normal(len(time))], ["elbow_flexion_deg", "elbow_flexion.moment"]
+    else:
+        columns, simulated = table(folder / "replay/states.sto")
+        names, shown = ["elbow_flexion_deg", "shoulder_elv_deg"], []
+        for coordinate in ("elbow_flexion", "shoulder_elv"):
+            place = next(k for k, column in enumerate(columns) if column.endswith(coordinate + "/value"))
+            course = np.degrees(np.interp(time, simulated[:, 0], simulated[:, place]))
+            shown.append(course + 0.3 * random.standard_normal(len(time)))
+    write(folder / f"{name}_{source}.csv", ["time", *muscles, *names], np.column_stack([time, excitation, *shown]))
+
+
+def judged(kind, verdict):
+    """right: the name or a class that holds it; missed: no name; wrong: another name."""
+    named = {effect["id"] for effect in verdict["effects"]}
+    if kind == "nothing":
+        return "wrong" if named else "right"
+    if not named:
+        return "missed"
+    short = kind.split(".")[1] if "." in kind else kind
+    return "right" if named & (NAMES.get(kind, set()) | {kind, short}) else "wrong"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--build", default="build/program")
+    parser.add_argument("--sets", type=int, default=3)
+    parser.add_argument("--seed", type=int)
+    asked = parser.parse_args()
+    program = (TOP / asked.build / "apps/fisherhill").resolve()
+    random = np.random.default_rng(asked.seed if asked.seed is not None else int.from_bytes(os.urandom(8), "little"))
+    asked.folder.mkdir(parents=True, exist_ok=True)
+    truths, counts = {}, {}
+    for number in range(asked.sets):
+        for world in ("joints", "torque"):
+            name = f"{world}{number}"
+            kind, size, text, delay = hide(world, random, MODEL.read_text())
+            truths[name] = (kind, size)
+            (asked.folder / "hidden.osim").write_text(text)
+            for source, frequency, phase in (("curl_slow", 0.25, 0.0), ("curl_fast", 0.4, 1.0)):
+                make_trial(program, asked.folder, name, world, "hidden.osim", delay, source, frequency, phase, random)
+    (asked.folder / "truths.json").write_text(json.dumps(truths, indent=1))
+    (asked.folder / "hidden.osim").unlink()
+    for name in truths:
+        subprocess.run([program, "discover", MODEL, asked.folder / f"{name}_curl_slow.csv", "--hold-out", asked.folder / f"{name}_curl_fast.csv",
+                        *options(name.rstrip("0123456789")), "--out", asked.folder / name, "--force"], capture_output=True, check=False)
+    for name, (kind, size) in truths.items():
+        verdict = json.loads((asked.folder / name / "verdict.json").read_text())
+        outcome = judged(kind, verdict)
+        counts[outcome] = counts.get(outcome, 0) + 1
+        print(f"{name}: hidden {kind} {size:.3g}; {outcome}: {verdict['sentence'].split('. ')[0]}; {verdict['wall_s']:.0f} s")
+    print(", ".join(f"{count} {outcome}" for outcome, count in sorted(counts.items())))
+    sys.exit(1 if counts.get("wrong") else 0)
+
+
+if __name__ == "__main__":
+    main()
