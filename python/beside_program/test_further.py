@@ -41,9 +41,12 @@ class Further(AsTheProgram):
         self.assertEqual([f"{name:<22} the model has it already: {what}" for name, what in found.present.items()], present)
         known = [one.id for one in found.effects]
         self.assertIn(fh.list_effects(self.model, coordinate="pro_sup").effects[0].id, known)
-        for wrong in (dict(coordinate=["elbow_flexion", "pro_sup"]), dict(coordinate="knee")):
-            with self.assertRaises(ValueError):
-                fh.list_effects(self.model, **wrong)
+        two = [one.id for one in fh.list_effects(self.model, coordinate=["elbow_flexion", "pro_sup"]).effects]
+        self.assertIn("elbow_flexion.coulomb", two)
+        self.assertIn("pro_sup.coulomb", two)
+        self.assertIn("payload", two)
+        with self.assertRaises(ValueError):
+            fh.list_effects(self.model, coordinate="knee")
 
     def test_motions_of_others_differ_from_the_reference_as_in_the_program(self):
         times, angle = self.slow.measured["elbow_flexion"]

@@ -104,7 +104,9 @@ void expectCounted(const hidden::Score& score, const Sets& sets) {
   EXPECT_EQ(effect, sets.effect + sets.parameter);
   EXPECT_EQ(all, sets.nothing + sets.parameter + sets.effect);
   for (const hidden::Spread& spread : score.spreads) {
-    if (spread.metric == "time per data set") EXPECT_EQ(std::ssize(spread.values), all);
+    if (spread.metric == "time per data set") {
+      EXPECT_EQ(std::ssize(spread.values), all);
+    }
   }
 }
 

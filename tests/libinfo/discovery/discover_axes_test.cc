@@ -280,7 +280,9 @@ TEST(Axes, AForceIsLocalisedOnItsOwn) {
   for (const Score& one : map.times) {
     ++hats[one.axis];
     if (!best[0] || std::abs(one.z) > std::abs(best[0]->z)) best[0] = &one;
-    if (one.axis == 0) EXPECT_LT(std::abs(one.z), 4) << one.from;
+    if (one.axis == 0) {
+      EXPECT_LT(std::abs(one.z), 4) << one.from;
+    }
   }
   for (const Score& one : map.cells) ++cells[one.axis];
   EXPECT_EQ(hats[0], hats[1]);
