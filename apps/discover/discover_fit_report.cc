@@ -99,12 +99,14 @@ Table outputErrorTable(const DiscoverFindings& f) {
   Table table{"RMS error (measured − simulated) by output",
               {"output", "unit", "trials", "with all fitted parameters", "noise"},
               {}};
+  const Eigen::VectorXd fitted = errorsOf(f, false), heldOut = errorsOf(f, true);
   for (std::size_t o = 0; o < f.wording.outputs.size(); ++o) {
     const ShownOutput& output = f.wording.outputs[o];
     for (const bool ofHeldOut : {false, true}) {
       if (ofHeldOut && f.options.heldOut.empty()) continue;
+      const double error = (ofHeldOut ? heldOut : fitted)[static_cast<Eigen::Index>(o)];
       table.rows.push_back({output.name, output.unit, ofHeldOut ? "held out" : "fitted",
-                            numberText(errorOf(f, o, ofHeldOut), 3),
+                            numberText(error, 3),
                             numberText(output.scale * f.verdict.outputSd.sd(o), 3)});
     }
   }

@@ -131,19 +131,11 @@ bio::discover::EffectProvenance provenanceOf(const Summary& summary) {
 
 std::vector<std::string> coordinatesInQuestion(const SimulationOptions& simulation,
                                                const std::vector<bio::Trial>& trials) {
-  if (!simulation.coordinates.empty()) return simulation.coordinates;
   std::vector<std::string> held = simulation.prescribed;
   held.insert(held.end(), simulation.prescribedByModel.begin(), simulation.prescribedByModel.end());
   for (const auto& [name, value] : simulation.held) held.push_back(name);
-  std::vector<std::string> names;
-  for (const std::string& name : held) {
-    const bio::Observable moment{bio::Observable::Kind::moment, name, 0};
-    const bool isMeasured =
-        trials.empty() || std::any_of(trials.begin(), trials.end(), [&](const bio::Trial& trial) {
-          return trial.measurementOf(moment) != nullptr;
-        });
-    if (isMeasured) names.push_back(name);
-  }
+  std::vector<std::string> names =
+      bio::discover::coordinatesInQuestion(simulation.coordinates, held, trials);
   if (names.empty())
     throw std::invalid_argument(fmt::format(
         "no coordinate is free, and no trial measures the moment of one that is prescribed or "

@@ -1,26 +1,25 @@
 #include "discover/output_errors.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "info/discovery/judgement/excess_error.h"
 #include "output/json_text.h"
 
 namespace app {
 
 using nlohmann::ordered_json;
 
-double errorOf(const DiscoverFindings& f, std::size_t output, bool ofHeldOut) {
+Eigen::VectorXd errorsOf(const DiscoverFindings& f, bool ofHeldOut) {
   const auto& held = f.options.heldOut;
+  std::vector<int> trials;
+  for (int t = 0; t < f.data.numTrials(); ++t)
+    if ((std::find(held.begin(), held.end(), t) != held.end()) == ofHeldOut) trials.push_back(t);
   const Eigen::VectorXd& values = f.verdict.values.size() > 0 ? f.verdict.values : f.verdict.base;
-  double squares = 0, count = 0;
-  for (int t = 0; t < f.data.numTrials(); ++t) {
-    if ((std::find(held.begin(), held.end(), t) != held.end()) != ofHeldOut) continue;
-    const std::vector<Eigen::Index> samples = samplesOf(f.data, t, output);
-    const Eigen::VectorXd simulated = f.data.outputs(t, values, {});
-    squares += (simulated(samples) - f.data.measured(t)(samples)).squaredNorm();
-    count += static_cast<double>(samples.size());
-  }
-  return f.wording.outputs[output].scale * std::sqrt(squares / count);
+  Eigen::VectorXd errors =
+      info::discover::errorsByOutput(f.data, trials, values, f.wording.outputs.size());
+  for (std::size_t o = 0; o < f.wording.outputs.size(); ++o)
+    errors[static_cast<Eigen::Index>(o)] *= f.wording.outputs[o].scale;
+  return errors;
 }
 
 std::vector<Eigen::Index> samplesOf(const info::discover::DiscoveryProblem& data, int trial,
@@ -36,13 +35,14 @@ std::vector<Eigen::Index> samplesOf(const info::discover::DiscoveryProblem& data
 
 ordered_json outputsJson(const DiscoverFindings& f) {
   ordered_json list = ordered_json::array();
+  const bool hasErrors = f.wording.isInNoise() && f.verdict.base.size() > 0;
+  const Eigen::VectorXd errors = hasErrors ? errorsOf(f, false) : Eigen::VectorXd();
   for (std::size_t o = 0; o < f.wording.outputs.size(); ++o) {
     const ShownOutput& output = f.wording.outputs[o];
     ordered_json json{{"name", output.name},
                       {"unit", output.unit},
                       {"noise_sd", orNull(output.scale * f.verdict.outputSd.sd(o))}};
-    if (f.wording.isInNoise() && f.verdict.base.size() > 0)
-      json["rmse_after"] = orNull(errorOf(f, o, false));
+    if (hasErrors) json["rmse_after"] = orNull(errors[static_cast<Eigen::Index>(o)]);
     list.push_back(std::move(json));
   }
   return list;

@@ -12,9 +12,9 @@ namespace app {
 std::vector<Eigen::Index> samplesOf(const info::discover::DiscoveryProblem& data, int trial,
                                     std::size_t output);
 
-/// Root mean square error of one output at all fitted values, without a latent force, over the
+/// Root mean square error of each output at all fitted values, without a latent force, over the
 /// held-out or the other trials, in its shown unit; NaN: no sample.
-double errorOf(const DiscoverFindings& findings, std::size_t output, bool ofHeldOut);
+Eigen::VectorXd errorsOf(const DiscoverFindings& findings, bool ofHeldOut);
 
 /// What was measured: name, unit, and noise in that unit; of several outputs also the error of the
 /// fitted trials.

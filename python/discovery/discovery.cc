@@ -87,16 +87,8 @@ Written writtenOf(bio::discover::DiscoveryResult& result) {
 /// whose moment the trials measure, or without trials all of them.
 std::vector<std::string> inQuestion(const SystemChoice& choice,
                                     const std::vector<bio::Trial>& trials) {
-  if (!choice.coordinates.empty()) return choice.coordinates;
-  std::vector<std::string> names;
-  for (const std::string& name : choice.prescribed) {
-    const bio::Observable moment{bio::Observable::Kind::moment, name, 0};
-    const bool isMeasured =
-        trials.empty() || std::any_of(trials.begin(), trials.end(), [&](const bio::Trial& trial) {
-          return trial.measurementOf(moment) != nullptr;
-        });
-    if (isMeasured) names.push_back(name);
-  }
+  std::vector<std::string> names =
+      bio::discover::coordinatesInQuestion(choice.coordinates, choice.prescribed, trials);
   if (names.empty())
     throw std::invalid_argument(
         "no coordinate is free, and no trial measures the moment of one that is prescribed: "

@@ -58,24 +58,6 @@ int sourceOf(const MusculoskeletalSystem& arm, const Observable& what) {
   return index;
 }
 
-/// A value between two rows of a motion, linear between them.
-struct LinearWeights {
-  Index row = 0;
-  double behind = 0;
-  template <class Values>
-  auto value(const Values& y) const {
-    return (1 - behind) * y(row) + behind * y(row + 1);
-  }
-  Eigen::RowVectorXd rows(const SensitivityMatrix& y) const {
-    return (1 - behind) * y.row(row) + behind * y.row(row + 1);
-  }
-};
-
-LinearWeights linear(const std::vector<double>& time, const MotionWeights& w, double t) {
-  const auto k = static_cast<std::size_t>(w.row);
-  return {w.row, std::clamp((t - time[k]) / (time[k + 1] - time[k]), 0.0, 1.0)};
-}
-
 /// sin α = w/ℓ, dα = (dw − sin α dℓ)/(ℓ cos α). A slack muscle with a rigid tendon has ℓ = w for
 /// whatever parameters, so that α stays a right angle.
 void pennationAt(const SimulatedMuscle& muscle, std::size_t place, const LinearWeights& between,
@@ -146,7 +128,7 @@ ObservedMotion::Linearised ObservedMotion::evaluate(const Trajectory& motion,
         if (s) all.gamma.row(at) = slopes(s->q[place], s->qDot[place]);
       };
       const auto straight = [&](double sign, const auto& values, const auto& of) {
-        const LinearWeights between = linear(motion.time, *w, times[k]);
+        const LinearWeights between = linearAt(motion.time, times[k]);
         all.values[at] = sign * between.value(values);
         if (s) all.gamma.row(at) = sign * between.rows((s->*of)[place]);
       };
@@ -166,8 +148,8 @@ ObservedMotion::Linearised ObservedMotion::evaluate(const Trajectory& motion,
           straight(1, motion.fibreLength.row(index), &SensitivityTrajectory::fibreLength);
           break;
         case Kind::pennation:
-          pennationAt(arm_->muscles()[place].muscle, place, linear(motion.time, *w, times[k]),
-                      motion, s, at, all);
+          pennationAt(arm_->muscles()[place].muscle, place, linearAt(motion.time, times[k]), motion,
+                      s, at, all);
           break;
         case Kind::tendonForce:
           straight(1, muscles.tendonForce.row(index), &SensitivityTrajectory::tendonForce);

@@ -1,10 +1,11 @@
 #include "bio/discovery/effect_size.h"
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "bio/discovery/encompassing_model.h"
-#include "simulation/motion_weights.h"
+#include "discovery/sensed_motion.h"
 
 namespace bio::discover {
 namespace {
@@ -17,19 +18,13 @@ double rootMeanSquare(const VectorXd& values) {
   return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
 }
 
-// How far the sensor, with this effect of it alone, is from the motion.
-double sensorError(const Trajectory& motion, const SensorLaw& sensor, int coordinate) {
-  const Lagged course =
-      lagged(motion.time, motion.q.row(coordinate), motion.qDot.row(coordinate), sensor.lag);
-  const auto q = course.value.row(0), qDot = course.speed.row(0);
-  const double first = motion.time.front();
+// How far a sensor is from the coordinate that it measures, from the first time on that it shows.
+double sensorError(const Trajectory& motion, const SensedMotion& sensor, int coordinate) {
+  const VectorXd shown = sensor.shown(motion).values;
   std::vector<double> errors;
-  for (std::size_t k = 0; k < motion.time.size(); ++k) {
-    const auto w = weightsAt(motion.time, sensor.measuredAt(motion.time[k], first));
-    if (!w) continue;
-    errors.push_back((1 + sensor.gain) * w->value(q, qDot) + sensor.bias +
-                     sensor.drift * (motion.time[k] - first) -
-                     motion.q(coordinate, static_cast<Index>(k)));
+  for (Index k = 0; k < shown.size(); ++k) {
+    if (std::isnan(shown[k]) || sensor.measuredAt(k) < motion.time.front() - 1e-9) continue;
+    errors.push_back(shown[k] - motion.q(coordinate, k));
   }
   if (errors.empty()) return std::numeric_limits<double>::quiet_NaN();
   return rootMeanSquare(VectorXd::Map(errors.data(), static_cast<Index>(errors.size())));
@@ -55,9 +50,11 @@ EffectSize effectSize(const MusculoskeletalProblem& data, std::size_t candidate,
       const EncompassingModel& model = data.encompassing();
       const std::size_t sensor = model.sensorOf(effect.quantities.front());
       const Observable& what = model.sensors()[sensor];
-      if (what.isCoordinate())
-        size.motionRms = sensorError(with, model.sensorAt(alone, sensor),
-                                     model.arm().skeleton().indexOf(what.of));
+      if (!what.isCoordinate()) return size;
+      const MusculoskeletalSystem system = data.armAt(trial, values);
+      size.motionRms = sensorError(
+          with, {system, what, model.sensorAt(alone, sensor), with.time, with.time.front()},
+          system.skeleton().indexOf(what.of));
       return size;
     }
     const Trajectory without = data.motion(trial, absent);

@@ -12,6 +12,12 @@ using Eigen::Index;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
+std::vector<std::string> EncompassingModel::coordinateNames() const {
+  std::vector<std::string> names;
+  for (const MovingCoordinate& at : coordinates_) names.push_back(at.coordinate.name);
+  return names;
+}
+
 namespace {
 
 /// A segment's placement in ground, and its first derivative in one coordinate.

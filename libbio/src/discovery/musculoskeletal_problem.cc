@@ -21,12 +21,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-std::vector<std::string> namesOf(const std::vector<MovingCoordinate>& coordinates) {
-  std::vector<std::string> names;
-  for (const MovingCoordinate& at : coordinates) names.push_back(at.coordinate.name);
-  return names;
-}
-
 /// Muscles whose record has a flat top in a trial that hides 1 % of its height or more.
 std::vector<std::string> withFlatTops(const std::vector<Trial>& trials) {
   std::vector<std::string> muscles;
@@ -67,6 +61,22 @@ std::vector<Observable> measuredOutputs(const std::vector<Trial>& trials, const 
       if (!channel.what.isCoordinate()) add(channel.what);
   }
   return sensors;
+}
+
+std::vector<std::string> coordinatesInQuestion(const std::vector<std::string>& free,
+                                               const std::vector<std::string>& held,
+                                               const std::vector<Trial>& trials) {
+  if (!free.empty()) return free;
+  std::vector<std::string> names;
+  for (const std::string& name : held) {
+    const Observable moment{Observable::Kind::moment, name, 0};
+    const bool isMeasured =
+        trials.empty() || std::any_of(trials.begin(), trials.end(), [&](const Trial& trial) {
+          return trial.measurementOf(moment) != nullptr;
+        });
+    if (isMeasured) names.push_back(name);
+  }
+  return names;
 }
 
 MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemOptions& arm,
@@ -290,7 +300,7 @@ std::unique_ptr<info::discover::DiscoveryProblem> MusculoskeletalProblem::withFo
   std::vector<Trial> trials;
   for (const OfTrial& one : trials_) trials.push_back(one.trial);
   auto widened = std::make_unique<MusculoskeletalProblem>(
-      encompassing_.base(), encompassing_.armOptions(), namesOf(encompassing_.coordinates()),
+      encompassing_.base(), encompassing_.armOptions(), encompassing_.coordinateNames(),
       std::move(trials), std::move(options));
   if (!widened->encompassing().knows("formula")) return nullptr;
   return widened;

@@ -114,20 +114,15 @@ class MusculoskeletalProblem::Run final : public Simulation {
         for (const MovingCoordinate& at : of.encompassing_.coordinates())
           options_.externalNodes.coordinates.push_back(at.index);
       }
-      for (const Series& series : one_.series) {
-        const auto kind = of.encompassing_.sensors()[series.sensor].kind;
-        options_.reactions = options_.reactions || kind == Observable::Kind::moment;
-        options_.muscles = options_.muscles || kind == Observable::Kind::fibreLength ||
-                           kind == Observable::Kind::pennation ||
-                           kind == Observable::Kind::tendonForce ||
-                           kind == Observable::Kind::activation;
-      }
       arm_.emplace(of.encompassing_.armOf(setting_));
+      sensors_ = of.sensedBy(*arm_, one_, values);
+      for (const SensedMotion& sensor : sensors_) {
+        options_.reactions = options_.reactions || sensor.needsReactions();
+        options_.muscles = options_.muscles || sensor.needsMuscles();
+      }
       excitation_ = of.excitationFor(one_, *arm_);
       run_.emplace(*arm_, setting_, excitation_, options_);
-      sensors_ = of.sensedBy(*arm_, one_, values);
     } catch (const std::exception&) {
-      run_.reset();
       return;  // outside the model's domain
     }
     for (std::size_t i = 0; i < sensors_.size(); ++i) {
@@ -191,50 +186,50 @@ class MusculoskeletalProblem::Run final : public Simulation {
   void differentiate(const SensedMotion& sensor, const Series& series,
                      const SensitivityTrajectory& s, Prediction& result) const {
     const SensedMotion::Slopes slopes = sensor.slopes(s);
-    const Index numNodes = options_.externalNodes.count();
-    for (Index i = 0; i < sensor.size(); ++i) {
-      const Index at = series.samples[static_cast<std::size_t>(i)];
-      if (std::isnan(outputs_[at])) continue;
-      const Eigen::RowVectorXd along = slopes.gamma.row(i);
-      for (std::size_t j = 0; j < wanted_.size(); ++j)
-        result.gamma(at, static_cast<Index>(j)) =
-            entryOf(j, sensor, series, slopes, i, along, numNodes, speeds_[at]);
-      if (latentToo_) result.byNode.row(at) = along.tail(numNodes);
-    }
+    const VectorXd rates = speeds_(series.samples);
+    for (std::size_t j = 0; j < wanted_.size(); ++j)
+      result.gamma(series.samples, static_cast<Index>(j)) =
+          columnOf(j, sensor, series.sensor, slopes, rates);
+    if (latentToo_)
+      result.byNode(series.samples, Eigen::all) =
+          slopes.gamma.rightCols(options_.externalNodes.count());
   }
 
-  double entryOf(std::size_t j, const SensedMotion& sensor, const Series& series,
-                 const SensedMotion::Slopes& slopes, Index i, const Eigen::RowVectorXd& along,
-                 Index numNodes, double rate) const {
+  /// In one wanted quantity.
+  VectorXd columnOf(std::size_t j, const SensedMotion& sensor, std::size_t own,
+                    const SensedMotion::Slopes& slopes, const VectorXd& rates) const {
     using Kind = Meaning::Kind;
-    double entry = columns_.place[j] >= 0 ? along[columns_.place[j]] : 0;
+    VectorXd column = VectorXd::Zero(sensor.size());
+    if (columns_.place[j] >= 0) column = slopes.gamma.col(columns_.place[j]);
     // what a sensor shows of the first angle stays where it is
     const int starts = columns_.startSensor[j];
     const auto kind = columns_.kind[j];
     if (starts >= 0) {
-      if (kind == Kind::gain) entry *= startAngle(starts);
-      entry /= 1 + startLaw(starts).gain;
-      if (kind == Kind::bias || kind == Kind::gain) entry = -entry;
+      if (kind == Kind::gain) column *= startAngle(starts);
+      column /= 1 + startLaw(starts).gain;
+      if (kind == Kind::bias || kind == Kind::gain) column = -column;
     }
-    if (!kind) return entry;
-    if (*kind == Kind::timed)
-      return along.tail(numNodes).dot(timedNodes_.col(static_cast<Index>(j)));
-    if (of_.encompassing_.sensorOf(wanted_[j]) != series.sensor) return entry;
+    if (kind == Kind::timed) {
+      const auto nodes = slopes.gamma.rightCols(options_.externalNodes.count());
+      for (Index i = 0; i < column.size(); ++i)
+        column[i] = nodes.row(i).dot(timedNodes_.col(static_cast<Index>(j)));
+    }
+    if (!kind || of_.encompassing_.sensorOf(wanted_[j]) != own) return column;
     switch (*kind) {
       case Kind::bias:
-        return 1 + entry;
+        return (1 + column.array()).matrix();
       case Kind::gain:
-        return slopes.value[i] + entry;
+        return slopes.value + column;
       case Kind::clock:
-        return -rate;
+        return -rates;
       case Kind::rate:
-        return rate * sensor.since(i);
+        return rates.cwiseProduct(sensor.since());
       case Kind::lag:
-        return slopes.inLag[i];
+        return slopes.inLag;
       case Kind::drift:
-        return sensor.since(i);
+        return sensor.since();
       default:
-        return entry;
+        return column;
     }
   }
 

@@ -43,9 +43,7 @@ std::vector<PredictedExperiment> predictExperiments(const Model& model, const Sy
   std::vector<PredictedExperiment> predictedExperiments;
   if (verdict.rivals.size() < 2) return predictedExperiments;
   const EncompassingModel& encompassing = data.encompassing();
-  std::vector<std::string> coordinates;
-  for (const MovingCoordinate& at : encompassing.coordinates())
-    coordinates.push_back(at.coordinate.name);
+  const std::vector<std::string> coordinates = encompassing.coordinateNames();
   std::vector<PlannedExperiment> experiments = plannedExperiments(trial, data.encompassing());
   for (PlannedExperiment& one : passiveMotions(trial, data.encompassing()))
     experiments.push_back(std::move(one));

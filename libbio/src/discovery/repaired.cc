@@ -65,13 +65,6 @@ struct Compared {
   Index samples = 0;
 };
 
-std::vector<std::string> coordinatesOf(const MusculoskeletalProblem& data) {
-  std::vector<std::string> names;
-  for (const MovingCoordinate& at : data.encompassing().coordinates())
-    names.push_back(at.coordinate.name);
-  return names;
-}
-
 /// The error of one output in its unit; of several, in σ times the σ of the first.
 Compared pooled(const std::vector<Observable>& outputs, const TrialReplay& replay,
                 const info::discover::Whitening& noise) {
@@ -101,7 +94,8 @@ Compared replayed(const MusculoskeletalProblem& data, const Model& model, const 
   const SystemOptions options = withoutTables(data);
   try {
     const MusculoskeletalSystem arm(
-        withExperimentalConditions(model, options, coordinatesOf(data), trial), options);
+        withExperimentalConditions(model, options, data.encompassing().coordinateNames(), trial),
+        options);
     SimulationOptions simulation = data.options().simulation;
     simulation.step = step;
     simulation.progress = {};
@@ -214,7 +208,7 @@ Repaired repairedModel(const MusculoskeletalProblem& data, const Verdict& verdic
       if (const VectorXd force = data.timedForce(one.index, verdict.values); force.size() > 0) {
         const std::vector<double> nodes = info::discover::nodeTimes(data, one.index);
         const auto n = static_cast<Index>(nodes.size());
-        const std::vector<std::string> names = coordinatesOf(data);
+        const std::vector<std::string> names = data.encompassing().coordinateNames();
         for (std::size_t axis = 0; axis < names.size(); ++axis)
           trial = withTimedForce(std::move(trial), names[axis], nodes,
                                  force.segment(static_cast<Index>(axis) * n, n));

@@ -21,15 +21,6 @@ VectorXd vectorOf(const std::vector<double>& values) {
   return VectorXd::Map(values.data(), static_cast<Index>(values.size()));
 }
 
-/// Share of the row behind, and the row before it.
-std::pair<Index, double> between(const std::vector<double>& time, double t) {
-  const auto behind = std::upper_bound(time.begin(), time.end(), t);
-  const auto k = std::clamp<std::ptrdiff_t>(behind - time.begin() - 1, 0,
-                                            static_cast<std::ptrdiff_t>(time.size()) - 2);
-  const auto at = static_cast<std::size_t>(k);
-  return {k, std::clamp((t - time[at]) / (time[at + 1] - time[at]), 0.0, 1.0)};
-}
-
 }  // namespace
 
 SensedMotion::SensedMotion(const MusculoskeletalSystem& system, Observable what,
@@ -39,109 +30,113 @@ SensedMotion::SensedMotion(const MusculoskeletalSystem& system, Observable what,
       law_(law),
       stamps_(std::move(stamps)),
       first_(first) {
-  (void)ObservedMotion(system, {{what_, {}}});
+  const ObservedMotion observed(system, {{what_, {}}});
+  needsMuscles_ = observed.needsMuscles();
+  needsReactions_ = observed.needsReactions();
   if (what_.isCoordinate()) coordinate_ = system.skeleton().indexOf(what_.of);
 }
 
+VectorXd SensedMotion::since() const {
+  return vectorOf(stamps_).array() - first_;
+}
+
 SensedMotion::Shown SensedMotion::shown(const Trajectory& motion) const {
-  if (coordinate_ >= 0) return shownCoordinate(motion);
-  Shown shown{VectorXd::Constant(size(), missing), VectorXd::Constant(size(), missing)};
-  const VectorXd times = timesWithin(motion, 0);
-  VectorXd values;
-  if (law_.lag > 0) {
-    const Lagged course = laggedCourse(motion);
-    values.resize(size());
-    for (Index i = 0; i < size(); ++i) {
-      const auto [k, w] = between(motion.time, times[i]);
-      values[i] = (1 - w) * course.value(0, k) + w * course.value(0, k + 1);
-    }
-  } else {
-    values = valuesAt(motion, times);
-  }
-  const VectorXd rates = ratesOf(motion);
+  const Sensed at = sensed(motion);
   const double factor = 1 + law_.gain;
-  for (Index i = 0; i < size(); ++i) {
-    if (measuredAt(i) > motion.time.back() + 1e-9) continue;
-    shown.values[i] = factor * values[i] + law_.bias + law_.drift * since(i);
-    shown.rates[i] = factor * rates[i];
-  }
-  return shown;
+  return {((factor * at.value).array() + law_.bias + law_.drift * since().array()).matrix(),
+          factor * at.rate};
 }
 
 SensedMotion::Slopes SensedMotion::slopes(const SensitivityTrajectory& s) const {
-  if (coordinate_ >= 0) return slopesOfCoordinate(s);
+  const std::vector<double>& time = s.motion.time;
   const double factor = 1 + law_.gain;
-  const VectorXd times = timesWithin(s.motion, 0);
-  Slopes slopes;
-  if (law_.lag > 0) {
-    const ObservedMotion rows(*system_, {{what_, vectorOf(s.motion.time)}});
-    const auto all = rows.linearised(s);
-    const MatrixXd gamma = all.gamma.transpose();
-    const Lagged late =
-        lagged(s.motion.time, gamma, MatrixXd::Zero(gamma.rows(), gamma.cols()), law_.lag);
-    const Lagged course = laggedCourse(s.motion);
-    slopes.gamma.resize(size(), gamma.rows());
-    slopes.value.resize(size());
-    slopes.inLag.resize(size());
-    for (Index i = 0; i < size(); ++i) {
-      const auto [k, w] = between(s.motion.time, times[i]);
-      slopes.gamma.row(i) =
-          factor * ((1 - w) * late.value.col(k) + w * late.value.col(k + 1)).transpose();
-      slopes.value[i] = (1 - w) * course.value(0, k) + w * course.value(0, k + 1);
-      slopes.inLag[i] = factor * ((1 - w) * course.inLag(0, k) + w * course.inLag(0, k + 1));
-    }
+  Sensed at = sensed(s.motion);
+  Slopes slopes{SensitivityMatrix::Constant(size(), s.q.front().cols(), missing),
+                std::move(at.value), factor * at.inLag};
+  if (coordinate_ < 0 && !(law_.lag > 0)) {
+    slopes.gamma =
+        factor * ObservedMotion(*system_, {{what_, timesWithin(s.motion, 0)}}).linearised(s).gamma;
     return slopes;
   }
-  const auto at = ObservedMotion(*system_, {{what_, times}}).linearised(s);
-  slopes.gamma = factor * at.gamma;
-  slopes.value = at.values;
-  slopes.inLag = -factor * ratesOf(s.motion);  // x_L = x − lag·ẋ
-  return slopes;
-}
-
-SensedMotion::Shown SensedMotion::shownCoordinate(const Trajectory& motion) const {
-  Shown shown{VectorXd::Constant(size(), missing), VectorXd::Constant(size(), missing)};
-  const Lagged course =
-      lagged(motion.time, motion.q.row(coordinate_), motion.qDot.row(coordinate_), law_.lag);
-  const auto q = course.value.row(0), qDot = course.speed.row(0);
-  const double factor = 1 + law_.gain;
-  for (Index i = 0; i < size(); ++i) {
-    const auto w = lookAt(motion.time, measuredAt(i));
-    if (!w) continue;
-    shown.values[i] = factor * w->value(q, qDot) + law_.bias + law_.drift * since(i);
-    shown.rates[i] = factor * w->slope(q, qDot);
+  if (coordinate_ < 0) {
+    const MatrixXd rows =
+        ObservedMotion(*system_, {{what_, vectorOf(time)}}).linearised(s).gamma.transpose();
+    const SensitivityMatrix late =
+        lagged(time, rows, MatrixXd::Zero(rows.rows(), rows.cols()), law_.lag).value.transpose();
+    const VectorXd times = timesWithin(s.motion, 0);
+    for (Index i = 0; i < size(); ++i)
+      slopes.gamma.row(i) = factor * linearAt(time, times[i]).rows(late);
+    return slopes;
   }
-  return shown;
-}
-
-SensedMotion::Slopes SensedMotion::slopesOfCoordinate(const SensitivityTrajectory& s) const {
   const auto c = static_cast<std::size_t>(coordinate_);
-  const Trajectory& motion = s.motion;
-  Slopes slopes{MatrixXd::Constant(size(), s.q[c].cols(), missing),
-                VectorXd::Constant(size(), missing), VectorXd::Constant(size(), missing)};
   SensitivityMatrix late, lateRate;
   if (law_.lag > 0) {
-    const Lagged behind = lagged(motion.time, s.q[c].transpose(), s.qDot[c].transpose(), law_.lag);
+    const Lagged behind = lagged(time, s.q[c].transpose(), s.qDot[c].transpose(), law_.lag);
     late = behind.value.transpose();
     lateRate = behind.speed.transpose();
   }
   const SensitivityMatrix& of = law_.lag > 0 ? late : s.q[c];
   const SensitivityMatrix& rate = law_.lag > 0 ? lateRate : s.qDot[c];
-  const Lagged course =
-      lagged(motion.time, motion.q.row(coordinate_), motion.qDot.row(coordinate_), law_.lag);
-  const double factor = 1 + law_.gain;
   for (Index i = 0; i < size(); ++i) {
-    const auto w = lookAt(motion.time, measuredAt(i));
-    if (!w) continue;
-    slopes.gamma.row(i) = factor * w->rows(of, rate);
-    slopes.value[i] = w->value(course.value.row(0), course.speed.row(0));
-    slopes.inLag[i] = factor * w->value(course.inLag.row(0), course.inLagSpeed.row(0));
+    if (const auto w = lookAt(time, measuredAt(i)))
+      slopes.gamma.row(i) = factor * w->rows(of, rate);
   }
   return slopes;
 }
 
-VectorXd SensedMotion::valuesAt(const Trajectory& motion, const VectorXd& times) const {
-  return ObservedMotion(*system_, {{what_, times}}).values(motion);
+SensedMotion::Sensed SensedMotion::sensed(const Trajectory& motion) const {
+  if (coordinate_ >= 0) return sensedCoordinate(motion);
+  Sensed at;
+  if (law_.lag > 0) {
+    at = sensedLate(motion);
+  } else {
+    // 0.1 ms to either side: of a cubic with x‴ of 1e4 units/s³ off by 2e-5, of rounding by 1e-12
+    constexpr double aside = 1e-4;
+    const VectorXd before = timesWithin(motion, -aside), after = timesWithin(motion, aside);
+    at.value = valuesAt(motion, timesWithin(motion, 0));
+    at.rate = ((valuesAt(motion, after) - valuesAt(motion, before)).array() /
+               (after - before).array().max(1e-12))
+                  .matrix();
+    at.inLag = -at.rate;  // x_L = x − lag·ẋ
+  }
+  for (Index i = 0; i < size(); ++i) {
+    if (measuredAt(i) > motion.time.back() + 1e-9) at.value[i] = at.rate[i] = at.inLag[i] = missing;
+  }
+  return at;
+}
+
+SensedMotion::Sensed SensedMotion::sensedCoordinate(const Trajectory& motion) const {
+  const VectorXd nowhere = VectorXd::Constant(size(), missing);
+  Sensed at{nowhere, nowhere, nowhere};
+  const Lagged course =
+      lagged(motion.time, motion.q.row(coordinate_), motion.qDot.row(coordinate_), law_.lag);
+  const auto q = course.value.row(0), qDot = course.speed.row(0);
+  for (Index i = 0; i < size(); ++i) {
+    const auto w = lookAt(motion.time, measuredAt(i));
+    if (!w) continue;
+    at.value[i] = w->value(q, qDot);
+    at.rate[i] = w->slope(q, qDot);
+    at.inLag[i] = w->value(course.inLag.row(0), course.inLagSpeed.row(0));
+  }
+  return at;
+}
+
+/// Of another observable after a lag, linear between rows.
+SensedMotion::Sensed SensedMotion::sensedLate(const Trajectory& motion) const {
+  const std::vector<double>& time = motion.time;
+  const MatrixXd rows = valuesAt(motion, vectorOf(time)).transpose();
+  const Lagged course = lagged(time, rows, MatrixXd::Zero(1, rows.cols()), law_.lag);
+  const auto x = course.value.row(0), inLag = course.inLag.row(0);
+  const VectorXd times = timesWithin(motion, 0);
+  Sensed at{times, times, times};
+  for (Index i = 0; i < size(); ++i) {
+    const LinearWeights w = linearAt(time, times[i]);
+    const auto k = static_cast<std::size_t>(w.row);
+    at.value[i] = w.value(x);
+    at.rate[i] = (x(w.row + 1) - x(w.row)) / (time[k + 1] - time[k]);
+    at.inLag[i] = w.value(inLag);
+  }
+  return at;
 }
 
 VectorXd SensedMotion::timesWithin(const Trajectory& motion, double shift) const {
@@ -151,30 +146,8 @@ VectorXd SensedMotion::timesWithin(const Trajectory& motion, double shift) const
   return times;
 }
 
-/// ẋ_L(t′), by differences over a row's step.
-VectorXd SensedMotion::ratesOf(const Trajectory& motion) const {
-  if (law_.lag > 0) {
-    const Lagged course = laggedCourse(motion);
-    VectorXd rates(size());
-    const VectorXd times = timesWithin(motion, 0);
-    for (Index i = 0; i < size(); ++i) {
-      const Index k = between(motion.time, times[i]).first;
-      rates[i] =
-          (course.value(0, k + 1) - course.value(0, k)) /
-          (motion.time[static_cast<std::size_t>(k) + 1] - motion.time[static_cast<std::size_t>(k)]);
-    }
-    return rates;
-  }
-  constexpr double aside = 1e-4;  // [s]
-  const VectorXd before = timesWithin(motion, -aside), after = timesWithin(motion, aside);
-  const VectorXd difference = valuesAt(motion, after) - valuesAt(motion, before);
-  return (difference.array() / (after - before).array().max(1e-12)).matrix();
-}
-
-Lagged SensedMotion::laggedCourse(const Trajectory& motion) const {
-  const VectorXd rows = valuesAt(motion, vectorOf(motion.time));
-  const MatrixXd course = rows.transpose();
-  return lagged(motion.time, course, MatrixXd::Zero(1, course.cols()), law_.lag);
+VectorXd SensedMotion::valuesAt(const Trajectory& motion, const VectorXd& times) const {
+  return ObservedMotion(*system_, {{what_, times}}).values(motion);
 }
 
 }  // namespace bio::discover

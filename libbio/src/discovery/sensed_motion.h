@@ -19,10 +19,15 @@ namespace bio::discover {
 /// before the first row as there.
 class SensedMotion {
  public:
-  /// @param stamps of the samples [s] rising; @param first  t₀ [s]
+  /// @param stamps of the samples [s] rising
+  /// @param first  t₀ [s]
   /// @throws std::invalid_argument for what the system does not have (ObservedMotion)
   SensedMotion(const MusculoskeletalSystem& system, Observable what, const SensorLaw& law,
                std::vector<double> stamps, double first);
+
+  /// What the sensitivities need (SensitivityOptions).
+  bool needsMuscles() const { return needsMuscles_; }
+  bool needsReactions() const { return needsReactions_; }
 
   struct Shown {
     Eigen::VectorXd values;  ///< y; NaN at times that the motion has not reached
@@ -30,29 +35,36 @@ class SensedMotion {
   };
   Shown shown(const Trajectory& motion) const;
 
+  /// NaN at times that the motion has not reached.
   struct Slopes {
     /// (1 + gain)·∂x_L/∂θ: samples × all columns of the sensitivities
-    Eigen::MatrixXd gamma;
+    SensitivityMatrix gamma;
     Eigen::VectorXd value;  ///< x_L
     Eigen::VectorXd inLag;  ///< ∂y/∂lag
   };
   Slopes slopes(const SensitivityTrajectory& motion) const;
 
   const SensorLaw& law() const { return law_; }
-  double stamp(Eigen::Index sample) const { return stamps_[static_cast<std::size_t>(sample)]; }
-  /// t − t₀
-  double since(Eigen::Index sample) const { return stamp(sample) - first_; }
+  /// t − t₀ of the samples
+  Eigen::VectorXd since() const;
+  /// t′ of a sample
+  double measuredAt(Eigen::Index sample) const {
+    return law_.measuredAt(stamps_[static_cast<std::size_t>(sample)], first_);
+  }
   Eigen::Index size() const { return static_cast<Eigen::Index>(stamps_.size()); }
 
  private:
-  double measuredAt(Eigen::Index sample) const { return law_.measuredAt(stamp(sample), first_); }
-  Shown shownCoordinate(const Trajectory& motion) const;
-  Slopes slopesOfCoordinate(const SensitivityTrajectory& motion) const;
-  /// The observable without lag at times [s], of which those outside the motion are its ends.
-  Eigen::VectorXd valuesAt(const Trajectory& motion, const Eigen::VectorXd& times) const;
+  /// x_L, ẋ_L and ∂x_L/∂lag at t′ of the samples.
+  struct Sensed {
+    Eigen::VectorXd value, rate, inLag;
+  };
+  Sensed sensed(const Trajectory& motion) const;
+  Sensed sensedCoordinate(const Trajectory& motion) const;
+  Sensed sensedLate(const Trajectory& motion) const;
+  /// t′ + shift of the samples; those outside the motion are its ends.
   Eigen::VectorXd timesWithin(const Trajectory& motion, double shift) const;
-  Eigen::VectorXd ratesOf(const Trajectory& motion) const;
-  Lagged laggedCourse(const Trajectory& motion) const;
+  /// The observable without lag.
+  Eigen::VectorXd valuesAt(const Trajectory& motion, const Eigen::VectorXd& times) const;
 
   const MusculoskeletalSystem* system_;
   Observable what_;
@@ -60,6 +72,7 @@ class SensedMotion {
   std::vector<double> stamps_;
   double first_;
   int coordinate_ = -1;  ///< in the skeleton; −1: another observable
+  bool needsMuscles_, needsReactions_;
 };
 
 }  // namespace bio::discover

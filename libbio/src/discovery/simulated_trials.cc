@@ -125,17 +125,18 @@ ExcitationSignal MusculoskeletalProblem::excitationFor(const OfTrial& one,
                                                               : excitationOf(one.trial, arm);
 }
 
-Trajectory MusculoskeletalProblem::simulate(const OfTrial& one, const VectorXd& values,
-                                            const VectorXd& latent, double stepFactor,
-                                            const std::vector<Nudge>* nudges) const {
+MusculoskeletalProblem::Simulated MusculoskeletalProblem::simulate(
+    const OfTrial& one, const VectorXd& values, const VectorXd& latent, double stepFactor,
+    const std::vector<Nudge>* nudges) const {
   ParameterCatalogue::Setting setting = settingAt(one, values, {});
   SimulationOptions simulation = simulationOf(one, values, withTimedForces(one, values, latent));
   if (nudges) {
     for (const Nudge& nudge : *nudges) apply(nudge, setting.model, simulation.externalForce);
   }
   simulation.step *= stepFactor;
-  const MusculoskeletalSystem arm = encompassing_.armOf(setting);
-  return simulateSetting(arm, setting, excitationFor(one, arm), simulation);
+  MusculoskeletalSystem system = encompassing_.armOf(setting);
+  Trajectory motion = simulateSetting(system, setting, excitationFor(one, system), simulation);
+  return {std::move(system), std::move(motion)};
 }
 
 VectorXd MusculoskeletalProblem::outputsOf(const OfTrial& one, const VectorXd& values,
@@ -144,8 +145,7 @@ VectorXd MusculoskeletalProblem::outputsOf(const OfTrial& one, const VectorXd& v
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   VectorXd y = VectorXd::Constant(static_cast<Index>(one.times.size()), nan);
   try {
-    const Trajectory motion = simulate(one, values, latent, stepFactor, nudges);
-    const MusculoskeletalSystem system = encompassing_.armOf(settingAt(one, values, {}));
+    const auto [system, motion] = simulate(one, values, latent, stepFactor, nudges);
     const std::vector<SensedMotion> sensors = sensedBy(system, one, values);
     for (std::size_t i = 0; i < sensors.size(); ++i)
       y(one.series[i].samples) = sensors[i].shown(motion).values;
@@ -177,7 +177,7 @@ VectorXd MusculoskeletalProblem::refinedOutputs(int trial, const VectorXd& value
 }
 
 Trajectory MusculoskeletalProblem::motion(int trial, const VectorXd& values) const {
-  return simulate(of(trial), values, {}, 1, nullptr);
+  return simulate(of(trial), values, {}, 1, nullptr).motion;
 }
 
 Trajectory MusculoskeletalProblem::inverseDynamics(int trial, const VectorXd& values,
@@ -209,7 +209,7 @@ std::vector<TrialStart> MusculoskeletalProblem::startsAt(int trial, const Vector
 
 std::string MusculoskeletalProblem::failure(int trial, const VectorXd& values) const {
   try {
-    return simulate(of(trial), values, {}, 1, nullptr).why;
+    return simulate(of(trial), values, {}, 1, nullptr).motion.why;
   } catch (const std::exception& error) {
     return error.what();
   }

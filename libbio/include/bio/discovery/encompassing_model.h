@@ -92,6 +92,7 @@ class EncompassingModel {
   const MusculoskeletalSystem& arm() const { return *arm_; }
   const SystemOptions& armOptions() const { return armOptions_; }
   const std::vector<MovingCoordinate>& coordinates() const { return coordinates_; }
+  std::vector<std::string> coordinateNames() const;
   /// Whether there is one coordinate, whose effects have short ids.
   bool hasOneCoordinate() const { return coordinates_.size() == 1; }
   /// Of the first coordinate, which is the only one where the model has one.

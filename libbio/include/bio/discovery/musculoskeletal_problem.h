@@ -39,6 +39,12 @@ inline constexpr double shortestSearchStep = 0.003;
 std::vector<Observable> measuredOutputs(const std::vector<Trial>& trials, const SystemOptions& arm,
                                         const std::vector<std::string>& coordinates);
 
+/// The coordinates in question of trials: all free ones; where none is free, those of `held`
+/// (prescribed or locked) whose moment a trial measures, without trials all of them. Empty: none.
+std::vector<std::string> coordinatesInQuestion(const std::vector<std::string>& free,
+                                               const std::vector<std::string>& held,
+                                               const std::vector<Trial>& trials);
+
 /// The discovery problem of a musculoskeletal model for info::discover: recorded trials, and the
 /// model with every effect of the catalogue built in. Outputs are the measured coordinates among
 /// those in question and all other channels that the trials measure (Observable), in this order.
@@ -181,9 +187,13 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   std::vector<SensedMotion> sensedBy(const MusculoskeletalSystem& system, const OfTrial& one,
                                      const Eigen::VectorXd& values) const;
   ExcitationSignal excitationFor(const OfTrial& one, const MusculoskeletalSystem& arm) const;
-  Trajectory simulate(const OfTrial& one, const Eigen::VectorXd& values,
-                      const Eigen::VectorXd& latent, double stepFactor,
-                      const std::vector<Nudge>* nudges) const;
+  struct Simulated {
+    MusculoskeletalSystem system;
+    Trajectory motion;
+  };
+  Simulated simulate(const OfTrial& one, const Eigen::VectorXd& values,
+                     const Eigen::VectorXd& latent, double stepFactor,
+                     const std::vector<Nudge>* nudges) const;
   Eigen::VectorXd outputsOf(const OfTrial& one, const Eigen::VectorXd& values,
                             const Eigen::VectorXd& latent, double stepFactor,
                             const std::vector<Nudge>* nudges) const;

@@ -6,6 +6,22 @@
 
 namespace info::discover {
 
+Eigen::VectorXd errorsByOutput(const DiscoveryProblem& data, const std::vector<int>& trials,
+                               const Eigen::VectorXd& values, std::size_t numOutputs) {
+  const auto n = static_cast<Eigen::Index>(numOutputs);
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(n), count = squares;
+  for (const int t : trials) {
+    const auto& outputs = data.outputOfSample(t);
+    const Eigen::VectorXd difference = data.outputs(t, values, {}) - data.measured(t);
+    for (Eigen::Index k = 0; k < difference.size(); ++k) {
+      const int output = outputs.empty() ? 0 : outputs[static_cast<std::size_t>(k)];
+      squares[output] += difference[k] * difference[k];
+      ++count[output];
+    }
+  }
+  return (squares.array() / count.array()).sqrt().matrix();
+}
+
 double rangeOf(const DiscoveryProblem& data, const std::vector<int>& trials,
                const Whitening& noise) {
   std::map<int, std::pair<double, double>> ends;  // by output

@@ -26,6 +26,11 @@ struct ExcessError {
   std::optional<double> closedFromCalibrated, closedFromNominal;
 };
 
+/// Root mean square difference of simulation (without latent force) and data of each output, over
+/// all samples of some trials, in its unit; NaN without a sample.
+Eigen::VectorXd errorsByOutput(const DiscoveryProblem& data, const std::vector<int>& trials,
+                               const Eigen::VectorXd& values, std::size_t numOutputs);
+
 /// Range of the measured values of an output, the widest in σ, times the σ of the first output.
 double rangeOf(const DiscoveryProblem& data, const std::vector<int>& trials,
                const Whitening& noise);

@@ -22,8 +22,7 @@ struct PositionBreak {
 /// the fitted trials visit, each side a tenth of their range wide.
 /// @param verdict  of a search of these data: its σ_y, and the samples that it used
 /// @return the position with the largest |z| over all axes, if that is at least 5 and no more than
-/// 40 % of the
-///   time is spent beyond; empty also if DiscoveryProblem::nudged is not available
+///   40 % of the time is spent beyond; empty also if DiscoveryProblem::nudged is not available
 /// @throws what Likelihood throws
 std::optional<PositionBreak> positionBreak(const DiscoveryProblem& data, const Options& options,
                                            const Verdict& verdict);

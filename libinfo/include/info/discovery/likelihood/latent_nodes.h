@@ -27,8 +27,7 @@ std::vector<double> nodeTimes(const DiscoveryProblem& data, int trial);
 Eigen::MatrixXd onAxis(const Eigen::MatrixXd& values, std::size_t axis, std::size_t numAxes);
 
 /// @throws std::invalid_argument if the nodes of a trial are not those of every axis in turn, all
-/// at
-///   the same rising times
+///   at the same rising times
 void requireOrdered(const DiscoveryProblem& data, int trial);
 
 }  // namespace info::discover
