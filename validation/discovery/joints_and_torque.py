@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Blind sets for discover on two free joints, and on a dynamometer that reads a torque.
 
-    /usr/bin/python3 validation/discovery/joints_and_torque.py [--build build/program] [--sets 3] [--seed S] FOLDER
+    /usr/bin/python3 validation/discovery/joints_and_torque.py [--build build/program] [--sets 3] [--seed S] [--world joints|torque] [--seconds 4.5] FOLDER
 
-Each set has a training and a held-out trial of 4.5 s at 100 Hz, simulated by `replay` of the shipped elbow with one effect hidden in it, drawn at
+Each set has a training and a held-out trial of 4.5 s (--seconds) at 100 Hz, simulated by `replay` of the shipped elbow with one effect hidden in it, drawn at
 random: damping of the elbow (or of the shoulder, where that is free), a mass in the hand, an electromechanical delay, or nothing. "joints": shoulder and
 elbow free, both angles measured with 0.3° of noise. "torque": the elbow turned by 40° to and fro, its moment measured with 0.2 N m of noise.
 discover sees the files only; the truths are written to FOLDER/truths.json and read after all verdicts are there. Prints one line per set and a count.
@@ -20,6 +20,7 @@ import numpy as np
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
 MODEL = TOP / "models/elbow8.osim"
+WORLDS = ("joints", "torque")
 # what discover may call it: the effect, or a class that holds it
 NAMES = {"payload": {"payload", "mass"}, "delay": {"delay", "clock"}}
 
@@ -67,9 +68,9 @@ def options(world):
     return ["--prescribe", "elbow_flexion"] if world == "torque" else ["--coordinate", "elbow_flexion", "--coordinate", "shoulder_elv"]
 
 
-def make_trial(program, folder, name, world, model, delay, source, frequency, phase, random):
+def make_trial(program, folder, name, world, model, delay, source, frequency, phase, seconds, random):
     columns, recorded = table(TOP / f"emg_data/{source}.sto")
-    muscles, time = columns[1:9], np.arange(0, 4.5001, 0.01)
+    muscles, time = columns[1:9], np.arange(0, seconds + 1e-4, 0.01)
     excitation = np.array([np.interp(time, recorded[:, 0], recorded[:, k]) for k in range(1, 9)]).T
     if world == "torque":
         excitation = np.clip(2.5 * excitation, 0.01, 0.9)
@@ -97,14 +98,14 @@ def make_trial(program, folder, name, world, model, delay, source, frequency, ph
 
 
 def judged(kind, verdict):
-    """right: the name or a class that holds it; missed: no name; wrong: another name."""
+    """right: the name or a class that holds it, and no other; missed: no name; wrong: another name."""
     named = {effect["id"] for effect in verdict["effects"]}
     if kind == "nothing":
         return "wrong" if named else "right"
     if not named:
         return "missed"
     short = kind.split(".")[1] if "." in kind else kind
-    return "right" if named & (NAMES.get(kind, set()) | {kind, short}) else "wrong"
+    return "right" if named <= NAMES.get(kind, set()) | {kind, short} else "wrong"
 
 
 def main():
@@ -113,19 +114,21 @@ def main():
     parser.add_argument("--build", default="build/program")
     parser.add_argument("--sets", type=int, default=3)
     parser.add_argument("--seed", type=int)
+    parser.add_argument("--world", choices=WORLDS)
+    parser.add_argument("--seconds", type=float, default=4.5)
     asked = parser.parse_args()
     program = (TOP / asked.build / "apps/fisherhill").resolve()
     random = np.random.default_rng(asked.seed if asked.seed is not None else int.from_bytes(os.urandom(8), "little"))
     asked.folder.mkdir(parents=True, exist_ok=True)
     truths, counts = {}, {}
     for number in range(asked.sets):
-        for world in ("joints", "torque"):
+        for world in [asked.world] if asked.world else WORLDS:
             name = f"{world}{number}"
             kind, size, text, delay = hide(world, random, MODEL.read_text())
             truths[name] = (kind, size)
             (asked.folder / "hidden.osim").write_text(text)
             for source, frequency, phase in (("curl_slow", 0.25, 0.0), ("curl_fast", 0.4, 1.0)):
-                make_trial(program, asked.folder, name, world, "hidden.osim", delay, source, frequency, phase, random)
+                make_trial(program, asked.folder, name, world, "hidden.osim", delay, source, frequency, phase, asked.seconds, random)
     (asked.folder / "truths.json").write_text(json.dumps(truths, indent=1))
     (asked.folder / "hidden.osim").unlink()
     for name in truths:
