@@ -94,9 +94,8 @@ auto stoppable(const std::atomic<bool>& goOn) {
 /// The system and what a trial makes of it.
 struct PreparedTrial {
   bio::MusculoskeletalSystem system;
-  bio::ExcitationSignal excitation;
+  bio::RecordedTrial recorded;
   bio::StartPoint start;
-  bio::SimulationOptions simulation;
 };
 
 PreparedTrial prepared(const bio::Model& model, const bio::Trial& trial, const SystemChoice& choice,
@@ -107,12 +106,10 @@ PreparedTrial prepared(const bio::Model& model, const bio::Trial& trial, const S
   mustBeOfTheModelAsItIs(trial);
   bio::requireLoadsCover(model.externalLoads, trial.times[0], trial.times[0] + trial.duration());
   bio::MusculoskeletalSystem system(model, choice.armOptions());
-  bio::SimulationOptions simulation = during(trial, choice.simulation());
-  simulation.externalForce = bio::externalForceOf(trial, system);
-  simulation.prescribed = bio::prescribedMotionOf(trial, system);
-  bio::ExcitationSignal excitation = bio::excitationOf(trial, system);
+  bio::RecordedTrial recorded =
+      bio::recordedTrial(trial, system, during(trial, choice.simulation()));
   bio::StartPoint start = bio::beginningOf(trial, model, system, initial).point;
-  return {std::move(system), std::move(excitation), std::move(start), std::move(simulation)};
+  return {std::move(system), std::move(recorded), std::move(start)};
 }
 
 py::array_t<double> arrayOf(const std::vector<double>& values) {
@@ -195,15 +192,14 @@ py::object compare(const bio::Model& model, const bio::Trial& trial,
   interruptible([&](const std::atomic<bool>& goOn) {
     at.emplace(prepared(model, trial, choice, initial));
     others.emplace(motions, at->system);
-    options.startTime = at->simulation.startTime;
-    options.duration = at->simulation.duration;
-    options.externalForce = at->simulation.externalForce;
-    options.prescribed = at->simulation.prescribed;
+    const bio::SimulationOptions& recorded = at->recorded.simulation;
+    options.startTime = recorded.startTime;
+    options.duration = recorded.duration;
+    options.externalForce = recorded.externalForce;
+    options.prescribed = recorded.prescribed;
     options.progress = stoppable(goOn);
-    bio::SystemState start =
-        bio::initialState(at->system, at->start.q, at->excitation, options.startTime);
-    start.qDot = at->start.qDot;
-    comparison = bio::compareIntegrators(at->system, at->excitation, start, options);
+    comparison = bio::compareIntegrators(at->system, at->recorded.excitation,
+                                         at->recorded.startAt(at->system, at->start), options);
   });
   return comparisonOf(comparison, at->system, options, *others);
 }
@@ -245,16 +241,14 @@ py::list compareMuscles(const bio::Model& model, const bio::Trial& trial,
   interruptible([&](const std::atomic<bool>& goOn) {
     const PreparedTrial at = prepared(model, trial, choice, initial);
     const std::string& measured = choice.coordinates.front();
-    found =
-        bio::compareMuscleClasses(model, choice.armOptions(), classes,
-                                  {.excitation = &at.excitation,
-                                   .q = at.start.q,
-                                   .qDot = at.start.qDot,
-                                   .simulation = at.simulation,
-                                   .coordinate = measured,
-                                   .times = bio::observedTimes(trial, measured, at.simulation.step),
-                                   .noise = noise,
-                                   .progress = stoppable(goOn)});
+    found = bio::compareMuscleClasses(
+        model, choice.armOptions(), classes,
+        {.recorded = at.recorded,
+         .start = at.start,
+         .coordinate = measured,
+         .times = bio::observedTimes(trial, measured, at.recorded.simulation.step),
+         .noise = noise,
+         .progress = stoppable(goOn)});
   });
   py::list list;
   for (const bio::MuscleClassMotion& one : found) list.append(classOf(one));

@@ -19,10 +19,10 @@
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/angle_unit.h"
+#include "output/driven_trials.h"
 #include "output/json_text.h"
 #include "output/progress_bar.h"
 #include "output/result.h"
-#include "output/sha256.h"
 #include "output/text.h"
 #include "sensitivity/named_covariance.h"
 
@@ -119,8 +119,8 @@ class Calibrate : public Command {
     if (list_) return listAll(context);
     const bio::CalibrationOptions typed = calibrationOptions(context);
     std::vector<std::string> names = {"calibrated.osim", "covariance.csv", "parameters.csv"};
-    for (std::size_t i = 0; i < trials_.size(); ++i) names.push_back(drivenName(i, false));
-    for (std::size_t i = 0; i < heldOut_.size(); ++i) names.push_back(drivenName(i, true));
+    for (std::size_t i = 0; i < trials_.size(); ++i) names.push_back(drivenName(i + 1, false));
+    for (std::size_t i = 0; i < heldOut_.size(); ++i) names.push_back(drivenName(i + 1, true));
     OutputFolder folder(context, names);
     Summary summary(context);
     summary.addInput(model_);
@@ -171,7 +171,7 @@ class Calibrate : public Command {
     tellCalibrate(findings, summary);
     tellSteps(typed.trials.simulation.step, found, summary);
     if (calibrated) {
-      writeDriven(*calibrated, summary, folder);
+      writeTrials(*calibrated, summary, folder);
       writeModel(findings, calibrated->model, summary, folder);
       folder.write("parameters.csv",
                    [&](std::ostream& out) { writeFitted(fittedNumbers(calibration), out); });
@@ -317,29 +317,13 @@ class Calibrate : public Command {
     return covariance;
   }
 
-  /// "driven_1.sto", or "driven_held_out_1.sto", of the i-th trial, from 0.
-  static std::string drivenName(std::size_t i, bool heldOut) {
-    return fmt::format("driven_{}{}.sto", heldOut ? "held_out_" : "", i + 1);
-  }
-
-  /// The trials that stand for those recorded, whose starts the model then has, too.
-  void writeDriven(bio::CalibratedModel& calibrated, Summary& summary, OutputFolder& folder) const {
+  /// Writes driven trials, and lists the files to replay.
+  void writeTrials(bio::CalibratedModel& calibrated, Summary& summary, OutputFolder& folder) const {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const bio::CalibratedTrial& one : calibrated.trials) {
       std::string file = (one.isHeldOut ? heldOut_ : trials_)[one.index];
       nlohmann::ordered_json json{{"file", file}, {"role", one.isHeldOut ? "held_out" : "train"}};
-      if (one.driven) {
-        const std::string name = drivenName(one.index, one.isHeldOut);
-        folder.writeFile(name, [&](const std::filesystem::path& path) {
-          bio::writeTable(*one.driven, path);
-          for (bio::TrialStart start : one.starts) {
-            start.file = name;
-            start.sha256 = sha256OfFile(path);
-            calibrated.model.fitted.starts.push_back(std::move(start));
-          }
-        });
-        file = folder.active() ? folder.path(name).string() : name;
-      }
+      if (one.driven) file = writeDriven(one, one.index + 1, calibrated.model, folder);
       json["replay_file"] = file;
       json["rmse_after_deg"] = orNull(one.after * radian);
       for (const bio::ChannelError& channel : one.channels) {

@@ -87,15 +87,16 @@ class Compare : public Command {
       throw std::invalid_argument("no free coordinate is a rotation, must have one");
     std::vector<AlsoCurve> also = readAlso(*rotation, summary);
 
-    options.startTime = input.startTime;
-    options.duration = input.duration;
-    options.externalForce = input.externalForce;
-    options.prescribed = input.prescribed;
+    const bio::SimulationOptions& recorded = input.recorded.simulation;
+    options.startTime = recorded.startTime;
+    options.duration = recorded.duration;
+    options.externalForce = recorded.externalForce;
+    options.prescribed = recorded.prescribed;
     bio::Comparison comparison;
     {
       ProgressBar bar("compare");
       options.progress = [&](double done) { bar.update(done); };
-      comparison = bio::compareIntegrators(arm, input.excitation, input.start, options);
+      comparison = bio::compareIntegrators(arm, input.recorded.excitation, input.start, options);
     }
     if (const auto left = bio::leftRange(arm, comparison.reference.motion)) {
       summary.warn(left->what);
@@ -148,14 +149,10 @@ class Compare : public Command {
     const TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
     const bio::Coordinate& coordinate = arm.skeleton().coordinates().front();
     bio::MuscleClassTrial trial;
-    trial.excitation = &input.excitation;
-    trial.q = input.start.q;
-    trial.qDot = input.start.qDot;
-    trial.simulation = simulationOptions(simulation_, input.startTime, input.duration);
-    trial.simulation.externalForce = input.externalForce;
-    trial.simulation.prescribed = input.prescribed;
+    trial.recorded = input.recorded;
+    trial.start = {input.start.q, input.start.qDot};
     trial.coordinate = coordinate.name;
-    trial.times = bio::observedTimes(input.trial, coordinate.name, trial.simulation.step);
+    trial.times = bio::observedTimes(input.trial, coordinate.name, input.recorded.simulation.step);
     trial.noise = noise_ * (coordinate.isRotation ? std::numbers::pi / 180 : 1e-3);
     std::vector<bio::MuscleClassMotion> classes;
     {
@@ -167,8 +164,8 @@ class Compare : public Command {
     const MuscleFindings findings{model_, trial_, coordinate, classes, trial.noise};
     folder.write("muscles.csv", [&](std::ostream& out) { writeMuscleClasses(findings, out); });
     folder.write("muscle_bounds.csv", [&](std::ostream& out) { writeMuscleBounds(findings, out); });
-    summary.setSimulation(simulation_.integrator, trial.simulation.step, input.duration,
-                          classes.front().motion.wallSeconds);
+    summary.setSimulation(simulation_.integrator, trial.recorded.simulation.step,
+                          input.recorded.simulation.duration, classes.front().motion.wallSeconds);
     summary.set("start_from", bio::name(input.from));
     tellMuscles(findings, summary);
     const Report report = musclesReport(findings);

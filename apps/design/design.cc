@@ -45,8 +45,7 @@ class Design : public Command {
     const TrialInput input = readTrialInput(typed_.trial, model, arm, typed_.simulation, summary);
     const bio::ParameterCatalogue catalogue(model, arm, {input.start.q, {}});
     const bio::Coordinate& coordinate = rotationOf(arm);
-    const bio::SimulationOptions simulation =
-        simulationOptions(typed_.simulation, input.startTime, input.duration);
+    const bio::SimulationOptions simulation = input.recorded.simulation;
     const bio::ExperimentDesign design(arm, catalogue, catalogue.nominal(), input.trial, simulation,
                                        question(catalogue, coordinate), limits(coordinate),
                                        bio::muscleGroups(arm, input.start.q, typed_.excite),
@@ -65,7 +64,7 @@ class Design : public Command {
     if (typed_.monteCarlo > 0 && !result.stopped) {
       findings.monteCarlo = simulated(context, catalogue, simulation, design, result.after);
     }
-    summary.setSimulation(typed_.simulation.integrator, simulation.step, input.duration,
+    summary.setSimulation(typed_.simulation.integrator, simulation.step, input.trial.duration(),
                           result.after.motion.wallSeconds);
     tellDesign(findings, summary);
     deliver(context, summary, designReport(findings), folder);

@@ -179,7 +179,7 @@ class Writer {
                   "with all fitted parameters [" + unit + "]", "noise [" + unit + "]", "replayed"},
                  {}};
     for (const bio::discover::RepairedTrial& one : f_.written->trials) {
-      const auto i = static_cast<std::size_t>(one.index);
+      const std::size_t i = one.index;
       errors.rows.push_back({f_.trialFiles[i], one.isHeldOut ? "held out" : "fitted",
                              figure(one.nominal), figure(one.after), figure(one.floor),
                              f_.written->model.empty() ? "–" : f_.written->replayFiles[i]});

@@ -132,7 +132,7 @@ ordered_json trialsJson(const DiscoverFindings& f) {
   const std::string& end = f.wording.gapEnd;
   ordered_json list = ordered_json::array();
   for (const bio::discover::RepairedTrial& one : f.written->trials) {
-    const auto i = static_cast<std::size_t>(one.index);
+    const std::size_t i = one.index;
     ordered_json json{{"file", f.trialFiles[i]}, {"role", one.isHeldOut ? "held_out" : "train"}};
     json["replay_file"] =
         f.written->model.empty() ? ordered_json(nullptr) : ordered_json(f.written->replayFiles[i]);

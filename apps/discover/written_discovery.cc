@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "bio/opensim/osim_file.h"
-#include "output/sha256.h"
+#include "output/driven_trials.h"
 #include "output/text.h"
 
 namespace app {
@@ -62,7 +62,7 @@ class DiscoveryWriter {
     std::size_t training = 0, heldOut = 0;
     for (const RepairedTrial& one : repaired.trials) {
       const std::size_t number = one.isHeldOut ? ++heldOut : ++training;
-      if (one.driven) writeDriven(one, number, model);
+      if (one.driven) written_.replayFiles[one.index] = writeDriven(one, number, model, folder_);
     }
     written_.model = result_.addsEffect ? "with_effect.osim" : "refitted.osim";
     writeOsim(written_.model, model);
@@ -74,21 +74,6 @@ class DiscoveryWriter {
     folder_.writeFile(name, [&](const std::filesystem::path& path) {
       bio::rewriteOsim(request_.model, model, path);
     });
-  }
-
-  void writeDriven(const RepairedTrial& trial, std::size_t number, bio::Model& model) {
-    const std::string name =
-        fmt::format("driven_{}{}.sto", trial.isHeldOut ? "held_out_" : "", number);
-    folder_.writeFile(name, [&](const std::filesystem::path& path) {
-      bio::writeTable(*trial.driven, path);
-      for (bio::TrialStart start : trial.starts) {
-        start.file = name;
-        start.sha256 = sha256OfFile(path);
-        model.fitted.starts.push_back(std::move(start));
-      }
-    });
-    written_.replayFiles[static_cast<std::size_t>(trial.index)] =
-        folder_.active() ? folder_.path(name).string() : name;
   }
 
   /// A corrected recording has other degrees, and may have fewer samples.
@@ -106,7 +91,7 @@ class DiscoveryWriter {
     summary_.warn(fmt::format(
         "{}: the written model replays with an RMS error of {}, the search itself had {}; the "
         "report gives the value of the replay",
-        files_[static_cast<std::size_t>(one.index)], withUnit(unit * one.after, wording_.gapUnit),
+        files_[one.index], withUnit(unit * one.after, wording_.gapUnit),
         withUnit(unit * one.fitted, wording_.gapUnit)));
   }
 
@@ -114,8 +99,8 @@ class DiscoveryWriter {
     const SimulationOptions& typed = request_.simulation;
     written_.commands.emplace_back("this report", summary_.commandLine());
     for (const RepairedTrial& one : written_.trials) {
-      const std::string& file = files_[static_cast<std::size_t>(one.index)];
-      const std::string& replayed = written_.replayFiles[static_cast<std::size_t>(one.index)];
+      const std::string& file = files_[one.index];
+      const std::string& replayed = written_.replayFiles[one.index];
       if (!written_.trialsAreCut)
         written_.commands.emplace_back(
             file + ", original model",
@@ -145,10 +130,8 @@ std::vector<std::string> namesOfDiscovery(std::size_t training, std::size_t held
   std::vector<std::string> names = {"verdict.json", "parameters.csv", "with_effect.osim",
                                     "effect_only.osim", "refitted.osim"};
   // trials that are held out may be fitted after all
-  for (std::size_t i = 1; i <= training + heldOut; ++i)
-    names.push_back(fmt::format("driven_{}.sto", i));
-  for (std::size_t i = 1; i <= heldOut; ++i)
-    names.push_back(fmt::format("driven_held_out_{}.sto", i));
+  for (std::size_t i = 1; i <= training + heldOut; ++i) names.push_back(drivenName(i, false));
+  for (std::size_t i = 1; i <= heldOut; ++i) names.push_back(drivenName(i, true));
   return names;
 }
 

@@ -32,7 +32,7 @@ struct EnsembleStudy {
   EnsembleStudy(const bio::Model& model, const bio::MusculoskeletalSystem& arm,
                 const bio::SystemOptions& system, const TrialInput& input,
                 const bio::TrialEnsembleOptions& options)
-      : duration(input.duration),
+      : duration(input.trial.duration()),
         ensemble(model, arm, system, input.trial, {input.start.q, input.start.qDot}, options),
         table(ensemble.laws().parameters, ensemble.course(), shownFactor(ensemble.coordinate()),
               shownUnit(ensemble.coordinate())) {}
@@ -153,8 +153,9 @@ class Ensemble : public Command {
     if (pool->leads()) checkChoice(context);
     if (!pool->leads() && !pool->start()) return ExitStatus::done;
     if (!discover_.empty()) {
-      return discoverInSets({model_, {}, {}, {}, noise_, {}, maxEffects_, inputScatter_, simulation_},
-                            discover_, context, *pool, threads);
+      return discoverInSets(
+          {model_, {}, {}, {}, noise_, {}, maxEffects_, inputScatter_, simulation_}, discover_,
+          context, *pool, threads);
     }
     if (!pool->leads()) {
       Summary summary(context);
@@ -227,7 +228,7 @@ class Ensemble : public Command {
                                       .sobol = sobol_,
                                       .output = output_,
                                       .bandPoints = bandPoints_};
-    options.simulation = simulationOptions(simulation_, input.startTime, input.duration);
+    options.simulation = input.recorded.simulation;
     if (options.laws.covariance) summary.addInput(laws_.covarianceFile);
     auto made =
         std::make_unique<const EnsembleStudy>(model, arm, armOptions(simulation_), input, options);

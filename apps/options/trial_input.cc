@@ -268,16 +268,12 @@ TrialInput readTrialInput(const std::string& file, const bio::Model& model,
   TrialInput input;
   input.trial = readTrialFile(file, model, options, use);
   for (const std::string& warning : input.trial.warnings) summary.warn(warning);
-  input.excitation = bio::excitationOf(input.trial, arm);
-  input.externalForce = bio::externalForceOf(input.trial, arm);
-  input.prescribed = bio::prescribedMotionOf(input.trial, arm);
-  input.startTime = input.trial.times[0];
-  input.duration = input.trial.duration();
+  input.recorded = bio::recordedTrial(
+      input.trial, arm, simulationOptions(options, input.trial.times[0], input.trial.duration()));
   const bio::TrialBeginning beginning =
       bio::beginningOf(input.trial, model, arm, byName(options.initial));
   input.from = beginning.from;
-  input.start = bio::initialState(arm, beginning.point.q, input.excitation, input.startTime);
-  input.start.qDot = beginning.point.qDot;
+  input.start = input.recorded.startAt(arm, beginning.point);
   return input;
 }
 

@@ -77,17 +77,12 @@ double longestDuration(const std::vector<bio::Trial>& trials);
 /// A trial with the initial state and inputs of its simulation.
 struct TrialInput {
   bio::Trial trial;
-  bio::ExcitationSignal excitation;  ///< of the arm's muscles
-  bio::ExternalForce externalForce;  ///< empty: none
-  bio::PrescribedMotion prescribed;  ///< of the arm's prescribed coordinates
-  double startTime = 0;              ///< [s]
-  double duration = 0;               ///< [s]
-  bio::TrialBeginning::From from;    ///< where the initial state comes from
-  bio::SystemState start;  ///< from bio::beginningOf: --initial, else the model's fitted start,
-                           ///< else the measurement
+  bio::RecordedTrial recorded;     ///< with the integrator and step of the options
+  bio::TrialBeginning::From from;  ///< where the initial state comes from
+  bio::SystemState start;          ///< from bio::beginningOf: --initial, else the model's fitted
+                                   ///< start, else the measurement
 };
-/// @throws what readTrialFile, excitationOf, externalForceOf, beginningOf and initialState
-/// throw
+/// @throws what readTrialFile, recordedTrial, beginningOf and initialState throw
 TrialInput readTrialInput(const std::string& file, const bio::Model& model,
                           const bio::MusculoskeletalSystem& arm, const SimulationOptions& options,
                           Summary& summary, const TrialUse& use = {});

@@ -99,9 +99,8 @@ class Sensitivity : public Command {
     for (const std::string& file : trials_) {
       TrialInput input =
           readTrialInput(file, model, arm, simulation_, summary, {.channels = !observe_.empty()});
-      trials.push_back(
-          bio::studiedTrial(input.trial, model, arm, {input.start.q, input.start.qDot},
-                            simulationOptions(simulation_, input.startTime, input.duration)));
+      trials.push_back(bio::studiedTrial(input.trial, model, arm, {input.start.q, input.start.qDot},
+                                         input.recorded.simulation));
       recorded.push_back(std::move(input.trial));
     }
     inputsMustDiffer(summary, trials_.size());
@@ -152,7 +151,7 @@ class Sensitivity : public Command {
     }
     writeTables(findings, folder);
     summary.setSimulation(simulation_.integrator, simulation_.stepOrDefault(),
-                          first.simulation.duration,
+                          first.recorded.simulation.duration,
                           findings.local ? findings.local->motion.wallSeconds
                                          : findings.sweeps.front().nominal.wallSeconds);
     tellSensitivity(findings, summary);
@@ -246,8 +245,8 @@ class Sensitivity : public Command {
     double alone = 0, with = 0;
     for (int repeat = 0; repeat < 5; ++repeat) {
       auto local = bio::simulateWithSensitivities(arm, first.catalogue, first.catalogue.nominal(),
-                                                  question.selection, first.excitation,
-                                                  {first.simulation, false});
+                                                  question.selection, first.recorded.excitation,
+                                                  {first.recorded.simulation, false});
       const double motion = local.motion.wallSeconds;
       alone = repeat == 0 ? motion : std::min(alone, motion);
       const double sum = motion + local.wallSeconds;

@@ -53,31 +53,27 @@ struct Written {
 Written writtenOf(bio::discover::DiscoveryResult& result) {
   Written written;
   for (const auto& one : result.trials) {
-    bio::Trial trial = result.data->trial(one.index);
+    const auto index = static_cast<int>(one.index);
+    bio::Trial trial = result.data->trial(index);
     if (one.driven) {
       bio::Model& model = result.repaired->added.model;
       const std::string recorded = trial.sha256;
-      trial = bio::trialFrom(*one.driven, trial.file + " (driven)", model,
-                             {.experimentalConditions = true});
+      trial.file += " (driven)";
+      trial = bio::drivenTrial(*one.driven, trial, model);
       trial.sha256 = digestOf(py::bytes(recorded + " driven"));
-      for (bio::TrialStart start : one.starts) {
-        start.file = trial.file;
-        start.sha256 = trial.sha256;
-        model.fitted.starts.push_back(std::move(start));
-      }
+      bio::addStarts(model, one, trial.file, trial.sha256);
     }
     const bool isOne = one.starts.size() == 1;
     py::list starts;
     for (const bio::TrialStart& start : one.starts)
       starts.append(results("coordinate"_a = start.coordinate, "value"_a = start.value,
                             "speed"_a = start.speed));
-    written.trials.append(
-        results("name"_a = result.data->trialName(one.index),
-                "role"_a = one.isHeldOut ? "held_out" : "train", "nominal"_a = one.nominal,
-                "after"_a = one.after, "noise_floor"_a = one.floor,
-                "start"_a = isOne ? py::cast(one.starts.front().value) : py::none(),
-                "start_speed"_a = isOne ? py::cast(one.starts.front().speed) : py::none(),
-                "starts"_a = starts, "trial"_a = trial));
+    written.trials.append(results(
+        "name"_a = result.data->trialName(index), "role"_a = one.isHeldOut ? "held_out" : "train",
+        "nominal"_a = one.nominal, "after"_a = one.after, "noise_floor"_a = one.floor,
+        "start"_a = isOne ? py::cast(one.starts.front().value) : py::none(),
+        "start_speed"_a = isOne ? py::cast(one.starts.front().speed) : py::none(),
+        "starts"_a = starts, "trial"_a = trial));
   }
   if (result.repaired) written.model = py::cast(result.repaired->added.model);
   return written;

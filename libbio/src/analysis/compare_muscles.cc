@@ -52,21 +52,20 @@ MuscleClassMotion motionOf(const Model& model, const SystemOptions& options,
                            Measured& measured) {
   MuscleClassMotion result;
   const MusculoskeletalSystem arm(model, options);
-  SystemState start = initialState(arm, trial.q, *trial.excitation, trial.simulation.startTime);
-  start.qDot = trial.qDot;
-  result.motion = simulate(arm, *trial.excitation, start, trial.simulation);
+  const auto& [excitation, simulation] = trial.recorded;
+  const SystemState start = trial.recorded.startAt(arm, trial.start);
+  result.motion = simulate(arm, excitation, start, simulation);
   if (result.motion.outcome != Outcome::completed) return result;
   for (int repeat = 0; repeat < 4; ++repeat) {  // the least time: others use the machine
-    result.motion.wallSeconds =
-        std::min(result.motion.wallSeconds,
-                 simulate(arm, *trial.excitation, start, trial.simulation).wallSeconds);
+    result.motion.wallSeconds = std::min(result.motion.wallSeconds,
+                                         simulate(arm, excitation, start, simulation).wallSeconds);
   }
   result.energyError = energyError(arm, result.motion);
   if (first) result.difference = sd(arm, result.motion, first->motion);
-  const ParameterCatalogue catalogue(model, arm, {trial.q, trial.qDot});
+  const ParameterCatalogue catalogue(model, arm, trial.start);
   const std::vector<std::size_t> selection = sharedNumbers(catalogue, arm);
-  const TrialPredictor predictor(catalogue, options, *trial.excitation, trial.coordinate,
-                                 trial.times, selection, trial.simulation);
+  const TrialPredictor predictor(catalogue, options, excitation, trial.coordinate, trial.times,
+                                 selection, simulation);
   auto linearised = predictor.withSensitivities(catalogue.values(selection));
   result.information = informationAbout(catalogue, selection, {linearised.gamma}, trial.noise);
   measured = {std::move(linearised.outputs), std::move(linearised.gamma)};

@@ -5,6 +5,7 @@
 
 #include "bio/analysis/replay.h"
 #include "bio/sensitivity/coupled_sensitivity.h"
+#include "bio/tables/trial_table.h"
 #include "forces/linear_course.h"
 
 namespace bio {
@@ -80,6 +81,38 @@ Table drivenTable(const Trial& trial, const MusculoskeletalSystem& arm, const Em
     table.columns.push_back(push.coordinate + (turns ? ".torque" : ".force"));
   }
   return table;
+}
+
+Trial drivenTrial(const Table& driven, const Trial& recorded, const Model& model) {
+  TrialOptions options{.experimentalConditions = true};
+  for (const MeasuredChannel& course : recorded.prescribed)
+    if (course.times.size() > 1) options.prescribed.push_back(course.what.of);
+  Trial trial = trialFrom(driven, recorded.file, model, options);
+  trial.prescribed = recorded.prescribed;  // with those that are held
+  return trial;
+}
+
+void addStarts(Model& model, const FittedTrial& fitted, const std::string& file,
+               const std::string& sha256) {
+  if (sha256.empty()) return;
+  for (TrialStart start : fitted.starts) {
+    start.file = file;
+    start.sha256 = sha256;
+    model.fitted.starts.push_back(std::move(start));
+  }
+}
+
+std::optional<TrialReplay> completeReplay(const MusculoskeletalSystem& system, const Trial& trial,
+                                          const SimulationOptions& simulation,
+                                          const StartPoint& start) {
+  try {
+    TrialReplay replay =
+        replayTrial(system, trial, simulation, {start, TrialBeginning::From::model});
+    if (replay.motion.outcome == Outcome::completed) return replay;
+  } catch (const std::exception&) {
+    // it has no start, say
+  }
+  return std::nullopt;
 }
 
 }  // namespace bio

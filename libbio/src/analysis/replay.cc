@@ -51,6 +51,22 @@ ExternalForce externalForceOf(const Trial& trial, const MusculoskeletalSystem& a
   return {times, std::move(values), std::move(controls)};
 }
 
+RecordedTrial recordedTrial(const Trial& trial, const MusculoskeletalSystem& system,
+                            SimulationOptions options) {
+  options.startTime = trial.times[0];
+  options.duration = trial.duration();
+  options.externalForce = externalForceOf(trial, system);
+  options.prescribed = prescribedMotionOf(trial, system);
+  return {excitationOf(trial, system), std::move(options)};
+}
+
+SystemState RecordedTrial::startAt(const MusculoskeletalSystem& system,
+                                   const StartPoint& point) const {
+  SystemState state = initialState(system, point.q, excitation, simulation.startTime);
+  state.qDot = point.qDot;
+  return state;
+}
+
 Eigen::VectorXd startCoordinates(const Trial& trial, const MusculoskeletalSystem& arm,
                                  const std::map<std::string, double>& given) {
   const auto& free = arm.skeleton().coordinates();
@@ -194,15 +210,10 @@ MeasuredError compareWithMeasured(const MusculoskeletalSystem& arm, const Trajec
 TrialReplay replayTrial(const MusculoskeletalSystem& arm, const Trial& trial,
                         SimulationOptions options, TrialBeginning beginning) {
   TrialReplay replay;
-  const ExcitationSignal excitation = excitationOf(trial, arm);
-  options.startTime = trial.times[0];
-  options.duration = trial.duration();
-  options.externalForce = externalForceOf(trial, arm);
-  options.prescribed = prescribedMotionOf(trial, arm);
+  RecordedTrial recorded = recordedTrial(trial, arm, std::move(options));
   replay.beginning = std::move(beginning);
-  SystemState start = initialState(arm, replay.beginning.point.q, excitation, options.startTime);
-  start.qDot = replay.beginning.point.qDot;
-  replay.motion = simulate(arm, excitation, start, options);
+  replay.motion = simulate(arm, recorded.excitation, recorded.startAt(arm, replay.beginning.point),
+                           recorded.simulation);
   for (const MeasuredChannel& measured : trial.measured) {
     if (measured.times.size() == 0 || measured.times[0] > replay.motion.time.back()) continue;
     if (!measured.what.isCoordinate()) {
@@ -215,8 +226,8 @@ TrialReplay replayTrial(const MusculoskeletalSystem& arm, const Trial& trial,
                                  compareWithMeasured(arm, replay.motion, measured));
     }
   }
-  options.progress = {};
-  replay.options = std::move(options);
+  recorded.simulation.progress = {};
+  replay.options = std::move(recorded.simulation);
   return replay;
 }
 

@@ -40,14 +40,10 @@ void requireTrials(const std::vector<StudiedTrial>& trials) {
 
 StudiedTrial studiedTrial(const Trial& trial, const Model& model, const MusculoskeletalSystem& arm,
                           const StartPoint& start, SimulationOptions simulation) {
-  simulation.startTime = trial.times[0];
-  simulation.duration = trial.duration();
-  simulation.externalForce = externalForceOf(trial, arm);
-  simulation.prescribed = prescribedMotionOf(trial, arm);
   std::vector<double> times =
       observedTimes(trial, arm.skeleton().coordinates().front().name, simulation.step);
-  return {trial.file, ParameterCatalogue(model, arm, start), excitationOf(trial, arm),
-          std::move(simulation), std::move(times)};
+  return {trial.file, ParameterCatalogue(model, arm, start),
+          recordedTrial(trial, arm, std::move(simulation)), std::move(times)};
 }
 
 std::vector<ChannelCandidate> observedChannels(
@@ -73,12 +69,12 @@ std::vector<ChannelCandidate> observedChannels(
 
 TrialPredictor predictorOf(const StudiedTrial& trial, const SensitivityQuestion& question) {
   if (question.observed.empty()) {
-    return {trial.catalogue, question.system,    trial.excitation, question.coordinate,
-            trial.times,     question.selection, trial.simulation};
+    return {trial.catalogue, question.system,    trial.recorded.excitation, question.coordinate,
+            trial.times,     question.selection, trial.recorded.simulation};
   }
-  return {trial.catalogue,    question.system,
-          trial.excitation,   seriesOf(question.observed, trial.times),
-          question.selection, trial.simulation};
+  return {trial.catalogue,           question.system,
+          trial.recorded.excitation, seriesOf(question.observed, trial.times),
+          question.selection,        trial.recorded.simulation};
 }
 
 std::vector<TrialPredictor> predictorsOf(const std::vector<StudiedTrial>& trials,
@@ -134,8 +130,8 @@ std::vector<ChannelGain> furtherGains(const std::vector<StudiedTrial>& trials,
   std::vector<Eigen::MatrixXd> information;
   for (const StudiedTrial& trial : trials) {
     const auto motion = simulateWithSensitivities(arm, trial.catalogue, trial.catalogue.nominal(),
-                                                  question.selection, trial.excitation,
-                                                  {trial.simulation, true, true});
+                                                  question.selection, trial.recorded.excitation,
+                                                  {trial.recorded.simulation, true, true});
     const auto more = informationOf(arm, candidates, trial.times, motion);
     for (std::size_t c = 0; c < more.size(); ++c) {
       if (information.size() == c) {
@@ -172,7 +168,7 @@ Sweep parameterSweep(const StudiedTrial& trial, const SystemOptions& system, std
   const auto simulated = [&](double value) {
     const auto setting = trial.catalogue.at({index}, Eigen::VectorXd::Constant(1, value));
     const MusculoskeletalSystem arm(setting.model, system);
-    return simulateSetting(arm, setting, trial.excitation, trial.simulation);
+    return simulateSetting(arm, setting, trial.recorded.excitation, trial.recorded.simulation);
   };
   Sweep result{parameter, simulated(parameter.value), {}};
   for (const double value : values) {

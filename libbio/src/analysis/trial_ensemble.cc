@@ -38,19 +38,15 @@ TrialEnsemble::TrialEnsemble(const Model& model, const MusculoskeletalSystem& sy
       sobol_(asked.sobol),
       draws_(asked.draws) {
   check(trial, asked);
-  SimulationOptions simulation = asked.simulation;
-  simulation.startTime = trial.times[0];
-  simulation.duration = trial.duration();
-  simulation.externalForce = externalForceOf(trial, system);
-  simulation.prescribed = prescribedMotionOf(trial, system);
-  const ExcitationSignal excitation = excitationOf(trial, system);
+  const RecordedTrial recorded = recordedTrial(trial, system, asked.simulation);
+  const SimulationOptions& simulation = recorded.simulation;
   batch_ = std::make_unique<const SystemBatch>(
-      catalogue_, options, excitation, coordinate_.name, measured_,
+      catalogue_, options, recorded.excitation, coordinate_.name, measured_,
       bandTimes(simulation.startTime, simulation.duration, asked.bandPoints), laws_.selection,
       simulation);
-  SystemState state = initialState(system, start.q, excitation, simulation.startTime);
-  state.qDot = start.qDot;
-  if (const auto left = leftRange(system, simulate(system, excitation, state, simulation)))
+  const Trajectory motion =
+      simulate(system, recorded.excitation, recorded.startAt(system, start), simulation);
+  if (const auto left = leftRange(system, motion))
     remark_ = "with the model's own parameters, " + left->what;
 }
 

@@ -89,12 +89,8 @@ TrialSet::TrialSet(const Model& model, const SystemOptions& arm, std::vector<Tri
   collectSeries(model);
   for (std::size_t i = 0; i < trials_.size(); ++i) {
     const Trial& trial = trials_[i];
-    SimulationOptions simulation = options.simulation;
-    simulation.startTime = trial.times[0];
-    simulation.duration = trial.duration();
-    simulation.externalForce = externalForceOf(trial, *arm_);
-    simulation.prescribed = prescribedMotionOf(trial, *arm_);
-    simulation.progress = {};
+    RecordedTrial recorded = recordedTrial(trial, *arm_, options.simulation);
+    recorded.simulation.progress = {};
     std::vector<ObservedSeries> observed;
     for (const MeasuredSeries& one : series_) {
       if (one.trial != i) continue;
@@ -106,8 +102,8 @@ TrialSet::TrialSet(const Model& model, const SystemOptions& arm, std::vector<Tri
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(fmt::format("{}: {}", trial.file, error.what()));
     }
-    experiments_.emplace_back(*catalogues_[i], arm, excitationOf(trial, *arm_), std::move(observed),
-                              selectionOf(i), simulation);
+    experiments_.emplace_back(*catalogues_[i], arm, std::move(recorded.excitation),
+                              std::move(observed), selectionOf(i), recorded.simulation);
     begin_.push_back(begin_.back() + experiments_.back().size());
   }
 }

@@ -127,9 +127,8 @@ void MusculoskeletalProblem::addTrial(Trial trial) {
   OfTrial one;
   one.trial = std::move(trial);
   collectSamples(one);
-  one.excitation = excitationOf(one.trial, encompassing_.arm());
-  one.external = externalForceOf(one.trial, encompassing_.arm());
-  one.prescribed = prescribedMotionOf(one.trial, encompassing_.arm());
+  one.recorded = recordedTrial(one.trial, encompassing_.arm(), options_.simulation);
+  one.recorded.simulation.progress = {};
   one.known = experimentalConditionsOf(one.trial, encompassing_);
   addNodes(one);
   addStarts(one);
@@ -246,11 +245,11 @@ void MusculoskeletalProblem::separateWhatTrialsTellApart() {
 double MusculoskeletalProblem::activationLag() const {
   double sum = 0, count = 0;
   for (const OfTrial& one : trials_) {
-    const auto& times = one.excitation.times();
-    VectorXd u(one.excitation.numMuscles());
+    const auto& times = one.recorded.excitation.times();
+    VectorXd u(one.recorded.excitation.numMuscles());
     std::size_t hint = 0;
     for (const double t : times) {
-      one.excitation.at(t, hint, u);
+      one.recorded.excitation.at(t, hint, u);
       for (Index i = 0; i < u.size(); ++i) {
         sum += encompassing_.arm().muscles()[static_cast<std::size_t>(i)].activation.lag(u[i]);
         ++count;
@@ -274,10 +273,10 @@ std::unique_ptr<MusculoskeletalProblem::Simulation> MusculoskeletalProblem::simu
 
 MatrixXd MusculoskeletalProblem::inputs(int trial) const {
   const OfTrial& one = of(trial);
-  MatrixXd values(static_cast<Index>(one.times.size()), one.excitation.numMuscles());
+  MatrixXd values(static_cast<Index>(one.times.size()), one.recorded.excitation.numMuscles());
   std::size_t hint = 0;
   for (std::size_t i = 0; i < one.times.size(); ++i) {
-    one.excitation.at(one.times[i], hint, values.row(static_cast<Index>(i)).transpose());
+    one.recorded.excitation.at(one.times[i], hint, values.row(static_cast<Index>(i)).transpose());
   }
   return values;
 }

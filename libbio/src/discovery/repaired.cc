@@ -4,10 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "bio/analysis/driven_trial.h"
 #include "bio/analysis/replay.h"
 #include "bio/discovery/with_experimental_conditions.h"
-#include "bio/tables/trial_table.h"
 
 namespace bio::discover {
 namespace {
@@ -93,22 +91,21 @@ Compared replayed(const MusculoskeletalProblem& data, const Model& model, const 
                   const info::discover::Whitening& noise) {
   const SystemOptions options = withoutTables(data);
   try {
-    const MusculoskeletalSystem arm(
+    const MusculoskeletalSystem system(
         withExperimentalConditions(model, options, data.encompassing().coordinateNames(), trial),
         options);
     SimulationOptions simulation = data.options().simulation;
     simulation.step = step;
     simulation.progress = {};
-    TrialBeginning beginning = beginningOf(trial, model, arm, {});
+    StartPoint point = beginningOf(trial, model, system, {}).point;
     for (const TrialStart& start : starts) {
-      beginning.point.q[arm.skeleton().indexOf(start.coordinate)] = start.value;
-      beginning.point.qDot[arm.skeleton().indexOf(start.coordinate)] = start.speed;
+      point.q[system.skeleton().indexOf(start.coordinate)] = start.value;
+      point.qDot[system.skeleton().indexOf(start.coordinate)] = start.speed;
     }
-    const TrialReplay replay = replayTrial(arm, trial, simulation, beginning);
-    if (replay.motion.outcome != Outcome::completed) return {};
-    return pooled(data.encompassing().sensors(), replay, noise);
+    if (const auto replay = completeReplay(system, trial, simulation, point))
+      return pooled(data.encompassing().sensors(), *replay, noise);
   } catch (const std::exception&) {
-    // it has no start, say, or no arm can be made of it
+    // no system can be made of it
   }
   return {};
 }
@@ -127,17 +124,6 @@ std::string creditsOf(const MusculoskeletalProblem& data, const Verdict& verdict
 }
 
 }  // namespace
-
-double Repaired::pooled(double RepairedTrial::*figure, bool heldOut) const {
-  double sum = 0, count = 0;
-  for (const RepairedTrial& one : trials) {
-    if (one.isHeldOut != heldOut) continue;
-    const auto n = static_cast<double>(one.samples);
-    sum += n * std::pow(one.*figure, 2);
-    count += n;
-  }
-  return count > 0 ? std::sqrt(sum / count) : RepairedTrial::none;
-}
 
 std::vector<EffectToAdd> effectsToAdd(const MusculoskeletalProblem& data, const Verdict& verdict) {
   std::vector<EffectToAdd> effects;
@@ -166,7 +152,7 @@ std::vector<RepairedTrial> recordedTrials(const MusculoskeletalProblem& data,
   std::vector<RepairedTrial> trials;
   for (int i = 0; i < data.numTrials(); ++i) {
     RepairedTrial one;
-    one.index = i;
+    one.index = static_cast<std::size_t>(i);
     one.isHeldOut = std::find(heldOut.begin(), heldOut.end(), i) != heldOut.end();
     one.starts = data.startsAt(i, verdict.values);
     const Compared nominal = replayed(data, base, data.trial(i), nominalStep, {}, verdict.outputSd);
@@ -201,12 +187,12 @@ Repaired repairedModel(const MusculoskeletalProblem& data, const Verdict& verdic
                         data.timedForce(0, verdict.values).size() > 0;
   const MusculoskeletalSystem arm(model, withoutTables(data));
   for (RepairedTrial& one : result.trials) {
-    Trial trial = data.trial(one.index);
-    if (!trial.sha256.empty())
-      model.fitted.starts.insert(model.fitted.starts.end(), one.starts.begin(), one.starts.end());
+    const auto index = static_cast<int>(one.index);
+    Trial trial = data.trial(index);
+    addStarts(model, one, trial.file, trial.sha256);
     if (isDriven) {
-      if (const VectorXd force = data.timedForce(one.index, verdict.values); force.size() > 0) {
-        const std::vector<double> nodes = info::discover::nodeTimes(data, one.index);
+      if (const VectorXd force = data.timedForce(index, verdict.values); force.size() > 0) {
+        const std::vector<double> nodes = info::discover::nodeTimes(data, index);
         const auto n = static_cast<Index>(nodes.size());
         const std::vector<std::string> names = data.encompassing().coordinateNames();
         for (std::size_t axis = 0; axis < names.size(); ++axis)
@@ -216,12 +202,7 @@ Repaired repairedModel(const MusculoskeletalProblem& data, const Verdict& verdic
       for (std::size_t i = 0; i < outputs.size(); ++i)
         trial = asTrueSensor(std::move(trial), outputs[i], result.added.sensors[i]);
       one.driven = drivenTable(trial, arm, result.added.mapping);
-      std::vector<MeasuredChannel> prescribed = trial.prescribed;
-      TrialOptions options{.experimentalConditions = true};
-      for (const MeasuredChannel& course : prescribed)
-        if (course.times.size() > 1) options.prescribed.push_back(course.what.of);
-      trial = trialFrom(*one.driven, trial.file, model, options);
-      trial.prescribed = std::move(prescribed);
+      trial = drivenTrial(*one.driven, trial, model);
       if (outputs.size() == 1) one.floor /= 1 + result.added.sensors.front().gain;
     }
     const Compared after =
@@ -237,8 +218,8 @@ void takeReplays(Verdict& verdict, const Repaired& repaired) {
   const std::vector<SensorLaw>& sensors = repaired.added.sensors;
   const double shown = sensors.size() == 1 ? 1 + sensors.front().gain : 1;
   const auto take = [&](info::discover::ExcessError& gap, bool heldOut) {
-    gap.nominal = repaired.pooled(&RepairedTrial::nominal, heldOut);
-    gap.after = shown * repaired.pooled(&RepairedTrial::after, heldOut);
+    gap.nominal = pooledRms(repaired.trials, &RepairedTrial::nominal, heldOut);
+    gap.after = shown * pooledRms(repaired.trials, &RepairedTrial::after, heldOut);
     explainExcess(gap);
     gap.after /= shown;
   };

@@ -83,14 +83,14 @@ ParameterCatalogue::Setting MusculoskeletalProblem::settingAt(
     setting.start.qDot[c] = values[static_cast<Index>(start.speed)];
   }
   if (!encompassing_.arm().prescribed().empty())
-    one.prescribed.place(one.trial.times[0], setting.start.q, setting.start.qDot);
+    one.recorded.simulation.prescribed.place(one.trial.times[0], setting.start.q,
+                                             setting.start.qDot);
   return setting;
 }
 
 SimulationOptions MusculoskeletalProblem::simulationOf(const OfTrial& one, const VectorXd& values,
                                                        const VectorXd& latent) const {
-  SimulationOptions simulation = options_.simulation;
-  simulation.startTime = one.trial.times[0];
+  SimulationOptions simulation = one.recorded.simulation;
   // a sensor may look behind the last sample
   double end = one.times.back();
   for (const Series& series : one.series) {
@@ -100,9 +100,6 @@ SimulationOptions MusculoskeletalProblem::simulationOf(const OfTrial& one, const
   if (!encompassing_.arm().prescribed().empty())
     end = std::min(end, one.trial.times[one.trial.times.size() - 1]);  // beyond, none is given
   simulation.duration = end - simulation.startTime;
-  simulation.prescribed = one.prescribed;
-  simulation.progress = {};
-  simulation.externalForce = one.external;
   if (latent.size() == 0) return simulation;
   if (latent.size() != static_cast<Index>(one.nodes.size())) {
     throw std::invalid_argument(
@@ -121,7 +118,7 @@ SimulationOptions MusculoskeletalProblem::simulationOf(const OfTrial& one, const
 // The arm may have muscles that the base model switched off.
 ExcitationSignal MusculoskeletalProblem::excitationFor(const OfTrial& one,
                                                        const MusculoskeletalSystem& arm) const {
-  return arm.numMuscles() == encompassing_.arm().numMuscles() ? one.excitation
+  return arm.numMuscles() == encompassing_.arm().numMuscles() ? one.recorded.excitation
                                                               : excitationOf(one.trial, arm);
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bio/analysis/compare.h"
+#include "bio/analysis/replay.h"
 #include "bio/parameters/parameter_information.h"
 
 /// What the class of a model's muscles changes, all their shared numbers being equal.
@@ -12,12 +13,11 @@ namespace bio {
 
 /// Where a comparison of classes begins, and what is measured.
 struct MuscleClassTrial {
-  const ExcitationSignal* excitation = nullptr;
-  Eigen::VectorXd q, qDot;            ///< start; fibres rest
-  SimulationOptions simulation = {};  ///< a variational integrator, which has sensitivities
-  std::string coordinate = {};        ///< measured
-  std::vector<double> times = {};     ///< of its samples [s]
-  double noise = 0;                   ///< standard deviation of a sample [rad] or [m] > 0
+  RecordedTrial recorded;          ///< with a variational integrator, which has sensitivities
+  StartPoint start;                ///< fibres rest
+  std::string coordinate = {};     ///< measured
+  std::vector<double> times = {};  ///< of its samples [s]
+  double noise = 0;                ///< standard deviation of a sample [rad] or [m] > 0
   /// Called between classes with the fraction of the work done.
   std::function<void(double)> progress = {};
 };

@@ -27,6 +27,21 @@ ExternalForce externalForceOf(const Trial& trial, const MusculoskeletalSystem& a
 /// @throws std::invalid_argument if the trial lacks one of them
 PrescribedMotion prescribedMotionOf(const Trial& trial, const MusculoskeletalSystem& arm);
 
+/// What a recorded trial gives to its simulation, for one system.
+struct RecordedTrial {
+  ExcitationSignal excitation;   ///< excitationOf()
+  SimulationOptions simulation;  ///< from the first row to the last, with externalForceOf() and
+                                 ///< prescribedMotionOf()
+
+  /// The state at the first row, fibres in equilibrium with the tendons.
+  /// @throws what initialState throws
+  SystemState startAt(const MusculoskeletalSystem& system, const StartPoint& point) const;
+};
+/// @param options  integrator, step and progress
+/// @throws what excitationOf, externalForceOf and prescribedMotionOf throw
+RecordedTrial recordedTrial(const Trial& trial, const MusculoskeletalSystem& system,
+                            SimulationOptions options);
+
 /// Smooths the prescribed courses of a trial (smoothed_motion.h), sampled at equal steps from its
 /// first row to its last; constants stay.
 /// @param cutoff  [Hz] > 0

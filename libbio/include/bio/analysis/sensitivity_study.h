@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "bio/analysis/replay.h"
 #include "bio/calibration/trial_predictor.h"
 #include "bio/parameters/channel_information.h"
 #include "bio/parameters/parameter_information.h"
@@ -23,9 +24,8 @@ namespace bio {
 struct StudiedTrial {
   std::string file;              ///< for messages
   ParameterCatalogue catalogue;  ///< with the trial's initial state
-  ExcitationSignal excitation;
-  SimulationOptions simulation;  ///< with the trial's times, external force, prescribed motion
-  std::vector<double> times;     ///< at which something is measured [s]
+  RecordedTrial recorded;
+  std::vector<double> times;  ///< at which something is measured [s]
 };
 
 /// The trial from its first row to its last, sampled when the system's first coordinate was

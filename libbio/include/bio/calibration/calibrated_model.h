@@ -1,25 +1,15 @@
 #pragma once
 
-#include <limits>
-#include <optional>
 #include <vector>
 
-#include "bio/analysis/replay.h"
+#include "bio/analysis/driven_trial.h"
 #include "bio/calibration/calibrate.h"
-#include "bio/tables/table_file.h"
 
 namespace bio {
 
-/// One trial of a calibration, replayed with the calibrated model.
-struct CalibratedTrial {
-  std::size_t index = 0;  ///< in its set
-  bool isHeldOut = false;
-  std::vector<TrialStart> starts;  ///< of every free coordinate
-  std::optional<Table> driven;     ///< trial to replay instead, if the relation between EMG and
-                                   ///< excitation was estimated
-  double after = std::numeric_limits<double>::quiet_NaN();  ///< root mean square error of the
-                                                            ///< measured angles [rad]; NaN: none
-  Eigen::Index samples = 0;                                 ///< samples of `after`
+/// One trial of a calibration, replayed with the calibrated model; `after` [rad] is the error of
+/// all measured angles.
+struct CalibratedTrial : FittedTrial {
   std::vector<ChannelError> channels = {};  ///< errors of all that was measured beside angles
 };
 

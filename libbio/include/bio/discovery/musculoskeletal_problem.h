@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bio/analysis/replay.h"
 #include "bio/calibration/nudge.h"
 #include "bio/discovery/encompassing_model.h"
 #include "bio/simulation/simulate.h"
@@ -150,9 +151,7 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   };
   struct OfTrial {
     Trial trial;
-    ExcitationSignal excitation;
-    ExternalForce external;
-    PrescribedMotion prescribed;
+    RecordedTrial recorded;
     std::vector<double> times;
     std::vector<int> outputs;  ///< of the samples; empty: one output
     Eigen::VectorXd measured;

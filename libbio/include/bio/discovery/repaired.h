@@ -5,38 +5,28 @@
 #include <string>
 #include <vector>
 
+#include "bio/analysis/driven_trial.h"
 #include "bio/discovery/add_effects.h"
 #include "bio/discovery/musculoskeletal_problem.h"
-#include "bio/tables/table_file.h"
 #include "info/discovery/discover.h"
 #include "info/discovery/likelihood/fitted_numbers.h"
 
 namespace bio::discover {
 
 /// One trial of a search and the RMS errors of its simulations, in the unit of the output; of
-/// several outputs as ExcessError has them. NaN if unavailable.
-struct RepairedTrial {
+/// several outputs as ExcessError has them. NaN if unavailable. `samples` are those compared by
+/// `after`, else by `nominal`.
+struct RepairedTrial : FittedTrial {
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  int index = 0;                   ///< of MusculoskeletalProblem
-  bool isHeldOut = false;          ///< judged by only
-  std::vector<TrialStart> starts;  ///< initial states of the coordinates, for the repaired model
-  std::optional<Table> driven;     ///< trial to replay instead: the excitations that
-                                   ///< drove the muscles, sensor errors removed
-  double nominal = none;           ///< replay of the original model on the recorded trial
-  double after = none;             ///< replay of the repaired model, on `driven` if there is one
-  double fitted = none;            ///< the fit's own simulation at the same values
-  double floor = none;             ///< noise of the replayed trial
-  Eigen::Index samples = 0;        ///< number of samples compared by `after`, else by `nominal`
+  double nominal = none;  ///< replay of the original model on the recorded trial
+  double fitted = none;   ///< the fit's own simulation at the same values
+  double floor = none;    ///< noise of the replayed trial
 };
 
 /// A model with all values fitted by a search, and its replays.
 struct Repaired {
   Augmented added;
   std::vector<RepairedTrial> trials;
-
-  /// RMS of one of these errors over the samples of the held-out or of the other trials; NaN if one
-  /// of them has none.
-  double pooled(double RepairedTrial::*figure, bool heldOut) const;
 };
 
 /// The effects of a verdict, with their probabilities unless none are given (Verdict::vetoed).
