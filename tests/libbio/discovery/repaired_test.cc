@@ -97,7 +97,7 @@ TEST(Repaired, ReplaysOfTheWrittenModelGiveItsFiguresAndTheFits) {
         EXPECT_FALSE(one.driven) << id;
         EXPECT_EQ(one.isHeldOut, one.index == 1);
         EXPECT_NEAR(one.after, one.fitted, hundredth) << id << " " << step;
-        EXPECT_NEAR(f.replay(file, f.trials[static_cast<std::size_t>(one.index)]), one.after, 1e-9)
+        EXPECT_NEAR(f.replay(file, f.trials[one.index]), one.after, 1e-9)
             << id << " " << step;
         // the model as it came is further away or nearer, but not the same
         EXPECT_GT(std::abs(one.nominal - one.after), 10 * hundredth) << id;
