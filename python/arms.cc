@@ -7,6 +7,7 @@
 #include "arguments/columns.h"
 #include "arguments/file_name.h"
 #include "bio/analysis/replay.h"
+#include "bio/analysis/step_effect.h"
 #include "bio/discovery/with_experimental_conditions.h"
 #include "bio/model/convert_muscles.h"
 #include "bio/model/free_coordinates.h"
@@ -144,6 +145,7 @@ py::object replay(const bio::Model& given, const bio::Trial& trial,
   bio::MuscleReport muscles;
   double energyError = 0;
   std::optional<bio::LeftRange> left;
+  std::optional<bio::StepEffect> ofStep;
   std::unique_ptr<bio::MusculoskeletalSystem> arm;
   interruptible([&](const std::atomic<bool>& goOn) {
     const bio::Model model = trial.known.any()
@@ -160,6 +162,7 @@ py::object replay(const bio::Model& given, const bio::Trial& trial,
     muscles = bio::reportMuscles(*arm, motion);
     energyError = bio::energyError(*arm, motion);
     left = bio::leftRange(*arm, motion);
+    ofStep = bio::effectOfDoubtfulStep(*arm, trial, replayed, choice.step.has_value());
   });
   if (strict && left) throw std::runtime_error(left->what);
   std::vector<std::string> coordinates, names;
@@ -177,8 +180,9 @@ py::object replay(const bio::Model& given, const bio::Trial& trial,
       "channel_rms_error"_a = channelErrorsOf(replayed), "energy_error"_a = energyError,
       "outcome"_a = bio::name(motion.outcome), "why"_a = motion.why,
       "left_range"_a = left ? left->what : "", "start_from"_a = bio::name(replayed.beginning.from),
-      "step"_a = replayed.options.step, "steps"_a = motion.steps,
-      "newton_iterations"_a = motion.newtonIterations, "warnings"_a = arm->warnings());
+      "step"_a = replayed.options.step, "step_too_long"_a = ofStep ? bio::describe(*ofStep) : "",
+      "steps"_a = motion.steps, "newton_iterations"_a = motion.newtonIterations,
+      "warnings"_a = arm->warnings());
 }
 
 }  // namespace

@@ -101,6 +101,10 @@ class Arms(unittest.TestCase):
             other = fh.replay(self.model, self.trial, integrator=integrator, step=step).q[-1, 0]
             self.assertLess(abs(other - fine), bound)
 
+    def test_a_step_that_is_too_long_is_said(self):
+        self.assertIn("too long", fh.replay(self.model, self.trial, step=0.4).step_too_long)
+        self.assertEqual(fh.replay(self.model, self.trial).step_too_long, "")
+
     def test_sensitivity_is_the_difference_of_two_motions(self):
         name, h = "hand.mass", 1e-4
         found = fh.sensitivity(self.model, [self.trial], [name])

@@ -14,9 +14,6 @@
 namespace app {
 namespace {
 
-/// So few steps are always tested, at no cost that is felt.
-constexpr long fewSteps = 20;
-
 class Replay : public Command {
  public:
   About about() const override {
@@ -81,7 +78,8 @@ class Replay : public Command {
       const bool isSaid = left && sentence.starts_with(left->name + " leaves its range");
       if (!isSaid) summary.warn(sentence);
     }
-    const std::optional<bio::StepEffect> effect = effectOfStep(arm, trial, replay);
+    const std::optional<bio::StepEffect> effect =
+        bio::effectOfDoubtfulStep(arm, trial, replay, simulation_.step.has_value());
     if (effect) summary.warn(describe(*effect));
     const bio::MuscleReport muscles = bio::reportMuscles(arm, motion);
     folder.writeFile("states.sto", [&](const std::filesystem::path& path) {
@@ -101,18 +99,6 @@ class Replay : public Command {
   }
 
  private:
-  /// Of an explicit integrator's step that was asked for, since it may be unstable, and of any
-  /// where there are few.
-  std::optional<bio::StepEffect> effectOfStep(const bio::MusculoskeletalSystem& arm,
-                                              const bio::Trial& trial,
-                                              const bio::TrialReplay& replay) const {
-    const bool isCompleted = replay.motion.outcome == bio::Outcome::completed;
-    const bool mayLeap =
-        simulation_.step && replay.options.integrator == bio::Integrator::rungeKutta4;
-    if (!isCompleted || !(mayLeap || replay.motion.steps <= fewSteps)) return {};
-    return bio::stepEffect(arm, trial, replay);
-  }
-
   std::string model_;
   std::string trial_;
   SimulationOptions simulation_;

@@ -56,6 +56,16 @@ std::optional<StepEffect> stepEffect(const MusculoskeletalSystem& system, const 
   return effect;
 }
 
+std::optional<StepEffect> effectOfDoubtfulStep(const MusculoskeletalSystem& system,
+                                               const Trial& trial, const TrialReplay& replay,
+                                               bool wasGiven) {
+  constexpr long fewSteps = 20;
+  const bool mayBeUnstable = wasGiven && replay.options.integrator == Integrator::rungeKutta4;
+  const bool isInDoubt = mayBeUnstable || replay.motion.steps <= fewSteps;
+  if (replay.motion.outcome != Outcome::completed || !isInDoubt) return {};
+  return stepEffect(system, trial, replay);
+}
+
 std::string describe(const StepEffect& effect) {
   const std::string what =
       effect.failed.empty()

@@ -96,7 +96,7 @@ class Calibrator {
                            training_.trials()[i].file, why);
       }
     }
-    return "the simulation at the start values has no finite angle";
+    return "the simulation at the start values shows no finite value";
   }
 
   /// false: stop

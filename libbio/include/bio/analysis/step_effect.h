@@ -30,6 +30,15 @@ inline constexpr double largestStepEffect_deg = 2, largestStepEffect_mm = 20;
 std::optional<StepEffect> stepEffect(const MusculoskeletalSystem& system, const Trial& trial,
                                      const TrialReplay& replay);
 
+/// stepEffect() of a completed replay whose step is in doubt: of an explicit integrator if it was
+/// asked for, since it may be unstable, and of any integrator where there are at most 20 steps;
+/// nothing of others.
+/// @param wasGiven  the step was asked for
+/// @throws what replayTrial throws
+std::optional<StepEffect> effectOfDoubtfulStep(const MusculoskeletalSystem& system,
+                                               const Trial& trial, const TrialReplay& replay,
+                                               bool wasGiven);
+
 /// "with half the step (0.05 s) elbow_flexion differs by up to 46.8 deg, at 1.83 s: the step of 0.1
 /// s is too long for this trial"
 std::string describe(const StepEffect& effect);
