@@ -129,19 +129,23 @@ class Writer {
   }
 
   /// The moments of an effect on several coordinates.
-  std::string momentsOf(const bio::discover::EffectSize& size, const std::string& motion,
-                        const std::string& moved) const {
-    std::string list;
+  std::string momentsOf(const bio::discover::EffectSize& size, const std::string& motion) const {
+    std::string list, moved;
     for (const ShownAxis& axis : f_.wording.axes) {
       const bio::discover::EffectMoment& moment = size.moments.at(axis.place);
+      if (moment.motionRms > 0)  // else it is prescribed
+        moved += fmt::format("{}{} by {}", moved.empty() ? "" : ", ", axis.name,
+                             withUnit(axis.scale * moment.motionRms, axis.unit, 2));
       if (!(moment.rms > 0)) continue;
       list += fmt::format("{}{} on {} ({} % of the muscles')", list.empty() ? "" : ", ",
                           withUnit(moment.rms, axis.forceUnit, 2), axis.name,
                           numberText(100 * moment.share, 2));
     }
-    return fmt::format(
-        "On {} its moment (RMS) is {}. Leaving it out changes the simulated {} by {} (RMS).",
-        motion, list.empty() ? "0" : list, f_.wording.axes.front().name, moved);
+    std::string text =
+        fmt::format("On {} its moment (RMS) is {}.", motion, list.empty() ? "0" : list);
+    if (!moved.empty())
+      text += fmt::format(" Leaving it out changes the simulated motion (RMS): {}.", moved);
+    return text;
   }
 
   /// What an effect does to the motion shown; "" where that is not known.
@@ -152,7 +156,7 @@ class Writer {
     const ShownAxis& axis = f_.wording.axes.front();
     const std::string moved = withUnit(axis.scale * size.motionRms, axis.unit, 2);
     if (std::isnan(size.motionRms)) return "";
-    if (f_.wording.axes.size() > 1 && !size.moments.empty()) return momentsOf(size, motion, moved);
+    if (f_.wording.axes.size() > 1 && !size.moments.empty()) return momentsOf(size, motion);
     if (std::isnan(size.moment.rms)) {
       return candidate(f_.verdict.effects[effect].candidate).kind ==
                      info::discover::EffectKind::sensor

@@ -106,11 +106,13 @@ void addSizes(const DiscoverFindings& f, ordered_json& effects) {
     if (f.wording.axes.size() == 1 || size.moments.empty()) continue;
     for (const ShownAxis& one : f.wording.axes) {
       const bio::discover::EffectMoment& moment = size.moments.at(one.place);
-      effects[i]["moments"].push_back({{"coordinate", one.name},
-                                       {"rms", orNull(moment.rms)},
-                                       {"peak", orNull(moment.peak)},
-                                       {"share_of_muscle_moment", orNull(moment.share)},
-                                       {"unit", one.forceUnit}});
+      effects[i]["moments"].push_back(
+          {{"coordinate", one.name},
+           {"rms", orNull(moment.rms)},
+           {"peak", orNull(moment.peak)},
+           {"share_of_muscle_moment", orNull(moment.share)},
+           {"unit", one.forceUnit},
+           {"motion_rms" + one.end(), orNull(one.scale * moment.motionRms)}});
     }
   }
 }

@@ -60,7 +60,8 @@ EffectSize effectSize(const MusculoskeletalProblem& data, std::size_t candidate,
     const Trajectory without = data.motion(trial, absent);
     if (without.outcome != Outcome::completed || without.time.size() != with.time.size())
       return size;
-    size.motionRms = rootMeanSquare((with.q - without.q).row(coordinate).transpose());
+    const MatrixXd moved = with.q - without.q;
+    size.motionRms = rootMeanSquare(moved.row(coordinate).transpose());
     const Trajectory required = data.inverseDynamics(trial, values, with),
                      requiredWithout = data.inverseDynamics(trial, absent, with);
     if (required.outcome != Outcome::completed || requiredWithout.outcome != Outcome::completed)
@@ -73,6 +74,7 @@ EffectSize effectSize(const MusculoskeletalProblem& data, std::size_t candidate,
       const VectorXd net = muscles.tendonForce.cwiseProduct(muscles.momentArm).colwise().sum();
       EffectMoment moment{rootMeanSquare(moments.row(k)), moments.row(k).cwiseAbs().maxCoeff()};
       if (const double all = rootMeanSquare(net); all > 0) moment.share = moment.rms / all;
+      moment.motionRms = rootMeanSquare(moved.row(k).transpose());
       size.moments.push_back(moment);
     }
     size.moment = size.moments[static_cast<std::size_t>(coordinate)];

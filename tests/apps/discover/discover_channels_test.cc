@@ -172,6 +172,8 @@ TEST(DiscoverChannels, TheDampingOfOneJointOfTwoIsNamedForThatJoint) {
   ASSERT_EQ(effect["moments"].size(), 2u);
   EXPECT_GT(effect["moments"][0]["rms"].get<double>(), 0.1);
   EXPECT_NEAR(effect["moments"][1]["rms"].get<double>(), 0, 1e-6);
+  EXPECT_EQ(effect["moments"][0]["motion_rms_deg"], effect["motion_rms_deg"]);
+  EXPECT_GT(effect["moments"][1]["motion_rms_deg"].get<double>(), 0.1);
 
   // errors are in standard deviations of the noise, and output by output in its unit
   const json& gap = verdict["gap"]["train"];

@@ -142,6 +142,8 @@ TEST(EffectSize, OfTheElbowsDampingIsNothingOnTheShoulder) {
   EXPECT_NEAR(size.moments[0].rms, 0.3 * Sized::rms(speed), 1e-6);
   EXPECT_GT(size.moments[0].rms, 0.01);
   EXPECT_LT(size.moments[1].peak, 1e-9);
+  EXPECT_EQ(size.moments[0].motionRms, size.motionRms);
+  EXPECT_GT(size.moments[1].motionRms, 1e-4);  // it moves with the first
 }
 
 // m ∂p/∂q·(p̈ − g) with p from Simbody, on either coordinate.

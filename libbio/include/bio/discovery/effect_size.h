@@ -7,12 +7,14 @@
 
 namespace bio::discover {
 
-/// The moment of an effect on one coordinate along one motion. NaN: unknown or undefined.
+/// What an effect does to one coordinate along one motion. NaN: unknown or undefined.
 struct EffectMoment {
   double rms = std::numeric_limits<double>::quiet_NaN();    ///< [N·m] or force [N]
   double peak = std::numeric_limits<double>::quiet_NaN();   ///< its largest absolute value
   double share = std::numeric_limits<double>::quiet_NaN();  ///< rms over the RMS of the muscles'
                                                             ///< net moment on this coordinate
+  /// RMS change of the simulated coordinate without the effect [rad] or [m].
+  double motionRms = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// The physical size of an effect along one motion. NaN: unknown or undefined.

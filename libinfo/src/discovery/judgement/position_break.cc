@@ -96,8 +96,7 @@ std::optional<PositionBreak> breakOf(const DiscoveryProblem& data, const Options
     std::vector<Visit> nodes;
     double squares = 0;
     for (std::size_t t = 0; t < trials.size(); ++t) {
-      const VectorXd force =
-          onAxis(search.likelihood().force(t, tracked->fit), axis, states.numAxes);
+      const VectorXd force = onAxis(tracked->of->force(t, tracked->fit), axis, states.numAxes);
       squares += force.squaredNorm();
       for (Index k = 1; k < force.size(); ++k) nodes.push_back({positions[t][k], force[k]});
     }
