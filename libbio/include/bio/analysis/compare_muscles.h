@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bio/analysis/compare.h"
-#include "bio/parameters/parameter_information.h"
+#include "bio/observation/parameter_information.h"
 
 /// What the class of a model's muscles changes, all their shared numbers being equal.
 namespace bio {

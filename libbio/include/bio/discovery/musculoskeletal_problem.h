@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "bio/calibration/nudge.h"
 #include "bio/discovery/encompassing_model.h"
+#include "bio/observation/nudge.h"
 #include "bio/simulation/simulate.h"
 #include "bio/tables/trial.h"
 
