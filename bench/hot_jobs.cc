@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "bio/analysis/ensemble.h"
-#include "bio/model/integrator_names.h"
-#include "info/estimation/monte_carlo.h"
+#include "bio/simulation/integrator_names.h"
+#include "info/parallel_for.h"
 #include "info/probability/random_stream.h"
 
 namespace bio::bench {

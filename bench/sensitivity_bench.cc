@@ -1,6 +1,7 @@
 // What all sensitivities of the main job cost, beside the job itself.
 #include <benchmark/benchmark.h>
 
+#include "bio/observation/least_squares_cost.h"
 #include "bio/sensitivity/cost_gradient.h"
 #include "support/shipped_elbow.h"
 

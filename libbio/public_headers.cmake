@@ -9,7 +9,8 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/analysis/fit_paths.h
   include/bio/analysis/inverse_dynamics.h
   include/bio/analysis/muscle_states.h
-  include/bio/analysis/observed_motion.h
+  include/bio/observation/least_squares_cost.h
+  include/bio/observation/observed_motion.h
   include/bio/analysis/opensim_paths.h
   include/bio/analysis/parameter_laws.h
   include/bio/analysis/path_postures.h
@@ -20,11 +21,11 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/calibration/calibrate.h
   include/bio/calibration/calibrate_at_shorter_steps.h
   include/bio/calibration/calibrated_model.h
-  include/bio/calibration/nudge.h
+  include/bio/observation/nudge.h
   include/bio/calibration/predicted_series.h
   include/bio/calibration/pulled_excitations.h
-  include/bio/calibration/smoothed_motion.h
-  include/bio/calibration/trial_predictor.h
+  include/bio/observation/smoothed_motion.h
+  include/bio/observation/trial_predictor.h
   include/bio/calibration/trial_set.h
   include/bio/design/design_inputs.h
   include/bio/design/design_setup.h
@@ -56,18 +57,18 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/emg/emg_trial.h
   include/bio/emg/emg_stages.h
   include/bio/emg/filter.h
-  include/bio/emg/latent_excitation.h
+  include/bio/tables/latent_excitation.h
   include/bio/emg/measured_coordinate.h
   include/bio/forces/coordinate_force.h
   include/bio/forces/expression.h
   include/bio/forces/external_force.h
   include/bio/forces/body_forces.h
-  include/bio/model/free_coordinates.h
-  include/bio/model/integrator_names.h
+  include/bio/skeleton/free_coordinates.h
+  include/bio/simulation/integrator_names.h
   include/bio/model/convert_muscles.h
-  include/bio/model/function.h
+  include/bio/muscle/curves/function.h
   include/bio/model/model.h
-  include/bio/model/model_review.h
+  include/bio/review/model_review.h
   include/bio/model/nearest_name.h
   include/bio/muscle/activation_law.h
   include/bio/muscle/activation_variant.h
@@ -94,14 +95,15 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/muscle/muscle_parameters.h
   include/bio/muscle/rigid_tendon.h
   include/bio/muscle/schutte_muscle.h
+  include/bio/muscle/schutte_parameters.h
   include/bio/muscle/activation/activation.h
   include/bio/muscle/activation/excitation.h
   include/bio/muscle/curves/curves.h
   include/bio/muscle/curves/force_velocity.h
   include/bio/opensim/external_loads.h
   include/bio/opensim/osim_file.h
-  include/bio/parameters/channel_information.h
-  include/bio/parameters/parameter_information.h
+  include/bio/observation/channel_information.h
+  include/bio/observation/parameter_information.h
   include/bio/parameters/parameters.h
   include/bio/path/chain_starts.h
   include/bio/path/compiled_path.h
@@ -142,8 +144,8 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/simulation/simulate_batch.h
   include/bio/simulation/tree_configuration.h
   include/bio/skeleton/articulated_tree.h
-  include/bio/skeleton/point_path.h
-  include/bio/skeleton/point_path_bodies.h
+  include/bio/path/point_path.h
+  include/bio/path/point_path_bodies.h
   include/bio/skeleton/rigid_motion.h
   include/bio/skeleton/segment_chain.h
   include/bio/skeleton/simbody_tree.h
@@ -154,7 +156,7 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/skeleton/tree_energy_bodies.h
   include/bio/skeleton/tree_motion.h
   include/bio/tables/c3d_file.h
-  include/bio/tables/coordinate_curve.h
+  include/bio/analysis/coordinate_curve.h
   include/bio/tables/different_trials.h
   include/bio/tables/edf_file.h
   include/bio/tables/experimental_conditions.h
@@ -167,7 +169,7 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/tables/study_file.h
   include/bio/tables/table_file.h
   include/bio/tables/trial.h
-  include/bio/tables/trial_review.h
+  include/bio/review/trial_review.h
   include/bio/tables/trial_table.h
   include/bio/tables/units.h
   include/bio/tables/unknown_column.h

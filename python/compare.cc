@@ -8,10 +8,10 @@
 #include "arguments/file_name.h"
 #include "arms.h"
 #include "bio/analysis/compare_muscles.h"
+#include "bio/analysis/coordinate_curve.h"
 #include "bio/analysis/replay.h"
-#include "bio/model/integrator_names.h"
 #include "bio/opensim/external_loads.h"
-#include "bio/tables/coordinate_curve.h"
+#include "bio/simulation/integrator_names.h"
 #include "docstrings.h"
 #include "interruptible.h"
 

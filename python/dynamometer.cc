@@ -7,7 +7,7 @@
 #include "arguments/columns.h"
 #include "arms.h"
 #include "bio/design/dynamometer_question.h"
-#include "bio/model/free_coordinates.h"
+#include "bio/skeleton/free_coordinates.h"
 #include "docstrings.h"
 #include "interruptible.h"
 

@@ -9,7 +9,7 @@
 #include "bio/analysis/trial_ensemble.h"
 #include "bio/opensim/external_loads.h"
 #include "docstrings.h"
-#include "info/estimation/monte_carlo.h"
+#include "info/parallel_for.h"
 #include "interruptible.h"
 
 namespace python {

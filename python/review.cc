@@ -1,11 +1,11 @@
-#include "bio/model/model_review.h"
+#include "bio/review/model_review.h"
 
 #include "arguments/file_name.h"
 #include "arms.h"
 #include "bio/analysis/muscle_states.h"
 #include "bio/analysis/opensim_paths.h"
 #include "bio/path/length_jumps.h"
-#include "bio/tables/trial_review.h"
+#include "bio/review/trial_review.h"
 #include "docstrings.h"
 #include "interruptible.h"
 

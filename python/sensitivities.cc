@@ -9,7 +9,7 @@
 #include "bio/analysis/replay.h"
 #include "bio/analysis/sensitivity_study.h"
 #include "bio/calibration/trial_set.h"
-#include "bio/model/integrator_names.h"
+#include "bio/simulation/integrator_names.h"
 #include "bio/tables/different_trials.h"
 #include "docstrings.h"
 #include "interruptible.h"

@@ -2,7 +2,7 @@
 
 #include "arguments/file_name.h"
 #include "arms.h"
-#include "bio/model/free_coordinates.h"
+#include "bio/skeleton/free_coordinates.h"
 #include "bio/tables/study_file.h"
 #include "docstrings.h"
 

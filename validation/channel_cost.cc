@@ -13,7 +13,7 @@
 #include <ctime>
 
 #include "bio/analysis/replay.h"
-#include "bio/calibration/trial_predictor.h"
+#include "bio/observation/trial_predictor.h"
 #include "bio/opensim/osim_file.h"
 
 namespace {

@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "bio/analysis/replay.h"
-#include "bio/calibration/trial_predictor.h"
 #include "bio/design/experiment_design.h"
+#include "bio/observation/trial_predictor.h"
 #include "bio/opensim/osim_file.h"
 #include "info/estimation/monte_carlo.h"
 

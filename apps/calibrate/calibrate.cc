@@ -6,7 +6,7 @@
 
 #include "bio/analysis/replay.h"
 #include "bio/opensim/osim_file.h"
-#include "bio/tables/trial_review.h"
+#include "bio/review/trial_review.h"
 #include "calibrate/calibrate_remarks.h"
 #include "calibrate/calibrate_report.h"
 #include "calibrate/fitted_table.h"
@@ -22,8 +22,8 @@
 #include "output/driven_trials.h"
 #include "output/json_text.h"
 #include "output/progress_bar.h"
-#include "output/result.h"
 #include "output/text.h"
+#include "report/result.h"
 #include "sensitivity/named_covariance.h"
 
 namespace app {

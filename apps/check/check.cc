@@ -8,19 +8,19 @@
 
 #include "bio/analysis/opensim_paths.h"
 #include "bio/model/convert_muscles.h"
-#include "bio/model/model_review.h"
 #include "bio/opensim/osim_file.h"
 #include "bio/path/length_jumps.h"
+#include "bio/review/model_review.h"
+#include "bio/review/trial_review.h"
 #include "bio/tables/file_error.h"
 #include "bio/tables/recorded_file.h"
 #include "bio/tables/table_file.h"
 #include "bio/tables/trial.h"
-#include "bio/tables/trial_review.h"
 #include "check/recording_contents.h"
 #include "command/command.h"
 #include "options/trial_input.h"
-#include "output/result.h"
 #include "output/text.h"
+#include "report/result.h"
 
 namespace app {
 namespace {

@@ -1,11 +1,9 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <memory>
 #include <string>
-#include <vector>
 
-#include "command/command_context.h"
+#include "output/command_context.h"
 
 namespace app {
 
@@ -26,10 +24,5 @@ class Command {
   /// answer is returned as ExitStatus::answerIsNo.
   virtual ExitStatus run(const CommandContext& context) = 0;
 };
-
-/// Every subcommand, in the order in which --help lists them. A new one is a file in a folder of
-/// its own with a function that makes it, declared and called in all_commands.cc. The work with
-/// robots is missing: fisherhill-robot does it.
-std::vector<std::unique_ptr<Command>> allCommands();
 
 }  // namespace app

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "command/common_options.h"
 #include "info/version.h"
 
 namespace app {

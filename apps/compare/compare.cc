@@ -5,16 +5,16 @@
 #include <numbers>
 
 #include "bio/analysis/replay.h"
-#include "bio/model/integrator_names.h"
+#include "bio/simulation/integrator_names.h"
 #include "command/command.h"
 #include "compare/compare_muscles_report.h"
 #include "compare/compare_report.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/progress_bar.h"
-#include "output/result.h"
 #include "output/text.h"
-#include "report/figure_pictures.h"
+#include "render/figure_pictures.h"
+#include "report/result.h"
 
 namespace app {
 namespace {

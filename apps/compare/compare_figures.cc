@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "bio/model/integrator_names.h"
+#include "bio/simulation/integrator_names.h"
 #include "output/angle_unit.h"
 #include "output/text.h"
 

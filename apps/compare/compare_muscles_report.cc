@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "bio/analysis/compare.h"
-#include "bio/model/integrator_names.h"
+#include "bio/simulation/integrator_names.h"
 #include "output/text.h"
 
 namespace app {

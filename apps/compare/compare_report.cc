@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "bio/analysis/replay.h"
-#include "bio/model/integrator_names.h"
+#include "bio/simulation/integrator_names.h"
 #include "compare/compare_figures.h"
 #include "output/angle_unit.h"
 #include "output/text.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bio/analysis/compare.h"
-#include "bio/tables/coordinate_curve.h"
+#include "bio/analysis/coordinate_curve.h"
 #include "bio/tables/trial.h"
 #include "report/report.h"
 

@@ -15,7 +15,7 @@
 #include "output/angle_unit.h"
 #include "output/interruption.h"
 #include "output/progress_bar.h"
-#include "output/result.h"
+#include "report/result.h"
 
 namespace app {
 namespace {

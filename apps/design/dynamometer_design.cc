@@ -8,7 +8,7 @@
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/output_folder.h"
-#include "output/result.h"
+#include "report/result.h"
 
 namespace app {
 namespace {

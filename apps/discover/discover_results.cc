@@ -4,7 +4,7 @@
 #include "discover/discover_report.h"
 #include "output/interruption.h"
 #include "output/json_text.h"
-#include "output/result.h"
+#include "report/result.h"
 
 namespace app {
 

@@ -2,9 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "command/command_context.h"
 #include "discover/discover_search.h"
 #include "discover/discover_verdict.h"
+#include "output/command_context.h"
 #include "output/output_folder.h"
 #include "output/summary.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "command/command_context.h"
 #include "options/simulation_options.h"
+#include "output/command_context.h"
 
 /// `fisherhill discover --list-effects MODEL`.
 namespace app {

@@ -17,7 +17,7 @@
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/angle_unit.h"
-#include "output/result.h"
+#include "report/result.h"
 
 namespace app {
 namespace {

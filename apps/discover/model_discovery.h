@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "bio/tables/trial.h"
-#include "command/command_context.h"
 #include "options/simulation_options.h"
+#include "output/command_context.h"
 
 namespace app {
 

@@ -10,7 +10,7 @@
 #include "bio/tables/recording.h"
 #include "bio/tables/table_file.h"
 #include "command/command.h"
-#include "output/result.h"
+#include "report/result.h"
 
 namespace app {
 namespace {

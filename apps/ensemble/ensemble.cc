@@ -19,7 +19,7 @@
 #include "options/number_rules.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
-#include "output/result.h"
+#include "report/result.h"
 #include "sensitivity/sensitivity_report.h"
 
 namespace app {

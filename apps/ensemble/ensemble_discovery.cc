@@ -12,7 +12,7 @@
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/json_text.h"
-#include "output/result.h"
+#include "report/result.h"
 
 namespace app {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "ensemble/resumable_table.h"
+#include "output/resumable_table.h"
 
 namespace app {
 namespace {

@@ -3,8 +3,8 @@
 #include <functional>
 #include <string>
 
-#include "ensemble/resumable_table.h"
 #include "ensemble/worker_pool.h"
+#include "output/resumable_table.h"
 
 namespace app {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <mutex>
 
-#include "info/estimation/monte_carlo.h"
+#include "info/parallel_for.h"
 
 namespace app {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "command/command_context.h"
+#include "output/command_context.h"
 
 namespace app {
 

@@ -6,8 +6,8 @@
 
 #include "bio/analysis/muscle_states.h"
 #include "command/command.h"
-#include "output/result.h"
 #include "output/text.h"
+#include "report/result.h"
 
 namespace app {
 namespace {

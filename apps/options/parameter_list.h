@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "bio/simulation/musculoskeletal_system.h"
-#include "command/command.h"
+#include "output/command_context.h"
 
 /// --list-parameters, for commands that take parameter names; it requires no trial.
 namespace app {

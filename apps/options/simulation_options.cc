@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "bio/model/integrator_names.h"
+#include "bio/simulation/integrator_names.h"
 #include "options/number_rules.h"
 
 namespace app {

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "bio/model/integrator_names.h"
+#include "bio/simulation/integrator_names.h"
 
 namespace app {
 

@@ -9,11 +9,11 @@
 
 #include "bio/analysis/replay.h"
 #include "bio/model/convert_muscles.h"
-#include "bio/model/free_coordinates.h"
 #include "bio/opensim/external_loads.h"
 #include "bio/opensim/osim_file.h"
+#include "bio/review/trial_review.h"
 #include "bio/skeleton/articulated_tree.h"
-#include "bio/tables/trial_review.h"
+#include "bio/skeleton/free_coordinates.h"
 #include "options/system_options.h"
 #include "output/sha256.h"
 #include "output/text.h"

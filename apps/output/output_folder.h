@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "command/command_context.h"
+#include "output/command_context.h"
 #include "output/writer_mark.h"
 
 namespace app {

@@ -10,9 +10,9 @@
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/progress_bar.h"
-#include "output/result.h"
 #include "output/text.h"
 #include "render/moving_system.h"
+#include "report/result.h"
 #include "view/system_scene.h"
 #include "view/virtual_display.h"
 

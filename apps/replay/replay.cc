@@ -8,8 +8,8 @@
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/progress_bar.h"
-#include "output/result.h"
 #include "replay/replay_report.h"
+#include "report/result.h"
 
 namespace app {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "bio/analysis/observed_motion.h"
 #include "bio/analysis/replay.h"
-#include "bio/model/integrator_names.h"
+#include "bio/observation/observed_motion.h"
+#include "bio/simulation/integrator_names.h"
 #include "output/angle_unit.h"
 #include "output/text.h"
 

@@ -13,8 +13,8 @@
 #include "options/number_rules.h"
 #include "output/angle_unit.h"
 #include "output/json_text.h"
-#include "output/result.h"
 #include "output/text.h"
+#include "report/result.h"
 #include "robot/robot_trial.h"
 #include "robots/robot_discovery.h"
 

@@ -6,7 +6,7 @@
 #include "command/command.h"
 #include "options/number_rules.h"
 #include "options/quantity.h"
-#include "output/result.h"
+#include "report/result.h"
 #include "robot/robot_baxter.h"
 #include "robot/robot_information.h"
 #include "robot/robot_optimise.h"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "command/command_context.h"
+#include "output/command_context.h"
 #include "output/output_folder.h"
 #include "output/summary.h"
 #include "report/report.h"

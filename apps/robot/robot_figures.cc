@@ -6,8 +6,8 @@
 #include <functional>
 #include <limits>
 
-#include "info/estimation/monte_carlo.h"
 #include "info/information/symmetric_eigen.h"
+#include "info/parallel_for.h"
 #include "output/text.h"
 #include "report/isolines.h"
 

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "command/command_context.h"
+#include "output/command_context.h"
 #include "output/summary.h"
 #include "report/report.h"
 #include "robots/robot_experiments.h"

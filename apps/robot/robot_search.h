@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "command/command_context.h"
+#include "output/command_context.h"
 #include "output/output_folder.h"
 #include "output/progress_bar.h"
 #include "output/summary.h"

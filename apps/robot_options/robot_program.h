@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "command/command.h"
 #include "robot_options/discover_robot.h"
 
@@ -17,10 +19,6 @@ std::unique_ptr<Command> missingRobotCommand();
 /// `discover --system` likewise.
 /// @throws std::runtime_error always
 ExitStatus missingRobotDiscovery(const RobotRequest& request, const CommandContext& context);
-
-/// Every subcommand, with this work for robots.
-std::vector<std::unique_ptr<Command>> allCommandsWith(std::unique_ptr<Command> robot,
-                                                      RobotDiscovery inRobot);
 
 /// `robot` itself. Defined in fisherhill-robot only.
 std::unique_ptr<Command> robotCommand();

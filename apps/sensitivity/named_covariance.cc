@@ -7,8 +7,8 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "ensemble/resumable_table.h"
 #include "options/quantity.h"
+#include "output/resumable_table.h"
 
 namespace app {
 namespace {

@@ -11,7 +11,7 @@
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/progress_bar.h"
-#include "output/result.h"
+#include "report/result.h"
 #include "sensitivity/observed_channels.h"
 #include "sensitivity/sensitivity_report.h"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "bio/analysis/sensitivity_study.h"
-#include "output/result.h"
 #include "report/report.h"
+#include "report/result.h"
 
 namespace app {
 

@@ -9,10 +9,10 @@
 #include <sstream>
 
 #include "ensemble/missing_rows.h"
-#include "ensemble/resumable_table.h"
 #include "info/version.h"
-#include "output/result.h"
+#include "output/resumable_table.h"
 #include "output/text.h"
+#include "report/result.h"
 #include "study/study_report.h"
 #include "study/study_subject.h"
 
@@ -39,8 +39,8 @@ void readEstimates(const std::string& subject, const fs::path& file,
 
 class StudyCommand : public Command {
  public:
-  explicit StudyCommand(std::function<std::unique_ptr<WorkerPool>()> gather)
-      : gather_(std::move(gather)) {}
+  StudyCommand(std::function<std::unique_ptr<WorkerPool>()> gather, CommandList commands)
+      : gather_(std::move(gather)), commands_(std::move(commands)) {}
 
   About about() const override {
     return {"study", "Carry all subjects of a study from recordings to calibrated models",
@@ -71,7 +71,8 @@ class StudyCommand : public Command {
     RowWork work;
     work.rows = [&](std::span<const std::uint64_t> numbers) {  // one at a time
       const bio::StudySubject& subject = study.subjects[numbers.front()];
-      return std::vector{studySubject(study, subject, folderOf(context, subject), context)};
+      return std::vector{
+          studySubject(study, subject, folderOf(context, subject), context, commands_)};
     };
     if (!pool->leads()) {
       pool->work(work, threads);
@@ -156,14 +157,16 @@ class StudyCommand : public Command {
   }
 
   std::function<std::unique_ptr<WorkerPool>()> gather_;
+  CommandList commands_;
   CLI::App* app_ = nullptr;
   std::string action_, file_;
 };
 
 }  // namespace
 
-std::unique_ptr<Command> studyCommand(std::function<std::unique_ptr<WorkerPool>()> gather) {
-  return std::make_unique<StudyCommand>(std::move(gather));
+std::unique_ptr<Command> studyCommand(std::function<std::unique_ptr<WorkerPool>()> gather,
+                                      CommandList commands) {
+  return std::make_unique<StudyCommand>(std::move(gather), std::move(commands));
 }
 
 }  // namespace app

@@ -39,8 +39,8 @@ std::string textCell(const std::string& text) {
 class SubjectRun {
  public:
   SubjectRun(const bio::StudyFile& study, const bio::StudySubject& subject, const fs::path& folder,
-             const CommandContext& context)
-      : study_(study), subject_(subject), folder_(folder), context_(context) {}
+             const CommandContext& context, const CommandList& commands)
+      : study_(study), subject_(subject), folder_(folder), context_(context), commands_(commands) {}
 
   std::string row() {
     try {
@@ -75,7 +75,7 @@ class SubjectRun {
       words.push_back(word);
     }
     try {
-      CommandLine line(allCommands());
+      CommandLine line(commands_());
       const CommandLine::Chosen chosen = line.parse(words);
       CommandContext context = *chosen.context;
       context.quiet = true;
@@ -174,6 +174,7 @@ class SubjectRun {
   const bio::StudySubject& subject_;
   fs::path folder_;
   const CommandContext& context_;
+  const CommandList& commands_;
   std::vector<std::string> train_, heldOut_;
   Json calibration_ = Json::object(), verdict_;
   std::string status_ = "ok", message_;
@@ -205,8 +206,9 @@ const std::vector<std::string>& studyColumns() {
 }
 
 std::string studySubject(const bio::StudyFile& study, const bio::StudySubject& subject,
-                         const fs::path& folder, const CommandContext& context) {
-  return SubjectRun(study, subject, folder, context).row();
+                         const fs::path& folder, const CommandContext& context,
+                         const CommandList& commands) {
+  return SubjectRun(study, subject, folder, context, commands).row();
 }
 
 }  // namespace app

@@ -1,5 +1,5 @@
-#include "bio/model/model_review.h"
 #include "bio/opensim/osim_file.h"
+#include "bio/review/model_review.h"
 #include "reading.h"
 
 // A stranger's model is read and reviewed, or refused; what was read can be written and read again.

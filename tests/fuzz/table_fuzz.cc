@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "bio/opensim/osim_file.h"
+#include "bio/review/trial_review.h"
 #include "bio/tables/table_file.h"
 #include "bio/tables/trial.h"
-#include "bio/tables/trial_review.h"
 #include "reading.h"
 
 namespace {

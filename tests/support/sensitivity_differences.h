@@ -6,7 +6,7 @@
 #include <array>
 
 #include "bio/sensitivity/coupled_sensitivity.h"
-#include "info/estimation/monte_carlo.h"
+#include "info/parallel_for.h"
 
 namespace bio::fixtures {
 

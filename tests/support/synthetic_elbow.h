@@ -4,7 +4,7 @@
 #include <string>
 
 #include "bio/analysis/replay.h"
-#include "bio/calibration/trial_predictor.h"
+#include "bio/observation/trial_predictor.h"
 #include "bio/opensim/osim_file.h"
 #include "info/probability/random_stream.h"
 

@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "bio/analysis/replay.h"
-#include "bio/model/model_review.h"
 #include "bio/opensim/osim_file.h"
+#include "bio/review/model_review.h"
 #include "bio/tables/file_error.h"
 #include "bio/tables/table_file.h"
 #include "mutations.h"

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "bio/calibration/trial_predictor.h"
 #include "bio/model/convert_muscles.h"
+#include "bio/observation/trial_predictor.h"
 
 namespace bio {
 namespace {

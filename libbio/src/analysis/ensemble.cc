@@ -7,8 +7,8 @@
 #include <memory>
 #include <stdexcept>
 
-#include "bio/model/integrator_names.h"
 #include "bio/sensitivity/coupled_sensitivity.h"
+#include "bio/simulation/integrator_names.h"
 #include "bio/simulation/simulate_batch.h"
 #include "simulation/motion_weights.h"
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "bio/analysis/replay.h"
-#include "bio/calibration/smoothed_motion.h"
+#include "bio/observation/smoothed_motion.h"
 
 namespace bio {
 namespace {

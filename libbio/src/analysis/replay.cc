@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "analysis/initial_speed.h"
-#include "bio/analysis/observed_motion.h"
-#include "bio/model/integrator_names.h"
+#include "bio/observation/observed_motion.h"
+#include "bio/simulation/integrator_names.h"
 #include "simulation/integrators.h"
 #include "simulation/motion_weights.h"
 

@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "bio/analysis/replay.h"
-#include "bio/calibration/nudge.h"
-#include "info/estimation/monte_carlo.h"
+#include "bio/observation/nudge.h"
+#include "info/parallel_for.h"
 
 namespace bio {
 namespace {

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "bio/calibration/trial_predictor.h"
+#include "bio/observation/trial_predictor.h"
 
 namespace bio {
 namespace {

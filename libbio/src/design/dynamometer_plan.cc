@@ -10,11 +10,11 @@
 #include <stdexcept>
 
 #include "bio/analysis/replay.h"
-#include "bio/calibration/trial_predictor.h"
+#include "bio/observation/trial_predictor.h"
 #include "bio/tables/trial.h"
 #include "bio/tables/trial_table.h"
 #include "design/dynamometer_trials.h"
-#include "info/estimation/monte_carlo.h"
+#include "info/parallel_for.h"
 
 namespace bio {
 namespace {

@@ -8,7 +8,7 @@
 #include "bio/design/experiment_design.h"
 #include "info/design/cma_es.h"
 #include "info/design/design_search.h"
-#include "info/estimation/monte_carlo.h"
+#include "info/parallel_for.h"
 
 namespace bio {
 

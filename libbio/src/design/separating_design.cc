@@ -14,7 +14,7 @@
 #include "bio/simulation/musculoskeletal_system.h"
 #include "info/design/cma_es.h"
 #include "info/discovery/likelihood/hypothesis.h"
-#include "info/estimation/monte_carlo.h"
+#include "info/parallel_for.h"
 #include "model/require.h"
 
 namespace bio::discover {

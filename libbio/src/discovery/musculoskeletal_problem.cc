@@ -10,8 +10,8 @@
 #include "bio/analysis/replay.h"
 #include "bio/discovery/effects.h"
 #include "bio/discovery/with_experimental_conditions.h"
+#include "bio/review/trial_review.h"
 #include "bio/sensitivity/coupled_sensitivity.h"
-#include "bio/tables/trial_review.h"
 
 namespace bio::discover {
 

@@ -1,5 +1,5 @@
-#include "bio/calibration/nudge.h"
 #include "bio/discovery/musculoskeletal_problem.h"
+#include "bio/observation/nudge.h"
 
 namespace bio::discover {
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "bio/analysis/observed_motion.h"
+#include "bio/observation/observed_motion.h"
 #include "discovery/look_at.h"
 
 namespace bio::discover {

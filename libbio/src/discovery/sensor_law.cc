@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bio/calibration/smoothed_motion.h"
+#include "bio/observation/smoothed_motion.h"
 
 namespace bio::discover {
 

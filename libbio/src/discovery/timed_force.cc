@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "bio/calibration/smoothed_motion.h"
 #include "bio/discovery/encompassing_model.h"
+#include "bio/observation/smoothed_motion.h"
 
 namespace bio::discover {
 

@@ -11,7 +11,7 @@
 #include "bio/tables/units.h"
 #include "emg/column_units.h"
 #include "emg/emg_config_parts.h"
-#include "emg/toml_table.h"
+#include "tables/toml_table.h"
 
 namespace bio {
 namespace {

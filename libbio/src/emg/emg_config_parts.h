@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bio/emg/emg_config.h"
-#include "emg/toml_table.h"
+#include "tables/toml_table.h"
 
 /// Parts of the configuration of `fisherhill emg`; not public.
 namespace bio {

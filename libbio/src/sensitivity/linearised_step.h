@@ -2,9 +2,9 @@
 
 // A step of the variational integrator and its derivatives in the states; not public.
 
-#include "sensitivity/step_tape.h"
 #include "simulation/coordinate_sums.h"
 #include "simulation/other_forces.h"
+#include "simulation/step_tape.h"
 
 namespace bio::stepping {
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "bio/sensitivity/coupled_sensitivity.h"
-#include "sensitivity/step_tape.h"
+#include "simulation/step_tape.h"
 
 namespace bio::stepping {
 

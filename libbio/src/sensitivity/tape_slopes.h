@@ -3,7 +3,7 @@
 // How the times of a run's steps follow parameters; not public.
 
 #include "sensitivity/sensitivity_columns.h"
-#include "sensitivity/step_tape.h"
+#include "simulation/step_tape.h"
 
 namespace bio::stepping {
 

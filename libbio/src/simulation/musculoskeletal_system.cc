@@ -12,7 +12,7 @@
 #include "model/listed_names.h"
 #include "model/plausible.h"
 #include "simulation/integrators.h"
-#include "skeleton/moved_mass.h"
+#include "simulation/moved_mass.h"
 
 namespace bio {
 namespace {

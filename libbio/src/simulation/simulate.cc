@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "simulation/integrators.h"
-#include "skeleton/moved_mass.h"
+#include "simulation/moved_mass.h"
 
 namespace bio {
 

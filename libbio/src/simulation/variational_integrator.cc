@@ -3,8 +3,8 @@
 #include <limits>
 #include <optional>
 
-#include "sensitivity/step_tape.h"
 #include "simulation/activation_player.h"
+#include "simulation/step_tape.h"
 #include "simulation/switch_jump.h"
 #include "simulation/switch_search.h"
 #include "simulation/variational_step.h"

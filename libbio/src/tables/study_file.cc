@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <set>
 
-#include "emg/toml_table.h"
+#include "tables/toml_table.h"
 
 namespace bio {
 namespace {

@@ -4,7 +4,7 @@
 #include <mutex>
 #include <vector>
 
-#include "info/estimation/monte_carlo.h"
+#include "info/parallel_for.h"
 
 namespace info::robot {
 namespace {

@@ -6,8 +6,8 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "info/estimation/monte_carlo.h"
 #include "info/information/symmetric_eigen.h"
+#include "info/parallel_for.h"
 #include "info/probability/random_stream.h"
 
 namespace info {

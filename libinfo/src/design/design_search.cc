@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "info/estimation/monte_carlo.h"
+#include "info/parallel_for.h"
 
 namespace info {
 

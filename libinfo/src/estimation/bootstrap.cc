@@ -10,8 +10,9 @@
 #include <optional>
 #include <stdexcept>
 
-#include "info/estimation/monte_carlo.h"
+#include "info/parallel_for.h"
 #include "info/probability/quantile.h"
+#include "info/probability/random_stream.h"
 
 namespace info {
 namespace {

@@ -1,9 +1,6 @@
 #include "info/estimation/monte_carlo.h"
 
 #include <fmt/format.h>
-#include <tbb/info.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
@@ -13,23 +10,13 @@
 #include <stdexcept>
 
 #include "info/information/fisher.h"
+#include "info/parallel_for.h"
 
 namespace info {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-void parallelFor(int n, int threads, const std::function<void(int)>& body) {
-  // more than there are cores gains nothing, and TBB complains about it on standard error
-  const int cores = tbb::info::default_concurrency();
-  tbb::task_arena arena(threads > 0 ? std::min(threads, cores) : cores);
-  arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<int>(0, n, 1), [&](const tbb::blocked_range<int>& range) {
-      for (int i = range.begin(); i < range.end(); ++i) body(i);
-    });
-  });
-}
 
 MatrixXd drawNoise(const OutputCovariance& covariance, Index n, RandomStream& random) {
   if (!covariance.isConstant() && covariance.samples() != n)

@@ -8,7 +8,8 @@
 #include <optional>
 #include <stdexcept>
 
-#include "info/estimation/monte_carlo.h"
+#include "info/parallel_for.h"
+#include "info/probability/random_stream.h"
 
 namespace info {
 

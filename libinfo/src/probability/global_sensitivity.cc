@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "info/estimation/monte_carlo.h"
+#include "info/parallel_for.h"
 #include "info/probability/quantile.h"
 #include "info/probability/random_stream.h"
 

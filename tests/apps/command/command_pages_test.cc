@@ -10,6 +10,7 @@
 #include "command/completion.h"
 #include "command/described_commands.h"
 #include "command/manual_page.h"
+#include "program/all_commands.h"
 #include "robot_options/robot_program.h"
 #include "support/scratch_folder.h"
 

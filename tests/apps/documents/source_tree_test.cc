@@ -200,6 +200,64 @@ TEST(SourceTree, ALongFileALongFunctionAndACrowdedFolderAreReported) {
   EXPECT_EQ(statusWith("", ""), 1);
 }
 
+support::ProgramResult folderOrder(const fs::path& tree) {
+  return support::runProgram({(sourceTree / "tests/folder_order").string(), tree.string()},
+                             sourceTree);
+}
+
+TEST(SourceTree, FoldersFormTheOrderOfContributing) {
+  if (!fs::exists("/usr/bin/python3")) GTEST_SKIP() << "folder_order needs Python";
+  const auto result = folderOrder(sourceTree);
+  EXPECT_EQ(result.status, 0) << result.out << result.err;
+  EXPECT_EQ(result.out, "0 faults\n");
+}
+
+TEST(SourceTree, AnIncludeUpwardsAndAFolderOutsideTheOrderAreReported) {
+  if (!fs::exists("/usr/bin/python3")) GTEST_SKIP() << "folder_order needs Python";
+  const support::ScratchFolder scratch;
+  const auto put = [&](const std::string& name, const std::string& text) {
+    fs::create_directories((scratch / name).parent_path());
+    scratch.file(name, text);
+  };
+  const auto faultsWith = [&](const std::string& name, const std::string& text) {
+    put(name, text);
+    const auto result = folderOrder(scratch.path());
+    fs::remove(scratch / name);
+    EXPECT_EQ(result.status, 1) << name;
+    return result.out;
+  };
+  put("CONTRIBUTING.md",
+      "- `libinfo`: `low`, `high`, `robots`\n- `libbio`: `low`, `high`, `view`\n"
+      "- `apps`: `low`, `high`\n");
+  put("libinfo/include/info/low/a.h", "");
+  put("libinfo/include/info/high/a.h", "#include \"info/low/a.h\"\n#include \"info/high/b.h\"\n");
+  put("libinfo/include/info/ground.h", "");
+  put("libinfo/src/low/c.cc", "#include \"info/ground.h\"\n");
+  put("libinfo/robots/src/a.cc", "#include \"info/high/a.h\"\n");
+  put("libbio/include/bio/low/a.h", "");
+  put("libbio/include/bio/high/a.h", "#include <bio/low/a.h>\n");
+  put("libbio/src/low/b.h", "#include \"model.h\"\n");
+  put("libbio/view/a.h", "#include \"bio/high/a.h\"\n");
+  put("apps/low/a.h", "");
+  put("apps/high/a.h", "#include \"low/a.h\"\n#include <vector>\n");
+  EXPECT_EQ(folderOrder(scratch.path()).out, "0 faults\n");
+  EXPECT_EQ(faultsWith("libinfo/src/low/b.cc", "#include \"info/high/a.h\"\n"),
+            "libinfo/src/low/b.cc: info/high/a.h points up, from low to high\n1 faults\n");
+  EXPECT_EQ(faultsWith("libinfo/src/version.cc", "#include \"info/low/a.h\"\n"),
+            "libinfo/src/version.cc: info/low/a.h points up, from libinfo to low\n1 faults\n");
+  EXPECT_EQ(faultsWith("libbio/src/low/a.cc", "#include <bio/high/a.h>\n"),
+            "libbio/src/low/a.cc: bio/high/a.h points up, from low to high\n1 faults\n");
+  EXPECT_EQ(faultsWith("libbio/src/high/a.cc", "#include \"view/a.h\"\n"),
+            "libbio/src/high/a.cc: view/a.h points up, from high to view\n1 faults\n");
+  EXPECT_EQ(faultsWith("apps/low/a.cc", "#include \"../high/a.h\"\n"),
+            "apps/low/a.cc: ../high/a.h points up, from low to high\n1 faults\n");
+  EXPECT_EQ(faultsWith("apps/new/a.cc", ""),
+            "apps/new/a.cc: folder new is not in the order of CONTRIBUTING.md\n1 faults\n");
+  fs::remove(scratch / "apps/high/a.h");
+  EXPECT_EQ(folderOrder(scratch.path()).out,
+            "apps: no files in folder high, which the order of CONTRIBUTING.md names\n1 faults\n");
+}
+
 TEST(SourceTree, CmakeNamesEveryFileButEffectsAndThoseOfTheProgram) {
   const std::map<std::string, std::string> found = {
       {"apps", "RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} */*.cc)"},

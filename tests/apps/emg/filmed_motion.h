@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bio/analysis/replay.h"
-#include "bio/calibration/trial_predictor.h"
+#include "bio/observation/trial_predictor.h"
 #include "bio/opensim/osim_file.h"
 #include "bio/tables/trial_table.h"
 #include "libbio/tables/binary_samples.h"

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "bio/tables/coordinate_curve.h"
+#include "bio/analysis/coordinate_curve.h"
 #include "bio/tables/file_error.h"
 #include "support/elbow_model.h"
 #include "support/numbers.h"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bio/calibration/trial_predictor.h"
+#include "bio/observation/trial_predictor.h"
 #include "info/probability/random_stream.h"
 #include "support/shipped_elbow.h"
 #include "support/throws_saying.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "bio/calibration/calibrate.h"
-#include "info/estimation/monte_carlo.h"
+#include "info/parallel_for.h"
 #include "support/synthetic_elbow.h"
 
 // Calibrations repeated on synthetic trials whose truth is known. Noise of 0.5° is drawn anew each

@@ -9,8 +9,9 @@
 #include <vector>
 
 #include "bio/calibration/calibrate.h"
-#include "bio/emg/latent_excitation.h"
-#include "info/estimation/monte_carlo.h"
+#include "bio/tables/latent_excitation.h"
+#include "info/parallel_for.h"
+#include "info/probability/random_stream.h"
 #include "support/synthetic_elbow.h"
 
 // Calibrations repeated on synthetic trials of an elbow in which one muscle has no electrode: its

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bio/analysis/observed_motion.h"
+#include "bio/observation/observed_motion.h"
 #include "support/numbers.h"
 #include "support/synthetic_elbow.h"
 

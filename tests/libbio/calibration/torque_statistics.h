@@ -6,7 +6,8 @@
 #include <numbers>
 
 #include "bio/calibration/calibrate.h"
-#include "info/estimation/monte_carlo.h"
+#include "info/parallel_for.h"
+#include "info/probability/random_stream.h"
 #include "support/synthetic_elbow.h"
 
 // Calibrations repeated on synthetic trials of a dynamometer, whose truth is known: the elbow held

@@ -3,8 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "bio/model/convert_muscles.h"
+#include "bio/observation/least_squares_cost.h"
 #include "libbio/forces/arm_with_forces.h"
-#include "sensitivity/step_tape.h"
+#include "simulation/step_tape.h"
 #include "support/shipped_elbow.h"
 #include "support/throws_saying.h"
 

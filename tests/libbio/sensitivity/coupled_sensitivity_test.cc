@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "sensitivity/step_tape.h"
+#include "simulation/step_tape.h"
 #include "support/sensitivity_differences.h"
 #include "support/shipped_elbow.h"
 

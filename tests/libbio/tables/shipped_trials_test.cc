@@ -7,10 +7,10 @@
 #include "bio/emg/emg.h"
 #include "bio/emg/emg_config.h"
 #include "bio/opensim/osim_file.h"
+#include "bio/review/trial_review.h"
 #include "bio/tables/recording.h"
 #include "bio/tables/table_file.h"
 #include "bio/tables/trial.h"
-#include "bio/tables/trial_review.h"
 
 namespace {
 

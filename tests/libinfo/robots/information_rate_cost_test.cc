@@ -1,4 +1,4 @@
-#include "info/information/information_rate_cost.h"
+#include "info/design/information_rate_cost.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 
 #include "bio/analysis/compare.h"
 #include "bio/analysis/replay.h"
-#include "bio/parameters/parameter_information.h"
+#include "bio/observation/parameter_information.h"
 
 /// What the class of a model's muscles changes, all their shared numbers being equal.
 namespace bio {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "bio/analysis/replay.h"
-#include "bio/calibration/trial_predictor.h"
-#include "bio/parameters/channel_information.h"
-#include "bio/parameters/parameter_information.h"
+#include "bio/observation/channel_information.h"
+#include "bio/observation/parameter_information.h"
+#include "bio/observation/trial_predictor.h"
 #include "bio/tables/trial.h"
 #include "info/estimation/profile_likelihood.h"
 #include "info/probability/global_sensitivity.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bio/analysis/replay.h"
-#include "bio/calibration/trial_predictor.h"
+#include "bio/observation/trial_predictor.h"
 #include "bio/tables/trial.h"
 #include "info/estimation/least_squares.h"
 

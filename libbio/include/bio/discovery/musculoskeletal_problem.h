@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "bio/analysis/replay.h"
-#include "bio/calibration/nudge.h"
 #include "bio/discovery/encompassing_model.h"
+#include "bio/observation/nudge.h"
 #include "bio/simulation/simulate.h"
 #include "bio/tables/trial.h"
 

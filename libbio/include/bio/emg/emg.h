@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "bio/emg/emg_stages.h"
-#include "bio/emg/latent_excitation.h"
 #include "bio/emg/measured_coordinate.h"
+#include "bio/tables/latent_excitation.h"
 #include "bio/tables/recording.h"
 
 namespace bio {

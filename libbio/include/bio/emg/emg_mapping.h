@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "bio/emg/latent_excitation.h"
 #include "bio/muscle/activation/excitation.h"
+#include "bio/tables/latent_excitation.h"
 
 namespace bio {
 

@@ -5,9 +5,9 @@
 #include <limits>
 #include <optional>
 
-#include "bio/model/model.h"
 #include "bio/muscle/curves/curves.h"
 #include "bio/muscle/curves/force_velocity.h"
+#include "bio/muscle/schutte_parameters.h"
 #include "info/autodiff/dual.h"
 
 namespace bio {

@@ -9,7 +9,7 @@
 #include "bio/model/model.h"
 #include "bio/muscle/muscle_parameters.h"
 #include "bio/simulation/musculoskeletal_system.h"
-#include "info/estimation/parameter.h"
+#include "info/information/parameter.h"
 
 namespace bio {
 

@@ -3,12 +3,9 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-namespace bio {
+#include "bio/skeleton/rigid_motion.h"
 
-template <class T>
-using Vec3 = Eigen::Matrix<T, 3, 1>;
-template <class T>
-using Mat3 = Eigen::Matrix<T, 3, 3>;
+namespace bio {
 
 /// Length of the part of a path between two points P and Q, with its gradient; all vectors in one
 /// frame C. For an unsupported span L = |Q − P|; for a wrapped one L is the geodesic length,

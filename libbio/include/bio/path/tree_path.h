@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bio/path/path.h"
-#include "bio/skeleton/point_path.h"
+#include "bio/path/point_path.h"
 
 namespace bio {
 

@@ -5,6 +5,11 @@
 
 namespace bio {
 
+template <class T>
+using Vec3 = Eigen::Matrix<T, 3, 1>;
+template <class T>
+using Mat3 = Eigen::Matrix<T, 3, 3>;
+
 /// Number of distinct second derivatives of a function of n variables, and the index of (i, j).
 constexpr int numPairs(int n) {
   return n * (n + 1) / 2;

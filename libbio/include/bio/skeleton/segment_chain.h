@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "bio/path/span.h"
 #include "bio/skeleton/articulated_tree.h"
 
 namespace bio {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "bio/emg/latent_excitation.h"
 #include "bio/model/model.h"
 #include "bio/tables/experimental_conditions.h"
+#include "bio/tables/latent_excitation.h"
 #include "bio/tables/observable.h"
 
 namespace bio {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "info/information/information_rate_cost.h"
+#include "info/design/information_rate_cost.h"
 
 namespace info {
 

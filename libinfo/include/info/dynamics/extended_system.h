@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "info/autodiff/extended_derivatives.h"
+#include "info/dynamics/extended_derivatives.h"
 #include "info/dynamics/step_map.h"
 
 /// A system at one θ with its sensitivities ψ = dx/dθ as further states, made from any step map or

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "info/estimation/parameter.h"
 #include "info/estimation/robust_loss.h"
 #include "info/information/output_covariance.h"
+#include "info/information/parameter.h"
 
 namespace info {
 

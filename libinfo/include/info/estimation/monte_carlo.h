@@ -62,8 +62,4 @@ MonteCarloResult monteCarlo(const Predictor& predictor, const Eigen::VectorXd& t
 /// @throws std::invalid_argument if the covariance is given for another number of samples
 Eigen::MatrixXd drawNoise(const OutputCovariance& covariance, Eigen::Index n, RandomStream& random);
 
-/// body(0) … body(n−1) on at most `threads` threads (0: all cores). An exception in a body ends the
-/// loop and is rethrown.
-void parallelFor(int n, int threads, const std::function<void(int)>& body);
-
 }  // namespace info

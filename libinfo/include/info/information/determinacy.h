@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "info/estimation/parameter.h"
+#include "info/information/parameter.h"
 
 namespace info {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "info/design/sequential_action_control.h"
-#include "info/estimation/online_least_squares.h"
+#include "info/dynamics/online_least_squares.h"
 #include "info/realtime/periodic.h"
 #include "robots/compliant_arm.h"
 

@@ -4,9 +4,9 @@
 #include "info/dynamics/extended_system.h"
 #include "info/dynamics/free_parameters.h"
 #include "info/dynamics/integrate.h"
+#include "info/dynamics/online_least_squares.h"
 #include "info/dynamics/predictor.h"
 #include "info/dynamics/variational.h"
-#include "info/estimation/online_least_squares.h"
 #include "robots/cart_double_pendulum.h"
 #include "robots/suspended_mass.h"
 

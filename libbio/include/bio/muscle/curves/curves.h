@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "bio/model/function.h"
+#include "bio/muscle/curves/function.h"
 #include "info/autodiff/dual.h"
 
 namespace bio {
