@@ -35,7 +35,7 @@ double sensorError(const Trajectory& motion, const SensedMotion& sensor, int coo
 EffectSize effectSize(const MusculoskeletalProblem& data, std::size_t candidate,
                       const VectorXd& values, int trial) {
   const auto& effect = data.candidates().at(candidate);
-  const int coordinate = data.encompassing().freeIndex();
+  const int coordinate = data.encompassing().coordinates().front().index;
   EffectSize size;
   VectorXd absent = values, alone = data.encompassing().nominal();
   for (const std::size_t q : effect.quantities) {

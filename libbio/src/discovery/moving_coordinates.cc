@@ -48,7 +48,7 @@ Vector3d EncompassingModel::positionOf(const std::string& body, const Vector3d& 
   const BodyPlacement& place = arm_->skeleton().placeOf(body);
   const Vector3d inSegment = place.X_SB.R * point + place.X_SB.p;
   if (place.segment == 0) return inSegment;
-  const Placement<double> X = movement(*arm_, place.segment, freeIndex(), q).at;
+  const Placement<double> X = movement(*arm_, place.segment, coordinates_.front().index, q).at;
   return X.R * inSegment + X.p;
 }
 
@@ -66,7 +66,8 @@ Vector3d centreIn(const Model& model, const BodyPlacement& place, const std::str
 Vector3d EncompassingModel::velocityOf(const std::string& body, double q) const {
   const BodyPlacement& place = arm_->skeleton().placeOf(body);
   if (place.segment == 0) return Vector3d::Zero();
-  return centreIn(base_, place, body, movement(*arm_, place.segment, freeIndex(), q).derivative);
+  return centreIn(base_, place, body,
+                  movement(*arm_, place.segment, coordinates_.front().index, q).derivative);
 }
 
 void EncompassingModel::findBodies(MovingCoordinate& at) const {

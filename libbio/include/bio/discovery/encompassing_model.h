@@ -96,7 +96,6 @@ class EncompassingModel {
   /// Whether there is one coordinate, whose effects have short ids.
   bool hasOneCoordinate() const { return coordinates_.size() == 1; }
   /// Of the first coordinate, which is the only one where the model has one.
-  int freeIndex() const { return coordinates_.front().index; }
   const Coordinate& coordinate() const { return coordinates_.front().coordinate; }
   double middle() const { return coordinates_.front().middle(); }
   const std::vector<Observable>& sensors() const { return sensors_; }
