@@ -61,7 +61,7 @@ TEST(LatentForce, CourseIsThatOfTheSimulationAndItsDerivativesMatchDifferences) 
   const Trajectory motion = c.data.motion(0, values);
   ASSERT_EQ(free.course.q.size(), n);
   const auto last = static_cast<Index>(motion.time.size()) - 1;
-  const int coordinate = c.data.encompassing().freeIndex();
+  const int coordinate = c.data.encompassing().coordinates().front().index;
   for (Index k = 0; k < n; ++k) {
     const auto behind = std::lower_bound(motion.time.begin(), motion.time.end(),
                                          nodes[static_cast<std::size_t>(k)].time - 1e-9);
