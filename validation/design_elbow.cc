@@ -28,10 +28,11 @@ int main(int argc, char** argv) {
   simulation.duration = trial.times[trial.times.size() - 1] - trial.times[0];
 
   bio::DesignQuestion question;
+  const double noise = 0.5 * degree;
+  question.observed = {{bio::ofCoordinate("elbow_flexion"), noise}};
   question.parameters = {catalogue.find("TRI.radius")};
   bio::DesignLimits limits;
-  limits.lower = 0;
-  limits.upper = 130 * degree;
+  limits.coordinates = {{"elbow_flexion", 0, 130 * degree}};
   const bio::ExperimentDesign design(arm, catalogue, catalogue.nominal(), trial, simulation,
                                      question, limits, {}, 0.3);
   bio::DesignSearchSettings settings;
@@ -42,23 +43,24 @@ int main(int argc, char** argv) {
   fmt::print("bound on TRI.radius: {:.4g} mm before, {:.4g} mm after, factor {:.3g} ({} runs)\n",
              before * 1e3, after * 1e3, before / after, result.runs);
   fmt::print("angle {:.1f} to {:.1f} deg, torque to {:.3g} N m, {:.3g} N m/s\n",
-             result.after.lowest / degree, result.after.highest / degree,
-             result.after.largestTorque, result.after.largestTorqueRate);
+             result.after.ranges[0].lowest / degree, result.after.ranges[0].highest / degree,
+             design.inputs().largestTorque(result.after.trial, "elbow_flexion"),
+             design.inputs().largestTorqueRate(result.after.trial, "elbow_flexion"));
 
   // The estimator's experiment is built anew from what the design says.
-  simulation.externalForce = result.after.torque;
+  simulation.externalForce = bio::externalForceOf(result.after.trial, arm);
   const bio::TrialPredictor experiment(
-      catalogue, armOptions, result.after.excitation, "elbow_flexion",
+      catalogue, armOptions, bio::excitationOf(result.after.trial, arm), "elbow_flexion",
       {result.after.measuredTimes.begin(), result.after.measuredTimes.end()}, question.parameters,
       simulation);
   info::MonteCarloOptions options;
   options.trials = 200;
   options.startSpread = 0.0005;
   options.estimate.decrementTolerance = 1e-6;
-  const info::MonteCarloResult simulated = info::monteCarlo(
-      experiment.predictor(), catalogue.values(question.parameters),
-      info::OutputCovariance(Eigen::MatrixXd::Constant(1, 1, question.noise * question.noise)),
-      catalogue.asEstimated(question.parameters, false), options);
+  const info::MonteCarloResult simulated =
+      info::monteCarlo(experiment.predictor(), catalogue.values(question.parameters),
+                       info::OutputCovariance(Eigen::MatrixXd::Constant(1, 1, noise * noise)),
+                       catalogue.asEstimated(question.parameters, false), options);
   const double sd = std::sqrt(simulated.covariance(0, 0));
   fmt::print("{} simulated experiments, {} converged: deviation {:.4g} mm, {:.3g} of the bound\n",
              options.trials, simulated.converged, sd * 1e3, sd / after);

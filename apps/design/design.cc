@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <optional>
 
 #include "bio/analysis/replay.h"
 #include "bio/design/design_setup.h"
@@ -12,7 +11,6 @@
 #include "design/separating_report.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
-#include "output/angle_unit.h"
 #include "output/interruption.h"
 #include "output/progress_bar.h"
 #include "report/result.h"
@@ -39,23 +37,22 @@ class Design : public Command {
     OutputFolder folder(context, {"design.sto"});
     Summary summary(context);
     const bio::Model model = readModel(typed_.model, summary);
-    chooseCoordinates(typed_.simulation, model, {typed_.trial});
+    chooseCoordinates(typed_.simulation, model, {typed_.trial}, false, typed_.observe);
     const bio::MusculoskeletalSystem arm =
         movableSystem(model, typed_.model, typed_.simulation, summary);
     const TrialInput input = readTrialInput(typed_.trial, model, arm, typed_.simulation, summary);
     const bio::ParameterCatalogue catalogue(model, arm, {input.start.q, {}});
-    const bio::Coordinate& coordinate = rotationOf(arm);
     const bio::SimulationOptions simulation = input.recorded.simulation;
-    const bio::ExperimentDesign design(arm, catalogue, catalogue.nominal(), input.trial, simulation,
-                                       question(catalogue, coordinate), limits(coordinate),
-                                       bio::muscleGroups(arm, input.start.q, typed_.excite),
-                                       typed_.knots);
+    const bio::ExperimentDesign design(
+        arm, catalogue, catalogue.nominal(), input.trial, simulation,
+        question(catalogue, designOutputs(typed_, model, arm)), designLimits(typed_, arm),
+        bio::muscleGroups(arm, input.start.q, typed_.excite), typed_.knots);
     bio::DesignResult result;
     search(context, [&] { result = design.search(typed_.settings); });
     folder.writeFile("design.sto", [&](const std::filesystem::path& path) {
-      bio::writeTable(bio::designTable(arm, result.after, coordinate.name), path);
+      bio::writeTable(bio::plannedTable(arm, result.after.trial), path);
     });
-    DesignFindings findings{typed_.model, typed_.trial, design, result, coordinate, {}, {}};
+    DesignFindings findings{typed_.model, typed_.trial, model, design, result, {}, {}};
     for (const auto* list : {&design.question().parameters, &design.question().nuisance}) {
       for (const std::size_t index : *list) {
         findings.parameters.push_back(catalogue.parameters()[index]);
@@ -90,36 +87,38 @@ class Design : public Command {
     OutputFolder folder(context, {"design.sto"});
     Summary summary(context);
     const bio::Model model = readModel(typed_.model, summary);
-    chooseCoordinates(typed_.simulation, model, {typed_.trial});
+    chooseCoordinates(typed_.simulation, model, {typed_.trial}, false, typed_.observe);
     const bio::MusculoskeletalSystem arm =
         movableSystem(model, typed_.model, typed_.simulation, summary);
     summary.addInput(typed_.trial);
     const bio::Trial trial =
         readTrialFile(typed_.trial, model, typed_.simulation, {.experimentalConditions = true});
     for (const std::string& warning : trial.warnings) summary.warn(warning);
-    const bio::Coordinate& coordinate = rotationOf(arm);
     bio::discover::SeparationQuestion question;
     question.first = typed_.separate[0];
     question.second = typed_.separate[1];
     question = bio::discover::withSizes(question, byName(assignments(typed_.sizes)));
-    question.start = bio::startCoordinates(trial, arm, byName(typed_.simulation.initial))[0];
-    question.noise = typed_.noise_deg * degree;
+    const Eigen::VectorXd start =
+        bio::startCoordinates(trial, arm, byName(typed_.simulation.initial));
+    for (Eigen::Index i = 0; i < start.size(); ++i) {
+      question.start[arm.skeleton().coordinates()[static_cast<std::size_t>(i)].name] = start[i];
+    }
+    question.observed = designOutputs(typed_, model, arm);
     question.period = 1 / typed_.rate_Hz;
     const double duration = trial.duration();
     bio::discover::MusculoskeletalProblemOptions options;
     options.simulation = simulationOptions(typed_.simulation, trial.times[0], duration);
     const bio::discover::SeparatingDesign design(
-        model, armOptions(typed_.simulation), coordinate.name, trial, options, question,
-        limits(coordinate), bio::muscleGroups(arm, arm.skeleton().defaultValues(), typed_.excite),
-        typed_.knots);
+        model, armOptions(typed_.simulation), trial, options, question, designLimits(typed_, arm),
+        bio::muscleGroups(arm, arm.skeleton().defaultValues(), typed_.excite), typed_.knots);
     bio::discover::SeparatingResult result;
     const auto begin = std::chrono::steady_clock::now();
     search(context, [&] { result = design.search(typed_.settings); });
     const double wall =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    const SeparatingFindings findings{typed_.model, typed_.trial, design, result, coordinate};
+    const SeparatingFindings findings{typed_.model, typed_.trial, model, design, result};
     folder.writeFile("design.sto", [&](const std::filesystem::path& path) {
-      bio::writeTable(bio::discover::separatingTable(design, result.after), path);
+      bio::writeTable(bio::plannedTable(arm, result.after.trial), path);
     });
     summary.setSimulation(typed_.simulation.integrator, options.simulation.step, duration, wall);
     tellSeparation(findings, summary);
@@ -134,40 +133,16 @@ class Design : public Command {
     return all;
   }
 
-  static const bio::Coordinate& rotationOf(const bio::MusculoskeletalSystem& arm) {
-    const bio::Coordinate& coordinate = arm.skeleton().coordinates().front();
-    if (!coordinate.isRotation) {
-      throw std::invalid_argument(
-          fmt::format("--coordinate: '{}' must be a rotation", coordinate.name));
-    }
-    return coordinate;
-  }
-
   bio::DesignQuestion question(const bio::ParameterCatalogue& catalogue,
-                               const bio::Coordinate& coordinate) const {
+                               std::vector<bio::ChannelCandidate> observed) const {
     bio::DesignQuestion question;
-    question.coordinate = coordinate.name;
-    question.noise = typed_.noise_deg * degree;
+    question.observed = std::move(observed);
     question.period = 1 / typed_.rate_Hz;
     question.criterion = bio::optimalityNamed(typed_.criterion);
     return bio::designQuestion(catalogue,
                                {typed_.parameters, typed_.nuisance, typed_.priors,
                                 byName(assignments(typed_.givenPriors))},
                                std::move(question));
-  }
-
-  bio::DesignLimits limits(const bio::Coordinate& coordinate) const {
-    bio::DesignLimits limits = typed_.limits;
-    limits.speed = typed_.speed_deg * degree;
-    std::optional<std::pair<double, double>> range;
-    if (!typed_.range.empty()) {
-      try {
-        range = {parseAngle(typed_.range[0]), parseAngle(typed_.range[1])};
-      } catch (const std::invalid_argument& error) {
-        throw std::invalid_argument(fmt::format("--range: {}", error.what()));
-      }
-    }
-    return bio::withinRange(limits, coordinate, range);
   }
 
   info::MonteCarloResult simulated(const CommandContext& context,

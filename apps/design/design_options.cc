@@ -3,10 +3,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "bio/design/design_setup.h"
+#include "options/observed_channels.h"
 #include "options/trial_input.h"
+#include "output/angle_unit.h"
 
 namespace app {
 namespace {
@@ -17,6 +21,41 @@ std::vector<std::string> givenOf(const std::vector<const CLI::Option*>& options)
     if (one->count() > 0) names.push_back(one->get_name());
   }
   return names;
+}
+
+/// NAME and the rest of "NAME=rest"; without a name "".
+std::pair<std::string, std::string> named(const std::string& text) {
+  const auto at = text.rfind('=');
+  if (at == std::string::npos) return {"", text};
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+/// By name, each once.
+template <class Value, class Parse>
+std::map<std::string, Value> byNameOf(const char* option, const std::vector<std::string>& texts,
+                                      const Parse& parse) {
+  std::map<std::string, Value> all;
+  for (const std::string& text : texts) {
+    const auto [name, value] = named(text);
+    try {
+      if (!all.emplace(name, parse(value)).second) {
+        throw std::invalid_argument(fmt::format("'{}' is given twice", text));
+      }
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("{}: {}", option, error.what()));
+    }
+  }
+  return all;
+}
+
+/// Largest torques by coordinate.
+std::map<std::string, double> torquesOf(const DesignOptions& typed) {
+  if (typed.torque.empty()) return bio::GivenLimits{}.torque;
+  return byNameOf<double>("--torque", typed.torque, [](const std::string& text) {
+    const double torque = parseNumber(text);
+    if (torque < 0) throw std::invalid_argument(fmt::format("{} N·m, must be ≥ 0", torque));
+    return torque;
+  });
 }
 
 /// What would have no effect beside --dynamometer.
@@ -83,26 +122,38 @@ void addDesignOptions(CLI::App& options, DesignOptions& typed) {
     options.add_option(name, target, description)->type_name(unit)->capture_default_str();
   };
   number("--noise", typed.noise_deg, "DEGREES",
-         "standard deviation of the measured angle (of a shift: in mm)");
+         "standard deviation of the measured angles (of a shift: in mm)");
+  options
+      .add_option("--observe", typed.observe,
+                  "what is measured, with the standard deviation of its noise, instead of all free "
+                  "coordinates: elbow_flexion=0.5deg, elbow_flexion.moment=0.5, "
+                  "BRA.fiber_length=0.001, …; may be repeated")
+      ->delimiter(',')
+      ->type_name("NAME=SD")
+      ->allow_extra_args(false);
   number("--rate", typed.rate_Hz, "HZ", "measurement rate");
-  number("--torque", typed.limits.torque, "NM", "largest external torque; 0: none");
+  options
+      .add_option("--torque", typed.torque,
+                  "largest external torque on every free coordinate, or on one: 10, "
+                  "elbow_flexion=10; may be repeated; 0: none; default: 10")
+      ->type_name("[NAME=]NM")
+      ->allow_extra_args(false);
   number("--torque-rate", typed.limits.torqueRate, "NM/S", "how fast it may change");
   names("--excite", typed.excite,
-        "muscles whose excitations are designed: flexors, extensors, or names; BRA+BRD share one "
-        "excitation")
+        "muscles whose excitations are designed: flexors, extensors (of the first coordinate; of "
+        "another: NAME.flexors), or names; BRA+BRD share one excitation")
       ->type_name("GROUPS");
   number("--excitation-max", typed.limits.largestExcitation, "0-1",
          "largest excitation of a group");
   number("--excitation-rate", typed.limits.excitationRate, "1/S", "how fast it may change");
   options
       .add_option("--range", typed.range,
-                  "range to which the coordinate is limited, as 10deg,120deg; default: its range "
-                  "in the model")
-      ->delimiter(',')
-      ->expected(2)
-      ->type_name("LOW,HIGH");
+                  "range to which a free coordinate is limited: 10deg,120deg, or, where several "
+                  "are free, elbow_flexion=10deg,120deg; may be repeated; default: as in the model")
+      ->type_name("[NAME=]LOW,HIGH")
+      ->allow_extra_args(false);
   number("--speed", typed.speed_deg, "DEG/S",
-         "largest speed of the coordinate (of a shift: in mm/s)");
+         "largest speed of the coordinates (of a shift: in mm/s)");
   number("--surprise", typed.limits.surprise, "K",
          "respect the range even if the parameters are K prior standard deviations off");
   number("--knots", typed.knots, "SECONDS",
@@ -122,11 +173,18 @@ void addDesignOptions(CLI::App& options, DesignOptions& typed) {
         "the bounds");
   addDynamometerOptions(options, typed.dynamometer);
   addSimulationOptions(options, typed.simulation);
+  addPrescribing(options, typed.simulation);
   for (const char* name :
-       {"--separate", "--size", "--priors", "--prior", "--criterion", "--torque", "--torque-rate",
-        "--excite", "--excitation-max", "--excitation-rate", "--range", "--knots", "--candidates",
-        "--generations", "--iterations", "--monte-carlo", "--initial", "--ignore-extra"}) {
+       {"--observe",     "--prescribe",   "--separate",       "--size",
+        "--priors",      "--prior",       "--criterion",      "--torque",
+        "--torque-rate", "--excite",      "--excitation-max", "--excitation-rate",
+        "--range",       "--knots",       "--candidates",     "--generations",
+        "--iterations",  "--monte-carlo", "--initial",        "--ignore-extra"}) {
     typed.ofSearch.push_back(options.get_option(name));
+  }
+  typed.noise = options.get_option("--noise");
+  for (const char* name : {"--torque", "--torque-rate", "--range", "--speed"}) {
+    typed.ofMotion.push_back(options.get_option(name));
   }
   for (const char* name : {"--noise", "--speed", "--surprise"}) {
     typed.ofAngle.push_back(options.get_option(name));
@@ -141,6 +199,10 @@ void checkDesignOptions(const DesignOptions& typed) {
   if (typed.parameters.empty() == typed.separate.empty()) {
     throw std::invalid_argument(
         "either --parameters or --separate is required, and not both (see --help)");
+  }
+  if (!typed.observe.empty() && typed.noise->count() > 0) {
+    throw std::invalid_argument(
+        "--noise cannot be combined with --observe, where every NAME=SD has its own");
   }
   if (!typed.separate.empty() && typed.separate.size() != 2) {
     throw std::invalid_argument(
@@ -165,9 +227,6 @@ void checkDesignOptions(const DesignOptions& typed) {
   positive("--excitation-rate", typed.limits.excitationRate, "1/s");
   positive("--speed", typed.speed_deg, "deg/s");
   positive("--knots", typed.knots, "s");
-  if (!(typed.limits.torque >= 0 && std::isfinite(typed.limits.torque))) {
-    throw std::invalid_argument(fmt::format("--torque: {} N·m, must be ≥ 0", typed.limits.torque));
-  }
   if (!(typed.limits.surprise >= 0 && std::isfinite(typed.limits.surprise))) {
     throw std::invalid_argument(fmt::format("--surprise: {}, must be ≥ 0", typed.limits.surprise));
   }
@@ -177,7 +236,10 @@ void checkDesignOptions(const DesignOptions& typed) {
                                             typed.limits.largestExcitation,
                                             typed.limits.leastExcitation));
   }
-  if (typed.limits.torque == 0 && typed.excite.empty()) {
+  const std::map<std::string, double> torques = torquesOf(typed);
+  const bool isPushed =
+      std::any_of(torques.begin(), torques.end(), [](const auto& one) { return one.second > 0; });
+  if (!isPushed && typed.excite.empty()) {
     throw std::invalid_argument("--torque 0 without --excite leaves nothing to change");
   }
   if (!typed.simulation.integrator.starts_with("vi")) {
@@ -188,6 +250,41 @@ void checkDesignOptions(const DesignOptions& typed) {
   if (typed.monteCarlo > 0 && !typed.nuisance.empty()) {
     throw std::invalid_argument("--monte-carlo cannot be combined with --nuisance");
   }
+}
+
+bio::DesignLimits designLimits(const DesignOptions& typed, const bio::MusculoskeletalSystem& arm) {
+  bio::GivenLimits given;
+  given.torque = torquesOf(typed);
+  for (const bio::Coordinate& one : arm.skeleton().coordinates()) {
+    given.speed[one.name] = typed.speed_deg * (one.isRotation ? degree : 1e-3);
+  }
+  for (const int prescribed : arm.prescribed()) {
+    given.speed.erase(arm.skeleton().coordinates()[static_cast<std::size_t>(prescribed)].name);
+  }
+  given.range =
+      byNameOf<std::pair<double, double>>("--range", typed.range, [](const std::string& text) {
+        const auto comma = text.find(',');
+        if (comma == std::string::npos) {
+          throw std::invalid_argument(fmt::format("'{}' must be LOW,HIGH", text));
+        }
+        return std::pair(parseAngle(text.substr(0, comma)), parseAngle(text.substr(comma + 1)));
+      });
+  bio::DesignLimits limits = bio::withCoordinates(typed.limits, arm, given);
+  if (const auto names = givenOf(typed.ofMotion); limits.coordinates.empty() && !names.empty()) {
+    throw std::invalid_argument(
+        fmt::format("{}: no coordinate is free to move", fmt::join(names, ", ")));
+  }
+  return limits;
+}
+
+std::vector<bio::ChannelCandidate> designOutputs(const DesignOptions& typed,
+                                                 const bio::Model& model,
+                                                 const bio::MusculoskeletalSystem& arm) {
+  if (!typed.observe.empty()) return readObserved(typed.observe, model, arm);
+  const auto observed = bio::freeCoordinates(arm, typed.noise_deg * degree, typed.noise_deg / 1000);
+  if (!observed.empty()) return observed;
+  throw std::invalid_argument(
+      "no coordinate is free to be observed: --observe must name what is measured");
 }
 
 }  // namespace app

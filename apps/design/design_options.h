@@ -13,7 +13,9 @@ namespace app {
 /// `design`, as typed.
 struct DesignOptions {
   std::string model, trial, criterion = "E";
-  std::vector<std::string> parameters, nuisance, givenPriors, excite, range, separate, sizes;
+  std::vector<std::string> parameters, nuisance, givenPriors, excite, separate, sizes;
+  std::vector<std::string> observe;        ///< NAME=SD each; empty: the free coordinates
+  std::vector<std::string> range, torque;  ///< [NAME=]LOW,HIGH and [NAME=]N m each
   bool priors = false;
   double noise_deg = 0.5, rate_Hz = 100, speed_deg = 500, knots = 0.3;
   bio::DesignLimits limits = {};
@@ -21,6 +23,9 @@ struct DesignOptions {
   int monteCarlo = 0;
   DynamometerOptions dynamometer;
   SimulationOptions simulation;
+  const CLI::Option* noise = nullptr;
+  /// Those that only free coordinates have.
+  std::vector<const CLI::Option*> ofMotion;
   /// Those that only a search from a trial uses.
   std::vector<const CLI::Option*> ofSearch;
   /// Those of the angle, which of a dynamometer's experiments only isotonic ones measure.
@@ -31,5 +36,15 @@ void addDesignOptions(CLI::App& options, DesignOptions& typed);
 
 /// @throws std::invalid_argument for options that do not go together, or a number out of its range
 void checkDesignOptions(const DesignOptions& typed);
+
+/// @throws std::invalid_argument what bio::withCoordinates throws, text of another kind, or an
+///   option of free coordinates where there is none
+bio::DesignLimits designLimits(const DesignOptions& typed, const bio::MusculoskeletalSystem& arm);
+
+/// What is observed: as typed, else all free coordinates.
+/// @throws std::invalid_argument what readObserved throws, or if there is nothing
+std::vector<bio::ChannelCandidate> designOutputs(const DesignOptions& typed,
+                                                 const bio::Model& model,
+                                                 const bio::MusculoskeletalSystem& arm);
 
 }  // namespace app

@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-#include "bio/analysis/replay.h"
-#include "output/angle_unit.h"
+#include "design/planned_figures.h"
 #include "output/json_text.h"
 #include "output/text.h"
 
@@ -16,69 +15,34 @@ using Json = nlohmann::ordered_json;
 using bio::DesignedExperiment;
 using Eigen::Index;
 
-double torqueAt(const DesignFindings& f, const DesignedExperiment& e, double t) {
-  if (e.torque.empty()) return 0;
-  return e.torque.at(t).value[f.design.arm().skeleton().indexOf(f.coordinate.name)];
+PlannedInputs planned(const DesignFindings& f) {
+  return {f.model, f.design.inputs(), f.result.before.trial, f.result.after.trial};
 }
 
-Figure torqueFigure(const DesignFindings& f) {
-  Figure figure{.title = "External torque",
-                .xLabel = "Time [s]",
-                .yLabel = fmt::format("Torque on {} [N·m]", f.coordinate.name),
-                .caption = fmt::format("Limited to ±{} N·m and {} N·m/s.",
-                                       numberText(f.design.limits().torque),
-                                       numberText(f.design.limits().torqueRate))};
-  for (const auto& [name, e, style] :
-       {std::tuple{"designed", &f.result.after, SeriesStyle::line},
-        std::tuple{"before", &f.result.before, SeriesStyle::dashed}}) {
-    Series series{.name = name, .x = e->excitation.times(), .style = style};
-    for (const double t : series.x) series.y.push_back(torqueAt(f, *e, t));
-    figure.series.push_back(std::move(series));
+/// Of what is predicted; a band shows what is observed.
+Figure predicted(const DesignFindings& f, std::size_t channel) {
+  const bio::MeasuredChannel& after = f.result.after.trial.measured[channel];
+  const bio::MeasuredChannel& before = f.result.before.trial.measured[channel];
+  const double factor = shownUnit(bio::unitOf(after.what, f.model)).factor;
+  Series designed{.name = "designed", .x = asList(after.times), .y = asList(after.values * factor)};
+  std::string caption;
+  const auto& observed = f.design.question().observed;
+  for (std::size_t o = 0; o < observed.size(); ++o) {
+    if (observed[o].what != after.what) continue;
+    const Eigen::VectorXd surprise =
+        f.design.surpriseAt(f.result.after).col(static_cast<Index>(o)) * factor;
+    designed.bandLow = asList(after.values * factor - surprise);
+    designed.bandHigh = asList(after.values * factor + surprise);
+    caption = fmt::format(
+        "The band shows the designed experiment if the parameters are {} prior standard deviations "
+        "off (to first order).",
+        numberText(f.design.inputs().limits().surprise));
   }
-  return figure;
-}
-
-Figure excitationFigure(const DesignFindings& f, const bio::MuscleGroup& group) {
-  Figure figure{
-      .title = fmt::format("Excitation of {}", group.name),
-      .xLabel = "Time [s]",
-      .yLabel = "Excitation",
-      .caption = fmt::format(
-          "Muscles with this excitation: {}. The dashed line is the baseline excitation of {}.",
-          fmt::join(group.muscles, ", "), group.muscles.front())};
-  const bio::Table before = bio::designTable(f.design.arm(), f.result.before, f.coordinate.name);
-  const bio::Table after = bio::designTable(f.design.arm(), f.result.after, f.coordinate.name);
-  for (const auto& [name, table, style] : {std::tuple{"designed", &after, SeriesStyle::line},
-                                           std::tuple{"before", &before, SeriesStyle::dashed}}) {
-    const Index column = bio::columnIndex(*table, group.muscles.front());
-    figure.series.push_back({.name = name,
-                             .x = asList(table->values.col(0)),
-                             .y = asList(table->values.col(column)),
-                             .style = style});
-  }
-  return figure;
-}
-
-Figure angleFigure(const DesignFindings& f) {
-  const bio::DesignLimits& limits = f.design.limits();
-  Figure figure{
-      .title = fmt::format("Predicted {}", f.coordinate.name),
-      .xLabel = "Time [s]",
-      .yLabel = fmt::format("{} [deg]", f.coordinate.name),
-      .caption = fmt::format("The band shows the designed motion if the parameters are {} prior "
-                             "standard deviations off (to first order). Limits: {} to {} deg.",
-                             numberText(limits.surprise), numberText(limits.lower * radian),
-                             numberText(limits.upper * radian))};
-  const DesignedExperiment& after = f.result.after;
-  Series designed{
-      .name = "designed", .x = asList(after.measuredTimes), .y = asList(after.measured * radian)};
-  const Eigen::VectorXd surprise = f.design.surpriseAt(after) * radian;
-  designed.bandLow = asList(after.measured * radian - surprise);
-  designed.bandHigh = asList(after.measured * radian + surprise);
+  Figure figure = predictionFigure(planned(f), after.what, caption);
   figure.series.push_back(std::move(designed));
   figure.series.push_back({.name = "before",
-                           .x = asList(f.result.before.measuredTimes),
-                           .y = asList(f.result.before.measured * radian),
+                           .x = asList(before.times),
+                           .y = asList(before.values * factor),
                            .style = SeriesStyle::dashed});
   return figure;
 }
@@ -104,20 +68,6 @@ Figure knowledgeFigure(const DesignFindings& f) {
   return figure;
 }
 
-Figure searchFigure(const DesignFindings& f) {
-  Figure figure{.title = "Progress of the search",
-                .xLabel = "Simulations",
-                .yLabel = "Criterion (smaller is better)",
-                .caption = "Best experiment so far that respects every limit."};
-  Series series{.name = "best", .x = {0}, .y = {f.result.costBefore}};
-  for (std::size_t i = 0; i < f.result.costs.size(); ++i) {
-    series.x.push_back(f.result.foundAt[i]);
-    series.y.push_back(f.result.costs[i]);
-  }
-  figure.series.push_back(std::move(series));
-  return figure;
-}
-
 Table boundTable(const DesignFindings& f) {
   Table table{
       "Bounds",
@@ -137,30 +87,20 @@ Table boundTable(const DesignFindings& f) {
   return table;
 }
 
-Table limitTable(const DesignFindings& f) {
-  const DesignedExperiment& e = f.result.after;
-  const bio::DesignLimits& limits = f.design.limits();
-  Table table{"Limits", {"quantity", "designed", "limit", "unit"}, {}};
-  if (f.design.hasTorque()) {
-    table.rows.push_back(
-        {"largest torque", numberText(e.largestTorque), numberText(limits.torque), "N·m"});
-    table.rows.push_back({"largest torque rate", numberText(e.largestTorqueRate),
-                          numberText(limits.torqueRate), "N·m/s"});
+Table limitsKept(const DesignFindings& f) {
+  Table table = limitTable(planned(f));
+  const auto& all = f.design.inputs().limits().coordinates;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::string& name = all[i].coordinate;
+    const bio::MotionRange& range = f.result.after.ranges[i];
+    const ShownUnit unit = planned(f).unitOf(name);
+    addLimit(table, "lowest " + name, range.lowest, all[i].lower, unit);
+    addLimit(table, "the same, parameters off", range.surprisedLowest, all[i].lower, unit);
+    addLimit(table, "highest " + name, range.highest, all[i].upper, unit);
+    addLimit(table, "the same, parameters off", range.surprisedHighest, all[i].upper, unit);
+    addLimit(table, "largest speed of " + name, range.fastest, all[i].speed,
+             {unit.factor, unit.name + "/s"});
   }
-  if (!f.design.groups().empty()) {
-    table.rows.push_back({"largest excitation rate", numberText(e.largestExcitationRate),
-                          numberText(limits.excitationRate), "1/s"});
-  }
-  table.rows.push_back(
-      {"lowest angle", numberText(e.lowest * radian), numberText(limits.lower * radian), "deg"});
-  table.rows.push_back({"lowest angle, parameters off", numberText(e.surprisedLowest * radian),
-                        numberText(limits.lower * radian), "deg"});
-  table.rows.push_back(
-      {"highest angle", numberText(e.highest * radian), numberText(limits.upper * radian), "deg"});
-  table.rows.push_back({"highest angle, parameters off", numberText(e.surprisedHighest * radian),
-                        numberText(limits.upper * radian), "deg"});
-  table.rows.push_back({"largest speed", numberText(e.fastest * radian),
-                        numberText(limits.speed * radian), "deg/s"});
   return table;
 }
 
@@ -213,34 +153,26 @@ void tellDesign(const DesignFindings& f, Summary& summary) {
     summary.set("monte_carlo_converged", f.monteCarlo->converged);
     summary.set("monte_carlo_trials", f.monteCarlo->trials.size());
   }
-  const DesignedExperiment& e = f.result.after;
-  summary.set("noise_deg", f.design.question().noise * radian);
-  summary.set("rate_Hz", 1 / f.design.question().period);
-  if (f.design.hasTorque()) {
-    summary.set("largest_torque_Nm", e.largestTorque);
-    summary.set("largest_torque_rate_Nm_per_s", e.largestTorqueRate);
+  std::vector<CoordinateMotion> motions;
+  for (const bio::MotionRange& range : f.result.after.ranges) {
+    motions.push_back({range.lowest, range.highest, range.fastest});
   }
-  if (!f.design.groups().empty()) {
-    summary.set("largest_excitation_rate_per_s", e.largestExcitationRate);
-  }
-  summary.set("lowest_deg", e.lowest * radian);
-  summary.set("highest_deg", e.highest * radian);
-  summary.set("largest_speed_deg_per_s", e.fastest * radian);
-  summary.set("simulations", f.result.runs);
-  summary.set("impossible_simulations", f.result.impossible);
+  const bio::DesignQuestion& question = f.design.question();
+  tellPlan(planned(f), question.observed, question.period, motions, f.result, summary);
 }
 
 Report designReport(const DesignFindings& f) {
   Report report;
   report.title = fmt::format("Experiment designed from {} on {}", f.trialFile, f.modelFile);
   report.verdict = verdictOf(f);
-  report.mainFigure = angleFigure(f);
+  const std::size_t channels = f.result.after.trial.measured.size();
+  report.mainFigure = predicted(f, 0);
   report.details.push_back(boundTable(f));
   report.details.push_back(Paragraph{fmt::format(
       "A bound is the smallest standard deviation that an unbiased estimate can have (Cramér–Rao), "
-      "with one measured angle every {} s, noise of {} deg, and all other parameters of the model "
-      "known{}. It holds only if the model is right.",
-      numberText(f.design.question().period), numberText(f.design.question().noise * radian),
+      "with {}, and all other parameters of the model known{}. It holds only if the model is "
+      "right.",
+      measurementText(f.design.question().observed, f.design.question().period, f.model),
       f.design.question().nuisance.empty() ? "" : " except the nuisance parameters")});
   if (f.monteCarlo) {
     Table table{"Simulated experiments",
@@ -259,13 +191,12 @@ Report designReport(const DesignFindings& f) {
         Paragraph{fmt::format("{} of {} simulated experiments converged.", f.monteCarlo->converged,
                               f.monteCarlo->trials.size())});
   }
-  if (f.design.hasTorque()) report.details.push_back(torqueFigure(f));
-  for (const bio::MuscleGroup& group : f.design.groups()) {
-    report.details.push_back(excitationFigure(f, group));
-  }
+  for (std::size_t i = 1; i < channels; ++i) report.details.push_back(predicted(f, i));
+  addInputFigures(planned(f), report);
   report.details.push_back(knowledgeFigure(f));
-  report.details.push_back(limitTable(f));
-  report.details.push_back(searchFigure(f));
+  report.details.push_back(limitsKept(f));
+  report.details.push_back(
+      searchFigure(f.result, f.result.costBefore, 1, "Criterion (smaller is better)"));
   report.details.push_back(Paragraph{fmt::format(
       "{} simulations with exact sensitivities, {} of which did not reach the end. design.sto "
       "holds the inputs and the predicted motion; `fisherhill replay` simulates it.",

@@ -15,9 +15,9 @@ namespace app {
 struct DesignFindings {
   const std::string& modelFile;
   const std::string& trialFile;
+  const bio::Model& model;
   const bio::ExperimentDesign& design;
   const bio::DesignResult& result;
-  const bio::Coordinate& coordinate;
   std::vector<bio::ModelParameter> parameters;       ///< of interest, then nuisance
   std::optional<info::MonteCarloResult> monteCarlo;  ///< for the parameters of interest
 };

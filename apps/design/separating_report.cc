@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
-#include "output/angle_unit.h"
+#include "design/planned_figures.h"
 #include "output/json_text.h"
 #include "output/text.h"
 
@@ -50,24 +47,29 @@ class Writing {
                            : "");
   }
 
-  Figure angles() const {
-    const bio::DesignLimits& limits = f_.design.inputs().limits();
+  PlannedInputs planned() const {
+    return {f_.model, f_.design.inputs(), f_.result.before.trial, f_.result.after.trial};
+  }
+
+  Figure predicted(std::size_t observed) const {
+    const bio::Observable& what = f_.design.question().observed[observed].what;
     const auto& q = f_.design.question();
-    Figure figure{.title = fmt::format("Predicted {}", f_.coordinate.name),
-                  .xLabel = "Time [s]",
-                  .yLabel = fmt::format("{} [deg]", f_.coordinate.name),
-                  .caption = fmt::format(
-                      "The designed experiment with {} and with {}, at the model's own parameters. "
-                      "Limits: {} to {} deg.",
-                      sized(f_.design.first().name, q.firstSize, f_.design.unitOfFirst()),
-                      sized(f_.design.second().name, q.secondSize, f_.design.unitOfSecond()),
-                      numberText(limits.lower * radian), numberText(limits.upper * radian))};
+    Figure figure = predictionFigure(
+        planned(), what,
+        fmt::format("The designed experiment with {} and with {}, at the model's own parameters.",
+                    sized(f_.design.first().name, q.firstSize, f_.design.unitOfFirst()),
+                    sized(f_.design.second().name, q.secondSize, f_.design.unitOfSecond())));
     const SeparatingExperiment& e = f_.result.after;
-    figure.series.push_back({.name = "neither", .x = times_, .y = asList(e.base * radian)});
-    figure.series.push_back(
-        {.name = f_.design.first().name, .x = times_, .y = asList(e.first * radian)});
-    figure.series.push_back(
-        {.name = f_.design.second().name, .x = times_, .y = asList(e.second * radian)});
+    const double factor = shownUnit(bio::unitOf(what, f_.model)).factor;
+    const auto add = [&](const std::string& name, const Eigen::MatrixXd& values) {
+      figure.series.push_back(
+          {.name = name,
+           .x = times_,
+           .y = asList(VectorXd(values.col(static_cast<Index>(observed)) * factor))});
+    };
+    add("neither", e.base);
+    add(f_.design.first().name, e.first);
+    add(f_.design.second().name, e.second);
     return figure;
   }
 
@@ -91,85 +93,21 @@ class Writing {
   }
 
   Table limits() const {
-    const SeparatingExperiment& e = f_.result.after;
-    const bio::DesignInputs& inputs = f_.design.inputs();
-    const bio::DesignLimits& limits = inputs.limits();
-    Table table{"Limits", {"quantity", "designed", "limit", "unit"}, {}};
-    if (inputs.hasTorque()) {
-      table.rows.push_back(
-          {"largest torque", numberText(largestTorque()), numberText(limits.torque), "N·m"});
-      table.rows.push_back({"largest torque rate", numberText(inputs.largestTorqueRate(e.trial)),
-                            numberText(limits.torqueRate), "N·m/s"});
+    Table table = limitTable(planned());
+    const auto& all = f_.design.inputs().limits().coordinates;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const std::string& name = all[i].coordinate;
+      const SeparatingExperiment::Range& range = f_.result.after.ranges[i];
+      const ShownUnit unit = planned().unitOf(name);
+      addLimit(table, "lowest " + name, range.lowest, all[i].lower, unit);
+      addLimit(table, "highest " + name, range.highest, all[i].upper, unit);
+      addLimit(table, "largest speed of " + name, range.fastest, all[i].speed,
+               {unit.factor, unit.name + "/s"});
     }
-    if (!inputs.groups().empty()) {
-      table.rows.push_back({"largest excitation rate",
-                            numberText(inputs.largestExcitationRate(e.trial)),
-                            numberText(limits.excitationRate), "1/s"});
-    }
-    table.rows.push_back(
-        {"lowest angle", numberText(e.lowest * radian), numberText(limits.lower * radian), "deg"});
-    table.rows.push_back({"highest angle", numberText(e.highest * radian),
-                          numberText(limits.upper * radian), "deg"});
-    table.rows.push_back({"largest speed", numberText(e.fastest * radian),
-                          numberText(limits.speed * radian), "deg/s"});
     return table;
   }
 
-  Figure torque() const {
-    Figure figure{.title = "External torque",
-                  .xLabel = "Time [s]",
-                  .yLabel = fmt::format("Torque on {} [N·m]", f_.coordinate.name),
-                  .caption = ""};
-    addBoth(figure, [&](const bio::Trial& trial) { return f_.design.inputs().torqueOf(trial); });
-    return figure;
-  }
-
-  Figure excitation(const bio::MuscleGroup& group) const {
-    Figure figure{
-        .title = fmt::format("Excitation of {}", group.name),
-        .xLabel = "Time [s]",
-        .yLabel = "Excitation",
-        .caption = fmt::format(
-            "Muscles with this excitation: {}. The dashed line is the baseline excitation of {}.",
-            fmt::join(group.muscles, ", "), group.muscles.front())};
-    addBoth(figure, [&](const bio::Trial& trial) {
-      const auto at = std::find(trial.muscles.begin(), trial.muscles.end(), group.muscles.front());
-      return VectorXd(trial.excitations.col(at - trial.muscles.begin()));
-    });
-    return figure;
-  }
-
-  Figure search() const {
-    Figure figure{.title = "Progress of the search",
-                  .xLabel = "Experiments simulated",
-                  .yLabel = "Smaller log Bayes factor [nats]",
-                  .caption = "Best experiment so far that respects every limit."};
-    Series series{.name = "best", .x = {0}, .y = {f_.result.before.tells.least()}};
-    for (std::size_t i = 0; i < f_.result.nats.size(); ++i) {
-      series.x.push_back(f_.result.foundAt[i]);
-      series.y.push_back(f_.result.nats[i]);
-    }
-    figure.series.push_back(std::move(series));
-    return figure;
-  }
-
-  double largestTorque() const {
-    return f_.design.inputs().torqueOf(f_.result.after.trial).cwiseAbs().maxCoeff();
-  }
-
  private:
-  template <class Column>
-  void addBoth(Figure& figure, const Column& column) const {
-    for (const auto& [name, e, style] :
-         {std::tuple{"designed", &f_.result.after, SeriesStyle::line},
-          std::tuple{"before", &f_.result.before, SeriesStyle::dashed}}) {
-      figure.series.push_back({.name = name,
-                               .x = asList(e->trial.times),
-                               .y = asList(column(e->trial)),
-                               .style = style});
-    }
-  }
-
   const SeparatingFindings& f_;
   const std::vector<double>& times_;
 };
@@ -192,17 +130,11 @@ void tellSeparation(const SeparatingFindings& f, Summary& summary) {
   summary.set("nats_after", both(after.firstOverSecond, after.secondOverFirst));
   summary.set("bound_before", both(before.firstDeviation, before.secondDeviation));
   summary.set("bound_after", both(after.firstDeviation, after.secondDeviation));
-  summary.set("noise_deg", q.noise * radian);
-  summary.set("rate_Hz", 1 / q.period);
-  if (f.design.inputs().hasTorque()) {
-    summary.set("largest_torque_Nm", Writing(f).largestTorque());
+  std::vector<CoordinateMotion> motions;
+  for (const SeparatingExperiment::Range& range : f.result.after.ranges) {
+    motions.push_back({range.lowest, range.highest, range.fastest});
   }
-  const SeparatingExperiment& e = f.result.after;
-  summary.set("lowest_deg", e.lowest * radian);
-  summary.set("highest_deg", e.highest * radian);
-  summary.set("largest_speed_deg_per_s", e.fastest * radian);
-  summary.set("simulations", f.result.runs);
-  summary.set("impossible_simulations", f.result.impossible);
+  tellPlan(Writing(f).planned(), q.observed, q.period, motions, f.result, summary);
 }
 
 Report separatingReport(const SeparatingFindings& f) {
@@ -211,21 +143,22 @@ Report separatingReport(const SeparatingFindings& f) {
   report.title = fmt::format("Experiment that discriminates {} from {} on {}",
                              f.design.first().name, f.design.second().name, f.modelFile);
   report.verdict = writing.verdict();
-  report.mainFigure = writing.angles();
+  report.mainFigure = writing.predicted(0);
   report.details.push_back(writing.telling());
   report.details.push_back(Paragraph{fmt::format(
       "The nats are the expected natural logarithm of the Bayes factor of the effect that is "
-      "present against the other one (5 nats are odds of about 150:1), with one measured angle "
-      "every {} s and noise of {} deg, every parameter of the model being uncertain by its default "
-      "prior and the size of the other effect being free. They are computed to first order about "
+      "present against the other one (5 nats are odds of about 150:1), with {}, every parameter "
+      "of the model being uncertain by its default prior and the size of the other effect being "
+      "free. They are computed to first order about "
       "the model's own parameters and do not consider effects outside the catalogue.",
-      numberText(f.design.question().period), numberText(f.design.question().noise * radian))});
-  if (f.design.inputs().hasTorque()) report.details.push_back(writing.torque());
-  for (const bio::MuscleGroup& group : f.design.inputs().groups()) {
-    report.details.push_back(writing.excitation(group));
+      measurementText(f.design.question().observed, f.design.question().period, f.model))});
+  for (std::size_t o = 1; o < f.design.question().observed.size(); ++o) {
+    report.details.push_back(writing.predicted(o));
   }
+  addInputFigures(writing.planned(), report);
   report.details.push_back(writing.limits());
-  report.details.push_back(writing.search());
+  report.details.push_back(
+      searchFigure(f.result, f.result.before.tells.least(), -1, "Smaller log Bayes factor [nats]"));
   report.details.push_back(
       Paragraph{fmt::format("{} experiments were simulated, {} of which did not reach the end. "
                             "design.sto holds the inputs and the motion of the unchanged model. "

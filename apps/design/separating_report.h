@@ -12,9 +12,9 @@ namespace app {
 struct SeparatingFindings {
   const std::string& modelFile;
   const std::string& trialFile;
+  const bio::Model& model;
   const bio::discover::SeparatingDesign& design;
   const bio::discover::SeparatingResult& result;
-  const bio::Coordinate& coordinate;
 };
 
 void tellSeparation(const SeparatingFindings& findings, Summary& summary);

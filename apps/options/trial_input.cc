@@ -175,13 +175,18 @@ void refusePrescribedByModel(const SimulationOptions& options, const bio::Model&
 }
 
 void chooseCoordinates(SimulationOptions& options, const bio::Model& model,
-                       const std::vector<std::string>& trials, bool allReactions) {
+                       const std::vector<std::string>& trials, bool allReactions,
+                       const std::vector<std::string>& observed) {
   checkPrescribed(options, model);
   takePrescribedByModel(options, model, !trials.empty());
   const bool isTyped = !options.coordinates.empty();
   if (isTyped && (trials.empty() || !options.takesPrescribed) && !allReactions) return;
   MeasuredNames measured = measuredIn(trials, model, options);
   if (!options.takesPrescribed) measured.moments.clear();
+  for (const std::string& text : observed) {
+    const auto moment = text.rfind(".moment=");
+    if (moment != std::string::npos) measured.moments.insert(text.substr(0, moment));
+  }
   if (!isTyped) {
     options.areChosen = true;
     std::set<std::string> locked(options.prescribed.begin(), options.prescribed.end());

@@ -7,12 +7,12 @@
 #include "bio/analysis/sensitivity_study.h"
 #include "command/command.h"
 #include "options/input_rules.h"
+#include "options/observed_channels.h"
 #include "options/parameter_list.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/progress_bar.h"
 #include "report/result.h"
-#include "sensitivity/observed_channels.h"
 #include "sensitivity/sensitivity_report.h"
 
 namespace app {
@@ -90,7 +90,7 @@ class Sensitivity : public Command {
     OutputFolder folder(context, fileNames());
     Summary summary(context);
     const bio::Model model = readModel(model_, summary);
-    chooseCoordinates(simulation_, model, trials_);
+    chooseCoordinates(simulation_, model, trials_, false, observe_);
     const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
     if (list_) return listParameters(context, model, arm);
 

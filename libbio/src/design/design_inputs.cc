@@ -1,9 +1,11 @@
 #include "bio/design/design_inputs.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "info/probability/random_stream.h"
 #include "model/require.h"
@@ -38,22 +40,54 @@ std::vector<double> merged(const std::vector<double>& first, const std::vector<d
   return all;
 }
 
-std::vector<info::ProfileLimits> profileLimits(const DesignLimits& limits, std::size_t groups) {
-  require(limits.torque >= 0 && std::isfinite(limits.torque),
-          fmt::format("largest torque = {} N·m, must be ≥ 0", limits.torque));
+/// Those with a torque.
+std::vector<CoordinateLimits> torqued(const MusculoskeletalSystem& arm,
+                                      const DesignLimits& limits) {
+  std::vector<CoordinateLimits> torques;
+  const auto& all = limits.coordinates;
+  for (const CoordinateLimits& one : all) {
+    const std::string& name = one.coordinate;
+    const int index = arm.skeleton().indexOf(name);
+    require(index >= 0 && !arm.isPrescribed(index),
+            fmt::format("limits of '{}': must be a free coordinate", name));
+    require(
+        std::count_if(all.begin(), all.end(),
+                      [&](const CoordinateLimits& other) { return other.coordinate == name; }) == 1,
+        fmt::format("limits of '{}' are given twice, must be given once", name));
+    require(one.torque >= 0 && std::isfinite(one.torque),
+            fmt::format("largest torque on '{}' = {}, must be ≥ 0", name, one.torque));
+    require(one.lower < one.upper,
+            fmt::format("range of '{}': {} to {}, must rise", name, one.lower, one.upper));
+    require(one.speed > 0, fmt::format("largest speed of '{}' = {}, must be > 0", name, one.speed));
+    if (one.torque > 0) torques.push_back(one);
+  }
+  return torques;
+}
+
+std::vector<info::ProfileLimits> profileLimits(const DesignLimits& limits,
+                                               const std::vector<CoordinateLimits>& torques,
+                                               std::size_t groups) {
   require(limits.leastExcitation >= 0 && limits.largestExcitation <= 1,
           fmt::format("excitations {} to {}, must be within 0 to 1", limits.leastExcitation,
                       limits.largestExcitation));
-  require(limits.lower < limits.upper,
-          fmt::format("range {} to {}, must rise", limits.lower, limits.upper));
   require(limits.surprise >= 0, fmt::format("surprise = {}, must be ≥ 0", limits.surprise));
-  require(limits.speed > 0, fmt::format("largest speed = {}, must be > 0", limits.speed));
   std::vector<info::ProfileLimits> inputs;
-  if (limits.torque > 0) inputs.push_back({-limits.torque, limits.torque, limits.torqueRate, 0.0});
+  for (const CoordinateLimits& one : torques) {
+    inputs.push_back({-one.torque, one.torque, limits.torqueRate, 0.0});
+  }
   for (std::size_t g = 0; g < groups; ++g) {
     inputs.push_back({limits.leastExcitation, limits.largestExcitation, limits.excitationRate, {}});
   }
   return inputs;
+}
+
+/// The torque on a coordinate that no actuator of the model exerts; null if there is none.
+template <class Forces>
+auto torqueIn(Forces& forces, const std::string& coordinate) {
+  const auto at = std::find_if(forces.begin(), forces.end(), [&](const AppliedForce& force) {
+    return force.coordinate == coordinate && force.actuator.empty();
+  });
+  return at == forces.end() ? nullptr : &*at;
 }
 
 /// A column of numbers, linear between rows.
@@ -86,8 +120,11 @@ Trial onRows(const Trial& given, const std::vector<double>& rows) {
   for (AppliedForce& force : trial.applied) {
     const VectorXd values = force.values;
     force.values.resize(trial.times.size());
+    const VectorXd control = force.control;
+    if (control.size() > 0) force.control.resize(trial.times.size());
     for (Index k = 0; k < trial.times.size(); ++k) {
       force.values[k] = between(given.times, values, trial.times[k]);
+      if (control.size() > 0) force.control[k] = between(given.times, control, trial.times[k]);
     }
   }
   return trial;
@@ -95,15 +132,15 @@ Trial onRows(const Trial& given, const std::vector<double>& rows) {
 
 }  // namespace
 
-DesignInputs::DesignInputs(const MusculoskeletalSystem& arm, Trial trial, std::string coordinate,
-                           double startTime, double duration, const DesignLimits& limits,
-                           std::vector<MuscleGroup> groups, double knotInterval,
-                           std::vector<double> measuredTimes)
-    : coordinate_(std::move(coordinate)),
-      limits_(limits),
+DesignInputs::DesignInputs(const MusculoskeletalSystem& arm, Trial trial, double startTime,
+                           double duration, DesignLimits limits, std::vector<MuscleGroup> groups,
+                           double knotInterval, std::vector<double> measuredTimes)
+    : limits_(std::move(limits)),
+      torques_(torqued(arm, limits_)),
       groups_(std::move(groups)),
       measuredTimes_(std::move(measuredTimes)),
-      profiles_(knotsOf(startTime, duration, knotInterval), profileLimits(limits, groups_.size())) {
+      profiles_(knotsOf(startTime, duration, knotInterval),
+                profileLimits(limits_, torques_, groups_.size())) {
   require(profiles_.size() > 0, "no input to design, must have a torque or a muscle");
   std::vector<std::string> seen;
   for (const MuscleGroup& group : groups_) {
@@ -122,8 +159,22 @@ DesignInputs::DesignInputs(const MusculoskeletalSystem& arm, Trial trial, std::s
       columns_.back().push_back(column - trial.muscles.begin());
     }
   }
-  const std::vector<double> given(trial.times.begin(), trial.times.end());
-  trial_ = onRows(trial, merged(merged(given, profiles_.knots()), measuredTimes_));
+  std::vector<double> rows(trial.times.begin(), trial.times.end());
+  for (const MeasuredChannel& course : trial.prescribed) {
+    if (course.times.size() > 1) rows = merged(rows, {course.times.begin(), course.times.end()});
+  }
+  trial_ = onRows(trial, merged(merged(rows, profiles_.knots()), measuredTimes_));
+}
+
+std::vector<MeasuredChannel> DesignInputs::measured(const std::vector<Observable>& observables,
+                                                    const MatrixXd& values) const {
+  const VectorXd times =
+      VectorXd::Map(measuredTimes_.data(), static_cast<Index>(measuredTimes_.size()));
+  std::vector<MeasuredChannel> channels;
+  for (const Observable& what : observables) {
+    channels.push_back({what, times, values.col(static_cast<Index>(channels.size()))});
+  }
+  return channels;
 }
 
 Trial DesignInputs::at(const VectorXd& x) const {
@@ -132,14 +183,10 @@ Trial DesignInputs::at(const VectorXd& x) const {
   const MatrixXd values =
       profiles_.values(x, std::vector<double>(trial.times.begin(), trial.times.end()));
   Index input = 0;
-  if (hasTorque()) {
-    const auto known =
-        std::find_if(trial.applied.begin(), trial.applied.end(),
-                     [&](const AppliedForce& force) { return force.coordinate == coordinate_; });
-    AppliedForce& force = known != trial.applied.end()
-                              ? *known
-                              : trial.applied.emplace_back(AppliedForce{coordinate_, {}});
-    force.values = values.col(input++);
+  for (const CoordinateLimits& one : torques_) {
+    AppliedForce* known = torqueIn(trial.applied, one.coordinate);
+    if (!known) known = &trial.applied.emplace_back(AppliedForce{one.coordinate, {}});
+    known->values = values.col(input++);
   }
   for (const auto& columns : columns_) {
     for (const Index column : columns) trial.excitations.col(column) = values.col(input);
@@ -151,11 +198,12 @@ Trial DesignInputs::at(const VectorXd& x) const {
 VectorXd DesignInputs::own() const {
   const auto K = static_cast<Index>(profiles_.knots().size());
   MatrixXd atKnots = MatrixXd::Zero(K, static_cast<Index>(profiles_.inputs().size()));
-  const VectorXd torque = torqueOf(trial_);
   for (Index k = 0; k < K; ++k) {
     const double t = profiles_.knots()[static_cast<std::size_t>(k)];
     Index input = 0;
-    if (hasTorque()) atKnots(k, input++) = between(trial_.times, torque, t);
+    for (const CoordinateLimits& one : torques_) {
+      atKnots(k, input++) = between(trial_.times, torqueOf(trial_, one.coordinate), t);
+    }
     for (const auto& columns : columns_) {
       for (const Index column : columns) {
         atKnots(k, input) += excitationAt(trial_, column, t) / static_cast<double>(columns.size());
@@ -175,15 +223,13 @@ VectorXd DesignInputs::random(std::uint64_t seed, std::uint64_t which) const {
   return profiles_.project(own() + size * walk);
 }
 
-VectorXd DesignInputs::torqueOf(const Trial& trial) const {
-  for (const AppliedForce& force : trial.applied) {
-    if (force.coordinate == coordinate_) return force.values;
-  }
-  return VectorXd::Zero(trial.times.size());
+VectorXd DesignInputs::torqueOf(const Trial& trial, const std::string& coordinate) const {
+  const AppliedForce* force = torqueIn(trial.applied, coordinate);
+  return force ? force->values : VectorXd::Zero(trial.times.size());
 }
 
-double DesignInputs::largestTorqueRate(const Trial& trial) const {
-  return largestSlope(trial.times, torqueOf(trial));
+double DesignInputs::largestTorqueRate(const Trial& trial, const std::string& coordinate) const {
+  return largestSlope(trial.times, torqueOf(trial, coordinate));
 }
 
 double DesignInputs::largestExcitationRate(const Trial& trial) const {
@@ -194,6 +240,58 @@ double DesignInputs::largestExcitationRate(const Trial& trial) const {
     }
   }
   return largest;
+}
+
+Table plannedTable(const MusculoskeletalSystem& arm, const Trial& trial) {
+  const Index rows = trial.times.size();
+  Table table;
+  table.name = "designed experiment";
+  table.values.resize(rows, 0);
+  const auto add = [&](const std::string& name, const VectorXd& values) {
+    table.columns.push_back(name);
+    table.values.conservativeResize(Eigen::NoChange, table.values.cols() + 1);
+    table.values.rightCols(1) = values;
+  };
+  const auto addSamples = [&](const MeasuredChannel& channel) {
+    VectorXd values = VectorXd::Constant(rows, std::numeric_limits<double>::quiet_NaN());
+    Index row = 0;
+    for (Index i = 0; i < channel.times.size(); ++i) {
+      while (row + 1 < rows && trial.times[row] < channel.times[i] - sameTime) ++row;
+      values[row] = channel.values[i];
+    }
+    add(nameOf(channel.what), values);
+  };
+  add("time", trial.times);
+  for (Index m = 0; m < trial.excitations.cols(); ++m) {
+    add(trial.muscles[static_cast<std::size_t>(m)], trial.excitations.col(m));
+  }
+  for (const AppliedForce& force : trial.applied) {
+    if (!force.actuator.empty()) {
+      add(force.actuator, force.control);
+      continue;
+    }
+    const int index = arm.skeleton().indexOf(force.coordinate);
+    const bool turns =
+        index < 0 || arm.skeleton().coordinates()[static_cast<std::size_t>(index)].isRotation;
+    add(force.coordinate + (turns ? ".torque" : ".force"), force.values);
+  }
+  for (const MeasuredChannel& course : trial.prescribed) {
+    if (course.times.size() > 1) {
+      addSamples(course);
+    } else {
+      add(nameOf(course.what), VectorXd::Constant(rows, course.values[0]));
+    }
+  }
+  std::vector<std::string> predicted;
+  for (const MeasuredChannel& channel : trial.measured) {
+    addSamples(channel);
+    predicted.push_back(nameOf(channel.what));
+  }
+  table.metadata["predicted"] =
+      fmt::format("{} {} predicted, not measured", fmt::join(predicted, ", "),
+                  predicted.size() == 1 ? "is" : "are");
+  table.metadata.merge(headerOf(trial.known));
+  return table;
 }
 
 }  // namespace bio

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "bio/analysis/replay.h"
 #include "bio/observation/trial_predictor.h"
 
 namespace bio {
@@ -62,25 +63,71 @@ info::Optimality optimalityNamed(const std::string& letter) {
   throw std::invalid_argument(fmt::format("criterion '{}', must be E, A or D", letter));
 }
 
-DesignLimits withinRange(DesignLimits limits, const Coordinate& coordinate,
-                         const std::optional<std::pair<double, double>>& range) {
-  limits.lower = range ? range->first : coordinate.rangeMin;
-  limits.upper = range ? range->second : coordinate.rangeMax;
-  if (range && !(limits.lower < limits.upper)) {
-    throw std::invalid_argument(fmt::format("range: {:.4g} to {:.4g} {}, must rise", limits.lower,
-                                            limits.upper, coordinate.isRotation ? "rad" : "m"));
+DesignLimits withCoordinates(DesignLimits limits, const MusculoskeletalSystem& arm,
+                             const GivenLimits& given) {
+  std::map<std::string, const Coordinate*> free;
+  const auto& all = arm.skeleton().coordinates();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!arm.isPrescribed(static_cast<int>(i))) free[all[i].name] = &all[i];
+  }
+  const auto checkNames = [&](const char* what, const auto& byName) {
+    for (const auto& one : byName) {
+      if (one.first.empty() || free.contains(one.first)) continue;
+      throw std::invalid_argument(
+          fmt::format("{} of '{}': must be a coordinate that is free to move", what, one.first));
+    }
+  };
+  checkNames("range", given.range);
+  checkNames("torque", given.torque);
+  checkNames("speed", given.speed);
+  if (given.range.contains("") && free.size() > 1) {
+    throw std::invalid_argument(
+        fmt::format("range: must name its coordinate, of which {} are free", free.size()));
+  }
+  const auto numberOf = [](const std::map<std::string, double>& byName, const std::string& name) {
+    const auto at = byName.contains(name) ? byName.find(name) : byName.find("");
+    return at == byName.end() ? 0 : at->second;
+  };
+  limits.coordinates.clear();
+  for (const Coordinate& one : all) {
+    if (!free.contains(one.name)) continue;
+    std::pair<double, double> range(one.rangeMin, one.rangeMax);
+    const auto at =
+        given.range.contains(one.name) ? given.range.find(one.name) : given.range.find("");
+    if (at != given.range.end()) range = at->second;
+    if (!(range.first < range.second)) {
+      throw std::invalid_argument(fmt::format("range: {:.4g} to {:.4g} {}, must rise", range.first,
+                                              range.second, one.isRotation ? "rad" : "m"));
+    }
+    limits.coordinates.push_back({one.name, range.first, range.second,
+                                  numberOf(given.speed, one.name),
+                                  numberOf(given.torque, one.name)});
   }
   return limits;
+}
+
+std::vector<ChannelCandidate> freeCoordinates(const MusculoskeletalSystem& arm, double angle,
+                                              double shift) {
+  std::vector<ChannelCandidate> observed;
+  const auto& all = arm.skeleton().coordinates();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (arm.isPrescribed(static_cast<int>(i))) continue;
+    observed.push_back({ofCoordinate(all[i].name), all[i].isRotation ? angle : shift});
+  }
+  return observed;
 }
 
 std::vector<MuscleGroup> muscleGroups(const MusculoskeletalSystem& arm, const Eigen::VectorXd& q,
                                       const std::vector<std::string>& names) {
   std::vector<MuscleGroup> groups;
   for (const std::string& text : names) {
-    const std::vector<MuscleGroup> named = flexorsAndExtensors(arm, q);
+    const auto dot = text.rfind('.');
+    const int index = dot == std::string::npos ? -1 : arm.skeleton().indexOf(text.substr(0, dot));
+    const std::string word = index < 0 ? text : text.substr(dot + 1);
+    const std::vector<MuscleGroup> named = flexorsAndExtensors(arm, q, std::max(0, index));
     const auto at = std::find_if(named.begin(), named.end(),
-                                 [&](const MuscleGroup& group) { return group.name == text; });
-    groups.push_back(at != named.end() ? *at : MuscleGroup{text, joinedByPlus(text)});
+                                 [&](const MuscleGroup& group) { return group.name == word; });
+    groups.push_back({text, at != named.end() ? at->muscles : joinedByPlus(text)});
   }
   return groups;
 }
@@ -97,16 +144,38 @@ info::MonteCarloResult simulatedRepetitions(const ExperimentDesign& design,
         "repetitions of an experiment with nuisance parameters: must have "
         "none");
   }
-  simulation.externalForce = experiment.torque;
-  const TrialPredictor predictor(catalogue, system, experiment.excitation, q.coordinate,
-                                 {experiment.measuredTimes.begin(), experiment.measuredTimes.end()},
-                                 q.parameters, simulation);
+  simulation.externalForce = externalForceOf(experiment.trial, design.arm());
+  simulation.prescribed = prescribedMotionOf(experiment.trial, design.arm());
+  std::vector<ObservedSeries> series;
+  for (const ChannelCandidate& one : q.observed) {
+    series.push_back({one.what, experiment.measuredTimes});
+  }
+  const TrialPredictor predictor(catalogue, system, excitationOf(experiment.trial, design.arm()),
+                                 std::move(series), q.parameters, simulation);
+  // in units that give all samples the noise of the first observable
+  const double noise = q.observed.front().sd;
+  Eigen::VectorXd units(predictor.size());
+  const Eigen::Index n = experiment.measuredTimes.size();
+  for (std::size_t o = 0; o < q.observed.size(); ++o) {
+    units.segment(static_cast<Eigen::Index>(o) * n, n).setConstant(noise / q.observed[o].sd);
+  }
+  info::Predictor alike = predictor.predictor();
+  const auto outputs = alike.outputs;
+  const auto withSensitivities = alike.withSensitivities;
+  alike.outputs = [&](const Eigen::VectorXd& theta) -> Eigen::MatrixXd {
+    return outputs(theta) * units.asDiagonal();
+  };
+  alike.withSensitivities = [&](const Eigen::VectorXd& theta) {
+    info::Prediction at = withSensitivities(theta);
+    at.outputs = at.outputs * units.asDiagonal();
+    at.gamma = units.asDiagonal() * at.gamma;
+    return at;
+  };
   options.startSpread = 0.0005;
   options.estimate.decrementTolerance = 1e-6;
-  return info::monteCarlo(
-      predictor.predictor(), catalogue.values(q.parameters),
-      info::OutputCovariance(Eigen::MatrixXd::Constant(1, 1, q.noise * q.noise)),
-      catalogue.asEstimated(q.parameters, false), options);
+  return info::monteCarlo(alike, catalogue.values(q.parameters),
+                          info::OutputCovariance(Eigen::MatrixXd::Constant(1, 1, noise * noise)),
+                          catalogue.asEstimated(q.parameters, false), options);
 }
 
 }  // namespace bio

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "bio/analysis/replay.h"
 #include "model/require.h"
 #include "simulation/integrators.h"
-#include "simulation/motion_weights.h"
 
 namespace bio {
 namespace {
@@ -19,33 +19,48 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double sameSample = 1e-9;  ///< times nearer than this are one [s]
 
-std::vector<double> equalTimes(double start, double duration, double interval) {
-  const auto count = static_cast<std::size_t>(std::floor(duration / interval + 1e-6));
-  std::vector<double> times;
-  for (std::size_t k = 0; k <= count; ++k) {
-    times.push_back(start + static_cast<double>(k) * interval);
+std::vector<ObservedSeries> seriesOf(const std::vector<Observable>& observables,
+                                     const std::vector<double>& times) {
+  std::vector<ObservedSeries> series;
+  for (const Observable& what : observables) {
+    series.push_back({what, VectorXd::Map(times.data(), static_cast<Index>(times.size()))});
   }
-  return times;
+  return series;
 }
 
-std::vector<double> measurements(const DesignQuestion& question,
-                                 const SimulationOptions& simulation) {
-  require(question.period >= 1e-6 * simulation.duration && question.period <= simulation.duration,
-          fmt::format(
-              "period of the measurements = {} s, must be a millionth of the duration to all of it",
-              question.period));
-  return equalTimes(simulation.startTime, simulation.duration, question.period);
+std::vector<Observable> observablesOf(const DesignQuestion& question) {
+  std::vector<Observable> all;
+  for (const ChannelCandidate& one : question.observed) {
+    require(one.sd > 0 && std::isfinite(one.sd),
+            fmt::format("noise of '{}' = {}, must be > 0", nameOf(one.what), one.sd));
+    require(std::count(all.begin(), all.end(), one.what) == 0,
+            fmt::format("'{}' is observed twice, must be once", nameOf(one.what)));
+    all.push_back(one.what);
+  }
+  require(!all.empty(), "nothing is observed, at least one channel must be");
+  return all;
 }
 
-MatrixXd valuesAt(const ExcitationSignal& signal, const std::vector<double>& times) {
-  MatrixXd values(signal.numMuscles(), static_cast<Index>(times.size()));
-  std::size_t hint = 0;
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    signal.at(times[k], hint, values.col(static_cast<Index>(k)));
+/// Free coordinates first, so that a trial with these columns begins where the experiment does.
+std::vector<Observable> predictedOf(const MusculoskeletalSystem& arm,
+                                    const std::vector<Observable>& observed) {
+  std::vector<Observable> all;
+  for (std::size_t i = 0; i < arm.skeleton().coordinates().size(); ++i) {
+    if (arm.isPrescribed(static_cast<int>(i))) continue;
+    all.push_back(ofCoordinate(arm.skeleton().coordinates()[i].name));
   }
-  return values.transpose();
+  const auto isNew = [&](const Observable& what) {
+    return std::find(all.begin(), all.end(), what) == all.end() && !what.isCoordinate();
+  };
+  std::copy_if(observed.begin(), observed.end(), std::back_inserter(all), isNew);
+  return all;
+}
+
+/// Samples of observable after observable as times × observables.
+MatrixXd byObservable(const VectorXd& values, std::size_t observables) {
+  const auto n = static_cast<Index>(observables);
+  return Eigen::Map<const MatrixXd>(values.data(), values.size() / n, n);
 }
 
 }  // namespace
@@ -61,13 +76,12 @@ ExperimentDesign::ExperimentDesign(const MusculoskeletalSystem& arm,
       setting_(std::move(setting)),
       simulation_(simulation),
       question_(std::move(question)),
-      coordinate_(arm.skeleton().indexOf(question_.coordinate)),
-      inputs_(arm, trial, question_.coordinate, simulation.startTime, simulation.duration, limits,
-              std::move(groups), knotInterval, measurements(question_, simulation)) {
-  require(coordinate_ >= 0,
-          fmt::format("measured coordinate '{}' is not free", question_.coordinate));
-  require(question_.noise > 0 && std::isfinite(question_.noise),
-          fmt::format("noise = {}, must be > 0", question_.noise));
+      inputs_(arm, trial, simulation.startTime, simulation.duration, std::move(limits),
+              std::move(groups), knotInterval,
+              samplingTimes(simulation.startTime, simulation.duration, question_.period)),
+      observed_(arm, seriesOf(observablesOf(question_), inputs_.measuredTimes())),
+      predicted_(predictedOf(arm, observablesOf(question_))) {
+  simulation_.prescribed = prescribedMotionOf(trial, arm);
   require(!question_.parameters.empty(), "no parameter is given");
   require(question_.criterion != info::Optimality::conditionNumber,
           "the criterion must be E, A or D");
@@ -90,25 +104,24 @@ ExperimentDesign::ExperimentDesign(const MusculoskeletalSystem& arm,
 }
 
 SensitivityTrajectory ExperimentDesign::simulateTrial(const Trial& trial) const {
-  SensitivityOptions options{simulation_, false};
+  SensitivityOptions options{simulation_, observed_.needsMuscles(), observed_.needsReactions()};
   options.simulation.externalForce = externalForceOf(trial, *arm_);
   return simulateWithSensitivities(*arm_, *catalogue_, setting_, wanted_,
                                    excitationOf(trial, *arm_), options);
 }
 
-MatrixXd ExperimentDesign::gammaOf(const SensitivityTrajectory& s) const {
-  const auto c = static_cast<std::size_t>(coordinate_);
-  MatrixXd gamma(static_cast<Index>(inputs_.measuredTimes().size()),
-                 static_cast<Index>(wanted_.size()));
-  for (std::size_t i = 0; i < inputs_.measuredTimes().size(); ++i) {
-    const MotionWeights w = weightsAt(s.motion.time, inputs_.measuredTimes()[i]).value();
-    gamma.row(static_cast<Index>(i)) = w.rows(s.q[c], s.qDot[c]);
+/// In units of the scales, and of the noise of each observable.
+MatrixXd ExperimentDesign::inNoise(const MatrixXd& gamma) const {
+  MatrixXd scaled = gamma * scale_.asDiagonal();
+  const auto n = static_cast<Index>(inputs_.measuredTimes().size());
+  for (std::size_t o = 0; o < question_.observed.size(); ++o) {
+    scaled.middleRows(static_cast<Index>(o) * n, n) /= question_.observed[o].sd;
   }
-  return gamma;
+  return scaled;
 }
 
 MatrixXd ExperimentDesign::scaledInformation(const MatrixXd& gamma) const {
-  const MatrixXd scaled = gamma * scale_.asDiagonal() / question_.noise;
+  const MatrixXd scaled = inNoise(gamma);
   MatrixXd information = scaled.transpose() * scaled;
   information.diagonal().array() += (scale_.array() / question_.priorSd.array()).square();
   return information;
@@ -146,28 +159,28 @@ info::InformationCost ExperimentDesign::cost(const MatrixXd& information,
   return result;
 }
 
-/// How far the coordinate is from where it was expected when the parameters asked for are off, at
-/// every row: √Σ(dq/dθ_i·deviation_i)².
-VectorXd ExperimentDesign::surpriseOf(const SensitivityTrajectory& s) const {
+/// √Σ(dy/dθ_i·deviation_i)² over the parameters asked for, at every row.
+template <class Rows>
+VectorXd ExperimentDesign::surpriseOf(const Rows& slopes) const {
   const auto p = static_cast<Index>(question_.parameters.size());
-  const VectorXd off = limits().surprise * scale_.cwiseMin(question_.priorSd).head(p);
-  return (s.q[static_cast<std::size_t>(coordinate_)].leftCols(p) * off.asDiagonal())
-      .rowwise()
-      .norm();
+  const VectorXd off = inputs_.limits().surprise * scale_.cwiseMin(question_.priorSd).head(p);
+  return (slopes.leftCols(p) * off.asDiagonal()).rowwise().norm();
 }
 
-VectorXd ExperimentDesign::surpriseAt(const DesignedExperiment& e) const {
-  const auto p = static_cast<Index>(question_.parameters.size());
-  const VectorXd off = limits().surprise * scale_.cwiseMin(question_.priorSd).head(p);
-  return (e.gamma.leftCols(p) * off.asDiagonal()).rowwise().norm();
+MatrixXd ExperimentDesign::surpriseAt(const DesignedExperiment& e) const {
+  return byObservable(surpriseOf(e.gamma), question_.observed.size());
 }
 
 VectorXd ExperimentDesign::boundOverTime(const DesignedExperiment& e) const {
-  VectorXd bound = VectorXd::Constant(e.gamma.rows(), std::numeric_limits<double>::quiet_NaN());
-  MatrixXd sum = scaledInformation(MatrixXd::Zero(0, scale_.size()));
-  for (Index k = 0; k < e.gamma.rows(); ++k) {
-    const VectorXd row = scale_.cwiseProduct(e.gamma.row(k).transpose()) / question_.noise;
-    sum += row * row.transpose();
+  const Index times = e.measuredTimes.size();
+  VectorXd bound = VectorXd::Constant(times, std::numeric_limits<double>::quiet_NaN());
+  MatrixXd sum = MatrixXd::Zero(scale_.size(), scale_.size());
+  sum.diagonal() = (scale_.array() / question_.priorSd.array()).square();
+  const MatrixXd scaled = inNoise(e.gamma);
+  for (Index k = 0; k < times; ++k) {
+    for (Index row = k; row < scaled.rows(); row += times) {
+      sum += scaled.row(row).transpose() * scaled.row(row);
+    }
     const Eigen::LDLT<MatrixXd> factor(sum);
     const VectorXd D = factor.vectorD();
     if (factor.info() != Eigen::Success || !(D.minCoeff() > 1e-14 * D.maxCoeff())) continue;
@@ -178,27 +191,43 @@ VectorXd ExperimentDesign::boundOverTime(const DesignedExperiment& e) const {
 
 double ExperimentDesign::penalty(const SensitivityTrajectory& s, double price) const {
   // from a margin inside the limits on, by the square, as a mean over the rows
-  const double margin = 0.02 * (limits().upper - limits().lower);
-  const VectorXd surprise = surpriseOf(s);
   double sum = 0;
-  for (Index k = 0; k < surprise.size(); ++k) {
-    const double q = s.motion.q(coordinate_, k);
-    const double below = std::max(0.0, limits().lower + margin - q + surprise[k]) / margin;
-    const double above = std::max(0.0, q + surprise[k] - limits().upper + margin) / margin;
-    const double fast =
-        std::max(0.0, std::abs(s.motion.qDot(coordinate_, k)) / limits().speed - 0.97) / 0.03;
-    sum += below * below + above * above + fast * fast;
+  for (const CoordinateLimits& limits : inputs_.limits().coordinates) {
+    const int c = arm_->skeleton().indexOf(limits.coordinate);
+    const double margin = 0.02 * (limits.upper - limits.lower);
+    const VectorXd surprise = surpriseOf(s.q[static_cast<std::size_t>(c)]);
+    for (Index k = 0; k < surprise.size(); ++k) {
+      const double q = s.motion.q(c, k);
+      const double below = std::max(0.0, limits.lower + margin - q + surprise[k]) / margin;
+      const double above = std::max(0.0, q + surprise[k] - limits.upper + margin) / margin;
+      const double fast = std::max(0.0, std::abs(s.motion.qDot(c, k)) / limits.speed - 0.97) / 0.03;
+      sum += below * below + above * above + fast * fast;
+    }
   }
-  return price * sum / static_cast<double>(surprise.size());
+  return price * sum / static_cast<double>(s.motion.time.size());
 }
 
-DesignedExperiment ExperimentDesign::describe(VectorXd x) const {
-  const Trial trial = inputs_.at(x);
-  SensitivityTrajectory s = simulateTrial(trial);
-  if (s.motion.outcome != Outcome::completed) throw std::runtime_error(s.motion.why);
+std::vector<MotionRange> ExperimentDesign::rangesOf(const SensitivityTrajectory& s) const {
+  std::vector<MotionRange> ranges;
+  for (const CoordinateLimits& limits : inputs_.limits().coordinates) {
+    const int c = arm_->skeleton().indexOf(limits.coordinate);
+    const VectorXd q = s.motion.q.row(c).transpose();
+    const VectorXd surprise = surpriseOf(s.q[static_cast<std::size_t>(c)]);
+    ranges.push_back({q.minCoeff(), q.maxCoeff(), (q - surprise).minCoeff(),
+                      (q + surprise).maxCoeff(), s.motion.qDot.row(c).cwiseAbs().maxCoeff()});
+  }
+  return ranges;
+}
+
+DesignedExperiment ExperimentDesign::at(const VectorXd& x) const {
   DesignedExperiment e;
-  e.inputs = std::move(x);
-  e.gamma = gammaOf(s);
+  e.inputs = x;
+  e.trial = inputs_.at(x);
+  SensitivityTrajectory s = simulateTrial(e.trial);
+  if (s.motion.outcome != Outcome::completed) throw std::runtime_error(s.motion.why);
+  ObservedMotion::Linearised seen = observed_.linearised(s);
+  e.measured = byObservable(seen.values, question_.observed.size());
+  e.gamma = std::move(seen.gamma);
   const MatrixXd scaled = scaledInformation(e.gamma);
   e.information = scale_.cwiseInverse().asDiagonal() * scaled * scale_.cwiseInverse().asDiagonal();
   const Eigen::LDLT<MatrixXd> factor(scaled);
@@ -208,47 +237,39 @@ DesignedExperiment ExperimentDesign::describe(VectorXd x) const {
     const MatrixXd inverse = factor.solve(MatrixXd::Identity(scale_.size(), scale_.size()));
     e.bound = scale_.cwiseProduct(inverse.diagonal().cwiseSqrt());
   }
-  e.measuredTimes = Eigen::Map<const VectorXd>(inputs_.measuredTimes().data(),
-                                               static_cast<Index>(inputs_.measuredTimes().size()));
-  e.measured.resize(e.measuredTimes.size());
-  for (std::size_t i = 0; i < inputs_.measuredTimes().size(); ++i) {
-    const MotionWeights w = weightsAt(s.motion.time, inputs_.measuredTimes()[i]).value();
-    e.measured[static_cast<Index>(i)] =
-        w.value(s.motion.q.row(coordinate_), s.motion.qDot.row(coordinate_));
-  }
-  e.lowest = s.motion.q.row(coordinate_).minCoeff();
-  e.highest = s.motion.q.row(coordinate_).maxCoeff();
-  const VectorXd surprise = surpriseOf(s);
-  e.surprisedLowest = (s.motion.q.row(coordinate_).transpose() - surprise).minCoeff();
-  e.surprisedHighest = (s.motion.q.row(coordinate_).transpose() + surprise).maxCoeff();
-  e.fastest = s.motion.qDot.row(coordinate_).cwiseAbs().maxCoeff();
-  e.largestTorque = inputs_.torqueOf(trial).cwiseAbs().maxCoeff();
-  e.largestTorqueRate = inputs_.largestTorqueRate(trial);
-  e.largestExcitationRate = inputs_.largestExcitationRate(trial);
+  const std::vector<double>& times = inputs_.measuredTimes();
+  e.measuredTimes = VectorXd::Map(times.data(), static_cast<Index>(times.size()));
+  const VectorXd predicted = ObservedMotion(*arm_, seriesOf(predicted_, times)).values(s.motion);
+  e.trial.measured = inputs_.measured(predicted_, byObservable(predicted, predicted_.size()));
+  e.ranges = rangesOf(s);
   e.motion = std::move(s.motion);
-  e.excitation = excitationOf(trial, *arm_);
-  e.torque = externalForceOf(trial, *arm_);
   return e;
 }
 
 DesignedExperiment ExperimentDesign::before() const {
-  return describe({});
+  return at({});
 }
 
-DesignedExperiment ExperimentDesign::at(const VectorXd& x) const {
-  return describe(x);
-}
-
-bool ExperimentDesign::keepsRange(double lowest, double highest, double fastest) const {
-  return lowest >= limits().lower && highest <= limits().upper && fastest <= limits().speed;
+bool ExperimentDesign::keepsRanges(const std::vector<MotionRange>& ranges) const {
+  const auto keeps = [](const MotionRange& range, const CoordinateLimits& limits) {
+    return range.surprisedLowest >= limits.lower && range.surprisedHighest <= limits.upper &&
+           range.fastest <= limits.speed;
+  };
+  const auto& limits = inputs_.limits().coordinates;
+  return std::equal(ranges.begin(), ranges.end(), limits.begin(), limits.end(), keeps);
 }
 
 bool ExperimentDesign::keepsLimits(const DesignedExperiment& e) const {
   constexpr double rounding = 1 + 1e-6;
-  return keepsRange(e.surprisedLowest, e.surprisedHighest, e.fastest) &&
-         e.largestTorque <= limits().torque * rounding &&
-         e.largestTorqueRate <= limits().torqueRate * rounding &&
-         (e.inputs.size() == 0 || e.largestExcitationRate <= limits().excitationRate * rounding);
+  const DesignLimits& limits = inputs_.limits();
+  for (const CoordinateLimits& one : inputs_.torques()) {
+    if (inputs_.largestTorque(e.trial, one.coordinate) > one.torque * rounding) return false;
+    if (inputs_.largestTorqueRate(e.trial, one.coordinate) > limits.torqueRate * rounding) {
+      return false;
+    }
+  }
+  return keepsRanges(e.ranges) && (e.inputs.size() == 0 || inputs_.largestExcitationRate(e.trial) <=
+                                                               limits.excitationRate * rounding);
 }
 
 std::vector<MuscleGroup> flexorsAndExtensors(const MusculoskeletalSystem& arm, const VectorXd& q,
@@ -258,45 +279,13 @@ std::vector<MuscleGroup> flexorsAndExtensors(const MusculoskeletalSystem& arm, c
     SystemConfiguration<decltype(N)::value> configuration(arm);
     configuration.moveTo(q);
     for (std::size_t i = 0; i < arm.numMuscles(); ++i) {
-      const bool shortens = configuration.length(i).dL_dq[coordinate] < 0;
-      groups[shortens ? 0 : 1].muscles.push_back(arm.muscles()[i].name);
+      const double slope = configuration.length(i).dL_dq[coordinate];
+      if (std::abs(slope) < 1e-12) continue;  // does not cross it
+      groups[slope < 0 ? 0 : 1].muscles.push_back(arm.muscles()[i].name);
     }
   });
   std::erase_if(groups, [](const MuscleGroup& group) { return group.muscles.empty(); });
   return groups;
-}
-
-Table designTable(const MusculoskeletalSystem& arm, const DesignedExperiment& e,
-                  const std::string& coordinate) {
-  Table table;
-  table.name = "designed experiment";
-  table.metadata["predicted"] = coordinate + " is predicted, not measured";
-  table.columns = {"time"};
-  for (const SystemMuscle& muscle : arm.muscles()) table.columns.push_back(muscle.name);
-  const std::vector<double>& times = e.excitation.times();
-  const auto K = static_cast<Index>(times.size());
-  const auto n = static_cast<Index>(arm.numMuscles());
-  const bool pushed = !e.torque.empty();
-  table.values =
-      MatrixXd::Constant(K, n + (pushed ? 3 : 2), std::numeric_limits<double>::quiet_NaN());
-  table.values.col(0) = Eigen::Map<const VectorXd>(times.data(), K);
-  table.values.middleCols(1, n) = valuesAt(e.excitation, times);
-  if (pushed) {
-    table.columns.push_back(coordinate + ".torque");
-    const int index = arm.skeleton().indexOf(coordinate);
-    for (Index k = 0; k < K; ++k) {
-      table.values(k, n + 1) = e.torque.at(times[static_cast<std::size_t>(k)]).value[index];
-    }
-  }
-  table.columns.push_back(coordinate);
-  Index row = 0;
-  for (Index i = 0; i < e.measuredTimes.size(); ++i) {
-    while (row + 1 < K && times[static_cast<std::size_t>(row)] < e.measuredTimes[i] - sameSample) {
-      ++row;
-    }
-    table.values(row, table.values.cols() - 1) = e.measured[i];
-  }
-  return table;
 }
 
 }  // namespace bio

@@ -1,20 +1,13 @@
 #include "bio/design/separating_design.h"
-#include "bio/discovery/effect_names.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <limits>
-#include <mutex>
-#include <optional>
 #include <stdexcept>
 
-#include "bio/simulation/musculoskeletal_system.h"
-#include "info/design/cma_es.h"
+#include "bio/discovery/effect_names.h"
 #include "info/discovery/likelihood/hypothesis.h"
-#include "info/parallel_for.h"
 #include "model/require.h"
 
 namespace bio::discover {
@@ -25,21 +18,6 @@ using info::discover::Candidate;
 using info::discover::PresentEffect;
 
 namespace {
-
-constexpr double worthless = std::numeric_limits<double>::infinity();
-
-std::vector<double> measuredTimes(const Trial& trial, double period) {
-  const double first = trial.times[0], duration = trial.times[trial.times.size() - 1] - first;
-  require(period >= 1e-6 * duration && period <= duration,
-          fmt::format(
-              "period of the measurements = {} s, must be a millionth of the duration to all of it",
-              period));
-  std::vector<double> times;
-  for (int k = 0; k <= static_cast<int>(std::floor(duration / period + 1e-6)); ++k) {
-    times.push_back(first + k * period);
-  }
-  return times;
-}
 
 PresentEffect presentIn(const MusculoskeletalProblem& data, const std::string& id, double size) {
   const auto& candidates = data.candidates();
@@ -74,28 +52,67 @@ VectorXd valuesWith(const MusculoskeletalProblem& data, const PresentEffect& eff
 }
 
 /// Nothing has been measured yet.
-MusculoskeletalProblemOptions withoutMeasurements(MusculoskeletalProblemOptions options) {
+MusculoskeletalProblemOptions planning(MusculoskeletalProblemOptions options,
+                                       const std::vector<ChannelCandidate>& observed) {
   options.usableSeries = false;
+  options.sensors.clear();
+  for (const ChannelCandidate& one : observed) options.sensors.push_back(one.what);
   return options;
+}
+
+/// All that is free to move; where nothing is, what is prescribed and has its moment observed.
+std::vector<std::string> inQuestion(const MusculoskeletalSystem& arm,
+                                    const std::vector<ChannelCandidate>& observed) {
+  std::vector<std::string> free;
+  for (std::size_t i = 0; i < arm.skeleton().coordinates().size(); ++i) {
+    if (!arm.isPrescribed(static_cast<int>(i))) {
+      free.push_back(arm.skeleton().coordinates()[i].name);
+    }
+  }
+  if (!free.empty()) return free;
+  for (const ChannelCandidate& one : observed) {
+    if (one.what.kind == Observable::Kind::moment) free.push_back(one.what.of);
+  }
+  require(!free.empty(), "no coordinate is free, and no moment is observed: must have either");
+  return free;
+}
+
+info::discover::Whitening noiseOf(const std::vector<ChannelCandidate>& observed) {
+  VectorXd sds(static_cast<Index>(observed.size()));
+  for (Index o = 0; o < sds.size(); ++o) sds[o] = observed[static_cast<std::size_t>(o)].sd;
+  return info::discover::Whitening(std::move(sds));
 }
 
 }  // namespace
 
-SeparatingDesign::SeparatingDesign(const Model& model, const SystemOptions& arm,
-                                   const std::string& coordinate, const Trial& trial,
+SeparatingDesign::SeparatingDesign(const Model& model, const SystemOptions& arm, const Trial& trial,
                                    const MusculoskeletalProblemOptions& options,
-                                   SeparationQuestion question, const DesignLimits& limits,
+                                   SeparationQuestion question, DesignLimits limits,
                                    std::vector<bio::MuscleGroup> groups, double knotInterval)
     : model_(model),
       arm_(arm),
-      coordinate_(coordinate),
-      options_(withoutMeasurements(options)),
+      system_(model, arm),
+      coordinates_(inQuestion(system_, question.observed)),
+      options_(planning(options, question.observed)),
       question_(std::move(question)),
-      inputs_(MusculoskeletalSystem(model, arm), trial, coordinate, trial.times[0],
-              trial.duration(), limits, std::move(groups), knotInterval,
-              measuredTimes(trial, question_.period)) {
-  require(question_.noise > 0 && std::isfinite(question_.noise),
-          fmt::format("noise = {}, must be > 0", question_.noise));
+      observed_(options_.sensors),
+      noise_(noiseOf(question_.observed)),
+      inputs_(system_, trial, trial.times[0], trial.duration(), std::move(limits),
+              std::move(groups), knotInterval,
+              samplingTimes(trial.times[0], trial.duration(), question_.period)) {
+  require(!observed_.empty(), "nothing is observed, at least one channel must be");
+  for (const ChannelCandidate& one : question_.observed) {
+    require(one.sd > 0 && std::isfinite(one.sd),
+            fmt::format("noise of '{}' = {}, must be > 0", nameOf(one.what), one.sd));
+    require(std::count(observed_.begin(), observed_.end(), one.what) == 1,
+            fmt::format("'{}' is observed twice, must be once", nameOf(one.what)));
+  }
+  for (std::size_t i = 0; i < system_.skeleton().coordinates().size(); ++i) {
+    const std::string& name = system_.skeleton().coordinates()[i].name;
+    require(system_.isPrescribed(static_cast<int>(i)) ||
+                placeOf(name) < static_cast<Index>(observed_.size()),
+            fmt::format("'{}' is free to move and must be observed, too", name));
+  }
   question_.first = effectId(question_.first);
   question_.second = effectId(question_.second);
   require(question_.first != question_.second,
@@ -111,13 +128,20 @@ SeparatingDesign::SeparatingDesign(const Model& model, const SystemOptions& arm,
   question_.secondSize = effects_[1].values[0];
 }
 
+Index SeparatingDesign::placeOf(const std::string& coordinate) const {
+  return std::find(observed_.begin(), observed_.end(), ofCoordinate(coordinate)) -
+         observed_.begin();
+}
+
 MusculoskeletalProblem SeparatingDesign::planned(const Trial& trial) const {
   Trial measured = trial;
-  const auto& times = inputs_.measuredTimes();
-  const auto n = static_cast<Index>(times.size());
-  measured.measured = {{ofCoordinate(coordinate_), Eigen::Map<const VectorXd>(times.data(), n),
-                        VectorXd::Constant(n, question_.start)}};
-  return {model_, arm_, coordinate_, {measured}, options_};
+  VectorXd starts = VectorXd::Zero(static_cast<Index>(observed_.size()));
+  for (const auto& [name, value] : question_.start) {
+    if (placeOf(name) < starts.size()) starts[placeOf(name)] = value;
+  }
+  measured.measured = inputs_.measured(
+      observed_, starts.transpose().replicate(std::ssize(inputs_.measuredTimes()), 1));
+  return {model_, arm_, coordinates_, {measured}, options_};
 }
 
 SeparatingExperiment SeparatingDesign::at(const VectorXd& x) const {
@@ -125,105 +149,77 @@ SeparatingExperiment SeparatingDesign::at(const VectorXd& x) const {
   e.inputs = x;
   e.trial = inputs_.at(x);
   const MusculoskeletalProblem data = planned(e.trial);
-  e.tells = info::discover::distinction(data, effects_[0], effects_[1], question_.noise);
-  e.base = data.outputs(0, info::discover::nominalValues(data), {});
-  e.first = data.outputs(0, valuesWith(data, effects_[0]), {});
-  e.second = data.outputs(0, valuesWith(data, effects_[1]), {});
-  e.lowest = worthless;
-  e.highest = -worthless;
-  for (const VectorXd* motion : {&e.base, &e.first, &e.second}) {
-    if (!motion->allFinite()) throw std::domain_error("a simulation does not reach the end");
-    e.lowest = std::min(e.lowest, motion->minCoeff());
-    e.highest = std::max(e.highest, motion->maxCoeff());
-    const Index n = motion->size();
-    e.fastest =
-        std::max(e.fastest, (motion->tail(n - 1) - motion->head(n - 1)).cwiseAbs().maxCoeff() /
-                                question_.period);
+  e.tells = info::discover::distinction(data, effects_[0], effects_[1], noise_);
+  const auto n = static_cast<Index>(observed_.size());
+  const auto seen = [&](const VectorXd& values) -> Eigen::MatrixXd {
+    const VectorXd samples = data.outputs(0, values, {});
+    if (!samples.allFinite()) throw std::domain_error("a simulation does not reach the end");
+    return Eigen::Map<const Eigen::MatrixXd>(samples.data(), n, samples.size() / n).transpose();
+  };
+  e.base = seen(info::discover::nominalValues(data));
+  e.first = seen(valuesWith(data, effects_[0]));
+  e.second = seen(valuesWith(data, effects_[1]));
+  e.keepsLimits = x.size() == 0 || inputs_.profiles().excess(x) < 1e-9;
+  for (const CoordinateLimits& limits : inputs_.limits().coordinates) {
+    Eigen::MatrixX3d q(e.base.rows(), 3);
+    q << e.base.col(placeOf(limits.coordinate)), e.first.col(placeOf(limits.coordinate)),
+        e.second.col(placeOf(limits.coordinate));
+    const Index steps = q.rows() - 1;
+    const SeparatingExperiment::Range range{
+        q.minCoeff(), q.maxCoeff(),
+        (q.bottomRows(steps) - q.topRows(steps)).cwiseAbs().maxCoeff() / question_.period};
+    e.keepsLimits = e.keepsLimits && range.lowest >= limits.lower &&
+                    range.highest <= limits.upper && range.fastest <= limits.speed;
+    e.ranges.push_back(range);
   }
-  const DesignLimits& limits = inputs_.limits();
-  e.keepsLimits = e.lowest >= limits.lower && e.highest <= limits.upper &&
-                  e.fastest <= limits.speed &&
-                  (x.size() == 0 || inputs_.profiles().excess(x) < 1e-9);
-  const auto& times = inputs_.measuredTimes();
-  e.trial.measured = {{ofCoordinate(coordinate_),
-                       Eigen::Map<const VectorXd>(times.data(), static_cast<Index>(times.size())),
-                       e.base}};
+  e.trial.measured = inputs_.measured(observed_, e.base);
   return e;
 }
 
 // From a margin inside the limits on, by the square, as a mean over the motions.
 double SeparatingDesign::price(const SeparatingExperiment& e) const {
-  const DesignLimits& limits = inputs_.limits();
-  const double margin = 0.02 * (limits.upper - limits.lower);
   double sum = 0;
-  for (const VectorXd* motion : {&e.base, &e.first, &e.second}) {
-    const auto below = (limits.lower + margin - motion->array()).max(0) / margin;
-    const auto above = (motion->array() - limits.upper + margin).max(0) / margin;
-    sum += (below.square() + above.square()).mean() / 3;
+  for (std::size_t i = 0; i < e.ranges.size(); ++i) {
+    const CoordinateLimits& limits = inputs_.limits().coordinates[i];
+    const double margin = 0.02 * (limits.upper - limits.lower);
+    for (const Eigen::MatrixXd* motion : {&e.base, &e.first, &e.second}) {
+      const auto q = motion->col(placeOf(limits.coordinate)).array();
+      const auto below = (limits.lower + margin - q).max(0) / margin;
+      const auto above = (q - limits.upper + margin).max(0) / margin;
+      sum += (below.square() + above.square()).mean() / 3;
+    }
+    const double fast = std::max(0.0, e.ranges[i].fastest / limits.speed - 0.97) / 0.03;
+    sum += fast * fast;
   }
-  const double fast = std::max(0.0, e.fastest / limits.speed - 0.97) / 0.03;
-  return sum + fast * fast;
+  return sum;
 }
 
 SeparatingResult SeparatingDesign::search(const DesignSearchSettings& settings) const {
-  require(settings.candidates >= 0 && settings.generations >= 0,
-          "candidates and generations must be ≥ 0");
   SeparatingResult result;
   result.before = before();
   result.after = result.before;
-  constexpr int population = 16;
-  const double planned = settings.candidates + 1 + population * settings.generations;
-  std::mutex mutex;
-  std::atomic<bool> stop{false};
-  double best = result.before.keepsLimits ? result.before.tells.least() : 0;
-  const auto costOf = [&](const VectorXd& x) {
-    if (stop) return worthless;
-    double cost = worthless;
-    std::optional<SeparatingExperiment> e;
+  InputSearch search(inputs_, settings,
+                     result.before.keepsLimits ? -result.before.tells.least() : 0, 0, result);
+  search.evolve([&](const VectorXd& x) {
+    if (search.isStopped()) return InputSearch::worthless;
+    bool isPossible = false;
+    double cost = InputSearch::worthless, guided = InputSearch::worthless;
     try {
-      e = at(x);
+      const SeparatingExperiment e = at(x);
+      isPossible = true;
+      if (e.keepsLimits) cost = -e.tells.least();
       // finite also for indistinguishable effects, so that the price still guides the search
-      cost = -std::log(std::max(1e-12, e->tells.least())) + price(*e);
+      guided = -std::log(std::max(1e-12, e.tells.least())) + price(e);
     } catch (const std::domain_error&) {
       // impossible
     }
-    const std::lock_guard lock(mutex);
-    ++result.runs;
-    if (!e) ++result.impossible;
-    if (e && e->keepsLimits && e->tells.least() > best) {
-      best = e->tells.least();
-      result.nats.push_back(best);
-      result.foundAt.push_back(result.runs);
-      result.after = std::move(*e);
-      result.improved = true;
-    }
-    if (settings.progress && !settings.progress(std::min(1.0, result.runs / planned))) stop = true;
-    return cost;
-  };
-  const auto project = [&](const VectorXd& x) { return inputs_.profiles().project(x); };
-
-  // the trial's own inputs, and random ones about them
-  std::vector<VectorXd> candidates(static_cast<std::size_t>(settings.candidates) + 1,
-                                   inputs_.own());
-  std::vector<double> costs(candidates.size());
-  info::parallelFor(static_cast<int>(candidates.size()), settings.threads, [&](int i) {
-    const auto si = static_cast<std::size_t>(i);
-    if (i > 0) candidates[si] = inputs_.random(settings.seed, static_cast<std::uint64_t>(i));
-    costs[si] = costOf(candidates[si]);
+    search.note(x, isPossible, cost);
+    return guided;
   });
-  if (settings.generations > 0 && !stop) {
-    info::EvolutionOptions options;
-    options.generations = settings.generations;
-    options.population = population;
-    options.spread = 0.2;
-    options.seed = settings.seed;
-    options.threads = settings.threads;
-    options.progress = [&](int, double) { return !stop; };
-    const auto first = std::min_element(costs.begin(), costs.end());
-    info::evolve(costOf, project, candidates[static_cast<std::size_t>(first - costs.begin())],
-                 options);
+  if (search.bestInputs().size() > 0) {
+    result.after = at(search.bestInputs());
+    result.improved = true;
   }
-  result.stopped = stop;
   return result;
 }
 
@@ -237,36 +233,6 @@ SeparationQuestion withSizes(SeparationQuestion question,
     (isFirst ? question.firstSize : question.secondSize) = size;
   }
   return question;
-}
-
-Table separatingTable(const SeparatingDesign& design, const SeparatingExperiment& experiment) {
-  const Trial& trial = experiment.trial;
-  const auto muscles = static_cast<Index>(trial.muscles.size());
-  const auto forces = static_cast<Index>(trial.applied.size());
-  Table table;
-  table.name = "designed experiment";
-  table.metadata["predicted"] = design.coordinate() + " is predicted, not measured";
-  table.metadata.merge(headerOf(trial.known));
-  table.columns = {"time"};
-  table.columns.insert(table.columns.end(), trial.muscles.begin(), trial.muscles.end());
-  for (const AppliedForce& force : trial.applied) {
-    table.columns.push_back(force.coordinate + ".torque");
-  }
-  table.columns.push_back(design.coordinate());
-  table.values = Eigen::MatrixXd::Constant(trial.times.size(), muscles + forces + 2,
-                                           std::numeric_limits<double>::quiet_NaN());
-  table.values.col(0) = trial.times;
-  table.values.middleCols(1, muscles) = trial.excitations;
-  for (Index i = 0; i < forces; ++i) {
-    table.values.col(1 + muscles + i) = trial.applied[static_cast<std::size_t>(i)].values;
-  }
-  Index row = 0;
-  const MeasuredChannel& motion = trial.measured.front();
-  for (Index i = 0; i < motion.times.size(); ++i) {
-    while (row + 1 < trial.times.size() && trial.times[row] < motion.times[i] - 1e-9) ++row;
-    table.values(row, table.values.cols() - 1) = motion.values[i];
-  }
-  return table;
 }
 
 }  // namespace bio::discover

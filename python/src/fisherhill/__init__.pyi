@@ -1966,18 +1966,20 @@ class DesignResult:
     columns: dict[str, _Array]
     trial: Trial
     times: _Array
+    observed: list[str]
     predicted: _Array
     predicted_before: _Array
     surprise: _Array
     bound_over_time: _Array
     bound_over_time_before: _Array
-    lowest: float
-    highest: float
-    surprised_lowest: float
-    surprised_highest: float
-    largest_speed: float
-    largest_torque: float
-    largest_torque_rate: float
+    coordinates: list[str]
+    lowest: float | _Array
+    highest: float | _Array
+    surprised_lowest: float | _Array
+    surprised_highest: float | _Array
+    largest_speed: float | _Array
+    largest_torque: float | _Array
+    largest_torque_rate: float | _Array
     largest_excitation_rate: float
     costs: _Array
     found_at: list[int]
@@ -1994,15 +1996,16 @@ def design(
     priors: bool = False,
     prior: dict[str, float] = {},
     criterion: Literal["E", "A", "D"] = "E",
+    observe: dict[str, float] = {},
     noise: float = 0.008726646259971648,
     rate: float = 100.0,
-    torque: float = 10.0,
+    torque: float | dict[str, float] = 10.0,
     torque_rate: float = 50.0,
     excite: Sequence[str] = [],
     excitation_max: float = 0.5,
     excitation_rate: float = 2.0,
-    range: tuple[float, float] | None = None,
-    speed: float = 8.726646259971648,
+    range: tuple[float, float] | dict[str, tuple[float, float]] | None = None,
+    speed: float | dict[str, float] = 8.726646259971648,
     surprise: float = 0.5,
     knots: float = 0.3,
     candidates: int = 100,
@@ -2017,7 +2020,7 @@ def design(
     integrator: _Integrator = "vi",
     step: float | None = None,
 ) -> DesignResult:
-    """Finds the excitations and the external torque that are most informative about parameters.
+    """Finds the excitations and the external torques that are most informative about parameters.
 
     Inputs are piecewise linear between knots, within limits of size and rate. With I the information
     about the parameters of interest, the nuisance parameters unknown, in units of the default prior
@@ -2025,7 +2028,7 @@ def design(
 
         E: -ln(least eigenvalue of I)    A: ln(trace of the inverse of I)    D: -ln det I
 
-    and keeps to the range and the speed of the coordinate.
+    and keeps to the range and the speed of every free coordinate.
 
     Parameters
     ----------
@@ -2039,22 +2042,31 @@ def design(
     prior : dict
         {parameter: prior standard deviation [its unit] > 0} instead of the default.
     criterion : {'E', 'A', 'D'}
+    observe : dict
+        {what is measured: standard deviation of its noise, in its unit > 0}, as of sensitivity; default:
+        all free coordinates, with noise.
     noise : float
-        Standard deviation of the measured coordinate [rad] or [m] > 0; default: 0.5 degrees.
+        Standard deviation of the free coordinates [rad] or [m] > 0; default: 0.5 degrees.
     rate : float
         Measurements per second [Hz] > 0.
-    torque, torque_rate : float
-        Largest external torque on the coordinate [N m] >= 0 (0: none), and its rate [N m/s] > 0.
+    torque : float or dict
+        Largest external torque [N m] or force [N] >= 0 on every free coordinate (0: none), or
+        {coordinate: torque}, none on others.
+    torque_rate : float
+        How fast it may change [N m/s] or [N/s] > 0.
     excite : list of str
-        Muscles whose excitations are designed: 'flexors', 'extensors', or names; 'BRA+BRD' share one.
+        Muscles whose excitations are designed: 'flexors', 'extensors' (of the first coordinate; of another:
+        'NAME.flexors'), or names; 'BRA+BRD' share one.
     excitation_max, excitation_rate : float
         Largest excitation of them (0.01 to 1), and its rate [1/s] > 0.
-    range : (float, float), optional
-        To which the coordinate is limited [rad] or [m]; default: its range in the model.
-    speed : float
-        Largest speed of the coordinate [rad/s] or [m/s] > 0; default: 500 degrees per second.
+    range : (float, float) or dict, optional
+        To which the coordinate is limited [rad] or [m], or {coordinate: (float, float)}; default: as in
+        the model.
+    speed : float or dict
+        Largest speed of every free coordinate [rad/s] or [m/s] > 0, or {coordinate: speed}; default: 500
+        degrees per second.
     surprise : float
-        The range is respected even if the parameters are so many prior standard deviations off.
+        Ranges are respected even if the parameters are so many prior standard deviations off.
     knots : float
         Interval between the knots [s] > 0.
     candidates, generations, iterations : int
@@ -2066,7 +2078,7 @@ def design(
     seed, threads : int
         The same seed gives the same numbers with any number of threads; 0 threads: all cores.
     initial, coordinate, lock, integrator, step
-        As in sensitivity. The first free coordinate is measured and driven.
+        As in sensitivity. Prescribed coordinates move as in the trial.
 
     Returns
     -------
@@ -2081,20 +2093,24 @@ def design(
         Cramér-Rao standard deviations in the baseline and in the designed experiment [unit].
     columns : dict
         {name: array, times} of the designed experiment, as make_trial takes them: time, excitations,
-        the torque, and the predicted coordinate where it is measured, else nan.
+        torques, prescribed coordinates, and what is predicted where it is measured, else nan.
     trial : Trial
         The same.
-    times, predicted, predicted_before, surprise : array, measurements
-        Measured times [s]; the coordinate as predicted, in the baseline, and how far off it is with
-        parameters off by surprise [rad] or [m].
+    observed : list of str
+    times : array, measurements
+        [s]
+    predicted, predicted_before, surprise : array, measurements (several: x observed)
+        What is observed, in the baseline, and how far off it is with parameters off by surprise.
     bound_over_time, bound_over_time_before : array, measurements
         Bound on the first parameter from the measurements up to each time [unit]; nan: none.
-    lowest, highest, surprised_lowest, surprised_highest : float
-        Of the coordinate, and with parameters off [rad] or [m].
-    largest_speed : float
-        [rad/s] or [m/s]
-    largest_torque, largest_torque_rate, largest_excitation_rate : float
-        [N m], [N m/s], [1/s]
+    coordinates : list of str
+        Those that are free.
+    lowest, highest, surprised_lowest, surprised_highest : float (several: array, coordinates)
+        Of them, and with parameters off [rad] or [m].
+    largest_speed, largest_torque, largest_torque_rate : float (several: array, coordinates)
+        [rad/s] or [m/s], [N m] or [N], and that per second.
+    largest_excitation_rate : float
+        [1/s]
     costs : array
         The criterion of the baseline, then of each better experiment within the limits.
     found_at : list of int
@@ -2111,7 +2127,8 @@ def design(
     ------
     ValueError
         For an unknown parameter or muscle, a limit out of its range, nothing to change, an integrator
-        without sensitivities, a trial with prescribed coordinates, known_mass_in_hand or known_arm_turn.
+        without sensitivities, what cannot be measured, a torque on a prescribed coordinate, a trial with
+        known_mass_in_hand or known_arm_turn.
     RuntimeError
         If the baseline does not reach its end.
     """
@@ -2129,13 +2146,15 @@ class SeparateResult:
     columns: dict[str, _Array]
     trial: Trial
     times: _Array
+    observed: list[str]
     predicted: _Array
     predicted_with: dict[str, _Array]
-    lowest: float
-    highest: float
-    largest_speed: float
-    largest_torque: float
-    largest_torque_rate: float
+    coordinates: list[str]
+    lowest: float | _Array
+    highest: float | _Array
+    largest_speed: float | _Array
+    largest_torque: float | _Array
+    largest_torque_rate: float | _Array
     largest_excitation_rate: float
     nats: _Array
     found_at: list[int]
@@ -2149,15 +2168,16 @@ def separate(
     second: str,
     *,
     size: dict[str, float] = {},
+    observe: dict[str, float] = {},
     noise: float = 0.008726646259971648,
     rate: float = 100.0,
-    torque: float = 10.0,
+    torque: float | dict[str, float] = 10.0,
     torque_rate: float = 50.0,
     excite: Sequence[str] = [],
     excitation_max: float = 0.5,
     excitation_rate: float = 2.0,
-    range: tuple[float, float] | None = None,
-    speed: float = 8.726646259971648,
+    range: tuple[float, float] | dict[str, tuple[float, float]] | None = None,
+    speed: float | dict[str, float] = 8.726646259971648,
     knots: float = 0.3,
     candidates: int = 100,
     generations: int = 100,
@@ -2173,7 +2193,7 @@ def separate(
 
     It makes the smaller of both expected log Bayes factors largest, with every parameter of the model
     uncertain by its default prior. The motions without an effect and with either keep to the range and
-    the speed of the coordinate.
+    the speed of every free coordinate, all of which must be observed.
 
     Parameters
     ----------
@@ -2184,7 +2204,7 @@ def separate(
         Effects, by id or long name.
     size : dict
         {effect: assumed size in its unit}; default: its prior standard deviation.
-    noise, rate, torque, torque_rate, excite, excitation_max, excitation_rate, range, speed, knots
+    observe, noise, rate, torque, torque_rate, excite, excitation_max, excitation_rate, range, speed, knots
         As in design.
     candidates, generations, seed, threads
         As in design; there is no gradient search.
@@ -2205,15 +2225,17 @@ def separate(
     bound_before, bound_after : dict
         Expected standard deviation of its size [unit].
     columns, trial
-        The designed experiment, as of design; the coordinate is that of the model without an effect.
-    times, predicted : array, measurements
-        Measured times [s], and the coordinate without an effect [rad] or [m].
+        The designed experiment, as of design; predictions are those of the model without an effect.
+    times, observed
+        As of design.
+    predicted : array, measurements (several: x observed)
+        Without an effect.
     predicted_with : dict
-        {effect: array, measurements} with each effect [rad] or [m].
-    lowest, highest, largest_speed : float
-        Of all three motions [rad], [rad/s], or [m], [m/s].
-    largest_torque, largest_torque_rate, largest_excitation_rate : float
-        [N m], [N m/s], [1/s]
+        {effect: array, measurements (several: x observed)} with each effect.
+    coordinates, lowest, highest, largest_speed
+        As of design, of all three motions.
+    largest_torque, largest_torque_rate, largest_excitation_rate
+        As of design.
     nats : array
         Smaller log Bayes factor in the baseline, then in each better experiment within the limits.
     found_at : list of int

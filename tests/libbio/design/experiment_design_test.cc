@@ -28,8 +28,8 @@ struct Short {
   Short() {
     simulation.duration = 2;  // within the first second of the trial triceps does not wrap
     question.parameters = {elbow.catalogue.find("TRI.radius")};
-    limits.lower = 0;
-    limits.upper = 130 * degree;
+    question.observed = {{ofCoordinate("elbow_flexion"), 0.5 * degree}};
+    limits.coordinates = {{"elbow_flexion", 0, 130 * degree}};
   }
   ExperimentDesign design() const {
     return {elbow.arm,   elbow.catalogue, elbow.catalogue.nominal(),
@@ -56,13 +56,13 @@ TEST(ExperimentDesign, LowersTheBoundAndKeepsEveryLimit) {
   ASSERT_TRUE(std::isfinite(result.before.bound[0]));
   EXPECT_LT(result.after.bound[0], 0.7 * result.before.bound[0]);
   // the tables themselves, not what the search believes
-  const Table table = designTable(s.elbow.arm, result.after, "elbow_flexion");
+  const Table table = plannedTable(s.elbow.arm, result.after.trial);
   const auto column = [&](const std::string& name) -> Eigen::VectorXd {
     return table.values.col(columnIndex(table, name));
   };
   const Eigen::VectorXd t = column("time"), torque = column("elbow_flexion.torque");
   EXPECT_EQ(torque[0], 0);
-  EXPECT_LE(torque.cwiseAbs().maxCoeff(), s.limits.torque);
+  EXPECT_LE(torque.cwiseAbs().maxCoeff(), s.limits.coordinates[0].torque);
   for (Eigen::Index k = 1; k < t.size(); ++k) {
     EXPECT_LE(std::abs(torque[k] - torque[k - 1]),
               s.limits.torqueRate * (t[k] - t[k - 1]) * (1 + 1e-9) + 1e-12);
@@ -74,8 +74,9 @@ TEST(ExperimentDesign, LowersTheBoundAndKeepsEveryLimit) {
     }
   }
   EXPECT_EQ(column("BRA"), column("BIClong"));
-  EXPECT_GE(result.after.lowest, s.limits.lower);
-  EXPECT_LE(result.after.highest, s.limits.upper);
+  ASSERT_EQ(result.after.ranges.size(), 1u);
+  EXPECT_GE(result.after.ranges[0].lowest, s.limits.coordinates[0].lower);
+  EXPECT_LE(result.after.ranges[0].highest, s.limits.coordinates[0].upper);
 }
 
 // Same seed, same bits, whatever the threads.
@@ -99,7 +100,7 @@ TEST(ExperimentDesign, WhatIsWrittenPlaysThePredictedMotion) {
   ASSERT_TRUE(result.improved);
   const support::ScratchFolder scratch;
   const auto file = scratch.path() / "design.sto";
-  writeTable(designTable(s.elbow.arm, result.after, "elbow_flexion"), file);
+  writeTable(plannedTable(s.elbow.arm, result.after.trial), file);
   const Trial trial = readTrial(file, s.elbow.model);
   ASSERT_EQ(trial.applied.size(), 1u);
   SimulationOptions options = s.simulation;
@@ -120,7 +121,8 @@ TEST(ExperimentDesign, BoundIsThatOfTheInformationWithPriors) {
                          s.elbow.catalogue.find("BRA.max_isometric_force")};
   s.question.priorSd = Eigen::Vector3d(std::numeric_limits<double>::infinity(), 0.05, 100);
   const DesignedExperiment e = s.design().before();
-  Eigen::MatrixXd information = e.gamma.transpose() * e.gamma / std::pow(s.question.noise, 2);
+  Eigen::MatrixXd information =
+      e.gamma.transpose() * e.gamma / std::pow(s.question.observed[0].sd, 2);
   information(1, 1) += 1 / (0.05 * 0.05);
   information(2, 2) += 1e-4;
   const Eigen::MatrixXd bound = information.inverse();
@@ -176,17 +178,21 @@ TEST(ExperimentDesign, RefusesWhatCannotBeMeant) {
     change(s);
     EXPECT_THROW(s.design(), std::invalid_argument);
   };
-  refused([](Short& s) { s.question.noise = 0; });
-  refused([](Short& s) { s.question.noise = std::nan(""); });
+  refused([](Short& s) { s.question.observed[0].sd = 0; });
+  refused([](Short& s) { s.question.observed[0].sd = std::nan(""); });
   refused([](Short& s) { s.question.period = 3; });
-  refused([](Short& s) { s.question.coordinate = "pro_sup"; });
+  refused([](Short& s) { s.question.observed[0].what.of = "pro_sup"; });
+  refused([](Short& s) { s.question.observed.clear(); });
+  refused([](Short& s) { s.question.observed.push_back(s.question.observed[0]); });
+  refused([](Short& s) { s.limits.coordinates[0].coordinate = "pro_sup"; });
+  refused([](Short& s) { s.limits.coordinates.push_back(s.limits.coordinates[0]); });
   refused([](Short& s) { s.question.parameters.clear(); });
   refused([](Short& s) { s.question.nuisance = s.question.parameters; });
-  refused([](Short& s) { s.limits.torque = 0; });
-  refused([](Short& s) { s.limits.torque = -1; });
+  refused([](Short& s) { s.limits.coordinates[0].torque = 0; });
+  refused([](Short& s) { s.limits.coordinates[0].torque = -1; });
   refused([](Short& s) { s.limits.torqueRate = 0; });
-  refused([](Short& s) { s.limits.upper = s.limits.lower; });
-  refused([](Short& s) { s.limits.speed = 0; });
+  refused([](Short& s) { s.limits.coordinates[0].upper = s.limits.coordinates[0].lower; });
+  refused([](Short& s) { s.limits.coordinates[0].speed = 0; });
   refused([](Short& s) { s.groups = {{"one", {"GLUTmax"}}}; });
   refused([](Short& s) { s.groups = {{"one", {"BRA"}}, {"two", {"BRA"}}}; });
   refused([](Short& s) { s.question.criterion = info::Optimality::conditionNumber; });

@@ -24,20 +24,14 @@ struct Asked {
   DesignLimits limits;
 
   Asked() {
-    question.start = elbow.catalogue.nominal().start.q[0];
-    limits.lower = 0;
-    limits.upper = 130 * degree;
+    question.start = {{"elbow_flexion", elbow.catalogue.nominal().start.q[0]}};
+    question.observed = {{ofCoordinate("elbow_flexion"), 0.009}};
+    limits.coordinates = {{"elbow_flexion", 0, 130 * degree}};
   }
   SeparatingDesign design() const {
-    return {elbow.model,
-            ShippedElbow::options(),
-            "elbow_flexion",
-            cut(elbow.trial, 2),
-            options,
-            question,
-            limits,
-            {},
-            0.25};
+    return {
+        elbow.model, ShippedElbow::options(), cut(elbow.trial, 2), options, question, limits, {},
+        0.25};
   }
 };
 
@@ -60,7 +54,7 @@ TEST(SeparatingDesign, ForeseesWhatFitsThenFind) {
     const info::discover::Likelihood likelihood(data, {0}, nominal);
     return likelihood
         .fit(info::discover::makeHypothesis(data, {candidate}, {0}),
-             {asked.question.noise, 0, 0.08}, nominal, {}, {40, 1e-6})
+             {asked.question.observed[0].sd, 0, 0.08}, nominal, {}, {40, 1e-6})
         .cost;
   };
   EXPECT_GT(e.tells.least(), 0.001);
@@ -84,12 +78,14 @@ TEST(SeparatingDesign, FindsABetterExperimentWithinTheLimits) {
   EXPECT_GT(result.after.tells.least(), 5 * result.before.tells.least());
   EXPECT_LT(result.after.tells.firstDeviation, result.before.tells.firstDeviation);
   const DesignInputs& inputs = design.inputs();
-  const VectorXd torque = inputs.torqueOf(result.after.trial);
-  EXPECT_LE(torque.cwiseAbs().maxCoeff(), asked.limits.torque * (1 + 1e-9));
-  EXPECT_LE(inputs.largestTorqueRate(result.after.trial), asked.limits.torqueRate * (1 + 1e-6));
-  for (const VectorXd* motion : {&result.after.base, &result.after.first, &result.after.second}) {
-    EXPECT_GE(motion->minCoeff(), asked.limits.lower);
-    EXPECT_LE(motion->maxCoeff(), asked.limits.upper);
+  const VectorXd torque = inputs.torqueOf(result.after.trial, "elbow_flexion");
+  EXPECT_LE(torque.cwiseAbs().maxCoeff(), asked.limits.coordinates[0].torque * (1 + 1e-9));
+  EXPECT_LE(inputs.largestTorqueRate(result.after.trial, "elbow_flexion"),
+            asked.limits.torqueRate * (1 + 1e-6));
+  for (const Eigen::MatrixXd* motion :
+       {&result.after.base, &result.after.first, &result.after.second}) {
+    EXPECT_GE(motion->minCoeff(), asked.limits.coordinates[0].lower);
+    EXPECT_LE(motion->maxCoeff(), asked.limits.coordinates[0].upper);
   }
   settings.threads = 2;
   const SeparatingResult again = design.search(settings);
@@ -120,7 +116,7 @@ TEST(SeparatingDesign, ItsTableIsTheTrial) {
   const Asked asked;
   const SeparatingDesign design = asked.design();
   const SeparatingExperiment e = design.before();
-  const Table table = separatingTable(design, e);
+  const Table table = plannedTable(design.arm(), e.trial);
   const Trial trial = trialFrom(table, "table", asked.elbow.model);
   EXPECT_EQ(trial.muscles, e.trial.muscles);
   EXPECT_TRUE(trial.excitations == e.trial.excitations);
@@ -142,7 +138,16 @@ TEST(SeparatingDesign, SaysWhatIsWrongWithAQuestion) {
   asked.question.secondSize = -1;
   saying("size of coulomb");
   asked.question.secondSize = 0;
-  asked.limits.torque = 0;
+  asked.question.observed.push_back(asked.question.observed[0]);
+  saying("'elbow_flexion' is observed twice");
+  asked.question.observed = {{{Observable::Kind::speed, "elbow_flexion", 0}, 0.1}};
+  saying("'elbow_flexion' is free to move and must be observed, too");
+  asked.question.observed.clear();
+  saying("nothing is observed");
+  asked.question.observed = {{ofCoordinate("elbow_flexion"), 0.0}};
+  saying("noise of 'elbow_flexion' = 0, must be > 0");
+  asked.question.observed[0].sd = 0.009;
+  asked.limits.coordinates[0].torque = 0;
   saying("no input to design");
 }
 

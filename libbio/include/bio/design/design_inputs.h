@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bio/simulation/musculoskeletal_system.h"
+#include "bio/tables/table_file.h"
 #include "bio/tables/trial.h"
 #include "info/design/bounded_profiles.h"
 
@@ -17,42 +18,52 @@ struct MuscleGroup {
   std::vector<std::string> muscles;
 };
 
+/// Limits of a free coordinate in a designed experiment.
+struct CoordinateLimits {
+  std::string coordinate;
+  double lower, upper;  ///< [rad] or [m]
+  double speed = 8.7;   ///< largest |speed| [rad/s] or [m/s] > 0
+  double torque = 10;   ///< largest |torque| [N·m] or |force| [N] from outside ≥ 0; 0: none
+};
+
 /// Limits of the inputs and of the motion of a designed experiment.
 struct DesignLimits {
-  double torque = 10;              ///< largest |torque| [N·m] (or force [N]) ≥ 0; 0: none
-  double torqueRate = 50;          ///< largest change [N·m/s] > 0
+  std::vector<CoordinateLimits> coordinates;
+  double torqueRate = 50;          ///< largest change [N·m/s] or [N/s] > 0
   double leastExcitation = 0.01;   ///< of a driven group, 0 to 1
   double largestExcitation = 0.5;  ///< of a driven group, 0 to 1
   double excitationRate = 2;       ///< largest change of an excitation [1/s] > 0
-  double lower, upper;             ///< of the observed coordinate [rad] or [m]
-  double speed = 8.7;              ///< largest speed of the coordinate [rad/s] or [m/s]
-  /// The range is respected, to first order, even if the parameters of interest are off by this
+  /// Ranges are respected, to first order, even if the parameters of interest are off by this
   /// many prior standard deviations (given, else default) ≥ 0. Without this margin the most
   /// informative motion is an unstable equilibrium, where a tiny parameter error changes the motion
   /// completely.
   double surprise = 0.5;
 };
 
-/// The inputs that a design may change: the external torque on the observed coordinate and the
-/// excitations of muscle groups, piecewise linear between knots, within limits of size and rate
+/// The inputs that a design may change: torques from outside on free coordinates, and excitations
+/// of muscle groups, piecewise linear between knots, within limits of size and rate
 /// (info::BoundedProfiles). Everything else of the trial is kept.
 class DesignInputs {
  public:
-  /// @param coordinate coordinate on which the torque acts, free in `arm`
-  /// @param measuredTimes rows of every designed trial [s]
-  /// @throws std::invalid_argument for a limit out of range, an unknown muscle, a muscle in two
-  ///   groups, no input, knots that are not > 0 apart
-  DesignInputs(const MusculoskeletalSystem& arm, Trial trial, std::string coordinate,
-               double startTime, double duration, const DesignLimits& limits,
-               std::vector<MuscleGroup> groups, double knotInterval,
+  /// @param limits         of coordinates that are free in `arm`
+  /// @param measuredTimes  rows of every designed trial [s]
+  /// @throws std::invalid_argument for a limit out of range, a coordinate that is not free or is
+  ///   named twice, an unknown muscle, a muscle in two groups, no input, knots that are not > 0
+  ///   apart
+  DesignInputs(const MusculoskeletalSystem& arm, Trial trial, double startTime, double duration,
+               DesignLimits limits, std::vector<MuscleGroup> groups, double knotInterval,
                std::vector<double> measuredTimes);
 
-  /// The torque, if there is one, then the groups.
+  /// The torques, then the groups.
   const info::BoundedProfiles& profiles() const { return profiles_; }
-  bool hasTorque() const { return limits_.torque > 0; }
+  /// The coordinates with a torque.
+  const std::vector<CoordinateLimits>& torques() const { return torques_; }
   const std::vector<MuscleGroup>& groups() const { return groups_; }
   const DesignLimits& limits() const { return limits_; }
   const std::vector<double>& measuredTimes() const { return measuredTimes_; }
+  /// The observables at the measured times, with the values of a plan: times × observables.
+  std::vector<MeasuredChannel> measured(const std::vector<Observable>& observables,
+                                        const Eigen::MatrixXd& values) const;
 
   /// The trial with the inputs of these coefficients; empty: with its own inputs, on the same rows.
   Trial at(const Eigen::VectorXd& x) const;
@@ -61,20 +72,29 @@ class DesignInputs {
   /// Random initial coefficients about those for a search: random walks along the knots, with sizes
   /// from an eighth of the limits to the full limits. Reproducible for equal arguments.
   Eigen::VectorXd random(std::uint64_t seed, std::uint64_t which) const;
-  /// The external torque on the coordinate in every row; zeros if the trial has none.
-  Eigen::VectorXd torqueOf(const Trial& trial) const;
-  /// Largest changes [unit/s] between rows: of the torque, and of the groups' excitations.
-  double largestTorqueRate(const Trial& trial) const;
+  /// The torque on a coordinate in every row; zeros if the trial has none.
+  Eigen::VectorXd torqueOf(const Trial& trial, const std::string& coordinate) const;
+  double largestTorque(const Trial& trial, const std::string& coordinate) const {
+    return torqueOf(trial, coordinate).cwiseAbs().maxCoeff();
+  }
+  /// Largest changes [unit/s] between rows: of a torque, and of the groups' excitations.
+  double largestTorqueRate(const Trial& trial, const std::string& coordinate) const;
   double largestExcitationRate(const Trial& trial) const;
 
  private:
-  std::string coordinate_;
   DesignLimits limits_;
+  std::vector<CoordinateLimits> torques_;
   std::vector<MuscleGroup> groups_;
   std::vector<std::vector<Eigen::Index>> columns_;  ///< of the groups' muscles in the trial
   std::vector<double> measuredTimes_;
   info::BoundedProfiles profiles_;
   Trial trial_;  ///< rows: its own times, the knots, the measured times
 };
+
+/// A planned experiment as a trial that can be replayed: excitations, forces from outside, the
+/// course of prescribed coordinates, experimental conditions, and what is predicted of the
+/// channels that will be measured; in radians and metres.
+/// @param trial  with the predictions as measured
+Table plannedTable(const MusculoskeletalSystem& arm, const Trial& trial);
 
 }  // namespace bio

@@ -22,7 +22,7 @@ struct DesignNames {
 
 /// Sets parameters, nuisance parameters and priors. Nuisance parameters have their default priors
 /// unless another is given, parameters of interest have none.
-/// @param question  coordinate, noise, period, criterion
+/// @param question  what is observed, period, criterion
 /// @throws std::invalid_argument for unknown names, a prior that is not > 0, or that of another
 ///   parameter
 DesignQuestion designQuestion(const ParameterCatalogue& catalogue, const DesignNames& names,
@@ -31,13 +31,26 @@ DesignQuestion designQuestion(const ParameterCatalogue& catalogue, const DesignN
 /// E, A or D. @throws std::invalid_argument for any other letter
 info::Optimality optimalityNamed(const std::string& letter);
 
-/// Sets the range [rad] or [m]; default: that of the coordinate.
-/// @throws std::invalid_argument for a range that does not rise
-DesignLimits withinRange(DesignLimits limits, const Coordinate& coordinate,
-                         const std::optional<std::pair<double, double>>& range);
+/// Numbers of free coordinates by name; that of "" holds for all that are not named.
+struct GivenLimits {
+  std::map<std::string, std::pair<double, double>> range = {};  ///< default: as in the model
+  std::map<std::string, double> torque = {{"", 10}};            ///< ≥ 0
+  std::map<std::string, double> speed = {{"", 8.7}};            ///< > 0
+};
 
-/// Groups by name: "flexors" and "extensors" of the first coordinate, or names of muscles,
-/// "BRA+BRD" for two with one excitation.
+/// Sets the limits of all free coordinates.
+/// @throws std::invalid_argument for a name that is not one of them, a torque on a prescribed
+///   one, a range that does not rise, or one without a name where several are free
+DesignLimits withCoordinates(DesignLimits limits, const MusculoskeletalSystem& arm,
+                             const GivenLimits& given);
+
+/// All free coordinates as what is observed.
+/// @param angle, shift  noise of rotations [rad] and of others [m]
+std::vector<ChannelCandidate> freeCoordinates(const MusculoskeletalSystem& arm, double angle,
+                                              double shift);
+
+/// Groups by name: "flexors" and "extensors" of the first coordinate, "NAME.flexors" and
+/// "NAME.extensors" of another, or names of muscles, "BRA+BRD" for two with one excitation.
 std::vector<MuscleGroup> muscleGroups(const MusculoskeletalSystem& arm, const Eigen::VectorXd& q,
                                       const std::vector<std::string>& names);
 

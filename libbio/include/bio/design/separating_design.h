@@ -1,26 +1,25 @@
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "bio/design/design_inputs.h"
-#include "bio/design/experiment_design.h"
+#include "bio/design/input_search.h"
 #include "bio/discovery/musculoskeletal_problem.h"
+#include "bio/observation/channel_information.h"
 #include "info/discovery/judgement/distinction.h"
 
 namespace bio::discover {
 
-/// The two effects to discriminate, and the measurement of the coordinate.
+/// The two effects to discriminate, and what is measured.
 struct SeparationQuestion {
   std::string first, second;  ///< ids of the catalogue
   /// Assumed amplitudes in their units; 0: the prior standard deviation of the amplitude, with the
   /// sign that the effect may have.
   double firstSize = 0, secondSize = 0;
-  double start = 0;      ///< of the coordinate [rad] or [m]
-  double noise = 0.009;  ///< standard deviation of a measurement [rad] or [m] > 0
+  std::map<std::string, double> start = {};  ///< of free coordinates [rad] or [m]; else default
+  /// What is measured, with its noise: all free coordinates, and anything else.
+  std::vector<ChannelCandidate> observed = {};
   double period = 0.01;  ///< between measurements [s] > 0
 };
 
@@ -32,40 +31,39 @@ SeparationQuestion withSizes(SeparationQuestion question,
 /// One experiment and its expected log Bayes factors.
 struct SeparatingExperiment {
   Eigen::VectorXd inputs;  ///< coefficients of DesignInputs::profiles(); empty: the trial's own
-  Trial trial;             ///< with the base model's motion as measured
-  Eigen::VectorXd base, first, second;  ///< the coordinate at the measured times [rad] or [m]
+  Trial trial;             ///< with what is predicted of the base model as measured
+  Eigen::MatrixXd base, first, second;  ///< measured times × observed, in unitOf()
   info::discover::Distinction tells;
-  double lowest = 0, highest = 0, fastest = 0;  ///< over all three motions, at the measured times
+  /// Of DesignLimits::coordinates over all three motions, at the measured times.
+  struct Range {
+    double lowest, highest, fastest;
+  };
+  std::vector<Range> ranges;
   bool keepsLimits = false;
 };
 
-struct SeparatingResult {
+/// Costs are minus the smaller log Bayes factor [nats].
+struct SeparatingResult : DesignSearchRecord {
   SeparatingExperiment before, after;
-  bool improved = false;     ///< `after` differs from `before` and respects the limits
-  bool stopped = false;      ///< stopped by the callback
-  int runs = 0;              ///< experiments that were simulated
-  int impossible = 0;        ///< experiments that did not reach the end
-  std::vector<double> nats;  ///< of each new best experiment that respects the limits
-  std::vector<int> foundAt;  ///< run at which it was found
 };
 
-/// Finds the excitations and the external torque that best discriminate two effects: they maximise
+/// Finds the excitations and the external torques that best discriminate two effects: they maximise
 /// the smaller of both expected log Bayes factors (info::discover::distinction), with every
-/// parameter of the base model uncertain by its default prior. The search starts with random inputs
-/// and continues with info::evolve(). All motions, without an effect and with either, respect the
-/// coordinate's range and speed.
+/// parameter of the base model uncertain by its default prior. The search is InputSearch. All
+/// motions, without an effect and with either, respect the coordinates' ranges and speeds.
 class SeparatingDesign {
  public:
   /// @param trial the baseline trial: excitations, torque, experimental conditions
   /// @throws std::invalid_argument for an unknown effect or one that the model already has, a size
-  ///   outside its bounds, what DesignInputs and MusculoskeletalProblem throw
-  SeparatingDesign(const Model& model, const SystemOptions& arm, const std::string& coordinate,
-                   const Trial& trial, const MusculoskeletalProblemOptions& options,
-                   SeparationQuestion question, const DesignLimits& limits,
-                   std::vector<bio::MuscleGroup> groups, double knotInterval = 0.3);
+  ///   outside its bounds, a free coordinate that is not observed, what DesignInputs and
+  ///   MusculoskeletalProblem throw
+  SeparatingDesign(const Model& model, const SystemOptions& arm, const Trial& trial,
+                   const MusculoskeletalProblemOptions& options, SeparationQuestion question,
+                   DesignLimits limits, std::vector<bio::MuscleGroup> groups,
+                   double knotInterval = 0.3);
 
   const DesignInputs& inputs() const { return inputs_; }
-  const std::string& coordinate() const { return coordinate_; }
+  const MusculoskeletalSystem& arm() const { return system_; }
   const SeparationQuestion& question() const { return question_; }
   /// The catalogue entries.
   const info::discover::Candidate& first() const { return candidates_[0]; }
@@ -84,20 +82,21 @@ class SeparatingDesign {
  private:
   MusculoskeletalProblem planned(const Trial& trial) const;
   double price(const SeparatingExperiment& e) const;
+  /// Place of a coordinate's angle among what is observed.
+  Eigen::Index placeOf(const std::string& coordinate) const;
 
   Model model_;
   SystemOptions arm_;
-  std::string coordinate_;
+  MusculoskeletalSystem system_;
+  std::vector<std::string> coordinates_;
   MusculoskeletalProblemOptions options_;
   SeparationQuestion question_;
+  std::vector<Observable> observed_;
+  info::discover::Whitening noise_;
   DesignInputs inputs_;
   info::discover::PresentEffect effects_[2];
   info::discover::Candidate candidates_[2];
   std::string units_[2];
 };
-
-/// The experiment as a trial for replay and discover: excitations of every muscle, the torque, the
-/// experimental conditions, and the base model's motion at the measured times.
-Table separatingTable(const SeparatingDesign& design, const SeparatingExperiment& experiment);
 
 }  // namespace bio::discover

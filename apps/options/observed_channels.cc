@@ -1,4 +1,4 @@
-#include "sensitivity/observed_channels.h"
+#include "options/observed_channels.h"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,199 @@
+#include "design/planned_figures.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "output/angle_unit.h"
+#include "output/text.h"
+
+namespace app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Eigen::VectorXd;
+
+template <class Column>
+void addBoth(const PlannedInputs& planned, Figure& figure, const Column& column) {
+  for (const auto& [name, trial, style] :
+       {std::tuple{"designed", &planned.after, SeriesStyle::line},
+        std::tuple{"before", &planned.before, SeriesStyle::dashed}}) {
+    figure.series.push_back(
+        {.name = name, .x = asList(trial->times), .y = asList(column(*trial)), .style = style});
+  }
+}
+
+Figure torqueFigure(const PlannedInputs& planned, const bio::CoordinateLimits& limits) {
+  const std::string unit = planned.torqueUnit(limits.coordinate);
+  const char* word = planned.coordinate(limits.coordinate).isRotation ? "Torque" : "Force";
+  Figure figure{
+      .title = fmt::format("{} on {}", word, limits.coordinate),
+      .xLabel = "Time [s]",
+      .yLabel = fmt::format("{} on {} [{}]", word, limits.coordinate, unit),
+      .caption = fmt::format("Limited to ±{0} {2} and {1} {2}/s.", numberText(limits.torque),
+                             numberText(planned.inputs.limits().torqueRate), unit)};
+  addBoth(planned, figure, [&](const bio::Trial& trial) {
+    return planned.inputs.torqueOf(trial, limits.coordinate);
+  });
+  return figure;
+}
+
+Figure excitationFigure(const PlannedInputs& planned, const bio::MuscleGroup& group) {
+  Figure figure{
+      .title = fmt::format("Excitation of {}", group.name),
+      .xLabel = "Time [s]",
+      .yLabel = "Excitation [0 to 1]",
+      .caption = fmt::format(
+          "Muscles with this excitation: {}. The dashed line is the baseline excitation of {}.",
+          fmt::join(group.muscles, ", "), group.muscles.front())};
+  addBoth(planned, figure, [&](const bio::Trial& trial) {
+    const auto at = std::find(trial.muscles.begin(), trial.muscles.end(), group.muscles.front());
+    return VectorXd(trial.excitations.col(at - trial.muscles.begin()));
+  });
+  return figure;
+}
+
+}  // namespace
+
+ShownUnit shownUnit(const std::string& unit) {
+  if (!unit.starts_with("rad")) return {1, unitText(unit)};
+  return {radian, "deg" + unit.substr(3)};
+}
+
+const bio::Coordinate& PlannedInputs::coordinate(const std::string& name) const {
+  return bio::findCoordinate(model, name);
+}
+
+ShownUnit PlannedInputs::unitOf(const std::string& name) const {
+  return shownUnit(coordinate(name).isRotation ? "rad" : "m");
+}
+
+std::string PlannedInputs::torqueUnit(const std::string& name) const {
+  return coordinate(name).isRotation ? "N m" : "N";
+}
+
+Figure predictionFigure(const PlannedInputs& planned, const bio::Observable& what,
+                        const std::string& caption) {
+  const std::string name = nameOf(what);
+  const ShownUnit unit = shownUnit(bio::unitOf(what, planned.model));
+  Figure figure{.title = fmt::format("Predicted {}", name),
+                .xLabel = "Time [s]",
+                .yLabel = fmt::format("{} [{}]", name, unit.name),
+                .caption = caption};
+  for (const bio::CoordinateLimits& limits : planned.inputs.limits().coordinates) {
+    if (what != bio::ofCoordinate(limits.coordinate)) continue;
+    figure.caption += fmt::format("{}Limits: {} to {} {}.", caption.empty() ? "" : " ",
+                                  numberText(limits.lower * unit.factor),
+                                  numberText(limits.upper * unit.factor), unit.name);
+  }
+  return figure;
+}
+
+void addInputFigures(const PlannedInputs& planned, Report& report) {
+  for (const bio::CoordinateLimits& one : planned.inputs.torques()) {
+    report.details.push_back(torqueFigure(planned, one));
+  }
+  for (const bio::MuscleGroup& group : planned.inputs.groups()) {
+    report.details.push_back(excitationFigure(planned, group));
+  }
+}
+
+void addLimit(Table& table, const std::string& quantity, double designed, double limit,
+              const ShownUnit& unit) {
+  table.rows.push_back(
+      {quantity, numberText(designed * unit.factor), numberText(limit * unit.factor), unit.name});
+}
+
+Table limitTable(const PlannedInputs& planned) {
+  Table table{"Limits", {"quantity", "designed", "limit", "unit"}, {}};
+  const bio::DesignInputs& inputs = planned.inputs;
+  for (const bio::CoordinateLimits& one : inputs.torques()) {
+    const std::string& name = one.coordinate;
+    const std::string unit = planned.torqueUnit(name);
+    addLimit(table, "largest torque on " + name, inputs.largestTorque(planned.after, name),
+             one.torque, {1, unit});
+    addLimit(table, "its largest rate", inputs.largestTorqueRate(planned.after, name),
+             inputs.limits().torqueRate, {1, unit + "/s"});
+  }
+  if (!inputs.groups().empty()) {
+    addLimit(table, "largest excitation rate", inputs.largestExcitationRate(planned.after),
+             inputs.limits().excitationRate, {1, "1/s"});
+  }
+  return table;
+}
+
+Figure searchFigure(const bio::DesignSearchRecord& record, double before, double sign,
+                    const std::string& yLabel) {
+  Figure figure{.title = "Progress of the search",
+                .xLabel = "Simulations",
+                .yLabel = yLabel,
+                .caption = "Best experiment so far that respects every limit."};
+  Series series{.name = "best", .x = {0}, .y = {before}};
+  for (std::size_t i = 0; i < record.costs.size(); ++i) {
+    series.x.push_back(record.foundAt[i]);
+    series.y.push_back(sign * record.costs[i]);
+  }
+  figure.series.push_back(std::move(series));
+  return figure;
+}
+
+void tellPlan(const PlannedInputs& planned, const std::vector<bio::ChannelCandidate>& observed,
+              double period, const std::vector<CoordinateMotion>& motions,
+              const bio::DesignSearchRecord& record, Summary& summary) {
+  const bio::DesignInputs& inputs = planned.inputs;
+  Json outputs = Json::array(), coordinates = Json::array();
+  for (const bio::ChannelCandidate& one : observed) {
+    const ShownUnit unit = shownUnit(bio::unitOf(one.what, planned.model));
+    outputs.push_back(
+        {{"name", nameOf(one.what)}, {"unit", unit.name}, {"sd", one.sd * unit.factor}});
+  }
+  summary.set("outputs", outputs);
+  const auto& all = inputs.limits().coordinates;
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const std::string& name = all[i].coordinate;
+    const ShownUnit unit = planned.unitOf(name);
+    coordinates.push_back({{"name", name},
+                           {"unit", unit.name},
+                           {"lowest", motions[i].lowest * unit.factor},
+                           {"highest", motions[i].highest * unit.factor},
+                           {"largest_speed", motions[i].fastest * unit.factor},
+                           {"torque_unit", planned.torqueUnit(name)},
+                           {"largest_torque", inputs.largestTorque(planned.after, name)},
+                           {"largest_torque_rate", inputs.largestTorqueRate(planned.after, name)}});
+  }
+  summary.set("coordinates", coordinates);
+  // what there was before there were lists
+  const bool isOneAngle = all.size() == 1 && planned.coordinate(all[0].coordinate).isRotation;
+  if (isOneAngle && observed.front().what == bio::ofCoordinate(all[0].coordinate)) {
+    summary.set("noise_deg", observed.front().sd * radian);
+  }
+  summary.set("rate_Hz", 1 / period);
+  if (isOneAngle) {
+    if (!inputs.torques().empty()) {
+      summary.set("largest_torque_Nm", coordinates[0]["largest_torque"]);
+      summary.set("largest_torque_rate_Nm_per_s", coordinates[0]["largest_torque_rate"]);
+    }
+    summary.set("lowest_deg", coordinates[0]["lowest"]);
+    summary.set("highest_deg", coordinates[0]["highest"]);
+    summary.set("largest_speed_deg_per_s", coordinates[0]["largest_speed"]);
+  }
+  if (!inputs.groups().empty()) {
+    summary.set("largest_excitation_rate_per_s", inputs.largestExcitationRate(planned.after));
+  }
+  summary.set("simulations", record.runs);
+  summary.set("impossible_simulations", record.impossible);
+}
+
+std::string measurementText(const std::vector<bio::ChannelCandidate>& observed, double period,
+                            const bio::Model& model) {
+  std::vector<std::string> texts;
+  for (const bio::ChannelCandidate& one : observed) {
+    const ShownUnit unit = shownUnit(bio::unitOf(one.what, model));
+    texts.push_back(fmt::format("{} (noise {} {})", nameOf(one.what),
+                                numberText(one.sd * unit.factor), unit.name));
+  }
+  return fmt::format("a sample every {} s of {}", numberText(period), fmt::join(texts, ", "));
+}
+
+}  // namespace app

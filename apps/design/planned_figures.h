@@ -1,0 +1,62 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bio/design/input_search.h"
+#include "bio/observation/channel_information.h"
+#include "output/summary.h"
+#include "report/report.h"
+
+/// What the reports of all searches for experiments show.
+namespace app {
+
+/// Angles are shown in degrees, everything else in its unit.
+struct ShownUnit {
+  double factor;
+  std::string name;
+};
+ShownUnit shownUnit(const std::string& unit);
+
+/// A search for inputs of an experiment.
+struct PlannedInputs {
+  const bio::Model& model;
+  const bio::DesignInputs& inputs;
+  const bio::Trial& before;
+  const bio::Trial& after;
+
+  const bio::Coordinate& coordinate(const std::string& name) const;
+  /// "deg" or "m"
+  ShownUnit unitOf(const std::string& coordinate) const;
+  /// "N m" or "N"
+  std::string torqueUnit(const std::string& coordinate) const;
+};
+
+/// What is predicted of one channel, without series.
+/// @param caption  is followed by the limits, where there are any
+Figure predictionFigure(const PlannedInputs& planned, const bio::Observable& what,
+                        const std::string& caption);
+/// Every torque and every excitation that was designed.
+void addInputFigures(const PlannedInputs& planned, Report& report);
+/// Of the torques and excitations.
+Table limitTable(const PlannedInputs& planned);
+/// Adds a row to it.
+void addLimit(Table& table, const std::string& quantity, double designed, double limit,
+              const ShownUnit& unit);
+/// @param sign  of the costs
+Figure searchFigure(const bio::DesignSearchRecord& record, double before, double sign,
+                    const std::string& yLabel);
+
+/// What all searches tell: what is observed, and of each free coordinate where it goes.
+struct CoordinateMotion {
+  double lowest, highest, fastest;  ///< [rad] or [m]
+};
+void tellPlan(const PlannedInputs& planned, const std::vector<bio::ChannelCandidate>& observed,
+              double period, const std::vector<CoordinateMotion>& motions,
+              const bio::DesignSearchRecord& record, Summary& summary);
+
+/// "one sample of elbow_flexion (noise 0.5 deg) and … every 0.01 s"
+std::string measurementText(const std::vector<bio::ChannelCandidate>& observed, double period,
+                            const bio::Model& model);
+
+}  // namespace app
