@@ -37,7 +37,7 @@ template <SmoothSystem S>
 MotionAtEnd<S> integrateWithSensitivity(const S& system, const StateOf<S>& x0,
                                         const InputSignal<S>& u, const ParametersOf<S>& theta,
                                         double duration, const AdaptiveOptions& options) {
-  constexpr int n = S::stateSize, p = S::parameterSize;
+  static constexpr int n = S::stateSize, p = S::parameterSize;
   using Psi = StateSensitivityOf<S>;
   const auto field = [&](double t, const double* z, double* zDot) {
     const InputOf<S> input = u(t);
