@@ -60,13 +60,6 @@ void muscleFirstDerivatives(benchmark::State& state) {
 }
 BENCHMARK(muscleFirstDerivatives);
 
-void muscleSecondDerivatives(benchmark::State& state) {
-  overMuscleStates(state, [](const auto& muscle, double a, double l, double m) {
-    return bio::fibreRateHessian(muscle, a, l, m);
-  });
-}
-BENCHMARK(muscleSecondDerivatives);
-
 void muscleStaticEquilibrium(benchmark::State& state) {
   overMuscleStates(state, [](const auto& muscle, double a, double, double m) {
     return bio::staticEquilibrium(muscle, a, m);

@@ -1,12 +1,11 @@
 // Cost of one muscle of each class: rate and balance with state derivatives, derivatives in its
-// numbers, second derivatives, rest, and a step of its activation.
+// numbers, rest, and a step of its activation.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
 #include <random>
 #include <vector>
 
-#include "bio/muscle/fibre_hessian.h"
 #include "bio/muscle/fibre_rest.h"
 #include "bio/muscle/muscle_sensitivity.h"
 #include "bio/muscle/muscle_variant.h"
@@ -80,13 +79,6 @@ void inNumbers(benchmark::State& state) {
 }
 
 template <class Shape>
-void hessian(benchmark::State& state) {
-  overStates<Shape>(state, [](const auto& m, const State& s) {
-    return fibreRateHessian(m, s.activation, s.fibreLength, s.pathLength);
-  });
-}
-
-template <class Shape>
 void rest(benchmark::State& state) {
   overStates<Shape>(state, [](const auto& m, const State& s) {
     return restingFibre(m, s.activation, s.pathLength);
@@ -137,9 +129,6 @@ BENCHMARK(rigid<DeGroote>);
 BENCHMARK(inNumbers<Thelen>);
 BENCHMARK(inNumbers<Millard>);
 BENCHMARK(inNumbers<DeGroote>);
-BENCHMARK(hessian<Thelen>);
-BENCHMARK(hessian<Millard>);
-BENCHMARK(hessian<DeGroote>);
 BENCHMARK(rest<Thelen>);
 BENCHMARK(rest<Millard>);
 BENCHMARK(rest<DeGroote>);

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "bio/opensim/osim_file.h"
-#include "bio/skeleton/simbody_tree.h"
 #include "bio/skeleton/skeleton_motion.h"
 #include "bio/skeleton/tree_energy.h"
+#include "second_ways/simbody_tree.h"
 #include "support/tree_models.h"
 
 namespace {

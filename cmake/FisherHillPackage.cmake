@@ -42,7 +42,7 @@ synthetic trials to try.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libfisherhill-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "libeigen3-dev (>= 3.4), libsundials-dev (>= 6.4), libtbb-dev, libfmt-dev, libsimbody-dev, libtinyxml2-dev")
+  "libeigen3-dev (>= 3.4), libsundials-dev (>= 6.4), libtbb-dev, libfmt-dev, libtinyxml2-dev")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
 "Static C++20 libraries, headers and a CMake package config. FisherHill::info
 holds parameter sensitivities, Fisher information, bounds and estimation for

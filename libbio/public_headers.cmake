@@ -1,6 +1,7 @@
 # Public headers; the target all_verify_interface_header_sets compiles each of them alone.
 set_target_properties(bio PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON)
 target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
+  include/bio/bio.h
   include/bio/analysis/compare.h
   include/bio/analysis/compare_muscles.h
   include/bio/analysis/driven_trial.h
@@ -75,7 +76,6 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/muscle/bezier_curve.h
   include/bio/muscle/bracketed_root.h
   include/bio/muscle/degroote_fregly2016.h
-  include/bio/muscle/fibre_hessian.h
   include/bio/muscle/fibre_rest.h
   include/bio/muscle/first_order_activation.h
   include/bio/muscle/hill_muscle.h
@@ -148,7 +148,6 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/path/point_path_bodies.h
   include/bio/skeleton/rigid_motion.h
   include/bio/skeleton/segment_chain.h
-  include/bio/skeleton/simbody_tree.h
   include/bio/skeleton/skeleton.h
   include/bio/skeleton/skeleton_motion.h
   include/bio/skeleton/spatial_algebra.h

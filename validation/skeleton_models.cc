@@ -15,8 +15,8 @@
 
 #include "bio/opensim/osim_file.h"
 #include "bio/skeleton/articulated_tree.h"
-#include "bio/skeleton/simbody_tree.h"
 #include "bio/skeleton/tree_energy.h"
+#include "second_ways/simbody_tree.h"
 
 namespace {
 

@@ -1,11 +1,7 @@
 #include <fstream>
 #include <iostream>
 
-#include "info/dynamics/integrate.h"
-#include "info/dynamics/predictor.h"
-#include "info/estimation/estimate.h"
-#include "info/information/fisher.h"
-#include "info/information/identifiability.h"
+#include "info/info.h"
 
 // A mass of 1 kg on a spring that hardens, ẍ = −k x − h x³ − c ẋ; x is measured.
 struct Spring {

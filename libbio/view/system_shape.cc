@@ -56,19 +56,20 @@ SystemPoser::Posture poseOnTree(const Skeleton& skeleton, const std::vector<std:
   return posture;
 }
 
-template <int N>
-SystemPoser::Posture poseWith(const Skeleton& skeleton, const std::vector<std::string>& bodies,
-                              const std::vector<MusclePath>& paths, const Eigen::VectorXd& q) {
-  const Eigen::Matrix<double, N, 1> free = q;
-  std::vector<RigidMotion<double, N>> moved(skeleton.numSegments());
-  skeleton.motions<double, N>(free, moved.data());
+SystemPoser::Posture poseOfOneCoordinate(const Skeleton& skeleton,
+                                         const std::vector<std::string>& bodies,
+                                         const std::vector<MusclePath>& paths,
+                                         const Eigen::VectorXd& q) {
+  const Eigen::Matrix<double, 1, 1> free = q;
+  std::vector<RigidMotion<double, 1>> moved(skeleton.numSegments());
+  skeleton.motions<double, 1>(free, moved.data());
   SystemPoser::Posture posture;
   for (const std::string& body : bodies) {
     const BodyPlacement& place = skeleton.placeOf(body);
     posture.bodies[body] = moved[place.segment].value * place.X_SB;
   }
   for (const MusclePath& path : paths) {
-    posture.muscles.push_back({path.pathPoints<N>(free, moved.data(), 0.05)});
+    posture.muscles.push_back({path.pathPoints<1>(free, moved.data(), 0.05)});
   }
   return posture;
 }
@@ -76,16 +77,7 @@ SystemPoser::Posture poseWith(const Skeleton& skeleton, const std::vector<std::s
 SystemPoser::Posture poseAt(const Skeleton& skeleton, const std::vector<std::string>& bodies,
                             const std::vector<MusclePath>& paths, const Eigen::VectorXd& q) {
   if (skeleton.tree()) return poseOnTree(skeleton, bodies, paths, q);
-  switch (q.size()) {
-    case 1:
-      return poseWith<1>(skeleton, bodies, paths, q);
-    case 2:
-      return poseWith<2>(skeleton, bodies, paths, q);
-    case 3:
-      return poseWith<3>(skeleton, bodies, paths, q);
-    default:
-      return poseWith<4>(skeleton, bodies, paths, q);
-  }
+  return poseOfOneCoordinate(skeleton, bodies, paths, q);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include "bio/analysis/replay.h"
 #include "bio/opensim/osim_file.h"
-#include "bio/skeleton/simbody_tree.h"
+#include "second_ways/simbody_tree.h"
 #include "support/scratch_folder.h"
 
 namespace bio {

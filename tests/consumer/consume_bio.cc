@@ -1,8 +1,8 @@
 #include <cstdio>
 #include <exception>
+#include <numbers>
 
-#include "bio/analysis/replay.h"
-#include "bio/opensim/osim_file.h"
+#include "bio/bio.h"
 #include "info/version.h"
 
 // consume_bio MODEL TRIAL: replays the trial and prints how far the motion is from the measured
@@ -10,20 +10,13 @@
 int main(int count, char** arguments) try {
   if (count != 3) return 2;
   const bio::Model model = bio::readOsim(arguments[1]);
-  bio::SystemOptions options;
-  options.skeleton.freeCoordinates = {"elbow_flexion"};
-  const bio::MusculoskeletalSystem arm(model, options);
+  const bio::MusculoskeletalSystem arm(model, {.skeleton = {.freeCoordinates = {"elbow_flexion"}}});
   const bio::Trial trial = bio::readTrial(arguments[2], model);
-  const auto excitation = bio::excitationOf(trial, arm);
-  const auto start =
-      bio::initialState(arm, bio::startCoordinates(trial, arm, {}), excitation, trial.times[0]);
-  bio::SimulationOptions simulation;
-  simulation.duration = trial.times[trial.times.size() - 1] - trial.times[0];
-  const auto motion = bio::simulate(arm, excitation, start, simulation);
-  const auto error = bio::compareWithMeasured(arm, motion, trial.measured.front());
+  const bio::TrialReplay replay =
+      bio::replayTrial(arm, trial, {}, bio::beginningOf(trial, model, arm, {}));
   std::printf("FisherHill %s: rms_error_deg %.6f\n", info::version(),
-              error.rms * 57.29577951308232);
-  return motion.outcome == bio::Outcome::completed ? 0 : 1;
+              replay.errors.front().second.rms * 180 / std::numbers::pi);
+  return replay.motion.outcome == bio::Outcome::completed ? 0 : 1;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "consume_bio: %s\n", error.what());
   return 2;

@@ -6,7 +6,7 @@
 #include "bio/analysis/replay.h"
 #include "bio/sensitivity/coupled_sensitivity.h"
 #include "bio/tables/trial_table.h"
-#include "forces/linear_course.h"
+#include "info/dynamics/linear_table.h"
 
 namespace bio {
 namespace {
@@ -59,7 +59,7 @@ Table drivenTable(const Trial& trial, const MusculoskeletalSystem& arm, const Em
     for (Eigen::Index k = 0; k < applied; ++k) {
       const AppliedForce& push = trial.applied[static_cast<std::size_t>(k)];
       table.values(row, 1 + n + measured + k) =
-          linearAt(trial.times, push.actuator.empty() ? push.values : push.control, t);
+          info::linearAt(trial.times, t).value(push.actuator.empty() ? push.values : push.control);
     }
     ++row;
   }

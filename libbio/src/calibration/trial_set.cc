@@ -80,9 +80,8 @@ TrialSet::TrialSet(const Model& model, const SystemOptions& arm, std::vector<Tri
   if (trials_.empty()) throw std::invalid_argument("no trial is given");
   if (arm_->numMuscles() == 0) throw std::invalid_argument("no muscle moves a free coordinate");
   for (const Trial& trial : trials_) {
-    beginnings_.push_back(beginningOf(trial, model, *arm_, options.initial));
     catalogues_.push_back(std::make_unique<const ParameterCatalogue>(
-        model, *arm_, beginnings_.back().point,
+        model, *arm_, beginningOf(trial, model, *arm_, options.initial).point,
         options.latent ? latentMapping(trial, *arm_) : EmgMapping{}));
   }
   collectParameters(options);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "info/dynamics/linear_table.h"
 #include "info/probability/random_stream.h"
 #include "model/require.h"
 
@@ -90,16 +91,6 @@ auto torqueIn(Forces& forces, const std::string& coordinate) {
   return at == forces.end() ? nullptr : &*at;
 }
 
-/// A column of numbers, linear between rows.
-double between(const VectorXd& times, const VectorXd& values, double t) {
-  const auto after = std::upper_bound(times.begin(), times.end(), t);
-  if (after == times.begin()) return values[0];
-  if (after == times.end()) return values[values.size() - 1];
-  const Index k = after - times.begin();
-  const double share = (t - times[k - 1]) / (times[k] - times[k - 1]);
-  return (1 - share) * values[k - 1] + share * values[k];
-}
-
 double largestSlope(const VectorXd& times, const VectorXd& values) {
   double largest = 0;
   for (Index k = 0; k + 1 < times.size(); ++k) {
@@ -113,9 +104,7 @@ Trial onRows(const Trial& given, const std::vector<double>& rows) {
   trial.times = Eigen::Map<const VectorXd>(rows.data(), static_cast<Index>(rows.size()));
   trial.excitations.resize(trial.times.size(), given.excitations.cols());
   for (Index k = 0; k < trial.times.size(); ++k) {
-    for (Index m = 0; m < given.excitations.cols(); ++m) {
-      trial.excitations(k, m) = excitationAt(given, m, trial.times[k]);
-    }
+    trial.excitations.row(k) = info::linearAt(given.times, trial.times[k]).rows(given.excitations);
   }
   for (AppliedForce& force : trial.applied) {
     const VectorXd values = force.values;
@@ -123,8 +112,9 @@ Trial onRows(const Trial& given, const std::vector<double>& rows) {
     const VectorXd control = force.control;
     if (control.size() > 0) force.control.resize(trial.times.size());
     for (Index k = 0; k < trial.times.size(); ++k) {
-      force.values[k] = between(given.times, values, trial.times[k]);
-      if (control.size() > 0) force.control[k] = between(given.times, control, trial.times[k]);
+      const info::LinearWeights here = info::linearAt(given.times, trial.times[k]);
+      force.values[k] = here.value(values);
+      if (control.size() > 0) force.control[k] = here.value(control);
     }
   }
   return trial;
@@ -201,12 +191,13 @@ VectorXd DesignInputs::own() const {
   for (Index k = 0; k < K; ++k) {
     const double t = profiles_.knots()[static_cast<std::size_t>(k)];
     Index input = 0;
-    for (const CoordinateLimits& one : torques_) {
-      atKnots(k, input++) = between(trial_.times, torqueOf(trial_, one.coordinate), t);
-    }
+    const info::LinearWeights here = info::linearAt(trial_.times, t);
+    for (const CoordinateLimits& one : torques_)
+      atKnots(k, input++) = here.value(torqueOf(trial_, one.coordinate));
     for (const auto& columns : columns_) {
       for (const Index column : columns) {
-        atKnots(k, input) += excitationAt(trial_, column, t) / static_cast<double>(columns.size());
+        atKnots(k, input) +=
+            here.value(trial_.excitations.col(column)) / static_cast<double>(columns.size());
       }
       ++input;
     }

@@ -6,6 +6,7 @@
 
 #include "bio/analysis/replay.h"
 #include "bio/discovery/with_experimental_conditions.h"
+#include "info/dynamics/linear_table.h"
 
 namespace bio::discover {
 namespace {
@@ -46,13 +47,7 @@ Trial withTimedForce(Trial trial, const std::string& coordinate, const std::vect
                               : trial.applied.emplace_back(
                                     AppliedForce{coordinate, VectorXd::Zero(trial.times.size())});
   for (Index i = 0; i < trial.times.size(); ++i) {
-    const auto behind = std::upper_bound(nodes.begin(), nodes.end(), trial.times[i]);
-    const auto k = std::clamp<std::ptrdiff_t>(behind - nodes.begin() - 1, 0,
-                                              static_cast<std::ptrdiff_t>(nodes.size()) - 2);
-    const auto at = static_cast<std::size_t>(k);
-    const double w =
-        std::clamp((trial.times[i] - nodes[at]) / (nodes[at + 1] - nodes[at]), 0.0, 1.0);
-    applied.values[i] += (1 - w) * force[k] + w * force[k + 1];
+    applied.values[i] += info::linearAt(nodes, trial.times[i]).value(force);
   }
   trial.sha256.clear();  // it is not what is in the file
   return trial;

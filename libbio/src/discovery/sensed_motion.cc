@@ -6,6 +6,7 @@
 
 #include "bio/observation/observed_motion.h"
 #include "discovery/look_at.h"
+#include "info/dynamics/linear_table.h"
 
 namespace bio::discover {
 
@@ -65,7 +66,7 @@ SensedMotion::Slopes SensedMotion::slopes(const SensitivityTrajectory& s) const 
         lagged(time, rows, MatrixXd::Zero(rows.rows(), rows.cols()), law_.lag).value.transpose();
     const VectorXd times = timesWithin(s.motion, 0);
     for (Index i = 0; i < size(); ++i)
-      slopes.gamma.row(i) = factor * linearAt(time, times[i]).rows(late);
+      slopes.gamma.row(i) = factor * info::linearAt(time, times[i]).rows(late);
     return slopes;
   }
   const auto c = static_cast<std::size_t>(coordinate_);
@@ -130,7 +131,7 @@ SensedMotion::Sensed SensedMotion::sensedLate(const Trajectory& motion) const {
   const VectorXd times = timesWithin(motion, 0);
   Sensed at{times, times, times};
   for (Index i = 0; i < size(); ++i) {
-    const LinearWeights w = linearAt(time, times[i]);
+    const info::LinearWeights w = info::linearAt(time, times[i]);
     const auto k = static_cast<std::size_t>(w.row);
     at.value[i] = w.value(x);
     at.rate[i] = (x(w.row + 1) - x(w.row)) / (time[k + 1] - time[k]);

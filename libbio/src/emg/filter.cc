@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <stdexcept>
 
@@ -73,10 +74,10 @@ SecondOrderSection section(Complex s1, Complex s2, double b1, double b2, Complex
   return out;
 }
 
-// A real analog pole s: H = (1 + b1 z⁻¹)/(1 + a1 z⁻¹), |H| = 1 at zRef = ±1.
-SecondOrderSection firstOrderSection(double s, double b1, double zRef) {
-  SecondOrderSection out{1, b1, 0, -(1 + s) / (1 - s), 0};
-  const double gain = (1 + b1 / zRef) / (1 + out.a1 / zRef);
+// A real analog pole s: H = (1 + z⁻¹)/(1 + a1 z⁻¹) with gain 1 at z = 1.
+SecondOrderSection firstOrderSection(double s) {
+  SecondOrderSection out{1, 1, 0, -(1 + s) / (1 - s), 0};
+  const double gain = 2 / (1 + out.a1);
   out.b0 /= gain;
   out.b1 /= gain;
   return out;
@@ -138,19 +139,8 @@ Filter butterworthLowPass(int order, double cutoff, double sampleRate, Passes pa
   const double w = prewarped("low-pass cut-off", cutoff, sampleRate) * corner(order, passes);
   Filter out{{}, sampleRate};
   for (const Complex& p : prototypePoles(order)) {
-    out.sections.push_back(p.imag() == 0 ? firstOrderSection(-w, 1, 1)
+    out.sections.push_back(p.imag() == 0 ? firstOrderSection(-w)
                                          : section(w * p, w * std::conj(p), 2, 1, 1.0));
-  }
-  return out;
-}
-
-Filter butterworthHighPass(int order, double cutoff, double sampleRate, Passes passes) {
-  checkOrder(order);
-  const double w = prewarped("high-pass cut-off", cutoff, sampleRate) / corner(order, passes);
-  Filter out{{}, sampleRate};
-  for (const Complex& p : prototypePoles(order)) {
-    out.sections.push_back(p.imag() == 0 ? firstOrderSection(-w, -1, -1)
-                                         : section(w / p, w / std::conj(p), -2, 1, -1.0));
   }
   return out;
 }
@@ -182,15 +172,6 @@ Filter butterworthBandStop(int order, double low, double high, double sampleRate
           sampleRate};
 }
 
-std::complex<double> frequencyResponse(const Filter& filter, double frequency) {
-  const Complex inverse = std::polar(1.0, -2 * pi * frequency / filter.sampleRate);
-  Complex out = 1;
-  for (const SecondOrderSection& s : filter.sections) {
-    out *= (s.b0 + inverse * (s.b1 + inverse * s.b2)) / (1.0 + inverse * (s.a1 + inverse * s.a2));
-  }
-  return out;
-}
-
 Eigen::Index settlingSamples(const Filter& filter, double remainder) {
   double largest = 0;
   for (const SecondOrderSection& s : filter.sections) {
@@ -199,13 +180,6 @@ Eigen::Index settlingSamples(const Filter& filter, double remainder) {
   }
   if (largest < 1e-12) return 1;
   return static_cast<Eigen::Index>(std::ceil(std::log(remainder) / std::log(largest)));
-}
-
-Eigen::VectorXd filterForward(const Filter& filter, const Eigen::VectorXd& signal) {
-  checkFinite(signal);
-  Eigen::VectorXd out = signal;
-  pass(filter, out);
-  return out;
 }
 
 Eigen::VectorXd filterZeroPhase(const Filter& filter, const Eigen::VectorXd& signal,

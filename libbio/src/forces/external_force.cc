@@ -7,7 +7,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "forces/linear_course.h"
+#include "info/dynamics/linear_table.h"
 
 namespace bio {
 
@@ -48,7 +48,7 @@ ExternalForce::At ExternalForce::at(double t) const {
 
 double ExternalForce::Control::at(double t) const {
   if (times.empty() || t < times.front() || t > times.back()) return 0;
-  return linearAt(times, values, t);
+  return info::linearAt(times, t).value(values);
 }
 
 double ExternalForce::controlAt(const std::string& actuator, double t) const {

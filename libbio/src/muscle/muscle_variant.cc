@@ -10,16 +10,6 @@ namespace bio::muscles {
 namespace {
 
 template <template <class> class... Shapes>
-std::string_view nameIn(const ClassList<Shapes...>&, const AnyParameters& parameters) {
-  std::string_view name;
-  ((std::holds_alternative<typename Shapes<double>::Parameters>(parameters)
-        ? void(name = Shapes<double>::className)
-        : void()),
-   ...);
-  return name;
-}
-
-template <template <class> class... Shapes>
 AnyMuscle compiledIn(const ClassList<Shapes...>&, const AnyParameters& parameters) {
   return std::visit(
       [](const auto& p) -> AnyMuscle {
@@ -41,10 +31,6 @@ AnyMuscle compiledIn(const ClassList<Shapes...>&, const AnyParameters& parameter
 
 void refuseClass(std::string_view className) {
   throw std::invalid_argument(fmt::format("muscle class {} is not known", className));
-}
-
-std::string_view classNameOf(const AnyParameters& parameters) {
-  return nameIn(MuscleClasses{}, parameters);
 }
 
 AnyMuscle compile(const AnyParameters& parameters) {

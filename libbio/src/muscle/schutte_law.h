@@ -18,28 +18,26 @@ using muscles::choose;
 /// Of a piecewise cubic.
 template <class N>
 struct CurveJet {
-  N value, slope, curvature;
+  N value, slope;
 };
 
 /// P and A with their derivatives in act, ℓ and ℓ_MT; κ = 1/cos α.
 template <class N>
 struct ForceBalance {
-  N tendon, tendonSlope, tendonCurvature;  ///< F̂_T over ε
-  N kappa, dKappa;                         ///< over ℓ
+  N tendon, tendonSlope;  ///< F̂_T over ε
+  N kappa, dKappa;        ///< over ℓ
   N P, dP_dl, dP_dm;
   N A, dA_da, dA_dl;
-  // what second derivatives take besides
-  N d2Kappa, d2P_dldl, d2P_dldm, d2P_dmdm, d2A_dadl, d2A_dldl;
 };
 
 /// P with its derivatives in ℓ and ℓ_MT.
 template <class N>
 struct Pull {
-  N P, byLength, byPath, byLengths, byBoth, byPaths;
+  N P, byLength, byPath;
 };
 
 /// P = F̂_T κ − f_PE, held at 0 where it is clamped; `f` as far as it is known.
-template <bool second, class Muscle, class N>
+template <class Muscle, class N>
 [[gnu::always_inline]] inline Pull<N> pullOf(const Muscle& muscle, const ForceBalance<N>& f,
                                              const CurveJet<N>& passive) {
   const N none(0.0);
@@ -48,28 +46,18 @@ template <bool second, class Muscle, class N>
   const N P = f.tendon * f.kappa - passive.value;
   return branch(
       muscle.options().clampForce && P < 0.0,
-      [&] { return Pull<N>{none, none, none, none, none, none}; },
+      [&] {
+        return Pull<N>{none, none, none};
+      },
       [&] {
         const N slope = f.tendonSlope * perTendon;
-        Pull<N> some{P,
-                     -slope * f.kappa * f.kappa + f.tendon * f.dKappa - passive.slope * perFibre,
-                     slope * f.kappa,
-                     none,
-                     none,
-                     none};
-        if constexpr (second) {
-          const N curvature = f.tendonCurvature * perTendon * perTendon;
-          some.byPaths = curvature * f.kappa;
-          some.byBoth = -curvature * f.kappa * f.kappa + slope * f.dKappa;
-          some.byLengths = curvature * f.kappa * f.kappa * f.kappa -
-                           3 * slope * f.kappa * f.dKappa + f.tendon * f.d2Kappa -
-                           passive.curvature * perFibre * perFibre;
-        }
-        return some;
+        return Pull<N>{P,
+                       -slope * f.kappa * f.kappa + f.tendon * f.dKappa - passive.slope * perFibre,
+                       slope * f.kappa};
       });
 }
 
-template <bool second, class Muscle, class Pieces, class N>
+template <class Muscle, class Pieces, class N>
 [[gnu::always_inline]] inline ForceBalance<N> forceBalance(const Muscle& muscle,
                                                            const N& activation,
                                                            const N& fibreLength,
@@ -97,61 +85,49 @@ template <bool second, class Muscle, class Pieces, class N>
   const Jet tendon = branch(
       strain < 0.0,
       [&] {
-        return Jet{none, none, none};
+        return Jet{none, none};
       },
       [&] {
         const auto y = curves.tendonForce.evaluate(strain, last.tendonForce);
-        return Jet{y.value, y.slope, y.curvature};
+        return Jet{y.value, y.slope};
       });
   f.tendon = tendon.value;
   f.tendonSlope = tendon.slope;
-  f.tendonCurvature = tendon.curvature;
 
   // Fibre.
   const N l = fibreLength * perFibre;
   Jet passive;
   if (curves.passiveForce) {
     const auto y = curves.passiveForce->evaluate(l, last.passiveForce);
-    passive = {y.value, y.slope, y.curvature};
+    passive = {y.value, y.slope};
   } else {
     const N value = exp(8.0 * l - 12.0);
-    passive = {value, 8.0 * value, 64.0 * value};
+    passive = {value, 8.0 * value};
   }
   const auto active = curves.activeForce.evaluate(l, last.activeForce);
   const N least(muscle.options().activationFloor);
   const auto floored = activation < least;
   const N act = choose(floored, least, activation);
   struct Active {
-    N A, byActivation, byLength, both, twiceByLength;
+    N A, byActivation, byLength;
   };
   const Active a = branch(
       active.value < 0.0,
       [&] {
-        return Active{none, none, none, none, none};
+        return Active{none, none, none};
       },
       [&] {
-        Active some{act * active.value, choose(floored, none, N(active.value)),
-                    act * active.slope * perFibre, none, none};
-        if constexpr (second) {
-          some.both = choose(floored, none, N(active.slope * perFibre));
-          some.twiceByLength = act * active.curvature * perFibre * perFibre;
-        }
-        return some;
+        return Active{act * active.value, choose(floored, none, N(active.value)),
+                      act * active.slope * perFibre};
       });
   f.A = a.A;
   f.dA_da = a.byActivation;
   f.dA_dl = a.byLength;
-  f.d2A_dadl = a.both;
-  f.d2A_dldl = a.twiceByLength;
-  if constexpr (second) f.d2Kappa = 3 * w2 * fibreLength * perD * perD * perD * perD * perD;
 
-  const Pull<N> p = pullOf<second>(muscle, f, passive);
+  const Pull<N> p = pullOf(muscle, f, passive);
   f.P = p.P;
   f.dP_dl = p.byLength;
   f.dP_dm = p.byPath;
-  f.d2P_dldl = p.byLengths;
-  f.d2P_dldm = p.byBoth;
-  f.d2P_dmdm = p.byPaths;
   return f;
 }
 
@@ -159,13 +135,12 @@ template <bool second, class Muscle, class Pieces, class N>
 template <class N>
 struct Velocity {
   N v, dv_dP, dv_dA;
-  N G_v, G_vA;  ///< for the second derivatives; G_vP = −1, G_vv = 2B, 0 for P < −B
 };
 
 template <class N>
 [[gnu::always_inline]] inline Velocity<N> velocity(const N& P, const N& A, const N& B) {
   using std::sqrt;
-  const auto linear = [&] { return Velocity<N>{P / B, 1.0 / B, N(0.0), -B, N(0.0)}; };
+  const auto linear = [&] { return Velocity<N>{P / B, 1.0 / B, N(0.0)}; };
   const auto shortening = [&] {
     const N b = P + shapeShortening * (A + B);
     const N c = shapeShortening * (P - A);
@@ -174,8 +149,7 @@ template <class N>
         b > 0.0, [&] { return N(2.0 * c / (b + root)); },
         [&] { return N((b - root) / (2.0 * B)); });
     const N perRoot = 1.0 / root;
-    return Velocity<N>{v, (shapeShortening - v) * perRoot, -shapeShortening * (1.0 + v) * perRoot,
-                       -root, N(-shapeShortening)};
+    return Velocity<N>{v, (shapeShortening - v) * perRoot, -shapeShortening * (1.0 + v) * perRoot};
   };
   const auto lengthening = [&] {
     const N b = P - maxLengtheningForce * A - shapeLengthening * B;
@@ -186,8 +160,7 @@ template <class N>
         [&] { return N(2.0 * c / (root - b)); });
     const N perRoot = 1.0 / root;
     return Velocity<N>{v, (v + shapeLengthening) * perRoot,
-                       -(maxLengtheningForce * v + shapeLengthening) * perRoot, root,
-                       N(maxLengtheningForce)};
+                       -(maxLengtheningForce * v + shapeLengthening) * perRoot};
   };
   return branch(P < -B, linear, [&] { return branch(P < A, shortening, lengthening); });
 }

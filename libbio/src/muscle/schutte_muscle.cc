@@ -65,45 +65,9 @@ FibreRateDerivatives fibreRateDerivatives(const SchutteMuscle<double>& muscle, d
                                           double fibreLength, double muscleTendonLength,
                                           SchuttePieces& last) {
   const schutte::ForceBalance<double> f =
-      schutte::forceBalance<false>(muscle, activation, fibreLength, muscleTendonLength, last);
+      schutte::forceBalance(muscle, activation, fibreLength, muscleTendonLength, last);
   return schutte::assemble<FibreRateDerivatives>(
       muscle, f, schutte::velocity(f.P, f.A, muscle.quantities().damping));
-}
-
-FibreRateHessian fibreRateHessian(const SchutteMuscle<double>& muscle, double activation,
-                                  double fibreLength, double muscleTendonLength) {
-  SchuttePieces last;
-  const schutte::ForceBalance<double> f =
-      schutte::forceBalance<true>(muscle, activation, fibreLength, muscleTendonLength, last);
-  const double B = muscle.quantities().damping;
-  const schutte::Velocity<double> u = schutte::velocity(f.P, f.A, B);
-
-  // v_xy = −(G_vv v_x v_y + G_vx v_y + G_vy v_x)/G_v
-  double v_PP = 0, v_PA = 0, v_AA = 0;
-  if (!(f.P < -B)) {
-    v_PP = -(2 * B * u.dv_dP * u.dv_dP - 2 * u.dv_dP) / u.G_v;
-    v_PA = -(2 * B * u.dv_dP * u.dv_dA - u.dv_dA + u.G_vA * u.dv_dP) / u.G_v;
-    v_AA = -(2 * B * u.dv_dA * u.dv_dA + 2 * u.G_vA * u.dv_dA) / u.G_v;
-  }
-  const Eigen::Vector3d dP(0, f.dP_dl, f.dP_dm);
-  const Eigen::Vector3d dA(f.dA_da, f.dA_dl, 0);
-  Eigen::Matrix3d d2P, d2A;
-  d2P << 0, 0, 0, 0, f.d2P_dldl, f.d2P_dldm, 0, f.d2P_dldm, f.d2P_dmdm;
-  d2A << 0, f.d2A_dadl, 0, f.d2A_dadl, f.d2A_dldl, 0, 0, 0, 0;
-
-  const double perTendon = muscle.perTendon();
-  const double force = muscle.quantities().maxIsometricForce;
-  const double curvature = force * f.tendonCurvature * perTendon * perTendon;
-  const double F_ll = curvature * f.kappa * f.kappa - force * f.tendonSlope * perTendon * f.dKappa;
-  const double F_lm = -curvature * f.kappa;
-
-  FibreRateHessian result;
-  result.first = schutte::assemble<FibreRateDerivatives>(muscle, f, u);
-  result.d2V = muscle.speedScale() *
-               (v_PP * dP * dP.transpose() + v_AA * dA * dA.transpose() +
-                v_PA * (dP * dA.transpose() + dA * dP.transpose()) + u.dv_dP * d2P + u.dv_dA * d2A);
-  result.d2F << 0, 0, 0, 0, F_ll, F_lm, 0, F_lm, curvature;
-  return result;
 }
 
 MuscleForces muscleForces(const SchutteMuscle<double>& muscle, double activation,

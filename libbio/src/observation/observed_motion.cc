@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "info/dynamics/linear_table.h"
 #include "simulation/integrators.h"
 #include "simulation/motion_weights.h"
 
@@ -60,9 +61,9 @@ int sourceOf(const MusculoskeletalSystem& arm, const Observable& what) {
 
 /// sin α = w/ℓ, dα = (dw − sin α dℓ)/(ℓ cos α). A slack muscle with a rigid tendon has ℓ = w for
 /// whatever parameters, so that α stays a right angle.
-void pennationAt(const SimulatedMuscle& muscle, std::size_t place, const LinearWeights& between,
-                 const Trajectory& motion, const SensitivityTrajectory* s, Index at,
-                 ObservedMotion::Linearised& all) {
+void pennationAt(const SimulatedMuscle& muscle, std::size_t place,
+                 const info::LinearWeights& between, const Trajectory& motion,
+                 const SensitivityTrajectory* s, Index at, ObservedMotion::Linearised& all) {
   const double l = between.value(motion.fibreLength.row(static_cast<Index>(place)));
   const double w = muscle.thickness();
   const double sine = std::min(1.0, w / l);
@@ -128,7 +129,7 @@ ObservedMotion::Linearised ObservedMotion::evaluate(const Trajectory& motion,
         if (s) all.gamma.row(at) = slopes(s->q[place], s->qDot[place]);
       };
       const auto straight = [&](double sign, const auto& values, const auto& of) {
-        const LinearWeights between = linearAt(motion.time, times[k]);
+        const info::LinearWeights between = info::linearAt(motion.time, times[k]);
         all.values[at] = sign * between.value(values);
         if (s) all.gamma.row(at) = sign * between.rows((s->*of)[place]);
       };
@@ -148,8 +149,8 @@ ObservedMotion::Linearised ObservedMotion::evaluate(const Trajectory& motion,
           straight(1, motion.fibreLength.row(index), &SensitivityTrajectory::fibreLength);
           break;
         case Kind::pennation:
-          pennationAt(arm_->muscles()[place].muscle, place, linearAt(motion.time, times[k]), motion,
-                      s, at, all);
+          pennationAt(arm_->muscles()[place].muscle, place, info::linearAt(motion.time, times[k]),
+                      motion, s, at, all);
           break;
         case Kind::tendonForce:
           straight(1, muscles.tendonForce.row(index), &SensitivityTrajectory::tendonForce);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "info/dynamics/linear_table.h"
+
 namespace bio::stepping {
 
 using Eigen::Index;
@@ -85,23 +87,13 @@ Index ExcitationSensitivity::placeOf(Index column) const {
   return std::lower_bound(columns_.begin(), columns_.end(), column) - columns_.begin();
 }
 
-ExcitationSensitivity::Between ExcitationSensitivity::between(double t) const {
-  const std::vector<double>& times = driven_.times();
-  if (!(t > times.front())) return {0, 0};
-  if (t >= times.back()) return {static_cast<Index>(times.size()) - 1, 0};
-  std::size_t k = nextRow_ > 0 ? std::min(nextRow_, times.size() - 1) - 1 : 0;
-  if (times[k] > t) k = 0;
-  while (times[k + 1] <= t) ++k;
-  return {static_cast<Index>(k), (t - times[k]) / (times[k + 1] - times[k])};
-}
-
 void ExcitationSensitivity::start(double time, SensitivityMatrix& rows) {
   rows.setZero();
   nextRow_ = 0;
-  const Between here = between(time);
+  const info::LinearWeights here = info::linearAt(driven_.times(), time);
   for (std::size_t i = 0; i < emg_.size(); ++i) {
     for (const RowsOfColumn& one : emg_[i]) {
-      rows(static_cast<Index>(i), placeOf(one.column)) += here.of(one.rows);
+      rows(static_cast<Index>(i), placeOf(one.column)) += here.value(one.rows);
     }
   }
   // later by d: the excitation at the start is that of d earlier; none is known before the first
@@ -147,7 +139,7 @@ void ExcitationSensitivity::advance(double t0, double t1, const Eigen::RowVector
     const double stop = endsOnRow ? rows[nextRow_] : t1;
     const double h = stop - t;
     driven_.at(stop, hint_, to_);
-    const Between atBegin = between(t), atEnd = between(stop);
+    const info::LinearWeights atBegin = info::linearAt(rows, t), atEnd = info::linearAt(rows, stop);
     for (Index i = 0; i < out.rows(); ++i) {
       const auto si = static_cast<std::size_t>(i);
       const auto& effects = effects_.muscles[si];
@@ -170,7 +162,8 @@ void ExcitationSensitivity::advance(double t0, double t1, const Eigen::RowVector
                                                         (endsOnRow ? p.d[3] : -p.d[1] * slope));
       }
       for (const RowsOfColumn& one : emg_[si]) {
-        row[placeOf(one.column)] += p.d[0] * atBegin.of(one.rows) + p.d[1] * atEnd.of(one.rows);
+        row[placeOf(one.column)] +=
+            p.d[0] * atBegin.value(one.rows) + p.d[1] * atEnd.value(one.rows);
       }
       for (const QuantityEffect& effect : effects.activation) {
         row[placeOf(effect.column)] += effect.factor * p.d[4 + static_cast<Index>(effect.quantity)];

@@ -43,18 +43,6 @@ class ExcitationSensitivity {
                SensitivityMatrix& out);
 
  private:
-  /// Straight lines between the rows of the trial, as ExcitationSignal draws them: the row before t
-  /// and the weight of the one behind.
-  struct Between {
-    Eigen::Index row;
-    double weight;
-    double of(const Eigen::RowVectorXd& rows) const {
-      if (weight == 0) return rows[row];
-      return (1 - weight) * rows[row] + weight * rows[row + 1];
-    }
-  };
-  Between between(double t) const;
-
   const MusculoskeletalSystem& arm_;
   const ParameterEffects& effects_;
   const ExcitationSignal& driven_;

@@ -88,13 +88,6 @@ class StopWatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Forces and their derivatives that muscles and passive laws exert at a configuration.
-template <int N>
-struct GeneralisedForce {
-  Eigen::Matrix<double, N, 1> muscle;  ///< −Σ F ∂ℓ/∂q
-  Eigen::Matrix<double, N, 1> passive;
-};
-
 /// What simulate() requires of its arguments. @throws std::invalid_argument
 void checkSimulation(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
                      const SystemState& start, const SimulationOptions& options);

@@ -68,28 +68,4 @@ inline std::optional<MotionWeights> weightsAt(const std::vector<double>& time, d
                        6 * s * (1 - s) / h,          (1 - s) * (1 - 3 * s),   s * (3 * s - 2)};
 }
 
-/// A value between two rows of a motion, linear between them.
-struct LinearWeights {
-  Eigen::Index row = 0;
-  double behind = 0;
-  template <class Values>
-  auto value(const Values& y) const {
-    return (1 - behind) * y(row) + behind * y(row + 1);
-  }
-  /// The same of whole rows, one column per quantity.
-  template <class Values>
-  Eigen::RowVectorXd rows(const Values& y) const {
-    return (1 - behind) * y.row(row) + behind * y.row(row + 1);
-  }
-};
-
-/// Of the rows, at least two, next to t; outside the motion, of its end.
-inline LinearWeights linearAt(const std::vector<double>& time, double t) {
-  const auto after = std::upper_bound(time.begin(), time.end(), t);
-  const auto k = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
-      after - time.begin() - 1, 0, static_cast<std::ptrdiff_t>(time.size()) - 2));
-  return {static_cast<Eigen::Index>(k),
-          std::clamp((t - time[k]) / (time[k + 1] - time[k]), 0.0, 1.0)};
-}
-
 }  // namespace bio

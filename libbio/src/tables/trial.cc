@@ -14,6 +14,7 @@
 #include "bio/tables/file_error.h"
 #include "bio/tables/trial_table.h"
 #include "bio/tables/unknown_column.h"
+#include "info/dynamics/linear_table.h"
 #include "model/listed_names.h"
 #include "tables/column_meaning.h"
 
@@ -329,13 +330,7 @@ const MeasuredChannel* Trial::measurementOf(const Observable& what) const {
 }
 
 double excitationAt(const Trial& trial, Eigen::Index muscle, double t) {
-  const auto& times = trial.times;
-  const auto column = trial.excitations.col(muscle);
-  const auto above = std::upper_bound(times.data(), times.data() + times.size(), t) - times.data();
-  if (above == 0) return column(0);
-  if (above == times.size()) return column(above - 1);
-  const double share = (t - times(above - 1)) / (times(above) - times(above - 1));
-  return column(above - 1) + share * (column(above) - column(above - 1));
+  return info::linearAt(trial.times, t).value(trial.excitations.col(muscle));
 }
 
 }  // namespace bio

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "info/dynamics/linear_table.h"
+
 namespace info {
 
 using Eigen::Index;
@@ -112,15 +114,11 @@ double BoundedProfiles::excess(const VectorXd& x) const {
 MatrixXd BoundedProfiles::values(const VectorXd& x, const std::vector<double>& times) const {
   MatrixXd result(static_cast<Index>(times.size()), static_cast<Index>(inputs_.size()));
   for (std::size_t t = 0; t < times.size(); ++t) {
-    const auto behind = std::upper_bound(knots_.begin(), knots_.end(), times[t]);
-    const auto k = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
-        behind - knots_.begin() - 1, 0, static_cast<std::ptrdiff_t>(knots_.size()) - 2));
-    const double w = std::clamp((times[t] - knots_[k]) / (knots_[k + 1] - knots_[k]), 0.0, 1.0);
+    const LinearWeights place = linearAt(knots_, times[t]);
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
       const ProfileLimits& limits = inputs_[i];
       const auto z = x.segment(static_cast<Index>(i) * numKnots(), numKnots());
-      const auto row = static_cast<Index>(k);
-      const double at = (1 - w) * z[row] + w * z[row + 1];
+      const double at = place.value(z);
       result(static_cast<Index>(t), static_cast<Index>(i)) =
           std::clamp((limits.lower + limits.upper) / 2 + at * (limits.upper - limits.lower) / 2,
                      limits.lower, limits.upper);

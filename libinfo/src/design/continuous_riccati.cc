@@ -110,20 +110,18 @@ class ContinuousSweep {
     const auto unpack = [=, n = c_.n](const double* z) {
       return Values{Eigen::Map<const MatrixXd>(z, n, n), Eigen::Map<const VectorXd>(z + nn, nr)};
     };
-    OdeProblem problem;
-    problem.size = nn + nr;
-    problem.field = [&](double left, const double* z, double* zDot) {
+    const auto field = [&](double left, const double* z, double* zDot) {
       const double nodes = std::clamp((duration - left) / step_, 0.0, double(c_.steps));
       const std::size_t k = std::min(static_cast<std::size_t>(nodes), c_.steps - 1);
       const Values rate = rates(at(k, nodes - static_cast<double>(k)), unpack(z));
       Eigen::Map<VectorXd>(zDot, nn) = rate.P.reshaped();
       Eigen::Map<VectorXd>(zDot + nn, nr) = rate.r;
     };
-    VectorXd z(problem.size);
+    VectorXd z(nn + nr);
     z << end().P.reshaped(), end().r;
     std::vector<double> times;
     for (std::size_t k = 0; k <= c_.steps; ++k) times.push_back(step_ * static_cast<double>(k));
-    const auto solution = solveOde(problem, z, MatrixXd(problem.size, 0), times, {});
+    const auto solution = solveOde(field, z, times);
     if (!solution.complete)
       throw std::domain_error(fmt::format("Riccati equation: {} at {} s", solution.why,
                                           duration - solution.reachedTime));

@@ -28,57 +28,22 @@ using Owned = std::unique_ptr<std::remove_pointer_t<T>, Releases>;
 /// The problem as the C callbacks see it; an exception of the field waits here until CVODES
 /// returns.
 struct Call {
-  const OdeProblem& problem;
-  long evaluations = 0;
-  std::exception_ptr thrown;
-  Eigen::MatrixXd psi, psiDot;
-
-  /// 0: fine, 1: not finite, try a smaller step, −1: stop.
-  template <class Work>
-  int guarded(const Work& work) {
-    try {
-      return work() ? 0 : 1;
-    } catch (...) {
-      thrown = std::current_exception();
-      return -1;
-    }
-  }
+  const OdeField& field;
+  std::exception_ptr thrown = nullptr;
 };
 
-bool finite(const double* values, Eigen::Index count) {
-  return Eigen::Map<const Eigen::VectorXd>(values, count).allFinite();
-}
-
+/// 0: fine, 1: not finite, try a smaller step, −1: stop.
 int field(realtype t, N_Vector x, N_Vector xDot, void* data) {
   Call& call = *static_cast<Call*>(data);
-  return call.guarded([&] {
-    ++call.evaluations;
-    call.problem.field(t, NV_DATA_S(x), NV_DATA_S(xDot));
-    return finite(NV_DATA_S(xDot), call.problem.size);
-  });
-}
-
-int fieldJacobian(realtype t, N_Vector x, N_Vector, SUNMatrix J, void* data, N_Vector, N_Vector,
-                  N_Vector) {
-  Call& call = *static_cast<Call*>(data);
-  return call.guarded([&] {
-    call.problem.jacobian(t, NV_DATA_S(x), SM_DATA_D(J));
-    return finite(SM_DATA_D(J), call.problem.size * call.problem.size);
-  });
-}
-
-int sensitivityField(int count, realtype t, N_Vector x, N_Vector, N_Vector* s, N_Vector* sDot,
-                     void* data, N_Vector, N_Vector) {
-  Call& call = *static_cast<Call*>(data);
-  return call.guarded([&] {
-    const Eigen::Index n = call.problem.size;
-    for (int j = 0; j < count; ++j)
-      call.psi.col(j) = Eigen::Map<const Eigen::VectorXd>(NV_DATA_S(s[j]), n);
-    call.problem.sensitivity(t, NV_DATA_S(x), call.psi.data(), call.psiDot.data());
-    for (int j = 0; j < count; ++j)
-      Eigen::Map<Eigen::VectorXd>(NV_DATA_S(sDot[j]), n) = call.psiDot.col(j);
-    return call.psiDot.allFinite();
-  });
+  try {
+    call.field(t, NV_DATA_S(x), NV_DATA_S(xDot));
+  } catch (...) {
+    call.thrown = std::current_exception();
+    return -1;
+  }
+  const bool finite =
+      Eigen::Map<const Eigen::VectorXd>(NV_DATA_S(xDot), NV_LENGTH_S(xDot)).allFinite();
+  return finite ? 0 : 1;
 }
 
 void silent(int, const char*, const char*, char*, void*) {}
@@ -113,8 +78,8 @@ void requirePositive(const char* quantity, double value, const char* unit) {
         fmt::format("{}: value is {} {}, must be > 0 and finite", quantity, value, unit));
 }
 
-void check(const OdeProblem& problem, const Eigen::VectorXd& x0, const Eigen::MatrixXd& psi0,
-           const std::vector<double>& times, const AdaptiveOptions& options) {
+void check(const Eigen::VectorXd& x0, const std::vector<double>& times,
+           const AdaptiveOptions& options) {
   requirePositive("relative tolerance", options.relativeTolerance, "");
   requirePositive("absolute tolerance", options.absoluteTolerance, "");
   if (!(options.largestTimeStep >= 0.0) || !std::isfinite(options.largestTimeStep))
@@ -123,10 +88,7 @@ void check(const OdeProblem& problem, const Eigen::VectorXd& x0, const Eigen::Ma
   if (options.maxSteps <= 0)
     throw std::domain_error(
         fmt::format("largest number of steps: value is {}, must be > 0", options.maxSteps));
-  requireLength("start x_0", x0.size(), problem.size);
-  requireLength("psi_0 columns", psi0.cols(), problem.sensitivityCount);
   if (!x0.allFinite()) throw std::domain_error("start x_0: must be finite");
-  if (!psi0.allFinite()) throw std::domain_error("start psi_0: must be finite");
   if (times.empty()) throw std::domain_error("times: number is 0, must be >= 1");
   if (!std::isfinite(times.front()))
     throw std::domain_error(fmt::format("times: time 0 is {} s, must be finite", times.front()));
@@ -138,71 +100,45 @@ void check(const OdeProblem& problem, const Eigen::VectorXd& x0, const Eigen::Ma
 
 }  // namespace
 
-AdaptiveTrajectory<dynamic, dynamic> solveOde(const OdeProblem& problem, const Eigen::VectorXd& x0,
-                                              const Eigen::MatrixXd& psi0,
-                                              const std::vector<double>& times,
-                                              const AdaptiveOptions& options) {
-  check(problem, x0, psi0, times, options);
-  const Eigen::Index n = problem.size, p = problem.sensitivityCount;
-  AdaptiveTrajectory<dynamic, dynamic> out;
-  const auto store = [&](double t, const Eigen::VectorXd& x, const Eigen::MatrixXd& psi) {
+AdaptiveTrajectory solveOde(const OdeField& rate, const Eigen::VectorXd& x0,
+                            const std::vector<double>& times, const AdaptiveOptions& options) {
+  check(x0, times, options);
+  const Eigen::Index n = x0.size();
+  AdaptiveTrajectory out;
+  const auto store = [&](double t, const double* x) {
     out.times.push_back(t);
-    out.x.push_back(x);
-    if (p > 0) out.psi.push_back(psi);
+    out.x.push_back(Eigen::Map<const Eigen::VectorXd>(x, n));
     out.reachedTime = t;
   };
-  store(times.front(), x0, psi0);
+  store(times.front(), x0.data());
   if (times.size() == 1) return out;
 
   // The solver and what it owns; destruction runs in reverse order.
   SUNContext rawContext = nullptr;
   require(SUNContext_Create(nullptr, &rawContext), "SUNContext_Create");
   const Owned<SUNContext> context(rawContext);
-  const auto vectorOf = [&](const double* values) {
-    Owned<N_Vector> v(N_VNew_Serial(n, context.get()));
-    std::copy_n(values, n, NV_DATA_S(v.get()));
-    return v;
-  };
-  const Owned<N_Vector> x = vectorOf(x0.data());
-  std::vector<Owned<N_Vector>> psi;
-  std::vector<N_Vector> psiPointers;
-  for (Eigen::Index j = 0; j < p; ++j) {
-    psi.push_back(vectorOf(psi0.col(j).data()));
-    psiPointers.push_back(psi.back().get());
-  }
+  const Owned<N_Vector> x(N_VNew_Serial(n, context.get()));
+  std::copy_n(x0.data(), n, NV_DATA_S(x.get()));
   const Owned<SUNMatrix> matrix(SUNDenseMatrix(n, n, context.get()));
   const Owned<SUNLinearSolver> linear(SUNLinSol_Dense(x.get(), matrix.get(), context.get()));
   const std::unique_ptr<void, Releases> memory(CVodeCreate(CV_BDF, context.get()));
   void* const cvode = memory.get();
 
-  Call call{problem, 0, nullptr, psi0, psi0};
+  Call call{rate};
   require(CVodeSetErrHandlerFn(cvode, silent, nullptr), "CVodeSetErrHandlerFn");
   require(CVodeInit(cvode, field, times.front(), x.get()), "CVodeInit");
   require(CVodeSetUserData(cvode, &call), "CVodeSetUserData");
   require(CVodeSStolerances(cvode, options.relativeTolerance, options.absoluteTolerance),
           "CVodeSStolerances");
   require(CVodeSetLinearSolver(cvode, linear.get(), matrix.get()), "CVodeSetLinearSolver");
-  if (problem.jacobian) require(CVodeSetJacFn(cvode, fieldJacobian), "CVodeSetJacFn");
   require(CVodeSetMaxNumSteps(cvode, options.maxSteps), "CVodeSetMaxNumSteps");
   require(CVodeSetMaxStep(cvode, options.largestTimeStep), "CVodeSetMaxStep");
   // u may be undefined beyond the last time
   require(CVodeSetStopTime(cvode, times.back()), "CVodeSetStopTime");
-  if (p > 0) {
-    require(CVodeSensInit(cvode, int(p), CV_STAGGERED, sensitivityField, psiPointers.data()),
-            "CVodeSensInit");
-    std::vector<double> absolute(std::size_t(p), options.absoluteTolerance);
-    require(CVodeSensSStolerances(cvode, options.relativeTolerance, absolute.data()),
-            "CVodeSensSStolerances");
-    require(CVodeSetSensErrCon(cvode, SUNTRUE), "CVodeSetSensErrCon");
-  }
-
-  Eigen::MatrixXd psiNow = psi0;
   for (std::size_t k = 1; k < times.size(); ++k) {
     double reached = times[k - 1];
-    int flag = CVode(cvode, times[k], x.get(), &reached, CV_NORMAL);
+    const int flag = CVode(cvode, times[k], x.get(), &reached, CV_NORMAL);
     if (call.thrown) std::rethrow_exception(call.thrown);
-    if (flag >= 0 && p > 0)
-      flag = std::min(flag, CVodeGetSens(cvode, &reached, psiPointers.data()));
     if (flag < 0) {
       out.complete = false;
       double current = reached;
@@ -210,12 +146,8 @@ AdaptiveTrajectory<dynamic, dynamic> solveOde(const OdeProblem& problem, const E
       out.why = fmt::format("stopped at {:.6g} s: {}", out.reachedTime, inWords(flag));
       break;
     }
-    for (Eigen::Index j = 0; j < p; ++j)
-      psiNow.col(j) = Eigen::Map<const Eigen::VectorXd>(NV_DATA_S(psiPointers[std::size_t(j)]), n);
-    store(times[k], Eigen::Map<const Eigen::VectorXd>(NV_DATA_S(x.get()), n), psiNow);
+    store(times[k], NV_DATA_S(x.get()));
   }
-  CVodeGetNumSteps(cvode, &out.steps);
-  out.evaluations = call.evaluations;
   return out;
 }
 

@@ -31,10 +31,6 @@ LeastSquares::LeastSquares(Predictor predictor, Measurements measurements,
         fmt::format("measurements: {} outputs × {} samples, must have {} outputs as the covariance "
                     "and at least one sample",
                     data.rows(), data.cols(), covariance.outputs()));
-  if (!covariance.isConstant() && covariance.samples() != data.cols())
-    throw std::invalid_argument(
-        fmt::format("measurements: {} samples, must be as many as the covariances, {}", data.cols(),
-                    covariance.samples()));
   if (observed.size() != 0 && (observed.rows() != data.rows() || observed.cols() != data.cols()))
     throw std::invalid_argument(fmt::format("measurements: observed is {} × {}, must be {} × {}",
                                             observed.rows(), observed.cols(), data.rows(),

@@ -19,13 +19,10 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 MatrixXd drawNoise(const OutputCovariance& covariance, Index n, RandomStream& random) {
-  if (!covariance.isConstant() && covariance.samples() != n)
-    throw std::invalid_argument(fmt::format(
-        "noise: {} samples, must be as many as the covariances, {}", n, covariance.samples()));
-  MatrixXd noise(covariance.outputs(), n), root;
+  MatrixXd noise(covariance.outputs(), n);
+  const MatrixXd root = covariance.sigma().llt().matrixL();
   for (Index k = 0; k < n; ++k) {
     for (double& entry : noise.col(k)) entry = random.normal();
-    if (k == 0 || !covariance.isConstant()) root = covariance.at(k).llt().matrixL();
     noise.col(k) = (root * noise.col(k)).eval();
   }
   return noise;

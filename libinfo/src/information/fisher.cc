@@ -40,28 +40,6 @@ MatrixXd fisherInformation(const std::vector<MatrixXd>& gamma_k, const OutputCov
   return fisherInformation(stack(gamma_k), covariance, observed);
 }
 
-MatrixXd continuousFisherInformation(const std::vector<double>& times, const MatrixXd& gamma,
-                                     const OutputCovariance& density) {
-  if (!gamma.allFinite())
-    throw std::domain_error("Fisher information: every entry of Γ = dy/dθ must be finite");
-  const Index h = density.outputs();
-  const Index n = static_cast<Index>(times.size());
-  if (n < 2 || gamma.rows() != n * h)
-    throw std::invalid_argument(fmt::format(
-        "Fisher information: {} rows of Γ, must be {} times × {} outputs", gamma.rows(), n, h));
-  const MatrixXd white = density.whiten(gamma);
-  MatrixXd information = MatrixXd::Zero(gamma.cols(), gamma.cols());
-  for (Index k = 0; k + 1 < n; ++k) {
-    const double step = times[static_cast<std::size_t>(k + 1)] - times[static_cast<std::size_t>(k)];
-    if (!(step > 0 && std::isfinite(step)))
-      throw std::invalid_argument(fmt::format("Fisher information: time {} must be later than {} s",
-                                              k + 1, times[static_cast<std::size_t>(k)]));
-    const auto both = white.middleRows(k * h, 2 * h);
-    information += 0.5 * step * both.transpose() * both;
-  }
-  return information;
-}
-
 MatrixXd cramerRaoBound(const MatrixXd& information, const std::vector<std::string>& names) {
   const Index p = information.rows();
   const auto name = [&](Index i) {

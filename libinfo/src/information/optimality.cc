@@ -60,15 +60,4 @@ Criterion criterion(Optimality which, const MatrixXd& information, double repeat
   throw std::invalid_argument("unknown optimality criterion");
 }
 
-Criterion softMinEigenvalue(const MatrixXd& information, double width) {
-  if (!(width > 0 && std::isfinite(width)))
-    throw std::invalid_argument(fmt::format("width {} of the soft minimum must be > 0", width));
-  const auto eigen = decompose(information);
-  const double least = eigen.values[0];
-  const VectorXd weight = (-(eigen.values.array() - least) / width).exp();
-  const double sum = weight.sum();
-  return {least - width * std::log(sum),
-          eigen.vectors * (weight / sum).asDiagonal() * eigen.vectors.transpose(), 1};
-}
-
 }  // namespace info

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "bio/skeleton/simbody_tree.h"
 #include "libbio/simulation/arm_of_seven.h"
+#include "second_ways/simbody_tree.h"
 #include "support/arm_models.h"
 #include "support/throws_saying.h"
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bio/skeleton/simbody_tree.h"
 #include "info/discovery/likelihood/hypothesis.h"
 #include "libbio/simulation/arm_of_seven.h"
+#include "second_ways/simbody_tree.h"
 #include "support/cut_trial.h"
 #include "support/shipped_elbow.h"
 

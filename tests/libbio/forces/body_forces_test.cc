@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "bio/simulation/simulate_batch.h"
-#include "bio/skeleton/simbody_tree.h"
 #include "libbio/forces/arm_with_forces.h"
+#include "second_ways/simbody_tree.h"
 #include "simulation/other_forces.h"
 #include "simulation/system_dynamics.h"
 #include "support/sensitivity_differences.h"

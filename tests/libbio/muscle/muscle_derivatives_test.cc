@@ -2,7 +2,6 @@
 // through the law and against differences of the law.
 #include <gtest/gtest.h>
 
-#include "bio/muscle/fibre_hessian.h"
 #include "bio/muscle/fibre_rest.h"
 #include "bio/muscle/muscle_sensitivity.h"
 #include "support/finite_difference.h"
@@ -203,36 +202,6 @@ TYPED_TEST(MuscleDerivatives, OfTheRigidForceAreThoseOfDualNumbersAndDifferences
   });
   EXPECT_LT(byDual, 1e-9);
   std::printf("rigid: dual %.1e, difference %.1e\n", byDual, byDifference);
-}
-
-TYPED_TEST(MuscleDerivatives, OfSecondOrderAreDifferencesOfTheFirstAndSymmetric) {
-  double worst = 0, asymmetry = 0;
-  this->forEach([&](const auto&, const auto& m, const MuscleState& s) {
-    const FibreRateHessian h = fibreRateHessian(m, s.activation, s.fibreLength, s.pathLength);
-    const double scaleV = h.d2V.cwiseAbs().maxCoeff(), scaleF = h.d2F.cwiseAbs().maxCoeff() + 1;
-    asymmetry = std::max({asymmetry, (h.d2V - h.d2V.transpose()).cwiseAbs().maxCoeff() / scaleV,
-                          (h.d2F - h.d2F.transpose()).cwiseAbs().maxCoeff() / scaleF});
-    for (int i = 0; i < 3; ++i) {
-      const auto along = [&](double x, int which) {
-        const auto r =
-            m.fibreRate(s.activation + (i == 0 ? x : 0), s.fibreLength + (i == 1 ? x : 0),
-                        s.pathLength + (i == 2 ? x : 0));
-        const double all[] = {r.dV_dActivation,  r.dV_dFibreLength, r.dV_dPathLength, 0,
-                              r.dF_dFibreLength, r.dF_dPathLength};
-        return all[which];
-      };
-      const double step = i == 0 ? 1e-5 : 1e-7;
-      for (int j = 0; j < 3; ++j) {
-        const double dV = centralDifference([&](double x) { return along(x, j); }, 0, step);
-        const double dF = centralDifference([&](double x) { return along(x, 3 + j); }, 0, step);
-        worst = std::max({worst, relativeError(h.d2V(i, j), dV, scaleV),
-                          relativeError(h.d2F(i, j), dF, scaleF)});
-      }
-    }
-  });
-  EXPECT_LT(asymmetry, 1e-9);
-  EXPECT_LT(worst, 1e-6);
-  std::printf("second: asymmetry %.1e, difference %.1e\n", asymmetry, worst);
 }
 
 TYPED_TEST(MuscleDerivatives, OfTheRestAreDifferencesOfTheRest) {

@@ -186,56 +186,6 @@ TEST(SchutteMuscle, FirstDerivativesAgreeThreeWays) {
   }
 }
 
-TEST(SchutteMuscle, SecondDerivativesAgreeThreeWays) {
-  using Inner = info::Dual<3>;
-  using Dual33 = info::Dual<3, Inner>;
-  std::mt19937 random(4);
-  int compared = 0;
-  for (const SchutteParameters& p : elbowMuscles()) {
-    const Compiled c(p);
-    const SchutteQuantities<double> q = schutteQuantities(p);
-    const auto constant = [](double x) { return Dual33(Inner(x)); };
-    const SchutteMuscle<Dual33> dualMuscle(
-        {constant(q.maxIsometricForce), constant(q.optimalFibreLength),
-         constant(q.tendonSlackLength), constant(q.pennation), constant(q.timeScale),
-         constant(q.damping)},
-        c.curves);
-    for (int i = 0; i < 60; ++i) {
-      const State s = randomState(random, p);
-      const FibreRateHessian hessian =
-          fibreRateHessian(c.muscle, s.activation, s.fibreLength, s.muscleTendonLength);
-      const FibreRateDerivatives first =
-          fibreRateDerivatives(c.muscle, s.activation, s.fibreLength, s.muscleTendonLength);
-      EXPECT_EQ(hessian.first.dV_dFibreLength, first.dV_dFibreLength);
-      const auto seeded = [](double x, int k) { return Dual33(Inner(x, 3, k), 3, k); };
-      const auto dual = dualMuscle.fibreVelocity(seeded(s.activation, 0), seeded(s.fibreLength, 1),
-                                                 seeded(s.muscleTendonLength, 2));
-      const double scale = 1 + hessian.d2V.cwiseAbs().maxCoeff();
-      const double scaleF = 1 + hessian.d2F.cwiseAbs().maxCoeff();
-      for (int j = 0; j < 3; ++j) {
-        for (int k = 0; k < 3; ++k) {
-          EXPECT_NEAR(hessian.d2V(j, k), dual.fibreVelocity.derivatives()[j].derivatives()[k],
-                      1e-10 * scale);
-          EXPECT_NEAR(hessian.d2F(j, k), dual.tendonForce.derivatives()[j].derivatives()[k],
-                      1e-10 * scaleF);
-        }
-      }
-      // differences of the first derivatives, away from kinks
-      const auto slope = [&](double x) {
-        return fibreRateDerivatives(c.muscle, s.activation, x, s.muscleTendonLength)
-            .dV_dFibreLength;
-      };
-      const double h = 1e-6;
-      const double wide = support::centralDifference(slope, s.fibreLength, 2 * h);
-      const double narrow = support::centralDifference(slope, s.fibreLength, h);
-      if (std::abs(wide - narrow) > 1e-6 * scale) continue;  // a kink or a knot inside
-      EXPECT_NEAR(hessian.d2V(1, 1), narrow, 1e-5 * scale);
-      ++compared;
-    }
-  }
-  EXPECT_GT(compared, 300);  // of 480
-}
-
 // Derivatives in the parameters flow through the scalar type.
 TEST(SchutteMuscle, ParameterDerivativesAgreeWithDifferences) {
   using Dual6 = info::Dual<6>;

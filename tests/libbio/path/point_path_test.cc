@@ -7,8 +7,8 @@
 
 #include "bio/path/surface/wrap_cylinder.h"
 #include "bio/path/surface/wrap_sphere.h"
-#include "bio/skeleton/simbody_tree.h"
 #include "bio/skeleton/tree_motion.h"
+#include "second_ways/simbody_tree.h"
 #include "support/allocations.h"
 #include "support/tree_models.h"
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <random>
 
-#include "bio/skeleton/simbody_tree.h"
 #include "bio/skeleton/tree_motion.h"
+#include "second_ways/simbody_tree.h"
 #include "support/allocations.h"
 #include "support/tree_models.h"
 

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "bio/skeleton/simbody_tree.h"
+#include "second_ways/simbody_tree.h"
 #include "support/arm_models.h"
 
 namespace bio {

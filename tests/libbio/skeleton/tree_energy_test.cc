@@ -4,9 +4,9 @@
 
 #include <random>
 
-#include "bio/skeleton/simbody_tree.h"
 #include "bio/skeleton/tree_energy_bodies.h"
 #include "bio/skeleton/tree_motion.h"
+#include "second_ways/simbody_tree.h"
 #include "support/allocations.h"
 #include "support/tree_models.h"
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "libinfo/dynamics/legendre.h"
 #include "robots/cart_double_pendulum.h"
 
 namespace {

@@ -14,6 +14,14 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using info::Predictor;
 
+// u_k = u(k·Δt) for k = 0 … K.
+template <info::StepMap M, class F>
+std::vector<info::InputOf<M>> sampleInput(const F& u, double timeStep, std::size_t steps) {
+  std::vector<info::InputOf<M>> inputs;
+  for (std::size_t k = 0; k <= steps; ++k) inputs.push_back(u(static_cast<double>(k) * timeStep));
+  return inputs;
+}
+
 // Largest deviation of Γ and of the contracted curvature from central differences, relative.
 struct Deviation {
   double first, second;
@@ -45,7 +53,7 @@ TEST(Predictor, HasTheDerivativesOfItsOutputsThroughAnExplicitStep) {
   const auto u = [](double t) { return Eigen::Matrix<double, 1, 1>(2 * std::cos(3 * t) + t); };
   const auto predictor =
       info::makePredictor(Map{{}, 0.02}, info::Experiment<Map>{Eigen::Vector4d(0, 0.3, 0, -0.2),
-                                                               info::sampleInput<Map>(u, 0.02, 100),
+                                                               sampleInput<Map>(u, 0.02, 100),
                                                                info::stepsEvery(0, 5, 100)});
   const auto sd = compare(predictor, Eigen::Vector2d(0.12, 0.5));
   EXPECT_LT(sd.first, 1e-8);
@@ -56,10 +64,9 @@ TEST(Predictor, HasTheDerivativesOfItsOutputsThroughAnExplicitStep) {
 TEST(Predictor, HasTheDerivativesOfItsOutputsThroughAnImplicitStep) {
   using Map = info::ImplicitMidpoint<info::Pendulum>;
   const auto u = [](double t) { return Eigen::Matrix<double, 1, 1>(0.5 * std::sin(t)); };
-  const auto predictor =
-      info::makePredictor(Map{{}, 0.05}, info::Experiment<Map>{Eigen::Vector2d(1, 0),
-                                                               info::sampleInput<Map>(u, 0.05, 40),
-                                                               info::stepsEvery(1, 1, 40)});
+  const auto predictor = info::makePredictor(
+      Map{{}, 0.05}, info::Experiment<Map>{Eigen::Vector2d(1, 0), sampleInput<Map>(u, 0.05, 40),
+                                           info::stepsEvery(1, 1, 40)});
   const auto sd = compare(predictor, Eigen::Vector2d(0.8, 0.1));
   EXPECT_LT(sd.first, 1e-7);
   EXPECT_LT(sd.second, 1e-6);

@@ -43,56 +43,6 @@ TEST(Fisher, AddsUpOverIndependentSamplesAndSkipsMissingOnes) {
             1e-14 * all.norm());
 }
 
-TEST(Fisher, WeighsEachSampleByItsOwnCovariance) {
-  const MatrixXd one = MatrixXd::Ones(1, 1);
-  const auto covariance = OutputCovariance::perSample({one, 4 * one});
-  EXPECT_DOUBLE_EQ(
-      info::fisherInformation(std::vector<MatrixXd>{2 * one, 6 * one}, covariance)(0, 0), 4 + 9);
-}
-
-// ∫₀^∞ t² e^(−2ct) dt = 1/(4c³): information about the rate of a decay measured for ever.
-TEST(Fisher, OfAContinuousDecayApproachesItsClosedFormWithOrderTwo) {
-  const double c = 0.7, exact = 1 / (4 * c * c * c);
-  const auto error = [&](int n) {
-    std::vector<double> times;
-    MatrixXd gamma(n + 1, 1);
-    for (int k = 0; k <= n; ++k) {
-      times.push_back(40.0 * k / n);
-      gamma(k, 0) = -times.back() * std::exp(-c * times.back());
-    }
-    return std::abs(info::continuousFisherInformation(times, gamma, kUnit)(0, 0) / exact - 1);
-  };
-  EXPECT_LT(error(4000), 1e-8);  // even better than order two here: the integrand's odd derivatives
-                                 // nearly vanish at both ends
-  // a cut-off decay has ends, and there order 2 shows
-  const auto cut = [&](int n) {
-    std::vector<double> times;
-    MatrixXd gamma(n + 1, 1);
-    for (int k = 0; k <= n; ++k) {
-      times.push_back(1.0 * k / n);
-      gamma(k, 0) = -times.back() * std::exp(-c * times.back());
-    }
-    const double a = 2 * c;
-    const double value = 2 / (a * a * a) - std::exp(-a) * (1 / a + 2 / (a * a) + 2 / (a * a * a));
-    return std::abs(info::continuousFisherInformation(times, gamma, kUnit)(0, 0) / value - 1);
-  };
-  EXPECT_NEAR(std::log2(cut(50) / cut(100)), 2, 0.05);
-}
-
-TEST(Fisher, OfDenseSamplesIsTheContinuousOneDividedByTheirPeriod) {
-  const int n = 2000;
-  const double dt = 5.0 / n;
-  std::vector<double> times;
-  MatrixXd gamma(n + 1, 2);
-  for (int k = 0; k <= n; ++k) {
-    times.push_back(k * dt);
-    gamma.row(k) << std::sin(2 * times.back()), times.back();
-  }
-  const MatrixXd dense = info::fisherInformation(gamma, kUnit) * dt;
-  const MatrixXd integral = info::continuousFisherInformation(times, gamma, kUnit);
-  EXPECT_LT((dense - integral).norm(), 2e-3 * integral.norm());
-}
-
 // The bound must not depend on units: rescaled parameters give the rescaled bound, however far.
 TEST(Fisher, BoundFollowsAChangeOfUnits) {
   const VectorXd scale = (VectorXd(2) << 1e-9, 1e6).finished();
@@ -146,12 +96,6 @@ TEST(Fisher, RefusesWhatItCannotMean) {
   EXPECT_THROW(info::fisherInformation(nan, kUnit), std::domain_error);
   EXPECT_THROW(info::cramerRaoBound(nan), std::domain_error);
   EXPECT_THROW(info::cramerRaoBound(MatrixXd::Ones(1, 2)), std::invalid_argument);
-  const MatrixXd two = MatrixXd::Ones(2, 1);
-  EXPECT_THROW(info::continuousFisherInformation({0, 0}, two, kUnit), std::invalid_argument);
-  EXPECT_THROW(info::continuousFisherInformation({0, 1, 2}, two, kUnit), std::invalid_argument);
-  EXPECT_THROW(
-      info::continuousFisherInformation({0, 1}, MatrixXd::Constant(2, 1, std::nan("")), kUnit),
-      std::domain_error);
 }
 
 }  // namespace

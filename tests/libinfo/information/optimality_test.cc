@@ -76,21 +76,6 @@ TEST(Optimality, DescendsInConditionFromRepeatedExtremes) {
             1e-15);
 }
 
-TEST(Optimality, SoftMinimumIsSmoothThroughARepeatedEigenvalue) {
-  const MatrixXd repeated = withEigenvalues(Eigen::Vector3d(1, 1, 6));
-  const double h = 1e-4;
-  for (double width : {0.05, 1.0}) {
-    const auto at = info::softMinEigenvalue(repeated, width);
-    const double difference = (info::softMinEigenvalue(repeated + h * kMove, width).value -
-                               info::softMinEigenvalue(repeated - h * kMove, width).value) /
-                              (2 * h);
-    EXPECT_NEAR(at.dvalue_dI.cwiseProduct(kMove).sum(), difference, 1e-6);
-    EXPECT_NEAR(at.dvalue_dI.trace(), 1, 1e-14);
-    EXPECT_LE(at.value, 1);
-    EXPECT_GE(at.value, 1 - width * std::log(3.0));
-  }
-}
-
 TEST(Optimality, RefusesWhatIsNoInformationMatrix) {
   EXPECT_THROW(criterion(Optimality::d, withEigenvalues(Eigen::Vector3d(0, 1, 2)) -
                                             1e-9 * MatrixXd::Identity(3, 3)),
@@ -99,8 +84,6 @@ TEST(Optimality, RefusesWhatIsNoInformationMatrix) {
   EXPECT_THROW(criterion(Optimality::e, MatrixXd::Ones(1, 2)), std::invalid_argument);
   EXPECT_THROW(criterion(Optimality::e, MatrixXd((Eigen::Matrix2d() << 1, 2, 0, 1).finished())),
                std::invalid_argument);
-  EXPECT_THROW(info::softMinEigenvalue(kDistinct, 0), std::invalid_argument);
-  EXPECT_THROW(info::softMinEigenvalue(kDistinct, std::nan("")), std::invalid_argument);
 }
 
 }  // namespace

@@ -22,14 +22,6 @@ TEST(OutputCovariance, WhitensSoThatProductsCarryItsInverse) {
   EXPECT_LT((white.transpose() * white - expected).norm(), 1e-13 * expected.norm());
 }
 
-TEST(OutputCovariance, UsesTheCovarianceOfEachSample) {
-  const MatrixXd a = MatrixXd::Random(4, 2);
-  const MatrixXd white = OutputCovariance::perSample({kSigma, 9 * kSigma}).whiten(a);
-  const MatrixXd expected = a.topRows(2).transpose() * kSigma.inverse() * a.topRows(2) +
-                            a.bottomRows(2).transpose() * kSigma.inverse() * a.bottomRows(2) / 9;
-  EXPECT_LT((white.transpose() * white - expected).norm(), 1e-13 * expected.norm());
-}
-
 // An output that was not measured leaves the marginal variance of the other: 1/4, not (Σ⁻¹)_00 =
 // 2/7.
 TEST(OutputCovariance, UsesTheMarginalWhereAnOutputIsMissing) {
@@ -61,12 +53,7 @@ TEST(OutputCovariance, RefusesWhatIsNoCovariance) {
   bad(1, 1) = 0;
   EXPECT_THAT(make(bad), ThrowsMessage<std::domain_error>(HasSubstr("output 1")));
   EXPECT_THROW(OutputCovariance(MatrixXd::Identity(2, 3)), std::invalid_argument);
-  EXPECT_THROW(OutputCovariance::perSample({}), std::invalid_argument);
-  EXPECT_THROW(OutputCovariance::perSample({kSigma, MatrixXd::Identity(3, 3)}),
-               std::invalid_argument);
   EXPECT_THROW(OutputCovariance(kSigma).whiten(MatrixXd::Ones(3, 1)), std::invalid_argument);
-  EXPECT_THROW(OutputCovariance::perSample({kSigma, kSigma}).whiten(MatrixXd::Ones(6, 1)),
-               std::invalid_argument);
 }
 
 }  // namespace

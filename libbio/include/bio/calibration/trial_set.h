@@ -67,8 +67,6 @@ class TrialSet {
   /// With which it was made of the model.
   const SystemOptions& options() const { return options_; }
   const std::vector<Trial>& trials() const { return trials_; }
-  /// Initial state of each trial before the estimation.
-  const std::vector<TrialBeginning>& beginnings() const { return beginnings_; }
   /// Trial by trial.
   const std::vector<MeasuredSeries>& series() const { return series_; }
   const std::vector<MeasuredGroup>& channels() const { return channels_; }
@@ -143,7 +141,6 @@ class TrialSet {
   Eigen::VectorXd thetaOf(std::size_t trial, const Eigen::VectorXd& theta) const;
 
   std::vector<Trial> trials_;
-  std::vector<TrialBeginning> beginnings_;
   int threads_;
   SystemOptions options_;
   std::unique_ptr<const MusculoskeletalSystem> arm_;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <complex>
 #include <vector>
 
 namespace bio {
@@ -30,10 +29,10 @@ enum class Passes { once, forwardAndBackward };
 
 /// Butterworth filters by the bilinear transform with prewarped edges. With w = tan(πf/fs) the gain
 /// of one pass is exactly |H|² = 1/(1 + Ω²ⁿ), n the order of the low-pass prototype, and
-///     low-pass   Ω = w/w_c            high-pass  Ω = w_c/w
+///     low-pass   Ω = w/w_c
 ///     band-pass  Ω = (w² − w_l w_h)/((w_h − w_l) w)          band-stop  the reciprocal
 /// so a band-pass or band-stop of order n has 2n poles and slopes of order n on both sides. Unit
-/// gain at 0 (low-pass, band-stop), fs/2 (high-pass) or the band's centre, |Ω| = 1 at every edge.
+/// gain at 0 (low-pass, band-stop) or the band's centre, |Ω| = 1 at every edge.
 /// Edges (cutoff, low, high) are in Hz, 0 < edge < sampleRate/2, low < high. Source: Butterworth
 /// 1930; Oppenheim & Schafer, Discrete-Time Signal Processing, section 7.1.
 ///
@@ -42,30 +41,21 @@ enum class Passes { once, forwardAndBackward };
 /// @throws std::invalid_argument naming the edge, order or rate that breaks its rule
 Filter butterworthLowPass(int order, double cutoff, double sampleRate,
                           Passes passes = Passes::once);
-Filter butterworthHighPass(int order, double cutoff, double sampleRate,
-                           Passes passes = Passes::once);
 Filter butterworthBandPass(int order, double low, double high, double sampleRate,
                            Passes passes = Passes::once);
 Filter butterworthBandStop(int order, double low, double high, double sampleRate,
                            Passes passes = Passes::once);
 
-/// H at a frequency [Hz] of one pass: z = exp(2πi f/fs).
-std::complex<double> frequencyResponse(const Filter& filter, double frequency);
-
 /// Samples until the slowest pole has decayed to `remainder` (0 < remainder < 1).
 Eigen::Index settlingSamples(const Filter& filter, double remainder = 1e-6);
-
-/// One pass forward in time, starting in the steady state of the first sample, so that a constant
-/// signal passes without a transient.
-/// @throws std::invalid_argument if the signal is empty or holds a value that is not finite
-Eigen::VectorXd filterForward(const Filter& filter, const Eigen::VectorXd& signal);
 
 /// Extrapolation of a signal beyond its ends. `odd`, 2·x₀ − x, continues value and slope and keeps
 /// the end value; `even`, x, continues a level, for signals that fluctuate about one, such as a
 /// rectified EMG, whose single end value is not representative.
 enum class Reflection { odd, even };
 
-/// A forward and a backward pass: zero phase, gain |H|². Both ends are extended by reflection over
+/// A forward and a backward pass: zero phase, gain |H|², each in the steady state of its first
+/// sample, so that a constant passes without a transient. Both ends are extended by reflection over
 /// the memory of the filter or the length of the signal.
 /// @throws std::invalid_argument if the signal has fewer than 6·sections + 1 samples or holds a
 /// value that is not finite

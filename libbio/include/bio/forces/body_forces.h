@@ -73,7 +73,6 @@ class BodyForces {
   BodyForces(const Model& model, const Skeleton& skeleton);
 
   bool empty() const { return loads_.empty() && springs_.empty() && bushings_.empty(); }
-  bool hasLoads() const { return !loads_.empty(); }
   /// The segments whose motion add() needs, in its order; a copy to be kept up to date.
   std::vector<MovingSegment> segments() const { return segments_; }
 

@@ -88,7 +88,6 @@ class HillMuscle {
   bool hasFibreState() const { return !parameters().ignoreTendonCompliance; }
   /// Below it OpenSim holds the fibre [m], if the class does so.
   const Plain& shortestFibre() const { return shortest_; }
-  bool isHeldByOpenSim(double fibreLength) const { return fibreLength <= shortestFibre(); }
 
   /// ℓ cos α [m].
   template <class U>

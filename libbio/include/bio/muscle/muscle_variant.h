@@ -51,9 +51,6 @@ using MuscleClasses = ClassList<Thelen2003, Millard2012, DeGrooteFregly2016, Rig
 using AnyParameters = MuscleClasses::Parameters;
 using AnyMuscle = MuscleClasses::Muscle;
 
-/// OpenSim's name of the class.
-std::string_view classNameOf(const AnyParameters& parameters);
-
 /// The muscle, after its rules were checked.
 /// @throws std::invalid_argument naming number, value and rule
 AnyMuscle compile(const AnyParameters& parameters);

@@ -268,15 +268,6 @@ FibreRateDerivatives fibreRateDerivatives(const SchutteMuscle<double>& muscle, d
                                           double fibreLength, double muscleTendonLength,
                                           SchuttePieces& last);
 
-/// Second derivatives over (activation, ℓ, ℓ_MT), in that order.
-struct FibreRateHessian {
-  FibreRateDerivatives first;
-  Eigen::Matrix3d d2V;  ///< ∂²V
-  Eigen::Matrix3d d2F;  ///< ∂²F_T; F_T does not depend on activation
-};
-FibreRateHessian fibreRateHessian(const SchutteMuscle<double>& muscle, double activation,
-                                  double fibreLength, double muscleTendonLength);
-
 /// The parts of the fibre force and the power of each, for reports.
 struct MuscleForces {
   double tendonForce;        ///< F_T [N]

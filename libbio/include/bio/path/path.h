@@ -124,26 +124,11 @@ class MusclePath {
   std::shared_ptr<const PathTable> table_;
 };
 
-// Compiled once, in src/instances; other scalars need bio/path/path_length.h.
+// Compiled once; other sizes and scalars need bio/path/path_length.h.
 extern template LengthJet<1> MusclePath::length<1>(const Eigen::Matrix<double, 1, 1>&,
                                                    const RigidMotion<double, 1>*,
                                                    const Eigen::Matrix<double, 1, 1>*) const;
 extern template std::vector<Eigen::Vector3d> MusclePath::pathPoints<1>(
     const Eigen::Matrix<double, 1, 1>&, const RigidMotion<double, 1>*, double) const;
-extern template LengthJet<2> MusclePath::length<2>(const Eigen::Matrix<double, 2, 1>&,
-                                                   const RigidMotion<double, 2>*,
-                                                   const Eigen::Matrix<double, 2, 1>*) const;
-extern template std::vector<Eigen::Vector3d> MusclePath::pathPoints<2>(
-    const Eigen::Matrix<double, 2, 1>&, const RigidMotion<double, 2>*, double) const;
-extern template LengthJet<3> MusclePath::length<3>(const Eigen::Matrix<double, 3, 1>&,
-                                                   const RigidMotion<double, 3>*,
-                                                   const Eigen::Matrix<double, 3, 1>*) const;
-extern template std::vector<Eigen::Vector3d> MusclePath::pathPoints<3>(
-    const Eigen::Matrix<double, 3, 1>&, const RigidMotion<double, 3>*, double) const;
-extern template LengthJet<4> MusclePath::length<4>(const Eigen::Matrix<double, 4, 1>&,
-                                                   const RigidMotion<double, 4>*,
-                                                   const Eigen::Matrix<double, 4, 1>*) const;
-extern template std::vector<Eigen::Vector3d> MusclePath::pathPoints<4>(
-    const Eigen::Matrix<double, 4, 1>&, const RigidMotion<double, 4>*, double) const;
 
 }  // namespace bio

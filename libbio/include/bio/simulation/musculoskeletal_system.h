@@ -23,9 +23,9 @@ class PostureSamples;
 
 struct SystemOptions {
   SkeletonOptions skeleton;  ///< free coordinates, and values of the locked ones
-  std::vector<std::string>
-      wrapAsCylinder;          ///< ellipsoids with two equal semi-axes to treat as cylinders
-  SchutteOptions muscle;       ///< of Schutte's class: activation floor, negative forces
+  std::vector<std::string> wrapAsCylinder =
+      {};                      ///< ellipsoids with two equal semi-axes to treat as cylinders
+  SchutteOptions muscle = {};  ///< of Schutte's class: activation floor, negative forces
   bool tabulatePaths = false;  ///< MusclePath::tabulate; worthwhile after a few simulations
   /// Those of the free coordinates whose motion is given (SimulationOptions::prescribed): by a
   /// trial, or by the model's own function of time (courseOf()).

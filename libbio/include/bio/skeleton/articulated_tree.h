@@ -83,7 +83,7 @@ struct TreeMotion {
 /// Bodies that do not move against each other are lumped. Angles are those of OpenSim's custom
 /// joints: shifts first, then turns. Screws are about the ground's origin, so relative rounding
 /// errors grow with the square of (distance from it over size of the body).
-/// Independent checks: skeleton.h up to four coordinates, simbody_tree.h for any number.
+/// Independent checks: skeleton.h up to four coordinates, Simbody for any number.
 ///
 /// Constant after construction; evaluation is pure and does not allocate.
 class ArticulatedTree {

@@ -25,8 +25,8 @@ Placement<double> placementOf(const FramePlacement& frame);
 /// `freeCoordinates` nor coupled to one of them is removed: its joint axis becomes part of a rigid
 /// segment.
 struct SkeletonOptions {
-  std::vector<std::string> freeCoordinates;    ///< order = order of q; at least one
-  std::map<std::string, double> lockedValues;  ///< overrides defaults [rad] or [m]
+  std::vector<std::string> freeCoordinates;         ///< order = order of q; at least one
+  std::map<std::string, double> lockedValues = {};  ///< overrides defaults [rad] or [m]
   /// Spatial algebra (articulated_tree.h) for few coordinates, too; more than
   /// maxFixedCoordinates always have it.
   bool asTree = false;
@@ -88,10 +88,10 @@ struct InertiaJet {
 /// P = [Σ m r rᵀ, Σ m r; ·, Σ m] the second moments of a segment and X its 4×4 placement,
 ///     M_kl = Σ tr(∂_kX P ∂_lXᵀ),   V = −Σ g·(R Σ m r + p Σ m)
 /// (equivalent to the usual ½ m|ċ|² + ½ ωᵀJω; no angular velocity is needed). Independent check:
-/// simbody_tree.h, which computes the complete model, including locked coordinates, with Simbody.
+/// Simbody on the complete model, including locked coordinates (validation/second_ways).
 ///
 /// More than maxFixedCoordinates, or maxFixedSegments, are simulated by tree() instead of motions()
-/// and inertia(), which remain, up to four coordinates, as an independent check.
+/// and inertia(), which check it for a few coordinates (validation/second_ways).
 ///
 /// Constant after construction; all evaluation functions are pure and do not allocate.
 class Skeleton {
@@ -181,22 +181,10 @@ class Skeleton {
   std::shared_ptr<const ArticulatedTree> tree_;
 };
 
-// Compiled once, in src/instances; other scalars need bio/skeleton/skeleton_motion.h.
+// Compiled once; other sizes and scalars need bio/skeleton/skeleton_motion.h.
 extern template void Skeleton::motions<double, 1>(const Eigen::Matrix<double, 1, 1>&,
                                                   RigidMotion<double, 1>*) const;
 extern template InertiaJet<1> Skeleton::inertia<1>(const Eigen::Matrix<double, 1, 1>&,
                                                    const RigidMotion<double, 1>*) const;
-extern template void Skeleton::motions<double, 2>(const Eigen::Matrix<double, 2, 1>&,
-                                                  RigidMotion<double, 2>*) const;
-extern template InertiaJet<2> Skeleton::inertia<2>(const Eigen::Matrix<double, 2, 1>&,
-                                                   const RigidMotion<double, 2>*) const;
-extern template void Skeleton::motions<double, 3>(const Eigen::Matrix<double, 3, 1>&,
-                                                  RigidMotion<double, 3>*) const;
-extern template InertiaJet<3> Skeleton::inertia<3>(const Eigen::Matrix<double, 3, 1>&,
-                                                   const RigidMotion<double, 3>*) const;
-extern template void Skeleton::motions<double, 4>(const Eigen::Matrix<double, 4, 1>&,
-                                                  RigidMotion<double, 4>*) const;
-extern template InertiaJet<4> Skeleton::inertia<4>(const Eigen::Matrix<double, 4, 1>&,
-                                                   const RigidMotion<double, 4>*) const;
 
 }  // namespace bio

@@ -119,9 +119,4 @@ bool cylinderTouches(double radius, double length, Side side, const Vec3<double>
   return std::abs(contact.p_CA.z()) <= length / 2 || std::abs(contact.p_CB.z()) <= length / 2;
 }
 
-bool sphereTouches(double radius, Way way, const Vec3<double>& p_CP, const Vec3<double>& p_CQ) {
-  if (!(p_CP.norm() > radius) || !(p_CQ.norm() > radius)) return false;
-  return sphereGeometry(radius, way, p_CP, p_CQ).touches;
-}
-
 }  // namespace bio

@@ -26,7 +26,7 @@ class LaneCubic {
 
   /// PiecewiseCubic::evaluate, of a muscle without pieces kept beside it
   struct Elsewhere {};
-  schutte::CurveJet<LaneNumber> evaluate(const LaneNumber& x, Elsewhere) const {
+  muscles::CurvePoint<LaneNumber> evaluate(const LaneNumber& x, Elsewhere) const {
     const CubicPiece& c = holding(x);
     const Real t = x.v - c.start;
     return {c.value + t * (c.slope + t * (c.quadratic + t * c.cubic)),
@@ -130,8 +130,7 @@ namespace {
 
 template <class R>
 muscles::CurvePoint<R> splinePoint(const LaneCubic& curve, const LaneNumber& x) {
-  const schutte::CurveJet<LaneNumber> y = curve.evaluate(x, LaneCubic::Elsewhere{});
-  return {y.value, y.slope, y.curvature};
+  return curve.evaluate(x, LaneCubic::Elsewhere{});
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ struct FullRate {
                                                 Rate& rate) {
   LaneSchutte::Pieces none;
   const schutte::ForceBalance<LaneNumber> f =
-      schutte::forceBalance<false>(muscle, s.activation, s.fibreLength, s.pathLength, none);
+      schutte::forceBalance(muscle, s.activation, s.fibreLength, s.pathLength, none);
   const FullRate r = schutte::assemble<FullRate>(
       muscle, f, schutte::velocity(f.P, f.A, muscle.quantities().damping));
   rate = {r.fibreVelocity,          r.tendonForce,     r.dV_dFibreLength,

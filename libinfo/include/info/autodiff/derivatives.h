@@ -99,33 +99,6 @@ Matrix<double, N, N> contractedHessian(const F& function, const Vector<double, N
   return hessian;
 }
 
-/// The product (Σ_i w_i ∂²F_i/∂z²) d without the Hessian: N + 1 directions, memory O(N).
-template <class F, int N, int Rows>
-Vector<double, N> hessianVectorProduct(const F& function, const Vector<double, N>& z,
-                                       const Vector<double, Rows>& w, const Vector<double, N>& d) {
-  constexpr int block = detail::directionBlock(N);
-  using Inner = Dual<1>;
-  using Outer = Dual<block, Inner>;
-  const Eigen::Index n = z.size();
-  Vector<double, N> product(n);
-  product.setZero();
-  Vector<Outer, N> seeded(n);
-  for (Eigen::Index first = 0; first < n; first += block) {
-    for (Eigen::Index j = 0; j < n; ++j) {
-      Inner value(z[j]);
-      value.derivatives()[0] = d[j];
-      seeded[j].value() = value;
-      for (Eigen::Index e = 0; e < block; ++e)
-        seeded[j].derivatives()[e] = Inner(j == first + e ? 1.0 : 0.0);
-    }
-    const auto image = function(seeded).eval();
-    for (Eigen::Index i = 0; i < image.size(); ++i)
-      for (Eigen::Index e = 0; e < block && first + e < n; ++e)
-        product[first + e] += w[i] * image[i].derivatives()[e].derivatives()[0];
-  }
-  return product;
-}
-
 /// Reference for jacobian(): central differences with steps h·max(1, |z_j|), error O(h²) + O(ε/h).
 /// @param relativeStep h > 0; 6e-6 = ∛ε balances the two errors
 template <class F, int N>
@@ -146,22 +119,6 @@ auto finiteDifferenceJacobian(const F& function, const Vector<double, N>& z,
     out.col(j) = (plus - minus) / (2.0 * h);
   }
   return out;
-}
-
-/// Reference for contractedHessian(): central differences of central differences.
-/// @param relativeStep h > 0; 1e-4 ≈ ε^(1/4) balances truncation and rounding
-template <class F, int N, int Rows>
-Matrix<double, N, N> finiteDifferenceHessian(const F& function, const Vector<double, N>& z,
-                                             const Vector<double, Rows>& w,
-                                             double relativeStep = 1e-4) {
-  const auto gradient = [&](const Vector<double, N>& at) {
-    const auto scalar = [&](const Vector<double, N>& y) {
-      return Vector<double, 1>(w.dot(function(y)));
-    };
-    return Vector<double, N>(finiteDifferenceJacobian(scalar, at, relativeStep).transpose());
-  };
-  const Matrix<double, N, N> rough = finiteDifferenceJacobian(gradient, z, relativeStep);
-  return 0.5 * (rough + rough.transpose());
 }
 
 }  // namespace info

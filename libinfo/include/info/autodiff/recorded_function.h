@@ -112,11 +112,9 @@ class RecordedFunction {
   RecordedFunction(Recording& recording, std::span<const Symbol> outputs,
                    std::vector<int> targets = {});
 
-  int argumentCount() const { return argumentCount_; }
-  int outputCount() const { return int(outputs_.size()); }
   int operationCount() const;
 
-  /// @param arguments argumentCount() numbers
+  /// @param arguments one number for each argument of the recording
   /// @param results receives output i at its target; other entries are unchanged
   void evaluate(const double* arguments, double* results) const;
 

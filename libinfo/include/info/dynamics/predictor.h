@@ -24,14 +24,6 @@ inline std::vector<std::size_t> stepsEvery(std::size_t first, std::size_t every,
   return steps;
 }
 
-/// u_k = u(k·Δt) for k = 0 … K.
-template <StepMap M, class F>
-std::vector<InputOf<M>> sampleInput(const F& u, double timeStep, std::size_t steps) {
-  std::vector<InputOf<M>> inputs;
-  for (std::size_t k = 0; k <= steps; ++k) inputs.push_back(u(static_cast<double>(k) * timeStep));
-  return inputs;
-}
-
 namespace detail {
 
 /// y and Γ = D_x g ψ + D_θ g   (2.6)   of one sample, along the directions (ψ, I).

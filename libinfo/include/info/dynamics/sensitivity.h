@@ -72,17 +72,8 @@ TrajectoryOf<M> simulateWithSensitivity(const M& map, const StateOf<M>& x0,
   return out;
 }
 
-/// Ω_k = d²x_k/dθ², one symmetric p × p matrix per state component, at k = 0 … K.
-///
-///     Ω_{k+1,i} = Σ_j A_{ij} Ω_{k,j} + Zᵀ (∂²Φ_i/∂(x,θ)²) Z,   Z = (ψ_k, I)
-/// For few states and parameters; if only Σ_k w_kᵀΩ_k is needed, contractSecondSensitivity takes
-/// one adjoint sweep. Ω_0 = 0.
-template <StepMap M>
-std::vector<std::vector<Matrix<double, M::parameterSize, M::parameterSize>>> secondSensitivity(
-    const M& map, const TrajectoryOf<M>& trajectory, const std::vector<InputOf<M>>& inputs,
-    const ParametersOf<M>& theta);
-
-/// Σ_k w_kᵀ Ω_k [p × p] by one backward sweep: with λ_K = w_K, λ_k = A_kᵀ λ_{k+1} + w_k,
+/// Σ_k w_kᵀ Ω_k [p × p], Ω_k = d²x_k/dθ², by one backward sweep: with λ_K = w_K, λ_k = A_kᵀ λ_{k+1}
+/// + w_k,
 ///     Σ_k w_kᵀ Ω_k = Σ_k Z_kᵀ (Σ_i λ_{k+1,i} ∂²Φ_i/∂(x,θ)²) Z_k,   Z_k = (ψ_k, I).
 /// No tensor is formed. Needs a trajectory with ψ; Ω_0 = 0.
 /// @param weights w_0 … w_K
@@ -118,32 +109,6 @@ void requireSensitivities(const M&, const TrajectoryOf<M>& t, std::size_t inputs
 }
 
 }  // namespace detail
-
-template <StepMap M>
-std::vector<std::vector<Matrix<double, M::parameterSize, M::parameterSize>>> secondSensitivity(
-    const M& map, const TrajectoryOf<M>& trajectory, const std::vector<InputOf<M>>& inputs,
-    const ParametersOf<M>& theta) {
-  detail::requireSensitivities(map, trajectory, inputs.size());
-  using Square = Matrix<double, M::parameterSize, M::parameterSize>;
-  const Eigen::Index n = trajectory.x.front().size(), p = theta.size();
-  std::vector<std::vector<Square>> omega(1,
-                                         std::vector<Square>(std::size_t(n), Square::Zero(p, p)));
-  for (std::size_t k = 0; k + 1 < trajectory.x.size(); ++k) {
-    const auto& x = trajectory.x[k];
-    const auto at = info::linearise(map, x, inputs[k], inputs[k + 1], theta);
-    std::vector<Square> next;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const StateOf<M> unit = StateOf<M>::Unit(n, i);
-      Square sum = detail::alongParameters<M>(
-          info::contractedHessian(map, x, inputs[k], inputs[k + 1], theta, unit),
-          trajectory.psi[k]);
-      for (Eigen::Index j = 0; j < n; ++j) sum += at.dx(i, j) * omega[k][std::size_t(j)];
-      next.push_back(sum);
-    }
-    omega.push_back(std::move(next));
-  }
-  return omega;
-}
 
 template <StepMap M>
 Matrix<double, M::parameterSize, M::parameterSize> contractSecondSensitivity(

@@ -34,11 +34,11 @@ struct MonteCarloTrial {
 struct MonteCarloResult {
   std::vector<MonteCarloTrial> trials;  ///< in order, without those skipped after a stop
   int converged = 0;
-  Eigen::VectorXd mean;        ///< of the converged trials' estimates
+  Eigen::VectorXd mean;  ///< of the converged trials' estimates
   Eigen::MatrixXd
       covariance;  ///< sample covariance of these (divided by n − 1); NaN for fewer than two
-  Eigen::MatrixXd bound;       ///< Cramér–Rao bound at the truth (priors not included)
-  bool complete = true;        ///< false if stopped by the callback
+  Eigen::MatrixXd bound;  ///< Cramér–Rao bound at the truth (priors not included)
+  bool complete = true;   ///< false if stopped by the callback
 };
 
 /// Monte Carlo study of an estimator: simulates an experiment many times and estimates each time,
@@ -58,8 +58,7 @@ MonteCarloResult monteCarlo(const Predictor& predictor, const Eigen::VectorXd& t
                             const MonteCarloOptions& options = {},
                             const ObservationMask& observed = {});
 
-/// Noise ~ N(0, Σ_k) on samples k = 0 … n−1: outputs × n. Drawn in the order of the samples.
-/// @throws std::invalid_argument if the covariance is given for another number of samples
+/// Noise ~ N(0, Σ) on n samples: outputs × n. Drawn in the order of the samples.
 Eigen::MatrixXd drawNoise(const OutputCovariance& covariance, Eigen::Index n, RandomStream& random);
 
 }  // namespace info

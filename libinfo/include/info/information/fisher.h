@@ -28,18 +28,6 @@ Eigen::MatrixXd fisherInformation(const std::vector<Eigen::MatrixXd>& gamma_k,
                                   const OutputCovariance& covariance,
                                   const ObservationMask& observed = {});
 
-/// Fisher information of outputs measured continuously,
-///     I = ∫ Γ(t)ᵀ Σ(t)⁻¹ Γ(t) dt
-/// Here Σ is the spectral density of the noise [(output unit)²·s]; sampling with covariance Σ at
-/// period Δt corresponds approximately to the density Σ·Δt. Wilson's thesis (4.2). The integral is
-/// the trapezoidal sum over the given times.
-///
-/// @param times [s] strictly rising, one per sample, at least 2
-/// @throws std::invalid_argument if the shapes do not fit or the times do not rise
-Eigen::MatrixXd continuousFisherInformation(const std::vector<double>& times,
-                                            const Eigen::MatrixXd& gamma,
-                                            const OutputCovariance& density);
-
 /// Cramér–Rao bound I⁻¹: no unbiased estimator has a smaller covariance. Wilson's thesis (2.1).
 ///
 /// @param names of the parameters, for messages; empty: θ0, θ1, …

@@ -30,19 +30,11 @@ struct Criterion {
 /// Frobenius norm of Clarke's generalised gradient {VSVᵀ : S ⪰ 0, tr S = 1}, which is S = 1/r. It
 /// is an ascent direction: λ_min(I + t·VVᵀ/r) = λ_min + t/r, whereas along vvᵀ of a single
 /// eigenvector v λ_min is constant. This differs from Wilson's thesis (B.1), which takes one
-/// eigenvector. The gradient is discontinuous where the multiplicity changes; softMinEigenvalue is
-/// smooth.
+/// eigenvector. The gradient is discontinuous where the multiplicity changes.
 ///
 /// @throws std::domain_error if I is not finite, or not positive definite (E: may be semidefinite)
 /// @throws std::invalid_argument if I is not square and symmetric
 Criterion criterion(Optimality which, const Eigen::MatrixXd& information,
                     double repeatedTolerance = 1e-9);
-
-/// Smooth approximation of λ_min with the width μ > 0 [unit of I],
-///     s_μ(I) = −μ ln tr exp(−I/μ),   λ_min − μ ln p ≤ s_μ ≤ λ_min
-/// C∞ also at repeated eigenvalues; gradient exp(−I/μ)/tr exp(−I/μ), positive definite with trace
-/// 1.
-/// @throws as criterion, and std::invalid_argument unless width > 0
-Criterion softMinEigenvalue(const Eigen::MatrixXd& information, double width);
 
 }  // namespace info

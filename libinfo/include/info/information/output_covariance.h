@@ -11,41 +11,28 @@ using ObservationMask = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
 /// The mask of data in which NaN marks a missing value.
 ObservationMask observedWhereNotNaN(const Eigen::MatrixXd& outputs);
 
-/// Covariance Σ_k of the noise on the outputs of sample k [(output unit)²], the same for all
-/// samples or one for each; the noise of different samples is independent.
+/// Covariance Σ of the noise on the outputs of a sample [(output unit)²], the same for all samples;
+/// the noise of different samples is independent.
 ///
 /// Stacked quantities hold sample k in rows k·h … k·h+h−1, h the number of outputs.
-///
-/// @throws std::invalid_argument if a Σ_k is not square, or differs in size from the others
-/// @throws std::domain_error if a Σ_k is not symmetric or not positive definite (NaN included)
 class OutputCovariance {
  public:
-  /// The same Σ for all samples.
+  /// @throws std::invalid_argument if Σ is not square
+  /// @throws std::domain_error if Σ is not symmetric or not positive definite (NaN included)
   explicit OutputCovariance(const Eigen::MatrixXd& sigma);
-  /// A Σ_k for each sample.
-  static OutputCovariance perSample(std::vector<Eigen::MatrixXd> sigma_k);
 
-  Eigen::Index outputs() const { return sigma_.front().rows(); }
-  bool isConstant() const { return constant_; }
-  /// Number of samples that it is given for; 0 if constant, for any number of samples.
-  Eigen::Index samples() const;
-  /// Σ_k
-  const Eigen::MatrixXd& at(Eigen::Index sample) const;
+  Eigen::Index outputs() const { return sigma_.rows(); }
+  const Eigen::MatrixXd& sigma() const { return sigma_; }
 
-  /// A_k ↦ L_k⁻¹A_k with Σ_k = L_kL_kᵀ for each sample of a stacked matrix, so that AᵀΣ⁻¹B becomes
-  /// a plain product. Only the part of Σ_k of the observed outputs is used; the remaining rows are
-  /// 0.
+  /// A_k ↦ L⁻¹A_k with Σ = LLᵀ for each sample of a stacked matrix, so that AᵀΣ⁻¹B becomes a plain
+  /// product. Only the part of Σ of the observed outputs is used; the remaining rows are 0.
   /// @throws std::invalid_argument if the shapes do not fit
   Eigen::MatrixXd whiten(const Eigen::MatrixXd& stacked,
                          const ObservationMask& observed = {}) const;
 
  private:
-  struct PerSample {};
-  OutputCovariance(PerSample, std::vector<Eigen::MatrixXd> sigma_k);
-
-  std::vector<Eigen::MatrixXd> sigma_;
-  std::vector<Eigen::MatrixXd> inverseRoot_;  // L_k⁻¹
-  bool constant_ = false;
+  Eigen::MatrixXd sigma_;
+  Eigen::MatrixXd inverseRoot_;  // L⁻¹
 };
 
 }  // namespace info

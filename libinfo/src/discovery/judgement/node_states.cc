@@ -1,6 +1,6 @@
 #include "discovery/judgement/node_states.h"
 
-#include <algorithm>
+#include "info/dynamics/linear_table.h"
 
 namespace info::discover {
 
@@ -16,18 +16,12 @@ MatrixXd atNodes(const std::vector<Node>& nodes, const std::vector<double>& time
   std::vector<Index> first;
   for (std::size_t k = 0; k < times.size(); ++k)
     if (k == 0 || times[k] > times[k - 1]) first.push_back(static_cast<Index>(k));
-  const auto time = [&](std::size_t k) { return times[static_cast<std::size_t>(first[k])]; };
+  std::vector<double> risen;
+  for (const Index k : first) risen.push_back(times[static_cast<std::size_t>(k)]);
+  const MatrixXd own = samples(first, Eigen::all);
   MatrixXd result(static_cast<Index>(nodes.size()), samples.cols());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    auto row = result.row(static_cast<Index>(i));
-    if (first.size() == 1) {
-      row = samples.row(0);
-      continue;
-    }
-    std::size_t k = 0;
-    while (k + 2 < first.size() && time(k + 1) < nodes[i].time) ++k;
-    const double s = std::clamp((nodes[i].time - time(k)) / (time(k + 1) - time(k)), 0.0, 1.0);
-    row = (1 - s) * samples.row(first[k]) + s * samples.row(first[k + 1]);
+    result.row(static_cast<Index>(i)) = linearAt(risen, nodes[i].time).rows(own);
   }
   return result;
 }

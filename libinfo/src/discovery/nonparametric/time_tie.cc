@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "info/dynamics/linear_table.h"
+
 namespace info::discover {
 
 using Eigen::Index;
@@ -17,11 +19,7 @@ VectorXd sampled(const std::vector<double>& times, const VectorXd& force, double
   VectorXd values(n);
   for (Index i = 0; i < n; ++i) {
     const double t = from + kSpacing * static_cast<double>(i);
-    const auto behind = std::upper_bound(times.begin() + 1, times.end() - 1, t);
-    const auto k = behind - times.begin() - 1;
-    const auto at = static_cast<std::size_t>(k);
-    const double w = std::clamp((t - times[at]) / (times[at + 1] - times[at]), 0.0, 1.0);
-    values[i] = (1 - w) * force[k] + w * force[k + 1];
+    values[i] = linearAt(times, t).value(force);
   }
   return values;
 }

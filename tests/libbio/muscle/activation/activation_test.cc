@@ -162,14 +162,5 @@ TEST(StepActivation, HasTheDerivativesOfTheScalarType) {
   }
 }
 
-TEST(StepActivations, MovesEveryMuscleByItsOwnDynamics) {
-  const std::vector<SchutteActivation<double>> dynamics = {schutte, {0.2, 5, 1}};
-  const std::vector<double> u0 = {0.1, 0.2}, u1 = {0.5, 0.6};
-  std::vector<double> a = {0.05, 0.7};
-  stepActivations<SchutteActivation<double>>(dynamics, u0, u1, 0.01, a);
-  EXPECT_EQ(a[0], stepActivation(dynamics[0], 0.1, 0.5, 0.05, 0.01));
-  EXPECT_EQ(a[1], stepActivation(dynamics[1], 0.2, 0.6, 0.7, 0.01));
-}
-
 }  // namespace
 }  // namespace bio

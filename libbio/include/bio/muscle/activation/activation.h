@@ -123,14 +123,4 @@ struct ActivationStep {
 ActivationStep stepActivationWithDerivatives(const SchutteActivation<double>& dynamics, double u0,
                                              double u1, double a0, double h);
 
-/// stepActivation for many muscles with the same step: updates a[i] while the excitation changes
-/// from u0[i] to u1[i]. All spans have the same length.
-template <class Dynamics>
-void stepActivations(std::span<const Dynamics> dynamics, std::span<const double> u0,
-                     std::span<const double> u1, double h, std::span<double> a) {
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    a[i] = stepActivation(dynamics[i], u0[i], u1[i], a[i], h);
-  }
-}
-
 }  // namespace bio

@@ -63,7 +63,4 @@ Way sphereWay(WrapQuadrant quadrant, const Vec3<double>& p_CP, const Vec3<double
 bool cylinderTouches(double radius, double length, Side side, const Vec3<double>& p_CP,
                      const Vec3<double>& p_CQ);
 
-/// As cylinderTouches, for a sphere.
-bool sphereTouches(double radius, Way way, const Vec3<double>& p_CP, const Vec3<double>& p_CQ);
-
 }  // namespace bio

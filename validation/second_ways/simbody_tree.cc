@@ -1,4 +1,4 @@
-#include "bio/skeleton/simbody_tree.h"
+#include "second_ways/simbody_tree.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "bio/muscle/curves/curves.h"
-#include "skeleton/simbody_system.h"
+#include "second_ways/simbody_system.h"
 
 namespace bio {
 namespace {

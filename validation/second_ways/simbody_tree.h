@@ -12,7 +12,7 @@ namespace bio {
 
 /// The whole skeleton of a model as Simbody simulates it: every body and every joint with all its
 /// coordinates, couplers imposed by evaluating them. The independent second algorithm for
-/// skeleton.h: used by `check` and in tests, never in a time step. Simbody is used nowhere else.
+/// skeleton.h and articulated_tree.h. Simbody is used nowhere else.
 class SimbodyTree {
  public:
   /// @throws std::invalid_argument a tree Simbody cannot build

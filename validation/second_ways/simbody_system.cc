@@ -1,4 +1,4 @@
-#include "skeleton/simbody_system.h"
+#include "second_ways/simbody_system.h"
 
 #include <Simbody.h>
 
