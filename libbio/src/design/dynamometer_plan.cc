@@ -135,14 +135,11 @@ class DynamometerPlanner {
   Suitability inform(DynamometerExperiment& one) const {
     const Trial trial =
         trialFrom(one.trial, "dynamometer", model_, {.prescribed = {coordinate_.name}});
-    SimulationOptions simulation = simulation_;
-    simulation.startTime = trial.times[0];
-    simulation.duration = trial.duration();
-    simulation.prescribed = prescribedMotionOf(trial, arm_);
+    const RecordedTrial recorded = recordedTrial(trial, arm_, simulation_);
     const TrialPredictor predictor(
-        held_.at(one.from), options_, excitationOf(trial, arm_),
+        held_.at(one.from), options_, recorded.excitation,
         measuredSeries({Observable::Kind::moment}, coordinate_.name, trial.times), selection_,
-        simulation);
+        recorded.simulation);
     const Eigen::MatrixXd gamma = predictor.withSensitivities(catalogue_.values(selection_)).gamma;
     if (!gamma.allFinite()) return Suitability::cannotBeSimulated;
     one.fisher = gamma.transpose() * gamma / (question_.noise * question_.noise);
@@ -185,15 +182,12 @@ class DynamometerPlanner {
       selection.push_back(catalogue.find(catalogue_.parameters()[index].name));
     }
     const Trial trial = trialFrom(table, "dynamometer", model_);
-    SimulationOptions simulation = simulation_;
-    simulation.startTime = trial.times[0];
-    simulation.duration = trial.duration();
-    simulation.externalForce = externalForceOf(trial, *free_);
+    const RecordedTrial recorded = recordedTrial(trial, *free_, simulation_);
     const TrialPredictor predictor(
-        catalogue, freeOptions_, excitationOf(trial, *free_),
+        catalogue, freeOptions_, recorded.excitation,
         measuredSeries({Observable::Kind::coordinate, Observable::Kind::speed}, coordinate_.name,
                        trial.times),
-        std::move(selection), simulation);
+        std::move(selection), recorded.simulation);
     const TrialPredictor::Linearised at =
         predictor.withSensitivities(predictor.catalogue().values(predictor.selection()));
     const Index rows = rowsInRange(at, trial.times.size());
