@@ -148,7 +148,7 @@ AdaptiveTrajectory<S::stateSize, S::parameterSize> integrate(const S& system, co
                               theta.size());
 }
 
-/// The same with ψ = dx/dθ; both methods hold x and ψ to the tolerances.
+/// The motion as by integrate(), with ψ = dx/dθ; both methods hold x and ψ to the tolerances.
 /// @param psi0 dx_0/dθ
 template <SmoothSystem S>
 AdaptiveTrajectory<S::stateSize, S::parameterSize> integrateWithSensitivity(

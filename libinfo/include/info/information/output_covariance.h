@@ -20,7 +20,7 @@ ObservationMask observedWhereNotNaN(const Eigen::MatrixXd& outputs);
 /// @throws std::domain_error if a Σ_k is not symmetric or not positive definite (NaN included)
 class OutputCovariance {
  public:
-  /// The same Σ for all samples.
+  /// A constant Σ for all samples.
   explicit OutputCovariance(const Eigen::MatrixXd& sigma);
   /// A Σ_k for each sample.
   static OutputCovariance perSample(std::vector<Eigen::MatrixXd> sigma_k);
