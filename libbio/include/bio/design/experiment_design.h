@@ -138,7 +138,7 @@ class ExperimentDesign {
   Eigen::VectorXd surpriseOf(const SensitivityTrajectory& s) const;
   bool keepsRange(double lowest, double highest, double fastest) const;
   class Runs;
-  /// Of the trial's own inputs and random ones about them.
+  /// The best inputs among the trial's own and random ones about them.
   Eigen::VectorXd bestCandidate(const DesignSearchSettings& settings, Runs& runs) const;
 
   const MusculoskeletalSystem* arm_;

@@ -80,7 +80,7 @@ class MusculoskeletalSystem {
   bool isPrescribed(int coordinate) const;
   /// The model's own function of time of a prescribed coordinate; null: it has none.
   const Function* courseOf(int coordinate) const;
-  /// The same system with the motion of every coordinate given by SimulationOptions::prescribed.
+  /// This system with the motion of every coordinate given by SimulationOptions::prescribed.
   MusculoskeletalSystem withAllPrescribed() &&;
 
   const CoordinateForces& coordinateForces() const { return coordinateForces_; }
@@ -102,7 +102,7 @@ class MusculoskeletalSystem {
 
   /// The skeleton's tree with the moving points of the paths; null: Skeleton::tree() is.
   const ArticulatedTree* tree() const { return tree_.get(); }
-  /// Of a path, over tree().
+  /// The path of this index, as for path(), over tree().
   const TreePath& treePath(std::size_t path) const { return treePaths_[path]; }
 
   /// Coordinate values at which a path gains or loses conditional points, each listed once.
@@ -225,7 +225,7 @@ class SystemConfiguration {
   const Eigen::Matrix<double, N, N>& massMatrix() const { return inertia_.massMatrix; }
   double potential() const { return inertia_.potential; }
 
-  /// What a step needs of the skeleton at speed v. Where M is constant, its derivatives stay 0.
+  /// Energy derivatives that a step needs at speed v. Where M is constant, its derivatives stay 0.
   const EnergyDerivatives<N>& energy(const Vector& v) {
     EnergyDerivatives<N>& e = energy_;
     e.T_vv = inertia_.massMatrix;
@@ -244,7 +244,7 @@ class SystemConfiguration {
     return e;
   }
 
-  /// Of MusculoskeletalSystem::path(i): the muscles come first.
+  /// Length of MusculoskeletalSystem::path(i): the muscles come first.
   const LengthJet<N>& length(std::size_t i) const { return lengths_[i]; }
 
  private:

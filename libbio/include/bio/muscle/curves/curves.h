@@ -138,7 +138,7 @@ class FunctionEvaluator {
   struct Line {
     double scale = 1, value = 0, slope = 1;
   };
-  /// What it is, if it is a line for all x.
+  /// The function as a line, if it is one for all x.
   std::optional<Line> line() const;
 
   template <class T>
