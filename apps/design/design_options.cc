@@ -19,7 +19,7 @@ std::vector<std::string> givenOf(const std::vector<const CLI::Option*>& options)
   return names;
 }
 
-/// What would have no effect beside --dynamometer.
+/// Refuses options that would have no effect beside --dynamometer.
 void refuseOptionsOfSearch(const DesignOptions& typed) {
   if (const std::vector<std::string> given = givenOf(typed.ofSearch); !given.empty()) {
     throw std::invalid_argument(

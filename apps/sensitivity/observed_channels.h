@@ -5,7 +5,7 @@
 
 #include "bio/analysis/sensitivity_study.h"
 
-/// What `sensitivity` observes.
+/// Channels that `sensitivity` observes.
 namespace app {
 
 /// Channels with the standard deviations of their noise.

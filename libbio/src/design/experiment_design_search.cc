@@ -74,7 +74,7 @@ class ExperimentDesign::Runs {
   }
 
   bool isStopped() const { return stop_; }
-  /// Of the best run; empty if none is better than the trial itself.
+  /// Inputs of the best run; empty if none is better than the trial itself.
   const VectorXd& bestInputs() const { return bestInputs_; }
 
  private:

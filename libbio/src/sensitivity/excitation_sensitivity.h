@@ -7,7 +7,7 @@
 
 namespace bio::stepping {
 
-/// What a column adds to the excitation of a muscle, at the rows of the trial.
+/// Effect of a column on the excitation of a muscle, at the rows of the trial.
 struct RowsOfColumn {
   Eigen::Index column;
   Eigen::RowVectorXd rows;

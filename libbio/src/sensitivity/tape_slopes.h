@@ -15,7 +15,7 @@ class TapeSlopes {
 
   explicit TapeSlopes(const StepTape& tape) : tape_(&tape), slopes_(tape.times().size()) {}
 
-  /// Of one of the tape's times; null: fixed.
+  /// Slope of one of the tape's times; null: fixed.
   const Row* of(std::size_t index, const SensitivityColumns& columns) {
     const StepTape::Time& time = tape_->times()[index];
     Row& slope = slopes_[index];

@@ -95,7 +95,7 @@ struct GeneralisedForce {
   Eigen::Matrix<double, N, 1> passive;
 };
 
-/// What simulate() requires of its arguments. @throws std::invalid_argument
+/// Checks the arguments of simulate(). @throws std::invalid_argument
 void checkSimulation(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
                      const SystemState& start, const SimulationOptions& options);
 

@@ -20,7 +20,7 @@ struct MotionWeights {
   auto value(const Values& q, const Speeds& qDot) const {
     return value0 * q(row) + value1 * q(row + 1) + speed0 * qDot(row) + speed1 * qDot(row + 1);
   }
-  /// The same of whole rows, one column per quantity.
+  /// Values of whole rows, one column per quantity.
   template <class Values, class Speeds>
   Eigen::RowVectorXd rows(const Values& q, const Speeds& qDot) const {
     return value0 * q.row(row) + value1 * q.row(row + 1) + speed0 * qDot.row(row) +
@@ -76,14 +76,14 @@ struct LinearWeights {
   auto value(const Values& y) const {
     return (1 - behind) * y(row) + behind * y(row + 1);
   }
-  /// The same of whole rows, one column per quantity.
+  /// Values of whole rows, one column per quantity.
   template <class Values>
   Eigen::RowVectorXd rows(const Values& y) const {
     return (1 - behind) * y.row(row) + behind * y.row(row + 1);
   }
 };
 
-/// Of the rows, at least two, next to t; outside the motion, of its end.
+/// Weights of the rows, at least two, next to t; outside the motion, of its end.
 inline LinearWeights linearAt(const std::vector<double>& time, double t) {
   const auto after = std::upper_bound(time.begin(), time.end(), t);
   const auto k = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
