@@ -21,9 +21,9 @@ struct DesignOptions {
   int monteCarlo = 0;
   DynamometerOptions dynamometer;
   SimulationOptions simulation;
-  /// Those that only a search from a trial uses.
+  /// Options that only a search from a trial uses.
   std::vector<const CLI::Option*> ofSearch;
-  /// Those of the angle, which of a dynamometer's experiments only isotonic ones measure.
+  /// Options of the angle, which of a dynamometer's experiments only isotonic ones measure.
   std::vector<const CLI::Option*> ofAngle;
 };
 

@@ -25,7 +25,7 @@ struct SensitivityFindings {
   std::optional<bio::ParameterInformation> information = {};
   std::optional<bio::SensitivityTrajectory> local = {};  ///< of the first trial
   double costRatio = 0;
-  /// Observed channels, in words; empty: the coordinate is observed. With channels, sensitivities are
+  /// Observed channels, in words; empty: the coordinate is observed. Sensitivities to channels are
   /// in standard deviations of the noise.
   std::string observed = {};
   /// Gains of other channels, the largest first; empty: not computed.

@@ -24,8 +24,8 @@ class ChannelNoise {
   /// The given noise, else what the measurements alone show (measuredSd), at least 0.1 mrad of an
   /// angle, a thousandth of the root mean square of another channel.
   std::vector<ResidualNoise> shown() const;
-  /// Noise by the residuals of a prediction after so many parameters were fitted, which the channels
-  /// share by their numbers of samples.
+  /// Noise by the residuals of a prediction after so many parameters were fitted, of which each
+  /// channel has a share by its number of samples.
   std::vector<ResidualNoise> of(const Eigen::MatrixXd& predicted, Eigen::Index fitted) const;
   /// Residuals of one channel, series by series.
   std::vector<Eigen::VectorXd> residuals(const Eigen::MatrixXd& predicted,

@@ -30,7 +30,7 @@ class TapeSlopes {
     return slope.size() ? &slope : nullptr;
   }
 
-  /// That of a switch.
+  /// Slope of the time of a switch.
   Row& found(std::size_t index) { return slopes_[index]; }
 
  private:

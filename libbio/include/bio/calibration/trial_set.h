@@ -126,7 +126,7 @@ class TrialSet {
   /// one; NaN without angles.
   double meanSquare(const Eigen::MatrixXd& predicted) const;
   double meanSquare(const Eigen::MatrixXd& predicted, std::size_t trial) const;
-  /// That of the measurements of a channel, in the square of its unit.
+  /// Mean square difference of the measurements of a channel, in the square of its unit.
   double meanSquareOf(const Eigen::MatrixXd& predicted, std::size_t channel) const;
   /// By trial. @param sds  of the noise of each channel > 0
   std::vector<LargestDifference> largestDifferences(const Eigen::MatrixXd& a,

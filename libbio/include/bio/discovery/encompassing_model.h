@@ -122,7 +122,7 @@ class EncompassingModel {
 
   /// Index of an elementary number; each target occurs once.
   std::size_t number(const ParameterTarget& target, double nominal);
-  /// Those of a parameter of the model, by name.
+  /// Elementary numbers of a parameter of the model, by name.
   std::vector<Meaning::Part> numbers(const std::string& parameter);
   std::size_t add(Quantity quantity, Meaning meaning);
   /// Lets a quantity change one more number.

@@ -27,7 +27,7 @@ struct SystemOptions {
       wrapAsCylinder;          ///< ellipsoids with two equal semi-axes to treat as cylinders
   SchutteOptions muscle;       ///< of Schutte's class: activation floor, negative forces
   bool tabulatePaths = false;  ///< MusclePath::tabulate; worthwhile after a few simulations
-  /// Those of the free coordinates whose motion is given (SimulationOptions::prescribed): by a
+  /// Free coordinates whose motion is given (SimulationOptions::prescribed): by a
   /// trial, or by the model's own function of time (courseOf()).
   std::vector<std::string> prescribed = {};
 };
@@ -66,8 +66,8 @@ class MusculoskeletalSystem {
   ///   that is not among the free ones or is named twice
   MusculoskeletalSystem(const Model& model, const SystemOptions& options);
 
-  /// The same, but faster, for a model that differs from that of another arm in numerical values
-  /// only: paths and their tables are taken from that arm, except those of the muscles named, which
+  /// The system of a model that differs from that of another system in numerical values only, made
+  /// faster: paths and their tables are taken from `like`, except those of the muscles named, which
   /// get no tables. Its warnings are not repeated.
   /// @param like    made with the same options
   /// @param shaped muscles whose path points or wrap objects differ
@@ -92,7 +92,7 @@ class MusculoskeletalSystem {
   const BodyForces& bodyForces() const { return bodyForces_; }
   /// Ligaments and path springs.
   const std::vector<SystemElasticPath>& elasticPaths() const { return elasticPaths_; }
-  /// Those that act on a free coordinate.
+  /// Actuators on a free coordinate.
   const std::vector<CoordinateActuator>& actuators() const { return actuators_; }
   /// The muscles' paths, then the elastic ones.
   std::size_t numPaths() const { return muscles_.size() + elasticPaths_.size(); }

@@ -62,7 +62,7 @@ class PiecewiseCubic {
   /// y, dy/dx, d²y/dx² and d³y/dx³.
   CurveValue evaluate(double x) const { return evaluate(segmentAt(x), x); }
 
-  /// The same, without a search if x is still in the segment that contained it last.
+  /// Value and derivatives without a search if x is still in the segment that contained it last.
   CurveValue evaluate(double x, Piece& last) const {
     if (!last.holds(x)) last = pieceAt(x);
     return evaluate(*last.segment, x);

@@ -75,7 +75,7 @@ class Likelihood {
   /// @throws std::domain_error if the model cannot be simulated at the start
   Fit fit(const Hypothesis& hypothesis, const Noise& noise, const Eigen::VectorXd& start,
           const std::vector<Eigen::VectorXd>& eta = {}, const FitOptions& options = {}) const;
-  /// The same; empty if the model cannot be simulated at the start.
+  /// The fit; empty if the model cannot be simulated at the start.
   std::optional<Fit> tryFit(const Hypothesis& hypothesis, const Noise& noise,
                             const Eigen::VectorXd& start,
                             const std::vector<Eigen::VectorXd>& eta = {},
