@@ -46,7 +46,7 @@ double rmse(const bio::TrialSet* set, const Eigen::MatrixXd& predicted) {
   return set && predicted.size() > 0 ? std::sqrt(set->meanSquare(predicted)) : NAN;
 }
 
-/// What is predicted of every held-out series.
+/// Predictions of every held-out series.
 py::list predictionsOf(const bio::SteppedCalibration& stepped) {
   py::list list;
   if (!stepped.heldOut) return list;

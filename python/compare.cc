@@ -21,7 +21,7 @@ namespace {
 /// A table of states, or times [s] and values [rad].
 using OtherMotion = std::variant<FileName, std::pair<py::object, py::object>>;
 
-/// The same with numbers of C++: a thread beside Python may read it.
+/// Another motion with numbers of C++: a thread beside Python may read it.
 using KnownMotion = std::variant<FileName, bio::CoordinateCurve>;
 
 std::map<std::string, KnownMotion> motionsOf(const std::map<std::string, OtherMotion>& also) {

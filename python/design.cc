@@ -76,7 +76,7 @@ bio::DesignSearchSettings settingsOf(int candidates, int generations, int iterat
   return {candidates, generations, iterations, seed, threads, [&](double) { return goOn.load(); }};
 }
 
-/// What was found in the course of a search; the first is that of the trial itself.
+/// Course of a search; the first value is that of the trial itself.
 Eigen::VectorXd courseOf(double before, const std::vector<double>& found) {
   Eigen::VectorXd all(std::ssize(found) + 1);
   all << before, Eigen::VectorXd::Map(found.data(), std::ssize(found));

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-/// What the module's functions give back: a types.SimpleNamespace, whose members are NumPy arrays,
+/// Results of the module's functions: a types.SimpleNamespace, whose members are NumPy arrays,
 /// numbers, strings, lists and dictionaries.
 namespace python {
 

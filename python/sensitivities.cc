@@ -17,7 +17,7 @@
 namespace python {
 namespace {
 
-/// What the functions below begin with.
+/// The system and the trials with which the functions below begin.
 struct Studies {
   SystemChoice choice;
   std::unique_ptr<bio::MusculoskeletalSystem> arm = {};

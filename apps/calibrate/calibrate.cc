@@ -234,7 +234,7 @@ class Calibrate : public Command {
     return options;
   }
 
-  /// What is positive by its nature: numbers of a muscle, masses, radii. A position is not.
+  /// Whether a parameter is positive by its nature, as a muscle's number, a mass or a radius is.
   static bool cannotBeNegative(const bio::ModelParameter& one) {
     return one.lower >= 0 &&
            (std::holds_alternative<bio::MuscleTarget>(one.targets.front()) ||
@@ -299,7 +299,7 @@ class Calibrate : public Command {
     });
   }
 
-  /// Of the model's parameters that have an interval, for `ensemble`.
+  /// Covariance of the model's parameters that have an interval, for `ensemble`.
   static NamedCovariance covarianceOf(const bio::Calibration& calibration) {
     NamedCovariance covariance;
     std::vector<Eigen::Index> kept;

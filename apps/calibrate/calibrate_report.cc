@@ -65,7 +65,7 @@ Figure overlay(const bio::TrialSet& set, std::size_t index, const Eigen::MatrixX
   return figure;
 }
 
-/// Of one channel.
+/// Residuals of one channel.
 Figure residualFigure(const CalibrateFindings& f, std::size_t channel) {
   const bio::MeasuredGroup& shown = f.training.channels()[channel];
   const ShownUnit unit = shownUnit(shown);
@@ -209,7 +209,7 @@ Figure profileFigure(const bio::CalibratedParameter& one) {
   return figure;
 }
 
-/// What remains is more than noise; empty where it is not.
+/// Sentence for residuals of more than noise; else empty.
 std::string aboveNoise(const CalibrateFindings& f) {
   if (!f.calibration.leavesMoreThanNoise()) return "";
   return fmt::format(

@@ -76,7 +76,7 @@ Json channelsJson(const CalibrateFindings& f) {
   return channels;
 }
 
-/// Of the estimates, without knots of latent excitations.
+/// Correlation of the estimates, without knots of latent excitations.
 Json correlationJson(const bio::Calibration& c) {
   std::vector<Eigen::Index> kept;
   for (std::size_t i = 0; i < c.parameters.size(); ++i) {
@@ -91,7 +91,7 @@ Json correlationJson(const bio::Calibration& c) {
   return rows;
 }
 
-/// What other starts found that fits nearly as well: a warning each, and their values.
+/// Other minima that fit nearly as well: a warning each, and their values.
 Json otherMinima(const bio::Calibration& c, Summary& summary) {
   Json list = Json::array();
   for (const bio::OtherMinimum& one : c.otherMinima) {

@@ -4,9 +4,9 @@
 
 namespace app {
 
-/// Of all estimates but the knots of latent excitations.
+/// Correlations of all estimates but the knots of latent excitations.
 Table correlationTable(const CalibrateFindings& findings);
-/// What the search found from every start.
+/// Results of the search from every start.
 Table startTable(const CalibrateFindings& findings);
 
 }  // namespace app

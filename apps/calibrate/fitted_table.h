@@ -12,7 +12,7 @@ namespace app {
 /// empty cell means unknown.
 void writeFitted(const std::vector<info::discover::FittedNumber>& numbers, std::ostream& out);
 
-/// The same as a list of JSON objects, null where unknown.
+/// These numbers as a list of JSON objects, null where unknown.
 nlohmann::ordered_json fittedJson(const std::vector<info::discover::FittedNumber>& numbers);
 
 }  // namespace app

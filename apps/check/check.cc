@@ -86,7 +86,7 @@ bool isModel(const std::string& file) {
   return std::filesystem::path(file).extension() == ".osim";
 }
 
-/// What a file holds, for the report.
+/// Contents of a file, for the report.
 using Contents = std::vector<ReportPart>;
 
 Contents checkModel(const std::string& file, const bio::Model& model, Findings& findings) {

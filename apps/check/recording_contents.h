@@ -8,7 +8,7 @@
 
 namespace app {
 
-/// What a file of recorded markers or signals holds.
+/// Contents of a file of recorded markers or signals.
 struct RecordingContents {
   std::vector<ReportPart> parts;
   nlohmann::ordered_json summary;

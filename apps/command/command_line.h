@@ -20,7 +20,7 @@ class CommandLine {
   CLI::App& program() { return program_; }
   const CLI::App& program() const { return program_; }
 
-  /// What was parsed.
+  /// The command named by the words that were parsed.
   struct Chosen {
     Command* command;
     const CommandContext* context;  ///< its `inputs` are the files that options name

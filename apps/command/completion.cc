@@ -21,7 +21,7 @@ std::vector<std::string> namesOf(const std::vector<DescribedOption>& options) {
   return names;
 }
 
-/// What may stand where no option is being typed: words of arguments, and files.
+/// Choices where no option is being typed: words of arguments, and files.
 std::string argumentChoices(const DescribedCommand& command) {
   std::vector<std::string> choices;
   for (const DescribedOption& argument : command.arguments) {

@@ -10,7 +10,7 @@ namespace app {
 /// options, and values that are one of a few words, files or folders. Requires bash ≥ 4 only.
 std::string bashCompletion(const DescribedCommand& program);
 
-/// The same for zsh, as a function of its fpath (share/zsh/site-functions/_fisherhill), with a
+/// Completion for zsh, as a function of its fpath (share/zsh/site-functions/_fisherhill), with a
 /// description of each option.
 std::string zshCompletion(const DescribedCommand& program);
 

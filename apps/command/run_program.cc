@@ -29,7 +29,7 @@ int fail(const std::string& subcommand, const std::string& message) {
   return status(ExitStatus::badInput);
 }
 
-/// What was printed must have arrived: a full disk behind standard output is no success.
+/// The result once the output has arrived: a full disk behind standard output is no success.
 int printed(int result, const std::string& subcommand) {
   std::cout.flush();
   if (std::cout.good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return result;
@@ -68,8 +68,8 @@ std::string namedAsOption(const std::string& message, const CLI::App& options) {
   return option && option->count() > 0 ? "--" + message : message;
 }
 
-/// What the standard library says of itself, "stod" or "vector::_M_range_check: …", tells a user nothing:
-/// that it could be thrown is a fault of the program.
+/// The message in words. One of the standard library, "stod" or "vector::_M_range_check: …", tells
+/// a user nothing: that it could be thrown is a fault of the program.
 std::string inWords(const std::string& message, const std::string& subcommand) {
   const auto begins = [&](const char* words) { return message.starts_with(words); };
   const bool isRaw = message.find(' ') == std::string::npos || begins("vector::") ||

@@ -28,7 +28,7 @@ struct DesignOptions {
   std::vector<const CLI::Option*> ofMotion;
   /// Those that only a search from a trial uses.
   std::vector<const CLI::Option*> ofSearch;
-  /// Those of the angle, which of a dynamometer's experiments only isotonic ones measure.
+  /// Options of the angle, which of a dynamometer's experiments only isotonic ones measure.
   std::vector<const CLI::Option*> ofAngle;
 };
 

@@ -13,7 +13,7 @@
 namespace app {
 namespace {
 
-/// What moves beside the dynamometer's coordinate, or what else is said of that.
+/// Checks the roles of the coordinates beside the dynamometer's, and what else is said of that one.
 void checkRoles(const DynamometerOptions& options, const SimulationOptions& simulation,
                 const bio::Model& model) {
   if (!simulation.coordinates.empty()) {

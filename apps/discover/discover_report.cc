@@ -148,7 +148,7 @@ class Writer {
     return text;
   }
 
-  /// What an effect does to the motion shown; "" where that is not known.
+  /// Size of an effect in the motion shown; "" where that is not known.
   std::string sizeOf(std::size_t effect) const {
     if (!f_.written || effect >= f_.written->sizes.size()) return "";
     const bio::discover::EffectSize& size = f_.written->sizes[effect];

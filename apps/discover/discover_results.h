@@ -8,7 +8,7 @@
 #include "output/output_folder.h"
 #include "output/summary.h"
 
-/// What is written and printed after a search, in musculoskeletal models and in robots.
+/// Files and printed findings of a search, in musculoskeletal models and in robots.
 namespace app {
 
 /// Sets the values of summary.json and writes verdict.json, which is returned, and parameters.csv

@@ -92,7 +92,7 @@ ordered_json adequacyJson(const info::discover::Adequacy& a, double latentSize) 
   return json;
 }
 
-/// What the effects do to the motion shown, into their objects.
+/// Sizes of the effects in the motion shown, into their objects.
 void addSizes(const DiscoverFindings& f, ordered_json& effects) {
   if (!f.written) return;
   const ShownAxis& axis = f.wording.axes.front();
@@ -291,7 +291,7 @@ void addUnknown(const DiscoverFindings& f, ordered_json& json) {
   }
 }
 
-/// Of the whole recording in one number, where there is one.
+/// Noise of the whole recording in one number, where there is one.
 void tellNoise(const DiscoverFindings& f, Summary& summary) {
   const std::string& end = f.wording.gapEnd;
   if (end != "_deg" && end != "_m" && end != "_N") {

@@ -73,7 +73,7 @@ struct DiscoverFindings {
   double step = 0;                            ///< time step of the final search [s]
 };
 
-/// What a non-parametric force follows: "angle", or "position" of what slides, or "speed".
+/// Variable that a non-parametric force follows: "angle", or "position" of what slides, or "speed".
 std::string followedBy(const DiscoverFindings& findings,
                        const info::discover::NonparametricForce& force);
 

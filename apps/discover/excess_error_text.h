@@ -14,7 +14,7 @@ namespace app {
 std::string excessErrorWords(const info::discover::ExcessError& gap, double unit,
                              const std::string& symbol, bool heldOut);
 
-/// The same as a cell of a table: "at the noise floor", "87 %", "none".
+/// The excess error as a cell of a table: "at the noise floor", "87 %", "none".
 std::string excessErrorCell(const info::discover::ExcessError& gap);
 
 /// "°" for deg, " sd of the noise" for sd, else the unit after a space.

@@ -16,7 +16,7 @@ std::vector<Eigen::Index> samplesOf(const info::discover::DiscoveryProblem& data
 /// held-out or the other trials, in its shown unit; NaN: no sample.
 Eigen::VectorXd errorsOf(const DiscoverFindings& findings, bool ofHeldOut);
 
-/// What was measured: name, unit, and noise in that unit; of several outputs also the error of the
+/// The outputs: name, unit, and noise in that unit; of several outputs also the error of the
 /// fitted trials.
 nlohmann::ordered_json outputsJson(const DiscoverFindings& findings);
 

@@ -27,7 +27,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What the rows are a function of, beside their numbers, and how they are written.
+/// Inputs of the rows beside their numbers, and how they are written.
 struct EnsembleStudy {
   EnsembleStudy(const bio::Model& model, const bio::MusculoskeletalSystem& arm,
                 const bio::SystemOptions& system, const TrialInput& input,

@@ -15,7 +15,7 @@ std::string csvCell(double value) {
   return cellText(value, 9);
 }
 
-/// What a pass over the rows may keep of the motions' courses [bytes]; one column at least.
+/// Most memory for the motions' courses in a pass over the rows [bytes]; one column at least.
 constexpr std::uint64_t mostKept = std::uint64_t{64} << 20;
 
 std::string verdictOf(const EnsembleFindings& f) {

@@ -55,7 +55,7 @@ class RowMessage {
   std::vector<char> bytes_;
 };
 
-/// What rank 0 knows of the work: its own threads and the messages of the others meet here.
+/// The work as rank 0 knows it: its own threads and the messages of the others meet here.
 class Handout {
  public:
   Handout(const RowWork& work, int workers) : work_(&work), workers_(workers) {}

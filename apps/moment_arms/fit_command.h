@@ -10,7 +10,7 @@
 
 namespace app {
 
-/// What `moment-arms --fit` was asked for.
+/// Request of `moment-arms --fit`.
 struct FitRequest {
   CLI::Option* option = nullptr;     ///< --fit
   std::string table;                 ///< empty: the model's own lengths

@@ -13,14 +13,14 @@ namespace app {
 /// Jumps of lengths and moment arms for summary.json; angles in degrees, shifts in mm.
 nlohmann::ordered_json jumpsAsJson(const std::vector<bio::LengthJump>& jumps);
 
-/// The same as a table of a report.
+/// Jumps as a table of a report.
 Table jumpTable(const std::vector<bio::LengthJump>& jumps);
 
 /// Differences from OpenSim's paths over ellipsoids for summary.json; angles in degrees, lengths in
 /// mm.
 nlohmann::ordered_json differencesAsJson(const std::vector<bio::OpenSimDifference>& differences);
 
-/// The same as a table of a report.
+/// Differences from OpenSim's paths as a table of a report.
 Table differenceTable(const std::vector<bio::OpenSimDifference>& differences);
 
 }  // namespace app

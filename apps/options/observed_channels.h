@@ -5,7 +5,11 @@
 
 #include "bio/analysis/sensitivity_study.h"
 
+<<<<<<< HEAD:apps/options/observed_channels.h
 /// What `sensitivity` and `design` observe.
+=======
+/// Channels that `sensitivity` observes.
+>>>>>>> h4:apps/sensitivity/observed_channels.h
 namespace app {
 
 /// Channels with the standard deviations of their noise.

@@ -83,7 +83,7 @@ void addExternalLoads(const std::string& file, bio::Model& model, Summary& summa
 
 namespace {
 
-/// What the trials measure.
+/// Names of the coordinates and moments that the trials measure.
 struct MeasuredNames {
   std::set<std::string> coordinates, moments;
 };
@@ -132,7 +132,7 @@ std::set<std::string> roledByOptions(const SimulationOptions& options) {
   return names;
 }
 
-/// What moves on the model's own functions of time, which not every command takes.
+/// Coordinates that move on the model's own functions of time, which not every command takes.
 void takePrescribedByModel(SimulationOptions& options, const bio::Model& model, bool simulates) {
   if (options.takesPrescribed) {
     options.prescribedByModel = bio::prescribedByModel(model, roledByOptions(options));

@@ -52,7 +52,7 @@ void chooseCoordinates(SimulationOptions& options, const bio::Model& model,
 /// @throws std::invalid_argument if all coordinates are prescribed or held
 void requireFreeCoordinate(const SimulationOptions& options);
 
-/// What a command makes of the rest of a trial.
+/// Use that a command makes of the rest of a trial.
 struct TrialUse {
   bool experimentalConditions = false;  ///< takes the known mass and turn into account
   bool channels = false;                ///< uses all measured channels, not coordinates alone

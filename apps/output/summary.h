@@ -9,7 +9,7 @@
 
 namespace app {
 
-/// What every result says about itself: summary.json, as docs/schemas/summary.schema.json describes
+/// Summary of a result: summary.json, as docs/schemas/summary.schema.json describes
 /// it.
 ///
 /// Values have plain names that end in their unit (`rms_error_deg`); an infinite or undefined value

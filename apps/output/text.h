@@ -15,7 +15,7 @@ std::string numberText(double value, int digits = 4);
 
 /// The number with all its digits, for a cell of a table; empty when it is not finite.
 std::string cellText(double value);
-/// The same with at most `digits` significant digits.
+/// The number for a cell, with at most `digits` significant digits.
 std::string cellText(double value, int digits);
 
 /// The number that a text written by this program begins with; also one below the least normal

@@ -83,7 +83,7 @@ std::vector<Figure> channelFigures(const ReplayFindings& f) {
   return figures;
 }
 
-/// What holds or drives the prescribed coordinates; of one unit.
+/// Reactions that hold or drive the prescribed coordinates; of one unit.
 Figure reactionFigure(const ReplayFindings& f, bool ofRotations) {
   Figure figure{.title = ofRotations ? "Reaction moments" : "Reaction forces",
                 .xLabel = "Time [s]",
@@ -112,7 +112,7 @@ Figure perMuscle(const ReplayFindings& f, const std::string& title, const std::s
   return figure;
 }
 
-/// What drives the muscles, in the rows of the trial. A muscle without a column is left out: its
+/// Excitations of the muscles, in the rows of the trial. A muscle without a column is left out: its
 /// excitation is the baseline throughout.
 Figure excitationFigure(const ReplayFindings& f) {
   Figure figure{.title = "Excitations",
@@ -196,7 +196,7 @@ std::string comparison(const ReplayFindings& f) {
 
 namespace {
 
-/// Of every measured channel that the motion reaches, with its unit.
+/// Errors of every measured channel that the motion reaches, with its unit.
 nlohmann::ordered_json channelErrors(const ReplayFindings& f) {
   nlohmann::ordered_json errors = nlohmann::ordered_json::object();
   const auto add = [&](const std::string& name, const bio::MeasuredError& error, double factor,

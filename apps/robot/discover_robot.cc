@@ -181,7 +181,7 @@ class RobotSearch {
   }
 
  private:
-  /// What the robot's problem is asked, at its first time step.
+  /// Options of the robot's problem, at its first time step.
   info::robot::DisagreementOptions problemOptions(
       const std::vector<info::robot::Channel>& channels) const {
     info::robot::DisagreementOptions asked;

@@ -15,7 +15,7 @@ ExitStatus optimiseRobot(MotionRequest request, const std::string& warmStart,
 /// The files it writes.
 std::vector<std::string> optimiseFiles();
 
-/// What was found, for the double pendulum of chapter 4 of Wilson's thesis, that of chapter 5, and
+/// Findings for the double pendulum of chapter 4 of Wilson's thesis, that of chapter 5, and
 /// the suspended mass of section 4.5; before tellSearch().
 void tellPendulum(const MotionResult& found, const CommandContext& context, Summary& summary,
                   Report& report);

@@ -26,7 +26,7 @@ struct RobotRequest {
 /// Adds --system and --with.
 void addRobotOptions(CLI::App& options, RobotRequest& request);
 
-/// What `discover --system` does with its request.
+/// Action of `discover --system` on its request.
 using RobotDiscovery = std::function<ExitStatus(const RobotRequest&, const CommandContext&)>;
 
 /// Finds, names and adds the effect that a robot's model lacks; writes verdict.json and, if an

@@ -25,10 +25,10 @@ struct SensitivityFindings {
   std::optional<bio::ParameterInformation> information = {};
   std::optional<bio::SensitivityTrajectory> local = {};  ///< of the first trial
   double costRatio = 0;
-  /// What is observed instead of the coordinate, in words; empty: the coordinate. Sensitivities are
-  /// then in standard deviations of the noise.
+  /// Observed channels, in words; empty: the coordinate is observed. Sensitivities to channels are
+  /// in standard deviations of the noise.
   std::string observed = {};
-  /// What other channels would add, the most first; empty: not computed.
+  /// Gains of other channels, the largest first; empty: not computed.
   std::vector<bio::ChannelGain> gains = {};
   std::optional<bio::ProfileFinding> profile = {};
   bio::GlobalFinding global = {};

@@ -20,7 +20,7 @@ double valueOf(const std::vector<std::string>& row, const std::string& column) {
   return cell.empty() ? std::numeric_limits<double>::quiet_NaN() : numberIn(cell);
 }
 
-/// Of the subjects that have this figure; nothing if none has.
+/// Median over the subjects that have this figure; nothing if none has.
 std::optional<double> median(const StudyFindings& f, const std::string& column) {
   std::vector<double> values;
   for (const auto& row : f.rows)

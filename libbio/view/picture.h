@@ -8,7 +8,7 @@ class vtkRenderWindow;
 
 namespace bio::view {
 
-/// What a window shows.
+/// The picture in a window.
 /// @throws std::runtime_error if the display did not give the window its size
 Image imageOf(vtkRenderWindow* window, int width, int height);
 

@@ -14,7 +14,7 @@
 namespace bio::view {
 namespace {
 
-/// What a column stands for in a model.
+/// Meaning of a column in a model.
 enum class Meaning { coordinate, activation, fibreLength, nothingShown, foreign };
 enum class Unit { asHeader, degree, radian };
 struct ColumnMeaning {
@@ -199,7 +199,7 @@ SkeletonOptions skeletonFor(const Model& model, const std::vector<const SystemMo
 
 namespace {
 
-/// Of a course, over the 20 ms about each time that it has: what a rigid tendon's muscle shortens by.
+/// Slopes of a course over the 20 ms about each time that it has, for muscles with rigid tendons.
 Eigen::RowVectorXd slopes(const Eigen::VectorXd& of, const Eigen::VectorXd& values,
                           const Eigen::VectorXd& times) {
   constexpr double half = 0.01;  // [s]

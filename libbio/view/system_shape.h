@@ -21,7 +21,7 @@ struct TaperedBone {
   double shaftRadius = 0;  ///< in the middle [m]
 };
 
-/// What stands for one body in a picture.
+/// Shapes of one body in a picture.
 struct BodyShape {
   std::string name;
   std::vector<std::string> geometryFiles;  ///< .vtp names of the model

@@ -9,7 +9,7 @@ namespace python {
 
 using Numbers = py::array_t<double, py::array::forcecast | py::array::c_style>;
 
-/// What NumPy makes an array of, in any number of dimensions. A message is one line.
+/// The array that NumPy makes of values, in any number of dimensions. A message is one line.
 /// @param what the argument, for messages
 /// @throws py::type_error for None and complex numbers, dates and durations
 /// @throws std::invalid_argument for what holds no numbers or is ragged

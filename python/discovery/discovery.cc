@@ -30,7 +30,7 @@ py::object effectOf(const MusculoskeletalProblem& data, const info::discover::Na
                  "motion_rms"_a = size.motionRms);
 }
 
-/// What could be done to tell apart what these data cannot, the best first.
+/// Experiments that could tell apart what these data cannot, the best first.
 py::list plannedOf(const MusculoskeletalProblem& data, const Verdict& verdict,
                    const std::vector<bio::discover::PredictedExperiment>& predictedExperiments) {
   py::list planned;

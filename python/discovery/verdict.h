@@ -7,7 +7,7 @@
 #include "info/discovery/search/shorter_steps.h"
 #include "namespace.h"
 
-/// What discover and discover_robot have in common.
+/// Shared parts of discover and discover_robot.
 namespace python {
 
 /// @throws std::invalid_argument for a scatter that is negative or no number

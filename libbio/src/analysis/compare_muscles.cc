@@ -12,7 +12,7 @@
 namespace bio {
 namespace {
 
-/// What every class has, in the order of the muscles.
+/// Numbers that every class has, in the order of the muscles.
 std::vector<std::size_t> sharedNumbers(const ParameterCatalogue& catalogue,
                                        const MusculoskeletalSystem& arm) {
   std::vector<std::size_t> selection;
@@ -29,7 +29,7 @@ double rootMeanSquareOf(const Eigen::VectorXd& values) {
   return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
 }
 
-/// What no change of the parameters explains: Δ − Γ(ΓᵀΓ + σ²Λ)⁻¹ΓᵀΔ, Λ of their priors.
+/// The rest that no change of the parameters explains: Δ − Γ(ΓᵀΓ + σ²Λ)⁻¹ΓᵀΔ, Λ of their priors.
 Eigen::VectorXd unexplainedBy(const Eigen::MatrixXd& gamma, const ParameterInformation& known,
                               double noise, const Eigen::VectorXd& difference) {
   // in prior deviations, so that the matrix is of one size

@@ -61,7 +61,7 @@ bool changesExcitations(const ParameterCatalogue& catalogue,
 
 }  // namespace
 
-/// What one simulation is made of; no arm if there is none with these parameters.
+/// Parts of one simulation; no system if there is none with these parameters.
 struct SystemBatch::Draw {
   std::unique_ptr<const MusculoskeletalSystem> arm;
   std::unique_ptr<const ExcitationSignal> excitation;  ///< unless it is the nominal one

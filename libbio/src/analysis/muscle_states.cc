@@ -34,7 +34,7 @@ const std::vector<std::string> stateColumns = {"max_isometric_force",
                                                "path_length",
                                                "path_speed"};
 
-/// What such a file has beside them when it comes from OpenSim or from here.
+/// Columns that such a file has beside them when it comes from OpenSim or from here.
 const std::set<std::string, std::less<>> resultColumns = {
     "fiber_velocity",      "tendon_force",  "fiber_force",         "active_fiber_force",
     "passive_fiber_force", "tendon_length", "cos_pennation",       "active_fl",

@@ -48,7 +48,7 @@ class BothLengths {
       return {value, nan, nan, length, theirSlope(value, length)};
     }
   }
-  /// What OpenSim's length does between two values beyond the trapezium of its slopes [m]; next to
+  /// Change of OpenSim's length between two values beyond the trapezium of its slopes [m]; next to
   /// a jump, where it has none, of ours, or of none.
   static double surprise(const At& a, const At& b) {
     const auto slope = [](const At& x) {

@@ -59,7 +59,7 @@ void followCovariance(const CataloguePlaces& places, const LawRequest& request,
   }
 }
 
-/// What an option gives some of the drawn parameters, by their place among these.
+/// Pairs that an option gives to drawn parameters, by their place among these.
 std::map<std::size_t, std::pair<double, double>> givenByPlace(const ParameterCatalogue& catalogue,
                                                               const PairsByName& pairs,
                                                               const std::string& option,

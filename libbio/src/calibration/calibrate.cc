@@ -280,7 +280,7 @@ class Calibrator {
     return nearest;
   }
 
-  /// What the data determine, and the intervals of it.
+  /// Judges the estimates: their uncertainty, and that of held-out predictions.
   void judge() {
     const info::Prediction at =
         channels_.weighted(predictor_).withSensitivities(estimate_.parameters);

@@ -21,13 +21,13 @@ class ChannelNoise {
 
   bool areOne() const { return trials_.channels().size() == 1; }
 
-  /// What is given, else what the measurements alone show (measuredSd), at least 0.1 mrad of an
+  /// The given noise, else what the measurements alone show (measuredSd), at least 0.1 mrad of an
   /// angle, a thousandth of the root mean square of another channel.
   std::vector<ResidualNoise> shown() const;
-  /// Of the residuals that a prediction leaves after so many parameters were fitted, which the
-  /// channels share by their numbers of samples.
+  /// Noise by the residuals of a prediction after so many parameters were fitted, of which each
+  /// channel has a share by its number of samples.
   std::vector<ResidualNoise> of(const Eigen::MatrixXd& predicted, Eigen::Index fitted) const;
-  /// Of one channel, series by series.
+  /// Residuals of one channel, series by series.
   std::vector<Eigen::VectorXd> residuals(const Eigen::MatrixXd& predicted,
                                          std::size_t channel) const;
   /// How far a prediction is from what was measured; of several channels each relative to the size

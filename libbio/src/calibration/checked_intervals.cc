@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 
 /// Shares of the rise of the cost, z²/2, that still confirm an interval.
 constexpr double leastRise = 0.7, mostRise = 1.4;
-/// What the cost must fall by to make another search worth while [nats], and how many there are.
+/// Fall of the cost that makes another search worth while [nats], and the most searches.
 constexpr double worthwhileFall = 0.02;
 constexpr int mostSearches = 4;
 

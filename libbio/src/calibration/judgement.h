@@ -8,7 +8,7 @@
 
 namespace bio {
 
-/// What an estimate is worth.
+/// Estimates with their uncertainty.
 struct Judgement {
   std::vector<CalibratedParameter> parameters;
   Eigen::MatrixXd correlation;  ///< of all estimates; 0 for a parameter at a bound

@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr int stageIterations = 8;
-/// Of the deviation that is known beforehand, and how many parameters have such starts.
+/// Shift of a start in prior standard deviations, and how many parameters have such starts.
 constexpr double aside = 1.5;
 constexpr int mostSides = 6;
 

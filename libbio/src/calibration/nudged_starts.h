@@ -27,8 +27,8 @@ std::vector<Eigen::VectorXd> startsOnBothSides(const TrialSet& trials,
                                                const std::vector<info::Parameter>& parameters,
                                                const Eigen::VectorXd& start);
 
-/// Of the noise on a channel, in its unit, from third differences; 0 where no four samples of a
-/// series are equally spaced.
+/// Standard deviation of a channel's noise, in its unit, from third differences; 0 where no four
+/// samples of a series are equally spaced.
 double measuredSd(const TrialSet& trials, std::size_t channel);
 
 }  // namespace bio

@@ -9,7 +9,7 @@
 
 namespace bio {
 
-/// What the starts of a search found beside its estimate.
+/// Minima that the starts of a search found beside its estimate.
 struct OtherMinima {
   info::Estimate best;               ///< the given estimate, or a better one
   std::vector<OtherMinimum> others;  ///< likely, or possible by the data; the likeliest first

@@ -28,7 +28,7 @@ double roundedTorque(double torque) {
   return std::round(torque / unit) * unit;
 }
 
-/// Of one coordinate.
+/// Observed series of one coordinate.
 std::vector<ObservedSeries> measuredSeries(std::initializer_list<Observable::Kind> kinds,
                                            const std::string& coordinate,
                                            const Eigen::VectorXd& times) {
@@ -119,7 +119,7 @@ class DynamometerPlanner {
     letGo_ = startsOf(*free_);
   }
 
-  /// What starts at each of the positions.
+  /// Catalogue of a start at each of the positions.
   std::map<double, ParameterCatalogue> startsOf(const MusculoskeletalSystem& arm) const {
     std::map<double, ParameterCatalogue> starts;
     const int index = arm.skeleton().indexOf(coordinate_.name);

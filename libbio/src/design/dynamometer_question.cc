@@ -17,7 +17,7 @@ constexpr Kind everyKind[] = {Kind::isometric, Kind::isokinetic, Kind::passive, 
                               Kind::isotonic};
 constexpr double degreesPerRadian = 180 / std::numbers::pi;
 
-/// Of one coordinate: fills in and checks the lists of a question.
+/// Lists of a question for one coordinate, filled in and checked.
 class DynamometerDefaults {
  public:
   DynamometerDefaults(DynamometerQuestion question, const Coordinate& coordinate,
@@ -40,7 +40,7 @@ class DynamometerDefaults {
   }
 
  private:
-  /// Of degrees, or of millimetres.
+  /// A value in degrees as [rad], or in millimetres as [m].
   double small(double value) const {
     return coordinate_.isRotation ? value * (std::numbers::pi / 180) : value / 1000;
   }

@@ -36,7 +36,7 @@ double turnedAt(double t, double length, double speed, double speedUp) {
   return speed * (t - speedUp / 2);
 }
 
-/// What an experiment does when [s].
+/// Times of an experiment [s].
 struct DynamometerCourse {
   double begin = 0;       ///< of the turn, or of what is held
   double speedUp = 0;     ///< of the turn

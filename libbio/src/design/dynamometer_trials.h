@@ -23,7 +23,7 @@ class DynamometerTrials {
 
   /// The name of the column of the coordinate, which is the last one.
   std::string coordinateColumn() const;
-  /// What the numbers in that column are multiplied with: degrees per radian, or 1.
+  /// Factor of the numbers in that column: degrees per radian, or 1.
   double unit() const;
 
  private:

@@ -6,7 +6,7 @@ namespace bio::discover {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// What MusculoskeletalProblem is while its coordinates are held near what was measured. Must not
+/// A MusculoskeletalProblem whose coordinates are held near what was measured. Must not
 /// outlive it.
 class MusculoskeletalProblem::Nudged final : public info::discover::DiscoveryProblem {
  public:

@@ -122,7 +122,7 @@ SensedMotion::Sensed SensedMotion::sensedCoordinate(const Trajectory& motion) co
   return at;
 }
 
-/// Of another observable after a lag, linear between rows.
+/// Values of another observable after a lag, linear between rows.
 SensedMotion::Sensed SensedMotion::sensedLate(const Trajectory& motion) const {
   const std::vector<double>& time = motion.time;
   const MatrixXd rows = valuesAt(motion, vectorOf(time)).transpose();

@@ -11,7 +11,7 @@
 
 namespace bio::discover {
 
-/// What a sensor shows of a simulated motion at the time stamps of its samples (sensor_law.h), with
+/// Signal of a sensor in a simulated motion, at the stamps of its samples (sensor_law.h), with
 /// x the observable, x_L after the sensor's lag and t′ the time at which it was measured:
 ///     y = (1 + gain)·x_L(t′) + bias + drift·(t − t₀)
 /// A coordinate is the cubic of Hermite between rows, and before the first row goes on with its
@@ -25,7 +25,7 @@ class SensedMotion {
   SensedMotion(const MusculoskeletalSystem& system, Observable what, const SensorLaw& law,
                std::vector<double> stamps, double first);
 
-  /// What the sensitivities need (SensitivityOptions).
+  /// Options that the sensitivities need (SensitivityOptions).
   bool needsMuscles() const { return needsMuscles_; }
   bool needsReactions() const { return needsReactions_; }
 

@@ -42,7 +42,7 @@ Lagged lagged(const std::vector<double>& times, const Eigen::Ref<const MatrixXd>
 
 namespace {
 
-/// Of the course that the samples smoothly follow [1/s of its unit].
+/// Speeds of the course that the samples smoothly follow [1/s of its unit].
 VectorXd speedsOf(const MeasuredChannel& motion) {
   const std::vector<double> times(motion.times.begin(), motion.times.end());
   const SmoothedMotion course = smoothed(times, motion.values);

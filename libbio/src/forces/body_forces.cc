@@ -50,7 +50,7 @@ Vector6 wrench(const Vector3d& moment, const Vector3d& force) {
   return W;
 }
 
-/// What W on a segment, with its derivatives by `slope(k)`, does to the coordinates.
+/// Generalised forces of W on a segment and their slopes, from its derivatives by `slope(k)`.
 template <class Slope>
 void addWrench(const MovingSegment& on, const Vector6& W, const Slope& slope,
                Eigen::Ref<Eigen::VectorXd> tau, Eigen::Ref<Eigen::MatrixXd> tau_q) {

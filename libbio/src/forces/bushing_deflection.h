@@ -24,7 +24,7 @@ struct BushingDeflection {
     perE = E.inverse();
   }
 
-  /// Of M's origin in F, by screws of both bodies.
+  /// Relative turn of M, and motion of its origin, in F, by screws of both bodies.
   Vector6 relative(const Vector6& onFirst, const Vector6& onSecond) const {
     Vector6 r;
     const Vector6 apart = onSecond - onFirst;

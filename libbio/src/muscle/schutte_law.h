@@ -15,7 +15,7 @@ namespace bio::schutte {
 using muscles::branch;
 using muscles::choose;
 
-/// Of a piecewise cubic.
+/// Value and derivatives of a piecewise cubic.
 template <class N>
 struct CurveJet {
   N value, slope;

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-/// What the data say about a parameter, in the prior's measure: I·σ². Below it, nothing.
+/// Information of the data on a parameter, in the prior's measure I·σ², that counts as none.
 constexpr double nothing = 1e-12;
 
 /// Forces, lengths, masses and scales are multiplied; positions, angles and times are added.

@@ -13,7 +13,7 @@ namespace bio::osim {
 /// @throws FileError if not; for a file of OpenSim 1, that it must be saved by a newer one
 void checkVersion(const tinyxml2::XMLDocument& document, const std::string& file);
 
-/// What a parsed document that passes checkVersion says; `file` is the name used in messages.
+/// The model of a parsed document that passes checkVersion; `file` is the name used in messages.
 /// @throws FileError
 Model readModel(const tinyxml2::XMLDocument& document, const std::string& file);
 

@@ -16,7 +16,7 @@ struct HillPrior {
   double lower, upper, sd;
 };
 
-/// Of the number at a place of the class's table. The common lengths and forces as for Schutte's
+/// Prior of the number at a place of the table. The common lengths and forces as for Schutte's
 /// class; a number of a curve or of the activation is known to a fifth of its value (to 0.05 where
 /// it is 0) and kept within a half and twice of it, the fibre's damping within a tenth and ten
 /// times; always within the property's own range.

@@ -29,7 +29,7 @@ struct ForceNumberRule {
   const char* meaning;
   double lower, upper, sd;
 };
-/// Of the component-th number of a force, in the order of ForceNumberTarget.
+/// Rule of the component-th number of a force, in the order of ForceNumberTarget.
 ForceNumberRule forceNumberRule(const Model& model, const ForceNumberTarget& target);
 /// How many numbers it has.
 int numForceNumbers(ForceNumberTarget::Of of);

@@ -12,7 +12,7 @@
 
 namespace bio {
 
-/// What is taken for granted about a kind of quantity: bounds, and how well it is known beforehand.
+/// Default prior of a kind of quantity: bounds, and how well it is known beforehand.
 struct DefaultPrior {
   double lower, upper, sd;
 };

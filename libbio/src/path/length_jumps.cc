@@ -48,7 +48,7 @@ class LengthAlong {
     }
   }
 
-  /// What the length does between two values beyond the trapezium of its slopes [m].
+  /// Change of the length between two values beyond the trapezium of its slopes [m].
   static double surprise(const At& a, const At& b) {
     return std::abs(b.length - a.length - (a.slope + b.slope) / 2 * (b.value - a.value));
   }

@@ -24,7 +24,7 @@ TautTreeChain tautTreeChain(const CompiledPath& path, const TreePath::OverChain&
 void fillChainMotions(const TreePath::OverChain& over, const TreeMotion<double>& motion,
                       const Vec3<double>& P, const Vec3<double>& Q, SupportedLength<double>& work);
 
-/// Those by coordinate `slot` of the support.
+/// Movements by coordinate `slot` of the support.
 ChainScrews chainMotionOf(const TreePath::OverChain& over, const SupportedLength<double>& work,
                           std::size_t slot);
 

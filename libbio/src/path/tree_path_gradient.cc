@@ -8,7 +8,7 @@ namespace bio {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// What a span of a tree hands on.
+/// A span of a tree, with what its gradients need.
 struct PathGradients::TreeSpan {
   const TreePath::Piece& piece;
   const ArticulatedTree& tree;

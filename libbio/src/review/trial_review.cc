@@ -136,7 +136,7 @@ void reviewMotion(const MeasuredChannel& motion, const Coordinate& coordinate, d
   }
 }
 
-/// Of a coordinate or another measured channel.
+/// Remark on interpolated values of a coordinate or another measured channel.
 void reviewInterpolation(const std::string& name, const Eigen::VectorXd& times,
                          const Eigen::VectorXd& values, std::vector<Remark>& remarks) {
   const int factor = interpolationFactor(times, values);

@@ -52,7 +52,7 @@ class AdjointPass {
   }
 
  private:
-  /// What the cost takes directly from a row: q, and q̇ = M⁻¹p.
+  /// Direct slopes of the cost in a row: q, and q̇ = M⁻¹p.
   void addRow(Index row, const Trajectory& motion, const CostOfMotion& slopes) {
     if (row >= motion.q.cols()) return;
     state_.q += slopes.q.col(row);
@@ -139,7 +139,7 @@ class AdjointPass {
     result.gradient = sums_.inColumns();
   }
 
-  /// What goes through activations: of their dynamics, of the delay and of the EMG's mapping.
+  /// Gradient through activations: by their dynamics, the delay and the EMG's mapping.
   void addActivations(const std::vector<std::vector<RowsOfColumn>>& emg,
                       Eigen::VectorXd& gradient) const {
     const ParameterEffects& effects = direct_.effects();

@@ -36,7 +36,7 @@ class ExcitationAdjoint {
     std::size_t row;
     double weight;  ///< of the row behind
   };
-  /// Of a step: a straight line of excitation.
+  /// Part of a step: a straight line of excitation.
   struct Piece {
     double begin, end;  ///< [s]
     bool beginsOnRow, endsOnRow;

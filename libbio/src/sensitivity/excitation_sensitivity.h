@@ -7,12 +7,12 @@
 
 namespace bio::stepping {
 
-/// What a column adds to the excitation of a muscle, at the rows of the trial.
+/// Effect of a column on the excitation of a muscle, at the rows of the trial.
 struct RowsOfColumn {
   Eigen::Index column;
   Eigen::RowVectorXd rows;
 };
-/// Those of every muscle: of all parameters of the mapping but the delay, which moves rows.
+/// Columns of every muscle: of all parameters of the mapping but the delay, which moves rows.
 std::vector<std::vector<RowsOfColumn>> excitationRows(const MusculoskeletalSystem& arm,
                                                       const ParameterEffects& effects,
                                                       const ExcitationSignal& trial,

@@ -68,15 +68,15 @@ class LinearisedStep {
   const Vector& q_m() const { return q_m_; }
   const Vector& v() const { return v_; }
   const OfMuscle& muscle(std::size_t m) const { return muscles_[m]; }
-  /// Of the muscle's curves, where the middle is.
+  /// Pieces of the muscle's curves at the middle.
   SchuttePieces& pieces(std::size_t m) { return pieces_[m]; }
   const OtherForces<N>& others() const { return others_; }
-  /// Of the external force at the middle; without meaning if there is none.
+  /// Slope of the external force at the middle; without meaning if there is none.
   const Eigen::VectorXd& externalSlope() const { return externalSlope_; }
 
   const Matrix& perJ() const { return perJ_; }  ///< J⁻¹ from residuals to dq′
-  /// Of prescribed coordinates dq′ is known: 0, or what a time that moves makes of it. Their
-  /// columns of perJ() are 0, and this carries their dq′ to all others.
+  /// Map of the known dq′ of prescribed coordinates, 0 or due to a time that moves, to that of all
+  /// others; their columns of perJ() are 0.
   const Matrix& givenColumns() const { return givenColumns_; }
   const Matrix& residualAtBegin() const { return residualAtBegin_; }  ///< ∂R/∂q at fixed force
   const Matrix& momentumAtEnd() const { return momentumAtEnd_; }      ///< ∂p′/∂q′

@@ -73,7 +73,7 @@ class DirectEffects {
     }
   }
 
-  /// Of springs, bushings, elastic paths and actuators: use(effect, ∂τ/∂number) at time t, in the
+  /// Numbers of springs, bushings, elastic paths, actuators: use(effect, ∂τ/∂number) at t, in the
   /// configuration.
   template <class Use>
   void forForceNumbers(double t, const Vector& v, const ExternalForce& external, const Use& use) {

@@ -177,8 +177,8 @@ class SensitivityStep {
     }
   }
 
-  /// What of the force of a muscle with a rigid tendon, which has no fibre to carry on, does not go
-  /// through dq′.
+  /// The part of the force of a muscle with a rigid tendon that does not go through dq′; it has no
+  /// fibre to carry on.
   void addRigid(std::size_t m, const State& state) {
     const auto sm = static_cast<Index>(m);
     trialFibre_.row(sm).setZero();

@@ -15,7 +15,7 @@ class TapeSlopes {
 
   explicit TapeSlopes(const StepTape& tape) : tape_(&tape), slopes_(tape.times().size()) {}
 
-  /// Of one of the tape's times; null: fixed.
+  /// Slope of one of the tape's times; null: fixed.
   const Row* of(std::size_t index, const SensitivityColumns& columns) {
     const StepTape::Time& time = tape_->times()[index];
     Row& slope = slopes_[index];
@@ -30,7 +30,7 @@ class TapeSlopes {
     return slope.size() ? &slope : nullptr;
   }
 
-  /// That of a switch.
+  /// Slope of the time of a switch.
   Row& found(std::size_t index) { return slopes_[index]; }
 
  private:

@@ -37,7 +37,7 @@ Eigen::Map<Eigen::VectorXd> view(N_Vector v) {
   return {N_VGetArrayPointer(v), static_cast<Eigen::Index>(N_VGetLength(v))};
 }
 
-/// What CVODE's calls back are about.
+/// Context of CVODE's callbacks.
 template <int N>
 struct AdaptiveTask {
   SystemDynamics<N> dynamics;

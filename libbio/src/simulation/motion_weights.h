@@ -20,7 +20,7 @@ struct MotionWeights {
   auto value(const Values& q, const Speeds& qDot) const {
     return value0 * q(row) + value1 * q(row + 1) + speed0 * qDot(row) + speed1 * qDot(row + 1);
   }
-  /// The same of whole rows, one column per quantity.
+  /// Values of whole rows, one column per quantity.
   template <class Values, class Speeds>
   Eigen::RowVectorXd rows(const Values& q, const Speeds& qDot) const {
     return value0 * q.row(row) + value1 * q.row(row + 1) + speed0 * qDot.row(row) +

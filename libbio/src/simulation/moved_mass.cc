@@ -12,7 +12,7 @@ namespace bio {
 namespace {
 
 constexpr double negligible = 1e-14;  ///< [kg m²] or [kg]; a grain of sand at a millimetre has more
-/// Of the largest moment: what rounded numbers, or a derivative's step, make of a flat body.
+/// Share of the largest moment that rounded numbers, or a derivative's step, make of a flat body.
 constexpr double roundingShare = 0.05;
 constexpr double singular = 1e-10;  ///< least eigenvalue of a mass matrix with ones on its diagonal
 

@@ -42,7 +42,7 @@ std::vector<int> indicesOf(const std::vector<std::string>& prescribed, const Ske
   return indices;
 }
 
-/// What carries the path of an elastic string through the code for muscles' paths.
+/// A muscle that carries the path of an elastic string through the code for muscles' paths.
 Muscle asMuscle(const ElasticPath& elastic) {
   Muscle carrier;
   carrier.name = elastic.name;

@@ -31,7 +31,7 @@ class SwitchSides {
     }
     return largest > noticeable;
   }
-  /// The same of one that a step from q to qEnd crosses.
+  /// Whether a length jumps at a switch that a step from q to qEnd crosses.
   bool lengthJumps(const PathSwitch& crossed, const Vector& q, const Vector& qEnd) {
     const double before = crossed.distance(q[crossed.freeIndex]);
     const double after = crossed.distance(qEnd[crossed.freeIndex]);

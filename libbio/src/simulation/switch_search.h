@@ -55,7 +55,7 @@ class SwitchSearch {
 
   /// The first that was crossed, if one was.
   const PathSwitch& which() const { return *which_; }
-  /// Of the whole step: how long the next one is to be.
+  /// Fraction of the whole step: how long the next one is to be.
   double fraction() const { return fraction_; }
 
   enum class Found { met, again, givenUp };

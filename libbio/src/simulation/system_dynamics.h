@@ -159,10 +159,10 @@ class SystemDynamics {
   /// The last posture in which a path had no taut string; empty: none.
   const State& lostAt() const { return lostAt_; }
 
-  /// Of the last state that was evaluated.
+  /// Rates at the last state that was evaluated.
   const FibreRateDerivatives& rate(std::size_t muscle) const { return rate_[muscle]; }
   const Vector& acceleration() const { return acceleration_; }
-  /// What keeps the prescribed coordinates on their course; 0 for the others.
+  /// Reaction that keeps the prescribed coordinates on their course; 0 for the others.
   const Vector& reaction() const { return reaction_; }
   const Matrix& massMatrix() const { return massMatrix_; }
   /// Derivatives of all forces but the muscles' and inertia's in the coordinates and speeds.

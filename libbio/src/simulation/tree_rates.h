@@ -7,7 +7,7 @@
 
 namespace bio::stepping {
 
-/// What Newton's method needs of the forces of inertia beyond tree_energy.h: the derivative of the
+/// Terms of inertia that Newton's method needs beyond tree_energy.h: the derivative of the
 /// energies' second derivatives along q̇, by one pass with a dual number at q + ε q̇.
 class TreeRates {
  public:

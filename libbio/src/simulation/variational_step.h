@@ -175,7 +175,7 @@ class VariationalStepper {
   }
 
  private:
-  /// Of what shift() is used for [rad] or [m]: changes the motion by at most 1e-11 rad; with 1e-5
+  /// Reach of shift() [rad] or [m]: it changes the motion by at most 1e-11 rad; with 1e-5
   /// it would be more (elbow8, three trials).
   static constexpr double near = 7e-6;
   static constexpr double worthwhile = 1e-4;        ///< corrections above are always followed

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-/// What the readers of text tables share: lines, cells and numbers as laboratories write them.
+/// Lines, cells and numbers as laboratories write them, for all readers of text tables.
 namespace bio::tables {
 
 /// Without white space at its ends.

@@ -10,7 +10,7 @@
 
 namespace bio {
 
-/// What a column of a trial stands for.
+/// Meaning of a column of a trial.
 struct ColumnMeaning {
   enum class Kind { time, muscle, coordinate, applied, channel, extra } kind = Kind::extra;
   std::string name;

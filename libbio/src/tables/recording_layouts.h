@@ -5,10 +5,10 @@
 
 #include "bio/tables/recording.h"
 
-/// What the readers of the recording formats share.
+/// Shared parts of the readers of the recording formats.
 namespace bio {
 
-/// What a reader tells beside the numbers.
+/// Notes of a reader beside the numbers.
 struct ReadingNotes {
   std::vector<std::string> remarks;   ///< what was left out or assumed
   std::vector<std::string> warnings;  ///< contradictions, and what was resampled

@@ -129,7 +129,7 @@ class ControllerModule {
   void cycle(double now);
   /// Brings x̄ to the last sample; each sample is predicted once, at the estimate of its time.
   void observe();
-  /// What to do now. ψ starts from 0, so that information the next seconds add is what counts; with
+  /// The action to take now. ψ starts from 0: only information of the next seconds counts; with
   /// the ψ of the whole trial there would soon be nothing left to gain.
   Action<1> decide();
 

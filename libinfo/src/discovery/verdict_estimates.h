@@ -8,7 +8,7 @@
 
 namespace info::discover {
 
-/// What a fit says of quantities; those that it holds fixed are left out.
+/// Estimates of the wanted quantities by a fit; those that it holds fixed are left out.
 std::vector<Estimate> estimatesOf(const Fit& fit, const std::vector<std::size_t>& wanted,
                                   const DiscoveryProblem& data);
 

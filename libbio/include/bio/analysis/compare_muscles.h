@@ -8,7 +8,7 @@
 #include "bio/analysis/replay.h"
 #include "bio/observation/parameter_information.h"
 
-/// What the class of a model's muscles changes, all their shared numbers being equal.
+/// Comparison of a model's muscles in other classes, all their shared numbers being equal.
 namespace bio {
 
 /// Where a comparison of classes begins, and what is measured.
@@ -31,7 +31,7 @@ struct MuscleClassMotion {
   Deviation difference;    ///< from the first class [rad]; 0 for the first
   /// Difference of the measured coordinate from the first class at the samples, RMS.
   double measured = 0;
-  /// What is left of it if the first class's parameters are changed as its data would have them:
+  /// The rest of it if the first class's parameters are changed as its data would have them:
   /// linear least squares with their priors. Small: data cannot tell the classes apart.
   double unexplained = 0;
   /// About maximal force, optimal fibre length and tendon slack length of every muscle.

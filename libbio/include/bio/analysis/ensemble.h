@@ -51,7 +51,7 @@ class SystemBatch {
   /// @param theta of the selection
   /// @throws std::invalid_argument for another number of values, or one that is not finite
   EnsembleRun run(const Eigen::VectorXd& theta) const;
-  /// The same for several at once, faster in multiples of four (LaneJob); each result is bitwise
+  /// Several runs at once, faster in multiples of four (LaneJob); each result is bitwise
   /// that of a single run.
   std::vector<EnsembleRun> run(std::span<const Eigen::VectorXd> thetas) const;
 

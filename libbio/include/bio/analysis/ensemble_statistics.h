@@ -7,7 +7,7 @@
 #include "bio/analysis/ensemble.h"
 #include "info/probability/global_sensitivity.h"
 
-/// What is told of the runs of an ensemble.
+/// Statistics of the runs of an ensemble.
 namespace bio {
 
 /// A scalar output of every run.

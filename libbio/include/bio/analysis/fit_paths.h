@@ -11,7 +11,7 @@
 
 namespace bio {
 
-/// What became of the path of one muscle.
+/// Outcome of the fit of one muscle's path.
 struct MuscleFit {
   std::string muscle;
   std::optional<PathFit> fit;
@@ -29,7 +29,7 @@ std::vector<MuscleFit> fitPaths(const Model& model, const SkeletonOptions& optio
                                 const std::vector<std::string>& muscles,
                                 const PathFitOptions& fitOptions);
 
-/// The same to the lengths of a table, which must vary all coordinates that can change the path;
+/// Polynomials for lengths of a table, which must vary all coordinates that can change the path;
 /// every fifth posture only judges it.
 /// @param muscles  names; empty: all of the table
 std::vector<MuscleFit> fitPathsToTable(const Model& model, const SkeletonOptions& options,

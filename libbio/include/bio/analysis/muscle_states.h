@@ -6,7 +6,7 @@
 
 namespace bio {
 
-/// What a muscle does in one state, by the law of its class.
+/// Rates, forces and equilibrium of a muscle in one state, by the law of its class.
 struct MuscleState {
   std::string className;     ///< as the file has it
   double fibreVelocity;      ///< ℓ̇ [m/s]

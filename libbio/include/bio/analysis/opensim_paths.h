@@ -40,7 +40,7 @@ std::vector<OpenSimDifference> openSimDifferences(const Model& model, const Skel
                                                   const std::vector<std::string>& wrapAsCylinder,
                                                   double from, double to);
 
-/// The same for every coordinate that is neither locked nor coupled, one at a time, over its range;
+/// Differences along every coordinate that is not locked or coupled, one at a time, over its range;
 /// a range of more than 2π rad or 2 m is reduced to that width about the default.
 std::vector<OpenSimDifference> openSimDifferences(const Model& model);
 

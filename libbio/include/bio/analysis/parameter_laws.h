@@ -22,7 +22,7 @@ struct NamedCovariance {
   Eigen::MatrixXd correlation() const;
 };
 
-/// What belongs to a covariance beside being positive definite.
+/// Checks everything about a covariance but that it is positive definite.
 /// @throws std::invalid_argument for sizes that differ, a name given twice, a value that is not
 ///   finite, a variance that is not > 0, or an asymmetry of more than 1e-6 of the product of the
 ///   standard deviations

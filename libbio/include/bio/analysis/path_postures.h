@@ -28,7 +28,7 @@ struct LengthTable {
   PostureTable postures;
   std::vector<std::string> muscles;
   Eigen::MatrixXd length;  ///< rows = postures, columns = muscles [m]; NaN: not given
-  /// Of each muscle ∂ℓ/∂q, postures × coordinates [m/rad]; without rows where a column lacks.
+  /// Slopes ∂ℓ/∂q of each muscle, postures × coordinates [m/rad]; no rows where a column lacks.
   std::vector<Eigen::MatrixXd> slope;
 };
 
@@ -44,7 +44,7 @@ struct PathPostures {
   std::vector<std::string> muscles;
   Eigen::MatrixXd length;              ///< ℓ_MT, rows = postures, columns = muscles [m]
   std::vector<Eigen::MatrixXd> slope;  ///< of each muscle ∂ℓ/∂q, postures × coordinates [m/rad]
-  /// Of each muscle, in each posture the names of the wrap objects that its path touches.
+  /// Names of the wrap objects that the path of each muscle touches in each posture.
   std::vector<std::vector<std::vector<std::string>>> touched;
   std::vector<std::string> notes;
   std::vector<std::string> warnings;  ///< muscles or postures that cannot be computed

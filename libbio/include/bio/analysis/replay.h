@@ -27,7 +27,7 @@ ExternalForce externalForceOf(const Trial& trial, const MusculoskeletalSystem& a
 /// @throws std::invalid_argument if the trial lacks one of them
 PrescribedMotion prescribedMotionOf(const Trial& trial, const MusculoskeletalSystem& arm);
 
-/// What a recorded trial gives to its simulation, for one system.
+/// Inputs to the simulation of a recorded trial, for one system.
 struct RecordedTrial {
   ExcitationSignal excitation;   ///< excitationOf()
   SimulationOptions simulation;  ///< from the first row to the last, with externalForceOf() and
@@ -94,7 +94,7 @@ struct MeasuredError {
 MeasuredError compareWithMeasured(const MusculoskeletalSystem& arm, const Trajectory& trajectory,
                                   const MeasuredChannel& measured);
 
-/// The same against any other measured channel.
+/// Error against any other measured channel.
 struct ChannelError {
   Observable what;
   MeasuredError error;  ///< in unitOf(what)

@@ -16,7 +16,7 @@
 #include "info/estimation/profile_likelihood.h"
 #include "info/probability/global_sensitivity.h"
 
-/// What `fisherhill sensitivity` computes: how parameters move what is measured of trials, locally,
+/// The study of `fisherhill sensitivity`: how parameters move what is measured of trials, locally,
 /// over a range and along a profile, and what the measurement tells of them.
 namespace bio {
 
@@ -43,7 +43,7 @@ std::vector<ChannelCandidate> observedChannels(
     const std::vector<std::pair<std::string, double>>& named, const Model& model,
     const MusculoskeletalSystem& arm);
 
-/// What is measured, and the parameters.
+/// The measured quantities, and the parameters.
 struct SensitivityQuestion {
   SystemOptions system;
   std::string coordinate;                       ///< free; measured if `observed` is empty
@@ -61,7 +61,7 @@ std::vector<TrialPredictor> predictorsOf(const std::vector<StudiedTrial>& trials
 /// Near the model's values.
 struct LocalSensitivity {
   std::vector<TrialPredictor::Linearised> trials;  ///< what is measured and dy/dθ, in their units
-  /// Of all trials together. With SensitivityQuestion::observed, sensitivities are in standard
+  /// Information of all trials. With SensitivityQuestion::observed, sensitivities are in standard
   /// deviations of the noise.
   ParameterInformation information;
 };
@@ -75,7 +75,7 @@ LocalSensitivity localSensitivity(const std::vector<StudiedTrial>& trials,
 /// usualChannels() without what is observed already.
 std::vector<ChannelCandidate> furtherChannels(const MusculoskeletalSystem& arm,
                                               const SensitivityQuestion& question);
-/// What each further channel would add beside what is observed, at the same times.
+/// Gains of each further channel beside what is observed, at the same times.
 /// @param arm    of question.system
 /// @param known  from localSensitivity()
 std::vector<ChannelGain> furtherGains(const std::vector<StudiedTrial>& trials,

@@ -7,7 +7,7 @@
 
 namespace bio {
 
-/// What half the step changes in a simulated trial.
+/// Effect of half the step on a simulated trial.
 struct StepEffect {
   double halfStep = 0;  ///< [s]
   std::string coordinate;

@@ -25,7 +25,7 @@ struct CalibrationOptions {
   /// Standard deviation of the white noise of the measured angles [rad] > 0; empty: estimated from
   /// the residuals.
   std::optional<double> noise;
-  /// The same of other measured channels, by the column's name, in their units [> 0].
+  /// Standard deviations of the noise of other channels, by column name, in their units [> 0].
   std::map<std::string, double> channelNoise = {};
   info::RobustLoss loss;
   int starts = 1;

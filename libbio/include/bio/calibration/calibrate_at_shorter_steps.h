@@ -7,12 +7,12 @@
 
 namespace bio {
 
-/// What halving the step of the simulations would change at the estimate.
+/// Changes at the estimate if the step of the simulations were halved.
 struct StepChange {
-  /// Of each trial, the channel that changes most relative to its noise.
+  /// The channel of each trial that changes most relative to its noise.
   std::vector<LargestDifference> ofTrials;
   /// Largest change of an estimate, in its standard deviations: of θ by (I + Λ)⁻¹ΓᵀΔy/σ² to first
-  /// order, parameters at a bound held. 0 where no estimate has a standard deviation.
+  /// order, parameters at a bound fixed. 0 where no estimate has a standard deviation.
   double ofEstimates = 0;
   /// Whether the change of a trial exceeds 0.2 standard deviations of a channel's noise.
   bool mattersToTrial(std::size_t trial) const;

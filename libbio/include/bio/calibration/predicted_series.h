@@ -7,7 +7,7 @@
 
 namespace bio {
 
-/// What a calibrated model predicts of a held-out series, and how sure it is; in the channel's
+/// Prediction of a held-out series by a calibrated model, and how sure it is; in the channel's
 /// unit, angles in rad.
 struct PredictedSeries {
   std::size_t series = 0;  ///< of the held-out trials' series()

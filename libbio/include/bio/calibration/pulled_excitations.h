@@ -19,7 +19,7 @@ struct PulledExcitation {
   double rms() const;
 };
 
-/// Of every latent excitation of the calibration trials; none without an estimate.
+/// Every latent excitation of the calibration trials; none without an estimate.
 std::vector<PulledExcitation> pulledExcitations(const TrialSet& training,
                                                 const Calibration& calibration);
 

@@ -116,7 +116,7 @@ class TrialSet {
   /// The experiments with every measured coordinate held near its measured course (nudge.h). A
   /// series with fewer than four samples is not held.
   std::vector<TrialPredictor> nudged(double frequency) const;
-  /// The same with these experiments; set and experiments must outlive it.
+  /// The predictor of these experiments; set and experiments must outlive it.
   info::Predictor predictor(const std::vector<TrialPredictor>& experiments) const;
   /// Why the trial's simulation does not reach its end; empty if it does.
   std::string failure(std::size_t trial, const Eigen::VectorXd& theta) const;
@@ -124,7 +124,7 @@ class TrialSet {
   /// one; NaN without angles.
   double meanSquare(const Eigen::MatrixXd& predicted) const;
   double meanSquare(const Eigen::MatrixXd& predicted, std::size_t trial) const;
-  /// That of the measurements of a channel, in the square of its unit.
+  /// Mean square difference of the measurements of a channel, in the square of its unit.
   double meanSquareOf(const Eigen::MatrixXd& predicted, std::size_t channel) const;
   /// By trial. @param sds  of the noise of each channel > 0
   std::vector<LargestDifference> largestDifferences(const Eigen::MatrixXd& a,
@@ -146,7 +146,7 @@ class TrialSet {
   std::unique_ptr<const MusculoskeletalSystem> arm_;
   std::vector<std::unique_ptr<const ParameterCatalogue>> catalogues_;  ///< one per trial
   std::vector<std::size_t> selection_;
-  /// Of each trial, indices of its initial state and latent excitations that are estimated, and
+  /// Indices of each trial's initial state and latent excitations that are estimated, and
   /// where they begin in parameters_.
   std::vector<std::vector<std::size_t>> own_;
   std::vector<Eigen::Index> ownBegin_;

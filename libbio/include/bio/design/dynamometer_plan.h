@@ -11,11 +11,11 @@ namespace bio {
 
 /// Courses of the experiments that are considered.
 namespace dynamometer {
-/// Of a contraction [s]: how long the muscles rest before, rise, are held, and what follows.
+/// Times of a contraction [s]: rest before it, its rise, its hold, and what follows.
 inline constexpr double rest = 0.5, ramp = 0.3, hold = 2, after = 0.4;
-/// Of a quick release [s]: how long the contraction is held before and after it.
+/// Times of a quick release [s]: how long the contraction is held before and after it.
 inline constexpr double beforeRelease = 1, afterRelease = 1;
-/// Of an isotonic contraction [s]: how long the angle is measured at most, and at least.
+/// Times of an isotonic contraction [s]: how long the angle is measured at most, and at least.
 inline constexpr double longestIsotonic = 1, shortestIsotonic = 0.1;
 inline constexpr double speedUp = 0.1;     ///< [s] in which a turn reaches its speed, and ends
 inline constexpr double longestTurn = 20;  ///< [s]
@@ -95,7 +95,7 @@ struct DynamometerQuestion {
   int threads = 1;
 };
 
-/// What one experiment after the other adds.
+/// Experiments chosen one after the other, and what each adds.
 struct DynamometerPlan {
   std::vector<ModelParameter> parameters;
   std::size_t candidates = 0, failed = 0;

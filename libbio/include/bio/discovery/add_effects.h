@@ -58,7 +58,7 @@ std::string effectCredits(const EncompassingModel& encompassing,
 ///   catalogue of this model, or present in it already; a wrong number of values
 Augmented addEffects(const EncompassingModel& encompassing, const std::vector<EffectToAdd>& effects,
                      const EffectProvenance& provenance);
-/// The same where the model with every effect, and with `formula`, is not there yet.
+/// The model with effects where its EncompassingModel, with `formula`, is not there yet.
 Augmented addEffects(const Model& model, const SystemOptions& arm,
                      const CoordinateNames& coordinates, const std::vector<EffectToAdd>& effects,
                      const EffectProvenance& provenance,

@@ -9,7 +9,7 @@ namespace bio::discover {
 /// "max_isometric_force_TRI" is "Fmax_TRI". What is neither comes back as it is.
 std::string effectId(const std::string& name);
 
-/// The same for a list.
+/// Ids of the effects of a list of names.
 std::vector<std::string> effectIds(const std::vector<std::string>& names);
 
 /// The long name of an effect: "viscous_damping" for "visc"; the id itself where that is in plain

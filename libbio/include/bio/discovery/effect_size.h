@@ -7,7 +7,7 @@
 
 namespace bio::discover {
 
-/// What an effect does to one coordinate along one motion. NaN: unknown or undefined.
+/// Moment of an effect on one coordinate along one motion. NaN: unknown or undefined.
 struct EffectMoment {
   double rms = std::numeric_limits<double>::quiet_NaN();    ///< [N·m] or force [N]
   double peak = std::numeric_limits<double>::quiet_NaN();   ///< its largest absolute value

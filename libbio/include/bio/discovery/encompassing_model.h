@@ -95,7 +95,7 @@ class EncompassingModel {
   std::vector<std::string> coordinateNames() const;
   /// Whether there is one coordinate, whose effects have short ids.
   bool hasOneCoordinate() const { return coordinates_.size() == 1; }
-  /// Of the first coordinate, which is the only one where the model has one.
+  /// The first coordinate, which is the only one where the model has one.
   const Coordinate& coordinate() const { return coordinates_.front().coordinate; }
   double middle() const { return coordinates_.front().middle(); }
   const std::vector<Observable>& sensors() const { return sensors_; }
@@ -107,13 +107,13 @@ class EncompassingModel {
   const Eigen::Vector3d& axis() const { return axis_; }
   /// A point of a body, in ground, at q of the first coordinate and the defaults of the others.
   Eigen::Vector3d positionOf(const std::string& body, const Eigen::Vector3d& point, double q) const;
-  /// Of a system's muscles on the coordinates, each at its mid-range [m]: muscles × coordinates.
+  /// Moment arms of a system's muscles, each coordinate at mid-range [m]: muscles × coordinates.
   Eigen::MatrixXd momentArms(const MusculoskeletalSystem& arm) const;
   /// ∂(mass centre of a body in ground)/∂q of the first coordinate.
   Eigen::Vector3d velocityOf(const std::string& body, double q) const;
-  /// Of an effect or quantity of a coordinate: "visc"; of several coordinates, "knee_angle_r.visc".
+  /// Id of an effect or quantity of a coordinate: "visc"; of several, "knee_angle_r.visc".
   std::string idAt(const MovingCoordinate& at, const std::string& id) const;
-  /// Of an effect or quantity of a sensor: "bias"; of several sensors, "knee_angle_r.bias".
+  /// Id of an effect or quantity of a sensor: "bias"; of several, "knee_angle_r.bias".
   std::string idOf(std::size_t sensor, const std::string& id) const;
   bool knows(const std::string& id) const;  ///< whether there is a candidate with this id
   std::size_t find(const std::string& quantity) const;  ///< @throws std::invalid_argument
@@ -122,7 +122,7 @@ class EncompassingModel {
 
   /// Index of an elementary number; each target occurs once.
   std::size_t number(const ParameterTarget& target, double nominal);
-  /// Those of a parameter of the model, by name.
+  /// Elementary numbers of a parameter of the model, by name.
   std::vector<Meaning::Part> numbers(const std::string& parameter);
   std::size_t add(Quantity quantity, Meaning meaning);
   /// Lets a quantity change one more number.

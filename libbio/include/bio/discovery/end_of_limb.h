@@ -6,7 +6,7 @@
 
 namespace bio::discover {
 
-/// What carries a mass and takes a force, in words: "the hand" if that is what moves last, else the
+/// The body that takes a mass or a force, in words: "the hand" if that is what moves last, else the
 /// name of the last moving body, e.g. "calcn_r"; "the limb" if no body with a mass moves.
 std::string endOfLimb(const EncompassingModel& model);
 

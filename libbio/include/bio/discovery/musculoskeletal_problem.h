@@ -35,7 +35,7 @@ struct MusculoskeletalProblemOptions {
 /// this [s] (info::discover::runAtShorterSteps).
 inline constexpr double shortestSearchStep = 0.003;
 
-/// What trials measure, in the order of a problem's outputs: the coordinates in question that are
+/// The observables that trials measure, in a problem's order: the coordinates in question that are
 /// not prescribed, then all other channels.
 std::vector<Observable> measuredOutputs(const std::vector<Trial>& trials, const SystemOptions& arm,
                                         const std::vector<std::string>& coordinates);
@@ -105,7 +105,7 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   Eigen::VectorXd refinedOutputs(int trial, const Eigen::VectorXd& values) const override;
   Eigen::MatrixXd inputs(int trial) const override;
   std::vector<std::string> inputNames() const override;
-  /// The same with the measured coordinates held near their courses (nudge.h); null if one of them
+  /// This problem with measured coordinates held near their courses (nudge.h); null if one of them
   /// has fewer than four samples, or none is measured.
   std::unique_ptr<info::discover::DiscoveryProblem> nudged(double frequency) const override;
   /// Null if the model already has the force of a formula.
@@ -137,7 +137,7 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
  private:
   class Nudged;
   class Run;
-  /// What one sensor measured in a trial.
+  /// Samples of one sensor in a trial.
   struct Series {
     std::size_t sensor;
     std::vector<double> times;
@@ -196,7 +196,7 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   Eigen::VectorXd outputsOf(const OfTrial& one, const Eigen::VectorXd& values,
                             const Eigen::VectorXd& latent, double stepFactor,
                             const std::vector<Nudge>* nudges) const;
-  /// What of a simulation the wanted quantities follow.
+  /// Columns of a simulation's sensitivities that the wanted quantities follow.
   struct Columns;
   Columns columnsOf(const OfTrial& one, const Eigen::VectorXd& values,
                     const std::vector<std::size_t>& wanted) const;

@@ -15,7 +15,7 @@
 
 namespace bio::discover {
 
-/// What a search for a missing effect is asked.
+/// Question to a search for a missing effect.
 struct DiscoveryRequest {
   const Model& model;
   SystemOptions arm;
@@ -28,7 +28,7 @@ struct DiscoveryRequest {
   EffectProvenance provenance;     ///< for the credits of written models
 };
 
-/// What a search found, with everything that follows from it.
+/// Findings of a search, with everything that follows from them.
 struct DiscoveryResult {
   std::unique_ptr<MusculoskeletalProblem> data;
   info::discover::SteppedVerdict found;

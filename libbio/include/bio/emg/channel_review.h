@@ -7,7 +7,7 @@
 
 namespace bio {
 
-/// What a channel is taken for.
+/// Presumed kind of a channel.
 enum class ChannelUse {
   rawEmg,
   envelope,  ///< of an EMG

@@ -38,7 +38,7 @@ struct Electrode {
   std::vector<std::pair<std::string, double>> muscles;  ///< name and weight, 0 < weight ≤ 1
 };
 
-/// What a muscle without an electrode gets in place of its own signal.
+/// Excitation of a muscle without an electrode, in place of its own signal.
 struct UnrecordedMuscle {
   std::string muscle;
   /// Electrodes by their channels, with weights w > 0: the weighted mean of their excitations,

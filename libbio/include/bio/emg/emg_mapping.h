@@ -38,7 +38,7 @@ struct EmgMapping {
   std::map<std::string, LatentExcitation> latent = {};
 };
 
-/// What a record that saturates lacks: 0 but on its flat tops, five or more rows in turn at
+/// Height that saturation cut off a record: 0 but on its flat tops, five or more rows in turn at
 /// the record's maximum. There the record goes on with the slopes a [1/s] before and b behind it,
 ///     h = D·[a·τ(1 − τ)² + b·τ²(1 − τ)],  τ = (t − t₀)/D,
 /// D its duration; with one slope, where it begins or ends the record, D·a·τ(1 − τ/2). 0 where the

@@ -13,8 +13,8 @@ class ExternalForce {
  public:
   /// No force: no rows, no coordinates.
   ExternalForce() = default;
-  /// What a CoordinateActuator adds: a control, linear between its times and 0 outside them, of
-  /// which optimalForce·control is part of the values.
+  /// The control of a CoordinateActuator: linear between its times and 0 outside them;
+  /// optimalForce·control is part of the values.
   struct Control {
     std::string actuator;
     int coordinate = 0;         ///< free index
@@ -32,9 +32,9 @@ class ExternalForce {
                 std::vector<Control> controls = {});
 
   const std::vector<Control>& controls() const { return controls_; }
-  /// Of an actuator at time t; 0 if there is none of that name.
+  /// The control of an actuator at time t; 0 if there is none of that name.
   double controlAt(const std::string& actuator, double t) const;
-  /// The same controls with other optimal forces [N·m] or [N], by actuator; those not named stay.
+  /// This force with other optimal forces [N·m] or [N], by actuator; those not named stay.
   ExternalForce withOptimalForces(const std::map<std::string, double>& forces) const;
 
   bool empty() const { return times_.empty(); }

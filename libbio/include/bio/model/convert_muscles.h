@@ -7,7 +7,7 @@
 
 namespace bio {
 
-/// What became of a model's muscles.
+/// Outcome of a conversion of a model's muscles.
 struct MuscleConversion {
   std::size_t converted = 0;      ///< muscles of another class before
   std::vector<std::string> lost;  ///< one line per number or kind of number that is not carried
@@ -17,7 +17,7 @@ struct MuscleConversion {
 /// DeGrooteFregly2016 or Schutte1993, or OpenSim's whole name of one of them or RigidTendonMuscle;
 /// RigidTendon is Millard2012 with ignore_tendon_compliance.
 ///
-/// What both classes have is carried: the five common numbers, switches and control limits; the
+/// Numbers of both classes are carried: the five common numbers, switches and control limits; the
 /// strains of tendon and passive fibre at F0, fibre damping, least activation and time constants
 /// under whatever name. Everything else stands at OpenSim's default of the new class, and what the
 /// old class had there that was not its default is named in `lost`, as are curves. Between

@@ -44,7 +44,7 @@ struct Coordinate {
   bool locked = false;
   bool clamped = false;
   bool prescribed = false;  ///< it moves on prescribedFunction, unless it is locked
-  /// Of time [s], in radians or metres; none: not prescribed, or of a class that is not known.
+  /// Course over time [s], in radians or metres; none: not prescribed, or of an unknown class.
   std::optional<Function> prescribedFunction = {};
   bool isPrescribed() const { return prescribed && !locked; }
   friend bool operator==(const Coordinate&, const Coordinate&) = default;

@@ -32,7 +32,7 @@ class ActivationDynamics {
   };
   Start start(double u) const;
 
-  /// What acts: a, or the excitation within limits if the law is direct.
+  /// The activation that acts: a, or the excitation within limits if the law is direct.
   double acting(double u, double a) const {
     const auto* direct = std::get_if<muscles::DirectActivation>(&law_);
     return direct ? direct->held(u) : a;

@@ -102,7 +102,7 @@ template <class Plane, class N>
   const N dy = slope[1] * per;
   return {u + delta, value[0], {value[1], dy, (curvature[1] - dy * curvature[0]) * per * per}};
 }
-/// The same to third order, for δ up to about 2e-5.
+/// The point at u + δ to third order, for δ up to about 2e-5.
 template <class Plane, class N>
 [[gnu::always_inline]] inline SectionPoint<N> sectionBeside(const CurvePoint<Plane>& p,
                                                             const Plane& third, const N& u,
@@ -162,7 +162,7 @@ template <class N>
 /// `start`, held in a bracket.
 double bezierPlace(const std::array<double, 6>& x, double target, double start);
 
-/// What a curve of n sections end to end is made from; straight lines go on from its ends.
+/// Corners of a curve of n sections end to end; straight lines go on from its ends.
 template <class T, std::size_t n>
 struct BezierShape {
   std::array<BezierCorner<T>, n> corners;

@@ -43,7 +43,7 @@ struct FibreParameterDerivatives {
 FibreParameterDerivatives fibreParameterDerivatives(const SchutteMuscle<double>& muscle,
                                                     double activation, double fibreLength,
                                                     double muscleTendonLength);
-/// The same without a search in the curves where `last` is from a state nearby; it is updated.
+/// Derivatives without a search in the curves where `last` is from a state nearby; it is updated.
 FibreParameterDerivatives fibreParameterDerivatives(const SchutteMuscle<double>& muscle,
                                                     double activation, double fibreLength,
                                                     double muscleTendonLength, SchuttePieces& last);

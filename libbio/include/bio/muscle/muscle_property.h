@@ -59,7 +59,7 @@ struct HillParameters {
   friend bool operator==(const HillParameters&, const HillParameters&) = default;
 };
 
-/// What of a muscle class is switched rather than measured.
+/// Switches of a muscle class, beside its measured numbers.
 struct MuscleSwitches {
   bool ignoreTendonCompliance = false;    ///< the tendon is rigid
   bool ignoreActivationDynamics = false;  ///< activation = control
@@ -91,7 +91,7 @@ void requireRanges(const Parameters& parameters) {
   }
 }
 
-/// The same numbers and switches in another number type.
+/// The numbers and switches in another number type.
 template <template <class> class Parameters, class To, class From>
 Parameters<To> inNumbers(const Parameters<From>& from) {
   Parameters<To> to;

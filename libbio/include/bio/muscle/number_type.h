@@ -8,7 +8,7 @@ namespace bio::muscles {
 
 using info::plainValue;
 
-/// What arithmetic between a law's own numbers (T) and its arguments (U) gives: laws whose numbers
+/// Number type of arithmetic between a law's numbers (T) and its arguments (U): laws whose numbers
 /// are plain take arguments of any type; laws in dual numbers take arguments in plain numbers or in
 /// the same type.
 template <class T, class U>
@@ -31,7 +31,7 @@ template <class Yes, class No>
 [[gnu::always_inline]] inline auto branch(bool condition, const Yes& yes, const No& no) {
   return condition ? yes() : no();
 }
-/// Of two values that are there anyway.
+/// One of two values that are there anyway.
 template <class T>
 [[gnu::always_inline]] inline T choose(bool condition, const T& yes, const T& no) {
   return condition ? yes : no;

@@ -17,7 +17,7 @@ struct RigidTendonCurves {
   friend bool operator==(const RigidTendonCurves&, const RigidTendonCurves&) = default;
 };
 
-/// Those that OpenSim's class has where a file gives none.
+/// Curves that OpenSim's class has where a file gives none.
 const RigidTendonCurves& openSimRigidTendonCurves();
 
 /// How the class holds its curves, by number type.

@@ -263,7 +263,7 @@ struct SchuttePieces {
 /// between regimes.
 FibreRateDerivatives fibreRateDerivatives(const SchutteMuscle<double>& muscle, double activation,
                                           double fibreLength, double muscleTendonLength);
-/// The same, faster if the state lies in the curve segments of the last one.
+/// Fibre rate and derivatives, faster if the state lies in the curve segments of the last one.
 FibreRateDerivatives fibreRateDerivatives(const SchutteMuscle<double>& muscle, double activation,
                                           double fibreLength, double muscleTendonLength,
                                           SchuttePieces& last);

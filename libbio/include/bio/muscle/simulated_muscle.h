@@ -36,7 +36,7 @@ class SimulatedMuscle {
   double perFibre() const { return perFibre_; }          ///< 1/ℓ0 [1/m]
   double thickness() const;                              ///< w [m]
   bool hasFibreState() const { return hasFibreState_; }  ///< false: rigid tendon
-  /// Of w = ℓ0 sin α0 [m per unit].
+  /// Derivatives of w = ℓ0 sin α0 in the muscle's numbers [m per unit].
   PerMuscleNumber thicknessInNumbers() const;
 
   /// Length at which the class holds a fibre with an elastic tendon [m]: there it shortens no
@@ -54,7 +54,7 @@ class SimulatedMuscle {
     }
     return otherRate(activation, fibreLength, pathLength);
   }
-  /// The same for an implicit midpoint step of h [s] that has the fibre move with a velocity v
+  /// V and F_T for an implicit midpoint step of h [s] that has the fibre move with a velocity v
   /// from ℓ − h v/2 to ℓ + h v/2. For a class whose step solves the balance of forces
   /// R(a, ℓ, L, v) = 0 it is the velocity to which Newton's method moves v, v − R/R_v, with
   /// derivatives −R_x/R_v: exact where R = 0. Where a fibre is held it is the velocity that takes
@@ -92,7 +92,7 @@ class SimulatedMuscle {
   /// @param last  as of rate()
   InNumbers inNumbers(double activation, double fibreLength, double pathLength,
                       double fibreVelocity, SchuttePieces& last) const;
-  /// Of shortestFibre() [m per unit].
+  /// Derivatives of shortestFibre() in the muscle's numbers [m per unit].
   PerMuscleNumber shortestInNumbers() const;
   PerMuscleNumber rigidInNumbers(double activation, double pathLength, double pathSpeed) const;
 

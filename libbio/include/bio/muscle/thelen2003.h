@@ -208,7 +208,7 @@ class Thelen2003 {
   struct Numbers {
     N shape, lengthening, threshold;  // A_f, F_len, ϑ
   };
-  /// What the branches of v(P) have in common.
+  /// Terms that the branches of v(P) have in common.
   template <class N>
   struct Branches {
     N perShape;  // 1/A_f

@@ -21,7 +21,7 @@ struct ChannelCandidate {
 /// only the moment.
 std::vector<ChannelCandidate> usualChannels(const MusculoskeletalSystem& arm);
 
-/// What a further channel would add to what is known of the parameters.
+/// Information that a further channel would add to what is known of the parameters.
 struct ChannelGain {
   ChannelCandidate channel;
   double information = 0;        ///< ½ log det(I_with + Λ)/det(I_without + Λ) [nats]
@@ -37,7 +37,7 @@ std::vector<Eigen::MatrixXd> informationOf(const MusculoskeletalSystem& arm,
                                            const std::vector<double>& times,
                                            const SensitivityTrajectory& motion);
 
-/// Of each candidate alone beside what is measured, the one that tells most first.
+/// Gain of each candidate alone beside what is measured, the most informative first.
 /// @param known       with the Fisher information I of what is measured and the priors Λ
 /// @param candidates  as many as `information`
 /// @param information of each candidate, of all motions together

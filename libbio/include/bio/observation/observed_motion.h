@@ -28,7 +28,7 @@ class ObservedMotion {
 
   const std::vector<ObservedSeries>& series() const { return series_; }
   Eigen::Index size() const { return size_; }
-  /// What the sensitivities need of simulateWithSensitivities().
+  /// Options that the sensitivities need of simulateWithSensitivities().
   bool needsMuscles() const { return needsMuscles_; }
   bool needsReactions() const { return needsReactions_; }
 

@@ -29,7 +29,7 @@ class TrialPredictor {
                  ExcitationSignal trial, const std::string& coordinate, std::vector<double> times,
                  std::vector<std::size_t> selection, const SimulationOptions& options);
 
-  /// The same with any observables, series after series.
+  /// A predictor of any observables, series after series.
   /// @param options  with the motion of prescribed coordinates
   /// @throws std::invalid_argument if a time is outside the simulation or does not rise, or the
   ///   integrator has no sensitivities

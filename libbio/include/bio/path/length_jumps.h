@@ -30,7 +30,7 @@ std::vector<LengthJump> lengthJumps(const Model& model, const Skeleton& skeleton
                                     const std::vector<std::string>& wrapAsCylinder, double from,
                                     double to);
 
-/// The same for every coordinate that is neither locked nor coupled, one at a time, over its range
+/// Jumps along every coordinate that is neither locked nor coupled, one at a time, over its range
 /// and a margin on either side. A range of more than 2π rad or 2 m is reduced to that width about
 /// the default, without margin.
 std::vector<LengthJump> lengthJumps(const Model& model, double beyond = 0.3);

@@ -67,7 +67,7 @@ class MusclePath {
   ///   names that the model lacks, a path that has less than two points in some posture
   MusclePath(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
              const std::vector<std::string>& wrapAsCylinder);
-  /// The same for one of many muscles, with postures = PostureSamples(…).of(muscle).
+  /// The path of one of many muscles, with postures = PostureSamples(…).of(muscle).
   MusclePath(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
              const std::vector<std::string>& wrapAsCylinder, const std::vector<Posture>& postures);
 
@@ -111,7 +111,7 @@ class MusclePath {
   std::vector<Eigen::Vector3d> pathPoints(const Eigen::Matrix<double, N, 1>& q,
                                           const RigidMotion<double, N>* moved,
                                           double step = 0.1) const;
-  /// The same for any number of coordinates.
+  /// The polyline for any number of coordinates.
   std::vector<Eigen::Vector3d> pathPoints(const Posture& posture, double step = 0.1) const;
   /// Which of Path::wraps the path touches, moving spans or not, rising.
   std::vector<std::size_t> touchedWraps(const Posture& posture) const;

@@ -60,7 +60,7 @@ ChainPath tautChain(const CompiledPath& path, const PathChain& chain, const Plac
                     const ChainPlacements& X_GC, const Vec3<double>& P, const Vec3<double>& Q,
                     unsigned& used);
 
-/// The same for a chain within one segment, with first and second derivatives over the ends; P and
+/// The span over a chain within one segment, with first and second derivatives over the ends; P and
 /// Q in that segment's frame.
 SpanToSecondOrder<double> spanOver(const CompiledPath& path, const PathChain& chain,
                                    const Vec3<double>& p_SP, const Vec3<double>& p_SQ,

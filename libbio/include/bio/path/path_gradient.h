@@ -58,7 +58,7 @@ class PathGradients {
   void evaluate(const Eigen::Matrix<double, N, 1>& q, const RigidMotion<double, N>* moved,
                 PathGradient<N>& out) const;
 
-  /// The same for a path over a tree.
+  /// Workspace and gradients of a path over a tree.
   PathGradient<Eigen::Dynamic> workspace(const TreePath& path) const;
   /// @param work  of the path, TreePath::newWork()
   void evaluate(const Eigen::VectorXd& q, const TreePath& path, const ArticulatedTree& tree,

@@ -21,7 +21,7 @@ struct RadiusLimit {
 /// The smallest distance, over all postures, between the cylinder's axis or sphere's centre and the
 /// ends of the spans that may touch the wrap object. A point that already lies inside in some
 /// posture sets no limit.
-/// Of an ellipsoid or a torus it is the limit of one of its numbers while the others stay.
+/// The limit of an ellipsoid or a torus is that of one of its numbers while the others stay.
 /// @param wrap its index in Path::wraps
 /// @param number  of the surface's numbers (ImplicitSurface)
 RadiusLimit radiusLimit(const CompiledPath& path, std::size_t wrap,

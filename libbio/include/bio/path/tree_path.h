@@ -29,7 +29,7 @@ class TreePlaces {
   explicit TreePlaces(const Skeleton& skeleton);
 
   int segmentOf(std::size_t segment) const { return places_[segment].segment; }
-  /// Of the skeleton's segment in the tree's.
+  /// Placement of the skeleton's segment in the tree's.
   const Placement<double>& offsetOf(std::size_t segment) const { return places_[segment].X_TS; }
   /// A point of a skeleton's segment.
   Station station(std::size_t segment, const Vec3<double>& p_S) const;
@@ -51,7 +51,7 @@ class TreePlaces {
 /// Which spans, sides and objects count is as for MusclePath::length.
 class TreePath {
  public:
-  /// What a surface asks of a span that may go over it.
+  /// A surface that a span may go over, seen from a segment.
   struct OverSurface {
     SpanSurface way;
     int segment = 0;         ///< of the tree

@@ -38,7 +38,7 @@ struct Remark {
 /// reviewPathPoints.
 std::vector<Remark> reviewModel(const Model& model);
 
-/// The same without what requires a skeleton.
+/// Remarks that require no skeleton.
 std::vector<Remark> reviewNumbers(const Model& model);
 
 /// Active path points of enabled muscles that lie inside a wrap object of their path, by 1 µm or

@@ -50,7 +50,7 @@ CostGradient simulateWithGradient(const MusculoskeletalSystem& arm,
                                   const ExcitationSignal& trial, const SimulationOptions& options,
                                   const MotionCost& cost);
 
-/// The same along directions in any elementary numbers of the setting.
+/// The gradient along directions in any elementary numbers of the setting.
 CostGradient simulateWithGradient(const MusculoskeletalSystem& arm,
                                   const ParameterCatalogue::Setting& setting,
                                   const std::vector<ParameterDirection>& wanted,

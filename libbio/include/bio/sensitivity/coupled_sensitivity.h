@@ -23,8 +23,8 @@ struct SensitivityTrajectory {
   std::vector<Eigen::RowVectorXd> thickness;
   std::vector<SensitivityMatrix> activation;   ///< of each muscle; empty unless asked for
   std::vector<SensitivityMatrix> tendonForce;  ///< of each muscle; empty unless asked for
-  /// Of the reaction at each free coordinate; empty for those that are not prescribed, and unless
-  /// asked for.
+  /// Sensitivities of the reaction at each free coordinate; empty unless it is prescribed and they
+  /// are asked for.
   std::vector<SensitivityMatrix> reaction;
   double wallSeconds = 0;  ///< of the sensitivities; motion.wallSeconds is that of the motion
 };
@@ -75,7 +75,7 @@ SensitivityTrajectory simulateWithSensitivities(const MusculoskeletalSystem& arm
                                                 const ExcitationSignal& trial,
                                                 const SensitivityOptions& options);
 
-/// The same along directions in any elementary numbers of the setting, one column each.
+/// Sensitivities along directions in any elementary numbers of the setting, one column each.
 SensitivityTrajectory simulateWithSensitivities(const MusculoskeletalSystem& arm,
                                                 const ParameterCatalogue::Setting& setting,
                                                 const std::vector<ParameterDirection>& wanted,

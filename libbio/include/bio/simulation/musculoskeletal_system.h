@@ -27,7 +27,7 @@ struct SystemOptions {
       {};                      ///< ellipsoids with two equal semi-axes to treat as cylinders
   SchutteOptions muscle = {};  ///< of Schutte's class: activation floor, negative forces
   bool tabulatePaths = false;  ///< MusclePath::tabulate; worthwhile after a few simulations
-  /// Those of the free coordinates whose motion is given (SimulationOptions::prescribed): by a
+  /// Free coordinates whose motion is given (SimulationOptions::prescribed): by a
   /// trial, or by the model's own function of time (courseOf()).
   std::vector<std::string> prescribed = {};
 };
@@ -66,8 +66,8 @@ class MusculoskeletalSystem {
   ///   that is not among the free ones or is named twice
   MusculoskeletalSystem(const Model& model, const SystemOptions& options);
 
-  /// The same, but faster, for a model that differs from that of another arm in numerical values
-  /// only: paths and their tables are taken from that arm, except those of the muscles named, which
+  /// The system of a model that differs from that of another system in numerical values only, made
+  /// faster: paths and their tables are taken from `like`, except those of the muscles named, which
   /// get no tables. Its warnings are not repeated.
   /// @param like    made with the same options
   /// @param shaped muscles whose path points or wrap objects differ
@@ -80,7 +80,7 @@ class MusculoskeletalSystem {
   bool isPrescribed(int coordinate) const;
   /// The model's own function of time of a prescribed coordinate; null: it has none.
   const Function* courseOf(int coordinate) const;
-  /// The same system with the motion of every coordinate given by SimulationOptions::prescribed.
+  /// This system with the motion of every coordinate given by SimulationOptions::prescribed.
   MusculoskeletalSystem withAllPrescribed() &&;
 
   const CoordinateForces& coordinateForces() const { return coordinateForces_; }
@@ -92,7 +92,7 @@ class MusculoskeletalSystem {
   const BodyForces& bodyForces() const { return bodyForces_; }
   /// Ligaments and path springs.
   const std::vector<SystemElasticPath>& elasticPaths() const { return elasticPaths_; }
-  /// Those that act on a free coordinate.
+  /// Actuators on a free coordinate.
   const std::vector<CoordinateActuator>& actuators() const { return actuators_; }
   /// The muscles' paths, then the elastic ones.
   std::size_t numPaths() const { return muscles_.size() + elasticPaths_.size(); }
@@ -102,7 +102,7 @@ class MusculoskeletalSystem {
 
   /// The skeleton's tree with the moving points of the paths; null: Skeleton::tree() is.
   const ArticulatedTree* tree() const { return tree_.get(); }
-  /// Of a path, over tree().
+  /// The path of this index, as for path(), over tree().
   const TreePath& treePath(std::size_t path) const { return treePaths_[path]; }
 
   /// Coordinate values at which a path gains or loses conditional points, each listed once.
@@ -225,7 +225,7 @@ class SystemConfiguration {
   const Eigen::Matrix<double, N, N>& massMatrix() const { return inertia_.massMatrix; }
   double potential() const { return inertia_.potential; }
 
-  /// What a step needs of the skeleton at speed v. Where M is constant, its derivatives stay 0.
+  /// Energy derivatives that a step needs at speed v. Where M is constant, its derivatives stay 0.
   const EnergyDerivatives<N>& energy(const Vector& v) {
     EnergyDerivatives<N>& e = energy_;
     e.T_vv = inertia_.massMatrix;
@@ -244,7 +244,7 @@ class SystemConfiguration {
     return e;
   }
 
-  /// Of MusculoskeletalSystem::path(i): the muscles come first.
+  /// Length of MusculoskeletalSystem::path(i): the muscles come first.
   const LengthJet<N>& length(std::size_t i) const { return lengths_[i]; }
 
  private:

@@ -45,7 +45,7 @@ struct SimulationOptions {
   /// External force; empty: none.
   ExternalForce externalForce = {};
   /// Motion of the system's prescribed coordinates, each of them and no other, over the whole time.
-  /// What the start state says of them is not used.
+  /// Their values in the start state are not used.
   PrescribedMotion prescribed = {};
 };
 

@@ -31,7 +31,7 @@ class SystemConfiguration<Eigen::Dynamic> {
   /// third order in d, their slopes those of second order.
   void shift(const Vector& d);
 
-  /// What a step needs of the skeleton at speed v; valid until the next call of a function that
+  /// Energy derivatives that a step needs at speed v; valid until the next call of a function that
   /// moves or evaluates.
   const EnergyDerivatives<Eigen::Dynamic>& energy(const Vector& v);
   /// Evaluates the energy at rest unless it is known.
@@ -41,7 +41,7 @@ class SystemConfiguration<Eigen::Dynamic> {
   const LengthJet<Eigen::Dynamic>& length(std::size_t muscle) const { return lengths_[muscle]; }
   const TreeMotion<double>& motion() const { return motion_; }
 
-  /// Of a segment of the skeleton in ground, and its derivative in a coordinate.
+  /// Placement of a segment of the skeleton in ground, and its derivative in a coordinate.
   Placement<double> placement(std::size_t segment) const;
   Placement<double> change(std::size_t segment, int coordinate) const;
 

@@ -57,7 +57,7 @@ struct Mobility {
   bool hasFixedScrew = false;  ///< one turn or shift by a line of q: ∂S/∂q = 0
 };
 
-/// What a posture q makes of a tree; all vectors in the ground, about its origin. Made once with
+/// A tree in a posture q; all vectors in the ground, about its origin. Made once with
 /// ArticulatedTree::newMotion(), then filled as often as wanted without allocation.
 ///
 /// With S_j the screw of mobility j per unit of its coordinate, everything beyond it obeys

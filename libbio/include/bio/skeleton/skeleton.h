@@ -134,7 +134,7 @@ class Skeleton {
   InertiaJet<N> inertia(const Eigen::Matrix<double, N, 1>& q,
                         const RigidMotion<double, N>* moved) const;
 
-  /// The same skeleton by spatial algebra; null: motions() and inertia() serve.
+  /// The skeleton by spatial algebra; null: motions() and inertia() serve.
   const ArticulatedTree* tree() const { return tree_.get(); }
 
   /// Placement of every segment in ground at q, numCoordinates() values, for any number of them;
@@ -166,7 +166,7 @@ class Skeleton {
   /// X ← X·factor
   template <class T, int N>
   static void applyFactor(RigidMotion<T, N>& X, const Factor& factor, const T& q_k);
-  /// The same for X = 1, the ground, whose derivatives are zero.
+  /// X ← factor, for X = 1, the ground, whose derivatives are zero.
   template <class T, int N>
   static void applyFirstFactor(RigidMotion<T, N>& X, const Factor& factor, const T& q_k);
 

@@ -55,7 +55,7 @@ class TreeEnergy {
   const EnergyDerivatives<N, T>& evaluate(const TreeMotion<T>& motion, const T* v);
 
  private:
-  /// Of a mobility: what pairs need of the one nearer to the ground.
+  /// Data of a mobility for pairs in which it is the one nearer to the ground.
   struct Inner {
     SpatialVector<T> S, b;
   };

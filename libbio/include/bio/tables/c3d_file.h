@@ -10,7 +10,7 @@
 
 namespace bio {
 
-/// What a C3D file holds.
+/// Contents of a C3D file.
 struct C3dFile {
   MarkerTrajectories markers;         ///< no columns if it has none
   std::vector<Channel> analog;        ///< in the units of ANALOG:UNITS; names need not be unique
@@ -31,7 +31,7 @@ struct C3dFile {
 ///   how its numbers are read
 C3dFile readC3d(const std::filesystem::path& file);
 
-/// The same from bytes in memory, which messages call `name`.
+/// Contents of a C3D file from bytes in memory, which messages call `name`.
 C3dFile c3dFrom(std::string_view bytes, const std::string& name);
 
 }  // namespace bio

@@ -9,7 +9,7 @@
 
 namespace bio {
 
-/// What an EDF, EDF+ or BDF file holds.
+/// Contents of an EDF, EDF+ or BDF file.
 struct EdfFile {
   std::vector<Channel> channels;      ///< by their labels, which need not be unique
   std::vector<std::string> remarks;   ///< what was left out
@@ -26,7 +26,7 @@ struct EdfFile {
 ///   maxima, records that hold nothing
 EdfFile readEdf(const std::filesystem::path& file);
 
-/// The same from bytes in memory, which messages call `name`.
+/// Contents of such a file from bytes in memory, which messages call `name`.
 EdfFile edfFrom(std::string_view bytes, const std::string& name);
 
 namespace tables {

@@ -6,7 +6,7 @@
 
 namespace bio {
 
-/// What is not known of the excitation of a muscle without an electrode: a correction of its
+/// The unknown part of the excitation of a muscle without an electrode: a correction of its
 /// log-odds, straight between knots. With x̂ the trial's course, cut to 0.001 … 0.999,
 ///     x = 1/(1 + e^{−(ln x̂/(1 − x̂) + c(t))}),   c(t) = Σ_k c_k H_k(t)
 /// H_k the hat function of knot k. Smooth in every c_k, never outside 0 … 1; c = 0 leaves the

@@ -33,7 +33,7 @@ MarkerTrajectories readMarkers(const std::filesystem::path& file);
 ///   frame more than a quarter of an interval off; frames that are missing are not seen)
 MarkerTrajectories readTrc(const std::filesystem::path& file);
 
-/// The same from a text in memory, which messages call `name`.
+/// Marker trajectories of a TRC text in memory, which messages call `name`.
 MarkerTrajectories trcFrom(std::string_view text, const std::string& name);
 
 /// The columns x, y, z of a marker.

@@ -8,7 +8,7 @@
 
 namespace bio {
 
-/// What can be measured of a motion, as a column of a trial names it:
+/// A quantity of a motion that can be measured, as a column of a trial names it:
 ///
 ///     NAME            coordinate                           [rad] or [m]
 ///     NAME.speed      its rate                             [rad/s] or [m/s]

@@ -9,7 +9,7 @@
 
 namespace bio {
 
-/// What a file of recorded markers or signals holds.
+/// Contents of a file of recorded markers or signals.
 struct RecordedFile {
   std::optional<MarkerTrajectories> markers;  ///< none: a format without markers
   std::vector<Channel> channels;              ///< analog channels, or those of all streams

@@ -44,7 +44,7 @@ struct Trial {
 
   /// [s]
   double duration() const { return times[times.size() - 1] - times[0]; }
-  /// What was measured of it; null: nothing.
+  /// The measured channel of this observable; null: it was not measured.
   const MeasuredChannel* measurementOf(const Observable& what) const;
 };
 

@@ -35,7 +35,7 @@ struct XdfFile {
 ///   stream without a header, stamps that go back
 XdfFile readXdf(const std::filesystem::path& file);
 
-/// The same from bytes in memory, which messages call `name`.
+/// Contents of an XDF file from bytes in memory, which messages call `name`.
 XdfFile xdfFrom(std::string_view bytes, const std::string& name);
 
 }  // namespace bio

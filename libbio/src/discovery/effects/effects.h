@@ -51,7 +51,7 @@ info::discover::Candidate candidate(const EncompassingModel& model, std::string 
                                     const std::vector<std::vector<double>>& starts,
                                     std::vector<std::string> equivalents = {});
 
-/// The same of a coordinate, which id, name and sentence tell where there are several.
+/// A candidate of a coordinate, which id, name and sentence tell where there are several.
 info::discover::Candidate candidateAt(const EncompassingModel& model, const MovingCoordinate& at,
                                       const std::string& id, std::string name, std::string sentence,
                                       std::vector<std::size_t> quantities,

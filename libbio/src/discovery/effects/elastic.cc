@@ -12,7 +12,7 @@
 namespace bio::discover {
 namespace {
 
-/// What stops the coordinate at its ends in the model already; empty: nothing.
+/// Name of the limit force that already stops the coordinate at its ends; empty: none.
 std::string limitOf(const EncompassingModel& model, const MovingCoordinate& at) {
   for (const CoordinateLimitForce& limit : model.base().limitForces) {
     if (!limit.enabled || limit.coordinate != at.coordinate.name) continue;

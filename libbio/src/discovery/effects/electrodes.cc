@@ -32,7 +32,7 @@ void addShape(EncompassingModel& model) {
                       EffectKind::input, {A}, {{-1.5}, {-0.5}, {0.5}, {1.5}}));
 }
 
-/// What each muscle of one group shows of the mean of another's.
+/// Crosstalk to each muscle of one group from the mean of another's.
 void addCrosstalk(EncompassingModel& model) {
   for (const MuscleGroup& from : model.groups()) {
     for (const MuscleGroup& to : model.groups()) {

@@ -179,7 +179,7 @@ void addWrapErrors(EncompassingModel& model) {
 
 namespace {
 
-/// What is usual of a sensor: bound, prior sd and start of a fit, for its bias and its drift per
+/// Usual errors of a sensor: bound, prior sd and start of a fit, for its bias and its drift per
 /// second. Judgements: a few degrees, millimetres or N m.
 struct SensorSizes {
   double biasBound, biasSd, biasStart, driftBound, driftSd, driftStart;

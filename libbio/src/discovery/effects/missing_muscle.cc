@@ -12,8 +12,8 @@
 namespace bio::discover {
 namespace {
 
-/// Of the arm with the muscle: which of the others pull as it does. None: it cannot be simulated,
-/// or does not move the coordinate, or nothing pulls as it does.
+/// Muscles that pull as a disabled one does. None: the system with it cannot be simulated, or it
+/// does not move the coordinate, or nothing pulls as it does.
 std::vector<std::string> synergists(const EncompassingModel& model, std::size_t muscle) {
   Model with = model.base();
   with.muscles[muscle].enabled = true;

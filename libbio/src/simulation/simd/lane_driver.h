@@ -20,7 +20,7 @@ class ActivationCourse {
   ActivationCourse(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
                    const SystemState& start, const SimulationOptions& options);
 
-  /// Of the step that ends row k ≥ 1. Rows are computed when they are first asked for.
+  /// Activations in the step that ends row k ≥ 1. Rows are computed when they are first asked for.
   auto middle(Eigen::Index k) {
     reach(k);
     return middle_.col(k);

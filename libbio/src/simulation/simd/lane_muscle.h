@@ -20,7 +20,7 @@ struct Rate {
 struct RigidForce {
   LaneNumber tendonForce, dF_dPathLength, dF_dPathSpeed;
 };
-/// What they are asked for: activation, ℓ or L̇, L, ℓ̇ and h of a step.
+/// Arguments of both: activation, ℓ or L̇, L, ℓ̇ and h of a step.
 struct MuscleState {
   LaneNumber activation, fibreLength, pathLength, velocity, step;
 };

@@ -11,7 +11,7 @@ using Real [[gnu::vector_size(width * sizeof(double)), gnu::aligned(width * size
     double;
 /// All bits of a lane set: yes.
 using Mask [[gnu::aligned(width * sizeof(double))]] = decltype(Real{} < Real{});
-/// What a list of numbers is of, as a template's argument: a vector type would lose its alignment
+/// Number type of a list, as a template's argument: a vector type would lose its alignment
 /// there.
 struct Lanes {
   using Number = Real;

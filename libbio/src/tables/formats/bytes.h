@@ -34,7 +34,7 @@ class Bytes {
   float float32(std::size_t at, std::string_view what) const;
   std::string_view text(std::size_t at, std::size_t count, std::string_view what) const;
 
-  /// The same at a place inside what require() has passed.
+  /// Numbers at a place inside what require() has passed.
   std::uint16_t uint16Within(std::size_t at) const;
   float float32Within(std::size_t at) const;
   /// Whole number of `count` ≤ 8 bytes, without sign.

@@ -10,7 +10,7 @@ namespace bio::tables {
 
 inline constexpr std::size_t c3dBlock = 512;
 
-/// What decides how the data section is read.
+/// Layout of the data section of a C3D file.
 struct C3dLayout {
   std::size_t points = 0;
   std::size_t channels = 0;

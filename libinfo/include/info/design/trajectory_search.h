@@ -81,7 +81,7 @@ struct SearchOptions {
   double largestMove = 0;
   /// Eigenvalues closer than this fraction of λ_max count as equal; see informationCost.
   double repeatedTolerance = 1e-9;
-  /// The same for a last attempt when the search stalls, since λ_min has a kink at repeated
+  /// The tolerance in a last attempt when the search stalls, since λ_min has a kink at repeated
   /// eigenvalues.
   double stuckTolerance = 0.05;
   /// Called after every iteration; returning false stops.

@@ -43,7 +43,7 @@ TrajectoryOf<M> simulate(const M& map, const StateOf<M>& x0, const std::vector<I
   return out;
 }
 
-/// The same with ψ_{k+1} = A_k ψ_k + ∂Φ/∂θ   (5.1), exact for the steps taken.
+/// The trajectory of x with ψ_{k+1} = A_k ψ_k + ∂Φ/∂θ   (5.1), exact for the steps taken.
 /// @param psi0 ψ_0 = dx_0/dθ, zero if the initial state does not depend on θ
 template <StepMap M>
 TrajectoryOf<M> simulateWithSensitivity(const M& map, const StateOf<M>& x0,

@@ -102,8 +102,8 @@ struct Estimate {
 Estimate estimate(const LeastSquares& problem, const EstimateOptions& options = {});
 Estimate estimate(const LeastSquares& problem, const Eigen::VectorXd& start,
                   const EstimateOptions& options);
-/// The same for further searches, whose failure must not end what was found already: nothing where
-/// estimate() throws std::domain_error.
+/// The result of estimate() for further searches, whose failure must not end what was found
+/// already: nothing where estimate() throws std::domain_error.
 std::optional<Estimate> estimateIfDefined(const LeastSquares& problem, const Eigen::VectorXd& start,
                                           const EstimateOptions& options);
 

@@ -46,8 +46,8 @@ struct Measurements {
 /// The weighted least-squares cost of a model against data, with Gaussian priors,
 ///     β(θ) = ½ Σ_k r_kᵀΣ_k⁻¹r_k + ½ Σ_i (θ_i − μ_i)²/σ_i²,      r_k = ỹ_k − y_k(θ)
 /// the negative log posterior up to a constant. Wilson's thesis (2.4), there without priors, with
-///     dβ/dθ = −Σ_k Γ_kᵀΣ_k⁻¹r_k + (θ − μ)/σ²                     (2.5), whose print lacks the
-///     minus d²β/dθ² = Σ_k Γ_kᵀΣ_k⁻¹Γ_k − Σ_k r_kᵀΣ_k⁻¹ d²y_k/dθ² + 1/σ²   (2.9)
+///     dβ/dθ = −Σ_k Γ_kᵀΣ_k⁻¹r_k + (θ − μ)/σ²          (2.5), printed there without the minus
+///     d²β/dθ² = Σ_k Γ_kᵀΣ_k⁻¹Γ_k − Σ_k r_kᵀΣ_k⁻¹ d²y_k/dθ² + 1/σ²                     (2.9)
 ///
 /// With a robust loss ½r_kᵀΣ_k⁻¹r_k becomes ½ρ(r_kᵀΣ_k⁻¹r_k), and in gradient and information each
 /// sample carries the weight ρ′ (iteratively reweighted least squares).

@@ -35,7 +35,7 @@ struct KnownEffect {
 ///   value or with one outside its bounds
 std::vector<std::string> buildIn(const std::vector<KnownEffect>& effects, Model& model);
 
-/// What a search for an effect that a robot's model lacks is asked.
+/// Question to a search for an effect that a robot's model lacks.
 struct DiscoveryRequest {
   Model model;
   std::vector<Trial> trials;    ///< those held out last
@@ -45,7 +45,7 @@ struct DiscoveryRequest {
   discover::Options search;     ///< heldOut and outputSd are set by discover()
 };
 
-/// What a search found.
+/// Findings of such a search.
 struct DiscoveryResult {
   std::unique_ptr<RobotProblem> data;
   discover::SteppedVerdict found;

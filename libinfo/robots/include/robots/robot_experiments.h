@@ -52,7 +52,7 @@ PlannedExperiment doublePendulumExperiment(
     DoublePendulumUnknowns unknowns = DoublePendulumUnknowns::mass1AndDamping,
     double damping = 5e-4);
 
-/// The same robot as in chapter 5: the cart's positions x_0 … x_K [m], the variational step,
+/// Cart and double pendulum as in chapter 5: the cart's positions x_0 … x_K [m], variational step,
 /// samples at a multiple of the step; θ = (m1 [kg], c [10e-3 kg m²/s]) at (0.085, 0.05).
 PlannedExperiment doublePendulumStepExperiment(const std::vector<double>& position, double timeStep,
                                                std::size_t stepsPerSample);

@@ -10,7 +10,7 @@
 #include "robots/robot_experiments.h"
 #include "robots/robot_work.h"
 
-/// What an experiment with a robot tells about its parameters, and how estimators perform on it.
+/// Information of a robot's experiment about its parameters, and how estimators perform on it.
 namespace info::robot {
 
 /// An experiment of 5 s with the cart motion amplitude·(1 − cos 2πt/period).

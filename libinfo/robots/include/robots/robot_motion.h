@@ -13,7 +13,7 @@
 /// The motion of a robot that is most informative about two of its parameters.
 namespace info::robot {
 
-/// What is optimised, and the initial motion.
+/// The system to optimise, and the initial motion.
 struct MotionRequest {
   bool pendulum = true;   ///< else the suspended mass
   bool discrete = false;  ///< the variational integrator's motion (chapter 5)

@@ -22,7 +22,7 @@ struct NodeStates {
   Eigen::Index begin(std::size_t trial, std::size_t axis) const {
     return static_cast<Eigen::Index>(axis) * count(trial);
   }
-  /// Those of one axis, by trial.
+  /// Positions and speeds at the nodes of one axis, by trial.
   std::vector<Eigen::VectorXd> positions(std::size_t axis) const;
   std::vector<Eigen::VectorXd> speeds(std::size_t axis) const;
   /// Forces at the nodes of one axis as forces at all nodes of a trial: 0 on the others.

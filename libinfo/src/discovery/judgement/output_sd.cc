@@ -10,7 +10,7 @@ using Eigen::Index;
 
 namespace {
 
-/// Of the four samples that end with the k-th.
+/// Whether the four samples that end with the k-th are equally spaced.
 bool areEquallySpaced(const std::vector<double>& times, std::size_t k) {
   const double step = times[k] - times[k - 1];
   return std::abs(times[k - 1] - times[k - 2] - step) <= 1e-3 * step &&

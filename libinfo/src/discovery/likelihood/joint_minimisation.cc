@@ -153,7 +153,7 @@ class Likelihood::JointMinimisation {
   Fit result();
 
  private:
-  /// What an iteration found.
+  /// The outcome of an iteration.
   enum class End { improved, converged, stuck };
 
   Point startPoint(const VectorXd& values, const std::vector<VectorXd>& eta) const;

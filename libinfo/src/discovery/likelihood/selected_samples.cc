@@ -52,7 +52,7 @@ DiscoveryProblem::Prediction SelectedSamples::predict(int trial, const VectorXd&
   return selected(data_.predict(trial, values, latent, wanted, latentToo), of(trial).samples);
 }
 
-/// Of a simulation the selected samples.
+/// A simulation of which only the selected samples are seen.
 class SelectedSamples::Some final : public Simulation {
  public:
   Some(std::unique_ptr<Simulation> all, const std::vector<Index>& samples)

@@ -6,7 +6,7 @@
 
 namespace info::discover {
 
-/// The same data and model without some of the samples.
+/// A discovery problem without some of its samples.
 class SelectedSamples final : public DiscoveryProblem {
  public:
   /// @param data  must outlive this

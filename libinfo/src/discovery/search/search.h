@@ -66,7 +66,7 @@ class Search {
   /// their closest competitors are fitted again from there; for the others the difference from the
   /// base is kept.
   void adopt(const SearchMemory& known);
-  /// The same for the same data at the same time step: all results are adopted unchanged.
+  /// Adopts all results of a search of the same data at the same time step, unchanged.
   void take(const SearchMemory& known);
   const Likelihood& likelihood() const { return *likelihood_; }
   /// Values at which the scale of the latent force was evaluated.
@@ -79,9 +79,9 @@ class Search {
   /// One-step gains of all candidates that are not in `effects`, at the fits with and without
   /// latent force.
   std::vector<Screened> screen(const Effects& effects, bool simulation) const;
-  /// The same from short fits, for a base model so poor that linear steps are unreliable.
+  /// Gains of the candidates in short fits, for a base model too poor for linear steps.
   std::vector<Screened> probe(const Effects& effects);
-  /// The same at the fit of the nudged model, where a linear step is reliable however far the
+  /// One-step gains at the fit of the nudged model, where a linear step is reliable however far the
   /// original model is from the data; empty if nudging is not available.
   std::vector<Screened> screenHeld(const Effects& effects);
   /// Union of the best of both modes, the best of each kind, and declared equivalents.
@@ -100,14 +100,14 @@ class Search {
   std::optional<Tracked> tracked(const Effects& effects, Eigen::VectorXd start);
   /// Fits `base` + a candidate, unless already fitted.
   void raceOne(const Effects& base, std::size_t candidate);
-  /// The same for each candidate; then repeats them, and `base`, from the leader's nuisance
+  /// Calls raceOne() for each candidate; then repeats them, and `base`, from the leader's nuisance
   /// parameters.
   void race(const Effects& base, const std::vector<std::size_t>& candidates);
   /// Repeats fits of single candidates from the nominal values and a large latent force: the `most`
   /// that are best after short fits from there. The parameters of a base model with a missing
   /// effect may be far from the true ones.
   void raceFromNominal(std::size_t most);
-  /// In this search, or in the one that it has adopted.
+  /// Whether raceFromNominal() was called, in this search or in the one that it has adopted.
   bool hasRacedFromNominal() const { return racedFromNominal_; }
   /// A candidate that gains although its amplitude is insignificant has only found a better base:
   /// `base` is fitted from its nuisance parameters. True if `base` gained; hypotheses built on it

@@ -62,7 +62,7 @@ class PiecewiseCubic {
   /// y, dy/dx, d²y/dx² and d³y/dx³.
   CurveValue evaluate(double x) const { return evaluate(segmentAt(x), x); }
 
-  /// The same, without a search if x is still in the segment that contained it last.
+  /// Value and derivatives without a search if x is still in the segment that contained it last.
   CurveValue evaluate(double x, Piece& last) const {
     if (!last.holds(x)) last = pieceAt(x);
     return evaluate(*last.segment, x);
@@ -138,7 +138,7 @@ class FunctionEvaluator {
   struct Line {
     double scale = 1, value = 0, slope = 1;
   };
-  /// What it is, if it is a line for all x.
+  /// The function as a line, if it is one for all x.
   std::optional<Line> line() const;
 
   template <class T>

@@ -33,7 +33,7 @@ enum class Passing {
   endInside  ///< an end of the path lies inside: the object is left out
 };
 
-/// What is remembered of an object from one posture to the next, in its frame S.
+/// Memory of an object from one posture to the next, in its frame S.
 struct ContactMemory {
   Passing passing = Passing::clear;
   Eigen::Vector3d p_SA = Eigen::Vector3d::Zero();  ///< first contact
@@ -47,7 +47,7 @@ struct ChainMemory {
   std::array<ContactMemory, maxChain> contacts;
 };
 
-/// What became of a search that was not a plain continuation of the last posture's path.
+/// Event in a search that was not a plain continuation of the last posture's path.
 enum class ChainEvent {
   none,       ///< found from the memory, or the first of its kind
   jumped,     ///< the remembered way has ended, or the posture has leapt: another may be followed

@@ -30,8 +30,8 @@ struct GeodesicPoint {
 GeodesicPoint shootGeodesic(const Surface& surface, const Eigen::Vector3d& x,
                             const Eigen::Vector3d& u, double s, double tolerance = 1e-13);
 
-/// The same by nothing but g, ∇g, ∇²g, for any ImplicitSurface: Gragg's midpoint rule,
-/// extrapolated. What a surface without a conserved quantity uses; some three times slower.
+/// The end of a geodesic by g, ∇g, ∇²g alone, for any ImplicitSurface: Gragg's midpoint rule,
+/// extrapolated. For a surface without a conserved quantity; some three times slower.
 template <ImplicitSurface S>
 GeodesicPoint shootByDerivatives(const S& surface, const Eigen::Vector3d& x,
                                  const Eigen::Vector3d& u, double s, double tolerance = 1e-13);

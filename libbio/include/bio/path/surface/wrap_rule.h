@@ -20,7 +20,7 @@ Vec3<double> directionOf(WrapQuadrant quadrant);
 
 /// The side on which a path from P to Q goes round a cylinder about z.
 ///
-/// Of the two ways round the cylinder, a quadrant ±x or ±y selects the one whose middle direction
+/// A quadrant ±x or ±y selects, of the two ways round the cylinder, the one whose middle direction
 /// between P and Q lies on that side, and "all" the shorter one. The side should be decided once,
 /// in a reference posture, and kept up to the slip angle: then the length is C¹ while the ends move
 /// and does not flip. OpenSim decides in each posture from the tangent points; both agree if a path

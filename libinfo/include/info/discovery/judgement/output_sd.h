@@ -21,7 +21,7 @@ struct ThirdDifferences {
   double sd() const;
 };
 
-/// Of each output of these trials.
+/// Third differences of each output of these trials.
 std::vector<ThirdDifferences> differencesOf(const DiscoveryProblem& data,
                                             const std::vector<int>& trials);
 

@@ -145,7 +145,7 @@ class DiscoveryProblem {
    public:
     virtual ~Simulation() = default;
     virtual const Eigen::VectorXd& outputs() const = 0;
-    /// What predict() of the same arguments gives; to be called once at most.
+    /// The result of predict() with the same arguments; to be called once at most.
     virtual Prediction predict() = 0;
   };
   /// The arguments of predict(); must not outlive this object. Null: not available, predict() and
@@ -166,7 +166,7 @@ class DiscoveryProblem {
     return {};
   }
 
-  /// The same data and model with a force that pulls the simulation towards the measurements like a
+  /// This problem with a force that pulls the simulation towards the measurements like a
   /// spring and damper with natural frequency ω [rad/s] > 0 (nudging). Far from the solution, the
   /// cost of an unstable model has many narrow local minima; with nudging it is smooth, and for ω →
   /// 0 the original model is recovered. Null: not available. Must not outlive this object.
@@ -177,7 +177,7 @@ class DiscoveryProblem {
   virtual Eigen::MatrixXd inputs(int trial) const = 0;
   virtual std::vector<std::string> inputNames() const = 0;
 
-  /// The same data and model with a candidate "formula", a force of these terms (at least one) on
+  /// This problem with a candidate "formula", a force of these terms (at least one) on
   /// an axis, with the quantities c, r_2, …; of the other candidates only `kept` (indices). Null:
   /// not available.
   virtual std::unique_ptr<DiscoveryProblem> withFormula(

@@ -75,20 +75,20 @@ class Likelihood {
   /// @throws std::domain_error if the model cannot be simulated at the start
   Fit fit(const Hypothesis& hypothesis, const Noise& noise, const Eigen::VectorXd& start,
           const std::vector<Eigen::VectorXd>& eta = {}, const FitOptions& options = {}) const;
-  /// The same; empty if the model cannot be simulated at the start.
+  /// The fit; empty if the model cannot be simulated at the start.
   std::optional<Fit> tryFit(const Hypothesis& hypothesis, const Noise& noise,
                             const Eigen::VectorXd& start,
                             const std::vector<Eigen::VectorXd>& eta = {},
                             const FitOptions& options = {}) const;
 
-  /// The same hypothesis with the most probable parameters after marginalisation over the latent
-  /// forces: the minimum over ξ of
+  /// The fit at the parameters that are most probable after marginalisation over the latent
+  /// forces, for the hypothesis of `near`: the minimum over ξ of
   ///     min_η J + ½ log|H_ηη(ξ)|,   H_ηη = 1 + WᵀW,   W = dy/dη/σ
   /// and the latent forces at that ξ. The joint fit lacks the second term, which is larger where
   /// latent forces have a larger effect on the outputs. It therefore underestimates damping,
   /// because small latent forces then suffice (docs/decisions/042-marginal-mode.md).
   ///
-  /// The gradient of that term is evaluated at `near` and held; a second call with the result as
+  /// The gradient of that term is evaluated at `near` and fixed; a second call with the result as
   /// `near` improves it. Returns `near` if there is no latent force, if the simulation fails, or if
   /// the result has less evidence.
   Fit marginal(const Fit& near) const;

@@ -23,7 +23,7 @@ Eigen::MatrixXd latentCovariance(const std::vector<Node>& nodes, const Eigen::Ma
 /// Times of a trial's nodes on any of the axes [s].
 std::vector<double> nodeTimes(const DiscoveryProblem& data, int trial);
 
-/// Of values at all nodes of a trial, one per row, those of one axis.
+/// The rows of one axis, from values at all nodes of a trial, one per row.
 Eigen::MatrixXd onAxis(const Eigen::MatrixXd& values, std::size_t axis, std::size_t numAxes);
 
 /// @throws std::invalid_argument if the nodes of a trial are not those of every axis in turn, all

@@ -23,7 +23,7 @@ class Whitening {
   bool isPositive() const;
   /// of the output with this index
   double sd(std::size_t output) const;
-  /// The same outputs with `factor` times the noise.
+  /// A whitening of these outputs with `factor` times the noise.
   Whitening scaled(double factor) const { return Whitening(Eigen::VectorXd(factor * sds_)); }
 
   /// σ of each of n samples
