@@ -30,10 +30,10 @@ using Json = nlohmann::ordered_json;
 /// Inputs of the rows beside their numbers, and how they are written.
 struct EnsembleStudy {
   EnsembleStudy(const bio::Model& model, const bio::MusculoskeletalSystem& arm,
-                const bio::SystemOptions& system, const TrialInput& input,
+                const bio::SystemOptions& built, const TrialInput& input,
                 const bio::TrialEnsembleOptions& options)
       : duration(input.trial.duration()),
-        ensemble(model, arm, system, input.trial, {input.start.q, input.start.qDot}, options),
+        ensemble(model, arm, built, input.trial, {input.start.q, input.start.qDot}, options),
         table(ensemble.laws().parameters, ensemble.course(), shownFactor(ensemble.coordinate()),
               shownUnit(ensemble.coordinate())) {}
 

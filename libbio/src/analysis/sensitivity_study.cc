@@ -160,14 +160,14 @@ void requireWithinBounds(const ModelParameter& parameter, const std::vector<doub
   }
 }
 
-Sweep parameterSweep(const StudiedTrial& trial, const SystemOptions& system, std::size_t index,
+Sweep parameterSweep(const StudiedTrial& trial, const SystemOptions& options, std::size_t index,
                      const std::vector<double>& values,
                      const std::function<void(double)>& progress) {
   const ModelParameter& parameter = trial.catalogue.parameters()[index];
   requireWithinBounds(parameter, values);
   const auto simulated = [&](double value) {
     const auto setting = trial.catalogue.at({index}, Eigen::VectorXd::Constant(1, value));
-    const MusculoskeletalSystem arm(setting.model, system);
+    const MusculoskeletalSystem arm(setting.model, options);
     return simulateSetting(arm, setting, trial.recorded.excitation, trial.recorded.simulation);
   };
   Sweep result{parameter, simulated(parameter.value), {}};

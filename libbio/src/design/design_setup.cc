@@ -135,7 +135,7 @@ std::vector<MuscleGroup> muscleGroups(const MusculoskeletalSystem& arm, const Ei
 info::MonteCarloResult simulatedRepetitions(const ExperimentDesign& design,
                                             const DesignedExperiment& experiment,
                                             const ParameterCatalogue& catalogue,
-                                            const SystemOptions& system,
+                                            const SystemOptions& built,
                                             SimulationOptions simulation,
                                             info::MonteCarloOptions options) {
   const DesignQuestion& q = design.question();
@@ -150,7 +150,7 @@ info::MonteCarloResult simulatedRepetitions(const ExperimentDesign& design,
   for (const ChannelCandidate& one : q.observed) {
     series.push_back({one.what, experiment.measuredTimes});
   }
-  const TrialPredictor predictor(catalogue, system, excitationOf(experiment.trial, design.arm()),
+  const TrialPredictor predictor(catalogue, built, excitationOf(experiment.trial, design.arm()),
                                  std::move(series), q.parameters, simulation);
   // in units that give all samples the noise of the first observable
   const double noise = q.observed.front().sd;

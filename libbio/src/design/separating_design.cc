@@ -85,13 +85,13 @@ info::discover::Whitening noiseOf(const std::vector<ChannelCandidate>& observed)
 
 }  // namespace
 
-SeparatingDesign::SeparatingDesign(const Model& model, const SystemOptions& arm, const Trial& trial,
+SeparatingDesign::SeparatingDesign(const Model& model, const SystemOptions& built, const Trial& trial,
                                    const MusculoskeletalProblemOptions& options,
                                    SeparationQuestion question, DesignLimits limits,
                                    std::vector<bio::MuscleGroup> groups, double knotInterval)
     : model_(model),
-      arm_(arm),
-      system_(model, arm),
+      built_(built),
+      system_(model, built),
       coordinates_(inQuestion(system_, question.observed)),
       options_(planning(options, question.observed)),
       question_(std::move(question)),
@@ -141,7 +141,7 @@ MusculoskeletalProblem SeparatingDesign::planned(const Trial& trial) const {
   }
   measured.measured = inputs_.measured(
       observed_, starts.transpose().replicate(std::ssize(inputs_.measuredTimes()), 1));
-  return {model_, arm_, coordinates_, {measured}, options_};
+  return {model_, built_, coordinates_, {measured}, options_};
 }
 
 SeparatingExperiment SeparatingDesign::at(const VectorXd& x) const {

@@ -154,9 +154,9 @@ TEST(ForceNumbers, SensitivitiesMatchDifferences) {
 
 TEST(ForceNumbers, TheReactionAtASwungShoulderFollowsThemToo) {
   const ArmOfSeven c(0.2, {"elbow_flexion", "shoulder_elv"}, false, withMotor(withAll()));
-  SystemOptions system = c.options;
-  system.prescribed = {"shoulder_elv"};
-  const MusculoskeletalSystem arm(c.model, system);
+  SystemOptions swung = c.options;
+  swung.prescribed = {"shoulder_elv"};
+  const MusculoskeletalSystem arm(c.model, swung);
   SimulationOptions options;
   options.duration = 0.08;
   options.externalForce = motorForce(2);
@@ -165,7 +165,7 @@ TEST(ForceNumbers, TheReactionAtASwungShoulderFollowsThemToo) {
   options.prescribed.place(0, start.q, start.qDot);
   const ParameterCatalogue catalogue(c.model, arm, start);
   const fixtures::DiscoveryProblem d = fixtures::compareWithDifferences(
-      arm, system, c.excitation, catalogue, catalogue.select(numbers), options);
+      arm, swung, c.excitation, catalogue, catalogue.select(numbers), options);
   fixtures::tell(d);
   EXPECT_GT(d.compared, 26 * 5);
   EXPECT_LT(d.worst, 1e-5) << d.of;

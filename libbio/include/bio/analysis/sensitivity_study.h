@@ -102,7 +102,7 @@ void requireWithinBounds(const ModelParameter& parameter, const std::vector<doub
 /// The trial's motion with the parameter at each value, all others as in the model.
 /// @param index  of the catalogue
 /// @throws what requireWithinBounds(), MusculoskeletalSystem and simulate() throw
-Sweep parameterSweep(const StudiedTrial& trial, const SystemOptions& system, std::size_t index,
+Sweep parameterSweep(const StudiedTrial& trial, const SystemOptions& options, std::size_t index,
                      const std::vector<double>& values,
                      const std::function<void(double)>& progress = {});
 

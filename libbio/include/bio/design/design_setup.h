@@ -65,7 +65,7 @@ std::vector<MuscleGroup> muscleGroups(const MusculoskeletalSystem& arm, const Ei
 info::MonteCarloResult simulatedRepetitions(const ExperimentDesign& design,
                                             const DesignedExperiment& experiment,
                                             const ParameterCatalogue& catalogue,
-                                            const SystemOptions& system,
+                                            const SystemOptions& built,
                                             SimulationOptions simulation,
                                             info::MonteCarloOptions options);
 

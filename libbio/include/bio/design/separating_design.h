@@ -57,7 +57,7 @@ class SeparatingDesign {
   /// @throws std::invalid_argument for an unknown effect or one that the model already has, a size
   ///   outside its bounds, a free coordinate that is not observed, what DesignInputs and
   ///   MusculoskeletalProblem throw
-  SeparatingDesign(const Model& model, const SystemOptions& arm, const Trial& trial,
+  SeparatingDesign(const Model& model, const SystemOptions& built, const Trial& trial,
                    const MusculoskeletalProblemOptions& options, SeparationQuestion question,
                    DesignLimits limits, std::vector<bio::MuscleGroup> groups,
                    double knotInterval = 0.3);
@@ -86,7 +86,7 @@ class SeparatingDesign {
   Eigen::Index placeOf(const std::string& coordinate) const;
 
   Model model_;
-  SystemOptions arm_;
+  SystemOptions built_;  ///< of `system_`
   MusculoskeletalSystem system_;
   std::vector<std::string> coordinates_;
   MusculoskeletalProblemOptions options_;
